@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// One function a command: adds its options to the app; its callback does the work and throws core::Error on failure.
+
+#include "cli/cli.h"
+
+namespace CLI {
+class App;
+}
+
+namespace handpiece::cli {
+
+void addMakeCommand(CLI::App& app);
+void addMeshCommand(CLI::App& app);
+void addProbeCommand(CLI::App& app, const MethodRegistry& methods);
+void addRunCommand(CLI::App& app, const MethodRegistry& methods);
+void addReproduceCommand(CLI::App& app);
+void addBenchCommand(CLI::App& app);
+
+}  // namespace handpiece::cli

@@ -1,0 +1,88 @@
+# One call a room: its sources, its public headers, the rooms it may use and the third-party libraries it alone may see.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_VERIFY_INTERFACE_HEADER_SETS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+        CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${CCACHE_PROGRAM})
+endif()
+
+add_library(handpiece_options INTERFACE)
+# No contraction, no fast-math: the same inputs give the same tooth, bit for bit.
+target_compile_options(handpiece_options INTERFACE
+    $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wshadow -Wno-psabi -ffp-contract=off>)
+if(HANDPIECE_SANITIZE)
+    target_compile_options(handpiece_options INTERFACE
+        $<BUILD_INTERFACE:-fsanitize=${HANDPIECE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all>)
+    target_link_options(handpiece_options INTERFACE $<BUILD_INTERFACE:-fsanitize=${HANDPIECE_SANITIZE}>)
+    target_compile_definitions(handpiece_options INTERFACE $<BUILD_INTERFACE:HANDPIECE_SANITIZED=1>)
+endif()
+
+# Compiles SOURCE once per instruction set; each copy sees HANDPIECE_SIMD_LEVEL (0 baseline, 2 AVX2, 3 AVX-512) and
+# HANDPIECE_SIMD_NS (simd_base, simd_avx2, simd_avx512). The room picks one at run time with core::simdLevel().
+function(handpiece_simd_sources target)
+    if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+        set(levels "base\;0\;")
+    else()
+        set(levels "base\;0\;" "avx2\;2\;-mavx2" "avx512\;3\;-mavx512f\\\;-mavx512dq\\\;-mavx512vl\\\;-mavx512bw\\\;-mprefer-vector-width=512")
+    endif()
+    foreach(level IN LISTS levels)
+        list(GET level 0 name)
+        list(GET level 1 number)
+        list(GET level 2 flags)
+        add_library(${target}_${name} OBJECT ${ARGN})
+        # No Eigen and no standard containers here: an inline function compiled for AVX-512 could be the one the linker
+        # keeps for everybody. Plain data in, plain data out.
+        target_link_libraries(${target}_${name} PRIVATE handpiece_options)
+        target_include_directories(${target}_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+        target_compile_definitions(${target}_${name} PRIVATE
+            HANDPIECE_SIMD_LEVEL=${number} HANDPIECE_SIMD_NS=simd_${name})
+        target_compile_features(${target}_${name} PRIVATE cxx_std_20)
+        target_compile_options(${target}_${name} PRIVATE ${flags} -O3)
+        target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_${name}>)
+    endforeach()
+endfunction()
+
+# handpiece_room(wing/room HEADERS ... SOURCES ... USES room... THIRD_PARTY lib... THIRD_PARTY_PUBLIC lib...)
+function(handpiece_room path)
+    cmake_parse_arguments(R "" "" "HEADERS;SOURCES;USES;THIRD_PARTY;THIRD_PARTY_PUBLIC" ${ARGN})
+    get_filename_component(room ${path} NAME)
+    set(target handpiece_${room})
+    if(R_SOURCES)
+        add_library(${target} STATIC ${R_SOURCES})
+        set(scope PUBLIC)
+    else()
+        add_library(${target} INTERFACE)
+        set(scope INTERFACE)
+    endif()
+    add_library(handpiece::${room} ALIAS ${target})
+    set_target_properties(${target} PROPERTIES EXPORT_NAME ${room})
+    target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/src FILES ${R_HEADERS})
+    target_compile_features(${target} ${scope} cxx_std_20)
+    list(TRANSFORM R_USES PREPEND handpiece::)
+    target_link_libraries(${target} ${scope} ${R_USES} ${R_THIRD_PARTY_PUBLIC})
+    if(R_SOURCES)
+        target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:handpiece_options> ${R_THIRD_PARTY})
+        if(NOT room STREQUAL "core")
+            target_precompile_headers(${target} REUSE_FROM handpiece_core)
+        endif()
+    endif()
+    set_property(GLOBAL APPEND PROPERTY HANDPIECE_ROOMS ${target})
+endfunction()
+
+# handpiece_test(name SOURCES ... USES room... LIBS lib...): one GoogleTest program, discovered by CTest.
+function(handpiece_test name)
+    cmake_parse_arguments(T "" "" "SOURCES;USES;LIBS;LABELS" ${ARGN})
+    add_executable(${name} ${T_SOURCES})
+    list(TRANSFORM T_USES PREPEND handpiece::)
+    target_link_libraries(${name} PRIVATE handpiece_options ${T_USES} ${T_LIBS} handpiece_test_support GTest::gtest GTest::gtest_main)
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 600 LABELS "${T_LABELS}")
+endfunction()

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/base/core/error.h"
+
+#include <utility>
+
+namespace handpiece::core {
+
+Error::Error(std::string what, std::string where, std::string remedy)
+    : problem_(std::move(what)), where_(std::move(where)), remedy_(std::move(remedy)) {
+    if (!where_.empty()) message_ = where_ + ": ";
+    message_ += problem_;
+    if (!remedy_.empty()) message_ += " (" + remedy_ + ")";
+}
+
+}  // namespace handpiece::core

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/base/core/parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include <memory>
+#include <mutex>
+
+namespace handpiece::core {
+namespace {
+std::mutex controlMutex;
+std::unique_ptr<tbb::global_control> control;
+}  // namespace
+
+void parallelFor(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+    if (count == 0) return;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain == 0 ? 1 : grain),
+                      [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
+}
+
+std::size_t threadCount() { return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism); }
+
+void setThreadCount(std::size_t threads) {
+    const std::lock_guard lock(controlMutex);
+    control.reset();
+    if (threads > 0)
+        control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
+}
+
+}  // namespace handpiece::core

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The outline of a bur in the half-plane (rho, z): rho the distance from its axis, z along the shank, tip at z = 0 [mm].
+
+#include <vector>
+
+#include "handpiece/base/core/vec.h"
+
+namespace handpiece::instrument {
+
+/// A straight piece or a circular arc of the outline, from `from` to `to`, walked from the tip to the top (so the bur's
+/// inside lies on the left). x is rho >= 0, y is z.
+struct ProfilePiece {
+    core::Vec2 from, to;
+    bool isArc = false;
+    core::Vec2 centre = core::Vec2::Zero();  ///< of the arc
+    double radiusMm = 0.0;                   ///< of the arc
+    bool convex = true;                      ///< the arc bulges out of the bur (centre on the inside)
+};
+
+/// A closed outline of revolution: starts on the axis (rho = 0) at the tip and ends on the axis at the top.
+struct Profile {
+    std::vector<ProfilePiece> pieces;
+
+    [[nodiscard]] double lengthMm() const;
+    [[nodiscard]] double maxRadiusMm() const;
+};
+
+/// Signed distance in the half-plane to the outline, negative inside: exact to lines and arcs.
+[[nodiscard]] double signedDistanceMm(const Profile& profile, double rhoMm, double zMm);
+/// Volume of the solid of revolution [mm3], closed form (Pappus) for lines and arcs.
+[[nodiscard]] double volumeMm3(const Profile& profile);
+/// Throws core::Error unless the outline is connected, starts and ends on the axis, has rho >= 0, rises from 0 and encloses volume.
+void validate(const Profile& profile);
+
+}  // namespace handpiece::instrument

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The tooth as a sparse field of signed distances: bricks of 8^3 cells near the surface, one coarse value a brick elsewhere.
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "handpiece/base/core/progress.h"
+#include "handpiece/base/core/vec.h"
+#include "handpiece/model/tooth/tissue.h"
+
+namespace handpiece::tooth {
+
+inline constexpr int kBrickCells = 8;                       ///< cells along a brick's edge
+inline constexpr int kBrickNodes = kBrickCells + 1;         ///< nodes along it: neighbours share (and repeat) a face of nodes
+inline constexpr int kBrickValues = kBrickNodes * kBrickNodes * kBrickNodes;  ///< 729; index x + 9 y + 81 z
+
+struct FieldSettings {
+    double voxelMm = 0.05;
+    double bandOutMm = 0.1;  ///< every point this near outside the surface lies in a brick
+    double bandInMm = 0.3;   ///< the same inside
+};
+
+/// Plain view of the field for kernels (no Eigen, no standard containers).
+struct FieldView {
+    double originMm[3];      ///< node 0 of brick 0
+    double voxelMm, inverseVoxelMm;
+    std::int32_t bricks[3];  ///< bricks along x, y, z
+    const std::int32_t* brickIndex;  ///< dense, x fastest: >= 0 a stored brick, -1 none (see coarse)
+    const float* values;     ///< kBrickValues per stored brick: signed distance [mm], negative inside
+    const float* coarse;     ///< per brick (dense): signed distance at the brick's centre [mm], exact where known
+    const std::uint8_t* tissue;       ///< kBrickValues per stored brick
+    const std::uint8_t* coarseTissue; ///< per brick (dense)
+};
+
+/// Immutable in this version; readers on any thread, no locks, no allocation.
+class ToothField {
+  public:
+    /// Signed distance [mm]: trilinear where a brick is stored; elsewhere the sign is right and the magnitude is a lower
+    /// bound of the distance to the surface. Outside the grid: at least the distance to the grid's box.
+    [[nodiscard]] double distance(const core::Vec3& p) const noexcept;
+    /// True when `p` lies in a stored brick (distance() is then accurate).
+    [[nodiscard]] bool isFine(const core::Vec3& p) const noexcept;
+    /// Unit gradient of the field (out of the tooth): gradient of the trilinear field, continuous enough for a normal.
+    /// Zero where no brick is stored.
+    [[nodiscard]] core::Vec3 normal(const core::Vec3& p) const noexcept;
+    [[nodiscard]] Tissue tissueAt(const core::Vec3& p) const noexcept;
+
+    [[nodiscard]] FieldView view() const noexcept;
+    [[nodiscard]] const FieldSettings& settings() const noexcept { return settings_; }
+    [[nodiscard]] core::Box bounds() const noexcept;
+    [[nodiscard]] std::size_t brickCount() const noexcept { return values_.size() / kBrickValues; }
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+    /// Volume [mm3] of the inside and area [mm2] of the zero surface, by integrating the cells. For checks.
+    [[nodiscard]] double volumeMm3() const;
+    [[nodiscard]] double areaMm2() const;
+    /// Hash of every stored value; the same at any thread count.
+    [[nodiscard]] std::uint64_t stateHash() const;
+
+    /// A field sampled from a function (closed forms in tests, phantoms). `signedDistance` must be 1-Lipschitz.
+    [[nodiscard]] static ToothField fromFunction(const core::Box& box, const FieldSettings& settings,
+                                                 const std::function<double(const core::Vec3&)>& signedDistance,
+                                                 const std::function<Tissue(const core::Vec3&)>& tissue = {},
+                                                 const core::Progress& progress = {});
+
+  private:
+    friend class FieldBuilder;
+    friend class FieldStorage;
+    FieldSettings settings_;
+    core::Vec3 originMm_ = core::Vec3::Zero();
+    std::int32_t bricks_[3] = {0, 0, 0};
+    std::vector<std::int32_t> brickIndex_;
+    std::vector<float> values_;
+    std::vector<float> coarse_;
+    std::vector<std::uint8_t> tissue_;
+    std::vector<std::uint8_t> coarseTissue_;
+};
+
+}  // namespace handpiece::tooth

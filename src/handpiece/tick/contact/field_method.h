@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Our contact: exact depth on the bur's medial axis against the triangles where the surface is uncut, the distance field
+/// elsewhere; patches and constraints from the bur's surface rings in the field.
+
+#include <memory>
+
+#include "handpiece/model/instrument/bur.h"
+#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/tick/contact/method.h"
+
+namespace handpiece::contact {
+
+enum class DepthSource : std::uint8_t {
+    exact,  ///< triangles of the uncut surface (the default)
+    field,  ///< the distance field alone, as after a cut
+};
+
+struct FieldMethodSettings {
+    DepthSource depthSource = DepthSource::exact;
+    double reachMm = 5.0;  ///< farther apart than this is "beyond reach"
+};
+
+[[nodiscard]] std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::Tooth> tooth,
+                                                      std::shared_ptr<const instrument::Bur> bur,
+                                                      const FieldMethodSettings& settings = {});
+
+}  // namespace handpiece::contact

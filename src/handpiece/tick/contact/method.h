@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Where the bur touches the tooth.
+///
+/// Second stage of the tick: device -> [contact] -> force -> cutting. Reads a pose, writes plain results; knows nothing of
+/// devices, forces or screens. All in the tooth frame, millimetres, double precision.
+
+#include <cstdint>
+#include <limits>
+
+#include "handpiece/base/core/fixed_vector.h"
+#include "handpiece/base/core/realtime.h"
+#include "handpiece/base/core/vec.h"
+#include "handpiece/model/tooth/tissue.h"
+
+namespace handpiece::contact {
+
+/// How a query went. Every value leaves usable results.
+enum class Status : std::uint8_t {
+    ok,           ///< all that was asked for
+    beyondReach,  ///< no surface within reach: depthMm is -reach, a bound only; no normal
+    truncated,    ///< a fixed capacity was full; the most important entries were kept (raise the capacity named in the docs)
+    invalidPose,  ///< the pose was not finite; results are those of no contact
+};
+
+/// How deep the bur is in the tooth, or how far from it.
+struct Depth {
+    /// - min over x of (phiT(x) + phiB(x)) [mm]: positive when overlapping, zero at touch, minus the distance when apart.
+    double depthMm = -std::numeric_limits<double>::infinity();
+    core::Vec3 normal = core::Vec3::Zero();      ///< unit, out of the tooth; zero beyond reach
+    core::Vec3 toothPointMm = core::Vec3::Zero();  ///< the surface point of the tooth that decides
+    tooth::Tissue tissue = tooth::Tissue::none;  ///< at that point
+    Status status = Status::beyondReach;
+};
+
+/// A connected piece of the bur's surface within kContactMarginMm of tissue (or inside it).
+struct Patch {
+    core::Vec3 centreMm = core::Vec3::Zero();  ///< area- and pressure-weighted
+    core::Vec3 normal = core::Vec3::Zero();    ///< unit, out of the tooth
+    double areaMm2 = 0.0;
+    double maxDepthMm = 0.0;                   ///< of its points, inside the tooth
+    double pressureShare = 0.0;                ///< of all patches, sums to 1: sum of area x s, s = max(0, margin - phiT)
+    tooth::Tissue tissue = tooth::Tissue::none;  ///< that carries most of its pressure
+};
+inline constexpr double kContactMarginMm = 0.02;
+inline constexpr std::size_t kMaxPatches = 16;
+
+struct PatchSet {
+    core::FixedVector<Patch, kMaxPatches> patches;
+    double areaMm2 = 0.0;                                    ///< of all
+    std::array<double, tooth::kTissueCount> tissueShare{};   ///< pressure share by tissue, sums to 1 in contact
+    Status status = Status::ok;
+};
+
+/// A half-space the bur must stay in, linearised at the pose asked about: gapMm + normal . dp >= 0 for a translation dp.
+struct Constraint {
+    core::Vec3 normal = core::Vec3::Zero();   ///< unit, out of the tooth
+    double gapMm = 0.0;                       ///< signed distance of the bur's point there; negative inside
+    core::Vec3 pointMm = core::Vec3::Zero();  ///< where on the bur, tooth frame
+    tooth::Tissue tissue = tooth::Tissue::none;
+};
+inline constexpr std::size_t kMaxConstraints = 96;
+using ConstraintSet = core::FixedVector<Constraint, kMaxConstraints>;
+
+/// One way to find contact between one bur and one tooth. Built off the tick; the methods below run in it.
+///
+/// Keeps a warm start between calls, so it belongs to one thread; answers do not depend on it beyond 1 nm.
+class Method {
+  public:
+    virtual ~Method() = default;
+    [[nodiscard]] virtual const char* name() const noexcept = 0;
+
+    /// Signed depth, normal and deciding point.
+    [[nodiscard]] virtual Depth depth(const core::Pose& burInTooth) noexcept HANDPIECE_REALTIME = 0;
+
+    /// Contact patches with area and tissue at a pose. A method that knows only depth reports one patch without area.
+    virtual void patches(const core::Pose& burInTooth, PatchSet& out) noexcept HANDPIECE_REALTIME;
+
+    /// Half-spaces within `reachMm` of the bur at a pose, enough of them that the bur can slide along every wall it touches.
+    /// The default gives the one of depth().
+    virtual Status constraints(const core::Pose& burInTooth, double reachMm, ConstraintSet& out) noexcept HANDPIECE_REALTIME;
+
+    /// Forget the warm start (after a jump).
+    virtual void reset() noexcept {}
+};
+
+}  // namespace handpiece::contact

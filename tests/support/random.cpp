@@ -31,7 +31,8 @@ core::Vec3 randomDirection(std::mt19937_64& generator) {
 
 core::Quat randomRotation(std::mt19937_64& generator) {
     for (;;) {
-        core::Quat q(uniform(generator, -1, 1), uniform(generator, -1, 1), uniform(generator, -1, 1), uniform(generator, -1, 1));
+        core::Quat q(uniform(generator, -1, 1), uniform(generator, -1, 1), uniform(generator, -1, 1),
+                     uniform(generator, -1, 1));
         const double n = q.norm();
         if (n > 0.1 && n <= 1.0) return core::Quat(q.coeffs() / n);
     }

@@ -61,11 +61,21 @@ RealtimeTrap::RealtimeTrap()
 #endif
     ++counters.armed;
 }
-RealtimeTrap::~RealtimeTrap() { --counters.armed; }
-std::uint64_t RealtimeTrap::allocations() const { return counters.allocations - startAllocations_; }
-std::uint64_t RealtimeTrap::locks() const { return counters.locks - startLocks_; }
-std::uint64_t RealtimeTrap::waitsAndFiles() const { return counters.waits - startWaits_; }
-bool RealtimeTrap::isActive() { return TRAP_ACTIVE != 0; }
+RealtimeTrap::~RealtimeTrap() {
+    --counters.armed;
+}
+std::uint64_t RealtimeTrap::allocations() const {
+    return counters.allocations - startAllocations_;
+}
+std::uint64_t RealtimeTrap::locks() const {
+    return counters.locks - startLocks_;
+}
+std::uint64_t RealtimeTrap::waitsAndFiles() const {
+    return counters.waits - startWaits_;
+}
+bool RealtimeTrap::isActive() {
+    return TRAP_ACTIVE != 0;
+}
 
 }  // namespace handpiece::test
 
@@ -112,12 +122,12 @@ void free(void* p) {
 }
 
 // Everything else is found behind us with dlsym, once and before any trap is armed.
-#define HANDPIECE_WRAP(result, name, which, parameters, arguments)                                    \
-    result name parameters {                                                                          \
-        using Function = result(*) parameters;                                                        \
-        static const Function next = reinterpret_cast<Function>(dlsym(RTLD_NEXT, #name));             \
-        caught(&Counters::which, #name);                                                              \
-        return next arguments;                                                                        \
+#define HANDPIECE_WRAP(result, name, which, parameters, arguments)                        \
+    result name parameters {                                                              \
+        using Function = result(*) parameters;                                            \
+        static const Function next = reinterpret_cast<Function>(dlsym(RTLD_NEXT, #name)); \
+        caught(&Counters::which, #name);                                                  \
+        return next arguments;                                                            \
     }
 HANDPIECE_WRAP(int, pthread_mutex_lock, locks, (pthread_mutex_t * m), (m))
 HANDPIECE_WRAP(int, pthread_mutex_trylock, locks, (pthread_mutex_t * m), (m))

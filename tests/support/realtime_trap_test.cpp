@@ -20,7 +20,10 @@ class RealtimeTrapTest : public testing::Test {
 
 TEST_F(RealtimeTrapTest, seesAnAllocationAndItsRelease) {
     const RealtimeTrap trap;
-    { const std::unique_ptr<int> p(new int(3)); asm volatile("" : : "g"(p.get()) : "memory"); }
+    {
+        const std::unique_ptr<int> p(new int(3));
+        asm volatile("" : : "g"(p.get()) : "memory");
+    }
     EXPECT_EQ(trap.allocations(), 2u);
     EXPECT_EQ(trap.locks(), 0u);
 }

@@ -21,7 +21,9 @@ struct CloseFile {
 };
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
-std::string reason() { return std::strerror(errno); }
+std::string reason() {
+    return std::strerror(errno);
+}
 
 // Unique within this process and between processes: two writers never share a temporary.
 fs::path temporaryBeside(const fs::path& path) {
@@ -45,7 +47,8 @@ std::vector<std::byte> readFile(const fs::path& path, std::uint64_t limitBytes) 
     std::vector<std::byte> data;
     const std::uint64_t size = fs::is_regular_file(status) ? fs::file_size(path, ec) : 0;
     if (size > limitBytes)
-        throw Error(fmt::format("the file has {} bytes, more than the {} that are read", size, limitBytes), path.string());
+        throw Error(fmt::format("the file has {} bytes, more than the {} that are read", size, limitBytes),
+                    path.string());
     data.resize(size);
     std::size_t have = size == 0 ? 0 : std::fread(data.data(), 1, size, file.get());
     data.resize(have);
@@ -85,21 +88,26 @@ void writeFile(const fs::path& path, std::span<const std::byte> data) {
         why = ec.message();
     }
     fs::remove(temporary, ec);
-    throw Error(fmt::format("cannot be written: {}", why), path.string(), "check the folder, its permissions and the free space");
+    throw Error(fmt::format("cannot be written: {}", why), path.string(),
+                "check the folder, its permissions and the free space");
 }
 
-void writeFile(const fs::path& path, std::string_view text) { writeFile(path, std::as_bytes(std::span(text))); }
+void writeFile(const fs::path& path, std::string_view text) {
+    writeFile(path, std::as_bytes(std::span(text)));
+}
 
 void prepareOutputFolder(const fs::path& path) {
     std::error_code ec;
     fs::create_directories(path, ec);
     if (!fs::is_directory(path))
-        throw Error(fmt::format("cannot be created as a folder: {}", ec ? ec.message() : "a file of that name is in the way"),
-                    path.string(), "name another output folder");
+        throw Error(
+            fmt::format("cannot be created as a folder: {}", ec ? ec.message() : "a file of that name is in the way"),
+            path.string(), "name another output folder");
     const fs::path probe = temporaryBeside(path / "probe");
     File file(std::fopen(probe.string().c_str(), "wb"));
     if (!file)
-        throw Error(fmt::format("nothing can be written into this folder: {}", reason()), path.string(), "name another output folder");
+        throw Error(fmt::format("nothing can be written into this folder: {}", reason()), path.string(),
+                    "name another output folder");
     file.reset();
     fs::remove(probe, ec);
 }

@@ -30,13 +30,15 @@ class Hasher {
     }
     void add(std::string_view text) noexcept { add(std::as_bytes(std::span(text))); }
     template <class T>
-        requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
     void add(T value) noexcept {
         std::uint64_t word = 0;
         std::memcpy(&word, &value, sizeof value);
         mix(word);
     }
-    [[nodiscard]] std::uint64_t value() const noexcept { return fold(state_ ^ 0x9E3779B97F4A7C15ull, 0xD6E8FEB86659FD93ull); }
+    [[nodiscard]] std::uint64_t value() const noexcept {
+        return fold(state_ ^ 0x9E3779B97F4A7C15ull, 0xD6E8FEB86659FD93ull);
+    }
 
   private:
     static std::uint64_t fold(std::uint64_t a, std::uint64_t b) noexcept {
@@ -44,7 +46,9 @@ class Hasher {
         const std::uint64_t low = aLow * bLow, m1 = aHigh * bLow + (low >> 32), m2 = aLow * bHigh + (m1 & 0xffffffffu);
         return (a * b) ^ (aHigh * bHigh + (m1 >> 32) + (m2 >> 32));
     }
-    void mix(std::uint64_t word) noexcept { state_ = fold(state_ ^ word ^ 0xA0761D6478BD642Full, 0xE7037ED1A0B428DBull + ++count_); }
+    void mix(std::uint64_t word) noexcept {
+        state_ = fold(state_ ^ word ^ 0xA0761D6478BD642Full, 0xE7037ED1A0B428DBull + ++count_);
+    }
 
     std::uint64_t state_ = 0x2D358DCCAA6C78A5ull;
     std::uint64_t count_ = 0;

@@ -21,7 +21,9 @@ void parallelFor(std::size_t count, std::size_t grain, const std::function<void(
                       [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
 }
 
-std::size_t threadCount() { return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism); }
+std::size_t threadCount() {
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
 
 void setThreadCount(std::size_t threads) {
     const std::lock_guard lock(controlMutex);

@@ -9,7 +9,8 @@
 
 namespace handpiece::core {
 
-/// Called now and then with the fraction done (0..1); returns false to cancel. May be empty. May be called from any thread.
+/// Called now and then with the fraction done (0..1); returns false to cancel. May be empty. May be called from any
+/// thread.
 using Progress = std::function<bool(double)>;
 
 /// Reports `fraction` and throws core::Error("cancelled") when the listener asked to stop.

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/base/core/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <vector>
+
+#include "handpiece/base/core/progress.h"
+
+namespace handpiece::core {
+namespace {
+
+TEST(ParallelFor, visitsEveryIndexOnceAtAnyThreadCount) {
+    for (const std::size_t threads : {std::size_t{1}, std::size_t{2}, std::size_t{0}}) {
+        setThreadCount(threads);
+        std::vector<int> visits(10007);
+        parallelFor(visits.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                ++visits[i];
+        });
+        for (const int v : visits)
+            ASSERT_EQ(v, 1);
+        if (threads > 0) {
+            EXPECT_EQ(threadCount(), threads);
+        }
+    }
+    EXPECT_GE(threadCount(), 1u);
+}
+
+TEST(ParallelFor, passesAnExceptionOn) {
+    EXPECT_THROW(parallelFor(100, 1,
+                             [](std::size_t begin, std::size_t) {
+                                 if (begin == 37) throw Error("37");
+                             }),
+                 Error);
+    parallelFor(0, 1, [](std::size_t, std::size_t) { FAIL() << "an empty range has no pieces"; });
+}
+
+TEST(Progress, cancelsByAnError) {
+    EXPECT_NO_THROW(report({}, 0.5));
+    EXPECT_NO_THROW(report([](double) { return true; }, 0.5));
+    EXPECT_THROW(report([](double) { return false; }, 0.5), Error);
+}
+
+}  // namespace
+}  // namespace handpiece::core

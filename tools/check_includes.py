@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Holds the architecture: a room includes only itself and the rooms of its USES line, and third-party headers stay in
+the files named below. Reads the USES lines of the CMakeLists, so there is one table. Exit 1 with one line a breach."""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SRC = ROOT / "src" / "handpiece"
+
+# Where a third-party header may stand: pattern of the include -> pattern of the files (relative to the root).
+THIRD_PARTY = {
+    r"(lib)?qhull(_r|cpp)?/": r"src/handpiece/base/geometry/convex_hull\.cpp",
+    r"tiny_obj_loader\.h": r"src/handpiece/base/geometry/mesh_io\w*\.cpp",
+    r"tbb/|oneapi/tbb": r"src/handpiece/base/core/parallel\.cpp",
+    r"toml\+\+|toml\.hpp": r"src/handpiece/model/tooth/\w+\.cpp|src/handpiece/model/instrument/\w+\.cpp",
+    r"CLI/|CLI11": r"apps/cli/.*",
+    r"nlohmann/": r"apps/cli/.*\.cpp|bench/.*",
+    r"plplot|plConfig": r"apps/cli/plot\w*\.cpp",
+    r"gtest/|gmock/|rapidcheck": r"tests/.*",
+    r"benchmark/": r"bench/.*",
+    r"ccd/|fcl/": r"tests/.*|bench/.*",
+    r"btBullet|BulletCollision|LinearMath/|ode/|embree3/|openvdb/": r"bench/.*",
+    r"Q[A-Z]\w+$|QtWidgets/|QtCore/": r"apps/desktop/.*",
+}
+# What the tick's own rooms never include: anything that locks, waits, prints or touches a file. The device drivers and
+# the loop's runner may talk to base/rt, which hides the threads.
+TICK_FORBIDDEN = re.compile(r"<(mutex|shared_mutex|condition_variable|future|thread|iostream|fstream|sstream|filesystem|regex|unistd\.h|pthread\.h|stdio\.h)>")
+POSIX = re.compile(r"<(pthread\.h|sched\.h|unistd\.h|time\.h|sys/[a-z]+\.h|dlfcn\.h|spawn\.h)>")
+POSIX_ALLOWED = re.compile(r"src/handpiece/base/rt/.*\.cpp|src/handpiece/tick/device/driver_\w+\.cpp|apps/.*|tests/.*|bench/.*")
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"][^>"]+[>"])', re.MULTILINE)
+
+
+def rooms():
+    uses = {}
+    for path in SRC.glob("*/*/CMakeLists.txt"):
+        text = path.read_text()
+        name = re.search(r"handpiece_room\((\S+)", text).group(1)
+        line = re.search(r"USES((?:\s+[a-z]+)*)\s*(?:THIRD_PARTY|\))", text)
+        uses[name] = set(line.group(1).split()) if line else set()
+    return uses
+
+
+def cycle(uses):
+    by_room = {name.split("/")[1]: deps for name, deps in uses.items()}
+    state = {}
+
+    def visit(room, trail):
+        if state.get(room) == 2:
+            return None
+        if state.get(room) == 1:
+            return trail + [room]
+        state[room] = 1
+        for dep in sorted(by_room.get(room, ())):
+            found = visit(dep, trail + [room])
+            if found:
+                return found
+        state[room] = 2
+        return None
+
+    for room in sorted(by_room):
+        found = visit(room, [])
+        if found:
+            return found
+    return None
+
+
+def main():
+    uses = rooms()
+    breaches = []
+    loop = cycle(uses)
+    if loop:
+        breaches.append("rooms use each other in a circle: " + " -> ".join(loop))
+    files = [p for folder in ("src", "apps", "tests", "bench", "examples") for p in (ROOT / folder).rglob("*") if p.suffix in (".h", ".cpp")]
+    for path in sorted(files):
+        rel = path.relative_to(ROOT).as_posix()
+        for include in INCLUDE.findall(path.read_text(errors="replace")):
+            name = include[1:-1]
+            own = re.match(r"src/handpiece/(\w+/\w+)/", rel)
+            target = re.match(r"handpiece/(\w+)/(\w+)/", name)
+            if own and target:
+                mine = own.group(1)
+                if target.group(0)[10:-1] != mine and target.group(2) not in uses.get(mine, set()):
+                    breaches.append(f"{rel}: includes {name}, but {mine} does not use '{target.group(2)}'")
+            if own and re.match(r"(cli|desktop)/", name):
+                breaches.append(f"{rel}: a room includes an application ({name})")
+            if own and own.group(1).startswith("tick/") and TICK_FORBIDDEN.fullmatch(include):
+                breaches.append(f"{rel}: the tick includes {include}")
+            if POSIX.fullmatch(include) and not POSIX_ALLOWED.fullmatch(rel):
+                breaches.append(f"{rel}: {include} belongs behind an interface of base/rt or a driver")
+            for pattern, allowed in THIRD_PARTY.items():
+                if include[0] == "<" and re.match(pattern, name) and not re.fullmatch(allowed, rel):
+                    breaches.append(f"{rel}: <{name}> may stand only in {allowed}")
+    for line in breaches:
+        print(line)
+    print(f"include check: {len(files)} files, {len(uses)} rooms, {len(breaches)} breaches")
+    return 1 if breaches else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,422 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cfloat>
+#include <cmath>
+#include <numeric>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/geometry/triangle_tree.h"
+
+namespace handpiece::geometry {
+namespace {
+
+using core::Vec3;
+
+constexpr int kBins = 16;
+constexpr int kSahDepth = 16;                   // below it halves by count, so that kMaxTreeDepth holds
+constexpr std::uint32_t kTaskTriangles = 4096;  // subtrees of this size are built side by side
+constexpr double kThin = 1e-3;                  // height over longest edge of a sliver
+
+struct FloatBox {
+    float min[3] = {INFINITY, INFINITY, INFINITY};
+    float max[3] = {-INFINITY, -INFINITY, -INFINITY};
+
+    void extend(const FloatBox& b) {
+        for (int k = 0; k < 3; ++k) {
+            min[k] = std::min(min[k], b.min[k]);
+            max[k] = std::max(max[k], b.max[k]);
+        }
+    }
+    [[nodiscard]] float halfArea() const {
+        const float x = max[0] - min[0], y = max[1] - min[1], z = max[2] - min[2];
+        return x < 0.0f ? 0.0f : x * y + y * z + z * x;
+    }
+    [[nodiscard]] float centre(int axis) const { return 0.5f * (min[axis] + max[axis]); }
+};
+
+struct Item {
+    FloatBox box;
+    std::uint32_t triangle;
+};
+
+struct Range {
+    std::uint32_t begin = 0, end = 0;
+    FloatBox box;
+    [[nodiscard]] std::uint32_t size() const { return end - begin; }
+};
+
+class Builder {
+  public:
+    explicit Builder(std::vector<Item>& items) : items_(items) {}
+
+    std::vector<TreeNode> build() {
+        Range all{0, static_cast<std::uint32_t>(items_.size()), {}};
+        for (const Item& item : items_)
+            all.box.extend(item.box);
+        std::vector<TreeNode> nodes;
+        std::vector<Task> tasks;
+        makeNode(nodes, all, 1, &tasks);
+        std::vector<std::vector<TreeNode>> subtrees(tasks.size());
+        core::parallelFor(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                makeNode(subtrees[i], tasks[i].range, tasks[i].depth, nullptr);
+        });
+        for (std::size_t i = 0; i < tasks.size(); ++i) {
+            const auto offset = static_cast<std::int32_t>(nodes.size());
+            nodes[tasks[i].parent].child[tasks[i].lane] = offset;
+            for (TreeNode& node : subtrees[i]) {
+                for (int lane = 0; lane < node.lanes; ++lane)
+                    if (node.child[lane] >= 0) node.child[lane] += offset;
+                nodes.push_back(node);
+            }
+        }
+        return nodes;
+    }
+
+  private:
+    struct Task {
+        Range range;
+        std::size_t parent;
+        int lane, depth;
+    };
+
+    [[nodiscard]] Range rangeOf(std::uint32_t begin, std::uint32_t end) const {
+        Range r{begin, end, {}};
+        for (std::uint32_t i = begin; i < end; ++i)
+            r.box.extend(items_[i].box);
+        return r;
+    }
+
+    /// Halves by count along the axis the centres spread over most; ties by triangle, so that order never depends on
+    /// chance.
+    std::array<Range, 2> halve(const Range& r, int axis) {
+        const std::uint32_t middle = r.begin + r.size() / 2;
+        std::nth_element(items_.begin() + r.begin, items_.begin() + middle, items_.begin() + r.end,
+                         [axis](const Item& a, const Item& b) {
+                             const float ca = a.box.centre(axis), cb = b.box.centre(axis);
+                             return ca != cb ? ca < cb : a.triangle < b.triangle;
+                         });
+        return {rangeOf(r.begin, middle), rangeOf(middle, r.end)};
+    }
+
+    std::array<Range, 2> split(const Range& r, bool byCount) {
+        float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+        for (std::uint32_t i = r.begin; i < r.end; ++i)
+            for (int k = 0; k < 3; ++k) {
+                const float c = items_[i].box.centre(k);
+                low[k] = std::min(low[k], c);
+                high[k] = std::max(high[k], c);
+            }
+        int widest = 0;
+        for (int k = 1; k < 3; ++k)
+            if (high[k] - low[k] > high[widest] - low[widest]) widest = k;
+        if (byCount || !(high[widest] > low[widest])) return halve(r, widest);
+
+        struct Bin {
+            FloatBox box;
+            std::uint32_t count = 0;
+        };
+        Bin bins[3][kBins];
+        float scale[3];
+        for (int k = 0; k < 3; ++k)
+            scale[k] = high[k] > low[k] ? kBins * (1.0f - 1e-5f) / (high[k] - low[k]) : 0.0f;
+        const auto binOf = [&](const Item& item, int k) {
+            return std::clamp(static_cast<int>((item.box.centre(k) - low[k]) * scale[k]), 0, kBins - 1);
+        };
+        for (std::uint32_t i = r.begin; i < r.end; ++i)
+            for (int k = 0; k < 3; ++k) {
+                Bin& bin = bins[k][binOf(items_[i], k)];
+                bin.box.extend(items_[i].box);
+                ++bin.count;
+            }
+        float bestCost = INFINITY;
+        int bestAxis = -1, bestCut = 0;
+        for (int k = 0; k < 3; ++k) {
+            if (!(scale[k] > 0.0f)) continue;
+            float rightCost[kBins];
+            FloatBox box;
+            std::uint32_t count = 0;
+            for (int b = kBins - 1; b > 0; --b) {
+                box.extend(bins[k][b].box);
+                count += bins[k][b].count;
+                rightCost[b] = count == 0 ? INFINITY : box.halfArea() * static_cast<float>(count);
+            }
+            box = {};
+            count = 0;
+            for (int b = 1; b < kBins; ++b) {
+                box.extend(bins[k][b - 1].box);
+                count += bins[k][b - 1].count;
+                const float cost = count == 0 ? INFINITY : box.halfArea() * static_cast<float>(count) + rightCost[b];
+                if (cost < bestCost) {
+                    bestCost = cost;
+                    bestAxis = k;
+                    bestCut = b;
+                }
+            }
+        }
+        if (bestAxis < 0) return halve(r, widest);
+        const auto middle = std::partition(items_.begin() + r.begin, items_.begin() + r.end,
+                                           [&](const Item& item) { return binOf(item, bestAxis) < bestCut; });
+        const auto at = static_cast<std::uint32_t>(middle - items_.begin());
+        if (at == r.begin || at == r.end) return halve(r, widest);
+        return {rangeOf(r.begin, at), rangeOf(at, r.end)};
+    }
+
+    void makeNode(std::vector<TreeNode>& nodes, const Range& range, int depth, std::vector<Task>* tasks) {
+        const bool byCount = depth > kSahDepth;
+        Range children[8] = {range};
+        int count = 1;
+        while (count < 8) {
+            int pick = -1;
+            float best = -1.0f;
+            for (int i = 0; i < count; ++i) {
+                if (children[i].size() <= kMaxLeafTriangles) continue;
+                const float weight = byCount ? static_cast<float>(children[i].size()) : children[i].box.halfArea();
+                if (weight > best) {
+                    best = weight;
+                    pick = i;
+                }
+            }
+            if (pick < 0) break;
+            const auto [left, right] = split(children[pick], byCount);
+            children[pick] = left;
+            children[count++] = right;
+        }
+        const std::size_t index = nodes.size();
+        nodes.emplace_back();
+        TreeNode node{};
+        node.lanes = static_cast<std::uint8_t>(count);
+        for (int lane = 0; lane < 8; ++lane) {
+            const FloatBox box = lane < count ? children[lane].box : FloatBox{};
+            node.minX[lane] = box.min[0], node.minY[lane] = box.min[1], node.minZ[lane] = box.min[2];
+            node.maxX[lane] = box.max[0], node.maxY[lane] = box.max[1], node.maxZ[lane] = box.max[2];
+            if (lane >= count || children[lane].size() > kMaxLeafTriangles) continue;
+            node.child[lane] = ~static_cast<std::int32_t>(children[lane].begin);
+            node.count[lane] = static_cast<std::uint8_t>(children[lane].size());
+        }
+        for (int lane = 0; lane < count; ++lane) {
+            if (children[lane].size() <= kMaxLeafTriangles) continue;
+            if (tasks != nullptr && children[lane].size() <= kTaskTriangles) {
+                tasks->push_back({children[lane], index, lane, depth + 1});
+                continue;
+            }
+            node.child[lane] = static_cast<std::int32_t>(nodes.size());
+            makeNode(nodes, children[lane], depth + 1, tasks);
+        }
+        nodes[index] = node;
+    }
+
+    std::vector<Item>& items_;
+};
+
+/// Face, edge and vertex normals of every triangle, in mesh order: 21 floats each.
+std::vector<float> meshPseudonormals(const TriangleMesh& mesh) {
+    const std::size_t faces = mesh.triangles.size(), vertices = mesh.vertices.size();
+    std::vector<Vec3> faceNormal(faces), vertexNormal(vertices, Vec3::Zero());
+    core::parallelFor(faces, 8192, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const Triangle& t = mesh.triangles[f];
+            const Vec3 n = (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]);
+            const double length = n.norm();
+            faceNormal[f] = length > 0.0 ? Vec3(n / length) : Vec3::Zero();
+        }
+    });
+    // Half-edges gathered by their lower vertex and sorted by the other: equal ones are the faces around one edge.
+    struct HalfEdge {
+        std::uint32_t upper, slot;  // slot: 3 x face + edge
+    };
+    std::vector<std::uint32_t> start(vertices + 1, 0);
+    for (const Triangle& t : mesh.triangles)
+        for (std::size_t e = 0; e < 3; ++e)
+            ++start[std::min(t[e], t[(e + 1) % 3]) + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<HalfEdge> edges(3 * faces);
+    {
+        std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
+        for (std::uint32_t f = 0; f < faces; ++f)
+            for (std::uint32_t e = 0; e < 3; ++e) {
+                const std::uint32_t u = mesh.triangles[f][e], v = mesh.triangles[f][(e + 1) % 3];
+                edges[next[std::min(u, v)]++] = {std::max(u, v), 3 * f + e};
+            }
+    }
+    std::vector<Vec3> edgeNormal(3 * faces);
+    const auto sumEdges = [&] {
+        core::parallelFor(vertices, 8192, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t v = begin; v < end; ++v) {
+                const auto first = edges.begin() + start[v], last = edges.begin() + start[v + 1];
+                std::sort(first, last, [](const HalfEdge& a, const HalfEdge& b) {
+                    return a.upper != b.upper ? a.upper < b.upper : a.slot < b.slot;
+                });
+                for (auto i = first; i != last;) {
+                    auto j = i;
+                    Vec3 sum = Vec3::Zero();
+                    for (; j != last && j->upper == i->upper; ++j)
+                        sum += faceNormal[j->slot / 3];
+                    for (; i != j; ++i)
+                        edgeNormal[i->slot] = sum;
+                }
+            }
+        });
+    };
+    sumEdges();
+    // A face without area takes the mean of its neighbours, so that its edges know both sides.
+    std::vector<std::uint32_t> flat;
+    for (std::uint32_t f = 0; f < faces; ++f)
+        if (faceNormal[f].isZero(0.0)) flat.push_back(f);
+    for (std::uint32_t f = 0; f < faces; ++f) {
+        const Triangle& t = mesh.triangles[f];
+        if (faceNormal[f].isZero(0.0)) continue;
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 u = mesh.vertices[t[(k + 1) % 3]] - mesh.vertices[t[k]],
+                       v = mesh.vertices[t[(k + 2) % 3]] - mesh.vertices[t[k]];
+            vertexNormal[t[k]] += faceNormal[f] * std::atan2(u.cross(v).norm(), u.dot(v));
+        }
+    }
+    if (!flat.empty()) {
+        for (const std::uint32_t f : flat) {
+            const std::size_t e = 3 * std::size_t{f};
+            faceNormal[f] = (edgeNormal[e] + edgeNormal[e + 1] + edgeNormal[e + 2]).stableNormalized();
+        }
+        sumEdges();
+    }
+
+    std::vector<float> normals(21 * faces);
+    core::parallelFor(faces, 8192, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const Triangle& t = mesh.triangles[f];
+            const auto store = [&](std::size_t slot, const Vec3& n) {
+                const Vec3 unit = n.stableNormalized();
+                for (std::size_t k = 0; k < 3; ++k)
+                    normals[21 * f + 3 * slot + k] = static_cast<float>(unit[static_cast<Eigen::Index>(k)]);
+            };
+            store(0, faceNormal[f]);
+            for (std::size_t e = 0; e < 3; ++e)
+                store(1 + e, edgeNormal[3 * f + e]);
+            for (std::size_t k = 0; k < 3; ++k)
+                store(4 + k, vertexNormal[t[k]]);
+        }
+    });
+    return normals;
+}
+
+}  // namespace
+
+TriangleTree::TriangleTree(const TriangleMesh& mesh) {
+    if (mesh.triangles.empty()) throw core::Error("the mesh has no triangles", "triangle tree");
+    for (const Triangle& t : mesh.triangles)
+        for (const std::uint32_t v : t) {
+            if (v >= mesh.vertices.size())
+                throw core::Error("a triangle names a vertex that does not exist", "triangle tree");
+            if (!mesh.vertices[v].allFinite()) throw core::Error("a vertex is not a finite number", "triangle tree");
+            bounds_.extend(mesh.vertices[v]);
+        }
+    const std::size_t faces = mesh.triangles.size();
+    if (faces > 1'000'000'000u)
+        throw core::Error("the mesh has more than a thousand million triangles", "triangle tree");
+
+    const double reach = std::max(bounds_.min.cwiseAbs().maxCoeff(), bounds_.max.cwiseAbs().maxCoeff());
+    const double margin = reach * 0x1p-22 + FLT_MIN;
+    std::vector<Item> items(faces);
+    core::parallelFor(faces, 8192, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            core::Box box;
+            for (const std::uint32_t v : mesh.triangles[f])
+                box.extend(mesh.vertices[v]);
+            for (int k = 0; k < 3; ++k) {
+                items[f].box.min[k] = std::nextafterf(static_cast<float>(box.min[k] - margin), -INFINITY);
+                items[f].box.max[k] = std::nextafterf(static_cast<float>(box.max[k] + margin), INFINITY);
+            }
+            items[f].triangle = static_cast<std::uint32_t>(f);
+        }
+    });
+    nodes_ = Builder(items).build();
+
+    const std::vector<float> normals = meshPseudonormals(mesh);
+    triangles_.resize(faces);
+    pseudonormals_.resize(21 * faces);
+    core::parallelFor(faces, 8192, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t f = items[i].triangle;
+            const Triangle& t = mesh.triangles[f];
+            const Vec3 a = mesh.vertices[t[0]], ab = mesh.vertices[t[1]] - a, ac = mesh.vertices[t[2]] - a;
+            TreeTriangle& out = triangles_[i];
+            for (int k = 0; k < 3; ++k)
+                out.a[k] = a[k], out.ab[k] = ab[k], out.ac[k] = ac[k];
+            out.index = f;
+            const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+            out.thin = ab.cross(ac).norm() > kThin * longest2 ? 0u : 1u;
+            std::copy_n(&normals[21 * std::size_t{f}], 21, &pseudonormals_[21 * i]);
+        }
+    });
+    computeDipoles();
+}
+
+TriangleTree::TriangleTree(Storage storage, const core::Box& bounds)
+    : nodes_(std::move(storage.nodes)),
+      triangles_(std::move(storage.triangles)),
+      pseudonormals_(std::move(storage.pseudonormals)),
+      bounds_(bounds) {
+    bool sound = !nodes_.empty() && !triangles_.empty() && pseudonormals_.size() == 21 * triangles_.size();
+    std::vector<std::uint8_t> depth(nodes_.size(), 0);
+    if (sound) depth[0] = 1;
+    for (std::size_t i = 0; sound && i < nodes_.size(); ++i) {
+        const TreeNode& node = nodes_[i];
+        sound = node.lanes >= 1 && node.lanes <= 8;
+        for (int lane = 0; sound && lane < node.lanes; ++lane) {
+            if (node.child[lane] < 0) {
+                sound = static_cast<std::size_t>(~node.child[lane]) + node.count[lane] <= triangles_.size();
+            } else {
+                const auto child = static_cast<std::size_t>(node.child[lane]);
+                sound = child > i && child < nodes_.size() && depth[i] < kMaxTreeDepth;
+                if (sound) depth[child] = std::max(depth[child], static_cast<std::uint8_t>(depth[i] + 1));
+            }
+        }
+    }
+    if (!sound) throw core::Error("the stored arrays do not belong together", "triangle tree");
+    computeDipoles();
+}
+
+void TriangleTree::computeDipoles() {
+    dipoles_.assign(64 * nodes_.size(), 0.0);
+    // Children come after their parents: backwards, every child is ready before it is asked for.
+    for (std::size_t i = nodes_.size(); i-- > 0;) {
+        const TreeNode& node = nodes_[i];
+        for (std::size_t lane = 0; lane < node.lanes; ++lane) {
+            Vec3 normal = Vec3::Zero(), moment = Vec3::Zero();
+            double area = 0.0;
+            if (node.child[lane] < 0) {
+                const auto first = static_cast<std::size_t>(~node.child[lane]);
+                for (std::size_t t = first; t < first + node.count[lane]; ++t) {
+                    const TreeTriangle& tri = triangles_[t];
+                    const Vec3 a(tri.a[0], tri.a[1], tri.a[2]), ab(tri.ab[0], tri.ab[1], tri.ab[2]),
+                        ac(tri.ac[0], tri.ac[1], tri.ac[2]);
+                    const Vec3 n = 0.5 * ab.cross(ac);
+                    const double s = n.norm();
+                    normal += n;
+                    area += s;
+                    moment += s * (a + (ab + ac) / 3.0);
+                }
+            } else {
+                const auto child = static_cast<std::size_t>(node.child[lane]);
+                for (std::size_t k = 0; k < nodes_[child].lanes; ++k) {
+                    const double* d = &dipoles_[8 * (8 * child + k)];
+                    normal += Vec3(d[0], d[1], d[2]);
+                    area += d[7];
+                    moment += d[7] * Vec3(d[3], d[4], d[5]);
+                }
+            }
+            const Vec3 low(node.minX[lane], node.minY[lane], node.minZ[lane]),
+                high(node.maxX[lane], node.maxY[lane], node.maxZ[lane]);
+            const Vec3 centre = area > 0.0 ? Vec3(moment / area) : Vec3(0.5 * (low + high));
+            const double radius = (high - centre).cwiseMax(centre - low).norm();
+            double* d = &dipoles_[8 * (8 * i + lane)];
+            for (int k = 0; k < 3; ++k)
+                d[k] = normal[k], d[3 + k] = centre[k];
+            d[6] = radius;
+            d[7] = area;
+        }
+    }
+}
+
+}  // namespace handpiece::geometry

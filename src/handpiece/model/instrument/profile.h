@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The outline of a bur in the half-plane (rho, z): rho the distance from its axis, z along the shank, tip at z = 0 [mm].
+/// The outline of a bur in the half-plane (rho, z): rho the distance from its axis, z along the shank, tip at z = 0
+/// [mm].
 
 #include <vector>
 
@@ -27,11 +28,16 @@ struct Profile {
     [[nodiscard]] double maxRadiusMm() const;
 };
 
-/// Signed distance in the half-plane to the outline, negative inside: exact to lines and arcs.
-[[nodiscard]] double signedDistanceMm(const Profile& profile, double rhoMm, double zMm);
+/// Signed distance in the half-plane to the outline, negative inside: exact to lines and arcs. It is the distance to
+/// the solid of revolution too, since the nearest point of the solid lies in the half-plane of the point. The profile
+/// must be valid (see validate). Allocates nothing; some 5 ns a piece.
+[[nodiscard]] double signedDistanceMm(const Profile& profile, double rhoMm, double zMm) noexcept;
 /// Volume of the solid of revolution [mm3], closed form (Pappus) for lines and arcs.
 [[nodiscard]] double volumeMm3(const Profile& profile);
-/// Throws core::Error unless the outline is connected, starts and ends on the axis, has rho >= 0, rises from 0 and encloses volume.
+/// Area of the surface of revolution [mm2], flat ends included, closed form.
+[[nodiscard]] double surfaceAreaMm2(const Profile& profile);
+/// Throws core::Error unless the outline is connected, starts and ends on the axis, has rho >= 0, rises from 0 and
+/// encloses volume.
 void validate(const Profile& profile);
 
 }  // namespace handpiece::instrument

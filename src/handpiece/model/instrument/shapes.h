@@ -12,12 +12,23 @@
 
 namespace handpiece::instrument {
 
-enum class Shape { round, invertedCone, cylinderFlat, cylinderRound, taperFlat, taperRound, pear, flame, torpedo, wheel };
+enum class Shape {
+    round,
+    invertedCone,
+    cylinderFlat,
+    cylinderRound,
+    taperFlat,
+    taperRound,
+    pear,
+    flame,
+    torpedo,
+    wheel
+};
 
 struct ShapeInfo {
     Shape shape;
-    std::string_view name;         ///< as typed on the command line: "round", "inverted-cone", "cylinder-flat", ...
-    std::string_view isoShape;     ///< three digits of ISO 6360-2, "001"; see docs/burs.md for which are unchecked
+    std::string_view name;      ///< as typed on the command line: "round", "inverted-cone", "cylinder-flat", ...
+    std::string_view isoShape;  ///< three digits of ISO 6360-2, "001"; see docs/burs.md for which are unchecked
     std::string_view description;
 };
 [[nodiscard]] const std::vector<ShapeInfo>& shapes();
@@ -27,10 +38,12 @@ struct ShapeInfo {
 /// Outline of the working head, diameter and length in mm. Throws core::Error when the two cannot make that shape.
 [[nodiscard]] Profile makeProfile(Shape shape, double diameterMm, double lengthMm);
 
-/// A closed mesh of the outline turned about z: `around` points a ring, rings no farther than `spacingMm` apart on arcs.
+/// A closed mesh of the outline turned about z: `around` points a ring, rings no farther than `spacingMm` apart on
+/// arcs.
 [[nodiscard]] geometry::TriangleMesh turnedMesh(const Profile& profile, int around, double spacingMm);
 
-/// A named bur of the product: "paper" (Table I: 170 vertices), US numbers ("330", "round-4"), or "SHAPE:DIAMETERxLENGTH"
+/// A named bur of the product: "paper" (Table I: 170 vertices), US numbers ("330", "round-4"), or
+/// "SHAPE:DIAMETERxLENGTH"
 /// ("cylinder-round:1.0x4.0"). Throws core::Error listing what there is.
 [[nodiscard]] Bur makeBur(std::string_view name);
 /// Names makeBur knows, for help and completion.

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Makes a closed, oriented, manifold mesh out of what a scanner or a drawing program left.
+
+#include <cstddef>
+#include <vector>
+
+#include "handpiece/base/core/vec.h"
+#include "handpiece/base/geometry/inspect.h"
+#include "handpiece/base/geometry/triangle_mesh.h"
+
+namespace handpiece::geometry {
+
+/// The automatic welding distance as a share of the box's diagonal: 0.25 um on a tooth of 25 mm.
+inline constexpr double kAutomaticWeldShare = 1e-5;
+
+struct RepairSettings {
+    double weldMm = -1.0;  ///< vertices nearer than this become one; negative: kAutomaticWeldShare of the diagonal
+    double debrisAreaShare =
+        0.01;  ///< shells with less than this share of the largest shell's area are dropped; 0 keeps all
+};
+
+/// A hole that was closed.
+struct ClosedHole {
+    std::size_t edges = 0;
+    double perimeterMm = 0.0;
+    double areaMm2 = 0.0;  ///< of the faces that close it
+    core::Vec3 centreMm = core::Vec3::Zero();
+};
+
+/// What repair() did, in the order in which it did it.
+struct RepairReport {
+    MeshReport before, after;
+    double weldMm = 0.0;  ///< the distance that was used
+    std::size_t weldedVertices = 0;
+    std::size_t removedDegenerateFaces = 0;
+    std::size_t removedDuplicateFaces = 0;
+    std::size_t removedFinFaces = 0;  ///< loose sheets that hung on an edge of a better surface
+    std::size_t splitEdges = 0;       ///< edges of more than two faces, cut apart
+    std::size_t splitVertices = 0;    ///< vertices added where sheets were cut apart
+    std::size_t droppedShells = 0;    ///< debris
+    std::size_t droppedFaces = 0;     ///< their faces
+    std::size_t turnedFaces = 0;      ///< to agree with their neighbours or to face outwards
+    std::vector<ClosedHole> holes;    ///< the largest perimeter first
+    std::size_t addedFaces = 0;       ///< to close them
+    std::size_t crossingFaces = 0;    ///< pairs of faces that cross in the result: told, not mended
+};
+
+/// Mends `mesh` in place: afterwards it is closed, manifold and oriented, outer shells outwards and cavities inwards.
+///
+/// Welds, removes degenerate and double faces, cuts non-manifold edges and vertices apart (copies move apart by a few
+/// welding distances, so that a file that merges equal vertices keeps them apart), drops debris, closes every hole.
+/// Throws core::Error (and leaves `mesh` as it was) when nothing is left or a surface cannot be oriented.
+RepairReport repair(TriangleMesh& mesh, const RepairSettings& settings = {});
+
+}  // namespace handpiece::geometry

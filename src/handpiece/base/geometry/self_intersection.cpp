@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/base/geometry/self_intersection.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/base/geometry/mesh_io_formats.h"
+
+namespace handpiece::geometry {
+namespace {
+
+using core::Vec3;
+
+struct FloatBox {
+    float min[3] = {HUGE_VALF, HUGE_VALF, HUGE_VALF}, max[3] = {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+
+    void extend(const Vec3& p) {
+        for (int k = 0; k < 3; ++k) {
+            // Rounded outwards, so that a box in float holds its points in double.
+            const float near = static_cast<float>(p[k]);
+            min[k] = std::min(min[k], near <= p[k] ? near : std::nextafter(near, -HUGE_VALF));
+            max[k] = std::max(max[k], near >= p[k] ? near : std::nextafter(near, HUGE_VALF));
+        }
+    }
+    void extend(const FloatBox& b) {
+        for (int k = 0; k < 3; ++k) {
+            min[k] = std::min(min[k], b.min[k]);
+            max[k] = std::max(max[k], b.max[k]);
+        }
+    }
+    [[nodiscard]] bool meets(const FloatBox& b) const {
+        return (min[0] <= b.max[0]) & (b.min[0] <= max[0]) & (min[1] <= b.max[1]) & (b.min[1] <= max[1]) &
+               (min[2] <= b.max[2]) & (b.min[2] <= max[2]);
+    }
+};
+
+// 21 bits spread to every third place.
+std::uint64_t spread(std::uint64_t x) {
+    x = (x | x << 32) & 0x1f00000000ffffull;
+    x = (x | x << 16) & 0x1f0000ff0000ffull;
+    x = (x | x << 8) & 0x100f00f00f00f00full;
+    x = (x | x << 4) & 0x10c30c30c30c30c3ull;
+    return (x | x << 2) & 0x1249249249249249ull;
+}
+
+class CrossingFinder {
+  public:
+    explicit CrossingFinder(const TriangleMesh& mesh) : vertices_(mesh.vertices) {
+        core::Box box;
+        formats::VertexMerger<double> places(mesh.vertices.size());
+        std::vector<std::uint32_t> place(mesh.vertices.size());
+        for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+            const Vec3& p = mesh.vertices[v];
+            place[v] = places.add(p.x(), p.y(), p.z());
+        }
+        for (const Triangle& t : mesh.triangles)
+            for (const std::uint32_t v : t)
+                box.extend(mesh.vertices[v]);
+        vertices_ = places.vertices();
+        tolerance_ = box.isEmpty() ? 0.0 : kTouchingShare * box.size().norm();
+
+        // Faces along a Morton curve; the tree is the implicit one over pieces of kLeaf of them.
+        const Vec3 scale = box.isEmpty() ? Vec3::Zero().eval()
+                                         : (box.size().array().max(1e-300).inverse() * 2097151.0).matrix().eval();
+        std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+        order.reserve(mesh.triangles.size());
+        for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+            const Triangle& t = mesh.triangles[f];
+            const Vec3 cell =
+                (((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0 - box.min).array() *
+                 scale.array())
+                    .max(0.0)
+                    .min(2097151.0)
+                    .matrix();
+            const auto at = [&](int k) { return spread(static_cast<std::uint64_t>(cell[k])) << k; };
+            order.emplace_back(at(0) | at(1) | at(2), f);
+        }
+        std::sort(order.begin(), order.end());
+        faces_.reserve(order.size());
+        for (const auto& [code, f] : order) {
+            const Triangle& t = mesh.triangles[f];
+            Face face{f, {place[t[0]], place[t[1]], place[t[2]]}, {}, {}};
+            const Vec3 &a = vertices_[face.corner[0]], &b = vertices_[face.corner[1]], &c = vertices_[face.corner[2]];
+            for (const Vec3* p : {&a, &b, &c})
+                face.box.extend(*p);
+            const Vec3 normal = (b - a).cross(c - a);
+            const double length = normal.norm();
+            face.normal = length > 0.0 ? (normal / length).eval() : Vec3::Zero().eval();
+            faces_.push_back(face);
+        }
+        leaves_ = (faces_.size() + kLeaf - 1) / kLeaf;
+        levelStart_.push_back(0);
+        for (std::size_t n = leaves_;; n = (n + kArity - 1) / kArity) {
+            levelSize_.push_back(n);
+            levelStart_.push_back(levelStart_.back() + n);
+            if (n <= 1) break;
+        }
+        boxes_.resize(levelStart_.back());
+        for (std::size_t i = 0; i < faces_.size(); ++i)
+            boxes_[i / kLeaf].extend(faces_[i].box);
+        for (std::size_t level = 1; level < levelSize_.size(); ++level)
+            for (std::size_t i = 0; i < levelSize_[level - 1]; ++i)
+                boxes_[levelStart_[level] + i / kArity].extend(boxes_[levelStart_[level - 1] + i]);
+    }
+
+    [[nodiscard]] std::vector<CrossingFaces> find() const {
+        std::vector<std::vector<CrossingFaces>> found((leaves_ + kPiece - 1) / kPiece);
+        core::parallelFor(found.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t piece = begin; piece < end; ++piece)
+                for (std::size_t leaf = piece * kPiece; leaf < std::min(leaves_, (piece + 1) * kPiece); ++leaf)
+                    visit(levelSize_.size() - 1, 0, leaf, found[piece]);
+        });
+        std::vector<CrossingFaces> all;
+        for (const std::vector<CrossingFaces>& f : found)
+            all.insert(all.end(), f.begin(), f.end());
+        std::sort(all.begin(), all.end(), [](const CrossingFaces& a, const CrossingFaces& b) {
+            return a.first != b.first ? a.first < b.first : a.second < b.second;
+        });
+        return all;
+    }
+
+  private:
+    static constexpr std::size_t kLeaf = 4, kArity = 4, kPiece = 256;
+
+    struct Face {
+        std::uint32_t index;
+        std::array<std::uint32_t, 3> corner;
+        Vec3 normal;  ///< unit, or zero where the face has no area
+        FloatBox box;
+    };
+
+    // Every pair of leaves once: the query leaf looks only at leaves from itself onwards.
+    void visit(std::size_t level, std::size_t node, std::size_t leaf, std::vector<CrossingFaces>& found) const {
+        std::size_t span = 1;
+        for (std::size_t l = 0; l < level; ++l)
+            span *= kArity;
+        if ((node + 1) * span <= leaf || !boxes_[levelStart_[level] + node].meets(boxes_[leaf])) return;
+        if (level > 0) {
+            const std::size_t end = std::min(levelSize_[level - 1], (node + 1) * kArity);
+            for (std::size_t child = node * kArity; child < end; ++child)
+                visit(level - 1, child, leaf, found);
+            return;
+        }
+        const std::size_t endA = std::min(faces_.size(), (leaf + 1) * kLeaf),
+                          endB = std::min(faces_.size(), (node + 1) * kLeaf);
+        for (std::size_t i = leaf * kLeaf; i < endA; ++i)
+            for (std::size_t j = node == leaf ? i + 1 : node * kLeaf; j < endB; ++j) {
+                if (!faces_[i].box.meets(faces_[j].box)) continue;
+                if (const std::optional<Vec3> p = crossing(faces_[i], faces_[j]))
+                    found.push_back(
+                        {std::min(faces_[i].index, faces_[j].index), std::max(faces_[i].index, faces_[j].index), *p});
+            }
+    }
+
+    [[nodiscard]] std::optional<Vec3> crossing(const Face& a, const Face& b) const {
+        int shared = 0;
+        std::array<bool, 3> aShared{}, bShared{};
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t j = 0; j < 3; ++j)
+                if (a.corner[i] == b.corner[j]) {
+                    aShared[i] = bShared[j] = true;
+                    ++shared;
+                }
+        if (shared >= 3) return std::nullopt;  // the same face twice: inspect() counts those
+        if (shared == 2) return fold(a, aShared, b, bShared);
+        if (const std::optional<Vec3> p = edgesThrough(a, aShared, b)) return p;
+        return edgesThrough(b, bShared, a);
+    }
+
+    // Neighbours across an edge can only lie folded onto each other.
+    [[nodiscard]] std::optional<Vec3> fold(const Face& a, const std::array<bool, 3>& aShared, const Face& b,
+                                           const std::array<bool, 3>& bShared) const {
+        const auto apex = [](const Face& f, const std::array<bool, 3>& isShared) {
+            return f.corner[static_cast<std::size_t>(std::find(isShared.begin(), isShared.end(), false) -
+                                                     isShared.begin())];
+        };
+        const std::size_t alone =
+            static_cast<std::size_t>(std::find(aShared.begin(), aShared.end(), false) - aShared.begin());
+        if (alone == 3) return std::nullopt;
+        const Vec3 &e0 = vertices_[a.corner[(alone + 1) % 3]], &e1 = vertices_[a.corner[(alone + 2) % 3]];
+        const Vec3 &p = vertices_[apex(a, aShared)], &q = vertices_[apex(b, bShared)];
+        if (std::abs(b.normal.dot(p - e0)) > tolerance_ || std::abs(a.normal.dot(q - e0)) > tolerance_)
+            return std::nullopt;
+        const Vec3 along = (e1 - e0).normalized();
+        const Vec3 up = (p - e0) - along * along.dot(p - e0), uq = (q - e0) - along * along.dot(q - e0);
+        // Both must rise well above the edge, on its same side, and not by chance of a sliver.
+        const double hp = up.norm(), hq = uq.norm();
+        constexpr double kSliver = 1e3;
+        if (std::min(hp, hq) < kSliver * tolerance_ || up.dot(uq) <= 0.0) return std::nullopt;
+        return ((e0 + e1 + (hp < hq ? p : q)) / 3.0).eval();
+    }
+
+    // An edge of `a` that pierces `b`: its ends clearly on both sides of b's plane, and the piercing point in b.
+    [[nodiscard]] std::optional<Vec3> edgesThrough(const Face& a, const std::array<bool, 3>& aShared,
+                                                   const Face& b) const {
+        const Vec3& origin = vertices_[b.corner[0]];
+        std::array<double, 3> height;
+        for (std::size_t i = 0; i < 3; ++i)
+            height[i] = aShared[i] ? 0.0 : b.normal.dot(vertices_[a.corner[i]] - origin);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = i == 2 ? 0 : i + 1;
+            const bool through = (height[i] > tolerance_ && height[j] < -tolerance_) ||
+                                 (height[i] < -tolerance_ && height[j] > tolerance_);
+            if (!through) continue;
+            const Vec3 &p = vertices_[a.corner[i]], &q = vertices_[a.corner[j]];
+            const Vec3 x = p + (q - p) * (height[i] / (height[i] - height[j]));
+            // A point on b's rim belongs to b: two edges that meet exactly must not both miss.
+            bool inside = true;
+            for (std::size_t k = 0; k < 3 && inside; ++k) {
+                const Vec3 &from = vertices_[b.corner[k]], &to = vertices_[b.corner[k == 2 ? 0 : k + 1]];
+                const Vec3 side = to - from, out = x - from;
+                const double scale = side.norm() * (out.norm() + origin.cwiseAbs().maxCoeff());
+                inside = b.normal.dot(side.cross(out)) >= -1e-14 * scale;
+            }
+            if (inside) return x;
+        }
+        return std::nullopt;
+    }
+
+    std::vector<Vec3> vertices_;  ///< one for each place
+    std::vector<Face> faces_;
+    std::vector<FloatBox> boxes_;
+    std::vector<std::size_t> levelStart_, levelSize_;
+    std::size_t leaves_ = 0;
+    double tolerance_ = 0.0;
+};
+
+}  // namespace
+
+std::vector<CrossingFaces> selfIntersections(const TriangleMesh& mesh, std::size_t limit) {
+    requireValidIndices(mesh, "mesh");
+    if (mesh.triangles.empty()) return {};
+    std::vector<CrossingFaces> all = CrossingFinder(mesh).find();
+    if (all.size() > limit) all.resize(limit);
+    return all;
+}
+
+}  // namespace handpiece::geometry

@@ -46,6 +46,8 @@ class ToothField {
     /// Unit gradient of the field (out of the tooth): gradient of the trilinear field, continuous enough for a normal.
     /// Zero where no brick is stored.
     [[nodiscard]] core::Vec3 normal(const core::Vec3& p) const noexcept;
+    /// What lies at `p`; in a stored brick that of the nearest node, and outside the surface what one would touch there.
+    /// none elsewhere outside.
     [[nodiscard]] Tissue tissueAt(const core::Vec3& p) const noexcept;
 
     [[nodiscard]] FieldView view() const noexcept;
@@ -68,6 +70,7 @@ class ToothField {
   private:
     friend class FieldBuilder;
     friend class FieldStorage;
+    [[nodiscard]] double distanceInGrid(const core::Vec3& gridPoint) const noexcept;  // in voxels from the origin
     FieldSettings settings_;
     core::Vec3 originMm_ = core::Vec3::Zero();
     std::int32_t bricks_[3] = {0, 0, 0};

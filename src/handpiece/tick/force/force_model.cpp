@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/tick/force/force_model.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace handpiece::force {
+namespace {
+
+using core::Vec3;
+
+constexpr double kDeepStartMm = 0.1;  // a bur that starts deeper than this gets its force faded in
+constexpr double kShallowMm = 1e-9;   // below it a direction cannot be told
+
+}  // namespace
+
+ForceModel::ForceModel(const Limits& limits, const Parameters& parameters)
+    : limits_(limits), parameters_(parameters), proxy_(parameters.proxy) {
+    validate(parameters);
+}
+
+void ForceModel::setParameters(const Parameters& parameters) noexcept {
+    parameters_ = parameters;
+    proxy_.setSettings(parameters.proxy);
+}
+
+const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, bool lost, double periodS) noexcept {
+    guard_.look(read, lost, periodS, parameters_.fadeInS);
+    if (guard_.faulted()) return touch_;
+    const bool fresh = guard_.startsAnew() || startPending_;
+    touch_.deviceInTooth = guard_.pose();
+    touch_.depth = method.depth(touch_.deviceInTooth);
+    touch_.proxyInTooth = touch_.deviceInTooth;
+    touch_.touching = touch_.depth.depthMm > 0.0;
+    touch_.tissue = touch_.touching ? touch_.depth.tissue : tooth::Tissue::none;
+    touch_.passes = 0;
+    touch_.patches = contact::PatchSet{};
+    if (fresh && (startPending_ || touch_.depth.depthMm > kDeepStartMm)) guard_.fadeIn();
+    startPending_ = false;
+    updateVelocity(touch_.deviceInTooth.positionMm, fresh, periodS);
+    if (parameters_.mode == Mode::penalty) {
+        proxy_.follow(touch_.deviceInTooth);
+        return touch_;
+    }
+    if (fresh) proxy_.start(method, touch_.deviceInTooth);
+    proxy_.update(method, touch_.deviceInTooth, touch_.depth);
+    touch_.proxyInTooth = proxy_.pose();
+    touch_.touching = proxy_.touching();
+    touch_.passes = proxy_.passes();
+    touch_.tissue = proxy_.strongestTissue();
+    if (touch_.touching) {
+        method.patches(touch_.proxyInTooth, touch_.patches);
+        double most = 0.0;
+        for (std::size_t i = 0; i < tooth::kTissueCount; ++i) {
+            if (touch_.patches.tissueShare[i] > most) {
+                most = touch_.patches.tissueShare[i];
+                touch_.tissue = static_cast<tooth::Tissue>(i);
+            }
+        }
+    }
+    return touch_;
+}
+
+void ForceModel::updateVelocity(const Vec3& positionMm, bool fresh, double periodS) noexcept {
+    if (fresh) {
+        velocityMmS_.setZero();
+    } else {
+        const Vec3 raw = (positionMm - lastPositionMm_) / periodS;
+        velocityMmS_ += periodS / (parameters_.velocityTauS + periodS) * (raw - velocityMmS_);
+    }
+    lastPositionMm_ = positionMm;
+}
+
+ForceModel::KelvinVoigt ForceModel::coupling(const Touch& touch) const noexcept {
+    double stiffness = 0.0, damping = 0.0, total = 0.0;
+    for (std::size_t i = 0; i < tooth::kTissueCount; ++i) {
+        const double share = touch.patches.tissueShare[i];
+        total += share;
+        stiffness += share * parameters_.tissues[i].stiffnessFraction;
+        damping += share * parameters_.tissues[i].dampingNSPerMm;
+    }
+    if (total > 0.0) {
+        stiffness /= total;
+        damping /= total;
+    } else {
+        // On the surface but with no point within the margin of it: the tissue that holds the proxy.
+        const TissueFeel& feel = parameters_.tissues[static_cast<std::size_t>(touch.tissue)];
+        stiffness = feel.stiffnessFraction;
+        damping = feel.dampingNSPerMm;
+    }
+    return {
+        std::min(stiffness * limits_.maxStiffnessNPerMm * parameters_.stiffnessMultiplier, limits_.maxStiffnessNPerMm),
+        std::min(damping * parameters_.dampingMultiplier, limits_.maxDampingNSPerMm)};
+}
+
+Vec3 ForceModel::proxyForce(const Touch& touch) const noexcept {
+    const Vec3 spring = touch.proxyInTooth.positionMm - touch.deviceInTooth.positionMm;
+    const double length = spring.norm();
+    if (!touch.touching || length < kShallowMm) return Vec3::Zero();
+    const Vec3 direction = spring / length;
+    const KelvinVoigt kv = coupling(touch);
+    const double ramp = std::min(1.0, length / parameters_.dampingRampMm);
+    const double approach = -velocityMmS_.dot(direction);
+    return std::max(0.0, kv.stiffnessNPerMm * length + ramp * kv.dampingNSPerMm * approach) * direction;
+}
+
+Vec3 ForceModel::penaltyForce(const Touch& touch) const noexcept {
+    const double depth = touch.depth.depthMm;
+    if (!(depth > 0.0)) return Vec3::Zero();
+    const double k =
+        std::min(parameters_.penaltyStiffnessNPerMm * parameters_.stiffnessMultiplier, limits_.maxStiffnessNPerMm);
+    const double b =
+        std::min(parameters_.penaltyDampingNSPerMm * parameters_.dampingMultiplier, limits_.maxDampingNSPerMm);
+    const double ramp = std::min(1.0, depth / parameters_.dampingRampMm);
+    const double approach = -velocityMmS_.dot(touch.depth.normal);
+    return std::max(0.0, k * depth + ramp * b * approach) * touch.depth.normal;
+}
+
+Vec3 ForceModel::torqueAboutGrip(const Touch& touch, const Vec3& forceN) const noexcept {
+    const Vec3 grip = touch.proxyInTooth.apply(parameters_.gripMm);
+    if (touch.patches.patches.empty()) {
+        return touch.touching ? Vec3((touch.depth.toothPointMm - grip).cross(forceN)) : Vec3(Vec3::Zero());
+    }
+    // Each patch pushes along its normal by its share of the pressure; what that does not explain of the force acts at
+    // all of them, so that the patches' forces add up to the force and change as smoothly as the shares.
+    Vec3 mean = Vec3::Zero();
+    for (const contact::Patch& p : touch.patches.patches)
+        mean += p.pressureShare * p.normal;
+    const double scale = forceN.dot(mean) / std::max(mean.squaredNorm(), 0.01);
+    const Vec3 rest = forceN - scale * mean;
+    Vec3 torque = Vec3::Zero();
+    for (const contact::Patch& p : touch.patches.patches) {
+        torque += (p.centreMm - grip).cross(p.pressureShare * (scale * p.normal + rest));
+    }
+    return torque;
+}
+
+const ForceCommand& ForceModel::compute(const Touch& touch, double periodS) noexcept {
+    const Vec3 last = command_.forceN;
+    Vec3 wanted = Vec3::Zero();
+    command_.forceLimited = command_.slopeLimited = false;
+    if (guard_.faulted()) {
+        if (!wasFaulted_) heldForceN_ = last;
+        wanted = guard_.gain() * heldForceN_;
+    } else {
+        wanted = parameters_.mode == Mode::proxy ? proxyForce(touch) : penaltyForce(touch);
+        const double size = wanted.norm();
+        command_.forceLimited = size > limits_.maxForceN;
+        if (command_.forceLimited) wanted *= limits_.maxForceN / size;
+        wanted *= guard_.gain();
+    }
+    wasFaulted_ = guard_.faulted();
+    const Vec3 change = wanted - last;
+    const double most = limits_.maxForceSlopeNPerS * periodS;
+    command_.slopeLimited = change.norm() > most;
+    command_.forceN = command_.slopeLimited ? Vec3(last + change * (most / change.norm())) : wanted;
+    command_.fullTorqueNmm = guard_.faulted() ? Vec3(Vec3::Zero()) : torqueAboutGrip(touch, command_.forceN);
+    const double torque = command_.fullTorqueNmm.norm();
+    command_.torqueNmm = torque > limits_.maxTorqueNmm ? Vec3(command_.fullTorqueNmm * (limits_.maxTorqueNmm / torque))
+                                                       : command_.fullTorqueNmm;
+    return command_;
+}
+
+}  // namespace handpiece::force

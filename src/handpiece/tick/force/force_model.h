@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// From contact to the force on the hand: third stage of the tick.
+
+#include "handpiece/base/core/realtime.h"
+#include "handpiece/tick/contact/method.h"
+#include "handpiece/tick/force/parameters.h"
+#include "handpiece/tick/force/pose_guard.h"
+#include "handpiece/tick/force/proxy.h"
+
+namespace handpiece::force {
+
+/// What the bur feels this tick.
+struct Touch {
+    core::Pose deviceInTooth;                    ///< believed; not the reading when that is in doubt
+    contact::Depth depth;                        ///< at the device's pose
+    core::Pose proxyInTooth;                     ///< the device's pose in penalty mode
+    contact::PatchSet patches;                   ///< at the proxy; empty when it does not touch, and in penalty mode
+    bool touching = false;                       ///< the proxy is held by the tooth
+    tooth::Tissue tissue = tooth::Tissue::none;  ///< that carries most of the pressure
+    int passes = 0;                              ///< constraint passes of the proxy
+};
+
+struct ForceCommand {
+    core::Vec3 forceN = core::Vec3::Zero();         ///< on the hand, tooth frame
+    core::Vec3 torqueNmm = core::Vec3::Zero();      ///< about the grip, within the device's torque axes (zero without)
+    core::Vec3 fullTorqueNmm = core::Vec3::Zero();  ///< about the grip, whatever the device can do
+    bool forceLimited = false, slopeLimited = false;
+};
+
+/// The force of one bur in one hand. One thread; keeps the proxy, the filtered velocity and the last force.
+///
+/// Proxy mode: F = k |proxy - device| + b x (filtered approach speed), towards the proxy; k and b weighted by the
+/// pressure on each tissue, capped by the device; the damper ramped in; never pulling; limited in size and slope.
+class ForceModel {
+  public:
+    /// Throws core::Error for parameters out of range.
+    ForceModel(const Limits& limits, const Parameters& parameters);
+
+    /// Finds contact for this tick's reading: depth, proxy and patches.
+    const Touch& feel(contact::Method& method, const core::Pose& read, bool lost,
+                      double periodS) noexcept HANDPIECE_REALTIME;
+    /// The force for it. Call once after each feel().
+    const ForceCommand& compute(const Touch& touch, double periodS) noexcept HANDPIECE_REALTIME;
+
+    /// Takes validated parameters from the next tick on.
+    void setParameters(const Parameters& parameters) noexcept HANDPIECE_REALTIME;
+    /// The tooth or the bur is another one: the proxy starts anew, the force fades in.
+    void startAnew() noexcept HANDPIECE_REALTIME { startPending_ = true; }
+
+    [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
+    [[nodiscard]] const PoseGuard& guard() const noexcept { return guard_; }
+    [[nodiscard]] const core::Vec3& velocityMmS() const noexcept { return velocityMmS_; }  ///< filtered
+
+  private:
+    struct KelvinVoigt {
+        double stiffnessNPerMm, dampingNSPerMm;
+    };
+    void updateVelocity(const core::Vec3& positionMm, bool fresh, double periodS) noexcept;
+    [[nodiscard]] KelvinVoigt coupling(const Touch& touch) const noexcept;
+    [[nodiscard]] core::Vec3 proxyForce(const Touch& touch) const noexcept;
+    [[nodiscard]] core::Vec3 penaltyForce(const Touch& touch) const noexcept;
+    [[nodiscard]] core::Vec3 torqueAboutGrip(const Touch& touch, const core::Vec3& forceN) const noexcept;
+
+    Limits limits_;
+    Parameters parameters_;
+    PoseGuard guard_;
+    Proxy proxy_;
+    Touch touch_;
+    ForceCommand command_;
+    core::Vec3 velocityMmS_ = core::Vec3::Zero(), lastPositionMm_ = core::Vec3::Zero();
+    core::Vec3 heldForceN_ = core::Vec3::Zero();  // when the fault began
+    bool startPending_ = false, wasFaulted_ = false;
+};
+
+}  // namespace handpiece::force

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/tick/force/parameters.h"
+
+#include <fmt/format.h>
+
+#include "handpiece/base/core/error.h"
+
+namespace handpiece::force {
+
+Mode modeByName(std::string_view name) {
+    if (name == "proxy") return Mode::proxy;
+    if (name == "penalty") return Mode::penalty;
+    throw core::Error(fmt::format("no force is called \"{}\"", name), "force", "there are proxy and penalty");
+}
+
+void validate(const Parameters& p) {
+    const auto require = [](double value, double low, double high, const char* what) {
+        if (!(value >= low && value <= high)) {
+            throw core::Error(fmt::format("{} is {}", what, value), "force", fmt::format("give {} to {}", low, high));
+        }
+    };
+    require(p.stiffnessMultiplier, 0.0, 100.0, "the stiffness multiplier");
+    require(p.dampingMultiplier, 0.0, 100.0, "the damping multiplier");
+    for (const TissueFeel& t : p.tissues) {
+        require(t.stiffnessFraction, 0.0, 1.0, "a tissue's stiffness fraction");
+        require(t.dampingNSPerMm, 0.0, 10.0, "a tissue's damping [N s/mm]");
+    }
+    require(p.penaltyStiffnessNPerMm, 0.0, 100.0, "the penalty stiffness [N/mm]");
+    require(p.penaltyDampingNSPerMm, 0.0, 10.0, "the penalty damping [N s/mm]");
+    require(p.velocityTauS, 0.0, 1.0, "the velocity filter's time constant [s]");
+    require(p.dampingRampMm, 1e-6, 10.0, "the damper's ramp [mm]");
+    for (int i = 0; i < 3; ++i)
+        require(p.gripMm[i], -500.0, 500.0, "the grip [mm]");
+    require(p.fadeInS, 0.0, 10.0, "the fade-in [s]");
+    require(p.proxy.iterations, 1, 64, "the proxy's iterations");
+    require(p.proxy.maxStepMm, 1e-4, 1.0, "the proxy's largest step [mm]");
+    require(p.proxy.toleranceMm, 1e-6, 0.1, "the proxy's tolerance [mm]");
+}
+
+}  // namespace handpiece::force

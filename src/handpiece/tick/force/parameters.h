@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What a person may turn about the force, and what the device forbids.
+
+#include <array>
+#include <string_view>
+
+#include "handpiece/base/core/vec.h"
+#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/tick/force/proxy.h"
+
+namespace handpiece::force {
+
+enum class Mode {
+    proxy,    ///< Kelvin-Voigt between proxy and device: right in slots and on thin walls
+    penalty,  ///< the paper's: depth and approach speed along the normal at the device's pose
+};
+/// "proxy" or "penalty"; throws core::Error otherwise.
+[[nodiscard]] Mode modeByName(std::string_view name);
+
+/// The part of a device's capability record that bounds the force.
+struct Limits {
+    double maxForceN = 3.3;
+    double maxStiffnessNPerMm = 0.5;
+    double maxDampingNSPerMm = 0.005;
+    double maxForceSlopeNPerS = 5000;
+    double maxTorqueNmm = 0.0;  ///< 0: no torque axes; torque is reported all the same
+};
+
+/// One tissue through this device.
+struct TissueFeel {
+    double stiffnessFraction = 1.0;  ///< of Limits::maxStiffnessNPerMm
+    double dampingNSPerMm = 0.002;
+};
+
+/// Set off the tick, staged into it. defaultParameters() fills the tissues from the tooth's table.
+struct Parameters {
+    Mode mode = Mode::proxy;
+    double stiffnessMultiplier = 1.0;  ///< on every tissue; the device's limits stay
+    double dampingMultiplier = 1.0;
+    std::array<TissueFeel, tooth::kTissueCount> tissues{};
+    double penaltyStiffnessNPerMm = 0.5;  ///< penalty mode, times the multiplier
+    double penaltyDampingNSPerMm = 0.002;
+    double velocityTauS = 0.005;        ///< low pass of the velocity
+    double dampingRampMm = 0.05;        ///< the damper grows from none to all over this depth
+    core::Vec3 gripMm{0.0, 0.0, 80.0};  ///< where the fingers hold, bur frame: torque is about it
+    double fadeInS = 0.2;               ///< after a fault
+    ProxySettings proxy;
+};
+/// docs/physics.md#force and #tissues.
+[[nodiscard]] Parameters defaultParameters();
+/// Throws core::Error naming the value that is not finite or out of range.
+void validate(const Parameters& parameters);
+
+}  // namespace handpiece::force

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/tick/force/proxy.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace handpiece::force {
+namespace {
+
+using core::Vec3;
+
+constexpr double kSettledMm = 1e-7;  // steps below this change no force that a device could show
+constexpr double kSmallestRadiusMm = 1e-6;
+constexpr double kMaxRestoreMm = 0.5;  // of one pass: gaps farther inside are rough
+constexpr int kPushOutPasses = 24;
+
+Vec3 limited(const Vec3& v, double length) noexcept {
+    const double n = v.norm();
+    return n > length ? Vec3(v * (length / n)) : v;
+}
+
+}  // namespace
+
+/// Constraints at the proxy; the smallest gap among them, or the reach when there is none.
+double Proxy::evaluate(contact::Method& method) noexcept {
+    const double reach = 2.0 * settings_.maxStepMm;
+    method.constraints(pose_, reach, constraints_);
+    ++passes_;
+    gapMm_ = reach;
+    for (const contact::Constraint& c : constraints_)
+        gapMm_ = std::min(gapMm_, c.gapMm);
+    return gapMm_;
+}
+
+/// Out of the tooth by the shortest way the constraints know, for poses that no path led to.
+void Proxy::settleOutside(contact::Method& method) noexcept {
+    for (int i = 0; i < kPushOutPasses && evaluate(method) < -settings_.toleranceMm; ++i) {
+        pose_.positionMm += limited(project(constraints_, Vec3::Zero()).stepMm, kMaxRestoreMm);
+    }
+}
+
+void Proxy::start(contact::Method& method, const core::Pose& deviceInTooth) noexcept {
+    pose_ = deviceInTooth;
+    radiusMm_ = settings_.maxStepMm;
+    touching_ = false;
+    passes_ = 0;
+    method.reset();
+    // Deep inside only the depth knows the way out.
+    for (int i = 0; i < kPushOutPasses; ++i) {
+        const contact::Depth d = method.depth(pose_);
+        if (d.status == contact::Status::invalidPose || d.depthMm <= settings_.toleranceMm) break;
+        pose_.positionMm += d.depthMm * d.normal;
+    }
+    settleOutside(method);
+}
+
+/// A step towards `wanted` when nothing holds it back: as far as the clearance at the proxy proves free.
+Vec3 Proxy::freeStep(contact::Method& method, const Vec3& wanted, const Projection& allowed) noexcept {
+    if (allowed.activeCount > 0 || wanted.norm() <= settings_.maxStepMm) return allowed.stepMm;
+    return limited(wanted, std::max(settings_.maxStepMm, -method.depth(pose_).depthMm - settings_.toleranceMm));
+}
+
+void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth,
+                   const contact::Depth& depthAtDevice) noexcept {
+    const Vec3 target = deviceInTooth.positionMm;
+    pose_.orientation = deviceInTooth.orientation;
+    passes_ = 0;
+    strongestTissue_ = tooth::Tissue::none;
+    // A ball of that radius about the device is free, and the proxy lies in it.
+    if (-depthAtDevice.depthMm > (target - pose_.positionMm).norm()) {
+        pose_.positionMm = target;
+        touching_ = false;
+        radiusMm_ = settings_.maxStepMm;
+        gapMm_ = -depthAtDevice.depthMm;
+        return;
+    }
+    touching_ = false;
+    lastRest_.setZero();
+    Vec3 safe = pose_.positionMm;
+    double safeGap = -std::numeric_limits<double>::infinity();
+    bool settled = false;
+    for (int i = 0; i < settings_.iterations && !settled; ++i) {
+        const double gap = evaluate(method);
+        if (gap >= std::min(safeGap, -settings_.toleranceMm)) {
+            safe = pose_.positionMm;
+            safeGap = gap;
+        }
+        const Vec3 wanted = target - pose_.positionMm;
+        const Projection allowed = project(constraints_, wanted);
+        touching_ = allowed.activeCount > 0;
+        double strongest = 0.0;
+        for (int j = 0; j < allowed.activeCount; ++j) {
+            if (allowed.multiplierMm[j] > strongest) {
+                strongest = allowed.multiplierMm[j];
+                strongestTissue_ = constraints_[allowed.active[j]].tissue;
+            }
+        }
+        Vec3 step = freeStep(method, wanted, allowed);
+        if (touching_) {
+            const Vec3 restore =
+                gap < 0.0 ? limited(project(constraints_, Vec3::Zero()).stepMm, kMaxRestoreMm) : Vec3(Vec3::Zero());
+            Vec3 rest = step - restore;
+            radiusMm_ = rest.dot(lastRest_) < 0.0 ? std::max(0.4 * radiusMm_, kSmallestRadiusMm)
+                                                  : std::min(2.0 * radiusMm_, settings_.maxStepMm);
+            rest = limited(rest, radiusMm_);
+            lastRest_ = rest;
+            step = restore + rest;
+        } else {
+            radiusMm_ = settings_.maxStepMm;
+        }
+        pose_.positionMm += step;
+        settled = step.norm() < kSettledMm;
+    }
+    if (settled) return;
+    for (int i = 0; i < 2 && evaluate(method) < -settings_.toleranceMm; ++i) {
+        pose_.positionMm += limited(project(constraints_, Vec3::Zero()).stepMm, kMaxRestoreMm);
+    }
+    if (gapMm_ < -settings_.toleranceMm && evaluate(method) < std::min(safeGap, -settings_.toleranceMm)) {
+        pose_.positionMm = safe;
+        gapMm_ = safeGap;
+    }
+}
+
+}  // namespace handpiece::force

@@ -111,6 +111,11 @@ inline void boxDistances2(const TreeNode& node, const float (&p)[3], float (&out
 
 }  // namespace
 
+NearestPoint TriangleTree::nearestOn(std::uint32_t triangle, const Vec3& p) const noexcept {
+    const Closest c = closestOnTriangle(p, triangles_[triangle]);
+    return {std::sqrt(c.distance2), c.point, triangle, c.feature};
+}
+
 NearestPoint TriangleTree::nearest(const Vec3& p, double boundMm, std::uint32_t seed) const noexcept {
     NearestPoint best;
     double best2 = boundMm * boundMm;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The tooth as a sparse field of signed distances: bricks of 8^3 cells near the surface, one coarse value a brick elsewhere.
+/// The tooth as a sparse field of signed distances: bricks of 8^3 cells near the surface, one coarse value a brick
+/// elsewhere.
 
 #include <cstdint>
 #include <functional>
@@ -9,13 +10,10 @@
 
 #include "handpiece/base/core/progress.h"
 #include "handpiece/base/core/vec.h"
+#include "handpiece/model/tooth/field_view.h"
 #include "handpiece/model/tooth/tissue.h"
 
 namespace handpiece::tooth {
-
-inline constexpr int kBrickCells = 8;                       ///< cells along a brick's edge
-inline constexpr int kBrickNodes = kBrickCells + 1;         ///< nodes along it: neighbours share (and repeat) a face of nodes
-inline constexpr int kBrickValues = kBrickNodes * kBrickNodes * kBrickNodes;  ///< 729; index x + 9 y + 81 z
 
 struct FieldSettings {
     double voxelMm = 0.05;
@@ -23,31 +21,19 @@ struct FieldSettings {
     double bandInMm = 0.3;   ///< the same inside
 };
 
-/// Plain view of the field for kernels (no Eigen, no standard containers).
-struct FieldView {
-    double originMm[3];      ///< node 0 of brick 0
-    double voxelMm, inverseVoxelMm;
-    std::int32_t bricks[3];  ///< bricks along x, y, z
-    const std::int32_t* brickIndex;  ///< dense, x fastest: >= 0 a stored brick, -1 none (see coarse)
-    const float* values;     ///< kBrickValues per stored brick: signed distance [mm], negative inside
-    const float* coarse;     ///< per brick (dense): signed distance at the brick's centre [mm], exact where known
-    const std::uint8_t* tissue;       ///< kBrickValues per stored brick
-    const std::uint8_t* coarseTissue; ///< per brick (dense)
-};
-
 /// Immutable in this version; readers on any thread, no locks, no allocation.
 class ToothField {
   public:
-    /// Signed distance [mm]: trilinear where a brick is stored; elsewhere the sign is right and the magnitude is a lower
-    /// bound of the distance to the surface. Outside the grid: at least the distance to the grid's box.
+    /// Signed distance [mm]: trilinear where a brick is stored; elsewhere the sign is right and the magnitude is a
+    /// lower bound of the distance to the surface. Outside the grid: at least the distance to the grid's box.
     [[nodiscard]] double distance(const core::Vec3& p) const noexcept;
     /// True when `p` lies in a stored brick (distance() is then accurate).
     [[nodiscard]] bool isFine(const core::Vec3& p) const noexcept;
     /// Unit gradient of the field (out of the tooth): gradient of the trilinear field, continuous enough for a normal.
     /// Zero where no brick is stored.
     [[nodiscard]] core::Vec3 normal(const core::Vec3& p) const noexcept;
-    /// What lies at `p`; in a stored brick that of the nearest node, and outside the surface what one would touch there.
-    /// none elsewhere outside.
+    /// What lies at `p`; in a stored brick that of the nearest node, and outside the surface what one would touch
+    /// there. none elsewhere outside.
     [[nodiscard]] Tissue tissueAt(const core::Vec3& p) const noexcept;
 
     [[nodiscard]] FieldView view() const noexcept;

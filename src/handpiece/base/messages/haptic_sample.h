@@ -17,7 +17,7 @@ struct HapticSample {
     std::array<double, 4> orientation{1, 0, 0, 0};
     std::array<double, 3> velocityMmS{};      ///< filtered
     std::array<double, 3> forceN{};           ///< commanded
-    std::array<double, 3> torqueNmm{};        ///< about the grip, commanded
+    std::array<double, 3> torqueNmm{};        ///< about the grip; commanded as far as the device has torque axes
     double depthMm = 0.0;                     ///< at the pose as read; negative when apart
     std::array<double, 3> truePositionMm{};   ///< of the simulated device's mass; as read for real devices
     std::array<double, 3> proxyPositionMm{};  ///< what the eye sees

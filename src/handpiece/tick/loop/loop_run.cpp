@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything about the loop that happens outside the tick.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <vector>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/rt/realtime_thread.h"
+#include "handpiece/tick/loop/haptic_loop.h"
+
+namespace handpiece::loop {
+namespace {
+
+constexpr double kMinRateHz = 100, kMaxRateHz = 10000;
+constexpr double kMaxDurationS = 24 * 3600;
+
+double checkedPeriodS(double rateHz) {
+    if (!(rateHz >= kMinRateHz && rateHz <= kMaxRateHz)) {
+        throw core::Error(fmt::format("a rate of {} Hz cannot be run", rateHz), "rate",
+                          "choose 1000, 2000, 4000 or 8000");
+    }
+    return 1.0 / rateHz;
+}
+
+template <class T>
+std::unique_ptr<T> required(std::unique_ptr<T> p, const char* what) {
+    if (!p) throw core::Error(fmt::format("there is no {}", what), "haptic loop");
+    return p;
+}
+
+force::Limits limitsOf(const device::Capability& c) {
+    return {c.maxForceN, c.maxStiffnessNPerMm, c.maxDampingNSPerMm, c.maxForceSlopeNPerS, c.maxTorqueNmm};
+}
+
+Spread spreadOf(std::vector<float> values) {
+    if (values.empty()) return {};
+    std::sort(values.begin(), values.end());
+    const auto at = [&](double q) {
+        return static_cast<double>(values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))]);
+    };
+    return {at(0.5), at(0.99), at(0.999), values.back()};
+}
+
+}  // namespace
+
+/// Gathers work and lateness of the samples on their way to the listener.
+class HapticLoop::Statistics {
+  public:
+    explicit Statistics(const Listener& listener) : listener_(listener) {}
+    void drain(rt::SpscQueue<messages::HapticSample>& samples) {
+        messages::HapticSample sample;
+        while (samples.tryPop(sample)) {
+            workUs_.push_back(sample.workUs);
+            lateUs_.push_back(sample.lateUs);
+            if (listener_) listener_(sample);
+        }
+    }
+    [[nodiscard]] Spread workUs() const { return spreadOf(workUs_); }
+    [[nodiscard]] Spread lateUs() const { return spreadOf(lateUs_); }
+
+  private:
+    const Listener& listener_;
+    std::vector<float> workUs_, lateUs_;
+};
+
+HapticLoop::HapticLoop(const LoopSettings& settings, std::unique_ptr<device::Device> device,
+                       std::unique_ptr<contact::Method> method, const force::Parameters& parameters)
+    : settings_(settings),
+      periodS_(checkedPeriodS(settings.rateHz)),
+      device_(required(std::move(device), "device")),
+      method_(required(std::move(method), "contact method")),
+      parameters_(std::make_unique<force::Parameters>(parameters)),
+      force_(limitsOf(device_->capability()), parameters),
+      samples_(settings.queueCapacity) {}
+
+void HapticLoop::setParameters(const force::Parameters& parameters) {
+    validate(parameters);
+    parameters_.stage(std::make_unique<force::Parameters>(parameters));
+}
+
+void HapticLoop::setMethod(std::unique_ptr<contact::Method> method) {
+    method_.stage(required(std::move(method), "contact method"));
+}
+
+std::uint64_t HapticLoop::ticksFor(double durationS) {
+    if (!(durationS > 0.0 && durationS <= kMaxDurationS)) {
+        throw core::Error(fmt::format("a run of {} s", durationS), "duration", "give a time above zero, up to a day");
+    }
+    stop_.store(false, std::memory_order_relaxed);
+    ticksDone_ = lateTicks_ = missedPeriods_ = 0;
+    return static_cast<std::uint64_t>(std::llround(durationS * settings_.rateHz)) + 1;  // both ends
+}
+
+RunReport HapticLoop::finish(const Statistics& statistics, std::string scheduling) const {
+    RunReport report;
+    report.scheduling = std::move(scheduling);
+    report.ticks = ticksDone_;
+    report.lateTicks = lateTicks_;
+    report.missedPeriods = missedPeriods_;
+    report.queueOverflow = samples_.overflowCount();
+    report.workUs = statistics.workUs();
+    report.latenessUs = statistics.lateUs();
+    return report;
+}
+
+RunReport HapticLoop::runSimulated(double durationS, const Listener& listener) {
+    const std::uint64_t ticks = ticksFor(durationS);
+    Statistics statistics(listener);
+    for (std::uint64_t i = 0; i < ticks && !stop_.load(std::memory_order_relaxed); ++i) {
+        tick(rt::Beat{});
+        statistics.drain(samples_);
+    }
+    return finish(statistics, "simulated time: as fast as possible");
+}
+
+RunReport HapticLoop::runRealTime(double durationS, const Listener& listener) {
+    const std::uint64_t ticks = ticksFor(durationS);
+    Statistics statistics(listener);
+    rt::PeriodicClock clock(std::llround(1e9 * periodS_), std::llround(1e3 * settings_.spinUs));
+    std::atomic<bool> done{false};
+    std::string scheduling;
+    {
+        rt::RealtimeThread thread([&] {
+            clock.start();
+            for (std::uint64_t served = 0; served < ticks && !stop_.load(std::memory_order_relaxed);) {
+                const rt::Beat beat = clock.wait();
+                served += static_cast<std::uint64_t>(beat.periods);
+                tick(beat);
+            }
+            done.store(true, std::memory_order_release);
+        });
+        scheduling = thread.grant().line;
+        try {
+            while (!done.load(std::memory_order_acquire)) {
+                statistics.drain(samples_);
+                std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            }
+        } catch (...) {
+            requestStop();  // the listener failed: let the tick end before its loop goes
+            throw;
+        }
+    }
+    statistics.drain(samples_);
+    return finish(statistics, std::move(scheduling));
+}
+
+}  // namespace handpiece::loop

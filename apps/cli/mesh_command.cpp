@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/geometry/inspect.h"
+#include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/base/geometry/repair.h"
+#include "handpiece/base/geometry/self_intersection.h"
+
+namespace handpiece::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using geometry::MeshReport;
+
+Json toJson(const core::Vec3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+Json toJson(const MeshReport& r) {
+    Json json{{"vertices", r.vertices},
+              {"faces", r.faces},
+              {"edges", r.edges},
+              {"box_min_mm", toJson(r.boxMm.min)},
+              {"box_max_mm", toJson(r.boxMm.max)},
+              {"box_size_mm", toJson(r.boxMm.size())},
+              {"area_mm2", r.areaMm2},
+              {"volume_mm3", r.volumeMm3},
+              {"shells", r.shells},
+              {"open_edges", r.openEdges},
+              {"boundary_loops", r.boundaryLoops},
+              {"non_manifold_edges", r.nonManifoldEdges},
+              {"non_manifold_vertices", r.nonManifoldVertices},
+              {"flipped_faces", r.flippedFaces},
+              {"inside_out_shells", r.insideOutShells},
+              {"duplicate_vertices", r.duplicateVertices},
+              {"unused_vertices", r.unusedVertices},
+              {"degenerate_faces", r.degenerateFaces},
+              {"duplicate_faces", r.duplicateFaces},
+              {"orientable", r.orientable},
+              {"closed", r.closed()},
+              {"oriented", r.oriented()},
+              {"euler_characteristic", r.eulerCharacteristic},
+              {"genus", r.genus ? Json(*r.genus) : Json(nullptr)},
+              {"probable_unit", geometry::unitName(r.unit.unit)},
+              {"probable_unit_reason", r.unit.reason}};
+    return json;
+}
+
+void row(std::string_view label, const std::string& value) {
+    fmt::print("  {:<22} {}\n", label, value);
+}
+
+std::string counted(std::size_t n, std::string_view one, std::string_view many) {
+    return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+std::string at(const std::optional<core::Vec3>& p) {
+    return p ? fmt::format(", the first at ({:.3f}, {:.3f}, {:.3f})", p->x(), p->y(), p->z()) : std::string();
+}
+
+void printReport(const MeshReport& r) {
+    const core::Vec3 size = r.boxMm.size(), &low = r.boxMm.min, &high = r.boxMm.max;
+    row("vertices",
+        fmt::format("{}{}{}", r.vertices,
+                    r.duplicateVertices ? fmt::format(", {} at the place of another", r.duplicateVertices) : "",
+                    r.unusedVertices ? fmt::format(", {} unused", r.unusedVertices) : ""));
+    row("faces",
+        fmt::format("{}{}{}", r.faces, r.degenerateFaces ? fmt::format(", {} without area", r.degenerateFaces) : "",
+                    r.duplicateFaces ? fmt::format(", {} twice there", r.duplicateFaces) : ""));
+    row("box", fmt::format("{:.4g} x {:.4g} x {:.4g} mm, from ({:.3f}, {:.3f}, {:.3f}) to ({:.3f}, {:.3f}, {:.3f})",
+                           size.x(), size.y(), size.z(), low.x(), low.y(), low.z(), high.x(), high.y(), high.z()));
+    row("area", fmt::format("{:.6g} mm2", r.areaMm2));
+    row("volume", r.closed() ? fmt::format("{:.6g} mm3", r.volumeMm3) : "none, the surface is not closed");
+    row("shells",
+        fmt::format("{}{}", r.shells, r.insideOutShells ? fmt::format(", {} inside out", r.insideOutShells) : ""));
+    row("open edges", r.openEdges ? fmt::format("{} around {}{}", r.openEdges,
+                                                counted(r.boundaryLoops, "hole", "holes"), at(r.firstOpenEdgeMm))
+                                  : "0");
+    row("non-manifold edges", fmt::format("{}{}", r.nonManifoldEdges, at(r.firstNonManifoldEdgeMm)));
+    row("non-manifold vertices", fmt::format("{}{}", r.nonManifoldVertices, at(r.firstNonManifoldVertexMm)));
+    row("flipped faces", fmt::format("{}{}{}", r.flippedFaces, r.flippedFaces ? at(r.firstFlippedFaceMm) : "",
+                                     r.orientable ? "" : "; the surface has only one side"));
+    row("Euler characteristic",
+        fmt::format("{}{}", r.eulerCharacteristic, r.genus ? fmt::format(", genus {}", *r.genus) : ""));
+    row("probable unit", fmt::format("{} ({})", geometry::unitName(r.unit.unit), r.unit.reason));
+}
+
+std::string verdict(const MeshReport& r, std::size_t crossings) {
+    if (!r.closed()) return "not closed: handpiece mesh repair can mend it";
+    if (!r.oriented()) return "closed, but not consistently oriented: handpiece mesh repair can mend it";
+    if (crossings > 0) return "closed and oriented, but it crosses itself";
+    return "closed, oriented, not crossing itself: ready to be felt";
+}
+
+void info(const std::string& file, bool json) {
+    geometry::ReadNotes notes;
+    const geometry::TriangleMesh mesh = geometry::readMesh(file, &notes);
+    const MeshReport report = geometry::inspect(mesh);
+    const std::vector<geometry::CrossingFaces> crossings = geometry::selfIntersections(mesh);
+    if (json) {
+        Json out{{"file", file}};
+        out.update(toJson(report));
+        out["crossing_faces"] = crossings.size();
+        out["notes"] = notes;
+        fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
+        return;
+    }
+    fmt::print("{}\n", file);
+    for (const std::string& note : notes)
+        fmt::print("  note: {}\n", note);
+    printReport(report);
+    row("crossing faces",
+        crossings.empty() ? "0"
+                          : fmt::format("{}{}", counted(crossings.size(), "pair", "pairs"), at(crossings[0].pointMm)));
+    row("verdict", verdict(report, crossings.size()));
+}
+
+struct RepairOptions {
+    std::string in, out;
+    double weldMm = -1.0;
+    bool keepDebris = false, json = false;
+};
+
+Json toJson(const geometry::RepairReport& r) {
+    Json holes = Json::array();
+    for (const geometry::ClosedHole& h : r.holes)
+        holes.push_back({{"edges", h.edges},
+                         {"perimeter_mm", h.perimeterMm},
+                         {"area_mm2", h.areaMm2},
+                         {"centre_mm", toJson(h.centreMm)}});
+    return {{"weld_mm", r.weldMm},
+            {"welded_vertices", r.weldedVertices},
+            {"removed_degenerate_faces", r.removedDegenerateFaces},
+            {"removed_duplicate_faces", r.removedDuplicateFaces},
+            {"removed_fin_faces", r.removedFinFaces},
+            {"split_edges", r.splitEdges},
+            {"split_vertices", r.splitVertices},
+            {"dropped_shells", r.droppedShells},
+            {"dropped_faces", r.droppedFaces},
+            {"turned_faces", r.turnedFaces},
+            {"closed_holes", r.holes.size()},
+            {"added_faces", r.addedFaces},
+            {"holes", std::move(holes)},
+            {"crossing_faces", r.crossingFaces},
+            {"before", toJson(r.before)},
+            {"after", toJson(r.after)}};
+}
+
+void repair(const RepairOptions& options) {
+    // Before the work, not after it: an output that cannot be would waste the wait.
+    const geometry::MeshFormat format = geometry::meshFormatOf(options.out);
+    if (format != geometry::MeshFormat::stl && format != geometry::MeshFormat::ply)
+        throw core::Error("meshes are written as .stl or .ply", options.out, "name the output so");
+    geometry::ReadNotes notes;
+    geometry::TriangleMesh mesh = geometry::readMesh(options.in, &notes);
+    geometry::RepairSettings settings;
+    settings.weldMm = options.weldMm;
+    if (options.keepDebris) settings.debrisAreaShare = 0.0;
+    geometry::RepairReport r;
+    try {
+        r = geometry::repair(mesh, settings);
+    } catch (const core::Error& e) {
+        throw core::Error(e.problem(), e.where() == "mesh" ? options.in : e.where(), e.remedy());
+    }
+    geometry::writeMesh(options.out, mesh);
+    if (options.json) {
+        Json out{{"file", options.in}, {"output", options.out}};
+        out.update(toJson(r));
+        out["notes"] = notes;
+        fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
+        return;
+    }
+    fmt::print("{} -> {}\n", options.in, options.out);
+    for (const std::string& note : notes)
+        fmt::print("  note: {}\n", note);
+    row("welded", fmt::format("{} (within {:.3g} mm)", counted(r.weldedVertices, "vertex", "vertices"), r.weldMm));
+    row("removed", fmt::format("{} degenerate, {} double and {} fin faces", r.removedDegenerateFaces,
+                               r.removedDuplicateFaces, r.removedFinFaces));
+    row("cut apart", fmt::format("{}, {} added", counted(r.splitEdges, "edge", "edges"),
+                                 counted(r.splitVertices, "vertex", "vertices")));
+    row("dropped", fmt::format("{} ({})", counted(r.droppedShells, "loose shell", "loose shells"),
+                               counted(r.droppedFaces, "face", "faces")));
+    row("turned", counted(r.turnedFaces, "face", "faces"));
+    row("closed",
+        fmt::format("{} with {}", counted(r.holes.size(), "hole", "holes"), counted(r.addedFaces, "face", "faces")));
+    constexpr std::size_t kShown = 10;
+    for (std::size_t i = 0; i < std::min(kShown, r.holes.size()); ++i)
+        row("", fmt::format("{} edges, {:.4g} mm around, {:.4g} mm2, at ({:.3f}, {:.3f}, {:.3f})", r.holes[i].edges,
+                            r.holes[i].perimeterMm, r.holes[i].areaMm2, r.holes[i].centreMm.x(),
+                            r.holes[i].centreMm.y(), r.holes[i].centreMm.z()));
+    if (r.holes.size() > kShown) row("", fmt::format("and {} smaller ones", r.holes.size() - kShown));
+    fmt::print("the result:\n");
+    printReport(r.after);
+    row("crossing faces", std::to_string(r.crossingFaces));
+    row("verdict", verdict(r.after, r.crossingFaces));
+}
+
+}  // namespace
+
+void addMeshCommand(CLI::App& app) {
+    CLI::App* mesh = app.add_subcommand("mesh", "Tell what is wrong with a mesh, and mend it");
+    mesh->require_subcommand(1);
+    mesh->footer(
+        "Examples:\n"
+        "  handpiece mesh info molar.stl\n"
+        "  handpiece mesh info molar.stl --json\n"
+        "  handpiece mesh repair scan.ply molar.stl");
+
+    struct InfoOptions {
+        std::string file;
+        bool json = false;
+    };
+    const auto infoOptions = std::make_shared<InfoOptions>();
+    CLI::App* infoCommand = mesh->add_subcommand("info", "Count the faces and the flaws of a mesh, measure it");
+    infoCommand->add_option("FILE", infoOptions->file, "STL, PLY or OBJ")->required();
+    infoCommand->add_flag("--json", infoOptions->json, "Print JSON instead of a table");
+    infoCommand->footer("Example:\n  handpiece mesh info molar.stl");
+    infoCommand->callback([infoOptions] { info(infoOptions->file, infoOptions->json); });
+
+    const auto options = std::make_shared<RepairOptions>();
+    CLI::App* repairCommand =
+        mesh->add_subcommand("repair", "Close holes, orient, weld, drop debris; say what was done");
+    repairCommand->add_option("IN", options->in, "STL, PLY or OBJ")->required();
+    repairCommand->add_option("OUT", options->out, "Where to write the result, .stl or .ply")->required();
+    repairCommand
+        ->add_option("--weld", options->weldMm,
+                     "Vertices nearer than this become one [default: 1e-5 of the box's diagonal]")
+        ->type_name("MM")
+        ->check(CLI::NonNegativeNumber);
+    repairCommand->add_flag("--keep-debris", options->keepDebris,
+                            "Keep shells of less than 1 % of the largest shell's area");
+    repairCommand->add_flag("--json", options->json, "Print JSON instead of a table");
+    repairCommand->footer(
+        "Examples:\n"
+        "  handpiece mesh repair scan.stl molar.stl\n"
+        "  handpiece mesh repair scan.ply molar.stl --weld 0.01 --keep-debris");
+    repairCommand->callback([options] { repair(*options); });
+}
+
+}  // namespace handpiece::cli

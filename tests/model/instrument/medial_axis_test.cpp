@@ -51,7 +51,8 @@ TEST(MedialAxis, BallsMakeTheBurInAndAroundIt) {
         const double r = profile.maxRadiusMm(), length = profile.lengthMm();
         const auto check = [&](const Vec2& q) {
             const double phi = signedDistanceMm(profile, q.x(), q.y());
-            // Inside, the ball that leaves most around q; outside, the nearest ball: both are the distance of their union.
+            // Inside, the ball that leaves most around q; outside, the nearest ball: both are the distance of their
+            // union.
             ASSERT_NEAR(deepest(curves, q), -phi, 3.0 * kMedialToleranceMm) << name << " at " << q.transpose();
         };
         for (int i = 0; i < 500; ++i)

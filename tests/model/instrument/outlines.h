@@ -64,6 +64,21 @@ inline std::vector<NamedProfile> awkwardOutlines() {
              polygonOutline({{0, 0}, {0.3, 0.05}, {0.5, 0.2}, {0.6, 0.45}, {0.55, 0.8}, {0.3, 1.05}, {0, 1.1}})}};
 }
 
+/// Rising steps of random height and width, wide and narrow by turns: waists, ledges and needles.
+inline Profile randomPolygon(std::mt19937_64& generator) {
+    std::vector<core::Vec2> corners{{0.0, 0.0}};
+    const int steps = 2 + static_cast<int>(generator() % 12);
+    double z = 0.0;
+    for (int i = 0; i < steps; ++i) {
+        corners.push_back({handpiece::test::uniform(generator, 0.15, 1.2), z});
+        if (generator() % 4 != 0) z += handpiece::test::uniform(generator, 0.05, 0.6);
+    }
+    z += 0.3;
+    corners.push_back({handpiece::test::uniform(generator, 0.15, 1.2), z});
+    corners.push_back({0.0, z});
+    return polygonOutline(std::move(corners));
+}
+
 /// A shape at a random size that it can have.
 inline Profile randomProfile(Shape shape, std::mt19937_64& generator) {
     for (;;) {
@@ -77,7 +92,7 @@ inline Profile randomProfile(Shape shape, std::mt19937_64& generator) {
     }
 }
 
-/// Every shape `each` times at random sizes, and the awkward ones.
+/// Every shape `each` times at random sizes, the awkward ones and random polygons.
 inline std::vector<NamedProfile> manyOutlines(int each, std::mt19937_64& generator) {
     std::vector<NamedProfile> all = awkwardOutlines();
     for (const ShapeInfo& info : shapes())

@@ -71,14 +71,14 @@ class Bur {
     geometry::TriangleMesh mesh_;
 };
 
-/// A bur from an STL mesh by its envelope of revolution: the largest radius at each height about its z axis, as a polyline
-/// within a micrometre. mesh() is the mesh given, moved.
+/// A bur from an STL mesh by its envelope of revolution: the largest radius at each height about its z axis, as a
+/// polyline within a micrometre. mesh() is the mesh given, moved.
 ///
-/// The mesh's own axis must be z within 1 degree and pass anywhere (it is moved so that the centre of its surface lies on the
-/// axis and the tip at the origin). An end whose flat is less than half as wide as the other's is the tip; else the lower end
-/// is. Flutes are swept over: width one way and across it (root mean square) may differ by 15 %. A missing top is closed flat.
-/// Throws core::Error when it is empty, flat, without volume, open over more than a fifth of its surface, tilted, not round,
-/// in two pieces, or not 0.35 to 75 mm long (the probable unit is named).
+/// The mesh's own axis must be z within 1 degree and pass anywhere (it is moved so that the centre of its surface lies
+/// on the axis and the tip at the origin). An end whose flat is less than half as wide as the other's is the tip; else
+/// the lower end is. Flutes are swept over: width one way and across it (root mean square) may differ by 15 %. A
+/// missing top is closed flat. Throws core::Error when it is empty, flat, without volume, open over more than a fifth
+/// of its surface, tilted, not round, in two pieces, or not 0.35 to 75 mm long (the probable unit is named).
 [[nodiscard]] Bur burFromMesh(std::string name, geometry::TriangleMesh mesh);
 
 }  // namespace handpiece::instrument

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/model/instrument/turbine.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/geometry/inspect.h"
+
+namespace handpiece::instrument {
+namespace {
+
+TEST(Turbine, HasTheComplexityOfTheTable) {
+    const geometry::TriangleMesh mesh = turbineMesh();
+    EXPECT_NEAR(static_cast<double>(mesh.vertices.size()), 11458.0, 114.0);
+    EXPECT_NEAR(static_cast<double>(mesh.triangles.size()), 20988.0, 209.0);
+    std::printf("turbine: %zu vertices, %zu faces\n", mesh.vertices.size(), mesh.triangles.size());
+}
+
+TEST(Turbine, IsMadeOfClosedPartsThatFaceOutwards) {
+    const geometry::TriangleMesh mesh = turbineMesh();
+    const geometry::MeshReport report = geometry::inspect(mesh);
+    EXPECT_TRUE(report.closed());
+    EXPECT_TRUE(report.orientable);
+    EXPECT_EQ(report.flippedFaces, 0u);
+    EXPECT_EQ(report.duplicateVertices, 0u);
+    EXPECT_EQ(report.degenerateFaces, 0u);
+    EXPECT_EQ(report.eulerCharacteristic, 2 * static_cast<std::int64_t>(report.shells));
+    // Each part on its own encloses a positive volume: vertices of a part are consecutive, so parts are runs of
+    // triangles.
+    std::size_t parts = 0;
+    for (std::size_t first = 0; first < mesh.triangles.size();) {
+        std::uint32_t last = 0;
+        for (const std::uint32_t v : mesh.triangles[first])
+            last = std::max(last, v);
+        std::uint32_t lowest = last;
+        geometry::TriangleMesh part;
+        part.vertices = mesh.vertices;
+        std::size_t end = first;
+        // A part ends where the next triangle uses only vertices beyond all seen so far.
+        while (end < mesh.triangles.size()) {
+            const geometry::Triangle& t = mesh.triangles[end];
+            if (end > first && std::min({t[0], t[1], t[2]}) > last) break;
+            for (const std::uint32_t v : t) {
+                last = std::max(last, v);
+                lowest = std::min(lowest, v);
+            }
+            part.triangles.push_back(t);
+            ++end;
+        }
+        EXPECT_GT(geometry::enclosedVolumeMm3(part), 0.0) << "part " << parts;
+        ++parts;
+        first = end;
+    }
+    EXPECT_EQ(parts, report.shells);
+}
+
+TEST(Turbine, HoldsTheBur) {
+    const geometry::TriangleMesh mesh = turbineMesh();
+    const core::Box box = mesh.bounds();
+    // Nothing of it below the end of the chuck, the head round the axis, the handle along +x and rising.
+    EXPECT_GT(box.min.z(), kBurReachMm - 1.5);
+    EXPECT_LT(box.min.x(), -4.0);
+    EXPECT_GT(box.max.x(), 80.0);
+    EXPECT_GT(box.max.z(), 30.0);
+    EXPECT_NEAR(box.min.y(), -box.max.y(), 0.05);
+    const core::Box longer = turbineMesh(12.0).bounds();
+    EXPECT_NEAR(longer.min.z() - box.min.z(), 12.0 - kBurReachMm, 1e-9);
+    EXPECT_THROW((void)turbineMesh(std::nan("")), core::Error);
+}
+
+}  // namespace
+}  // namespace handpiece::instrument

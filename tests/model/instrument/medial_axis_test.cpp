@@ -148,6 +148,12 @@ TEST(MedialAxis, SimpleBursNeedFewBalls) {
     EXPECT_FALSE(capsule[1].onAxis);  // the 45 degree sheet under the flat top
     EXPECT_EQ(capsule[1].balls.size(), 2u);
 
+    for (const double diameter : {0.9, 1.1, 1.2, 1.3, 1.7}) {
+        const std::vector<MedialCurve> curves = medialAxis(makeProfile(Shape::cylinderRound, diameter, 4.0));
+        ASSERT_EQ(curves[0].balls.size(), 2u);
+        EXPECT_EQ(curves[0].balls[0].radiusMm, curves[0].balls[1].radiusMm);
+    }
+
     const std::vector<MedialCurve> ball = medialAxis(makeProfile(Shape::round, 1.4, 1.4));
     ASSERT_EQ(ball.size(), 1u);
     ASSERT_EQ(ball[0].balls.size(), 2u);  // one point, given twice

@@ -69,9 +69,11 @@ inline Profile randomPolygon(std::mt19937_64& generator) {
     std::vector<core::Vec2> corners{{0.0, 0.0}};
     const int steps = 2 + static_cast<int>(generator() % 12);
     double z = 0.0;
+    bool isLevel = true;  // two level pieces in a row could run back along each other
     for (int i = 0; i < steps; ++i) {
         corners.push_back({handpiece::test::uniform(generator, 0.15, 1.2), z});
-        if (generator() % 4 != 0) z += handpiece::test::uniform(generator, 0.05, 0.6);
+        isLevel = !isLevel && generator() % 3 == 0;
+        if (!isLevel) z += handpiece::test::uniform(generator, 0.05, 0.6);
     }
     z += 0.3;
     corners.push_back({handpiece::test::uniform(generator, 0.15, 1.2), z});

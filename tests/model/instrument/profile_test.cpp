@@ -155,6 +155,11 @@ TEST(Profile, WhatIsNoOutlineIsRefused) {
             for (Vec2* v : {&piece.from, &piece.to, &piece.centre})
                 v->y() += 0.1;
     });
+    // Crossing itself, or running back along itself.
+    EXPECT_THROW(
+        validate(test::polygonOutline({{0, 0}, {1, 0}, {1, 1}, {0.5, 1}, {0.5, 0.2}, {2, 0.2}, {2, 2}, {0, 2}})),
+        core::Error);
+    EXPECT_THROW(validate(test::polygonOutline({{0, 0}, {1, 0}, {0.5, 0}, {0.5, 1}, {0, 1}})), core::Error);
     // Walked the wrong way round, the volume is negative; a sheet has none.
     EXPECT_THROW(validate(test::polygonOutline({{0, 0}, {0, 1}, {1, 1}, {1, 0}, {0, 0}})), core::Error);
     EXPECT_THROW(validate(test::polygonOutline({{0, 0}, {1, 0}, {0, 0}})), core::Error);

@@ -271,6 +271,13 @@ class Walk {
         return kept;
     }
 
+    /// Along a cylinder all radii are the same to the last bit.
+    static std::vector<MedialBall> evened(std::vector<MedialBall> balls) {
+        for (std::size_t i = 1; i < balls.size(); ++i)
+            if (std::abs(balls[i].radiusMm - balls[i - 1].radiusMm) < 1e-13) balls[i].radiusMm = balls[i - 1].radiusMm;
+        return balls;
+    }
+
     static bool isPoint(const MedialCurve& curve) {
         return std::all_of(curve.balls.begin(), curve.balls.end(),
                            [&](const MedialBall& b) { return distance(b, curve.balls.front()) < kSameBallMm; });
@@ -284,7 +291,7 @@ class Walk {
                 if (isPoint(curve))
                     points.push_back(curve.balls.front());
                 else
-                    curves.push_back({simplified(curve.balls), curve.onAxis});
+                    curves.push_back({evened(simplified(curve.balls)), curve.onAxis});
             }
         // The centre of a round edge ends a sheet and needs no curve of its own; that of a sphere is all there is.
         for (const MedialBall& point : points) {

@@ -52,6 +52,29 @@ double lowest(const ProfilePiece& piece, int axis) {
     return least;
 }
 
+/// The outline as chords of at most 2 degrees, each with the piece it comes from.
+struct Chord {
+    Vec2 from, to;
+    std::size_t piece;
+};
+std::vector<Chord> chordsOf(const Profile& profile) {
+    std::vector<Chord> chords;
+    for (std::size_t i = 0; i < profile.pieces.size(); ++i) {
+        const ProfilePiece& piece = profile.pieces[i];
+        const int steps =
+            piece.isArc ? 1 + static_cast<int>(std::abs(arcSweepRad(piece)) * 90.0 / std::numbers::pi) : 1;
+        for (int k = 0; k < steps; ++k)
+            chords.push_back({pointAt(piece, static_cast<double>(k) / steps), pointAt(piece, (k + 1.0) / steps), i});
+    }
+    return chords;
+}
+
+bool cross(const Chord& a, const Chord& b) {
+    const Vec2 da = a.to - a.from, db = b.to - b.from;
+    return cross(da, b.from - a.from) * cross(da, b.to - a.from) < 0.0 &&
+           cross(db, a.from - b.from) * cross(db, a.to - b.from) < 0.0;
+}
+
 [[noreturn]] void refuse(const std::string& what) {
     throw core::Error("this outline is no bur: " + what, {}, "check the points and arcs of the outline");
 }
@@ -218,10 +241,20 @@ void validate(const Profile& profile) {
         if (lowest(piece, 1) < -kJointToleranceMm) refuse(fmt::format("piece {} goes below the tip (z < 0)", i));
         if (i > 0 && (piece.from - profile.pieces[i - 1].to).norm() > kJointToleranceMm)
             refuse(fmt::format("pieces {} and {} do not meet", i - 1, i));
+        if (i > 0) {
+            const Vec2 before = tangentAt(profile.pieces[i - 1], 1.0), after = tangentAt(piece, 0.0);
+            if (before.dot(after) < 0.0 && std::abs(cross(before, after)) < kSmoothJointRad)
+                refuse(fmt::format("it turns back on itself between pieces {} and {}", i - 1, i));
+        }
     }
     if (std::abs(profile.pieces.front().from.x()) > kJointToleranceMm) refuse("it does not start on the axis");
     if (std::abs(profile.pieces.back().to.x()) > kJointToleranceMm) refuse("it does not end on the axis");
     if (std::abs(profile.pieces.front().from.y()) > kJointToleranceMm) refuse("its tip is not at z = 0");
+    const std::vector<Chord> chords = chordsOf(profile);
+    for (std::size_t i = 0; i < chords.size(); ++i)
+        for (std::size_t j = i + 2; j < chords.size(); ++j)
+            if (cross(chords[i], chords[j]))
+                refuse(fmt::format("pieces {} and {} cross", chords[i].piece, chords[j].piece));
     if (!(volumeMm3(profile) > 1e-12)) refuse("it encloses no volume");
 }
 

@@ -167,8 +167,16 @@ class CrossingFinder {
                 }
         if (shared >= 3) return std::nullopt;  // the same face twice: inspect() counts those
         if (shared == 2) return fold(a, aShared, b, bShared);
-        if (const std::optional<Vec3> p = edgesThrough(a, aShared, b)) return p;
-        return edgesThrough(b, bShared, a);
+        const Heights aOverB = heightsOver(a, aShared, b), bOverA = heightsOver(b, bShared, a);
+        if (!straddles(aOverB) || !straddles(bOverA)) return std::nullopt;
+        // The ends of the segment that both have in common; a point alone is a touch.
+        core::Box common;
+        for (std::size_t i = 0; i < 3; ++i)
+            if (aShared[i]) common.extend(vertices_[a.corner[i]]);
+        piercings(a, aOverB, b, common);
+        piercings(b, bOverA, a, common);
+        if (common.isEmpty() || common.size().norm() <= tolerance_) return std::nullopt;
+        return common.centre();
     }
 
     // Neighbours across an edge can only lie folded onto each other.
@@ -194,31 +202,35 @@ class CrossingFinder {
         return ((e0 + e1 + (hp < hq ? p : q)) / 3.0).eval();
     }
 
-    // An edge of `a` that pierces `b`: its ends clearly on both sides of b's plane, and the piercing point in b.
-    [[nodiscard]] std::optional<Vec3> edgesThrough(const Face& a, const std::array<bool, 3>& aShared,
-                                                   const Face& b) const {
-        const Vec3& origin = vertices_[b.corner[0]];
-        std::array<double, 3> height;
+    using Heights = std::array<double, 3>;
+
+    // Of a's corners over b's plane.
+    [[nodiscard]] Heights heightsOver(const Face& a, const std::array<bool, 3>& aShared, const Face& b) const {
+        Heights height;
         for (std::size_t i = 0; i < 3; ++i)
-            height[i] = aShared[i] ? 0.0 : b.normal.dot(vertices_[a.corner[i]] - origin);
+            height[i] = aShared[i] ? 0.0 : b.normal.dot(vertices_[a.corner[i]] - vertices_[b.corner[0]]);
+        return height;
+    }
+    [[nodiscard]] bool straddles(const Heights& h) const {
+        return std::max({h[0], h[1], h[2]}) > tolerance_ && std::min({h[0], h[1], h[2]}) < -tolerance_;
+    }
+
+    // Where edges of `a` pierce `b`. A point on b's rim belongs to b: two edges that meet exactly must not both miss.
+    void piercings(const Face& a, const Heights& height, const Face& b, core::Box& common) const {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = i == 2 ? 0 : i + 1;
-            const bool through = (height[i] > tolerance_ && height[j] < -tolerance_) ||
-                                 (height[i] < -tolerance_ && height[j] > tolerance_);
-            if (!through) continue;
+            if (!((height[i] > 0.0 && height[j] < 0.0) || (height[i] < 0.0 && height[j] > 0.0))) continue;
             const Vec3 &p = vertices_[a.corner[i]], &q = vertices_[a.corner[j]];
             const Vec3 x = p + (q - p) * (height[i] / (height[i] - height[j]));
-            // A point on b's rim belongs to b: two edges that meet exactly must not both miss.
             bool inside = true;
             for (std::size_t k = 0; k < 3 && inside; ++k) {
                 const Vec3 &from = vertices_[b.corner[k]], &to = vertices_[b.corner[k == 2 ? 0 : k + 1]];
                 const Vec3 side = to - from, out = x - from;
-                const double scale = side.norm() * (out.norm() + origin.cwiseAbs().maxCoeff());
-                inside = b.normal.dot(side.cross(out)) >= -1e-14 * scale;
+                const double rounding = 1e-14 * side.norm() * (out.norm() + from.cwiseAbs().maxCoeff());
+                inside = b.normal.dot(side.cross(out)) >= -rounding;
             }
-            if (inside) return x;
+            if (inside) common.extend(x);
         }
-        return std::nullopt;
     }
 
     std::vector<Vec3> vertices_;  ///< one for each place

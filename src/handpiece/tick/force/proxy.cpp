@@ -13,6 +13,9 @@ constexpr double kSettledMm = 1e-7;  // steps below this change no force that a 
 constexpr double kSmallestRadiusMm = 1e-6;
 constexpr double kMaxRestoreMm = 0.5;  // of one pass: gaps farther inside are rough
 constexpr int kPushOutPasses = 24;
+constexpr double kRecallMm = 0.02;  // a plane met this near is still right to 0.4 um on a bur of 0.5 mm radius
+constexpr double kRecallRadians = 1e-4;
+constexpr double kSameNormal = 1.0 - 1e-5;
 
 Vec3 limited(const Vec3& v, double length) noexcept {
     const double n = v.norm();
@@ -27,9 +30,60 @@ double Proxy::evaluate(contact::Method& method) noexcept {
     method.constraints(pose_, reach, constraints_);
     ++passes_;
     gapMm_ = reach;
-    for (const contact::Constraint& c : constraints_)
-        gapMm_ = std::min(gapMm_, c.gapMm);
+    std::size_t worst = 0;
+    for (std::size_t i = 0; i < constraints_.size(); ++i) {
+        if (constraints_[i].gapMm < gapMm_) {
+            gapMm_ = constraints_[i].gapMm;
+            worst = i;
+        }
+    }
+    if (constraints_.empty()) {
+        memory_.clear();
+        return gapMm_;
+    }
+    const contact::Constraint deepest = constraints_[worst];
+    recall();
+    remember(deepest);
     return gapMm_;
+}
+
+/// Adds the half-spaces met nearby, moved to this pose; forgets those met too far away.
+void Proxy::recall() noexcept {
+    std::size_t kept = 0;
+    for (const Memory& m : memory_) {
+        if ((pose_.positionMm - m.at.positionMm).norm() > kRecallMm ||
+            pose_.orientation.angularDistance(m.at.orientation) > kRecallRadians) {
+            continue;
+        }
+        memory_[kept++] = m;
+    }
+    memory_.resize(kept);
+    if (constraints_.size() + kept > contact::kMaxConstraints) constraints_.resize(contact::kMaxConstraints - kept);
+    for (const Memory& m : memory_) {
+        contact::Constraint moved = m.constraint;
+        moved.gapMm += moved.normal.dot(pose_.positionMm - m.at.positionMm);
+        constraints_.pushBack(moved);
+    }
+}
+
+void Proxy::remember(const contact::Constraint& deepest) noexcept {
+    std::size_t slot = memory_.size();
+    for (std::size_t i = 0; i < memory_.size(); ++i) {
+        if (memory_[i].constraint.normal.dot(deepest.normal) > kSameNormal) slot = i;
+    }
+    if (slot == memory_.capacity()) {
+        // Full: the one that is farthest from holding the proxy goes.
+        const auto gapNow = [&](const Memory& m) {
+            return m.constraint.gapMm + m.constraint.normal.dot(pose_.positionMm - m.at.positionMm);
+        };
+        slot = 0;
+        for (std::size_t i = 1; i < memory_.size(); ++i) {
+            if (gapNow(memory_[i]) > gapNow(memory_[slot])) slot = i;
+        }
+    } else if (slot == memory_.size()) {
+        memory_.resize(slot + 1);
+    }
+    memory_[slot] = {deepest, pose_};
 }
 
 /// Out of the tooth by the shortest way the constraints know, for poses that no path led to.
@@ -44,6 +98,7 @@ void Proxy::start(contact::Method& method, const core::Pose& deviceInTooth) noex
     radiusMm_ = settings_.maxStepMm;
     touching_ = false;
     passes_ = 0;
+    memory_.clear();
     method.reset();
     // Deep inside only the depth knows the way out.
     for (int i = 0; i < kPushOutPasses; ++i) {
@@ -69,6 +124,7 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth,
     // A ball of that radius about the device is free, and the proxy lies in it.
     if (-depthAtDevice.depthMm > (target - pose_.positionMm).norm()) {
         pose_.positionMm = target;
+        memory_.clear();
         touching_ = false;
         radiusMm_ = settings_.maxStepMm;
         gapMm_ = -depthAtDevice.depthMm;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "handpiece/base/core/fixed_vector.h"
 #include "handpiece/base/core/realtime.h"
 #include "handpiece/base/core/vec.h"
 #include "handpiece/tick/contact/method.h"
@@ -33,6 +34,7 @@ class Proxy {
     void follow(const core::Pose& deviceInTooth) noexcept HANDPIECE_REALTIME {
         pose_ = deviceInTooth;
         touching_ = false;
+        memory_.clear();
     }
 
     /// Moves the proxy after the device. `depthAtDevice` is method.depth() at the device's pose: it spares all passes
@@ -53,7 +55,14 @@ class Proxy {
     void setSettings(const ProxySettings& settings) noexcept { settings_ = settings; }
 
   private:
+    /// A half-space met at a pose nearby.
+    struct Memory {
+        contact::Constraint constraint;
+        core::Pose at;
+    };
     double evaluate(contact::Method& method) noexcept;
+    void recall() noexcept;
+    void remember(const contact::Constraint& deepest) noexcept;
     void settleOutside(contact::Method& method) noexcept;
     [[nodiscard]] core::Vec3 freeStep(contact::Method& method, const core::Vec3& wanted,
                                       const Projection& allowed) noexcept;
@@ -61,7 +70,8 @@ class Proxy {
     ProxySettings settings_;
     core::Pose pose_;
     contact::ConstraintSet constraints_;
-    double radiusMm_ = 0.1;  // trust region: shrinks while steps turn back on themselves
+    core::FixedVector<Memory, 6> memory_;  // of the deepest: a method may name but one of two walls at a time
+    double radiusMm_ = 0.1;                // trust region: shrinks while steps turn back on themselves
     double gapMm_ = 0.0;
     core::Vec3 lastRest_ = core::Vec3::Zero();
     bool touching_ = false;

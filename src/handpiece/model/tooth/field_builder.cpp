@@ -65,6 +65,14 @@ Vec3 FieldBuilder::centreMm(std::size_t dense) const {
                   kBrickCells * std::int64_t{z} + kHalf);
 }
 
+std::int32_t FieldBuilder::storedAt(const std::array<std::int32_t, 3>& brick) const {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (brick[k] < 0 || brick[k] >= field_.bricks_[k]) return -1;
+    const auto nx = static_cast<std::size_t>(field_.bricks_[0]), ny = static_cast<std::size_t>(field_.bricks_[1]);
+    return field_.brickIndex_[static_cast<std::size_t>(brick[0]) +
+                              nx * (static_cast<std::size_t>(brick[1]) + ny * static_cast<std::size_t>(brick[2]))];
+}
+
 void FieldBuilder::classify(const std::function<double(std::size_t)>& centreDistance) {
     // A distance changes by no more than the way gone: beyond half the diagonal the band cannot reach into the brick.
     const double above = field_.settings_.bandOutMm + halfDiagonalMm(),

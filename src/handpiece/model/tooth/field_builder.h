@@ -40,6 +40,8 @@ class FieldBuilder {
     [[nodiscard]] core::Vec3 nodeMm(std::int64_t x, std::int64_t y, std::int64_t z) const;
     [[nodiscard]] std::array<std::int32_t, 3> brickAt(std::size_t dense) const;
     [[nodiscard]] core::Vec3 centreMm(std::size_t dense) const;
+    /// Storage index of the brick at these coordinates; -1 where none is stored or the grid has ended.
+    [[nodiscard]] std::int32_t storedAt(const std::array<std::int32_t, 3>& brick) const;
 
     /// Calls centreDistance for every brick and notes which of them the band may pass through.
     void classify(const std::function<double(std::size_t dense)>& centreDistance);

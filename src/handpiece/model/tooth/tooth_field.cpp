@@ -81,7 +81,8 @@ double ToothField::distance(const Vec3& p) const noexcept {
     const Vec3 top(kBrickCells * bricks_[0], kBrickCells * bricks_[1], kBrickCells * bricks_[2]);
     const Vec3 nearest = u.cwiseMax(Vec3::Zero()).cwiseMin(top);
     const double toBox = h * (u - nearest).stableNorm();
-    return std::max(toBox, distanceInGrid(nearest) - toBox);
+    // A distance averaged over a cell's corners is off by less than a voxel.
+    return std::max(toBox, distanceInGrid(nearest) - h - toBox);
 }
 
 double ToothField::distanceInGrid(const Vec3& gridPoint) const noexcept {

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <atomic>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/simd.h"
+#include "handpiece/model/tooth/field_builder.h"
+#include "handpiece/model/tooth/nearest_kernel.h"
+#include "handpiece/model/tooth/part_tissues.h"
+
+namespace handpiece::tooth {
+namespace {
+
+using core::Vec3;
+using geometry::TreeTriangle;
+
+constexpr std::uint8_t kUnset = 255;
+
+NearestKernel kernelOfThisMachine() {
+#if defined(__x86_64__)
+    switch (core::simdLevel()) {
+        case core::SimdLevel::avx512:
+            return simd_avx512::nearestOfPacket;
+        case core::SimdLevel::avx2:
+            return simd_avx2::nearestOfPacket;
+        case core::SimdLevel::base:
+            break;
+    }
+#endif
+    return simd_base::nearestOfPacket;
+}
+
+/// Node (x, y, z) of a brick, 0..8 each.
+struct LocalNode {
+    std::int8_t x, y, z;
+    [[nodiscard]] std::size_t index() const {
+        return static_cast<std::size_t>(x + kBrickNodes * (y + kBrickNodes * z));
+    }
+};
+
+/// Fills the nodes of all stored bricks. Nodes on the faces between bricks belong to one of them; the others copy.
+class NodeFiller {
+  public:
+    NodeFiller(FieldBuilder& builder, const geometry::TriangleTree& tree,
+               const std::vector<std::uint32_t>& centreTriangle)
+        : builder_(builder),
+          tree_(tree),
+          centreTriangle_(centreTriangle),
+          kernel_(kernelOfThisMachine()),
+          flat_(tree.triangles().size()) {
+        core::parallelFor(flat_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                flat_[i] = flattened(tree.triangles()[i]);
+        });
+    }
+
+    /// Computes the nodes that brick `stored` owns.
+    void compute(std::size_t stored) {
+        const std::array<std::int32_t, 3> brick = builder_.brickAt(builder_.storedBricks()[stored]);
+        std::uint32_t seed = centreTriangle_[builder_.storedBricks()[stored]];
+        float* values = builder_.values(stored);
+        forEachTile([&](const LocalNode& low, const LocalNode& high) {
+            LocalNode nodes[kPacket];
+            int count = 0;
+            for (std::int8_t z = low.z; z < high.z; ++z)
+                for (std::int8_t y = low.y; y < high.y; ++y)
+                    for (std::int8_t x = low.x; x < high.x; ++x)
+                        if (ownerOffset(brick, {x, y, z}) == 0) nodes[count++] = {x, y, z};
+            if (count > 0) seed = computePacket(brick, nodes, count, seed, values);
+        });
+    }
+
+    /// Copies the nodes that other bricks own; all of them must have been computed.
+    void copy(std::size_t stored) {
+        const std::array<std::int32_t, 3> brick = builder_.brickAt(builder_.storedBricks()[stored]);
+        float* values = builder_.values(stored);
+        for (std::int8_t z = 0; z < kBrickNodes; ++z)
+            for (std::int8_t y = 0; y < kBrickNodes; ++y)
+                for (std::int8_t x = 0; x < kBrickNodes; ++x) {
+                    if (x > 0 && x < kBrickCells && y > 0 && y < kBrickCells && z > 0 && z < kBrickCells) continue;
+                    const LocalNode node{x, y, z};
+                    const int owner = ownerOffset(brick, node);
+                    if (owner == 0) continue;
+                    LocalNode there = node;
+                    const std::array<std::int32_t, 3> other = shifted(brick, node, owner, &there);
+                    values[node.index()] =
+                        builder_.values(static_cast<std::size_t>(builder_.storedAt(other)))[there.index()];
+                }
+    }
+
+  private:
+    template <class F>
+    static void forEachTile(F&& visit) {
+        // Inside: 4 x 2 x 2 nodes. Then the far faces in tiles of at most 16.
+        for (std::int8_t z = 0; z < 8; z += 2)
+            for (std::int8_t y = 0; y < 8; y += 2)
+                for (std::int8_t x = 0; x < 8; x += 4)
+                    visit(LocalNode{x, y, z}, LocalNode{int8(x + 4), int8(y + 2), int8(z + 2)});
+        for (std::int8_t z = 0; z < 9; z += 3)
+            for (std::int8_t y = 0; y < 9; y += 3)
+                visit(LocalNode{8, y, z}, LocalNode{9, int8(y + 3), int8(z + 3)});
+        for (std::int8_t z = 0; z < 9; z += 3)
+            for (std::int8_t x = 0; x < 8; x += 4)
+                visit(LocalNode{x, 8, z}, LocalNode{int8(x + 4), 9, int8(z + 3)});
+        for (std::int8_t y = 0; y < 8; y += 4)
+            for (std::int8_t x = 0; x < 8; x += 4)
+                visit(LocalNode{x, y, 8}, LocalNode{int8(x + 4), int8(y + 4), 9});
+    }
+    static std::int8_t int8(int v) { return static_cast<std::int8_t>(v); }
+
+    /// The other way a node can be looked at: offset bit k moves one brick along axis k, up where the node lies on the
+    /// far face, down where it lies on the near one.
+    static std::array<std::int32_t, 3> shifted(std::array<std::int32_t, 3> brick, const LocalNode& node, int offset,
+                                               LocalNode* there) {
+        std::int8_t* to[3] = {&there->x, &there->y, &there->z};
+        const std::int8_t at[3] = {node.x, node.y, node.z};
+        for (std::size_t k = 0; k < 3; ++k) {
+            if ((offset >> k & 1) == 0) continue;
+            const bool far = at[k] == kBrickCells;
+            brick[k] += far ? 1 : -1;
+            *to[k] = far ? std::int8_t{0} : std::int8_t{kBrickCells};
+        }
+        return brick;
+    }
+
+    /// 0 when the brick owns the node itself, else the offset of the owner: the stored brick in which the node lies
+    /// nearest to the near corner (lowest z face first), the same whichever brick asks.
+    [[nodiscard]] int ownerOffset(const std::array<std::int32_t, 3>& brick, const LocalNode& node) const {
+        const std::int8_t at[3] = {node.x, node.y, node.z};
+        int shared = 0, far = 0;
+        for (int k = 0; k < 3; ++k) {
+            if (at[k] == 0 || at[k] == kBrickCells) shared |= 1 << k;
+            if (at[k] == kBrickCells) far |= 1 << k;
+        }
+        if (shared == 0) return 0;
+        // `corner` bit k: on the far face of the candidate along axis k. Ascending: candidates with the node near come
+        // first.
+        for (int corner = 0; corner < 8; ++corner) {
+            if ((corner & ~shared) != 0) continue;
+            const int offset = (corner ^ far) & shared;
+            if (offset == 0) return 0;
+            LocalNode there = node;
+            if (builder_.storedAt(shifted(brick, node, offset, &there)) >= 0) return offset;
+        }
+        return 0;
+    }
+
+    std::uint32_t computePacket(const std::array<std::int32_t, 3>& brick, const LocalNode* nodes, int count,
+                                std::uint32_t seed, float* values) {
+        Vec3 point[kPacket];
+        core::Box box;
+        for (int i = 0; i < count; ++i) {
+            point[i] = builder_.nodeMm(kBrickCells * std::int64_t{brick[0]} + nodes[i].x,
+                                       kBrickCells * std::int64_t{brick[1]} + nodes[i].y,
+                                       kBrickCells * std::int64_t{brick[2]} + nodes[i].z);
+            box.extend(point[i]);
+        }
+        PointPacket packet;
+        const Vec3 centre = box.centre();
+        for (int k = 0; k < 3; ++k) {
+            packet.centre[k] = centre[k];
+            packet.halfSize[k] = static_cast<float>(0.5 * (box.max[k] - box.min[k]));
+            for (int i = 0; i < kPacket; ++i)
+                packet.offset[k][i] = static_cast<float>(point[i < count ? i : 0][k] - centre[k]);
+        }
+        std::uint32_t nearest[kPacket];
+        kernel_(tree_.nodes().data(), flat_.data(), packet, seed, nearest);
+        for (int i = 0; i < count; ++i) {
+            const geometry::NearestPoint n = tree_.nearestOn(nearest[i], point[i]);
+            values[nodes[i].index()] = static_cast<float>(tree_.side(point[i], n) * n.distanceMm);
+        }
+        return nearest[0];
+    }
+
+    FieldBuilder& builder_;
+    const geometry::TriangleTree& tree_;
+    const std::vector<std::uint32_t>& centreTriangle_;
+    NearestKernel kernel_;
+    std::vector<FlatTriangle> flat_;
+};
+
+/// A hollow or inside-out tooth shows in its volume, a torn one in extra area. Less area is what a grid makes of sharp
+/// edges.
+void requireLikeness(const ToothField& field, const geometry::TriangleMesh& mesh) {
+    const double volume = field.volumeMm3(), wanted = geometry::enclosedVolumeMm3(mesh);
+    if (!(std::abs(volume - wanted) <= 0.01 * std::abs(wanted)))
+        throw core::Error(
+            fmt::format("the distance field holds {:.4g} mm3 where the surface encloses {:.4g} mm3", volume, wanted),
+            "distance field",
+            "the surface is open, crosses itself or is thinner than a voxel: run 'handpiece mesh repair', or take "
+            "smaller voxels");
+    const double area = field.areaMm2(), surface = geometry::surfaceAreaMm2(mesh);
+    if (!(area <= 1.05 * surface))
+        throw core::Error(
+            fmt::format("the distance field's surface has {:.4g} mm2 where the mesh has {:.4g} mm2", area, surface),
+            "distance field", "the surface crosses itself: run 'handpiece mesh repair'");
+}
+
+}  // namespace
+
+FlatTriangle flattened(const TreeTriangle& t) {
+    const Vec3 a(t.a[0], t.a[1], t.a[2]), ab(t.ab[0], t.ab[1], t.ab[2]), ac(t.ac[0], t.ac[1], t.ac[2]);
+    // Corner i of the frame's triangle is corner (first + i) % 3 of the mesh's; edge 0 the longest.
+    const Vec3 corner[3] = {Vec3::Zero(), ab, ac};
+    int first = 0;
+    double longest = -1.0;
+    for (int e = 0; e < 3; ++e) {
+        const double length = (corner[(e + 1) % 3] - corner[e]).squaredNorm();
+        if (length > longest) {
+            longest = length;
+            first = e;
+        }
+    }
+    const Vec3 o = corner[first], p = corner[(first + 1) % 3] - o, q = corner[(first + 2) % 3] - o;
+    const double length = std::sqrt(longest);
+    const Vec3 x = length > 0.0 ? Vec3(p / length) : Vec3::UnitX();
+    const Vec3 up = q - x * x.dot(q);
+    const double height = up.norm();
+    const bool flat = !(height > 1e-12 * length) || height == 0.0;
+    const Vec3 y = flat ? x.unitOrthogonal() : Vec3((up / height - x * x.dot(up / height)).normalized());
+    const Vec3 n = x.cross(y);
+    FlatTriangle out{};
+    for (int k = 0; k < 3; ++k) {
+        out.origin[k] = a[k] + o[k];
+        out.x[k] = static_cast<float>(x[k]);
+        out.y[k] = static_cast<float>(y[k]);
+        out.n[k] = static_cast<float>(n[k]);
+    }
+    out.length = static_cast<float>(length);
+    out.cx = static_cast<float>(x.dot(q));
+    out.cy = flat ? 0.0f : static_cast<float>(height);
+    const auto inverse = [](float dx, float dy) {
+        const float square = dx * dx + dy * dy, reciprocal = 1.0f / square;
+        return square > 0.0f && std::isfinite(reciprocal) ? reciprocal : 0.0f;
+    };
+    out.inverseBc2 = inverse(out.cx - out.length, out.cy);
+    out.inverseCa2 = inverse(out.cx, out.cy);
+    return out;
+}
+
+ToothField FieldBuilder::fromSurface(const geometry::TriangleMesh& mesh, const geometry::TriangleTree& tree,
+                                     std::span<const PartSurface> parts, const FieldSettings& settings,
+                                     const core::Progress& progress) {
+    // One voxel more than the band, so that the outermost nodes of it have neighbours.
+    FieldBuilder builder(tree.bounds().grown(std::max(0.0, settings.bandOutMm) + std::max(0.0, settings.voxelMm)),
+                         settings);
+    core::report(progress, 0.0);
+    std::vector<std::uint32_t> centreTriangle(builder.denseBricks());
+    builder.classify([&](std::size_t dense) {
+        geometry::NearestPoint n;
+        const double d = tree.signedDistance(builder.centreMm(dense), &n);
+        centreTriangle[dense] = n.triangle;
+        return d;
+    });
+    core::report(progress, 0.05);
+    builder.store();
+
+    const PartTissues tissues(parts);
+    core::parallelFor(builder.denseBricks(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (builder.coarse(i) < 0.0f) builder.setCoarseTissue(i, tissues.at(builder.centreMm(i)));
+    });
+
+    NodeFiller filler(builder, tree, centreTriangle);
+    const std::size_t count = builder.storedBricks().size();
+    std::atomic<std::size_t> done{0};
+    core::parallelFor(count, 4, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            filler.compute(i);
+            const auto [bx, by, bz] = builder.brickAt(builder.storedBricks()[i]);
+            const std::int64_t x0 = kBrickCells * std::int64_t{bx}, y0 = kBrickCells * std::int64_t{by},
+                               z0 = kBrickCells * std::int64_t{bz};
+            tissues.fill([&](int x, int y, int z) { return builder.nodeMm(x0 + x, y0 + y, z0 + z); },
+                         builder.tissues(i));
+        }
+        core::report(progress, 0.05 + 0.9 * static_cast<double>(done += end - begin) / static_cast<double>(count));
+    });
+    core::parallelFor(count, 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            filler.copy(i);
+    });
+    ToothField field = std::move(builder).finish();
+    requireLikeness(field, mesh);
+    core::report(progress, 1.0);
+    return field;
+}
+
+}  // namespace handpiece::tooth

@@ -1,0 +1,402 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/base/geometry/mesh_io.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <limits>
+
+#include "base/geometry/meshes.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/base/geometry/inspect.h"
+#include "support/random.h"
+
+#define TINYOBJLOADER_IMPLEMENTATION
+#define TINYOBJLOADER_USE_DOUBLE
+#include <tiny_obj_loader.h>
+
+namespace handpiece::geometry {
+namespace {
+
+using core::Vec3;
+using testing::HasSubstr;
+using Bytes = std::vector<std::byte>;
+
+std::span<const std::byte> bytesOf(std::string_view text) {
+    return std::as_bytes(std::span(text));
+}
+
+TriangleMesh fromText(std::string_view text, MeshFormat hint = MeshFormat::unknown, ReadNotes* notes = nullptr) {
+    return readMesh(bytesOf(text), hint, "memory", notes);
+}
+
+// The message of the error that reading gives, or an empty string.
+std::string errorOf(std::span<const std::byte> data, MeshFormat hint = MeshFormat::unknown) {
+    try {
+        (void)readMesh(data, hint, "memory");
+    } catch (const core::Error& e) {
+        return e.what();
+    }
+    return {};
+}
+std::string errorOf(std::string_view text, MeshFormat hint = MeshFormat::unknown) {
+    return errorOf(bytesOf(text), hint);
+}
+
+template <class T>
+void put(Bytes& data, std::size_t at, T value) {
+    std::memcpy(data.data() + at, &value, sizeof value);
+}
+
+template <class T>
+void append(Bytes& data, T value, bool bigEndian = false) {
+    std::array<std::byte, sizeof(T)> raw;
+    std::memcpy(raw.data(), &value, sizeof value);
+    if (bigEndian) std::reverse(raw.begin(), raw.end());
+    data.insert(data.end(), raw.begin(), raw.end());
+}
+
+// float32 coordinates, so that nothing is lost in an STL.
+TriangleMesh floatSphere() {
+    TriangleMesh mesh = test::sphereMesh({1, 2, 3}, 5, 6);
+    for (Vec3& v : mesh.vertices)
+        for (double& x : v) x = static_cast<double>(static_cast<float>(x));
+    return mesh;
+}
+
+Bytes binaryStl(const TriangleMesh& mesh) {
+    const test::TemporaryFolder folder;
+    writeStl(folder.path() / "x.stl", mesh);
+    return core::readFile(folder.path() / "x.stl");
+}
+
+std::string asciiStl(const TriangleMesh& mesh) {
+    std::string text = "solid a name with facet in it\n";
+    for (const Triangle& t : mesh.triangles) {
+        text += " facet normal 0 0 0\n  outer loop\n";
+        for (const std::uint32_t v : t)
+            text += fmt::format("   vertex {} {:.17e} {}\n", mesh.vertices[v].x(), mesh.vertices[v].y(),
+                                mesh.vertices[v].z());
+        text += "  endloop\n endfacet\n";
+    }
+    return text + "endsolid a name with facet in it\n";
+}
+
+// The same faces, whatever the numbering of vertices.
+void expectSameFaces(const TriangleMesh& a, const TriangleMesh& b) {
+    ASSERT_EQ(a.triangles.size(), b.triangles.size());
+    for (std::size_t f = 0; f < a.triangles.size(); ++f)
+        for (std::size_t k = 0; k < 3; ++k)
+            EXPECT_EQ(a.vertices[a.triangles[f][k]], b.vertices[b.triangles[f][k]]);
+}
+
+TEST(MeshIo, StlRoundTrip) {
+    const TriangleMesh mesh = floatSphere();
+    const test::TemporaryFolder folder;
+    writeStl(folder.path() / "x.STL", mesh);
+    const TriangleMesh back = readMesh(folder.path() / "x.STL");
+    EXPECT_EQ(back.vertices.size(), mesh.vertices.size());
+    expectSameFaces(mesh, back);
+    EXPECT_EQ(core::readFile(folder.path() / "x.STL").size(), 84 + 50 * mesh.triangles.size());
+}
+
+TEST(MeshIo, VerticesAreNumberedByFirstAppearance) {
+    const TriangleMesh mesh = readMesh(binaryStl(floatSphere()), MeshFormat::stl, "memory");
+    std::uint32_t next = 0;
+    for (const Triangle& t : mesh.triangles)
+        for (const std::uint32_t v : t) {
+            EXPECT_LE(v, next);
+            next = std::max(next, v + 1);
+        }
+    EXPECT_EQ(next, mesh.vertices.size());
+}
+
+TEST(MeshIo, PlyRoundTripLosesNothing) {
+    const TriangleMesh mesh = test::sphereMesh({1.0 / 3, 2, 3}, 5, 6);
+    const test::TemporaryFolder folder;
+    writePly(folder.path() / "x.ply", mesh);
+    const TriangleMesh back = readMesh(folder.path() / "x.ply");
+    EXPECT_EQ(back.vertices, mesh.vertices);
+    EXPECT_EQ(back.triangles, mesh.triangles);
+}
+
+TEST(MeshIo, AsciiStlEqualsBinary) {
+    const TriangleMesh mesh = floatSphere();
+    std::string text = asciiStl(mesh);
+    expectSameFaces(fromText(text), mesh);
+    EXPECT_EQ(fromText(text).vertices.size(), mesh.vertices.size());
+    std::string windows;
+    for (const char c : text)
+        windows += c == '\n' ? "\r\n" : std::string(1, c == 'f' ? 'F' : c == 'v' ? 'V' : c);
+    expectSameFaces(fromText(windows), mesh);
+}
+
+TEST(MeshIo, MinusZeroIsZero) {
+    TriangleMesh mesh = test::boxMesh({0, 0, 0}, {1, 1, 1});
+    for (std::size_t f = 0; f < mesh.triangles.size(); f += 2)
+        for (std::uint32_t& v : mesh.triangles[f]) {
+            mesh.vertices.push_back(mesh.vertices[v].unaryExpr([](double x) { return x == 0.0 ? -0.0 : x; }));
+            v = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+        }
+    EXPECT_EQ(readMesh(binaryStl(mesh), MeshFormat::stl, "memory").vertices.size(), 8u);
+    EXPECT_EQ(fromText(asciiStl(mesh)).vertices.size(), 8u);
+}
+
+TEST(MeshIo, BinaryThatStartsWithSolid) {
+    const TriangleMesh mesh = floatSphere();
+    Bytes data = binaryStl(mesh);
+    std::memcpy(data.data(), "solid facet normal", 18);
+    expectSameFaces(readMesh(data, MeshFormat::unknown, "memory"), mesh);
+    put(data, 80, std::uint32_t{7});  // and lies
+    expectSameFaces(readMesh(data, MeshFormat::stl, "memory"), mesh);
+}
+
+TEST(MeshIo, TheLengthDecidesWhatTheHeaderLiesAbout) {
+    const TriangleMesh mesh = floatSphere();
+    for (const std::uint32_t lie : {0u, 7u, 1000000u, 0xffffffffu}) {
+        Bytes data = binaryStl(mesh);
+        put(data, 80, lie);
+        ReadNotes notes;
+        expectSameFaces(readMesh(data, MeshFormat::stl, "memory", &notes), mesh);
+        ASSERT_EQ(notes.size(), 1u);
+        EXPECT_THAT(notes[0], HasSubstr(fmt::format("says {} facets, the file holds {}", lie, mesh.triangles.size())));
+    }
+    Bytes trailing = binaryStl(mesh);
+    trailing.resize(trailing.size() + 30);
+    ReadNotes notes;
+    expectSameFaces(readMesh(trailing, MeshFormat::stl, "memory", &notes), mesh);
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_THAT(notes[0], HasSubstr("30 bytes"));
+}
+
+TEST(MeshIo, TruncatedFilesSayWhere) {
+    Bytes data = binaryStl(floatSphere());
+    put(data, 80, std::uint32_t{325312});
+    data.resize(84 + 16 * 50 + 20);
+    EXPECT_THAT(errorOf(data, MeshFormat::stl), HasSubstr("the file ends in the middle of facet 17 of 325312"));
+    data.resize(60);
+    EXPECT_THAT(errorOf(data, MeshFormat::stl), HasSubstr("header"));
+    const std::string text = asciiStl(floatSphere());
+    EXPECT_THAT(errorOf(text.substr(0, text.size() / 2)), HasSubstr("the file ends in the middle of facet"));
+    EXPECT_THAT(errorOf("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+                        "z\nend_header\n0 0 0\n1 0"),
+                HasSubstr("vertex 2 of 3"));
+    EXPECT_THAT(errorOf("ply\nformat ascii 1.0\nelement vertex 3\n"), HasSubstr("header has no end"));
+}
+
+TEST(MeshIo, EmptyAndForeignFiles) {
+    EXPECT_THAT(errorOf(""), HasSubstr("empty"));
+    EXPECT_THAT(errorOf("", MeshFormat::stl), HasSubstr("empty"));
+    EXPECT_THAT(errorOf("hello, this is a letter"), HasSubstr("no STL, PLY or OBJ"));
+    EXPECT_THAT(errorOf("solid nothing\nendsolid nothing\n"), HasSubstr("no faces"));
+    EXPECT_THAT(errorOf("v 1 2 3\n"), HasSubstr("no faces"));
+    EXPECT_THAT(errorOf("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n"),
+                HasSubstr("\"zero\" in facet 1 is not a number"));
+    EXPECT_THAT(errorOf(Bytes(84), MeshFormat::stl), HasSubstr("no faces"));
+    EXPECT_THROW((void)readMesh(std::filesystem::path("/nowhere/x.stl")), core::Error);
+}
+
+TEST(MeshIo, CoordinatesMustBeFinite) {
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 2e30f}) {
+        Bytes data = binaryStl(floatSphere());
+        put(data, 84 + 50 * 4 + 12 + 8, bad);
+        put(data, 84 + 50 * 9 + 12 + 32, bad);
+        EXPECT_THAT(errorOf(data), HasSubstr("2 facets are not finite (or beyond 1e30), the first is facet 5"));
+    }
+    EXPECT_THAT(errorOf("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\nvertex 1 0 0\nvertex 0 1 "
+                        "0\nendloop\nendfacet\nendsolid\n"),
+                HasSubstr("1 facet is not finite"));
+    EXPECT_THAT(errorOf("v 0 0 0\nv 1 0 inf\nv 0 1 0\nf 1 2 3\n"), HasSubstr("vertex 2"));
+    EXPECT_THAT(errorOf("v 0 0 0\nv 1 0 1e999\nv 0 1 0\nf 1 2 3\n"), HasSubstr("vertex 2"));
+    EXPECT_EQ(fromText("v 0 0 0\nv 1 0 1e-999\nv 0 1 0\nf 1 2 3\n").vertices[1], Vec3(1, 0, 0));
+}
+
+TEST(MeshIo, PlyAsciiWithExtrasAndPolygons) {
+    const TriangleMesh mesh = fromText(
+        "ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nelement camera 1\r\nproperty float fov\r\nproperty list "
+        "uchar int ids\r\n"
+        "element vertex 5\r\nproperty uchar red\r\nproperty double z\r\nproperty double y\r\nproperty double x\r\n"
+        "element face 2\r\nproperty uchar flags\r\nproperty list uchar int vertex_indices\r\nproperty list uchar float "
+        "texcoord\r\n"
+        "end_header\r\n60 2 7 8\r\n255 0 0 0\r\n255 0 0 1\r\n255 0 1 1\r\n255 0 1 0\r\n9 5 .5 +.5\r\n"
+        "1 4 0 1 2 3 2 0.5 0.5\r\n0 3 0 1 4 0\r\n");
+    ASSERT_EQ(mesh.vertices.size(), 5u);
+    EXPECT_EQ(mesh.vertices[4], Vec3(0.5, 0.5, 5));
+    EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 1, 4}}));
+}
+
+TEST(MeshIo, PlyBinaryOfBothEnds) {
+    for (const bool big : {false, true}) {
+        const std::string header = fmt::format(
+            "ply\nformat binary_{}_endian 1.0\nelement vertex 4\nproperty float x\nproperty double y\nproperty short "
+            "z\nproperty uchar grey\n"
+            "element face 2\nproperty list ushort uint vertex_index\nproperty int id\nend_header\n",
+            big ? "big" : "little");
+        Bytes data(bytesOf(header).begin(), bytesOf(header).end());
+        for (int v = 0; v < 4; ++v) {
+            append(data, static_cast<float>(v), big);
+            append(data, v * 0.1, big);
+            append(data, static_cast<std::int16_t>(-300 * v), big);
+            append(data, std::uint8_t{200}, big);
+        }
+        for (const auto& corners : {std::vector<std::uint32_t>{0, 1, 2, 3}, std::vector<std::uint32_t>{3, 1, 0}}) {
+            append(data, static_cast<std::uint16_t>(corners.size()), big);
+            for (const std::uint32_t c : corners)
+                append(data, c, big);
+            append(data, std::int32_t{-1}, big);
+        }
+        const TriangleMesh mesh = readMesh(data, MeshFormat::unknown, "memory");
+        EXPECT_EQ(mesh.vertices[3], Vec3(3, 0.1 * 3, -900));
+        EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {3, 1, 0}}));
+        for (std::size_t cut = 0; cut < data.size(); ++cut)
+            EXPECT_FALSE(errorOf(std::span(data).first(cut)).empty()) << cut;
+    }
+}
+
+TEST(MeshIo, PlyThatLies) {
+    const std::string vertices = "property float x\nproperty float y\nproperty float z\n";
+    // Counts far beyond the file must neither be allocated nor waited for.
+    for (const std::string count : {"4000000000", "18446744073709551615", "99999999999999999999", "-3"})
+        for (const std::string format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+            EXPECT_FALSE(errorOf("ply\nformat " + format + " 1.0\nelement vertex " + count + "\n" + vertices +
+                                 "end_header\n0 0 0\n")
+                             .empty());
+            EXPECT_FALSE(errorOf("ply\nformat " + format + " 1.0\nelement ghost " + count + "\nelement vertex 0\n" +
+                                 vertices + "element face " + count +
+                                 "\nproperty list int int vertex_indices\nend_header\n")
+                             .empty());
+        }
+    const std::string good = "ply\nformat ascii 1.0\nelement vertex 3\n" + vertices +
+                             "element face 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+    EXPECT_EQ(fromText(good + "3 0 1 2\n").triangles.size(), 1u);
+    EXPECT_THAT(errorOf(good + "3 0 1 3\n"), HasSubstr("face 1 names vertex 4 of 3"));
+    EXPECT_THAT(errorOf(good + "3 0 1 -1\n"), HasSubstr("names vertex -1"));
+    EXPECT_THAT(errorOf(good + "-3 0 1 2\n"), HasSubstr("list of -3"));
+    EXPECT_THAT(errorOf(good + "4000000000 0 1 2\n"), HasSubstr("face 1 of 1"));
+    EXPECT_THAT(errorOf(good + "2 0 1\n"), HasSubstr("no faces"));
+    EXPECT_THAT(errorOf("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n"),
+                HasSubstr("no x, y and z"));
+    EXPECT_THAT(errorOf("ply\nelement vertex 1\nproperty float x\nend_header\n1\n"), HasSubstr("no format"));
+    EXPECT_THAT(errorOf("ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\nend_header\n1\n"),
+                HasSubstr("\"quad\""));
+}
+
+TEST(MeshIo, ObjEqualsTinyobjloader) {
+    const std::string text =
+        "# a comment\nmtllib none.mtl\no thing\nv 0 0 0 1 0 0\nv 1.5 0 0\nv 1 1e0 -.25\nv 0 +1 0 1.0\nvn 0 0 1\nvt 0 "
+        "0\n"
+        "usemtl red\ns off\nf 1/1/1 2/1/1 3/1/1\nf 1//1 3//1 4//1\nv 0.5 0.5 2\nf -1 -5 -4\nf 2 3 5\n";
+    const TriangleMesh mesh = fromText(text);
+    std::istringstream stream(text);
+    tinyobj::attrib_t attributes;
+    std::vector<tinyobj::shape_t> shapes;
+    std::string warning, error;
+    ASSERT_TRUE(tinyobj::LoadObj(&attributes, &shapes, nullptr, &warning, &error, &stream, nullptr, true)) << error;
+    ASSERT_EQ(attributes.vertices.size(), 3 * mesh.vertices.size());
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+        for (std::size_t k = 0; k < 3; ++k)
+            EXPECT_DOUBLE_EQ(mesh.vertices[v][static_cast<Eigen::Index>(k)],
+                             static_cast<double>(attributes.vertices[3 * v + k]));
+    std::vector<Triangle> triangles;
+    for (const tinyobj::shape_t& shape : shapes)
+        for (std::size_t i = 0; i + 2 < shape.mesh.indices.size(); i += 3)
+            triangles.push_back({static_cast<std::uint32_t>(shape.mesh.indices[i].vertex_index),
+                                 static_cast<std::uint32_t>(shape.mesh.indices[i + 1].vertex_index),
+                                 static_cast<std::uint32_t>(shape.mesh.indices[i + 2].vertex_index)});
+    EXPECT_EQ(mesh.triangles, triangles);
+}
+
+TEST(MeshIo, ObjPolygonsContinuationsAndErrors) {
+    const std::string square = "v 0 0 0\rv 1 0 0\rv 1 1 0\rv 0 1 0\r";
+    EXPECT_EQ(fromText(square + "f 1 2 \\\r\n 3 4\r\n").triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+    EXPECT_THAT(errorOf(square + "f 1 2 5\n"), HasSubstr("line 5 names vertex 5 of 4"));
+    EXPECT_THAT(errorOf(square + "f 1 2 -5\n"), HasSubstr("line 5 names vertex -5"));
+    EXPECT_THAT(errorOf(square + "f 1 2 0\n"), HasSubstr("\"0\" in line 5"));
+    EXPECT_THAT(errorOf(square + "f 1 2 x\n"), HasSubstr("\"x\" in line 5"));
+    EXPECT_THAT(errorOf(square + "f 1 2 99999999999999999999\n"), HasSubstr("line 5"));
+    EXPECT_THAT(errorOf("v 1 2\n", MeshFormat::obj), HasSubstr("fewer than three"));
+}
+
+TEST(MeshIo, ContentBeatsTheName) {
+    const test::TemporaryFolder folder;
+    const TriangleMesh mesh = floatSphere();
+    writePly(folder.path() / "x.ply", mesh);
+    std::filesystem::rename(folder.path() / "x.ply", folder.path() / "x.stl");
+    ReadNotes notes;
+    expectSameFaces(readMesh(folder.path() / "x.stl", &notes), mesh);
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_EQ(notes[0], "named like STL, but its content is PLY");
+}
+
+TEST(MeshIo, WritersRefuseAndLeaveTheOldFile) {
+    const test::TemporaryFolder folder;
+    const TriangleMesh mesh = floatSphere();
+    writeMesh(folder.path() / "x.stl", mesh);
+    TriangleMesh bad = mesh;
+    bad.triangles[0][0] = 1000000;
+    EXPECT_THROW(writeMesh(folder.path() / "x.stl", bad), core::Error);
+    bad = mesh;
+    bad.vertices[3].x() = std::nan("");
+    EXPECT_THROW(writeMesh(folder.path() / "x.stl", bad), core::Error);
+    expectSameFaces(readMesh(folder.path() / "x.stl"), mesh);
+    EXPECT_THROW(writeMesh(folder.path() / "x.obj", mesh), core::Error);
+    EXPECT_THROW(writeMesh(folder.path() / "missing" / "x.stl", mesh), core::Error);
+}
+
+// What the fuzzers have found or started from, and every file cut off and bent: an error or a mesh, never anything
+// else.
+TEST(MeshIo, FuzzCorpusAndItsMutationsAreReadOrRefused) {
+    std::mt19937_64 generator(test::seed());
+    std::size_t files = 0, meshes = 0, refused = 0;
+    const auto read = [&](std::span<const std::byte> data, MeshFormat hint) {
+        try {
+            const TriangleMesh mesh = readMesh(data, hint, "memory");
+            requireValidIndices(mesh, "memory");
+            EXPECT_FALSE(mesh.triangles.empty());
+            ++meshes;
+        } catch (const core::Error&) {
+            ++refused;
+        }
+    };
+    for (const auto& [name, hint] :
+         {std::pair("stl", MeshFormat::stl), std::pair("ply", MeshFormat::ply), std::pair("obj", MeshFormat::obj)}) {
+        std::vector<std::filesystem::path> paths;
+        for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(HANDPIECE_SOURCE_DIR) /
+                                                                     "tests/fuzz/corpus" / name))
+            paths.push_back(entry.path());
+        std::sort(paths.begin(), paths.end());
+        for (const std::filesystem::path& path : paths) {
+            ++files;
+            const Bytes data = core::readFile(path);
+            read(data, hint);
+            read(data, MeshFormat::unknown);
+            for (int i = 0; i < 60 && !data.empty(); ++i) {
+                const auto at = [&] { return static_cast<std::size_t>(generator() % data.size()); };
+                read(std::span(data).first(at()), hint);
+                Bytes bent = data;
+                for (std::uint64_t k = generator() % 4; k < 4; ++k)
+                    bent[at()] = static_cast<std::byte>(generator());
+                if (bent.size() > 84 && hint == MeshFormat::stl) put(bent, 80, static_cast<std::uint32_t>(generator()));
+                read(bent, hint);
+            }
+        }
+    }
+    EXPECT_GT(files, 10u);
+    EXPECT_GT(meshes, 10u);
+    EXPECT_GT(refused, 10u);
+}
+
+TEST(MeshIo, RealToolsAreRead) {
+    const std::filesystem::path data = test::realDataFolder();
+    if (data.empty()) GTEST_SKIP() << "no real data beside the checkout";
+    const TriangleMesh bur = readMesh(data / "tools" / "tapered_bur.stl");
+    EXPECT_EQ(bur.vertices.size(), 1562u);
+    EXPECT_EQ(bur.triangles.size(), 3120u);
+}
+
+}  // namespace
+}  // namespace handpiece::geometry

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/geometry/convex_shapes.h"
+#include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/epa.h"
 #include "handpiece/base/geometry/gjk.h"
 
@@ -175,6 +176,55 @@ TEST(Epa, agreesWithSeparatingAxesOnSmallRandomHulls) {
         expectPartedBy(a, b, pose, got);
     }
     EXPECT_GT(inside, 100);
+}
+
+// Small whole numbers: everything ties, lies in one plane or one line, and origins fall on features.
+TEST(Epa, agreesWithSeparatingAxesOnLatticeHulls) {
+    std::mt19937_64 generator(test::seed());
+    const auto whole = [&](int low, int high) {
+        return static_cast<double>(low + static_cast<int>(generator() % static_cast<unsigned>(high - low + 1)));
+    };
+    const auto lattice = [&] {
+        for (;;) {
+            std::vector<Vec3> points;
+            for (int i = 0; i < 9; ++i)
+                points.emplace_back(whole(-2, 2), whole(-2, 2), whole(-2, 2));
+            try {
+                return hullOf(points);
+            } catch (const core::Error&) {
+                continue;  // flat: draw again
+            }
+        }
+    };
+    SimplexSeed seed;
+    const auto solver = std::make_unique<PenetrationSolver>();
+    int inside = 0, touching = 0;
+    for (int i = 0; i < 600; ++i) {
+        const ConvexHull a = lattice(), b = lattice();
+        const core::Quat quarter(
+            Eigen::AngleAxisd(0.5 * std::numbers::pi * whole(0, 3), Vec3::Unit(static_cast<int>(whole(0, 2)))));
+        const Pose pose{Vec3(whole(-3, 3), whole(-3, 3), whole(-3, 3)), i % 3 == 0 ? core::Quat::Identity() : quarter};
+        const double want = depthBySeparatingAxes(a, b, pose);
+        const Answer cold = query(a, b, pose);
+        EXPECT_TRUE(cold.converged) << i;
+        if (want > 1e-9) {
+            ++inside;
+            EXPECT_NEAR(cold.depthMm, want, 1e-9) << i;
+            expectPartedBy(a, b, pose, cold);
+        } else if (want > -1e-9) {
+            ++touching;
+            EXPECT_NEAR(cold.depthMm, 0.0, 1e-9) << i;
+        } else {
+            EXPECT_LE(cold.depthMm, want + 1e-9) << i;
+        }
+        // The same pair with the warm start of its own last answer, from a pose beside.
+        seed = {};
+        solver->reset();
+        (void)query(a, b, {pose.positionMm + Vec3(1, 0, 0), pose.orientation}, seed, *solver);
+        EXPECT_NEAR(query(a, b, pose, seed, *solver).depthMm, cold.depthMm, 1e-9) << i;
+    }
+    EXPECT_GT(inside, 200);
+    EXPECT_GT(touching, 10);
 }
 
 TEST(Epa, agreesWithLibccdOnRandomHulls) {

@@ -6,6 +6,7 @@
 #include "base/geometry/convex_shapes.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/convex_hull.h"
+#include "support/realtime_trap.h"
 
 namespace handpiece::contact {
 namespace {
@@ -84,6 +85,35 @@ TEST(HullMethod, feelsTheHullOverAHollow) {
     bowl.vertices.push_back(Vec3(0, 0, -0.8));
     const auto method = makeHullMethod(bowl, roundBur());
     EXPECT_NEAR(method->depth({Vec3(0, 0, -0.2), core::Quat::Identity()}).depthMm, 0.2, 1e-9);
+}
+
+TEST(HullMethod, neitherAllocatesNorLocks) {
+    if (!test::RealtimeTrap::isActive()) GTEST_SKIP() << "the sanitizers own malloc: the trap is off";
+    std::mt19937_64 generator(test::seed());
+    const auto method = makeHullMethod(hullMesh(test::bumpySphere(4000, 5.0, 0.1)), roundBur());
+    std::vector<Pose> poses;
+    for (int i = 0; i < 200; ++i)
+        poses.push_back({uniform(generator, 0, 7) * test::randomDirection(generator), test::randomRotation(generator)});
+    PatchSet patches;
+    ConstraintSet constraints;
+    const test::RealtimeTrap trap;
+    for (const Pose& pose : poses) {
+        (void)method->depth(pose);
+        method->patches(pose, patches);
+        (void)method->constraints(pose, 1.0, constraints);
+    }
+    EXPECT_EQ(trap.total(), 0u);
+}
+
+// A ball in the middle of a ball: all ways out are about equally short, the worst case for EPA.
+TEST(HullMethod, aFullPolytopeStillGivesALowerBound) {
+    const auto method =
+        makeHullMethod(hullMesh(test::bumpySphere(20000, 5.0, 0.0)), hullMesh(test::bumpySphere(500, 1.0, 0.0)));
+    const Depth d = method->depth({});
+    EXPECT_EQ(d.status, Status::truncated);
+    EXPECT_GT(d.depthMm, 5.7);
+    EXPECT_LT(d.depthMm, 6.0);
+    EXPECT_NEAR(d.normal.norm(), 1.0, 1e-12);
 }
 
 TEST(HullMethod, refusesPosesAndMeshesWithoutSense) {

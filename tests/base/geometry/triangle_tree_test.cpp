@@ -219,27 +219,26 @@ TEST(TriangleTree, TheSameTreeAtAnyThreadCount) {
 TEST(TriangleTree, StorageGivesTheSameAnswersAndIsChecked) {
     const TriangleMesh mesh = test::bumpyMesh(3, 4.0);
     const TriangleTree tree(mesh);
-    const auto storage = [&] {
-        return TriangleTree::Storage{{tree.nodes().begin(), tree.nodes().end()},
-                                     {tree.triangles().begin(), tree.triangles().end()},
-                                     tree.pseudonormals()};
-    };
-    const TriangleTree again(storage(), tree.bounds());
+    const TriangleTree again(mesh, tree.storage());
     std::mt19937_64 g(test::seed());
     for (int i = 0; i < 500; ++i) {
         const Vec3 p = randomPoint(g, 6.0);
         EXPECT_EQ(again.signedDistance(p), tree.signedDistance(p));
         EXPECT_EQ(again.windingNumber(p), tree.windingNumber(p));
     }
-    TriangleTree::Storage bad = storage();
+    EXPECT_EQ(again.pseudonormals(), tree.pseudonormals());
+    TriangleTree::Storage bad = tree.storage();
     bad.nodes[0].child[0] = 0;  // a circle
-    EXPECT_THROW(TriangleTree(std::move(bad), tree.bounds()), core::Error);
-    bad = storage();
+    EXPECT_THROW(TriangleTree(mesh, std::move(bad)), core::Error);
+    bad = tree.storage();
     bad.nodes.back().child[0] = ~static_cast<std::int32_t>(mesh.triangles.size());
-    EXPECT_THROW(TriangleTree(std::move(bad), tree.bounds()), core::Error);
-    bad = storage();
-    bad.pseudonormals.pop_back();
-    EXPECT_THROW(TriangleTree(std::move(bad), tree.bounds()), core::Error);
+    EXPECT_THROW(TriangleTree(mesh, std::move(bad)), core::Error);
+    bad = tree.storage();
+    bad.order.pop_back();
+    EXPECT_THROW(TriangleTree(mesh, std::move(bad)), core::Error);
+    bad = tree.storage();
+    bad.order[7] = static_cast<std::uint32_t>(mesh.triangles.size());
+    EXPECT_THROW(TriangleTree(mesh, std::move(bad)), core::Error);
 }
 
 TEST(TriangleTree, RefusesWhatIsNoMesh) {

@@ -21,7 +21,8 @@ struct alignas(64) TreeNode {
     /// >= 0: index of a child node. < 0: a leaf, ~child is the first triangle (in tree order) and count[] its length.
     std::int32_t child[8];
     std::uint8_t count[8];
-    std::uint8_t lanes;  ///< lanes in use, from 0
+    std::uint8_t lanes;         ///< lanes in use, from 0
+    std::uint8_t reserved[23];  ///< zero, so that equal trees are equal bytes
 };
 
 /// One triangle in tree order, ready for distance queries.

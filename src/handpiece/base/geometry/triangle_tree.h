@@ -51,17 +51,20 @@ class TriangleTree {
     [[nodiscard]] std::span<const TreeTriangle> triangles() const noexcept { return triangles_; }
     [[nodiscard]] const core::Box& bounds() const noexcept { return bounds_; }
 
-    // Storage for the tooth's cache: everything the tree holds, as flat arrays.
+    /// What a cache keeps: with the mesh, all of the tree.
     struct Storage {
         std::vector<TreeNode> nodes;
-        std::vector<TreeTriangle> triangles;
-        std::vector<float> pseudonormals;  ///< 7 normals of 3 floats a triangle: face, edges ab bc ca, vertices a b c
+        std::vector<std::uint32_t> order;  ///< triangle of the mesh at each place in tree order
     };
-    /// Throws core::Error when the arrays do not belong together.
-    explicit TriangleTree(Storage storage, const core::Box& bounds);
+    [[nodiscard]] Storage storage() const;
+    /// The tree of `mesh` that gave `storage`, without building it again. Throws core::Error when they do not belong
+    /// together.
+    TriangleTree(const TriangleMesh& mesh, Storage storage);
+    /// 7 unit normals of 3 floats a triangle, in tree order: face, edges ab bc ca, vertices a b c.
     [[nodiscard]] const std::vector<float>& pseudonormals() const noexcept { return pseudonormals_; }
 
   private:
+    void fillTriangles(const TriangleMesh& mesh, std::span<const std::uint32_t> order);
     void computeDipoles();
     std::vector<TreeNode> nodes_;
     std::vector<TreeTriangle> triangles_;

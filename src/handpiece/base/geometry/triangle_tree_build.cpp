@@ -3,6 +3,7 @@
 #include <cfloat>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
@@ -211,110 +212,138 @@ class Builder {
 };
 
 /// Face, edge and vertex normals of every triangle, in mesh order: 21 floats each.
-std::vector<float> meshPseudonormals(const TriangleMesh& mesh) {
-    const std::size_t faces = mesh.triangles.size(), vertices = mesh.vertices.size();
-    std::vector<Vec3> faceNormal(faces), vertexNormal(vertices, Vec3::Zero());
-    core::parallelFor(faces, 8192, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) {
-            const Triangle& t = mesh.triangles[f];
-            const Vec3 n = (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]);
-            const double length = n.norm();
-            faceNormal[f] = length > 0.0 ? Vec3(n / length) : Vec3::Zero();
-        }
-    });
-    // Half-edges gathered by their lower vertex and sorted by the other: equal ones are the faces around one edge.
-    struct HalfEdge {
-        std::uint32_t upper, slot;  // slot: 3 x face + edge
-    };
-    std::vector<std::uint32_t> start(vertices + 1, 0);
-    for (const Triangle& t : mesh.triangles)
-        for (std::size_t e = 0; e < 3; ++e)
-            ++start[std::min(t[e], t[(e + 1) % 3]) + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<HalfEdge> edges(3 * faces);
-    {
-        std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
-        for (std::uint32_t f = 0; f < faces; ++f)
-            for (std::uint32_t e = 0; e < 3; ++e) {
-                const std::uint32_t u = mesh.triangles[f][e], v = mesh.triangles[f][(e + 1) % 3];
-                edges[next[std::min(u, v)]++] = {std::max(u, v), 3 * f + e};
+class Pseudonormals {
+  public:
+    explicit Pseudonormals(const TriangleMesh& mesh)
+        : mesh_(mesh), faces_(mesh.triangles.size()), face_(faces_), edge_(3 * faces_) {
+        vertex_.assign(mesh.vertices.size(), Vec3::Zero());
+        gatherCorners();
+        core::parallelFor(faces_, kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t f = begin; f < end; ++f) {
+                const Triangle& t = mesh.triangles[f];
+                const Vec3& a = mesh.vertices[t[0]];
+                const Vec3 n = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
+                const double length = n.norm();
+                face_[f] = length > 0.0 ? Vec3(n / length) : Vec3::Zero();
             }
+        });
+        core::parallelFor(mesh.vertices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t v = begin; v < end; ++v)
+                sumVertex(v);
+        });
+        sumEdges();
+        giveFlatFacesANormal();
     }
-    std::vector<Vec3> edgeNormal(3 * faces);
-    const auto sumEdges = [&] {
-        core::parallelFor(vertices, 8192, [&](std::size_t begin, std::size_t end) {
+
+    void write(std::size_t f, float* out) const {
+        const Triangle& t = mesh_.triangles[f];
+        const auto store = [&](std::size_t slot, const Vec3& n) {
+            const Vec3 unit = n.stableNormalized();
+            for (int k = 0; k < 3; ++k)
+                out[3 * slot + static_cast<std::size_t>(k)] = static_cast<float>(unit[k]);
+        };
+        store(0, face_[f]);
+        for (std::size_t e = 0; e < 3; ++e)
+            store(1 + e, edge_[3 * f + e]);
+        for (std::size_t k = 0; k < 3; ++k)
+            store(4 + k, vertex_[t[k]]);
+    }
+
+  private:
+    static constexpr std::size_t kGrain = 8192;
+
+    /// Corners (3 x face + corner) around every vertex.
+    void gatherCorners() {
+        start_.assign(mesh_.vertices.size() + 1, 0);
+        for (const Triangle& t : mesh_.triangles)
+            for (const std::uint32_t v : t)
+                ++start_[v + 1];
+        std::partial_sum(start_.begin(), start_.end(), start_.begin());
+        std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+        corner_.resize(3 * faces_);
+        for (std::uint32_t f = 0; f < faces_; ++f)
+            for (std::uint32_t k = 0; k < 3; ++k)
+                corner_[next[mesh_.triangles[f][k]]++] = 3 * f + k;
+    }
+
+    void sumVertex(std::size_t v) {
+        for (std::uint32_t i = start_[v]; i < start_[v + 1]; ++i) {
+            const std::size_t f = corner_[i] / 3, k = corner_[i] % 3;
+            const Triangle& t = mesh_.triangles[f];
+            const Vec3 &p = mesh_.vertices[v], u = mesh_.vertices[t[(k + 1) % 3]] - p,
+                       w = mesh_.vertices[t[(k + 2) % 3]] - p;
+            vertex_[v] += face_[f] * std::atan2(u.cross(w).norm(), u.dot(w));
+        }
+    }
+
+    /// Every edge is summed at its lower vertex, over all faces around it.
+    void sumEdges() {
+        struct HalfEdge {
+            std::uint32_t upper, slot;  // slot: 3 x face + edge
+        };
+        core::parallelFor(mesh_.vertices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+            std::vector<HalfEdge> around;
             for (std::size_t v = begin; v < end; ++v) {
-                const auto first = edges.begin() + start[v], last = edges.begin() + start[v + 1];
-                std::sort(first, last, [](const HalfEdge& a, const HalfEdge& b) {
+                around.clear();
+                for (std::uint32_t i = start_[v]; i < start_[v + 1]; ++i) {
+                    const std::uint32_t f = corner_[i] / 3, k = corner_[i] % 3, before = (k + 2) % 3;
+                    const Triangle& t = mesh_.triangles[f];
+                    if (t[(k + 1) % 3] >= v) around.push_back({t[(k + 1) % 3], 3 * f + k});
+                    if (t[before] > v) around.push_back({t[before], 3 * f + before});
+                }
+                std::sort(around.begin(), around.end(), [](const HalfEdge& a, const HalfEdge& b) {
                     return a.upper != b.upper ? a.upper < b.upper : a.slot < b.slot;
                 });
-                for (auto i = first; i != last;) {
-                    auto j = i;
+                for (std::size_t i = 0; i < around.size();) {
+                    std::size_t j = i;
                     Vec3 sum = Vec3::Zero();
-                    for (; j != last && j->upper == i->upper; ++j)
-                        sum += faceNormal[j->slot / 3];
-                    for (; i != j; ++i)
-                        edgeNormal[i->slot] = sum;
+                    for (; j < around.size() && around[j].upper == around[i].upper; ++j)
+                        sum += face_[around[j].slot / 3];
+                    for (const std::size_t last = j; i < last; ++i)
+                        edge_[around[i].slot] = sum;
                 }
             }
         });
-    };
-    sumEdges();
-    // A face without area takes the mean of its neighbours, so that its edges know both sides.
-    std::vector<std::uint32_t> flat;
-    for (std::uint32_t f = 0; f < faces; ++f)
-        if (faceNormal[f].isZero(0.0)) flat.push_back(f);
-    for (std::uint32_t f = 0; f < faces; ++f) {
-        const Triangle& t = mesh.triangles[f];
-        if (faceNormal[f].isZero(0.0)) continue;
-        for (int k = 0; k < 3; ++k) {
-            const Vec3 u = mesh.vertices[t[(k + 1) % 3]] - mesh.vertices[t[k]],
-                       v = mesh.vertices[t[(k + 2) % 3]] - mesh.vertices[t[k]];
-            vertexNormal[t[k]] += faceNormal[f] * std::atan2(u.cross(v).norm(), u.dot(v));
-        }
     }
-    if (!flat.empty()) {
-        for (const std::uint32_t f : flat) {
-            const std::size_t e = 3 * std::size_t{f};
-            faceNormal[f] = (edgeNormal[e] + edgeNormal[e + 1] + edgeNormal[e + 2]).stableNormalized();
-        }
+
+    /// A face without area takes the mean of its neighbours, so that its edges know both sides.
+    void giveFlatFacesANormal() {
+        std::vector<std::size_t> flat;
+        for (std::size_t f = 0; f < faces_; ++f)
+            if (face_[f].isZero(0.0)) flat.push_back(f);
+        if (flat.empty()) return;
+        for (const std::size_t f : flat)
+            face_[f] = (edge_[3 * f] + edge_[3 * f + 1] + edge_[3 * f + 2]).stableNormalized();
         sumEdges();
     }
 
-    std::vector<float> normals(21 * faces);
-    core::parallelFor(faces, 8192, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) {
-            const Triangle& t = mesh.triangles[f];
-            const auto store = [&](std::size_t slot, const Vec3& n) {
-                const Vec3 unit = n.stableNormalized();
-                for (std::size_t k = 0; k < 3; ++k)
-                    normals[21 * f + 3 * slot + k] = static_cast<float>(unit[static_cast<Eigen::Index>(k)]);
-            };
-            store(0, faceNormal[f]);
-            for (std::size_t e = 0; e < 3; ++e)
-                store(1 + e, edgeNormal[3 * f + e]);
-            for (std::size_t k = 0; k < 3; ++k)
-                store(4 + k, vertexNormal[t[k]]);
-        }
-    });
-    return normals;
-}
+    const TriangleMesh& mesh_;
+    std::size_t faces_;
+    std::vector<Vec3> face_, edge_, vertex_;
+    std::vector<std::uint32_t> start_, corner_;
+};
 
-}  // namespace
-
-TriangleTree::TriangleTree(const TriangleMesh& mesh) {
+/// The box of all vertices. Throws for what is no mesh.
+core::Box checkedBounds(const TriangleMesh& mesh) {
     if (mesh.triangles.empty()) throw core::Error("the mesh has no triangles", "triangle tree");
+    if (mesh.triangles.size() > 1'000'000'000u)
+        throw core::Error("the mesh has more than a thousand million triangles", "triangle tree");
+    core::Box bounds;
     for (const Triangle& t : mesh.triangles)
         for (const std::uint32_t v : t) {
             if (v >= mesh.vertices.size())
                 throw core::Error("a triangle names a vertex that does not exist", "triangle tree");
-            if (!mesh.vertices[v].allFinite()) throw core::Error("a vertex is not a finite number", "triangle tree");
-            bounds_.extend(mesh.vertices[v]);
+            bounds.extend(mesh.vertices[v]);
         }
-    const std::size_t faces = mesh.triangles.size();
-    if (faces > 1'000'000'000u)
-        throw core::Error("the mesh has more than a thousand million triangles", "triangle tree");
+    for (const Vec3& v : mesh.vertices)
+        if (!v.allFinite()) throw core::Error("a vertex is not a finite number", "triangle tree");
+    return bounds;
+}
 
+}  // namespace
+
+TriangleTree::TriangleTree(const TriangleMesh& mesh) : bounds_(checkedBounds(mesh)) {
+    const std::size_t faces = mesh.triangles.size();
     const double reach = std::max(bounds_.min.cwiseAbs().maxCoeff(), bounds_.max.cwiseAbs().maxCoeff());
     const double margin = reach * 0x1p-22 + FLT_MIN;
     std::vector<Item> items(faces);
@@ -331,33 +360,19 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
         }
     });
     nodes_ = Builder(items).build();
-
-    const std::vector<float> normals = meshPseudonormals(mesh);
-    triangles_.resize(faces);
-    pseudonormals_.resize(21 * faces);
-    core::parallelFor(faces, 8192, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t f = items[i].triangle;
-            const Triangle& t = mesh.triangles[f];
-            const Vec3 a = mesh.vertices[t[0]], ab = mesh.vertices[t[1]] - a, ac = mesh.vertices[t[2]] - a;
-            TreeTriangle& out = triangles_[i];
-            for (int k = 0; k < 3; ++k)
-                out.a[k] = a[k], out.ab[k] = ab[k], out.ac[k] = ac[k];
-            out.index = f;
-            const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
-            out.thin = ab.cross(ac).norm() > kThin * longest2 ? 0u : 1u;
-            std::copy_n(&normals[21 * std::size_t{f}], 21, &pseudonormals_[21 * i]);
-        }
-    });
+    std::vector<std::uint32_t> order(faces);
+    for (std::size_t i = 0; i < faces; ++i)
+        order[i] = items[i].triangle;
+    fillTriangles(mesh, order);
     computeDipoles();
 }
 
-TriangleTree::TriangleTree(Storage storage, const core::Box& bounds)
-    : nodes_(std::move(storage.nodes)),
-      triangles_(std::move(storage.triangles)),
-      pseudonormals_(std::move(storage.pseudonormals)),
-      bounds_(bounds) {
-    bool sound = !nodes_.empty() && !triangles_.empty() && pseudonormals_.size() == 21 * triangles_.size();
+TriangleTree::TriangleTree(const TriangleMesh& mesh, Storage storage)
+    : nodes_(std::move(storage.nodes)), bounds_(checkedBounds(mesh)) {
+    const std::size_t faces = mesh.triangles.size();
+    bool sound = !nodes_.empty() && storage.order.size() == faces;
+    for (std::size_t i = 0; sound && i < faces; ++i)
+        sound = storage.order[i] < faces;
     std::vector<std::uint8_t> depth(nodes_.size(), 0);
     if (sound) depth[0] = 1;
     for (std::size_t i = 0; sound && i < nodes_.size(); ++i) {
@@ -365,7 +380,7 @@ TriangleTree::TriangleTree(Storage storage, const core::Box& bounds)
         sound = node.lanes >= 1 && node.lanes <= 8;
         for (int lane = 0; sound && lane < node.lanes; ++lane) {
             if (node.child[lane] < 0) {
-                sound = static_cast<std::size_t>(~node.child[lane]) + node.count[lane] <= triangles_.size();
+                sound = static_cast<std::size_t>(~node.child[lane]) + node.count[lane] <= faces;
             } else {
                 const auto child = static_cast<std::size_t>(node.child[lane]);
                 sound = child > i && child < nodes_.size() && depth[i] < kMaxTreeDepth;
@@ -373,21 +388,66 @@ TriangleTree::TriangleTree(Storage storage, const core::Box& bounds)
             }
         }
     }
-    if (!sound) throw core::Error("the stored arrays do not belong together", "triangle tree");
+    if (!sound) throw core::Error("the stored arrays do not belong to this mesh", "triangle tree");
+    fillTriangles(mesh, storage.order);
     computeDipoles();
 }
 
+TriangleTree::Storage TriangleTree::storage() const {
+    Storage storage{nodes_, std::vector<std::uint32_t>(triangles_.size())};
+    for (std::size_t i = 0; i < triangles_.size(); ++i)
+        storage.order[i] = triangles_[i].index;
+    return storage;
+}
+
+void TriangleTree::fillTriangles(const TriangleMesh& mesh, std::span<const std::uint32_t> order) {
+    const Pseudonormals normals(mesh);
+    triangles_.resize(order.size());
+    pseudonormals_.resize(21 * order.size());
+    core::parallelFor(order.size(), 8192, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t f = order[i];
+            const Triangle& t = mesh.triangles[f];
+            const Vec3 a = mesh.vertices[t[0]], ab = mesh.vertices[t[1]] - a, ac = mesh.vertices[t[2]] - a;
+            TreeTriangle& out = triangles_[i];
+            for (int k = 0; k < 3; ++k) {
+                out.a[k] = a[k];
+                out.ab[k] = ab[k];
+                out.ac[k] = ac[k];
+            }
+            out.index = f;
+            const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+            out.thin = ab.cross(ac).norm() > kThin * longest2 ? 0u : 1u;
+            normals.write(f, &pseudonormals_[21 * i]);
+        }
+    });
+}
+
+/// What a leaf's triangles, or a child's lanes, are from afar: normal (3), centre (3), radius (set by the caller),
+/// area.
 void TriangleTree::computeDipoles() {
     dipoles_.assign(64 * nodes_.size(), 0.0);
-    // Children come after their parents: backwards, every child is ready before it is asked for.
-    for (std::size_t i = nodes_.size(); i-- > 0;) {
+    const auto finish = [&](std::size_t i, std::size_t lane, const Vec3& normal, const Vec3& moment, double area) {
         const TreeNode& node = nodes_[i];
-        for (std::size_t lane = 0; lane < node.lanes; ++lane) {
-            Vec3 normal = Vec3::Zero(), moment = Vec3::Zero();
-            double area = 0.0;
-            if (node.child[lane] < 0) {
-                const auto first = static_cast<std::size_t>(~node.child[lane]);
-                for (std::size_t t = first; t < first + node.count[lane]; ++t) {
+        const Vec3 low(node.minX[lane], node.minY[lane], node.minZ[lane]),
+            high(node.maxX[lane], node.maxY[lane], node.maxZ[lane]);
+        const Vec3 centre = area > 0.0 ? Vec3(moment / area) : Vec3(0.5 * (low + high));
+        double* d = &dipoles_[8 * (8 * i + lane)];
+        for (int k = 0; k < 3; ++k) {
+            d[k] = normal[k];
+            d[3 + k] = centre[k];
+        }
+        d[6] = (high - centre).cwiseMax(centre - low).norm();
+        d[7] = area;
+    };
+    core::parallelFor(nodes_.size(), 512, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t lane = 0; lane < nodes_[i].lanes; ++lane) {
+                if (nodes_[i].child[lane] >= 0) continue;
+                Vec3 normal = Vec3::Zero(), moment = Vec3::Zero();
+                double area = 0.0;
+                const auto first = static_cast<std::size_t>(~nodes_[i].child[lane]);
+                for (std::size_t t = first; t < first + nodes_[i].count[lane]; ++t) {
                     const TreeTriangle& tri = triangles_[t];
                     const Vec3 a(tri.a[0], tri.a[1], tri.a[2]), ab(tri.ab[0], tri.ab[1], tri.ab[2]),
                         ac(tri.ac[0], tri.ac[1], tri.ac[2]);
@@ -397,26 +457,24 @@ void TriangleTree::computeDipoles() {
                     area += s;
                     moment += s * (a + (ab + ac) / 3.0);
                 }
-            } else {
-                const auto child = static_cast<std::size_t>(node.child[lane]);
-                for (std::size_t k = 0; k < nodes_[child].lanes; ++k) {
-                    const double* d = &dipoles_[8 * (8 * child + k)];
-                    normal += Vec3(d[0], d[1], d[2]);
-                    area += d[7];
-                    moment += d[7] * Vec3(d[3], d[4], d[5]);
-                }
+                finish(i, lane, normal, moment, area);
             }
-            const Vec3 low(node.minX[lane], node.minY[lane], node.minZ[lane]),
-                high(node.maxX[lane], node.maxY[lane], node.maxZ[lane]);
-            const Vec3 centre = area > 0.0 ? Vec3(moment / area) : Vec3(0.5 * (low + high));
-            const double radius = (high - centre).cwiseMax(centre - low).norm();
-            double* d = &dipoles_[8 * (8 * i + lane)];
-            for (int k = 0; k < 3; ++k)
-                d[k] = normal[k], d[3 + k] = centre[k];
-            d[6] = radius;
-            d[7] = area;
+    });
+    // Children come after their parents: backwards, every child is ready before it is asked for.
+    for (std::size_t i = nodes_.size(); i-- > 0;)
+        for (std::size_t lane = 0; lane < nodes_[i].lanes; ++lane) {
+            if (nodes_[i].child[lane] < 0) continue;
+            const auto child = static_cast<std::size_t>(nodes_[i].child[lane]);
+            Vec3 normal = Vec3::Zero(), moment = Vec3::Zero();
+            double area = 0.0;
+            for (std::size_t k = 0; k < nodes_[child].lanes; ++k) {
+                const double* d = &dipoles_[8 * (8 * child + k)];
+                normal += Vec3(d[0], d[1], d[2]);
+                area += d[7];
+                moment += d[7] * Vec3(d[3], d[4], d[5]);
+            }
+            finish(i, lane, normal, moment, area);
         }
-    }
 }
 
 }  // namespace handpiece::geometry

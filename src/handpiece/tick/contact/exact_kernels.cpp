@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once per instruction set; see cmake/handpiece.cmake.
+#include "handpiece/tick/contact/exact_kernels.h"
+
+#include "handpiece/tick/contact/lanes.h"
+
+namespace handpiece::contact::HANDPIECE_SIMD_NS {
+namespace {
+
+constexpr int kStack = 7 * 32 + 8;        // geometry::kMaxTreeDepth
+constexpr float kBoundSlackMm = 1.5e-5f;  // covers the rounding of a bound in float, at a decimetre from the origin
+constexpr double kSmall = 1e-300;
+
+struct Vector {
+    double x, y, z;
+};
+inline Vector operator-(Vector a, Vector b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vector operator+(Vector a, Vector b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vector operator*(double s, Vector a) {
+    return {s * a.x, s * a.y, s * a.z};
+}
+inline double dot(Vector a, Vector b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline Vector vectorOf(const double (&v)[3]) {
+    return {v[0], v[1], v[2]};
+}
+
+/// Eight triangles side by side; lanes beyond `count` repeat the first.
+struct Packet {
+    Doubles a[3], ab[3], ac[3];
+    std::uint32_t id[8];
+
+    void fill(const KernelTriangle* triangles, int count) {
+        for (int lane = 0; lane < 8; ++lane) {
+            const KernelTriangle& t = triangles[id[lane < count ? lane : 0]];
+            for (int k = 0; k < 3; ++k) {
+                a[k][lane] = t.a[k];
+                ab[k][lane] = t.ab[k];
+                ac[k][lane] = t.ac[k];
+            }
+        }
+    }
+};
+
+inline Doubles dot(const Doubles (&u)[3], const Doubles (&v)[3]) {
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+inline Doubles dot(const Doubles (&u)[3], Vector v) {
+    return u[0] * v.x + u[1] * v.y + u[2] * v.z;
+}
+inline Doubles inverse(Doubles x) {
+    return 1.0 / most(x, splat(kSmall));
+}
+
+/// Inner products of the packet's triangles that every query needs.
+struct Shape {
+    Doubles ab2, ac2, abac, bc2, inverseAb2, inverseAc2, inverseBc2, det;
+    Doubles n[3], inverseN2;
+
+    explicit Shape(const Packet& p) {
+        ab2 = dot(p.ab, p.ab);
+        ac2 = dot(p.ac, p.ac);
+        abac = dot(p.ab, p.ac);
+        bc2 = most(ab2 - 2.0 * abac + ac2, Doubles{});
+        inverseAb2 = inverse(ab2);
+        inverseAc2 = inverse(ac2);
+        inverseBc2 = inverse(bc2);
+        det = ab2 * ac2 - abac * abac;
+        n[0] = p.ab[1] * p.ac[2] - p.ab[2] * p.ac[1];
+        n[1] = p.ab[2] * p.ac[0] - p.ab[0] * p.ac[2];
+        n[2] = p.ab[0] * p.ac[1] - p.ab[1] * p.ac[0];
+        inverseN2 = inverse(dot(n, n));
+    }
+    /// Squared distance of a point given by its products with the triangle: d1, d2 with the edges, pp its own, height
+    /// with n; `half` becomes half the derivative of that along a direction whose products are h1, h2, hp, hn.
+    inline Doubles distance2(Doubles d1, Doubles d2, Doubles pp, Doubles height, Doubles h1, Doubles h2, Doubles hp,
+                             Doubles hn, Doubles& half) const {
+        const Doubles zero{}, one = splat(1.0);
+        const Doubles t1 = clampTo(d1 * inverseAb2, zero, one);
+        const Doubles t2 = clampTo(d2 * inverseAc2, zero, one);
+        const Doubles db = d2 - d1 - abac + ab2;
+        const Doubles t3 = clampTo(db * inverseBc2, zero, one);
+        Doubles best = pp - t1 * (2.0 * d1 - t1 * ab2);
+        half = hp - t1 * h1;
+        const Doubles onAc = pp - t2 * (2.0 * d2 - t2 * ac2);
+        half = choose(onAc < best, hp - t2 * h2, half);
+        best = least(best, onAc);
+        const Doubles onBc = pp - 2.0 * d1 + ab2 - t3 * (2.0 * db - t3 * bc2);
+        half = choose(onBc < best, hp - h1 - t3 * (h2 - h1), half);
+        best = least(best, onBc);
+        const Doubles v = ac2 * d1 - abac * d2, w = ab2 * d2 - abac * d1;
+        const Longs inside = (v > zero) & (w > zero) & (v + w < det);
+        half = choose(inside, height * hn * inverseN2, half);
+        return choose(inside, height * height * inverseN2, best);
+    }
+};
+
+/// Ericson 2005, 5.1.5, in double on one triangle: the exact last word on the winner of a packet.
+Vector closestPoint(const KernelTriangle& t, Vector p, std::uint8_t& feature) {
+    const Vector a = vectorOf(t.a), ab = vectorOf(t.ab), ac = vectorOf(t.ac), ap = p - a;
+    const double ab2 = dot(ab, ab), ac2 = dot(ac, ac), abac = dot(ab, ac), d1 = dot(ab, ap), d2 = dot(ac, ap);
+    const double det = ab2 * ac2 - abac * abac, v = ac2 * d1 - abac * d2, w = ab2 * d2 - abac * d1;
+    if (v > 0.0 && w > 0.0 && v + w < det && t.thin == 0) {
+        feature = 0;
+        return a + (v / det) * ab + (w / det) * ac;
+    }
+    const Vector bc = ac - ab, froms[3] = {a, a + ab, a + ac};
+    const Vector alongs[3] = {ab, bc, -1.0 * ac};
+    double best = 1e300;
+    Vector point = a;
+    for (int e = 0; e < 3; ++e) {
+        const double length2 = dot(alongs[e], alongs[e]);
+        double at = length2 > 0.0 ? dot(p - froms[e], alongs[e]) / length2 : 0.0;
+        at = at < 0.0 ? 0.0 : at > 1.0 ? 1.0 : at;
+        const Vector q = at == 1.0 ? froms[(e + 1) % 3] : froms[e] + at * alongs[e];
+        const double d = dot(p - q, p - q);
+        if (d < best) {
+            best = d;
+            point = q;
+            feature = static_cast<std::uint8_t>(at == 0.0 ? 4 + e : at == 1.0 ? 4 + (e + 1) % 3 : 1 + e);
+        }
+    }
+    return point;
+}
+
+class RunQuery {
+  public:
+    RunQuery(const TreeView& tree, const AxisRun& run, const double tip[3], const double axis[3], SurfaceHit& hit)
+        : tree_(tree), run_(run), tip_{tip[0], tip[1], tip[2]}, axis_{axis[0], axis[1], axis[2]}, hit_(hit) {
+        low_ = static_cast<float>(run.z[0]);
+        high_ = static_cast<float>(run.z[run.count - 1]);
+    }
+    [[nodiscard]] float best() const { return static_cast<float>(hit_.value); }
+
+    [[nodiscard]] Floats bounds(const KernelNode& node) const {
+        const float ax = static_cast<float>(axis_.x), ay = static_cast<float>(axis_.y),
+                    az = static_cast<float>(axis_.z);
+        const Floats minX = loadFloats(node.minX), maxX = loadFloats(node.maxX), minY = loadFloats(node.minY);
+        const Floats maxY = loadFloats(node.maxY), minZ = loadFloats(node.minZ), maxZ = loadFloats(node.maxZ);
+        const Floats cx = 0.5f * (minX + maxX) - static_cast<float>(tip_.x), hx = 0.5f * (maxX - minX);
+        const Floats cy = 0.5f * (minY + maxY) - static_cast<float>(tip_.y), hy = 0.5f * (maxY - minY);
+        const Floats cz = 0.5f * (minZ + maxZ) - static_cast<float>(tip_.z), hz = 0.5f * (maxZ - minZ);
+        const Floats z = cx * ax + cy * ay + cz * az;
+        const Floats half = hx * __builtin_fabsf(ax) + hy * __builtin_fabsf(ay) + hz * __builtin_fabsf(az);
+        const Floats gap = mostF(mostF(low_ - (z + half), (z - half) - high_), Floats{});
+        const Floats rx = cx - z * ax, ry = cy - z * ay, rz = cz - z * az;
+        const Floats rho = rootF(rx * rx + ry * ry + rz * rz);
+        const Floats inverseRho = 1.0f / mostF(rho, splatF(1e-12f));
+        const Floats across = (absolute(rx) * hx + absolute(ry) * hy + absolute(rz) * hz) * inverseRho;
+        const Floats away = mostF(rho - across, Floats{});
+        Floats bound = rootF(gap * gap + away * away) - run_.maxRadius;
+        for (int i = 0; i < run_.lines; ++i) {
+            const float slope = run_.lineSlope[i];
+            const Floats line =
+                away * run_.lineCosine[i] - run_.lineRadius[i] - slope * z - __builtin_fabsf(slope) * half;
+            bound = mostF(bound, line);
+        }
+        return bound - kBoundSlackMm;
+    }
+
+    void evaluate(Packet& packet, int count) {
+        packet.fill(tree_.triangles, count);
+        const Shape shape(packet);
+        const Doubles zero{}, one = splat(1.0);
+        const Doubles w[3] = {tip_.x - packet.a[0], tip_.y - packet.a[1], tip_.z - packet.a[2]};
+        // Every product with p(s) = w + s axis is linear in s.
+        const Doubles a0 = dot(packet.ab, w), a1 = dot(packet.ab, axis_), b0 = dot(packet.ac, w),
+                      b1 = dot(packet.ac, axis_);
+        const Doubles c0 = dot(w, w), c1 = dot(w, axis_), n0 = dot(shape.n, w), n1 = dot(shape.n, axis_);
+        Doubles half;
+        const auto squared = [&](Doubles s) {
+            return shape.distance2(a0 + s * a1, b0 + s * b1, c0 + s * (2.0 * c1 + s), n0 + s * n1, a1, b1, c1 + s, n1,
+                                   half);
+        };
+        Doubles s0, s1, slope, radius0;
+        std::int32_t pieceLow[8] = {}, pieceHigh[8];
+        for (int i = 0; i < 8; ++i)
+            pieceHigh[i] = run_.count - 1;
+        // The distance to a triangle less the radius is convex along the run: halve until one piece is left.
+        for (int left = run_.count - 1; left > 1; left = (left + 1) / 2) {
+            Doubles s, slopeBefore;
+            for (int i = 0; i < 8; ++i) {
+                const int middle = (pieceLow[i] + pieceHigh[i]) / 2;
+                s[i] = run_.z[middle];
+                slopeBefore[i] = run_.slope[middle > 0 ? middle - 1 : 0];
+            }
+            const Doubles d = root(squared(s));
+            const Longs rising = half > slopeBefore * d;
+            for (int i = 0; i < 8; ++i) {
+                const int middle = (pieceLow[i] + pieceHigh[i]) / 2;
+                if (pieceHigh[i] - pieceLow[i] <= 1) continue;
+                (rising[i] ? pieceHigh[i] : pieceLow[i]) = middle;
+            }
+        }
+        for (int i = 0; i < 8; ++i) {
+            const int piece = pieceLow[i];
+            s0[i] = run_.z[piece];
+            s1[i] = run_.z[pieceHigh[i]];
+            slope[i] = run_.slope[piece];
+            radius0[i] = run_.radius[piece];
+        }
+        radius0 -= slope * s0;  // so that the radius is radius0 + slope s
+        const Doubles lessSlope2 = most(1.0 - slope * slope, splat(1e-12)), tangent = slope / root(lessSlope2);
+
+        Doubles bestS = s0, best = root(squared(s0)) - radius0 - slope * s0;
+        const auto offer = [&](Longs valid, Doubles value, Doubles s) {
+            const Longs better = valid & (value < best);
+            best = choose(better, value, best);
+            bestS = choose(better, s, bestS);
+        };
+        const Longs all = zero == zero;
+        offer(all, root(squared(s1)) - radius0 - slope * s1, s1);
+        const auto corner = [&](Doubles c0v, Doubles c1v) {
+            const Doubles rho2 = most(c0v - c1v * c1v, zero);
+            const Doubles s = clampTo(root(rho2) * tangent - c1v, s0, s1), dz = s + c1v;
+            offer(all, root(rho2 + dz * dz) - radius0 - slope * s, s);
+        };
+        const Doubles c0b = c0 - 2.0 * a0 + shape.ab2, c1b = c1 - a1, c0c = c0 - 2.0 * b0 + shape.ac2, c1c = c1 - b1;
+        corner(c0, c1);
+        corner(c0b, c1b);
+        corner(c0c, c1c);
+        const auto edge = [&](Doubles e0, Doubles e1, Doubles inverseE2, Doubles c0v, Doubles c1v) {
+            const Doubles alpha = 1.0 - e1 * e1 * inverseE2, beta = c1v - e0 * e1 * inverseE2;
+            const Doubles excess = alpha - slope * slope, safeAlpha = most(alpha, splat(1e-12));
+            const Doubles middle = -beta / safeAlpha;
+            const Doubles d2 = most(c0v - e0 * e0 * inverseE2 + beta * middle, zero);
+            const Doubles shift = slope * root(d2 / most(safeAlpha * excess, splat(1e-24)));
+            const Doubles s = middle + shift, t = (e0 + s * e1) * inverseE2;
+            const Longs valid = (excess > 1e-10) & (s > s0) & (s < s1) & (t > zero) & (t < one);
+            offer(valid, root(d2 + alpha * shift * shift) - radius0 - slope * s, s);
+        };
+        edge(a0, a1, shape.inverseAb2, c0, c1);
+        edge(b0, b1, shape.inverseAc2, c0, c1);
+        edge(b0 - a0 - shape.abac + shape.ab2, b1 - a1, shape.inverseBc2, c0b, c1b);
+        {
+            const Doubles s = -n0 / (n1 == zero ? splat(kSmall) : n1);
+            const Doubles d1 = a0 + s * a1, d2 = b0 + s * b1;
+            const Doubles v = shape.ac2 * d1 - shape.abac * d2, wb = shape.ab2 * d2 - shape.abac * d1;
+            offer((s >= s0) & (s <= s1) & (v >= zero) & (wb >= zero) & (v + wb <= shape.det) & (shape.det > zero),
+                  -radius0 - slope * s, s);
+        }
+        int lane = 0;
+        for (int i = 1; i < count; ++i)
+            if (best[i] < best[lane]) lane = i;
+        // The products above lose digits far from the corner; what is reported is measured once more.
+        if (best[lane] >= hit_.value + 1e-9) return;
+        const double s = bestS[lane];
+        const Vector p = tip_ + s * axis_;
+        std::uint8_t feature = 0;
+        const Vector q = closestPoint(tree_.triangles[packet.id[lane]], p, feature);
+        const double value = __builtin_sqrt(dot(p - q, p - q)) - (radius0[lane] + slope[lane] * s);
+        if (value < hit_.value) hit_ = {value, s, {q.x, q.y, q.z}, packet.id[lane], feature};
+    }
+
+  private:
+    const TreeView& tree_;
+    const AxisRun& run_;
+    Vector tip_, axis_;
+    float low_, high_;
+    SurfaceHit& hit_;
+};
+
+class PointQuery {
+  public:
+    PointQuery(const TreeView& tree, const double point[3], SurfaceHit& hit)
+        : tree_(tree), p_{point[0], point[1], point[2]}, hit_(hit) {}
+    [[nodiscard]] float best() const { return static_cast<float>(hit_.value); }
+
+    [[nodiscard]] Floats bounds(const KernelNode& node) const {
+        const float x = static_cast<float>(p_.x), y = static_cast<float>(p_.y), z = static_cast<float>(p_.z);
+        const Floats dx = mostF(mostF(loadFloats(node.minX) - x, x - loadFloats(node.maxX)), Floats{});
+        const Floats dy = mostF(mostF(loadFloats(node.minY) - y, y - loadFloats(node.maxY)), Floats{});
+        const Floats dz = mostF(mostF(loadFloats(node.minZ) - z, z - loadFloats(node.maxZ)), Floats{});
+        return rootF(dx * dx + dy * dy + dz * dz) - kBoundSlackMm;
+    }
+
+    void evaluate(Packet& packet, int count) {
+        packet.fill(tree_.triangles, count);
+        const Shape shape(packet);
+        const Doubles w[3] = {p_.x - packet.a[0], p_.y - packet.a[1], p_.z - packet.a[2]};
+        const Doubles zero{};
+        Doubles half;
+        const Doubles d2 = shape.distance2(dot(packet.ab, w), dot(packet.ac, w), dot(w, w), dot(shape.n, w), zero, zero,
+                                           zero, zero, half);
+        int lane = 0;
+        for (int i = 1; i < count; ++i)
+            if (d2[i] < d2[lane]) lane = i;
+        const double limit = hit_.value + 1e-9;
+        if (d2[lane] >= limit * limit) return;
+        std::uint8_t feature = 0;
+        const Vector q = closestPoint(tree_.triangles[packet.id[lane]], p_, feature);
+        const double value = __builtin_sqrt(dot(p_ - q, p_ - q));
+        if (value < hit_.value) hit_ = {value, 0.0, {q.x, q.y, q.z}, packet.id[lane], feature};
+    }
+
+  private:
+    const TreeView& tree_;
+    Vector p_;
+    SurfaceHit& hit_;
+};
+
+/// Depth first, nearest child first; the triangles of a node's near leaves go through in eights.
+template <class Query>
+void search(const TreeView& tree, std::uint32_t seed, Query& query) {
+    Packet packet;
+    if (seed < tree.triangleCount) {  // neighbours in the tree's order lie close
+        const std::uint32_t first = seed < 4 ? 0 : seed - 3;
+        int count = 0;
+        for (; count < 8 && first + static_cast<std::uint32_t>(count) < tree.triangleCount; ++count)
+            packet.id[count] = first + static_cast<std::uint32_t>(count);
+        query.evaluate(packet, count);
+    }
+    struct Entry {
+        float bound;
+        std::int32_t node;
+    };
+    Entry stack[kStack];
+    int top = 0;
+    stack[top++] = {-1e30f, 0};
+    while (top > 0) {
+        const Entry entry = stack[--top];
+        if (entry.bound >= query.best()) continue;
+        const KernelNode& node = tree.nodes[entry.node];
+        const Floats bound = query.bounds(node);
+        unsigned open = bitsOf(bound < query.best()) & ((1u << node.lanes) - 1u);
+        Entry leaves[8], inner[8];
+        int leafCount = 0, innerCount = 0;
+        while (open != 0) {
+            const int lane = __builtin_ctz(open);
+            open &= open - 1;
+            const Entry child{bound[lane], node.child[lane] >= 0 ? node.child[lane] : lane};
+            Entry* list = node.child[lane] >= 0 ? inner : leaves;
+            int& count = node.child[lane] >= 0 ? innerCount : leafCount;
+            int at = count++;
+            for (; at > 0 && list[at - 1].bound > child.bound; --at)
+                list[at] = list[at - 1];
+            list[at] = child;
+        }
+        for (int i = 0; i < leafCount;) {
+            int count = 0;
+            for (; i < leafCount && leaves[i].bound < query.best() && count + node.count[leaves[i].node] <= 8; ++i) {
+                const std::uint32_t first = static_cast<std::uint32_t>(~node.child[leaves[i].node]);
+                for (std::uint32_t k = 0; k < node.count[leaves[i].node]; ++k)
+                    packet.id[count++] = first + k;
+            }
+            if (count == 0) break;
+            query.evaluate(packet, count);
+        }
+        for (int i = innerCount - 1; i >= 0; --i)
+            stack[top++] = inner[i];
+    }
+}
+
+void nearestToRun(const TreeView& tree, const AxisRun& run, const double tip[3], const double axis[3],
+                  SurfaceHit& hit) noexcept {
+    const std::uint32_t seed = hit.triangle;
+    hit.triangle = SurfaceHit::kNone;
+    RunQuery query(tree, run, tip, axis, hit);
+    search(tree, seed, query);
+}
+
+void nearestToPoint(const TreeView& tree, const double point[3], SurfaceHit& hit) noexcept {
+    const std::uint32_t seed = hit.triangle;
+    hit.triangle = SurfaceHit::kNone;
+    PointQuery query(tree, point, hit);
+    search(tree, seed, query);
+}
+
+}  // namespace
+
+ExactKernels exactKernels() noexcept {
+    return {nearestToRun, nearestToPoint};
+}
+
+}  // namespace handpiece::contact::HANDPIECE_SIMD_NS

@@ -46,7 +46,9 @@ std::size_t ballCount(const std::vector<MedialCurve>& curves) {
 
 TEST(MedialAxis, BallsMakeTheBurInAndAroundIt) {
     std::mt19937_64 generator(handpiece::test::seed());
-    for (const auto& [name, profile] : test::manyOutlines(4, generator)) {
+    for (const test::NamedProfile& outline : test::manyOutlines(4, generator)) {
+        const std::string& name = outline.first;
+        const Profile& profile = outline.second;
         const std::vector<MedialCurve> curves = medialAxis(profile);
         const double r = profile.maxRadiusMm(), length = profile.lengthMm();
         const auto check = [&](const Vec2& q) {

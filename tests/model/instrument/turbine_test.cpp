@@ -7,6 +7,8 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/inspect.h"
+#include "handpiece/base/geometry/mesh_io.h"
+#include "support/random.h"
 
 namespace handpiece::instrument {
 namespace {
@@ -22,8 +24,7 @@ TEST(Turbine, IsMadeOfClosedPartsThatFaceOutwards) {
     const geometry::TriangleMesh mesh = turbineMesh();
     const geometry::MeshReport report = geometry::inspect(mesh);
     EXPECT_TRUE(report.closed());
-    EXPECT_TRUE(report.orientable);
-    EXPECT_EQ(report.flippedFaces, 0u);
+    EXPECT_TRUE(report.oriented());
     EXPECT_EQ(report.duplicateVertices, 0u);
     EXPECT_EQ(report.degenerateFaces, 0u);
     EXPECT_EQ(report.eulerCharacteristic, 2 * static_cast<std::int64_t>(report.shells));
@@ -54,6 +55,15 @@ TEST(Turbine, IsMadeOfClosedPartsThatFaceOutwards) {
         first = end;
     }
     EXPECT_EQ(parts, report.shells);
+}
+
+TEST(Turbine, KeepsItsCountsThroughAnStl) {
+    const handpiece::test::TemporaryFolder folder;
+    const geometry::TriangleMesh mesh = turbineMesh();
+    geometry::writeStl(folder.path() / "turbine.stl", mesh);
+    const geometry::TriangleMesh read = geometry::readMesh(folder.path() / "turbine.stl");
+    EXPECT_EQ(read.vertices.size(), mesh.vertices.size());
+    EXPECT_EQ(read.triangles.size(), mesh.triangles.size());
 }
 
 TEST(Turbine, HoldsTheBur) {

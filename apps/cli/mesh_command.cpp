@@ -97,8 +97,10 @@ void printReport(const MeshReport& r) {
 std::string verdict(const MeshReport& r, std::size_t crossings) {
     if (!r.closed()) return "not closed: handpiece mesh repair can mend it";
     if (!r.oriented()) return "closed, but not consistently oriented: handpiece mesh repair can mend it";
-    if (crossings > 0) return "closed and oriented, but it crosses itself";
-    return "closed, oriented, not crossing itself: ready to be felt";
+    if (crossings > 0) return "closed and oriented, but it crosses itself: handpiece mesh repair mends small spots";
+    if (r.unit.unit != geometry::LengthUnit::millimetre)
+        return "closed, oriented, not crossing itself, but probably not in millimetres";
+    return "closed, oriented, not crossing itself: a solid";
 }
 
 void info(const std::string& file, bool json) {
@@ -150,6 +152,7 @@ Json toJson(const geometry::RepairReport& r) {
             {"closed_holes", r.holes.size()},
             {"added_faces", r.addedFaces},
             {"holes", std::move(holes)},
+            {"removed_crossing_faces", r.removedCrossingFaces},
             {"crossing_faces", r.crossingFaces},
             {"before", toJson(r.before)},
             {"after", toJson(r.after)}};
@@ -198,6 +201,9 @@ void repair(const RepairOptions& options) {
                             r.holes[i].perimeterMm, r.holes[i].areaMm2, r.holes[i].centreMm.x(),
                             r.holes[i].centreMm.y(), r.holes[i].centreMm.z()));
     if (r.holes.size() > kShown) row("", fmt::format("and {} smaller ones", r.holes.size() - kShown));
+    if (r.removedCrossingFaces > 0)
+        row("replaced", counted(r.removedCrossingFaces, "face that crossed others or lay beside one",
+                                "faces that crossed others or lay beside one"));
     fmt::print("the result:\n");
     printReport(r.after);
     row("crossing faces", std::to_string(r.crossingFaces));

@@ -6,6 +6,7 @@
 #include "base/geometry/meshes.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/base/geometry/self_intersection.h"
 #include "support/random.h"
 
 namespace handpiece::geometry {
@@ -230,6 +231,30 @@ TEST(Repair, RefusesWhatCannotBeMended) {
     EXPECT_EQ(sheet.triangles, before.triangles) << "the input stays as it was";
 }
 
+TEST(Repair, ReplacesSmallSpotsThatCross) {
+    const TriangleMesh whole = sphereMesh(Vec3::Zero(), 5, 24);
+    TriangleMesh mesh = whole;
+    // One vertex dragged sideways through its neighbours, another through the whole ball.
+    const Vec3 aside = mesh.vertices[300].cross(Vec3(0.3, 0.5, 0.8)).normalized();
+    mesh.vertices[300] = (mesh.vertices[300] * 0.98 + 1.0 * aside).eval();
+    mesh.vertices[900] *= -1.02;
+    const RepairReport r = repair(mesh);
+    EXPECT_GT(r.removedCrossingFaces, 0u);
+    EXPECT_EQ(r.crossingFaces, 0u);
+    EXPECT_TRUE(selfIntersections(mesh).empty());
+    expectWhole(mesh);
+    EXPECT_NEAR(enclosedVolumeMm3(mesh), enclosedVolumeMm3(whole), 0.01 * enclosedVolumeMm3(whole));
+}
+
+TEST(Repair, TellsOfSolidsThatOverlap) {
+    TriangleMesh mesh = joined(sphereMesh(Vec3::Zero(), 5, 8), sphereMesh({3, 0.2, 0.1}, 4, 8));
+    const RepairReport r = repair(mesh);
+    EXPECT_GT(r.crossingFaces, 10u);
+    EXPECT_EQ(r.crossingFaces, selfIntersections(mesh).size());
+    EXPECT_EQ(r.removedCrossingFaces, 0u);
+    expectWhole(mesh);
+}
+
 TEST(Repair, RandomDamageIsAlwaysMended) {
     std::mt19937_64 generator(test::seed());
     for (int round = 0; round < 60; ++round) {
@@ -264,6 +289,7 @@ TEST(Repair, RealHandpieceHead) {
     TriangleMesh mesh = readMesh(data / "tools" / "contra_angle_head.stl");
     const RepairReport r = repair(mesh);
     EXPECT_EQ(r.before.openEdges, 43u);
+    EXPECT_EQ(r.crossingFaces, 0u);
     expectWhole(mesh);
     EXPECT_GT(enclosedVolumeMm3(mesh), 0.0);
 }

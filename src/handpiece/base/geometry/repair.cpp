@@ -39,6 +39,7 @@ class Mender {
         const std::size_t before = mesh_.triangles.size();
         report_.holes = closeHoles(mesh_);
         report_.addedFaces = mesh_.triangles.size() - before;
+        mendCrossings();
         dropFlatShells();
         faceOutwards();
         removeUnusedVertices();
@@ -279,7 +280,7 @@ class Mender {
                 pairUp(e, edges.halfEdges(e), across);
                 forks += e.count > 2;
             }
-            if (pass == 0) report_.splitEdges = forks;
+            if (pass == 0) report_.splitEdges += forks;
             separateFans(across);
             if (forks == 0) return;
             separateEdges();
@@ -387,6 +388,66 @@ class Mender {
         dropShells(shells, drop);
     }
 
+    // Where a few faces cross, they and a little around them give way to a new patch; solids that overlap stay as they
+    // are.
+    void mendCrossings() {
+        constexpr int kRounds = 5;
+        constexpr double kLargestShare = 0.05;  // of the faces; more is no local flaw
+        std::vector<CrossingFaces> crossings = selfIntersections(mesh_);
+        for (int round = 0; round < kRounds && !crossings.empty(); ++round) {
+            std::vector<std::uint8_t> marked(mesh_.triangles.size(), 0);
+            for (const CrossingFaces& c : crossings)
+                marked[c.first] = marked[c.second] = 1;
+            for (int ring = 0; ring < round; ++ring)
+                growByOneRing(marked);
+            const auto taken = static_cast<std::size_t>(std::count(marked.begin(), marked.end(), std::uint8_t{1}));
+            if (static_cast<double>(taken) > kLargestShare * static_cast<double>(mesh_.triangles.size())) break;
+            TriangleMesh saved = mesh_;
+            const RepairReport reportBefore = report_;
+            removeFaces(marked);
+            dropOpenScraps(taken);
+            cutApart();
+            const std::size_t before = mesh_.triangles.size();
+            closeHoles(mesh_);
+            report_.addedFaces += mesh_.triangles.size() - before;
+            report_.removedCrossingFaces += taken;
+            std::vector<CrossingFaces> left = selfIntersections(mesh_);
+            if (left.size() < crossings.size()) {
+                crossings = std::move(left);
+                continue;
+            }
+            mesh_ = std::move(saved);
+            report_ = reportBefore;
+        }
+        report_.crossingFaces = crossings.size();
+    }
+
+    void growByOneRing(std::vector<std::uint8_t>& marked) const {
+        std::vector<std::uint8_t> touched(mesh_.vertices.size(), 0);
+        for (std::size_t f = 0; f < marked.size(); ++f)
+            if (marked[f])
+                for (const std::uint32_t v : mesh_.triangles[f])
+                    touched[v] = 1;
+        for (std::size_t f = 0; f < marked.size(); ++f)
+            for (const std::uint32_t v : mesh_.triangles[f])
+                marked[f] |= touched[v];
+    }
+
+    // Bits that taking faces out has cut loose.
+    void dropOpenScraps(std::size_t largestFaces) {
+        const MeshEdges edges(mesh_);
+        const Shells shells = shellsOf(mesh_, edges);
+        std::vector<std::size_t> faces(shells.count, 0);
+        for (const std::uint32_t s : shells.ofFace)
+            ++faces[s];
+        std::vector<std::uint8_t> drop(shells.count, 0);
+        for (const MeshEdges::Edge& e : edges.edges()) {
+            const std::uint32_t s = shells.ofFace[edges.halfEdges(e)[0] / 3];
+            if (e.count == 1 && faces[s] <= largestFaces) drop[s] = 1;
+        }
+        dropShells(shells, drop);
+    }
+
     // Closed, but around nothing.
     void dropFlatShells() {
         const Shells shells = shellsOf(mesh_, MeshEdges(mesh_));
@@ -462,7 +523,6 @@ RepairReport repair(TriangleMesh& mesh, const RepairSettings& settings) {
                                       after.openEdges, after.nonManifoldEdges, after.nonManifoldVertices,
                                       after.flippedFaces, after.insideOutShells),
                           "mesh", "mend it in a mesh editor");
-    report.crossingFaces = selfIntersections(mended).size();
     mesh = std::move(mended);
     return report;
 }

@@ -36,21 +36,23 @@ struct RepairReport {
     std::size_t weldedVertices = 0;
     std::size_t removedDegenerateFaces = 0;
     std::size_t removedDuplicateFaces = 0;
-    std::size_t removedFinFaces = 0;  ///< loose sheets that hung on an edge of a better surface
-    std::size_t splitEdges = 0;       ///< edges of more than two faces, cut apart
-    std::size_t splitVertices = 0;    ///< vertices added where sheets were cut apart
-    std::size_t droppedShells = 0;    ///< debris
-    std::size_t droppedFaces = 0;     ///< their faces
-    std::size_t turnedFaces = 0;      ///< to agree with their neighbours or to face outwards
-    std::vector<ClosedHole> holes;    ///< the largest perimeter first
-    std::size_t addedFaces = 0;       ///< to close them
-    std::size_t crossingFaces = 0;    ///< pairs of faces that cross in the result: told, not mended
+    std::size_t removedFinFaces = 0;       ///< loose sheets that hung on an edge of a better surface
+    std::size_t splitEdges = 0;            ///< edges of more than two faces, cut apart
+    std::size_t splitVertices = 0;         ///< vertices added where sheets were cut apart
+    std::size_t droppedShells = 0;         ///< debris
+    std::size_t droppedFaces = 0;          ///< their faces
+    std::size_t turnedFaces = 0;           ///< to agree with their neighbours or to face outwards
+    std::vector<ClosedHole> holes;         ///< the largest perimeter first
+    std::size_t addedFaces = 0;            ///< to close them, and in place of faces that crossed
+    std::size_t removedCrossingFaces = 0;  ///< crossing faces, and what lay around them, that gave way to a patch
+    std::size_t crossingFaces = 0;         ///< pairs of faces that still cross in the result: told, not mended
 };
 
 /// Mends `mesh` in place: afterwards it is closed, manifold and oriented, outer shells outwards and cavities inwards.
 ///
 /// Welds, removes degenerate and double faces, cuts non-manifold edges and vertices apart (copies move apart by a few
-/// welding distances, so that a file that merges equal vertices keeps them apart), drops debris, closes every hole.
+/// welding distances, so that a file that merges equal vertices keeps them apart), drops debris, closes every hole, and
+/// replaces small patches that cross. Solids that overlap are left as they are and told in crossingFaces.
 /// Throws core::Error (and leaves `mesh` as it was) when nothing is left or a surface cannot be oriented.
 RepairReport repair(TriangleMesh& mesh, const RepairSettings& settings = {});
 

@@ -64,7 +64,7 @@ void requireSolid(const geometry::TriangleMesh& mesh, const std::string& where) 
         throw core::Error(fmt::format("the surface crosses itself: {} of faces, the first at {} (faces {} and {})",
                                       counted(crossings.size(), "pair", "pairs"), place(crossings[0].pointMm),
                                       crossings[0].first + 1, crossings[0].second + 1),
-                          where, remedy + ", and look at what it tells; crossings may need a mesh editor");
+                          where, remedy + ", which replaces small spots; overlapping solids need a mesh editor");
 }
 
 }  // namespace handpiece::tooth

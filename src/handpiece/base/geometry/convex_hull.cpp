@@ -147,40 +147,31 @@ void ConvexHull::buildAdjacency() {
     }
 }
 
-// The exact farthest vertex in the middle of every bin, by looking at all of them.
 void ConvexHull::buildStarts() {
-    starts_.reserve(6 * kBinsPerEdge * kBinsPerEdge);
+    binsPerEdge_ = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(vertexCount()) / 6.0)), 8, 64);
+    std::uint32_t start = 0;
     for (int face = 0; face < 6; ++face)
-        for (int row = 0; row < kBinsPerEdge; ++row)
-            for (int column = 0; column < kBinsPerEdge; ++column) {
+        for (int row = 0; row < binsPerEdge_; ++row)
+            for (int column = 0; column < binsPerEdge_; ++column) {
                 core::Vec3 direction;
                 direction[face / 2] = face % 2 == 0 ? 1.0 : -1.0;
-                direction[(face / 2 + 1) % 3] = (2 * column + 1.0) / kBinsPerEdge - 1.0;
-                direction[(face / 2 + 2) % 3] = (2 * row + 1.0) / kBinsPerEdge - 1.0;
-                std::uint32_t best = 0;
-                double bestValue = -std::numeric_limits<double>::infinity();
-                for (std::size_t i = 0; i < vertexCount(); ++i) {
-                    const double value = coordinates_[0][i] * direction.x() + coordinates_[1][i] * direction.y() +
-                                         coordinates_[2][i] * direction.z();
-                    if (value > bestValue) {
-                        bestValue = value;
-                        best = static_cast<std::uint32_t>(i);
-                    }
-                }
-                starts_.push_back(best);
+                direction[(face / 2 + 1) % 3] = (2 * column + 1.0) / binsPerEdge_ - 1.0;
+                direction[(face / 2 + 2) % 3] = (2 * row + 1.0) / binsPerEdge_ - 1.0;
+                start = climb(direction, start, direction.dot(vertex(start))).vertex;
+                starts_.push_back(start);
             }
 }
 
-std::uint32_t ConvexHull::binOf(const core::Vec3& d) noexcept {
+std::uint32_t ConvexHull::binOf(const core::Vec3& d) const noexcept {
     const double ax = std::abs(d.x()), ay = std::abs(d.y()), az = std::abs(d.z());
     const int axis = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
     const double length = axis == 0 ? ax : axis == 1 ? ay : az;
-    const double scale = 0.5 * kBinsPerEdge / length;
+    const double scale = 0.5 * binsPerEdge_ / length;
     const auto cell = [&](double value) {
-        return std::min(static_cast<int>(value * scale + 0.5 * kBinsPerEdge), kBinsPerEdge - 1);
+        return std::min(static_cast<int>(value * scale + 0.5 * binsPerEdge_), binsPerEdge_ - 1);
     };
     const int face = 2 * axis + (d[axis] < 0.0 ? 1 : 0);
-    return static_cast<std::uint32_t>((face * kBinsPerEdge + cell(d[(axis + 2) % 3])) * kBinsPerEdge +
+    return static_cast<std::uint32_t>((face * binsPerEdge_ + cell(d[(axis + 2) % 3])) * binsPerEdge_ +
                                       cell(d[(axis + 1) % 3]));
 }
 

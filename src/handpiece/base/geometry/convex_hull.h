@@ -54,9 +54,7 @@ class ConvexHull {
         double value;      ///< along the direction asked about
         double nextValue;  ///< of its best neighbour
     };
-    static constexpr int kBinsPerEdge = 16;  // start vertices: one for each of 6 x 16 x 16 directions on a cube
-
-    [[nodiscard]] static std::uint32_t binOf(const core::Vec3& direction) noexcept;
+    [[nodiscard]] std::uint32_t binOf(const core::Vec3& direction) const noexcept;
     [[nodiscard]] Summit climb(const core::Vec3& direction, std::uint32_t from, double value) const noexcept;
     void buildAdjacency();
     void buildStarts();
@@ -67,7 +65,8 @@ class ConvexHull {
     std::array<std::vector<double>, 3> coordinates_;
     std::vector<std::uint32_t> firstNeighbour_;  ///< vertexCount() + 1 offsets into neighbours_
     std::vector<Neighbour> neighbours_;
-    std::vector<std::uint32_t> starts_;
+    int binsPerEdge_ = 0;                ///< directions are binned on a cube of 6 x bins x bins, about one a vertex
+    std::vector<std::uint32_t> starts_;  ///< the farthest vertex in the middle of each bin
 };
 
 }  // namespace handpiece::geometry

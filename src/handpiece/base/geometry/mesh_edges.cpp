@@ -123,13 +123,11 @@ std::vector<std::uint32_t> nestingOf(const TriangleMesh& mesh, const Shells& she
     // Parity of the crossings of a ray along +z; an edge belongs to the side of the ray where a half-open rule puts it,
     // computed the same way from both its faces.
     const auto crosses = [&](const core::Vec3& p, const Triangle& t) {
-        int below = 0;
         bool inside = false;
         for (int k = 0; k < 3; ++k) {
             std::uint32_t i = t[static_cast<std::size_t>(k)], j = t[static_cast<std::size_t>(k == 2 ? 0 : k + 1)];
             if (i > j) std::swap(i, j);
             const core::Vec3 &a = mesh.vertices[i], &b = mesh.vertices[j];
-            below += a.z() <= p.z();
             if ((a.y() > p.y()) == (b.y() > p.y())) continue;
             if (p.x() < a.x() + (b.x() - a.x()) * ((p.y() - a.y()) / (b.y() - a.y()))) inside = !inside;
         }
@@ -139,9 +137,18 @@ std::vector<std::uint32_t> nestingOf(const TriangleMesh& mesh, const Shells& she
         return normal.z() != 0.0 &&
                a.z() - (normal.x() * (p.x() - a.x()) + normal.y() * (p.y() - a.y())) / normal.z() > p.z();
     };
+    // Along x, so that thousands of small shells are not each compared with all others.
+    std::vector<std::uint32_t> order(shells.count);
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return boxes[a].min.x() != boxes[b].min.x() ? boxes[a].min.x() < boxes[b].min.x() : a < b;
+    });
     for (std::size_t outer = 0; outer < shells.count; ++outer) {
         if (!closed[outer]) continue;
-        for (std::size_t inner = 0; inner < shells.count; ++inner) {
+        const auto first = std::lower_bound(order.begin(), order.end(), boxes[outer].min.x(),
+                                            [&](std::uint32_t s, double x) { return boxes[s].min.x() < x; });
+        for (auto at = first; at != order.end() && boxes[*at].min.x() <= boxes[outer].max.x(); ++at) {
+            const std::uint32_t inner = *at;
             if (inner == outer || (boxes[inner].min.array() < boxes[outer].min.array()).any() ||
                 (boxes[inner].max.array() > boxes[outer].max.array()).any())
                 continue;

@@ -53,7 +53,7 @@ struct Tooth {
     geometry::TriangleTree tree;        ///< exact distances to `outer`
     ToothField field;
     bool fromCache = false;
-    double buildSeconds = 0.0;
+    double buildSeconds = 0.0;  ///< that prepareTooth took, built or reopened
 };
 
 struct PrepareSettings {

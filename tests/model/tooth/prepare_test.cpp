@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// prepareTooth: builds, keeps, reopens, refuses.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/model/tooth/field_cache.h"
+#include "handpiece/model/tooth/tooth.h"
+#include "support/closed_meshes.h"
+#include "support/random.h"
+
+namespace handpiece::tooth {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A tooth of enamel around dentine, in a folder of its own; XDG_CACHE_HOME points into another.
+class PrepareTooth : public ::testing::Test {
+  protected:
+    PrepareTooth() {
+        toothCase.name = "bumpy";
+        toothCase.source = folder.path() / "case";
+        fs::create_directories(toothCase.source);
+        toothCase.outer = test::bumpyMesh(3, 2.0);
+        toothCase.parts = {{"enamel", Tissue::enamel, 10, toothCase.outer},
+                           {"dentine", Tissue::dentine, 20, test::sphereMesh(3, 1.2)}};
+        settings.field.voxelMm = 0.1;
+        ::setenv("XDG_CACHE_HOME", (folder.path() / "user").c_str(), 1);
+    }
+    ~PrepareTooth() override { ::unsetenv("XDG_CACHE_HOME"); }
+
+    static std::size_t filesIn(const fs::path& where) {
+        std::error_code ec;
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(where, ec), fs::directory_iterator()));
+    }
+
+    test::TemporaryFolder folder;
+    Case toothCase;
+    PrepareSettings settings;
+};
+
+TEST_F(PrepareTooth, BuildsThenReopensTheSame) {
+    const auto built = prepareTooth(toothCase, settings);
+    EXPECT_FALSE(built->fromCache);
+    EXPECT_GT(built->buildSeconds, 0.0);
+    EXPECT_EQ(built->name, "bumpy");
+    EXPECT_EQ(filesIn(toothCase.source / ".handpiece-cache"), 1u);
+    const auto again = prepareTooth(toothCase, settings);
+    EXPECT_TRUE(again->fromCache);
+    EXPECT_EQ(again->field.stateHash(), built->field.stateHash());
+    EXPECT_EQ(again->outer.triangles, built->outer.triangles);
+    const core::Vec3 p(0.3, -1.2, 1.1);
+    EXPECT_EQ(again->tree.signedDistance(p), built->tree.signedDistance(p));
+    EXPECT_EQ(again->field.tissueAt({0, 0, 0}), Tissue::dentine);
+}
+
+TEST_F(PrepareTooth, OtherSettingsOrSurfacesAreBuiltAnew) {
+    (void)prepareTooth(toothCase, settings);
+    settings.field.bandInMm = 0.35;
+    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
+    toothCase.outer.vertices[0] *= 1.001;
+    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_TRUE(prepareTooth(toothCase, settings)->fromCache);
+}
+
+TEST_F(PrepareTooth, DamagedCacheIsRebuiltAndReplaced) {
+    (void)prepareTooth(toothCase, settings);
+    const fs::path file = fs::directory_iterator(toothCase.source / ".handpiece-cache")->path();
+    std::vector<std::byte> data = core::readFile(file);
+    data[data.size() / 2] ^= std::byte{1};
+    core::writeFile(file, data);
+    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_TRUE(prepareTooth(toothCase, settings)->fromCache);
+}
+
+TEST_F(PrepareTooth, WithoutCacheNothingIsWritten) {
+    settings.useCache = false;
+    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_FALSE(fs::exists(toothCase.source / ".handpiece-cache"));
+    EXPECT_FALSE(fs::exists(folder.path() / "user"));
+}
+
+TEST_F(PrepareTooth, TheFolderAskedForAndNoOther) {
+    settings.cacheFolder = folder.path() / "asked";
+    (void)prepareTooth(toothCase, settings);
+    EXPECT_EQ(filesIn(folder.path() / "asked"), 1u);
+    EXPECT_FALSE(fs::exists(toothCase.source / ".handpiece-cache"));
+    EXPECT_TRUE(prepareTooth(toothCase, settings)->fromCache);
+}
+
+TEST_F(PrepareTooth, ASingleFileGoesToTheUsersCache) {
+    toothCase.source = folder.path() / "tooth.stl";
+    core::writeFile(toothCase.source, std::string_view("solid"));
+    toothCase.parts.resize(1);
+    toothCase.outer = {};
+    const auto tooth = prepareTooth(toothCase, settings);
+    EXPECT_EQ(tooth->outer.triangles, toothCase.parts[0].mesh.triangles);
+    EXPECT_EQ(filesIn(folder.path() / "user" / "handpiece"), 1u);
+    EXPECT_TRUE(prepareTooth(toothCase, settings)->fromCache);
+}
+
+TEST_F(PrepareTooth, AReadOnlyCaseUsesTheUsersCache) {
+    // A file where the folder should be stands for a folder without permission: root may write anywhere.
+    core::writeFile(toothCase.source / ".handpiece-cache", std::string_view("in the way"));
+    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_EQ(filesIn(folder.path() / "user" / "handpiece"), 1u);
+    EXPECT_TRUE(prepareTooth(toothCase, settings)->fromCache);
+    // No place at all: it opens all the same.
+    core::writeFile(folder.path() / "blocked", std::string_view("in the way"));
+    ::setenv("XDG_CACHE_HOME", (folder.path() / "blocked").c_str(), 1);
+    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
+}
+
+TEST_F(PrepareTooth, SaysWhyACaseCannotBeFelt) {
+    const auto complaint = [&](const Case& c) -> std::string {
+        try {
+            (void)prepareTooth(c, settings);
+        } catch (const core::Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    Case bad = toothCase;
+    bad.outer = {};
+    EXPECT_NE(complaint(bad).find("a case of several parts needs outer.stl"), std::string::npos);
+    bad.parts.clear();
+    EXPECT_NE(complaint(bad).find("no surface"), std::string::npos);
+    bad = toothCase;
+    bad.outer.triangles.pop_back();
+    EXPECT_NE(complaint(bad).find("open"), std::string::npos);
+    bad = toothCase;
+    bad.parts[1].mesh.triangles.pop_back();
+    EXPECT_NE(complaint(bad).find("dentine"), std::string::npos);
+    EXPECT_FALSE(fs::exists(toothCase.source / ".handpiece-cache")) << "nothing is kept of what failed";
+}
+
+TEST_F(PrepareTooth, ProgressRisesToOneAndCancels) {
+    double last = -1.0;
+    bool rising = true;
+    settings.useCache = false;
+    core::setThreadCount(1);
+    (void)prepareTooth(toothCase, settings, [&](double f) {
+        rising = rising && f >= last - 1e-12;
+        last = f;
+        return true;
+    });
+    core::setThreadCount(0);
+    EXPECT_TRUE(rising);
+    EXPECT_EQ(last, 1.0);
+    for (const double stop : {0.0, 0.15, 0.5})
+        EXPECT_THROW((void)prepareTooth(toothCase, settings, [&](double f) { return f < stop; }), core::Error);
+    // A cancelled opening from the cache stops too, and does not build instead.
+    settings.useCache = true;
+    (void)prepareTooth(toothCase, settings);
+    int calls = 0;
+    EXPECT_THROW((void)prepareTooth(toothCase, settings, [&](double f) { return ++calls, f < 1.0; }), core::Error);
+    EXPECT_LE(calls, 3);
+}
+
+}  // namespace
+}  // namespace handpiece::tooth

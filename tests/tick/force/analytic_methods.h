@@ -139,7 +139,6 @@ class AnalyticMethod final : public contact::Method {
         const contact::Depth d = depth(pose);
         if (d.status != contact::Status::ok) return d.status;
         if (-d.depthMm > reachMm) return contact::Status::ok;
-        out.pushBack({d.normal, -d.depthMm, d.toothPointMm, tissue_});
         // When too many points are near, the nearest matter: look at ever smaller reaches first.
         for (double inner = 0.0, outer = reachMm / 16; inner < reachMm; inner = outer, outer *= 2) {
             for (const core::Vec3& local : points_) {

@@ -29,6 +29,16 @@ double Proxy::evaluate(contact::Method& method) noexcept {
     const double reach = 2.0 * settings_.maxStepMm;
     method.constraints(pose_, reach, constraints_);
     ++passes_;
+    // The exact depth joins them, so that the bur rests on edges between its points, and rolls over them without
+    // notches.
+    const contact::Depth depth = method.depth(pose_);
+    clearanceMm_ = -depth.depthMm;
+    if (depth.status == contact::Status::ok && clearanceMm_ <= reach) {
+        // A full set keeps its most important first: the last make room for this one and for those recalled.
+        const std::size_t room = contact::kMaxConstraints - 1 - memory_.size();
+        if (constraints_.size() > room) constraints_.resize(room);
+        constraints_.pushBack({depth.normal, clearanceMm_, depth.toothPointMm, depth.tissue});
+    }
     gapMm_ = reach;
     std::size_t worst = 0;
     for (std::size_t i = 0; i < constraints_.size(); ++i) {
@@ -58,7 +68,6 @@ void Proxy::recall() noexcept {
         memory_[kept++] = m;
     }
     memory_.resize(kept);
-    if (constraints_.size() + kept > contact::kMaxConstraints) constraints_.resize(contact::kMaxConstraints - kept);
     for (const Memory& m : memory_) {
         contact::Constraint moved = m.constraint;
         moved.gapMm += moved.normal.dot(pose_.positionMm - m.at.positionMm);
@@ -110,9 +119,9 @@ void Proxy::start(contact::Method& method, const core::Pose& deviceInTooth) noex
 }
 
 /// A step towards `wanted` when nothing holds it back: as far as the clearance at the proxy proves free.
-Vec3 Proxy::freeStep(contact::Method& method, const Vec3& wanted, const Projection& allowed) noexcept {
+Vec3 Proxy::freeStep(const Vec3& wanted, const Projection& allowed) const noexcept {
     if (allowed.activeCount > 0 || wanted.norm() <= settings_.maxStepMm) return allowed.stepMm;
-    return limited(wanted, std::max(settings_.maxStepMm, -method.depth(pose_).depthMm - settings_.toleranceMm));
+    return limited(wanted, std::max(settings_.maxStepMm, clearanceMm_ - settings_.toleranceMm));
 }
 
 void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth,
@@ -151,7 +160,7 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth,
                 strongestTissue_ = constraints_[allowed.active[j]].tissue;
             }
         }
-        Vec3 step = freeStep(method, wanted, allowed);
+        Vec3 step = freeStep(wanted, allowed);
         if (touching_) {
             const Vec3 restore =
                 gap < 0.0 ? limited(project(constraints_, Vec3::Zero()).stepMm, kMaxRestoreMm) : Vec3(Vec3::Zero());

@@ -52,11 +52,16 @@ Workload::Workload(bool quick)
     std::filesystem::create_directories(cache_);
 }
 
-// Through a file on purpose: every method sees the coordinates that an STL holds.
+// Through a file on purpose: every method sees the coordinates that an STL holds. Made again when this program is newer
+// than the file: it may hold another generator.
 std::filesystem::path Workload::toothFile(const Resolution& resolution) {
     const std::filesystem::path file = cache_ / fmt::format("molar-{}.stl", resolution.faces);
-    if (!std::filesystem::exists(file))
+    std::error_code none;
+    if (!std::filesystem::exists(file) ||
+        std::filesystem::last_write_time(file) < std::filesystem::last_write_time("/proc/self/exe", none)) {
+        fmt::print(stderr, "contact_bench: making {}\n", file.string());
         geometry::writeStl(file, starter::makeOuter(starter::ToothKind::lowerFirstMolar, resolution.faces));
+    }
     return file;
 }
 

@@ -13,8 +13,10 @@ constexpr double kSettledMm = 1e-7;  // steps below this change no force that a 
 constexpr double kSmallestRadiusMm = 1e-6;
 constexpr double kMaxRestoreMm = 0.5;  // of one pass: gaps farther inside are rough
 constexpr int kPushOutPasses = 24;
-constexpr double kRecallMm = 0.02;  // a plane met this near is still right to 0.4 um on a bur of 0.5 mm radius
-constexpr double kRecallRadians = 1e-4;
+// A half-space met a little way off is believed less and less, as if the bur rolled over an edge: a plane that is
+// believed too little is found again by the next pass, one believed too much would hold the bur off for good.
+constexpr double kRecallMm = 0.15;
+constexpr double kRecallRadiusMm = 0.25;
 constexpr double kSameNormal = 1.0 - 1e-5;
 
 Vec3 limited(const Vec3& v, double length) noexcept {
@@ -57,22 +59,20 @@ double Proxy::evaluate(contact::Method& method) noexcept {
     return gapMm_;
 }
 
-/// Adds the half-spaces met nearby, moved to this pose; forgets those met too far away.
+/// Adds the half-spaces met nearby, carried along with the bur's point that met them; forgets those met too far away.
 void Proxy::recall() noexcept {
     std::size_t kept = 0;
     for (const Memory& m : memory_) {
-        if ((pose_.positionMm - m.at.positionMm).norm() > kRecallMm ||
-            pose_.orientation.angularDistance(m.at.orientation) > kRecallRadians) {
-            continue;
-        }
+        contact::Constraint carried = m.constraint;
+        carried.pointMm = pose_.apply(m.at.applyInverse(m.constraint.pointMm));
+        const Vec3 way = carried.pointMm - m.constraint.pointMm;
+        const double closer = carried.normal.dot(way), squared = way.squaredNorm();
+        if (squared > kRecallMm * kRecallMm) continue;
+        carried.gapMm += closer + (squared - closer * closer) / (2.0 * kRecallRadiusMm);
+        constraints_.pushBack(carried);
         memory_[kept++] = m;
     }
     memory_.resize(kept);
-    for (const Memory& m : memory_) {
-        contact::Constraint moved = m.constraint;
-        moved.gapMm += moved.normal.dot(pose_.positionMm - m.at.positionMm);
-        constraints_.pushBack(moved);
-    }
 }
 
 void Proxy::remember(const contact::Constraint& deepest) noexcept {

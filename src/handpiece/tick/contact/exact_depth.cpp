@@ -73,6 +73,19 @@ BallDepth ExactSurface::ball(const Vec3& centreMm, double radiusMm, std::uint32_
     return result;
 }
 
+Vec3 ExactSurface::outward(const BallDepth& ball) const noexcept {
+    const float* n = &tree_.pseudonormals()[21 * std::size_t{ball.triangle} + 3 * std::size_t{ball.feature}];
+    const Vec3 normal(n[0], n[1], n[2]);
+    const double length = normal.norm();
+    return length > 0.0 ? Vec3(normal / length) : Vec3::Zero();
+}
+
+Vec3 ExactSurface::closestOn(std::uint32_t triangle, const Vec3& p) const noexcept {
+    double q[3];
+    kernels_.closestOnTriangle(view_.triangles[triangle], p.data(), q);
+    return vectorOf(q);
+}
+
 AxisSearch::AxisSearch(const instrument::Bur& bur) {
     for (const instrument::MedialCurve& curve : bur.medialAxis()) {
         if (!curve.onAxis || curve.balls.empty()) continue;

@@ -36,6 +36,10 @@ class ExactSurface {
                                  std::uint32_t seed = geometry::kNoTriangle,
                                  double boundMm = std::numeric_limits<double>::infinity()) const noexcept;
     [[nodiscard]] bool isInside(const core::Vec3& p, const SurfaceHit& hit) const noexcept;
+    /// Unit normal of the surface out of the tooth where the ball touches it.
+    [[nodiscard]] core::Vec3 outward(const BallDepth& ball) const noexcept;
+    [[nodiscard]] core::Vec3 closestOn(std::uint32_t triangle, const core::Vec3& p) const noexcept;
+    /// Signed, and at most the distance to the surface in magnitude, away from it.
     [[nodiscard]] double farBound(const core::Vec3& p) const noexcept { return field_.distance(p); }
     [[nodiscard]] const TreeView& view() const noexcept { return view_; }
     [[nodiscard]] const ExactKernels& kernels() const noexcept { return kernels_; }

@@ -364,6 +364,14 @@ void nearestToRun(const TreeView& tree, const AxisRun& run, const double tip[3],
     search(tree, seed, query);
 }
 
+void closestOnTriangle(const KernelTriangle& triangle, const double point[3], double closest[3]) noexcept {
+    std::uint8_t feature = 0;
+    const Vector q = closestPoint(triangle, {point[0], point[1], point[2]}, feature);
+    closest[0] = q.x;
+    closest[1] = q.y;
+    closest[2] = q.z;
+}
+
 void nearestToPoint(const TreeView& tree, const double point[3], SurfaceHit& hit) noexcept {
     const std::uint32_t seed = hit.triangle;
     hit.triangle = SurfaceHit::kNone;
@@ -374,7 +382,7 @@ void nearestToPoint(const TreeView& tree, const double point[3], SurfaceHit& hit
 }  // namespace
 
 ExactKernels exactKernels() noexcept {
-    return {nearestToRun, nearestToPoint};
+    return {nearestToRun, closestOnTriangle, nearestToPoint};
 }
 
 }  // namespace handpiece::contact::HANDPIECE_SIMD_NS

@@ -53,6 +53,7 @@ struct ExactKernels {
     /// Least distance of the surface to a ball of the run, less its radius.
     void (*nearestToRun)(const TreeView& tree, const AxisRun& run, const double tip[3], const double axis[3],
                          SurfaceHit& hit) noexcept;
+    void (*closestOnTriangle)(const KernelTriangle& triangle, const double point[3], double closest[3]) noexcept;
     /// Nearest point of the surface.
     void (*nearestToPoint)(const TreeView& tree, const double point[3], SurfaceHit& hit) noexcept;
 };

@@ -7,6 +7,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/tick/contact/exact_depth.h"
 #include "handpiece/tick/contact/ring_sensor.h"
+#include "handpiece/tick/contact/sheet_search.h"
 
 namespace handpiece::contact {
 
@@ -25,6 +26,7 @@ class FieldMethod final : public Method {
           settings_(settings),
           surface_(tooth_->tree, tooth_->field, core::simdLevel()),
           axis_(*bur_),
+          sheets_(*bur_),
           rings_(tooth_->field, *bur_, core::simdLevel()),
           farthestMm_(std::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {}
 
@@ -40,6 +42,7 @@ class FieldMethod final : public Method {
         if (isStillFar(burInTooth)) return result;
         BallDepth best;
         axis_.search(surface_, burInTooth, best);
+        sheets_.search(surface_, burInTooth, best);
         if (best.depthMm < -settings_.reachMm) {
             farPose_ = burInTooth;
             clearMm_ = -best.depthMm;
@@ -51,7 +54,7 @@ class FieldMethod final : public Method {
         result.toothPointMm = best.surfaceMm;
         const Vec3 away = best.inside ? Vec3(best.surfaceMm - best.centreMm) : Vec3(best.centreMm - best.surfaceMm);
         const double distance = away.norm();
-        result.normal = distance > kNoDirectionMm ? Vec3(away / distance) : surfaceNormal(best);
+        result.normal = distance > kNoDirectionMm ? Vec3(away / distance) : surface_.outward(best);
         result.tissue = tooth_->field.tissueAt(best.surfaceMm - 0.5 * tooth_->field.settings().voxelMm * result.normal);
         return result;
     }
@@ -77,18 +80,12 @@ class FieldMethod final : public Method {
         return clearMm_ - moved > settings_.reachMm;
     }
 
-    [[nodiscard]] Vec3 surfaceNormal(const BallDepth& ball) const noexcept {
-        const float* n = &tooth_->tree.pseudonormals()[21 * std::size_t{ball.triangle} + 3 * std::size_t{ball.feature}];
-        const Vec3 normal(n[0], n[1], n[2]);
-        const double length = normal.norm();
-        return length > 0.0 ? Vec3(normal / length) : Vec3::Zero();
-    }
-
     std::shared_ptr<const tooth::Tooth> tooth_;
     std::shared_ptr<const instrument::Bur> bur_;
     FieldMethodSettings settings_;
     ExactSurface surface_;
     AxisSearch axis_;
+    SheetSearch sheets_;
     RingSensor rings_;
     double farthestMm_;
     core::Pose farPose_;

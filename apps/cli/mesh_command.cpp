@@ -152,6 +152,7 @@ Json toJson(const geometry::RepairReport& r) {
             {"closed_holes", r.holes.size()},
             {"added_faces", r.addedFaces},
             {"holes", std::move(holes)},
+            {"turned_flat_faces", r.turnedFlatFaces},
             {"removed_crossing_faces", r.removedCrossingFaces},
             {"crossing_faces", r.crossingFaces},
             {"before", toJson(r.before)},
@@ -201,6 +202,7 @@ void repair(const RepairOptions& options) {
                             r.holes[i].perimeterMm, r.holes[i].areaMm2, r.holes[i].centreMm.x(),
                             r.holes[i].centreMm.y(), r.holes[i].centreMm.z()));
     if (r.holes.size() > kShown) row("", fmt::format("and {} smaller ones", r.holes.size() - kShown));
+    if (r.turnedFlatFaces > 0) row("turned", counted(r.turnedFlatFaces, "face without height", "faces without height"));
     if (r.removedCrossingFaces > 0)
         row("replaced", counted(r.removedCrossingFaces, "face that crossed others or lay beside one",
                                 "faces that crossed others or lay beside one"));

@@ -246,6 +246,23 @@ TEST(Repair, ReplacesSmallSpotsThatCross) {
     EXPECT_NEAR(enclosedVolumeMm3(mesh), enclosedVolumeMm3(whole), 0.01 * enclosedVolumeMm3(whole));
 }
 
+TEST(Repair, TurnsFacesWithoutHeight) {
+    // A vertex in the middle of an edge, known to one side only: the other side's face is filled up with a flat one.
+    TriangleMesh mesh = boxMesh({0, 0, 0}, {1, 2, 3});
+    const Triangle t = mesh.triangles[0];
+    mesh.vertices.push_back(0.5 * (mesh.vertices[t[0]] + mesh.vertices[t[1]]));
+    mesh.triangles[0] = {t[0], 8, t[2]};
+    mesh.triangles.push_back({8, t[1], t[2]});
+    mesh.triangles.push_back({t[0], t[1], 8});
+    EXPECT_EQ(inspect(mesh).degenerateFaces, 1u);
+    const RepairReport r = repair(mesh);
+    EXPECT_EQ(r.turnedFlatFaces, 1u);
+    EXPECT_EQ(r.after.degenerateFaces, 0u);
+    expectWhole(mesh);
+    EXPECT_DOUBLE_EQ(enclosedVolumeMm3(mesh), 6.0);
+    EXPECT_DOUBLE_EQ(surfaceAreaMm2(mesh), 22.0);
+}
+
 TEST(Repair, TellsOfSolidsThatOverlap) {
     TriangleMesh mesh = joined(sphereMesh(Vec3::Zero(), 5, 8), sphereMesh({3, 0.2, 0.1}, 4, 8));
     const RepairReport r = repair(mesh);

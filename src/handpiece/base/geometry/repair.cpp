@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -39,6 +40,7 @@ class Mender {
         const std::size_t before = mesh_.triangles.size();
         report_.holes = closeHoles(mesh_);
         report_.addedFaces = mesh_.triangles.size() - before;
+        turnFlatFaces();
         mendCrossings();
         dropFlatShells();
         faceOutwards();
@@ -386,6 +388,60 @@ class Mender {
         for (std::size_t s = 0; s < shells.count; ++s)
             drop[s] = area[s] < settings_.debrisAreaShare * largest;
         dropShells(shells, drop);
+    }
+
+    // A face without height has a corner on its longest side: it and the neighbour there become two faces from that
+    // corner, which covers the same surface.
+    void turnFlatFaces() {
+        constexpr double kFlat = 1e-6;  // height over longest side
+        constexpr int kPasses = 4;      // a turned neighbour may be flat in its turn
+        const auto heightRatio = [&](const Triangle& t, std::size_t side) {
+            const Vec3 &a = mesh_.vertices[t[side]], &b = mesh_.vertices[t[(side + 1) % 3]],
+                       &c = mesh_.vertices[t[(side + 2) % 3]];
+            return (b - a).cross(c - a).norm() / (b - a).squaredNorm();
+        };
+        const auto longestSide = [&](const Triangle& t) {
+            std::array<double, 3> length;
+            for (std::size_t k = 0; k < 3; ++k)
+                length[k] = (mesh_.vertices[t[(k + 1) % 3]] - mesh_.vertices[t[k]]).squaredNorm();
+            return static_cast<std::size_t>(std::max_element(length.begin(), length.end()) - length.begin());
+        };
+        const auto isFlat = [&](const Triangle& t) { return heightRatio(t, longestSide(t)) < kFlat; };
+        for (int pass = 0; pass < kPasses; ++pass) {
+            const MeshEdges edges(mesh_);
+            std::vector<std::uint8_t> touched(mesh_.triangles.size(), 0);
+            std::size_t turned = 0;
+            std::set<std::pair<std::uint32_t, std::uint32_t>> added;
+            for (const MeshEdges::Edge& e : edges.edges()) {
+                if (e.count != 2) continue;
+                for (std::size_t k = 0; k < 2; ++k) {
+                    const HalfEdge h = edges.halfEdges(e)[k], other = edges.halfEdges(e)[1 - k];
+                    Triangle &flat = mesh_.triangles[h / 3], &neighbour = mesh_.triangles[other / 3];
+                    if (touched[h / 3] || touched[other / 3] || longestSide(flat) != h % 3 || !isFlat(flat)) continue;
+                    const std::uint32_t a = fromVertex(mesh_, h), b = toVertex(mesh_, h),
+                                        c = fromVertex(mesh_, previousHalfEdge(h)),
+                                        d = fromVertex(mesh_, previousHalfEdge(other));
+                    const Triangle one{a, d, c}, two{d, b, c};
+                    if (c == d || hasEdge(edges, c, d) || isFlat(one) || isFlat(two) ||
+                        !added.emplace(std::min(c, d), std::max(c, d)).second)
+                        continue;
+                    flat = one;
+                    neighbour = two;
+                    touched[h / 3] = touched[other / 3] = 1;
+                    ++turned;
+                }
+            }
+            report_.turnedFlatFaces += turned;
+            if (turned == 0) return;
+        }
+    }
+
+    [[nodiscard]] static bool hasEdge(const MeshEdges& edges, std::uint32_t a, std::uint32_t b) {
+        const std::pair wanted(std::min(a, b), std::max(a, b));
+        const auto found =
+            std::lower_bound(edges.edges().begin(), edges.edges().end(), wanted,
+                             [](const MeshEdges::Edge& e, const auto& ab) { return std::pair(e.low, e.high) < ab; });
+        return found != edges.edges().end() && std::pair(found->low, found->high) == wanted;
     }
 
     // Where a few faces cross, they and a little around them give way to a new patch; solids that overlap stay as they

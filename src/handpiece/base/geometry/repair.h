@@ -44,6 +44,7 @@ struct RepairReport {
     std::size_t turnedFaces = 0;           ///< to agree with their neighbours or to face outwards
     std::vector<ClosedHole> holes;         ///< the largest perimeter first
     std::size_t addedFaces = 0;            ///< to close them, and in place of faces that crossed
+    std::size_t turnedFlatFaces = 0;       ///< faces without height that shared their long side out to a neighbour
     std::size_t removedCrossingFaces = 0;  ///< crossing faces, and what lay around them, that gave way to a patch
     std::size_t crossingFaces = 0;         ///< pairs of faces that still cross in the result: told, not mended
 };

@@ -106,7 +106,7 @@ std::unique_ptr<Query> Workload::hullQuery(const Resolution& resolution) {
 std::span<const core::Pose> Workload::poses(Way way) {
     std::vector<core::Pose>& poses = poses_[way];
     if (poses.empty()) {
-        const Resolution& finest = resolutions()[quick_ ? 2 : 4];
+        const Resolution& finest = resolutions()[quick_ ? 0 : 4];
         const std::unique_ptr<Query> exact = exactQuery(finest);
         poses = makeTrajectory(way, *exact, mesh(finest), quick_ ? kQuickTicks : kTicks);
     }

@@ -34,7 +34,7 @@ struct Reference {
 /// Everything is kept, on disk too (generated teeth and fields beside the program). Not thread-safe.
 class Workload {
   public:
-    /// `quick`: 400 ticks and ways found on the 41k tooth, for a smoke test.
+    /// `quick`: 400 ticks and ways found on the coarsest tooth, for a smoke test.
     explicit Workload(bool quick);
 
     [[nodiscard]] const instrument::Bur& bur() const { return *bur_; }

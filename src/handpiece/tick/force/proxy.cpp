@@ -17,7 +17,7 @@ constexpr int kPushOutPasses = 24;
 // believed too little is found again by the next pass, one believed too much would hold the bur off for good.
 constexpr double kRecallMm = 0.15;
 constexpr double kRecallRadiusMm = 0.25;
-constexpr double kSameNormal = 1.0 - 1e-5;
+constexpr double kSameNormal = 0.998;  // 3.6 degrees: the newer replaces the older
 
 Vec3 limited(const Vec3& v, double length) noexcept {
     const double n = v.norm();
@@ -32,30 +32,26 @@ double Proxy::evaluate(contact::Method& method) noexcept {
     method.constraints(pose_, reach, constraints_);
     ++passes_;
     // The exact depth joins them, so that the bur rests on edges between its points, and rolls over them without
-    // notches.
+    // notches; and since it names but one of two walls at a time, so do its answers from nearby.
     const contact::Depth depth = method.depth(pose_);
     clearanceMm_ = -depth.depthMm;
-    if (depth.status == contact::Status::ok && clearanceMm_ <= reach) {
-        // A full set keeps its most important first: the last make room for this one and for those recalled.
+    const bool near = depth.status == contact::Status::ok && clearanceMm_ <= reach;
+    const contact::Constraint exact{depth.normal, clearanceMm_, depth.toothPointMm, depth.tissue};
+    if (near) {
+        // A full set keeps its most important first: the last make room.
         const std::size_t room = contact::kMaxConstraints - 1 - memory_.size();
         if (constraints_.size() > room) constraints_.resize(room);
-        constraints_.pushBack({depth.normal, clearanceMm_, depth.toothPointMm, depth.tissue});
+        constraints_.pushBack(exact);
     }
     gapMm_ = reach;
-    std::size_t worst = 0;
-    for (std::size_t i = 0; i < constraints_.size(); ++i) {
-        if (constraints_[i].gapMm < gapMm_) {
-            gapMm_ = constraints_[i].gapMm;
-            worst = i;
-        }
-    }
-    if (constraints_.empty()) {
+    for (const contact::Constraint& c : constraints_)
+        gapMm_ = std::min(gapMm_, c.gapMm);
+    if (near) {
+        recall();
+        remember(exact);
+    } else {
         memory_.clear();
-        return gapMm_;
     }
-    const contact::Constraint deepest = constraints_[worst];
-    recall();
-    remember(deepest);
     return gapMm_;
 }
 
@@ -75,10 +71,10 @@ void Proxy::recall() noexcept {
     memory_.resize(kept);
 }
 
-void Proxy::remember(const contact::Constraint& deepest) noexcept {
+void Proxy::remember(const contact::Constraint& exact) noexcept {
     std::size_t slot = memory_.size();
     for (std::size_t i = 0; i < memory_.size(); ++i) {
-        if (memory_[i].constraint.normal.dot(deepest.normal) > kSameNormal) slot = i;
+        if (memory_[i].constraint.normal.dot(exact.normal) > kSameNormal) slot = i;
     }
     if (slot == memory_.capacity()) {
         // Full: the one that is farthest from holding the proxy goes.
@@ -92,7 +88,7 @@ void Proxy::remember(const contact::Constraint& deepest) noexcept {
     } else if (slot == memory_.size()) {
         memory_.resize(slot + 1);
     }
-    memory_[slot] = {deepest, pose_};
+    memory_[slot] = {exact, pose_};
 }
 
 /// Out of the tooth by the shortest way the constraints know, for poses that no path led to.

@@ -62,14 +62,14 @@ class Proxy {
     };
     double evaluate(contact::Method& method) noexcept;
     void recall() noexcept;
-    void remember(const contact::Constraint& deepest) noexcept;
+    void remember(const contact::Constraint& exact) noexcept;
     void settleOutside(contact::Method& method) noexcept;
     [[nodiscard]] core::Vec3 freeStep(const core::Vec3& wanted, const Projection& allowed) const noexcept;
 
     ProxySettings settings_;
     core::Pose pose_;
     contact::ConstraintSet constraints_;
-    core::FixedVector<Memory, 6> memory_;  // of the deepest: a method may name but one of two walls at a time
+    core::FixedVector<Memory, 6> memory_;  // exact depth names but one of two walls at a time
     double radiusMm_ = 0.1;                // trust region: shrinks while steps turn back on themselves
     double gapMm_ = 0.0, clearanceMm_ = 0.0;
     core::Vec3 lastRest_ = core::Vec3::Zero();

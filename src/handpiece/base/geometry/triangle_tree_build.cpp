@@ -15,9 +15,9 @@ namespace {
 using core::Vec3;
 
 constexpr int kBins = 16;
-constexpr int kSahDepth = 16;                   // below it halves by count, so that kMaxTreeDepth holds
-constexpr std::uint32_t kTaskTriangles = 4096;  // subtrees of this size are built side by side
-constexpr double kThin = 1e-3;                  // height over longest edge of a sliver
+constexpr int kSahDepth = 16;                      // below it halves by count, so that kMaxTreeDepth holds
+constexpr std::uint32_t kTaskTriangles = 1 << 15;  // subtrees of this size are built side by side
+constexpr double kThin = 1e-3;                     // height over longest edge of a sliver
 
 struct FloatBox {
     float min[3] = {INFINITY, INFINITY, INFINITY};
@@ -161,7 +161,10 @@ class Builder {
                                            [&](const Item& item) { return binOf(item, bestAxis) < bestCut; });
         const auto at = static_cast<std::uint32_t>(middle - items_.begin());
         if (at == r.begin || at == r.end) return halve(r, widest);
-        return {rangeOf(r.begin, at), rangeOf(at, r.end)};
+        Range left{r.begin, at, {}}, right{at, r.end, {}};
+        for (int b = 0; b < kBins; ++b)
+            (b < bestCut ? left : right).box.extend(bins[bestAxis][b].box);
+        return {left, right};
     }
 
     void makeNode(std::vector<TreeNode>& nodes, const Range& range, int depth, std::vector<Task>* tasks) {
@@ -211,23 +214,48 @@ class Builder {
     std::vector<Item>& items_;
 };
 
-/// Face, edge and vertex normals of every triangle, in mesh order: 21 floats each.
-class Pseudonormals {
+/// The angle whose sine and cosine are in the proportion s : c, s >= 0, within 1e-5 rad: a weight needs no more.
+double angleOf(double s, double c) {
+    const double a = std::abs(c), low = std::min(s, a), high = std::max(s, a);
+    if (!(high > 0.0)) return 0.0;
+    // Abramowitz & Stegun 4.4.49.
+    const double t = low / high, q = t * t;
+    double angle = t * (0.9998660 + q * (-0.3302995 + q * (0.1801410 + q * (-0.0851330 + q * 0.0208351))));
+    if (s > a) angle = 0.5 * std::numbers::pi - angle;
+    return c < 0.0 ? std::numbers::pi - angle : angle;
+}
+
+void storeUnit(const Vec3& n, float* out) {
+    const double length2 = n.squaredNorm(), scale = length2 > 0.0 ? 1.0 / std::sqrt(length2) : 0.0;
+    for (int k = 0; k < 3; ++k)
+        out[k] = static_cast<float>(n[k] * scale);
+}
+
+/// Face, edge and vertex normals, written for every triangle where it lies in tree order: 21 floats each.
+class PseudonormalWriter {
   public:
-    explicit Pseudonormals(const TriangleMesh& mesh)
-        : mesh_(mesh), faces_(mesh.triangles.size()), face_(faces_), edge_(3 * faces_) {
-        vertex_.assign(mesh.vertices.size(), Vec3::Zero());
+    PseudonormalWriter(const TriangleMesh& mesh, std::span<const std::uint32_t> order, std::vector<float>& out)
+        : mesh_(mesh), order_(order), faces_(mesh.triangles.size()), out_(out), face_(faces_), place_(faces_) {
+        out_.resize(21 * faces_);
+    }
+
+    void run() {
+        core::parallelFor(faces_, kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                place_[order_[i]] = static_cast<std::uint32_t>(i);
+        });
         gatherCorners();
         core::parallelFor(faces_, kGrain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t f = begin; f < end; ++f) {
-                const Triangle& t = mesh.triangles[f];
-                const Vec3& a = mesh.vertices[t[0]];
-                const Vec3 n = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
+                const Triangle& t = mesh_.triangles[f];
+                const Vec3& a = mesh_.vertices[t[0]];
+                const Vec3 n = (mesh_.vertices[t[1]] - a).cross(mesh_.vertices[t[2]] - a);
                 const double length = n.norm();
                 face_[f] = length > 0.0 ? Vec3(n / length) : Vec3::Zero();
+                storeUnit(face_[f], at(f, 0));
             }
         });
-        core::parallelFor(mesh.vertices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        core::parallelFor(mesh_.vertices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t v = begin; v < end; ++v)
                 sumVertex(v);
         });
@@ -235,22 +263,13 @@ class Pseudonormals {
         giveFlatFacesANormal();
     }
 
-    void write(std::size_t f, float* out) const {
-        const Triangle& t = mesh_.triangles[f];
-        const auto store = [&](std::size_t slot, const Vec3& n) {
-            const Vec3 unit = n.stableNormalized();
-            for (int k = 0; k < 3; ++k)
-                out[3 * slot + static_cast<std::size_t>(k)] = static_cast<float>(unit[k]);
-        };
-        store(0, face_[f]);
-        for (std::size_t e = 0; e < 3; ++e)
-            store(1 + e, edge_[3 * f + e]);
-        for (std::size_t k = 0; k < 3; ++k)
-            store(4 + k, vertex_[t[k]]);
-    }
-
   private:
-    static constexpr std::size_t kGrain = 8192;
+    static constexpr std::size_t kGrain = 4096;
+
+    /// Slots: 0 the face, 1..3 edges, 4..6 corners.
+    [[nodiscard]] float* at(std::size_t face, std::size_t slot) {
+        return &out_[21 * std::size_t{place_[face]} + 3 * slot];
+    }
 
     /// Corners (3 x face + corner) around every vertex.
     void gatherCorners() {
@@ -267,13 +286,16 @@ class Pseudonormals {
     }
 
     void sumVertex(std::size_t v) {
+        Vec3 sum = Vec3::Zero();
+        const Vec3& p = mesh_.vertices[v];
         for (std::uint32_t i = start_[v]; i < start_[v + 1]; ++i) {
             const std::size_t f = corner_[i] / 3, k = corner_[i] % 3;
             const Triangle& t = mesh_.triangles[f];
-            const Vec3 &p = mesh_.vertices[v], u = mesh_.vertices[t[(k + 1) % 3]] - p,
-                       w = mesh_.vertices[t[(k + 2) % 3]] - p;
-            vertex_[v] += face_[f] * std::atan2(u.cross(w).norm(), u.dot(w));
+            const Vec3 u = mesh_.vertices[t[(k + 1) % 3]] - p, w = mesh_.vertices[t[(k + 2) % 3]] - p;
+            sum += face_[f] * angleOf(u.cross(w).norm(), u.dot(w));
         }
+        for (std::uint32_t i = start_[v]; i < start_[v + 1]; ++i)
+            storeUnit(sum, at(corner_[i] / 3, 4 + corner_[i] % 3));
     }
 
     /// Every edge is summed at its lower vertex, over all faces around it.
@@ -300,7 +322,7 @@ class Pseudonormals {
                     for (; j < around.size() && around[j].upper == around[i].upper; ++j)
                         sum += face_[around[j].slot / 3];
                     for (const std::size_t last = j; i < last; ++i)
-                        edge_[around[i].slot] = sum;
+                        storeUnit(sum, at(around[i].slot / 3, 1 + around[i].slot % 3));
                 }
             }
         });
@@ -312,15 +334,22 @@ class Pseudonormals {
         for (std::size_t f = 0; f < faces_; ++f)
             if (face_[f].isZero(0.0)) flat.push_back(f);
         if (flat.empty()) return;
+        for (const std::size_t f : flat) {
+            const float* e = at(f, 1);
+            face_[f] = Vec3(e[0], e[1], e[2]) + Vec3(e[3], e[4], e[5]) + Vec3(e[6], e[7], e[8]);
+            face_[f] = face_[f].stableNormalized();
+        }
         for (const std::size_t f : flat)
-            face_[f] = (edge_[3 * f] + edge_[3 * f + 1] + edge_[3 * f + 2]).stableNormalized();
+            storeUnit(face_[f], at(f, 0));
         sumEdges();
     }
 
     const TriangleMesh& mesh_;
+    std::span<const std::uint32_t> order_;
     std::size_t faces_;
-    std::vector<Vec3> face_, edge_, vertex_;
-    std::vector<std::uint32_t> start_, corner_;
+    std::vector<float>& out_;
+    std::vector<Vec3> face_;
+    std::vector<std::uint32_t> place_, start_, corner_;
 };
 
 /// The box of all vertices. Throws for what is no mesh.
@@ -371,8 +400,11 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh, Storage storage)
     : nodes_(std::move(storage.nodes)), bounds_(checkedBounds(mesh)) {
     const std::size_t faces = mesh.triangles.size();
     bool sound = !nodes_.empty() && storage.order.size() == faces;
-    for (std::size_t i = 0; sound && i < faces; ++i)
-        sound = storage.order[i] < faces;
+    std::vector<bool> seen(faces, false);
+    for (std::size_t i = 0; sound && i < faces; ++i) {
+        sound = storage.order[i] < faces && !seen[storage.order[i]];
+        if (sound) seen[storage.order[i]] = true;
+    }
     std::vector<std::uint8_t> depth(nodes_.size(), 0);
     if (sound) depth[0] = 1;
     for (std::size_t i = 0; sound && i < nodes_.size(); ++i) {
@@ -401,9 +433,8 @@ TriangleTree::Storage TriangleTree::storage() const {
 }
 
 void TriangleTree::fillTriangles(const TriangleMesh& mesh, std::span<const std::uint32_t> order) {
-    const Pseudonormals normals(mesh);
+    PseudonormalWriter(mesh, order, pseudonormals_).run();
     triangles_.resize(order.size());
-    pseudonormals_.resize(21 * order.size());
     core::parallelFor(order.size(), 8192, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t f = order[i];
@@ -418,7 +449,6 @@ void TriangleTree::fillTriangles(const TriangleMesh& mesh, std::span<const std::
             out.index = f;
             const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
             out.thin = ab.cross(ac).norm() > kThin * longest2 ? 0u : 1u;
-            normals.write(f, &pseudonormals_[21 * i]);
         }
     });
 }

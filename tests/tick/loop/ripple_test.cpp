@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// At rest the force must not hum.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "handpiece/tick/loop/passivity.h"
+
+namespace handpiece::loop {
+namespace {
+
+TEST(Ripple, isNoneWithFriction) {
+    PassivitySweep sweep;
+    sweep.frictionN = {0.26, 0.05};
+    sweep.delayS = {0.0, 0.001};
+    for (const PassivityRow& r : passivityMap(sweep))
+        EXPECT_EQ(r.rippleN, 0.0) << r.hand << " " << r.rateHz;
+}
+
+TEST(Ripple, withoutFrictionStaysWithinEncoderStepsAndDoesNotGrow) {
+    PassivitySweep sweep;
+    sweep.frictionN = {0.0};
+    sweep.delayS = {0.0};
+    sweep.rateHz = {1000, 2000, 4000, 8000};
+    double worstOfBound = 0.0;
+    for (const PassivityRow& r : passivityMap(sweep)) {
+        SCOPED_TRACE(std::string(r.hand) + " hand, " + std::string(tooth::properties(r.tissue).name));
+        // Two readings apart by a step also change the damper's ramp: on gum (0.035 N/mm) that shows, by 16 %.
+        const double allowed = r.tissue == tooth::Tissue::gum ? 1.2 * r.rippleBoundN : r.rippleBoundN;
+        EXPECT_LE(r.rippleN, allowed) << r.rateHz << " Hz";
+        EXPECT_FALSE(r.growing) << r.rateHz << " Hz";
+        worstOfBound = std::max(worstOfBound, r.rippleN / r.rippleBoundN);
+        if (r.tissue != tooth::Tissue::enamel) continue;
+        std::printf("  %s hand, %.0f Hz: ripple %.1f mN, allowed %.1f mN\n", std::string(r.hand).c_str(), r.rateHz,
+                    1e3 * r.rippleN, 1e3 * r.rippleBoundN);
+    }
+    std::printf("  worst of all tissues: %.2f of 2.1 k delta + b delta / tau\n", worstOfBound);
+}
+
+}  // namespace
+}  // namespace handpiece::loop

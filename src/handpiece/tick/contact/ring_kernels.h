@@ -19,7 +19,9 @@ struct FieldRow {
 /// Eight signed distances and the field's gradient there (not of unit length; zero where no brick is stored).
 struct FieldEight {
     float distance[8], x[8], y[8], z[8];
+    std::uint8_t tissue[8];  ///< of the nearest node; kDeepTissue where no brick is stored
 };
+inline constexpr std::uint8_t kDeepTissue = 0xff;
 
 struct RingKernels {
     /// Signed distances of points first .. first + 7. Where no brick is stored: the sign, and a bound of the distance.

@@ -32,22 +32,40 @@ void store(double (&to)[3], const Vec3& v) noexcept {
 
 RingSensor::RingSensor(const tooth::ToothField& field, const instrument::Bur& bur, core::SimdLevel level)
     : field_(field), view_(field.view()), kernels_(kernelsFor(level)) {
-    std::map<std::uint32_t, std::size_t> angles;
+    struct Table {
+        std::size_t angles, middles;
+    };
+    std::map<std::uint32_t, Table> tables;
     std::size_t points = 0;
+    const auto addAngle = [this](double angle) {
+        cosines_.push_back(std::cos(angle));
+        sines_.push_back(std::sin(angle));
+    };
     for (const instrument::SurfaceRing& r : bur.rings()) {
         if (r.count == 0) continue;
-        const auto [it, added] = angles.try_emplace(r.count, cosines_.size());
+        const auto [it, added] = tables.try_emplace(r.count);
         const int count = static_cast<int>(r.count), eights = (count + 7) / 8;
-        if (added)
-            for (int j = 0; j < 8 * eights; ++j) {  // the padding repeats the last point
-                const double angle = 2.0 * std::numbers::pi * (std::min(j, count - 1) + 0.5) / count;
-                cosines_.push_back(std::cos(angle));
-                sines_.push_back(std::sin(angle));
-            }
-        rings_.push_back({r.zMm, r.rhoMm, r.areaMm2, count, eights, points, it->second,
-                          std::min(std::numbers::pi, 3.5 * 2.0 * std::numbers::pi / count)});
+        const double step = 2.0 * std::numbers::pi / count;
+        if (added) {  // the padding repeats the last one
+            it->second.angles = cosines_.size();
+            for (int j = 0; j < 8 * eights; ++j)
+                addAngle(step * (std::min(j, count - 1) + 0.5));
+            it->second.middles = cosines_.size();
+            for (int e = 0; e < 8 * ((eights + 7) / 8); ++e)
+                addAngle(step * (8 * std::min(e, eights - 1) + 4));
+        }
+        const double halfAngle = std::min(std::numbers::pi, 3.5 * step);
+        rings_.push_back({r.zMm, r.rhoMm, r.areaMm2, count, eights, points, it->second.angles, it->second.middles,
+                          2.0 * r.rhoMm * std::sin(0.5 * halfAngle)});
         points += static_cast<std::size_t>(8 * eights);
     }
+    for (const Ring& ring : rings_)
+        heights_.push_back(ring.z);
+    while (heights_.size() % 8 != 0)
+        heights_.push_back(heights_.back());
+    zeros_.assign(heights_.size(), 0.0);
+    axisDistance_.assign(heights_.size(), 0.0f);
+    tissue_.assign(points, 0);
     distance_.assign(points, kFarMm);
     gx_.assign(points, 0.0f);
     gy_.assign(points, 0.0f);
@@ -75,50 +93,80 @@ void RingSensor::sense(const core::Pose& burInTooth, double thresholdMm) noexcep
     x_ = rotation.col(0);
     y_ = rotation.col(1);
     z_ = rotation.col(2);
-    const double outMm = field_.settings().bandOutMm, inMm = field_.settings().bandInMm;
-    double axisAt = 0.0, axisDistance = -1e30;  // the last lookup on the bur's axis
     FieldRow row;
-    row.farOutMm = static_cast<float>(outMm);
-    row.farInMm = static_cast<float>(inMm);
+    row.farOutMm = static_cast<float>(field_.settings().bandOutMm);
+    row.farInMm = static_cast<float>(field_.settings().bandInMm);
+    store(row.centre, tip_);
+    store(row.x, z_);
+    store(row.y, Vec3::Zero());
+    row.cosines = heights_.data();
+    row.sines = zeros_.data();
+    // No point of a ring is farther than rho from its middle, and one middle's distance bounds those of its neighbours.
+    double clearFrom = 0.0, clearRoom = -1e30;
+    for (std::size_t i = 0; i < heights_.size(); i += 8) {
+        bool clear = true;
+        for (std::size_t k = i; k < std::min(i + 8, rings_.size()) && clear; ++k)
+            clear = clearRoom - std::abs(rings_[k].z - clearFrom) - rings_[k].rho > thresholdMm;
+        if (clear) {
+            std::fill_n(axisDistance_.begin() + static_cast<std::ptrdiff_t>(i), 8, kFarMm);
+            continue;
+        }
+        kernels_.distances(view_, row, static_cast<int>(i), &axisDistance_[i]);
+        const std::size_t last = std::min(i + 8, rings_.size()) - 1;
+        clearFrom = rings_[last].z;
+        clearRoom = axisDistance_[last];
+    }
     for (std::size_t i = 0; i < rings_.size(); ++i) {
         const Ring& ring = rings_[i];
         if (liveRing_[i] != 0) {
             std::fill_n(live_.begin() + static_cast<std::ptrdiff_t>(ring.first), 8 * ring.eights, std::uint8_t{0});
             liveRing_[i] = 0;
         }
-        // No point of the ring is farther than rho from the axis, and the last lookup bounds the axis around it.
-        if (axisDistance - std::abs(ring.z - axisAt) - ring.rho > thresholdMm) continue;
-        const Vec3 centre = tip_ + ring.z * z_;
-        axisAt = ring.z;
-        axisDistance = field_.distance(centre);
-        if (axisDistance - ring.rho > thresholdMm) continue;
-        store(row.centre, centre);
+        if (static_cast<double>(axisDistance_[i]) - ring.rho > thresholdMm) continue;
+        store(row.centre, tip_ + ring.z * z_);
         store(row.x, ring.rho * x_);
         store(row.y, ring.rho * y_);
-        row.cosines = &cosines_[ring.angles];
-        row.sines = &sines_[ring.angles];
-        const double chord = 2.0 * ring.rho * std::sin(0.5 * ring.halfEightRad);
-        for (int e = 0; e < ring.eights; ++e) {
+        for (int group = 0; group < ring.eights; group += 8) {
+            float middles[8] = {};
             if (ring.eights > 1) {
-                const double angle = 2.0 * std::numbers::pi * (8 * e + 4) / ring.count;
-                const Vec3 middle = centre + ring.rho * (std::cos(angle) * x_ + std::sin(angle) * y_);
-                if (field_.distance(middle) - chord > thresholdMm) continue;
+                row.cosines = &cosines_[ring.middles];
+                row.sines = &sines_[ring.middles];
+                kernels_.distances(view_, row, group, middles);
             }
-            FieldEight eight;
-            kernels_.gradients(view_, row, 8 * e, eight);
-            const int lanes = std::min(8, ring.count - 8 * e);
-            for (int lane = 0; lane < lanes; ++lane) {
-                if (!(eight.distance[lane] <= thresholdMm)) continue;
-                const std::size_t at = ring.first + static_cast<std::size_t>(8 * e + lane);
-                live_[at] = 1;
-                liveRing_[i] = 1;
-                distance_[at] = eight.distance[lane];
-                gx_[at] = eight.x[lane];
-                gy_[at] = eight.y[lane];
-                gz_[at] = eight.z[lane];
-            }
+            row.cosines = &cosines_[ring.angles];
+            row.sines = &sines_[ring.angles];
+            for (int e = group; e < std::min(group + 8, ring.eights); ++e)
+                if (ring.eights == 1 || static_cast<double>(middles[e - group]) - ring.chordMm <= thresholdMm)
+                    senseEight(i, row, e, thresholdMm);
         }
     }
+}
+
+void RingSensor::senseEight(std::size_t i, const FieldRow& row, int e, double thresholdMm) noexcept {
+    const Ring& ring = rings_[i];
+    FieldEight eight;
+    kernels_.gradients(view_, row, 8 * e, eight);
+    const std::size_t first = ring.first + static_cast<std::size_t>(8 * e);
+    const int lanes = std::min(8, ring.count - 8 * e);
+    const auto threshold = static_cast<float>(thresholdMm);
+    std::uint8_t any = 0;
+    for (int lane = 0; lane < 8; ++lane) {
+        const std::uint8_t near = lane < lanes && eight.distance[lane] <= threshold ? 1 : 0;
+        live_[first + static_cast<std::size_t>(lane)] = near;
+        any |= near;
+    }
+    if (any == 0) return;
+    liveRing_[i] = 1;
+    std::copy_n(eight.distance, 8, &distance_[first]);
+    std::copy_n(eight.x, 8, &gx_[first]);
+    std::copy_n(eight.y, 8, &gy_[first]);
+    std::copy_n(eight.z, 8, &gz_[first]);
+    std::copy_n(eight.tissue, 8, &tissue_[first]);
+}
+
+tooth::Tissue RingSensor::tissueAt(const Ring& ring, int j) const noexcept {
+    const std::uint8_t tissue = tissue_[ring.first + static_cast<std::size_t>(j)];
+    return tissue != kDeepTissue ? static_cast<tooth::Tissue>(tissue) : field_.tissueAt(pointMm(ring, j));
 }
 
 std::int32_t RingSensor::rootOf(std::int32_t run) noexcept {
@@ -212,17 +260,23 @@ void RingSensor::patches(const core::Pose& burInTooth, PatchSet& out) noexcept {
         }
         Sums& sum = sums[s];
         const Ring& ring = rings_[static_cast<std::size_t>(run.ring)];
+        double total = 0.0, alongX = 0.0, alongY = 0.0;
+        Vec3 normal = Vec3::Zero();
         for (int j = run.from; j < run.to; ++j) {
-            const std::size_t at = ring.first + static_cast<std::size_t>(j);
-            const double share = ring.area * (kContactMarginMm - static_cast<double>(distance_[at]));
-            const Vec3 p = pointMm(ring, j);
-            sum.area += ring.area;
-            sum.pressure += share;
-            sum.centre += share * p;
-            sum.normal += share * normalAt(at);
-            sum.deepest = std::max(sum.deepest, -static_cast<double>(distance_[at]));
-            sum.tissue[static_cast<std::size_t>(field_.tissueAt(p))] += share;
+            const std::size_t at = ring.first + static_cast<std::size_t>(j),
+                              angle = ring.angles + static_cast<std::size_t>(j);
+            const double gap = distance_[at], share = kContactMarginMm - gap;
+            total += share;
+            alongX += share * cosines_[angle];
+            alongY += share * sines_[angle];
+            normal += share * Vec3(gx_[at], gy_[at], gz_[at]);
+            sum.deepest = std::max(sum.deepest, -gap);
+            sum.tissue[static_cast<std::size_t>(tissueAt(ring, j))] += ring.area * share;
         }
+        sum.area += ring.area * (run.to - run.from);
+        sum.pressure += ring.area * total;
+        sum.centre += ring.area * (total * (tip_ + ring.z * z_) + ring.rho * (alongX * x_ + alongY * y_));
+        sum.normal += ring.area * normal;
     }
     for (std::size_t s = 0; s < count; ++s) {
         out.areaMm2 += sums[s].area;
@@ -326,7 +380,7 @@ Status RingSensor::constraints(const core::Pose& burInTooth, double reachMm, Con
         const Vec3 normal = normalAt(at);
         if (normal.isZero()) continue;  // deeper than the field's band: no direction is known there
         const Vec3 p = pointMm(ring, j);
-        out.pushBack({normal, static_cast<double>(distance_[at]), p, field_.tissueAt(p)});
+        out.pushBack({normal, static_cast<double>(distance_[at]), p, tissueAt(ring, j)});
     }
     return count > kMaxConstraints ? Status::truncated : Status::ok;
 }

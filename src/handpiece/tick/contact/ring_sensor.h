@@ -28,7 +28,8 @@ class RingSensor {
         int count, eights;
         std::size_t first;    ///< its first point in the arrays below; each ring has a multiple of eight
         std::size_t angles;   ///< its cosines and sines
-        double halfEightRad;  ///< angle from the middle of eight points to the outermost
+        std::size_t middles;  ///< cosines and sines of the middles of its eights
+        double chordMm;       ///< from the middle of eight points to the outermost
     };
     struct Run {                      ///< neighbouring points of a ring in contact
         std::int32_t ring, from, to;  ///< to is one past the last
@@ -39,7 +40,9 @@ class RingSensor {
 
     /// Looks up every point that may be nearer than `thresholdMm`; sets live_ and, with gradients, gx_ gy_ gz_.
     void sense(const core::Pose& burInTooth, double thresholdMm) noexcept;
+    void senseEight(std::size_t ring, const FieldRow& row, int eight, double thresholdMm) noexcept;
     [[nodiscard]] core::Vec3 pointMm(const Ring& ring, int j) const noexcept;
+    [[nodiscard]] tooth::Tissue tissueAt(const Ring& ring, int j) const noexcept;
     [[nodiscard]] core::Vec3 normalAt(std::size_t at) const noexcept;
     std::size_t findRuns() noexcept;
     void joinRuns(std::size_t begin, std::size_t middle, std::size_t end) noexcept;
@@ -51,7 +54,10 @@ class RingSensor {
     RingKernels kernels_;
     std::vector<Ring> rings_;
     std::vector<double> cosines_, sines_;
+    std::vector<double> heights_, zeros_;         ///< of the rings, for lookups along the axis
+    std::vector<float> axisDistance_;             ///< of the rings' middles
     std::vector<float> distance_, gx_, gy_, gz_;  ///< by point
+    std::vector<std::uint8_t> tissue_;            ///< by point
     std::vector<std::uint8_t> live_;              ///< by point: looked up and within the threshold
     std::vector<std::uint8_t> liveRing_;          ///< by ring: has such points
     std::vector<Run> runs_;

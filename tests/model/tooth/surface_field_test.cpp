@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/simd.h"
@@ -153,6 +158,32 @@ TEST(SurfaceField, TheSameBitsAtAnyThreadCount) {
     core::setThreadCount(0);
     EXPECT_EQ(one, two);
     EXPECT_EQ(one, seven);
+}
+
+std::uint64_t hashOfABumpyTooth() {
+    return fieldOf(test::bumpyMesh(4, 2.0), voxels(0.1)).stateHash();
+}
+
+/// Run by the next test in processes of their own, because the level is read once in each.
+TEST(SurfaceField, DISABLED_PrintsItsHash) {
+    std::cout << "hash " << hashOfABumpyTooth() << std::endl;
+}
+
+TEST(SurfaceField, TheSameBitsAtEverySimdLevel) {
+    const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+    const std::string wanted = "hash " + std::to_string(hashOfABumpyTooth());
+    for (const std::string level : {"base", "avx2", "avx512"}) {
+        const std::string command =
+            "HANDPIECE_SIMD=" + level + " '" + program +
+            "' --gtest_also_run_disabled_tests --gtest_filter=*DISABLED_PrintsItsHash 2>/dev/null";
+        std::FILE* child = ::popen(command.c_str(), "r");
+        ASSERT_NE(child, nullptr);
+        std::string output;
+        for (int c; (c = std::fgetc(child)) != EOF;)
+            output.push_back(static_cast<char>(c));
+        EXPECT_EQ(::pclose(child), 0);
+        EXPECT_NE(output.find(wanted), std::string::npos) << level << ": " << output;
+    }
 }
 
 TEST(SurfaceField, RepeatedNodesAreEqualBitForBit) {

@@ -34,6 +34,7 @@ class FieldBuilder {
     FieldBuilder(const core::Box& box, const FieldSettings& settings);
 
     [[nodiscard]] std::size_t denseBricks() const { return field_.coarse_.size(); }
+    [[nodiscard]] std::int32_t bricksAlongX() const { return field_.bricks_[0]; }
     [[nodiscard]] double brickMm() const { return kBrickCells * field_.settings_.voxelMm; }
     [[nodiscard]] double halfDiagonalMm() const { return 0.5 * std::sqrt(3.0) * brickMm(); }
     /// Where node (x, y, z) of the whole grid lies [mm]: the same bits whichever brick asks.

@@ -106,12 +106,18 @@ Measure fieldMeasure(const FieldView& view, std::size_t stored, std::size_t dens
 
 }  // namespace
 
+ToothField::Extent ToothField::extent() const {
+    const Measure sum = fieldMeasure(view(), brickCount(), coarse_.size());
+    const double h = settings_.voxelMm;
+    return {sum.volume * h * h * h, sum.area * h * h};
+}
+
 double ToothField::volumeMm3() const {
-    return fieldMeasure(view(), brickCount(), coarse_.size()).volume * std::pow(settings_.voxelMm, 3);
+    return extent().volumeMm3;
 }
 
 double ToothField::areaMm2() const {
-    return fieldMeasure(view(), brickCount(), coarse_.size()).area * std::pow(settings_.voxelMm, 2);
+    return extent().areaMm2;
 }
 
 }  // namespace handpiece::tooth

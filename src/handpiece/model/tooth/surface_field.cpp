@@ -184,14 +184,15 @@ class NodeFiller {
 /// A hollow or inside-out tooth shows in its volume, a torn one in extra area. Less area is what a grid makes of sharp
 /// edges.
 void requireLikeness(const ToothField& field, const geometry::TriangleMesh& mesh) {
-    const double volume = field.volumeMm3(), wanted = geometry::enclosedVolumeMm3(mesh);
+    const auto [volume, area] = field.extent();
+    const double wanted = geometry::enclosedVolumeMm3(mesh);
     if (!(std::abs(volume - wanted) <= 0.01 * std::abs(wanted)))
         throw core::Error(
             fmt::format("the distance field holds {:.4g} mm3 where the surface encloses {:.4g} mm3", volume, wanted),
             "distance field",
             "the surface is open, crosses itself or is thinner than a voxel: run 'handpiece mesh repair', or take "
             "smaller voxels");
-    const double area = field.areaMm2(), surface = geometry::surfaceAreaMm2(mesh);
+    const double surface = geometry::surfaceAreaMm2(mesh);
     if (!(area <= 1.05 * surface))
         throw core::Error(
             fmt::format("the distance field's surface has {:.4g} mm2 where the mesh has {:.4g} mm2", area, surface),
@@ -247,13 +248,19 @@ ToothField FieldBuilder::fromSurface(const geometry::TriangleMesh& mesh, const g
     FieldBuilder builder(tree.bounds().grown(std::max(0.0, settings.bandOutMm) + std::max(0.0, settings.voxelMm)),
                          settings);
     core::report(progress, 0.0);
+    // Row by row, each search starting from the last one's triangle: rows, not pieces of work, so that ties fall alike.
     std::vector<std::uint32_t> centreTriangle(builder.denseBricks());
-    builder.classify([&](std::size_t dense) {
-        geometry::NearestPoint n;
-        const double d = tree.signedDistance(builder.centreMm(dense), &n);
-        centreTriangle[dense] = n.triangle;
-        return d;
+    std::vector<double> centreDistance(builder.denseBricks());
+    const std::size_t row = static_cast<std::size_t>(builder.bricksAlongX());
+    core::parallelFor(builder.denseBricks() / row, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin * row; i < end * row; ++i) {
+            geometry::NearestPoint n;
+            const std::uint32_t seed = i % row == 0 ? geometry::kNoTriangle : centreTriangle[i - 1];
+            centreDistance[i] = tree.signedDistance(builder.centreMm(i), &n, seed);
+            centreTriangle[i] = n.triangle;
+        }
     });
+    builder.classify([&](std::size_t dense) { return centreDistance[dense]; });
     core::report(progress, 0.05);
     builder.store();
 

@@ -44,6 +44,11 @@ class ToothField {
     /// Volume [mm3] of the inside and area [mm2] of the zero surface, by integrating the cells. For checks.
     [[nodiscard]] double volumeMm3() const;
     [[nodiscard]] double areaMm2() const;
+    /// Both in one pass.
+    struct Extent {
+        double volumeMm3, areaMm2;
+    };
+    [[nodiscard]] Extent extent() const;
     /// Hash of every stored value; the same at any thread count.
     [[nodiscard]] std::uint64_t stateHash() const;
 

@@ -64,7 +64,8 @@ void append(Bytes& data, T value, bool bigEndian = false) {
 TriangleMesh floatSphere() {
     TriangleMesh mesh = test::sphereMesh({1, 2, 3}, 5, 6);
     for (Vec3& v : mesh.vertices)
-        for (double& x : v) x = static_cast<double>(static_cast<float>(x));
+        for (double& x : v)
+            x = static_cast<double>(static_cast<float>(x));
     return mesh;
 }
 
@@ -319,6 +320,13 @@ TEST(MeshIo, ObjPolygonsContinuationsAndErrors) {
     EXPECT_THAT(errorOf(square + "f 1 2 x\n"), HasSubstr("\"x\" in line 5"));
     EXPECT_THAT(errorOf(square + "f 1 2 99999999999999999999\n"), HasSubstr("line 5"));
     EXPECT_THAT(errorOf("v 1 2\n", MeshFormat::obj), HasSubstr("fewer than three"));
+}
+
+TEST(MeshIo, ByteOrderMarksAreSkipped) {
+    const std::string mark = "\xef\xbb\xbf", square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+    EXPECT_EQ(fromText(mark + square, MeshFormat::obj).vertices.size(), 3u);
+    EXPECT_EQ(fromText(mark + asciiStl(floatSphere())).triangles.size(), floatSphere().triangles.size());
+    EXPECT_THAT(errorOf(mark), HasSubstr("empty"));
 }
 
 TEST(MeshIo, ContentBeatsTheName) {

@@ -100,6 +100,10 @@ TriangleMesh readMesh(const std::filesystem::path& path, ReadNotes* notes) {
 }
 
 TriangleMesh readMesh(std::span<const std::byte> data, MeshFormat hint, const std::string& where, ReadNotes* notes) {
+    // Some editors put a byte order mark before text; it would hide the first word.
+    if (data.size() >= 3 && data[0] == std::byte{0xef} && data[1] == std::byte{0xbb} && data[2] == std::byte{0xbf} &&
+        !formats::isExactBinaryStl(data))
+        data = data.subspan(3);
     const Source source{data, where, notes};
     if (data.empty()) source.fail("the file is empty", "export the mesh again");
     bool binary = false;

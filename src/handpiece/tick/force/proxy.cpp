@@ -9,7 +9,9 @@ namespace {
 
 using core::Vec3;
 
-constexpr double kSettledMm = 1e-7;  // steps below this change no force that a device could show
+constexpr double kSettledMm = 1e-5;  // 5 uN at 0.5 N/mm: what is left is walked in the next ticks
+constexpr double kLeastReachMm = 0.04;
+constexpr double kLeverMm = 5.0;  // a turn moves points of the head by at most this times the angle
 constexpr double kSmallestRadiusMm = 1e-6;
 constexpr double kMaxRestoreMm = 0.5;  // of one pass: gaps farther inside are rough
 constexpr int kPushOutPasses = 24;
@@ -28,7 +30,7 @@ Vec3 limited(const Vec3& v, double length) noexcept {
 
 /// Constraints at the proxy; the smallest gap among them, or the reach when there is none.
 double Proxy::evaluate(contact::Method& method) noexcept {
-    const double reach = 2.0 * settings_.maxStepMm;
+    const double reach = reachMm_;
     method.constraints(pose_, reach, constraints_);
     ++passes_;
     // The exact depth joins them, so that the bur rests on edges between its points, and rolls over them without
@@ -100,6 +102,8 @@ void Proxy::settleOutside(contact::Method& method) noexcept {
 
 void Proxy::start(contact::Method& method, const core::Pose& deviceInTooth) noexcept {
     pose_ = deviceInTooth;
+    lastDevice_ = deviceInTooth;
+    reachMm_ = 2.0 * settings_.maxStepMm;
     radiusMm_ = settings_.maxStepMm;
     touching_ = false;
     passes_ = 0;
@@ -116,13 +120,19 @@ void Proxy::start(contact::Method& method, const core::Pose& deviceInTooth) noex
 
 /// A step towards `wanted` when nothing holds it back: as far as the clearance at the proxy proves free.
 Vec3 Proxy::freeStep(const Vec3& wanted, const Projection& allowed) const noexcept {
-    if (allowed.activeCount > 0 || wanted.norm() <= settings_.maxStepMm) return allowed.stepMm;
-    return limited(wanted, std::max(settings_.maxStepMm, clearanceMm_ - settings_.toleranceMm));
+    const double known = 0.5 * reachMm_;
+    if (allowed.activeCount > 0 || wanted.norm() <= known) return allowed.stepMm;
+    return limited(wanted, std::max(known, clearanceMm_ - settings_.toleranceMm));
 }
 
 void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth,
                    const contact::Depth& depthAtDevice) noexcept {
     const Vec3 target = deviceInTooth.positionMm;
+    // A bur that hardly moves need not look far around itself; steps that want more reach farther pass by pass.
+    const double moved = (target - lastDevice_.positionMm).norm() +
+                         kLeverMm * deviceInTooth.orientation.angularDistance(lastDevice_.orientation);
+    reachMm_ = std::clamp(4.0 * moved, kLeastReachMm, 2.0 * settings_.maxStepMm);
+    lastDevice_ = deviceInTooth;
     pose_.orientation = deviceInTooth.orientation;
     passes_ = 0;
     strongestTissue_ = tooth::Tissue::none;
@@ -163,11 +173,14 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth,
             Vec3 rest = step - restore;
             radiusMm_ = rest.dot(lastRest_) < 0.0 ? std::max(0.4 * radiusMm_, kSmallestRadiusMm)
                                                   : std::min(2.0 * radiusMm_, settings_.maxStepMm);
-            rest = limited(rest, radiusMm_);
+            const double known = 0.5 * reachMm_;
+            if (rest.norm() > known) reachMm_ = std::min(2.0 * reachMm_, 2.0 * settings_.maxStepMm);
+            rest = limited(rest, std::min(radiusMm_, known));
             lastRest_ = rest;
             step = restore + rest;
         } else {
             radiusMm_ = settings_.maxStepMm;
+            reachMm_ = std::min(2.0 * reachMm_, 2.0 * settings_.maxStepMm);
         }
         pose_.positionMm += step;
         settled = step.norm() < kSettledMm;

@@ -32,7 +32,7 @@ class Proxy {
 
     /// Goes to the device's pose whatever the tooth says: for a force that knows no proxy.
     void follow(const core::Pose& deviceInTooth) noexcept HANDPIECE_REALTIME {
-        pose_ = deviceInTooth;
+        pose_ = lastDevice_ = deviceInTooth;
         touching_ = false;
         memory_.clear();
     }
@@ -67,10 +67,11 @@ class Proxy {
     [[nodiscard]] core::Vec3 freeStep(const core::Vec3& wanted, const Projection& allowed) const noexcept;
 
     ProxySettings settings_;
-    core::Pose pose_;
+    core::Pose pose_, lastDevice_;
     contact::ConstraintSet constraints_;
     core::FixedVector<Memory, 6> memory_;  // exact depth names but one of two walls at a time
     double radiusMm_ = 0.1;                // trust region: shrinks while steps turn back on themselves
+    double reachMm_ = 0.2;                 // of the constraints asked for: twice the step that they allow
     double gapMm_ = 0.0, clearanceMm_ = 0.0;
     core::Vec3 lastRest_ = core::Vec3::Zero();
     bool touching_ = false;

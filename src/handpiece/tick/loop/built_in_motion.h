@@ -20,7 +20,7 @@ namespace handpiece::loop {
                                                    const core::Vec3& direction, double rangeMm);
 
 struct MotionOptions {
-    double depthMm = 2.0;  ///< how far beyond the surface the hand intends to go
+    double depthMm = 4.0;  ///< how far beyond the surface the hand intends to go
     double speedMmS = 10.0;
     double dwellS = 0.5;
     double clearanceMm = 1.0;  ///< above the surface at the start

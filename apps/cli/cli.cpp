@@ -5,13 +5,28 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "cli/completion.h"
+#include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
 
 namespace handpiece::cli {
 
-int run(int argc, const char* const* argv, const MethodRegistry& /*extraMethods*/) {
-    CLI::App app{"Handpiece: an open dental surgery simulator"};
+int run(int argc, const char* const* argv, const MethodRegistry& extraMethods) {
+    CLI::App app{"Handpiece: an open dental surgery simulator", "handpiece"};
     app.require_subcommand(1);
+    app.set_version_flag("--version", "handpiece " HANDPIECE_VERSION);
+    app.get_formatter()->column_width(34);
+    app.footer(
+        "Each command explains itself: handpiece COMMAND --help\n"
+        "Exit codes: 0 done, 1 failed (bad input, no permission), 2 wrong usage.");
+    addMakeCommand(app);
+    addMeshCommand(app);
+    addProbeCommand(app, extraMethods);
+    addRunCommand(app, extraMethods);
+    addReproduceCommand(app);
+    addBenchCommand(app);
+    addCompletionCommand(app);
+    installCancel();
     try {
         app.parse(argc, argv);
         return 0;
@@ -19,6 +34,9 @@ int run(int argc, const char* const* argv, const MethodRegistry& /*extraMethods*
         return app.exit(e) == 0 ? 0 : 2;
     } catch (const core::Error& e) {
         std::fprintf(stderr, "handpiece: %s\n", e.what());
+        return 1;
+    } catch (const std::bad_alloc&) {
+        std::fprintf(stderr, "handpiece: out of memory (give a coarser voxel or a smaller mesh)\n");
         return 1;
     }
 }

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Completion scripts for shells, made from the commands themselves and so always true.
+
+namespace CLI {
+class App;
+}
+
+namespace handpiece::cli {
+
+/// Adds `completion bash|zsh|fish`, which prints the script for what `app` holds when it runs.
+void addCompletionCommand(CLI::App& app);
+
+}  // namespace handpiece::cli

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/inputs.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "cli/progress_bar.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/model/instrument/shapes.h"
+#include "handpiece/tick/contact/hull_method.h"
+
+namespace handpiece::cli {
+
+namespace fs = std::filesystem;
+
+void addContactOptions(CLI::App& command, ContactInputs& inputs, const MethodRegistry& methods) {
+    std::string names = "field (ours, the concave tooth), hull (the paper's convex hull)";
+    for (const auto& [name, factory] : methods)
+        names += ", " + name;
+    command.add_option("--tooth", inputs.tooth, "case folder, or mesh file (.stl, .ply, .obj; mm)")->required();
+    command.add_option("--bur", inputs.bur, "bur by name (330, round-4, paper, cylinder-round:1.0x4.0) or mesh file")
+        ->capture_default_str();
+    command.add_option("--method", inputs.method, "contact method: " + names)->capture_default_str();
+    command.add_option("--voxel", inputs.voxelUm, "voxel of the distance field [um], 10 to 400")->capture_default_str();
+    command.add_flag("--no-cache", inputs.noCache, "build the field anew and keep nothing");
+    command.add_option("--threads", inputs.threads, "threads for long work; 0: all cores")->capture_default_str();
+}
+
+std::shared_ptr<const tooth::Tooth> loadTooth(const ContactInputs& inputs) {
+    core::setThreadCount(inputs.threads);
+    if (!(inputs.voxelUm >= 10.0 && inputs.voxelUm <= 400.0))
+        throw core::Error(fmt::format("a voxel of {} um", inputs.voxelUm), "--voxel", "give 10 to 400 um");
+    tooth::PrepareSettings settings;
+    settings.field.voxelMm = inputs.voxelUm * 1e-3;
+    // The band is counted in millimetres, but never thinner than a few voxels.
+    settings.field.bandOutMm = std::max(settings.field.bandOutMm, 2.0 * settings.field.voxelMm);
+    settings.field.bandInMm = std::max(settings.field.bandInMm, 4.0 * settings.field.voxelMm);
+    settings.useCache = !inputs.noCache;
+    ProgressBar bar("preparing the tooth");
+    return tooth::prepareTooth(tooth::readCase(inputs.tooth), settings, bar.listener());
+}
+
+std::shared_ptr<const instrument::Bur> loadBur(const std::string& nameOrFile) {
+    const bool isFile = geometry::meshFormatOf(nameOrFile) != geometry::MeshFormat::unknown;
+    if (isFile)
+        return std::make_shared<instrument::Bur>(instrument::burFromMesh(fs::path(nameOrFile).filename().string(),
+                                                                         geometry::readMesh(fs::path(nameOrFile))));
+    return std::make_shared<instrument::Bur>(instrument::makeBur(nameOrFile));
+}
+
+std::unique_ptr<contact::Method> makeMethod(const std::string& name, const MethodRegistry& extra,
+                                            std::shared_ptr<const tooth::Tooth> tooth,
+                                            std::shared_ptr<const instrument::Bur> bur) {
+    if (name == "field") return contact::makeFieldMethod(std::move(tooth), std::move(bur));
+    if (name == "hull") return contact::makeHullMethod(tooth->outer, bur->mesh());
+    if (const auto found = extra.find(name); found != extra.end())
+        return found->second(std::move(tooth), std::move(bur));
+    std::string names = "field, hull";
+    for (const auto& [known, factory] : extra)
+        names += ", " + known;
+    throw core::Error(fmt::format("there is no contact method called \"{}\"", name), "--method",
+                      "choose one of " + names);
+}
+
+double distanceToTouch(contact::Method& method, const core::Pose& start, const core::Vec3& direction, double reachMm) {
+    // Conservative advancement: the distance there is can always be gone.
+    core::Pose pose = start;
+    double gone = 0.0;
+    for (int i = 0; i < 1000 && gone < reachMm; ++i) {
+        const contact::Depth depth = method.depth(pose);
+        if (depth.depthMm >= -1e-7) return gone;
+        gone += std::max(-depth.depthMm, 1e-7);
+        pose.positionMm = start.positionMm + gone * direction;
+    }
+    if (gone < reachMm) return gone;
+    throw core::Error(fmt::format("the bur meets nothing within {:.1f} mm", reachMm), "motion",
+                      "the tooth's crown must point to +z: see docs/user-guide.md");
+}
+
+}  // namespace handpiece::cli

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// handpiece probe: depth, normal, area and tissue at given poses.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/csv.h"
+#include "cli/inputs.h"
+#include "cli/progress_bar.h"
+#include "handpiece/base/core/error.h"
+
+namespace handpiece::cli {
+namespace {
+
+struct ProbeOptions {
+    ContactInputs inputs;
+    std::string poses, out = "-";
+};
+
+void probe(const ProbeOptions& o, const MethodRegistry& methods) {
+    const CsvTable table = readCsv(o.poses, {"x", "y", "z", "qw", "qx", "qy", "qz"});
+    std::vector<core::Pose> poses;
+    for (std::size_t i = 0; i < table.rows.size(); ++i)
+        poses.push_back(poseFrom(table.rows[i], 0, table, i));
+    TextWriter out(o.out);  // first: a place that cannot be written is told before the work
+    const auto tooth = loadTooth(o.inputs);
+    const auto method = makeMethod(o.inputs.method, methods, tooth, loadBur(o.inputs.bur));
+    out.write("depth_mm,nx,ny,nz,area_mm2,tissue,time_ns\n");
+    contact::PatchSet patches;
+    for (const core::Pose& pose : poses) {
+        if (cancelled()) throw core::Error("cancelled");
+        const auto start = std::chrono::steady_clock::now();
+        const contact::Depth depth = method->depth(pose);
+        method->patches(pose, patches);
+        const auto ns =
+            std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count();
+        const core::Vec3& n = depth.normal;
+        out.write(fmt::format("{:.9f},{:.9f},{:.9f},{:.9f},{:.6f},{},{}\n", depth.depthMm, n.x(), n.y(), n.z(),
+                              patches.areaMm2, tooth::properties(depth.tissue).name, ns));
+    }
+    out.commit();
+}
+
+}  // namespace
+
+void addProbeCommand(CLI::App& app, const MethodRegistry& methods) {
+    CLI::App* command = app.add_subcommand("probe", "Signed distance or depth, normal, area and tissue at given poses");
+    const auto options = std::make_shared<ProbeOptions>();
+    addContactOptions(*command, options->inputs, methods);
+    command->add_option("--poses", options->poses, "CSV of x,y,z,qw,qx,qy,qz [mm], the bur's tip; - for standard input")
+        ->required();
+    command->add_option("--out", options->out, "CSV to write; - for standard output")->capture_default_str();
+    command->footer(
+        "Depth is positive inside, minus the distance outside; beyond 5 mm it is a bound and the normal is 0.\n"
+        "Example:\n  handpiece probe --tooth molar --bur round-4 --poses poses.csv --method field --out out.csv");
+    command->callback([options, &methods] { probe(*options, methods); });
+}
+
+}  // namespace handpiece::cli

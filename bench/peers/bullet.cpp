@@ -46,8 +46,8 @@ class Bullet final : public Query {
     double depthMm(const core::Pose& burInTooth) override {
         const core::Quat& q = burInTooth.orientation;
         bur_.setWorldTransform(btTransform(btQuaternion(static_cast<btScalar>(q.x()), static_cast<btScalar>(q.y()),
-                                             static_cast<btScalar>(q.z()), static_cast<btScalar>(q.w())),
-                                toBullet(burInTooth.positionMm)));
+                                                        static_cast<btScalar>(q.z()), static_cast<btScalar>(q.w())),
+                                           toBullet(burInTooth.positionMm)));
         Deepest deepest;
         world_.contactPairTest(&tooth_, &bur_, deepest);
         return deepest.depthMm > 0.0 ? deepest.depthMm : kNoContact;

@@ -27,8 +27,8 @@ TEST(Ripple, withoutFrictionStaysWithinEncoderStepsAndDoesNotGrow) {
     double worstOfBound = 0.0;
     for (const PassivityRow& r : passivityMap(sweep)) {
         SCOPED_TRACE(std::string(r.hand) + " hand, " + std::string(tooth::properties(r.tissue).name));
-        // On gum (0.035 N/mm) the damper's answer to one encoder step is nearly all of the bound, and a step there and one back
-        // exceed it by 15 %: measured, not allowed for by the formula.
+        // On gum (0.035 N/mm) the damper's answer to one encoder step is nearly all of the bound, and a step there and
+        // one back exceed it by 15 %: measured, not allowed for by the formula.
         const double allowed = r.tissue == tooth::Tissue::gum ? 1.2 * r.rippleBoundN : r.rippleBoundN;
         EXPECT_LE(r.rippleN, allowed) << r.rateHz << " Hz";
         EXPECT_FALSE(r.growing) << r.rateHz << " Hz";

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Teeth without files, and poses that press a bur into them by a given depth.
+
+#include <memory>
+
+#include "handpiece/model/instrument/shapes.h"
+#include "handpiece/model/tooth/field_builder.h"
+#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/tick/contact/field_method.h"
+#include "support/random.h"
+#include "tick/contact/grooved_ball.h"
+
+namespace handpiece::test {
+
+inline std::shared_ptr<const tooth::Tooth> toothOf(geometry::TriangleMesh mesh) {
+    geometry::TriangleTree tree(mesh);
+    tooth::ToothField field = tooth::FieldBuilder::fromSurface(mesh, tree, {}, {});
+    return std::make_shared<const tooth::Tooth>(
+        tooth::Tooth{"test", std::move(mesh), std::move(tree), std::move(field), false, 0.0});
+}
+
+/// A closed box; each face a grid of `steps` x `steps` squares.
+inline geometry::TriangleMesh boxMesh(const core::Vec3& low, const core::Vec3& high, int steps) {
+    geometry::TriangleMesh mesh;
+    std::map<std::array<int, 3>, std::uint32_t> known;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int side = 0; side < 2; ++side)
+            for (int i = 0; i < steps; ++i)
+                for (int j = 0; j < steps; ++j) {
+                    const auto at = [&](int a, int b) {
+                        std::array<int, 3> key{};
+                        key[static_cast<std::size_t>(axis)] = side * steps;
+                        key[static_cast<std::size_t>((axis + 1) % 3)] = a;
+                        key[static_cast<std::size_t>((axis + 2) % 3)] = b;
+                        const auto [it, added] =
+                            known.try_emplace(key, static_cast<std::uint32_t>(mesh.vertices.size()));
+                        if (added)
+                            mesh.vertices.push_back(
+                                low + (high - low).cwiseProduct(core::Vec3(key[0], key[1], key[2])) / steps);
+                        return it->second;
+                    };
+                    const std::uint32_t a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
+                    if (side == 1) {
+                        mesh.triangles.push_back({a, b, c});
+                        mesh.triangles.push_back({a, c, d});
+                    } else {
+                        mesh.triangles.push_back({a, c, b});
+                        mesh.triangles.push_back({a, d, c});
+                    }
+                }
+    return mesh;
+}
+
+/// A pose over the crown of groovedBall, pressed along its own axis until `method` reads about `depthMm`.
+inline core::Pose pressedPose(std::mt19937_64& generator, contact::Method& method, double depthMm) {
+    core::Vec3 d;
+    do
+        d = randomDirection(generator);
+    while (d.z() < 0.6);
+    const core::Vec3 up = (d + 0.5 * randomDirection(generator)).normalized();
+    core::Pose pose;
+    pose.orientation = core::Quat::FromTwoVectors(core::Vec3::UnitZ(), up);
+    pose.positionMm = d * grooveRadius(d);
+    for (int i = 0; i < 8; ++i)
+        pose.positionMm -= up * (depthMm - method.depth(pose).depthMm);
+    return pose;
+}
+
+}  // namespace handpiece::test

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/tick/contact/exact_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <vector>
+
+#include "handpiece/base/core/simd.h"
+#include "handpiece/tick/contact/exact_depth.h"
+#include "handpiece/tick/contact/ring_kernels.h"
+#include "tick/contact/contact_fixture.h"
+
+namespace handpiece::contact {
+namespace {
+
+using core::Vec3;
+
+const tooth::Tooth& grooved() {
+    static const auto tooth = test::toothOf(test::groovedBall(24));
+    return *tooth;
+}
+TreeView viewOf(const geometry::TriangleTree& tree) {
+    return {reinterpret_cast<const KernelNode*>(tree.nodes().data()),
+            reinterpret_cast<const KernelTriangle*>(tree.triangles().data()),
+            static_cast<std::uint32_t>(tree.triangles().size())};
+}
+std::vector<ExactKernels> allExact() {
+    std::vector<ExactKernels> all{simd_base::exactKernels()};
+#if defined(__x86_64__)
+    if (core::simdLevel() >= core::SimdLevel::avx2) all.push_back(simd_avx2::exactKernels());
+    if (core::simdLevel() >= core::SimdLevel::avx512) all.push_back(simd_avx512::exactKernels());
+#endif
+    return all;
+}
+Vec3 anywhere(std::mt19937_64& g) {
+    return Vec3(test::uniform(g, -5, 5), test::uniform(g, -5, 5), test::uniform(g, -5, 5));
+}
+
+TEST(ExactKernels, nearestPointIsThatOfTheTree) {
+    std::mt19937_64 g(test::seed());
+    const TreeView view = viewOf(grooved().tree);
+    for (int i = 0; i < 3000; ++i) {
+        const Vec3 p = anywhere(g);
+        SurfaceHit hit;
+        hit.value = std::numeric_limits<double>::infinity();
+        hit.triangle = i % 2 == 0 ? SurfaceHit::kNone : static_cast<std::uint32_t>(g() % view.triangleCount);
+        simd_base::exactKernels().nearestToPoint(view, p.data(), hit);
+        EXPECT_NEAR(hit.value, grooved().tree.nearest(p).distanceMm, 1e-12);
+    }
+}
+
+TEST(ExactKernels, aRunOfBallsAgreesWithManyPoints) {
+    std::mt19937_64 g(test::seed());
+    const TreeView view = viewOf(grooved().tree);
+    // A radius that is concave along the run: one piece, and several.
+    const std::vector<std::vector<double>> zs{{0.3, 2.1}, {0.2, 0.5, 1.1, 1.9, 2.6}},
+        rs{{0.3, 0.5}, {0.2, 0.38, 0.55, 0.6, 0.4}};
+    for (std::size_t k = 0; k < zs.size(); ++k) {
+        std::vector<double> slope;
+        for (std::size_t i = 0; i + 1 < zs[k].size(); ++i)
+            slope.push_back((rs[k][i + 1] - rs[k][i]) / (zs[k][i + 1] - zs[k][i]));
+        AxisRun run;
+        run.z = zs[k].data();
+        run.radius = rs[k].data();
+        run.slope = slope.data();
+        run.count = static_cast<std::int32_t>(zs[k].size());
+        run.maxRadius = 0.6f;
+        for (int i = 0; i < 300; ++i) {
+            const Vec3 tip = anywhere(g), axis = test::randomDirection(g);
+            SurfaceHit hit;
+            hit.value = std::numeric_limits<double>::infinity();
+            simd_base::exactKernels().nearestToRun(view, run, tip.data(), axis.data(), hit);
+            double sampled = std::numeric_limits<double>::infinity();
+            for (std::size_t piece = 0; piece < slope.size(); ++piece)
+                for (int s = 0; s <= 400; ++s) {
+                    const double dz = (zs[k][piece + 1] - zs[k][piece]) * s / 400.0;
+                    const double d = grooved().tree.nearest(tip + (zs[k][piece] + dz) * axis, 3.0).distanceMm;
+                    sampled = std::min(sampled, d - rs[k][piece] - slope[piece] * dz);
+                }
+            if (sampled > 2.0) continue;
+            EXPECT_LE(hit.value, sampled + 1e-9);
+            EXPECT_GE(hit.value, sampled - 2.0 * 2.0 / 400.0);
+            const Vec3 c = tip + hit.z * axis, q(hit.point[0], hit.point[1], hit.point[2]);
+            EXPECT_NEAR(grooved().tree.nearest(q).distanceMm, 0.0, 1e-9);
+            EXPECT_GE((c - q).norm() + 1e-9, grooved().tree.nearest(c).distanceMm);
+        }
+    }
+}
+
+TEST(ExactKernels, everyInstructionSetGivesTheSameBits) {
+    const std::vector<ExactKernels> all = allExact();
+    if (all.size() == 1) GTEST_SKIP() << "this processor has one level only";
+    std::mt19937_64 g(test::seed());
+    const TreeView view = viewOf(grooved().tree);
+    const double z[3] = {0.3, 0.8, 2.0}, radius[3] = {0.3, 0.5, 0.5}, slope[2] = {0.4, 0.0};
+    AxisRun run;
+    run.z = z;
+    run.radius = radius;
+    run.slope = slope;
+    run.count = 3;
+    run.maxRadius = 0.5f;
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 tip = anywhere(g), axis = test::randomDirection(g);
+        for (const bool point : {true, false}) {
+            SurfaceHit first;
+            for (std::size_t level = 0; level < all.size(); ++level) {
+                SurfaceHit hit;
+                hit.value = std::numeric_limits<double>::infinity();
+                if (point)
+                    all[level].nearestToPoint(view, tip.data(), hit);
+                else
+                    all[level].nearestToRun(view, run, tip.data(), axis.data(), hit);
+                if (level == 0) first = hit;
+                EXPECT_EQ(std::memcmp(&hit.value, &first.value, 8), 0);
+                EXPECT_EQ(std::memcmp(hit.point, first.point, 24), 0);
+                EXPECT_EQ(hit.triangle, first.triangle);
+            }
+        }
+    }
+}
+
+TEST(RingKernels, lookupsAreThoseOfTheFieldAtEveryLevel) {
+    std::vector<RingKernels> all{simd_base::ringKernels()};
+#if defined(__x86_64__)
+    if (core::simdLevel() >= core::SimdLevel::avx2) all.push_back(simd_avx2::ringKernels());
+    if (core::simdLevel() >= core::SimdLevel::avx512) all.push_back(simd_avx512::ringKernels());
+#endif
+    std::mt19937_64 g(test::seed());
+    const tooth::ToothField& field = grooved().field;
+    const tooth::FieldView view = field.view();
+    double cosines[8], sines[8];
+    for (int j = 0; j < 8; ++j) {
+        cosines[j] = std::cos(0.4 * j);
+        sines[j] = std::sin(0.4 * j);
+    }
+    int fine = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3 d = test::randomDirection(g), centre = d * (test::grooveRadius(d) + test::uniform(g, -0.5, 0.5)),
+                   x = 0.2 * test::randomDirection(g), y = 0.2 * test::randomDirection(g);
+        FieldRow row;
+        for (int k = 0; k < 3; ++k) {
+            row.centre[k] = centre[k];
+            row.x[k] = x[k];
+            row.y[k] = y[k];
+        }
+        row.cosines = cosines;
+        row.sines = sines;
+        FieldEight first;
+        for (std::size_t level = 0; level < all.size(); ++level) {
+            FieldEight eight;
+            float distances[8];
+            all[level].gradients(view, row, 0, eight);
+            all[level].distances(view, row, 0, distances);
+            if (level == 0) first = eight;
+            EXPECT_EQ(std::memcmp(&eight, &first, sizeof eight), 0);
+            EXPECT_EQ(std::memcmp(distances, first.distance, sizeof distances), 0);
+        }
+        for (int j = 0; j < 8; ++j) {
+            const Vec3 p = centre + cosines[j] * x + sines[j] * y;
+            if (field.isFine(p)) {
+                ++fine;
+                EXPECT_NEAR(first.distance[j], field.distance(p), 1e-6);
+                EXPECT_GT(Vec3(first.x[j], first.y[j], first.z[j]).dot(field.normal(p)), 0.0);
+            } else {
+                EXPECT_EQ(first.distance[j] < 0.0f, field.distance(p) < 0.0);
+            }
+        }
+    }
+    EXPECT_GT(fine, 1000);
+}
+
+}  // namespace
+}  // namespace handpiece::contact

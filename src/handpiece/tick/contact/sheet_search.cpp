@@ -12,11 +12,11 @@ using core::Vec3;
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kCellMm = 0.07;  // cells are climbed, not cut, below this
+constexpr double kCellMm = 0.15;  // cells are climbed, not cut, below this
 constexpr double kFirstCellMm = 0.35;
 constexpr double kToleranceMm = 2e-8;
-constexpr double kFinalWindowMm = 1e-6;
-constexpr int kMaxSteps = 48, kMaxClimbs = 6;
+constexpr double kFinalWindowMm = 5e-6;
+constexpr int kMaxSteps = 48, kMaxClimbs = 5;
 constexpr double kArcFloorMm = 0.05;  // about the axis an angle is no measure of length
 
 /// A triangle near the ball being climbed: what it says of the depth there and how that changes.
@@ -184,6 +184,19 @@ void SheetSearch::searchSheet(const ExactSurface& surface, const Sheet& sheet, c
             if (found.depthMm > best.depthMm) best = found;
             cell.value = found.depthMm;
             cell.upper = found.depthMm + reach;
+            if (found.inside) {
+                // No ball of the cell is deeper than its own distance to this surface point allows: to first order the
+                // slope at the middle, and a sphere's curvature beyond.
+                const Vec3 to = found.surfaceMm - spot.centre;
+                const double d = to.norm(), arcHalf = spot.arcPerRad * cell.halfAngle * (rho / std::max(spot.arcPerRad, rho));
+                if (d > 1e-6) {
+                    const double slopeU = std::abs(spot.radiusAlongU - to.dot(spot.alongU) / d);
+                    const double slopeArc = std::abs(to.dot(spot.alongArc) / d);
+                    const double move = std::hypot(cell.halfU, arc);
+                    cell.upper = std::min(cell.upper, found.depthMm + slopeU * cell.halfU + slopeArc * arcHalf +
+                                                          0.5 * move * move / d + 2.0 * arc * cell.halfAngle);
+                }
+            }
             cell.triangle = found.triangle;
             cells_[kept++] = cell;
         }
@@ -256,6 +269,7 @@ void SheetSearch::climb(const ExactSurface& surface, const Sheet& sheet, const F
     BallDepth here = surface.ball(spot.centre, spot.radius, seed);
     remember(here.triangle);
     for (int step = 0; step < kMaxSteps && window > kFinalWindowMm; ++step) {
+        if (here.depthMm + 4.0 * window < best.depthMm) break;  // another top is higher than what is left to climb
         Support supports[kActive];
         int count = 0;
         const auto addSupport = [&](const Vec3& outOfTooth, double depth) {

@@ -16,8 +16,6 @@ namespace {
 using core::Vec3;
 using geometry::TreeTriangle;
 
-constexpr std::uint8_t kUnset = 255;
-
 NearestKernel kernelOfThisMachine() {
 #if defined(__x86_64__)
     switch (core::simdLevel()) {

@@ -6,6 +6,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/tick/contact/exact_depth.h"
+#include "handpiece/tick/contact/field_depth.h"
 #include "handpiece/tick/contact/ring_sensor.h"
 #include "handpiece/tick/contact/sheet_search.h"
 
@@ -24,10 +25,11 @@ class FieldMethod final : public Method {
         : tooth_(std::move(tooth)),
           bur_(std::move(bur)),
           settings_(settings),
-          surface_(tooth_->tree, tooth_->field, core::simdLevel()),
+          surface_(tooth_->tree, tooth_->field, core::simdLevel(), settings.depthSource == DepthSource::field),
           axis_(*bur_),
           sheets_(*bur_),
           rings_(tooth_->field, *bur_, core::simdLevel()),
+          field_(tooth_->field, *bur_),
           farthestMm_(std::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {}
 
     [[nodiscard]] const char* name() const noexcept override { return "field"; }
@@ -41,11 +43,17 @@ class FieldMethod final : public Method {
         }
         if (isStillFar(burInTooth)) return result;
         BallDepth best;
-        axis_.search(surface_, burInTooth, best);
+        if (settings_.depthSource == DepthSource::field) {
+            rings_.constraints(burInTooth, tooth_->field.settings().bandOutMm, touching_);
+            field_.search(burInTooth, touching_, best);
+        } else {
+            axis_.search(surface_, burInTooth, best);
+        }
         sheets_.search(surface_, burInTooth, best);
-        if (best.depthMm < -settings_.reachMm) {
+        if (!(best.depthMm >= -settings_.reachMm)) {
             farPose_ = burInTooth;
-            clearMm_ = -best.depthMm;
+            // The field alone sees nothing beyond its band, and promises nothing about it.
+            clearMm_ = std::isfinite(best.depthMm) ? -best.depthMm : 0.0;
             return result;
         }
         clearMm_ = 0.0;
@@ -87,6 +95,8 @@ class FieldMethod final : public Method {
     AxisSearch axis_;
     SheetSearch sheets_;
     RingSensor rings_;
+    FieldDepth field_;
+    ConstraintSet touching_;
     double farthestMm_;
     core::Pose farPose_;
     double clearMm_ = 0.0;  ///< distance at farPose_ when that was beyond reach

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Our contact: exact depth on the bur's medial axis against the triangles where the surface is uncut, the distance field
-/// elsewhere; patches and constraints from the bur's surface rings in the field.
+/// Our contact: exact depth on the bur's medial axis against the triangles where the surface is uncut, the distance
+/// field elsewhere; patches and constraints from the bur's surface rings in the field.
 
 #include <memory>
 
@@ -14,7 +14,7 @@ namespace handpiece::contact {
 
 enum class DepthSource : std::uint8_t {
     exact,  ///< triangles of the uncut surface (the default)
-    field,  ///< the distance field alone, as after a cut
+    field,  ///< the distance field alone, as after a cut; sees no farther out than the field's band
 };
 
 struct FieldMethodSettings {

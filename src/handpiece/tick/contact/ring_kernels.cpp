@@ -130,7 +130,9 @@ void gradients(const tooth::FieldView& field, const FieldRow& row, int first, Fi
     const Ints nearest = (t[0] > 0.5f ? Ints{} + 1 : Ints{}) + (t[1] > 0.5f ? Ints{} + kY : Ints{}) +
                          (t[2] > 0.5f ? Ints{} + kZ : Ints{});
     for (int lane = 0; lane < 8; ++lane)
-        out.tissue[lane] = places.allStored || places.corner[lane] >= 0 ? field.tissue[places.corner[lane] + nearest[lane]] : kDeepTissue;
+        out.tissue[lane] = places.allStored || places.corner[lane] >= 0
+                               ? field.tissue[places.corner[lane] + nearest[lane]]
+                               : kDeepTissue;
     __builtin_memcpy(out.x, &gx, sizeof gx);
     __builtin_memcpy(out.y, &gy, sizeof gy);
     __builtin_memcpy(out.z, &gz, sizeof gz);

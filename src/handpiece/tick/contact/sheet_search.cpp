@@ -188,7 +188,8 @@ void SheetSearch::searchSheet(const ExactSurface& surface, const Sheet& sheet, c
                 // No ball of the cell is deeper than its own distance to this surface point allows: to first order the
                 // slope at the middle, and a sphere's curvature beyond.
                 const Vec3 to = found.surfaceMm - spot.centre;
-                const double d = to.norm(), arcHalf = spot.arcPerRad * cell.halfAngle * (rho / std::max(spot.arcPerRad, rho));
+                const double d = to.norm(),
+                             arcHalf = spot.arcPerRad * cell.halfAngle * (rho / std::max(spot.arcPerRad, rho));
                 if (d > 1e-6) {
                     const double slopeU = std::abs(spot.radiusAlongU - to.dot(spot.alongU) / d);
                     const double slopeArc = std::abs(to.dot(spot.alongArc) / d);
@@ -267,6 +268,9 @@ void SheetSearch::climb(const ExactSurface& surface, const Sheet& sheet, const F
     };
     Spot spot = spotAt(sheet, frame, u, angle);
     BallDepth here = surface.ball(spot.centre, spot.radius, seed);
+    endU = u;
+    endAngle = angle;
+    if (here.triangle == geometry::kNoTriangle) return;
     remember(here.triangle);
     for (int step = 0; step < kMaxSteps && window > kFinalWindowMm; ++step) {
         if (here.depthMm + 4.0 * window < best.depthMm) break;  // another top is higher than what is left to climb
@@ -306,8 +310,8 @@ void SheetSearch::climb(const ExactSurface& surface, const Sheet& sheet, const F
         const double newU = std::clamp(u + stepU, 0.0, sheet.u.back()), newAngle = angle + stepArc / spot.arcPerRad;
         const Spot there = spotAt(sheet, frame, newU, newAngle);
         const BallDepth found = surface.ball(there.centre, there.radius, here.triangle);
-        remember(found.triangle);
-        const double gained = found.depthMm - here.depthMm;
+        const double gained = found.depthMm - here.depthMm;  // nothing found: minus infinity
+        if (found.triangle != geometry::kNoTriangle) remember(found.triangle);
         if (gained > 0.0) {
             u = newU;
             angle = newAngle;

@@ -6,6 +6,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/decimate.h"
 #include "handpiece/base/geometry/isosurface.h"
+#include "handpiece/model/starter/scene.h"
 #include "handpiece/model/starter/shape.h"
 #include "handpiece/model/starter/starter.h"
 
@@ -25,18 +26,6 @@ constexpr std::size_t kMostPartFaces = 120000, kFewestPartFaces = 2000;
 Progress between(const Progress& progress, double from, double to) {
     if (!progress) return {};
     return [progress, from, to](double fraction) { return progress(from + fraction * (to - from)); };
-}
-
-Anatomy anatomyOf(ToothKind kind) {
-    switch (kind) {
-        case ToothKind::upperIncisor:
-            return upperIncisorAnatomy();
-        case ToothKind::upperPremolar:
-            return upperPremolarAnatomy();
-        case ToothKind::lowerFirstMolar:
-            break;
-    }
-    return lowerFirstMolarAnatomy();
 }
 
 struct Surface {
@@ -81,6 +70,18 @@ tooth::Part partOf(const char* name, tooth::Tissue tissue, TriangleMesh mesh) {
 }
 
 }  // namespace
+
+Anatomy anatomyOf(ToothKind kind) {
+    switch (kind) {
+        case ToothKind::upperIncisor:
+            return upperIncisorAnatomy();
+        case ToothKind::upperPremolar:
+            return upperPremolarAnatomy();
+        case ToothKind::lowerFirstMolar:
+            break;
+    }
+    return lowerFirstMolarAnatomy();
+}
 
 const std::vector<ToothKindInfo>& toothKinds() {
     // Buccal: for a lower right tooth (46) +x mesial is forwards and +z up, so +y is lingual. For an upper right tooth
@@ -149,6 +150,7 @@ tooth::Case makeTooth(ToothKind kind, const ToothOptions& options, const Progres
                                         .mesh));
         done += step;
     }
+    if (options.scene) made.scenery = makeScene(kind, between(progress, last, 1.0));
     core::report(progress, 1.0);
     return made;
 }

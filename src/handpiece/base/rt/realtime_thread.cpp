@@ -32,6 +32,13 @@ std::string refusal(int code) {
     return "no permission";
 }
 
+/// Under a limit only what there is now is locked: locking the future as well would make later allocations fail.
+int lockFlags() {
+    rlimit limit{};
+    const bool unlimited = getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY;
+    return unlimited ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT;
+}
+
 }  // namespace
 
 SchedulingGrant requestRealtime(int priority) {
@@ -46,8 +53,7 @@ SchedulingGrant requestRealtime(int priority) {
         grant.line =
             fmt::format("real-time scheduling: not permitted ({}): running under the normal scheduler", refusal(code));
     }
-    grant.memoryLocked = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
-    if (!grant.memoryLocked) munlockall();  // a half-granted lock would make later allocations fail
+    grant.memoryLocked = mlockall(lockFlags()) == 0;
     grant.line += grant.memoryLocked ? "; memory locked" : "; memory not locked";
 #ifdef __linux__
     grant.timerSlack = prctl(PR_SET_TIMERSLACK, 1UL) == 0;

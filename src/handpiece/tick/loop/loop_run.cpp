@@ -9,6 +9,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/rt/realtime_thread.h"
+#include "handpiece/tick/device/capability.h"
 #include "handpiece/tick/loop/haptic_loop.h"
 
 namespace handpiece::loop {
@@ -74,7 +75,9 @@ HapticLoop::HapticLoop(const LoopSettings& settings, std::unique_ptr<device::Dev
       method_(required(std::move(method), "contact method")),
       parameters_(std::make_unique<force::Parameters>(parameters)),
       force_(limitsOf(device_->capability()), parameters),
-      samples_(settings.queueCapacity) {}
+      samples_(settings.queueCapacity) {
+    device::validate(device_->capability());
+}
 
 void HapticLoop::setParameters(const force::Parameters& parameters) {
     validate(parameters);

@@ -9,9 +9,9 @@
 namespace handpiece::test {
 namespace {
 
-constexpr double kCoarseMm = 0.02;     // cells of the first pass on a curve or sheet
-constexpr double kFinalMm = 2e-8;      // window at which refinement stops
-constexpr std::size_t kRefined = 6;    // places refined per curve
+constexpr double kCoarseMm = 0.02;   // cells of the first pass on a curve or sheet
+constexpr double kFinalMm = 2e-8;    // window at which refinement stops
+constexpr std::size_t kRefined = 6;  // places refined per curve
 
 /// One curve of the medial region seen as a surface (u, v): u a length along the curve, v an arc about the axis.
 class Curve {
@@ -20,8 +20,10 @@ class Curve {
         : tooth_(tooth), pose_(pose), balls_(curve.balls), onAxis_(curve.onAxis) {
         lengths_.push_back(0.0);
         for (std::size_t i = 1; i < balls_.size(); ++i)
-            lengths_.push_back(lengths_.back() + std::hypot(balls_[i].rhoMm - balls_[i - 1].rhoMm, balls_[i].zMm - balls_[i - 1].zMm));
-        for (const auto& b : balls_) maxRho_ = std::max(maxRho_, b.rhoMm);
+            lengths_.push_back(lengths_.back() +
+                               std::hypot(balls_[i].rhoMm - balls_[i - 1].rhoMm, balls_[i].zMm - balls_[i - 1].zMm));
+        for (const auto& b : balls_)
+            maxRho_ = std::max(maxRho_, b.rhoMm);
     }
     [[nodiscard]] double length() const { return lengths_.back(); }
     [[nodiscard]] bool onAxis() const { return onAxis_; }
@@ -29,13 +31,15 @@ class Curve {
 
     [[nodiscard]] core::Vec3 at(double u, double angle, double& radius) const {
         u = std::clamp(u, 0.0, length());
-        std::size_t i = static_cast<std::size_t>(std::upper_bound(lengths_.begin(), lengths_.end(), u) - lengths_.begin());
+        std::size_t i =
+            static_cast<std::size_t>(std::upper_bound(lengths_.begin(), lengths_.end(), u) - lengths_.begin());
         i = std::clamp<std::size_t>(i, 1, std::max<std::size_t>(balls_.size() - 1, 1)) - 1;
         const std::size_t j = std::min(i + 1, balls_.size() - 1);
         const double span = lengths_[j] - lengths_[i], t = span > 0.0 ? (u - lengths_[i]) / span : 0.0;
         const double rho = balls_[i].rhoMm + t * (balls_[j].rhoMm - balls_[i].rhoMm);
         radius = balls_[i].radiusMm + t * (balls_[j].radiusMm - balls_[i].radiusMm);
-        return pose_.apply({rho * std::cos(angle), rho * std::sin(angle), balls_[i].zMm + t * (balls_[j].zMm - balls_[i].zMm)});
+        return pose_.apply(
+            {rho * std::cos(angle), rho * std::sin(angle), balls_[i].zMm + t * (balls_[j].zMm - balls_[i].zMm)});
     }
     [[nodiscard]] double value(double u, double angle) const {
         double radius = 0.0;
@@ -116,7 +120,8 @@ void searchCurve(const Curve& curve, double& bestValue, core::Vec3& bestPoint) {
         if (next.size() == cells.size()) break;
         cells.swap(next);
     }
-    for (const Cell& c : cells) places.push_back({c.value, c.u, c.angle});
+    for (const Cell& c : cells)
+        places.push_back({c.value, c.u, c.angle});
     if (!curve.onAxis()) {  // the ends of a sheet by themselves: a sharp rim often decides
         const double rho = std::max(curve.maxRho(), 1e-9);
         const int n = static_cast<int>(std::ceil(tau * rho / kCoarseMm));
@@ -170,8 +175,10 @@ BruteForceResult bruteForceDepth(const geometry::TriangleTree& tooth, const inst
     for (const instrument::SurfaceRing& ring : bur.rings())
         for (std::uint32_t j = 0; j < ring.count; j += 4) {
             const double angle = 2.0 * std::numbers::pi * (j + 0.5) / ring.count;
-            const core::Vec3 x = burInTooth.apply({ring.rhoMm * std::cos(angle), ring.rhoMm * std::sin(angle), ring.zMm});
-            if (best > 0.0 && tooth.nearest(x, best).triangle == geometry::kNoTriangle && tooth.signedDistance(x) > 0.0) continue;
+            const core::Vec3 x =
+                burInTooth.apply({ring.rhoMm * std::cos(angle), ring.rhoMm * std::sin(angle), ring.zMm});
+            if (best > 0.0 && tooth.nearest(x, best).triangle == geometry::kNoTriangle && tooth.signedDistance(x) > 0.0)
+                continue;
             const double v = -tooth.signedDistance(x);
             if (v > best) best = v, point = x;
         }

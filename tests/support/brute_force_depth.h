@@ -10,12 +10,12 @@
 namespace handpiece::test {
 
 struct BruteForceResult {
-    double depthMm = 0.0;          ///< - min over x of (phiT(x) + phiB(x)), to about 1e-7 mm
+    double depthMm = 0.0;                     ///< - min over x of (phiT(x) + phiB(x)), to about 1e-7 mm
     core::Vec3 pointMm = core::Vec3::Zero();  ///< an x that attains it, tooth frame
 };
 
-/// Dense points on the bur's medial region, its surface and the tooth's vertices, exact distances to the triangles, then
-/// every promising place refined by shrinking grids. A few milliseconds a pose. The tree's mesh must be closed.
+/// Dense points on the bur's medial region, its surface and the tooth's vertices, exact distances to the triangles,
+/// then every promising place refined by shrinking grids. A few milliseconds a pose. The tree's mesh must be closed.
 [[nodiscard]] BruteForceResult bruteForceDepth(const geometry::TriangleTree& tooth, const instrument::Bur& bur,
                                                const core::Pose& burInTooth);
 

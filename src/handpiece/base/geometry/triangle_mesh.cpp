@@ -18,12 +18,14 @@ double enclosedVolumeMm3(const TriangleMesh& mesh) {
     const core::Vec3 origin = mesh.vertices.front();
     double sixTimes = 0.0;
     for (const Triangle& t : mesh.triangles)
-        sixTimes += (mesh.vertices[t[0]] - origin).dot((mesh.vertices[t[1]] - origin).cross(mesh.vertices[t[2]] - origin));
+        sixTimes +=
+            (mesh.vertices[t[0]] - origin).dot((mesh.vertices[t[1]] - origin).cross(mesh.vertices[t[2]] - origin));
     return sixTimes / 6.0;
 }
 
 TriangleMesh transformed(TriangleMesh mesh, const core::Pose& pose) {
-    for (core::Vec3& v : mesh.vertices) v = pose.apply(v);
+    for (core::Vec3& v : mesh.vertices)
+        v = pose.apply(v);
     return mesh;
 }
 

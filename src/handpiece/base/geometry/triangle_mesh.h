@@ -20,7 +20,8 @@ struct TriangleMesh {
 
     [[nodiscard]] core::Box bounds() const {
         core::Box box;
-        for (const core::Vec3& v : vertices) box.extend(v);
+        for (const core::Vec3& v : vertices)
+            box.extend(v);
         return box;
     }
 };

@@ -12,8 +12,8 @@ namespace handpiece::messages {
 /// One tick. Poses are bur in tooth [mm], quaternions w x y z; forces on the hand in the tooth frame [N].
 struct HapticSample {
     std::uint64_t tick = 0;
-    double timeS = 0.0;                       ///< nominal: tick x period
-    std::array<double, 3> positionMm{};       ///< as read from the device (quantised, delayed)
+    double timeS = 0.0;                  ///< nominal: tick x period
+    std::array<double, 3> positionMm{};  ///< as read from the device (quantised, delayed)
     std::array<double, 4> orientation{1, 0, 0, 0};
     std::array<double, 3> velocityMmS{};      ///< filtered
     std::array<double, 3> forceN{};           ///< commanded
@@ -22,21 +22,21 @@ struct HapticSample {
     std::array<double, 3> truePositionMm{};   ///< of the simulated device's mass; as read for real devices
     std::array<double, 3> proxyPositionMm{};  ///< what the eye sees
     std::array<double, 4> proxyOrientation{1, 0, 0, 0};
-    std::array<double, 3> appliedForceN{};    ///< that acts on the device now, after its delay
-    double contactAreaMm2 = 0.0;              ///< at the proxy
-    std::uint8_t tissue = 0;                  ///< tooth::Tissue that carries most of the pressure
-    std::uint8_t contactStatus = 0;           ///< contact::Status
+    std::array<double, 3> appliedForceN{};  ///< that acts on the device now, after its delay
+    double contactAreaMm2 = 0.0;            ///< at the proxy
+    std::uint8_t tissue = 0;                ///< tooth::Tissue that carries most of the pressure
+    std::uint8_t contactStatus = 0;         ///< contact::Status
     std::uint16_t patchCount = 0;
-    std::uint32_t flags = 0;                  ///< SampleFlag bits
-    float workUs = 0.0f;                      ///< from reading the pose to having the force
-    float lateUs = 0.0f;                      ///< start of the tick after its nominal time
+    std::uint32_t flags = 0;  ///< SampleFlag bits
+    float workUs = 0.0f;      ///< from reading the pose to having the force
+    float lateUs = 0.0f;      ///< start of the tick after its nominal time
 };
 
 enum SampleFlag : std::uint32_t {
-    kForceLimited = 1,   ///< clamped to the device's largest force
-    kSlopeLimited = 2,   ///< the change of force was limited
-    kInvalidPose = 4,    ///< the device's pose was not finite, or jumped: force is zero
-    kFault = 8,          ///< force is held at zero until reset
+    kForceLimited = 1,  ///< clamped to the device's largest force
+    kSlopeLimited = 2,  ///< the change of force was limited
+    kInvalidPose = 4,   ///< the device's pose was not finite, or jumped: force is zero
+    kFault = 8,         ///< force is held at zero until reset
 };
 
 static_assert(std::is_trivially_copyable_v<HapticSample>);

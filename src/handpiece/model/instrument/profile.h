@@ -36,8 +36,8 @@ struct Profile {
 [[nodiscard]] double volumeMm3(const Profile& profile);
 /// Area of the surface of revolution [mm2], flat ends included, closed form.
 [[nodiscard]] double surfaceAreaMm2(const Profile& profile);
-/// Throws core::Error unless the outline is connected, starts and ends on the axis, has rho >= 0, rises from 0, does not
-/// cross itself or turn back on itself (arcs judged by chords of 2 degrees) and encloses volume.
+/// Throws core::Error unless the outline is connected, starts and ends on the axis, has rho >= 0, rises from 0, does
+/// not cross itself or turn back on itself (arcs judged by chords of 2 degrees) and encloses volume.
 void validate(const Profile& profile);
 
 }  // namespace handpiece::instrument

@@ -28,13 +28,13 @@ struct Part {
 /// Tooth frame: millimetres, +z occlusal, +x mesial, +y completes the right hand.
 struct Case {
     std::string name;
-    std::string kind;          ///< "lower-first-molar"; may be empty
-    int fdiNumber = 0;         ///< 0 when unknown
-    int buccalSign = 0;        ///< +1: buccal is +y, -1: -y, 0 unknown
-    std::filesystem::path source;   ///< folder or file, for messages and for the cache beside it
-    geometry::TriangleMesh outer;   ///< the whole tooth as one closed surface; empty when the case has none
-    std::vector<Part> parts;        ///< tissues of the tooth itself
-    std::vector<Part> scenery;      ///< neighbours, gum, bone: seen, not felt in this version
+    std::string kind;              ///< "lower-first-molar"; may be empty
+    int fdiNumber = 0;             ///< 0 when unknown
+    int buccalSign = 0;            ///< +1: buccal is +y, -1: -y, 0 unknown
+    std::filesystem::path source;  ///< folder or file, for messages and for the cache beside it
+    geometry::TriangleMesh outer;  ///< the whole tooth as one closed surface; empty when the case has none
+    std::vector<Part> parts;       ///< tissues of the tooth itself
+    std::vector<Part> scenery;     ///< neighbours, gum, bone: seen, not felt in this version
 };
 
 /// Reads a case folder, or a single mesh file. Throws core::Error (what, where, remedy).
@@ -49,8 +49,8 @@ void requireSolid(const geometry::TriangleMesh& mesh, const std::string& where);
 /// Everything the tick reads of a tooth. Immutable; shared by pointer.
 struct Tooth {
     std::string name;
-    geometry::TriangleMesh outer;       ///< as felt
-    geometry::TriangleTree tree;        ///< exact distances to `outer`
+    geometry::TriangleMesh outer;  ///< as felt
+    geometry::TriangleTree tree;   ///< exact distances to `outer`
     ToothField field;
     bool fromCache = false;
     double buildSeconds = 0.0;  ///< that prepareTooth took, built or reopened

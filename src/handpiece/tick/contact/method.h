@@ -3,8 +3,8 @@
 /// @file
 /// Where the bur touches the tooth.
 ///
-/// Second stage of the tick: device -> [contact] -> force -> cutting. Reads a pose, writes plain results; knows nothing of
-/// devices, forces or screens. All in the tooth frame, millimetres, double precision.
+/// Second stage of the tick: device -> [contact] -> force -> cutting. Reads a pose, writes plain results; knows nothing
+/// of devices, forces or screens. All in the tooth frame, millimetres, double precision.
 
 #include <cstdint>
 #include <limits>
@@ -20,17 +20,19 @@ namespace handpiece::contact {
 enum class Status : std::uint8_t {
     ok,           ///< all that was asked for
     beyondReach,  ///< no surface within reach: depthMm is -reach, a bound only; no normal
-    truncated,    ///< a fixed capacity was full; the most important entries were kept (raise the capacity named in the docs)
+    truncated,    ///< a fixed capacity was full; the most important entries were kept (raise the capacity named in the
+                  ///< docs)
     invalidPose,  ///< the pose was not finite; results are those of no contact
 };
 
 /// How deep the bur is in the tooth, or how far from it.
 struct Depth {
-    /// - min over x of (phiT(x) + phiB(x)) [mm]: positive when overlapping, zero at touch, minus the distance when apart.
+    /// - min over x of (phiT(x) + phiB(x)) [mm]: positive when overlapping, zero at touch, minus the distance when
+    /// apart.
     double depthMm = -std::numeric_limits<double>::infinity();
-    core::Vec3 normal = core::Vec3::Zero();      ///< unit, out of the tooth; zero beyond reach
+    core::Vec3 normal = core::Vec3::Zero();        ///< unit, out of the tooth; zero beyond reach
     core::Vec3 toothPointMm = core::Vec3::Zero();  ///< the surface point of the tooth that decides
-    tooth::Tissue tissue = tooth::Tissue::none;  ///< at that point
+    tooth::Tissue tissue = tooth::Tissue::none;    ///< at that point
     Status status = Status::beyondReach;
 };
 
@@ -39,8 +41,8 @@ struct Patch {
     core::Vec3 centreMm = core::Vec3::Zero();  ///< area- and pressure-weighted
     core::Vec3 normal = core::Vec3::Zero();    ///< unit, out of the tooth
     double areaMm2 = 0.0;
-    double maxDepthMm = 0.0;                   ///< of its points, inside the tooth
-    double pressureShare = 0.0;                ///< of all patches, sums to 1: sum of area x s, s = max(0, margin - phiT)
+    double maxDepthMm = 0.0;     ///< of its points, inside the tooth
+    double pressureShare = 0.0;  ///< of all patches, sums to 1: sum of area x s, s = max(0, margin - phiT)
     tooth::Tissue tissue = tooth::Tissue::none;  ///< that carries most of its pressure
 };
 inline constexpr double kContactMarginMm = 0.02;
@@ -48,12 +50,13 @@ inline constexpr std::size_t kMaxPatches = 16;
 
 struct PatchSet {
     core::FixedVector<Patch, kMaxPatches> patches;
-    double areaMm2 = 0.0;                                    ///< of all
-    std::array<double, tooth::kTissueCount> tissueShare{};   ///< pressure share by tissue, sums to 1 in contact
+    double areaMm2 = 0.0;                                   ///< of all
+    std::array<double, tooth::kTissueCount> tissueShare{};  ///< pressure share by tissue, sums to 1 in contact
     Status status = Status::ok;
 };
 
-/// A half-space the bur must stay in, linearised at the pose asked about: gapMm + normal . dp >= 0 for a translation dp.
+/// A half-space the bur must stay in, linearised at the pose asked about: gapMm + normal . dp >= 0 for a translation
+/// dp.
 struct Constraint {
     core::Vec3 normal = core::Vec3::Zero();   ///< unit, out of the tooth
     double gapMm = 0.0;                       ///< signed distance of the bur's point there; negative inside
@@ -77,9 +80,10 @@ class Method {
     /// Contact patches with area and tissue at a pose. A method that knows only depth reports one patch without area.
     virtual void patches(const core::Pose& burInTooth, PatchSet& out) noexcept HANDPIECE_REALTIME;
 
-    /// Half-spaces within `reachMm` of the bur at a pose, enough of them that the bur can slide along every wall it touches.
-    /// The default gives the one of depth().
-    virtual Status constraints(const core::Pose& burInTooth, double reachMm, ConstraintSet& out) noexcept HANDPIECE_REALTIME;
+    /// Half-spaces within `reachMm` of the bur at a pose, enough of them that the bur can slide along every wall it
+    /// touches. The default gives the one of depth().
+    virtual Status constraints(const core::Pose& burInTooth, double reachMm,
+                               ConstraintSet& out) noexcept HANDPIECE_REALTIME;
 
     /// Forget the warm start (after a jump).
     virtual void reset() noexcept {}

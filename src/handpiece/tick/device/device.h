@@ -14,9 +14,9 @@ namespace handpiece::device {
 /// What a device can do. Force is limited by it, always.
 struct Capability {
     std::string name;
-    double maxForceN = 3.3;            ///< peak
+    double maxForceN = 3.3;  ///< peak
     double continuousForceN = 0.88;
-    double maxStiffnessNPerMm = 0.5;   ///< rendered stably without help
+    double maxStiffnessNPerMm = 0.5;  ///< rendered stably without help
     double maxDampingNSPerMm = 0.005;
     double maxForceSlopeNPerS = 5000;  ///< largest change of the commanded force
     double maxTorqueNmm = 0.0;         ///< 0: no torque axes
@@ -31,8 +31,8 @@ enum class ReadStatus : std::uint8_t { ok, lost };
 /// The handpiece's pose as the device reports it.
 struct Reading {
     core::Pose burInTooth;
-    double pedal = 0.0;          ///< 0..1
-    std::uint32_t buttons = 0;   ///< bit 0: the upper one
+    double pedal = 0.0;         ///< 0..1
+    std::uint32_t buttons = 0;  ///< bit 0: the upper one
     ReadStatus status = ReadStatus::ok;
 };
 

@@ -25,9 +25,9 @@ struct IsosurfaceSettings {
 /// The surface f = 0 within `box`, closed and two-manifold whatever f is, counter-clockwise from outside (f > 0).
 ///
 /// Marching cubes with the inside corners of ambiguous faces kept apart. The outermost layer of nodes counts as
-/// outside, so a solid that sticks out of the box is cut off flat. Empty when f is nowhere negative on the nodes. In
-/// parallel; the same bytes at any thread count. Throws core::Error for a bad box, spacing or bound, and when the bound
-/// proves wrong.
+/// outside, so a solid that sticks out of the box is cut off within a cell or two of it. Empty when f is nowhere
+/// negative on the nodes. In parallel; the same bytes at any thread count. Throws core::Error for a bad box, spacing or
+/// bound, and when the bound proves wrong.
 [[nodiscard]] TriangleMesh isosurface(const core::Box& box, const ScalarFunction& f, const IsosurfaceSettings& settings,
                                       const core::Progress& progress = {});
 

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The paper's experiments, run on ours: what the tables and the figures share.
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/report_html.h"
+#include "cli/timing.h"
+#include "handpiece/model/instrument/bur.h"
+#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/tick/contact/method.h"
+
+namespace handpiece::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// One surface of the paper's Table II and the two ways to feel it.
+struct Surface {
+    std::string name;  ///< "6 %"; "plane"
+    std::filesystem::path file;
+    std::size_t paperVertices = 0, paperFaces = 0, vertices = 0, faces = 0;
+    double loadMs = 0.0;  ///< of `file`
+    std::shared_ptr<const tooth::Tooth> tooth;
+    std::shared_ptr<contact::Method> field, hull;
+
+    [[nodiscard]] bool isPlane() const { return name == "plane"; }
+};
+
+struct Reproduction {
+    bool quick = false, ownTooth = false;
+    std::shared_ptr<const instrument::Bur> bur;
+    std::vector<Surface> surfaces;  ///< the plane first, then coarse to fine
+    HtmlReport report{"Touching and cutting a tooth: the paper's experiments, repeated"};
+    Json results;
+    std::vector<std::string> remarks;              ///< what did not come out as it should
+    std::function<void(const std::string&)> step;  ///< called before each piece of work; throws when cancelled
+};
+
+/// Both methods of a surface by their names.
+struct NamedMethod {
+    const char* name;
+    contact::Method* method;
+};
+[[nodiscard]] std::vector<NamedMethod> methodsOf(const Surface& surface);
+
+/// Where a bur is dropped: the tip's place above the tooth.
+struct Place {
+    std::string name;  ///< "cusp 1", "fissure"
+    core::Vec2 xyMm;
+    bool open = true;  ///< no undercut faces the bur
+};
+/// The highest cusps and the deepest place between them, felt on the field of `surface`.
+[[nodiscard]] std::vector<Place> placesOn(const Surface& surface);
+// Each adds its part to report and results.
+void reproduceTables(Reproduction& r);
+void reproduceFigures(Reproduction& r);
+
+/// "yes" or "no".
+[[nodiscard]] inline std::string yesNo(bool yes) {
+    return yes ? "yes" : "no";
+}
+
+}  // namespace handpiece::cli

@@ -25,6 +25,7 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods) {
     addRunCommand(app, extraMethods);
     addReproduceCommand(app);
     addBenchCommand(app);
+    addPassivityCommand(app);
     addCompletionCommand(app);
     installCancel();
     try {

@@ -17,5 +17,6 @@ void addProbeCommand(CLI::App& app, const MethodRegistry& methods);
 void addRunCommand(CLI::App& app, const MethodRegistry& methods);
 void addReproduceCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
+void addPassivityCommand(CLI::App& app);
 
 }  // namespace handpiece::cli

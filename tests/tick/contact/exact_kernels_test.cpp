@@ -94,15 +94,19 @@ TEST(ExactKernels, everyInstructionSetGivesTheSameBits) {
     std::mt19937_64 g(test::seed());
     const TreeView view = viewOf(grooved().tree);
     const double z[3] = {0.3, 0.8, 2.0}, radius[3] = {0.3, 0.5, 0.5}, slope[2] = {0.4, 0.0};
-    AxisRun run;
-    run.z = z;
-    run.radius = radius;
-    run.slope = slope;
-    run.count = 3;
-    run.maxRadius = 0.5f;
+    AxisRun varying;
+    varying.z = z;
+    varying.radius = radius;
+    varying.slope = slope;
+    varying.count = 3;
+    varying.maxRadius = 0.5f;
     for (int i = 0; i < 1000; ++i) {
         const Vec3 tip = anywhere(g), axis = test::randomDirection(g);
-        for (const bool point : {true, false}) {
+        for (const int kind : {0, 1, 2}) {  // a point, a run of any radius, a run of one radius
+            const bool point = kind == 0;
+            AxisRun run = varying;
+            if (kind == 2)
+                run.count = 2, run.z = z + 1, run.radius = radius + 1, run.slope = slope + 1, run.constant = true;
             SurfaceHit first;
             for (std::size_t level = 0; level < all.size(); ++level) {
                 SurfaceHit hit;

@@ -41,14 +41,17 @@ Errors errorsOf(std::vector<double> e) {
 }
 
 /// Micrometres off the reference over random poses 0.005 to 1.5 mm deep.
-Errors errorsUm(std::string_view bur, int poses) {
-    const auto method = makeFieldMethod(grooved(), burOf(bur));
+Errors errorsUm(std::string_view bur, int poses, double deepestMm = 1.5, DepthSource source = DepthSource::exact) {
+    FieldMethodSettings settings;
+    settings.depthSource = source;
+    const auto method = makeFieldMethod(grooved(), burOf(bur), settings);
+    const auto exactMethod = makeFieldMethod(grooved(), burOf(bur));
     const auto shape = burOf(bur);
     std::mt19937_64 generator(test::seed());
     std::vector<double> errors;
     for (int i = 0; i < poses; ++i) {
-        const double wanted = std::exp(test::uniform(generator, std::log(0.005), std::log(1.5)));
-        const core::Pose pose = test::pressedPose(generator, *method, wanted);
+        const double wanted = std::exp(test::uniform(generator, std::log(0.005), std::log(deepestMm)));
+        const core::Pose pose = test::pressedPose(generator, *exactMethod, wanted);
         const double exact = test::bruteForceDepth(grooved()->tree, *shape, pose).depthMm;
         errors.push_back(1e3 * std::abs(method->depth(pose).depthMm - exact));
     }
@@ -74,6 +77,12 @@ TEST_P(SharpRimmed, depthAgreesWithBruteForce) {
 INSTANTIATE_TEST_SUITE_P(Burs, SharpRimmed,
                          testing::Values("cylinder-flat:1.0x4.0", "inverted-cone:1.2x1.2", "wheel:2.0x0.8",
                                          "taper-flat:1.2x4.0"));
+
+TEST(FieldMethod, theFieldAloneIsWithinMicrometresBelowTheRadius) {
+    const Errors round = errorsUm("cylinder-round:1.0x4.0", 60, 0.45, DepthSource::field);
+    EXPECT_LE(round.median, 0.3);
+    EXPECT_LE(round.worst, 10.0);  // coarse facets: trilinear cells cut their edges off
+}
 
 TEST(FieldMethod, capsuleOnASlabFollowsTheClosedForm) {
     const auto method = makeFieldMethod(slab(), burOf("cylinder-round:1.0x4.0"));

@@ -131,6 +131,7 @@ void AxisSearch::addRun(const std::vector<MedialBall>& balls) {
     if (run.slope.empty()) run.slope.push_back(0.0);
     run.constant = std::all_of(run.slope.begin(), run.slope.end(), [](double s) { return s == 0.0; });
     run.plain.count = static_cast<std::int32_t>(run.z.size());
+    run.plain.constant = run.constant;
     const double maxRadius = *std::max_element(run.radius.begin(), run.radius.end());
     run.plain.maxRadius = static_cast<float>(maxRadius);
     if (!run.constant) {
@@ -177,6 +178,7 @@ void AxisSearch::search(const ExactSurface& surface, const core::Pose& burInToot
             thread.radius = none;
             thread.slope = none;
             thread.count = 2;
+            thread.constant = true;
             SurfaceHit crossing;
             crossing.value = kSamePlaceMm;
             crossing.triangle = kNoTriangle;

@@ -164,19 +164,101 @@ class RunQuery {
     }
 
     void evaluate(Packet& packet, int count) {
-        packet.fill(tree_.triangles, count);
-        const Shape shape(packet);
-        const Doubles zero{}, one = splat(1.0);
-        const Doubles w[3] = {tip_.x - packet.a[0], tip_.y - packet.a[1], tip_.z - packet.a[2]};
-        // Every product with p(s) = w + s axis is linear in s.
-        const Doubles a0 = dot(packet.ab, w), a1 = dot(packet.ab, axis_), b0 = dot(packet.ac, w),
-                      b1 = dot(packet.ac, axis_);
-        const Doubles c0 = dot(w, w), c1 = dot(w, axis_), n0 = dot(shape.n, w), n1 = dot(shape.n, axis_);
-        Doubles half;
-        const auto squared = [&](Doubles s) {
+        if (run_.constant)
+            evaluateConstant(packet, count);
+        else
+            evaluateAny(packet, count);
+    }
+
+  private:
+    /// Every product of a triangle with p(s) = tip + s axis is linear in s.
+    struct Products {
+        Doubles a0, a1, b0, b1, c0, c1, n0, n1;  ///< with ab, with ac, with itself and the axis, with the normal
+
+        Products(const Packet& packet, const Shape& shape, Vector tip, Vector axis) {
+            const Doubles w[3] = {tip.x - packet.a[0], tip.y - packet.a[1], tip.z - packet.a[2]};
+            a0 = dot(packet.ab, w);
+            a1 = dot(packet.ab, axis);
+            b0 = dot(packet.ac, w);
+            b1 = dot(packet.ac, axis);
+            c0 = dot(w, w);
+            c1 = dot(w, axis);
+            n0 = dot(shape.n, w);
+            n1 = dot(shape.n, axis);
+        }
+        /// Squared distance from p(s) to the triangle, and half its derivative.
+        [[nodiscard]] Doubles distance2(const Shape& shape, Doubles s, Doubles& half) const {
             return shape.distance2(a0 + s * a1, b0 + s * b1, c0 + s * (2.0 * c1 + s), n0 + s * n1, a1, b1, c1 + s, n1,
                                    half);
+        }
+        /// Where the axis meets the plane, and whether that is in the triangle.
+        [[nodiscard]] Longs crossing(const Shape& shape, Doubles& s) const {
+            const Doubles zero{};
+            s = -n0 / (n1 == zero ? splat(kSmall) : n1);
+            const Doubles d1 = a0 + s * a1, d2 = b0 + s * b1;
+            const Doubles v = shape.ac2 * d1 - shape.abac * d2, w = shape.ab2 * d2 - shape.abac * d1;
+            return (v >= zero) & (w >= zero) & (v + w <= shape.det) & (shape.det > zero);
+        }
+    };
+
+    void evaluateConstant(Packet& packet, int count) {
+        packet.fill(tree_.triangles, count);
+        const Shape shape(packet);
+        const Products p(packet, shape, tip_, axis_);
+        const Doubles zero{}, one = splat(1.0), s0 = splat(run_.z[0]), s1 = splat(run_.z[run_.count - 1]);
+        Doubles half, bestS = s0, best = p.distance2(shape, s0, half);
+        const auto offer = [&](Longs valid, Doubles value, Doubles s) {
+            const Longs better = valid & (value < best);
+            best = choose(better, value, best);
+            bestS = choose(better, s, bestS);
         };
+        const Longs all = zero == zero;
+        offer(all, p.distance2(shape, s1, half), s1);
+        const auto corner = [&](Doubles c0, Doubles c1) {
+            const Doubles s = clampTo(-c1, s0, s1);
+            offer(all, c0 + s * (2.0 * c1 + s), s);
+        };
+        const Doubles c0b = p.c0 - 2.0 * p.a0 + shape.ab2, c1b = p.c1 - p.a1;
+        corner(p.c0, p.c1);
+        corner(c0b, c1b);
+        corner(p.c0 - 2.0 * p.b0 + shape.ac2, p.c1 - p.b1);
+        const auto edge = [&](Doubles e0, Doubles e1, Doubles inverseE2, Doubles c0, Doubles c1) {
+            const Doubles alpha = 1.0 - e1 * e1 * inverseE2, beta = c1 - e0 * e1 * inverseE2;
+            const Doubles s = -beta / most(alpha, splat(1e-12)), t = (e0 + s * e1) * inverseE2;
+            const Longs valid = (alpha > 1e-10) & (s > s0) & (s < s1) & (t > zero) & (t < one);
+            offer(valid, most(c0 - e0 * e0 * inverseE2 + beta * s, zero), s);
+        };
+        edge(p.a0, p.a1, shape.inverseAb2, p.c0, p.c1);
+        edge(p.b0, p.b1, shape.inverseAc2, p.c0, p.c1);
+        edge(p.b0 - p.a0 - shape.abac + shape.ab2, p.b1 - p.a1, shape.inverseBc2, c0b, c1b);
+        Doubles s;
+        const Longs crosses = p.crossing(shape, s);
+        offer(crosses & (s >= s0) & (s <= s1), zero, s);
+        int lane = 0;
+        for (int i = 1; i < count; ++i)
+            if (best[i] < best[lane]) lane = i;
+        const double limit = hit_.value + run_.radius[0] + 1e-9;
+        if (limit <= 0.0 || best[lane] >= limit * limit) return;
+        take(packet.id[lane], bestS[lane], run_.radius[0]);
+    }
+
+    /// The products lose digits far from the corner: what is reported is measured once more.
+    void take(std::uint32_t triangle, double s, double radius) {
+        const Vector p = tip_ + s * axis_;
+        std::uint8_t feature = 0;
+        const Vector q = closestPoint(tree_.triangles[triangle], p, feature);
+        const double value = __builtin_sqrt(dot(p - q, p - q)) - radius;
+        if (value < hit_.value) hit_ = {value, s, {q.x, q.y, q.z}, triangle, feature};
+    }
+
+    void evaluateAny(Packet& packet, int count) {
+        packet.fill(tree_.triangles, count);
+        const Shape shape(packet);
+        const Products p(packet, shape, tip_, axis_);
+        const Doubles a0 = p.a0, a1 = p.a1, b0 = p.b0, b1 = p.b1, c0 = p.c0, c1 = p.c1;
+        const Doubles zero{}, one = splat(1.0);
+        Doubles half;
+        const auto squared = [&](Doubles s) { return p.distance2(shape, s, half); };
         Doubles s0, s1, slope, radius0;
         std::int32_t pieceLow[8] = {}, pieceHigh[8];
         for (int i = 0; i < 8; ++i)
@@ -237,27 +319,16 @@ class RunQuery {
         edge(a0, a1, shape.inverseAb2, c0, c1);
         edge(b0, b1, shape.inverseAc2, c0, c1);
         edge(b0 - a0 - shape.abac + shape.ab2, b1 - a1, shape.inverseBc2, c0b, c1b);
-        {
-            const Doubles s = -n0 / (n1 == zero ? splat(kSmall) : n1);
-            const Doubles d1 = a0 + s * a1, d2 = b0 + s * b1;
-            const Doubles v = shape.ac2 * d1 - shape.abac * d2, wb = shape.ab2 * d2 - shape.abac * d1;
-            offer((s >= s0) & (s <= s1) & (v >= zero) & (wb >= zero) & (v + wb <= shape.det) & (shape.det > zero),
-                  -radius0 - slope * s, s);
-        }
+        Doubles crossingS;
+        const Longs crosses = p.crossing(shape, crossingS);
+        offer(crosses & (crossingS >= s0) & (crossingS <= s1), -radius0 - slope * crossingS, crossingS);
         int lane = 0;
         for (int i = 1; i < count; ++i)
             if (best[i] < best[lane]) lane = i;
-        // The products above lose digits far from the corner; what is reported is measured once more.
         if (best[lane] >= hit_.value + 1e-9) return;
-        const double s = bestS[lane];
-        const Vector p = tip_ + s * axis_;
-        std::uint8_t feature = 0;
-        const Vector q = closestPoint(tree_.triangles[packet.id[lane]], p, feature);
-        const double value = __builtin_sqrt(dot(p - q, p - q)) - (radius0[lane] + slope[lane] * s);
-        if (value < hit_.value) hit_ = {value, s, {q.x, q.y, q.z}, packet.id[lane], feature};
+        take(packet.id[lane], bestS[lane], radius0[lane] + slope[lane] * bestS[lane]);
     }
 
-  private:
     const TreeView& tree_;
     const AxisRun& run_;
     Vector tip_, axis_;

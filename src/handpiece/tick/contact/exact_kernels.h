@@ -33,6 +33,7 @@ struct AxisRun {
     const double* radius = nullptr;  ///< of the balls
     const double* slope = nullptr;   ///< of the radius from ball i to i + 1
     std::int32_t count = 0;
+    bool constant = false;  ///< one radius all along: squares are compared and roots saved
     float maxRadius = 0.0f;
     /// Lines above the radius: radius(z) <= lineRadius + lineSlope z. For bounds.
     std::int32_t lines = 0;

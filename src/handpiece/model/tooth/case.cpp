@@ -50,7 +50,11 @@ Part readPart(const toml::table& entry, const fs::path& folder, const std::strin
         throw core::Error(fmt::format("a part without file or tissue (line {})", entry.source().begin.line), where,
                           "see docs/case-format.md");
     Part part;
-    part.tissue = tissueByName(tissueName);
+    try {
+        part.tissue = tissueByName(tissueName);
+    } catch (const core::Error& e) {
+        throw core::Error(fmt::format("line {}: {}", entry.source().begin.line, e.problem()), where, e.remedy());
+    }
     part.name = valueOr<std::string>(entry, "name", std::string(properties(part.tissue).name), where);
     part.priority = static_cast<int>(valueOr<std::int64_t>(entry, "priority", properties(part.tissue).priority, where));
     part.mesh = geometry::readMesh(insideCase(folder, file, where));

@@ -17,7 +17,6 @@ THIRD_PARTY = {
     r"toml\+\+|toml\.hpp": r"src/handpiece/model/tooth/\w+\.cpp|src/handpiece/model/instrument/\w+\.cpp",
     r"CLI/|CLI11": r"apps/cli/.*",
     r"nlohmann/": r"apps/cli/.*|bench/.*",
-    r"plplot|plConfig": r"apps/cli/plot\w*\.cpp",
     r"gtest/|gmock/|rapidcheck": r"tests/.*",
     r"benchmark/": r"bench/.*",
     r"ccd/|fcl/": r"tests/.*|bench/.*",

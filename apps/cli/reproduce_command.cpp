@@ -68,7 +68,16 @@ void addSurface(Reproduction& r, Surface s, const fs::path& felt) {
     r.surfaces.push_back(std::move(s));
 }
 
-void makeSurfaces(Reproduction& r, const ReproduceOptions& o) {
+/// The surface given with --tooth; empty without.
+geometry::TriangleMesh ownSurface(const ReproduceOptions& o) {
+    if (o.tooth.empty()) return {};
+    tooth::Case given = tooth::readCase(o.tooth);
+    geometry::TriangleMesh own = std::move(!given.outer.triangles.empty() ? given.outer : given.parts.front().mesh);
+    tooth::requireSolid(own, o.tooth);
+    return own;
+}
+
+void makeSurfaces(Reproduction& r, const ReproduceOptions& o, const geometry::TriangleMesh& own) {
     const fs::path folder = fs::path(o.out) / "teeth";
     core::prepareOutputFolder(folder);
     r.step("the plane");
@@ -81,12 +90,6 @@ void makeSurfaces(Reproduction& r, const ReproduceOptions& o) {
     plane.paperFaces = starter::kPaperPlane.faces;
     addSurface(r, std::move(plane), folder / "slab.stl");
 
-    geometry::TriangleMesh own;
-    if (!o.tooth.empty()) {
-        const tooth::Case given = tooth::readCase(o.tooth);
-        own = !given.outer.triangles.empty() ? given.outer : given.parts.front().mesh;
-        tooth::requireSolid(own, o.tooth);
-    }
     const auto resolutions = starter::paperResolutions();
     const std::size_t count = o.quick ? kQuickTeeth : resolutions.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -129,6 +132,7 @@ void conclude(Reproduction& r) {
 }
 
 void reproduce(const ReproduceOptions& o) {
+    const geometry::TriangleMesh own = ownSurface(o);  // first: a bad one leaves no folder behind
     core::prepareOutputFolder(o.out);
     ProgressBar bar("reproducing");
     const core::Progress progress = bar.listener();
@@ -143,7 +147,7 @@ void reproduce(const ReproduceOptions& o) {
     r.bur = std::make_shared<instrument::Bur>(instrument::makeBur("paper"));
     introduce(r, o);
     r.results["machine"] = machineDescription();
-    makeSurfaces(r, o);
+    makeSurfaces(r, o, own);
     reproduceTables(r);
     reproduceFigures(r);
     conclude(r);

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whatever is wrong with the input: one clear line, exit code 1, nothing left behind."""
+
+import math
+import os
+import struct
+import unittest
+
+from support import SystemTest, ball, box, poses, run, write_stl
+
+
+class BadInput(SystemTest):
+    def setUp(self):
+        super().setUp()
+        self.tooth = write_stl(self.folder / "tooth.stl", box((-4, -4, -8), (4, 4, 4)))
+        self.poses = self.folder / "poses.csv"
+        self.poses.write_text(poses((0, 0, 4.5)))
+
+    def probe_refused(self, tooth=None, bur="round-4", pose_file=None, out="-", **options):
+        return self.refused("probe", "--tooth", tooth or self.tooth, "--bur", bur, "--poses", pose_file or self.poses,
+                            "--out", out, "--no-cache", **options)
+
+    def run_refused(self, *arguments, tooth=None, out=None, **options):
+        return self.refused("run", "--tooth", tooth or self.tooth, "--bur", "round-4", "--no-cache", "--out",
+                            out or self.folder / "result", *arguments, **options)
+
+    def file(self, name, data):
+        path = self.folder / name
+        path.write_bytes(data)
+        return path
+
+    def test_files_that_are_not_meshes(self):
+        good = self.tooth.read_bytes()
+        nan = bytearray(good)
+        struct.pack_into("<f", nan, 84 + 12, math.nan)
+        for name, data, mentions in (
+                ("empty.stl", b"", ["empty"]),
+                ("truncated.stl", good[:-30], []),
+                ("header.stl", good[:60], []),
+                ("nan.stl", bytes(nan), ["finite"]),
+                ("huge.stl", good[:80] + struct.pack("<I", 0xffffffff), []),
+                ("random.stl", bytes(range(256)) * 20, []),
+                ("text.stl", b"solid nothing\nfacet normal 0 0\n", []),
+                ("word.ply", b"ply\nformat ascii 1.0\nelement vertex 999999999999\n", []),
+                ("none.obj", b"v 0 0 0\nf 1 2 3\n", [])):
+            with self.subTest(file=name):
+                path = self.file(name, data)
+                for arguments in (["mesh", "info", path], ["mesh", "repair", path, self.folder / "out.stl"]):
+                    self.refused(*arguments, mentions=[name, *mentions])
+                self.probe_refused(tooth=path, mentions=[name])
+                self.probe_refused(bur=path, mentions=[name])
+
+    def test_a_missing_file(self):
+        for arguments in (["mesh", "info", "gone.stl"], ["mesh", "repair", "gone.stl", "out.stl"]):
+            self.refused(*arguments, mentions=["gone.stl", "no such file"], cwd=self.folder)
+        self.probe_refused(tooth="gone.stl", mentions=["gone.stl"])
+        self.probe_refused(tooth=self.folder, mentions=["case.toml"])
+        self.probe_refused(bur="gone.stl", mentions=["gone.stl"])
+        self.probe_refused(pose_file="gone.csv", mentions=["gone.csv"])
+        self.run_refused("--motion", "gone.csv", mentions=["gone.csv"])
+        self.refused("reproduce", "--quick", "--tooth", "gone.stl", "--out", self.folder / "report",
+                     mentions=["gone.stl"])
+
+    def test_names_there_are_not(self):
+        self.probe_refused(bur="banana", mentions=["banana", "round-4", "330"])
+        self.refused("make", "bur", "--name", "banana", "--out", self.folder / "b.stl", mentions=["330"])
+        self.refused("make", "bur", "--shape", "banana", "--out", self.folder / "b.stl", mentions=["inverted-cone"])
+        self.refused("make", "tooth", "--kind", "banana", "--out", self.folder / "t", mentions=["upper-incisor"])
+        self.run_refused("--motion", "banana", mentions=["banana", "drop"])
+        self.run_refused("--method", "banana", mentions=["banana", "field", "hull"])
+        self.run_refused("--device", "banana", mentions=["banana", "simulated"])
+        self.run_refused("--device-model", "banana", mentions=["banana", "touch"])
+        self.run_refused("--hand", "banana", mentions=["banana", "loose"])
+        self.run_refused("--force", "banana", mentions=["banana", "penalty"])
+
+    def test_sizes_that_make_no_sense(self):
+        self.refused("make", "tooth", "--faces", "12", "--out", self.folder / "t", mentions=["12", "2000"])
+        self.refused("make", "bur", "--shape", "pear", "--diameter", "-1", "--length", "2", "--out",
+                     self.folder / "b.stl")
+        self.refused("make", "bur", "--shape", "pear", "--out", self.folder / "b.stl")
+        self.refused("make", "bur", "--out", self.folder / "b.stl", mentions=["--shape"])
+        self.refused("make", "bur", "--name", "330", "--out", self.folder / "b.doc", mentions=["b.doc"])
+        for arguments, word in ((["--rate", "0"], "--rate"), (["--rate", "-5"], "--rate"), (["--rate", "nan"], "--rate"),
+                                (["--duration", "-1"], "--duration"), (["--voxel", "0"], "--voxel"),
+                                (["--speed", "0"], "speed"), (["--stiffness", "-1"], "stiffness"),
+                                (["--at", "500", "500"], "meets")):
+            with self.subTest(arguments=arguments):
+                self.run_refused(*arguments, mentions=[word])
+
+    def test_surfaces_that_are_no_solid(self):
+        facets = box((-4, -4, -8), (4, 4, 4))
+        open_box = write_stl(self.folder / "open.stl", facets[:-1])
+        for refuse in (self.probe_refused, self.run_refused):
+            refuse(tooth=open_box, mentions=["open.stl", "open edges", "handpiece mesh repair"])
+        flipped = write_stl(self.folder / "flipped.stl", facets[:-1] + [facets[-1][::-1]])
+        self.probe_refused(tooth=flipped, mentions=["handpiece mesh repair"])
+        crossing = write_stl(self.folder / "crossing.stl", facets + box((0, 0, -2), (7, 1, 2)))
+        self.probe_refused(tooth=crossing, mentions=["crossing.stl"])
+
+    def test_a_tooth_in_another_unit(self):
+        metres = write_stl(self.folder / "metres.stl", box((0, 0, 0), (0.008, 0.008, 0.012)))
+        self.probe_refused(tooth=metres, mentions=["metres.stl", " m"])
+        microns = write_stl(self.folder / "microns.stl", box((0, 0, 0), (8000, 8000, 12000)))
+        self.probe_refused(tooth=microns, mentions=["microns.stl", "um"])
+
+    def test_burs_that_are_none(self):
+        flat = write_stl(self.folder / "flat.stl", [((0, 0, 0), (1, 0, 0), (0, 1, 0)), ((0, 0, 0), (0, 1, 0), (1, 0, 0))])
+        self.probe_refused(bur=flat, mentions=["flat.stl"])
+        square = write_stl(self.folder / "plank.stl", box((-2, -0.3, 0), (2, 0.3, 4)))
+        self.probe_refused(bur=square, mentions=["plank.stl"])
+        large = write_stl(self.folder / "large.stl", ball(400))
+        self.probe_refused(bur=large, mentions=["large.stl"])
+
+    def test_poses(self):
+        for name, text, mentions in (
+                ("nan", poses((0, 0, 5)) + "0,0,nan,1,0,0,0\n", ["line 3", "nan"]),
+                ("inf", poses((0, 0, 5)) + "0,-inf,0,1,0,0,0\n", ["line 3", "inf"]),
+                ("word", "x,y,z,qw,qx,qy,qz\n0,0,five,1,0,0,0\n", ["line 2", "five"]),
+                ("short", "x,y,z,qw,qx,qy,qz\n0,0,5\n", ["line 2"]),
+                ("quaternion", poses((0, 0, 5), (0, 0, 5, 1, 1, 0, 0)), ["line 3", "quaternion"]),
+                ("zero", poses((0, 0, 5, 0, 0, 0, 0)), ["line 2", "quaternion"]),
+                ("columns", "a,b,c\n1,2,3\n", ["x,y,z,qw,qx,qy,qz"]),
+                ("header", "x,y,z,qw,qx,qy,qz\n", ["no line of numbers"]),
+                ("empty", "", ["no line of numbers"])):
+            with self.subTest(poses=name):
+                path = self.folder / f"{name}.csv"
+                path.write_text(text)
+                self.probe_refused(pose_file=path, out=self.folder / "out.csv", mentions=[path.name, *mentions])
+                self.probe_refused(pose_file="-", stdin=text, mentions=["standard input", *mentions])
+
+    def test_motions(self):
+        head = "t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz\n"
+        for name, text, mentions in (
+                ("jump", head + "0,0,0,5,1,0,0,0\n1,0,0,10005,1,0,0,0\n", ["line 3", "10000 mm"]),
+                ("fast", head + "0,0,0,5,1,0,0,0\n0.0001,0,0,60,1,0,0,0\n", ["line 3"]),
+                ("back", head + "0,0,0,5,1,0,0,0\n1,0,0,5,1,0,0,0\n0.5,0,0,5,1,0,0,0\n", ["line 4"]),
+                ("before", head + "-1,0,0,5,1,0,0,0\n", ["line 2"]),
+                ("nan", head + "0,0,0,nan,1,0,0,0\n", ["line 2", "nan"]),
+                ("quaternion", head + "0,0,0,5,2,0,0,0\n", ["line 2", "quaternion"])):
+            with self.subTest(motion=name):
+                path = self.folder / f"{name}.csv"
+                path.write_text(text)
+                self.run_refused("--motion", path, mentions=[path.name, *mentions])
+
+    def test_places_that_cannot_be_written(self):
+        in_the_way = self.file("occupied", b"a file")
+        self.run_refused(out=in_the_way, mentions=["occupied"])
+        self.run_refused(out=in_the_way / "below", mentions=["occupied"])
+        self.refused("make", "tooth", "--kind", "upper-incisor", "--faces", "2000", "--out", in_the_way,
+                     mentions=["occupied"])
+        self.refused("reproduce", "--quick", "--out", in_the_way, mentions=["occupied"])
+        self.probe_refused(out=self.folder, mentions=[str(self.folder)])
+        self.probe_refused(out="/nowhere/out.csv", mentions=["/nowhere/out.csv"])
+        for arguments in (["bur", "--name", "330"], ["turbine"], ["plane"]):
+            self.refused("make", *arguments, "--out", "/nowhere/x.stl", mentions=["/nowhere/x.stl"])
+        if os.geteuid() != 0:
+            locked = self.folder / "locked"
+            locked.mkdir(mode=0o500)
+            self.run_refused(out=locked / "result", mentions=["locked"])
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "this machine has no /dev/full")
+    def test_a_full_disk(self):
+        self.poses.write_text(poses(*[(0, 0, 4.5 + 1e-3 * i) for i in range(500)]))
+        self.probe_refused(out="/dev/full", mentions=["/dev/full", "No space left"])
+        with open("/dev/full", "w", encoding="ascii") as full:
+            import subprocess
+            from support import HANDPIECE
+            done = subprocess.run([HANDPIECE, "probe", "--tooth", self.tooth, "--bur", "round-4", "--poses",
+                                   self.poses, "--no-cache"], stdout=full, stderr=subprocess.PIPE, text=True,
+                                  check=False)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("standard output", done.stderr)
+
+    def test_a_case_that_is_broken(self):
+        case = self.folder / "case"
+        case.mkdir()
+        (case / "case.toml").write_text("format = 1\nouter = \"../tooth.stl\"\n")
+        self.probe_refused(tooth=case, mentions=["inside the case's folder"])
+        (case / "case.toml").write_text("format = 1\nname = \"\n")
+        self.probe_refused(tooth=case, mentions=["case.toml", "line 2"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What `make` writes, `mesh info` reads back; what is broken, `mesh repair` mends."""
+
+import json
+import math
+import unittest
+
+from support import SystemTest, ball, box, write_stl
+
+
+class MakeAndMesh(SystemTest):
+    def info(self, path):
+        return json.loads(self.ok("mesh", "info", path, "--json").stdout)
+
+    def expect_solid(self, report):
+        for flaw in ("open_edges", "non_manifold_edges", "non_manifold_vertices", "flipped_faces", "degenerate_faces",
+                     "crossing_faces", "duplicate_faces"):
+            self.assertEqual(report[flaw], 0, flaw)
+        self.assertTrue(report["closed"] and report["oriented"])
+        self.assertEqual(report["probable_unit"], "mm")
+        self.assertGreater(report["volume_mm3"], 0)
+
+    def test_a_tooth(self):
+        out = self.folder / "incisor"
+        done = self.ok("make", "tooth", "--kind", "upper-incisor", "--faces", "3001", "--part-faces", "2000", "--out",
+                       out)
+        self.assertIn("outer", done.stdout)
+        self.assertEqual(done.stderr, "")
+        self.assertEqual(sorted(p.name for p in out.iterdir()),
+                         ["caries.stl", "case.toml", "dentine.stl", "enamel.stl", "outer.stl", "pulp.stl"])
+        outer = self.info(out / "outer.stl")
+        self.expect_solid(outer)
+        self.assertEqual((outer["faces"], outer["genus"], outer["shells"]), (3002, 0, 1))
+        for part in ("enamel", "dentine", "pulp", "caries"):
+            report = self.info(out / f"{part}.stl")
+            self.assertEqual(report["faces"], 2000)
+            self.assertTrue(report["closed"], part)
+            self.assertLess(report["volume_mm3"], outer["volume_mm3"])
+        toml = (out / "case.toml").read_text()
+        for line in ("fdi = 11", "kind = ", "upper-incisor", "buccal = ", "+y"):
+            self.assertIn(line, toml)
+
+    def test_burs(self):
+        for shape, diameter, length in (("round", 1.0, 1.0), ("inverted-cone", 1.2, 1.4), ("cylinder-flat", 1.0, 4.0),
+                                        ("cylinder-round", 1.0, 4.0), ("taper-flat", 1.6, 4.0), ("taper-round", 1.6, 4.0),
+                                        ("pear", 0.8, 1.5), ("flame", 1.2, 5.0), ("torpedo", 1.2, 6.0),
+                                        ("wheel", 3.0, 1.0)):
+            with self.subTest(shape=shape):
+                path = self.folder / f"{shape}.stl"
+                self.ok("make", "bur", "--shape", shape, "--diameter", diameter, "--length", length, "--out", path)
+                report = self.info(path)
+                self.expect_solid(report)
+                low, size = report["box_min_mm"], report["box_size_mm"]
+                self.assertAlmostEqual(low[2], 0.0, delta=1e-6, msg="tip at the origin")
+                self.assertAlmostEqual(size[2], length, delta=2e-3)
+                self.assertAlmostEqual(max(size[:2]), diameter, delta=0.02 * diameter)
+                self.assertLess(report["volume_mm3"], math.pi / 4 * diameter ** 2 * length * 1.001)
+
+    def test_the_papers_tool_and_plane(self):
+        bur, turbine, plane, slab = (self.folder / f"{name}.stl" for name in ("bur", "turbine", "plane", "slab"))
+        self.ok("make", "bur", "--name", "paper", "--out", bur)
+        self.ok("make", "turbine", "--out", turbine)
+        self.ok("make", "plane", "--out", plane)
+        self.ok("make", "plane", "--slab", "--out", slab)
+        self.assertEqual(self.info(bur)["vertices"], 170)
+        report = self.info(turbine)
+        self.assertAlmostEqual(report["faces"] / 20988, 1, delta=0.01)
+        report = self.info(plane)
+        self.assertEqual((report["vertices"], report["faces"], report["open_edges"]), (169, 288, 48))
+        self.assertFalse(report["closed"])
+        self.expect_solid(self.info(slab))
+
+    def test_ply_keeps_more_than_stl(self):
+        self.ok("make", "bur", "--name", "330", "--out", self.folder / "a.ply")
+        self.ok("make", "bur", "--name", "330", "--out", self.folder / "a.stl")
+        ply, stl = self.info(self.folder / "a.ply"), self.info(self.folder / "a.stl")
+        self.assertEqual(ply["faces"], stl["faces"])
+        self.assertAlmostEqual(ply["volume_mm3"], stl["volume_mm3"], delta=1e-5)
+
+    def test_info_of_known_shapes(self):
+        report = self.info(write_stl(self.folder / "box.stl", box((0, 0, 0), (6, 7, 8))))
+        self.expect_solid(report)
+        self.assertEqual((report["vertices"], report["faces"], report["edges"], report["genus"]), (8, 12, 18, 0))
+        self.assertAlmostEqual(report["volume_mm3"], 336, delta=1e-9)
+        self.assertAlmostEqual(report["area_mm2"], 292, delta=1e-9)
+        self.assertEqual(report["box_size_mm"], [6, 7, 8])
+        text = self.ok("mesh", "info", self.folder / "box.stl").stdout
+        self.assertIn("336", text)
+
+    def test_repair_mends_a_scan(self):
+        # Holes, faces turned over, a speck of debris: as from a scanner.
+        facets = ball(6, 12)
+        rough = facets[40:-1]
+        rough[100:140] = [f[::-1] for f in rough[100:140]]
+        rough += ball(0.05, 2, (20, 0, 0))
+        scan, mended = write_stl(self.folder / "scan.stl", rough), self.folder / "mended.stl"
+        before = self.info(scan)
+        self.assertFalse(before["closed"])
+        self.assertEqual(before["shells"], 2)
+        done = json.loads(self.ok("mesh", "repair", scan, mended, "--json").stdout)
+        self.assertEqual(done["dropped_shells"], 1)
+        self.assertGreaterEqual(done["closed_holes"], 2)
+        self.assertGreaterEqual(done["turned_faces"], 40)
+        after = self.info(mended)
+        self.expect_solid(after)
+        self.assertEqual((after["shells"], after["genus"]), (1, 0))
+        whole = self.info(write_stl(self.folder / "whole.stl", facets))["volume_mm3"]
+        self.assertAlmostEqual(after["volume_mm3"] / whole, 1, delta=0.05)
+        # A mended mesh is felt.
+        self.ok("probe", "--tooth", mended, "--bur", "round-4", "--poses", "-", stdin="0,0,9,1,0,0,0\n")
+
+    def test_a_lying_header_is_told(self):
+        path = write_stl(self.folder / "box.stl", box((0, 0, 0), (6, 7, 8)))
+        data = bytearray(path.read_bytes())
+        data[80] = 3
+        path.write_bytes(data)
+        report = self.info(path)
+        self.assertEqual(report["faces"], 12)
+        self.assertTrue(report["notes"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The paper's tables and figures from the program, and the starter molar that they stand on."""
+
+import json
+import unittest
+
+from support import REAL_DATA, SystemTest, poses, rows_of
+
+
+class Reproduce(SystemTest):
+    def test_quick(self):
+        out = self.folder / "paper"
+        done = self.ok("reproduce", "--quick", "--out", out)
+        self.assertIn("report.html", done.stdout)
+        results = json.loads((out / "results.json").read_text())
+        for key in ("table1", "table2", "table3", "table4", "figure8", "figure9", "figure10", "figure12", "figure13"):
+            self.assertTrue(results[key], key)
+        for row in results["table3"]:
+            for key in ("resolution", "faces", "method", "touching_us", "hovering_us"):
+                self.assertIn(key, row)
+            self.assertGreater(row["touching_us"], 0)
+        six, = (r for r in results["table3"] if r["resolution"] == "6 %" and r["method"] == "field")
+        self.assertEqual((six["paper_cutting_ms"], six["paper_noncutting_ms"]), (154.9, 0.95))
+        self.assertLess(six["touching_us"], 1000 * six["paper_cutting_ms"])
+        self.assertEqual({row["method"] for row in results["table3"]}, {"field", "hull"})
+        for row in results["table2"]:
+            if row.get("resolution") == "6 %":
+                self.assertAlmostEqual(row["faces"] / 9760, 1, delta=0.01)
+        steps = {row["step_um"] for row in results["table4"]}
+        self.assertTrue({100, 50, 25, 20, 15, 10, 5, 1, 0.1, 0.01} <= steps, steps)
+        for row in results["table4"]:
+            if row.get("method") == "field":
+                self.assertTrue(row["told_apart"], row)
+        for row in results["figure9"]:
+            self.assertEqual(len(row["drop_mm"]), len(row["depth_mm"]))
+        for name in ("figure12", "figure13"):
+            for row in results[name]:
+                self.assertEqual(len(row["t_s"]), len(row["force_n"]))
+                self.assertLessEqual(max(row["force_n"]), 3.3 + 1e-6)
+        page = (out / "report.html").read_text()
+        for word in ("Table I", "Table II", "Table III", "Table IV", "Figure 8", "Figure 9", "Figure 10", "Figure 12",
+                     "Figure 13", "<svg", "</html>"):
+            self.assertIn(word, page)
+        self.assertNotIn("http://", page.replace("http://www.w3.org", ""), "one page, nothing from elsewhere")
+        if not REAL_DATA.is_dir():
+            return
+        # The tooth it made and a real bur.
+        bur = REAL_DATA / "tools" / "tapered_bur.stl"
+        text = self.ok("probe", "--tooth", out / "teeth" / "starter-006.stl", "--bur", bur, "--poses", "-",
+                       stdin=poses((0, 0, 9), (0, 0, 5), (1, 1, 4.5))).stdout
+        far, near, deep = (float(row["depth_mm"]) for row in rows_of(text))
+        self.assertLess(far, near)
+        self.assertLess(far, 0)
+        self.assertGreater(deep, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

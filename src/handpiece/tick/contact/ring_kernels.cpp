@@ -7,141 +7,346 @@
 namespace handpiece::contact::HANDPIECE_SIMD_NS {
 namespace {
 
+using tooth::FieldView;
 using tooth::kBrickCells;
 using tooth::kBrickNodes;
 using tooth::kBrickValues;
 constexpr int kBrickShift = 3;
 static_assert(kBrickCells == 1 << kBrickShift);
+constexpr int kY = kBrickNodes, kZ = kBrickNodes * kBrickNodes;
+constexpr double kFarGrid = 1e6;  // voxels: no place in a grid, and no trouble as an integer
 
-/// Eight places in the grid: where each one's cell begins in the values (or -1) and where in the cell it lies.
-struct Places {
-    Longs corner;
-    Floats fraction[3];
-    float far[8];  ///< for places without a brick
-    bool allStored = true;
+/// A bur pose in voxels of the grid.
+struct GridPose {
+    double tip[3], x[3], y[3], z[3];
+    double reach[3];  ///< of a unit circle around the axis
 
-    Places(const tooth::FieldView& field, const FieldRow& row, int first) {
-        Doubles cosine, sine;
-        __builtin_memcpy(&cosine, row.cosines + first, sizeof cosine);
-        __builtin_memcpy(&sine, row.sines + first, sizeof sine);
-        Doubles grid[3];
-        Ints brick[3], cell[3];
+    GridPose(const FieldView& field, const RingQuery& query) {
         for (int k = 0; k < 3; ++k) {
-            grid[k] = (row.centre[k] - field.originMm[k] + cosine * row.x[k] + sine * row.y[k]) * field.inverseVoxelMm;
-            // The last face of the grid belongs to the last cell.
-            const std::int32_t last = kBrickCells * field.bricks[k] - 1;
-            const Doubles inGrid = clampTo(grid[k], Doubles{}, splat(last + 1.0));
-            Ints c = __builtin_convertvector(inGrid, Ints);
-            c = c > last ? Ints{} + last : c;
-            fraction[k] = __builtin_convertvector(inGrid - __builtin_convertvector(c, Doubles), Floats);
-            brick[k] = c >> kBrickShift;
-            cell[k] = c & (kBrickCells - 1);
-        }
-        const Ints dense = brick[0] + field.bricks[0] * (brick[1] + field.bricks[1] * brick[2]);
-        const Ints inBrick = cell[0] + kBrickNodes * (cell[1] + kBrickNodes * cell[2]);
-        Ints stored;
-        for (int lane = 0; lane < 8; ++lane)
-            stored[lane] = field.brickIndex[dense[lane]];
-        corner = __builtin_convertvector(stored, Longs) * kBrickValues + __builtin_convertvector(inBrick, Longs);
-        Ints outside = stored < 0;
-        for (int k = 0; k < 3; ++k) {
-            const Longs beyond = (grid[k] < 0.0) | (grid[k] > static_cast<double>(kBrickCells * field.bricks[k]));
-            outside |= __builtin_convertvector(beyond, Ints);
-        }
-        if (bitsOf(outside) == 0) return;
-        allStored = false;
-        for (int lane = 0; lane < 8; ++lane) {
-            if (!outside[lane]) continue;
-            corner[lane] = -1;
-            double away2 = 0.0, outside2 = 0.0;
-            for (int k = 0; k < 3; ++k) {
-                const double g = grid[k][lane], top = kBrickCells * field.bricks[k];
-                const double inGrid = g < 0.0 ? 0.0 : g > top ? top : g;
-                outside2 += (g - inGrid) * (g - inGrid);
-                const double d = cell[k][lane] + static_cast<double>(fraction[k][lane]) - 0.5 * kBrickCells;
-                away2 += d * d;
-            }
-            if (outside2 > 0.0) {
-                const float gap = static_cast<float>(field.voxelMm * __builtin_sqrt(outside2));
-                far[lane] = gap > row.farOutMm ? gap : row.farOutMm;
-            } else {
-                const float centre = field.coarse[dense[lane]];
-                const float bound = __builtin_fabsf(centre) - static_cast<float>(field.voxelMm * __builtin_sqrt(away2));
-                far[lane] = centre < 0.0f ? -(bound > row.farInMm ? bound : row.farInMm)
-                                          : (bound > row.farOutMm ? bound : row.farOutMm);
-            }
+            const double place = (query.tip[k] - field.originMm[k]) * field.inverseVoxelMm;
+            tip[k] = place < -kFarGrid ? -kFarGrid : place > kFarGrid ? kFarGrid : place;
+            x[k] = query.x[k] * field.inverseVoxelMm;
+            y[k] = query.y[k] * field.inverseVoxelMm;
+            z[k] = query.z[k] * field.inverseVoxelMm;
+            reach[k] = __builtin_sqrt(x[k] * x[k] + y[k] * y[k]);
         }
     }
 };
 
-constexpr int kY = kBrickNodes, kZ = kBrickNodes * kBrickNodes;
+/// Points centre + a x + b y in voxels, with a whole cell taken off, so that floats hold the rest well.
+struct Row {
+    std::int32_t base[3], last[3];  ///< last: the grid's last cell
+    float rest[3], x[3], y[3];
+    bool isInGrid = true;  ///< all of its points
 
-/// Values of the eight corners of each cell: two neighbours along x come in one load.
-inline void load(const tooth::FieldView& field, const Places& places, Floats (&v)[8]) {
-    static const float none[kZ + kY + 2] = {};
-    const float* corner[8];
-    for (int lane = 0; lane < 8; ++lane)
-        corner[lane] = places.allStored || places.corner[lane] >= 0 ? field.values + places.corner[lane] : none;
-    constexpr int kPair[4] = {0, kY, kZ, kZ + kY};
-    for (int i = 0; i < 4; ++i) {
-        Longs pair;
-        for (int lane = 0; lane < 8; ++lane) {
-            long long two;
-            __builtin_memcpy(&two, corner[lane] + kPair[i], sizeof two);
-            pair[lane] = two;
+    /// `reach`: how far the points are from the centre at most, along each axis.
+    Row(const FieldView& field, const double (&centre)[3], const double (&u)[3], const double (&v)[3], double scale,
+        const double (&reach)[3], double reachScale) {
+        for (int k = 0; k < 3; ++k) {
+            const double far = reachScale * reach[k] + 1e-3;
+            const double low = __builtin_floor(centre[k] - far);
+            base[k] = static_cast<std::int32_t>(low);
+            rest[k] = static_cast<float>(centre[k] - low);
+            x[k] = static_cast<float>(scale * u[k]);
+            y[k] = static_cast<float>(scale * v[k]);
+            last[k] = kBrickCells * field.bricks[k] - 1;
+            isInGrid = isInGrid && low >= 0.0 && centre[k] + far < static_cast<double>(last[k] + 1);
         }
-        const Ints low = __builtin_convertvector(pair, Ints), high = __builtin_convertvector(pair >> 32, Ints);
-        __builtin_memcpy(&v[2 * i], &low, sizeof low);
-        __builtin_memcpy(&v[2 * i + 1], &high, sizeof high);
+    }
+};
+
+/// Eight places: where each one's cell begins in the values and where in the cell it lies.
+struct Places {
+    Ints cell[3], dense, stored, inBrick;
+    Floats fraction[3];
+    Ints outside;   ///< of the grid
+    unsigned bare;  ///< bit i: no brick is stored there
+
+    Places(const FieldView& field, const Row& row, Floats a, Floats b) {
+        outside = Ints{};
+        for (int k = 0; k < 3; ++k) {
+            const Floats place = row.rest[k] + a * row.x[k] + b * row.y[k];
+            const Ints whole = __builtin_convertvector(place, Ints);
+            fraction[k] = place - __builtin_convertvector(whole, Floats);
+            cell[k] = whole + row.base[k];
+        }
+        Ints near[3] = {cell[0], cell[1], cell[2]};
+        if (!row.isInGrid)
+            for (int k = 0; k < 3; ++k) {
+                outside |= (cell[k] < 0) | (cell[k] > row.last[k]);
+                near[k] = near[k] < 0 ? Ints{} : near[k] > row.last[k] ? Ints{} + row.last[k] : near[k];
+            }
+        dense = (near[0] >> kBrickShift) +
+                field.bricks[0] * ((near[1] >> kBrickShift) + field.bricks[1] * (near[2] >> kBrickShift));
+        constexpr int kInBrick = kBrickCells - 1;
+        inBrick = (near[0] & kInBrick) + kY * (near[1] & kInBrick) + kZ * (near[2] & kInBrick);
+        stored = fetch(field.brickIndex, dense) | outside;  // a mask is -1, no brick
+        bare = bitsOf(stored < 0);
+    }
+
+    static Ints fetch(const std::int32_t* from, Ints at) {
+#if defined(__AVX2__)
+        return (Ints)_mm256_i32gather_epi32(from, (__m256i)at, 4);
+#else
+        Ints v;
+        for (int lane = 0; lane < 8; ++lane)
+            v[lane] = from[at[lane]];
+        return v;
+#endif
+    }
+
+    /// What is known without a brick: the sign, and a bound of the distance.
+    [[nodiscard]] Floats farMm(const FieldView& field, const Row& row, float farOutMm, float farInMm) const {
+        Floats away2{}, gap2{}, centre;
+        for (int k = 0; k < 3; ++k) {
+            const Floats place = __builtin_convertvector(cell[k], Floats) + fraction[k];
+            const Floats inGrid = leastF(mostF(place, Floats{}), splatF(static_cast<float>(row.last[k] + 1)));
+            gap2 += (place - inGrid) * (place - inGrid);
+            const Floats away = __builtin_convertvector(cell[k] & (kBrickCells - 1), Floats) + fraction[k] -
+                                0.5f * static_cast<float>(kBrickCells);
+            away2 += away * away;
+        }
+        for (int lane = 0; lane < 8; ++lane)
+            centre[lane] = field.coarse[dense[lane]];
+        const auto voxelMm = static_cast<float>(field.voxelMm);
+        const Floats bound = absolute(centre) - voxelMm * rootF(away2);
+        const Floats in = -mostF(bound, splatF(farInMm)), out = mostF(bound, splatF(farOutMm));
+        const Floats apart = mostF(voxelMm * rootF(gap2), splatF(farOutMm));
+        return outside ? apart : centre < 0.0f ? in : out;
+    }
+};
+
+#if defined(__SSE2__)
+/// Two floats from each of eight places: the first ones and the second ones.
+inline void loadPairs(const float* const (&corner)[8], int offset, Floats& first, Floats& second) {
+    const auto two = [&](int lane, int other) {
+        const __m128 low = _mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(corner[lane] + offset)));
+        return _mm_loadh_pi(low, reinterpret_cast<const __m64*>(corner[other] + offset));
+    };
+    const __m128 a = two(0, 1), b = two(2, 3), c = two(4, 5), d = two(6, 7);
+#if defined(__AVX__)
+    const __m256 ac = _mm256_insertf128_ps(_mm256_castps128_ps256(a), c, 1);
+    const __m256 bd = _mm256_insertf128_ps(_mm256_castps128_ps256(b), d, 1);
+    first = (Floats)_mm256_shuffle_ps(ac, bd, 0x88);
+    second = (Floats)_mm256_shuffle_ps(ac, bd, 0xdd);
+#else
+    const __m128 parts[4] = {_mm_shuffle_ps(a, b, 0x88), _mm_shuffle_ps(c, d, 0x88), _mm_shuffle_ps(a, b, 0xdd),
+                             _mm_shuffle_ps(c, d, 0xdd)};
+    __builtin_memcpy(&first, parts, sizeof first);
+    __builtin_memcpy(&second, parts + 2, sizeof second);
+#endif
+}
+#else
+inline void loadPairs(const float* const (&corner)[8], int offset, Floats& first, Floats& second) {
+    for (int lane = 0; lane < 8; ++lane) {
+        first[lane] = corner[lane][offset];
+        second[lane] = corner[lane][offset + 1];
     }
 }
+#endif
+
+/// Values of the eight corners of each cell; zeros where no brick is stored.
+struct Corners {
+    Floats v[8];
+
+    Corners(const FieldView& field, const Places& places) {
+        static const float none[kZ + kY + 2] = {};
+        const float* corner[8];
+        std::int32_t stored[8], inBrick[8];
+        __builtin_memcpy(stored, &places.stored, sizeof stored);
+        __builtin_memcpy(inBrick, &places.inBrick, sizeof inBrick);
+        for (int lane = 0; lane < 8; ++lane)
+            corner[lane] = field.values + static_cast<std::int64_t>(stored[lane]) * kBrickValues + inBrick[lane];
+        if (places.bare != 0)
+            for (int lane = 0; lane < 8; ++lane)
+                if (stored[lane] < 0) corner[lane] = none;
+        loadPairs(corner, 0, v[0], v[1]);
+        loadPairs(corner, kY, v[2], v[3]);
+        loadPairs(corner, kZ, v[4], v[5]);
+        loadPairs(corner, kZ + kY, v[6], v[7]);
+    }
+};
 
 inline Floats mix(Floats a, Floats b, Floats t) {
     return a + t * (b - a);
 }
 
-void distances(const tooth::FieldView& field, const FieldRow& row, int first, float* out) noexcept {
-    const Places places(field, row, first);
+inline Ints bareMask(const Places& places) {
+    return places.stored < 0;
+}
+
+/// Signed distances of eight points of a row.
+inline Floats distances(const FieldView& field, const RingQuery& query, const Row& row, Floats a, Floats b) {
+    const Places places(field, row, a, b);
+    if (places.bare == 0xffu) return places.farMm(field, row, query.farOutMm, query.farInMm);
     const Floats(&t)[3] = places.fraction;
-    Floats v[8];
-    load(field, places, v);
+    const Corners corners(field, places);
+    const Floats(&v)[8] = corners.v;
     const Floats low = mix(mix(v[0], v[1], t[0]), mix(v[2], v[3], t[0]), t[1]);
     const Floats high = mix(mix(v[4], v[5], t[0]), mix(v[6], v[7], t[0]), t[1]);
     const Floats d = mix(low, high, t[2]);
-    for (int lane = 0; lane < 8; ++lane)
-        out[lane] = places.corner[lane] >= 0 ? d[lane] : places.far[lane];
+    if (places.bare == 0) return d;
+    return bareMask(places) ? places.farMm(field, row, query.farOutMm, query.farInMm) : d;
 }
 
-void gradients(const tooth::FieldView& field, const FieldRow& row, int first, FieldEight& out) noexcept {
-    const Places places(field, row, first);
+/// Looks eight points of a ring up; returns which are live.
+inline unsigned senseEight(const FieldView& field, const BurRings& bur, const RingQuery& query, const RingTouch& touch,
+                           const BurRing& ring, const Row& row, int eight) {
+    const int lanes = ring.count - 8 * eight;
+    const unsigned real = lanes >= 8 ? 0xffu : (1u << lanes) - 1u;
+    const std::int32_t at = ring.first + 8 * eight, angle = ring.angles + 8 * eight;
+    const Places places(field, row, loadFloats(bur.cosines + angle), loadFloats(bur.sines + angle));
     const Floats(&t)[3] = places.fraction;
-    Floats v[8];
-    load(field, places, v);
+    const Corners corners(field, places);
+    const Floats(&v)[8] = corners.v;
     const Floats x00 = mix(v[0], v[1], t[0]), x10 = mix(v[2], v[3], t[0]);
     const Floats x01 = mix(v[4], v[5], t[0]), x11 = mix(v[6], v[7], t[0]);
     const Floats low = mix(x00, x10, t[1]), high = mix(x01, x11, t[1]);
-    const Floats d = mix(low, high, t[2]);
+    Floats d = mix(low, high, t[2]);
+    unsigned candidates = real;
+    if (places.bare != 0) {
+        const Floats far = places.farMm(field, row, query.farOutMm, query.farInMm);
+        d = bareMask(places) ? far : d;
+        // Outside nothing is told beyond the bricks but that it is far.
+        const unsigned deep = query.skipsDeep ? 0u : bitsOf(far < 0.0f);
+        candidates &= ~places.bare | deep;
+    }
+    const unsigned live = bitsOf(d <= query.thresholdMm) & candidates;
+    touch.live[ring.mask + eight] = static_cast<std::uint8_t>(live);
+    const Ints lane = {1, 2, 4, 8, 16, 32, 64, 128};
+    const Ints isLive = ((Ints{} + static_cast<std::int32_t>(live)) & lane) != 0;
+    d = isLive ? d : splatF(kNotLiveMm);
+    __builtin_memcpy(touch.distanceMm + at, &d, sizeof d);
+    if (live == 0) return 0;
     const Floats gx = mix(mix(v[1] - v[0], v[3] - v[2], t[1]), mix(v[5] - v[4], v[7] - v[6], t[1]), t[2]);
     const Floats gy = mix(x10 - x00, x11 - x01, t[2]);
     const Floats gz = high - low;
-    for (int lane = 0; lane < 8; ++lane)
-        out.distance[lane] = places.corner[lane] >= 0 ? d[lane] : places.far[lane];
-    // The nearest node tells the tissue.
-    const Ints nearest = (t[0] > 0.5f ? Ints{} + 1 : Ints{}) + (t[1] > 0.5f ? Ints{} + kY : Ints{}) +
-                         (t[2] > 0.5f ? Ints{} + kZ : Ints{});
-    for (int lane = 0; lane < 8; ++lane)
-        out.tissue[lane] = places.allStored || places.corner[lane] >= 0
-                               ? field.tissue[places.corner[lane] + nearest[lane]]
-                               : kDeepTissue;
-    __builtin_memcpy(out.x, &gx, sizeof gx);
-    __builtin_memcpy(out.y, &gy, sizeof gy);
-    __builtin_memcpy(out.z, &gz, sizeof gz);
+    __builtin_memcpy(touch.gradientX + at, &gx, sizeof gx);
+    __builtin_memcpy(touch.gradientY + at, &gy, sizeof gy);
+    __builtin_memcpy(touch.gradientZ + at, &gz, sizeof gz);
+    if (query.tissue == kManyTissues) {
+        const Ints nearest = places.inBrick + (t[0] > 0.5f ? Ints{} + 1 : Ints{}) +
+                             (t[1] > 0.5f ? Ints{} + kY : Ints{}) + (t[2] > 0.5f ? Ints{} + kZ : Ints{});
+        for (int i = 0; i < 8; ++i) {
+            if ((live >> i & 1u) == 0) continue;
+            const std::int32_t brick = places.stored[i];
+            touch.tissue[at + i] = brick < 0 ? field.coarseTissue[places.dense[i]]
+                                             : field.tissue[std::int64_t{brick} * kBrickValues + nearest[i]];
+        }
+    }
+    return live;
+}
+
+void sense(const FieldView& field, const BurRings& bur, const RingQuery& query, const RingTouch& touch) noexcept {
+    const GridPose pose(field, query);
+    const double still[3] = {};
+    double reach[3];
+    for (int k = 0; k < 3; ++k)
+        reach[k] = pose.z[k] < 0.0 ? -pose.z[k] : pose.z[k];
+    // Cells near an edge of the surface are off by more than rounding; what lies beyond bounds by that much is looked
+    // up.
+    const auto slackMm = static_cast<float>(0.1 * field.voxelMm);
+    const float threshold = query.thresholdMm + slackMm;
+    for (std::int32_t i = 0; i < bur.count; i += 8) {
+        // Eight rings: heights from the middle one on.
+        const double middle = bur.heights[i + 4];
+        double far = 0.0;
+        for (int k = 0; k < 8; ++k) {
+            const double away = bur.heights[i + k] - middle;
+            far = away > far ? away : -away > far ? -away : far;
+        }
+        double centre[3];
+        for (int k = 0; k < 3; ++k)
+            centre[k] = pose.tip[k] + middle * pose.z[k];
+        const Row row(field, centre, pose.z, still, 1.0, reach, far);
+        const Floats along = loadFloats(bur.heights + i) - splatF(static_cast<float>(middle));
+        const Floats d = distances(field, query, row, along, Floats{});
+        __builtin_memcpy(touch.axisMm + i, &d, sizeof d);
+    }
+    for (std::int32_t i = 0; i < bur.count; ++i) {
+        const BurRing& ring = bur.rings[i];
+        touch.liveRing[i] = 0;
+        const auto rho = static_cast<float>(ring.rhoMm);
+        if (touch.axisMm[i] - rho > threshold) continue;
+        double centre[3];
+        for (int k = 0; k < 3; ++k)
+            centre[k] = pose.tip[k] + ring.zMm * pose.z[k];
+        const Row row(field, centre, pose.x, pose.y, ring.rhoMm, pose.reach, ring.rhoMm);
+        unsigned any = 0;
+        for (int group = 0; group < ring.eights; group += 8) {
+            unsigned near = 1;
+            if (ring.eights > 1) {
+                const std::int32_t at = ring.middles + group;
+                const Floats d = distances(field, query, row, loadFloats(bur.cosines + at), loadFloats(bur.sines + at));
+                near = bitsOf(d - ring.chordMm <= threshold);
+            }
+            const int end = ring.eights - group < 8 ? ring.eights : group + 8;
+            for (int e = group; e < end; ++e, near >>= 1) {
+                if ((near & 1u) != 0) {
+                    any |= senseEight(field, bur, query, touch, ring, row, e);
+                } else {
+                    const Floats none = splatF(kNotLiveMm);
+                    __builtin_memcpy(touch.distanceMm + ring.first + 8 * e, &none, sizeof none);
+                    touch.live[ring.mask + e] = 0;
+                }
+            }
+        }
+        if (any == 0) continue;
+        touch.liveRing[i] = 1;
+        // Around the seam. Padding in the last eight is not live, so the neighbour is the last point itself.
+        touch.distanceMm[ring.first - 1] = ring.count > 1 ? touch.distanceMm[ring.first + ring.count - 1] : kNotLiveMm;
+        touch.distanceMm[ring.first + ring.count] = ring.count > 1 ? touch.distanceMm[ring.first] : kNotLiveMm;
+    }
+}
+
+inline Floats get(const float* p) {
+    return loadFloats(p);
+}
+inline void add(float (&sum)[8], Floats value) {
+    value += get(sum);
+    __builtin_memcpy(sum, &value, sizeof value);
+}
+
+void addRun(const BurRings& bur, const RingTouch& touch, std::int32_t i, std::int32_t from, std::int32_t to,
+            float marginMm, TouchSums& sums) noexcept {
+    const BurRing& ring = bur.rings[i];
+    Floats weight{}, x{}, y{}, gx{}, gy{}, gz{}, least = get(sums.least);
+    for (std::int32_t j = from & ~7; j < to; j += 8) {
+        const Ints place = Ints{0, 1, 2, 3, 4, 5, 6, 7} + j;
+        const Ints isIn = (place >= from) & (place < to);
+        const std::int32_t at = ring.first + j, angle = ring.angles + j;
+        const Floats d = get(touch.distanceMm + at);
+        const Floats w = isIn ? ring.areaMm2 * (marginMm - d) : Floats{};
+        weight += w;
+        x += w * get(bur.cosines + angle);
+        y += w * get(bur.sines + angle);
+        gx += w * get(touch.gradientX + at);
+        gy += w * get(touch.gradientY + at);
+        gz += w * get(touch.gradientZ + at);
+        least = leastF(least, isIn ? d : least);
+    }
+    const auto rho = static_cast<float>(ring.rhoMm);
+    add(sums.weight, weight);
+    add(sums.x, rho * x);
+    add(sums.y, rho * y);
+    add(sums.z, static_cast<float>(ring.zMm) * weight);
+    add(sums.gradientX, gx);
+    add(sums.gradientY, gy);
+    add(sums.gradientZ, gz);
+    __builtin_memcpy(sums.least, &least, sizeof least);
+}
+
+unsigned lowInRing(const BurRings& bur, const RingTouch& touch, std::int32_t i, std::int32_t eight) noexcept {
+    const BurRing& ring = bur.rings[i];
+    const float* at = touch.distanceMm + ring.first + 8 * eight;
+    const Floats d = get(at);
+    return bitsOf((get(at - 1) >= d) & (get(at + 1) >= d)) & touch.live[ring.mask + eight];
 }
 
 }  // namespace
 
 RingKernels ringKernels() noexcept {
-    return {distances, gradients};
+    return {sense, addRun, lowInRing};
 }
 
 }  // namespace handpiece::contact::HANDPIECE_SIMD_NS

@@ -1,32 +1,71 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Lookups of a row of points in the tooth's field, eight at a time. Plain data, compiled once per instruction set.
+/// The bur's rings of surface points in the tooth's field, eight points at a time. Plain data, compiled once per
+/// instruction set, the same bits at each.
 
 #include "handpiece/model/tooth/field_view.h"
 
 namespace handpiece::contact {
 
-/// Points centre + cosines[i] x + sines[i] y of the tooth frame; arrays are readable up to a multiple of eight.
-struct FieldRow {
-    double centre[3], x[3], y[3];
-    const double* cosines = nullptr;
-    const double* sines = nullptr;
-    /// Where no brick is stored the surface is at least this far [mm].
-    float farOutMm = 0.0f, farInMm = 0.0f;
+/// A ring of the bur's surface points and where its share of the arrays begins.
+struct BurRing {
+    double zMm, rhoMm;
+    float areaMm2;         ///< of each point
+    float chordMm;         ///< from the middle of eight points to the outermost
+    std::int32_t count;    ///< its points
+    std::int32_t eights;   ///< the same in eights, rounded up; the padding repeats the last point
+    std::int32_t first;    ///< its first point in arrays by point; kRingPad values lie before and after its points
+    std::int32_t mask;     ///< its first eight in arrays by eight
+    std::int32_t angles;   ///< its cosines and sines
+    std::int32_t middles;  ///< cosines and sines of the middles of its eights
+};
+inline constexpr std::int32_t kRingPad = 8;
+
+struct BurRings {
+    const BurRing* rings;
+    std::int32_t count;
+    const float *cosines, *sines;
+    const float* heights;  ///< of the rings [mm], padded to a multiple of eight
 };
 
-/// Eight signed distances and the field's gradient there (not of unit length; zero where no brick is stored).
-struct FieldEight {
-    float distance[8], x[8], y[8], z[8];
-    std::uint8_t tissue[8];  ///< of the nearest node; kDeepTissue where no brick is stored
+/// Where the bur is and what is asked.
+struct RingQuery {
+    double tip[3], x[3], y[3], z[3];  ///< bur frame in the tooth frame [mm]
+    float thresholdMm;                ///< points this near the surface are live, and all inside
+    float farOutMm, farInMm;          ///< where no brick is stored the surface is at least this far
+    bool skipsDeep;                   ///< points inside where no brick is stored are not live
+    std::uint8_t tissue;              ///< when everything is of one tissue, else kManyTissues
 };
-inline constexpr std::uint8_t kDeepTissue = 0xff;
+inline constexpr std::uint8_t kManyTissues = 0xff;
+
+/// What was found. Arrays by point hold the values of rings that are live.
+struct RingTouch {
+    float* axisMm;                             ///< by ring (padded): signed distance of its middle, or a lower bound
+    float* distanceMm;                         ///< by point: signed distance; kNotLiveMm where not live
+    float *gradientX, *gradientY, *gradientZ;  ///< by point: of the field, per voxel; zero where no brick is stored
+    std::uint8_t* tissue;                      ///< by point: of the nearest node; unset when all is of one tissue
+    std::uint8_t* live;                        ///< by eight: bit i for its point i
+    std::uint8_t* liveRing;                    ///< by ring: has live points
+};
+inline constexpr float kNotLiveMm = 1e3f;
+
+/// Sums over points of weight w = area times (margin - distance), by lane.
+struct alignas(32) TouchSums {
+    float weight[8], x[8], y[8], z[8];  ///< of w, and of w times the place in the bur's frame [mm]
+    float gradientX[8], gradientY[8], gradientZ[8];
+    float least[8];  ///< distance
+};
 
 struct RingKernels {
-    /// Signed distances of points first .. first + 7. Where no brick is stored: the sign, and a bound of the distance.
-    void (*distances)(const tooth::FieldView& field, const FieldRow& row, int first, float* out) noexcept;
-    void (*gradients)(const tooth::FieldView& field, const FieldRow& row, int first, FieldEight& out) noexcept;
+    /// Finds the live points.
+    void (*sense)(const tooth::FieldView& field, const BurRings& bur, const RingQuery& query,
+                  const RingTouch& touch) noexcept;
+    /// Adds points from .. to - 1 of a ring, all live.
+    void (*addRun)(const BurRings& bur, const RingTouch& touch, std::int32_t ring, std::int32_t from, std::int32_t to,
+                   float marginMm, TouchSums& sums) noexcept;
+    /// Bit i tells that none of the two neighbours of live point 8 eight + i in its ring is nearer.
+    unsigned (*lowInRing)(const BurRings& bur, const RingTouch& touch, std::int32_t ring, std::int32_t eight) noexcept;
 };
 
 namespace simd_base {

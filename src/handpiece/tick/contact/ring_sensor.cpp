@@ -2,6 +2,7 @@
 #include "handpiece/tick/contact/ring_sensor.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -12,7 +13,7 @@ using core::Vec3;
 
 namespace {
 
-constexpr float kFarMm = 1e3f;
+constexpr std::uint64_t kNone = ~std::uint64_t{0};
 
 RingKernels kernelsFor(core::SimdLevel level) {
 #if defined(__x86_64__)
@@ -28,145 +29,117 @@ void store(double (&to)[3], const Vec3& v) noexcept {
         to[k] = v[k];
 }
 
+/// The one tissue of all that can be touched, or kManyTissues.
+std::uint8_t onlyTissue(const tooth::ToothField& field, const tooth::FieldView& view) {
+    std::uint8_t only = kManyTissues;
+    const auto isOther = [&](std::uint8_t tissue) {
+        if (only == kManyTissues) only = tissue;
+        return tissue != only;
+    };
+    const std::size_t dense = static_cast<std::size_t>(view.bricks[0]) * static_cast<std::size_t>(view.bricks[1]) *
+                              static_cast<std::size_t>(view.bricks[2]);
+    for (std::size_t i = 0; i < dense; ++i)
+        if (view.brickIndex[i] < 0 && view.coarse[i] < 0.0f && isOther(view.coarseTissue[i])) return kManyTissues;
+    const std::uint8_t* end = view.tissue + field.brickCount() * tooth::kBrickValues;
+    return std::any_of(view.tissue, end, isOther) ? kManyTissues : only;
+}
+
+double sumOf(const float (&lanes)[8]) noexcept {
+    double sum = 0.0;
+    for (const float lane : lanes)
+        sum += static_cast<double>(lane);
+    return sum;
+}
+
 }  // namespace
 
 RingSensor::RingSensor(const tooth::ToothField& field, const instrument::Bur& bur, core::SimdLevel level)
-    : field_(field), view_(field.view()), kernels_(kernelsFor(level)) {
+    : field_(field), view_(field.view()), kernels_(kernelsFor(level)), tissueOfAll_(onlyTissue(field, view_)) {
     struct Table {
         std::size_t angles, middles;
     };
     std::map<std::uint32_t, Table> tables;
-    std::size_t points = 0;
-    const auto addAngle = [this](double angle) {
-        cosines_.push_back(std::cos(angle));
-        sines_.push_back(std::sin(angle));
+    std::size_t points = kRingPad, eightsInAll = 0;
+    const auto addAngle = [this](double angle, std::size_t sector) {
+        cosines_.push_back(static_cast<float>(std::cos(angle)));
+        sines_.push_back(static_cast<float>(std::sin(angle)));
+        sector_.push_back(static_cast<std::uint8_t>(sector));
     };
     for (const instrument::SurfaceRing& r : bur.rings()) {
         if (r.count == 0) continue;
         const auto [it, added] = tables.try_emplace(r.count);
-        const int count = static_cast<int>(r.count), eights = (count + 7) / 8;
-        const double step = 2.0 * std::numbers::pi / count;
+        const std::size_t count = r.count, eights = (count + 7) / 8;
+        const double step = 2.0 * std::numbers::pi / static_cast<double>(count);
         if (added) {  // the padding repeats the last one
             it->second.angles = cosines_.size();
-            for (int j = 0; j < 8 * eights; ++j)
-                addAngle(step * (std::min(j, count - 1) + 0.5));
+            for (std::size_t j = 0; j < 8 * eights; ++j) {
+                const std::size_t own = std::min(j, count - 1);
+                addAngle(step * (static_cast<double>(own) + 0.5), own * kSectors / count);
+            }
             it->second.middles = cosines_.size();
-            for (int e = 0; e < 8 * ((eights + 7) / 8); ++e)
-                addAngle(step * (8 * std::min(e, eights - 1) + 4));
+            for (std::size_t e = 0; e < 8 * ((eights + 7) / 8); ++e)
+                addAngle(step * static_cast<double>(8 * std::min(e, eights - 1) + 4), 0);
         }
         const double halfAngle = std::min(std::numbers::pi, 3.5 * step);
-        rings_.push_back({r.zMm, r.rhoMm, r.areaMm2, count, eights, points, it->second.angles, it->second.middles,
-                          2.0 * r.rhoMm * std::sin(0.5 * halfAngle)});
-        points += static_cast<std::size_t>(8 * eights);
+        BurRing ring{};
+        ring.zMm = r.zMm;
+        ring.rhoMm = r.rhoMm;
+        ring.areaMm2 = static_cast<float>(r.areaMm2);
+        ring.chordMm = static_cast<float>(2.0 * r.rhoMm * std::sin(0.5 * halfAngle));
+        ring.count = static_cast<std::int32_t>(count);
+        ring.eights = static_cast<std::int32_t>(eights);
+        ring.first = static_cast<std::int32_t>(points);
+        ring.mask = static_cast<std::int32_t>(eightsInAll);
+        ring.angles = static_cast<std::int32_t>(it->second.angles);
+        ring.middles = static_cast<std::int32_t>(it->second.middles);
+        rings_.push_back(ring);
+        points += 8 * eights + kRingPad;
+        eightsInAll += eights;
     }
-    for (const Ring& ring : rings_)
-        heights_.push_back(ring.z);
+    for (const BurRing& ring : rings_)
+        heights_.push_back(static_cast<float>(ring.zMm));
     while (heights_.size() % 8 != 0)
         heights_.push_back(heights_.back());
-    zeros_.assign(heights_.size(), 0.0);
     axisDistance_.assign(heights_.size(), 0.0f);
+    for (std::vector<float>* values : {&distance_, &gx_, &gy_, &gz_})
+        values->assign(points, 0.0f);
     tissue_.assign(points, 0);
-    distance_.assign(points, kFarMm);
-    gx_.assign(points, 0.0f);
-    gy_.assign(points, 0.0f);
-    gz_.assign(points, 0.0f);
-    live_.assign(points, 0);
+    live_.assign(eightsInAll, 0);
     liveRing_.assign(rings_.size(), 0);
     runs_.resize(kMaxRuns);
     candidates_.resize(points);
+    nearest_.resize((rings_.size() + kRingsPerBlock - 1) / kRingsPerBlock * kSectors);
+    bur_ = {rings_.data(), static_cast<std::int32_t>(rings_.size()), cosines_.data(), sines_.data(), heights_.data()};
+    touch_ = {axisDistance_.data(), distance_.data(), gx_.data(),   gy_.data(),
+              gz_.data(),           tissue_.data(),   live_.data(), liveRing_.data()};
+    query_.farOutMm = static_cast<float>(field.settings().bandOutMm);
+    query_.farInMm = static_cast<float>(field.settings().bandInMm);
+    query_.tissue = tissueOfAll_;
 }
 
-Vec3 RingSensor::pointMm(const Ring& ring, int j) const noexcept {
-    const std::size_t a = ring.angles + static_cast<std::size_t>(j);
-    return tip_ + ring.z * z_ + ring.rho * (cosines_[a] * x_ + sines_[a] * y_);
+Vec3 RingSensor::pointMm(const BurRing& ring, std::int32_t j) const noexcept {
+    const auto a = static_cast<std::size_t>(ring.angles + j);
+    return tip_ + ring.zMm * z_ +
+           ring.rhoMm * (static_cast<double>(cosines_[a]) * x_ + static_cast<double>(sines_[a]) * y_);
 }
 
-Vec3 RingSensor::normalAt(std::size_t at) const noexcept {
-    const Vec3 g(gx_[at], gy_[at], gz_[at]);
-    const double n = g.norm();
-    return n > 1e-12 ? Vec3(g / n) : Vec3::Zero();
+std::uint8_t RingSensor::tissueAt(std::int32_t at) const noexcept {
+    return tissueOfAll_ != kManyTissues ? tissueOfAll_ : tissue_[static_cast<std::size_t>(at)];
 }
 
-void RingSensor::sense(const core::Pose& burInTooth, double thresholdMm) noexcept {
+void RingSensor::sense(const core::Pose& burInTooth, double thresholdMm, bool skipsDeep) noexcept {
     const core::Mat3 rotation = burInTooth.orientation.toRotationMatrix();
     tip_ = burInTooth.positionMm;
     x_ = rotation.col(0);
     y_ = rotation.col(1);
     z_ = rotation.col(2);
-    FieldRow row;
-    row.farOutMm = static_cast<float>(field_.settings().bandOutMm);
-    row.farInMm = static_cast<float>(field_.settings().bandInMm);
-    store(row.centre, tip_);
-    store(row.x, z_);
-    store(row.y, Vec3::Zero());
-    row.cosines = heights_.data();
-    row.sines = zeros_.data();
-    // No point of a ring is farther than rho from its middle, and one middle's distance bounds those of its neighbours.
-    double clearFrom = 0.0, clearRoom = -1e30;
-    for (std::size_t i = 0; i < heights_.size(); i += 8) {
-        bool clear = true;
-        for (std::size_t k = i; k < std::min(i + 8, rings_.size()) && clear; ++k)
-            clear = clearRoom - std::abs(rings_[k].z - clearFrom) - rings_[k].rho > thresholdMm;
-        if (clear) {
-            std::fill_n(axisDistance_.begin() + static_cast<std::ptrdiff_t>(i), 8, kFarMm);
-            continue;
-        }
-        kernels_.distances(view_, row, static_cast<int>(i), &axisDistance_[i]);
-        const std::size_t last = std::min(i + 8, rings_.size()) - 1;
-        clearFrom = rings_[last].z;
-        clearRoom = axisDistance_[last];
-    }
-    for (std::size_t i = 0; i < rings_.size(); ++i) {
-        const Ring& ring = rings_[i];
-        if (liveRing_[i] != 0) {
-            std::fill_n(live_.begin() + static_cast<std::ptrdiff_t>(ring.first), 8 * ring.eights, std::uint8_t{0});
-            liveRing_[i] = 0;
-        }
-        if (static_cast<double>(axisDistance_[i]) - ring.rho > thresholdMm) continue;
-        store(row.centre, tip_ + ring.z * z_);
-        store(row.x, ring.rho * x_);
-        store(row.y, ring.rho * y_);
-        for (int group = 0; group < ring.eights; group += 8) {
-            float middles[8] = {};
-            if (ring.eights > 1) {
-                row.cosines = &cosines_[ring.middles];
-                row.sines = &sines_[ring.middles];
-                kernels_.distances(view_, row, group, middles);
-            }
-            row.cosines = &cosines_[ring.angles];
-            row.sines = &sines_[ring.angles];
-            for (int e = group; e < std::min(group + 8, ring.eights); ++e)
-                if (ring.eights == 1 || static_cast<double>(middles[e - group]) - ring.chordMm <= thresholdMm)
-                    senseEight(i, row, e, thresholdMm);
-        }
-    }
-}
-
-void RingSensor::senseEight(std::size_t i, const FieldRow& row, int e, double thresholdMm) noexcept {
-    const Ring& ring = rings_[i];
-    FieldEight eight;
-    kernels_.gradients(view_, row, 8 * e, eight);
-    const std::size_t first = ring.first + static_cast<std::size_t>(8 * e);
-    const int lanes = std::min(8, ring.count - 8 * e);
-    const auto threshold = static_cast<float>(thresholdMm);
-    std::uint8_t any = 0;
-    for (int lane = 0; lane < 8; ++lane) {
-        const std::uint8_t near = lane < lanes && eight.distance[lane] <= threshold ? 1 : 0;
-        live_[first + static_cast<std::size_t>(lane)] = near;
-        any |= near;
-    }
-    if (any == 0) return;
-    liveRing_[i] = 1;
-    std::copy_n(eight.distance, 8, &distance_[first]);
-    std::copy_n(eight.x, 8, &gx_[first]);
-    std::copy_n(eight.y, 8, &gy_[first]);
-    std::copy_n(eight.z, 8, &gz_[first]);
-    std::copy_n(eight.tissue, 8, &tissue_[first]);
-}
-
-tooth::Tissue RingSensor::tissueAt(const Ring& ring, int j) const noexcept {
-    const std::uint8_t tissue = tissue_[ring.first + static_cast<std::size_t>(j)];
-    return tissue != kDeepTissue ? static_cast<tooth::Tissue>(tissue) : field_.tissueAt(pointMm(ring, j));
+    store(query_.tip, tip_);
+    store(query_.x, x_);
+    store(query_.y, y_);
+    store(query_.z, z_);
+    query_.thresholdMm = static_cast<float>(thresholdMm);
+    query_.skipsDeep = skipsDeep;
+    kernels_.sense(view_, bur_, query_, touch_);
 }
 
 std::int32_t RingSensor::rootOf(std::int32_t run) noexcept {
@@ -203,19 +176,34 @@ std::size_t RingSensor::findRuns() noexcept {
     std::int32_t previousRing = -2;
     for (std::size_t i = 0; i < rings_.size(); ++i) {
         if (liveRing_[i] == 0) continue;
-        const Ring& ring = rings_[i];
+        const BurRing& ring = rings_[i];
         const std::size_t begin = count;
-        for (int j = 0; j < ring.count;) {
-            if (live_[ring.first + static_cast<std::size_t>(j)] == 0) {
-                ++j;
-                continue;
-            }
-            const int from = j;
-            while (j < ring.count && live_[ring.first + static_cast<std::size_t>(j)] != 0)
-                ++j;
-            if (count == kMaxRuns) return count;
-            runs_[count] = {static_cast<std::int32_t>(i), from, j, static_cast<std::int32_t>(count)};
+        const auto add = [&](std::int32_t from, std::int32_t to) {
+            runs_[count] = {static_cast<std::int32_t>(i), from, to, static_cast<std::int32_t>(count)};
             ++count;
+        };
+        std::int32_t from = -1;  // of the run that reaches into the eight at hand
+        for (std::int32_t e = 0; e < ring.eights; ++e) {
+            const unsigned bits = live_[static_cast<std::size_t>(ring.mask + e)];
+            if (bits == (from < 0 ? 0u : 0xffu)) continue;
+            for (int bit = 0; bit < 8;) {
+                const unsigned rest = bits >> bit;
+                if (from < 0) {
+                    if (rest == 0) break;
+                    bit += std::countr_zero(rest);
+                    from = 8 * e + bit;
+                } else {
+                    bit += std::countr_one(rest);
+                    if (bit == 8) break;
+                    if (count == kMaxRuns) return count;
+                    add(from, 8 * e + bit);
+                    from = -1;
+                }
+            }
+        }
+        if (from >= 0) {
+            if (count == kMaxRuns) return count;
+            add(from, ring.count);
         }
         joinRuns(previousRing + 1 == static_cast<std::int32_t>(i) ? previousBegin : begin, begin, count);
         previousBegin = begin;
@@ -224,163 +212,181 @@ std::size_t RingSensor::findRuns() noexcept {
     return count;
 }
 
-void RingSensor::patches(const core::Pose& burInTooth, PatchSet& out) noexcept {
-    out = PatchSet{};
-    if (!burInTooth.isValid()) {
-        out.status = Status::invalidPose;
-        return;
-    }
-    sense(burInTooth, kContactMarginMm);
-    const std::size_t runs = findRuns();
-    if (runs == kMaxRuns) out.status = Status::truncated;
-
-    struct Sums {
-        std::int32_t root;
-        double area = 0.0, pressure = 0.0, deepest = 0.0;
-        Vec3 centre = Vec3::Zero(), normal = Vec3::Zero();
-        std::array<double, tooth::kTissueCount> tissue{};
-    };
-    constexpr std::size_t kSums = 2 * kMaxPatches;
-    std::array<Sums, kSums> sums;
+std::size_t RingSensor::sumRuns(std::size_t runs, Status& status) noexcept {
+    constexpr auto kMargin = static_cast<float>(kContactMarginMm);
     std::size_t count = 0;
-    double pressure = 0.0;
     for (std::size_t r = 0; r < runs; ++r) {
         const Run& run = runs_[r];
         const std::int32_t root = rootOf(static_cast<std::int32_t>(r));
         std::size_t s = 0;
-        while (s < count && sums[s].root != root)
+        while (s < count && sums_[s].root != root)
             ++s;
         if (s == count) {
-            if (count == kSums) {
-                out.status = Status::truncated;
+            if (count == kMaxSums) {
+                status = Status::truncated;
                 continue;
             }
-            sums[count] = Sums{};
-            sums[count++].root = root;
+            Sums& fresh = sums_[count++];
+            fresh = Sums{};
+            fresh.root = root;
         }
-        Sums& sum = sums[s];
-        const Ring& ring = rings_[static_cast<std::size_t>(run.ring)];
-        double total = 0.0, alongX = 0.0, alongY = 0.0;
-        Vec3 normal = Vec3::Zero();
-        for (int j = run.from; j < run.to; ++j) {
-            const std::size_t at = ring.first + static_cast<std::size_t>(j),
-                              angle = ring.angles + static_cast<std::size_t>(j);
-            const double gap = distance_[at], share = kContactMarginMm - gap;
-            total += share;
-            alongX += share * cosines_[angle];
-            alongY += share * sines_[angle];
-            normal += share * Vec3(gx_[at], gy_[at], gz_[at]);
-            sum.deepest = std::max(sum.deepest, -gap);
-            sum.tissue[static_cast<std::size_t>(tissueAt(ring, j))] += ring.area * share;
-        }
-        sum.area += ring.area * (run.to - run.from);
-        sum.pressure += ring.area * total;
-        sum.centre += ring.area * (total * (tip_ + ring.z * z_) + ring.rho * (alongX * x_ + alongY * y_));
-        sum.normal += ring.area * normal;
+        Sums& sum = sums_[s];
+        const BurRing& ring = rings_[static_cast<std::size_t>(run.ring)];
+        kernels_.addRun(bur_, touch_, run.ring, run.from, run.to, kMargin, sum.lanes);
+        sum.area += static_cast<double>(ring.areaMm2) * (run.to - run.from);
+        if (tissueOfAll_ != kManyTissues) continue;
+        for (std::int32_t at = ring.first + run.from; at < ring.first + run.to; ++at)
+            sum.tissue[tissue_[static_cast<std::size_t>(at)]] +=
+                static_cast<double>(ring.areaMm2 * (kMargin - distance_[static_cast<std::size_t>(at)]));
     }
     for (std::size_t s = 0; s < count; ++s) {
-        out.areaMm2 += sums[s].area;
-        pressure += sums[s].pressure;
-        for (std::size_t t = 0; t < tooth::kTissueCount; ++t)
-            out.tissueShare[t] += sums[s].tissue[t];
+        sums_[s].pressure = sumOf(sums_[s].lanes.weight);
+        if (tissueOfAll_ != kManyTissues) sums_[s].tissue[tissueOfAll_] = sums_[s].pressure;
+    }
+    return count;
+}
+
+void RingSensor::patches(const core::Pose& burInTooth, PatchSet& out) noexcept {
+    out.patches.clear();
+    out.areaMm2 = 0.0;
+    out.tissueShare.fill(0.0);
+    out.status = Status::ok;
+    if (!burInTooth.isValid()) {
+        out.status = Status::invalidPose;
+        return;
+    }
+    sense(burInTooth, kContactMarginMm, false);
+    const std::size_t runs = findRuns();
+    if (runs == kMaxRuns) out.status = Status::truncated;
+    const std::size_t count = sumRuns(runs, out.status);
+    double pressure = 0.0, tissues = 0.0;
+    std::array<std::size_t, kMaxSums> order;
+    for (std::size_t s = 0; s < count; ++s) {
+        order[s] = s;
+        out.areaMm2 += sums_[s].area;
+        pressure += sums_[s].pressure;
+        for (std::size_t t = 0; t < tooth::kTissueCount; ++t) {
+            out.tissueShare[t] += sums_[s].tissue[t];
+            tissues += sums_[s].tissue[t];
+        }
     }
     if (!(pressure > 0.0)) return;
     for (double& share : out.tissueShare)
-        share /= pressure;
-    std::sort(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(count), [](const Sums& a, const Sums& b) {
-        return a.pressure != b.pressure ? a.pressure > b.pressure : a.root < b.root;
+        share /= tissues;
+    std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), [this](std::size_t a, std::size_t b) {
+        return sums_[a].pressure != sums_[b].pressure ? sums_[a].pressure > sums_[b].pressure
+                                                      : sums_[a].root < sums_[b].root;
     });
-    for (std::size_t s = 0; s < count; ++s) {
-        const Sums& sum = sums[s];
+    for (std::size_t i = 0; i < count; ++i) {
+        const Sums& sum = sums_[order[i]];
         if (!(sum.pressure > 0.0)) continue;
-        const double n = sum.normal.norm();
+        const TouchSums& lanes = sum.lanes;
+        const Vec3 gradient(sumOf(lanes.gradientX), sumOf(lanes.gradientY), sumOf(lanes.gradientZ));
+        const double n = gradient.norm();
+        const Vec3 centre = tip_ + (sumOf(lanes.x) * x_ + sumOf(lanes.y) * y_ + sumOf(lanes.z) * z_) / sum.pressure;
+        const float least = *std::min_element(std::begin(lanes.least), std::end(lanes.least));
         const auto most = std::max_element(sum.tissue.begin(), sum.tissue.end()) - sum.tissue.begin();
-        if (!out.patches.pushBack({sum.centre / sum.pressure, n > 1e-12 ? Vec3(sum.normal / n) : Vec3::Zero(), sum.area,
-                                   sum.deepest, sum.pressure / pressure, static_cast<tooth::Tissue>(most)}))
+        if (!out.patches.pushBack({centre, n > 1e-12 ? Vec3(gradient / n) : Vec3::Zero(), sum.area,
+                                   std::max(0.0, -static_cast<double>(least)), sum.pressure / pressure,
+                                   static_cast<tooth::Tissue>(most)}))
             out.status = Status::truncated;
     }
 }
 
-bool RingSensor::isLocalMinimum(std::size_t i, int j) const noexcept {
-    const Ring& ring = rings_[i];
-    const float own = distance_[ring.first + static_cast<std::size_t>(j)];
+std::uint64_t RingSensor::keyOf(std::size_t i, std::int32_t j) const noexcept {
+    const auto bits = std::bit_cast<std::uint32_t>(distance_[static_cast<std::size_t>(rings_[i].first + j)]);
+    // Floats sort like integers once the negative ones are turned round.
+    const std::uint32_t ordered = bits >> 31 != 0 ? ~bits : bits | 0x80000000u;
+    return std::uint64_t{ordered} << 32 | i << 16 | static_cast<std::uint64_t>(j);
+}
+
+bool RingSensor::isLocalMinimum(std::size_t i, std::int32_t j) const noexcept {
+    const BurRing& ring = rings_[i];
+    const float own = distance_[static_cast<std::size_t>(ring.first + j)];
     // Of equal neighbours the first one counts.
-    const auto below = [&](const Ring& other, int k, bool before) {
-        const std::size_t at = other.first + static_cast<std::size_t>(k);
-        return live_[at] != 0 && (distance_[at] < own || (before && distance_[at] == own));
+    const auto below = [&](const BurRing& other, std::int32_t k, bool before) {
+        const float d = distance_[static_cast<std::size_t>(other.first + k)];
+        return d < own || (before && d == own);
     };
-    const int left = j == 0 ? ring.count - 1 : j - 1, right = j + 1 == ring.count ? 0 : j + 1;
+    const std::int32_t left = j == 0 ? ring.count - 1 : j - 1, right = j + 1 == ring.count ? 0 : j + 1;
     if (ring.count > 1 && (below(ring, left, left < j) || below(ring, right, right < j))) return false;
     for (int side = -1; side <= 1; side += 2) {
         if ((side < 0 && i == 0) || (side > 0 && i + 1 == rings_.size())) continue;
-        const Ring& other = rings_[side < 0 ? i - 1 : i + 1];
-        const int from = (j * other.count) / ring.count, to = ((j + 1) * other.count - 1) / ring.count;
-        for (int k = from; k <= to && k < other.count; ++k)
+        const std::size_t beside = side < 0 ? i - 1 : i + 1;
+        if (liveRing_[beside] == 0) continue;
+        const BurRing& other = rings_[beside];
+        const std::int32_t from = (j * other.count) / ring.count, to = ((j + 1) * other.count - 1) / ring.count;
+        for (std::int32_t k = from; k <= to && k < other.count; ++k)
             if (below(other, k, side < 0)) return false;
     }
     return true;
 }
 
+std::size_t RingSensor::findMinima() noexcept {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < rings_.size(); ++i) {
+        if (liveRing_[i] == 0) continue;
+        for (std::int32_t e = 0; e < rings_[i].eights; ++e) {
+            if (live_[static_cast<std::size_t>(rings_[i].mask + e)] == 0) continue;
+            unsigned low = kernels_.lowInRing(bur_, touch_, static_cast<std::int32_t>(i), e);
+            for (; low != 0; low &= low - 1) {
+                const std::int32_t j = 8 * e + std::countr_zero(low);
+                if (isLocalMinimum(i, j)) candidates_[count++] = keyOf(i, j);
+            }
+        }
+    }
+    std::sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(count));
+    return count;
+}
+
+/// Adds the nearest point of every sector of a few rings, but for those that are minima already.
+std::size_t RingSensor::addSectors(std::size_t minima) noexcept {
+    std::size_t count = minima;
+    std::fill(nearest_.begin(), nearest_.end(), kNone);
+    for (std::size_t i = 0; i < rings_.size(); ++i) {
+        if (liveRing_[i] == 0) continue;
+        const BurRing& ring = rings_[i];
+        std::uint64_t* sectors = &nearest_[i / kRingsPerBlock * kSectors];
+        for (std::int32_t e = 0; e < ring.eights; ++e)
+            for (unsigned live = live_[static_cast<std::size_t>(ring.mask + e)]; live != 0; live &= live - 1) {
+                const std::int32_t j = 8 * e + std::countr_zero(live);
+                std::uint64_t& nearest = sectors[sector_[static_cast<std::size_t>(ring.angles + j)]];
+                nearest = std::min(nearest, keyOf(i, j));
+            }
+    }
+    const auto placeOf = [this](std::uint64_t key) {
+        const std::size_t i = key >> 16 & 0xffffu, j = key & 0xffffu;
+        return i / kRingsPerBlock * kSectors + sector_[static_cast<std::size_t>(rings_[i].angles) + j];
+    };
+    for (std::size_t c = 0; c < minima; ++c) {
+        std::uint64_t& nearest = nearest_[placeOf(candidates_[c])];
+        if (nearest == candidates_[c]) nearest = kNone;
+    }
+    for (const std::uint64_t key : nearest_)
+        if (key != kNone && count < candidates_.size()) candidates_[count++] = key;
+    return count;
+}
+
 Status RingSensor::constraints(const core::Pose& burInTooth, double reachMm, ConstraintSet& out) noexcept {
     out.clear();
     if (!burInTooth.isValid()) return Status::invalidPose;
-    sense(burInTooth, reachMm);
+    sense(burInTooth, reachMm, true);
     // Every local minimum of the gap, then the nearest point of each sector of a few rings: walls, slots, rims and
     // edges are all seen, and the whole stays well spread.
-    constexpr int kRingsPerBlock = 3;
-    std::size_t minima = 0, count = 0;
-    std::array<std::uint32_t, kSectors> sector;
-    const auto pointOf = [this](std::uint32_t packed) -> std::pair<const Ring&, int> {
-        const Ring& ring = rings_[packed >> 16];
-        return {ring, static_cast<int>(packed & 0xffffu)};
-    };
-    const auto gapOf = [&](std::uint32_t packed) {
-        const auto [ring, j] = pointOf(packed);
-        return distance_[ring.first + static_cast<std::size_t>(j)];
-    };
-    for (std::size_t i = 0; i < rings_.size(); ++i) {
-        if (liveRing_[i] == 0) continue;
-        const Ring& ring = rings_[i];
-        for (int j = 0; j < ring.count; ++j)
-            if (live_[ring.first + static_cast<std::size_t>(j)] != 0 && isLocalMinimum(i, j))
-                candidates_[count++] = static_cast<std::uint32_t>(i << 16 | static_cast<std::size_t>(j));
-    }
-    const auto nearer = [&](std::uint32_t a, std::uint32_t b) {
-        const float ga = gapOf(a), gb = gapOf(b);
-        return ga != gb ? ga < gb : a < b;
-    };
-    std::sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(count), nearer);
-    minima = std::min(count, kMaxConstraints);
-    count = minima;
-    constexpr std::uint32_t kNone = 0xffffffffu;
-    for (std::size_t block = 0; block < rings_.size(); block += kRingsPerBlock) {
-        sector.fill(kNone);
-        for (std::size_t i = block; i < std::min(rings_.size(), block + kRingsPerBlock); ++i) {
-            if (liveRing_[i] == 0) continue;
-            const Ring& ring = rings_[i];
-            for (int j = 0; j < ring.count; ++j) {
-                if (live_[ring.first + static_cast<std::size_t>(j)] == 0) continue;
-                const auto packed = static_cast<std::uint32_t>(i << 16 | static_cast<std::size_t>(j));
-                std::uint32_t& best = sector[static_cast<std::size_t>(j * kSectors / ring.count)];
-                if (best == kNone || nearer(packed, best)) best = packed;
-            }
-        }
-        for (const std::uint32_t packed : sector) {
-            if (packed == kNone || count == candidates_.size()) continue;
-            if (std::find(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(minima), packed) ==
-                candidates_.begin() + static_cast<std::ptrdiff_t>(minima))
-                candidates_[count++] = packed;
-        }
-    }
-    std::sort(candidates_.begin() + static_cast<std::ptrdiff_t>(minima),
-              candidates_.begin() + static_cast<std::ptrdiff_t>(count), nearer);
-    for (std::size_t c = 0; c < std::min(count, kMaxConstraints); ++c) {
-        const auto [ring, j] = pointOf(candidates_[c]);
-        const std::size_t at = ring.first + static_cast<std::size_t>(j);
-        const Vec3 normal = normalAt(at);
-        if (normal.isZero()) continue;  // deeper than the field's band: no direction is known there
-        const Vec3 p = pointMm(ring, j);
-        out.pushBack({normal, static_cast<double>(distance_[at]), p, tissueAt(ring, j)});
+    const std::size_t minima = std::min(findMinima(), kMaxConstraints);
+    const std::size_t count = addSectors(minima), taken = std::min(count, kMaxConstraints);
+    const auto at = [this](std::size_t i) { return candidates_.begin() + static_cast<std::ptrdiff_t>(i); };
+    if (count > taken) std::nth_element(at(minima), at(taken), at(count));
+    std::sort(at(minima), at(taken));
+    for (std::size_t c = 0; c < taken; ++c) {
+        const BurRing& ring = rings_[candidates_[c] >> 16 & 0xffffu];
+        const auto j = static_cast<std::int32_t>(candidates_[c] & 0xffffu);
+        const auto point = static_cast<std::size_t>(ring.first + j);
+        const Vec3 gradient(gx_[point], gy_[point], gz_[point]);
+        const double n = gradient.norm();
+        if (!(n > 1e-12)) continue;
+        out.pushBack({gradient / n, static_cast<double>(distance_[point]), pointMm(ring, j),
+                      static_cast<tooth::Tissue>(tissueAt(ring.first + j))});
     }
     return count > kMaxConstraints ? Status::truncated : Status::ok;
 }

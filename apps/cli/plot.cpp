@@ -135,7 +135,7 @@ std::string limitsOf(const Plot& plot, const Frame& f) {
         text += fmt::format(
             "<line class=\"hp-limit\" x1=\"{0:.1f}\" x2=\"{1:.1f}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>"
             "<text class=\"hp-limit-text\" x=\"{3:.1f}\" y=\"{4:.1f}\" text-anchor=\"end\">{5}</text>\n",
-            f.left, f.right, y, f.right - 5, y - 5, escaped(limit.label));
+            f.left, f.right, y, f.right - 5, y - f.top < 16.0 ? y + 14.0 : y - 5.0, escaped(limit.label));
     }
     return text;
 }
@@ -190,15 +190,18 @@ std::string toSvg(const Plot& plot, bool standalone) {
     return fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"hp\" viewBox=\"0 0 {0} {1}\" "
         "{4}role=\"img\">\n{2}{3}</svg>\n",
-        plot.width, plot.height, standalone ? fmt::format("<style>{}</style>\n", svgStyle()) : "", body,
-        standalone ? fmt::format("width=\"{}\" height=\"{}\" ", plot.width, plot.height) : "");
+        plot.width, plot.height,
+        standalone
+            ? fmt::format("<style>{}</style>\n<rect class=\"hp-page\" width=\"100%\" height=\"100%\"/>\n", svgStyle())
+            : "",
+        body, standalone ? fmt::format("width=\"{}\" height=\"{}\" ", plot.width, plot.height) : "");
 }
 
 std::string_view svgStyle() {
     // Plain classes, no CSS variables: converters know them too.
     return R"(
 .hp { color: #1c2430; font: 12px "Helvetica Neue", Arial, sans-serif; }
-.hp text { fill: currentColor; } .hp .hp-title { font-size: 14px; font-weight: 600; }
+.hp text { fill: currentColor; } .hp .hp-page { fill: #ffffff; } .hp .hp-title { font-size: 14px; font-weight: 600; }
 .hp .hp-grid { stroke: #8a93a3; stroke-opacity: 0.28; stroke-width: 1; }
 .hp .hp-frame { fill: none; stroke: #8a93a3; stroke-width: 1; }
 .hp .hp-line { fill: none; stroke-width: 1.7; stroke-linejoin: round; } .hp .hp-dash { stroke-dasharray: 6 4; }
@@ -211,7 +214,7 @@ std::string_view svgStyle() {
 .hp .hp-c3 { stroke: #84419c; } .hp .hp-c4 { stroke: #a87d00; } .hp .hp-c5 { stroke: #15858f; }
 .hp .hp-c6 { stroke: #b03060; } .hp .hp-c7 { stroke: #5b6470; } .hp .hp-dot { fill: #ffffff; stroke-width: 1.7; }
 @media (prefers-color-scheme: dark) {
-.hp { color: #dfe4ec; } .hp .hp-dot { fill: #14181f; } .hp .hp-limit { stroke: #ff7b72; } .hp .hp-limit-text { fill: #ff7b72; }
+.hp { color: #dfe4ec; } .hp .hp-page { fill: #14181f; } .hp .hp-dot { fill: #14181f; } .hp .hp-limit { stroke: #ff7b72; } .hp .hp-limit-text { fill: #ff7b72; }
 .hp .hp-c0 { stroke: #6fa8ee; } .hp .hp-c1 { stroke: #f29261; } .hp .hp-c2 { stroke: #66c98c; } .hp .hp-c3 { stroke: #c68ee0; }
 .hp .hp-c4 { stroke: #e0bb4a; } .hp .hp-c5 { stroke: #5cc4cf; } .hp .hp-c6 { stroke: #ee7fa6; } .hp .hp-c7 { stroke: #a3adba; }
 .hp .hp-bur { stroke: #8db8f0; } .hp .hp-bur-touch { stroke: #f29261; } .hp .hp-tooth { fill-opacity: 0.55; }

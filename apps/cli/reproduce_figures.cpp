@@ -143,8 +143,10 @@ void drops(Reproduction& r) {
                                          pictured(r).name));
     r.report.paragraph("Drawn as projections; pictures in three dimensions follow with the renderer.", true);
     r.report.heading("Figure 9: distance before contact, depth after it");
-    r.report.figure(toSvg(cusp, false), "Each resolution and method has its drop set to touch 1 mm below its start.");
-    r.report.figure(toSvg(fissure, false), "The hull covers the fissure: it touches where the field still has air.");
+    r.report.figure(toSvg(cusp, false),
+                    "Each drop starts 1 mm above its own touch; where curves lie on each other, resolutions agree.");
+    r.report.figure(toSvg(fissure, false),
+                    "Each drop starts 1 mm above its own touch. The hull covers the fissure and so touches higher up.");
     r.report.table({"resolution", "method", "place", "the depth", "so it is", "least rise [um]"}, cells,
                    "Every drop in steps of 5 um. Open drops must rise strictly; where walls face the bur it may stand "
                    "still, but not fall (to a nanometre).");

@@ -27,7 +27,7 @@ class FieldMethod final : public Method {
           settings_(settings),
           surface_(tooth_->tree, tooth_->field, core::simdLevel(), settings.depthSource == DepthSource::field),
           axis_(*bur_),
-          sheets_(*bur_),
+          sheets_(*bur_, tooth_->field, core::simdLevel()),
           rings_(tooth_->field, *bur_, core::simdLevel()),
           field_(tooth_->field, *bur_),
           farthestMm_(std::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {}

@@ -12,12 +12,28 @@ using core::Vec3;
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kCellMm = 0.15;  // cells are climbed, not cut, below this
-constexpr double kFirstCellMm = 0.35;
+constexpr double kSpacingMm = 0.09;  // of the grid's balls
+// A top between balls of the grid rises over the highest of them by no more than this, seen over all shapes.
+constexpr double kRiseMm = 0.05;
+// A trilinear cell misses the distance by this many voxels at most where an edge runs through it (measured: 0.15).
+constexpr double kFieldErrorVoxels = 0.2;
+constexpr double kSameTopMm = 0.05;
+constexpr float kDropped = 1e9f;
+constexpr double kRefinedMm = 0.004;
+constexpr double kFieldWindowMm = 0.02;
 constexpr double kToleranceMm = 2e-8;
 constexpr double kFinalWindowMm = 5e-6;
-constexpr int kMaxSteps = 48, kMaxClimbs = 5;
+constexpr int kMaxSteps = 48, kMaxLooks = 24;
 constexpr double kArcFloorMm = 0.05;  // about the axis an angle is no measure of length
+
+FieldLookup lookupFor(core::SimdLevel level) {
+#if defined(__x86_64__)
+    if (level == core::SimdLevel::avx512) return simd_avx512::fieldLookup();
+    if (level == core::SimdLevel::avx2) return simd_avx2::fieldLookup();
+#endif
+    static_cast<void>(level);
+    return simd_base::fieldLookup();
+}
 
 /// A triangle near the ball being climbed: what it says of the depth there and how that changes.
 struct Support {
@@ -67,7 +83,13 @@ double solve(const Support* supports, int count, double lowU, double highU, doub
 
 }  // namespace
 
-SheetSearch::SheetSearch(const instrument::Bur& bur) {
+SheetSearch::SheetSearch(const instrument::Bur& bur, const tooth::ToothField& field, core::SimdLevel level)
+    : field_(field.view()),
+      lookup_(lookupFor(level)),
+      bandOutMm_(static_cast<float>(field.settings().bandOutMm)),
+      bandInMm_(static_cast<float>(field.settings().bandInMm)),
+      errorMm_(kFieldErrorVoxels * field.settings().voxelMm),
+      brickDiagonalMm_(std::numbers::sqrt3 * tooth::kBrickCells * field.settings().voxelMm) {
     for (const instrument::MedialCurve& curve : bur.medialAxis()) {
         if (curve.onAxis || curve.balls.empty()) continue;
         Sheet sheet;
@@ -77,7 +99,6 @@ SheetSearch::SheetSearch(const instrument::Bur& bur) {
                 const double length = std::hypot(ball.rhoMm - sheet.rho.back(), ball.zMm - sheet.z.back());
                 if (length < 1e-10) continue;
                 u = sheet.u.back() + length;
-                sheet.steepest = std::max(sheet.steepest, std::abs(ball.radiusMm - sheet.radius.back()) / length);
             }
             sheet.u.push_back(u);
             sheet.rho.push_back(ball.rhoMm);
@@ -98,10 +119,50 @@ SheetSearch::SheetSearch(const instrument::Bur& bur) {
         }
         sheet.centreZ = 0.5 * (low + high);
         sheet.reachMm = reachFrom(sheet.centreZ);
+        addGrid(sheet);
         sheets_.push_back(std::move(sheet));
     }
-    cells_.resize(kMaxCells);
-    next_.resize(kMaxCells);
+    grid_.resize(kMaxGrid);
+    unknown_.resize(kMaxGrid);
+}
+
+void SheetSearch::addGrid(Sheet& sheet) const {
+    const double length = sheet.u.back();
+    for (double spacing = kSpacingMm;; spacing *= 1.2) {
+        sheet.rows.clear();
+        sheet.cosine.clear();
+        sheet.sine.clear();
+        sheet.middleCosine.clear();
+        sheet.middleSine.clear();
+        const int steps = std::max(1, static_cast<int>(std::ceil(length / spacing)));
+        std::size_t total = 0, piece = 0;
+        for (int i = 0; i <= steps; ++i) {
+            const double u = length * i / steps;
+            while (piece + 2 < sheet.u.size() && sheet.u[piece + 1] < u)
+                ++piece;
+            const std::size_t next = std::min(piece + 1, sheet.u.size() - 1);
+            const double span = sheet.u[next] - sheet.u[piece], t = span > 0.0 ? (u - sheet.u[piece]) / span : 0.0;
+            Row row;
+            row.u = u;
+            row.rho = sheet.rho[piece] + t * (sheet.rho[next] - sheet.rho[piece]);
+            row.z = sheet.z[piece] + t * (sheet.z[next] - sheet.z[piece]);
+            row.radius = sheet.radius[piece] + t * (sheet.radius[next] - sheet.radius[piece]);
+            row.first = static_cast<std::uint32_t>(total);
+            row.count = 8 * static_cast<std::uint32_t>(std::max(1.0, std::ceil(2.0 * kPi * row.rho / spacing / 8.0)));
+            total += row.count;
+            for (std::uint32_t j = 0; j < row.count; ++j) {
+                sheet.cosine.push_back(std::cos(2.0 * kPi * j / row.count));
+                sheet.sine.push_back(std::sin(2.0 * kPi * j / row.count));
+            }
+            row.firstMiddle = static_cast<std::uint32_t>(sheet.middleCosine.size());
+            for (std::uint32_t j = 0; j < (row.count / 8 + 7) / 8 * 8; ++j) {
+                sheet.middleCosine.push_back(std::cos(2.0 * kPi * (8 * j + 3.5) / row.count));
+                sheet.middleSine.push_back(std::sin(2.0 * kPi * (8 * j + 3.5) / row.count));
+            }
+            sheet.rows.push_back(row);
+        }
+        if (total <= kMaxGrid) return;
+    }
 }
 
 void SheetSearch::search(const ExactSurface& surface, const core::Pose& burInTooth, BallDepth& best) noexcept {
@@ -146,110 +207,203 @@ SheetSearch::Spot SheetSearch::spotAt(const Sheet& sheet, const Frame& frame, do
     return spot;
 }
 
-void SheetSearch::searchSheet(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, std::uint32_t seed,
-                              BallDepth& best) noexcept {
-    const double length = sheet.u.back();
-    const int along = std::max(1, static_cast<int>(std::ceil(length / kFirstCellMm)));
-    const int around = std::clamp(static_cast<int>(std::ceil(2.0 * kPi * sheet.maxRho / kFirstCellMm)), 4, 32);
-    std::size_t count = 0;
-    for (int i = 0; i < along; ++i)
-        for (int j = 0; j < around; ++j)
-            if (count < kMaxCells)
-                cells_[count++] = {(i + 0.5) * length / along,
-                                   0.5 * length / along,
-                                   (j + 0.5) * 2.0 * kPi / around,
-                                   kPi / around,
-                                   0.0,
-                                   0.0,
-                                   geometry::kNoTriangle};
-    bool split = true;
-    while (split) {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            Cell cell = cells_[i];
-            const Spot spot = spotAt(sheet, frame, cell.u, cell.angle);
-            // The outermost ball of the cell: along the sheet, then around the axis.
-            const double rho =
-                std::min(sheet.maxRho, std::abs((spot.centre - frame.tip).cross(frame.z).norm()) + cell.halfU);
-            const double arc = rho * cell.halfAngle;
-            const double reach = std::hypot(cell.halfU, arc) + 0.5 * arc * cell.halfAngle + cell.halfU * sheet.steepest;
-            const double far = surface.farBound(spot.centre);
-            if (far > 0.0 && spot.radius + reach - far <= best.depthMm) continue;
-            const double sure = 0.2;
-            const double bound =
-                far > sure ? spot.radius + reach - best.depthMm : std::numeric_limits<double>::infinity();
-            const BallDepth found = surface.ball(spot.centre, spot.radius, seed, bound);
-            if (found.triangle == geometry::kNoTriangle) continue;
-            seed = found.triangle;
-            if (found.depthMm > best.depthMm) best = found;
-            cell.value = found.depthMm;
-            cell.upper = found.depthMm + reach;
-            if (found.inside) {
-                // No ball of the cell is deeper than its own distance to this surface point allows: to first order the
-                // slope at the middle, and a sphere's curvature beyond.
-                const Vec3 to = found.surfaceMm - spot.centre;
-                const double d = to.norm(),
-                             arcHalf = spot.arcPerRad * cell.halfAngle * (rho / std::max(spot.arcPerRad, rho));
-                if (d > 1e-6) {
-                    const double slopeU = std::abs(spot.radiusAlongU - to.dot(spot.alongU) / d);
-                    const double slopeArc = std::abs(to.dot(spot.alongArc) / d);
-                    const double move = std::hypot(cell.halfU, arc);
-                    cell.upper = std::min(cell.upper, found.depthMm + slopeU * cell.halfU + slopeArc * arcHalf +
-                                                          0.5 * move * move / d + 2.0 * arc * cell.halfAngle);
+/// Distances of the grid's balls; of eight that all lie too far outside for their radius none is looked up.
+void SheetSearch::scan(const Sheet& sheet, const Frame& frame, double atLeast) noexcept {
+    for (const Row& r : sheet.rows) {
+        FieldRow row;
+        for (int k = 0; k < 3; ++k) {
+            row.centre[k] = frame.tip[k] + r.z * frame.z[k];
+            row.x[k] = r.rho * frame.x[k];
+            row.y[k] = r.rho * frame.y[k];
+        }
+        row.farOutMm = bandOutMm_;
+        row.farInMm = bandInMm_;
+        const double chord = 2.0 * r.rho * std::sin(std::min(0.5 * 3.5 * 2.0 * kPi / r.count, 0.5 * kPi));
+        float middle[8] = {};
+        for (std::uint32_t j = 0; j < r.count; j += 8) {
+            if (r.count >= 24) {
+                if (j % 64 == 0) {
+                    row.cosines = sheet.middleCosine.data() + r.firstMiddle;
+                    row.sines = sheet.middleSine.data() + r.firstMiddle;
+                    lookup_(field_, row, static_cast<int>(j / 8), middle);
+                }
+                const double d = static_cast<double>(middle[j / 8 % 8]);
+                if (d > 0.0 && r.radius + chord - d + errorMm_ < atLeast) {
+                    std::fill_n(&grid_[r.first + j], 8, kDropped);
+                    continue;
                 }
             }
-            cell.triangle = found.triangle;
-            cells_[kept++] = cell;
+            row.cosines = sheet.cosine.data() + r.first;
+            row.sines = sheet.sine.data() + r.first;
+            lookup_(field_, row, static_cast<int>(j), &grid_[r.first + j]);
         }
-        count = 0;
-        split = false;
-        for (std::size_t i = 0; i < kept; ++i) {
-            const Cell& cell = cells_[i];
-            if (cell.upper <= best.depthMm + kToleranceMm) continue;
-            const double arc = sheet.maxRho * cell.halfAngle;
-            const bool splitU = cell.halfU > 0.5 * kCellMm && cell.halfU >= 0.5 * arc,
-                       splitArc = arc > 0.5 * kCellMm && arc >= 0.5 * cell.halfU;
-            const std::size_t needed = (splitU ? 2u : 1u) * (splitArc ? 2u : 1u);
-            if (count + needed > kMaxCells) break;
-            for (int a = 0; a < (splitU ? 2 : 1); ++a)
-                for (int b = 0; b < (splitArc ? 2 : 1); ++b) {
-                    Cell part = cell;
-                    if (splitU) {
-                        part.halfU *= 0.5;
-                        part.u += (a == 0 ? -1.0 : 1.0) * part.halfU;
-                    }
-                    if (splitArc) {
-                        part.halfAngle *= 0.5;
-                        part.angle += (b == 0 ? -1.0 : 1.0) * part.halfAngle;
-                    }
-                    next_[count++] = part;
+    }
+}
+
+/// Tops of the grid where the field holds distances, and all balls elsewhere that might beat `atLeast`.
+void SheetSearch::collect(const Sheet& sheet, const Frame& frame, double atLeast) noexcept {
+    const auto isFine = [&](float d) { return d < bandOutMm_ && d > -bandInMm_; };
+    candidateCount_ = unknownCount_ = 0;
+    double least = atLeast;
+    for (const Row& r : sheet.rows)
+        for (std::uint32_t j = 0; j < r.count; ++j)
+            if (const float d = grid_[r.first + j]; isFine(d))
+                least = std::max(least, r.radius - static_cast<double>(d) - errorMm_);
+    for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
+        const Row& r = sheet.rows[i];
+        for (std::uint32_t j = 0; j < r.count; ++j) {
+            const float d = grid_[r.first + j];
+            const double value = r.radius - static_cast<double>(d), angle = 2.0 * kPi * j / r.count;
+            if (!isFine(d)) {
+                // A brick's bound of an inside distance is short by its diagonal at most.
+                const double upper = d < 0.0f ? value + brickDiagonalMm_ : value;
+                if (upper > atLeast) {
+                    const double c = sheet.cosine[r.first + j], s = sheet.sine[r.first + j];
+                    unknown_[unknownCount_++] = {frame.tip + r.z * frame.z + r.rho * (c * frame.x + s * frame.y),
+                                                 r.radius,
+                                                 upper,
+                                                 r.u,
+                                                 angle,
+                                                 d > 0.0f};
                 }
-            split = split || splitU || splitArc;
+                continue;
+            }
+            if (value + kRiseMm < least) continue;
+            const auto isHigher = [&](const Row& other, std::uint32_t at) {
+                const float there = grid_[other.first + at % other.count];
+                return isFine(there) && other.radius - static_cast<double>(there) > value;
+            };
+            bool top = !isHigher(r, j + 1) && !isHigher(r, j + r.count - 1);
+            for (const std::size_t k : {i - 1, i + 1}) {
+                if (!top || k >= sheet.rows.size()) continue;
+                const Row& other = sheet.rows[k];
+                top = !isHigher(other, (j * other.count + r.count / 2) / r.count);
+            }
+            if (!top) continue;
+            const Candidate candidate{value, r.u, angle};
+            if (candidateCount_ < kMaxCandidates) {
+                candidates_[candidateCount_++] = candidate;
+                continue;
+            }
+            const auto lowest =
+                std::min_element(candidates_.begin(), candidates_.end(),
+                                 [](const Candidate& a, const Candidate& b) { return a.value < b.value; });
+            if (lowest->value < value) *lowest = candidate;
         }
-        std::swap(cells_, next_);
     }
-    std::sort(cells_.begin(), cells_.begin() + static_cast<std::ptrdiff_t>(count), [](const Cell& a, const Cell& b) {
+}
+
+/// Climbs in the field by looks in eight directions.
+void SheetSearch::refine(const Sheet& sheet, const Frame& frame, Candidate& candidate) const noexcept {
+    constexpr double kHalf = std::numbers::sqrt2 / 2.0;
+    static constexpr double kCosine[8] = {1, kHalf, 0, -kHalf, -1, -kHalf, 0, kHalf};
+    static constexpr double kSine[8] = {0, kHalf, 1, kHalf, 0, -kHalf, -1, -kHalf};
+    double step = 0.5 * kSpacingMm;
+    for (int look = 0; look < kMaxLooks && step > kRefinedMm; ++look) {
+        const Spot spot = spotAt(sheet, frame, candidate.u, candidate.angle);
+        FieldRow row;
+        for (int k = 0; k < 3; ++k) {
+            row.centre[k] = spot.centre[k];
+            row.x[k] = step * spot.alongU[k];
+            row.y[k] = step * spot.alongArc[k];
+        }
+        row.cosines = kCosine;
+        row.sines = kSine;
+        row.farOutMm = bandOutMm_;
+        row.farInMm = bandInMm_;
+        float d[8];
+        lookup_(field_, row, 0, d);
+        int best = -1;
+        double bestValue = candidate.value;
+        for (int k = 0; k < 8; ++k) {
+            const double u = candidate.u + step * kCosine[k];
+            const double value = spot.radius + step * kCosine[k] * spot.radiusAlongU - static_cast<double>(d[k]);
+            if (u < -1e-9 || u > sheet.u.back() + 1e-9 || !(d[k] < bandOutMm_ && d[k] > -bandInMm_)) continue;
+            if (value > bestValue) {
+                bestValue = value;
+                best = k;
+            }
+        }
+        if (best < 0) {
+            step *= 0.4;
+            continue;
+        }
+        candidate.value = bestValue;
+        candidate.u = std::clamp(candidate.u + step * kCosine[best], 0.0, sheet.u.back());
+        candidate.angle += step * kSine[best] / spot.arcPerRad;
+    }
+}
+
+void SheetSearch::climbOnce(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, const Candidate& from,
+                            std::uint32_t& seed, double window, BallDepth& best) noexcept {
+    const auto isNear = [&](double u, double angle) {
+        return std::abs(u - from.u) < kSameTopMm &&
+               sheet.maxRho * std::abs(std::remainder(angle - from.angle, 2.0 * kPi)) < kSameTopMm;
+    };
+    if (climbs_ == kMaxClimbs) return;
+    for (int i = 0; i < climbs_; ++i) {
+        const Top& top = tops_[static_cast<std::size_t>(i)];
+        if (isNear(top.u, top.angle) || isNear(top.endU, top.endAngle)) return;
+    }
+    Top& top = tops_[static_cast<std::size_t>(climbs_++)];
+    top = {from.u, from.angle, from.u, from.angle};
+    climb(surface, sheet, frame, from.u, from.angle, seed, window, best, top.endU, top.endAngle);
+    seed = best.triangle != geometry::kNoTriangle ? best.triangle : seed;
+}
+
+/// Balls that the field cannot tell: each one measured bounds those around it.
+void SheetSearch::measure(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, std::uint32_t& seed,
+                          BallDepth& best) noexcept {
+    for (int count = 0; count < kMaxMeasured && unknownCount_ > 0; ++count) {
+        std::size_t at = 0;
+        for (std::size_t i = 1; i < unknownCount_; ++i)
+            if (unknown_[i].upper > unknown_[at].upper) at = i;
+        const Unknown here = unknown_[at];
+        if (here.upper <= best.depthMm + kToleranceMm) return;
+        // Outside, a surface too far to matter need not be found.
+        const double bound =
+            here.outside ? here.radius - best.depthMm + kRiseMm : std::numeric_limits<double>::infinity();
+        const BallDepth found = surface.ball(here.centre, here.radius, seed, bound);
+        const bool isFound = found.triangle != geometry::kNoTriangle;
+        if (isFound) seed = found.triangle;
+        const double value = isFound ? found.depthMm : best.depthMm - kRiseMm;
+        if (value > best.depthMm) best = found;
+        if (value + kRiseMm > best.depthMm && isFound)
+            climbOnce(surface, sheet, frame, {value, here.u, here.angle}, seed, kSpacingMm, best);
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < unknownCount_; ++i) {
+            Unknown other = unknown_[i];
+            if (i == at) continue;
+            const double upper = isFound && found.inside
+                                     ? other.radius + (other.centre - found.surfaceMm).norm()
+                                     : value + other.radius - here.radius + (other.centre - here.centre).norm();
+            other.upper = std::min(other.upper, upper);
+            if (other.upper > best.depthMm + kToleranceMm) unknown_[kept++] = other;
+        }
+        unknownCount_ = kept;
+    }
+}
+
+void SheetSearch::searchSheet(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, std::uint32_t seed,
+                              BallDepth& best) noexcept {
+    scan(sheet, frame, best.depthMm);
+    collect(sheet, frame, best.depthMm);
+    climbs_ = 0;
+    const auto higher = [](const Candidate& a, const Candidate& b) {
         return a.value != b.value ? a.value > b.value : a.u != b.u ? a.u < b.u : a.angle < b.angle;
-    });
-    std::array<std::array<double, 4>, kMaxClimbs> tops;
-    int climbs = 0;
-    for (std::size_t i = 0; i < count && climbs < kMaxClimbs; ++i) {
-        const Cell& cell = cells_[i];
-        if (cell.upper <= best.depthMm + kToleranceMm) continue;
-        const auto isNear = [&](double u, double angle) {
-            return std::abs(u - cell.u) < 1.5 * kCellMm &&
-                   sheet.maxRho * std::abs(std::remainder(angle - cell.angle, 2.0 * kPi)) < 1.5 * kCellMm;
-        };
-        bool known = false;
-        for (int c = 0; c < climbs && !known; ++c) {
-            const auto& top = tops[static_cast<std::size_t>(c)];
-            known = isNear(top[0], top[1]) || isNear(top[2], top[3]);
-        }
-        if (known) continue;
-        auto& top = tops[static_cast<std::size_t>(climbs++)];
-        top = {cell.u, cell.angle, 0.0, 0.0};
-        climb(surface, sheet, frame, cell.u, cell.angle, cell.triangle, kCellMm, best, top[2], top[3]);
+    };
+    const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(candidateCount_);
+    std::sort(candidates_.begin(), end, higher);
+    double least = best.depthMm;
+    for (auto c = candidates_.begin(); c != end; ++c) {
+        if (c->value + kRiseMm < least) continue;
+        refine(sheet, frame, *c);
+        least = std::max(least, c->value - errorMm_);
     }
+    std::sort(candidates_.begin(), end, higher);
+    for (auto c = candidates_.begin(); c != end && c->value + errorMm_ > best.depthMm; ++c)
+        climbOnce(surface, sheet, frame, *c, seed, kFieldWindowMm, best);
+    measure(surface, sheet, frame, seed, best);
 }
 
 void SheetSearch::climb(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, double u, double angle,
@@ -272,6 +426,11 @@ void SheetSearch::climb(const ExactSurface& surface, const Sheet& sheet, const F
     endAngle = angle;
     if (here.triangle == geometry::kNoTriangle) return;
     remember(here.triangle);
+    if (spot.alongArc.isZero(1e-9)) {  // on the axis every angle is as good: look up the slope
+        const Vec3 away = (here.inside ? -1.0 : 1.0) * (spot.centre - here.surfaceMm);
+        angle = std::atan2(-away.dot(frame.y), -away.dot(frame.x));
+        spot = spotAt(sheet, frame, u, angle);
+    }
     for (int step = 0; step < kMaxSteps && window > kFinalWindowMm; ++step) {
         if (here.depthMm + 4.0 * window < best.depthMm) break;  // another top is higher than what is left to climb
         Support supports[kActive];

@@ -231,7 +231,7 @@ void forces(Reproduction& r) {
             }
         r.report.figure(
             toSvg(plot, false),
-            fmt::format("A normal hand on a simulated Omni at 1 kHz, on the tooth of {}.", pictured(r).name));
+            fmt::format("A normal hand on the simulated device at 1 kHz, on the tooth of {}.", pictured(r).name));
     }
     r.report.table(kForceHeader, cells12, "All runs of Figure 12b.");
     r.report.heading("Figure 13: approaching slowly and quickly");

@@ -17,6 +17,10 @@ namespace handpiece::cli {
 
 namespace fs = std::filesystem;
 
+namespace {
+constexpr std::size_t kMaxThreads = 1024;
+}
+
 void addContactOptions(CLI::App& command, ContactInputs& inputs, const MethodRegistry& methods) {
     std::string names = "field (ours, the concave tooth), hull (the paper's convex hull)";
     for (const auto& [name, factory] : methods)
@@ -31,6 +35,9 @@ void addContactOptions(CLI::App& command, ContactInputs& inputs, const MethodReg
 }
 
 std::shared_ptr<const tooth::Tooth> loadTooth(const ContactInputs& inputs) {
+    // A count below zero arrives here as an enormous one.
+    if (inputs.threads > kMaxThreads)
+        throw core::Error("this many threads are not possible", "--threads", fmt::format("give 0 to {}", kMaxThreads));
     core::setThreadCount(inputs.threads);
     if (!(inputs.voxelUm >= 10.0 && inputs.voxelUm <= 400.0))
         throw core::Error(fmt::format("a voxel of {} um", inputs.voxelUm), "--voxel", "give 10 to 400 um");

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
 #include "cli/commands.h"
 #include "cli/progress_bar.h"
+#include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/tick/loop/passivity.h"
 
@@ -71,6 +73,9 @@ std::string mapSvg(const loop::PassivitySweep& sweep, const std::vector<loop::Pa
 }
 
 void passivity(const PassivityOptions& o) {
+    if (!(o.limit >= 0.0) || !std::isfinite(o.limit))
+        throw core::Error(fmt::format("a stiffness limit of {} N/mm", o.limit), "--stiffness-limit",
+                          "give a positive number; 0: the device's own");
     loop::PassivitySweep sweep;
     sweep.parameters.stiffnessMultiplier = o.stiffness;
     sweep.parameters.dampingMultiplier = o.damping;

@@ -227,7 +227,8 @@ device::Motion motionOf(const RunOptions& o, const RunSettings& s, contact::Meth
     m.lengthMm = o.lengthMm;
     m.offsetMm = {o.at[0], o.at[1]};
     constexpr double kRigidDepthMm = 0.5;  // a rigid hand goes exactly there
-    m.depthMm = o.depthMm > 0.0      ? o.depthMm
+    // A depth that is no number goes on to be refused.
+    m.depthMm = !(o.depthMm <= 0.0)  ? o.depthMm
                 : s.device.rigidHand ? kRigidDepthMm
                                      : o.loadN / s.device.hand.stiffnessNPerMm;
     return loop::motionByName(o.motion, method, box, m);

@@ -78,11 +78,17 @@ class BadInput(SystemTest):
         self.refused("make", "bur", "--shape", "pear", "--diameter", "-1", "--length", "2", "--out",
                      self.folder / "b.stl")
         self.refused("make", "bur", "--shape", "pear", "--out", self.folder / "b.stl")
+        self.refused("make", "tooth", "--faces", "2000", "--part-faces", "99999999", "--out", self.folder / "t",
+                     mentions=["--part-faces"])
+        self.refused("make", "tooth", "--kind", "upper-incisor", "--faces", "2000", "--out", "", mentions=["folder"])
+        self.refused("passivity", "--stiffness-limit", "-1", "--out", self.folder / "p", mentions=["--stiffness-limit"])
+        self.refused("bench", "--faces", "5", mentions=["--faces", "2000"])
         self.refused("make", "bur", "--out", self.folder / "b.stl", mentions=["--shape"])
         self.refused("make", "bur", "--name", "330", "--out", self.folder / "b.doc", mentions=["b.doc"])
         for arguments, word in ((["--rate", "0"], "--rate"), (["--rate", "-5"], "--rate"), (["--rate", "nan"], "--rate"),
                                 (["--duration", "-1"], "--duration"), (["--voxel", "0"], "--voxel"),
-                                (["--speed", "0"], "speed"), (["--stiffness", "-1"], "stiffness"),
+                                (["--speed", "0"], "speed"), (["--depth", "nan"], "depth"), (["--load", "nan"], "depth"),
+                                (["--threads", "-1"], "--threads"), (["--delay", "-1"], "delay"), (["--stiffness", "-1"], "stiffness"),
                                 (["--at", "500", "500"], "meets")):
             with self.subTest(arguments=arguments):
                 self.run_refused(*arguments, mentions=[word])

@@ -281,6 +281,7 @@ TEST(Starter, RefusesUnknownNamesAndFaceCountsPlainly) {
         EXPECT_THROW((void)makeOuter(ToothKind::upperIncisor, faces), core::Error) << faces;
         EXPECT_THROW((void)makeTooth(ToothKind::upperIncisor, {faces, 0, false}), core::Error) << faces;
     }
+    EXPECT_THROW((void)makeTooth(ToothKind::upperIncisor, {2000, 3, false}), core::Error);
     EXPECT_THROW((void)makeOuter(ToothKind::upperIncisor, 2000, [](double) { return false; }), core::Error)
         << "cancelled";
 }

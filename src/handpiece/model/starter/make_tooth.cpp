@@ -53,9 +53,9 @@ Surface meshOf(const core::Box& box, const geometry::ScalarFunction& f, double l
     return out;
 }
 
-void checkFaces(std::size_t faces) {
+void checkFaces(std::size_t faces, const char* option) {
     if (faces < kMinFaces || faces > kMaxFaces)
-        throw core::Error(fmt::format("{} faces are not possible", faces), "--faces",
+        throw core::Error(fmt::format("{} faces are not possible", faces), option,
                           fmt::format("give a number from {} to {}", kMinFaces, kMaxFaces));
 }
 
@@ -113,12 +113,13 @@ ToothKind toothKindByName(std::string_view name) {
 }
 
 TriangleMesh makeOuter(ToothKind kind, std::size_t faces, const Progress& progress) {
-    checkFaces(faces);
+    checkFaces(faces, "--faces");
     return outerOf(ToothShape(anatomyOf(kind)), faces, progress).mesh;
 }
 
 tooth::Case makeTooth(ToothKind kind, const ToothOptions& options, const Progress& progress) {
-    checkFaces(options.faces);
+    checkFaces(options.faces, "--faces");
+    if (options.partFaces != 0) checkFaces(options.partFaces, "--part-faces");
     const ToothKindInfo& info = infoOf(kind);
     const ToothShape shape(anatomyOf(kind));
     tooth::Case made;

@@ -154,6 +154,7 @@ Case readCase(const fs::path& path) {
 }
 
 void writeCase(const Case& toothCase, const fs::path& folder) {
+    if (folder.empty()) throw core::Error("a case needs a folder", "output folder", "name one");
     const fs::path target = fs::absolute(folder).lexically_normal();
     const fs::path place = target.has_filename() ? target : target.parent_path();
     if (!mayReplace(place))

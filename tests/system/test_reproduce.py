@@ -54,5 +54,23 @@ class Reproduce(SystemTest):
         self.assertGreater(deep, 0)
 
 
+class Measure(SystemTest):
+    def test_bench(self):
+        rows = json.loads(self.ok("bench", "--quick", "--json").stdout)["rows"]
+        self.assertEqual({(row["method"], row["where"]) for row in rows},
+                         {(method, where) for method in ("exact", "exact with patches", "hull")
+                          for where in ("touch", "hover")})
+        for row in rows:
+            self.assertEqual(row["faces"], 9760)
+            self.assertTrue(0 < row["p50_us"] <= row["p99_us"] <= row["p999_us"] <= row["max_us"], row)
+
+    def test_passivity(self):
+        out = self.folder / "map"
+        self.assertIn("passive in", self.ok("passivity", "--out", out).stdout)
+        rows = rows_of((out / "passivity.csv").read_text())
+        self.assertGreater(len(rows), 100)
+        self.assertTrue((out / "passivity.svg").read_text().startswith("<svg"))
+
+
 if __name__ == "__main__":
     unittest.main()

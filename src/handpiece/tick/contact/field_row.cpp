@@ -87,7 +87,9 @@ void distances(const tooth::FieldView& field, const FieldRow& row, int first, fl
     const Floats high = mix(mix(v[4], v[5], t[0]), mix(v[6], v[7], t[0]), t[1]);
     const Floats d = mix(low, high, t[2]);
     for (int lane = 0; lane < 8; ++lane)
-        out[lane] = places.corner[lane] != nullptr ? d[lane] : places.far[lane];
+        out[lane] = places.corner[lane] != nullptr ? d[lane]
+                    : places.far[lane] < 0.0f      ? places.far[lane] - kBoundMm
+                                                   : places.far[lane] + kBoundMm;
 }
 
 }  // namespace

@@ -16,7 +16,9 @@ struct FieldRow {
     float farOutMm = 0.0f, farInMm = 0.0f;
 };
 
-/// Signed distances of points first .. first + 7. Where no brick is stored: the sign, and a bound of the distance.
+/// Signed distances of points first .. first + 7. Where no brick is stored: a lower bound of the distance, signed, and
+/// kBoundMm further from zero.
+inline constexpr float kBoundMm = 1024.0f;
 using FieldLookup = void (*)(const tooth::FieldView& field, const FieldRow& row, int first, float* out) noexcept;
 
 namespace simd_base {

@@ -17,10 +17,14 @@ constexpr double kSpacingMm = 0.09;  // of the grid's balls
 constexpr double kRiseMm = 0.05;
 // A trilinear cell misses the distance by this many voxels at most where an edge runs through it (measured: 0.15).
 constexpr double kFieldErrorVoxels = 0.2;
+constexpr double kOnAxisMm = 1e-9;
 constexpr double kSameTopMm = 0.05;
 constexpr float kDropped = 1e9f;
+constexpr float kKnownMm = 0.5f * kBoundMm;  // distances are less, bounds more
 constexpr double kRefinedMm = 0.004;
 constexpr double kFieldWindowMm = 0.02;
+// A climb ends when another top is higher than so many times what it hopes for.
+constexpr double kFarBehind = 4.0;
 constexpr double kToleranceMm = 2e-8;
 constexpr double kFinalWindowMm = 5e-6;
 constexpr int kMaxSteps = 48, kMaxLooks = 24;
@@ -33,6 +37,14 @@ FieldLookup lookupFor(core::SimdLevel level) {
 #endif
     static_cast<void>(level);
     return simd_base::fieldLookup();
+}
+
+bool isFine(float d) {
+    return d < kKnownMm && d > -kKnownMm;
+}
+/// The distance, or its bound.
+double distanceOf(float d) {
+    return static_cast<double>(isFine(d) ? d : d > 0.0f ? d - kBoundMm : d + kBoundMm);
 }
 
 /// A triangle near the ball being climbed: what it says of the depth there and how that changes.
@@ -227,7 +239,7 @@ void SheetSearch::scan(const Sheet& sheet, const Frame& frame, double atLeast) n
                     row.sines = sheet.middleSine.data() + r.firstMiddle;
                     lookup_(field_, row, static_cast<int>(j / 8), middle);
                 }
-                const double d = static_cast<double>(middle[j / 8 % 8]);
+                const double d = distanceOf(middle[j / 8 % 8]);
                 if (d > 0.0 && r.radius + chord - d + errorMm_ < atLeast) {
                     std::fill_n(&grid_[r.first + j], 8, kDropped);
                     continue;
@@ -242,7 +254,6 @@ void SheetSearch::scan(const Sheet& sheet, const Frame& frame, double atLeast) n
 
 /// Tops of the grid where the field holds distances, and all balls elsewhere that might beat `atLeast`.
 void SheetSearch::collect(const Sheet& sheet, const Frame& frame, double atLeast) noexcept {
-    const auto isFine = [&](float d) { return d < bandOutMm_ && d > -bandInMm_; };
     candidateCount_ = unknownCount_ = 0;
     double least = atLeast;
     for (const Row& r : sheet.rows)
@@ -251,9 +262,10 @@ void SheetSearch::collect(const Sheet& sheet, const Frame& frame, double atLeast
                 least = std::max(least, r.radius - static_cast<double>(d) - errorMm_);
     for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
         const Row& r = sheet.rows[i];
-        for (std::uint32_t j = 0; j < r.count; ++j) {
+        const bool onAxis = r.rho < kOnAxisMm;  // one ball, many angles
+        for (std::uint32_t j = 0; j < (onAxis ? 1 : r.count); ++j) {
             const float d = grid_[r.first + j];
-            const double value = r.radius - static_cast<double>(d), angle = 2.0 * kPi * j / r.count;
+            const double value = r.radius - distanceOf(d), angle = 2.0 * kPi * j / r.count;
             if (!isFine(d)) {
                 // A brick's bound of an inside distance is short by its diagonal at most.
                 const double upper = d < 0.0f ? value + brickDiagonalMm_ : value;
@@ -273,11 +285,13 @@ void SheetSearch::collect(const Sheet& sheet, const Frame& frame, double atLeast
                 const float there = grid_[other.first + at % other.count];
                 return isFine(there) && other.radius - static_cast<double>(there) > value;
             };
-            bool top = !isHigher(r, j + 1) && !isHigher(r, j + r.count - 1);
+            bool top = onAxis || (!isHigher(r, j + 1) && !isHigher(r, j + r.count - 1));
             for (const std::size_t k : {i - 1, i + 1}) {
-                if (!top || k >= sheet.rows.size()) continue;
+                if (k >= sheet.rows.size()) continue;
                 const Row& other = sheet.rows[k];
-                top = !isHigher(other, (j * other.count + r.count / 2) / r.count);
+                if (!onAxis) top = top && !isHigher(other, (j * other.count + r.count / 2) / r.count);
+                for (std::uint32_t a = 0; onAxis && top && a < other.count; ++a)
+                    top = !isHigher(other, a);
             }
             if (!top) continue;
             const Candidate candidate{value, r.u, angle};
@@ -318,7 +332,7 @@ void SheetSearch::refine(const Sheet& sheet, const Frame& frame, Candidate& cand
         for (int k = 0; k < 8; ++k) {
             const double u = candidate.u + step * kCosine[k];
             const double value = spot.radius + step * kCosine[k] * spot.radiusAlongU - static_cast<double>(d[k]);
-            if (u < -1e-9 || u > sheet.u.back() + 1e-9 || !(d[k] < bandOutMm_ && d[k] > -bandInMm_)) continue;
+            if (u < -1e-9 || u > sheet.u.back() + 1e-9 || !isFine(d[k])) continue;
             if (value > bestValue) {
                 bestValue = value;
                 best = k;
@@ -432,7 +446,7 @@ void SheetSearch::climb(const ExactSurface& surface, const Sheet& sheet, const F
         spot = spotAt(sheet, frame, u, angle);
     }
     for (int step = 0; step < kMaxSteps && window > kFinalWindowMm; ++step) {
-        if (here.depthMm + 4.0 * window < best.depthMm) break;  // another top is higher than what is left to climb
+        if (here.depthMm + 4.0 * window < best.depthMm) break;
         Support supports[kActive];
         int count = 0;
         const auto addSupport = [&](const Vec3& outOfTooth, double depth) {
@@ -462,6 +476,7 @@ void SheetSearch::climb(const ExactSurface& surface, const Sheet& sheet, const F
         double stepU = 0.0, stepArc = 0.0;
         const double lowU = std::max(-window, -u), highU = std::min(window, sheet.u.back() - u);
         const double hoped = solve(supports, count, lowU, highU, window, stepU, stepArc) - here.depthMm;
+        if (here.depthMm + kFarBehind * std::max(hoped, kToleranceMm) < best.depthMm) break;
         if (hoped < kToleranceMm) {
             window *= 0.25;
             continue;

@@ -54,7 +54,7 @@ double sumOf(const float (&lanes)[8]) noexcept {
 }  // namespace
 
 RingSensor::RingSensor(const tooth::ToothField& field, const instrument::Bur& bur, core::SimdLevel level)
-    : field_(field), view_(field.view()), kernels_(kernelsFor(level)), tissueOfAll_(onlyTissue(field, view_)) {
+    : view_(field.view()), kernels_(kernelsFor(level)), tissueOfAll_(onlyTissue(field, view_)) {
     struct Table {
         std::size_t angles, middles;
     };

@@ -50,7 +50,6 @@ class RingSensor {
     std::size_t findMinima() noexcept;
     std::size_t addSectors(std::size_t minima) noexcept;
 
-    const tooth::ToothField& field_;
     tooth::FieldView view_;
     RingKernels kernels_;
     std::vector<BurRing> rings_;

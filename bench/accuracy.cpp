@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// accuracy [--faces N,N...] [--poses N]: the field method's depth against brute force on the starter molar, one line
+// per bur, face count and source of depth: error and time.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numbers>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/model/instrument/shapes.h"
+#include "handpiece/model/starter/starter.h"
+#include "handpiece/model/tooth/field_builder.h"
+#include "handpiece/tick/contact/field_method.h"
+#include "support/brute_force_depth.h"
+
+namespace handpiece::bench {
+namespace {
+
+constexpr const char* kBurs[] = {
+    "cylinder-round:1.0x4.0", "taper-round:1.2x4.0",
+    "pear:1.2x3.0",           "flame:1.2x4.0",
+    "round:1.4x1.3",          "cylinder-flat:1.0x4.0",
+    "wheel:2.0x0.8",          "inverted-cone:1.2x1.2",
+    "taper-flat:1.2x4.0",     "mesh"};  // the last: the paper bur through its mesh, as an STL would come
+constexpr int kPasses = 15;
+constexpr unsigned kSeed = 20;
+constexpr double kTiltRad = 15.0 * std::numbers::pi / 180.0;
+
+std::shared_ptr<const instrument::Bur> burOf(std::string_view name) {
+    if (name == "mesh")
+        return std::make_shared<const instrument::Bur>(
+            instrument::burFromMesh("mesh", instrument::makeBur("paper").mesh()));
+    return std::make_shared<const instrument::Bur>(instrument::makeBur(name));
+}
+
+std::shared_ptr<const tooth::Tooth> molarOf(std::size_t faces) {
+    geometry::TriangleMesh mesh = starter::makeOuter(starter::ToothKind::lowerFirstMolar, faces);
+    geometry::TriangleTree tree(mesh);
+    tooth::ToothField field = tooth::FieldBuilder::fromSurface(mesh, tree, {}, {});
+    return std::make_shared<const tooth::Tooth>(
+        tooth::Tooth{"molar", std::move(mesh), std::move(tree), std::move(field), false, 0.0});
+}
+
+double uniform(std::mt19937_64& generator, double low, double high) {
+    return low + (high - low) * std::generate_canonical<double, 53>(generator);
+}
+
+/// Over the crown, tilted by up to 15 degrees, lowered until the depth is the one drawn (even in its logarithm).
+core::Pose drawPose(std::mt19937_64& generator, contact::Method& method, const core::Box& tooth, double deepestMm) {
+    for (;;) {
+        core::Pose pose;
+        const double turn = uniform(generator, 0.0, 2.0 * std::numbers::pi);
+        const double tilt = uniform(generator, 0.0, kTiltRad);
+        pose.orientation = core::Quat(Eigen::AngleAxisd(tilt, core::Vec3(std::cos(turn), std::sin(turn), 0.0)));
+        const core::Vec3 centre = tooth.centre(), half = 0.5 * tooth.size();
+        const double x = centre.x() + 0.55 * half.x() * uniform(generator, -1.0, 1.0);
+        const double y = centre.y() + 0.55 * half.y() * uniform(generator, -1.0, 1.0);
+        const double wanted = std::exp(uniform(generator, std::log(0.005), std::log(deepestMm)));
+        double high = tooth.max.z() + 1.0, low = tooth.max.z() - 4.0;
+        const auto depthAt = [&](double z) {
+            pose.positionMm = {x, y, z};
+            return method.depth(pose).depthMm;
+        };
+        if (depthAt(low) < wanted) continue;
+        for (int i = 0; i < 30; ++i) {
+            const double middle = 0.5 * (low + high);
+            (depthAt(middle) < wanted ? high : low) = middle;
+        }
+        pose.positionMm.z() = low;
+        return pose;
+    }
+}
+
+double percentile(const std::vector<double>& ascending, double share) {
+    return ascending[std::min(ascending.size() - 1,
+                              static_cast<std::size_t>(share * static_cast<double>(ascending.size())))];
+}
+
+void report(const std::shared_ptr<const tooth::Tooth>& tooth, const char* burName, contact::DepthSource source,
+            int count) {
+    const auto bur = burOf(burName);
+    contact::FieldMethodSettings settings;
+    settings.depthSource = source;
+    const bool exact = source == contact::DepthSource::exact;
+    const auto method = contact::makeFieldMethod(tooth, bur, settings),
+               exactMethod = contact::makeFieldMethod(tooth, bur);
+    std::mt19937_64 generator(kSeed);
+    // The field alone promises nothing deeper than the bur's radius.
+    const double deepestMm = exact ? 1.5 : 0.95 * bur->maxRadiusMm();
+    std::vector<core::Pose> poses;
+    for (int i = 0; i < count; ++i)
+        poses.push_back(drawPose(generator, *exactMethod, tooth->outer.bounds(), deepestMm));
+    std::vector<double> truth(poses.size()), errors, times;
+    core::parallelFor(poses.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            truth[i] = test::bruteForceDepth(tooth->tree, *bur, poses[i]).depthMm;
+    });
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        double told = 0.0, fastest = 1e9;
+        for (int pass = 0; pass < kPasses; ++pass) {
+            const auto begin = std::chrono::steady_clock::now();
+            told = method->depth(poses[i]).depthMm;
+            fastest = std::min(
+                fastest, std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
+        }
+        errors.push_back(1e3 * std::abs(told - truth[i]));
+        times.push_back(fastest);
+    }
+    std::sort(errors.begin(), errors.end());
+    std::sort(times.begin(), times.end());
+    fmt::print("{:<24} {:>7} {:<6} {:>6} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.2f} {:>9.2f}\n", burName,
+               tooth->outer.triangles.size(), exact ? "exact" : "field", count, percentile(errors, 0.5),
+               percentile(errors, 0.99), errors.back(), percentile(times, 0.5), percentile(times, 0.99));
+    std::fflush(stdout);
+}
+
+int mainOf(int argc, char** argv) {
+    std::vector<std::size_t> faces = {9760, 68151};
+    int poses = 360;
+    std::string only;
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view option = argv[i];
+        if (i + 1 == argc || (option != "--faces" && option != "--poses" && option != "--bur")) {
+            fmt::print(stderr, "usage: accuracy [--faces N,N...] [--poses N] [--bur NAME]\n");
+            return 2;
+        }
+        const char* value = argv[++i];
+        if (option == "--poses") poses = std::max(1, std::atoi(value));
+        if (option == "--bur") only = value;
+        if (option == "--faces") {
+            faces.clear();
+            for (char* at = const_cast<char*>(value); *at != '\0'; at += *at == ',' ? 1 : 0)
+                faces.push_back(std::strtoul(at, &at, 10));
+        }
+    }
+    fmt::print("{:<24} {:>7} {:<6} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bur", "faces", "source", "poses", "med_um",
+               "p99_um", "worst_um", "med_us", "p99_us");
+    for (const std::size_t n : faces) {
+        const auto tooth = molarOf(n);
+        for (const char* bur : kBurs)
+            for (const auto source : {contact::DepthSource::exact, contact::DepthSource::field})
+                if (only.empty() || only == bur) report(tooth, bur, source, poses);
+    }
+    return 0;
+}
+
+}  // namespace
+}  // namespace handpiece::bench
+
+int main(int argc, char** argv) {
+    try {
+        return handpiece::bench::mainOf(argc, argv);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "accuracy: %s\n", error.what());
+        return 1;
+    }
+}

@@ -36,7 +36,7 @@ std::vector<MethodEntry> methods() {
         return [=](Workload& w, const Resolution& r) { return w.fieldQuery(r, voxelMm); };
     };
     return {
-        {"exact", false, [](Workload& w, const Resolution& r) { return w.exactQuery(r); }},
+        {"exact", false, [](Workload& w, const Resolution& r) { return w.exactQuery(r, kReachMm); }},
         {"field25", false, field(0.025)},
         {"field50", false, field(0.05)},
         {"field100", false, field(0.1)},
@@ -133,7 +133,11 @@ void run(benchmark::State& state, Session& session, const MethodEntry& method, c
     const Timing timing = measure(query, poses, settings);
     report(state, timing, settings);
     reportErrors(state, query, poses, references);
-    if (timing.ticks + settings.batch <= static_cast<int>(poses.size())) state.SetLabel("every n-th tick");
+    std::string label =
+        way == Way::hover && !method.isPeer && method.name != "hull" ? fmt::format("reach {} mm", kReachMm) : "";
+    if (timing.ticks + settings.batch <= static_cast<int>(poses.size()))
+        label += label.empty() ? "every n-th tick" : ", every n-th tick";
+    if (!label.empty()) state.SetLabel(label);
 }
 
 void runConstantLoad(benchmark::State& state, Session& session, double us) {

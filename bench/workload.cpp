@@ -85,17 +85,22 @@ std::shared_ptr<const tooth::Tooth> Workload::tooth(const Resolution& resolution
     return lastTooth_.second;
 }
 
-std::unique_ptr<Query> Workload::exactQuery(const Resolution& resolution) {
-    return std::make_unique<MethodQuery>(contact::makeFieldMethod(tooth(resolution, kVoxelMm), bur_), false);
+std::unique_ptr<Query> Workload::exactQuery(const Resolution& resolution, double reachMm) {
+    contact::FieldMethodSettings settings;
+    settings.reachMm = reachMm;
+    return std::make_unique<MethodQuery>(contact::makeFieldMethod(tooth(resolution, kVoxelMm), bur_, settings), false);
 }
 
 std::unique_ptr<Query> Workload::fieldQuery(const Resolution& resolution, double voxelMm) {
-    return std::make_unique<MethodQuery>(contact::makeFieldMethod(tooth(resolution, voxelMm), bur_), true);
+    contact::FieldMethodSettings settings;
+    settings.reachMm = kReachMm;
+    return std::make_unique<MethodQuery>(contact::makeFieldMethod(tooth(resolution, voxelMm), bur_, settings), true);
 }
 
 std::unique_ptr<Query> Workload::fieldOnlyQuery(const Resolution& resolution, double voxelMm) {
     contact::FieldMethodSettings settings;
     settings.depthSource = contact::DepthSource::field;
+    settings.reachMm = kReachMm;
     return std::make_unique<MethodQuery>(contact::makeFieldMethod(tooth(resolution, voxelMm), bur_, settings), false);
 }
 
@@ -107,7 +112,7 @@ std::span<const core::Pose> Workload::poses(Way way) {
     std::vector<core::Pose>& poses = poses_[way];
     if (poses.empty()) {
         const Resolution& finest = resolutions()[quick_ ? 0 : 4];
-        const std::unique_ptr<Query> exact = exactQuery(finest);
+        const std::unique_ptr<Query> exact = exactQuery(finest, contact::FieldMethodSettings{}.reachMm);
         poses = makeTrajectory(way, *exact, mesh(finest), quick_ ? kQuickTicks : kTicks);
     }
     return poses;

@@ -18,6 +18,9 @@
 
 namespace handpiece::bench {
 
+/// Of our methods: below the hover's clearance of 1 mm, since "no contact" is asked there and not the distance.
+inline constexpr double kReachMm = 0.5;
+
 struct Resolution {
     std::string name;  ///< "68k"
     std::size_t faces;
@@ -40,7 +43,8 @@ class Workload {
     [[nodiscard]] const instrument::Bur& bur() const { return *bur_; }
     [[nodiscard]] PeerInput peerInput(const Resolution& resolution);
     [[nodiscard]] std::shared_ptr<const tooth::Tooth> tooth(const Resolution& resolution, double voxelMm);
-    [[nodiscard]] std::unique_ptr<Query> exactQuery(const Resolution& resolution);
+    /// Farther apart than `reachMm` the answer is kNoContact.
+    [[nodiscard]] std::unique_ptr<Query> exactQuery(const Resolution& resolution, double reachMm);
     [[nodiscard]] std::unique_ptr<Query> fieldQuery(const Resolution& resolution,
                                                     double voxelMm);  ///< depth and patches
     [[nodiscard]] std::unique_ptr<Query> fieldOnlyQuery(const Resolution& resolution, double voxelMm);  ///< depth

@@ -13,9 +13,10 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kSpacingMm = 0.09;  // of the grid's balls
-// A top between balls of the grid rises over the highest of them by no more than this, seen over all shapes.
+// A top between balls of the grid is taken to rise over the highest of them by no more than this. An assumption,
+// judged by depths against brute force.
 constexpr double kRiseMm = 0.05;
-// A trilinear cell misses the distance by this many voxels at most where an edge runs through it (measured: 0.15).
+// A trilinear cell is taken to miss the distance by no more voxels than this. An assumption too.
 constexpr double kFieldErrorVoxels = 0.2;
 constexpr double kOnAxisMm = 1e-9;
 constexpr double kSameTopMm = 0.05;

@@ -8,7 +8,7 @@
 
 #include "handpiece/base/core/simd.h"
 #include "handpiece/tick/contact/exact_depth.h"
-#include "handpiece/tick/contact/ring_kernels.h"
+#include "handpiece/tick/contact/field_row.h"
 #include "tick/contact/contact_fixture.h"
 
 namespace handpiece::contact {
@@ -124,11 +124,11 @@ TEST(ExactKernels, everyInstructionSetGivesTheSameBits) {
     }
 }
 
-TEST(RingKernels, lookupsAreThoseOfTheFieldAtEveryLevel) {
-    std::vector<RingKernels> all{simd_base::ringKernels()};
+TEST(FieldRow, lookupsAreThoseOfTheFieldAtEveryLevel) {
+    std::vector<FieldLookup> all{simd_base::fieldLookup()};
 #if defined(__x86_64__)
-    if (core::simdLevel() >= core::SimdLevel::avx2) all.push_back(simd_avx2::ringKernels());
-    if (core::simdLevel() >= core::SimdLevel::avx512) all.push_back(simd_avx512::ringKernels());
+    if (core::simdLevel() >= core::SimdLevel::avx2) all.push_back(simd_avx2::fieldLookup());
+    if (core::simdLevel() >= core::SimdLevel::avx512) all.push_back(simd_avx512::fieldLookup());
 #endif
     std::mt19937_64 g(test::seed());
     const tooth::ToothField& field = grooved().field;
@@ -150,24 +150,21 @@ TEST(RingKernels, lookupsAreThoseOfTheFieldAtEveryLevel) {
         }
         row.cosines = cosines;
         row.sines = sines;
-        FieldEight first;
+        float first[8];
         for (std::size_t level = 0; level < all.size(); ++level) {
-            FieldEight eight;
             float distances[8];
-            all[level].gradients(view, row, 0, eight);
-            all[level].distances(view, row, 0, distances);
-            if (level == 0) first = eight;
-            EXPECT_EQ(std::memcmp(&eight, &first, sizeof eight), 0);
-            EXPECT_EQ(std::memcmp(distances, first.distance, sizeof distances), 0);
+            all[level](view, row, 0, distances);
+            if (level == 0) std::memcpy(first, distances, sizeof first);
+            EXPECT_EQ(std::memcmp(distances, first, sizeof distances), 0);
         }
         for (int j = 0; j < 8; ++j) {
             const Vec3 p = centre + cosines[j] * x + sines[j] * y;
             if (field.isFine(p)) {
                 ++fine;
-                EXPECT_NEAR(first.distance[j], field.distance(p), 1e-6);
-                EXPECT_GT(Vec3(first.x[j], first.y[j], first.z[j]).dot(field.normal(p)), 0.0);
+                EXPECT_NEAR(first[j], field.distance(p), 1e-6);
             } else {
-                EXPECT_EQ(first.distance[j] < 0.0f, field.distance(p) < 0.0);
+                EXPECT_GT(std::abs(first[j]), kBoundMm - 1.0f);
+                EXPECT_EQ(first[j] < 0.0f, field.distance(p) < 0.0);
             }
         }
     }

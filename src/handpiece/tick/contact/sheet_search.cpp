@@ -19,6 +19,9 @@ constexpr double kRiseMm = 0.05;
 // A trilinear cell is taken to miss the distance by no more voxels than this. An assumption too.
 constexpr double kFieldErrorVoxels = 0.2;
 constexpr double kOnAxisMm = 1e-9;
+// A sheet that stands out of a ball kept elsewhere by less than this is not searched: depth is then too small by at
+// most so much. The many blunt corners of a bur from a file are such sheets; rims are not.
+constexpr double kCoveredMm = 4e-4;
 constexpr double kSameTopMm = 0.05;
 constexpr float kDropped = 1e9f;
 constexpr float kKnownMm = 0.5f * kBoundMm;  // distances are less, bounds more
@@ -96,6 +99,20 @@ double solve(const Support* supports, int count, double lowU, double highU, doub
 
 }  // namespace
 
+namespace {
+
+/// Whether the balls of a sheet add nothing that is felt to one of `kept`. A ball (c, R) is at most |c - e| + R - r
+/// deeper than a ball (e, r), whatever the tooth.
+bool isCovered(const instrument::MedialCurve& sheet, const std::vector<instrument::MedialBall>& kept) {
+    return std::any_of(kept.begin(), kept.end(), [&](const instrument::MedialBall& e) {
+        return std::all_of(sheet.balls.begin(), sheet.balls.end(), [&](const instrument::MedialBall& b) {
+            return std::hypot(b.rhoMm - e.rhoMm, b.zMm - e.zMm) + b.radiusMm - e.radiusMm <= kCoveredMm;
+        });
+    });
+}
+
+}  // namespace
+
 SheetSearch::SheetSearch(const instrument::Bur& bur, const tooth::ToothField& field, core::SimdLevel level)
     : field_(field.view()),
       lookup_(lookupFor(level)),
@@ -103,8 +120,13 @@ SheetSearch::SheetSearch(const instrument::Bur& bur, const tooth::ToothField& fi
       bandInMm_(static_cast<float>(field.settings().bandInMm)),
       errorMm_(kFieldErrorVoxels * field.settings().voxelMm),
       brickDiagonalMm_(std::numbers::sqrt3 * tooth::kBrickCells * field.settings().voxelMm) {
+    std::vector<instrument::MedialBall> kept;
     for (const instrument::MedialCurve& curve : bur.medialAxis()) {
-        if (curve.onAxis || curve.balls.empty()) continue;
+        if (curve.balls.empty()) continue;
+        const bool searchedHere = !curve.onAxis && !isCovered(curve, kept);
+        if (curve.onAxis || searchedHere) kept.insert(kept.end(), curve.balls.begin(), curve.balls.end());
+        if (!curve.onAxis && !searchedHere) covered_.insert(covered_.end(), curve.balls.begin(), curve.balls.end());
+        if (!searchedHere) continue;
         Sheet sheet;
         for (const instrument::MedialBall& ball : curve.balls) {
             double u = 0.0;
@@ -194,6 +216,27 @@ void SheetSearch::search(const ExactSurface& surface, const core::Pose& burInToo
         }
         searchSheet(surface, sheet, frame, seed, best);
     }
+    // Twice: a deeper ball has its own nearest place.
+    if (askCovered(surface, frame, best)) askCovered(surface, frame, best);
+}
+
+bool SheetSearch::askCovered(const ExactSurface& surface, const Frame& frame, BallDepth& best) const noexcept {
+    if (covered_.empty() || best.triangle == geometry::kNoTriangle || best.depthMm <= 0.0) return false;
+    const Vec3 w = best.surfaceMm - frame.tip;
+    const double along = w.dot(frame.x), across = w.dot(frame.y), rho = std::hypot(along, across);
+    if (rho < kOnAxisMm) return false;
+    bool deeper = false;
+    const Vec3 outward = (along * frame.x + across * frame.y) / rho;
+    for (const instrument::MedialBall& ball : covered_) {
+        const Vec3 centre = frame.tip + ball.rhoMm * outward + ball.zMm * frame.z;
+        // Inside the tooth the nearest point is no farther than the one known.
+        if (ball.radiusMm + (centre - best.surfaceMm).norm() <= best.depthMm) continue;
+        const BallDepth found = surface.ball(centre, ball.radiusMm, best.triangle);
+        if (found.depthMm <= best.depthMm) continue;
+        best = found;
+        deeper = true;
+    }
+    return deeper;
 }
 
 SheetSearch::Spot SheetSearch::spotAt(const Sheet& sheet, const Frame& frame, double u, double angle) const noexcept {

@@ -77,7 +77,11 @@ class SheetSearch {
     void climb(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, double u, double angle,
                std::uint32_t seed, double window, BallDepth& best, double& endU, double& endAngle) const noexcept;
 
+    /// True when one of the balls not searched is deeper there.
+    bool askCovered(const ExactSurface& surface, const Frame& frame, BallDepth& best) const noexcept;
+
     std::vector<Sheet> sheets_;
+    std::vector<instrument::MedialBall> covered_;  ///< balls of sheets that are not searched
     tooth::FieldView field_;
     FieldLookup lookup_;
     float bandOutMm_, bandInMm_;

@@ -120,8 +120,11 @@ struct Places {
 /// Two floats from each of eight places: the first ones and the second ones.
 inline void loadPairs(const float* const (&corner)[8], int offset, Floats& first, Floats& second) {
     const auto two = [&](int lane, int other) {
-        const __m128 low = _mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(corner[lane] + offset)));
-        return _mm_loadh_pi(low, reinterpret_cast<const __m64*>(corner[other] + offset));
+        // Pairs of floats begin anywhere: copied, so that no aligned double is claimed to stand there.
+        double low, high;
+        __builtin_memcpy(&low, corner[lane] + offset, sizeof low);
+        __builtin_memcpy(&high, corner[other] + offset, sizeof high);
+        return _mm_castpd_ps(_mm_set_pd(high, low));
     };
     const __m128 a = two(0, 1), b = two(2, 3), c = two(4, 5), d = two(6, 7);
 #if defined(__AVX__)

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The tissues of a tooth and its surroundings, and what they feel like.
+/// The tissues of a tooth and its surroundings: what they feel like and how they resist a bur.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace handpiece::tooth {
@@ -17,13 +19,29 @@ inline constexpr std::size_t kTissueCount = 10;
 /// capability record), because enamel is orders of magnitude stiffer than any desktop arm.
 struct TissueProperties {
     std::string_view name;
-    double stiffnessFraction;            ///< of the device's stiffness limit, 0..1
-    double dampingNSPerMm;               ///< Kelvin-Voigt b on the approach [N s/mm]
+    double stiffnessFraction;  ///< of the device's stiffness limit, 0..1
+    double dampingNSPerMm;     ///< Kelvin-Voigt b on the approach [N s/mm]
+    double friction;           ///< Coulomb, of a still bur sliding on it
+    double cuttingMm2PerN;     ///< K of V' = K F omega r: volume a second for load, speed and radius; 0: cannot be cut
     std::array<std::uint8_t, 3> colour;  ///< sRGB
     int priority;                        ///< where parts overlap the higher one wins
 };
 
-/// docs/physics.md#tissues says where each figure comes from.
+/// One row a tissue, in the order of Tissue.
+struct TissueTable {
+    std::array<TissueProperties, kTissueCount> rows;
+    [[nodiscard]] const TissueProperties& of(Tissue tissue) const noexcept {
+        const auto index = static_cast<std::size_t>(tissue);
+        return rows[index < kTissueCount ? index : 0];
+    }
+};
+/// data/tissues.toml as shipped; docs/physics.md#tissues says where each figure comes from.
+[[nodiscard]] const TissueTable& builtInTissues();
+/// A table of one's own: what the file leaves out is as shipped. Throws core::Error naming file, tissue and value for
+/// an unknown tissue or key, a negative or infinite value, a fraction above one.
+[[nodiscard]] TissueTable readTissues(const std::filesystem::path& file);
+
+/// Row of the built-in table.
 [[nodiscard]] const TissueProperties& properties(Tissue tissue);
 /// By name ("enamel"); throws core::Error naming the tissues there are.
 [[nodiscard]] Tissue tissueByName(std::string_view name);

@@ -61,6 +61,7 @@ class ToothField {
   private:
     friend class FieldBuilder;
     friend class FieldStorage;
+    friend class CutField;
     [[nodiscard]] double distanceInGrid(const core::Vec3& gridPoint) const noexcept;  // in voxels from the origin
     FieldSettings settings_;
     core::Vec3 originMm_ = core::Vec3::Zero();

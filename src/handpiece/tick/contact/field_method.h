@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "handpiece/model/instrument/bur.h"
+#include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/model/tooth/tooth.h"
 #include "handpiece/tick/contact/method.h"
 
@@ -23,6 +24,12 @@ struct FieldMethodSettings {
 };
 
 [[nodiscard]] std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::Tooth> tooth,
+                                                      std::shared_ptr<const instrument::Bur> bur,
+                                                      const FieldMethodSettings& settings = {});
+
+/// On a tooth that is being cut: exact where the surface is still uncut, the field where it is not. It reads the live
+/// field, so it belongs to the thread that cuts.
+[[nodiscard]] std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::CutField> tooth,
                                                       std::shared_ptr<const instrument::Bur> bur,
                                                       const FieldMethodSettings& settings = {});
 

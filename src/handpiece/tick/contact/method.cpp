@@ -20,4 +20,10 @@ Status Method::constraints(const core::Pose& burInTooth, double reachMm, Constra
     return Status::ok;
 }
 
+void Method::bearing(const core::Pose&, const core::Vec3&, double, double, Bearing& out) noexcept {
+    out = Bearing{};
+    for (core::Vec3& t : out.tangentMm)
+        t.setZero();
+}
+
 }  // namespace handpiece::contact

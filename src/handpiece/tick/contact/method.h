@@ -66,6 +66,19 @@ struct Constraint {
 inline constexpr std::size_t kMaxConstraints = 96;
 using ConstraintSet = core::FixedVector<Constraint, kMaxConstraints>;
 
+/// How the bur bears on the tooth when it is pushed along a direction: sums over its surface points that face that way
+/// and are in contact, by tissue. a: area, w: 1 in contact, falling to 0 at kContactMarginMm above the surface, c:
+/// cosine between the bur's outward normal and the direction, rho: distance from the bur's axis, at least
+/// `leastRadiusMm`.
+struct Bearing {
+    std::array<double, tooth::kTissueCount> areaMm2{};  ///< sum of a w c
+    std::array<double, tooth::kTissueCount>
+        resistanceMm{};  ///< sum of a w c^2 / rho: load over feed is this / (K omega)
+    std::array<core::Vec3, tooth::kTissueCount>
+        tangentMm{};  ///< sum of a w c t / rho, t the unit direction in which the turning point moves
+    Status status = Status::ok;
+};
+
 /// One way to find contact between one bur and one tooth. Built off the tick; the methods below run in it.
 ///
 /// Keeps a warm start between calls, so it belongs to one thread; answers do not depend on it beyond 1 nm.
@@ -84,6 +97,11 @@ class Method {
     /// touches. The default gives the one of depth().
     virtual Status constraints(const core::Pose& burInTooth, double reachMm,
                                ConstraintSet& out) noexcept HANDPIECE_REALTIME;
+
+    /// How the bur bears on the tooth when pushed along `direction` (unit, tooth frame); its points count as if it were
+    /// `leadMm` farther along it. The default knows nothing of surfaces and reports none.
+    virtual void bearing(const core::Pose& burInTooth, const core::Vec3& direction, double leadMm, double leastRadiusMm,
+                         Bearing& out) noexcept HANDPIECE_REALTIME;
 
     /// Forget the warm start (after a jump).
     virtual void reset() noexcept {}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Which tissue lies where, all through the tooth, with boundaries smooth to below a voxel.
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "handpiece/base/core/progress.h"
+#include "handpiece/base/core/vec.h"
+#include "handpiece/model/tooth/field_view.h"
+#include "handpiece/model/tooth/tissue.h"
+
+namespace handpiece::tooth {
+
+struct PartSurface;
+class ToothField;
+
+/// On the grid of a field: a brick is of one tissue, or has a tissue for every node and the signed distances of the
+/// parts whose surfaces pass through it (8 bits, a fraction of a voxel), from which the boundary is found between
+/// nodes. Immutable once made; any thread.
+class TissueMap {
+  public:
+    TissueMap() = default;
+    /// From the parts of a case. In parallel, same bits at any thread count.
+    [[nodiscard]] static TissueMap fromParts(const ToothField& grid, std::span<const PartSurface> parts,
+                                             const core::Progress& progress = {});
+    /// All of one tissue.
+    [[nodiscard]] static TissueMap uniform(const ToothField& grid, Tissue tissue);
+    /// A part as a function, for closed forms and phantoms: signed distance, negative inside.
+    struct PartFunction {
+        std::function<double(const core::Vec3&)> signedDistance;
+        Tissue tissue;
+        int priority;
+    };
+    /// `rest` is what lies in no part.
+    [[nodiscard]] static TissueMap fromFunctions(const ToothField& grid, std::span<const PartFunction> parts,
+                                                 Tissue rest);
+
+    /// At a point, by interpolated distances.
+    [[nodiscard]] Tissue at(const core::Vec3& p) const noexcept;
+    /// Tissue of the whole brick, or none when it is mixed.
+    [[nodiscard]] Tissue ofBrick(std::uint32_t dense) const noexcept {
+        return mixed_[dense] < 0 ? static_cast<Tissue>(uniform_[dense]) : Tissue::none;
+    }
+    /// Tissue of each node of a mixed brick (index x + 9 y + 81 z); null for a uniform one.
+    [[nodiscard]] const std::uint8_t* nodes(std::uint32_t dense) const noexcept;
+
+    /// A part's surface in a mixed brick: signed distance = unit x value, negative inside, at the nodes.
+    struct Layer {
+        Tissue tissue;  ///< inside
+        const std::int8_t* values;
+    };
+    /// The layers of a mixed brick, the one that wins first; where none contains the point it is of `rest`.
+    struct Layers {
+        std::span<const Layer> layers;
+        Tissue rest;
+    };
+    [[nodiscard]] Layers layers(std::uint32_t dense) const noexcept;
+    [[nodiscard]] double unitMm() const noexcept { return unitMm_; }
+    /// Tissues that occur anywhere.
+    [[nodiscard]] std::vector<Tissue> tissues() const;
+
+  private:
+    core::Vec3 originMm_ = core::Vec3::Zero();
+    double voxelMm_ = 0.0, unitMm_ = 0.0;
+    std::int32_t bricks_[3] = {0, 0, 0};
+    std::vector<std::uint8_t> uniform_;  ///< by dense brick
+    std::vector<std::int32_t> mixed_;    ///< by dense brick: index into the mixed ones, or -1
+    std::vector<std::uint8_t> nodes_;    ///< kBrickValues a mixed brick
+    struct LayerRange {
+        std::uint32_t first, count;
+        Tissue rest;
+    };
+    std::vector<LayerRange> ranges_;  ///< by mixed brick
+    std::vector<Layer> layers_;
+    std::vector<std::int8_t> values_;
+};
+
+}  // namespace handpiece::tooth

@@ -18,8 +18,9 @@ struct Drive {
     double freeSpeedRpm = 400000;
     double stallTorqueNmm = 1.2;
     double inertiaNmmS2 = 1e-5;
+    double bearingTorqueNmm = 0.2;  ///< that stops the rotor when the air is off
 };
-/// "turbine" (high speed), "weak-turbine", "low-speed", ... Throws nothing.
+/// "turbine" (high speed), "weak-turbine", "low-speed" (1:1), "speed-increasing" (1:5).
 [[nodiscard]] const std::vector<Drive>& drives();
 /// Throws core::Error naming the drives there are.
 [[nodiscard]] const Drive& driveByName(std::string_view name);
@@ -30,8 +31,10 @@ void validate(const Drive& drive);
 class Rotor {
   public:
     explicit Rotor(const Drive& drive) noexcept;
-    /// Lets `periodS` pass: J w' = stall x pedal x (1 - w / free) - load - bearing; solved exactly for constant load,
-    /// so any period is stable; never turns backwards. `pedal` 0..1 is the air; without it the bearing stops the rotor.
+    /// Lets `periodS` pass: J w' = stall x pedal x (1 - w / free) - bearing x (1 - pedal) - load; solved exactly for
+    /// constant load, so any period is stable; never turns backwards. `pedal` 0..1 is the air (stall and free speed are
+    /// those of full air, bearing included); without it the bearing stops the rotor. Plain arithmetic only: the same
+    /// bits on every machine.
     void step(double pedal, double loadTorqueNmm, double periodS) noexcept HANDPIECE_REALTIME;
     void setDrive(const Drive& drive) noexcept HANDPIECE_REALTIME;
     [[nodiscard]] double speedRadS() const noexcept { return speedRadS_; }
@@ -40,7 +43,7 @@ class Rotor {
     [[nodiscard]] bool stalled() const noexcept { return stalled_; }
 
   private:
-    double freeRadS_, stallNmm_, inertia_, speedRadS_ = 0.0;
+    double freeRadS_ = 0.0, stallNmm_ = 0.0, inertia_ = 1.0, bearingNmm_ = 0.0, speedRadS_ = 0.0;
     bool stalled_ = false;
 };
 

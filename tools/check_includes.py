@@ -14,7 +14,7 @@ THIRD_PARTY = {
     r"(lib)?qhull(_r|cpp)?/": r"src/handpiece/base/geometry/convex_hull\.cpp",
     r"tiny_obj_loader\.h": r"tests/.*",
     r"tbb/|oneapi/tbb": r"src/handpiece/base/core/parallel\.cpp",
-    r"toml\+\+|toml\.hpp": r"src/handpiece/model/tooth/\w+\.cpp|src/handpiece/model/instrument/\w+\.cpp",
+    r"toml\+\+|toml\.hpp": r"src/handpiece/base/config/\w+\.cpp|src/handpiece/model/tooth/\w+\.cpp|src/handpiece/model/instrument/\w+\.cpp",
     r"CLI/|CLI11": r"apps/cli/.*",
     r"nlohmann/": r"apps/cli/.*|bench/.*",
     r"gtest/|gmock/|rapidcheck": r"tests/.*",

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/base/config/table.h"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <cmath>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+
+namespace handpiece::config {
+namespace {
+
+constexpr std::uint64_t kMaxBytes = 1 << 20;
+
+const toml::table& tomlOf(const std::shared_ptr<const void>& node) {
+    return *static_cast<const toml::table*>(node.get());
+}
+
+[[noreturn]] void wrongType(const Table& table, std::string_view key, std::string_view needed) {
+    table.fail(fmt::format("\"{}\" has the wrong type", key), fmt::format("it must be {}", needed), key);
+}
+
+/// A list whose elements are all T.
+template <class T>
+std::vector<T> listOf(const Table& table, const toml::node* node, std::string_view key, const char* what) {
+    std::vector<T> list;
+    if (!node) return list;
+    const toml::array* array = node->as_array();
+    if (!array) table.fail(fmt::format("\"{}\" is not a list of {}", key, what), {}, key);
+    for (const toml::node& element : *array) {
+        const bool fits = std::is_same_v<T, double> ? element.is_number() : element.is_string();
+        const auto value = fits ? element.value<T>() : std::optional<T>{};
+        if (!value) table.fail(fmt::format("\"{}\" is not a list of {}", key, what), {}, key);
+        list.push_back(*value);
+    }
+    return list;
+}
+
+}  // namespace
+
+Table Table::parse(std::string_view text, std::string where) {
+    try {
+        auto root = std::make_shared<toml::table>(toml::parse(text, where));
+        return {std::shared_ptr<const void>(std::move(root)), std::move(where)};
+    } catch (const toml::parse_error& e) {
+        throw core::Error(fmt::format("line {}: {}", e.source().begin.line, e.description()), where, "mend the file");
+    }
+}
+
+Table Table::read(const std::filesystem::path& file) {
+    const std::vector<std::byte> bytes = core::readFile(file, kMaxBytes);
+    return parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()), file.string());
+}
+
+bool Table::has(std::string_view key) const {
+    return tomlOf(node_).contains(key);
+}
+
+std::vector<std::string> Table::keys() const {
+    std::vector<std::string> found;
+    for (const auto& [key, value] : tomlOf(node_))
+        found.emplace_back(key.str());
+    return found;
+}
+
+void Table::fail(const std::string& problem, const std::string& remedy, std::string_view key) const {
+    const toml::node* at = key.empty() ? nullptr : tomlOf(node_).get(key);
+    const auto line = (at ? *at : static_cast<const toml::node&>(tomlOf(node_))).source().begin.line;
+    throw core::Error(line > 0 ? fmt::format("{} (line {})", problem, line) : problem, where_, remedy);
+}
+
+std::optional<std::string> Table::text(std::string_view key) const {
+    const toml::node* node = tomlOf(node_).get(key);
+    if (!node) return {};
+    if (auto value = node->value_exact<std::string>()) return value;
+    wrongType(*this, key, "a text in quotes");
+}
+
+std::optional<double> Table::number(std::string_view key) const {
+    const toml::node* node = tomlOf(node_).get(key);
+    if (!node) return {};
+    if (!node->is_number()) wrongType(*this, key, "a number");
+    const double value = node->value<double>().value_or(std::nan(""));
+    if (!std::isfinite(value)) fail(fmt::format("\"{}\" is {}", key, value), "give a finite number", key);
+    return value;
+}
+
+std::optional<std::int64_t> Table::integer(std::string_view key) const {
+    const toml::node* node = tomlOf(node_).get(key);
+    if (!node) return {};
+    if (const auto value = node->value_exact<std::int64_t>()) return value;
+    wrongType(*this, key, "a whole number");
+}
+
+std::optional<bool> Table::flag(std::string_view key) const {
+    const toml::node* node = tomlOf(node_).get(key);
+    if (!node) return {};
+    if (const auto value = node->value_exact<bool>()) return value;
+    wrongType(*this, key, "true or false");
+}
+
+bool Table::isTable(std::string_view key) const {
+    const toml::node* node = tomlOf(node_).get(key);
+    return node && node->is_table();
+}
+
+std::optional<Table> Table::table(std::string_view key) const {
+    const toml::node* node = tomlOf(node_).get(key);
+    if (!node) return {};
+    if (!node->is_table()) wrongType(*this, key, "a table");
+    return Table(std::shared_ptr<const void>(node_, node->as_table()), where_);
+}
+
+std::vector<Table> Table::tables(std::string_view key) const {
+    std::vector<Table> list;
+    const toml::node* node = tomlOf(node_).get(key);
+    if (!node) return list;
+    const toml::array* array = node->as_array();
+    if (!array) fail(fmt::format("\"{}\" is not a list of tables", key), {}, key);
+    for (const toml::node& element : *array) {
+        if (!element.is_table()) fail(fmt::format("\"{}\" is not a list of tables", key), {}, key);
+        list.push_back(Table(std::shared_ptr<const void>(node_, element.as_table()), where_));
+    }
+    return list;
+}
+
+std::vector<std::string> Table::texts(std::string_view key) const {
+    return listOf<std::string>(*this, tomlOf(node_).get(key), key, "texts");
+}
+
+std::vector<double> Table::numbers(std::string_view key) const {
+    std::vector<double> list = listOf<double>(*this, tomlOf(node_).get(key), key, "numbers");
+    for (const double value : list)
+        if (!std::isfinite(value)) fail(fmt::format("\"{}\" holds {}", key, value), "give finite numbers", key);
+    return list;
+}
+
+void Table::allowOnly(std::initializer_list<std::string_view> known) const {
+    for (const auto& [key, value] : tomlOf(node_)) {
+        if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+        fail(fmt::format("there is no key \"{}\"", key.str()),
+             fmt::format("the keys are {}", fmt::join(known.begin(), known.end(), ", ")), key.str());
+    }
+}
+
+}  // namespace handpiece::config

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/base/config/table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "handpiece/base/core/error.h"
+
+namespace handpiece::config {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+template <class Work>
+std::string errorOf(const Work& work) {
+    try {
+        work();
+    } catch (const core::Error& e) {
+        return e.what();
+    }
+    return {};
+}
+
+const char* kText = R"(name = "molar"
+count = 3
+share = 0.25
+on = true
+list = [1, 2.5]
+words = ["a", "b"]
+far = inf
+[inner]
+x = 1
+[[row]]
+y = 1
+[[row]]
+y = 2
+)";
+
+TEST(Table, GivesWhatIsThere) {
+    const Table t = Table::parse(kText, "file.toml");
+    EXPECT_EQ(t.text("name"), "molar");
+    EXPECT_EQ(t.integer("count"), 3);
+    EXPECT_EQ(t.number("count"), 3.0);
+    EXPECT_EQ(t.number("share"), 0.25);
+    EXPECT_EQ(t.flag("on"), true);
+    EXPECT_THAT(t.numbers("list"), ElementsAre(1.0, 2.5));
+    EXPECT_THAT(t.texts("words"), ElementsAre("a", "b"));
+    EXPECT_EQ(t.table("inner")->integer("x"), 1);
+    ASSERT_EQ(t.tables("row").size(), 2u);
+    EXPECT_EQ(t.tables("row")[1].integer("y"), 2);
+    EXPECT_FALSE(t.text("none"));
+    EXPECT_FALSE(t.table("none"));
+    EXPECT_TRUE(t.tables("none").empty());
+    EXPECT_TRUE(t.isTable("inner"));
+    EXPECT_FALSE(t.isTable("name"));
+    EXPECT_THAT(Table::parse("b = 1\na = 2\n", "f").keys(), ElementsAre("a", "b"));
+}
+
+TEST(Table, OutlivesItsDocument) {
+    std::vector<Table> rows;
+    {
+        const Table t = Table::parse(kText, "file.toml");
+        rows = t.tables("row");
+    }
+    EXPECT_EQ(rows[0].integer("y"), 1);
+}
+
+TEST(Table, TellsFileLineAndKey) {
+    const Table t = Table::parse(kText, "file.toml");
+    EXPECT_THAT(errorOf([&] { (void)t.text("count"); }),
+                AllOf(HasSubstr("file.toml"), HasSubstr("\"count\""), HasSubstr("line 2"), HasSubstr("wrong type")));
+    EXPECT_THAT(errorOf([&] { (void)t.integer("share"); }), HasSubstr("line 3"));
+    EXPECT_THAT(errorOf([&] { (void)t.number("far"); }), AllOf(HasSubstr("inf"), HasSubstr("line 7")));
+    EXPECT_THAT(errorOf([&] { (void)t.number("name"); }), HasSubstr("number"));
+    EXPECT_THAT(errorOf([&] { (void)t.flag("name"); }), HasSubstr("true or false"));
+    EXPECT_THAT(errorOf([&] { (void)t.table("name"); }), HasSubstr("a table"));
+    EXPECT_THAT(errorOf([&] { (void)t.tables("words"); }), HasSubstr("list of tables"));
+    EXPECT_THAT(errorOf([&] { (void)t.numbers("words"); }), HasSubstr("list of numbers"));
+    EXPECT_THAT(errorOf([&] { (void)t.texts("list"); }), HasSubstr("list of texts"));
+    EXPECT_THAT(errorOf([&] { t.tables("row")[1].allowOnly({"z"}); }),
+                AllOf(HasSubstr("no key \"y\""), HasSubstr("line 13"), HasSubstr("the keys are z")));
+    EXPECT_THAT(errorOf([] { (void)Table::parse("a = \n", "g.toml"); }), AllOf(HasSubstr("g.toml"), HasSubstr("line")));
+    EXPECT_THAT(errorOf([] { (void)Table::read("/nowhere/x.toml"); }), HasSubstr("no such file"));
+}
+
+}  // namespace
+}  // namespace handpiece::config

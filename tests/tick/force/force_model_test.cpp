@@ -14,15 +14,17 @@ using core::Vec3;
 using test::AnalyticMethod;
 
 constexpr double kPeriodS = 1e-3, kRadius = 0.5;
+constexpr double kStiffness = 0.5;  // of enamel through the default limits [N/mm]
 
 Pose at(const Vec3& p) {
     return {p, core::Quat::Identity()};
 }
 
-/// Forces without damper, velocity filter or limits in the way: a position gives a force.
+/// Forces without damper, friction, velocity filter or limits in the way: a position gives a force.
 Parameters still() {
     Parameters p = defaultParameters();
     p.dampingMultiplier = 0.0;
+    p.frictionMultiplier = 0.0;
     return p;
 }
 Limits unlimited() {
@@ -140,7 +142,7 @@ Loop around(Scene& scene, const Vec3& centre, const Vec3& a, const Vec3& b, doub
 }
 
 TEST(ForceModel, isContinuousInASlotAndInAVee) {
-    constexpr double kStepMm = 0.001, kStiffness = 0.5;
+    constexpr double kStepMm = 0.001;
     const auto check = [&](test::Distance distance, const Vec3& from, const Vec3& to) {
         Scene s(std::move(distance), unlimited(), still());
         s.line(from + Vec3(0, 0, 2), from, 0.02);
@@ -187,6 +189,68 @@ TEST(ForceModel, doesNoWorkAroundAClosedLoop) {
         EXPECT_LE(share, 0.01) << c.name;
         std::printf("  %s: work / (F_peak x 0.3 mm) = %.4f %%, peak %.3f N\n", c.name, 100 * share, loop.peakN);
     }
+}
+
+TEST(ForceModel, frictionSticksThenSlipsAtCoulombsLimitAndOpposesTheSlide) {
+    Parameters p = still();
+    p.frictionMultiplier = 1.0;
+    const double mu = tooth::properties(tooth::Tissue::enamel).friction, depth = 0.8, press = kStiffness * depth;
+    ASSERT_GT(mu, 0.0);
+    Scene s(test::plane(), unlimited(), p);
+    EXPECT_NEAR(s.line({0, 0, 1}, {0, 0, -depth}, 0.05).forceN.head<2>().norm(), 0.0, 1e-9);
+    // Sticks: the bristle gives way like the contact itself.
+    const double stick = 0.5 * mu * depth;
+    EXPECT_NEAR(s.line({0, 0, -depth}, {stick, 0, -depth}, 0.001).forceN.x(), -kStiffness * stick, 1e-6);
+    // Slips: mu times the press, against the way, whichever it is; the press itself is as without friction.
+    for (const Vec3& way : {Vec3(1, 0, 0), Vec3(-0.6, 0.8, 0), Vec3(0, -1, 0)}) {
+        const Vec3 from = s.touch.deviceInTooth.positionMm;
+        const ForceCommand f = s.line(from, from + 2.0 * way, 0.002);
+        const Vec3 sideways(f.forceN.x(), f.forceN.y(), 0.0);
+        EXPECT_NEAR(sideways.norm(), mu * press, 1e-6);
+        EXPECT_NEAR(sideways.normalized().dot(way), -1.0, 1e-3);
+        EXPECT_NEAR(f.forceN.z(), press, 1e-5);
+        EXPECT_NEAR((f.loadN + Vec3(0, 0, press)).norm(), 0.0, 1e-5);  // on the tooth, without friction
+    }
+    // Lifted and put down elsewhere nothing is remembered.
+    s.line(s.touch.deviceInTooth.positionMm, {5, 5, 1}, 0.05);
+    EXPECT_NEAR(s.line({5, 5, 1}, {5, 5, -depth}, 0.05).forceN.head<2>().norm(), 0.0, 1e-9);
+}
+
+TEST(ForceModel, aTurningBurHardlyRubsAgainstTheHandsSlide) {
+    Parameters p = still();
+    p.frictionMultiplier = 1.0;
+    const double press = kStiffness * 0.8;
+    const auto slideWith = [&](const Turning& turning) {
+        AnalyticMethod plane(test::plane(), kRadius, 4.0);
+        ForceModel model(unlimited(), p);
+        ForceCommand last;
+        for (int i = 0; i <= 2000; ++i) {
+            const double z = std::max(-0.8, 1.0 - 0.01 * i), x = 0.005 * std::max(0, i - 300);  // 5 mm/s
+            last = model.compute(model.feel(plane, at({x, 0, z}), false, kPeriodS), kPeriodS, turning);
+        }
+        return last;
+    };
+    EXPECT_NEAR(slideWith({}).forceN.x(), -0.12 * press, 1e-5);
+    EXPECT_LT(std::abs(slideWith({Vec3::Zero(), 14000.0}).forceN.x()), 1e-3 * press);
+    // What its rotation does to it comes on top, as far as the device can.
+    EXPECT_NEAR(slideWith({Vec3(0, 0.1, 0), 14000.0}).forceN.y(), 0.1, 1e-6);
+}
+
+TEST(ForceModel, waitsWithoutForceUntilTheBurIsClearThenFadesIn) {
+    Scene s(test::plane(), unlimited(), still());
+    s.line({0, 0, 1}, {0, 0, -0.8}, 0.05);
+    s.model.waitUntilClear();
+    for (int i = 0; i < 50; ++i)
+        EXPECT_EQ(s.go(at({0.01 * i, 0, -0.8})).forceN, Vec3::Zero());
+    EXPECT_TRUE(s.model.waiting());
+    s.line({0.5, 0, -0.8}, {0.5, 0, 0.2}, 0.02);
+    EXPECT_FALSE(s.model.waiting());
+    const double early = s.line({0.5, 0, 0.2}, {0.5, 0, -0.8}, 0.1).forceN.z();  // 10 of 200 ms
+    EXPECT_LT(early, 0.15 * kStiffness * 0.8);
+    ForceCommand last;
+    for (int i = 0; i < 250; ++i)
+        last = s.go(at({0.5, 0, -0.8}));
+    EXPECT_NEAR(last.forceN.z(), kStiffness * 0.8, 1e-5);
 }
 
 TEST(ForceModel, torqueOfAPushAtTheTipIsLeverTimesForce) {

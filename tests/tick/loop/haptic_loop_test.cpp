@@ -118,10 +118,11 @@ TEST(HapticLoop, theTickNeitherAllocatesNorLocksNorWaits) {
 TEST(HapticLoop, takesAnotherToothAndOtherParametersBetweenTwoTicks) {
     device::SimulatedDeviceSettings rigid;
     rigid.rigidHand = true;
-    HapticLoop loop(LoopSettings{},
-                    std::make_unique<device::SimulatedDevice>(
-                        rigid, device::drop({Vec3(0, 0, 1), Quat::Identity()}, {0, 0, -1}, 1.8, 20.0, 5.0)),
-                    planeMethod(), force::defaultParameters());
+    const auto height = [](double z) { return core::Pose{Vec3(0, 0, z), Quat::Identity()}; };
+    device::Motion motion(
+        {{0.0, height(1.0)}, {0.2, height(-0.8)}, {1.0, height(-0.8)}, {1.1, height(0.1)}, {1.2, height(-0.8)}});
+    HapticLoop loop(LoopSettings{}, std::make_unique<device::SimulatedDevice>(rigid, std::move(motion)), planeMethod(),
+                    force::defaultParameters());
     HapticSample last;
     const auto keep = [&](const HapticSample& s) { last = s; };
     (void)loop.runSimulated(0.5, keep);
@@ -132,14 +133,21 @@ TEST(HapticLoop, takesAnotherToothAndOtherParametersBetweenTwoTicks) {
     (void)loop.runSimulated(0.1, keep);
     EXPECT_NEAR(last.forceN[2], 0.25 * 0.8, 1e-3);
     loop.setMethod(planeMethod(tooth::Tissue::dentine));
-    double before = last.forceN[2];
-    double worstRise = 0.0;
-    (void)loop.runSimulated(0.5, [&](const HapticSample& s) {
+    double before = last.forceN[2], worstRise = 0.0, whileWaiting = 0.0;
+    int waited = 0, clear = 0;
+    (void)loop.runSimulated(1.0, [&](const HapticSample& s) {
+        const bool waits = (s.flags & messages::kWaiting) != 0;
+        waited += waits;
+        clear += s.depthMm <= 0.0;
+        if (waited > 5 && waits) whileWaiting = std::max(whileWaiting, std::abs(s.forceN[2]));
         worstRise = std::max(worstRise, s.forceN[2] - before);
         before = s.forceN[2];
         last = s;
     });
-    EXPECT_LE(worstRise, 0.005);  // another tooth is faded in
+    EXPECT_GT(waited, 300);  // the bur was in the new tooth
+    EXPECT_GT(clear, 0);
+    EXPECT_EQ(whileWaiting, 0.0);
+    EXPECT_LE(worstRise, 0.005);  // and is faded in
     EXPECT_EQ(last.tissue, static_cast<std::uint8_t>(tooth::Tissue::dentine));
     EXPECT_NEAR(last.forceN[2], 0.25 * tooth::properties(tooth::Tissue::dentine).stiffnessFraction * 0.8, 1e-3);
 }

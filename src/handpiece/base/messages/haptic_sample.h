@@ -27,16 +27,30 @@ struct HapticSample {
     std::uint8_t tissue = 0;                ///< tooth::Tissue that carries most of the pressure
     std::uint8_t contactStatus = 0;         ///< contact::Status
     std::uint16_t patchCount = 0;
-    std::uint32_t flags = 0;  ///< SampleFlag bits
-    float workUs = 0.0f;      ///< from reading the pose to having the force
-    float lateUs = 0.0f;      ///< start of the tick after its nominal time
+    std::uint32_t flags = 0;              ///< SampleFlag bits
+    float workUs = 0.0f;                  ///< from reading the pose to having the force
+    float lateUs = 0.0f;                  ///< start of the tick after its nominal time
+    float cutUs = 0.0f;                   ///< after the force was sent: cutting and handing over
+    float feedMmS = 0.0f;                 ///< speed at which the bur eats into the tooth
+    std::int32_t elapsedPeriods = 1;      ///< since the tick before
+    std::uint32_t buttons = 0;            ///< bit 0: the upper one
+    std::uint64_t lastCommand = 0;        ///< number of the newest staged command that has taken effect
+    double pedal = 0.0;                   ///< 0..1
+    double speedRpm = 0.0;                ///< of the bur
+    double loadTorqueNmm = 0.0;           ///< with which the tooth held the bur back in the tick before
+    std::array<double, 10> removedMm3{};  ///< by tooth::Tissue, since the tooth was whole
 };
 
 enum SampleFlag : std::uint32_t {
-    kForceLimited = 1,  ///< clamped to the device's largest force
-    kSlopeLimited = 2,  ///< the change of force was limited
-    kInvalidPose = 4,   ///< the device's pose was not finite, or jumped: force is zero
-    kFault = 8,         ///< force is held at zero until reset
+    kForceLimited = 1,   ///< clamped to the device's largest force
+    kSlopeLimited = 2,   ///< the change of force was limited
+    kInvalidPose = 4,    ///< the device's pose was not finite, or jumped: force is zero
+    kFault = 8,          ///< force is held at zero until reset
+    kWaiting = 16,       ///< force is held at zero until the bur is clear of the tooth
+    kCutting = 32,       ///< tissue was taken away in this tick
+    kStalled = 64,       ///< the bur stands although the pedal is down
+    kRestoring = 128,    ///< an undo, redo or reset is being put in place
+    kOutOfBricks = 256,  ///< the tooth's memory for cuts is used up: it is cut no deeper
 };
 
 static_assert(std::is_trivially_copyable_v<HapticSample>);

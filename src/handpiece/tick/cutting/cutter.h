@@ -54,6 +54,8 @@ class Cutter {
     const CutResult& rest() noexcept HANDPIECE_REALTIME;
 
     [[nodiscard]] tooth::CutField& field() noexcept;
+    [[nodiscard]] const tooth::CutField& field() const noexcept;
+    [[nodiscard]] double largestRadiusMm() const noexcept;  ///< of the bur
 
   private:
     struct State;

@@ -3,11 +3,11 @@
 
 namespace handpiece::force {
 
-Parameters defaultParameters() {
+Parameters defaultParameters(const tooth::TissueTable& tissues) {
     Parameters parameters;
     for (std::size_t i = 0; i < tooth::kTissueCount; ++i) {
-        const tooth::TissueProperties& t = tooth::properties(static_cast<tooth::Tissue>(i));
-        parameters.tissues[i] = {t.stiffnessFraction, t.dampingNSPerMm};
+        const tooth::TissueProperties& t = tissues.rows[i];
+        parameters.tissues[i] = {t.stiffnessFraction, t.dampingNSPerMm, t.friction};
     }
     return parameters;
 }

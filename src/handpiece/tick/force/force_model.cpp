@@ -27,17 +27,25 @@ void ForceModel::setParameters(const Parameters& parameters) noexcept {
 const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, bool lost, double periodS) noexcept {
     guard_.look(read, lost, periodS, parameters_.fadeInS);
     if (guard_.faulted()) return touch_;
-    const bool fresh = guard_.startsAnew() || startPending_;
     touch_.deviceInTooth = guard_.pose();
     touch_.depth = method.depth(touch_.deviceInTooth);
+    if (waiting_ && touch_.depth.depthMm <= 0.0) waiting_ = false;
+    const bool released = wasWaiting_ && !waiting_;
+    const bool fresh = guard_.startsAnew() || released;
+    wasWaiting_ = waiting_;
     touch_.proxyInTooth = touch_.deviceInTooth;
     touch_.touching = touch_.depth.depthMm > 0.0;
     touch_.tissue = touch_.touching ? touch_.depth.tissue : tooth::Tissue::none;
     touch_.passes = 0;
     touch_.patches = contact::PatchSet{};
-    if (fresh && (startPending_ || touch_.depth.depthMm > kDeepStartMm)) guard_.fadeIn();
-    startPending_ = false;
+    if (fresh && (released || touch_.depth.depthMm > kDeepStartMm)) guard_.fadeIn();
     updateVelocity(touch_.deviceInTooth.positionMm, fresh, periodS);
+    if (waiting_) {
+        proxy_.follow(touch_.deviceInTooth);
+        touch_.touching = false;
+        touch_.tissue = tooth::Tissue::none;
+        return touch_;
+    }
     if (parameters_.mode == Mode::penalty) {
         proxy_.follow(touch_.deviceInTooth);
         return touch_;
@@ -116,6 +124,35 @@ Vec3 ForceModel::penaltyForce(const Touch& touch) const noexcept {
     return std::max(0.0, k * depth + ramp * b * approach) * touch.depth.normal;
 }
 
+Vec3 ForceModel::frictionForce(const Touch& touch, const Vec3& pressN, const Turning& turning) noexcept {
+    const Vec3 proxy = touch.proxyInTooth.positionMm;
+    const Vec3 moved = wasTouching_ ? Vec3(proxy - lastProxyMm_) : Vec3(Vec3::Zero());
+    lastProxyMm_ = proxy;
+    const double press = pressN.norm();
+    wasTouching_ = touch.touching && press > 0.0;
+    const KelvinVoigt kv = coupling(touch);
+    if (!wasTouching_ || kv.stiffnessNPerMm <= 0.0) {
+        bristleMm_.setZero();
+        return Vec3::Zero();
+    }
+    double friction = 0.0, total = 0.0;
+    for (std::size_t i = 0; i < tooth::kTissueCount; ++i) {
+        friction += touch.patches.tissueShare[i] * parameters_.tissues[i].friction;
+        total += touch.patches.tissueShare[i];
+    }
+    friction = total > 0.0 ? friction / total : parameters_.tissues[static_cast<std::size_t>(touch.tissue)].friction;
+    const Vec3 normal = pressN / press;
+    const auto alongSurface = [&](const Vec3& v) { return Vec3(v - normal * normal.dot(v)); };
+    // Friction points against the slip of surface on surface: of a turning bur the hand's share of that is small.
+    const double slide = alongSurface(velocityMmS_).norm();
+    const double share = turning.surfaceSpeedMmS > 0.0 ? slide / std::hypot(slide, turning.surfaceSpeedMmS) : 1.0;
+    const double limit = parameters_.frictionMultiplier * friction * share * press / kv.stiffnessNPerMm;
+    bristleMm_ = alongSurface(bristleMm_ + moved);
+    const double length = bristleMm_.norm();
+    if (length > limit) bristleMm_ *= limit / length;
+    return -kv.stiffnessNPerMm * bristleMm_;
+}
+
 Vec3 ForceModel::torqueAboutGrip(const Touch& touch, const Vec3& forceN) const noexcept {
     const Vec3 grip = touch.proxyInTooth.apply(parameters_.gripMm);
     if (touch.patches.patches.empty()) {
@@ -135,15 +172,23 @@ Vec3 ForceModel::torqueAboutGrip(const Touch& touch, const Vec3& forceN) const n
     return torque;
 }
 
-const ForceCommand& ForceModel::compute(const Touch& touch, double periodS) noexcept {
+const ForceCommand& ForceModel::compute(const Touch& touch, double periodS, const Turning& turning) noexcept {
     const Vec3 last = command_.forceN;
     Vec3 wanted = Vec3::Zero();
     command_.forceLimited = command_.slopeLimited = false;
+    command_.loadN.setZero();
     if (guard_.faulted()) {
         if (!wasFaulted_) heldForceN_ = last;
         wanted = guard_.gain() * heldForceN_;
+        bristleMm_.setZero();
+    } else if (waiting_) {
+        bristleMm_.setZero();
     } else {
         wanted = parameters_.mode == Mode::proxy ? proxyForce(touch) : penaltyForce(touch);
+        const double press = wanted.norm();
+        command_.loadN = -guard_.gain() * std::min(1.0, limits_.maxForceN / std::max(press, kShallowMm)) * wanted;
+        if (parameters_.mode == Mode::proxy) wanted += frictionForce(touch, wanted, turning);
+        if (touch.touching) wanted += parameters_.cuttingForceMultiplier * turning.tangentialN;
         const double size = wanted.norm();
         command_.forceLimited = size > limits_.maxForceN;
         if (command_.forceLimited) wanted *= limits_.maxForceN / size;

@@ -26,13 +26,21 @@ struct ForceCommand {
     core::Vec3 forceN = core::Vec3::Zero();         ///< on the hand, tooth frame
     core::Vec3 torqueNmm = core::Vec3::Zero();      ///< about the grip, within the device's torque axes (zero without)
     core::Vec3 fullTorqueNmm = core::Vec3::Zero();  ///< about the grip, whatever the device can do
+    core::Vec3 loadN = core::Vec3::Zero();          ///< with which the bur presses on the tooth: without friction
     bool forceLimited = false, slopeLimited = false;
+};
+
+/// What the turning bur adds to the force.
+struct Turning {
+    core::Vec3 tangentialN = core::Vec3::Zero();  ///< on the bur, from its rotation against the tooth
+    double surfaceSpeedMmS = 0.0;                 ///< of the bur's surface: a bur that slips anyway hardly sticks
 };
 
 /// The force of one bur in one hand. One thread; keeps the proxy, the filtered velocity and the last force.
 ///
 /// Proxy mode: F = k |proxy - device| + b x (filtered approach speed), towards the proxy; k and b weighted by the
 /// pressure on each tissue, capped by the device; the damper ramped in; never pulling; limited in size and slope.
+/// Friction is a bristle (Dahl 1968): it sticks with the stiffness of the contact up to Coulomb's limit, then slips.
 class ForceModel {
   public:
     /// Throws core::Error for parameters out of range.
@@ -42,12 +50,15 @@ class ForceModel {
     const Touch& feel(contact::Method& method, const core::Pose& read, bool lost,
                       double periodS) noexcept HANDPIECE_REALTIME;
     /// The force for it. Call once after each feel().
-    const ForceCommand& compute(const Touch& touch, double periodS) noexcept HANDPIECE_REALTIME;
+    const ForceCommand& compute(const Touch& touch, double periodS,
+                                const Turning& turning = {}) noexcept HANDPIECE_REALTIME;
 
     /// Takes validated parameters from the next tick on.
     void setParameters(const Parameters& parameters) noexcept HANDPIECE_REALTIME;
-    /// The tooth or the bur is another one: the proxy starts anew, the force fades in.
-    void startAnew() noexcept HANDPIECE_REALTIME { startPending_ = true; }
+    /// The tooth or the bur is another one, so tissue may lie round the bur: no force until the device's pose is clear
+    /// of it, then it fades in.
+    void waitUntilClear() noexcept HANDPIECE_REALTIME { waiting_ = true; }
+    [[nodiscard]] bool waiting() const noexcept { return waiting_; }
 
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
     [[nodiscard]] const PoseGuard& guard() const noexcept { return guard_; }
@@ -61,6 +72,8 @@ class ForceModel {
     [[nodiscard]] KelvinVoigt coupling(const Touch& touch) const noexcept;
     [[nodiscard]] core::Vec3 proxyForce(const Touch& touch) const noexcept;
     [[nodiscard]] core::Vec3 penaltyForce(const Touch& touch) const noexcept;
+    [[nodiscard]] core::Vec3 frictionForce(const Touch& touch, const core::Vec3& pressN,
+                                           const Turning& turning) noexcept;
     [[nodiscard]] core::Vec3 torqueAboutGrip(const Touch& touch, const core::Vec3& forceN) const noexcept;
 
     Limits limits_;
@@ -70,8 +83,9 @@ class ForceModel {
     Touch touch_;
     ForceCommand command_;
     core::Vec3 velocityMmS_ = core::Vec3::Zero(), lastPositionMm_ = core::Vec3::Zero();
-    core::Vec3 heldForceN_ = core::Vec3::Zero();  // when the fault began
-    bool startPending_ = false, wasFaulted_ = false;
+    core::Vec3 heldForceN_ = core::Vec3::Zero();                                    // when the fault began
+    core::Vec3 bristleMm_ = core::Vec3::Zero(), lastProxyMm_ = core::Vec3::Zero();  // of friction
+    bool waiting_ = false, wasWaiting_ = false, wasFaulted_ = false, wasTouching_ = false;
 };
 
 }  // namespace handpiece::force

@@ -24,7 +24,10 @@ void validate(const Parameters& p) {
     for (const TissueFeel& t : p.tissues) {
         require(t.stiffnessFraction, 0.0, 1.0, "a tissue's stiffness fraction");
         require(t.dampingNSPerMm, 0.0, 10.0, "a tissue's damping [N s/mm]");
+        require(t.friction, 0.0, 10.0, "a tissue's friction");
     }
+    require(p.frictionMultiplier, 0.0, 100.0, "the friction multiplier");
+    require(p.cuttingForceMultiplier, 0.0, 10.0, "the cutting force multiplier");
     require(p.penaltyStiffnessNPerMm, 0.0, 100.0, "the penalty stiffness [N/mm]");
     require(p.penaltyDampingNSPerMm, 0.0, 10.0, "the penalty damping [N s/mm]");
     require(p.velocityTauS, 0.0, 1.0, "the velocity filter's time constant [s]");

@@ -32,6 +32,7 @@ struct Limits {
 struct TissueFeel {
     double stiffnessFraction = 1.0;  ///< of Limits::maxStiffnessNPerMm
     double dampingNSPerMm = 0.002;
+    double friction = 0.0;  ///< Coulomb, of a still bur that slides
 };
 
 /// Set off the tick, staged into it. defaultParameters() fills the tissues from the tooth's table.
@@ -39,6 +40,8 @@ struct Parameters {
     Mode mode = Mode::proxy;
     double stiffnessMultiplier = 1.0;  ///< on every tissue; the device's limits stay
     double dampingMultiplier = 1.0;
+    double frictionMultiplier = 1.0;      ///< 0: a wall without friction
+    double cuttingForceMultiplier = 1.0;  ///< on the sideways force of the turning bur
     std::array<TissueFeel, tooth::kTissueCount> tissues{};
     double penaltyStiffnessNPerMm = 0.5;  ///< penalty mode, times the multiplier
     double penaltyDampingNSPerMm = 0.002;
@@ -49,7 +52,7 @@ struct Parameters {
     ProxySettings proxy;
 };
 /// docs/physics.md#force and #tissues.
-[[nodiscard]] Parameters defaultParameters();
+[[nodiscard]] Parameters defaultParameters(const tooth::TissueTable& tissues = tooth::builtInTissues());
 /// Throws core::Error naming the value that is not finite or out of range.
 void validate(const Parameters& parameters);
 

@@ -30,7 +30,7 @@ void HapticLoop::tick(const rt::Beat& beat) noexcept {
 
 void HapticLoop::takeStagedCommands() noexcept {
     if (parameters_.swap()) force_.setParameters(*parameters_.current());
-    if (method_.swap()) force_.startAnew();
+    if (method_.swap()) force_.waitUntilClear();
 }
 
 void HapticLoop::publish(const device::Reading& reading, const force::Touch& touch, const force::ForceCommand& command,
@@ -57,7 +57,8 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     sample.flags = (command.forceLimited ? messages::kForceLimited : 0u) |
                    (command.slopeLimited ? messages::kSlopeLimited : 0u) |
                    (force_.guard().invalidNow() ? messages::kInvalidPose : 0u) |
-                   (force_.guard().faulted() ? messages::kFault : 0u);
+                   (force_.guard().faulted() ? messages::kFault : 0u) |
+                   (force_.waiting() ? messages::kWaiting : 0u);
     sample.workUs = static_cast<float>(static_cast<double>(workNs) * 1e-3);
     sample.lateUs = static_cast<float>(static_cast<double>(lateNs) * 1e-3);
     samples_.tryPush(sample);

@@ -76,6 +76,15 @@ function(handpiece_room path)
     set_property(GLOBAL APPEND PROPERTY HANDPIECE_ROOMS ${target})
 endfunction()
 
+# Builds a text file into a target: `extern const char* const NAME;` in namespace handpiece::SPACE.
+function(handpiece_embed target space name path)
+    set(file ${path})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path})
+    file(READ ${PROJECT_SOURCE_DIR}/${path} content)
+    configure_file(${PROJECT_SOURCE_DIR}/cmake/embedded.cpp.in ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp @ONLY)
+    target_sources(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+endfunction()
+
 # handpiece_test(name SOURCES ... USES room... LIBS lib...): one GoogleTest program, discovered by CTest.
 function(handpiece_test name)
     cmake_parse_arguments(T "" "" "SOURCES;USES;LIBS;LABELS" ${ARGN})

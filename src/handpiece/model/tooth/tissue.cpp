@@ -3,45 +3,137 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <optional>
+
+#include "handpiece/base/config/table.h"
 #include "handpiece/base/core/error.h"
 
 namespace handpiece::tooth {
+
+extern const char* const kTissuesToml;  // data/tissues.toml
+
 namespace {
 
-// In the order of Tissue. docs/physics.md#tissues: fractions and priorities are design choices, the damping is the
-// default that a desktop arm renders stably.
-constexpr double kDamping = 0.002;
-// Friction is a design choice [R]; the rates K are fitted to recalled ones, within a factor of 2 [R].
-constexpr TissueTable kTable{{{
-    {"none", 0.0, 0.0, 0.0, 0.0, {0, 0, 0}, 0},
-    {"enamel", 1.0, kDamping, 0.12, 2.65e-5, {244, 241, 230}, 10},
-    {"dentine", 0.6, kDamping, 0.18, 8e-5, {226, 199, 140}, 20},
-    {"pulp", 0.04, kDamping, 0.1, 2e-3, {190, 62, 62}, 40},
-    {"caries", 0.12, kDamping, 0.25, 4e-4, {104, 66, 34}, 50},
-    {"cementum", 0.45, kDamping, 0.18, 9e-5, {214, 190, 150}, 15},
-    {"gum", 0.07, kDamping, 0.1, 2e-3, {224, 132, 132}, 5},
-    {"bone", 0.3, kDamping, 0.2, 1.2e-4, {232, 220, 196}, 4},
-    {"neighbour", 1.0, kDamping, 0.12, 2.65e-5, {236, 232, 220}, 3},
-    {"restoration", 0.85, kDamping, 0.15, 5e-5, {168, 176, 186}, 60},
-}}};
+using config::Table;
+
+constexpr std::int64_t kFormatVersion = 1;
+// More than these is a slip of the unit, not a tissue.
+constexpr double kMostDampingNSPerMm = 10.0, kMostFriction = 5.0, kMostCuttingMm2PerN = 1.0;
+constexpr int kMostPriority = 1000;
+constexpr const char* kRemedy = "see docs/physics.md#tissues";
+// In the order of Tissue: the one thing about tissues that is not in the file.
+constexpr std::array<std::string_view, kTissueCount> kNames = {
+    "none", "enamel", "dentine", "pulp", "caries", "cementum", "gum", "bone", "neighbour", "restoration"};
+
+constexpr TissueTable namesOnly() {
+    TissueTable table{};
+    for (std::size_t i = 0; i < kTissueCount; ++i)
+        table.rows[i].name = kNames[i];
+    return table;
+}
+
+std::optional<Tissue> find(std::string_view name) {
+    for (std::size_t i = 1; i < kTissueCount; ++i)
+        if (kNames[i] == name) return static_cast<Tissue>(i);
+    return {};
+}
+
+std::string listOfNames() {
+    return fmt::format("{}", fmt::join(kNames.begin() + 1, kNames.end(), ", "));
+}
+
+/// Where a value stands: `key = value` or `key = { value = ..., source = ..., unchecked = ... }`.
+struct Place {
+    Table table;
+    std::string_view key;
+};
+Place placeOf(const Table& row, std::string_view key) {
+    if (!row.isTable(key)) return {row, key};
+    const Table inner = *row.table(key);
+    inner.allowOnly({"value", "source", "unchecked"});
+    (void)inner.text("source");
+    (void)inner.flag("unchecked");
+    if (!inner.has("value")) inner.fail(fmt::format("\"{}\" has no value", key), kRemedy);
+    return {inner, "value"};
+}
+
+void readNumber(const Table& row, std::string_view tissue, std::string_view key, double most, double& value) {
+    if (!row.has(key)) return;
+    const Place place = placeOf(row, key);
+    value = *place.table.number(place.key);
+    if (value >= 0.0 && value <= most) return;
+    place.table.fail(fmt::format("{} of {} is {}", key, tissue, value), fmt::format("give 0 to {}", most), place.key);
+}
+
+void readColour(const Table& row, std::string_view tissue, std::array<std::uint8_t, 3>& colour) {
+    if (!row.has("colour")) return;
+    const Place place = placeOf(row, "colour");
+    const std::string text = *place.table.text(place.key);
+    unsigned rgb = 0;
+    const char* end = text.data() + text.size();
+    const bool isHex = text.size() == 7 && text[0] == '#' && std::from_chars(text.data() + 1, end, rgb, 16).ptr == end;
+    if (!isHex)
+        place.table.fail(fmt::format("colour of {} is \"{}\"", tissue, text), "give it as \"#rrggbb\"", place.key);
+    colour = {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8 & 255),
+              static_cast<std::uint8_t>(rgb & 255)};
+}
+
+void readPriority(const Table& row, std::string_view tissue, int& priority) {
+    if (!row.has("priority")) return;
+    const Place place = placeOf(row, "priority");
+    const std::int64_t value = *place.table.integer(place.key);
+    if (value < -kMostPriority || value > kMostPriority)
+        place.table.fail(fmt::format("priority of {} is {}", tissue, value),
+                         fmt::format("give {} to {}", -kMostPriority, kMostPriority), place.key);
+    priority = static_cast<int>(value);
+}
+
+TissueTable readOver(const TissueTable& base, const Table& root) {
+    const std::int64_t version = root.integer("format").value_or(0);
+    if (version != kFormatVersion)
+        root.fail(fmt::format("the table's format is {}, this program reads format {}", version, kFormatVersion),
+                  version > kFormatVersion ? "use a newer Handpiece" : "add the line: format = 1", "format");
+    TissueTable table = base;
+    for (const std::string& name : root.keys()) {
+        if (name == "format") continue;
+        const auto tissue = find(name);
+        if (!tissue) root.fail(fmt::format("there is no tissue \"{}\"", name), "one of " + listOfNames(), name);
+        const Table row = *root.table(name);
+        row.allowOnly({"stiffness", "damping", "friction", "cutting", "colour", "priority"});
+        TissueProperties& p = table.rows[static_cast<std::size_t>(*tissue)];
+        readNumber(row, name, "stiffness", 1.0, p.stiffnessFraction);
+        readNumber(row, name, "damping", kMostDampingNSPerMm, p.dampingNSPerMm);
+        readNumber(row, name, "friction", kMostFriction, p.friction);
+        readNumber(row, name, "cutting", kMostCuttingMm2PerN, p.cuttingMm2PerN);
+        readColour(row, name, p.colour);
+        readPriority(row, name, p.priority);
+    }
+    return table;
+}
 
 }  // namespace
 
 const TissueTable& builtInTissues() {
-    return kTable;
+    static const TissueTable table = readOver(namesOnly(), Table::parse(kTissuesToml, "data/tissues.toml"));
+    return table;
+}
+
+TissueTable parseTissues(std::string_view text, const std::string& where) {
+    return readOver(builtInTissues(), Table::parse(text, where));
+}
+
+TissueTable readTissues(const std::filesystem::path& file) {
+    return readOver(builtInTissues(), Table::read(file));
 }
 
 const TissueProperties& properties(Tissue tissue) {
-    return kTable.of(tissue);
+    return builtInTissues().of(tissue);
 }
 
 Tissue tissueByName(std::string_view name) {
-    std::string known;
-    for (std::size_t i = 1; i < kTissueCount; ++i) {
-        if (kTable.rows[i].name == name) return static_cast<Tissue>(i);
-        known += fmt::format("{}{}", i == 1 ? "" : ", ", kTable.rows[i].name);
-    }
-    throw core::Error(fmt::format("there is no tissue \"{}\"", name), "tissue", "one of " + known);
+    if (const auto tissue = find(name)) return *tissue;
+    throw core::Error(fmt::format("there is no tissue \"{}\"", name), "tissue", "one of " + listOfNames());
 }
 
 }  // namespace handpiece::tooth

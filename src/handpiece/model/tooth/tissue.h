@@ -41,6 +41,9 @@ struct TissueTable {
 /// an unknown tissue or key, a negative or infinite value, a fraction above one.
 [[nodiscard]] TissueTable readTissues(const std::filesystem::path& file);
 
+/// The same from text; `where` names it in messages.
+[[nodiscard]] TissueTable parseTissues(std::string_view text, const std::string& where);
+
 /// Row of the built-in table.
 [[nodiscard]] const TissueProperties& properties(Tissue tissue);
 /// By name ("enamel"); throws core::Error naming the tissues there are.

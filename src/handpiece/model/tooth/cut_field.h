@@ -3,6 +3,7 @@
 /// @file
 /// The field of a tooth that is being cut: the one thing about a tooth that changes, and changes in the tick.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -19,6 +20,13 @@ namespace handpiece::tooth {
 /// Volume by tissue [mm3].
 using TissueVolumes = std::array<double, kTissueCount>;
 
+/// Half width of the slope over which a node's voxel counts from full to empty, in voxels.
+inline constexpr float kOccupancyHalfWidth = 0.5f;
+/// Share of a node's voxel that is tissue, 0..1, from its value: what volumes are sums of, and what a cut counts.
+[[nodiscard]] inline float occupancy(float valueMm, float inverseVoxelMm) noexcept {
+    return std::clamp(0.5f - valueMm * inverseVoxelMm * (0.5f / kOccupancyHalfWidth), 0.0f, 1.0f);
+}
+
 struct CutSettings {
     double bandMm = 0.0;  ///< how deep under the surface the field follows a cut; 0: 0.2 mm, at least 3 voxels
     std::size_t reserveBricks = 0;  ///< bricks kept ready for the tooth's interior; 0: all of it, at most 256 MB
@@ -31,7 +39,8 @@ struct CutSettings {
 struct CuttableTooth {
     std::shared_ptr<const Tooth> tooth;
     TissueMap tissues;
-    CutSettings settings;  ///< with what 0 stands for filled in
+    CutSettings settings;    ///< with what 0 stands for filled in
+    double bandOutMm = 0.0;  ///< the field's, at least two voxels: nearer the clamp would bend the surface
     TissueVolumes volumesMm3{};
 
     /// kBrickValues values of a brick before any cut. The same bits whoever asks.
@@ -44,6 +53,7 @@ struct CuttableTooth {
 /// One brick as it is now, by value: how listeners learn of a cut.
 struct BrickSnapshot {
     std::uint32_t dense = 0;  ///< which brick: index x + bricks_x (y + bricks_y z)
+    bool shows = true;        ///< the surface may have moved in it since it was handed over last
     float values[kBrickValues];
 };
 
@@ -120,16 +130,20 @@ class CutField {
     }
     const BrickSnapshot& snapshotOfFirstDirty() noexcept;
     void dropFirstDirty() noexcept;
+    void noteWaiting(std::uint32_t dense, bool shows) noexcept;
+    void noteWhole(std::uint32_t dense) noexcept;
+    void shareFaces(std::uint32_t dense, std::int32_t stored) noexcept;
 
     std::shared_ptr<const CuttableTooth> base_;
     ToothField field_;  ///< index, values and tissues have room for the reserve
     std::int32_t storedCount_ = 0, storedRoom_ = 0;
     TissueVolumes removedMm3_{};
     bool outOfBricks_ = false;
-    std::vector<std::uint8_t> flags_;   ///< by dense brick: changed, waiting
+    std::vector<std::uint8_t> flags_;   ///< by dense brick: changed, waiting, shows; some more, to be read in words
     std::vector<std::uint32_t> dirty_;  ///< a ring with room for every brick
     std::size_t firstDirty_ = 0, nextDirty_ = 0;
-    core::Box cutBox_;
+    std::size_t changedCount_ = 0;
+    std::array<std::int32_t, 3> changedLow_{}, changedHigh_{};  ///< bricks between which all changes lie
     BrickSnapshot snapshot_;
 };
 
@@ -149,6 +163,8 @@ class CutMirror {
     [[nodiscard]] CutState state(const TissueVolumes& removedMm3) const;
 
   private:
+    void put(std::uint32_t dense, const float* values);
+
     std::shared_ptr<const CuttableTooth> base_;
     std::vector<std::unique_ptr<std::array<float, kBrickValues>>> bricks_;  ///< by dense brick; null: whole
     std::vector<std::uint32_t> touched_;

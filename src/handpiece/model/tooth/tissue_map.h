@@ -24,6 +24,11 @@ class ToothField;
 class TissueMap {
   public:
     TissueMap() = default;
+    TissueMap(TissueMap&&) noexcept = default;
+    TissueMap& operator=(TissueMap&&) noexcept = default;
+    TissueMap(const TissueMap&) = delete;  // large, and its layers point into it
+    TissueMap& operator=(const TissueMap&) = delete;
+    ~TissueMap() = default;
     /// From the parts of a case. In parallel, same bits at any thread count.
     [[nodiscard]] static TissueMap fromParts(const ToothField& grid, std::span<const PartSurface> parts,
                                              const core::Progress& progress = {});
@@ -60,10 +65,16 @@ class TissueMap {
     };
     [[nodiscard]] Layers layers(std::uint32_t dense) const noexcept;
     [[nodiscard]] double unitMm() const noexcept { return unitMm_; }
+    /// True when it was made on a grid of the same bricks.
+    [[nodiscard]] bool isOn(const ToothField& grid) const noexcept;
     /// Tissues that occur anywhere.
     [[nodiscard]] std::vector<Tissue> tissues() const;
 
+    /// Layers hold distances in this fraction of a voxel.
+    static constexpr int kUnitsAVoxel = 32;
+
   private:
+    explicit TissueMap(const ToothField& grid);
     core::Vec3 originMm_ = core::Vec3::Zero();
     double voxelMm_ = 0.0, unitMm_ = 0.0;
     std::int32_t bricks_[3] = {0, 0, 0};

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/model/tooth/cut_field.h"
+
+#include <cstring>
+
+#include "handpiece/base/core/hash.h"
+#include "handpiece/model/tooth/cut_volumes.h"
+
+namespace handpiece::tooth {
+namespace {
+
+constexpr std::uint8_t kChanged = 1, kWaiting = 2, kShows = 4;
+constexpr std::size_t kBrickBytes = sizeof(float) * kBrickValues;
+/// Bounds at the centres inside are held to this, so that a cut corrects them only in its neighbourhood.
+constexpr float kCoarseDepthMm = 2.0f;
+
+}  // namespace
+
+CutField::CutField(std::shared_ptr<const CuttableTooth> base) : base_(std::move(base)), field_(base_->tooth->field) {
+    const std::size_t dense = field_.brickIndex_.size();
+    storedCount_ = static_cast<std::int32_t>(field_.brickCount());
+    storedRoom_ = storedCount_ + static_cast<std::int32_t>(base_->settings.reserveBricks);
+    field_.settings_.bandInMm = std::min(field_.settings_.bandInMm, base_->settings.bandMm);
+    // Writing all of it brings the pages in now rather than in the tick.
+    field_.values_.resize(valueIndex(storedRoom_), static_cast<float>(-base_->settings.bandMm));
+    field_.tissue_.resize(valueIndex(storedRoom_), static_cast<std::uint8_t>(Tissue::none));
+    for (std::size_t i = 0; i < dense; ++i) {
+        const auto brick = static_cast<std::uint32_t>(i);
+        field_.coarse_[i] = std::max(field_.coarse_[i], -kCoarseDepthMm);
+        const std::int32_t stored = field_.brickIndex_[i];
+        if (stored < 0) {
+            field_.coarseTissue_[i] = static_cast<std::uint8_t>(base_->tissues.ofBrick(brick));
+            if (base_->tissues.nodes(brick) != nullptr)
+                field_.coarseTissue_[i] = base_->tissues.nodes(brick)[kBrickValues / 2];
+            continue;
+        }
+        base_->wholeBrick(brick, values(stored));
+        copyTissues(base_->tissues, brick, &field_.tissue_[valueIndex(stored)]);
+    }
+    flags_.assign(dense + sizeof(std::uint64_t), 0);
+    dirty_.assign(dense, 0);
+    std::memset(snapshot_.values, 0, kBrickBytes);
+}
+
+bool CutField::isCutNear(const core::Box& box) const noexcept {
+    if (changedCount_ == 0) return false;
+    const double perMm = 1.0 / (kBrickCells * field_.settings_.voxelMm);
+    std::int32_t low[3], high[3];
+    for (int k = 0; k < 3; ++k) {
+        const auto axis = static_cast<std::size_t>(k);
+        const double first = std::floor((box.min[k] - field_.originMm_[k]) * perMm),
+                     last = std::floor((box.max[k] - field_.originMm_[k]) * perMm);
+        if (!(first <= last && first <= changedHigh_[axis] && last >= changedLow_[axis])) return false;
+        low[k] = first > changedLow_[axis] ? static_cast<std::int32_t>(first) : changedLow_[axis];
+        high[k] = last < changedHigh_[axis] ? static_cast<std::int32_t>(last) : changedHigh_[axis];
+    }
+    // Eight bricks of a row at once.
+    constexpr std::uint64_t kAnyChanged = 0x0101010101010101ull * kChanged;
+    for (std::int32_t z = low[2]; z <= high[2]; ++z)
+        for (std::int32_t y = low[1]; y <= high[1]; ++y) {
+            const std::uint8_t* row =
+                &flags_[static_cast<std::size_t>(field_.bricks_[0]) *
+                        (static_cast<std::size_t>(y) +
+                         static_cast<std::size_t>(field_.bricks_[1]) * static_cast<std::size_t>(z))];
+            for (std::int32_t x = low[0]; x <= high[0]; x += 8) {
+                std::uint64_t eight;
+                std::memcpy(&eight, row + x, sizeof eight);
+                std::uint64_t wanted = kAnyChanged;
+                if (const std::int32_t left = high[0] + 1 - x; left < 8) {
+                    std::uint8_t mask[8];
+                    for (int i = 0; i < 8; ++i)
+                        mask[i] = i < left ? kChanged : 0;
+                    std::memcpy(&wanted, mask, sizeof wanted);
+                }
+                if ((eight & wanted) != 0) return true;
+            }
+        }
+    return false;
+}
+
+std::int32_t CutField::storeBrick(std::uint32_t dense) noexcept {
+    const std::int32_t known = field_.brickIndex_[dense];
+    if (known >= 0) return known;
+    // The whole tooth tells what is inside; the live bound may have been raised.
+    if (base_->tooth->field.coarse_[dense] >= 0.0f) return -1;
+    if (storedCount_ == storedRoom_) {
+        outOfBricks_ = true;
+        return -1;
+    }
+    const std::int32_t stored = storedCount_++;
+    base_->wholeBrick(dense, values(stored));
+    copyTissues(base_->tissues, dense, &field_.tissue_[valueIndex(stored)]);
+    field_.brickIndex_[dense] = stored;
+    return stored;
+}
+
+void CutField::noteWaiting(std::uint32_t dense, bool shows) noexcept {
+    std::uint8_t& flags = flags_[dense];
+    if (shows) flags |= kShows;
+    if ((flags & kWaiting) != 0) return;
+    flags |= kWaiting;
+    dirty_[nextDirty_++ % dirty_.size()] = dense;
+}
+
+void CutField::noteChanged(std::uint32_t dense, bool shows) noexcept {
+    noteWaiting(dense, shows);
+    std::uint8_t& flags = flags_[dense];
+    if ((flags & kChanged) != 0) return;
+    flags |= kChanged;
+    const std::array<std::int32_t, 3> brick = brickAt(field_.bricks_, dense);
+    for (std::size_t k = 0; k < 3; ++k) {
+        changedLow_[k] = changedCount_ == 0 ? brick[k] : std::min(changedLow_[k], brick[k]);
+        changedHigh_[k] = changedCount_ == 0 ? brick[k] : std::max(changedHigh_[k], brick[k]);
+    }
+    ++changedCount_;
+}
+
+void CutField::noteWhole(std::uint32_t dense) noexcept {
+    noteWaiting(dense, true);
+    std::uint8_t& flags = flags_[dense];
+    if ((flags & kChanged) == 0) return;
+    flags = static_cast<std::uint8_t>(flags & ~kChanged);
+    --changedCount_;
+}
+
+void CutField::addRemoved(const TissueVolumes& mm3) noexcept {
+    for (std::size_t i = 0; i < kTissueCount; ++i)
+        removedMm3_[i] += mm3[i];
+}
+
+const BrickSnapshot& CutField::snapshotOfFirstDirty() noexcept {
+    const std::uint32_t dense = dirty_[firstDirty_ % dirty_.size()];
+    snapshot_.dense = dense;
+    snapshot_.shows = (flags_[dense] & kShows) != 0;
+    std::memcpy(snapshot_.values, values(field_.brickIndex_[dense]), kBrickBytes);
+    return snapshot_;
+}
+
+void CutField::dropFirstDirty() noexcept {
+    std::uint8_t& flags = flags_[dirty_[firstDirty_++ % dirty_.size()]];
+    flags = static_cast<std::uint8_t>(flags & ~(kWaiting | kShows));
+}
+
+void CutField::shareFaces(std::uint32_t dense, std::int32_t stored) noexcept {
+    const std::array<std::int32_t, 3> brick = brickAt(field_.bricks_, dense);
+    const float* mine = values(stored);
+    for (int neighbour = 0; neighbour < 27; ++neighbour) {
+        const int step[3] = {neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1};
+        if (neighbour == 13) continue;
+        std::array<std::int32_t, 3> other = brick;
+        int low[3], high[3], shift = 0;
+        bool inGrid = true;
+        constexpr int kStride[3] = {1, kBrickNodes, kBrickNodes * kBrickNodes};
+        for (std::size_t k = 0; k < 3; ++k) {
+            other[k] += step[k];
+            inGrid = inGrid && other[k] >= 0 && other[k] < field_.bricks_[k];
+            low[k] = step[k] > 0 ? kBrickCells : 0;
+            high[k] = step[k] < 0 ? 0 : kBrickCells;
+            shift -= step[k] * kBrickCells * kStride[k];
+        }
+        if (!inGrid) continue;
+        const std::uint32_t there = denseOf(field_.bricks_, other);
+        const std::int32_t otherStored = field_.brickIndex_[there];
+        if (otherStored < 0) continue;
+        float* theirs = values(otherStored);
+        bool differs = false;
+        for (int z = low[2]; z <= high[2]; ++z)
+            for (int y = low[1]; y <= high[1]; ++y)
+                for (int x = low[0]; x <= high[0]; ++x) {
+                    const int at = x + kStride[1] * y + kStride[2] * z;
+                    differs = differs || std::memcmp(&theirs[at + shift], &mine[at], sizeof(float)) != 0;
+                    theirs[at + shift] = mine[at];
+                }
+        if (differs) noteChanged(there, true);
+    }
+}
+
+std::size_t CutField::restore(const CutState& change, std::size_t from, std::size_t most) noexcept {
+    const std::size_t count = change.bricks.size();
+    for (; from < count && most > 0; ++from, --most) {
+        const CutState::Brick& brick = change.bricks[from];
+        if (brick.whole && field_.brickIndex_[brick.dense] < 0) continue;
+        const std::int32_t stored = storeBrick(brick.dense);
+        if (stored < 0) continue;
+        if (brick.whole) {
+            base_->wholeBrick(brick.dense, values(stored));
+            noteWhole(brick.dense);
+        } else {
+            std::memcpy(values(stored), brick.values.data(), kBrickBytes);
+            noteChanged(brick.dense, true);
+        }
+        // Its neighbours follow at once, also those whose turn is yet to come: the field is never torn.
+        shareFaces(brick.dense, stored);
+    }
+    if (from == count) removedMm3_ = change.removedMm3;
+    return from;
+}
+
+CutState CutField::state() const {
+    CutState state;
+    state.removedMm3 = removedMm3_;
+    std::array<float, kBrickValues> whole;
+    for (std::uint32_t dense = 0; dense < dirty_.size(); ++dense) {
+        if ((flags_[dense] & kChanged) == 0) continue;
+        const float* now = &field_.values_[valueIndex(field_.brickIndex_[dense])];
+        base_->wholeBrick(dense, whole.data());
+        if (std::memcmp(now, whole.data(), kBrickBytes) == 0) continue;
+        CutState::Brick& brick = state.bricks.emplace_back(CutState::Brick{dense, false, {}});
+        std::memcpy(brick.values.data(), now, kBrickBytes);
+    }
+    return state;
+}
+
+std::uint64_t stateHash(const CutState& state) {
+    core::Hasher hasher;
+    for (const CutState::Brick& brick : state.bricks) {
+        if (brick.whole) continue;
+        hasher.add(brick.dense);
+        hasher.add(std::as_bytes(std::span(brick.values)));
+    }
+    return hasher.value();
+}
+
+std::uint64_t CutField::stateHash() const {
+    return tooth::stateHash(state());
+}
+
+TissueVolumes CutField::volumesMm3() const {
+    return integrateVolumes(*base_, [&](std::uint32_t dense) -> const float* {
+        const std::int32_t stored = field_.brickIndex_[dense];
+        return stored < 0 ? nullptr : &field_.values_[valueIndex(stored)];
+    });
+}
+
+}  // namespace handpiece::tooth

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <atomic>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/model/tooth/cut_volumes.h"
+
+namespace handpiece::tooth {
+namespace {
+
+constexpr int kStride[3] = {1, kBrickNodes, kBrickNodes* kBrickNodes};
+constexpr double kMostBandMm = 1.0;
+constexpr std::size_t kReserveBytes = std::size_t{256} << 20;
+
+/// How far a centre's value reaches: a bound of the signed distance at node (x, y, z) of a brick.
+float boundAt(float centre, const int (&node)[3], double voxelMm) noexcept {
+    const double dx = node[0] - kBrickCells / 2, dy = node[1] - kBrickCells / 2, dz = node[2] - kBrickCells / 2;
+    const double away = voxelMm * std::sqrt(dx * dx + dy * dy + dz * dz);
+    // A hair less than the triangle inequality gives, for the rounding of the centre's value to float.
+    const auto magnitude = static_cast<float>(std::max(0.0, std::abs(double{centre}) * (1.0 - 1e-6) - away));
+    return centre < 0.0f ? -magnitude : magnitude;
+}
+
+/// The value of a node that several bricks hold: that of a stored one, else the tightest of their bounds.
+float sharedValue(const FieldView& field, const std::array<std::int32_t, 3>& brick, const int (&node)[3]) noexcept {
+    float best = 0.0f;
+    bool any = false;
+    for (int corner = 0; corner < 8; ++corner) {
+        std::array<std::int32_t, 3> other = brick;
+        int there[3] = {node[0], node[1], node[2]};
+        bool holds = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            if ((corner >> k & 1) == 0) continue;
+            holds = holds && (node[k] == 0 || node[k] == kBrickCells);
+            other[k] += node[k] == 0 ? -1 : 1;
+            there[k] = kBrickCells - node[k];
+            holds = holds && other[k] >= 0 && other[k] < field.bricks[k];
+        }
+        if (!holds) continue;
+        const std::uint32_t dense = denseOf(field.bricks, other);
+        if (const std::int32_t stored = field.brickIndex[dense]; stored >= 0)
+            return field.values[static_cast<std::size_t>(stored) * kBrickValues +
+                                static_cast<std::size_t>(there[0] + kStride[1] * there[1] + kStride[2] * there[2])];
+        const float bound = boundAt(field.coarse[dense], there, field.voxelMm);
+        if (!any || std::abs(bound) > std::abs(best)) best = bound;
+        any = true;
+    }
+    return best;
+}
+
+}  // namespace
+
+void CuttableTooth::wholeBrick(std::uint32_t dense, float* out) const noexcept {
+    const ToothField& whole = tooth->field;
+    const FieldView field = whole.view();
+    const auto low = static_cast<float>(-settings.bandMm), high = static_cast<float>(bandOutMm);
+    if (const std::int32_t stored = field.brickIndex[dense]; stored >= 0) {
+        const float* values = field.values + static_cast<std::size_t>(stored) * kBrickValues;
+        for (int i = 0; i < kBrickValues; ++i) {
+            const float up = values[i] < low ? low : values[i];
+            out[i] = up > high ? high : up;
+        }
+        return;
+    }
+    // A brick that is not stored lies deeper than the field's own band, all of it.
+    if (field.coarse[dense] < 0.0f && settings.bandMm <= whole.settings().bandInMm * (1.0 - 1e-4)) {
+        std::fill_n(out, kBrickValues, low);
+        return;
+    }
+    const std::array<std::int32_t, 3> brick = brickAt(field.bricks, dense);
+    int node[3];
+    for (node[2] = 0; node[2] < kBrickNodes; ++node[2])
+        for (node[1] = 0; node[1] < kBrickNodes; ++node[1])
+            for (node[0] = 0; node[0] < kBrickNodes; ++node[0])
+                *out++ = std::clamp(sharedValue(field, brick, node), low, high);
+}
+
+TissueVolumes integrateVolumes(const CuttableTooth& base,
+                               const std::function<const float*(std::uint32_t dense)>& valuesOf) {
+    const FieldView field = base.tooth->field.view();
+    const auto inverseVoxel = static_cast<float>(field.inverseVoxelMm);
+    const double voxelMm3 = field.voxelMm * field.voxelMm * field.voxelMm;
+    const std::uint32_t perLayer =
+        static_cast<std::uint32_t>(field.bricks[0]) * static_cast<std::uint32_t>(field.bricks[1]);
+    std::vector<TissueVolumes> layers(static_cast<std::size_t>(field.bricks[2]), TissueVolumes{});
+    core::parallelFor(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
+        std::array<float, kBrickValues> whole;
+        for (std::size_t layer = begin; layer < end; ++layer)
+            for (std::uint32_t i = 0; i < perLayer; ++i) {
+                const std::uint32_t dense = static_cast<std::uint32_t>(layer) * perLayer + i;
+                const float* values = valuesOf(dense);
+                if (values == nullptr) {
+                    if (field.brickIndex[dense] < 0 && field.coarse[dense] >= 0.0f) continue;
+                    base.wholeBrick(dense, whole.data());
+                    values = whole.data();
+                }
+                const std::uint8_t* nodes = base.tissues.nodes(dense);
+                const auto all = static_cast<std::size_t>(base.tissues.ofBrick(dense));
+                // Nodes 0..7 along each axis: the others are the next brick's.
+                TissueVolumes sum{};
+                for (int z = 0; z < kBrickCells; ++z)
+                    for (int y = 0; y < kBrickCells; ++y)
+                        for (int x = 0; x < kBrickCells; ++x) {
+                            const int at = x + kStride[1] * y + kStride[2] * z;
+                            sum[nodes != nullptr ? nodes[at] : all] += occupancy(values[at], inverseVoxel);
+                        }
+                for (std::size_t k = 0; k < kTissueCount; ++k)
+                    layers[layer][k] += sum[k] * voxelMm3;
+            }
+    });
+    TissueVolumes total{};
+    for (const TissueVolumes& layer : layers)
+        for (std::size_t k = 0; k < kTissueCount; ++k)
+            total[k] += layer[k];
+    return total;
+}
+
+std::shared_ptr<const CuttableTooth> prepareCutting(std::shared_ptr<const Tooth> tooth, TissueMap tissues,
+                                                    const CutSettings& settings) {
+    const FieldSettings& field = tooth->field.settings();
+    const auto refuse = [](const std::string& what, const std::string& remedy) {
+        throw core::Error(what, "cutting", remedy);
+    };
+    auto base = std::make_shared<CuttableTooth>();
+    base->settings = settings;
+    base->bandOutMm = std::max(field.bandOutMm, 2.0 * field.voxelMm);
+    double& band = base->settings.bandMm;
+    if (band == 0.0) band = std::max(0.2, 3.0 * field.voxelMm);
+    const double least = 2.0 * field.voxelMm, most = std::max(kMostBandMm, 4.0 * field.voxelMm);
+    if (!(band >= least && band <= most))
+        refuse(fmt::format("a band of {} mm cannot follow a cut at a voxel of {} mm", band, field.voxelMm),
+               fmt::format("give {} to {} mm", least, most));
+    if (!tissues.isOn(tooth->field))
+        refuse("the tissues were laid out on another grid than the tooth's", "make them from this tooth's field");
+
+    const FieldView view = tooth->field.view();
+    std::size_t inside = 0;
+    const std::size_t dense = static_cast<std::size_t>(view.bricks[0]) * static_cast<std::size_t>(view.bricks[1]) *
+                              static_cast<std::size_t>(view.bricks[2]);
+    for (std::size_t i = 0; i < dense; ++i)
+        if (view.brickIndex[i] < 0 && view.coarse[i] < 0.0f) ++inside;
+    constexpr std::size_t kBytesABrick = kBrickValues * (sizeof(float) + 1);
+    std::size_t& reserve = base->settings.reserveBricks;
+    reserve = std::min(inside, reserve == 0 ? kReserveBytes / kBytesABrick : reserve);
+
+    base->tooth = std::move(tooth);
+    base->tissues = std::move(tissues);
+    base->volumesMm3 = integrateVolumes(*base, [](std::uint32_t) -> const float* { return nullptr; });
+    return base;
+}
+
+}  // namespace handpiece::tooth

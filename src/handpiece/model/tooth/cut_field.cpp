@@ -91,10 +91,12 @@ std::int32_t CutField::storeBrick(std::uint32_t dense) noexcept {
     base_->wholeBrick(dense, values(stored));
     copyTissues(base_->tissues, dense, &field_.tissue_[valueIndex(stored)]);
     field_.brickIndex_[dense] = stored;
+    ++version_;
     return stored;
 }
 
 void CutField::noteWaiting(std::uint32_t dense, bool shows) noexcept {
+    ++version_;
     std::uint8_t& flags = flags_[dense];
     if (shows) flags |= kShows;
     if ((flags & kWaiting) != 0) return;

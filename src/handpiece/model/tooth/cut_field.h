@@ -81,6 +81,8 @@ class CutField {
     /// True when a brick that overlaps the box (tooth frame, mm) may differ from the whole tooth.
     [[nodiscard]] bool isCutNear(const core::Box& box) const noexcept HANDPIECE_REALTIME;
     [[nodiscard]] const TissueVolumes& removedMm3() const noexcept { return removedMm3_; }
+    /// Another number after every change: what was looked up at the same one still holds.
+    [[nodiscard]] std::uint64_t version() const noexcept { return version_; }
 
     // For cutting, in the tick.
 
@@ -143,6 +145,7 @@ class CutField {
     std::vector<std::uint32_t> dirty_;  ///< a ring with room for every brick
     std::size_t firstDirty_ = 0, nextDirty_ = 0;
     std::size_t changedCount_ = 0;
+    std::uint64_t version_ = 1;
     std::array<std::int32_t, 3> changedLow_{}, changedHigh_{};  ///< bricks between which all changes lie
     BrickSnapshot snapshot_;
 };

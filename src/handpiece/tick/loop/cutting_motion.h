@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What a hand intends when it cuts: plunge, class I cavity, crown shoulder, excavation of decay.
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "handpiece/tick/contact/method.h"
+#include "handpiece/tick/device/motion.h"
+#include "handpiece/tick/loop/built_in_motion.h"
+
+namespace handpiece::loop {
+
+struct CuttingOptions {
+    double pedal = 1.0;
+    double depthMm = 0.0;      ///< below the surface where the bur first touches; 0: 1.5 (shoulder: 1.0; excavate: all)
+    double lengthMm = 0.0;     ///< of a class I cavity, mesial to distal; 0: 4
+    double isthmusMm = 1.2;    ///< its width
+    double heightMm = 2.5;     ///< of a shoulder over z = 0 of the tooth
+    double feedMmS = 2.0;      ///< of strokes; a third of it going in
+    double dwellS = 4.0;       ///< at the end of the cut: the hand is ahead of the bur by load over stiffness
+    double clearanceMm = 1.0;  ///< above the surface at the start
+    core::Vec2 offsetMm = core::Vec2::Zero();  ///< of the first touch from the middle of the tooth, (x, y)
+};
+
+/// What the cut is aimed at.
+struct CuttingScene {
+    core::Box toothBounds;
+    std::optional<core::Box> cariesBounds;  ///< of the decay, for excavate
+    double burRadiusMm = 0.5, burLengthMm = 4.0;
+};
+
+/// "plunge", "class-one", "crown-shoulder", "excavate".
+[[nodiscard]] const std::vector<BuiltInMotion>& cuttingMotions();
+
+/// The named cut, the bur's shank up (+z), the pedal down from the start until the bur is out again. It is what the
+/// hand intends: a hand and a device that give way lag behind it. Feels for the surface with `method`, so not from the
+/// tick while that uses it. Throws core::Error for a name there is not, options out of range, a bur too wide for the
+/// cavity, or a place where there is nothing to cut.
+[[nodiscard]] device::Motion cuttingMotionByName(std::string_view name, contact::Method& method,
+                                                 const CuttingScene& scene, const CuttingOptions& options = {});
+
+}  // namespace handpiece::loop

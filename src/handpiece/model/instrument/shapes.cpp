@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/model/instrument/catalogue.h"
 
 namespace handpiece::instrument {
 
@@ -137,26 +138,6 @@ Profile torpedo(double d, double length) {
     return profile;
 }
 
-/// A bur known by a number. Sizes are those of docs/burs.md, where each has its source.
-struct Known {
-    std::string_view name;
-    Shape shape;
-    double diameterMm, lengthMm;
-};
-constexpr Known kKnown[] = {
-    {"round-1/4", Shape::round, 0.5, 0.5},    {"round-1/2", Shape::round, 0.6, 0.6},
-    {"round-1", Shape::round, 0.8, 0.8},      {"round-2", Shape::round, 1.0, 1.0},
-    {"round-3", Shape::round, 1.2, 1.2},      {"round-4", Shape::round, 1.4, 1.4},
-    {"round-5", Shape::round, 1.6, 1.6},      {"round-6", Shape::round, 1.8, 1.8},
-    {"round-7", Shape::round, 2.1, 2.1},      {"round-8", Shape::round, 2.3, 2.3},
-    {"33.5", Shape::invertedCone, 0.6, 0.54}, {"34", Shape::invertedCone, 0.8, 0.72},
-    {"35", Shape::invertedCone, 1.0, 0.9},    {"245", Shape::pear, 0.8, 3.0},
-    {"330", Shape::pear, 0.8, 1.6},           {"331L", Shape::pear, 1.0, 4.0},
-    {"556", Shape::cylinderFlat, 0.9, 3.8},   {"557", Shape::cylinderFlat, 1.0, 4.0},
-    {"558", Shape::cylinderFlat, 1.2, 4.0},   {"169L", Shape::taperFlat, 0.9, 5.6},
-    {"170", Shape::taperFlat, 1.0, 4.0},
-};
-
 constexpr double kPaperDiameterMm = 1.0, kPaperLengthMm = 4.0;
 
 Bur paperBur() {
@@ -241,9 +222,8 @@ Profile makeProfile(Shape shape, double diameterMm, double lengthMm) {
 
 Bur makeBur(std::string_view name) {
     if (name == "paper") return paperBur();
-    for (const Known& known : kKnown)
-        if (known.name == name)
-            return Bur(std::string(name), makeProfile(known.shape, known.diameterMm, known.lengthMm));
+    if (const CatalogueEntry* known = findBur(name))
+        return Bur(known->name, makeProfile(known->shape, known->diameterMm, known->lengthMm));
     const std::size_t colon = name.find(':');
     if (colon == std::string_view::npos)
         throw core::Error("there is no bur of this name", std::string(name),
@@ -262,8 +242,8 @@ Bur makeBur(std::string_view name) {
 
 std::vector<std::string> burNames() {
     std::vector<std::string> names{"paper"};
-    for (const Known& known : kKnown)
-        names.emplace_back(known.name);
+    for (const CatalogueEntry& known : catalogue())
+        names.push_back(known.name);
     return names;
 }
 

@@ -42,9 +42,8 @@ struct ShapeInfo {
 /// arcs.
 [[nodiscard]] geometry::TriangleMesh turnedMesh(const Profile& profile, int around, double spacingMm);
 
-/// A named bur of the product: "paper" (Table I: 170 vertices), US numbers ("330", "round-4"), or
-/// "SHAPE:DIAMETERxLENGTH"
-/// ("cylinder-round:1.0x4.0"). Throws core::Error listing what there is.
+/// A named bur of the product: "paper" (Table I: 170 vertices), one of the catalogue by name ("330", "round-4"), US
+/// name or ISO number, or "SHAPE:DIAMETERxLENGTH" ("cylinder-round:1.0x4.0"). Throws core::Error listing what there is.
 [[nodiscard]] Bur makeBur(std::string_view name);
 /// Names makeBur knows, for help and completion.
 [[nodiscard]] std::vector<std::string> burNames();

@@ -34,6 +34,7 @@ struct HapticSample {
     float feedMmS = 0.0f;                 ///< speed at which the bur eats into the tooth
     std::int32_t elapsedPeriods = 1;      ///< since the tick before
     std::uint32_t buttons = 0;            ///< bit 0: the upper one
+    std::uint32_t waitingBricks = 0;      ///< changed bricks not handed over yet
     std::uint64_t lastCommand = 0;        ///< number of the newest staged command that has taken effect
     double pedal = 0.0;                   ///< 0..1
     double speedRpm = 0.0;                ///< of the bur

@@ -18,4 +18,10 @@ inline void report(const Progress& progress, double fraction) {
     if (progress && !progress(fraction)) throw Error("cancelled");
 }
 
+/// The share from..to of a longer work, as a listener of its own.
+inline Progress part(const Progress& progress, double from, double to) {
+    if (!progress) return {};
+    return [progress, from, to](double fraction) { return progress(from + (to - from) * fraction); };
+}
+
 }  // namespace handpiece::core

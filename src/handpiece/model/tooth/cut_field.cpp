@@ -29,9 +29,10 @@ CutField::CutField(std::shared_ptr<const CuttableTooth> base) : base_(std::move(
         field_.coarse_[i] = std::max(field_.coarse_[i], -kCoarseDepthMm);
         const std::int32_t stored = field_.brickIndex_[i];
         if (stored < 0) {
-            field_.coarseTissue_[i] = static_cast<std::uint8_t>(base_->tissues.ofBrick(brick));
-            if (base_->tissues.nodes(brick) != nullptr)
-                field_.coarseTissue_[i] = base_->tissues.nodes(brick)[kBrickValues / 2];
+            const std::uint8_t* nodes = base_->tissues.nodes(brick);
+            if (field_.coarse_[i] < 0.0f)
+                field_.coarseTissue_[i] = nodes != nullptr ? nodes[kBrickValues / 2]
+                                                           : static_cast<std::uint8_t>(base_->tissues.ofBrick(brick));
             continue;
         }
         base_->wholeBrick(brick, values(stored));
@@ -221,6 +222,27 @@ std::uint64_t stateHash(const CutState& state) {
         hasher.add(std::as_bytes(std::span(brick.values)));
     }
     return hasher.value();
+}
+
+CutState changeBetween(const CutState& from, const CutState& to) {
+    CutState change;
+    change.removedMm3 = to.removedMm3;
+    auto before = from.bricks.begin();
+    const auto toWhole = [&](std::uint32_t limit) {
+        for (; before != from.bricks.end() && before->dense < limit; ++before)
+            if (!before->whole) change.bricks.push_back({before->dense, true, {}});
+    };
+    for (const CutState::Brick& after : to.bricks) {
+        toWhole(after.dense);
+        const bool known = before != from.bricks.end() && before->dense == after.dense;
+        const bool wasWhole = !known || before->whole;
+        if (after.whole ? !wasWhole
+                        : wasWhole || std::memcmp(before->values.data(), after.values.data(), kBrickBytes) != 0)
+            change.bricks.push_back(after);
+        if (known) ++before;
+    }
+    toWhole(std::numeric_limits<std::uint32_t>::max());
+    return change;
 }
 
 std::uint64_t CutField::stateHash() const {

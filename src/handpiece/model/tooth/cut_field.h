@@ -69,6 +69,8 @@ struct CutState {
 };
 /// The same number for the same tooth, bit for bit; whole bricks count for nothing.
 [[nodiscard]] std::uint64_t stateHash(const CutState& state);
+/// What turns a tooth in state `from` into one in state `to`: bricks that differ, whole where `to` leaves them so.
+[[nodiscard]] CutState changeBetween(const CutState& from, const CutState& to);
 
 /// The field that the tick cuts and feels. All memory is taken at construction. One thread: the tick's.
 class CutField {

@@ -5,30 +5,14 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
-#include "handpiece/base/core/simd.h"
 #include "handpiece/model/tooth/field_builder.h"
-#include "handpiece/model/tooth/nearest_kernel.h"
+#include "handpiece/model/tooth/packet_distance.h"
 #include "handpiece/model/tooth/part_tissues.h"
 
 namespace handpiece::tooth {
 namespace {
 
 using core::Vec3;
-using geometry::TreeTriangle;
-
-NearestKernel kernelOfThisMachine() {
-#if defined(__x86_64__)
-    switch (core::simdLevel()) {
-        case core::SimdLevel::avx512:
-            return simd_avx512::nearestOfPacket;
-        case core::SimdLevel::avx2:
-            return simd_avx2::nearestOfPacket;
-        case core::SimdLevel::base:
-            break;
-    }
-#endif
-    return simd_base::nearestOfPacket;
-}
 
 /// Node (x, y, z) of a brick, 0..8 each.
 struct LocalNode {
@@ -43,16 +27,7 @@ class NodeFiller {
   public:
     NodeFiller(FieldBuilder& builder, const geometry::TriangleTree& tree,
                const std::vector<std::uint32_t>& centreTriangle)
-        : builder_(builder),
-          tree_(tree),
-          centreTriangle_(centreTriangle),
-          kernel_(kernelOfThisMachine()),
-          flat_(tree.triangles().size()) {
-        core::parallelFor(flat_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                flat_[i] = flattened(tree.triangles()[i]);
-        });
-    }
+        : builder_(builder), centreTriangle_(centreTriangle), distance_(tree) {}
 
     /// Computes the nodes that brick `stored` owns.
     void compute(std::size_t stored) {
@@ -148,35 +123,20 @@ class NodeFiller {
     std::uint32_t computePacket(const std::array<std::int32_t, 3>& brick, const LocalNode* nodes, int count,
                                 std::uint32_t seed, float* values) {
         Vec3 point[kPacket];
-        core::Box box;
-        for (int i = 0; i < count; ++i) {
+        float distance[kPacket];
+        for (int i = 0; i < count; ++i)
             point[i] = builder_.nodeMm(kBrickCells * std::int64_t{brick[0]} + nodes[i].x,
                                        kBrickCells * std::int64_t{brick[1]} + nodes[i].y,
                                        kBrickCells * std::int64_t{brick[2]} + nodes[i].z);
-            box.extend(point[i]);
-        }
-        PointPacket packet;
-        const Vec3 centre = box.centre();
-        for (int k = 0; k < 3; ++k) {
-            packet.centre[k] = centre[k];
-            packet.halfSize[k] = static_cast<float>(0.5 * (box.max[k] - box.min[k]));
-            for (int i = 0; i < kPacket; ++i)
-                packet.offset[k][i] = static_cast<float>(point[i < count ? i : 0][k] - centre[k]);
-        }
-        std::uint32_t nearest[kPacket];
-        kernel_(tree_.nodes().data(), flat_.data(), packet, seed, nearest);
-        for (int i = 0; i < count; ++i) {
-            const geometry::NearestPoint n = tree_.nearestOn(nearest[i], point[i]);
-            values[nodes[i].index()] = static_cast<float>(tree_.side(point[i], n) * n.distanceMm);
-        }
-        return nearest[0];
+        const std::uint32_t next = distance_.distances(point, count, seed, distance);
+        for (int i = 0; i < count; ++i)
+            values[nodes[i].index()] = distance[i];
+        return next;
     }
 
     FieldBuilder& builder_;
-    const geometry::TriangleTree& tree_;
     const std::vector<std::uint32_t>& centreTriangle_;
-    NearestKernel kernel_;
-    std::vector<FlatTriangle> flat_;
+    PacketDistance distance_;
 };
 
 /// A hollow or inside-out tooth shows in its volume, a torn one in extra area. Less area is what a grid makes of sharp
@@ -198,46 +158,6 @@ void requireLikeness(const ToothField& field, const geometry::TriangleMesh& mesh
 }
 
 }  // namespace
-
-FlatTriangle flattened(const TreeTriangle& t) {
-    const Vec3 a(t.a[0], t.a[1], t.a[2]), ab(t.ab[0], t.ab[1], t.ab[2]), ac(t.ac[0], t.ac[1], t.ac[2]);
-    // Corner i of the frame's triangle is corner (first + i) % 3 of the mesh's; edge 0 the longest.
-    const Vec3 corner[3] = {Vec3::Zero(), ab, ac};
-    int first = 0;
-    double longest = -1.0;
-    for (int e = 0; e < 3; ++e) {
-        const double length = (corner[(e + 1) % 3] - corner[e]).squaredNorm();
-        if (length > longest) {
-            longest = length;
-            first = e;
-        }
-    }
-    const Vec3 o = corner[first], p = corner[(first + 1) % 3] - o, q = corner[(first + 2) % 3] - o;
-    const double length = std::sqrt(longest);
-    const Vec3 x = length > 0.0 ? Vec3(p / length) : Vec3::UnitX();
-    const Vec3 up = q - x * x.dot(q);
-    const double height = up.norm();
-    const bool flat = !(height > 1e-12 * length) || height == 0.0;
-    const Vec3 y = flat ? x.unitOrthogonal() : Vec3((up / height - x * x.dot(up / height)).normalized());
-    const Vec3 n = x.cross(y);
-    FlatTriangle out{};
-    for (int k = 0; k < 3; ++k) {
-        out.origin[k] = a[k] + o[k];
-        out.x[k] = static_cast<float>(x[k]);
-        out.y[k] = static_cast<float>(y[k]);
-        out.n[k] = static_cast<float>(n[k]);
-    }
-    out.length = static_cast<float>(length);
-    out.cx = static_cast<float>(x.dot(q));
-    out.cy = flat ? 0.0f : static_cast<float>(height);
-    const auto inverse = [](float dx, float dy) {
-        const float square = dx * dx + dy * dy, reciprocal = 1.0f / square;
-        return square > 0.0f && std::isfinite(reciprocal) ? reciprocal : 0.0f;
-    };
-    out.inverseBc2 = inverse(out.cx - out.length, out.cy);
-    out.inverseCa2 = inverse(out.cx, out.cy);
-    return out;
-}
 
 ToothField FieldBuilder::fromSurface(const geometry::TriangleMesh& mesh, const geometry::TriangleTree& tree,
                                      std::span<const PartSurface> parts, const FieldSettings& settings,

@@ -15,6 +15,7 @@
 
 namespace handpiece::tooth {
 
+struct BrickTissues;
 struct PartSurface;
 class ToothField;
 
@@ -75,6 +76,9 @@ class TissueMap {
 
   private:
     explicit TissueMap(const ToothField& grid);
+    /// Lays the bricks, by dense index, one after the other.
+    void assemble(std::vector<BrickTissues> bricks);
+
     core::Vec3 originMm_ = core::Vec3::Zero();
     double voxelMm_ = 0.0, unitMm_ = 0.0;
     std::int32_t bricks_[3] = {0, 0, 0};

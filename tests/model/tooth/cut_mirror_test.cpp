@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The mirror follows the field by what it is handed, whatever the order and however late.
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "cut_support.h"
+
+namespace handpiece::tooth {
+namespace {
+
+using core::Vec3;
+using test::ballTooth;
+using test::cutAway;
+
+TEST(CutMirror, FollowsTheField) {
+    const auto base = ballTooth(1.5, 0.8, 0.05);
+    CutField field(base);
+    CutMirror mirror(base);
+    std::mt19937_64 generator(handpiece::test::seed());
+    const CutState whole = field.state();
+    std::vector<std::uint32_t> touched;
+    for (int step = 0; step < 5; ++step) {
+        const Vec3 centre = handpiece::test::randomDirection(generator) * 1.4;
+        cutAway(field, [&](const Vec3& p) { return test::ball(p - centre, 0.3); });
+        (void)field.handOver(7, [&](const BrickSnapshot& s) {
+            mirror.apply(s);
+            touched.push_back(s.dense);
+            return true;
+        });
+    }
+    while (field.waitingBricks() > 0)
+        (void)field.handOver(1000, [&](const BrickSnapshot& s) {
+            mirror.apply(s);
+            touched.push_back(s.dense);
+            return true;
+        });
+    EXPECT_EQ(stateHash(mirror.state({})), field.stateHash());
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    EXPECT_EQ(mirror.takeTouched(), touched);
+    EXPECT_TRUE(mirror.takeTouched().empty());
+
+    // An undo comes through snapshots like any cut, or at once as a change.
+    const CutState cut = field.state();
+    const CutState undo = changeBetween(cut, whole);
+    (void)field.restore(undo, 0, undo.bricks.size());
+    (void)field.handOver(100000, [&](const BrickSnapshot& s) {
+        mirror.apply(s);
+        return true;
+    });
+    EXPECT_TRUE(mirror.state({}).bricks.empty());
+    mirror.apply(changeBetween(whole, cut));
+    EXPECT_EQ(stateHash(mirror.state({})), stateHash(cut));
+    mirror.apply(undo);
+    EXPECT_TRUE(mirror.state({}).bricks.empty());
+    EXPECT_FALSE(mirror.isChanged(cut.bricks[0].dense));
+    std::array<float, kBrickValues> scratch, wanted;
+    base->wholeBrick(cut.bricks[0].dense, wanted.data());
+    const float* values = mirror.values(cut.bricks[0].dense, scratch.data());
+    EXPECT_TRUE(std::equal(wanted.begin(), wanted.end(), values));
+}
+
+TEST(CutState, ChangesLeadFromAnyStateToAnyOther) {
+    const auto base = ballTooth(1.2, 0.6, 0.05);
+    CutField one(base), two(base);
+    cutAway(one, [](const Vec3& p) { return test::ball(p - Vec3(1.2, 0, 0), 0.4); });
+    cutAway(two, [](const Vec3& p) { return test::ball(p - Vec3(0.9, 0.6, 0), 0.4); });
+    const CutState a = one.state(), b = two.state();
+    const CutState change = changeBetween(a, b);
+    std::size_t whole = 0;
+    for (std::size_t i = 0; i < change.bricks.size(); ++i) {
+        whole += change.bricks[i].whole;
+        EXPECT_TRUE(i == 0 || change.bricks[i - 1].dense < change.bricks[i].dense);
+    }
+    EXPECT_GT(whole, 0u);
+    EXPECT_LT(whole, change.bricks.size());
+    CutMirror mirror(base);
+    mirror.apply(a);
+    mirror.apply(change);
+    EXPECT_EQ(stateHash(mirror.state({})), stateHash(b));
+    EXPECT_TRUE(changeBetween(a, a).bricks.empty());
+    EXPECT_TRUE(changeBetween(CutState{}, CutState{}).bricks.empty());
+}
+
+}  // namespace
+}  // namespace handpiece::tooth

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Tissues all through the tooth: against closed forms, against the exact distances to the parts.
+
+#include <gtest/gtest.h>
+
+#include "cut_support.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/model/tooth/field_builder.h"
+#include "handpiece/model/tooth/part_tissues.h"
+#include "support/closed_meshes.h"
+
+namespace handpiece::tooth {
+namespace {
+
+using core::Vec3;
+using handpiece::test::randomDirection;
+using handpiece::test::uniform;
+
+constexpr double kVoxel = 0.05;
+
+ToothField ballField(double radius) {
+    const double edge = radius + 0.3;
+    return ToothField::fromFunction({Vec3::Constant(-edge), Vec3::Constant(edge)}, FieldSettings{},
+                                    [&](const Vec3& p) { return p.norm() - radius; });
+}
+
+/// Where the map changes tissue along a ray, by bisection between two tissues.
+double boundaryAlong(const TissueMap& map, const Vec3& from, const Vec3& direction, double low, double high) {
+    const Tissue first = map.at(from + low * direction);
+    for (int i = 0; i < 30; ++i) {
+        const double middle = 0.5 * (low + high);
+        (map.at(from + middle * direction) == first ? low : high) = middle;
+    }
+    return low;
+}
+
+TEST(TissueMap, BoundariesAreSmoothBelowAVoxel) {
+    const ToothField field = ballField(2.0);
+    const Vec3 normal = Vec3(0.3, -0.5, 0.8).normalized();
+    const std::vector<TissueMap::PartFunction> parts{
+        {[](const Vec3& p) { return p.norm() - 1.3; }, Tissue::dentine, 1},
+        {[&](const Vec3& p) { return normal.dot(p) + 0.4; }, Tissue::caries, 2}};
+    const TissueMap map = TissueMap::fromFunctions(field, parts, Tissue::enamel);
+    std::mt19937_64 generator(handpiece::test::seed());
+    double worstBall = 0.0, worstPlane = 0.0;
+    int balls = 0, planes = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const Vec3 d = randomDirection(generator);
+        if (1.0 * normal.dot(d) > -0.2) {
+            worstBall = std::max(worstBall, std::abs(boundaryAlong(map, Vec3::Zero(), d, 1.2, 1.4) - 1.3));
+            ++balls;
+        }
+        if (normal.dot(d) < -0.5) {
+            const double wanted = 0.4 / -normal.dot(d);
+            worstPlane = std::max(
+                worstPlane,
+                std::abs(boundaryAlong(map, Vec3::Zero(), d, wanted - 0.1, wanted + 0.1) - wanted) * -normal.dot(d));
+            ++planes;
+        }
+    }
+    ASSERT_GT(balls, 100);
+    ASSERT_GT(planes, 100);
+    EXPECT_LT(worstBall, 0.1 * kVoxel);
+    EXPECT_LT(worstPlane, 0.1 * kVoxel);
+    EXPECT_EQ(map.tissues(), (std::vector{Tissue::enamel, Tissue::dentine, Tissue::caries}));
+    EXPECT_EQ(map.at({100, 0, 0}), Tissue::none);
+}
+
+TEST(TissueMap, NodesLayersAndPointsTellTheSame) {
+    const ToothField field = ballField(1.5);
+    const std::vector<TissueMap::PartFunction> parts{
+        {[](const Vec3& p) { return (p - Vec3(0.5, 0, 0)).norm() - 0.7; }, Tissue::dentine, 1},
+        {[](const Vec3& p) { return (p - Vec3(0.5, 0.2, 0)).norm() - 0.3; }, Tissue::pulp, 2},
+        {[](const Vec3& p) { return (p - Vec3(0.5, 0.7, 0)).norm() - 0.4; }, Tissue::caries, 2}};
+    const TissueMap map = TissueMap::fromFunctions(field, parts, Tissue::enamel);
+    const FieldView view = field.view();
+    std::size_t mixed = 0, triple = 0;
+    for (std::uint32_t dense = 0; dense < test::denseCount(field); ++dense) {
+        const std::uint8_t* nodes = map.nodes(dense);
+        const TissueMap::Layers layers = map.layers(dense);
+        EXPECT_EQ(nodes == nullptr, layers.layers.empty());
+        if (nodes == nullptr) continue;
+        ++mixed;
+        triple += layers.layers.size() >= 2;
+        const auto brick = brickAt(view.bricks, dense);
+        for (int i = 0; i < kBrickValues; ++i) {
+            const int node[3] = {i % 9, i / 9 % 9, i / 81};
+            Tissue byLayers = layers.rest;
+            for (const TissueMap::Layer& layer : layers.layers)
+                if (layer.values[i] < 0) {
+                    byLayers = layer.tissue;
+                    break;
+                }
+            EXPECT_EQ(static_cast<Tissue>(nodes[i]), byLayers);
+            Vec3 p;
+            for (int k = 0; k < 3; ++k)
+                p[k] = view.originMm[k] + view.voxelMm * (8 * brick[static_cast<std::size_t>(k)] + node[k]);
+            // Of equal priorities the later wins.
+            Tissue wanted = Tissue::enamel;
+            for (const std::size_t part : {std::size_t{2}, std::size_t{1}, std::size_t{0}})
+                if (parts[part].signedDistance(p) < -1e-6) {
+                    wanted = parts[part].tissue;
+                    break;
+                } else if (parts[part].signedDistance(p) < 1e-6) {
+                    wanted = byLayers;
+                    break;
+                }
+            EXPECT_EQ(byLayers, wanted);
+        }
+    }
+    EXPECT_GT(mixed, 50u);
+    EXPECT_GT(triple, 5u);
+}
+
+TEST(TissueMap, PartsGiveWhatTheirSurfacesBound) {
+    // Enamel all over, dentine in it, caries across the outer surface: as cases are.
+    const geometry::TriangleMesh outer = handpiece::test::bumpyMesh(4, 2.0),
+                                 inner = handpiece::test::sphereMesh(4, 1.2);
+    geometry::TriangleMesh decay = handpiece::test::sphereMesh(3, 0.6);
+    for (Vec3& v : decay.vertices)
+        v += Vec3(1.5, 0.3, 0.2);
+    const geometry::TriangleTree outerTree(outer), innerTree(inner), decayTree(decay);
+    const std::vector<PartSurface> parts{
+        {&outerTree, Tissue::enamel, 10}, {&innerTree, Tissue::dentine, 20}, {&decayTree, Tissue::caries, 30}};
+    const ToothField field = FieldBuilder::fromSurface(outer, outerTree, parts, FieldSettings{});
+    const TissueMap map = TissueMap::fromParts(field, parts);
+    const PartTissues exact(parts);
+    std::mt19937_64 generator(handpiece::test::seed());
+    std::size_t asked = 0, nearBoundary = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Vec3 p = randomDirection(generator) * uniform(generator, 0.0, 2.4);
+        if (!(outerTree.signedDistance(p) < 0.05)) continue;
+        double boundary = 1.0;
+        for (const PartSurface& part : parts)
+            boundary = std::min(boundary, std::abs(part.tree->signedDistance(p)));
+        if (boundary < 0.15 * kVoxel) {
+            ++nearBoundary;
+            continue;
+        }
+        ++asked;
+        // Outside the tooth the nearest part counts, and near a tie between two of them either will do.
+        if (outerTree.signedDistance(p) > 0.0 && decayTree.signedDistance(p) > 0.0 &&
+            std::abs(outerTree.signedDistance(p) - decayTree.signedDistance(p)) < kVoxel)
+            continue;
+        EXPECT_EQ(map.at(p), exact.at(p)) << p.transpose();
+    }
+    EXPECT_GT(asked, 10000u);
+    EXPECT_LT(nearBoundary, asked / 10);
+    // And the same bits with one thread.
+    core::setThreadCount(1);
+    const TissueMap alone = TissueMap::fromParts(field, parts);
+    core::setThreadCount(0);
+    for (std::uint32_t dense = 0; dense < test::denseCount(field); ++dense) {
+        ASSERT_EQ(map.ofBrick(dense), alone.ofBrick(dense));
+        const TissueMap::Layers a = map.layers(dense), b = alone.layers(dense);
+        ASSERT_EQ(a.layers.size(), b.layers.size());
+        ASSERT_EQ(a.rest, b.rest);
+        for (std::size_t k = 0; k < a.layers.size(); ++k)
+            ASSERT_TRUE(std::equal(a.layers[k].values, a.layers[k].values + kBrickValues, b.layers[k].values));
+    }
+}
+
+TEST(TissueMap, UniformIsOneTissueEverywhere) {
+    const ToothField field = ballField(0.8);
+    const TissueMap map = TissueMap::uniform(field, Tissue::bone);
+    EXPECT_EQ(map.tissues(), std::vector{Tissue::bone});
+    EXPECT_EQ(map.at(Vec3::Zero()), Tissue::bone);
+    EXPECT_EQ(map.nodes(0), nullptr);
+    EXPECT_TRUE(map.isOn(field));
+    EXPECT_FALSE(map.isOn(ballField(1.0)));
+}
+
+}  // namespace
+}  // namespace handpiece::tooth

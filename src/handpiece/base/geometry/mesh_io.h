@@ -35,6 +35,8 @@ using ReadNotes = std::vector<std::string>;
 
 /// Binary STL (float32), written whole or not at all. Throws core::Error, also for indices out of range.
 void writeStl(const std::filesystem::path& path, const TriangleMesh& mesh);
+/// The same in memory; `where` names it in errors.
+[[nodiscard]] std::vector<std::byte> stlBytes(const TriangleMesh& mesh, const std::string& where);
 /// Binary little-endian PLY with double coordinates: nothing is lost. Written whole or not at all.
 void writePly(const std::filesystem::path& path, const TriangleMesh& mesh);
 /// writeStl or writePly by the extension; throws core::Error for any other.

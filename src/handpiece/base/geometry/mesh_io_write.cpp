@@ -26,11 +26,10 @@ void requireValidIndices(const TriangleMesh& mesh, const std::string& where) {
         if (!mesh.vertices[v].allFinite()) throw core::Error(fmt::format("vertex {} is not finite", v + 1), where);
 }
 
-void writeStl(const std::filesystem::path& path, const TriangleMesh& mesh) {
-    requireValidIndices(mesh, path.string());
+std::vector<std::byte> stlBytes(const TriangleMesh& mesh, const std::string& where) {
+    requireValidIndices(mesh, where);
     if (mesh.triangles.size() > formats::kMaxFaces)
-        throw core::Error(fmt::format("{} faces are more than an STL may have here", mesh.triangles.size()),
-                          path.string());
+        throw core::Error(fmt::format("{} faces are more than an STL may have here", mesh.triangles.size()), where);
     std::vector<std::byte> data(84 + 50 * mesh.triangles.size());
     // Must not start with "solid": some readers would take it for text.
     constexpr char kTitle[] = "binary STL, millimetres, written by handpiece";
@@ -47,7 +46,11 @@ void writeStl(const std::filesystem::path& path, const TriangleMesh& mesh) {
                 at = put(at, static_cast<float>(mesh.vertices[v][k]));
         at = put(at, std::uint16_t{0});
     }
-    core::writeFile(path, data);
+    return data;
+}
+
+void writeStl(const std::filesystem::path& path, const TriangleMesh& mesh) {
+    core::writeFile(path, stlBytes(mesh, path.string()));
 }
 
 void writePly(const std::filesystem::path& path, const TriangleMesh& mesh) {

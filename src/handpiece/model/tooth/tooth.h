@@ -5,12 +5,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "handpiece/base/core/progress.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
 #include "handpiece/base/geometry/triangle_tree.h"
+#include "handpiece/model/tooth/exercise.h"
 #include "handpiece/model/tooth/tissue.h"
 #include "handpiece/model/tooth/tooth_field.h"
 
@@ -28,19 +30,27 @@ struct Part {
 /// Tooth frame: millimetres, +z occlusal, +x mesial, +y completes the right hand.
 struct Case {
     std::string name;
-    std::string kind;              ///< "lower-first-molar"; may be empty
-    int fdiNumber = 0;             ///< 0 when unknown
-    int buccalSign = 0;            ///< +1: buccal is +y, -1: -y, 0 unknown
-    std::filesystem::path source;  ///< folder or file, for messages and for the cache beside it
-    geometry::TriangleMesh outer;  ///< the whole tooth as one closed surface; empty when the case has none
-    std::vector<Part> parts;       ///< tissues of the tooth itself
-    std::vector<Part> scenery;     ///< neighbours, gum, bone: seen, not felt in this version
+    std::string kind;                        ///< "lower-first-molar"; may be empty
+    int fdiNumber = 0;                       ///< 0 when unknown
+    int buccalSign = 0;                      ///< +1: buccal is +y, -1: -y, 0 unknown
+    std::filesystem::path source;            ///< folder or file, for messages and for the cache beside it
+    geometry::TriangleMesh outer;            ///< the whole tooth as one closed surface; empty when the case has none
+    std::vector<Part> parts;                 ///< tissues of the tooth itself
+    std::vector<Part> scenery;               ///< neighbours, gum, bone: seen, not felt in this version
+    TissueTable tissues = builtInTissues();  ///< with what the case changes
+    std::string tissuesToml;                 ///< the text of what it changes; empty when it changes nothing
+    std::optional<Exercise> exercise;
 };
 
-/// Reads a case folder, or a single mesh file. Throws core::Error (what, where, remedy).
+/// Reads a case folder, a .handpiece file, or a single mesh file. Throws core::Error (what, where, remedy).
 [[nodiscard]] Case readCase(const std::filesystem::path& path);
-/// Writes case.toml and one STL per part (and outer.stl), whole or not at all.
-void writeCase(const Case& toothCase, const std::filesystem::path& folder);
+/// Writes case.toml and one STL per part (and outer.stl) into a folder, or all of it as one .handpiece file; whole or
+/// not at all.
+void writeCase(const Case& toothCase, const std::filesystem::path& path);
+
+/// A number that differs when the tooth does: its surfaces, tissues or priorities. Texts, scenery and the tissue table
+/// count for nothing. An attempt keeps it.
+[[nodiscard]] std::uint64_t contentKey(const Case& toothCase);
 
 /// Why a surface cannot be felt, or that it can: closed, oriented, sane in size, not crossing itself.
 /// Throws core::Error with counts, the first place, and the command that mends it.

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/tick/cutting/cutter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/tick/cutting/sweeper.h"
+
+namespace handpiece::cutting {
+
+using core::Vec3;
+
+namespace {
+
+/// The cutter's lead over the proxy that is carried to the next tick.
+constexpr double kMostLeadVoxels = 0.5;
+
+/// What the bearing's tissues say together, each with the weight 1 / K.
+struct Resistance {
+    double areaPerK = 0.0, resistancePerK = 0.0;
+    Vec3 tangentPerK = Vec3::Zero();
+    bool held = false;  ///< by something that cannot be cut: that alone counts, with the weight 1
+};
+
+}  // namespace
+
+struct Cutter::State {
+    State(std::shared_ptr<tooth::CutField> cutField, std::shared_ptr<const instrument::Bur> theBur,
+          const instrument::Ability& theAbility, const tooth::TissueTable& tissues, const Settings& theSettings)
+        : field(std::move(cutField)),
+          bur(std::move(theBur)),
+          ability(theAbility),
+          settings(theSettings),
+          sweeper(*field, *bur, core::simdLevel()),
+          leastRadiusMm(ability.centreRadius * bur->maxRadiusMm()),
+          mostLeadMm(kMostLeadVoxels * field->field().settings().voxelMm) {
+        for (std::size_t t = 0; t < tooth::kTissueCount; ++t)
+            cuttingMm2PerN[t] = ability.cutting * tissues.rows[t].cuttingMm2PerN;
+    }
+
+    [[nodiscard]] Resistance resistanceOf(const contact::Bearing& told) const noexcept {
+        Resistance sum;
+        for (std::size_t t = 0; t < tooth::kTissueCount; ++t)
+            sum.held = sum.held || (cuttingMm2PerN[t] <= 0.0 && told.resistanceMm[t] > 0.0);
+        for (std::size_t t = 0; t < tooth::kTissueCount; ++t) {
+            const bool canBeCut = cuttingMm2PerN[t] > 0.0;
+            if (sum.held == canBeCut) continue;
+            const double weight = canBeCut ? 1.0 / cuttingMm2PerN[t] : 1.0;
+            sum.areaPerK += weight * told.areaMm2[t];
+            sum.resistancePerK += weight * told.resistanceMm[t];
+            sum.tangentPerK += weight * told.tangentMm[t];
+        }
+        return sum;
+    }
+    void take(const Sweeper::Outcome& outcome) noexcept {
+        result.removedMm3 = outcome.removedMm3;
+        result.changedBricks = outcome.changedBricks;
+        result.cutterInTooth = sweeper.pose();
+    }
+    void stop() noexcept { result.changedBricks = sweeper.settle().changedBricks; }
+    void cutUnderLoad(contact::Method& method, const CutInput& input, double loadN) noexcept {
+        const Vec3 direction = input.loadN / loadN;
+        // What the field has not yet let through to the proxy.
+        const double lead = sweeper.hasPose()
+                                ? std::clamp((sweeper.pose().positionMm - input.proxyInTooth.positionMm).dot(direction),
+                                             0.0, mostLeadMm)
+                                : 0.0;
+        method.bearing(input.proxyInTooth, direction, lead, leastRadiusMm, bearing);
+        const Resistance against = resistanceOf(bearing);
+        if (against.resistancePerK > 0.0) {
+            const double grip = ability.frictionCutting * loadN / against.resistancePerK;
+            result.loadTorqueNmm = grip * against.areaPerK;
+            if (input.speedRadS > 0.0) result.tangentialN = -grip * against.tangentPerK;
+        }
+        if (!(input.speedRadS > 0.0)) {
+            stop();
+            return;
+        }
+        double feed = 0.0;
+        if (against.resistancePerK > 0.0 && !against.held) {
+            const double most = ability.chipMm * ability.edges * input.speedRadS / (2.0 * std::numbers::pi);
+            feed = std::min(std::min(loadN, ability.loadCapN) * input.speedRadS / against.resistancePerK, most);
+        }
+        result.feedMmS = feed;
+        core::Pose cutter = input.proxyInTooth;
+        cutter.positionMm += (lead + feed * input.periodS) * direction;
+        take(sweeper.sweepTo(cutter));
+    }
+
+    std::shared_ptr<tooth::CutField> field;
+    std::shared_ptr<const instrument::Bur> bur;
+    instrument::Ability ability;
+    Settings settings;
+    Sweeper sweeper;
+    double leastRadiusMm, mostLeadMm;
+    std::array<double, tooth::kTissueCount> cuttingMm2PerN{};
+    contact::Bearing bearing;
+    CutResult result;
+};
+
+Cutter::Cutter(std::shared_ptr<tooth::CutField> field, std::shared_ptr<const instrument::Bur> bur,
+               const instrument::Ability& ability, const tooth::TissueTable& tissues, const Settings& settings)
+    : state_(std::make_unique<State>(std::move(field), std::move(bur), ability, tissues, settings)) {
+    const auto notBelowZero = [&](double value, const char* what) {
+        if (std::isfinite(value) && value >= 0.0) return;
+        throw core::Error(std::string(what) + " is not a number of zero or more", "cutting ability " + ability.name,
+                          "correct the ability");
+    };
+    notBelowZero(ability.cutting, "cutting");
+    notBelowZero(ability.loadCapN, "load cap");
+    notBelowZero(ability.frictionCutting, "friction");
+    notBelowZero(ability.chipMm, "chip");
+    notBelowZero(ability.edges, "number of edges");
+    notBelowZero(ability.centreRadius, "centre radius");
+}
+
+Cutter::~Cutter() = default;
+
+const CutResult& Cutter::cut(contact::Method& method, const CutInput& input) noexcept {
+    State& s = *state_;
+    s.result = {};
+    s.result.cutterInTooth = input.proxyInTooth;
+    if (s.settings.fullRemoval) {
+        if (input.speedRadS > 0.0 && input.deviceInTooth.isValid())
+            s.take(s.sweeper.sweepTo(input.deviceInTooth));
+        else
+            s.stop();
+        return s.result;
+    }
+    const double loadN = input.loadN.norm();
+    if (loadN > 0.0 && std::isfinite(loadN) && input.proxyInTooth.isValid())
+        s.cutUnderLoad(method, input, loadN);
+    else
+        s.stop();
+    return s.result;
+}
+
+const CutResult& Cutter::rest() noexcept {
+    State& s = *state_;
+    const core::Pose pose = s.sweeper.pose();
+    s.result = {};
+    s.result.cutterInTooth = pose;
+    s.stop();
+    return s.result;
+}
+
+tooth::CutField& Cutter::field() noexcept {
+    return *state_->field;
+}
+
+}  // namespace handpiece::cutting

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Raises a brick's values to minus the distance to a bur's outline. Plain data, compiled once per instruction set; the
+/// same bits at every one.
+///
+/// Positions are 32-bit integers in the bur's frame, in units so small that their rounding is below a nanometre: sums
+/// of them are exact, so a node has the same position in every brick that holds it, whatever the order of the sums.
+
+#include <cstdint>
+
+#include "handpiece/model/tooth/field_view.h"
+#include "handpiece/model/tooth/tissue.h"
+
+namespace handpiece::cutting {
+
+/// A piece of the outline, in kernel units. A line: its start, unit direction and length; a point's offset from it is
+/// measured along the outward normal (uz, -ur). An arc: its centre, and its chord for telling which points face it.
+struct SweepPiece {
+    float r0, z0;            ///< a line's start; an arc's centre
+    float ur, uz, length;    ///< line
+    float radius, bulge;     ///< arc: radius > 0; bulge +1 convex, -1 concave. A line has radius 0
+    float chordR, chordZ;    ///< arc: unit chord times bulge
+    float chordOffset;       ///< arc: a point (v from the centre) faces it when radius chord x v + chordOffset |v| <= 0
+    float ends[2][2];        ///< arc: its ends
+    float endSign[2];        ///< side on which points beyond an end lie: 0 that of the piece itself, 1 out, -1 in
+    std::int32_t endsCount;  ///< arc: bit e set when the neighbour does not measure to end e
+};
+
+/// All bricks of one pose.
+struct SweepPass {
+    const std::int32_t* offset[3];  ///< kSweepNodes each: node i's place from its brick's first node
+    const std::int32_t* owned;      ///< -1 for nodes that the brick counts, else 0
+    const SweepPiece* pieces;
+    float unitMm;
+    float bandOutMm;
+    float perMm, half;  ///< a value v counts for half - perMm v quanta, rounded, at least 0, at most kSweepQuanta
+    float showsMm;      ///< a rise shows when it comes from below this to above minus this
+};
+inline constexpr int kSweepNodes = tooth::kBrickValues;
+/// Of a node that is all tissue.
+inline constexpr std::int32_t kSweepQuanta = 1 << 23;
+
+/// How much of the outline a brick needs.
+enum class SweepForm : std::uint8_t { general, line, ball };
+
+struct SweepBrick {
+    std::int32_t base[3];       ///< place of the first node
+    const std::uint16_t* list;  ///< the pieces that can be nearest
+    std::int32_t count;
+    SweepForm
+        form;  ///< line: the one piece is a line and every node faces it; ball: the same for an arc round the axis
+    const std::uint8_t* tissue;  ///< per node; null: all of tissue `uniform`
+    std::uint8_t uniform;
+};
+struct SweepOutcome {
+    bool rose, shows;
+    float least;  ///< of the values now
+};
+/// Plain row of brick centres.
+struct SweepRow {
+    std::int32_t base[3], step[3];
+    std::int32_t count;
+};
+
+struct SweepKernels {
+    void (*makeOffsets)(const std::int32_t (&axes)[3][3], std::int32_t* const (&offset)[3]);
+    /// `quanta`: what was taken is added, by tissue.
+    SweepOutcome (*raise)(const SweepPass& pass, const SweepBrick& brick, float* values, std::int64_t* quanta);
+    /// The largest of minus the distance over a brick's nodes [mm].
+    float (*highest)(const SweepPass& pass, const SweepBrick& brick);
+    /// Raises the coarse values (negative, of bricks that are not stored) of a row of bricks; `list` as in SweepBrick.
+    void (*raiseRow)(const SweepPass& pass, const SweepRow& row, const std::uint16_t* list, std::int32_t listCount,
+                     const std::int32_t* brickIndex, float* coarse);
+};
+
+namespace simd_base {
+SweepKernels sweepKernels() noexcept;
+}
+namespace simd_avx2 {
+SweepKernels sweepKernels() noexcept;
+}
+namespace simd_avx512 {
+SweepKernels sweepKernels() noexcept;
+}
+
+}  // namespace handpiece::cutting

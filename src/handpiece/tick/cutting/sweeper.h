@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Takes a bur's envelope away from a field, swept from pose to pose.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "handpiece/base/core/realtime.h"
+#include "handpiece/base/core/simd.h"
+#include "handpiece/base/core/vec.h"
+#include "handpiece/model/instrument/bur.h"
+#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/tick/cutting/outline_table.h"
+
+namespace handpiece::cutting {
+
+/// Every node rises to minus its distance to the bur, at each pose on the way. Near the surface in the same call;
+/// nodes deeper than kDeepVoxels under the bur lag behind it by at most kLagVoxels of its movement until settle().
+///
+/// Allocates at construction alone. One thread, that of the field.
+class Sweeper {
+  public:
+    Sweeper(tooth::CutField& field, const instrument::Bur& bur, core::SimdLevel level);
+
+    struct Outcome {
+        tooth::TissueVolumes removedMm3{};
+        std::uint32_t changedBricks = 0;  ///< a brick counts once a pose
+        std::uint32_t poses = 0;
+    };
+    /// Cuts at `to`, and on the way there from the last pose, if there is one.
+    Outcome sweepTo(const core::Pose& to) noexcept HANDPIECE_REALTIME;
+    /// Brings up what lags behind, and forgets the pose: the next sweep starts where it starts.
+    Outcome settle() noexcept HANDPIECE_REALTIME;
+    [[nodiscard]] bool hasPose() const noexcept { return hasPose_; }
+    [[nodiscard]] const core::Pose& pose() const noexcept { return pose_; }
+
+    static constexpr double kDeepVoxels = 2.0, kLagVoxels = 0.25;
+
+  private:
+    struct Frame;  ///< where the grid lies in the bur's frame
+    /// What is known of a brick since the last settle().
+    struct Memory {
+        double due = 0.0;  ///< travel at which a deep brick is looked at again
+        float least = 0.0f;
+        std::uint32_t epoch = 0;
+    };
+    [[nodiscard]] Frame frameOf(const core::Pose& pose) noexcept;
+    [[nodiscard]] bool rangeNear(const core::Pose& pose, double reachMm, std::int32_t (&low)[3],
+                                 std::int32_t (&high)[3]) const noexcept;
+    void cutAt(const core::Pose& pose, bool all, Outcome& outcome) noexcept;
+    void visit(std::uint32_t dense, const std::int32_t (&base)[3], const OutlineTable::Rectangle& rectangle, bool all,
+               Outcome& outcome) noexcept;
+    [[nodiscard]] std::uint8_t uniformTissue(std::uint32_t dense, std::int32_t stored) noexcept;
+    void raiseCoarse(const core::Pose& pose, bool all) noexcept;
+    [[nodiscard]] double stepsBetween(const core::Pose& from, const core::Pose& to, double& movedMm) const noexcept;
+
+    tooth::CutField& field_;
+    SweepKernels kernels_;
+    double voxelMm_, bandMm_, bandOutMm_, lengthMm_, radiusMm_, unitMm_, stepMm_;
+    OutlineTable outline_, simple_;
+    std::vector<std::int32_t> offsets_, owned_;
+    std::vector<std::uint16_t> list_, simpleList_;
+    std::vector<Memory> memory_;
+    std::vector<std::uint8_t> uniform_;  ///< by dense brick: its tissue, kMixed, or kUnknown
+    SweepPass pass_{}, simplePass_{};
+    std::array<std::int64_t, tooth::kTissueCount> quanta_{};
+    core::Pose pose_;
+    bool hasPose_ = false;
+    double travelMm_ = 0.0;
+    std::uint32_t epoch_ = 1;
+    // The coarse pass: rows of bricks of a box round the bur, some at a time.
+    std::int32_t coarseLow_[3] = {0, 0, 0}, coarseHigh_[3] = {-1, -1, -1};
+    std::int64_t coarseRow_ = 0, coarseRows_ = 0;
+    double coarseTravelMm_ = 0.0;
+};
+
+}  // namespace handpiece::cutting

@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/senses/surface/brick_contour.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "handpiece/senses/surface/cell_cases.h"
+
+namespace handpiece::surface {
+namespace {
+
+using tooth::kBrickNodes;
+using Float3 = std::array<float, 3>;
+
+constexpr int kApron = 2;  ///< layers of nodes taken from the six neighbours
+constexpr int kSide = kBrickNodes + 2 * kApron;
+constexpr int kStride[3] = {1, kSide, kSide* kSide};
+
+/// Slopes that differ by more than this share of a voxel across a node show an edge of the solid; less is curvature.
+constexpr float kKink = 0.15f;
+/// Weight that holds a vertex near the mean of its crossings where the planes leave it free.
+constexpr float kHold = 0.01f;
+/// Cosine between a plane and the mean normal below which the vertex lies on an edge.
+constexpr float kSharpCosine = 0.92f;
+/// Vertices keep this far from the faces of their cell [voxels], so that no two coincide.
+constexpr float kMargin = 1.0f / 512.0f;
+/// Nodes farther from the surface than this [voxels], or with a gradient whose length differs from one by more, are not
+/// asked for the plane that they see.
+constexpr float kNearNode = 1.25f, kUnitSlack = 0.1f;
+constexpr float kNodeHold = 0.003f;
+/// How far a vertex may stand out through a face behind which nothing is [voxels].
+constexpr float kStandOut = 0.5f;
+
+float dot(const Float3& a, const Float3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Values of a brick and two layers round it, in voxels, and what is derived from them a node and an edge at a time.
+class Sampler {
+  public:
+    static int index(int x, int y, int z) { return x + kApron + kSide * (y + kApron + kSide * (z + kApron)); }
+
+    void gather(const BrickSource& source, std::uint32_t dense, const float* own) {
+        const BrickGrid& grid = source.grid();
+        const auto scale = static_cast<float>(1.0 / grid.voxelMm);
+        for (int z = 0; z < kBrickNodes; ++z)
+            for (int y = 0; y < kBrickNodes; ++y) {
+                float* to = &value_[index(0, y, z)];
+                const float* from = own + kBrickNodes * (y + kBrickNodes * z);
+                for (int x = 0; x < kBrickNodes; ++x)
+                    to[x] = scale * from[x];
+            }
+        alignas(32) float scratch[tooth::kBrickValues];
+        for (int side = 0; side < 6; ++side) {
+            const int axis = side / 2, up = side & 1;
+            int step[3] = {0, 0, 0};
+            step[axis] = up != 0 ? 1 : -1;
+            const std::int64_t other = grid.neighbour(dense, step[0], step[1], step[2]);
+            const float* from = other < 0 ? nullptr : source.values(static_cast<std::uint32_t>(other), scratch);
+            takeLayers(axis, up != 0, from, scale);
+        }
+        gradientReady_.fill(0);
+    }
+
+    [[nodiscard]] float at(int i) const { return value_[static_cast<std::size_t>(i)]; }
+
+    /// Gradient at a node, of the function that is in force there: differences are taken away from edges.
+    const Float3& gradient(int i, int node) {
+        Float3& g = gradient_[static_cast<std::size_t>(node)];
+        std::uint64_t& word = gradientReady_[static_cast<std::size_t>(node / 64)];
+        if ((word >> (node % 64) & 1) == 0) {
+            word |= std::uint64_t{1} << (node % 64);
+            for (int k = 0; k < 3; ++k)
+                g[static_cast<std::size_t>(k)] = slope(i, kStride[k]);
+        }
+        return g;
+    }
+
+    /// Where the surface crosses the edge that begins at node `i` along `axis`: a share of it, and the gradient there.
+    struct Crossing {
+        float t;
+        Float3 gradient;
+        bool isClean;
+    };
+    Crossing crossing(int i, int node, int axis) {
+        const int s = kStride[axis];
+        constexpr int kNodeStride[3] = {1, kBrickNodes, kBrickNodes * kBrickNodes};
+        const bool rising = at(i) < 0.0f;
+        // From the inside outwards.
+        const int in = rising ? i : i + s, out = rising ? i + s : i, step = rising ? s : -s;
+        const int inNode = rising ? node : node + kNodeStride[axis], outNode = rising ? node + kNodeStride[axis] : node;
+        const float vIn = at(in), vOut = at(out), mid = vOut - vIn;
+        const float before = vIn - at(in - step), after = at(out + step) - vOut;
+        float t = -vIn / mid;
+        const Float3& gIn = gradient(in, inNode);
+        const Float3& gOut = gradient(out, outNode);
+        int side = 0;  // -1: the function in force inside crosses, +1: the one outside
+        const float bendIn = mid - before, bendOut = after - mid;
+        if (bendIn * bendOut > 0.0f && std::min(std::abs(bendIn), std::abs(bendOut)) > kKink) {
+            // An edge of the solid lies between the nodes: each side is carried on to where it is zero. The solid is
+            // what both leave of it where they bend outwards, and what either leaves where they bend inwards.
+            constexpr float kFar = 2.0f;
+            const float tIn = before > 1e-3f ? -vIn / before : kFar;
+            const float tOut = after > 1e-3f ? 1.0f - vOut / after : -kFar;
+            const bool inFirst = bendIn > 0.0f ? tIn <= tOut : tIn >= tOut;
+            t = std::clamp(inFirst ? tIn : tOut, 0.0f, 1.0f);
+            side = inFirst ? -1 : 1;
+        } else if (dot(gIn, gOut) < 0.9f * std::sqrt(dot(gIn, gIn) * dot(gOut, gOut))) {
+            side = t < 0.5f ? -1 : 1;
+        }
+        Crossing c{rising ? t : 1.0f - t, {}, side == 0};
+        for (std::size_t k = 0; k < 3; ++k)
+            c.gradient[k] = side < 0 ? gIn[k] : side > 0 ? gOut[k] : gIn[k] + t * (gOut[k] - gIn[k]);
+        return c;
+    }
+
+  private:
+    void takeLayers(int axis, bool up, const float* from, float scale) {
+        const int a = axis, u = (axis + 1) % 3, w = (axis + 2) % 3;
+        constexpr int kNodeStride[3] = {1, kBrickNodes, kBrickNodes * kBrickNodes};
+        const int origin = index(0, 0, 0);
+        for (int layer = 1; layer <= kApron; ++layer) {
+            const int here = up ? kBrickNodes - 1 + layer : -layer;
+            const int there = up ? layer : kBrickNodes - 1 - layer;
+            for (int q = 0; q < kBrickNodes; ++q)
+                for (int p = 0; p < kBrickNodes; ++p) {
+                    const int i = origin + here * kStride[a] + p * kStride[u] + q * kStride[w];
+                    const int back = up ? -kStride[a] : kStride[a];
+                    // Beyond the grid the field goes on as it comes.
+                    value_[static_cast<std::size_t>(i)] =
+                        from != nullptr ? scale * from[there * kNodeStride[a] + p * kNodeStride[u] + q * kNodeStride[w]]
+                                        : 2.0f * at(i + back) - at(i + 2 * back);
+                }
+        }
+    }
+
+    [[nodiscard]] float slope(int i, int s) const {
+        const float below = at(i) - at(i - s), above = at(i + s) - at(i);
+        if (std::abs(above - below) <= kKink) return 0.5f * (below + above);
+        const float below2 = at(i - s) - at(i - 2 * s), above2 = at(i + 2 * s) - at(i + s);
+        const float bendBelow = below - below2, bendAbove = above2 - above;
+        return std::abs(bendBelow) < std::abs(bendAbove) ? below + 0.5f * bendBelow : above - 0.5f * bendAbove;
+    }
+
+    std::array<float, kSide * kSide * kSide> value_;
+    std::array<Float3, tooth::kBrickValues> gradient_;
+    std::array<std::uint64_t, (tooth::kBrickValues + 63) / 64> gradientReady_;
+};
+
+/// A plane through a crossing, in voxels from the brick's node 0.
+struct Plane {
+    Float3 point, normal;
+    bool isClean;  ///< both ends of the edge see the same plane
+};
+
+/// The point that lies on all planes as well as may be, within `low`..`high` of the cell's corner.
+struct PlaneSum {
+    Float3 mean{}, normal{};
+    float a[6]{};  ///< xx, xy, xz, yy, yz, zz
+    Float3 b{};
+    float leastCosine = 1.0f;
+    bool isClean = true;
+
+    PlaneSum(const Plane* const* planes, int count) {
+        for (int i = 0; i < count; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                mean[k] += planes[i]->point[k];
+                normal[k] += planes[i]->normal[k];
+            }
+            isClean = isClean && planes[i]->isClean;
+        }
+        const float share = 1.0f / static_cast<float>(count);
+        const float length = std::sqrt(dot(normal, normal));
+        for (std::size_t k = 0; k < 3; ++k) {
+            mean[k] *= share;
+            normal[k] = length > 1e-6f ? normal[k] / length : planes[0]->normal[k];
+        }
+        for (int i = 0; i < count; ++i) {
+            add(planes[i]->normal, planes[i]->point);
+            leastCosine = std::min(leastCosine, dot(planes[i]->normal, normal));
+        }
+        hold(kHold * static_cast<float>(count));
+    }
+    void add(const Float3& n, const Float3& p) {
+        const float off = n[0] * (p[0] - mean[0]) + n[1] * (p[1] - mean[1]) + n[2] * (p[2] - mean[2]);
+        a[0] += n[0] * n[0];
+        a[1] += n[0] * n[1];
+        a[2] += n[0] * n[2];
+        a[3] += n[1] * n[1];
+        a[4] += n[1] * n[2];
+        a[5] += n[2] * n[2];
+        for (std::size_t k = 0; k < 3; ++k)
+            b[k] += n[k] * off;
+    }
+    void hold(float weight) {
+        a[0] += weight;
+        a[3] += weight;
+        a[5] += weight;
+    }
+    void clear() {
+        std::fill(a, a + 6, 0.0f);
+        b = {};
+    }
+
+    /// Offset from the mean, free.
+    [[nodiscard]] Float3 solve() const {
+        // Symmetric and positive definite: by cofactors.
+        const float c00 = a[3] * a[5] - a[4] * a[4], c01 = a[2] * a[4] - a[1] * a[5], c02 = a[1] * a[4] - a[2] * a[3];
+        const float c11 = a[0] * a[5] - a[2] * a[2], c12 = a[1] * a[2] - a[0] * a[4], c22 = a[0] * a[3] - a[1] * a[1];
+        const float inverse = 1.0f / (a[0] * c00 + a[1] * c01 + a[2] * c02);
+        return {inverse * (c00 * b[0] + c01 * b[1] + c02 * b[2]), inverse * (c01 * b[0] + c11 * b[1] + c12 * b[2]),
+                inverse * (c02 * b[0] + c12 * b[1] + c22 * b[2])};
+    }
+    /// The same where each coordinate is held to a range: one coordinate after the other, which comes to rest at the
+    /// best point of the box.
+    void solveWithin(const Float3& low, const Float3& high, Float3& x) const {
+        for (std::size_t k = 0; k < 3; ++k)
+            x[k] = std::clamp(x[k], low[k], high[k]);
+        for (int round = 0; round < 12; ++round) {
+            x[0] = std::clamp((b[0] - a[1] * x[1] - a[2] * x[2]) / a[0], low[0], high[0]);
+            x[1] = std::clamp((b[1] - a[1] * x[0] - a[4] * x[2]) / a[3], low[1], high[1]);
+            x[2] = std::clamp((b[2] - a[2] * x[0] - a[4] * x[1]) / a[5], low[2], high[2]);
+        }
+    }
+};
+
+/// The work of one brick; kept by each thread, because it is large.
+class Contourer {
+  public:
+    bool contour(const BrickSource& source, std::uint32_t dense, BrickContour& out) {
+        alignas(32) float scratch[tooth::kBrickValues];
+        const float* own = source.values(dense, scratch);
+        unsigned any = 0, all = 0x1ff;
+        for (std::size_t row = 0; row < 81; ++row) {
+            const float* v = own + kBrickNodes * row;
+            unsigned bits = 0;
+            for (unsigned x = 0; x < 9; ++x)
+                bits |= static_cast<unsigned>(v[x] < 0.0f) << x;
+            out.rows[row] = static_cast<std::uint16_t>(bits);
+            any |= bits;
+            all &= bits;
+        }
+        if (any == 0 || all == 0x1ff) return false;
+        sampler_.gather(source, dense, own);
+        out.cases.fill(0);
+        out.vertices.clear();
+        out.reach = 0;
+        planeCount_ = 0;
+        for (auto& axis : planeOf_)
+            axis.fill(kNone);
+        const BrickGrid& grid = source.grid();
+        const std::array<std::int32_t, 3> brick = grid.at(dense);
+        for (std::size_t k = 0; k < 3; ++k)
+            cornerMm_[k] = grid.originMm[static_cast<int>(k)] + grid.voxelMm * (tooth::kBrickCells * brick[k]);
+        voxelMm_ = grid.voxelMm;
+        for (int z = 0; z < 8; ++z)
+            for (int y = 0; y < 8; ++y) {
+                const unsigned r0 = row(out, y, z), r1 = row(out, y + 1, z), r2 = row(out, y, z + 1),
+                               r3 = row(out, y + 1, z + 1);
+                const unsigned some = r0 | r1 | r2 | r3, every = r0 & r1 & r2 & r3;
+                unsigned active = (some | some >> 1) & ~(every & every >> 1) & 0xff;
+                for (; active != 0; active &= active - 1) {
+                    const int x = std::countr_zero(active);
+                    const unsigned bits = (r0 >> x & 3) | (r1 >> x & 3) << 2 | (r2 >> x & 3) << 4 | (r3 >> x & 3) << 6;
+                    addCell(out, x, y, z, bits);
+                }
+            }
+        return !out.vertices.empty();
+    }
+
+  private:
+    static constexpr std::uint16_t kNone = 0xffff;
+
+    static unsigned row(const BrickContour& out, int y, int z) { return out.rows[static_cast<std::size_t>(y + 9 * z)]; }
+
+    const Plane& planeOn(int x, int y, int z, int edge) {
+        const int axis = edge / 4, corner = edgeCorner(edge);
+        const int nx = x + (corner & 1), ny = y + (corner >> 1 & 1), nz = z + (corner >> 2 & 1);
+        const int node = nx + kBrickNodes * (ny + kBrickNodes * nz);
+        std::uint16_t& slot = planeOf_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(node)];
+        if (slot == kNone) {
+            slot = planeCount_++;
+            const Sampler::Crossing c = sampler_.crossing(Sampler::index(nx, ny, nz), node, axis);
+            Plane& plane = planes_[slot];
+            plane.point = {static_cast<float>(nx), static_cast<float>(ny), static_cast<float>(nz)};
+            plane.point[static_cast<std::size_t>(axis)] += c.t;
+            plane.isClean = c.isClean;
+            const float length = std::sqrt(dot(c.gradient, c.gradient));
+            for (std::size_t k = 0; k < 3; ++k)
+                plane.normal[k] = length > 1e-6f ? c.gradient[k] / length : 0.0f;
+        }
+        return planes_[slot];
+    }
+
+    /// Of faces whose inside corners are diagonal to each other, those with the saddle between them inside: the same
+    /// for the cells on both sides.
+    unsigned joinedFaces(const int (&at)[3], unsigned faces) const {
+        unsigned joined = 0;
+        const int origin = Sampler::index(at[0], at[1], at[2]);
+        for (; faces != 0; faces &= faces - 1) {
+            const int face = std::countr_zero(faces);
+            float v[4];
+            const std::array<int, 4> corners = faceCorners(face);
+            for (std::size_t i = 0; i < 4; ++i)
+                v[i] = sampler_.at(origin + (corners[i] & 1) + (corners[i] >> 1 & 1) * kStride[1] +
+                                   (corners[i] >> 2) * kStride[2]);
+            const float inside = v[0] < 0.0f ? v[0] * v[2] : v[1] * v[3];
+            const float outside = v[0] < 0.0f ? v[1] * v[3] : v[0] * v[2];
+            if (inside > outside) joined |= 1u << face;
+        }
+        return joined;
+    }
+
+    void addCell(BrickContour& out, int x, int y, int z, unsigned bits) {
+        const int at[3] = {x, y, z};
+        if (ambiguousFaces()[bits] != 0) bits |= joinedFaces(at, ambiguousFaces()[bits]) << 8;
+        const CellCase& cell = cellCases()[bits];
+        for (int k = 0; k < 3; ++k)
+            out.reach = static_cast<std::uint8_t>(out.reach | (at[k] < kApron ? 1 << (2 * k) : 0) |
+                                                  (at[k] >= 8 - kApron ? 2 << (2 * k) : 0));
+        const auto number = static_cast<std::uint16_t>(x + 8 * (y + 8 * z));
+        out.cases[number] = static_cast<std::uint16_t>(bits);
+        out.first[number] = static_cast<std::uint16_t>(out.vertices.size());
+        for (std::uint8_t sheet = 0; sheet < cell.sheets; ++sheet) {
+            const Plane* planes[12];
+            int count = 0;
+            for (std::size_t i = 0; i < cell.edgeCount; ++i)
+                if (cell.sheetOf[cell.edges[i]] == sheet) planes[count++] = &planeOn(x, y, z, cell.edges[i]);
+            addVertex(out, number, at, planes, count, cell.sheets == 1);
+        }
+    }
+
+    void addVertex(BrickContour& out, std::uint16_t number, const int (&at)[3], const Plane* const* planes, int count,
+                   bool isAlone) {
+        PlaneSum sum(planes, count);
+        SheetVertex vertex;
+        vertex.cell = number;
+        vertex.isSharp = sum.leastCosine < kSharpCosine;
+        vertex.normal = sum.normal;
+        if (vertex.isSharp || !sum.isClean) takeNodePlanes(sum, at, planes, count);
+        Float3 x = sum.solve();
+        Float3 low, high;
+        bool within = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = static_cast<float>(at[k]) + kMargin - sum.mean[k];
+            high[k] = static_cast<float>(at[k] + 1) - kMargin - sum.mean[k];
+            within = within && x[k] >= low[k] && x[k] <= high[k];
+        }
+        if (!within) {
+            if (vertex.isSharp && isAlone) letStandOut(at, x, low, high);
+            sum.solveWithin(low, high, x);
+        }
+        for (std::size_t k = 0; k < 3; ++k)
+            vertex.positionMm[k] =
+                static_cast<float>(cornerMm_[k] + voxelMm_ * (static_cast<double>(sum.mean[k]) + x[k]));
+        out.vertices.push_back(vertex);
+    }
+
+    /// Near an edge of the solid: planes at the distance that each node of the cell tells, along its own gradient, so
+    /// that none is of two minds.
+    void takeNodePlanes(PlaneSum& sum, const int (&at)[3], const Plane* const* planes, int count) {
+        Float3 normals[8], feet[8];
+        int taken = 0;
+        for (int c = 0; c < 8; ++c) {
+            const int n[3] = {at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2)};
+            const int i = Sampler::index(n[0], n[1], n[2]);
+            const float v = sampler_.at(i);
+            if (std::abs(v) > kNearNode) continue;
+            const Float3& g = sampler_.gradient(i, n[0] + kBrickNodes * (n[1] + kBrickNodes * n[2]));
+            const float length = std::sqrt(dot(g, g));
+            if (std::abs(length - 1.0f) > kUnitSlack) continue;
+            bool isNear = true;
+            for (std::size_t k = 0; k < 3; ++k) {
+                normals[taken][k] = g[k] / length;
+                feet[taken][k] = static_cast<float>(n[k]) - v * normals[taken][k];
+                const float inCell = feet[taken][k] - static_cast<float>(at[k]);
+                isNear = isNear && inCell > -kStandOut && inCell < 1.0f + kStandOut;
+            }
+            if (isNear) ++taken;
+        }
+        if (taken < 3) return;
+        sum.clear();
+        for (int i = 0; i < taken; ++i)
+            sum.add(normals[i], feet[i]);
+        for (int i = 0; i < count; ++i)
+            if (planes[i]->isClean) sum.add(planes[i]->normal, planes[i]->point);
+        sum.hold(kNodeHold * static_cast<float>(taken));
+    }
+
+    /// An edge of the solid may stand out of a cell between its nodes. Where the cell behind that face has no surface,
+    /// the vertex may follow it there; through one face only.
+    void letStandOut(const int (&at)[3], const Float3& x, Float3& low, Float3& high) const {
+        int axis = -1;
+        bool up = false;
+        float most = 0.0f;
+        for (int k = 0; k < 3; ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            const float below = low[i] - x[i], above = x[i] - high[i];
+            if (std::max(below, above) <= most) continue;
+            most = std::max(below, above);
+            axis = k;
+            up = above > below;
+        }
+        if (axis < 0) return;
+        const int u = (axis + 1) % 3, w = (axis + 2) % 3;
+        int corner[3] = {at[0], at[1], at[2]};
+        corner[axis] += up ? 1 : -1;
+        const int i = Sampler::index(corner[0], corner[1], corner[2]);
+        const bool inside = sampler_.at(i) < 0.0f;
+        for (int c = 1; c < 8; ++c) {
+            const int j = i + (c & 1) * kStride[axis] + (c >> 1 & 1) * kStride[u] + (c >> 2 & 1) * kStride[w];
+            if ((sampler_.at(j) < 0.0f) != inside) return;
+        }
+        const auto k = static_cast<std::size_t>(axis);
+        (up ? high[k] : low[k]) += up ? kStandOut : -kStandOut;
+    }
+
+    Sampler sampler_;
+    std::array<std::array<std::uint16_t, tooth::kBrickValues>, 3> planeOf_;
+    std::array<Plane, 3 * tooth::kBrickValues> planes_;
+    std::uint16_t planeCount_ = 0;
+    std::array<double, 3> cornerMm_{};
+    double voxelMm_ = 0.0;
+};
+
+}  // namespace
+
+bool contourBrick(const BrickSource& source, std::uint32_t dense, BrickContour& out) {
+    static thread_local Contourer contourer;
+    return contourer.contour(source, dense, out);
+}
+
+}  // namespace handpiece::surface

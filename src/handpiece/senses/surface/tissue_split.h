@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Makes a renderer's mesh of a list of triangles: each of one tissue, cut where tissues meet. Private to this room.
+
+#include <memory>
+#include <vector>
+
+#include "handpiece/model/tooth/tissue_map.h"
+#include "handpiece/senses/surface/triangle_list.h"
+
+namespace handpiece::surface {
+
+/// Kept and used again, for its memory. One thread.
+class TissueSplitter {
+  public:
+    /// The mesh of `list`; null when it is empty. An edge is cut at the same point whoever asks.
+    std::shared_ptr<const BrickMesh> mesh(const TriangleList& list, const LowNeighbours& bricks,
+                                          const tooth::TissueMap* tissues);
+
+  private:
+    using Ref = TriangleList::Ref;
+    struct Point {
+        std::array<float, 3> positionMm, normal;
+    };
+    std::uint16_t corner(const TriangleList& list, Ref ref, const std::array<float, 3>& flat);
+    std::uint16_t add(const Point& point, tooth::Tissue tissue);
+    [[nodiscard]] Point cut(const SheetVertex& a, const SheetVertex& b, const tooth::TissueMap& tissues) const;
+    void splitInTwo(const TriangleList& list, const std::array<Ref, 3>& t, const tooth::TissueMap& tissues);
+    void splitInThree(const TriangleList& list, const std::array<Ref, 3>& t, const tooth::TissueMap& tissues);
+
+    std::vector<std::uint16_t> placed_;  ///< by vertex of the bricks: its number in the mesh
+    std::array<std::size_t, 9> first_{};
+    BrickMesh mesh_;
+};
+
+}  // namespace handpiece::surface

@@ -50,6 +50,14 @@ struct CuttableTooth {
 [[nodiscard]] std::shared_ptr<const CuttableTooth> prepareCutting(std::shared_ptr<const Tooth> tooth, TissueMap tissues,
                                                                   const CutSettings& settings = {});
 
+/// The same from a case, the tissues from its parts; kept in a cache file beside the field's, as `cache` says, and
+/// reopened from there. `tooth` is that case's. Throws core::Error as prepareTooth does.
+[[nodiscard]] std::shared_ptr<const CuttableTooth> prepareCutting(const Case& toothCase,
+                                                                  std::shared_ptr<const Tooth> tooth,
+                                                                  const PrepareSettings& cache,
+                                                                  const CutSettings& settings = {},
+                                                                  const core::Progress& progress = {});
+
 /// One brick as it is now, by value: how listeners learn of a cut.
 struct BrickSnapshot {
     std::uint32_t dense = 0;  ///< which brick: index x + bricks_x (y + bricks_y z)

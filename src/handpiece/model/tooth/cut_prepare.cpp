@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <atomic>
+#include <vector>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/tooth/cut_volumes.h"
+#include "handpiece/model/tooth/field_builder.h"
+#include "handpiece/model/tooth/field_cache.h"
+#include "handpiece/model/tooth/tissue_cache.h"
 
 namespace handpiece::tooth {
 namespace {
@@ -148,6 +151,41 @@ std::shared_ptr<const CuttableTooth> prepareCutting(std::shared_ptr<const Tooth>
     base->tooth = std::move(tooth);
     base->tissues = std::move(tissues);
     base->volumesMm3 = integrateVolumes(*base, [](std::uint32_t) -> const float* { return nullptr; });
+    return base;
+}
+
+std::shared_ptr<const CuttableTooth> prepareCutting(const Case& toothCase, std::shared_ptr<const Tooth> tooth,
+                                                    const PrepareSettings& cache, const CutSettings& settings,
+                                                    const core::Progress& progress) {
+    core::report(progress, 0.0);
+    if (toothCase.parts.size() <= 1) {
+        const Tissue only = toothCase.parts.empty() ? Tissue::enamel : toothCase.parts[0].tissue;
+        TissueMap map = TissueMap::uniform(tooth->field, only);
+        return prepareCutting(std::move(tooth), std::move(map), settings);
+    }
+    std::vector<std::filesystem::path> places;
+    std::uint64_t key = 0;
+    if (cache.useCache) {
+        key = tissueKey(cacheKey(toothCase, tooth->field.settings()));
+        places = cachePlaces(toothCase, cache.cacheFolder, key);
+        for (std::filesystem::path& place : places) {
+            place.replace_extension(".tissues");
+            if (std::optional<TissueMap> map = readTissueFile(place, tooth->field, key))
+                return prepareCutting(std::move(tooth), std::move(*map), settings);
+        }
+    }
+    std::vector<geometry::TriangleTree> trees;
+    trees.reserve(toothCase.parts.size());
+    std::vector<PartSurface> parts;
+    for (const Part& part : toothCase.parts) {
+        parts.push_back({&trees.emplace_back(part.mesh), part.tissue, part.priority});
+        core::report(progress, 0.1);
+    }
+    TissueMap map = TissueMap::fromParts(tooth->field, parts,
+                                         [&](double fraction) { return !progress || progress(0.1 + 0.8 * fraction); });
+    if (!places.empty()) (void)writeFieldFile(places, encodeTissues(map, key));
+    auto base = prepareCutting(std::move(tooth), std::move(map), settings);
+    core::report(progress, 1.0);
     return base;
 }
 

@@ -46,24 +46,6 @@ std::uint64_t headerHashOf(const Header& header) {
     return hasher.value();
 }
 
-/// Pieces of a mebibyte hashed side by side: the same number at any thread count.
-std::uint64_t hashOf(std::span<const std::byte> data) {
-    constexpr std::size_t kPiece = 1 << 20;
-    std::vector<std::uint64_t> pieces((data.size() + kPiece - 1) / kPiece);
-    core::parallelFor(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            core::Hasher hasher;
-            hasher.add(data.subspan(i * kPiece, std::min(kPiece, data.size() - i * kPiece)));
-            pieces[i] = hasher.value();
-        }
-    });
-    core::Hasher hasher;
-    hasher.add(std::uint64_t{data.size()});
-    for (const std::uint64_t piece : pieces)
-        hasher.add(piece);
-    return hasher.value();
-}
-
 struct CloseFile {
     void operator()(std::FILE* file) const noexcept { std::fclose(file); }
 };
@@ -178,6 +160,23 @@ class FieldStorage {
                            [&](std::int32_t i) { return i >= -1 && i < stored; });
     }
 };
+
+std::uint64_t hashOf(std::span<const std::byte> data) {
+    constexpr std::size_t kPiece = 1 << 20;
+    std::vector<std::uint64_t> pieces((data.size() + kPiece - 1) / kPiece);
+    core::parallelFor(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            core::Hasher hasher;
+            hasher.add(data.subspan(i * kPiece, std::min(kPiece, data.size() - i * kPiece)));
+            pieces[i] = hasher.value();
+        }
+    });
+    core::Hasher hasher;
+    hasher.add(std::uint64_t{data.size()});
+    for (const std::uint64_t piece : pieces)
+        hasher.add(piece);
+    return hasher.value();
+}
 
 std::uint64_t cacheKey(const Case& toothCase, const FieldSettings& settings) {
     core::Hasher hasher;

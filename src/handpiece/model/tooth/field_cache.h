@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "handpiece/base/geometry/triangle_tree.h"
@@ -22,6 +23,9 @@ struct CachedField {
 
 /// A number that differs when the surfaces, tissues, settings or the format do.
 [[nodiscard]] std::uint64_t cacheKey(const Case& toothCase, const FieldSettings& settings);
+
+/// A checksum of bytes, on all threads: pieces of a mebibyte hashed side by side, the same number at any thread count.
+[[nodiscard]] std::uint64_t hashOf(std::span<const std::byte> data);
 
 /// The bytes of a cache file.
 [[nodiscard]] std::vector<std::byte> encodeField(const ToothField& field, const geometry::TriangleTree& tree,

@@ -75,6 +75,7 @@ class TissueMap {
     static constexpr int kUnitsAVoxel = 32;
 
   private:
+    friend class TissueStorage;
     explicit TissueMap(const ToothField& grid);
     /// Lays the bricks, by dense index, one after the other.
     void assemble(std::vector<BrickTissues> bricks);

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Finished tissue maps on disk, beside the field's cache. docs/formats/tissue-cache.md has the format.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "handpiece/model/tooth/tissue_map.h"
+
+namespace handpiece::tooth {
+
+/// A number that differs when the field's key (cacheKey()) or this format does.
+[[nodiscard]] std::uint64_t tissueKey(std::uint64_t fieldKey);
+
+/// The bytes of a cache file.
+[[nodiscard]] std::vector<std::byte> encodeTissues(const TissueMap& map, std::uint64_t key);
+
+/// What the file holds, or nothing when it is missing, unreadable, of another key, grid or format, truncated or
+/// damaged: then the caller builds anew. Sizes are believed only after the header's checksum and the file's own length
+/// agree with them.
+[[nodiscard]] std::optional<TissueMap> readTissueFile(const std::filesystem::path& path, const ToothField& grid,
+                                                      std::uint64_t key);
+
+}  // namespace handpiece::tooth

@@ -150,4 +150,12 @@ tooth::CutField& Cutter::field() noexcept {
     return *state_->field;
 }
 
+const tooth::CutField& Cutter::field() const noexcept {
+    return *state_->field;
+}
+
+double Cutter::largestRadiusMm() const noexcept {
+    return state_->bur->maxRadiusMm();
+}
+
 }  // namespace handpiece::cutting

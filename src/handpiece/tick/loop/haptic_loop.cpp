@@ -1,7 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/tick/loop/haptic_loop.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace handpiece::loop {
+namespace {
+
+/// What a record holds exactly: what is computed is computed from these.
+constexpr double kPositionSteps = 1 << 20;  // a millimetre
+constexpr double kQuaternionSteps = 1 << 30;
+constexpr double kPedalSteps = 1 << 16;
+/// Bricks handed over in a tick, and put in place by an undo.
+constexpr std::size_t kBricksPerTick = 16, kRestoredPerTick = 32;
+/// The bur's surface moves at this radius, as a share of the largest, in the mean over its head.
+constexpr double kMeanRadius = 2.0 / 3.0;
+
+double rounded(double x, double steps) noexcept {
+    const double scaled = x * steps;
+    return std::abs(scaled) < 2147483647.0 ? std::nearbyint(scaled) / steps : x;
+}
+
+}  // namespace
 
 void HapticLoop::tick(const rt::Beat& beat) noexcept {
     const std::int64_t startedNs = rt::monotonicNs();
@@ -11,30 +31,103 @@ void HapticLoop::tick(const rt::Beat& beat) noexcept {
     takeStagedCommands();
 
     // Read the pose.
-    const device::Reading reading = device_->read(elapsedS);
+    const device::Reading reading = readDevice(elapsedS);
     // Find contacts.
     const bool lost = reading.status != device::ReadStatus::ok;
-    const force::Touch& touch = force_.feel(*method_.current(), reading.burInTooth, lost, elapsedS);
+    const force::Touch& touch = force_.feel(*work_.current()->value.method, reading.burInTooth, lost, elapsedS);
     // Compute the force.
-    const force::ForceCommand& command = force_.compute(touch, elapsedS);
+    const force::ForceCommand& command = force_.compute(touch, elapsedS, turning_);
     // Send it to the hand.
     device_->command(command.forceN, command.torqueNmm);
+    const std::int64_t sentNs = rt::monotonicNs();
+    // Then cut: that never delays the hand.
+    cut(reading, touch, command, elapsedS);
 
-    const std::int64_t workNs = rt::monotonicNs() - startedNs;
+    const std::int64_t workNs = sentNs - startedNs, cutNs = rt::monotonicNs() - sentNs;
     lateTicks_ += static_cast<double>(beat.lateNs + workNs) * 1e-9 > periodS_;
     missedPeriods_ += static_cast<std::uint64_t>(beat.periods - 1);
     ++ticksDone_;
     // Publish.
-    publish(reading, touch, command, workNs, beat.lateNs);
+    publish(reading, touch, command, beat, workNs, cutNs);
+}
+
+device::Reading HapticLoop::readDevice(double elapsedS) noexcept {
+    device::Reading reading = device_->read(elapsedS);
+    for (int k = 0; k < 3; ++k)
+        reading.burInTooth.positionMm[k] = rounded(reading.burInTooth.positionMm[k], kPositionSteps);
+    for (int k = 0; k < 4; ++k)
+        reading.burInTooth.orientation.coeffs()[k] =
+            rounded(reading.burInTooth.orientation.coeffs()[k], kQuaternionSteps);
+    reading.pedal = std::isfinite(reading.pedal) ? rounded(std::clamp(reading.pedal, 0.0, 1.0), kPedalSteps) : 0.0;
+    return reading;
+}
+
+void HapticLoop::took(std::uint64_t number) noexcept {
+    lastCommand_ = std::max(lastCommand_, number);
 }
 
 void HapticLoop::takeStagedCommands() noexcept {
-    if (parameters_.swap()) force_.setParameters(*parameters_.current());
-    if (method_.swap()) force_.waitUntilClear();
+    if (parameters_.swap()) {
+        force_.setParameters(parameters_.current()->value);
+        took(parameters_.current()->number);
+    }
+    if (drive_.swap()) {
+        rotor_.setDrive(drive_.current()->value);
+        took(drive_.current()->number);
+    }
+    if (work_.swap()) {
+        force_.waitUntilClear();
+        cut_ = cutting::CutResult{};
+        turning_ = force::Turning{};
+        took(work_.current()->number);
+    }
+    if (restore_.swap()) {
+        isRestoring_ = true;
+        took(restore_.current()->number);
+    }
+}
+
+void HapticLoop::cut(const device::Reading& reading, const force::Touch& touch, const force::ForceCommand& command,
+                     double elapsedS) noexcept {
+    // A hand whose pose is in doubt does not hold the pedal either.
+    const double pedal = force_.guard().faulted() ? 0.0 : reading.pedal;
+    rotor_.step(pedal, cut_.loadTorqueNmm, elapsedS);
+    cutFlags_ = rotor_.stalled() && pedal > 0.0 ? messages::kStalled : 0u;
+    cutting::Cutter* cutter = work_.current()->value.cutter.get();
+    if (cutter == nullptr) {
+        isRestoring_ = false;  // nothing there that could change
+        restoring_.store(false, std::memory_order_release);
+        return;
+    }
+    if (isRestoring_) {
+        cut_ = cutter->rest();
+        restoreSome();
+    } else if (pedal > 0.0 && !force_.waiting()) {
+        cut_ = cutter->cut(*work_.current()->value.method,
+                           {touch.proxyInTooth, touch.deviceInTooth, command.loadN, rotor_.speedRadS(), elapsedS});
+        if (std::any_of(cut_.removedMm3.begin(), cut_.removedMm3.end(), [](double v) { return v > 0.0; }))
+            cutFlags_ |= messages::kCutting;
+    } else {
+        cut_ = cutter->rest();
+    }
+    turning_.tangentialN = cut_.tangentialN;
+    turning_.surfaceSpeedMmS = rotor_.speedRadS() * kMeanRadius * cutter->largestRadiusMm();
+    if (cutter->field().outOfBricks()) cutFlags_ |= messages::kOutOfBricks;
+    cutter->field().handOver(kBricksPerTick,
+                             [this](const tooth::BrickSnapshot& brick) noexcept { return bricks_.tryPush(brick); });
+}
+
+void HapticLoop::restoreSome() noexcept {
+    Restore& restore = restore_.current()->value;
+    cutFlags_ |= messages::kRestoring;
+    force_.waitUntilClear();  // until the last brick is in place
+    restore.next = work_.current()->value.cutter->field().restore(restore.change, restore.next, kRestoredPerTick);
+    isRestoring_ = restore.next < restore.change.bricks.size();
+    if (!isRestoring_) restoring_.store(false, std::memory_order_release);
 }
 
 void HapticLoop::publish(const device::Reading& reading, const force::Touch& touch, const force::ForceCommand& command,
-                         std::int64_t workNs, std::int64_t lateNs) noexcept {
+                         const rt::Beat& beat, std::int64_t workNs, std::int64_t cutNs) noexcept {
     const auto array = [](const core::Vec3& v) { return std::array<double, 3>{v.x(), v.y(), v.z()}; };
     const auto wxyz = [](const core::Quat& q) { return std::array<double, 4>{q.w(), q.x(), q.y(), q.z()}; };
     messages::HapticSample sample;
@@ -54,13 +147,24 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     sample.tissue = static_cast<std::uint8_t>(touch.tissue);
     sample.contactStatus = static_cast<std::uint8_t>(touch.depth.status);
     sample.patchCount = static_cast<std::uint16_t>(touch.patches.patches.size());
-    sample.flags = (command.forceLimited ? messages::kForceLimited : 0u) |
+    sample.flags = cutFlags_ | (command.forceLimited ? messages::kForceLimited : 0u) |
                    (command.slopeLimited ? messages::kSlopeLimited : 0u) |
                    (force_.guard().invalidNow() ? messages::kInvalidPose : 0u) |
-                   (force_.guard().faulted() ? messages::kFault : 0u) |
-                   (force_.waiting() ? messages::kWaiting : 0u);
+                   (force_.guard().faulted() ? messages::kFault : 0u) | (force_.waiting() ? messages::kWaiting : 0u);
     sample.workUs = static_cast<float>(static_cast<double>(workNs) * 1e-3);
-    sample.lateUs = static_cast<float>(static_cast<double>(lateNs) * 1e-3);
+    sample.lateUs = static_cast<float>(static_cast<double>(beat.lateNs) * 1e-3);
+    sample.cutUs = static_cast<float>(static_cast<double>(cutNs) * 1e-3);
+    sample.feedMmS = static_cast<float>(cut_.feedMmS);
+    sample.elapsedPeriods = static_cast<std::int32_t>(beat.periods);
+    sample.buttons = reading.buttons;
+    sample.lastCommand = lastCommand_;
+    sample.pedal = reading.pedal;
+    sample.speedRpm = rotor_.speedRpm();
+    sample.loadTorqueNmm = cut_.loadTorqueNmm;
+    if (const cutting::Cutter* cutter = work_.current()->value.cutter.get()) {
+        sample.removedMm3 = cutter->field().removedMm3();
+        sample.waitingBricks = static_cast<std::uint32_t>(cutter->field().waitingBricks());
+    }
     samples_.tryPush(sample);
 }
 

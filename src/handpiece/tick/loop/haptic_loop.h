@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The tick: device -> contact -> force, at a fixed rate, on simulated or on wall-clock time.
+/// The tick: device -> contact -> force -> cutting, at a fixed rate, on simulated or on wall-clock time.
 
 #include <atomic>
 #include <cstdint>
@@ -14,7 +14,10 @@
 #include "handpiece/base/rt/clock.h"
 #include "handpiece/base/rt/spsc_queue.h"
 #include "handpiece/base/rt/staged.h"
+#include "handpiece/model/instrument/rotor.h"
+#include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/tick/contact/method.h"
+#include "handpiece/tick/cutting/cutter.h"
 #include "handpiece/tick/device/device.h"
 #include "handpiece/tick/force/force_model.h"
 
@@ -24,6 +27,13 @@ struct LoopSettings {
     double rateHz = 1000;               ///< 1, 2, 4 or 8 kHz by design; anything from 100 to 10,000 runs
     std::size_t queueCapacity = 16384;  ///< samples a slow listener may lag behind
     double spinUs = 0.0;                ///< busy waiting before each tick, on the wall clock
+    std::size_t brickCapacity = 2048;   ///< changed bricks on their way to a listener; more wait in the tooth
+};
+
+/// One bur at one tooth: how they touch, and, for a tooth that can be cut, what the bur takes off.
+struct Work {
+    std::unique_ptr<contact::Method> method;
+    std::unique_ptr<cutting::Cutter> cutter;  ///< null: touching only. Cuts the field that `method` feels
 };
 
 /// Percentiles of a quantity over a run.
@@ -42,30 +52,42 @@ struct RunReport {
 
 /// Fetches each sample, in order; called off the tick.
 using Listener = std::function<void(const messages::HapticSample&)>;
+/// Fetches each brick that a cut has changed, as it then was; called off the tick.
+using BrickListener = std::function<void(const tooth::BrickSnapshot&)>;
 
-/// Owns a device, a contact method and a force model and composes them, tick by tick.
+/// Owns a device, a contact method, a force model, a rotor and a cutter and composes them, tick by tick.
 ///
-/// Parameters and method can be replaced while it runs, from one other thread: they are prepared there, swapped in
-/// between two ticks and disposed of there.
+/// Parameters, bur, tooth and drive can be replaced while it runs, from one other thread: they are prepared there,
+/// swapped in between two ticks and disposed of there. Each such command has a number; a sample tells the newest that
+/// has taken effect, so that a record can be replayed.
 class HapticLoop {
   public:
     /// Throws core::Error for a rate that cannot be run, limits or parameters out of range.
     HapticLoop(const LoopSettings& settings, std::unique_ptr<device::Device> device,
                std::unique_ptr<contact::Method> method, const force::Parameters& parameters);
+    HapticLoop(const LoopSettings& settings, std::unique_ptr<device::Device> device, Work work,
+               const force::Parameters& parameters, const instrument::Drive& drive = {});
 
     /// As fast as possible on simulated time: the same inputs give the same samples, bit for bit, but for workUs and
     /// lateUs.
-    RunReport runSimulated(double durationS, const Listener& listener = {});
+    RunReport runSimulated(double durationS, const Listener& listener = {}, const BrickListener& bricks = {});
     /// On the wall clock, in a thread with what real-time privileges there are; this thread feeds the listener
     /// meanwhile.
-    RunReport runRealTime(double durationS, const Listener& listener = {});
+    RunReport runRealTime(double durationS, const Listener& listener = {}, const BrickListener& bricks = {});
     /// Ends a run after the tick under way. Any thread, also a signal handler.
     void requestStop() noexcept { stop_.store(true, std::memory_order_relaxed); }
 
-    /// Takes effect at the next tick. Throws core::Error for values out of range. Not from the tick.
-    void setParameters(const force::Parameters& parameters);
-    /// Another tooth or another bur; the force fades in. Not from the tick.
-    void setMethod(std::unique_ptr<contact::Method> method);
+    /// Take effect at the next tick; return the command's number. Throw core::Error for values out of range. From one
+    /// thread that is not the tick's. Of two of a kind given within a tick only the later one takes effect.
+    std::uint64_t setParameters(const force::Parameters& parameters);
+    std::uint64_t setDrive(const instrument::Drive& drive);
+    /// Another tooth or another bur: no force until the bur is clear of it, then it fades in.
+    std::uint64_t setWork(Work work);
+    std::uint64_t setMethod(std::unique_ptr<contact::Method> method);
+    /// Undo, redo, reset: puts bricks of the tooth in place, some a tick; no force until that is done and the bur is
+    /// clear. Throws core::Error while an earlier change is still being put in place, and when no tooth can be cut.
+    std::uint64_t restore(tooth::CutState change);
+    [[nodiscard]] bool restoring() const noexcept { return restoring_.load(std::memory_order_acquire); }
 
     /// One tick. For run...() and for tests.
     void tick(const rt::Beat& beat) noexcept HANDPIECE_REALTIME;
@@ -74,22 +96,48 @@ class HapticLoop {
     [[nodiscard]] double periodS() const noexcept { return periodS_; }
     /// The samples, for a listener of one's own instead of run...()'s. One consumer.
     [[nodiscard]] rt::SpscQueue<messages::HapticSample>& samples() noexcept { return samples_; }
+    [[nodiscard]] rt::SpscQueue<tooth::BrickSnapshot>& bricks() noexcept { return bricks_; }
 
   private:
+    template <class T>
+    struct Command {
+        T value;
+        std::uint64_t number = 0;
+    };
+    struct Restore {
+        tooth::CutState change;
+        std::size_t next = 0;
+    };
     class Statistics;
     void takeStagedCommands() noexcept;
+    void took(std::uint64_t number) noexcept;
+    [[nodiscard]] device::Reading readDevice(double elapsedS) noexcept;
+    void cut(const device::Reading& reading, const force::Touch& touch, const force::ForceCommand& command,
+             double elapsedS) noexcept;
+    void restoreSome() noexcept;
     void publish(const device::Reading& reading, const force::Touch& touch, const force::ForceCommand& command,
-                 std::int64_t workNs, std::int64_t lateNs) noexcept;
+                 const rt::Beat& beat, std::int64_t workNs, std::int64_t cutNs) noexcept;
     std::uint64_t ticksFor(double durationS);
     RunReport finish(const Statistics& statistics, std::string scheduling) const;
 
     LoopSettings settings_;
     double periodS_;
     std::unique_ptr<device::Device> device_;
-    rt::Staged<contact::Method> method_;
-    rt::Staged<force::Parameters> parameters_;
+    rt::Staged<Command<Work>> work_;
+    rt::Staged<Command<force::Parameters>> parameters_;
+    rt::Staged<Command<instrument::Drive>> drive_;
+    rt::Staged<Command<Restore>> restore_;
+    std::uint64_t commands_ = 0;          // given, by the owner's thread
+    std::uint64_t lastCommand_ = 0;       // taken, by the tick
+    std::atomic<bool> restoring_{false};  // from restore() to the last brick in place
+    bool isRestoring_ = false;            // the tick's own: the change has been taken
     force::ForceModel force_;
+    instrument::Rotor rotor_;
+    cutting::CutResult cut_;
+    force::Turning turning_;
+    std::uint32_t cutFlags_ = 0;
     rt::SpscQueue<messages::HapticSample> samples_;
+    rt::SpscQueue<tooth::BrickSnapshot> bricks_;
     std::atomic<bool> stop_{false};
     bool started_ = false;
     std::uint64_t tick_ = 0;

@@ -32,6 +32,11 @@ std::unique_ptr<T> required(std::unique_ptr<T> p, const char* what) {
     return p;
 }
 
+Work checked(Work work) {
+    if (!work.method) throw core::Error("there is no contact method", "haptic loop");
+    return work;
+}
+
 force::Limits limitsOf(const device::Capability& c) {
     return {c.maxForceN, c.maxStiffnessNPerMm, c.maxDampingNSPerMm, c.maxForceSlopeNPerS, c.maxTorqueNmm};
 }
@@ -50,8 +55,11 @@ Spread spreadOf(std::vector<float> values) {
 /// Gathers work and lateness of the samples on their way to the listener.
 class HapticLoop::Statistics {
   public:
-    explicit Statistics(const Listener& listener) : listener_(listener) {}
-    void drain(rt::SpscQueue<messages::HapticSample>& samples) {
+    Statistics(const Listener& listener, const BrickListener& bricks) : listener_(listener), bricks_(bricks) {}
+    void drain(rt::SpscQueue<messages::HapticSample>& samples, rt::SpscQueue<tooth::BrickSnapshot>& bricks) {
+        // Bricks first: whoever hears of a sample knows what was cut before it.
+        while (bricks_ && bricks.tryPop(brick_))
+            bricks_(brick_);
         messages::HapticSample sample;
         while (samples.tryPop(sample)) {
             workUs_.push_back(sample.workUs);
@@ -64,28 +72,62 @@ class HapticLoop::Statistics {
 
   private:
     const Listener& listener_;
+    const BrickListener& bricks_;
+    tooth::BrickSnapshot brick_;
     std::vector<float> workUs_, lateUs_;
 };
 
 HapticLoop::HapticLoop(const LoopSettings& settings, std::unique_ptr<device::Device> device,
                        std::unique_ptr<contact::Method> method, const force::Parameters& parameters)
+    : HapticLoop(settings, std::move(device), Work{std::move(method), nullptr}, parameters) {}
+
+HapticLoop::HapticLoop(const LoopSettings& settings, std::unique_ptr<device::Device> device, Work work,
+                       const force::Parameters& parameters, const instrument::Drive& drive)
     : settings_(settings),
       periodS_(checkedPeriodS(settings.rateHz)),
       device_(required(std::move(device), "device")),
-      method_(required(std::move(method), "contact method")),
-      parameters_(std::make_unique<force::Parameters>(parameters)),
+      work_(std::make_unique<Command<Work>>(Command<Work>{checked(std::move(work))})),
+      parameters_(std::make_unique<Command<force::Parameters>>(Command<force::Parameters>{parameters})),
+      drive_(std::make_unique<Command<instrument::Drive>>(Command<instrument::Drive>{drive})),
+      restore_(nullptr),
       force_(limitsOf(device_->capability()), parameters),
-      samples_(settings.queueCapacity) {
+      rotor_(drive),
+      samples_(settings.queueCapacity),
+      bricks_(settings.brickCapacity) {
     device::validate(device_->capability());
+    instrument::validate(drive);
 }
 
-void HapticLoop::setParameters(const force::Parameters& parameters) {
+std::uint64_t HapticLoop::setParameters(const force::Parameters& parameters) {
     validate(parameters);
-    parameters_.stage(std::make_unique<force::Parameters>(parameters));
+    parameters_.stage(
+        std::make_unique<Command<force::Parameters>>(Command<force::Parameters>{parameters, ++commands_}));
+    return commands_;
 }
 
-void HapticLoop::setMethod(std::unique_ptr<contact::Method> method) {
-    method_.stage(required(std::move(method), "contact method"));
+std::uint64_t HapticLoop::setDrive(const instrument::Drive& drive) {
+    instrument::validate(drive);
+    drive_.stage(std::make_unique<Command<instrument::Drive>>(Command<instrument::Drive>{drive, ++commands_}));
+    return commands_;
+}
+
+std::uint64_t HapticLoop::setWork(Work work) {
+    if (restoring())
+        throw core::Error("an undo is still being put in place", "haptic loop", "change bur or tooth after it");
+    work_.stage(std::make_unique<Command<Work>>(Command<Work>{checked(std::move(work)), ++commands_}));
+    return commands_;
+}
+
+std::uint64_t HapticLoop::setMethod(std::unique_ptr<contact::Method> method) {
+    return setWork({std::move(method), nullptr});
+}
+
+std::uint64_t HapticLoop::restore(tooth::CutState change) {
+    if (restoring())
+        throw core::Error("an earlier undo is still being put in place", "haptic loop", "wait until it is done");
+    restoring_.store(true, std::memory_order_release);
+    restore_.stage(std::make_unique<Command<Restore>>(Command<Restore>{{std::move(change), 0}, ++commands_}));
+    return commands_;
 }
 
 std::uint64_t HapticLoop::ticksFor(double durationS) {
@@ -109,19 +151,19 @@ RunReport HapticLoop::finish(const Statistics& statistics, std::string schedulin
     return report;
 }
 
-RunReport HapticLoop::runSimulated(double durationS, const Listener& listener) {
+RunReport HapticLoop::runSimulated(double durationS, const Listener& listener, const BrickListener& bricks) {
     const std::uint64_t ticks = ticksFor(durationS);
-    Statistics statistics(listener);
+    Statistics statistics(listener, bricks);
     for (std::uint64_t i = 0; i < ticks && !stop_.load(std::memory_order_relaxed); ++i) {
         tick(rt::Beat{});
-        statistics.drain(samples_);
+        statistics.drain(samples_, bricks_);
     }
     return finish(statistics, "simulated time: as fast as possible");
 }
 
-RunReport HapticLoop::runRealTime(double durationS, const Listener& listener) {
+RunReport HapticLoop::runRealTime(double durationS, const Listener& listener, const BrickListener& bricks) {
     const std::uint64_t ticks = ticksFor(durationS);
-    Statistics statistics(listener);
+    Statistics statistics(listener, bricks);
     rt::PeriodicClock clock(std::llround(1e9 * periodS_), std::llround(1e3 * settings_.spinUs));
     std::atomic<bool> done{false};
     std::string scheduling;
@@ -138,7 +180,7 @@ RunReport HapticLoop::runRealTime(double durationS, const Listener& listener) {
         scheduling = thread.grant().line;
         try {
             while (!done.load(std::memory_order_acquire)) {
-                statistics.drain(samples_);
+                statistics.drain(samples_, bricks_);
                 std::this_thread::sleep_for(std::chrono::milliseconds(2));
             }
         } catch (...) {
@@ -146,7 +188,7 @@ RunReport HapticLoop::runRealTime(double durationS, const Listener& listener) {
             throw;
         }
     }
-    statistics.drain(samples_);
+    statistics.drain(samples_, bricks_);
     return finish(statistics, std::move(scheduling));
 }
 

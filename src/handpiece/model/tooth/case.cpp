@@ -184,10 +184,13 @@ Case readCase(const fs::path& path) {
 std::uint64_t contentKey(const Case& toothCase) {
     core::Hasher hasher;
     hasher.add(std::string_view("handpiece case"));
+    // As an STL holds it, so that it stays the same when the case is written and read again.
     const auto addMesh = [&hasher](const geometry::TriangleMesh& mesh) {
-        hasher.add(mesh.vertices.size());
-        hasher.add(std::as_bytes(std::span(mesh.vertices)));
-        hasher.add(std::as_bytes(std::span(mesh.triangles)));
+        hasher.add(mesh.triangles.size());
+        for (const geometry::Triangle& t : mesh.triangles)
+            for (const std::uint32_t v : t)
+                for (int k = 0; k < 3; ++k)
+                    hasher.add(static_cast<float>(mesh.vertices[v][k]) + 0.0f);  // -0 is 0
     };
     addMesh(toothCase.outer);
     for (const Part& part : toothCase.parts) {

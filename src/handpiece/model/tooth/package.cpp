@@ -168,6 +168,7 @@ PackageFiles readPackage(std::span<const std::byte> zip, const std::string& wher
                               "get it from where it was made");
         place->second = readEntry(archive.get(), listed.index, listed.bytes, where, listed.name);
     }
+    if (files.empty()) throw core::Error("this .handpiece file is empty", where, "copy the file again");
     return files;
 }
 

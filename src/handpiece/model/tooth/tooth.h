@@ -48,8 +48,8 @@ struct Case {
 /// not at all.
 void writeCase(const Case& toothCase, const std::filesystem::path& path);
 
-/// A number that differs when the tooth does: its surfaces, tissues or priorities. Texts, scenery and the tissue table
-/// count for nothing. An attempt keeps it.
+/// A number that differs when the tooth does: its surfaces (as an STL holds them), tissues or priorities. Texts,
+/// scenery and the tissue table count for nothing. An attempt keeps it.
 [[nodiscard]] std::uint64_t contentKey(const Case& toothCase);
 
 /// Why a surface cannot be felt, or that it can: closed, oriented, sane in size, not crossing itself.

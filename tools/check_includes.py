@@ -16,6 +16,8 @@ THIRD_PARTY = {
     r"tbb/|oneapi/tbb": r"src/handpiece/base/core/parallel\.cpp",
     r"toml\+\+|toml\.hpp": r"src/handpiece/base/config/\w+\.cpp",
     r"zip\.h": r"src/handpiece/model/tooth/package\.cpp|tests/.*",
+    r"hdf5\.h|H5": r"src/handpiece/record/session/\w+\.cpp",
+    r"zlib\.h": r"src/handpiece/record/history/\w+\.cpp|src/handpiece/model/tooth/cut_state_file\.cpp|tests/.*",
     r"CLI/|CLI11": r"apps/cli/.*",
     r"nlohmann/": r"apps/cli/.*|bench/.*",
     r"gtest/|gmock/|rapidcheck": r"tests/.*",

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/model/tooth/cut_state_file.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <bit>
+#include <cstring>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/hash.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/model/tooth/field_cache.h"
+
+namespace handpiece::tooth {
+namespace {
+
+constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kByteOrder = 0x01020304;
+constexpr char kMagic[8] = {'H', 'P', 'S', 'T', 'A', 'T', 'E', '\n'};
+constexpr std::size_t kPieceBricks = 64;  ///< compressed together, beside the other pieces
+
+struct Header {
+    char magic[8];
+    std::uint32_t version, byteOrder;
+    std::uint64_t key;
+    std::uint64_t bricks, payloadBytes;
+    double removedMm3[kTissueCount];
+    std::uint64_t payloadHash, headerHash;
+};
+static_assert(sizeof(Header) == 136 && std::is_trivially_copyable_v<Header>);
+
+std::uint64_t headerHashOf(const Header& header) {
+    core::Hasher hasher;
+    hasher.add(std::as_bytes(std::span(&header, 1)).first(offsetof(Header, headerHash)));
+    return hasher.value();
+}
+
+std::size_t piecesOf(std::size_t bricks) {
+    return (bricks + kPieceBricks - 1) / kPieceBricks;
+}
+
+/// Floats as integers in the same order, so that near values have near numbers.
+std::uint32_t ordered(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
+}
+float unordered(std::uint32_t number) {
+    return std::bit_cast<float>((number & 0x80000000u) != 0 ? number & 0x7fffffffu : ~number);
+}
+std::uint32_t folded(std::uint32_t difference) {  // small differences of either sign become small numbers
+    return (difference << 1) ^ ((difference & 0x80000000u) != 0 ? 0xffffffffu : 0u);
+}
+std::uint32_t unfolded(std::uint32_t number) {
+    return (number >> 1) ^ ((number & 1u) != 0 ? 0xffffffffu : 0u);
+}
+
+/// What a node's value would be if the field had no third mixed difference. In differences first: where all is held to
+/// the band it is exact.
+float predicted(const float* v, int x, int y, int z) {
+    constexpr int kX = 1, kY = kBrickNodes, kZ = kBrickNodes * kBrickNodes;
+    if (x > 0 && y > 0 && z > 0)
+        return ((v[-kX] - v[-kX - kY]) + (v[-kY] - v[-kY - kZ]) + (v[-kZ] - v[-kX - kZ])) + v[-kX - kY - kZ];
+    if (x > 0 && y > 0) return (v[-kX] - v[-kX - kY]) + v[-kY];
+    if (x > 0 && z > 0) return (v[-kX] - v[-kX - kZ]) + v[-kZ];
+    if (y > 0 && z > 0) return (v[-kY] - v[-kY - kZ]) + v[-kZ];
+    if (x > 0) return v[-kX];
+    if (y > 0) return v[-kY];
+    return z > 0 ? v[-kZ] : 0.0f;
+}
+
+template <class F>
+void forEachNode(F&& visit) {
+    int at = 0;
+    for (int z = 0; z < kBrickNodes; ++z)
+        for (int y = 0; y < kBrickNodes; ++y)
+            for (int x = 0; x < kBrickNodes; ++x)
+                visit(at++, x, y, z);
+}
+
+/// A piece before compression: indices, flags, then the numbers of the bricks that are not whole, byte by byte: all
+/// lowest bytes first, all highest last.
+std::vector<std::uint8_t> packed(std::span<const CutState::Brick> bricks) {
+    std::size_t cut = 0;
+    for (const CutState::Brick& brick : bricks)
+        cut += !brick.whole;
+    const std::size_t plane = cut * kBrickValues;
+    std::vector<std::uint8_t> raw(bricks.size() * 5 + plane * 4);
+    for (std::size_t i = 0; i < bricks.size(); ++i) {
+        std::memcpy(&raw[4 * i], &bricks[i].dense, 4);
+        raw[4 * bricks.size() + i] = bricks[i].whole;
+    }
+    std::uint8_t* out = raw.data() + bricks.size() * 5;
+    for (const CutState::Brick& brick : bricks) {
+        if (brick.whole) continue;
+        const float* values = brick.values.data();
+        forEachNode([&](int at, int x, int y, int z) {
+            const std::uint32_t number = folded(ordered(values[at]) - ordered(predicted(values + at, x, y, z)));
+            for (std::size_t byte = 0; byte < 4; ++byte)
+                out[byte * plane + static_cast<std::size_t>(at)] = static_cast<std::uint8_t>(number >> (8 * byte));
+        });
+        out += kBrickValues;
+    }
+    return raw;
+}
+
+/// False when `raw` cannot be what packed() gives for so many bricks.
+bool unpack(std::span<const std::uint8_t> raw, std::span<CutState::Brick> bricks) {
+    std::size_t cut = 0;
+    if (raw.size() < bricks.size() * 5) return false;
+    for (std::size_t i = 0; i < bricks.size(); ++i) {
+        std::memcpy(&bricks[i].dense, &raw[4 * i], 4);
+        const std::uint8_t whole = raw[4 * bricks.size() + i];
+        if (whole > 1) return false;
+        bricks[i].whole = whole != 0;
+        cut += !bricks[i].whole;
+    }
+    const std::size_t plane = cut * kBrickValues;
+    if (raw.size() != bricks.size() * 5 + plane * 4) return false;
+    const std::uint8_t* in = raw.data() + bricks.size() * 5;
+    for (CutState::Brick& brick : bricks) {
+        brick.values.fill(0.0f);
+        if (brick.whole) continue;
+        float* values = brick.values.data();
+        forEachNode([&](int at, int x, int y, int z) {
+            std::uint32_t number = 0;
+            for (std::size_t byte = 0; byte < 4; ++byte)
+                number |= std::uint32_t{in[byte * plane + static_cast<std::size_t>(at)]} << (8 * byte);
+            values[at] = unordered(unfolded(number) + ordered(predicted(values + at, x, y, z)));
+        });
+        in += kBrickValues;
+    }
+    return true;
+}
+
+std::vector<std::uint8_t> compressed(const std::vector<std::uint8_t>& raw) {
+    uLongf size = compressBound(static_cast<uLong>(raw.size()));
+    std::vector<std::uint8_t> out(size);
+    if (compress2(out.data(), &size, raw.data(), static_cast<uLong>(raw.size()), 1) != Z_OK)
+        throw core::Error("a cut state cannot be compressed: out of memory");
+    out.resize(size);
+    return out;
+}
+
+/// Everything that a field could not hold. True when all is well.
+bool fits(const CutState& state, const CuttableTooth& base) {
+    const FieldView field = base.tooth->field.view();
+    const std::uint64_t dense = static_cast<std::uint64_t>(field.bricks[0]) *
+                                static_cast<std::uint64_t>(field.bricks[1]) *
+                                static_cast<std::uint64_t>(field.bricks[2]);
+    const auto low = static_cast<float>(-base.settings.bandMm), high = static_cast<float>(base.bandOutMm);
+    for (std::size_t i = 0; i < state.bricks.size(); ++i) {
+        const CutState::Brick& brick = state.bricks[i];
+        if (brick.dense >= dense || (i > 0 && brick.dense <= state.bricks[i - 1].dense)) return false;
+        if (field.brickIndex[brick.dense] < 0 && field.coarse[brick.dense] >= 0.0f) return false;
+        if (brick.whole) continue;
+        for (const float value : brick.values)
+            if (!(value >= low && value <= high)) return false;
+    }
+    for (const double mm3 : state.removedMm3)
+        if (!std::isfinite(mm3)) return false;
+    return true;
+}
+
+}  // namespace
+
+std::uint64_t identityOf(const CuttableTooth& base) {
+    core::Hasher hasher;
+    hasher.add(std::string_view("handpiece cut"));
+    hasher.add(base.tooth->field.stateHash());
+    hasher.add(base.settings.bandMm);
+    hasher.add(base.bandOutMm);
+    for (const double mm3 : base.volumesMm3)
+        hasher.add(mm3);
+    return hasher.value();
+}
+
+std::vector<std::byte> encodeState(const CutState& state, std::uint64_t baseKey) {
+    const std::size_t count = state.bricks.size();
+    std::vector<std::vector<std::uint8_t>> pieces(piecesOf(count));
+    core::parallelFor(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t first = i * kPieceBricks;
+            pieces[i] =
+                compressed(packed(std::span(state.bricks).subspan(first, std::min(kPieceBricks, count - first))));
+        }
+    });
+    std::vector<std::byte> data(sizeof(Header));
+    const auto append = [&](const void* from, std::size_t bytes) {
+        const auto* first = static_cast<const std::byte*>(from);
+        data.insert(data.end(), first, first + bytes);
+    };
+    for (const std::vector<std::uint8_t>& piece : pieces) {
+        const auto size = static_cast<std::uint32_t>(piece.size());
+        append(&size, sizeof size);
+    }
+    for (const std::vector<std::uint8_t>& piece : pieces)
+        append(piece.data(), piece.size());
+    Header header{};
+    std::memcpy(header.magic, kMagic, sizeof kMagic);
+    header.version = kVersion;
+    header.byteOrder = kByteOrder;
+    header.key = baseKey;
+    header.bricks = count;
+    header.payloadBytes = data.size() - sizeof header;
+    std::copy(state.removedMm3.begin(), state.removedMm3.end(), header.removedMm3);
+    header.payloadHash = hashOf(std::span(data).subspan(sizeof header));
+    header.headerHash = headerHashOf(header);
+    std::memcpy(data.data(), &header, sizeof header);
+    return data;
+}
+
+CutState decodeState(std::span<const std::byte> data, std::uint64_t baseKey, const CuttableTooth& base,
+                     const std::string& where) {
+    Header header;
+    const auto cutShort = [&] { return core::Error("the cut state is cut short", where, "take an older copy"); };
+    const auto damaged = [&] { return core::Error("the cut state is damaged", where, "take an older copy"); };
+    if (data.size() < sizeof kMagic || std::memcmp(data.data(), kMagic, sizeof kMagic) != 0)
+        throw core::Error("these bytes are no cut state", where);
+    if (data.size() < sizeof header) throw cutShort();
+    std::memcpy(&header, data.data(), sizeof header);
+    if (header.byteOrder != kByteOrder)
+        throw core::Error("the cut state was written by a machine of another byte order, or is damaged", where);
+    if (header.version > kVersion)
+        throw core::Error(
+            fmt::format("the cut state is of version {}, this program knows {}", header.version, kVersion), where,
+            "use a newer Handpiece");
+    if (header.version == 0 || header.headerHash != headerHashOf(header)) throw damaged();
+    if (header.key != baseKey)
+        throw core::Error("the cut state belongs to another tooth, or to another voxel or band", where,
+                          "open it with the case and the settings that it was saved with");
+    const std::span<const std::byte> payload = data.subspan(sizeof header);
+    if (payload.size() < header.payloadBytes) throw cutShort();
+    if (payload.size() > header.payloadBytes || hashOf(payload) != header.payloadHash) throw damaged();
+
+    const FieldView field = base.tooth->field.view();
+    const std::uint64_t dense = static_cast<std::uint64_t>(field.bricks[0]) *
+                                static_cast<std::uint64_t>(field.bricks[1]) *
+                                static_cast<std::uint64_t>(field.bricks[2]);
+    if (header.bricks > dense) throw damaged();
+    const std::size_t count = header.bricks, pieces = piecesOf(count);
+    if (payload.size() < pieces * sizeof(std::uint32_t)) throw damaged();
+    std::vector<std::size_t> start(pieces + 1, pieces * sizeof(std::uint32_t));
+    for (std::size_t i = 0; i < pieces; ++i) {
+        std::uint32_t size;
+        std::memcpy(&size, payload.data() + i * sizeof size, sizeof size);
+        start[i + 1] = start[i] + size;
+    }
+    if (start[pieces] != payload.size()) throw damaged();
+
+    CutState state;
+    std::copy(std::begin(header.removedMm3), std::end(header.removedMm3), state.removedMm3.begin());
+    state.bricks.resize(count);
+    core::parallelFor(pieces, 1, [&](std::size_t begin, std::size_t end) {
+        // No piece is larger than this, whatever it says: nothing swells beyond it.
+        std::vector<std::uint8_t> raw(kPieceBricks * (5 + 4 * kBrickValues));
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t first = i * kPieceBricks;
+            uLongf size = static_cast<uLongf>(raw.size());
+            const auto* from = reinterpret_cast<const Bytef*>(payload.data() + start[i]);
+            if (uncompress(raw.data(), &size, from, static_cast<uLong>(start[i + 1] - start[i])) != Z_OK ||
+                !unpack(std::span(raw).first(size),
+                        std::span(state.bricks).subspan(first, std::min(kPieceBricks, count - first))))
+                throw damaged();
+        }
+    });
+    if (!fits(state, base)) throw damaged();
+    return state;
+}
+
+}  // namespace handpiece::tooth

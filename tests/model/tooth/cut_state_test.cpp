@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// A cut tooth as bytes: bit for bit back, and one clear error for anything else.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstring>
+
+#include "cut_support.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/model/tooth/cut_state_file.h"
+
+namespace handpiece::tooth {
+namespace {
+
+using core::Vec3;
+using test::ballTooth;
+using test::cutAway;
+
+class CutStateFile : public ::testing::Test {
+  protected:
+    CutStateFile() : base(ballTooth(1.5, 0.8, 0.05)), key(identityOf(*base)) {
+        CutField field(base);
+        cutAway(field, [](const Vec3& p) { return test::ball(p - Vec3(1.4, 0.2, 0.1), 0.5); });
+        TissueVolumes removed{};
+        removed[1] = 0.1234567890123;
+        removed[2] = 3.0;
+        field.addRemoved(removed);
+        state = field.state();
+    }
+    static void expectSame(const CutState& a, const CutState& b) {
+        ASSERT_EQ(a.bricks.size(), b.bricks.size());
+        EXPECT_EQ(a.removedMm3, b.removedMm3);
+        for (std::size_t i = 0; i < a.bricks.size(); ++i) {
+            EXPECT_EQ(a.bricks[i].dense, b.bricks[i].dense);
+            ASSERT_EQ(a.bricks[i].whole, b.bricks[i].whole);
+            if (!a.bricks[i].whole) {
+                EXPECT_EQ(std::memcmp(&a.bricks[i].values, &b.bricks[i].values, sizeof a.bricks[i].values), 0);
+            }
+        }
+    }
+    std::string refusal(std::span<const std::byte> data) const {
+        try {
+            (void)decodeState(data, key, *base, "here");
+        } catch (const core::Error& error) {
+            EXPECT_EQ(error.where(), "here");
+            return error.problem();
+        }
+        return "taken";
+    }
+
+    std::shared_ptr<const CuttableTooth> base;
+    std::uint64_t key;
+    CutState state;
+};
+
+TEST_F(CutStateFile, ComesBackBitForBit) {
+    ASSERT_GT(state.bricks.size(), 30u);
+    const std::vector<std::byte> data = encodeState(state, key);
+    expectSame(decodeState(data, key, *base), state);
+    core::setThreadCount(1);
+    EXPECT_EQ(encodeState(state, key), data);
+    core::setThreadCount(0);
+    // Well below the plain floats.
+    EXPECT_LT(data.size(), state.bricks.size() * sizeof(float) * kBrickValues / 2);
+    expectSame(decodeState(encodeState(CutState{}, key), key, *base), CutState{});
+}
+
+TEST_F(CutStateFile, ChangesToo) {
+    CutField field(base);
+    cutAway(field, [](const Vec3& p) { return test::ball(p - Vec3(0.0, 1.4, 0.1), 0.5); });
+    const CutState change = changeBetween(state, field.state());
+    expectSame(decodeState(encodeState(change, key), key, *base), change);
+}
+
+TEST_F(CutStateFile, AnyValuesComeBack) {
+    std::mt19937_64 generator(handpiece::test::seed());
+    for (CutState::Brick& brick : state.bricks)
+        for (float& value : brick.values)
+            value = generator() % 8 == 0 ? -0.0f
+                                         : static_cast<float>(handpiece::test::uniform(generator, -0.2, 0.1)) *
+                                               (generator() % 4 == 0 ? 1e-30f : 1.0f);
+    expectSame(decodeState(encodeState(state, key), key, *base), state);
+}
+
+TEST_F(CutStateFile, ResumesInAFieldOfItsOwn) {
+    const CutState back = decodeState(encodeState(state, key), key, *base);
+    CutField field(base);
+    (void)field.restore(back, 0, back.bricks.size());
+    EXPECT_EQ(field.stateHash(), stateHash(state));
+    EXPECT_EQ(field.removedMm3(), state.removedMm3);
+}
+
+TEST_F(CutStateFile, RefusesEverythingElse) {
+    using ::testing::HasSubstr;
+    const std::vector<std::byte> good = encodeState(state, key);
+    EXPECT_THAT(refusal({}), HasSubstr("no cut state"));
+    EXPECT_THAT(refusal(std::span(good).first(7)), HasSubstr("no cut state"));
+    EXPECT_THAT(refusal(std::span(good).first(50)), HasSubstr("cut short"));
+    EXPECT_THAT(refusal(std::span(good).first(good.size() - 1)), HasSubstr("cut short"));
+    std::vector<std::byte> longer = good;
+    longer.push_back(std::byte{0});
+    EXPECT_THAT(refusal(longer), HasSubstr("damaged"));
+    EXPECT_THAT(refusal(encodeState(state, key + 1)), HasSubstr("another tooth"));
+    std::vector<std::byte> newer = good;
+    newer[8] = std::byte{9};
+    EXPECT_THAT(refusal(newer), HasSubstr("version 9"));
+    std::mt19937_64 generator(handpiece::test::seed());
+    for (int i = 0; i < 300; ++i) {
+        std::vector<std::byte> bad = good;
+        bad[generator() % (i % 2 == 0 ? bad.size() : std::size_t{136})] ^= std::byte{1} << (generator() % 8);
+        EXPECT_NE(refusal(bad), "taken");
+    }
+    // Rightly sealed, and yet nothing that this tooth could hold.
+    CutState wrong = state;
+    std::swap(wrong.bricks[3].dense, wrong.bricks[4].dense);
+    EXPECT_THAT(refusal(encodeState(wrong, key)), HasSubstr("damaged"));
+    for (const float value : {-5.0f, 5.0f, std::numeric_limits<float>::quiet_NaN()}) {
+        wrong = state;
+        wrong.bricks[5].values[77] = value;
+        EXPECT_THAT(refusal(encodeState(wrong, key)), HasSubstr("damaged"));
+    }
+    wrong = state;
+    wrong.bricks.back().dense = test::denseCount(base->tooth->field);
+    EXPECT_THAT(refusal(encodeState(wrong, key)), HasSubstr("damaged"));
+    wrong = state;
+    wrong.bricks.insert(wrong.bricks.begin(), {0, true, {}});  // a corner of the grid, outside the tooth
+    EXPECT_THAT(refusal(encodeState(wrong, key)), HasSubstr("damaged"));
+}
+
+TEST_F(CutStateFile, TeethAreToldApart) {
+    EXPECT_EQ(identityOf(*ballTooth(1.5, 0.8, 0.05)), key);
+    EXPECT_NE(identityOf(*ballTooth(1.5, 0.7, 0.05)), key);
+    CutSettings settings;
+    settings.bandMm = 0.25;
+    EXPECT_NE(identityOf(*ballTooth(1.5, 0.8, 0.05, settings)), key);
+}
+
+}  // namespace
+}  // namespace handpiece::tooth

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Undo and redo of strokes on a tooth that is being cut.
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "handpiece/model/tooth/cut_field.h"
+
+namespace handpiece::history {
+
+/// Where a stroke's outcome is read from: the mirror of the cut field, or something like it.
+class BrickSource {
+  public:
+    virtual ~BrickSource() = default;
+    /// False when the brick is as before any cut.
+    [[nodiscard]] virtual bool isChanged(std::uint32_t dense) const = 0;
+    /// kBrickValues values of a changed brick; `scratch` has room for them.
+    [[nodiscard]] virtual const float* values(std::uint32_t dense, float* scratch) const = 0;
+};
+
+/// The mirror as a source.
+class MirrorSource final : public BrickSource {
+  public:
+    explicit MirrorSource(const tooth::CutMirror& mirror) : mirror_(mirror) {}
+    [[nodiscard]] bool isChanged(std::uint32_t dense) const override { return mirror_.isChanged(dense); }
+    [[nodiscard]] const float* values(std::uint32_t dense, float* scratch) const override {
+        return mirror_.values(dense, scratch);
+    }
+
+  private:
+    const tooth::CutMirror& mirror_;
+};
+
+struct HistorySettings {
+    std::size_t leastSteps = 50;                       ///< that can be undone at once, whatever memory they take
+    std::size_t memoryBytes = std::size_t{256} << 20;  ///< beyond the least, the oldest steps go when more is used
+};
+
+/// Steps back and forth through the strokes of a tooth. Off the tick, one thread.
+///
+/// It keeps, packed, the tooth as it was after the last stroke and what each step changed. What undo() gives depends
+/// on the strokes alone, never on how far the source has come, so any number of steps can be asked for at once and
+/// a replay gets the same bits. A stroke ends for it when the pedal is up and the last brick cut meanwhile has been
+/// handed over; a pedal that goes down before belongs to the same stroke.
+class History {
+  public:
+    explicit History(const HistorySettings& settings = {}) : settings_(settings) {}
+
+    /// Begins anew on a tooth in this state; nothing to undo.
+    void start(const tooth::CutState& state);
+    /// A brick was handed over: it may have changed in the stroke under way.
+    void noteTouched(std::uint32_t dense) { touched_.insert(dense); }
+    /// Ends a stroke. True when it removed something: then there is one more step to undo and none to redo.
+    bool endStroke(const BrickSource& source, const tooth::TissueVolumes& removedMm3);
+
+    [[nodiscard]] std::size_t undoSteps() const noexcept { return done_; }
+    [[nodiscard]] std::size_t redoSteps() const noexcept { return steps_.size() - done_; }
+    /// What takes the tooth one stroke back: bricks at rising number and the volumes removed by then. None when there
+    /// is nothing to undo. To be put into the field (in the tick, in chunks) and into the mirror.
+    [[nodiscard]] std::optional<tooth::CutState> undo();
+    [[nodiscard]] std::optional<tooth::CutState> redo();
+    /// What makes the tooth whole; a step that can be undone. None when it is whole.
+    [[nodiscard]] std::optional<tooth::CutState> reset();
+
+    /// Of all that is kept.
+    [[nodiscard]] std::size_t memoryBytes() const noexcept { return memoryBytes_; }
+
+  private:
+    /// A brick, packed; empty: as before any cut.
+    using Packed = std::vector<std::byte>;
+    struct Step {
+        std::map<std::uint32_t, Packed> bricks;  ///< the other side of the step: before it when done, after it when not
+        tooth::TissueVolumes removedMm3{};
+    };
+    void add(Step&& step);
+    tooth::CutState exchange(Step& step);
+    static std::size_t bytesOf(const Step& step);
+
+    HistorySettings settings_;
+    std::map<std::uint32_t, Packed> now_;  ///< bricks that differ from the whole tooth, after the last step done
+    tooth::TissueVolumes removedMm3_{};
+    std::deque<Step> steps_;  ///< done ones first
+    std::size_t done_ = 0, memoryBytes_ = 0;
+    std::set<std::uint32_t> touched_;
+};
+
+}  // namespace handpiece::history

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/record/session/event_watch.h"
+
+#include <fmt/format.h>
+
+namespace handpiece::session {
+
+using messages::HapticSample;
+using tooth::Tissue;
+
+void EventWatch::tellOnce(const HapticSample& s, std::uint32_t flag, EventName name) {
+    if ((s.flags & flag) == 0 || (lastFlags_ & flag) != 0) return;
+    double& told = toldAtS_[static_cast<std::size_t>(name)];
+    if (told > 0.0 && s.timeS - told < kPauseS) return;
+    told = s.timeS;
+    tell_(s.tick, name, "");
+}
+
+void EventWatch::look(const HapticSample& s) {
+    if (first_) toldAtS_.fill(0.0);
+    first_ = false;
+    if (s.pedal > 0.0 && !inStroke_) {
+        inStroke_ = true;
+        strokeStartMm3_ = s.removedMm3;
+        tell_(s.tick, EventName::strokeBegin, "");
+    } else if (s.pedal <= 0.0 && inStroke_ && s.waitingBricks == 0) {
+        inStroke_ = false;
+        ++strokes_;
+        double removed = 0.0;
+        for (std::size_t t = 0; t < tooth::kTissueCount; ++t)
+            removed += s.removedMm3[t] - strokeStartMm3_[t];
+        tell_(s.tick, EventName::strokeEnd, fmt::format("{{\"removed_mm3\": {:.6g}}}", removed));
+    }
+    const auto reach = [&](Tissue tissue, EventName name) {
+        const auto t = static_cast<std::size_t>(tissue);
+        // An undo takes the exposure back: reached again it is told again.
+        const bool now = s.removedMm3[t] > kTellMm3;
+        if (now && !reached_[t]) tell_(s.tick, name, "");
+        reached_[t] = now;
+    };
+    reach(Tissue::dentine, EventName::firstDentine);
+    reach(Tissue::pulp, EventName::pulpExposure);
+    if (s.tissue == static_cast<std::uint8_t>(Tissue::neighbour) && lastTissue_ != s.tissue)
+        tell_(s.tick, EventName::neighbourTouched, "");
+    lastTissue_ = s.tissue;
+    tellOnce(s, messages::kStalled, EventName::stall);
+    tellOnce(s, messages::kForceLimited, EventName::forceLimit);
+    tellOnce(s, messages::kFault, EventName::fault);
+    lastFlags_ = s.flags;
+}
+
+}  // namespace handpiece::session

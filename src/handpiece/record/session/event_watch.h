@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Finds what is worth a name in the stream of samples.
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+#include "handpiece/base/messages/haptic_sample.h"
+#include "handpiece/record/session/record.h"
+
+namespace handpiece::session {
+
+/// Watches samples in their order and tells events, each once as it begins. One thread, off the tick.
+class EventWatch {
+  public:
+    using Teller = std::function<void(std::uint64_t tick, EventName name, std::string_view text)>;
+    explicit EventWatch(Teller teller) : tell_(std::move(teller)) {}
+
+    void look(const messages::HapticSample& sample);
+    /// True from the pedal going down until it is up and every changed brick has been handed over.
+    [[nodiscard]] bool inStroke() const noexcept { return inStroke_; }
+    /// Strokes that have ended so far.
+    [[nodiscard]] std::uint64_t strokes() const noexcept { return strokes_; }
+
+    static constexpr double kTellMm3 = 1e-5;  ///< less than this of a tissue is grit, no exposure
+    static constexpr double kPauseS = 1.0;    ///< between two tellings of a limit or a stall
+
+  private:
+    void tellOnce(const messages::HapticSample& sample, std::uint32_t flag, EventName name);
+
+    Teller tell_;
+    bool inStroke_ = false, first_ = true;
+    std::uint64_t strokes_ = 0;
+    std::uint32_t lastFlags_ = 0;
+    std::uint8_t lastTissue_ = 0;
+    std::array<bool, tooth::kTissueCount> reached_{};
+    std::array<double, tooth::kTissueCount> strokeStartMm3_{};
+    std::array<double, kEventNameCount> toldAtS_{};
+};
+
+}  // namespace handpiece::session

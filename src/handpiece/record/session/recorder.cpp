@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/record/session/recorder.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <variant>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/rt/spsc_queue.h"
+#include "handpiece/record/session/session_writer.h"
+
+namespace handpiece::session {
+namespace {
+
+constexpr double kQueueS = 4.0;
+constexpr std::size_t kMostTextBytes = std::size_t{1} << 20, kMostWaitingBytes = std::size_t{256} << 20;
+constexpr auto kPause = std::chrono::milliseconds(20);
+
+}  // namespace
+
+struct Recorder::State {
+    using Item = std::variant<Event, KeyFrame>;
+
+    SessionWriter writer;
+    rt::SpscQueue<Record> records;
+    std::uint64_t pushed = 0;  // by the caller's thread alone
+    std::atomic<std::uint64_t> popped{0};
+    mutable std::mutex mutex;  // of what follows; never held while the disk works
+    std::vector<Item> items;
+    std::size_t itemBytes = 0;
+    RecorderStatus status;
+    std::condition_variable wake;
+    bool stop = false;
+    std::thread thread;
+
+    State(const std::filesystem::path& path, const SessionInfo& info)
+        : writer(path, info), records(static_cast<std::size_t>(kQueueS * info.rateHz)) {}
+
+    void add(Item item, std::size_t bytes) {
+        const std::lock_guard lock(mutex);
+        if (itemBytes + bytes > kMostWaitingBytes) {
+            ++status.lostItems;
+            return;
+        }
+        itemBytes += bytes;
+        items.push_back(std::move(item));
+    }
+
+    void writeWhatWaits() {
+        std::vector<Item> taken;
+        {
+            const std::lock_guard lock(mutex);
+            taken.swap(items);
+            itemBytes = 0;
+        }
+        Record record;
+        while (records.tryPop(record)) {
+            popped.fetch_add(1, std::memory_order_release);
+            writer.append(record);
+        }
+        for (const Item& item : taken)
+            std::visit([this](const auto& i) { writer.append(i); }, item);
+    }
+
+    void tell(std::string message) {
+        const std::lock_guard lock(mutex);
+        status.writtenRecords = writer.writtenRecords();
+        status.sizeBytes = writer.sizeBytes();
+        status.lostRecords = records.overflowCount();
+        if (message.empty()) message = writer.failure();
+        if (!message.empty() && status.message.empty()) {
+            status.recording = false;
+            status.message = "the session is no longer recorded: " + message;
+        }
+    }
+
+    void run() {
+        for (bool last = false; !last;) {
+            {
+                std::unique_lock lock(mutex);
+                wake.wait_for(lock, kPause, [this] { return stop; });
+                last = stop;
+            }
+            std::string problem;
+            try {
+                writeWhatWaits();
+                if (last) writer.close();
+            } catch (const core::Error& e) {
+                problem = e.what();
+            }
+            tell(std::move(problem));
+        }
+    }
+};
+
+Recorder::Recorder(const std::filesystem::path& path, const SessionInfo& info)
+    : state_(std::make_unique<State>(path, info)) {
+    state_->thread = std::thread([this] { state_->run(); });
+}
+
+Recorder::~Recorder() {
+    close();
+}
+
+bool Recorder::push(const Record& record) noexcept {
+    if (!state_->records.tryPush(record)) return false;
+    ++state_->pushed;
+    return true;
+}
+
+void Recorder::pushWaiting(const Record& record) {
+    State& s = *state_;
+    while (s.pushed - s.popped.load(std::memory_order_acquire) >= s.records.capacity())
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    push(record);
+}
+
+void Recorder::event(std::uint64_t tick, EventName name, std::string_view text) {
+    if (text.size() > kMostTextBytes) {
+        const std::lock_guard lock(state_->mutex);
+        ++state_->status.lostItems;
+        return;
+    }
+    state_->add(Event{tick, std::string(nameOf(name)), std::string(text)}, text.size() + 64);
+}
+
+void Recorder::keyFrame(std::uint64_t tick, std::vector<std::byte> state) {
+    const std::size_t bytes = state.size() + 64;
+    state_->add(KeyFrame{tick, std::move(state)}, bytes);
+}
+
+RecorderStatus Recorder::status() const {
+    const std::lock_guard lock(state_->mutex);
+    RecorderStatus now = state_->status;
+    now.lostRecords = state_->records.overflowCount();
+    return now;
+}
+
+RecorderStatus Recorder::close() {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->stop = true;
+    }
+    state_->wake.notify_all();
+    if (state_->thread.joinable()) state_->thread.join();
+    RecorderStatus last = status();
+    last.recording = false;
+    return last;
+}
+
+}  // namespace handpiece::session

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <sys/resource.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/record/session/layout.h"
+#include "handpiece/record/session/recorder.h"
+#include "handpiece/record/session/session_reader.h"
+#include "handpiece/record/session/session_writer.h"
+#include "record/session/made_up_hand.h"
+#include "support/random.h"
+
+namespace handpiece {
+namespace {
+
+using session::EventName;
+
+session::SessionInfo info(double rateHz = 1000) {
+    return {rateHz, "desk-7", "0.2.0", R"({"case": "molar", "bur": "round-4"})",
+            std::vector<std::byte>(70000, std::byte{5})};
+}
+
+std::vector<std::byte> someBytes(std::size_t count, std::uint64_t seed) {
+    std::mt19937_64 generator(seed);
+    std::vector<std::byte> bytes(count);
+    for (std::byte& b : bytes)
+        b = static_cast<std::byte>(generator());
+    return bytes;
+}
+
+std::vector<session::Record> records(std::size_t count, double rateHz = 1000) {
+    test::MadeUpHand hand(test::seed(), rateHz);
+    std::vector<session::Record> all;
+    for (std::size_t i = 0; i < count; ++i)
+        all.push_back(session::recordOf(hand.next()));
+    return all;
+}
+
+class Session : public testing::Test {
+  protected:
+    std::filesystem::path file(const char* name = "session.h5") const { return folder_.path() / name; }
+
+  private:
+    test::TemporaryFolder folder_;
+};
+
+TEST_F(Session, WhatIsRecordedIsRead) {
+    for (const double rateHz : {1000.0, 2000.0, 4000.0, 8000.0, 100.0}) {
+        const auto all = records(static_cast<std::size_t>(2.3 * rateHz) + 1, rateHz);
+        const std::string longText(5000, 'x');
+        const auto frame = someBytes(200001, 5);
+        {
+            session::Recorder recorder(file(), info(rateHz));
+            for (std::size_t i = 0; i < all.size(); ++i) {
+                recorder.pushWaiting(all[i]);
+                if (i == 3) recorder.event(3, EventName::strokeBegin);
+                if (i == 60) recorder.event(60, EventName::parameterChange, longText + "\xC3\xA4");
+                if (i == 70) recorder.keyFrame(70, frame);
+                if (i == 90) recorder.keyFrame(90, {});
+            }
+            const session::RecorderStatus status = recorder.close();
+            EXPECT_EQ(status.message, "");
+            EXPECT_EQ(status.writtenRecords, all.size());
+            EXPECT_EQ(status.lostRecords + status.lostItems, 0u);
+            EXPECT_FALSE(status.recording);
+        }
+        const session::SessionReader reader(file());
+        EXPECT_TRUE(reader.isComplete());
+        EXPECT_EQ(reader.info().rateHz, rateHz);
+        EXPECT_EQ(reader.info().code, "desk-7");
+        EXPECT_EQ(reader.info().version, "0.2.0");
+        EXPECT_EQ(reader.info().settings, info().settings);
+        EXPECT_EQ(reader.info().tooth, info().tooth);
+        ASSERT_EQ(reader.size(), all.size());
+        EXPECT_EQ(reader.records(0, all.size() + 5), all);
+        EXPECT_EQ(reader.records(101, 7), std::vector(all.begin() + 101, all.begin() + 108));
+        EXPECT_TRUE(reader.records(all.size(), 1).empty());
+        EXPECT_EQ(reader.indexOfTick(77), 77u);
+        EXPECT_EQ(reader.indexOfTick(1u << 30), all.size());
+        const std::vector<session::Event> events{{3, "stroke begin", ""},
+                                                 {60, "parameter change", longText + "\xC3\xA4"}};
+        EXPECT_EQ(reader.events(), events);
+        ASSERT_EQ(reader.keyFrameTicks(), (std::vector<std::uint64_t>{70, 90}));
+        EXPECT_EQ(reader.keyFrame(0), (session::KeyFrame{70, frame}));
+        EXPECT_EQ(reader.keyFrameBefore(89)->state, frame);
+        EXPECT_EQ(reader.keyFrameBefore(1000)->tick, 90u);
+        EXPECT_FALSE(reader.keyFrameBefore(69));
+    }
+}
+
+TEST_F(Session, TheSameInputGivesTheSameContent) {
+    const auto all = records(3000);
+    std::vector<session::Record> read[2];
+    std::uintmax_t sizes[2];
+    for (int i = 0; i < 2; ++i) {
+        {
+            session::Recorder recorder(file(), info());
+            for (const session::Record& r : all)
+                recorder.pushWaiting(r);
+        }
+        read[i] = session::SessionReader(file()).records(0, all.size());
+        sizes[i] = std::filesystem::file_size(file());
+    }
+    EXPECT_EQ(read[0], read[1]);
+    EXPECT_EQ(sizes[0], sizes[1]);
+}
+
+TEST_F(Session, AnHourTakesLessThanAHundredMegabytes) {
+    constexpr std::size_t kSeconds = 120;
+    const auto all = records(kSeconds * 1000);
+    {
+        session::SessionWriter writer(file(), info());
+        for (const session::Record& r : all) {
+            writer.append(r);
+            if (r.tick % 6000 == 0) writer.append(session::Event{r.tick, "stroke begin", ""});
+        }
+    }
+    const double megabytesAnHour = static_cast<double>(std::filesystem::file_size(file())) * 3600 / kSeconds / 1e6;
+    RecordProperty("megabytesAnHour", std::to_string(megabytesAnHour));
+    EXPECT_LT(megabytesAnHour, 97.0);  // the rest is for key frames
+    EXPECT_GT(megabytesAnHour, 10.0);
+}
+
+TEST_F(Session, AFullDiskStopsTheRecordingAndKeepsWhatWasWritten) {
+    const auto all = records(200000);
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    for (const rlim_t limit : {rlim_t{600000}, rlim_t{1u << 20}, rlim_t{1500001}}) {
+        std::string message;
+        std::uint64_t written = 0;
+        {
+            session::Recorder recorder(file(), info());
+            const rlimit small{limit, before.rlim_max};
+            setrlimit(RLIMIT_FSIZE, &small);
+            for (const session::Record& r : all)
+                recorder.pushWaiting(r);
+            recorder.event(5, EventName::strokeEnd);
+            recorder.keyFrame(5, someBytes(100000, 1));
+            const session::RecorderStatus status = recorder.close();
+            setrlimit(RLIMIT_FSIZE, &before);
+            EXPECT_FALSE(status.recording);
+            message = status.message;
+            written = status.writtenRecords;
+        }
+        EXPECT_NE(message.find("no longer recorded"), std::string::npos);
+        EXPECT_NE(message.find("File too large"), std::string::npos) << message;
+        const session::SessionReader reader(file());
+        EXPECT_FALSE(reader.isComplete());
+        EXPECT_GE(reader.size(), written);
+        EXPECT_GT(reader.size(), 5000u);
+        EXPECT_LE(std::filesystem::file_size(file()), limit);
+        const auto read = reader.records(0, static_cast<std::size_t>(reader.size()));
+        EXPECT_TRUE(std::equal(read.begin(), read.end(), all.begin()));
+    }
+}
+
+TEST_F(Session, ASlowReaderOfTheQueueIsCountedNotWaitedFor) {
+    const auto all = records(40000, 100);
+    session::Recorder recorder(file(), info(100));
+    std::uint64_t refused = 0;
+    for (const session::Record& r : all)
+        refused += recorder.push(r) ? 0 : 1;  // 400 s of ticks at once
+    const session::RecorderStatus status = recorder.close();
+    EXPECT_GT(refused, 0u);
+    EXPECT_EQ(status.lostRecords, refused);
+    EXPECT_EQ(session::SessionReader(file()).size(), all.size() - refused);
+}
+
+TEST_F(Session, BadPlacesAndCodesAreRefused) {
+    EXPECT_THROW(session::Recorder(file("no/such/folder/x.h5"), info()), core::Error);
+    for (const char* code : {"Anna Schmidt", "a/b", "user@host", "123456789012345678901234567890123"}) {
+        session::SessionInfo bad = info();
+        bad.code = code;
+        EXPECT_THROW(session::Recorder(file("bad.h5"), bad), core::Error) << code;
+    }
+    EXPECT_THROW(session::Recorder(file("bad.h5"), info(0)), core::Error);
+    EXPECT_FALSE(std::filesystem::exists(file("bad.h5")));
+}
+
+TEST_F(Session, NothingInTheFileNamesPersonMachineOrPlace) {
+    {
+        session::Recorder recorder(file(), info());
+        for (const session::Record& r : records(2000))
+            recorder.pushWaiting(r);
+    }
+    std::ifstream in(file(), std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    EXPECT_EQ(bytes.find(file().parent_path().filename().string()), std::string::npos);
+    EXPECT_EQ(bytes.find("session.h5"), bytes.find("session.h5', 'r'"));  // in the README alone
+}
+
+}  // namespace
+}  // namespace handpiece

@@ -148,6 +148,36 @@ TEST(CutField, RestoresInPiecesWithoutATear) {
     }
 }
 
+TEST(CutField, BoundsInTheCoreHoldAfterARestore) {
+    const auto base = ballTooth(3.0, 2.0, 0.05);
+    const Vec3 at(2.6, 0.3, -0.2);
+    const auto shape = [&](const Vec3& p) { return test::ball(p - at, 0.9); };
+    CutField cut(base), field(base);
+    cutAway(cut, shape);
+    const CutState state = cut.state();
+    (void)field.restore(state, 0, state.bricks.size());
+    const FieldView view = field.field().view(), before = base->tooth->field.view();
+    std::size_t raised = 0, core = 0;
+    for (std::uint32_t dense = 0; dense < test::denseCount(field.field()); ++dense) {
+        if (view.brickIndex[dense] >= 0 || before.coarse[dense] >= 0.0f) continue;
+        const auto brick = brickAt(view.bricks, dense);
+        Vec3 centre;
+        for (int k = 0; k < 3; ++k)
+            centre[k] = view.originMm[k] + view.voxelMm * (8 * brick[static_cast<std::size_t>(k)] + 4);
+        EXPECT_LT(view.coarse[dense], 0.0f);
+        EXPECT_GE(view.coarse[dense], std::max(-2.0, std::max(test::ball(centre, 3.0), -shape(centre))) - 1e-5);
+        raised += view.coarse[dense] > std::max(before.coarse[dense], -2.0f);
+        ++core;
+    }
+    EXPECT_GT(raised, 50u);
+    EXPECT_GT(core, raised);
+    // And all is as it was when nothing is cut any more.
+    const CutState undo = changeBetween(state, CutState{});
+    (void)field.restore(undo, 0, undo.bricks.size());
+    for (std::uint32_t dense = 0; dense < test::denseCount(field.field()); ++dense)
+        ASSERT_EQ(view.coarse[dense], std::max(before.coarse[dense], -2.0f));
+}
+
 TEST(CutField, SaysWhereItIsCut) {
     const auto base = ballTooth(1.5, 0.8, 0.05);
     CutField field(base);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/model/tooth/cut_field.h"
 
+#include <cmath>
 #include <cstring>
 
 #include "handpiece/base/core/hash.h"
@@ -191,12 +192,56 @@ std::size_t CutField::restore(const CutState& change, std::size_t from, std::siz
         } else {
             std::memcpy(values(stored), brick.values.data(), kBrickBytes);
             noteChanged(brick.dense, true);
+            raiseAround(brick.dense, values(stored));
         }
         // Its neighbours follow at once, also those whose turn is yet to come: the field is never torn.
         shareFaces(brick.dense, stored);
     }
-    if (from == count) removedMm3_ = change.removedMm3;
+    if (from == count) {
+        removedMm3_ = change.removedMm3;
+        if (changedCount_ == 0) resetCoarse();
+    }
     return from;
+}
+
+void CutField::resetCoarse() noexcept {
+    const std::vector<float>& whole = base_->tooth->field.coarse_;
+    for (std::size_t i = 0; i < whole.size(); ++i)
+        field_.coarse_[i] = std::max(whole[i], -kCoarseDepthMm);
+}
+
+void CutField::raiseAround(std::uint32_t dense, const float* values) noexcept {
+    bool anyInside = false, anyOutside = false;
+    for (int i = 0; i < kBrickValues; ++i) {
+        anyInside |= values[i] < 0.0f;
+        anyOutside |= values[i] >= 0.0f;
+    }
+    if (!anyInside || !anyOutside) return;
+    // The surface lies somewhere in this brick: a centre is as far from it as from the brick's box, or farther.
+    const auto edge = static_cast<float>(kBrickCells * field_.settings_.voxelMm);
+    const auto reach = static_cast<std::int32_t>(std::ceil(kCoarseDepthMm / edge + 0.5f));
+    const std::array<std::int32_t, 3> brick = brickAt(field_.bricks_, dense);
+    std::array<std::int32_t, 3> low, high;
+    for (std::size_t k = 0; k < 3; ++k) {
+        low[k] = std::max(brick[k] - reach, 0);
+        high[k] = std::min(brick[k] + reach, field_.bricks_[k] - 1);
+    }
+    // From a brick's centre to the box of one so many bricks away, along one axis.
+    const auto gap = [edge](std::int32_t bricks) {
+        const std::int32_t away = bricks < 0 ? -bricks : bricks;
+        return away == 0 ? 0.0f : edge * (static_cast<float>(away) - 0.5f);
+    };
+    for (std::int32_t z = low[2]; z <= high[2]; ++z)
+        for (std::int32_t y = low[1]; y <= high[1]; ++y) {
+            const float across = gap(z - brick[2]) * gap(z - brick[2]) + gap(y - brick[1]) * gap(y - brick[1]);
+            if (across >= kCoarseDepthMm * kCoarseDepthMm) continue;
+            const std::uint32_t row = denseOf(field_.bricks_, {0, y, z});
+            for (std::int32_t x = low[0]; x <= high[0]; ++x) {
+                const std::size_t at = row + static_cast<std::uint32_t>(x);
+                const float along = gap(x - brick[0]), bound = -std::sqrt(across + along * along);
+                if (field_.brickIndex_[at] < 0 && field_.coarse_[at] < bound) field_.coarse_[at] = bound;
+            }
+        }
 }
 
 CutState CutField::state() const {

@@ -126,7 +126,8 @@ class CutField {
     [[nodiscard]] std::size_t waitingBricks() const noexcept { return nextDirty_ - firstDirty_; }
 
     /// Puts bricks `from` .. of a change in place, at most `most` of them; returns the next `from`. With the last one
-    /// the removed volumes become those of the change.
+    /// the removed volumes become those of the change. After every call bricks agree on the nodes they share, and the
+    /// bounds elsewhere hold; they are as tight as at first again only when nothing is cut any more.
     std::size_t restore(const CutState& change, std::size_t from, std::size_t most) noexcept HANDPIECE_REALTIME;
 
     // Off the tick, while it rests.
@@ -145,6 +146,8 @@ class CutField {
     void noteWaiting(std::uint32_t dense, bool shows) noexcept;
     void noteWhole(std::uint32_t dense) noexcept;
     void shareFaces(std::uint32_t dense, std::int32_t stored) noexcept;
+    void raiseAround(std::uint32_t dense, const float* values) noexcept;
+    void resetCoarse() noexcept;
 
     std::shared_ptr<const CuttableTooth> base_;
     ToothField field_;  ///< index, values and tissues have room for the reserve

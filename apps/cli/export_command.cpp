@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// handpiece export: a session's samples or events as CSV.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iterator>
+#include <memory>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/csv.h"
+#include "cli/progress_bar.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/record/session/session_reader.h"
+
+namespace handpiece::cli {
+namespace {
+
+struct ExportOptions {
+    std::string session, out = "-";
+    bool csv = false, events = false;
+};
+
+void writeRecord(std::string& out, const session::Record& r, double rateHz) {
+    const session::Inputs in = session::inputsOf(r);
+    const auto to = std::back_inserter(out);
+    fmt::format_to(to, "{},{:.6f}", r.tick, static_cast<double>(r.tick) / rateHz);
+    for (const double x : in.positionMm)
+        fmt::format_to(to, ",{:.7f}", x);
+    for (const double x : in.orientation)
+        fmt::format_to(to, ",{:.10f}", x);
+    for (const auto* three : {&r.velocityMmS, &r.forceN, &r.torqueNmm})
+        for (const float x : *three)
+            fmt::format_to(to, ",{:.4f}", x);
+    fmt::format_to(to, ",{:.5f},{:.0f},{:.5f},{},{:.4f},{:.4f},{},{},{}", r.depthMm, r.speedRpm, in.pedal, r.buttons,
+                   r.loadTorqueNmm, r.feedMmS, tooth::properties(static_cast<tooth::Tissue>(r.tissue)).name, r.flags,
+                   r.elapsedPeriods);
+    for (std::size_t t = 1; t < tooth::kTissueCount; ++t)
+        fmt::format_to(to, ",{:.6f}", r.removedMm3[t]);
+    out += '\n';
+}
+
+void writeSamples(const session::SessionReader& reader, TextWriter& out) {
+    std::string text =
+        "tick,t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,vx_mm_s,vy_mm_s,vz_mm_s,fx_N,fy_N,fz_N,tx_Nmm,ty_Nmm,tz_Nmm,depth_mm,rpm,"
+        "pedal,buttons,load_torque_Nmm,feed_mm_s,tissue,flags,elapsed_periods";
+    for (std::size_t t = 1; t < tooth::kTissueCount; ++t)
+        fmt::format_to(std::back_inserter(text), ",removed_{}_mm3",
+                       tooth::properties(static_cast<tooth::Tissue>(t)).name);
+    text += '\n';
+    constexpr std::size_t kStretch = 10000;
+    for (std::uint64_t first = 0; first < reader.size(); first += kStretch) {
+        if (cancelled()) throw core::Error("cancelled");
+        for (const session::Record& r : reader.records(first, kStretch))
+            writeRecord(text, r, reader.info().rateHz);
+        out.write(text);
+        text.clear();
+    }
+    out.write(text);
+}
+
+/// As RFC 4180 has it: in quotes, which are doubled inside.
+std::string quoted(const std::string& text) {
+    std::string result = "\"";
+    for (const char c : text)
+        result += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return result + '"';
+}
+
+void writeEvents(const session::SessionReader& reader, TextWriter& out) {
+    out.write("tick,t_s,name,text\n");
+    for (const session::Event& e : reader.events()) {
+        out.write(fmt::format("{},{:.6f},{},{}\n", e.tick, static_cast<double>(e.tick) / reader.info().rateHz, e.name,
+                              quoted(e.text)));
+    }
+}
+
+void exportSession(const ExportOptions& o) {
+    if (!o.csv) throw core::Error("there is no format to export to", "export", "add --csv");
+    const session::SessionReader reader(o.session);
+    TextWriter out(o.out);
+    if (o.events) {
+        writeEvents(reader, out);
+    } else {
+        writeSamples(reader, out);
+    }
+    out.commit();
+}
+
+}  // namespace
+
+void addExportCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("export", "A session's samples or events as a table");
+    const auto options = std::make_shared<ExportOptions>();
+    command
+        ->add_option("session", options->session, "session file (.h5); one that was cut off is read as far as it goes")
+        ->required();
+    command->add_flag("--csv", options->csv, "as comma-separated values");
+    command->add_flag("--events", options->events, "what happened at which tick, instead of the samples");
+    command->add_option("--out", options->out, "file to write; - for standard output")->capture_default_str();
+    command->footer(
+        "One row a tick: pose of the bur's tip as read from the device, force on the hand, speed, what was removed.\n"
+        "Example:\n  handpiece export session.h5 --csv --out session.csv");
+    command->callback([options] { exportSession(*options); });
+}
+
+}  // namespace handpiece::cli

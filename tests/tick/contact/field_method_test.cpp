@@ -197,7 +197,7 @@ TEST(FieldMethod, refusesASenselessReach) {
     FieldMethodSettings settings;
     settings.reachMm = -1.0;
     EXPECT_THROW((void)makeFieldMethod(slab(), burOf("paper"), settings), core::Error);
-    EXPECT_THROW((void)makeFieldMethod(nullptr, burOf("paper")), core::Error);
+    EXPECT_THROW((void)makeFieldMethod(std::shared_ptr<const tooth::Tooth>(), burOf("paper")), core::Error);
 }
 
 TEST(FieldMethod, aRoundEndPressedIntoASlabTouchesACap) {

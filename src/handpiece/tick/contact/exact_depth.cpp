@@ -44,9 +44,8 @@ Vec3 vectorOf(const double (&v)[3]) {
 
 }  // namespace
 
-ExactSurface::ExactSurface(const geometry::TriangleTree& tree, const tooth::ToothField& field, core::SimdLevel level,
-                           bool fieldOnly)
-    : tree_(tree), field_(field), kernels_(kernelsFor(level)), fieldOnly_(fieldOnly) {
+ExactSurface::ExactSurface(const geometry::TriangleTree& tree, const tooth::ToothField& field, core::SimdLevel level)
+    : tree_(tree), field_(field), kernels_(kernelsFor(level)) {
     view_.nodes = reinterpret_cast<const KernelNode*>(tree.nodes().data());
     view_.triangles = reinterpret_cast<const KernelTriangle*>(tree.triangles().data());
     view_.triangleCount = static_cast<std::uint32_t>(tree.triangles().size());
@@ -59,13 +58,6 @@ bool ExactSurface::isInside(const Vec3& p, const SurfaceHit& hit) const noexcept
 }
 
 BallDepth ExactSurface::ball(const Vec3& centreMm, double radiusMm, std::uint32_t seed, double boundMm) const noexcept {
-    if (fieldOnly_) {
-        BallDepth result;
-        const double d = field_.distance(centreMm);
-        // Not fine: outside the band nothing touches; inside, the bound of the distance is what is known.
-        if (d > boundMm || (d > 0.0 && !field_.isFine(centreMm))) return result;
-        return {radiusMm - d, centreMm, centreMm - d * field_.normal(centreMm), 0, 0, d < 0.0};
-    }
     SurfaceHit hit;
     hit.value = boundMm;
     hit.triangle = seed;
@@ -82,7 +74,6 @@ BallDepth ExactSurface::ball(const Vec3& centreMm, double radiusMm, std::uint32_
 }
 
 Vec3 ExactSurface::outward(const BallDepth& ball) const noexcept {
-    if (fieldOnly_) return field_.normal(ball.surfaceMm);
     const float* n = &tree_.pseudonormals()[21 * std::size_t{ball.triangle} + 3 * std::size_t{ball.feature}];
     const Vec3 normal(n[0], n[1], n[2]);
     const double length = normal.norm();

@@ -29,9 +29,7 @@ struct BallDepth {
 /// The triangles, the kernels for this machine and the sign of a point. What every part of the exact query shares.
 class ExactSurface {
   public:
-    /// With `fieldOnly` the balls are measured in the field where it is fine, and the triangles are left alone.
-    ExactSurface(const geometry::TriangleTree& tree, const tooth::ToothField& field, core::SimdLevel level,
-                 bool fieldOnly = false);
+    ExactSurface(const geometry::TriangleTree& tree, const tooth::ToothField& field, core::SimdLevel level);
 
     /// Depth of one ball; unchanged `triangle` (none) when nothing lies within `boundMm` of the centre.
     [[nodiscard]] BallDepth ball(const core::Vec3& centreMm, double radiusMm,
@@ -52,7 +50,6 @@ class ExactSurface {
     const tooth::ToothField& field_;
     TreeView view_;
     ExactKernels kernels_;
-    bool fieldOnly_;
 };
 
 /// The part of the medial region on the bur's own axis.

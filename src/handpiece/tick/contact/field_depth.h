@@ -5,28 +5,72 @@
 
 #include <vector>
 
+#include "handpiece/base/core/simd.h"
 #include "handpiece/model/instrument/bur.h"
-#include "handpiece/tick/contact/exact_depth.h"
+#include "handpiece/tick/contact/live_field.h"
 #include "handpiece/tick/contact/method.h"
+#include "handpiece/tick/contact/ring_arrays.h"
+#include "handpiece/tick/contact/ring_sensor.h"
 
 namespace handpiece::contact {
 
-/// Looks where the field is fine: along the axis, and over the tooth's surface from the places the bur's rings touch.
+/// What the field says of the depth.
+struct FieldTouch {
+    double depthMm = -std::numeric_limits<double>::infinity();
+    core::Vec3 normal = core::Vec3::Zero();     ///< unit, out of the tooth
+    core::Vec3 surfaceMm = core::Vec3::Zero();  ///< of the tooth
+};
+
+/// Deepest place, from the bur's surface inwards: along the bur's inward normal phiT + phiB never rises, so each of the
+/// nearest points of the rings is climbed from beside the surface and taken inwards until it lies on the tooth's. A bur
+/// that lies deeper than the field's values reach is looked for on shells inside it and on its axis.
 class FieldDepth {
   public:
-    FieldDepth(const tooth::ToothField& field, const instrument::Bur& bur);
+    FieldDepth(const LiveField& field, const instrument::Bur& bur, core::SimdLevel level);
 
-    /// Raises `best`; `touching` are constraints of the bur at this pose, nearest first.
-    void search(const core::Pose& burInTooth, const ConstraintSet& touching, BallDepth& best) const noexcept;
+    /// The depth; minus infinity when nothing lies within clearMm() of the bur. Where values only say "at least", so
+    /// does the depth.
+    [[nodiscard]] FieldTouch search(const core::Pose& burInTooth, RingSensor& rings) noexcept;
+    /// A bur at which the rings see nothing is at least this far off.
+    [[nodiscard]] double clearMm() const noexcept { return clearMm_; }
 
   private:
-    void searchAxis(const core::Pose& burInTooth, BallDepth& best) const noexcept;
-    void climbSurface(const core::Pose& burInTooth, const core::Vec3& start, BallDepth& best) const noexcept;
-    [[nodiscard]] bool projectToSurface(core::Vec3& q, core::Vec3& normal) const noexcept;
+    /// The outline about a ring.
+    struct Spot {
+        double rho, z, normalRho, normalZ;
+        double curvatureBefore, curvatureAfter, curvatureAround;  ///< [1/mm], positive where the bur bulges
+        double inscribedMm;              ///< how far inwards the nearest point of the bur stays this one
+        double slopeBefore, slopeAfter;  ///< of that along the outline
+        double roomBefore, roomAfter;    ///< along the outline to a corner [mm]
+        double deeperPerMm;              ///< how fast -phiB grows inwards: less than 1 from a corner
+        bool isCorner;
+    };
+    struct Frame {
+        core::Vec3 tip, x, y, z;
+        core::Mat3 toBur;
+    };
+    struct Start {
+        std::size_t spot;
+        double cosine, sine, inMm;
+    };
+    class Climb;
+    void searchInside(const Frame& frame, FieldTouch& best) noexcept;
+    void searchAxis(const Frame& frame, FieldTouch& best) const noexcept;
+    void takeAxis(const Frame& frame, double z, FieldTouch& best) const noexcept;
+    [[nodiscard]] core::Vec3 outward(const core::Vec3& p) const noexcept;
     [[nodiscard]] double radiusAt(double z) const noexcept;
+    [[nodiscard]] double depthAt(const Frame& frame, const core::Vec3& p, double distanceMm) const noexcept;
+    [[nodiscard]] std::size_t nearestSpot(std::size_t from, double rho, double z) const noexcept;
 
-    const tooth::ToothField& field_;
+    LiveField field_;
     const instrument::Bur& bur_;
+    tooth::FieldView view_;
+    RingKernels kernels_;
+    double outMm_, inMm_, clearMm_;  ///< values between -inMm_ and outMm_ are distances
+    std::vector<Spot> spots_;        ///< by ring of the bur
+    RingArrays inner_;               ///< shells inside the bur
+    std::vector<std::size_t> innerSpot_;
+    std::vector<float> innerIn_, innerDepth_;   ///< how far inwards from the spot, and -phiB there
     std::vector<instrument::MedialBall> axis_;  ///< at rising z
 };
 

@@ -7,6 +7,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/tick/contact/exact_depth.h"
 #include "handpiece/tick/contact/field_depth.h"
+#include "handpiece/tick/contact/live_field.h"
 #include "handpiece/tick/contact/ring_sensor.h"
 #include "handpiece/tick/contact/sheet_search.h"
 
@@ -20,16 +21,18 @@ constexpr double kNoDirectionMm = 1e-9;
 
 class FieldMethod final : public Method {
   public:
-    FieldMethod(std::shared_ptr<const tooth::Tooth> tooth, std::shared_ptr<const instrument::Bur> bur,
-                const FieldMethodSettings& settings)
+    FieldMethod(std::shared_ptr<const tooth::Tooth> tooth, std::shared_ptr<const tooth::CutField> cut,
+                std::shared_ptr<const instrument::Bur> bur, const FieldMethodSettings& settings)
         : tooth_(std::move(tooth)),
+          cut_(std::move(cut)),
           bur_(std::move(bur)),
           settings_(settings),
-          surface_(tooth_->tree, tooth_->field, core::simdLevel(), settings.depthSource == DepthSource::field),
+          live_(cut_ ? LiveField(*cut_) : LiveField(tooth_->field)),
+          surface_(tooth_->tree, tooth_->field, core::simdLevel()),
           axis_(*bur_),
           sheets_(*bur_, tooth_->field, core::simdLevel()),
-          rings_(tooth_->field, *bur_, core::simdLevel()),
-          field_(tooth_->field, *bur_),
+          rings_(live_, *bur_, core::simdLevel()),
+          field_(live_, *bur_, core::simdLevel()),
           farthestMm_(std::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {}
 
     [[nodiscard]] const char* name() const noexcept override { return "field"; }
@@ -42,28 +45,16 @@ class FieldMethod final : public Method {
             return result;
         }
         if (isStillFar(burInTooth)) return result;
-        BallDepth best;
-        if (settings_.depthSource == DepthSource::field) {
-            rings_.constraints(burInTooth, tooth_->field.settings().bandOutMm, touching_);
-            field_.search(burInTooth, touching_, best);
-        } else {
-            axis_.search(surface_, burInTooth, best);
-        }
-        sheets_.search(surface_, burInTooth, best);
-        if (!(best.depthMm >= -settings_.reachMm)) {
-            farPose_ = burInTooth;
-            // The field alone sees nothing beyond its band, and promises nothing about it.
-            clearMm_ = std::isfinite(best.depthMm) ? -best.depthMm : 0.0;
-            return result;
-        }
         clearMm_ = 0.0;
-        result.status = Status::ok;
-        result.depthMm = best.depthMm;
-        result.toothPointMm = best.surfaceMm;
-        const Vec3 away = best.inside ? Vec3(best.surfaceMm - best.centreMm) : Vec3(best.centreMm - best.surfaceMm);
-        const double distance = away.norm();
-        result.normal = distance > kNoDirectionMm ? Vec3(away / distance) : surface_.outward(best);
-        result.tissue = tooth_->field.tissueAt(best.surfaceMm - 0.5 * tooth_->field.settings().voxelMm * result.normal);
+        if (settings_.depthSource == DepthSource::field)
+            depthInField(burInTooth, result);
+        else if (cut_ && cut_->isCutNear(boxAround(burInTooth, live_.outMm())))
+            depthInField(burInTooth, result);
+        else
+            depthOfWhole(burInTooth, result);
+        if (result.status == Status::ok)
+            result.tissue =
+                live_.field.tissueAt(result.toothPointMm - 0.5 * live_.field.settings().voxelMm * result.normal);
         return result;
     }
 
@@ -73,13 +64,18 @@ class FieldMethod final : public Method {
         return rings_.constraints(burInTooth, reachMm, out);
     }
 
+    void bearing(const core::Pose& burInTooth, const Vec3& direction, double leadMm, double leastRadiusMm,
+                 Bearing& out) noexcept override {
+        rings_.bearing(burInTooth, direction, leadMm, leastRadiusMm, out);
+    }
+
     void reset() noexcept override {
         axis_.reset();
         clearMm_ = 0.0;
     }
 
   private:
-    /// No point of the bur has moved as far as there was room for, beyond the reach.
+    /// No point of the bur has moved as far as there was room for, beyond the reach. Cutting only makes more room.
     [[nodiscard]] bool isStillFar(const core::Pose& pose) const noexcept {
         if (clearMm_ <= settings_.reachMm) return false;
         const double cosine = pose.orientation.coeffs().dot(farPose_.orientation.coeffs());
@@ -87,30 +83,101 @@ class FieldMethod final : public Method {
         const double moved = (pose.positionMm - farPose_.positionMm).norm() + turn * farthestMm_;
         return clearMm_ - moved > settings_.reachMm;
     }
+    void setFar(const core::Pose& pose, double clearMm) noexcept {
+        farPose_ = pose;
+        clearMm_ = clearMm;
+    }
+
+    /// The bur's box, `byMm` wider on every side.
+    [[nodiscard]] core::Box boxAround(const core::Pose& pose, double byMm) const noexcept {
+        const Vec3 axis = pose.orientation * Vec3::UnitZ(), end = pose.positionMm + bur_->lengthMm() * axis;
+        Vec3 wide;
+        for (int k = 0; k < 3; ++k)
+            wide[k] = byMm + bur_->maxRadiusMm() * std::sqrt(std::max(0.0, 1.0 - axis[k] * axis[k]));
+        return {pose.positionMm.cwiseMin(end) - wide, pose.positionMm.cwiseMax(end) + wide};
+    }
+
+    /// From the triangles of the whole tooth. Cutting takes away only: where a cut may change the answer it remains a
+    /// bound.
+    void depthOfWhole(const core::Pose& burInTooth, Depth& result) noexcept {
+        BallDepth best;
+        axis_.search(surface_, burInTooth, best);
+        sheets_.search(surface_, burInTooth, best);
+        if (!(best.depthMm >= -settings_.reachMm)) {
+            setFar(burInTooth, std::isfinite(best.depthMm) ? -best.depthMm : 0.0);
+            return;
+        }
+        result.depthMm = best.depthMm;
+        if (best.depthMm < 0.0 && cut_ && isGone(burInTooth, best)) return;
+        result.status = Status::ok;
+        result.toothPointMm = best.surfaceMm;
+        const Vec3 away = best.inside ? Vec3(best.surfaceMm - best.centreMm) : Vec3(best.centreMm - best.surfaceMm);
+        const double distance = away.norm();
+        result.normal = distance > kNoDirectionMm ? Vec3(away / distance) : surface_.outward(best);
+    }
+
+    /// Apart: the point of the whole tooth that is nearest may have been cut away.
+    [[nodiscard]] bool isGone(const core::Pose& burInTooth, const BallDepth& best) const noexcept {
+        return cut_->isCutNear({best.surfaceMm, best.surfaceMm}) &&
+               cut_->isCutNear(boxAround(burInTooth, -best.depthMm));
+    }
+
+    void depthInField(const core::Pose& burInTooth, Depth& result) noexcept {
+        // The nearest that the tooth can be to the ball about the bur.
+        const Vec3 middle = burInTooth.apply(Vec3(0.0, 0.0, 0.5 * bur_->lengthMm()));
+        const double clear = live_.field.distance(middle) - std::hypot(0.5 * bur_->lengthMm(), bur_->maxRadiusMm());
+        if (clear > live_.outMm()) {
+            result.depthMm = std::max(-clear, -settings_.reachMm);
+            setFar(burInTooth, clear);
+            return;
+        }
+        const FieldTouch found = field_.search(burInTooth, rings_);
+        result.depthMm = std::max(found.depthMm, -settings_.reachMm);
+        if (!(found.depthMm >= -settings_.reachMm)) {
+            result.depthMm = std::max(-field_.clearMm(), -settings_.reachMm);
+            return;
+        }
+        result.status = Status::ok;
+        result.toothPointMm = found.surfaceMm;
+        result.normal = found.normal;
+    }
 
     std::shared_ptr<const tooth::Tooth> tooth_;
+    std::shared_ptr<const tooth::CutField> cut_;  ///< null: the tooth is never cut
     std::shared_ptr<const instrument::Bur> bur_;
     FieldMethodSettings settings_;
+    LiveField live_;
     ExactSurface surface_;
     AxisSearch axis_;
     SheetSearch sheets_;
     RingSensor rings_;
     FieldDepth field_;
-    ConstraintSet touching_;
     double farthestMm_;
     core::Pose farPose_;
     double clearMm_ = 0.0;  ///< distance at farPose_ when that was beyond reach
 };
+
+void check(bool isThere, const FieldMethodSettings& settings) {
+    if (!isThere) throw core::Error("the field method needs a tooth and a bur");
+    if (!(settings.reachMm > 0.0) || !std::isfinite(settings.reachMm))
+        throw core::Error("the reach of a contact query must be a positive number of millimetres", "reachMm");
+}
 
 }  // namespace
 
 std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::Tooth> tooth,
                                         std::shared_ptr<const instrument::Bur> bur,
                                         const FieldMethodSettings& settings) {
-    if (!tooth || !bur) throw core::Error("the field method needs a tooth and a bur");
-    if (!(settings.reachMm > 0.0) || !std::isfinite(settings.reachMm))
-        throw core::Error("the reach of a contact query must be a positive number of millimetres", "reachMm");
-    return std::make_unique<FieldMethod>(std::move(tooth), std::move(bur), settings);
+    check(tooth && bur, settings);
+    return std::make_unique<FieldMethod>(std::move(tooth), nullptr, std::move(bur), settings);
+}
+
+std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::CutField> tooth,
+                                        std::shared_ptr<const instrument::Bur> bur,
+                                        const FieldMethodSettings& settings) {
+    check(tooth && bur, settings);
+    std::shared_ptr<const tooth::Tooth> whole = tooth->base().tooth;
+    return std::make_unique<FieldMethod>(std::move(whole), std::move(tooth), std::move(bur), settings);
 }
 
 }  // namespace handpiece::contact

@@ -27,8 +27,12 @@ struct FieldMethodSettings {
                                                       std::shared_ptr<const instrument::Bur> bur,
                                                       const FieldMethodSettings& settings = {});
 
-/// On a tooth that is being cut: exact where the surface is still uncut, the field where it is not. It reads the live
-/// field, so it belongs to the thread that cuts.
+/// On a tooth that is being cut: exact on the triangles where nothing near the bur has been cut, from the field where
+/// something has. It reads the live field, so it belongs to the thread that cuts.
+///
+/// A field that has been cut sees no farther out than its band. When it sees nothing, or when what was nearest has been
+/// cut away, the depth is Status::beyondReach and depthMm minus a distance that is surely free, not minus the reach.
+/// Deeper in than the band and the bur's radius the depth is what the bricks' centres promise, at least.
 [[nodiscard]] std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::CutField> tooth,
                                                       std::shared_ptr<const instrument::Bur> bur,
                                                       const FieldMethodSettings& settings = {});

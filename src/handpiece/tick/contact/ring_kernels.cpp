@@ -63,9 +63,22 @@ struct Places {
     unsigned bare;  ///< bit i: no brick is stored there
 
     Places(const FieldView& field, const Row& row, Floats a, Floats b) {
+        const Floats place[3] = {row.rest[0] + a * row.x[0] + b * row.y[0], row.rest[1] + a * row.x[1] + b * row.y[1],
+                                 row.rest[2] + a * row.x[2] + b * row.y[2]};
+        find(field, row, place);
+    }
+    /// And c along `third`, in voxels.
+    Places(const FieldView& field, const Row& row, Floats a, Floats b, Floats c, const float (&third)[3]) {
+        Floats place[3];
+        for (int k = 0; k < 3; ++k)
+            place[k] = row.rest[k] + a * row.x[k] + b * row.y[k] + c * third[k];
+        find(field, row, place);
+    }
+
+    void find(const FieldView& field, const Row& row, const Floats (&places)[3]) {
         outside = Ints{};
         for (int k = 0; k < 3; ++k) {
-            const Floats place = row.rest[k] + a * row.x[k] + b * row.y[k];
+            const Floats place = places[k];
             const Ints whole = __builtin_convertvector(place, Ints);
             fraction[k] = place - __builtin_convertvector(whole, Floats);
             cell[k] = whole + row.base[k];
@@ -178,10 +191,9 @@ inline Ints bareMask(const Places& places) {
     return places.stored < 0;
 }
 
-/// Signed distances of eight points of a row.
-inline Floats distances(const FieldView& field, const RingQuery& query, const Row& row, Floats a, Floats b) {
-    const Places places(field, row, a, b);
-    if (places.bare == 0xffu) return places.farMm(field, row, query.farOutMm, query.farInMm);
+/// Signed distances of eight places.
+inline Floats distancesAt(const FieldView& field, const Row& row, const Places& places, float farOutMm, float farInMm) {
+    if (places.bare == 0xffu) return places.farMm(field, row, farOutMm, farInMm);
     const Floats(&t)[3] = places.fraction;
     const Corners corners(field, places);
     const Floats(&v)[8] = corners.v;
@@ -189,12 +201,26 @@ inline Floats distances(const FieldView& field, const RingQuery& query, const Ro
     const Floats high = mix(mix(v[4], v[5], t[0]), mix(v[6], v[7], t[0]), t[1]);
     const Floats d = mix(low, high, t[2]);
     if (places.bare == 0) return d;
-    return bareMask(places) ? places.farMm(field, row, query.farOutMm, query.farInMm) : d;
+    return bareMask(places) ? places.farMm(field, row, farOutMm, farInMm) : d;
+}
+
+/// Signed distances of eight points of a row.
+inline Floats distances(const FieldView& field, const RingQuery& query, const Row& row, Floats a, Floats b) {
+    return distancesAt(field, row, Places(field, row, a, b), query.farOutMm, query.farInMm);
+}
+
+inline float leastOf(Floats d) {
+    float lanes[8], least;
+    __builtin_memcpy(lanes, &d, sizeof d);
+    least = lanes[0];
+    for (int i = 1; i < 8; ++i)
+        least = lanes[i] < least ? lanes[i] : least;
+    return least;
 }
 
 /// Looks eight points of a ring up; returns which are live.
 inline unsigned senseEight(const FieldView& field, const BurRings& bur, const RingQuery& query, const RingTouch& touch,
-                           const BurRing& ring, const Row& row, int eight) {
+                           const BurRing& ring, const Row& row, int eight, Floats& least) {
     const int lanes = ring.count - 8 * eight;
     const unsigned real = lanes >= 8 ? 0xffu : (1u << lanes) - 1u;
     const std::int32_t at = ring.first + 8 * eight, angle = ring.angles + 8 * eight;
@@ -206,13 +232,18 @@ inline unsigned senseEight(const FieldView& field, const BurRings& bur, const Ri
     const Floats x01 = mix(v[4], v[5], t[0]), x11 = mix(v[6], v[7], t[0]);
     const Floats low = mix(x00, x10, t[1]), high = mix(x01, x11, t[1]);
     Floats d = mix(low, high, t[2]);
-    unsigned candidates = real;
+    unsigned candidates = real, bareInside = 0;
     if (places.bare != 0) {
         const Floats far = places.farMm(field, row, query.farOutMm, query.farInMm);
         d = bareMask(places) ? far : d;
         // Outside nothing is told beyond the bricks but that it is far.
-        const unsigned deep = query.skipsDeep ? 0u : bitsOf(far < 0.0f);
-        candidates &= ~places.bare | deep;
+        bareInside = bitsOf(far < 0.0f) & places.bare;
+        candidates &= ~places.bare | bareInside;
+    }
+    if (query.skipsDeep) {
+        const unsigned deep = (bitsOf(d <= -query.deepMm) | bareInside) & candidates;
+        if (deep != 0) *touch.skippedDeep = true;
+        candidates &= ~deep;
     }
     const unsigned live = bitsOf(d <= query.thresholdMm) & candidates;
     touch.live[ring.mask + eight] = static_cast<std::uint8_t>(live);
@@ -221,6 +252,7 @@ inline unsigned senseEight(const FieldView& field, const BurRings& bur, const Ri
     d = isLive ? d : splatF(kNotLiveMm);
     __builtin_memcpy(touch.distanceMm + at, &d, sizeof d);
     if (live == 0) return 0;
+    least = leastF(least, d);
     const Floats gx = mix(mix(v[1] - v[0], v[3] - v[2], t[1]), mix(v[5] - v[4], v[7] - v[6], t[1]), t[2]);
     const Floats gy = mix(x10 - x00, x11 - x01, t[2]);
     const Floats gz = high - low;
@@ -266,9 +298,11 @@ void sense(const FieldView& field, const BurRings& bur, const RingQuery& query, 
         const Floats d = distances(field, query, row, along, Floats{});
         __builtin_memcpy(touch.axisMm + i, &d, sizeof d);
     }
+    *touch.skippedDeep = false;
     for (std::int32_t i = 0; i < bur.count; ++i) {
         const BurRing& ring = bur.rings[i];
         touch.liveRing[i] = 0;
+        touch.leastMm[i] = kNotLiveMm;
         const auto rho = static_cast<float>(ring.rhoMm);
         if (touch.axisMm[i] - rho > threshold) continue;
         double centre[3];
@@ -276,6 +310,7 @@ void sense(const FieldView& field, const BurRings& bur, const RingQuery& query, 
             centre[k] = pose.tip[k] + ring.zMm * pose.z[k];
         const Row row(field, centre, pose.x, pose.y, ring.rhoMm, pose.reach, ring.rhoMm);
         unsigned any = 0;
+        Floats least = splatF(kNotLiveMm);
         for (int group = 0; group < ring.eights; group += 8) {
             unsigned near = 1;
             if (ring.eights > 1) {
@@ -286,7 +321,7 @@ void sense(const FieldView& field, const BurRings& bur, const RingQuery& query, 
             const int end = ring.eights - group < 8 ? ring.eights : group + 8;
             for (int e = group; e < end; ++e, near >>= 1) {
                 if ((near & 1u) != 0) {
-                    any |= senseEight(field, bur, query, touch, ring, row, e);
+                    any |= senseEight(field, bur, query, touch, ring, row, e, least);
                 } else {
                     const Floats none = splatF(kNotLiveMm);
                     __builtin_memcpy(touch.distanceMm + ring.first + 8 * e, &none, sizeof none);
@@ -296,6 +331,7 @@ void sense(const FieldView& field, const BurRings& bur, const RingQuery& query, 
         }
         if (any == 0) continue;
         touch.liveRing[i] = 1;
+        touch.leastMm[i] = leastOf(least);
         // Around the seam. Padding in the last eight is not live, so the neighbour is the last point itself.
         touch.distanceMm[ring.first - 1] = ring.count > 1 ? touch.distanceMm[ring.first + ring.count - 1] : kNotLiveMm;
         touch.distanceMm[ring.first + ring.count] = ring.count > 1 ? touch.distanceMm[ring.first] : kNotLiveMm;
@@ -346,10 +382,84 @@ unsigned lowInRing(const BurRings& bur, const RingTouch& touch, std::int32_t i, 
     return bitsOf((get(at - 1) >= d) & (get(at + 1) >= d)) & touch.live[ring.mask + eight];
 }
 
+void around(const FieldView& field, const AroundQuery& query, float* out) noexcept {
+    double centre[3], reach[3];
+    float third[3];
+    double x[3], y[3];
+    for (int k = 0; k < 3; ++k) {
+        const double place = (query.centre[k] - field.originMm[k]) * field.inverseVoxelMm;
+        centre[k] = place < -kFarGrid ? -kFarGrid : place > kFarGrid ? kFarGrid : place;
+        reach[k] = query.reachMm * field.inverseVoxelMm;
+        x[k] = query.alongU[k] * field.inverseVoxelMm;
+        y[k] = query.alongArc[k] * field.inverseVoxelMm;
+        third[k] = static_cast<float>(query.inward[k] * field.inverseVoxelMm);
+    }
+    const Row row(field, centre, x, y, 1.0, reach, 1.0);
+    const Places places(field, row, loadFloats(query.u), loadFloats(query.arc), loadFloats(query.in), third);
+    const Floats d = distancesAt(field, row, places, query.farOutMm, query.farInMm);
+    __builtin_memcpy(out, &d, sizeof d);
+}
+
+/// Sums of eight points, scaled to a band.
+inline void addBearing(BearingSums& sums, Floats area, Floats resistance, Floats x, Floats y, float areaMm2,
+                       float perRho, float turns) {
+    add(sums.area, areaMm2 * area);
+    add(sums.resistance, areaMm2 * perRho * resistance);
+    add(sums.x, turns * areaMm2 * perRho * x);
+    add(sums.y, turns * areaMm2 * perRho * y);
+}
+
+void bear(const BurRings& bur, const RingTouch& touch, const BearingBand* bands, std::int32_t count,
+          const BearingQuery& query, BearingSums* byTissue) noexcept {
+    const float across = __builtin_sqrtf(query.x * query.x + query.y * query.y), perMargin = 1.0f / query.marginMm;
+    for (std::int32_t b = 0; b < count; ++b) {
+        const BearingBand& band = bands[b];
+        if (touch.liveRing[band.ring] == 0) continue;
+        const float along = band.normalZ * query.z, most = __builtin_fabsf(band.normalRho) * across + along;
+        if (!(most > 0.0f)) continue;
+        const BurRing& ring = bur.rings[band.ring];
+        const auto rho = static_cast<float>(ring.rhoMm);
+        const float perRho = 1.0f / (rho > query.leastRadiusMm ? rho : query.leastRadiusMm);
+        const float turns = rho > 0.0f ? 1.0f : 0.0f;  // on the axis nothing moves
+        const float xPart = band.normalRho * query.x, yPart = band.normalRho * query.y;
+        Floats area{}, resistance{}, x{}, y{};
+        for (std::int32_t e = 0; e < ring.eights; ++e) {
+            unsigned live = touch.live[ring.mask + e];
+            if (live == 0) continue;
+            const std::int32_t at = ring.first + 8 * e, angle = ring.angles + 8 * e;
+            const Floats cosine = get(bur.cosines + angle), sine = get(bur.sines + angle);
+            const Floats c = mostF(xPart * cosine + yPart * sine + along, Floats{});
+            const Floats gap = get(touch.distanceMm + at) - query.leadMm * c;
+            const Floats w = leastF(mostF(1.0f - perMargin * gap, Floats{}), splatF(1.0f)) * c;
+            // Clockwise seen down the shank: the point at (cosine, sine) moves along (sine, -cosine).
+            if (query.tissue != kManyTissues) {
+                area += w;
+                resistance += w * c;
+                x += w * sine;
+                y -= w * cosine;
+                continue;
+            }
+            while (live != 0) {
+                const std::uint8_t tissue = touch.tissue[at + __builtin_ctz(live)];
+                unsigned same = 0;
+                for (int i = 0; i < 8; ++i)
+                    same |= (touch.tissue[at + i] == tissue ? 1u : 0u) << i;
+                same &= live;
+                live &= ~same;
+                const Ints lane = {1, 2, 4, 8, 16, 32, 64, 128};
+                const Floats own = ((Ints{} + static_cast<std::int32_t>(same)) & lane) != 0 ? w : Floats{};
+                addBearing(byTissue[tissue], own, own * c, own * sine, -own * cosine, band.areaMm2, perRho, turns);
+            }
+        }
+        if (query.tissue != kManyTissues)
+            addBearing(byTissue[query.tissue], area, resistance, x, y, band.areaMm2, perRho, turns);
+    }
+}
+
 }  // namespace
 
 RingKernels ringKernels() noexcept {
-    return {sense, addRun, lowInRing};
+    return {sense, around, bear, addRun, lowInRing};
 }
 
 }  // namespace handpiece::contact::HANDPIECE_SIMD_NS

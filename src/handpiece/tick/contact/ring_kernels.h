@@ -34,7 +34,8 @@ struct RingQuery {
     double tip[3], x[3], y[3], z[3];  ///< bur frame in the tooth frame [mm]
     float thresholdMm;                ///< points this near the surface are live, and all inside
     float farOutMm, farInMm;          ///< where no brick is stored the surface is at least this far
-    bool skipsDeep;                   ///< points inside where no brick is stored are not live
+    bool skipsDeep;                   ///< points inside where no brick is stored, or deeper than deepMm, are not live
+    float deepMm;                     ///< values hold no more than this
     std::uint8_t tissue;              ///< when everything is of one tissue, else kManyTissues
 };
 inline constexpr std::uint8_t kManyTissues = 0xff;
@@ -47,8 +48,34 @@ struct RingTouch {
     std::uint8_t* tissue;                      ///< by point: of the nearest node; unset when all is of one tissue
     std::uint8_t* live;                        ///< by eight: bit i for its point i
     std::uint8_t* liveRing;                    ///< by ring: has live points
+    float* leastMm;                            ///< by ring: least distance of its live points; kNotLiveMm for none
+    bool* skippedDeep;                         ///< whether there were points that skipsDeep left out
 };
 inline constexpr float kNotLiveMm = 1e3f;
+
+/// Places beside a point, along three unit directions of the tooth frame [mm].
+struct AroundQuery {
+    double centre[3], alongU[3], alongArc[3], inward[3];
+    float u[8], arc[8], in[8];
+    double reachMm;  ///< how far the places are from the centre at most
+    float farOutMm, farInMm;
+};
+
+/// A band of the bur's surface about a ring: what it weighs when the bur is pushed along a direction.
+struct BearingBand {
+    std::int32_t ring;
+    float normalRho, normalZ;  ///< unit, out of the bur
+    float areaMm2;             ///< of each point
+};
+struct BearingQuery {
+    float x, y, z;  ///< unit direction, bur frame
+    float leadMm, marginMm, leastRadiusMm;
+    std::uint8_t tissue;  ///< when everything is of one tissue, else kManyTissues
+};
+/// By lane; tangents in the bur's frame.
+struct alignas(32) BearingSums {
+    float area[8], resistance[8], x[8], y[8];
+};
 
 /// Sums over points of weight w = area times (margin - distance), by lane.
 struct alignas(32) TouchSums {
@@ -61,6 +88,11 @@ struct RingKernels {
     /// Finds the live points.
     void (*sense)(const tooth::FieldView& field, const BurRings& bur, const RingQuery& query,
                   const RingTouch& touch) noexcept;
+    /// Signed distances of eight places; a signed bound where no brick is stored.
+    void (*around)(const tooth::FieldView& field, const AroundQuery& query, float* out) noexcept;
+    /// Adds what the live points of all bands bear, by tissue.
+    void (*bear)(const BurRings& bur, const RingTouch& touch, const BearingBand* bands, std::int32_t count,
+                 const BearingQuery& query, BearingSums* byTissue) noexcept;
     /// Adds points from .. to - 1 of a ring, all live.
     void (*addRun)(const BurRings& bur, const RingTouch& touch, std::int32_t ring, std::int32_t from, std::int32_t to,
                    float marginMm, TouchSums& sums) noexcept;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 namespace handpiece::contact {
@@ -15,21 +14,21 @@ namespace {
 
 constexpr std::uint64_t kNone = ~std::uint64_t{0};
 
-RingKernels kernelsFor(core::SimdLevel level) {
-#if defined(__x86_64__)
-    if (level == core::SimdLevel::avx512) return simd_avx512::ringKernels();
-    if (level == core::SimdLevel::avx2) return simd_avx2::ringKernels();
-#endif
-    static_cast<void>(level);
-    return simd_base::ringKernels();
-}
-
 void store(double (&to)[3], const Vec3& v) noexcept {
     for (int k = 0; k < 3; ++k)
         to[k] = v[k];
 }
 
 /// The one tissue of all that can be touched, or kManyTissues.
+std::uint8_t onlyTissue(const tooth::TissueMap& map) {
+    std::uint8_t only = kManyTissues;
+    for (const tooth::Tissue tissue : map.tissues()) {
+        if (tissue == tooth::Tissue::none) continue;
+        if (only != kManyTissues) return kManyTissues;
+        only = static_cast<std::uint8_t>(tissue);
+    }
+    return only;
+}
 std::uint8_t onlyTissue(const tooth::ToothField& field, const tooth::FieldView& view) {
     std::uint8_t only = kManyTissues;
     const auto isOther = [&](std::uint8_t tissue) {
@@ -53,78 +52,36 @@ double sumOf(const float (&lanes)[8]) noexcept {
 
 }  // namespace
 
-RingSensor::RingSensor(const tooth::ToothField& field, const instrument::Bur& bur, core::SimdLevel level)
-    : view_(field.view()), kernels_(kernelsFor(level)), tissueOfAll_(onlyTissue(field, view_)) {
-    struct Table {
-        std::size_t angles, middles;
-    };
-    std::map<std::uint32_t, Table> tables;
-    std::size_t points = kRingPad, eightsInAll = 0;
-    const auto addAngle = [this](double angle, std::size_t sector) {
-        cosines_.push_back(static_cast<float>(std::cos(angle)));
-        sines_.push_back(static_cast<float>(std::sin(angle)));
-        sector_.push_back(static_cast<std::uint8_t>(sector));
-    };
-    for (const instrument::SurfaceRing& r : bur.rings()) {
-        if (r.count == 0) continue;
-        const auto [it, added] = tables.try_emplace(r.count);
-        const std::size_t count = r.count, eights = (count + 7) / 8;
-        const double step = 2.0 * std::numbers::pi / static_cast<double>(count);
-        if (added) {  // the padding repeats the last one
-            it->second.angles = cosines_.size();
-            for (std::size_t j = 0; j < 8 * eights; ++j) {
-                const std::size_t own = std::min(j, count - 1);
-                addAngle(step * (static_cast<double>(own) + 0.5), own * kSectors / count);
-            }
-            it->second.middles = cosines_.size();
-            for (std::size_t e = 0; e < 8 * ((eights + 7) / 8); ++e)
-                addAngle(step * static_cast<double>(8 * std::min(e, eights - 1) + 4), 0);
-        }
-        const double halfAngle = std::min(std::numbers::pi, 3.5 * step);
-        BurRing ring{};
-        ring.zMm = r.zMm;
-        ring.rhoMm = r.rhoMm;
-        ring.areaMm2 = static_cast<float>(r.areaMm2);
-        ring.chordMm = static_cast<float>(2.0 * r.rhoMm * std::sin(0.5 * halfAngle));
-        ring.count = static_cast<std::int32_t>(count);
-        ring.eights = static_cast<std::int32_t>(eights);
-        ring.first = static_cast<std::int32_t>(points);
-        ring.mask = static_cast<std::int32_t>(eightsInAll);
-        ring.angles = static_cast<std::int32_t>(it->second.angles);
-        ring.middles = static_cast<std::int32_t>(it->second.middles);
-        rings_.push_back(ring);
-        points += 8 * eights + kRingPad;
-        eightsInAll += eights;
-    }
-    for (const BurRing& ring : rings_)
-        heights_.push_back(static_cast<float>(ring.zMm));
-    while (heights_.size() % 8 != 0)
-        heights_.push_back(heights_.back());
-    axisDistance_.assign(heights_.size(), 0.0f);
-    for (std::vector<float>* values : {&distance_, &gx_, &gy_, &gz_})
-        values->assign(points, 0.0f);
-    tissue_.assign(points, 0);
-    live_.assign(eightsInAll, 0);
-    liveRing_.assign(rings_.size(), 0);
+RingSensor::RingSensor(const LiveField& field, const instrument::Bur& bur, core::SimdLevel level)
+    : field_(field),
+      view_(field.field.view()),
+      kernels_(ringKernelsFor(level)),
+      arrays_(bur.rings()),
+      bands_(bearingBands(bur)),
+      tissueOfAll_(field.cut != nullptr ? onlyTissue(field.cut->base().tissues) : onlyTissue(field.field, view_)) {
     runs_.resize(kMaxRuns);
-    candidates_.resize(points);
-    nearest_.resize((rings_.size() + kRingsPerBlock - 1) / kRingsPerBlock * kSectors);
-    bur_ = {rings_.data(), static_cast<std::int32_t>(rings_.size()), cosines_.data(), sines_.data(), heights_.data()};
-    touch_ = {axisDistance_.data(), distance_.data(), gx_.data(),   gy_.data(),
-              gz_.data(),           tissue_.data(),   live_.data(), liveRing_.data()};
-    query_.farOutMm = static_cast<float>(field.settings().bandOutMm);
-    query_.farInMm = static_cast<float>(field.settings().bandInMm);
+    candidates_.resize(arrays_.distance.size());
+    nearest_.resize((arrays_.rings.size() + kRingsPerBlock - 1) / kRingsPerBlock * kSectors);
+    query_.farOutMm = static_cast<float>(field.outMm());
+    query_.farInMm = static_cast<float>(field.inMm());
+    // Values of a tooth that is not cut are distances however deep.
+    query_.deepMm = field.cut != nullptr ? static_cast<float>(kSaturated * field.inMm()) : kNotLiveMm;
     query_.tissue = tissueOfAll_;
 }
 
 Vec3 RingSensor::pointMm(const BurRing& ring, std::int32_t j) const noexcept {
     const auto a = static_cast<std::size_t>(ring.angles + j);
     return tip_ + ring.zMm * z_ +
-           ring.rhoMm * (static_cast<double>(cosines_[a]) * x_ + static_cast<double>(sines_[a]) * y_);
+           ring.rhoMm * (static_cast<double>(arrays_.cosines[a]) * x_ + static_cast<double>(arrays_.sines[a]) * y_);
 }
 
 std::uint8_t RingSensor::tissueAt(std::int32_t at) const noexcept {
-    return tissueOfAll_ != kManyTissues ? tissueOfAll_ : tissue_[static_cast<std::size_t>(at)];
+    return tissueOfAll_ != kManyTissues ? tissueOfAll_ : arrays_.tissue[static_cast<std::size_t>(at)];
+}
+
+bool RingSensor::isSensed(const core::Pose& pose) const noexcept {
+    return sensedVersion_ == field_.version() && pose.positionMm == sensedPose_.positionMm &&
+           pose.orientation.coeffs() == sensedPose_.orientation.coeffs();
 }
 
 void RingSensor::sense(const core::Pose& burInTooth, double thresholdMm, bool skipsDeep) noexcept {
@@ -139,7 +96,56 @@ void RingSensor::sense(const core::Pose& burInTooth, double thresholdMm, bool sk
     store(query_.z, z_);
     query_.thresholdMm = static_cast<float>(thresholdMm);
     query_.skipsDeep = skipsDeep;
-    kernels_.sense(view_, bur_, query_, touch_);
+    kernels_.sense(view_, arrays_.bur, query_, arrays_.touch);
+    sensedPose_ = burInTooth;
+    sensedVersion_ = field_.version();
+}
+
+double RingSensor::leastMm() const noexcept {
+    float least = kNotLiveMm;
+    for (const float d : arrays_.least)
+        least = std::min(least, d);
+    return static_cast<double>(least);
+}
+
+double RingSensor::look(const core::Pose& burInTooth, double thresholdMm, double windowMm) noexcept {
+    if (isSensed(burInTooth) && !*arrays_.skippedDeep) {
+        const double sensedMm = static_cast<double>(query_.thresholdMm), least = leastMm();
+        if (sensedMm >= thresholdMm || least + windowMm <= sensedMm) return least;
+    }
+    sense(burInTooth, thresholdMm, false);
+    return leastMm();
+}
+
+void RingSensor::bearing(const core::Pose& burInTooth, const Vec3& direction, double leadMm, double leastRadiusMm,
+                         Bearing& out) noexcept {
+    out = Bearing{};
+    for (Vec3& tangent : out.tangentMm)
+        tangent.setZero();
+    if (!burInTooth.isValid() || !direction.allFinite()) {
+        out.status = Status::invalidPose;
+        return;
+    }
+    // A point farther off than that does not count whichever way it faces.
+    sense(burInTooth, kContactMarginMm + std::max(leadMm, 0.0), false);
+    const Vec3 along(direction.dot(x_), direction.dot(y_), direction.dot(z_));
+    BearingQuery query{};
+    query.x = static_cast<float>(along.x());
+    query.y = static_cast<float>(along.y());
+    query.z = static_cast<float>(along.z());
+    query.leadMm = static_cast<float>(leadMm);
+    query.marginMm = static_cast<float>(kContactMarginMm);
+    query.leastRadiusMm = static_cast<float>(leastRadiusMm);
+    query.tissue = tissueOfAll_;
+    std::array<BearingSums, tooth::kTissueCount> sums{};
+    kernels_.bear(arrays_.bur, arrays_.touch, bands_.data(), static_cast<std::int32_t>(bands_.size()), query,
+                  sums.data());
+    for (std::size_t t = 0; t < tooth::kTissueCount; ++t) {
+        if (tissueOfAll_ != kManyTissues && t != tissueOfAll_) continue;
+        out.areaMm2[t] = sumOf(sums[t].area);
+        out.resistanceMm[t] = sumOf(sums[t].resistance);
+        out.tangentMm[t] = sumOf(sums[t].x) * x_ + sumOf(sums[t].y) * y_;
+    }
 }
 
 std::int32_t RingSensor::rootOf(std::int32_t run) noexcept {
@@ -159,24 +165,25 @@ void RingSensor::joinRuns(std::size_t begin, std::size_t middle, std::size_t end
     for (std::size_t b = middle; b < end; ++b)
         for (std::size_t a = begin; a < middle; ++a) {
             const Run &first = runs_[a], &second = runs_[b];
-            const std::int64_t n = rings_[static_cast<std::size_t>(first.ring)].count;
-            const std::int64_t m = rings_[static_cast<std::size_t>(second.ring)].count;
+            const std::int64_t n = arrays_.rings[static_cast<std::size_t>(first.ring)].count;
+            const std::int64_t m = arrays_.rings[static_cast<std::size_t>(second.ring)].count;
             // Arcs [from / n, to / n) and [from / m, to / m) share an angle; rings of one point are everywhere.
             if (first.from * m < second.to * n && second.from * n < first.to * m) join(a, b);
         }
     // Around the ring's seam.
     if (end > middle + 1) {
         const Run &first = runs_[middle], &last = runs_[end - 1];
-        if (first.from == 0 && last.to == rings_[static_cast<std::size_t>(last.ring)].count) join(middle, end - 1);
+        if (first.from == 0 && last.to == arrays_.rings[static_cast<std::size_t>(last.ring)].count)
+            join(middle, end - 1);
     }
 }
 
 std::size_t RingSensor::findRuns() noexcept {
     std::size_t count = 0, previousBegin = 0;
     std::int32_t previousRing = -2;
-    for (std::size_t i = 0; i < rings_.size(); ++i) {
-        if (liveRing_[i] == 0) continue;
-        const BurRing& ring = rings_[i];
+    for (std::size_t i = 0; i < arrays_.rings.size(); ++i) {
+        if (arrays_.liveRing[i] == 0) continue;
+        const BurRing& ring = arrays_.rings[i];
         const std::size_t begin = count;
         const auto add = [&](std::int32_t from, std::int32_t to) {
             runs_[count] = {static_cast<std::int32_t>(i), from, to, static_cast<std::int32_t>(count)};
@@ -184,7 +191,7 @@ std::size_t RingSensor::findRuns() noexcept {
         };
         std::int32_t from = -1;  // of the run that reaches into the eight at hand
         for (std::int32_t e = 0; e < ring.eights; ++e) {
-            const unsigned bits = live_[static_cast<std::size_t>(ring.mask + e)];
+            const unsigned bits = arrays_.live[static_cast<std::size_t>(ring.mask + e)];
             if (bits == (from < 0 ? 0u : 0xffu)) continue;
             for (int bit = 0; bit < 8;) {
                 const unsigned rest = bits >> bit;
@@ -231,13 +238,13 @@ std::size_t RingSensor::sumRuns(std::size_t runs, Status& status) noexcept {
             fresh.root = root;
         }
         Sums& sum = sums_[s];
-        const BurRing& ring = rings_[static_cast<std::size_t>(run.ring)];
-        kernels_.addRun(bur_, touch_, run.ring, run.from, run.to, kMargin, sum.lanes);
+        const BurRing& ring = arrays_.rings[static_cast<std::size_t>(run.ring)];
+        kernels_.addRun(arrays_.bur, arrays_.touch, run.ring, run.from, run.to, kMargin, sum.lanes);
         sum.area += static_cast<double>(ring.areaMm2) * (run.to - run.from);
         if (tissueOfAll_ != kManyTissues) continue;
         for (std::int32_t at = ring.first + run.from; at < ring.first + run.to; ++at)
-            sum.tissue[tissue_[static_cast<std::size_t>(at)]] +=
-                static_cast<double>(ring.areaMm2 * (kMargin - distance_[static_cast<std::size_t>(at)]));
+            sum.tissue[arrays_.tissue[static_cast<std::size_t>(at)]] +=
+                static_cast<double>(ring.areaMm2 * (kMargin - arrays_.distance[static_cast<std::size_t>(at)]));
     }
     for (std::size_t s = 0; s < count; ++s) {
         sums_[s].pressure = sumOf(sums_[s].lanes.weight);
@@ -294,27 +301,28 @@ void RingSensor::patches(const core::Pose& burInTooth, PatchSet& out) noexcept {
 }
 
 std::uint64_t RingSensor::keyOf(std::size_t i, std::int32_t j) const noexcept {
-    const auto bits = std::bit_cast<std::uint32_t>(distance_[static_cast<std::size_t>(rings_[i].first + j)]);
+    const auto bits =
+        std::bit_cast<std::uint32_t>(arrays_.distance[static_cast<std::size_t>(arrays_.rings[i].first + j)]);
     // Floats sort like integers once the negative ones are turned round.
     const std::uint32_t ordered = bits >> 31 != 0 ? ~bits : bits | 0x80000000u;
     return std::uint64_t{ordered} << 32 | i << 16 | static_cast<std::uint64_t>(j);
 }
 
 bool RingSensor::isLocalMinimum(std::size_t i, std::int32_t j) const noexcept {
-    const BurRing& ring = rings_[i];
-    const float own = distance_[static_cast<std::size_t>(ring.first + j)];
+    const BurRing& ring = arrays_.rings[i];
+    const float own = arrays_.distance[static_cast<std::size_t>(ring.first + j)];
     // Of equal neighbours the first one counts.
     const auto below = [&](const BurRing& other, std::int32_t k, bool before) {
-        const float d = distance_[static_cast<std::size_t>(other.first + k)];
+        const float d = arrays_.distance[static_cast<std::size_t>(other.first + k)];
         return d < own || (before && d == own);
     };
     const std::int32_t left = j == 0 ? ring.count - 1 : j - 1, right = j + 1 == ring.count ? 0 : j + 1;
     if (ring.count > 1 && (below(ring, left, left < j) || below(ring, right, right < j))) return false;
     for (int side = -1; side <= 1; side += 2) {
-        if ((side < 0 && i == 0) || (side > 0 && i + 1 == rings_.size())) continue;
+        if ((side < 0 && i == 0) || (side > 0 && i + 1 == arrays_.rings.size())) continue;
         const std::size_t beside = side < 0 ? i - 1 : i + 1;
-        if (liveRing_[beside] == 0) continue;
-        const BurRing& other = rings_[beside];
+        if (arrays_.liveRing[beside] == 0) continue;
+        const BurRing& other = arrays_.rings[beside];
         const std::int32_t from = (j * other.count) / ring.count, to = ((j + 1) * other.count - 1) / ring.count;
         for (std::int32_t k = from; k <= to && k < other.count; ++k)
             if (below(other, k, side < 0)) return false;
@@ -324,11 +332,11 @@ bool RingSensor::isLocalMinimum(std::size_t i, std::int32_t j) const noexcept {
 
 std::size_t RingSensor::findMinima() noexcept {
     std::size_t count = 0;
-    for (std::size_t i = 0; i < rings_.size(); ++i) {
-        if (liveRing_[i] == 0) continue;
-        for (std::int32_t e = 0; e < rings_[i].eights; ++e) {
-            if (live_[static_cast<std::size_t>(rings_[i].mask + e)] == 0) continue;
-            unsigned low = kernels_.lowInRing(bur_, touch_, static_cast<std::int32_t>(i), e);
+    for (std::size_t i = 0; i < arrays_.rings.size(); ++i) {
+        if (arrays_.liveRing[i] == 0) continue;
+        for (std::int32_t e = 0; e < arrays_.rings[i].eights; ++e) {
+            if (arrays_.live[static_cast<std::size_t>(arrays_.rings[i].mask + e)] == 0) continue;
+            unsigned low = kernels_.lowInRing(arrays_.bur, arrays_.touch, static_cast<std::int32_t>(i), e);
             for (; low != 0; low &= low - 1) {
                 const std::int32_t j = 8 * e + std::countr_zero(low);
                 if (isLocalMinimum(i, j)) candidates_[count++] = keyOf(i, j);
@@ -343,20 +351,20 @@ std::size_t RingSensor::findMinima() noexcept {
 std::size_t RingSensor::addSectors(std::size_t minima) noexcept {
     std::size_t count = minima;
     std::fill(nearest_.begin(), nearest_.end(), kNone);
-    for (std::size_t i = 0; i < rings_.size(); ++i) {
-        if (liveRing_[i] == 0) continue;
-        const BurRing& ring = rings_[i];
+    for (std::size_t i = 0; i < arrays_.rings.size(); ++i) {
+        if (arrays_.liveRing[i] == 0) continue;
+        const BurRing& ring = arrays_.rings[i];
         std::uint64_t* sectors = &nearest_[i / kRingsPerBlock * kSectors];
         for (std::int32_t e = 0; e < ring.eights; ++e)
-            for (unsigned live = live_[static_cast<std::size_t>(ring.mask + e)]; live != 0; live &= live - 1) {
+            for (unsigned live = arrays_.live[static_cast<std::size_t>(ring.mask + e)]; live != 0; live &= live - 1) {
                 const std::int32_t j = 8 * e + std::countr_zero(live);
-                std::uint64_t& nearest = sectors[sector_[static_cast<std::size_t>(ring.angles + j)]];
+                std::uint64_t& nearest = sectors[arrays_.sector[static_cast<std::size_t>(ring.angles + j)]];
                 nearest = std::min(nearest, keyOf(i, j));
             }
     }
     const auto placeOf = [this](std::uint64_t key) {
         const std::size_t i = key >> 16 & 0xffffu, j = key & 0xffffu;
-        return i / kRingsPerBlock * kSectors + sector_[static_cast<std::size_t>(rings_[i].angles) + j];
+        return i / kRingsPerBlock * kSectors + arrays_.sector[static_cast<std::size_t>(arrays_.rings[i].angles) + j];
     };
     for (std::size_t c = 0; c < minima; ++c) {
         std::uint64_t& nearest = nearest_[placeOf(candidates_[c])];
@@ -370,7 +378,8 @@ std::size_t RingSensor::addSectors(std::size_t minima) noexcept {
 Status RingSensor::constraints(const core::Pose& burInTooth, double reachMm, ConstraintSet& out) noexcept {
     out.clear();
     if (!burInTooth.isValid()) return Status::invalidPose;
-    sense(burInTooth, reachMm, true);
+    if (!isSensed(burInTooth) || query_.thresholdMm != static_cast<float>(reachMm) || !query_.skipsDeep)
+        sense(burInTooth, reachMm, true);
     // Every local minimum of the gap, then the nearest point of each sector of a few rings: walls, slots, rims and
     // edges are all seen, and the whole stays well spread.
     const std::size_t minima = std::min(findMinima(), kMaxConstraints);
@@ -379,13 +388,13 @@ Status RingSensor::constraints(const core::Pose& burInTooth, double reachMm, Con
     if (count > taken) std::nth_element(at(minima), at(taken), at(count));
     std::sort(at(minima), at(taken));
     for (std::size_t c = 0; c < taken; ++c) {
-        const BurRing& ring = rings_[candidates_[c] >> 16 & 0xffffu];
+        const BurRing& ring = arrays_.rings[candidates_[c] >> 16 & 0xffffu];
         const auto j = static_cast<std::int32_t>(candidates_[c] & 0xffffu);
         const auto point = static_cast<std::size_t>(ring.first + j);
-        const Vec3 gradient(gx_[point], gy_[point], gz_[point]);
+        const Vec3 gradient(arrays_.gx[point], arrays_.gy[point], arrays_.gz[point]);
         const double n = gradient.norm();
         if (!(n > 1e-12)) continue;
-        out.pushBack({gradient / n, static_cast<double>(distance_[point]), pointMm(ring, j),
+        out.pushBack({gradient / n, static_cast<double>(arrays_.distance[point]), pointMm(ring, j),
                       static_cast<tooth::Tissue>(tissueAt(ring.first + j))});
     }
     return count > kMaxConstraints ? Status::truncated : Status::ok;

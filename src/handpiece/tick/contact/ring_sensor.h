@@ -9,19 +9,27 @@
 
 #include "handpiece/base/core/simd.h"
 #include "handpiece/model/instrument/bur.h"
-#include "handpiece/model/tooth/tooth_field.h"
+#include "handpiece/tick/contact/live_field.h"
 #include "handpiece/tick/contact/method.h"
-#include "handpiece/tick/contact/ring_kernels.h"
+#include "handpiece/tick/contact/ring_arrays.h"
 
 namespace handpiece::contact {
 
 /// Feels the field with the bur's surface rings. Cost depends on the contact, never on the mesh. For one thread.
 class RingSensor {
   public:
-    RingSensor(const tooth::ToothField& field, const instrument::Bur& bur, core::SimdLevel level);
+    RingSensor(const LiveField& field, const instrument::Bur& bur, core::SimdLevel level);
 
     void patches(const core::Pose& burInTooth, PatchSet& out) noexcept;
     Status constraints(const core::Pose& burInTooth, double reachMm, ConstraintSet& out) noexcept;
+    /// As Method::bearing. The bur turns clockwise for whoever looks down its shank: about -z of its frame.
+    void bearing(const core::Pose& burInTooth, const core::Vec3& direction, double leadMm, double leastRadiusMm,
+                 Bearing& out) noexcept;
+
+    /// Least distance of the rings' points at this pose, kNotLiveMm when none is within the threshold. What was sensed
+    /// before at the same pose serves again when it holds every point up to `windowMm` above the nearest.
+    double look(const core::Pose& burInTooth, double thresholdMm, double windowMm) noexcept;
+    [[nodiscard]] const RingArrays& arrays() const noexcept { return arrays_; }
 
   private:
     struct Run {                      ///< neighbouring points of a ring in contact
@@ -35,9 +43,11 @@ class RingSensor {
         std::int32_t root;
     };
     static constexpr std::size_t kMaxRuns = 1024, kMaxSums = 2 * kMaxPatches;
-    static constexpr std::size_t kSectors = 16, kRingsPerBlock = 3;
+    static constexpr std::size_t kRingsPerBlock = 3;
 
     void sense(const core::Pose& burInTooth, double thresholdMm, bool skipsDeep) noexcept;
+    [[nodiscard]] bool isSensed(const core::Pose& pose) const noexcept;
+    [[nodiscard]] double leastMm() const noexcept;
     [[nodiscard]] core::Vec3 pointMm(const BurRing& ring, std::int32_t j) const noexcept;
     [[nodiscard]] std::uint8_t tissueAt(std::int32_t at) const noexcept;
     std::size_t findRuns() noexcept;
@@ -50,19 +60,15 @@ class RingSensor {
     std::size_t findMinima() noexcept;
     std::size_t addSectors(std::size_t minima) noexcept;
 
+    LiveField field_;
     tooth::FieldView view_;
     RingKernels kernels_;
-    std::vector<BurRing> rings_;
-    std::vector<float> cosines_, sines_;
-    std::vector<std::uint8_t> sector_;  ///< beside the cosines
-    std::vector<float> heights_;        ///< of the rings
-    std::uint8_t tissueOfAll_;          ///< or kManyTissues
-    // What sense() found.
-    std::vector<float> axisDistance_, distance_, gx_, gy_, gz_;
-    std::vector<std::uint8_t> tissue_, live_, liveRing_;
-    BurRings bur_;
-    RingTouch touch_;
+    RingArrays arrays_;
+    std::vector<BearingBand> bands_;
+    std::uint8_t tissueOfAll_;  ///< or kManyTissues
     RingQuery query_{};
+    core::Pose sensedPose_;
+    std::uint64_t sensedVersion_ = 0;
 
     std::vector<Run> runs_;
     std::array<Sums, kMaxSums> sums_;

@@ -5,6 +5,8 @@
 
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/senses/surface/brick_state.h"
+#include "handpiece/senses/surface/closed_surface.h"
+#include "handpiece/senses/surface/part_source.h"
 #include "handpiece/senses/surface/surface.h"
 #include "handpiece/senses/surface/triangle_list.h"
 
@@ -16,6 +18,17 @@ core::Vec3 asVec3(const std::array<float, 3>& v) {
 }
 
 }  // namespace
+
+geometry::TriangleMesh closedSurface(const BrickSource& source, const core::Progress& progress) {
+    Surface surface(source);
+    surface.buildUpTo(1, progress);
+    return surface.closedMesh();
+}
+
+geometry::TriangleMesh closedPart(const BrickSource& source, const tooth::TissueMap& tissues, tooth::Tissue tissue,
+                                  const core::Progress& progress) {
+    return closedSurface(PartSource(source, tissues, tissue), progress);
+}
 
 geometry::TriangleMesh Surface::closedMesh() const {
     geometry::TriangleMesh mesh;

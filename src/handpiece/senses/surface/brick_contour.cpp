@@ -213,16 +213,50 @@ struct PlaneSum {
         return {inverse * (c00 * b[0] + c01 * b[1] + c02 * b[2]), inverse * (c01 * b[0] + c11 * b[1] + c12 * b[2]),
                 inverse * (c02 * b[0] + c12 * b[1] + c22 * b[2])};
     }
-    /// The same where each coordinate is held to a range: one coordinate after the other, which comes to rest at the
-    /// best point of the box.
-    void solveWithin(const Float3& low, const Float3& high, Float3& x) const {
+    /// Twice what an offset is short of lying on all planes, less a constant.
+    [[nodiscard]] float cost(const Float3& x) const {
+        return x[0] * (a[0] * x[0] + 2.0f * (a[1] * x[1] + a[2] * x[2] - b[0])) +
+               x[1] * (a[3] * x[1] + 2.0f * (a[4] * x[2] - b[1])) + x[2] * (a[5] * x[2] - 2.0f * b[2]);
+    }
+    /// The best offset where each coordinate is held to a range: of all faces, edges and corners of that box.
+    [[nodiscard]] Float3 solveWithin(const Float3& low, const Float3& high) const {
+        const auto at = [&](std::size_t i, std::size_t j) { return a[i == 0 ? j : i + j + 1]; };
+        Float3 best{};
+        float least = std::numeric_limits<float>::infinity();
+        const auto offer = [&](const Float3& x) {
+            const float c = cost(x);
+            if (c < least) {
+                least = c;
+                best = x;
+            }
+        };
+        const auto isIn = [&](float v, std::size_t k) { return v >= low[k] && v <= high[k]; };
         for (std::size_t k = 0; k < 3; ++k)
-            x[k] = std::clamp(x[k], low[k], high[k]);
-        for (int round = 0; round < 12; ++round) {
-            x[0] = std::clamp((b[0] - a[1] * x[1] - a[2] * x[2]) / a[0], low[0], high[0]);
-            x[1] = std::clamp((b[1] - a[1] * x[0] - a[4] * x[2]) / a[3], low[1], high[1]);
-            x[2] = std::clamp((b[2] - a[2] * x[0] - a[4] * x[1]) / a[5], low[2], high[2]);
-        }
+            for (const float held : {low[k], high[k]}) {
+                const std::size_t u = k == 0 ? 1 : 0, w = k == 2 ? 1 : 2;
+                const float bu = b[u] - at(std::min(k, u), std::max(k, u)) * held;
+                const float bw = b[w] - at(std::min(k, w), std::max(k, w)) * held;
+                const float uu = at(u, u), uw = at(u, w), ww = at(w, w), inverse = 1.0f / (uu * ww - uw * uw);
+                Float3 x;
+                x[k] = held;
+                x[u] = inverse * (ww * bu - uw * bw);
+                x[w] = inverse * (uu * bw - uw * bu);
+                if (isIn(x[u], u) && isIn(x[w], w)) {
+                    offer(x);
+                    continue;
+                }
+                for (const float other : {low[u], high[u]}) {
+                    x[u] = other;
+                    x[w] = std::clamp((bw - uw * other) / ww, low[w], high[w]);
+                    offer(x);
+                }
+                for (const float other : {low[w], high[w]}) {
+                    x[w] = other;
+                    x[u] = std::clamp((bu - uw * other) / uu, low[u], high[u]);
+                    offer(x);
+                }
+            }
+        return best;
     }
 };
 
@@ -339,6 +373,7 @@ class Contourer {
         vertex.cell = number;
         vertex.isSharp = sum.leastCosine < kSharpCosine;
         vertex.normal = sum.normal;
+        const PlaneSum crossings = sum;
         if (vertex.isSharp || !sum.isClean) takeNodePlanes(sum, at, planes, count);
         Float3 x = sum.solve();
         Float3 low, high;
@@ -348,9 +383,10 @@ class Contourer {
             high[k] = static_cast<float>(at[k] + 1) - kMargin - sum.mean[k];
             within = within && x[k] >= low[k] && x[k] <= high[k];
         }
+        if (!within && !vertex.isSharp) sum = crossings;  // the edge of the solid passes by
+        if (within && !vertex.isSharp && !crossings.isClean) vertex.isSharp = true;
         if (!within) {
-            if (vertex.isSharp && isAlone) letStandOut(at, x, low, high);
-            sum.solveWithin(low, high, x);
+            if (!(vertex.isSharp && isAlone && mayStandOut(at, sum.mean, x, low, high))) x = sum.solveWithin(low, high);
         }
         for (std::size_t k = 0; k < 3; ++k)
             vertex.positionMm[k] =
@@ -389,32 +425,50 @@ class Contourer {
         sum.hold(kNodeHold * static_cast<float>(taken));
     }
 
-    /// An edge of the solid may stand out of a cell between its nodes. Where the cell behind that face has no surface,
-    /// the vertex may follow it there; through one face only.
-    void letStandOut(const int (&at)[3], const Float3& x, Float3& low, Float3& high) const {
-        int axis = -1;
-        bool up = false;
-        float most = 0.0f;
-        for (int k = 0; k < 3; ++k) {
-            const auto i = static_cast<std::size_t>(k);
-            const float below = low[i] - x[i], above = x[i] - high[i];
-            if (std::max(below, above) <= most) continue;
-            most = std::max(below, above);
-            axis = k;
-            up = above > below;
+    /// An edge of the solid may stand out of a cell between its nodes. The vertex may follow it as long as it stays
+    /// nearer to its own crossings than to those of the cells beside it, so that the surface does not fold.
+    bool mayStandOut(const int (&at)[3], const Float3& mean, const Float3& x, const Float3& low,
+                     const Float3& high) const {
+        for (std::size_t k = 0; k < 3; ++k)
+            if (x[k] < low[k] - kStandOut || x[k] > high[k] + kStandOut) return false;
+        for (int face = 0; face < 6; ++face) {
+            int beside[3] = {at[0], at[1], at[2]};
+            beside[face / 2] += (face & 1) != 0 ? 1 : -1;
+            Float3 other;
+            if (!meanCrossing(beside, other)) continue;
+            float along = 0.0f, length2 = 0.0f;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const float d = other[k] - mean[k];
+                along += d * x[k];
+                length2 += d * d;
+            }
+            if (along > 0.5f * length2) return false;
         }
-        if (axis < 0) return;
-        const int u = (axis + 1) % 3, w = (axis + 2) % 3;
-        int corner[3] = {at[0], at[1], at[2]};
-        corner[axis] += up ? 1 : -1;
-        const int i = Sampler::index(corner[0], corner[1], corner[2]);
-        const bool inside = sampler_.at(i) < 0.0f;
-        for (int c = 1; c < 8; ++c) {
-            const int j = i + (c & 1) * kStride[axis] + (c >> 1 & 1) * kStride[u] + (c >> 2 & 1) * kStride[w];
-            if ((sampler_.at(j) < 0.0f) != inside) return;
+        return true;
+    }
+
+    /// False when the surface does not pass through the cell.
+    bool meanCrossing(const int (&at)[3], Float3& mean) const {
+        const int origin = Sampler::index(at[0], at[1], at[2]);
+        float v[8];
+        unsigned bits = 0;
+        for (int c = 0; c < 8; ++c) {
+            v[c] = sampler_.at(origin + (c & 1) + (c >> 1 & 1) * kStride[1] + (c >> 2) * kStride[2]);
+            bits |= static_cast<unsigned>(v[c] < 0.0f) << c;
         }
-        const auto k = static_cast<std::size_t>(axis);
-        (up ? high[k] : low[k]) += up ? kStandOut : -kStandOut;
+        const CellCase& cell = cellCases()[bits];
+        if (cell.edgeCount == 0) return false;
+        mean = {};
+        for (std::size_t i = 0; i < cell.edgeCount; ++i) {
+            const int edge = cell.edges[i], from = edgeCorner(edge), to = from | 1 << (edge / 4);
+            const float t = v[from] / (v[from] - v[to]);
+            for (int k = 0; k < 3; ++k)
+                mean[static_cast<std::size_t>(k)] +=
+                    static_cast<float>(at[k] + (from >> k & 1)) + (k == edge / 4 ? t : 0.0f);
+        }
+        for (float& m : mean)
+            m /= static_cast<float>(cell.edgeCount);
+        return true;
     }
 
     Sampler sampler_;

@@ -124,6 +124,11 @@ std::shared_ptr<const BrickMesh> Surface::makeMesh(std::uint32_t dense) {
 }
 
 void Surface::build(const core::Progress& progress) {
+    buildUpTo(2, progress);
+}
+
+/// One round finds the vertices, a second makes the meshes: triangles need the vertices of neighbours.
+void Surface::buildUpTo(std::size_t rounds, const core::Progress& progress) {
     std::vector<std::uint32_t> bricks;
     for (std::uint32_t dense = 0; dense < bricks_.size(); ++dense) {
         bricks_[dense].reset();
@@ -132,8 +137,7 @@ void Surface::build(const core::Progress& progress) {
     levelsSet_.clear();
     core::report(progress, 0.0);
     constexpr std::size_t kSteps = 16;
-    // Two rounds, in steps: triangles need the vertices of neighbours.
-    for (std::size_t step = 0; step < 2 * kSteps; ++step) {
+    for (std::size_t step = 0; step < rounds * kSteps; ++step) {
         const std::size_t part = step % kSteps, begin = bricks.size() * part / kSteps,
                           end = bricks.size() * (part + 1) / kSteps;
         core::parallelFor(end - begin, 8, [&](std::size_t from, std::size_t to) {
@@ -145,7 +149,7 @@ void Surface::build(const core::Progress& progress) {
                     bricks_[dense]->mesh = makeMesh(dense);
             }
         });
-        core::report(progress, static_cast<double>(step + 1) / (2 * kSteps));
+        core::report(progress, static_cast<double>(step + 1) / static_cast<double>(rounds * kSteps));
     }
 }
 

@@ -59,6 +59,8 @@ class Surface {
     [[nodiscard]] geometry::TriangleMesh tissueMesh(tooth::Tissue tissue) const;
 
   private:
+    friend geometry::TriangleMesh closedSurface(const BrickSource& source, const core::Progress& progress);
+    void buildUpTo(std::size_t rounds, const core::Progress& progress);
     bool contour(std::uint32_t dense);  // true when it is another than before
     void coarsen(BrickState& brick, std::uint32_t dense) const;
     void label(std::uint32_t dense, std::span<SheetVertex> vertices) const;

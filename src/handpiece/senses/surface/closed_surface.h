@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The cut tooth as files want it: one closed mesh of the whole, or of each tissue.
+
+#include "handpiece/base/core/progress.h"
+#include "handpiece/base/geometry/triangle_mesh.h"
+#include "handpiece/model/tooth/tissue_map.h"
+#include "handpiece/senses/surface/brick_source.h"
+
+namespace handpiece::surface {
+
+/// The whole surface at full detail: closed, oriented, two-manifold; empty when there is none. Nothing is dropped,
+/// however small. In parallel, the same bytes at any thread count. Throws core::Error when cancelled.
+[[nodiscard]] geometry::TriangleMesh closedSurface(const BrickSource& source, const core::Progress& progress = {});
+
+/// What is left of one tissue: the part of the tooth that `tissues` says is of it. As closedSurface(); where two
+/// tissues meet, their surfaces run along each other within rounding of the map.
+[[nodiscard]] geometry::TriangleMesh closedPart(const BrickSource& source, const tooth::TissueMap& tissues,
+                                                tooth::Tissue tissue, const core::Progress& progress = {});
+
+}  // namespace handpiece::surface

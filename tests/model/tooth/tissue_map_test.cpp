@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include "cut_support.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/tooth/field_builder.h"
 #include "handpiece/model/tooth/part_tissues.h"
+#include "handpiece/model/tooth/tissue_cache.h"
 #include "support/closed_meshes.h"
 
 namespace handpiece::tooth {
@@ -23,6 +25,22 @@ ToothField ballField(double radius) {
     const double edge = radius + 0.3;
     return ToothField::fromFunction({Vec3::Constant(-edge), Vec3::Constant(edge)}, FieldSettings{},
                                     [&](const Vec3& p) { return p.norm() - radius; });
+}
+
+void expectSame(const TissueMap& a, const TissueMap& b, const ToothField& field) {
+    for (std::uint32_t dense = 0; dense < test::denseCount(field); ++dense) {
+        ASSERT_EQ(a.ofBrick(dense), b.ofBrick(dense));
+        const TissueMap::Layers one = a.layers(dense), two = b.layers(dense);
+        ASSERT_EQ(one.layers.size(), two.layers.size());
+        ASSERT_EQ(one.rest, two.rest);
+        for (std::size_t k = 0; k < one.layers.size(); ++k) {
+            ASSERT_EQ(one.layers[k].tissue, two.layers[k].tissue);
+            ASSERT_TRUE(std::equal(one.layers[k].values, one.layers[k].values + kBrickValues, two.layers[k].values));
+        }
+        if (a.nodes(dense) != nullptr) {
+            ASSERT_TRUE(std::equal(a.nodes(dense), a.nodes(dense) + kBrickValues, b.nodes(dense)));
+        }
+    }
 }
 
 /// Where the map changes tissue along a ray, by bisection between two tissues.
@@ -151,14 +169,7 @@ TEST(TissueMap, PartsGiveWhatTheirSurfacesBound) {
     core::setThreadCount(1);
     const TissueMap alone = TissueMap::fromParts(field, parts);
     core::setThreadCount(0);
-    for (std::uint32_t dense = 0; dense < test::denseCount(field); ++dense) {
-        ASSERT_EQ(map.ofBrick(dense), alone.ofBrick(dense));
-        const TissueMap::Layers a = map.layers(dense), b = alone.layers(dense);
-        ASSERT_EQ(a.layers.size(), b.layers.size());
-        ASSERT_EQ(a.rest, b.rest);
-        for (std::size_t k = 0; k < a.layers.size(); ++k)
-            ASSERT_TRUE(std::equal(a.layers[k].values, a.layers[k].values + kBrickValues, b.layers[k].values));
-    }
+    expectSame(map, alone, field);
 }
 
 TEST(TissueMap, UniformIsOneTissueEverywhere) {
@@ -169,6 +180,71 @@ TEST(TissueMap, UniformIsOneTissueEverywhere) {
     EXPECT_EQ(map.nodes(0), nullptr);
     EXPECT_TRUE(map.isOn(field));
     EXPECT_FALSE(map.isOn(ballField(1.0)));
+}
+
+TEST(TissueCache, GivesBackTheMapOrNothing) {
+    const ToothField field = ballField(1.0);
+    const TissueMap::PartFunction part{[](const Vec3& p) { return p.norm() - 0.6; }, Tissue::dentine, 1};
+    const TissueMap map = TissueMap::fromFunctions(field, std::span(&part, 1), Tissue::enamel);
+    const handpiece::test::TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "x.tissues";
+    EXPECT_FALSE(readTissueFile(file, field, 7));
+    const std::vector<std::byte> good = encodeTissues(map, 7);
+    core::writeFile(file, good);
+    const std::optional<TissueMap> back = readTissueFile(file, field, 7);
+    ASSERT_TRUE(back);
+    expectSame(*back, map, field);
+    EXPECT_EQ(back->at({0.59, 0, 0}), Tissue::dentine);
+    EXPECT_FALSE(readTissueFile(file, field, 8));
+    EXPECT_FALSE(readTissueFile(file, ballField(1.8), 7));
+    std::mt19937_64 generator(handpiece::test::seed());
+    for (int i = 0; i < 200; ++i) {
+        std::vector<std::byte> bad = good;
+        if (i % 4 == 0) {
+            bad.resize(generator() % bad.size());
+        } else {
+            bad[generator() % (i % 4 == 1 ? bad.size() : std::size_t{64})] ^= std::byte{1} << (generator() % 8);
+        }
+        core::writeFile(file, bad);
+        EXPECT_FALSE(readTissueFile(file, field, 7));
+    }
+}
+
+TEST(PrepareCutting, KeepsTheTissuesOfACase) {
+    const handpiece::test::TemporaryFolder folder;
+    Case toothCase;
+    toothCase.name = "bumpy";
+    toothCase.outer = handpiece::test::bumpyMesh(3, 2.0);
+    toothCase.parts = {{"enamel", Tissue::enamel, 10, toothCase.outer},
+                       {"dentine", Tissue::dentine, 20, handpiece::test::sphereMesh(3, 1.2)}};
+    PrepareSettings settings;
+    settings.cacheFolder = folder.path();
+    const auto files = [&] {
+        std::size_t count = 0;
+        for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+            count += entry.path().extension() == ".tissues";
+        return count;
+    };
+    const auto tooth = prepareTooth(toothCase, settings);
+    settings.useCache = false;
+    const auto plain = prepareCutting(toothCase, tooth, settings);
+    EXPECT_EQ(files(), 0u);
+    settings.useCache = true;
+    const auto built = prepareCutting(toothCase, tooth, settings);
+    EXPECT_EQ(files(), 1u);
+    const auto again = prepareCutting(toothCase, tooth, settings);
+    expectSame(built->tissues, plain->tissues, tooth->field);
+    expectSame(again->tissues, plain->tissues, tooth->field);
+    EXPECT_EQ(again->volumesMm3, plain->volumesMm3);
+    const double dentine = geometry::enclosedVolumeMm3(toothCase.parts[1].mesh),
+                 all = geometry::enclosedVolumeMm3(toothCase.outer);
+    EXPECT_NEAR(again->volumesMm3[static_cast<std::size_t>(Tissue::dentine)], dentine, 5e-3 * dentine);
+    EXPECT_NEAR(again->volumesMm3[static_cast<std::size_t>(Tissue::enamel)], all - dentine, 2e-3 * all);
+    // Alone, a part is all of it.
+    toothCase.parts.pop_back();
+    const auto alone = prepareCutting(toothCase, tooth, settings);
+    EXPECT_EQ(alone->tissues.tissues(), std::vector{Tissue::enamel});
+    EXPECT_EQ(files(), 1u);
 }
 
 }  // namespace

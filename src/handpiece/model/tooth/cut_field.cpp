@@ -153,7 +153,7 @@ void CutField::shareFaces(std::uint32_t dense, std::int32_t stored) noexcept {
         if (neighbour == 13) continue;
         std::array<std::int32_t, 3> other = brick;
         int low[3], high[3], shift = 0;
-        bool inGrid = true;
+        bool inGrid = true, differs = false;
         constexpr int kStride[3] = {1, kBrickNodes, kBrickNodes * kBrickNodes};
         for (std::size_t k = 0; k < 3; ++k) {
             other[k] += step[k];
@@ -167,14 +167,14 @@ void CutField::shareFaces(std::uint32_t dense, std::int32_t stored) noexcept {
         const std::int32_t otherStored = field_.brickIndex_[there];
         if (otherStored < 0) continue;
         float* theirs = values(otherStored);
-        bool differs = false;
+        const std::size_t run = sizeof(float) * static_cast<std::size_t>(high[0] - low[0] + 1);
         for (int z = low[2]; z <= high[2]; ++z)
-            for (int y = low[1]; y <= high[1]; ++y)
-                for (int x = low[0]; x <= high[0]; ++x) {
-                    const int at = x + kStride[1] * y + kStride[2] * z;
-                    differs = differs || std::memcmp(&theirs[at + shift], &mine[at], sizeof(float)) != 0;
-                    theirs[at + shift] = mine[at];
-                }
+            for (int y = low[1]; y <= high[1]; ++y) {
+                const int at = low[0] + kStride[1] * y + kStride[2] * z;
+                if (std::memcmp(&theirs[at + shift], &mine[at], run) == 0) continue;
+                std::memcpy(&theirs[at + shift], &mine[at], run);
+                differs = true;
+            }
         if (differs) noteChanged(there, true);
     }
 }

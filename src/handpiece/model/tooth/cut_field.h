@@ -105,7 +105,7 @@ class CutField {
     }
     /// Signed distance at a brick's centre, or a bound; raise it where a cut has come nearer.
     [[nodiscard]] float* coarse() noexcept { return field_.coarse_.data(); }
-    /// Says that values of this brick have risen. `shows`: the surface itself may have moved in it.
+    /// Says that values of this stored brick have changed. `shows`: the surface itself may have moved in it.
     void noteChanged(std::uint32_t dense, bool shows) noexcept HANDPIECE_REALTIME;
     void addRemoved(const TissueVolumes& mm3) noexcept HANDPIECE_REALTIME;
     [[nodiscard]] bool outOfBricks() const noexcept { return outOfBricks_; }

@@ -158,11 +158,14 @@ std::shared_ptr<const CuttableTooth> prepareCutting(const Case& toothCase, std::
                                                     const PrepareSettings& cache, const CutSettings& settings,
                                                     const core::Progress& progress) {
     core::report(progress, 0.0);
-    if (toothCase.parts.size() <= 1) {
-        const Tissue only = toothCase.parts.empty() ? Tissue::enamel : toothCase.parts[0].tissue;
-        TissueMap map = TissueMap::uniform(tooth->field, only);
-        return prepareCutting(std::move(tooth), std::move(map), settings);
-    }
+    const auto finished = [&](TissueMap map) {
+        auto base = prepareCutting(std::move(tooth), std::move(map), settings);
+        core::report(progress, 1.0);
+        return base;
+    };
+    if (toothCase.parts.size() <= 1)
+        return finished(
+            TissueMap::uniform(tooth->field, toothCase.parts.empty() ? Tissue::enamel : toothCase.parts[0].tissue));
     std::vector<std::filesystem::path> places;
     std::uint64_t key = 0;
     if (cache.useCache) {
@@ -171,7 +174,7 @@ std::shared_ptr<const CuttableTooth> prepareCutting(const Case& toothCase, std::
         for (std::filesystem::path& place : places) {
             place.replace_extension(".tissues");
             if (std::optional<TissueMap> map = readTissueFile(place, tooth->field, key))
-                return prepareCutting(std::move(tooth), std::move(*map), settings);
+                return finished(std::move(*map));
         }
     }
     std::vector<geometry::TriangleTree> trees;
@@ -181,12 +184,9 @@ std::shared_ptr<const CuttableTooth> prepareCutting(const Case& toothCase, std::
         parts.push_back({&trees.emplace_back(part.mesh), part.tissue, part.priority});
         core::report(progress, 0.1);
     }
-    TissueMap map = TissueMap::fromParts(tooth->field, parts,
-                                         [&](double fraction) { return !progress || progress(0.1 + 0.8 * fraction); });
+    TissueMap map = TissueMap::fromParts(tooth->field, parts, core::part(progress, 0.1, 0.9));
     if (!places.empty()) (void)writeFieldFile(places, encodeTissues(map, key));
-    auto base = prepareCutting(std::move(tooth), std::move(map), settings);
-    core::report(progress, 1.0);
-    return base;
+    return finished(std::move(map));
 }
 
 }  // namespace handpiece::tooth

@@ -21,6 +21,7 @@
 #include "handpiece/model/tooth/field_builder.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "support/brute_force_depth.h"
+#include "tick/contact/cut_by_hand.h"
 
 namespace handpiece::bench {
 namespace {
@@ -125,6 +126,51 @@ void report(const std::shared_ptr<const tooth::Tooth>& tooth, const char* burNam
     std::fflush(stdout);
 }
 
+/// In the cavity that the bur itself has left, pushed on by up to `deepestMm`: the depth is the way it was pushed.
+void reportOwnCavity(double deepestMm, int count) {
+    const auto cut = test::slabToCut();
+    const auto bur = burOf("cylinder-round:1.0x4.0");
+    const core::Vec3 tip(0.013, -0.021, -2.0);
+    test::carve(*cut, {{-1, -1, -3}, {1, 1, 1}}, [&](const core::Vec3& p) { return test::shaftDistance(p, tip, 0.5); });
+    const auto method = contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(cut), bur);
+    std::mt19937_64 generator(kSeed);
+    std::vector<double> errors, times, after;
+    contact::ConstraintSet constraints;
+    for (int i = 0; i < count; ++i) {
+        core::Vec3 way(uniform(generator, -1, 1), uniform(generator, -1, 1), -uniform(generator, 0, 1));
+        way *= uniform(generator, 0.0, deepestMm) / way.norm();
+        core::Pose pose;
+        pose.positionMm = tip + way;
+        double told = 0.0, fastest = 1e9, fastestAfter = 1e9;
+        for (int pass = 0; pass < kPasses; ++pass) {
+            core::Pose elsewhere = pose;
+            elsewhere.positionMm.z() += 1e-3;
+            (void)method->depth(elsewhere);
+            const auto begin = std::chrono::steady_clock::now();
+            told = method->depth(pose).depthMm;
+            const auto end = std::chrono::steady_clock::now();
+            fastest = std::min(fastest, std::chrono::duration<double, std::micro>(end - begin).count());
+            (void)method->depth(elsewhere);
+            (void)method->constraints(pose, 0.06, constraints);
+            const auto again = std::chrono::steady_clock::now();
+            (void)method->depth(pose);
+            fastestAfter =
+                std::min(fastestAfter,
+                         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - again).count());
+        }
+        errors.push_back(1e3 * std::abs(told - way.norm()));
+        times.push_back(fastest);
+        after.push_back(fastestAfter);
+    }
+    std::sort(errors.begin(), errors.end());
+    std::sort(times.begin(), times.end());
+    std::sort(after.begin(), after.end());
+    fmt::print(
+        "own cavity, up to {:>5.3f} mm {:>6} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.2f} {:>9.2f}; after constraints {:.2f}\n",
+        deepestMm, count, percentile(errors, 0.5), percentile(errors, 0.99), errors.back(), percentile(times, 0.5),
+        percentile(times, 0.99), percentile(after, 0.5));
+}
+
 int mainOf(int argc, char** argv) {
     std::vector<std::size_t> faces = {9760, 68151};
     int poses = 360;
@@ -146,6 +192,10 @@ int mainOf(int argc, char** argv) {
     }
     fmt::print("{:<24} {:>7} {:<6} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bur", "faces", "source", "poses", "med_um",
                "p99_um", "worst_um", "med_us", "p99_us");
+    if (only.empty() || only == "cavity")
+        for (const double deepestMm : {0.002, 0.01, 0.1, 0.3, 1.0})
+            reportOwnCavity(deepestMm, poses);
+    if (only == "cavity") return 0;
     for (const std::size_t n : faces) {
         const auto tooth = molarOf(n);
         for (const char* bur : kBurs)

@@ -11,6 +11,7 @@
 #include "support/brute_force_depth.h"
 #include "support/realtime_trap.h"
 #include "tick/contact/contact_fixture.h"
+#include "tick/contact/cut_by_hand.h"
 
 namespace handpiece::contact {
 namespace {
@@ -295,6 +296,127 @@ TEST(FieldMethod, theTickNeverAllocatesOrLocks) {
         }
         EXPECT_EQ(trap.total(), 0u) << name;
     }
+}
+
+/// A slab with the cavity of a round-ended cylinder 2 mm deep in it, and that cylinder.
+class OwnCavity : public testing::Test {
+  protected:
+    static constexpr double kRadius = 0.5;
+    const Vec3 tip_{0.013, -0.021, -2.0};
+    std::shared_ptr<tooth::CutField> cut_ = test::slabToCut(true);
+    std::shared_ptr<const instrument::Bur> bur_ = burOf("cylinder-round:1.0x4.0");
+    std::unique_ptr<Method> method_ = makeFieldMethod(std::shared_ptr<const tooth::CutField>(cut_), bur_);
+
+    void carve() {
+        test::carve(*cut_, {{-3, -3, -3}, {3, 3, 1}},
+                    [this](const Vec3& p) { return test::shaftDistance(p, tip_, kRadius); });
+    }
+    core::Pose pushed(const Vec3& way) const {
+        const Vec3 p = tip_ + way;
+        return upright(p.x(), p.y(), p.z());
+    }
+};
+
+TEST_F(OwnCavity, beforeAnyCutTheDepthIsThatOfTheWholeTooth) {
+    const auto whole = makeFieldMethod(cut_->base().tooth, bur_);
+    std::mt19937_64 generator(test::seed());
+    for (int i = 0; i < 50; ++i) {
+        const core::Pose pose = upright(test::uniform(generator, -2, 2), test::uniform(generator, -2, 2),
+                                        test::uniform(generator, -1.0, 2.0));
+        EXPECT_EQ(method_->depth(pose).depthMm, whole->depth(pose).depthMm);
+    }
+}
+
+TEST_F(OwnCavity, theDepthIsTheWayTheBurIsPushed) {
+    carve();
+    std::mt19937_64 generator(test::seed());
+    for (int i = 0; i < 200; ++i) {
+        Vec3 way = test::randomDirection(generator);
+        way.z() = -std::abs(way.z());
+        way *= test::uniform(generator, 0.0, 0.6);
+        const Depth d = method_->depth(pushed(way));
+        ASSERT_EQ(d.status, Status::ok);
+        EXPECT_NEAR(d.depthMm, way.norm(), 0.002) << way.transpose();  // trilinear cells round the cavity off
+        if (way.norm() < 0.02) continue;
+        EXPECT_GT(-d.normal.dot(way.normalized()), 0.97) << way.transpose();
+        EXPECT_NEAR(test::shaftDistance(d.toothPointMm, tip_, kRadius), 0.0, 0.003);
+        if (std::abs(d.toothPointMm.x()) > 0.1) {
+            EXPECT_EQ(d.tissue, d.toothPointMm.x() > 0.0 ? tooth::Tissue::dentine : tooth::Tissue::enamel);
+        }
+    }
+}
+
+TEST_F(OwnCavity, deeperThanTheFieldFollowsTheDepthIsABound) {
+    carve();
+    double before = 0.0;
+    for (double way = 0.6; way < 1.5; way += 0.05) {
+        const Depth d = method_->depth(pushed({0.0, 0.0, -way}));
+        ASSERT_EQ(d.status, Status::ok);
+        EXPECT_LE(d.depthMm, way + 0.002);
+        EXPECT_GE(d.depthMm, 0.599);
+        EXPECT_NEAR(d.normal.norm(), 1.0, 1e-6);
+        before = d.depthMm;
+    }
+    EXPECT_GT(before, 0.65);
+}
+
+TEST_F(OwnCavity, apartIsTrueInTheCavityOverItAndBesideIt) {
+    carve();
+    // A thinner bur in the middle of the cavity: 0.3 mm from every wall, nothing in sight.
+    const auto thin = makeFieldMethod(std::shared_ptr<const tooth::CutField>(cut_), burOf("cylinder-round:0.4x4.0"));
+    core::Pose pose = pushed({0.0, 0.0, 0.3});
+    Depth d = thin->depth(pose);
+    EXPECT_EQ(d.status, Status::beyondReach);
+    EXPECT_LE(-d.depthMm, 0.3);
+    EXPECT_GT(-d.depthMm, 0.05);
+    EXPECT_TRUE(d.normal.isZero());
+    // 0.05 mm from the wall and from the floor the field sees it.
+    pose = pushed({0.25, 0.0, 0.3});
+    EXPECT_NEAR(thin->depth(pose).depthMm, -0.05, 0.002);
+    pose = pushed({0.0, 0.0, 0.04});
+    EXPECT_NEAR(thin->depth(pose).depthMm, -0.04, 0.002);
+    // Above the cavity what was nearest is gone: a bound. Beside it the whole surface is as it was.
+    d = method_->depth(pushed({0.0, 0.0, 2.7}));
+    EXPECT_EQ(d.status, Status::beyondReach);
+    EXPECT_GE(-d.depthMm, 0.6);
+    d = method_->depth(pushed({2.5, 0.0, 2.3}));
+    EXPECT_EQ(d.status, Status::ok);
+    EXPECT_NEAR(d.depthMm, -0.3, 1e-9);
+    d = method_->depth(pushed({2.5, 0.0, 1.9}));
+    EXPECT_NEAR(d.depthMm, 0.1, 1e-9);
+}
+
+TEST_F(OwnCavity, whatConstraintsSensedServesTheDepthAndChangesNothing) {
+    carve();
+    const auto other = makeFieldMethod(std::shared_ptr<const tooth::CutField>(cut_), bur_);
+    std::mt19937_64 generator(test::seed());
+    for (int i = 0; i < 60; ++i) {
+        const core::Pose pose = pushed(test::uniform(generator, 0.0, 0.1) * test::randomDirection(generator));
+        ConstraintSet set;
+        (void)method_->constraints(pose, test::uniform(generator, 0.04, 0.2), set);
+        EXPECT_NEAR(method_->depth(pose).depthMm, other->depth(pose).depthMm, 1e-9);
+    }
+    // A cut in between is seen.
+    const core::Pose pose = pushed({0.0, 0.0, -0.1});
+    ConstraintSet set;
+    (void)method_->constraints(pose, 0.1, set);
+    EXPECT_NEAR(method_->depth(pose).depthMm, 0.1, 0.002);
+    test::carve(*cut_, {{-3, -3, -3}, {3, 3, 1}},
+                [&](const Vec3& p) { return test::shaftDistance(p, tip_ - Vec3(0.0, 0.0, 0.1), kRadius); });
+    EXPECT_NEAR(method_->depth(pose).depthMm, 0.0, 0.002);
+}
+
+TEST_F(OwnCavity, theTickNeverAllocatesOrLocks) {
+    if (!test::RealtimeTrap::isActive()) GTEST_SKIP() << "the sanitizers own malloc: the trap is off";
+    carve();
+    const test::RealtimeTrap trap;
+    Bearing bearing;
+    for (int i = 0; i < 60; ++i) {
+        const core::Pose pose = pushed({0.3 * std::sin(0.3 * i), 0.0, 0.05 * i - 1.0});
+        (void)method_->depth(pose);
+        method_->bearing(pose, -Vec3::UnitZ(), 0.01, 0.15, bearing);
+    }
+    EXPECT_EQ(trap.total(), 0u);
 }
 
 }  // namespace

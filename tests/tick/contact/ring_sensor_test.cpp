@@ -186,6 +186,127 @@ TEST_P(RingSensorOf, constraintsHoldTheNearestPointAndTellTheFieldsGaps) {
 
 INSTANTIATE_TEST_SUITE_P(Burs, RingSensorOf, testing::Values("paper", "cylinder-flat:1.0x4.0", "round:1.4x1.3"));
 
+/// z <= 0, enamel; dentine for x > 0 when `twoTissues`.
+tooth::ToothField halfSpace(bool twoTissues) {
+    return tooth::ToothField::fromFunction(
+        {{-2, -2, -1.5}, {2, 2, 0.3}}, {}, [](const Vec3& p) { return p.z(); },
+        [twoTissues](const Vec3& p) {
+            return twoTissues && p.x() > 0.0 ? tooth::Tissue::dentine : tooth::Tissue::enamel;
+        });
+}
+core::Pose uprightAt(const Vec3& tip) {
+    return {tip, core::Quat::Identity()};
+}
+constexpr auto kEnamel = static_cast<std::size_t>(tooth::Tissue::enamel),
+               kDentine = static_cast<std::size_t>(tooth::Tissue::dentine);
+constexpr double kPi = std::numbers::pi;
+
+TEST(Bearing, aFlatEndBearsOnAPlaneWithItsWholeArea) {
+    const tooth::ToothField field = halfSpace(false);
+    for (const double radius : {0.5, 0.6}) {
+        const instrument::Bur bur("flat", instrument::makeProfile(instrument::Shape::cylinderFlat, 2.0 * radius, 4.0));
+        RingSensor sensor(field, bur, core::simdLevel());
+        for (const double floorMm : {0.05, 0.15, 0.3}) {
+            Bearing b;
+            sensor.bearing(uprightAt({0.01, 0.02, 0.0}), -Vec3::UnitZ(), 0.0, floorMm, b);
+            EXPECT_EQ(b.status, Status::ok);
+            EXPECT_NEAR(b.areaMm2[kEnamel], kPi * radius * radius, 0.003 * kPi * radius * radius);
+            // The integral of 2 pi rho / max(rho, floor).
+            const double resistance = 2.0 * kPi * (radius - floorMm) + kPi * floorMm;
+            EXPECT_NEAR(b.resistanceMm[kEnamel], resistance, 0.01 * resistance);
+            EXPECT_LE(b.tangentMm[kEnamel].norm(), 1e-4);  // all round: nothing is left
+            EXPECT_EQ(b.areaMm2[kDentine], 0.0);
+        }
+        Bearing away;
+        sensor.bearing(uprightAt({0.01, 0.02, 0.0}), Vec3::UnitZ(), 0.0, 0.1, away);
+        EXPECT_EQ(away.areaMm2[kEnamel], 0.0);
+    }
+}
+
+TEST(Bearing, fallsToNothingOverTheMarginAndCountsTheLead) {
+    const tooth::ToothField field = halfSpace(false);
+    const instrument::Bur bur = instrument::makeBur("cylinder-flat:1.0x4.0");
+    RingSensor sensor(field, bur, core::simdLevel());
+    const double whole = kPi * 0.25;
+    const auto areaAt = [&](double gapMm, double leadMm) {
+        Bearing b;
+        sensor.bearing(uprightAt({0.0, 0.0, gapMm}), -Vec3::UnitZ(), leadMm, 0.1, b);
+        return b.areaMm2[kEnamel];
+    };
+    EXPECT_NEAR(areaAt(0.25 * kContactMarginMm, 0.0), 0.75 * whole, 0.004 * whole);
+    EXPECT_NEAR(areaAt(0.75 * kContactMarginMm, 0.0), 0.25 * whole, 0.004 * whole);
+    EXPECT_EQ(areaAt(1.1 * kContactMarginMm, 0.0), 0.0);
+    EXPECT_NEAR(areaAt(1.1 * kContactMarginMm, 0.6 * kContactMarginMm), 0.5 * whole, 0.004 * whole);
+    EXPECT_NEAR(areaAt(1.1 * kContactMarginMm, 2.0 * kContactMarginMm), whole, 0.004 * whole);
+    EXPECT_NEAR(areaAt(-0.05, 0.0), whole, 0.004 * whole);
+}
+
+TEST(Bearing, eachTissueBearsItsShare) {
+    const tooth::ToothField field = halfSpace(true);
+    const instrument::Bur bur = instrument::makeBur("cylinder-flat:1.0x4.0");
+    RingSensor sensor(field, bur, core::simdLevel());
+    Bearing b;
+    sensor.bearing(uprightAt({0.025, 0.0, 0.0}), -Vec3::UnitZ(), 0.0, 0.1, b);
+    EXPECT_NEAR(b.areaMm2[kEnamel] + b.areaMm2[kDentine], kPi * 0.25, 0.003);
+    // Dentine begins half a voxel before x = 0, at the nodes' boundary.
+    EXPECT_NEAR(b.areaMm2[kEnamel], b.areaMm2[kDentine], 0.12);
+    // Clockwise seen down the shank: on the +x side points move along -y.
+    EXPECT_LT(b.tangentMm[kDentine].y(), -0.1);
+    EXPECT_GT(b.tangentMm[kEnamel].y(), 0.1);
+}
+
+TEST(Bearing, aRoundBurPressedIntoAPlaneBearsLikeACap) {
+    const tooth::ToothField field = halfSpace(false);
+    constexpr double kRadius = 0.7, kDepth = 0.2, kFloor = 0.05;
+    const instrument::Bur bur = instrument::makeBur("cylinder-round:1.4x4.0");
+    RingSensor sensor(field, bur, core::simdLevel());
+    Bearing b;
+    sensor.bearing(uprightAt({0.0, 0.0, -kDepth}), -Vec3::UnitZ(), 0.0, kFloor, b);
+    // Sums over polar angle: area c dA with weight 1 in the tooth and a linear fall over the margin.
+    double area = 0.0, resistance = 0.0;
+    constexpr int kSteps = 20000;
+    for (int i = 0; i < kSteps; ++i) {
+        const double polar = 0.5 * kPi * (i + 0.5) / kSteps, c = std::cos(polar), rho = kRadius * std::sin(polar);
+        const double gap = kRadius * (1.0 - c) - kDepth;
+        const double w = std::clamp(1.0 - gap / kContactMarginMm, 0.0, 1.0);
+        const double band = 2.0 * kPi * rho * kRadius * 0.5 * kPi / kSteps;
+        area += band * w * c;
+        resistance += band * w * c * c / std::max(rho, kFloor);
+    }
+    EXPECT_NEAR(b.areaMm2[kEnamel], area, 0.03 * area);
+    EXPECT_NEAR(b.resistanceMm[kEnamel], resistance, 0.03 * resistance);
+}
+
+TEST(Bearing, theSideOfACylinderInAHalfRoundGroove) {
+    constexpr double kRadius = 0.5, kLength = 2.0;
+    // A groove along y of the bur's own radius, half as deep as it is wide.
+    const tooth::ToothField field = tooth::ToothField::fromFunction(
+        {{-1.5, -4, -1.5}, {1.5, 4, 0.3}}, {},
+        [](const Vec3& p) { return std::max(p.z(), kRadius - std::hypot(p.x(), p.z())); });
+    const instrument::Bur bur("flat", instrument::makeProfile(instrument::Shape::cylinderFlat, 2.0 * kRadius, kLength));
+    RingSensor sensor(field, bur, core::simdLevel());
+    core::Pose pose;
+    pose.orientation = core::Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitY());
+    Bearing b;
+    sensor.bearing(pose, -Vec3::UnitZ(), 0.0, 0.05, b);
+    // c = cos(angle) over the half turn: integrals of r L c and of L c^2; a margin's width of side above the edge.
+    EXPECT_NEAR(b.areaMm2[kEnamel], 2.0 * kRadius * kLength, 0.02 * 2.0 * kRadius * kLength);
+    EXPECT_NEAR(b.resistanceMm[kEnamel], 0.5 * kPi * kLength, 0.02 * 0.5 * kPi * kLength);
+    // The bur turns about -y: its lowest points move along (-y) x (-z) = +x.
+    EXPECT_NEAR(b.tangentMm[kEnamel].x(), 0.5 * kPi * kLength, 0.02 * 0.5 * kPi * kLength);
+    EXPECT_NEAR(b.tangentMm[kEnamel].y(), 0.0, 1e-3);
+}
+
+TEST(Bearing, aPoseThatIsNoNumberIsSaid) {
+    const tooth::ToothField field = halfSpace(false);
+    const instrument::Bur bur = instrument::makeBur("paper");
+    RingSensor sensor(field, bur, core::simdLevel());
+    Bearing b;
+    sensor.bearing(uprightAt({std::numeric_limits<double>::quiet_NaN(), 0, 0}), -Vec3::UnitZ(), 0.0, 0.1, b);
+    EXPECT_EQ(b.status, Status::invalidPose);
+    EXPECT_EQ(b.areaMm2[kEnamel], 0.0);
+}
+
 TEST(RingSensor, everyInstructionSetGivesTheSameBits) {
     const instrument::Bur bur = instrument::makeBur("paper");
     std::vector<RingSensor> sensors;
@@ -200,7 +321,15 @@ TEST(RingSensor, everyInstructionSetGivesTheSameBits) {
         ConstraintSet firstWalls, otherWalls;
         sensors[0].patches(pose, first);
         (void)sensors[0].constraints(pose, 0.08, firstWalls);
+        Bearing firstBearing, otherBearing;
+        const Vec3 push = test::randomDirection(generator);
+        sensors[0].bearing(pose, push, 0.02, 0.1, firstBearing);
         for (std::size_t s = 1; s < sensors.size(); ++s) {
+            sensors[s].bearing(pose, push, 0.02, 0.1, otherBearing);
+            EXPECT_EQ(firstBearing.areaMm2, otherBearing.areaMm2);
+            EXPECT_EQ(firstBearing.resistanceMm, otherBearing.resistanceMm);
+            for (std::size_t t = 0; t < tooth::kTissueCount; ++t)
+                EXPECT_TRUE(isSame(firstBearing.tangentMm[t], otherBearing.tangentMm[t]));
             sensors[s].patches(pose, other);
             (void)sensors[s].constraints(pose, 0.08, otherWalls);
             ASSERT_EQ(first.patches.size(), other.patches.size());

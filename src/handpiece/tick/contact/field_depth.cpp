@@ -413,6 +413,7 @@ FieldTouch FieldDepth::search(const core::Pose& burInTooth, RingSensor& rings) n
     const std::size_t count = pickNearest(rings.arrays(), pose, nullptr, kWindowMm, kApartMm, points);
     for (std::size_t i = 0; i < count; ++i) {
         const RingPoint& p = points[i];
+        if (p.gapMm <= -inMm_) continue;
         const double in = spots_[p.ring].isCorner ? 0.0 : std::max(0.0, -p.gapMm);
         Climb(*this, frame,
               {p.ring, static_cast<double>(rings.arrays().cosines[p.angle]),

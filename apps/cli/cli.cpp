@@ -21,6 +21,7 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods) {
         "Exit codes: 0 done, 1 failed (bad input, no permission), 2 wrong usage.");
     addMakeCommand(app);
     addMeshCommand(app);
+    addCaseCommand(app);
     addProbeCommand(app, extraMethods);
     addRunCommand(app, extraMethods);
     addReproduceCommand(app);

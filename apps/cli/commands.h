@@ -13,6 +13,7 @@ namespace handpiece::cli {
 
 void addMakeCommand(CLI::App& app);
 void addMeshCommand(CLI::App& app);
+void addCaseCommand(CLI::App& app);
 void addProbeCommand(CLI::App& app, const MethodRegistry& methods);
 void addRunCommand(CLI::App& app, const MethodRegistry& methods);
 void addReproduceCommand(CLI::App& app);

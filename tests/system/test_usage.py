@@ -9,7 +9,8 @@ import unittest
 from support import SystemTest, run
 
 COMMANDS = [["make"], ["make", "tooth"], ["make", "bur"], ["make", "turbine"], ["make", "plane"], ["mesh"],
-            ["mesh", "info"], ["mesh", "repair"], ["probe"], ["run"], ["reproduce"], ["bench"], ["passivity"],
+            ["mesh", "info"], ["mesh", "repair"], ["case"], ["case", "info"], ["case", "check"],
+            ["case", "new"], ["case", "pack"], ["probe"], ["run"], ["reproduce"], ["bench"], ["passivity"],
             ["completion"]]
 
 

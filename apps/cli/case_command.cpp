@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/progress_bar.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/model/instrument/shapes.h"
+#include "handpiece/model/tooth/attempt.h"
+#include "handpiece/model/tooth/case_check.h"
+#include "handpiece/model/tooth/tooth.h"
+
+namespace handpiece::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using tooth::Case;
+using tooth::Part;
+
+void print(const Json& json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+Json toJson(const core::Vec3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+Json toJson(const Part& part) {
+    return {{"name", part.name},
+            {"tissue", tooth::properties(part.tissue).name},
+            {"priority", part.priority},
+            {"faces", part.mesh.triangles.size()},
+            {"volume_mm3", geometry::enclosedVolumeMm3(part.mesh)}};
+}
+
+Json toJson(const tooth::Exercise& e) {
+    Json json{{"title", e.title},
+              {"instructions", e.instructions},
+              {"bur", e.bur},
+              {"allowed_burs", e.allowedBurs},
+              {"locked_helps", e.lockedHelps},
+              {"view", nullptr}};
+    if (e.view)
+        json["view"] = {
+            {"eye_mm", toJson(e.view->eyeMm)}, {"target_mm", toJson(e.view->targetMm)}, {"up", toJson(e.view->up)}};
+    return json;
+}
+
+Json toJson(const Case& c, const std::string& place) {
+    Json json{{"case", place},
+              {"name", c.name},
+              {"kind", c.kind},
+              {"fdi", c.fdiNumber == 0 ? Json(nullptr) : Json(c.fdiNumber)},
+              {"buccal", c.buccalSign == 0 ? Json(nullptr) : Json(c.buccalSign > 0 ? "+y" : "-y")},
+              {"content_key", fmt::format("{:016x}", contentKey(c))},
+              {"outer", nullptr},
+              {"parts", Json::array()},
+              {"scenery", Json::array()},
+              {"changes_tissues", !c.tissuesToml.empty()},
+              {"tissues", Json::object()},
+              {"exercise", c.exercise ? toJson(*c.exercise) : Json(nullptr)}};
+    if (!c.outer.triangles.empty()) {
+        const core::Box box = c.outer.bounds();
+        json["outer"] = {{"faces", c.outer.triangles.size()},
+                         {"volume_mm3", geometry::enclosedVolumeMm3(c.outer)},
+                         {"box_min_mm", toJson(box.min)},
+                         {"box_max_mm", toJson(box.max)}};
+    }
+    for (const Part& part : c.parts) {
+        json["parts"].push_back(toJson(part));
+        const tooth::TissueProperties& t = c.tissues.of(part.tissue);
+        json["tissues"][std::string(t.name)] = {
+            {"stiffness_fraction", t.stiffnessFraction},
+            {"damping_n_s_per_mm", t.dampingNSPerMm},
+            {"friction", t.friction},
+            {"cutting_mm2_per_n", t.cuttingMm2PerN},
+            {"colour", fmt::format("#{:02x}{:02x}{:02x}", t.colour[0], t.colour[1], t.colour[2])},
+            {"priority", t.priority}};
+    }
+    for (const Part& part : c.scenery)
+        json["scenery"].push_back(toJson(part));
+    return json;
+}
+
+void row(std::string_view label, const std::string& value) {
+    fmt::print("  {:<14} {}\n", label, value);
+}
+
+void printPart(const Part& part, std::string_view label) {
+    row(label, fmt::format("{} ({}, priority {}): {} faces, {:.4g} mm3", part.name, tooth::properties(part.tissue).name,
+                           part.priority, part.mesh.triangles.size(), geometry::enclosedVolumeMm3(part.mesh)));
+}
+
+void info(const std::string& place, bool json) {
+    const Case c = tooth::readCase(place);
+    if (json) return print(toJson(c, place));
+    fmt::print("{}\n", place);
+    row("name", c.name);
+    if (!c.kind.empty()) row("kind", c.kind);
+    if (c.fdiNumber != 0) row("FDI number", std::to_string(c.fdiNumber));
+    if (c.buccalSign != 0) row("buccal", c.buccalSign > 0 ? "+y" : "-y");
+    if (!c.outer.triangles.empty()) {
+        const core::Vec3 size = c.outer.bounds().size();
+        row("outer", fmt::format("{} faces, {:.4g} mm3, {:.4g} x {:.4g} x {:.4g} mm", c.outer.triangles.size(),
+                                 geometry::enclosedVolumeMm3(c.outer), size.x(), size.y(), size.z()));
+    }
+    for (const Part& part : c.parts)
+        printPart(part, "part");
+    for (const Part& part : c.scenery)
+        printPart(part, "scenery");
+    if (!c.tissuesToml.empty()) row("tissues", "a table of its own");
+    if (c.exercise) {
+        const tooth::Exercise& e = *c.exercise;
+        row("exercise", e.title.empty() ? "untitled" : std::string(tooth::inLanguage(e.title, "en")));
+        if (!e.bur.empty()) row("starts with", e.bur);
+        if (!e.allowedBurs.empty()) row("allowed burs", fmt::format("{}", fmt::join(e.allowedBurs, ", ")));
+        if (!e.lockedHelps.empty()) row("locked", fmt::format("{}", fmt::join(e.lockedHelps, ", ")));
+    }
+    row("content key", fmt::format("{:016x}", contentKey(c)));
+}
+
+/// Of the tooth, and of what its exercise names.
+std::vector<tooth::CaseFinding> findingsOf(const Case& c) {
+    ProgressBar bar("checking the case");
+    std::vector<tooth::CaseFinding> findings = tooth::checkCase(c, bar.listener());
+    bar.finish();
+    if (!c.exercise) return findings;
+    std::vector<std::string> burs = c.exercise->allowedBurs;
+    if (burs.empty() && !c.exercise->bur.empty()) burs.push_back(c.exercise->bur);
+    for (const std::string& bur : burs) {
+        try {
+            (void)instrument::makeBur(bur);
+        } catch (const core::Error& e) {
+            findings.insert(findings.begin(),
+                            {true, "exercise", fmt::format("{}: {}", e.problem(), e.where()), 0.0, ""});
+        }
+    }
+    return findings;
+}
+
+[[noreturn]] void refuse(const std::vector<tooth::CaseFinding>& findings, const std::string& place) {
+    const auto errors = std::count_if(findings.begin(), findings.end(), [](const auto& f) { return f.isError; });
+    const tooth::CaseFinding& first = findings.front();
+    throw core::Error(fmt::format("the case cannot be used: {}{}{}",
+                                  first.part.empty() ? "" : fmt::format("part \"{}\": ", first.part), first.what,
+                                  errors > 1 ? fmt::format("; and {} more", errors - 1) : ""),
+                      place, first.remedy);
+}
+
+bool isWrong(const std::vector<tooth::CaseFinding>& findings) {
+    return std::any_of(findings.begin(), findings.end(), [](const auto& f) { return f.isError; });
+}
+
+void check(const std::string& place, bool json) {
+    const std::vector<tooth::CaseFinding> findings = findingsOf(tooth::readCase(place));
+    const bool wrong = isWrong(findings);
+    if (json) {
+        Json list = Json::array();
+        for (const tooth::CaseFinding& f : findings)
+            list.push_back({{"error", f.isError},
+                            {"part", f.part.empty() ? Json(nullptr) : Json(f.part)},
+                            {"what", f.what},
+                            {"by_mm", f.byMm},
+                            {"remedy", f.remedy}});
+        print({{"case", place}, {"usable", !wrong}, {"findings", std::move(list)}});
+    } else {
+        for (const tooth::CaseFinding& f : findings)
+            fmt::print("  {:<7} {}{}{}\n", f.isError ? "error" : "note", f.part.empty() ? "" : f.part + ": ", f.what,
+                       f.remedy.empty() ? "" : fmt::format(" ({})", f.remedy));
+        if (!wrong) fmt::print("{}: can be felt and cut\n", place);
+    }
+    if (wrong) refuse(findings, place);
+}
+
+struct NewOptions {
+    std::string out, outer, name, kind, buccal, tissues;
+    std::vector<std::string> parts, scenery;
+    int fdi = 0;
+};
+
+/// TISSUE[:PRIORITY]=FILE
+Part partOf(const std::string& text, const tooth::TissueTable& tissues, const char* option) {
+    const std::size_t equals = text.find('=');
+    const std::string head = text.substr(0, equals), file = equals == std::string::npos ? "" : text.substr(equals + 1);
+    const std::size_t colon = head.find(':');
+    if (head.empty() || file.empty())
+        throw core::Error(fmt::format("\"{}\" is no part", text), option, "give TISSUE=FILE or TISSUE:PRIORITY=FILE");
+    Part part;
+    try {
+        part.tissue = tooth::tissueByName(head.substr(0, colon));
+    } catch (const core::Error& e) {
+        throw core::Error(e.problem(), option, e.remedy());
+    }
+    part.name = head.substr(0, colon);
+    part.priority = tissues.of(part.tissue).priority;
+    if (colon != std::string::npos) {
+        const char* end = head.data() + head.size();
+        const auto [stop, error] = std::from_chars(head.data() + colon + 1, end, part.priority);
+        if (error != std::errc{} || stop != end || part.priority < -1000 || part.priority > 1000)
+            throw core::Error(fmt::format("\"{}\" is no priority", head.substr(colon + 1)), option,
+                              "give a whole number, -1000 to 1000");
+    }
+    part.mesh = geometry::readMesh(fs::path(file));
+    return part;
+}
+
+void makeNew(const NewOptions& o) {
+    if (o.fdi != 0 && (o.fdi % 10 < 1 || o.fdi % 10 > 8))
+        throw core::Error(fmt::format("{} is no tooth number of the FDI", o.fdi), "--fdi", "11 to 48, or 51 to 85");
+    Case c;
+    fs::path out(o.out);
+    if (!out.has_filename()) out = out.parent_path();
+    c.name = o.name.empty() ? out.stem().string() : o.name;
+    c.kind = o.kind;
+    c.fdiNumber = o.fdi;
+    c.buccalSign = o.buccal == "+y" ? 1 : o.buccal == "-y" ? -1 : 0;
+    if (!o.tissues.empty()) {
+        const std::vector<std::byte> text = core::readFile(o.tissues, 1 << 20);
+        c.tissuesToml.assign(reinterpret_cast<const char*>(text.data()), text.size());
+        c.tissues = tooth::parseTissues(c.tissuesToml, o.tissues);
+    }
+    if (!o.outer.empty()) c.outer = geometry::readMesh(fs::path(o.outer));
+    for (const std::string& part : o.parts)
+        c.parts.push_back(partOf(part, c.tissues, "--part"));
+    for (const std::string& part : o.scenery)
+        c.scenery.push_back(partOf(part, c.tissues, "--scenery"));
+    // The only part is the tooth.
+    if (c.outer.triangles.empty() && c.parts.size() == 1) c.outer = c.parts.front().mesh;
+    const std::vector<tooth::CaseFinding> findings = findingsOf(c);
+    if (isWrong(findings)) refuse(findings, o.out);
+    tooth::writeCase(c, out);
+    fmt::print("{}: {} parts, {} faces outside\n", o.out, c.parts.size(), c.outer.triangles.size());
+    for (const tooth::CaseFinding& f : findings)
+        fmt::print("  note: {}{}\n", f.part.empty() ? "" : f.part + ": ", f.what);
+}
+
+void pack(const std::string& in, const std::string& out) {
+    if (tooth::isAttempt(in)) {
+        const tooth::OpenAttempt open = tooth::openAttempt(in);
+        const bool asFile = fs::path(out).extension() == ".handpiece";
+        tooth::writeAttempt(open.attempt, out, asFile ? &open.toothCase : nullptr);
+    } else {
+        tooth::writeCase(tooth::readCase(in), out);
+    }
+    fmt::print("{} -> {}\n", in, out);
+}
+
+}  // namespace
+
+void addCaseCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("case", "Look into a case, check it, make one, pack it into one file");
+    command->require_subcommand(1);
+    command->footer(
+        "Examples:\n  handpiece case info molar\n  handpiece case check molar --json\n"
+        "  handpiece case new --out mine --outer whole.stl --part enamel=e.stl --part dentine=d.stl\n"
+        "  handpiece case pack mine mine.handpiece");
+
+    struct Looked {
+        std::string place;
+        bool json = false;
+    };
+    const auto looked = std::make_shared<Looked>();
+    const auto looking = [&](const char* name, const char* what, const char* json, auto&& work) {
+        CLI::App* sub = command->add_subcommand(name, what);
+        sub->add_option("CASE", looked->place, "case folder, .handpiece file or mesh file")->required();
+        sub->add_flag("--json", looked->json, json);
+        sub->footer(fmt::format("Example:\n  handpiece case {} molar", name));
+        sub->callback([looked, work] { work(looked->place, looked->json); });
+    };
+    looking("info", "Name the parts of a case, its tissues and its exercise", "print JSON instead of a table", info);
+    looking("check", "Tell what is missing, crossing or sticking out; exit code 1 when it cannot be cut",
+            "print JSON instead of lines", check);
+
+    const auto options = std::make_shared<NewOptions>();
+    NewOptions& o = *options;
+    CLI::App* make = command->add_subcommand("new", "Make a case of meshes, one closed surface per part");
+    make->add_option("--out", o.out, "folder or .handpiece file to write")->required();
+    make->add_option("--outer", o.outer, "mesh of the whole tooth [default: the only part]");
+    make->add_option("--part", o.parts, "TISSUE=FILE or TISSUE:PRIORITY=FILE, in mm; as often as there are parts")
+        ->take_all();
+    make->add_option("--scenery", o.scenery, "TISSUE=FILE around the tooth: neighbours, gum, bone")->take_all();
+    make->add_option("--name", o.name, "name of the case [default: of the folder]");
+    make->add_option("--kind", o.kind, "kind of tooth, as lower-first-molar");
+    make->add_option("--fdi", o.fdi, "FDI number of the tooth, 11 to 48 or 51 to 85")
+        ->check(CLI::Range(11, 85))
+        ->type_name("NUMBER");
+    make->add_option("--buccal", o.buccal, "side that is buccal: +y or -y")->check(CLI::IsMember({"+y", "-y"}));
+    make->add_option("--tissues", o.tissues, "table of tissues of one's own (TOML)");
+    make->footer(
+        "Example:\n  handpiece case new --out mine --outer whole.stl --part enamel=e.stl --part caries:70=c.stl");
+    make->callback([options] { makeNew(*options); });
+
+    struct Packed {
+        std::string in, out;
+    };
+    const auto packed = std::make_shared<Packed>();
+    CLI::App* packing =
+        command->add_subcommand("pack", "Pack a case, or an attempt with its case, into one file; or unpack a case");
+    packing->add_option("IN", packed->in, "case or attempt: folder or .handpiece file")->required();
+    packing->add_option("OUT", packed->out, ".handpiece file, or folder to unpack into")->required();
+    packing->footer("Example:\n  handpiece case pack molar molar.handpiece");
+    packing->callback([packed] { pack(packed->in, packed->out); });
+}
+
+}  // namespace handpiece::cli

@@ -71,8 +71,8 @@ std::string quoted(const std::string& text) {
 void writeEvents(const session::SessionReader& reader, TextWriter& out) {
     out.write("tick,t_s,name,text\n");
     for (const session::Event& e : reader.events()) {
-        out.write(fmt::format("{},{:.6f},{},{}\n", e.tick, static_cast<double>(e.tick) / reader.info().rateHz, e.name,
-                              quoted(e.text)));
+        out.write(fmt::format("{},{:.6f},{},{}\n", e.tick, static_cast<double>(e.tick) / reader.info().rateHz,
+                              quoted(e.name), quoted(e.text)));
     }
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "handpiece/base/core/hash.h"
+
 namespace handpiece::session {
 
 std::size_t bytesOf(NumberType type) noexcept {
@@ -59,6 +61,12 @@ std::span<const Column> columns() noexcept {
         {"tick", u64, 1, offsetof(Record, tick), "count", "number of the tick; its nominal time is tick / rate_hz [s]"},
     };
     return kColumns;
+}
+
+std::uint64_t hashOf(std::span<const std::byte> bytes) noexcept {
+    core::Hasher hasher;
+    if (!bytes.empty()) hasher.add(bytes);  // nothing may have no address
+    return hasher.value();
 }
 
 std::string_view readme() noexcept {

@@ -44,6 +44,9 @@ struct KeyFrameRow {
     std::uint64_t tick = 0, offset = 0, bytes = 0, hash = 0;  ///< where in /key_frames/data; core::Hasher of the bytes
 };
 
+/// core::Hasher over a key frame's bytes.
+[[nodiscard]] std::uint64_t hashOf(std::span<const std::byte> bytes) noexcept;
+
 /// For people who open the file.
 [[nodiscard]] std::string_view readme() noexcept;
 

@@ -9,7 +9,6 @@
 #include <cstring>
 
 #include "handpiece/base/core/error.h"
-#include "handpiece/base/core/hash.h"
 #include "handpiece/record/session/hdf5_object.h"
 
 namespace handpiece::session {
@@ -306,9 +305,7 @@ KeyFrame SessionReader::keyFrame(std::size_t index) const {
     const KeyFrameRow& row = s.keyFrames[index];
     KeyFrame frame{row.tick, std::vector<std::byte>(static_cast<std::size_t>(row.bytes))};
     s.keyFrameData.read(row.offset, frame.state.size(), H5T_NATIVE_UINT8, frame.state.data());
-    core::Hasher hasher;
-    hasher.add(std::span<const std::byte>(frame.state));
-    s.source.require(hasher.value() == row.hash, "key_frames/data", "is not what was written");
+    s.source.require(hashOf(frame.state) == row.hash, "key_frames/data", "is not what was written");
     return frame;
 }
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "handpiece/base/core/error.h"
-#include "handpiece/base/core/hash.h"
 #include "handpiece/record/session/hdf5_object.h"
 #include "handpiece/record/session/survivable_file.h"
 
@@ -246,9 +245,7 @@ void SessionWriter::append(const Event& event) {
 
 void SessionWriter::append(const KeyFrame& keyFrame) {
     State& s = *state_;
-    core::Hasher hasher;
-    hasher.add(std::span<const std::byte>(keyFrame.state));
-    const KeyFrameRow row{keyFrame.tick, s.keyFrameData.rows(), keyFrame.state.size(), hasher.value()};
+    const KeyFrameRow row{keyFrame.tick, s.keyFrameData.rows(), keyFrame.state.size(), hashOf(keyFrame.state)};
     if (!keyFrame.state.empty()) s.keyFrameData.append(H5T_STD_U8LE, keyFrame.state.data(), keyFrame.state.size());
     s.keyFrameIndex.append(s.keyFrameType.id(), &row, 1);
 }

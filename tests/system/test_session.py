@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Session files as others read them: with plain h5py, after kill -9 at random moments, and as CSV."""
+
+import os
+import random
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+try:
+    import h5py
+    import numpy
+except ImportError:  # another Python than Debian's, which has python3-h5py
+    if sys.executable != "/usr/bin/python3" and os.path.exists("/usr/bin/python3"):
+        os.execv("/usr/bin/python3", ["/usr/bin/python3", *sys.argv])
+    print("skipped: there is no h5py (python3-h5py)")
+    sys.exit(0)
+
+from support import SystemTest, rows_of
+
+CHILD = os.environ["HANDPIECE_SESSION_CHILD"]
+KILLS = int(os.environ.get("HANDPIECE_SESSION_KILLS", "50"))
+AT_ONCE = 13
+SEED = int(os.environ.get("HANDPIECE_TEST_SEED", "20261121"))
+
+
+class Victim(threading.Thread):
+    """Starts a recorder, kills it after a while and notes what it had handed over by then."""
+
+    def __init__(self, path, manner, seconds):
+        super().__init__()
+        self.path, self.manner, self.seconds = path, manner, seconds
+        self.handed = 0
+
+    def run(self):
+        with subprocess.Popen([CHILD, str(self.path), self.manner], stdout=subprocess.PIPE, text=True) as child:
+            killer = threading.Timer(self.seconds, child.kill)
+            killer.start()
+            for line in child.stdout:
+                if line.endswith("\n"):
+                    self.handed = int(line)
+        killer.cancel()
+
+
+def read_all(file):
+    """Every dataset of an open file, to the length of the shortest."""
+    ticks = file["samples/tick"][:]
+    for name, dataset in file["samples"].items():
+        assert len(dataset) >= len(ticks), name
+        dataset[:]
+    return ticks
+
+
+class Session(SystemTest):
+    def kill(self, count, manner, shortest, longest):
+        generator = random.Random(f"{SEED}-{manner}")
+        victims = []
+        for first in range(0, count, AT_ONCE):
+            group = [Victim(self.folder / f"{manner}-{first + i}.h5", manner, generator.uniform(shortest, longest))
+                     for i in range(min(AT_ONCE, count - first))]
+            for victim in group:
+                victim.start()
+            for victim in group:
+                victim.join()
+            victims += group
+        return victims
+
+    def test_kill_loses_at_most_a_second(self):
+        """The machine may be busy: what a late child has not handed over is not lost by the recorder."""
+        worst = 0
+        for victim in self.kill((KILLS + 1) // 2, "steady", 0.5, 3.0):
+            with h5py.File(victim.path, "r") as file:
+                ticks = read_all(file)
+                self.assertEqual(file["closed"][()], 0)
+                self.assertEqual(list(ticks), list(range(len(ticks))))
+                frames = file["key_frames/index"][:]
+                for frame in frames:
+                    data = file["key_frames/data"][int(frame["offset"]):int(frame["offset"] + frame["bytes"])]
+                    self.assertTrue(len(data) == 300000 and (data == 3).all())
+                worst = max(worst, victim.handed - len(ticks))
+                self.assertLessEqual(victim.handed - len(ticks), 1000, victim.path)
+        print(f"worst loss {worst} ms", flush=True)
+
+    def test_kill_while_it_writes_all_the_time(self):
+        lengths = []
+        for victim in self.kill(KILLS // 2, "fast", 0.3, 1.5):
+            with h5py.File(victim.path, "r") as file:
+                ticks = read_all(file)
+                self.assertEqual(list(ticks), list(range(len(ticks))))
+                self.assertTrue((numpy.diff(file["events"]["tick"].astype(int)) > 0).all())
+                lengths.append(len(ticks))
+            done = self.ok("export", victim.path, "--csv", "--events")
+            self.assertEqual(done.stdout.splitlines()[0], "tick,t_s,name,text")
+            os.remove(victim.path)
+        self.assertGreater(max(lengths), 10000)
+
+    def test_h5py_reads_what_the_readme_says(self):
+        victim, = self.kill(1, "steady", 2.5, 2.6)
+        with h5py.File(victim.path, "r") as file:
+            readme = file["README"][()].decode()
+            self.assertIn("h5py.File", readme)
+            self.assertEqual(file.attrs["format"].decode(), "handpiece-session")
+            self.assertEqual(int(file.attrs["format_version"]), 1)
+            self.assertEqual(file.attrs["code"].decode(), "child")
+            n = len(file["samples/tick"])
+            x = file["samples/position"][:n] * 2.0**-20
+            self.assertTrue((numpy.abs(x) < 10).all())
+            xyz = file["samples/orientation"][:n].astype(numpy.int64)
+            code = file["samples/orientation_w"][:n].astype(numpy.int64)
+            w = numpy.sqrt(1 - (xyz.astype(float)**2).sum(axis=1) * 2.0**-60) * numpy.where(code & 1, -1, 1)
+            self.assertTrue((numpy.abs(code) < 20).all())
+            self.assertTrue((w > 0.9).all())
+            for name, dataset in file["samples"].items():
+                self.assertTrue(dataset.attrs["unit"].decode(), name)
+                self.assertTrue(dataset.attrs["description"].decode(), name)
+            self.assertEqual(set(file["events"]["name"]), {b"stroke begin"})
+            force = file["samples/force"][:n]
+        rows = rows_of(self.ok("export", victim.path, "--csv").stdout)
+        self.assertEqual(len(rows), n)
+        for i in (0, 17, n - 1):
+            self.assertEqual(int(rows[i]["tick"]), i)
+            self.assertAlmostEqual(float(rows[i]["t_s"]), i / 1000)
+            self.assertAlmostEqual(float(rows[i]["x_mm"]), x[i, 0], places=6)
+            self.assertAlmostEqual(float(rows[i]["qw"]), w[i], places=8)
+            self.assertAlmostEqual(float(rows[i]["fz_N"]), float(force[i, 2]), places=3)
+
+    def test_a_reader_is_welcome_while_it_is_written(self):
+        victim = Victim(self.folder / "live.h5", "steady", 4.0)
+        victim.start()
+        time.sleep(1.5)
+        seen = []
+        for _ in range(3):
+            with h5py.File(victim.path, "r") as file:
+                seen.append(len(read_all(file)))
+            time.sleep(0.8)
+        victim.join()
+        self.assertGreater(seen[0], 0)
+        self.assertGreater(seen[2], seen[0])
+
+    def test_bad_sessions_are_one_message(self):
+        victim, = self.kill(1, "steady", 1.5, 1.6)
+        whole = victim.path.read_bytes()
+        newer = self.folder / "newer.h5"
+        newer.write_bytes(whole)
+        with h5py.File(newer, "r+") as file:
+            file.attrs.modify("format_version", numpy.int32(2))
+        other = self.folder / "other.h5"
+        with h5py.File(other, "w") as file:
+            file["x"] = 1
+        typed = self.folder / "typed.h5"
+        typed.write_bytes(whole)
+        with h5py.File(typed, "r+") as file:
+            del file["samples/force"]
+            file["samples/force"] = numpy.zeros((5, 3))
+        linked = self.folder / "linked.h5"
+        linked.write_bytes(whole)
+        with h5py.File(linked, "r+") as file:
+            del file["events"]
+            file["events"] = h5py.ExternalLink("newer.h5", "events")
+        half = self.folder / "half.h5"
+        half.write_bytes(whole[:len(whole) // 2])
+        self.refused("export", newer, "--csv", mentions=["newer", "format 2"])
+        self.refused("export", other, "--csv", mentions=["no session"])
+        self.refused("export", typed, "--csv", mentions=["force"])
+        self.refused("export", linked, "--csv", mentions=["events"])
+        self.refused("export", half, "--csv", mentions=["damaged"])
+        self.refused("export", self.folder / "none.h5", "--csv", mentions=["no such file"])
+        self.refused("export", victim.path, mentions=["--csv"])
+
+
+if __name__ == "__main__":
+    unittest.main()

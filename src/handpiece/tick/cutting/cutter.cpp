@@ -59,7 +59,7 @@ struct Cutter::State {
         result.changedBricks = outcome.changedBricks;
         result.cutterInTooth = sweeper.pose();
     }
-    void stop() noexcept { result.changedBricks = sweeper.settle().changedBricks; }
+    void stop() noexcept { sweeper.settle(); }
     void cutUnderLoad(contact::Method& method, const CutInput& input, double loadN) noexcept {
         const Vec3 direction = input.loadN / loadN;
         // What the field has not yet let through to the proxy.

@@ -45,6 +45,12 @@ inline Ints toInts(Floats x) {
 }
 // Of two equal values (0 and -0 too) every level gives the second, as the instructions do.
 #if HANDPIECE_SIMD_LEVEL >= 3
+inline unsigned bitsOf(Ints mask) {
+    return _mm512_movepi32_mask((__m512i)mask);
+}
+inline bool anyTrue(Ints mask) {
+    return _mm512_test_epi32_mask((__m512i)mask, (__m512i)mask) != 0;
+}
 inline Floats least(Floats a, Floats b) {
     return (Floats)_mm512_maskz_min_ps(0xffff, (__m512)a, (__m512)b);
 }
@@ -54,9 +60,6 @@ inline Floats most(Floats a, Floats b) {
 inline Floats root(Floats x) {
     return (Floats)_mm512_maskz_sqrt_ps(0xffff, (__m512)x);
 }
-inline bool anyLess(Floats a, Floats b) {
-    return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ) != 0;
-}
 #else
 inline Floats least(Floats a, Floats b) {
     return a < b ? a : b;
@@ -65,18 +68,24 @@ inline Floats most(Floats a, Floats b) {
     return a > b ? a : b;
 }
 #if HANDPIECE_SIMD_LEVEL == 2
+inline unsigned bitsOf(Ints mask) {
+    return static_cast<unsigned>(_mm256_movemask_ps((__m256)mask));
+}
+inline bool anyTrue(Ints mask) {
+    return _mm256_movemask_ps((__m256)mask) != 0;
+}
 inline Floats root(Floats x) {
     return (Floats)_mm256_sqrt_ps((__m256)x);
 }
-inline bool anyLess(Floats a, Floats b) {
-    return _mm256_movemask_ps((__m256)(a < b)) != 0;
-}
 #elif defined(__SSE2__)
+inline unsigned bitsOf(Ints mask) {
+    return static_cast<unsigned>(_mm_movemask_ps((__m128)mask));
+}
+inline bool anyTrue(Ints mask) {
+    return _mm_movemask_ps((__m128)mask) != 0;
+}
 inline Floats root(Floats x) {
     return (Floats)_mm_sqrt_ps((__m128)x);
-}
-inline bool anyLess(Floats a, Floats b) {
-    return _mm_movemask_ps((__m128)(a < b)) != 0;
 }
 #else
 inline Floats root(Floats x) {
@@ -84,8 +93,13 @@ inline Floats root(Floats x) {
         x[i] = __builtin_sqrtf(x[i]);
     return x;
 }
-inline bool anyLess(Floats a, Floats b) {
-    const Ints mask = a < b;
+inline unsigned bitsOf(Ints mask) {
+    unsigned bits = 0;
+    for (int i = 0; i < kLanes; ++i)
+        bits |= (mask[i] ? 1u : 0u) << i;
+    return bits;
+}
+inline bool anyTrue(Ints mask) {
     for (int i = 0; i < kLanes; ++i)
         if (mask[i]) return true;
     return false;
@@ -103,20 +117,21 @@ inline Places placesOf(Ints x, Ints y, Ints z) {
     return {fx * fx + fy * fy, toFloats(z)};
 }
 
-inline Floats beyond(const SweepPiece& piece, Floats before, Floats after, Floats own) {
-    // The rule of an end counts only beyond it; most ends have none.
-    if (piece.endSign[0] != 0.0f) own = before < Floats{} ? splat(piece.endSign[0]) : own;
-    if (piece.endSign[1] != 0.0f) own = after > Floats{} ? splat(piece.endSign[1]) : own;
-    return own;
-}
-
-/// The nearest so far: squared distance, and a number whose sign tells the side.
+/// The nearest so far: squared distance, signed distance, and whether an end is what is nearest: then only the sign of
+/// `value` counts.
 struct Nearest {
-    Floats squared, side;
-    inline void take(Floats s, Floats sign) {
+    Floats squared, value;
+    Ints isEnd;
+    inline void take(Floats s, Floats v, Ints end) {
         const Ints nearer = s < squared;
         squared = nearer ? s : squared;
-        side = nearer ? sign : side;
+        value = nearer ? v : value;
+        isEnd = nearer ? end : isEnd;
+    }
+    [[nodiscard]] inline Floats distance() const {
+        if (!anyTrue(isEnd)) return value;  // the root of a number's square is the number, to the bit
+        const Floats d = root(squared);
+        return isEnd ? (value < Floats{} ? -d : d) : value;
     }
 };
 
@@ -124,7 +139,11 @@ inline void measureLine(const SweepPiece& piece, Floats rho, Floats z, Nearest& 
     const Floats r = rho - piece.r0, h = z - piece.z0;
     const Floats along = r * piece.ur + h * piece.uz, off = r * piece.uz - h * piece.ur;
     const Floats past = along - least(most(along, Floats{}), splat(piece.length));
-    nearest.take(off * off + past * past, beyond(piece, past, past, off));
+    Floats value = off;
+    // The rule of an end counts only beyond it; smooth ends have none.
+    if (piece.endSign[0] != 0.0f) value = past < Floats{} ? splat(piece.endSign[0]) : value;
+    if (piece.endSign[1] != 0.0f) value = past > Floats{} ? splat(piece.endSign[1]) : value;
+    nearest.take(off * off + past * past, value, past != Floats{});
 }
 
 inline void measureArc(const SweepPiece& piece, Floats rho2, Floats rho, Floats z, Nearest& nearest) {
@@ -133,12 +152,12 @@ inline void measureArc(const SweepPiece& piece, Floats rho2, Floats rho, Floats 
     const Floats away = root((piece.r0 == 0.0f ? rho2 : r * r) + h * h);
     const Floats off = (away - piece.radius) * piece.bulge;
     const Ints faces = (piece.chordR * h - piece.chordZ * r) * piece.radius + away * piece.chordOffset <= Floats{};
-    nearest.take(faces ? off * off : splat(3e38f), off);
+    nearest.take(faces ? off * off : splat(3e38f), off, Ints{});
     for (int e = 0; e < 2; ++e) {
         if ((piece.endsCount >> e & 1) == 0) continue;
         const Floats er = rho - piece.ends[e][0], ez = z - piece.ends[e][1];
         const Floats d = er * er + ez * ez;
-        nearest.take(faces ? splat(3e38f) : d, piece.endSign[e] != 0.0f ? splat(piece.endSign[e]) : off);
+        nearest.take(faces ? splat(3e38f) : d, piece.endSign[e] != 0.0f ? splat(piece.endSign[e]) : off, ~Ints{});
     }
 }
 
@@ -154,7 +173,7 @@ inline Floats distances(const SweepPass& pass, const std::uint16_t* list, std::i
         return (root(at.rho2 + h * h) - piece.radius) * piece.bulge;
     } else {
         const Floats rho = root(at.rho2);
-        Nearest nearest{splat(3e38f), Floats{} + 1.0f};
+        Nearest nearest{splat(3e38f), splat(3e38f), Ints{}};
         for (std::int32_t i = 0; i < count; ++i) {
             const SweepPiece& piece = pass.pieces[list[i]];
             if (piece.radius > 0.0f)
@@ -162,14 +181,15 @@ inline Floats distances(const SweepPass& pass, const std::uint16_t* list, std::i
             else
                 measureLine(piece, rho, at.z, nearest);
         }
-        const Floats d = root(nearest.squared);
-        return nearest.side < Floats{} ? -d : d;
+        return nearest.distance();
     }
 }
 
+/// Plus kSweepQuanta: of a sum that is so large the float itself is rounded to a whole number, ties to even.
 inline Ints quantaOf(const SweepPass& pass, Floats value) {
     const Floats q = splat(pass.half) - value * pass.perMm;
-    return toInts(least(most(q, Floats{}), splat(static_cast<float>(kSweepQuanta))) + 0.5f);
+    const Floats full = splat(static_cast<float>(kSweepQuanta));
+    return toInts(least(most(q, Floats{}), full) + full);
 }
 
 inline std::int64_t sumOf(Ints x) {
@@ -185,40 +205,81 @@ inline float leastOf(Floats x) {
     return low;
 }
 
+constexpr int kStep = 16, kParts = kStep / kLanes;
+/// The last step reaches back: raising twice changes nothing.
+inline int firstOf(int step) {
+    return step + 1 < kSweepSteps ? step * kStep : kSweepNodes - kStep;
+}
+
+inline float leastOfStep(const float* x) {
+    Floats low = load(x);
+    for (int part = 1; part < kParts; ++part)
+        low = least(low, load(x + part * kLanes));
+    return leastOf(low);
+}
+
+// Pass by pass over the steps, so that no branch depends on what a step finds: which steps can rise at all; rising;
+// for how long the others can rest; counting where the surface passes.
 template <SweepForm form>
 SweepOutcome raiseAs(const SweepPass& pass, const SweepBrick& brick, float* values, std::int64_t* quanta) {
     const Ints x = splat(brick.base[0]), y = splat(brick.base[1]), z = splat(brick.base[2]);
     const Floats out = splat(pass.bandOutMm), toMm = splat(-pass.unitMm), shows = splat(pass.showsMm);
-    Floats low = out;
+    alignas(64) float was[kSweepSteps * kStep], spare[kSweepSteps * kStep];
+    std::uint64_t active = 0, risen = 0, counting = 0;
+    for (int i = 0; i < kSweepDues; i += kLanes)
+        active |= std::uint64_t{bitsOf(load(brick.due + i) <= splat(brick.way))} << i;
+    for (std::uint64_t left = active; left != 0; left &= left - 1) {
+        const int step = __builtin_ctzll(left), first = firstOf(step);
+        Ints rises{}, counts{};
+        for (int part = 0; part < kParts; ++part) {
+            const int at = first + part * kLanes, kept = step * kStep + part * kLanes;
+            const Floats before = load(values + at);
+            const Places places =
+                placesOf(x + load(pass.offset[0] + at), y + load(pass.offset[1] + at), z + load(pass.offset[2] + at));
+            const Floats reached = distances<form>(pass, brick.list, brick.count, places) * toMm;
+            const Floats after = most(least(reached, out), before);
+            store(values + at, after);
+            store(was + kept, before);
+            store(spare + kept, before < out ? before - reached : splat(3e38f));
+            const Ints higher = before < after;
+            rises |= higher;
+            // Deep under the surface nothing is counted and nothing shows.
+            counts |= higher & (before < shows) & (after > -shows);
+        }
+        risen |= std::uint64_t{anyTrue(rises)} << step;
+        counting |= std::uint64_t{anyTrue(counts)} << step;
+    }
+    for (std::uint64_t left = active & ~risen; left != 0; left &= left - 1) {
+        const int step = __builtin_ctzll(left);
+        // A hair less, so that rounding makes no node wait that rises in a neighbour.
+        const float room = leastOfStep(spare + step * kStep) * (1.0f / kSweepWayMm) - 2.0f;
+        const float most = static_cast<float>(kSweepMostWay - brick.way);
+        brick.due[step] = room < most ? brick.way + static_cast<std::int32_t>(room) : kSweepMostWay;
+    }
     Ints taken{};
-    SweepOutcome outcome{};
-    for (int i = 0; i < kSweepNodes; i += kLanes) {
-        // The last step reaches back: raising twice changes nothing.
-        const int first = i + kLanes <= kSweepNodes ? i : kSweepNodes - kLanes;
-        const Floats before = load(values + first);
-        if (!anyLess(before, out)) continue;
-        const Places at = placesOf(x + load(pass.offset[0] + first), y + load(pass.offset[1] + first),
-                                   z + load(pass.offset[2] + first));
-        const Floats reached = distances<form>(pass, brick.list, brick.count, at) * toMm;
-        const Floats after = most(least(reached, out), before);
-        low = least(after, low);
-        if (!anyLess(before, after)) continue;
-        store(values + first, after);
-        outcome.rose = true;
-        // Deep under the surface nothing is counted and nothing shows.
-        if (!anyLess(-shows, after)) continue;
-        const Ints risen = (before < after) & (before < shows) & (after > -shows);
-        outcome.shows = outcome.shows || anyLess(toFloats(risen), Floats{});
-        const Ints lost = (quantaOf(pass, before) - quantaOf(pass, after)) & load(pass.owned + first);
-        if (brick.tissue == nullptr) {
-            taken += lost;
-        } else {
-            for (int lane = 0; lane < kLanes; ++lane)
-                quanta[brick.tissue[first + lane]] += lost[lane];
+    for (std::uint64_t left = counting; left != 0; left &= left - 1) {
+        const int step = __builtin_ctzll(left);
+        for (int part = 0; part < kParts; ++part) {
+            const int at = firstOf(step) + part * kLanes;
+            Ints lost = quantaOf(pass, load(was + step * kStep + part * kLanes)) - quantaOf(pass, load(values + at));
+            lost &= load(pass.owned + at);
+            if (brick.tissue == nullptr) {
+                taken += lost;
+            } else {
+                for (int lane = 0; lane < kLanes; ++lane)
+                    quanta[brick.tissue[at + lane]] += lost[lane];
+            }
         }
     }
     if (brick.tissue == nullptr) quanta[brick.uniform] += sumOf(taken);
-    outcome.least = leastOf(low);
+    SweepOutcome outcome{risen != 0, counting != 0, kSweepMostWay};
+    Ints earliest = load(brick.due);
+    for (int i = kLanes; i < kSweepDues; i += kLanes) {
+        const Ints due = load(brick.due + i);
+        earliest = due < earliest ? due : earliest;
+    }
+    for (int lane = 0; lane < kLanes; ++lane)
+        outcome.due = earliest[lane] < outcome.due ? earliest[lane] : outcome.due;
     return outcome;
 }
 
@@ -247,12 +308,21 @@ float highest(const SweepPass& pass, const SweepBrick& brick) {
 }
 
 void makeOffsets(const std::int32_t (&axes)[3][3], std::int32_t* const (&offset)[3]) {
+    // Rows of nine are written as whole vectors; what is too much the next row overwrites.
+    constexpr int kRowParts = (tooth::kBrickNodes + kLanes - 1) / kLanes;
     for (int k = 0; k < 3; ++k) {
+        alignas(64) std::int32_t along[kRowParts * kLanes];
+        for (int x = 0; x < kRowParts * kLanes; ++x)
+            along[x] = x * axes[0][k];
         std::int32_t* out = offset[k];
         for (int z = 0; z < tooth::kBrickNodes; ++z)
-            for (int y = 0; y < tooth::kBrickNodes; ++y)
-                for (int x = 0; x < tooth::kBrickNodes; ++x)
-                    *out++ = x * axes[0][k] + y * axes[1][k] + z * axes[2][k];
+            for (int y = 0; y < tooth::kBrickNodes; ++y, out += tooth::kBrickNodes) {
+                const Ints start = splat(y * axes[1][k] + z * axes[2][k]);
+                for (int part = 0; part < kRowParts; ++part) {
+                    const Ints places = load(along + part * kLanes) + start;
+                    __builtin_memcpy(out + part * kLanes, &places, sizeof places);
+                }
+            }
     }
 }
 

@@ -29,8 +29,9 @@ struct SweepPiece {
 
 /// All bricks of one pose.
 struct SweepPass {
-    const std::int32_t* offset[3];  ///< kSweepNodes each: node i's place from its brick's first node
-    const std::int32_t* owned;      ///< -1 for nodes that the brick counts, else 0
+    const std::int32_t*
+        offset[3];              ///< kSweepRoom each, aligned to 64 bytes: node i's place from its brick's first node
+    const std::int32_t* owned;  ///< -1 for nodes that the brick counts, else 0
     const SweepPiece* pieces;
     float unitMm;
     float bandOutMm;
@@ -38,6 +39,10 @@ struct SweepPass {
     float showsMm;      ///< a rise shows when it comes from below this to above minus this
 };
 inline constexpr int kSweepNodes = tooth::kBrickValues;
+/// Nodes are looked at in steps of sixteen; the last step reaches back.
+inline constexpr int kSweepSteps = (kSweepNodes + 15) / 16;
+inline constexpr int kSweepDues = 48;   ///< with room to read whole vectors; beyond the steps kSweepMostWay
+inline constexpr int kSweepRoom = 752;  ///< with what the last steps write or read too much
 /// Of a node that is all tissue.
 inline constexpr std::int32_t kSweepQuanta = 1 << 23;
 
@@ -52,10 +57,17 @@ struct SweepBrick {
         form;  ///< line: the one piece is a line and every node faces it; ball: the same for an arc round the axis
     const std::uint8_t* tissue;  ///< per node; null: all of tissue `uniform`
     std::uint8_t uniform;
+    /// The bur's way so far, rounded up, and for each step the way before which nothing in it can rise, in quanta of
+    /// kSweepWayMm.
+    std::int32_t way;
+    std::int32_t* due;  ///< kSweepDues
 };
+inline constexpr float kSweepWayMm = 1e-5f;
+/// Farther than this a way is not counted; of a step that can never rise.
+inline constexpr std::int32_t kSweepMostWay = 2000000000;
 struct SweepOutcome {
-    bool rose, shows;
-    float least;  ///< of the values now
+    bool rose, shows;  ///< `shows`: within 1.8 voxels of the surface
+    std::int32_t due;  ///< the earliest of its steps
 };
 /// Plain row of brick centres.
 struct SweepRow {

@@ -2,7 +2,9 @@
 #include "handpiece/tick/cutting/sweeper.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "handpiece/model/instrument/piece.h"
 
@@ -18,8 +20,11 @@ namespace {
 constexpr std::uint8_t kUnknown = 255, kMixed = 254;
 /// Coarse values are known to this depth (see CutField).
 constexpr double kCoarseReachMm = 2.0;
-/// Between two poses that are cut on a way: what is left standing on a round bur's wall, and beside a sharp rim.
-constexpr double kScallopMm = 1e-3, kStairVoxels = 0.4;
+/// Between two poses that are cut on a way: what is left standing on a round bur's wall, and what a corner of the
+/// outline leaves in voxels; more on a way longer than kFastMm.
+/// A brick's pieces are those of a region so much larger, and looked up again when the bur has moved as far.
+constexpr double kPiecesVoxels = 1.0;
+constexpr double kScallopMm = 1e-3, kNotchVoxels = 0.04, kFastNotchVoxels = 0.2, kFastMm = 0.1;
 
 SweepKernels kernelsFor(core::SimdLevel level) {
 #if defined(__x86_64__)
@@ -36,35 +41,22 @@ double unitFor(const instrument::Bur& bur, double voxelMm) {
     return 2.0 * extent / static_cast<double>(1 << 30);
 }
 
-/// How far apart two poses on a way may be cut.
-double stepFor(const instrument::Bur& bur, double voxelMm) {
+/// How far apart two poses on a way may be cut for the sake of what is round.
+double stepFor(const instrument::Bur& bur) {
     double round = bur.maxRadiusMm();
-    const auto& pieces = bur.profile().pieces;
-    bool sharp = false;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        if (pieces[i].isArc && pieces[i].convex) round = std::min(round, pieces[i].radiusMm);
-        if (i + 1 == pieces.size() || instrument::jointBetween(pieces[i], pieces[i + 1]) != instrument::Joint::convex)
-            continue;
-        const auto before = instrument::inwardNormalAt(pieces[i], 1.0),
-                   after = instrument::inwardNormalAt(pieces[i + 1], 0.0);
-        sharp = sharp || before.dot(after) < 0.95;
-    }
-    const double scallop = std::sqrt(8.0 * round * kScallopMm);
-    return sharp ? std::min(scallop, kStairVoxels * voxelMm) : scallop;
-}
-
-/// Spreads the visits to deep bricks over the ticks: 0.5 .. 1, by brick.
-double share(std::uint32_t dense) noexcept {
-    return 0.5 + 0.5 * static_cast<double>((dense * 2654435761u) >> 16 & 0xffff) / 65536.0;
+    for (const instrument::ProfilePiece& piece : bur.profile().pieces)
+        if (piece.isArc && piece.convex) round = std::min(round, piece.radiusMm);
+    return std::sqrt(8.0 * round * kScallopMm);
 }
 
 }  // namespace
 
 /// Places are of the bur's frame in kernel units.
 struct Sweeper::Frame {
-    std::int64_t anchor[3];   // a node near the bur
-    std::int32_t origin[3];   // its place
-    std::int32_t axes[3][3];  // one node farther along x, y, z
+    std::int64_t anchor[3];                       // a node near the bur
+    std::int32_t origin[3];                       // its place
+    std::int32_t axes[3][3];                      // one node farther along x, y, z
+    float halfAxes[3][3], half[3], halfZ, round;  // half a brick: along x, y, z; their sum; its reach [mm]
     void placeOf(const std::int64_t (&node)[3], std::int32_t (&out)[3]) const noexcept {
         for (int k = 0; k < 3; ++k) {
             std::int64_t sum = origin[k];
@@ -84,27 +76,36 @@ Sweeper::Sweeper(tooth::CutField& field, const instrument::Bur& bur, core::SimdL
       lengthMm_(bur.lengthMm()),
       radiusMm_(bur.maxRadiusMm()),
       unitMm_(unitFor(bur, voxelMm_)),
-      stepMm_(stepFor(bur, voxelMm_)),
+      stepMm_(stepFor(bur)),
       outline_(bur.profile(), unitMm_, bandMm_, bandOutMm_, 2.0 * kBrickCells * voxelMm_, 2.0 * voxelMm_),
       simple_(simpleOutline(bur.profile()), unitMm_, bandMm_, bandOutMm_, 0.0, 0.5 * radiusMm_),
-      offsets_(3 * kBrickValues),
-      owned_(kBrickValues),
+      nodes_(std::make_unique<Nodes>()),
       list_(outline_.pieces().size()),
       simpleList_(simple_.pieces().size()) {
     for (int i = 0; i < kBrickValues; ++i) {
         const bool own = i % kBrickNodes < kBrickCells && i / kBrickNodes % kBrickNodes < kBrickCells &&
                          i / (kBrickNodes * kBrickNodes) < kBrickCells;
-        owned_[static_cast<std::size_t>(i)] = own ? -1 : 0;
+        nodes_->owned[i] = own ? -1 : 0;
     }
     simple_.list(~std::uint64_t{0} >> (64 - std::min<std::size_t>(64, simpleList_.size())), simpleList_.data());
     const tooth::FieldView view = field.field().view();
     const auto bricks = static_cast<std::size_t>(view.bricks[0]) * static_cast<std::size_t>(view.bricks[1]) *
                         static_cast<std::size_t>(view.bricks[2]);
+    const auto& pieces = bur.profile().pieces;
+    for (std::size_t i = 0; i + 1 < pieces.size(); ++i) {
+        if (instrument::jointBetween(pieces[i], pieces[i + 1]) != instrument::Joint::convex) continue;
+        const core::Vec2 before = -instrument::inwardNormalAt(pieces[i], 1.0),
+                         after = -instrument::inwardNormalAt(pieces[i + 1], 0.0);
+        corners_.push_back({before, after, std::abs(before.x() * after.y() - before.y() * after.x())});
+    }
     memory_.resize(bricks);
+    Dues never{};
+    std::fill_n(never.steps, kSweepDues, kSweepMostWay);
+    dues_.assign(field.field().brickCount(), never);
     uniform_.assign(bricks, kUnknown);
     for (std::size_t k = 0; k < 3; ++k)
-        pass_.offset[k] = &offsets_[k * kBrickValues];
-    pass_.owned = owned_.data();
+        pass_.offset[k] = nodes_->offset[k];
+    pass_.owned = nodes_->owned;
     pass_.pieces = outline_.pieces().data();
     pass_.unitMm = static_cast<float>(unitMm_);
     pass_.bandOutMm = static_cast<float>(bandOutMm_);
@@ -133,6 +134,18 @@ Sweeper::Frame Sweeper::frameOf(const core::Pose& pose) noexcept {
         for (int a = 0; a < 3; ++a)
             frame.axes[a][k] = static_cast<std::int32_t>(std::lround(rotation(a, k) * voxelMm_ / unitMm_));
     }
+    constexpr float kHalf = 0.5f * kBrickCells;
+    frame.round = kHalf * std::sqrt(3.0f) * static_cast<float>(voxelMm_);
+    frame.halfZ = 0.0f;
+    for (int k = 0; k < 3; ++k) {
+        frame.half[k] = 0.0f;
+        for (int a = 0; a < 3; ++a) {
+            frame.halfAxes[a][k] = kHalf * static_cast<float>(frame.axes[a][k]) * pass_.unitMm;
+            frame.half[k] += frame.halfAxes[a][k];
+        }
+    }
+    for (int a = 0; a < 3; ++a)
+        frame.halfZ += std::abs(frame.halfAxes[a][2]);
     return frame;
 }
 
@@ -163,64 +176,97 @@ std::uint8_t Sweeper::uniformTissue(std::uint32_t dense, std::int32_t stored) no
     return known;
 }
 
-void Sweeper::visit(std::uint32_t dense, const std::int32_t (&base)[3], const OutlineTable::Rectangle& rectangle,
-                    bool all, Outcome& outcome) noexcept {
-    const OutlineTable::Region region = outline_.region(rectangle);
-    Memory& memory = memory_[dense];
-    const bool known = memory.epoch == epoch_;
-    if (region.lowMm >= bandMm_ || (known && -region.lowMm <= memory.least)) return;
-    const bool deep = region.lowMm >= kDeepVoxels * voxelMm_;
-    if (deep && known && !all && travelMm_ < memory.due) return;
+/// The way at which the bur may have come `mm` nearer.
+std::int32_t Sweeper::wayAfter(double mm) const noexcept {
+    const double quanta = std::max(0.0, mm / static_cast<double>(kSweepWayMm) - 2.0);
+    return quanta < static_cast<double>(kSweepMostWay - way_) ? way_ + static_cast<std::int32_t>(quanta)
+                                                              : kSweepMostWay;
+}
 
+/// What holds in a brick until the bur has moved kPiecesVoxels.
+OutlineTable::Region Sweeper::regionOf(const Frame& frame, const std::int32_t (&base)[3]) const noexcept {
+    const float x = static_cast<float>(base[0]) * pass_.unitMm + frame.half[0],
+                y = static_cast<float>(base[1]) * pass_.unitMm + frame.half[1],
+                z = static_cast<float>(base[2]) * pass_.unitMm + frame.half[2];
+    const float rho = std::sqrt(x * x + y * y), inverse = rho > 0.0f ? 1.0f / rho : 0.0f;
+    float along = 0.0f, across = 0.0f;
+    for (int a = 0; a < 3; ++a) {
+        along += std::abs(frame.halfAxes[a][0] * x + frame.halfAxes[a][1] * y);
+        across += std::abs(frame.halfAxes[a][1] * x - frame.halfAxes[a][0] * y);
+    }
+    const auto grown = static_cast<float>(kPiecesVoxels * voxelMm_);
+    along = grown + (rho > 0.0f ? along * inverse : frame.round);
+    across = grown + (rho > 0.0f ? across * inverse : frame.round);
+    const float farthest = rho + along, high = frame.halfZ + grown;
+    return outline_.region(
+        {std::max(rho - along, 0.0f), std::sqrt(farthest * farthest + across * across), z - high, z + high});
+}
+
+void Sweeper::visit(const Frame& frame, std::uint32_t dense, const std::int32_t (&base)[3], Outcome& outcome) noexcept {
+    Memory& memory = memory_[dense];
+    const bool isNew = memory.epoch != epoch_;
+    std::int32_t stored = field_.field().view().brickIndex[dense];
+    if (isNew) {
+        memory = {kSweepMostWay, epoch_, way_, 0, 0};
+        if (stored < 0 && field_.coarse()[dense] >= 0.0f) return;  // outside the tooth
+    }
+    if (memory.piecesDue <= way_) {
+        const OutlineTable::Region region = regionOf(frame, base);
+        if (region.lowMm >= bandMm_) {
+            memory.due = wayAfter(static_cast<double>(region.lowMm) - bandMm_);
+            // Its steps are not looked at meanwhile, and may be due when it comes back.
+            return;
+        }
+        memory.piecesDue = wayAfter(kPiecesVoxels * voxelMm_);
+        memory.groups = region.groups;
+        memory.alone = region.alone;
+    }
     SweepBrick brick;
     for (int k = 0; k < 3; ++k)
         brick.base[k] = base[k];
     brick.form = SweepForm::general;
-    if (region.alone != 0) {
-        list_[0] = static_cast<std::uint16_t>(__builtin_ctzll(region.alone));
+    if (memory.alone != 0) {
+        list_[0] = static_cast<std::uint16_t>(__builtin_ctzll(memory.alone));
         brick.count = 1;
         brick.form = outline_.formOf(list_[0]);
     } else {
-        brick.count = outline_.list(region.groups, list_.data());
+        brick.count = outline_.list(memory.groups, list_.data());
     }
     brick.list = list_.data();
 
-    std::int32_t stored = field_.field().view().brickIndex[dense];
-    if (!known) memory = {0.0, -static_cast<float>(bandMm_), epoch_};
-    memory.due = travelMm_ + kLagVoxels * voxelMm_ * share(dense);
     if (stored < 0) {
-        if (kernels_.highest(pass_, brick) <= -static_cast<float>(bandMm_)) return;
+        const double spare = -bandMm_ - static_cast<double>(kernels_.highest(pass_, brick));
+        if (spare >= 0.0) {
+            memory.due = wayAfter(spare);
+            return;
+        }
         stored = field_.storeBrick(dense);
         if (stored < 0) return;
     }
+    Dues& dues = dues_[static_cast<std::size_t>(stored)];
+    if (dues.epoch != epoch_) {
+        dues.epoch = epoch_;
+        std::fill_n(dues.steps, kSweepSteps, way_);
+    }
     brick.uniform = uniformTissue(dense, stored);
     brick.tissue = brick.uniform == kMixed ? field_.tissues(stored) : nullptr;
+    brick.way = way_;
+    brick.due = dues.steps;
     const SweepOutcome raised = kernels_.raise(pass_, brick, field_.values(stored), quanta_.data());
-    memory.least = raised.least;
+    memory.due = raised.due;
     if (!raised.rose) return;
     field_.noteChanged(dense, raised.shows);
     ++outcome.changedBricks;
 }
 
-void Sweeper::cutAt(const core::Pose& pose, bool all, Outcome& outcome) noexcept {
+void Sweeper::cutAt(const core::Pose& pose, Outcome& outcome) noexcept {
     ++outcome.poses;
     std::int32_t low[3], high[3];
     if (!rangeNear(pose, bandMm_, low, high)) return;
     const Frame frame = frameOf(pose);
-    std::int32_t* const offsets[3] = {&offsets_[0], &offsets_[kBrickValues], &offsets_[2 * kBrickValues]};
+    std::int32_t* const offsets[3] = {nodes_->offset[0], nodes_->offset[1], nodes_->offset[2]};
     kernels_.makeOffsets(frame.axes, offsets);
-
     const tooth::FieldView view = field_.field().view();
-    const auto unit = static_cast<float>(unitMm_), out = static_cast<float>(bandOutMm_);
-    constexpr float kHalf = 0.5f * kBrickCells;
-    float axes[3][3];  // half a brick along each of the grid's axes, in the bur's frame [mm]
-    for (int a = 0; a < 3; ++a)
-        for (int k = 0; k < 3; ++k)
-            axes[a][k] = kHalf * static_cast<float>(frame.axes[a][k]) * unit;
-    const float halfZ = std::abs(axes[0][2]) + std::abs(axes[1][2]) + std::abs(axes[2][2]);
-    const float round = kHalf * std::sqrt(3.0f) * static_cast<float>(voxelMm_);
-    const float band = static_cast<float>(bandMm_), rhoMost = static_cast<float>(radiusMm_) + band + round;
-    const float zLow = -band - halfZ, zHigh = static_cast<float>(lengthMm_) + band + halfZ;
     for (std::int32_t bz = low[2]; bz <= high[2]; ++bz)
         for (std::int32_t by = low[1]; by <= high[1]; ++by) {
             const std::int64_t node[3] = {std::int64_t{kBrickCells} * low[0], std::int64_t{kBrickCells} * by,
@@ -230,27 +276,7 @@ void Sweeper::cutAt(const core::Pose& pose, bool all, Outcome& outcome) noexcept
             std::uint32_t dense = static_cast<std::uint32_t>(
                 low[0] + view.bricks[0] * (by + static_cast<std::int64_t>(view.bricks[1]) * bz));
             for (std::int32_t bx = low[0]; bx <= high[0]; ++bx, ++dense) {
-                const float x = static_cast<float>(base[0]) * unit + axes[0][0] + axes[1][0] + axes[2][0],
-                            y = static_cast<float>(base[1]) * unit + axes[0][1] + axes[1][1] + axes[2][1],
-                            z = static_cast<float>(base[2]) * unit + axes[0][2] + axes[1][2] + axes[2][2];
-                const float rho2 = x * x + y * y;
-                const bool near = rho2 < rhoMost * rhoMost && z > zLow && z < zHigh;
-                if (near && (view.brickIndex[dense] >= 0 || view.coarse[dense] < 0.0f) &&
-                    !(memory_[dense].epoch == epoch_ && memory_[dense].least >= out)) {
-                    const float rho = std::sqrt(rho2), inverse = rho > 0.0f ? 1.0f / rho : 0.0f;
-                    float along = 0.0f, across = 0.0f;
-                    for (int a = 0; a < 3; ++a) {
-                        along += std::abs(axes[a][0] * x + axes[a][1] * y);
-                        across += std::abs(axes[a][1] * x - axes[a][0] * y);
-                    }
-                    along = rho > 0.0f ? along * inverse : round;
-                    across = rho > 0.0f ? across * inverse : round;
-                    const float farthest = rho + along;
-                    const OutlineTable::Rectangle rectangle{std::max(rho - along, 0.0f),
-                                                            std::sqrt(farthest * farthest + across * across), z - halfZ,
-                                                            z + halfZ};
-                    visit(dense, base, rectangle, all, outcome);
-                }
+                if (memory_[dense].epoch != epoch_ || memory_[dense].due <= way_) visit(frame, dense, base, outcome);
                 for (int k = 0; k < 3; ++k)
                     base[k] += kBrickCells * frame.axes[0][k];
             }
@@ -290,16 +316,58 @@ void Sweeper::raiseCoarse(const core::Pose& pose, bool all) noexcept {
     }
 }
 
+/// How deep a notch, over the way between two poses, is left standing where a corner is the outermost part of the bur
+/// seen along the way; `direction` (unit) in the bur's frame.
+double Sweeper::notchOf(const Vec3& direction) const noexcept {
+    constexpr int kAzimuths = 8;
+    static const std::array<double, kAzimuths + 1> kCosines = [] {
+        std::array<double, kAzimuths + 1> cosines{};
+        for (int i = 0; i <= kAzimuths; ++i)
+            cosines[static_cast<std::size_t>(i)] = std::cos(std::numbers::pi * i / kAzimuths);
+        return cosines;
+    }();
+    const double sideways = std::hypot(direction.x(), direction.y());
+    double most = 0.0;
+    for (const Corner& corner : corners_)
+        for (const double cosine : kCosines) {
+            const core::Vec2 v(sideways * cosine, direction.z());
+            const double before = corner.before.dot(v), after = corner.after.dot(v);
+            if (before * after < 0.0) most = std::max(most, -before * after / (corner.sine * std::max(v.norm(), 1e-9)));
+        }
+    return most;
+}
+
 double Sweeper::stepsBetween(const core::Pose& from, const core::Pose& to, double& movedMm) const noexcept {
     // No point of the bur moves farther than this.
     const double reach = std::sqrt(lengthMm_ * lengthMm_ + radiusMm_ * radiusMm_);
-    movedMm = (to.positionMm - from.positionMm).norm() + reach * from.orientation.angularDistance(to.orientation);
-    return std::ceil(movedMm / stepMm_);
+    const Vec3 way = to.positionMm - from.positionMm;
+    const double shifted = way.norm(), turned = reach * from.orientation.angularDistance(to.orientation);
+    movedMm = shifted + turned;
+    double steps = std::ceil(movedMm / stepMm_);
+    if (corners_.empty()) return steps;
+    const double notch = (movedMm > kFastMm ? kFastNotchVoxels : kNotchVoxels) * voxelMm_;
+    // A turn moves points in all directions: as bad as it gets at a right angle.
+    double left = 0.5 * turned;
+    if (shifted > 0.0) left += shifted * notchOf(from.orientation.conjugate() * (way / shifted));
+    return std::max(steps, std::ceil(left / notch));
+}
+
+void Sweeper::setTravel(double mm) noexcept {
+    travelMm_ = mm;
+    way_ = static_cast<std::int32_t>(std::min(mm / static_cast<double>(kSweepWayMm) + 1.0, 1.0 * kSweepMostWay - 1.0));
+}
+
+void Sweeper::forget() noexcept {
+    ++epoch_;
+    coarseRow_ = coarseRows_ = 0;
+    setTravel(0.0);
 }
 
 Sweeper::Outcome Sweeper::sweepTo(const core::Pose& to) noexcept {
     Outcome outcome;
     quanta_.fill(0);
+    constexpr double kMostMm = 0.5 * static_cast<double>(kSweepMostWay) * static_cast<double>(kSweepWayMm);
+    if (travelMm_ > kMostMm) forget();
     const double before = travelMm_;
     double moved = 0.0;
     const double steps = hasPose_ ? stepsBetween(pose_, to, moved) : 1.0;
@@ -308,11 +376,11 @@ Sweeper::Outcome Sweeper::sweepTo(const core::Pose& to) noexcept {
         core::Pose between;
         between.positionMm = pose_.positionMm + t * (to.positionMm - pose_.positionMm);
         between.orientation = pose_.orientation.slerp(t, to.orientation);
-        travelMm_ = before + t * moved;
-        cutAt(between, false, outcome);
+        setTravel(before + t * moved);
+        cutAt(between, outcome);
     }
-    travelMm_ = before + moved;
-    cutAt(to, false, outcome);
+    setTravel(before + moved);
+    cutAt(to, outcome);
     raiseCoarse(to, false);
     pose_ = to;
     hasPose_ = true;
@@ -323,16 +391,11 @@ Sweeper::Outcome Sweeper::sweepTo(const core::Pose& to) noexcept {
     return outcome;
 }
 
-Sweeper::Outcome Sweeper::settle() noexcept {
-    Outcome outcome;
-    if (!hasPose_) return outcome;
-    cutAt(pose_, true, outcome);
+void Sweeper::settle() noexcept {
+    if (!hasPose_) return;
     raiseCoarse(pose_, true);
     hasPose_ = false;
-    coarseRow_ = coarseRows_ = 0;
-    travelMm_ = 0.0;
-    ++epoch_;
-    return outcome;
+    forget();
 }
 
 }  // namespace handpiece::cutting

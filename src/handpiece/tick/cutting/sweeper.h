@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "handpiece/base/core/realtime.h"
@@ -16,8 +17,8 @@
 
 namespace handpiece::cutting {
 
-/// Every node rises to minus its distance to the bur, at each pose on the way. Near the surface in the same call;
-/// nodes deeper than kDeepVoxels under the bur lag behind it by at most kLagVoxels of its movement until settle().
+/// Every node rises to minus its distance to the bur, at each pose on the way. The bounds of bricks that are not stored
+/// follow once in half a brick of movement.
 ///
 /// Allocates at construction alone. One thread, that of the field.
 class Sweeper {
@@ -31,44 +32,62 @@ class Sweeper {
     };
     /// Cuts at `to`, and on the way there from the last pose, if there is one.
     Outcome sweepTo(const core::Pose& to) noexcept HANDPIECE_REALTIME;
-    /// Brings up what lags behind, and forgets the pose: the next sweep starts where it starts.
-    Outcome settle() noexcept HANDPIECE_REALTIME;
+    /// Brings up the bounds, and forgets the pose: the next sweep starts where it starts.
+    void settle() noexcept HANDPIECE_REALTIME;
     [[nodiscard]] bool hasPose() const noexcept { return hasPose_; }
     [[nodiscard]] const core::Pose& pose() const noexcept { return pose_; }
-
-    static constexpr double kDeepVoxels = 2.0, kLagVoxels = 0.25;
 
   private:
     struct Frame;  ///< where the grid lies in the bur's frame
     /// What is known of a brick since the last settle().
     struct Memory {
-        double due = 0.0;  ///< travel at which a deep brick is looked at again
-        float least = 0.0f;
+        std::int32_t due = 0;  ///< the way before which nothing in it can rise
         std::uint32_t epoch = 0;
+        std::int32_t piecesDue = 0;  ///< the way until which its pieces are these
+        std::uint64_t groups = 0, alone = 0;
     };
+    struct Dues {
+        std::int32_t steps[kSweepDues];
+        std::uint32_t epoch;
+    };
+    void setTravel(double mm) noexcept;
+    void forget() noexcept;
     [[nodiscard]] Frame frameOf(const core::Pose& pose) noexcept;
     [[nodiscard]] bool rangeNear(const core::Pose& pose, double reachMm, std::int32_t (&low)[3],
                                  std::int32_t (&high)[3]) const noexcept;
-    void cutAt(const core::Pose& pose, bool all, Outcome& outcome) noexcept;
-    void visit(std::uint32_t dense, const std::int32_t (&base)[3], const OutlineTable::Rectangle& rectangle, bool all,
-               Outcome& outcome) noexcept;
+    void cutAt(const core::Pose& pose, Outcome& outcome) noexcept;
+    void visit(const Frame& frame, std::uint32_t dense, const std::int32_t (&base)[3], Outcome& outcome) noexcept;
+    [[nodiscard]] OutlineTable::Region regionOf(const Frame& frame, const std::int32_t (&base)[3]) const noexcept;
+    [[nodiscard]] std::int32_t wayAfter(double mm) const noexcept;
     [[nodiscard]] std::uint8_t uniformTissue(std::uint32_t dense, std::int32_t stored) noexcept;
     void raiseCoarse(const core::Pose& pose, bool all) noexcept;
+    [[nodiscard]] double notchOf(const core::Vec3& direction) const noexcept;
     [[nodiscard]] double stepsBetween(const core::Pose& from, const core::Pose& to, double& movedMm) const noexcept;
 
     tooth::CutField& field_;
     SweepKernels kernels_;
     double voxelMm_, bandMm_, bandOutMm_, lengthMm_, radiusMm_, unitMm_, stepMm_;
+    /// A convex corner of the outline: the outward normals on both sides, and the sine between them.
+    struct Corner {
+        core::Vec2 before, after;
+        double sine;
+    };
+    std::vector<Corner> corners_;
     OutlineTable outline_, simple_;
-    std::vector<std::int32_t> offsets_, owned_;
+    struct alignas(64) Nodes {
+        std::int32_t offset[3][kSweepRoom], owned[kSweepRoom];
+    };
+    std::unique_ptr<Nodes> nodes_;
     std::vector<std::uint16_t> list_, simpleList_;
-    std::vector<Memory> memory_;
+    std::vector<Memory> memory_;         ///< by dense brick
+    std::vector<Dues> dues_;             ///< by stored brick
     std::vector<std::uint8_t> uniform_;  ///< by dense brick: its tissue, kMixed, or kUnknown
     SweepPass pass_{}, simplePass_{};
     std::array<std::int64_t, tooth::kTissueCount> quanta_{};
     core::Pose pose_;
     bool hasPose_ = false;
     double travelMm_ = 0.0;
+    std::int32_t way_ = 0;  ///< travelMm_, rounded up, in quanta of kSweepWayMm
     std::uint32_t epoch_ = 1;
     // The coarse pass: rows of bricks of a box round the bur, some at a time.
     std::int32_t coarseLow_[3] = {0, 0, 0}, coarseHigh_[3] = {-1, -1, -1};

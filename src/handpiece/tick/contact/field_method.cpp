@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/model/instrument/fillet.h"
 #include "handpiece/tick/contact/exact_depth.h"
 #include "handpiece/tick/contact/field_depth.h"
 #include "handpiece/tick/contact/live_field.h"
@@ -18,6 +19,9 @@ using core::Vec3;
 namespace {
 
 constexpr double kNoDirectionMm = 1e-9;
+/// A field of voxels rounds the inner corner that a sharp rim cuts by a third of a voxel: with a rim as sharp the bur
+/// would be held up in its own cavity.
+constexpr double kFeelerFilletVoxels = 1.0;
 
 class FieldMethod final : public Method {
   public:
@@ -31,8 +35,9 @@ class FieldMethod final : public Method {
           surface_(tooth_->tree, tooth_->field, core::simdLevel()),
           axis_(*bur_),
           sheets_(*bur_, tooth_->field, core::simdLevel()),
-          rings_(live_, *bur_, core::simdLevel()),
-          field_(live_, *bur_, core::simdLevel()),
+          feeler_(cut_ ? instrument::filleted(*bur_, kFeelerFilletVoxels * live_.field.settings().voxelMm) : *bur_),
+          rings_(live_, feeler_, core::simdLevel()),
+          field_(live_, feeler_, core::simdLevel()),
           farthestMm_(std::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {}
 
     [[nodiscard]] const char* name() const noexcept override { return "field"; }
@@ -68,6 +73,8 @@ class FieldMethod final : public Method {
                  Bearing& out) noexcept override {
         rings_.bearing(burInTooth, direction, leadMm, leastRadiusMm, out);
     }
+
+    [[nodiscard]] std::uint64_t toothVersion() const noexcept override { return live_.version(); }
 
     void reset() noexcept override {
         axis_.reset();
@@ -150,6 +157,7 @@ class FieldMethod final : public Method {
     ExactSurface surface_;
     AxisSearch axis_;
     SheetSearch sheets_;
+    instrument::Bur feeler_;  ///< the bur as the field is felt with it
     RingSensor rings_;
     FieldDepth field_;
     double farthestMm_;

@@ -103,6 +103,9 @@ class Method {
     virtual void bearing(const core::Pose& burInTooth, const core::Vec3& direction, double leadMm, double leastRadiusMm,
                          Bearing& out) noexcept HANDPIECE_REALTIME;
 
+    /// Another number after the tooth has changed: what was found at the same one still holds.
+    [[nodiscard]] virtual std::uint64_t toothVersion() const noexcept HANDPIECE_REALTIME { return 0; }
+
     /// Forget the warm start (after a jump).
     virtual void reset() noexcept {}
 };

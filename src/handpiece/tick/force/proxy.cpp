@@ -135,6 +135,10 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth,
     lastDevice_ = deviceInTooth;
     pose_.orientation = deviceInTooth.orientation;
     passes_ = 0;
+    // Half-spaces of tissue that may be gone hold nothing back.
+    const std::uint64_t version = method.toothVersion();
+    if (version != toothVersion_) memory_.clear();
+    toothVersion_ = version;
     strongestTissue_ = tooth::Tissue::none;
     // A ball of that radius about the device is free, and the proxy lies in it.
     if (-depthAtDevice.depthMm > (target - pose_.positionMm).norm()) {

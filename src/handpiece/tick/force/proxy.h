@@ -70,6 +70,7 @@ class Proxy {
     core::Pose pose_, lastDevice_;
     contact::ConstraintSet constraints_;
     core::FixedVector<Memory, 6> memory_;  // exact depth names but one of two walls at a time
+    std::uint64_t toothVersion_ = 0;       // that memory_ is of
     double radiusMm_ = 0.1;                // trust region: shrinks while steps turn back on themselves
     double reachMm_ = 0.2;                 // of the constraints asked for: twice the step that they allow
     double gapMm_ = 0.0, clearanceMm_ = 0.0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bricks' triangles as one mesh.
+#include <cmath>
 #include <map>
+#include <numeric>
 #include <unordered_map>
 
 #include "handpiece/base/core/parallel.h"
@@ -17,12 +19,50 @@ core::Vec3 asVec3(const std::array<float, 3>& v) {
     return {v[0], v[1], v[2]};
 }
 
+/// Leaves out shells that hold less than `mm3`, islands and bubbles alike.
+geometry::TriangleMesh withoutSpecks(const geometry::TriangleMesh& mesh, double mm3) {
+    std::vector<std::uint32_t> parent(mesh.vertices.size());
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto find = [&](std::uint32_t v) {
+        while (parent[v] != v)
+            v = parent[v] = parent[parent[v]];
+        return v;
+    };
+    for (const auto& [a, b, c] : mesh.triangles) {
+        parent[find(a)] = find(b);
+        parent[find(b)] = find(c);
+    }
+    std::vector<double> volume(mesh.vertices.size(), 0.0);
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const std::uint32_t shell = find(a);
+        const core::Vec3& origin = mesh.vertices[shell];
+        volume[shell] +=
+            (mesh.vertices[a] - origin).dot((mesh.vertices[b] - origin).cross(mesh.vertices[c] - origin)) / 6.0;
+    }
+    geometry::TriangleMesh kept;
+    constexpr std::uint32_t kNew = 0xffffffffu;
+    std::vector<std::uint32_t> number(mesh.vertices.size(), kNew);
+    for (const geometry::Triangle& t : mesh.triangles) {
+        if (std::abs(volume[find(t[0])]) < mm3) continue;
+        geometry::Triangle& made = kept.triangles.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (number[t[k]] == kNew) {
+                number[t[k]] = static_cast<std::uint32_t>(kept.vertices.size());
+                kept.vertices.push_back(mesh.vertices[t[k]]);
+            }
+            made[k] = number[t[k]];
+        }
+    }
+    return kept;
+}
+
 }  // namespace
 
 geometry::TriangleMesh closedSurface(const BrickSource& source, const core::Progress& progress) {
     Surface surface(source);
     surface.buildUpTo(1, progress);
-    return surface.closedMesh();
+    const double voxelMm = source.grid().voxelMm;
+    return withoutSpecks(surface.closedMesh(), voxelMm * voxelMm * voxelMm);
 }
 
 geometry::TriangleMesh closedPart(const BrickSource& source, const tooth::TissueMap& tissues, tooth::Tissue tissue,

@@ -22,14 +22,17 @@ constexpr int kStride[3] = {1, kSide, kSide* kSide};
 constexpr float kKink = 0.15f;
 /// Weight that holds a vertex near the mean of its crossings where the planes leave it free.
 constexpr float kHold = 0.01f;
-/// Cosine between a plane and the mean normal below which the vertex lies on an edge.
-constexpr float kSharpCosine = 0.92f;
+/// Cosine between a plane and the mean normal below which the vertex is put on an edge of the solid, and below which
+/// that edge is shown as one.
+constexpr float kEdgeCosine = 0.92f, kSharpCosine = 0.85f;
 /// Vertices keep this far from the faces of their cell [voxels], so that no two coincide.
 constexpr float kMargin = 1.0f / 512.0f;
 /// Nodes farther from the surface than this [voxels], or with a gradient whose length differs from one by more, are not
 /// asked for the plane that they see.
 constexpr float kNearNode = 1.25f, kUnitSlack = 0.1f;
 constexpr float kNodeHold = 0.003f;
+/// A vertex may go this share of the way from its own crossings to those of a cell beside it.
+constexpr float kReach = 0.75f;
 /// How far a vertex may stand out through a face behind which nothing is [voxels].
 constexpr float kStandOut = 0.5f;
 
@@ -349,8 +352,8 @@ class Contourer {
 
     void addCell(BrickContour& out, int x, int y, int z, unsigned bits) {
         const int at[3] = {x, y, z};
-        if (ambiguousFaces()[bits] != 0) bits |= joinedFaces(at, ambiguousFaces()[bits]) << 8;
-        const CellCase& cell = cellCases()[bits];
+        if (ambiguous_[bits] != 0) bits |= joinedFaces(at, ambiguous_[bits]) << 8;
+        const CellCase& cell = cases_[bits];
         for (int k = 0; k < 3; ++k)
             out.reach = static_cast<std::uint8_t>(out.reach | (at[k] < kApron ? 1 << (2 * k) : 0) |
                                                   (at[k] >= 8 - kApron ? 2 << (2 * k) : 0));
@@ -374,7 +377,8 @@ class Contourer {
         vertex.isSharp = sum.leastCosine < kSharpCosine;
         vertex.normal = sum.normal;
         const PlaneSum crossings = sum;
-        if (vertex.isSharp || !sum.isClean) takeNodePlanes(sum, at, planes, count);
+        const bool onEdge = sum.leastCosine < kEdgeCosine;
+        if (onEdge || !sum.isClean) takeNodePlanes(sum, at, planes, count);
         Float3 x = sum.solve();
         Float3 low, high;
         bool within = true;
@@ -383,10 +387,9 @@ class Contourer {
             high[k] = static_cast<float>(at[k] + 1) - kMargin - sum.mean[k];
             within = within && x[k] >= low[k] && x[k] <= high[k];
         }
-        if (!within && !vertex.isSharp) sum = crossings;  // the edge of the solid passes by
-        if (within && !vertex.isSharp && !crossings.isClean) vertex.isSharp = true;
+        if (!within && !onEdge) sum = crossings;  // the edge of the solid passes by
         if (!within) {
-            if (!(vertex.isSharp && isAlone && mayStandOut(at, sum.mean, x, low, high))) x = sum.solveWithin(low, high);
+            if (!(onEdge && isAlone && mayStandOut(at, sum.mean, x, low, high))) x = sum.solveWithin(low, high);
         }
         for (std::size_t k = 0; k < 3; ++k)
             vertex.positionMm[k] =
@@ -426,7 +429,7 @@ class Contourer {
     }
 
     /// An edge of the solid may stand out of a cell between its nodes. The vertex may follow it as long as it stays
-    /// nearer to its own crossings than to those of the cells beside it, so that the surface does not fold.
+    /// away from the crossings of the cells beside it, so that the surface does not fold.
     bool mayStandOut(const int (&at)[3], const Float3& mean, const Float3& x, const Float3& low,
                      const Float3& high) const {
         for (std::size_t k = 0; k < 3; ++k)
@@ -442,7 +445,7 @@ class Contourer {
                 along += d * x[k];
                 length2 += d * d;
             }
-            if (along > 0.5f * length2) return false;
+            if (along > kReach * length2) return false;
         }
         return true;
     }
@@ -456,7 +459,7 @@ class Contourer {
             v[c] = sampler_.at(origin + (c & 1) + (c >> 1 & 1) * kStride[1] + (c >> 2) * kStride[2]);
             bits |= static_cast<unsigned>(v[c] < 0.0f) << c;
         }
-        const CellCase& cell = cellCases()[bits];
+        const CellCase& cell = cases_[bits];
         if (cell.edgeCount == 0) return false;
         mean = {};
         for (std::size_t i = 0; i < cell.edgeCount; ++i) {
@@ -471,6 +474,8 @@ class Contourer {
         return true;
     }
 
+    const std::array<CellCase, kCellCases>& cases_ = cellCases();
+    const std::array<std::uint8_t, 256>& ambiguous_ = ambiguousFaces();
     Sampler sampler_;
     std::array<std::array<std::uint16_t, tooth::kBrickValues>, 3> planeOf_;
     std::array<Plane, 3 * tooth::kBrickValues> planes_;

@@ -10,8 +10,9 @@
 
 namespace handpiece::surface {
 
-/// The whole surface at full detail: closed, oriented, two-manifold; empty when there is none. Nothing is dropped,
-/// however small. In parallel, the same bytes at any thread count. Throws core::Error when cancelled.
+/// The whole surface at full detail: closed, oriented, two-manifold; empty when there is none. Islands
+/// and bubbles that hold less than one voxel are left out. In parallel, the same bytes at any thread count. Throws
+/// core::Error when cancelled.
 [[nodiscard]] geometry::TriangleMesh closedSurface(const BrickSource& source, const core::Progress& progress = {});
 
 /// What is left of one tissue: the part of the tooth that `tissues` says is of it. As closedSurface(); where two

@@ -76,7 +76,7 @@ TriangleList::Corner TriangleList::corner(const std::array<int, 3>& node, int ax
     Corner c{(*bricks_)[slot], slot, static_cast<std::uint16_t>(cell[0] + 8 * (cell[1] + 8 * cell[2])),
              static_cast<std::uint8_t>(4 * axis + du + 2 * dw), 0};
     if (c.brick == nullptr) return c;
-    const std::uint8_t sheet = cellCases()[c.brick->contour.cases[c.cell]].sheetOf[c.edge];
+    const std::uint8_t sheet = (*cases_)[c.brick->contour.cases[c.cell]].sheetOf[c.edge];
     // While a neighbour's news is still on its way it does not know of this crossing; the triangles follow with it.
     if (sheet == kNoSheet) {
         c.brick = nullptr;
@@ -94,7 +94,7 @@ bool TriangleList::fallsTogether(const Corner& from, const Corner& to, unsigned 
     if (!fine_ && (from.brick->level > 0 || to.brick->level > 0)) return false;
     const auto joined = [&](const Corner& c) {
         const unsigned bits = c.brick->contour.cases[c.cell];
-        const CellCase& cell = cellCases()[bits];
+        const CellCase& cell = (*cases_)[bits];
         const unsigned other = c.edge ^ flip;
         if (cell.sheetOf[other] != cell.sheetOf[c.edge]) return false;
         const auto begins = [&](unsigned e) { return bits >> edgeCorner(static_cast<int>(e)) & 1; };

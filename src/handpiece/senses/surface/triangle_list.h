@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "handpiece/senses/surface/brick_state.h"
+#include "handpiece/senses/surface/cell_cases.h"
 
 namespace handpiece::surface {
 
@@ -58,6 +59,7 @@ class TriangleList {
     void addTriangle(Ref a, Ref b, Ref c);
     void addQuad(const std::array<Ref, 4>& q);
 
+    const std::array<CellCase, kCellCases>* cases_ = &cellCases();
     const BrickGrid* grid_ = nullptr;
     std::array<std::int32_t, 3> brick_{};
     const LowNeighbours* bricks_ = nullptr;

@@ -22,9 +22,8 @@ constexpr int kStride[3] = {1, kSide, kSide* kSide};
 constexpr float kKink = 0.15f;
 /// Weight that holds a vertex near the mean of its crossings where the planes leave it free.
 constexpr float kHold = 0.01f;
-/// Cosine between a plane and the mean normal below which the vertex is put on an edge of the solid, and below which
-/// that edge is shown as one.
-constexpr float kEdgeCosine = 0.92f, kSharpCosine = 0.85f;
+/// Cosine between a plane and the mean normal below which the vertex lies on an edge of the solid.
+constexpr float kSharpCosine = 0.92f;
 /// Vertices keep this far from the faces of their cell [voxels], so that no two coincide.
 constexpr float kMargin = 1.0f / 512.0f;
 /// Nodes farther from the surface than this [voxels], or with a gradient whose length differs from one by more, are not
@@ -377,8 +376,7 @@ class Contourer {
         vertex.isSharp = sum.leastCosine < kSharpCosine;
         vertex.normal = sum.normal;
         const PlaneSum crossings = sum;
-        const bool onEdge = sum.leastCosine < kEdgeCosine;
-        if (onEdge || !sum.isClean) takeNodePlanes(sum, at, planes, count);
+        if (vertex.isSharp || !sum.isClean) takeNodePlanes(sum, at, planes, count);
         Float3 x = sum.solve();
         Float3 low, high;
         bool within = true;
@@ -387,9 +385,9 @@ class Contourer {
             high[k] = static_cast<float>(at[k] + 1) - kMargin - sum.mean[k];
             within = within && x[k] >= low[k] && x[k] <= high[k];
         }
-        if (!within && !onEdge) sum = crossings;  // the edge of the solid passes by
+        if (!within && !vertex.isSharp) sum = crossings;  // the edge of the solid passes by
         if (!within) {
-            if (!(onEdge && isAlone && mayStandOut(at, sum.mean, x, low, high))) x = sum.solveWithin(low, high);
+            if (!(vertex.isSharp && isAlone && mayStandOut(at, sum.mean, x, low, high))) x = sum.solveWithin(low, high);
         }
         for (std::size_t k = 0; k < 3; ++k)
             vertex.positionMm[k] =

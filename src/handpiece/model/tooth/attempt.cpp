@@ -29,7 +29,7 @@ constexpr const char* kRemedy = "see docs/case-format.md#attempts";
 
 std::uint64_t hashOf(std::span<const std::byte> bytes) {
     core::Hasher hasher;
-    hasher.add(bytes);
+    if (!bytes.empty()) hasher.add(bytes);
     return hasher.value();
 }
 

@@ -140,7 +140,8 @@ Case readCaseFiles(const CaseFiles& files) {
     Case made;
     made.source = files.source;
     const fs::path source = files.source.has_filename() ? files.source : files.source.parent_path();
-    made.name = root.text("name").value_or(source.stem().string());
+    const fs::path fallback = isPackageName(source) ? source.stem() : source.filename();
+    made.name = root.text("name").value_or(fallback.string());
     made.kind = root.text("kind").value_or("");
     made.fdiNumber = fdiNumberOf(root);
     made.buccalSign = buccalSignOf(root);

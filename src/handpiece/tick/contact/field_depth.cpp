@@ -403,10 +403,17 @@ class FieldDepth::Climb {
 
 FieldTouch FieldDepth::search(const core::Pose& burInTooth, RingSensor& rings) noexcept {
     FieldTouch best;
-    const double least = rings.look(burInTooth, outMm_, kWindowMm);
-    if (!(least <= outMm_)) return best;
     const core::Mat3 rotation = burInTooth.orientation.toRotationMatrix();
     const Frame frame{burInTooth.positionMm, rotation.col(0), rotation.col(1), rotation.col(2), rotation.transpose()};
+    double topZ = 0.0;
+    const double top = deepestOfAxis(frame, topZ);
+    if (top > inMm_) {  // deeper than the values on its surface can tell
+        climbAxis(frame, top, topZ, best);
+        searchInside(frame, best);
+        return best;
+    }
+    const double least = rings.look(burInTooth, outMm_, kWindowMm);
+    if (!(least <= outMm_)) return best;
     if (least <= -inMm_) searchInside(frame, best);
     std::array<RingPoint, kStarts> points;
     const RingPose pose{frame.tip, frame.x, frame.y, frame.z};
@@ -425,7 +432,6 @@ FieldTouch FieldDepth::search(const core::Pose& burInTooth, RingSensor& rings) n
 
 /// Values on the bur's surface no longer tell how deep it is: its inside does.
 void FieldDepth::searchInside(const Frame& frame, FieldTouch& best) noexcept {
-    if (!axis_.empty()) searchAxis(frame, best);
     if (inner_.rings.empty()) return;
     RingQuery query{};
     store(query.tip, frame.tip);
@@ -466,39 +472,53 @@ void FieldDepth::takeAxis(const Frame& frame, double z, FieldTouch& best) const 
     if (depth > best.depthMm) best = {depth, away, q};
 }
 
-void FieldDepth::searchAxis(const Frame& frame, FieldTouch& best) const noexcept {
-    const double low = axis_.front().zMm, high = axis_.back().zMm;
+double FieldDepth::scanAxis(const Frame& frame, double fromZ, double step, int count, double& topZ) const noexcept {
     AroundQuery query{};
     store(query.alongU, frame.z);
     query.farOutMm = static_cast<float>(field_.outMm());
     query.farInMm = static_cast<float>(field_.inMm());
-    double topZ = low, top = -std::numeric_limits<double>::infinity();
-    const auto look = [&](double from, double step) {
+    query.reachMm = 8.0 * step;
+    double top = -std::numeric_limits<double>::infinity();
+    for (int first = 0; first < count; first += 8) {
+        const double from = fromZ + first * step;
         store(query.centre, frame.tip + from * frame.z);
-        query.reachMm = 8.0 * step;
         double z[8];
         for (int i = 0; i < 8; ++i) {
-            z[i] = std::clamp(from + step * i, low, high);
+            z[i] = std::clamp(from + step * i, axis_.front().zMm, axis_.back().zMm);
             query.u[i] = static_cast<float>(z[i] - from);
         }
         float distance[8];
         kernels_.around(view_, query, distance);
         for (int i = 0; i < 8; ++i) {
             const auto d = static_cast<double>(distance[i]);
+            // Farther out than the band the field does not say how far.
+            if (!(d < outMm_)) continue;
             const double value = radiusAt(z[i]) - d;
-            if (d < outMm_ && value > top) {
+            if (value > top) {
                 top = value;
                 topZ = z[i];
             }
         }
-    };
-    const int steps = std::max(1, static_cast<int>(std::ceil((high - low) / kAxisSpacingMm)));
-    const double spacing = (high - low) / steps;
-    for (int i = 0; i <= steps; i += 8)
-        look(low + i * spacing, spacing);
-    if (!std::isfinite(top)) return;
-    for (double step = spacing / 4.0; step > 1e-4; step /= 4.0)
-        look(std::max(low, topZ - 3.5 * step), step);
+    }
+    return top;
+}
+
+/// The deepest ball of the axis to within its spacing; minus infinity when all of it is farther out than the band.
+double FieldDepth::deepestOfAxis(const Frame& frame, double& topZ) const noexcept {
+    if (axis_.empty()) return -std::numeric_limits<double>::infinity();
+    const double low = axis_.front().zMm, length = axis_.back().zMm - low;
+    const int steps = std::max(1, static_cast<int>(std::ceil(length / kAxisSpacingMm)));
+    return scanAxis(frame, low, length / steps, steps + 1, topZ);
+}
+
+void FieldDepth::climbAxis(const Frame& frame, double top, double topZ, FieldTouch& best) const noexcept {
+    for (double step = 0.25 * kAxisSpacingMm; step > 1e-4; step *= 0.25) {
+        double z = topZ;
+        const double value = scanAxis(frame, std::max(axis_.front().zMm, topZ - 3.5 * step), step, 8, z);
+        if (value <= top) continue;
+        top = value;
+        topZ = z;
+    }
     takeAxis(frame, topZ, best);
 }
 

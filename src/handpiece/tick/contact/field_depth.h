@@ -55,7 +55,10 @@ class FieldDepth {
     };
     class Climb;
     void searchInside(const Frame& frame, FieldTouch& best) noexcept;
-    void searchAxis(const Frame& frame, FieldTouch& best) const noexcept;
+    [[nodiscard]] double scanAxis(const Frame& frame, double fromZ, double step, int count,
+                                  double& topZ) const noexcept;
+    [[nodiscard]] double deepestOfAxis(const Frame& frame, double& topZ) const noexcept;
+    void climbAxis(const Frame& frame, double top, double topZ, FieldTouch& best) const noexcept;
     void takeAxis(const Frame& frame, double z, FieldTouch& best) const noexcept;
     [[nodiscard]] core::Vec3 outward(const core::Vec3& p) const noexcept;
     [[nodiscard]] double radiusAt(double z) const noexcept;

@@ -132,12 +132,10 @@ struct Places {
 #if defined(__SSE2__)
 /// Two floats from each of eight places: the first ones and the second ones.
 inline void loadPairs(const float* const (&corner)[8], int offset, Floats& first, Floats& second) {
+    // Pairs of floats begin anywhere: these two read them wherever they are.
     const auto two = [&](int lane, int other) {
-        // Pairs of floats begin anywhere: copied, so that no aligned double is claimed to stand there.
-        double low, high;
-        __builtin_memcpy(&low, corner[lane] + offset, sizeof low);
-        __builtin_memcpy(&high, corner[other] + offset, sizeof high);
-        return _mm_castpd_ps(_mm_set_pd(high, low));
+        const __m128i low = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(corner[lane] + offset));
+        return _mm_loadh_pi(_mm_castsi128_ps(low), reinterpret_cast<const __m64*>(corner[other] + offset));
     };
     const __m128 a = two(0, 1), b = two(2, 3), c = two(4, 5), d = two(6, 7);
 #if defined(__AVX__)
@@ -168,14 +166,14 @@ struct Corners {
     Corners(const FieldView& field, const Places& places) {
         static const float none[kZ + kY + 2] = {};
         const float* corner[8];
-        std::int32_t stored[8], inBrick[8];
-        __builtin_memcpy(stored, &places.stored, sizeof stored);
-        __builtin_memcpy(inBrick, &places.inBrick, sizeof inBrick);
+        const Ints first = places.stored * kBrickValues + places.inBrick;
+        std::int32_t at[8];
+        __builtin_memcpy(at, &first, sizeof at);
         for (int lane = 0; lane < 8; ++lane)
-            corner[lane] = field.values + static_cast<std::int64_t>(stored[lane]) * kBrickValues + inBrick[lane];
+            corner[lane] = field.values + at[lane];
         if (places.bare != 0)
             for (int lane = 0; lane < 8; ++lane)
-                if (stored[lane] < 0) corner[lane] = none;
+                if ((places.bare >> lane & 1u) != 0) corner[lane] = none;
         loadPairs(corner, 0, v[0], v[1]);
         loadPairs(corner, kY, v[2], v[3]);
         loadPairs(corner, kZ, v[4], v[5]);
@@ -394,7 +392,8 @@ void around(const FieldView& field, const AroundQuery& query, float* out) noexce
         y[k] = query.alongArc[k] * field.inverseVoxelMm;
         third[k] = static_cast<float>(query.inward[k] * field.inverseVoxelMm);
     }
-    const Row row(field, centre, x, y, 1.0, reach, 1.0);
+    Row row(field, centre, x, y, 1.0, reach, 1.0);
+    row.isInGrid = false;  // where the bur curls up tightly steps may lead farther than the reach
     const Places places(field, row, loadFloats(query.u), loadFloats(query.arc), loadFloats(query.in), third);
     const Floats d = distancesAt(field, row, places, query.farOutMm, query.farInMm);
     __builtin_memcpy(out, &d, sizeof d);

@@ -351,15 +351,23 @@ std::size_t RingSensor::findMinima() noexcept {
 std::size_t RingSensor::addSectors(std::size_t minima) noexcept {
     std::size_t count = minima;
     std::fill(nearest_.begin(), nearest_.end(), kNone);
+    float least[kSectors] = {};
+    std::size_t lastBlock = kNone;
     for (std::size_t i = 0; i < arrays_.rings.size(); ++i) {
         if (arrays_.liveRing[i] == 0) continue;
         const BurRing& ring = arrays_.rings[i];
-        std::uint64_t* sectors = &nearest_[i / kRingsPerBlock * kSectors];
+        const std::size_t block = i / kRingsPerBlock * kSectors;
+        if (block != lastBlock) std::fill_n(least, kSectors, kNotLiveMm);
+        lastBlock = block;
         for (std::int32_t e = 0; e < ring.eights; ++e)
             for (unsigned live = arrays_.live[static_cast<std::size_t>(ring.mask + e)]; live != 0; live &= live - 1) {
                 const std::int32_t j = 8 * e + std::countr_zero(live);
-                std::uint64_t& nearest = sectors[arrays_.sector[static_cast<std::size_t>(ring.angles + j)]];
-                nearest = std::min(nearest, keyOf(i, j));
+                const float d = arrays_.distance[static_cast<std::size_t>(ring.first + j)];
+                const std::size_t sector = arrays_.sector[static_cast<std::size_t>(ring.angles + j)];
+                // Of equals the first one counts, as by their keys.
+                if (!(d < least[sector])) continue;
+                least[sector] = d;
+                nearest_[block + sector] = keyOf(i, j);
             }
     }
     const auto placeOf = [this](std::uint64_t key) {

@@ -14,8 +14,10 @@ using core::Vec3;
 
 namespace {
 
-/// The cutter's lead over the proxy that is carried to the next tick.
-constexpr double kMostLeadVoxels = 0.5;
+/// The cutter's lead over the proxy that is carried to the next tick; a sharp rim needs most of it.
+constexpr double kMostLeadVoxels = 1.0;
+/// The proxy may rest this far inside what the cutter has left: its own tolerance and the clearance that it is given.
+constexpr double kSlackVoxels = 0.12, kLeastSlackMm = 0.004;
 
 /// What the bearing's tissues say together, each with the weight 1 / K.
 struct Resistance {
@@ -35,7 +37,8 @@ struct Cutter::State {
           settings(theSettings),
           sweeper(*field, *bur, core::simdLevel()),
           leastRadiusMm(ability.centreRadius * bur->maxRadiusMm()),
-          mostLeadMm(kMostLeadVoxels * field->field().settings().voxelMm) {
+          mostLeadMm(kMostLeadVoxels * field->field().settings().voxelMm),
+          slackMm(std::max(kLeastSlackMm, kSlackVoxels * field->field().settings().voxelMm)) {
         for (std::size_t t = 0; t < tooth::kTissueCount; ++t)
             cuttingMm2PerN[t] = ability.cutting * tissues.rows[t].cuttingMm2PerN;
     }
@@ -62,11 +65,21 @@ struct Cutter::State {
     void stop() noexcept { sweeper.settle(); }
     void cutUnderLoad(contact::Method& method, const CutInput& input, double loadN) noexcept {
         const Vec3 direction = input.loadN / loadN;
-        // What the field has not yet let through to the proxy.
-        const double lead = sweeper.hasPose()
-                                ? std::clamp((sweeper.pose().positionMm - input.proxyInTooth.positionMm).dot(direction),
-                                             0.0, mostLeadMm)
-                                : 0.0;
+        const Vec3 proxy = input.proxyInTooth.positionMm;
+        // The cutter goes on from where it was: ahead of the proxy by what the field has not let through yet, or behind
+        // it by what the field lets through too early. Else the proxy's microns would be cut for nothing, tick by tick.
+        Vec3 offset = Vec3::Zero();
+        if (hasCutter && (cutterMm - proxy).norm() <= 2.0 * mostLeadMm) {
+            const Vec3 from = cutterMm - proxy;
+            const double along = from.dot(direction);
+            Vec3 across = from - along * direction;
+            const double wide = across.norm();
+            if (wide > slackMm) across *= slackMm / wide;
+            offset = std::clamp(along, -slackMm, mostLeadMm) * direction + across;
+        }
+        const double lead = offset.dot(direction);
+        hasCutter = true;
+        cutterMm = proxy + offset;
         method.bearing(input.proxyInTooth, direction, lead, leastRadiusMm, bearing);
         const Resistance against = resistanceOf(bearing);
         if (against.resistancePerK > 0.0) {
@@ -84,8 +97,13 @@ struct Cutter::State {
             feed = std::min(std::min(loadN, ability.loadCapN) * input.speedRadS / against.resistancePerK, most);
         }
         result.feedMmS = feed;
+        if (!(feed > 0.0)) {
+            stop();
+            return;
+        }
+        cutterMm += feed * input.periodS * direction;
         core::Pose cutter = input.proxyInTooth;
-        cutter.positionMm += (lead + feed * input.periodS) * direction;
+        cutter.positionMm = cutterMm;
         take(sweeper.sweepTo(cutter));
     }
 
@@ -94,7 +112,9 @@ struct Cutter::State {
     instrument::Ability ability;
     Settings settings;
     Sweeper sweeper;
-    double leastRadiusMm, mostLeadMm;
+    double leastRadiusMm, mostLeadMm, slackMm;
+    Vec3 cutterMm = Vec3::Zero();  // where the cutter was when it last cut
+    bool hasCutter = false;
     std::array<double, tooth::kTissueCount> cuttingMm2PerN{};
     contact::Bearing bearing;
     CutResult result;

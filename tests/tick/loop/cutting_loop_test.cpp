@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole tick on teeth in closed form: a hand that presses, a rotor that turns, a field that gives way.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/model/instrument/shapes.h"
+#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/tick/contact/field_method.h"
+#include "handpiece/tick/device/simulated_device.h"
+#include "handpiece/tick/loop/haptic_loop.h"
+#include "support/closed_meshes.h"
+#include "support/realtime_trap.h"
+
+namespace handpiece::loop {
+namespace {
+
+using core::Pose;
+using core::Quat;
+using core::Vec3;
+using messages::HapticSample;
+using tooth::Tissue;
+
+constexpr double kEdge = 4.0;  // of the block; its top is at z = 0
+
+std::shared_ptr<const tooth::CuttableTooth> block(const std::vector<tooth::TissueMap::PartFunction>& parts,
+                                                  double voxelMm = 0.05) {
+    tooth::Case made;
+    made.name = "block";
+    made.outer = test::boxMesh(Vec3(-kEdge / 2, -kEdge / 2, -kEdge / 2), Vec3(kEdge / 2, kEdge / 2, 0.0));
+    tooth::PrepareSettings settings;
+    settings.useCache = false;
+    settings.field.voxelMm = voxelMm;
+    auto whole = tooth::prepareTooth(made, settings);
+    tooth::TissueMap tissues = tooth::TissueMap::fromFunctions(whole->field, parts, Tissue::enamel);
+    return tooth::prepareCutting(std::move(whole), std::move(tissues));
+}
+
+Pose at(double x, double y, double z) {
+    return {Vec3(x, y, z), Quat::Identity()};
+}
+
+struct Bench {
+    explicit Bench(std::shared_ptr<const tooth::CuttableTooth> base, const char* burName = "cylinder-flat:1.0x3.0",
+                   bool fullRemoval = false)
+        : field(std::make_shared<tooth::CutField>(std::move(base))), full(fullRemoval) {
+        bur = std::make_shared<const instrument::Bur>(instrument::makeBur(burName));
+    }
+    [[nodiscard]] Work work() const {
+        return {contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
+                std::make_unique<cutting::Cutter>(field, bur, instrument::Ability{}, tooth::builtInTissues(),
+                                                  cutting::Cutter::Settings{full})};
+    }
+    [[nodiscard]] std::unique_ptr<HapticLoop> loop(std::vector<device::TimedPose> poses, bool rigid = true,
+                                                   double rateHz = 1000, const instrument::Drive& drive = {}) const {
+        device::SimulatedDeviceSettings settings;
+        settings.rigidHand = rigid;
+        LoopSettings loopSettings;
+        loopSettings.rateHz = rateHz;
+        return std::make_unique<HapticLoop>(
+            loopSettings, std::make_unique<device::SimulatedDevice>(settings, device::Motion(std::move(poses))), work(),
+            force::defaultParameters(), drive);
+    }
+    std::shared_ptr<tooth::CutField> field;
+    std::shared_ptr<const instrument::Bur> bur;
+    bool full;
+};
+
+/// Down at 2 mm/s to `depth` below the top, `dwell` seconds there, up again; the pedal is let go at the end.
+std::vector<device::TimedPose> plungeTo(double depth, double dwell, double pedal, double x = 0.0) {
+    const double spin = 1.0, down = (depth + 0.2) / 2.0;
+    return {{0.0, at(x, 0, 0.2), pedal},
+            {spin, at(x, 0, 0.2), pedal},
+            {spin + down, at(x, 0, -depth), pedal},
+            {spin + down + dwell, at(x, 0, -depth), pedal},
+            {spin + 2 * down + dwell, at(x, 0, 0.2), pedal},
+            {spin + 2 * down + dwell + 0.001, at(x, 0, 0.2), 0.0},
+            {spin + 2 * down + dwell + 0.5, at(x, 0, 0.2), 0.0}};
+}
+
+double seconds(const std::vector<device::TimedPose>& poses) {
+    return poses.back().timeS;
+}
+
+TEST(CuttingLoop, aTurningBurSinksInAndTheTurbineFeelsIt) {
+    const Bench bench(block({}));
+    const auto poses = plungeTo(1.0, 12.0, 1.0);
+    auto loop = bench.loop(poses);
+    double worstDroop = 0, largestTorque = 0, deepestProxy = 0, peakN = 0;
+    HapticSample last;
+    (void)loop->runSimulated(seconds(poses), [&](const HapticSample& s) {
+        // Slow against the rotor's 0.35 s: its speed is that of the load's torque on the line from stall to free.
+        if (s.timeS > 4.0 && (s.flags & messages::kCutting) != 0)
+            worstDroop = std::max(worstDroop, std::abs(s.speedRpm - 400000.0 * (1.0 - s.loadTorqueNmm / 1.2)));
+        largestTorque = std::max(largestTorque, s.loadTorqueNmm);
+        deepestProxy = std::min(deepestProxy, s.proxyPositionMm[2]);
+        peakN = std::max(peakN, std::abs(s.forceN[2]));
+        last = s;
+    });
+    std::printf("  sinks %.4f mm, torque up to %.4f N mm, peak %.3f N\n", -deepestProxy, largestTorque, peakN);
+    EXPECT_GT(largestTorque, 0.01);
+    EXPECT_LT(worstDroop, 0.005 * 400000);
+    // What is left of 1 mm after 12 s at 0.5 N/mm: the load falls with it.
+    EXPECT_GT(-deepestProxy, 0.9);
+    EXPECT_LT(-deepestProxy, 1.0 + 0.01);
+    const double volume = 0.25 * M_PI * -deepestProxy;
+    EXPECT_NEAR(last.removedMm3[static_cast<std::size_t>(Tissue::enamel)], volume, 0.02 * volume);
+}
+
+TEST(CuttingLoop, aStillBurCutsNothing) {
+    const Bench bench(block({}));
+    const auto poses = plungeTo(1.0, 0.5, 0.0);
+    auto loop = bench.loop(poses);
+    const std::uint64_t before = bench.field->stateHash();
+    (void)loop->runSimulated(seconds(poses), [&](const HapticSample& s) {
+        ASSERT_EQ(s.flags & messages::kCutting, 0u);
+        ASSERT_EQ(s.speedRpm, 0.0);
+    });
+    EXPECT_EQ(bench.field->stateHash(), before);
+}
+
+TEST(CuttingLoop, counterAndFieldBalanceByTissue) {
+    const double floor = -0.4;
+    const auto base = block({{[floor](const Vec3& p) { return p.z() - floor; }, Tissue::dentine, 20}});
+    const Bench bench(base, "cylinder-round:1.0x3.0");
+    const auto poses = plungeTo(1.0, 4.0, 1.0);
+    auto loop = bench.loop(poses);
+    HapticSample last;
+    (void)loop->runSimulated(seconds(poses), [&](const HapticSample& s) { last = s; });
+    const tooth::TissueVolumes left = bench.field->volumesMm3();
+    for (const Tissue t : {Tissue::enamel, Tissue::dentine}) {
+        const auto i = static_cast<std::size_t>(t);
+        EXPECT_GT(last.removedMm3[i], 0.05);
+        EXPECT_NEAR(last.removedMm3[i], base->volumesMm3[i] - left[i], 1e-9 * base->volumesMm3[i]);
+    }
+}
+
+TEST(CuttingLoop, removalIsTheSameAtEveryRateAndVoxel) {
+    double reference = 0.0;
+    for (const double voxel : {0.05, 0.1, 0.025}) {
+        const auto base = block({}, voxel);
+        for (const double rate : {1000.0, 8000.0}) {
+            if (voxel != 0.05 && rate != 1000.0) continue;
+            const Bench bench(base, "cylinder-round:1.0x3.0");
+            const auto poses = plungeTo(0.8, 1.5, 1.0);
+            auto loop = bench.loop(poses, true, rate);
+            HapticSample last;
+            (void)loop->runSimulated(seconds(poses), [&](const HapticSample& s) { last = s; });
+            const double removed = last.removedMm3[static_cast<std::size_t>(Tissue::enamel)];
+            if (reference == 0.0) reference = removed;
+            std::printf("  %3.0f um, %.0f Hz: %.5f mm3\n", 1e3 * voxel, rate, removed);
+            EXPECT_NEAR(removed, reference, 0.05 * reference);
+        }
+    }
+}
+
+TEST(CuttingLoop, undoPutsTheToothBackAndNoForceRoundTheBur) {
+    const Bench bench(block({}));
+    const tooth::CutState whole = bench.field->state();
+    const std::uint64_t wholeHash = bench.field->stateHash();
+    // In, cut, and stay in the hole with the pedal up while the hole is filled again.
+    const std::vector<device::TimedPose> poses{{0.0, at(0, 0, 0.2), 1.0},    {0.8, at(0, 0, 0.2), 1.0},
+                                               {1.6, at(0, 0, -1.0), 1.0},   {6.0, at(0, 0, -1.0), 1.0},
+                                               {6.001, at(0, 0, -1.0), 0.0}, {7.0, at(0, 0, -1.0), 0.0},
+                                               {7.5, at(0, 0, 0.5), 0.0},    {8.0, at(0, 0, 0.5), 0.0},
+                                               {8.5, at(0, 0, -0.6), 0.0},   {9.5, at(0, 0, -0.6), 0.0}};
+    auto loop = bench.loop(poses);
+    (void)loop->runSimulated(6.5);
+    const tooth::CutState cut = bench.field->state();
+    ASSERT_FALSE(cut.bricks.empty());
+    EXPECT_NE(bench.field->stateHash(), wholeHash);
+    tooth::CutState change;
+    for (tooth::CutState::Brick brick : cut.bricks) {
+        brick.whole = true;
+        change.bricks.push_back(brick);
+    }
+    const std::uint64_t number = loop->restore(std::move(change));
+    EXPECT_THROW((void)loop->restore(tooth::CutState{}), core::Error);
+    bool waited = false, felt = false;
+    double worstWaiting = 0.0, last = 0.0;
+    int restoring = 0;
+    (void)loop->runSimulated(3.0, [&](const HapticSample& s) {
+        EXPECT_EQ(s.lastCommand, number);
+        restoring += (s.flags & messages::kRestoring) != 0;
+        if ((s.flags & messages::kWaiting) != 0) {
+            waited = true;
+            if (s.timeS > 6.6) worstWaiting = std::max(worstWaiting, std::abs(s.forceN[2]));
+        }
+        felt = felt || (s.timeS > 8.0 && s.forceN[2] > 0.1);
+        last = s.forceN[2];
+    });
+    EXPECT_GT(restoring, 0);
+    EXPECT_TRUE(waited);
+    EXPECT_EQ(worstWaiting, 0.0);
+    EXPECT_TRUE(felt);
+    EXPECT_NEAR(last, 0.5 * 0.6, 0.01);  // the whole surface, felt again
+    EXPECT_EQ(bench.field->stateHash(), wholeHash);
+    EXPECT_EQ(bench.field->removedMm3(), whole.removedMm3);
+}
+
+TEST(CuttingLoop, theForceIsSmoothWhileCutting) {
+    // On the path exactly: in, along at 1 mm/s, back deeper at 2 mm/s, and skimming at 5 mm/s.
+    const Bench bench(block({}), "cylinder-round:1.0x3.0");
+    const std::vector<device::TimedPose> poses{
+        {0.0, at(-1.2, 0, 0.2), 1.0},    {0.8, at(-1.2, 0, 0.2), 1.0},     {2.8, at(-1.2, 0, -0.4), 1.0},
+        {5.2, at(1.2, 0, -0.4), 1.0},    {5.4, at(1.2, 0, -0.5), 1.0},     {6.6, at(-1.2, 0.05, -0.5), 1.0},
+        {6.9, at(-1.2, 0.6, 0.05), 1.0}, {7.0, at(-1.2, 0.6, -0.15), 1.0}, {7.48, at(1.2, 0.6, -0.15), 1.0}};
+    auto loop = bench.loop(poses);
+    Vec3 last = Vec3::Zero();
+    double worst = 0.0, when = 0.0;
+    (void)loop->runSimulated(seconds(poses), [&](const HapticSample& s) {
+        const Vec3 f(s.forceN[0], s.forceN[1], s.forceN[2]);
+        if ((f - last).norm() > worst) {
+            worst = (f - last).norm();
+            when = s.timeS;
+        }
+        last = f;
+    });
+    std::printf("  the force changes by %.4f N from tick to tick at worst, at %.3f s\n", worst, when);
+    EXPECT_LE(worst, 0.005);
+}
+
+TEST(CuttingLoop, aWeakTurbineStallsAndRecovers) {
+    instrument::Drive weak;
+    weak.stallTorqueNmm = 0.02;
+    const Bench bench(block({}), "cylinder-flat:1.0x3.0");
+    const auto poses = plungeTo(1.5, 1.0, 1.0);
+    auto loop = bench.loop(poses, true, 1000, weak);
+    bool stalled = false;
+    double after = 0.0;
+    (void)loop->runSimulated(seconds(poses) + 2.0, [&](const HapticSample& s) {
+        stalled = stalled || (s.flags & messages::kStalled) != 0;
+        if (stalled && s.pedal > 0.0 && s.proxyPositionMm[2] > 0.1) after = std::max(after, s.speedRpm);
+    });
+    EXPECT_TRUE(stalled);
+    EXPECT_GT(after, 0.0);
+}
+
+TEST(CuttingLoop, theTickNeitherAllocatesNorLocksNorWaitsWhileItCuts) {
+    if (!test::RealtimeTrap::isActive()) GTEST_SKIP() << "the sanitizers own malloc: the trap is off";
+    const Bench bench(block({}));
+    auto loop = bench.loop(plungeTo(1.0, 0.2, 1.0));
+    loop->tick({});
+    const test::RealtimeTrap trap;
+    for (int i = 0; i < 2000; ++i)
+        loop->tick({});
+    EXPECT_EQ(trap.total(), 0u);
+    EXPECT_GT(bench.field->removedMm3()[static_cast<std::size_t>(Tissue::enamel)], 0.0);
+}
+
+TEST(CuttingLoop, sameInputsSameTooth) {
+    const auto base = block({{[](const Vec3& p) { return p.z() + 0.3; }, Tissue::dentine, 20}});
+    std::uint64_t first = 0;
+    for (int run = 0; run < 2; ++run) {
+        const Bench bench(base, "330");
+        const auto poses = plungeTo(0.8, 1.0, 1.0, 0.013);
+        auto loop = bench.loop(poses, false);
+        tooth::CutMirror mirror(base);
+        HapticSample last;
+        (void)loop->runSimulated(
+            seconds(poses), [&](const HapticSample& s) { last = s; },
+            [&](const tooth::BrickSnapshot& b) { mirror.apply(b); });
+        if (run == 0) first = bench.field->stateHash();
+        EXPECT_EQ(bench.field->stateHash(), first);
+        // Those who only hear of bricks know the same tooth.
+        EXPECT_EQ(last.waitingBricks, 0u);
+        EXPECT_EQ(tooth::stateHash(mirror.state(last.removedMm3)), first);
+    }
+}
+
+}  // namespace
+}  // namespace handpiece::loop

@@ -171,6 +171,20 @@ TEST_F(Session, ASlowReaderOfTheQueueIsCountedNotWaitedFor) {
     EXPECT_EQ(session::SessionReader(file()).size(), all.size() - refused);
 }
 
+TEST_F(Session, WhatCannotBeWrittenIsToldOnceAndHoldsNobodyUp) {
+    const auto all = records(9000);
+    session::Recorder recorder(file(), info());
+    for (const session::Record& r : all)
+        recorder.pushWaiting(r);
+    for (const session::Record& r : all)
+        recorder.pushWaiting(r);  // ticks that do not rise
+    const session::RecorderStatus status = recorder.close();
+    EXPECT_FALSE(status.recording);
+    EXPECT_NE(status.message.find("tick 0 comes after tick 8999"), std::string::npos) << status.message;
+    const session::SessionReader reader(file());
+    EXPECT_GE(reader.size(), 8400u);  // whole chunks at the least
+}
+
 TEST_F(Session, BadPlacesAndCodesAreRefused) {
     EXPECT_THROW(session::Recorder(file("no/such/folder/x.h5"), info()), core::Error);
     for (const char* code : {"Anna Schmidt", "a/b", "user@host", "123456789012345678901234567890123"}) {

@@ -35,6 +35,7 @@ struct Recorder::State {
     RecorderStatus status;
     std::condition_variable wake;
     bool stop = false;
+    bool broken = false;  // by the writing thread alone: something could not be written, the rest is thrown away
     std::thread thread;
 
     State(const std::filesystem::path& path, const SessionInfo& info)
@@ -60,8 +61,9 @@ struct Recorder::State {
         Record record;
         while (records.tryPop(record)) {
             popped.fetch_add(1, std::memory_order_release);
-            writer.append(record);
+            if (!broken) writer.append(record);
         }
+        if (broken) return;
         for (const Item& item : taken)
             std::visit([this](const auto& i) { writer.append(i); }, item);
     }
@@ -91,6 +93,7 @@ struct Recorder::State {
                 if (last) writer.close();
             } catch (const core::Error& e) {
                 problem = e.what();
+                broken = true;
             }
             tell(std::move(problem));
         }

@@ -93,7 +93,9 @@ class FieldRun {
             std::make_unique<cutting::Cutter>(field_, bur_, instrument::Ability{}, tooth::builtInTissues(), settings);
     }
     double tick(const core::Pose& pose) {
+        const auto from = Clock::now();
         const double depth = method_->depth(pose).depthMm;
+        queryUs_ = std::chrono::duration<double, std::micro>(Clock::now() - from).count();
         cutting::CutInput input;
         input.proxyInTooth = input.deviceInTooth = pose;
         input.speedRadS = 40000.0;
@@ -106,6 +108,7 @@ class FieldRun {
         }
     }
     std::uint32_t changed() const { return changed_; }
+    double queryUs() const { return queryUs_; }
     double removedMm3() const {
         double sum = 0.0;
         for (const double v : field_->removedMm3())
@@ -130,6 +133,7 @@ class FieldRun {
     std::unique_ptr<contact::Method> method_;
     std::unique_ptr<cutting::Cutter> cutter_;
     std::uint32_t changed_ = 0;
+    double queryUs_ = 0.0;
 };
 
 double microsecondsSince(Clock::time_point start) {
@@ -213,7 +217,7 @@ void runField(benchmark::State& state, Session& session, const Resolution& resol
     const auto poses = posesOf(session.workload, *bur, base->tooth->field, depth, session.ticks());
     const int repeats = session.quick ? 2 : 5;
     std::unique_ptr<FieldRun> run;
-    std::vector<double> dirty;
+    std::vector<double> dirty, query(poses.size(), std::numeric_limits<double>::infinity());
     const Timing timing = measureCut(
         poses, repeats, 60.0,
         [&] {
@@ -221,7 +225,8 @@ void runField(benchmark::State& state, Session& session, const Resolution& resol
             run = std::make_unique<FieldRun>(base, bur);
         },
         [&](const core::Pose& pose) { return run->tick(pose); },
-        [&](const core::Pose&, std::size_t, int repeat) {
+        [&](const core::Pose&, std::size_t tick, int repeat) {
+            query[tick] = std::min(query[tick], run->queryUs());
             if (repeat == 0) dirty.push_back(run->changed());
             run->handOver();
         });
@@ -237,6 +242,8 @@ void runField(benchmark::State& state, Session& session, const Resolution& resol
     }
     std::sort(left.begin(), left.end());
     std::sort(dirty.begin(), dirty.end());
+    std::sort(query.begin(), query.end());
+    state.counters["query_p50_us"] = percentile(query, 0.5);
     state.counters["left_depth_um"] = left.back();
     state.counters["left_depth_med_um"] = percentile(left, 0.5);
     state.counters["dirty_bricks"] = percentile(dirty, 0.5);

@@ -116,6 +116,15 @@ OutlineTable::OutlineTable(const instrument::Profile& profile, double unitMm, do
     for (std::size_t i = 0; i < count; ++i)
         pieces_.push_back(sweepPiece(profile, i, unitMm));
     groupSize_ = static_cast<std::uint32_t>((count + kGroups - 1) / kGroups);
+    realPieces_ = count;
+    std::vector<std::size_t> tips;  // of the capsules
+    for (std::size_t i = 0; i + 1 < count && count + tips.size() < kGroups; ++i) {
+        const SweepPiece &tip = pieces_[i], &side = pieces_[i + 1];
+        if (tip.radius == 0.0f || tip.r0 != 0.0f || tip.bulge < 0.0f || side.radius != 0.0f) continue;
+        if (side.ur != 0.0f || side.uz != 1.0f || side.r0 != tip.radius) continue;
+        tips.push_back(i);
+        pieces_.push_back(SweepPiece(tip));
+    }
 
     const double reach = bandMm + marginMm, half = 0.5 * cellMm, round = half * std::sqrt(2.0);
     columns_ = static_cast<std::int32_t>(std::ceil((profile.maxRadiusMm() + reach) / cellMm)) + 1;
@@ -148,6 +157,20 @@ OutlineTable::OutlineTable(const instrument::Profile& profile, double unitMm, do
                     if (saysTheSame) cell.alone |= std::uint64_t{1} << i;
                 }
             }
+            for (std::size_t k = 0; k < tips.size(); ++k) {
+                const ProfilePiece &tip = profile.pieces[tips[k]], &side = profile.pieces[tips[k] + 1];
+                const double whole = std::hypot(middle.x(), std::min(middle.y() - tip.centre.y(), 0.0)) - tip.radiusMm;
+                const std::uint64_t both = std::uint64_t{3} << tips[k];
+                bool isOnlyThese = (cell.groups & ~both) == 0;
+                for (const double r : {-half, half})
+                    for (const double z : {-half, half}) {
+                        const Vec2 corner = middle + Vec2(r, z);
+                        isOnlyThese = isOnlyThese && (faces(tip, corner) || faces(side, corner));
+                    }
+                if (isOnlyThese || (whole + round + kSlackMm <= -bandOutMm && cell.highMm <= -bandOutMm) ||
+                    (whole - round - kSlackMm >= bandMm && cell.lowMm >= bandMm))
+                    cell.alone |= std::uint64_t{1} << (count + k);
+            }
         }
 }
 
@@ -174,7 +197,7 @@ OutlineTable::Region OutlineTable::region(const Rectangle& rectangle) const noex
 
 std::int32_t OutlineTable::list(std::uint64_t groups, std::uint16_t* out) const noexcept {
     std::int32_t count = 0;
-    const auto pieces = static_cast<std::uint32_t>(pieces_.size());
+    const auto pieces = static_cast<std::uint32_t>(realPieces_);
     for (; groups != 0; groups &= groups - 1) {
         const auto first = static_cast<std::uint32_t>(std::countr_zero(groups)) * groupSize_;
         for (std::uint32_t i = first; i < std::min(first + groupSize_, pieces); ++i)

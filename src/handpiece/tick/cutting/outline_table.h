@@ -19,7 +19,9 @@ class OutlineTable {
     OutlineTable(const instrument::Profile& profile, double unitMm, double bandMm, double bandOutMm, double marginMm,
                  double cellMm);
 
+    /// Those of the outline, then capsules: a round tip and the cylinder that it ends, as one.
     [[nodiscard]] const std::vector<SweepPiece>& pieces() const noexcept { return pieces_; }
+    [[nodiscard]] std::size_t realPieces() const noexcept { return realPieces_; }
     /// A rectangle of the half-plane [mm].
     struct Rectangle {
         float rhoLow, rhoHigh, zLow, zHigh;
@@ -35,11 +37,13 @@ class OutlineTable {
     std::int32_t list(std::uint64_t groups, std::uint16_t* out) const noexcept;
     [[nodiscard]] SweepForm formOf(std::uint16_t piece) const noexcept {
         const SweepPiece& p = pieces_[piece];
-        return p.radius > 0.0f ? SweepForm::ball : SweepForm::line;
+        if (p.radius == 0.0f) return SweepForm::line;
+        return piece < realPieces_ ? SweepForm::ball : SweepForm::capsule;
     }
 
   private:
     std::vector<SweepPiece> pieces_;
+    std::size_t realPieces_ = 0;
     std::vector<Region> cells_;
     std::uint32_t groupSize_ = 1;
     std::int32_t columns_ = 0, rows_ = 0;  ///< along rho and z

@@ -171,6 +171,10 @@ inline Floats distances(const SweepPass& pass, const std::uint16_t* list, std::i
         const SweepPiece& piece = pass.pieces[list[0]];
         const Floats h = at.z - piece.z0;
         return (root(at.rho2 + h * h) - piece.radius) * piece.bulge;
+    } else if constexpr (form == SweepForm::capsule) {
+        const SweepPiece& piece = pass.pieces[list[0]];
+        const Floats h = least(at.z - piece.z0, Floats{});
+        return root(at.rho2 + h * h) - piece.radius;
     } else {
         const Floats rho = root(at.rho2);
         Nearest nearest{splat(3e38f), splat(3e38f), Ints{}};
@@ -289,22 +293,40 @@ SweepOutcome raise(const SweepPass& pass, const SweepBrick& brick, float* values
             return raiseAs<SweepForm::line>(pass, brick, values, quanta);
         case SweepForm::ball:
             return raiseAs<SweepForm::ball>(pass, brick, values, quanta);
+        case SweepForm::capsule:
+            return raiseAs<SweepForm::capsule>(pass, brick, values, quanta);
         case SweepForm::general:
             break;
     }
     return raiseAs<SweepForm::general>(pass, brick, values, quanta);
 }
 
-float highest(const SweepPass& pass, const SweepBrick& brick) {
+template <SweepForm form>
+float highestAs(const SweepPass& pass, const SweepBrick& brick) {
     const Ints x = splat(brick.base[0]), y = splat(brick.base[1]), z = splat(brick.base[2]);
     Floats low = splat(3e38f);
-    for (int i = 0; i < kSweepNodes; i += kLanes) {
-        const int first = i + kLanes <= kSweepNodes ? i : kSweepNodes - kLanes;
-        const Places at = placesOf(x + load(pass.offset[0] + first), y + load(pass.offset[1] + first),
-                                   z + load(pass.offset[2] + first));
-        low = least(distances<SweepForm::general>(pass, brick.list, brick.count, at), low);
-    }
+    for (int step = 0; step < kSweepSteps; ++step)
+        for (int part = 0; part < kParts; ++part) {
+            const int at = firstOf(step) + part * kLanes;
+            const Places places =
+                placesOf(x + load(pass.offset[0] + at), y + load(pass.offset[1] + at), z + load(pass.offset[2] + at));
+            low = least(distances<form>(pass, brick.list, brick.count, places), low);
+        }
     return -pass.unitMm * leastOf(low);
+}
+
+float highest(const SweepPass& pass, const SweepBrick& brick) {
+    switch (brick.form) {
+        case SweepForm::line:
+            return highestAs<SweepForm::line>(pass, brick);
+        case SweepForm::ball:
+            return highestAs<SweepForm::ball>(pass, brick);
+        case SweepForm::capsule:
+            return highestAs<SweepForm::capsule>(pass, brick);
+        case SweepForm::general:
+            break;
+    }
+    return highestAs<SweepForm::general>(pass, brick);
 }
 
 void makeOffsets(const std::int32_t (&axes)[3][3], std::int32_t* const (&offset)[3]) {

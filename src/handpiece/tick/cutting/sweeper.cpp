@@ -80,8 +80,8 @@ Sweeper::Sweeper(tooth::CutField& field, const instrument::Bur& bur, core::SimdL
       outline_(bur.profile(), unitMm_, bandMm_, bandOutMm_, 2.0 * kBrickCells * voxelMm_, 2.0 * voxelMm_),
       simple_(simpleOutline(bur.profile()), unitMm_, bandMm_, bandOutMm_, 0.0, 0.5 * radiusMm_),
       nodes_(std::make_unique<Nodes>()),
-      list_(outline_.pieces().size()),
-      simpleList_(simple_.pieces().size()) {
+      list_(outline_.realPieces()),
+      simpleList_(simple_.realPieces()) {
     for (int i = 0; i < kBrickValues; ++i) {
         const bool own = i % kBrickNodes < kBrickCells && i / kBrickNodes % kBrickNodes < kBrickCells &&
                          i / (kBrickNodes * kBrickNodes) < kBrickCells;
@@ -96,7 +96,8 @@ Sweeper::Sweeper(tooth::CutField& field, const instrument::Bur& bur, core::SimdL
         if (instrument::jointBetween(pieces[i], pieces[i + 1]) != instrument::Joint::convex) continue;
         const core::Vec2 before = -instrument::inwardNormalAt(pieces[i], 1.0),
                          after = -instrument::inwardNormalAt(pieces[i + 1], 0.0);
-        corners_.push_back({before, after, std::abs(before.x() * after.y() - before.y() * after.x())});
+        corners_.push_back({before, after, std::abs(before.x() * after.y() - before.y() * after.x()),
+                            i + 2 == pieces.size() && after.y() > 0.999});
     }
     memory_.resize(bricks);
     Dues never{};
@@ -328,12 +329,15 @@ double Sweeper::notchOf(const Vec3& direction) const noexcept {
     }();
     const double sideways = std::hypot(direction.x(), direction.y());
     double most = 0.0;
-    for (const Corner& corner : corners_)
+    for (const Corner& corner : corners_) {
+        const double share = corner.atTop ? kNotchVoxels / kFastNotchVoxels : 1.0;
         for (const double cosine : kCosines) {
             const core::Vec2 v(sideways * cosine, direction.z());
             const double before = corner.before.dot(v), after = corner.after.dot(v);
-            if (before * after < 0.0) most = std::max(most, -before * after / (corner.sine * std::max(v.norm(), 1e-9)));
+            if (before * after < 0.0)
+                most = std::max(most, -share * before * after / (corner.sine * std::max(v.norm(), 1e-9)));
         }
+    }
     return most;
 }
 
@@ -347,7 +351,8 @@ double Sweeper::stepsBetween(const core::Pose& from, const core::Pose& to, doubl
     if (corners_.empty()) return steps;
     const double notch = (movedMm > kFastMm ? kFastNotchVoxels : kNotchVoxels) * voxelMm_;
     // A turn moves points in all directions: as bad as it gets at a right angle.
-    double left = 0.5 * turned;
+    const bool onlyTop = corners_.size() == 1 && corners_[0].atTop;
+    double left = 0.5 * turned * (onlyTop ? kNotchVoxels / kFastNotchVoxels : 1.0);
     if (shifted > 0.0) left += shifted * notchOf(from.orientation.conjugate() * (way / shifted));
     return std::max(steps, std::ceil(left / notch));
 }

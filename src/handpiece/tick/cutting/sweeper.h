@@ -71,6 +71,7 @@ class Sweeper {
     struct Corner {
         core::Vec2 before, after;
         double sine;
+        bool atTop;  ///< where the shank follows: what it leaves is let be, up to what any way may leave
     };
     std::vector<Corner> corners_;
     OutlineTable outline_, simple_;

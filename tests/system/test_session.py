@@ -168,6 +168,8 @@ class Session(SystemTest):
         self.refused("export", half, "--csv", mentions=["damaged"])
         self.refused("export", self.folder / "none.h5", "--csv", mentions=["no such file"])
         self.refused("export", victim.path, mentions=["--csv"])
+        self.refused("replay", victim.path, mentions=["tooth"])  # the child records none
+        self.refused("replay", newer, mentions=["newer", "format 2"])
 
 
 if __name__ == "__main__":

@@ -32,7 +32,8 @@ class Sweeper {
     };
     /// Cuts at `to`, and on the way there from the last pose, if there is one.
     Outcome sweepTo(const core::Pose& to) noexcept HANDPIECE_REALTIME;
-    /// Brings up the bounds, and forgets the pose: the next sweep starts where it starts.
+    /// Brings up the bounds, and forgets the pose and all that is known of the field: the next sweep starts where it
+    /// starts. To be called before anybody else changes the field (undo).
     void settle() noexcept HANDPIECE_REALTIME;
     [[nodiscard]] bool hasPose() const noexcept { return hasPose_; }
     [[nodiscard]] const core::Pose& pose() const noexcept { return pose_; }

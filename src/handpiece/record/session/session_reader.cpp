@@ -22,6 +22,7 @@ constexpr const char* kRemedy = "the file is damaged or was not written by Handp
 class Source {
   public:
     explicit Source(std::filesystem::path path) : path_(std::move(path)) {}
+    [[nodiscard]] std::string name() const { return path_.string(); }
     [[noreturn]] void damaged(std::string what) const { throw core::Error(std::move(what), path_.string(), kRemedy); }
     void require(bool good, std::string_view name, std::string_view what) const {
         if (!good) damaged(fmt::format("{}: {}", name, what));
@@ -166,8 +167,8 @@ void SessionReader::State::readHead() {
     const auto version = source.number<std::int32_t>(f, "format_version", H5T_INTEGER, H5T_NATIVE_INT32);
     if (version > kFormatVersion) {
         throw core::Error(
-            fmt::format("the session has format {}; this program reads up to {}", version, kFormatVersion), "session",
-            "read it with a newer Handpiece");
+            fmt::format("the session has format {}; this program reads up to {}", version, kFormatVersion),
+            source.name(), "read it with a newer Handpiece");
     }
     source.require(version >= 1, "format_version", "is no version");
     info.version = source.text(f, "handpiece_version");

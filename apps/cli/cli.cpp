@@ -24,6 +24,8 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods) {
     addCaseCommand(app);
     addProbeCommand(app, extraMethods);
     addRunCommand(app, extraMethods);
+    addReplayCommand(app);
+    addExportCommand(app);
     addReproduceCommand(app);
     addBenchCommand(app);
     addPassivityCommand(app);

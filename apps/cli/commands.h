@@ -16,6 +16,8 @@ void addMeshCommand(CLI::App& app);
 void addCaseCommand(CLI::App& app);
 void addProbeCommand(CLI::App& app, const MethodRegistry& methods);
 void addRunCommand(CLI::App& app, const MethodRegistry& methods);
+void addReplayCommand(CLI::App& app);
+void addExportCommand(CLI::App& app);
 void addReproduceCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addPassivityCommand(CLI::App& app);

@@ -25,7 +25,9 @@ void addContactOptions(CLI::App& command, ContactInputs& inputs, const MethodReg
     std::string names = "field (ours, the concave tooth), hull (the paper's convex hull)";
     for (const auto& [name, factory] : methods)
         names += ", " + name;
-    command.add_option("--tooth", inputs.tooth, "case folder, or mesh file (.stl, .ply, .obj; mm)")->required();
+    command
+        .add_option("--tooth,--case", inputs.tooth, "case folder, .handpiece file, or mesh file (.stl, .ply, .obj; mm)")
+        ->required();
     command.add_option("--bur", inputs.bur, "bur by name (330, round-4, paper, cylinder-round:1.0x4.0) or mesh file")
         ->capture_default_str();
     command.add_option("--method", inputs.method, "contact method: " + names)->capture_default_str();
@@ -34,7 +36,7 @@ void addContactOptions(CLI::App& command, ContactInputs& inputs, const MethodReg
     command.add_option("--threads", inputs.threads, "threads for long work; 0: all cores")->capture_default_str();
 }
 
-std::shared_ptr<const tooth::Tooth> loadTooth(const ContactInputs& inputs) {
+tooth::PrepareSettings prepareSettingsOf(const ContactInputs& inputs) {
     // A count below zero arrives here as an enormous one.
     if (inputs.threads > kMaxThreads)
         throw core::Error("this many threads are not possible", "--threads", fmt::format("give 0 to {}", kMaxThreads));
@@ -47,6 +49,11 @@ std::shared_ptr<const tooth::Tooth> loadTooth(const ContactInputs& inputs) {
     settings.field.bandOutMm = std::max(settings.field.bandOutMm, 2.0 * settings.field.voxelMm);
     settings.field.bandInMm = std::max(settings.field.bandInMm, 4.0 * settings.field.voxelMm);
     settings.useCache = !inputs.noCache;
+    return settings;
+}
+
+std::shared_ptr<const tooth::Tooth> loadTooth(const ContactInputs& inputs) {
+    const tooth::PrepareSettings settings = prepareSettingsOf(inputs);
     ProgressBar bar("preparing the tooth");
     return tooth::prepareTooth(tooth::readCase(inputs.tooth), settings, bar.listener());
 }

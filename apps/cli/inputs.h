@@ -25,6 +25,8 @@ struct ContactInputs {
 /// --tooth, --bur, --method, --voxel, --no-cache, --threads.
 void addContactOptions(CLI::App& command, ContactInputs& inputs, const MethodRegistry& methods);
 
+/// Voxel, bands and cache as asked for; sets the number of threads. Throws core::Error for values out of range.
+[[nodiscard]] tooth::PrepareSettings prepareSettingsOf(const ContactInputs& inputs);
 /// Reads or reopens the tooth, with a progress bar. Throws core::Error.
 [[nodiscard]] std::shared_ptr<const tooth::Tooth> loadTooth(const ContactInputs& inputs);
 /// A name of the catalogue, SHAPE:DxL, or a mesh file.

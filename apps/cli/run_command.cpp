@@ -3,146 +3,49 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/csv.h"
+#include "cli/cut_run.h"
 #include "cli/inputs.h"
-#include "cli/plot.h"
 #include "cli/progress_bar.h"
 #include "cli/run_job.h"
+#include "cli/run_output.h"
 #include "handpiece/base/core/error.h"
-#include "handpiece/base/core/file.h"
+#include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/tick/device/capability.h"
 #include "handpiece/tick/loop/built_in_motion.h"
+#include "handpiece/tick/loop/cutting_motion.h"
 
 namespace handpiece::cli {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using messages::HapticSample;
-
-constexpr std::string_view kHeader =
-    "t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,vx_mm_s,vy_mm_s,vz_mm_s,fx_n,fy_n,fz_n,depth_mm,work_us,late_us,"
-    "true_x_mm,true_y_mm,true_z_mm,proxy_x_mm,proxy_y_mm,proxy_z_mm,proxy_qw,proxy_qx,proxy_qy,proxy_qz,"
-    "applied_fx_n,applied_fy_n,applied_fz_n,area_mm2,tissue,flags\n";
 
 struct RunOptions {
     ContactInputs inputs;
     std::string motion = "drop", device = "simulated", deviceModel = "simulated", hand = "normal", force = "proxy", out;
-    double rateHz = 1000.0, durationS = 0.0, stiffness = 1.0, damping = 1.0, speedMmS = 10.0;
+    double rateHz = 1000.0, durationS = 0.0, stiffness = 1.0, damping = 1.0, slide = 1.0, speedMmS = 10.0;
     double loadN = 1.0, depthMm = 0.0, delayMs = 0.0, frictionN = 0.26, lengthMm = 0.0;
     std::vector<double> at{0.0, 0.0};
     bool realTime = false, json = false;
+    // Of a cut.
+    double pedal = 0.0, isthmusMm = 1.2, heightMm = 2.5, dwellS = 4.0, tremorUm = 0.0;
+    std::uint64_t seed = 1;
+    bool fullRemoval = false, pedalGiven = false, handGiven = false, speedGiven = false;
+    std::string drive = "turbine", ability, abilities, tissues, code;
+    std::vector<double> undoAtS, redoAtS, resetAtS;
 };
-
-/// The files of one run: all of them, or none. Undoes what it wrote unless keep() was called.
-class Outputs {
-  public:
-    explicit Outputs(const fs::path& folder) : folder_(folder) {
-        std::error_code ec;
-        existed_ = fs::exists(folder, ec);
-        core::prepareOutputFolder(folder);
-    }
-    ~Outputs() {
-        if (kept_) return;
-        std::error_code ec;
-        for (const fs::path& path : written_)
-            fs::remove(path, ec);
-        if (!existed_) fs::remove(folder_, ec);  // only when empty
-    }
-    Outputs(const Outputs&) = delete;
-    Outputs& operator=(const Outputs&) = delete;
-
-    [[nodiscard]] fs::path path(const char* name) const { return folder_ / name; }
-    void wrote(const char* name) { written_.push_back(path(name)); }
-    void write(const char* name, const std::string& text) {
-        core::writeFile(path(name), text);
-        wrote(name);
-    }
-    void keep() { kept_ = true; }
-
-  private:
-    fs::path folder_;
-    std::vector<fs::path> written_;
-    bool existed_ = false, kept_ = false;
-};
-
-/// Curves of a run of any length in bounded memory: the least and the greatest of each of many equal times.
-class Curve {
-  public:
-    explicit Curve(double durationS) : perBucketS_(durationS / kBuckets) {}
-    void take(double t, double y) {
-        const auto bucket = static_cast<std::int64_t>(perBucketS_ > 0.0 ? t / perBucketS_ : 0.0);
-        if (bucket != bucket_) flush();
-        bucket_ = bucket;
-        if (count_++ == 0) low_ = high_ = {t, y};
-        if (y < low_.y) low_ = {t, y};
-        if (y > high_.y) high_ = {t, y};
-    }
-    [[nodiscard]] Series series(std::string name) {
-        flush();
-        Series s;
-        s.name = std::move(name);
-        s.x = x_;
-        s.y = y_;
-        return s;
-    }
-
-  private:
-    struct Point {
-        double t = 0.0, y = 0.0;
-    };
-    static constexpr double kBuckets = 4000.0;
-    void add(const Point& p) {
-        x_.push_back(p.t);
-        y_.push_back(p.y);
-    }
-    void flush() {
-        if (count_ == 0) return;
-        const bool lowFirst = low_.t <= high_.t;
-        add(lowFirst ? low_ : high_);
-        if (low_.t != high_.t) add(lowFirst ? high_ : low_);
-        count_ = 0;
-    }
-    double perBucketS_;
-    std::int64_t bucket_ = 0;
-    std::size_t count_ = 0;
-    Point low_, high_;
-    std::vector<double> x_, y_;
-};
-
-void writeLine(TextWriter& out, fmt::memory_buffer& buffer, const HapticSample& s) {
-    buffer.clear();
-    const auto to = std::back_inserter(buffer);
-    const auto& p = s.positionMm;
-    const auto& q = s.orientation;
-    const auto& v = s.velocityMmS;
-    const auto& f = s.forceN;
-    fmt::format_to(to, "{:.7g},{:.7f},{:.7f},{:.7f},{:.9f},{:.9f},{:.9f},{:.9f},", s.timeS, p[0], p[1], p[2], q[0],
-                   q[1], q[2], q[3]);
-    fmt::format_to(to, "{:.6f},{:.6f},{:.6f},{:.7f},{:.7f},{:.7f},{:.9f},{:.3f},{:.3f},", v[0], v[1], v[2], f[0], f[1],
-                   f[2], s.depthMm, s.workUs, s.lateUs);
-    const auto& a = s.appliedForceN;
-    const auto& r = s.proxyOrientation;
-    fmt::format_to(to, "{:.7f},{:.7f},{:.7f},{:.7f},{:.7f},{:.7f},{:.9f},{:.9f},{:.9f},{:.9f},", s.truePositionMm[0],
-                   s.truePositionMm[1], s.truePositionMm[2], s.proxyPositionMm[0], s.proxyPositionMm[1],
-                   s.proxyPositionMm[2], r[0], r[1], r[2], r[3]);
-    fmt::format_to(to, "{:.7f},{:.7f},{:.7f},{:.6f},{},{}\n", a[0], a[1], a[2], s.contactAreaMm2,
-                   tooth::properties(static_cast<tooth::Tissue>(s.tissue)).name, s.flags);
-    out.write({buffer.data(), buffer.size()});
-}
 
 Json spreadJson(const loop::Spread& s) {
     return {{"p50", s.p50}, {"p99", s.p99}, {"p999", s.p999}, {"max", s.max}};
 }
 
-Json summaryJson(const RunOptions& o, const RunSummary& s, const std::string& method) {
+Json summaryJson(const RunOptions& o, const RunSummary& s, const std::string& method, const std::string& hand) {
     return {{"tooth", o.inputs.tooth},
             {"bur", o.inputs.bur},
             {"method", method},
@@ -150,7 +53,7 @@ Json summaryJson(const RunOptions& o, const RunSummary& s, const std::string& me
             {"force", o.force},
             {"device", o.device},
             {"device_model", o.deviceModel},
-            {"hand", o.hand},
+            {"hand", hand},
             {"rate_hz", o.rateHz},
             {"real_time", o.realTime},
             {"stopped_early", s.stopped},
@@ -172,8 +75,12 @@ Json summaryJson(const RunOptions& o, const RunSummary& s, const std::string& me
             {"truncated_ticks", s.truncatedTicks}};
 }
 
+void printRow(const char* name, const std::string& value) {
+    fmt::print("  {:<14}{}\n", name, value);
+}
+
 void printSummary(const RunOptions& o, const RunSummary& s, const std::string& method) {
-    const auto row = [](const char* name, const std::string& value) { fmt::print("  {:<14}{}\n", name, value); };
+    const auto row = printRow;
     const loop::RunReport& r = s.report;
     fmt::print("{}{}\n", o.out, s.stopped ? " (stopped early; what there was is written)" : "");
     row("ran", fmt::format("{} on {} with {}, {}, {:.3f} s at {:.0f} Hz", o.motion, o.inputs.tooth, o.inputs.bur,
@@ -192,7 +99,6 @@ void printSummary(const RunOptions& o, const RunSummary& s, const std::string& m
     if (s.faultTicks) row("fault", fmt::format("{} ticks without a believable pose: no force", s.faultTicks));
     if (s.truncatedTicks) row("truncated", fmt::format("{} ticks had more contacts than are kept", s.truncatedTicks));
     if (r.queueOverflow) row("lost", fmt::format("{} samples came too fast to be written", r.queueOverflow));
-    row("files", "trace.csv depth.svg speed.svg force.svg summary.json");
 }
 
 RunSettings settingsOf(const RunOptions& o) {
@@ -217,6 +123,8 @@ RunSettings settingsOf(const RunOptions& o) {
     s.parameters.mode = force::modeByName(o.force);
     s.parameters.stiffnessMultiplier = o.stiffness;
     s.parameters.dampingMultiplier = o.damping;
+    s.parameters.frictionMultiplier = o.slide;
+    s.drive = instrument::driveByName(o.drive);
     force::validate(s.parameters);
     return s;
 }
@@ -234,9 +142,136 @@ device::Motion motionOf(const RunOptions& o, const RunSettings& s, contact::Meth
     return loop::motionByName(o.motion, method, box, m);
 }
 
+bool isCuttingMotion(const std::string& name) {
+    const auto& all = loop::cuttingMotions();
+    return std::any_of(all.begin(), all.end(), [&](const loop::BuiltInMotion& m) { return m.name == name; });
+}
+
+bool isMotionFile(const std::string& name) {
+    return fs::path(name).has_extension() || name == "-";
+}
+
+StationSettings stationSettingsOf(const RunOptions& o, const RunSettings& run, const tooth::Case& toothCase,
+                                  const tooth::PrepareSettings& prepare) {
+    StationSettings s;
+    s.rateHz = run.rateHz;
+    s.field = prepare.field;
+    const instrument::Instrument instrument = instrument::makeInstrument(o.inputs.bur, o.abilities, o.ability);
+    s.ability = instrument.ability;
+    s.bur = instrument.bur;
+    s.drive = run.drive;
+    s.tissues = o.tissues.empty() ? toothCase.tissues : tooth::readTissues(o.tissues);
+    s.capability = run.device.capability;
+    s.parameters = run.parameters;
+    const force::Parameters feel = force::defaultParameters(s.tissues);
+    s.parameters.tissues = feel.tissues;
+    s.fullRemoval = o.fullRemoval;
+    return s;
+}
+
+device::Motion cutMotionOf(const RunOptions& o, const RunSettings& settings, const tooth::Case& toothCase,
+                           const Station& station) {
+    const double pedal = o.pedalGiven ? o.pedal : 1.0;
+    const auto& tooth = station.tooth->tooth;
+    const auto method = contact::makeFieldMethod(tooth, station.settings.bur);
+    if (!isCuttingMotion(o.motion)) {
+        device::Motion motion = isMotionFile(o.motion) ? readMotion(o.motion, settings.device.capability, o.rateHz)
+                                                       : motionOf(o, settings, *method, tooth->outer.bounds());
+        return withPedal(motion, pedal);
+    }
+    loop::CuttingScene scene;
+    scene.toothBounds = tooth->outer.bounds();
+    for (const tooth::Part& part : toothCase.parts)
+        if (part.tissue == tooth::Tissue::caries) scene.cariesBounds = part.mesh.bounds();
+    scene.burRadiusMm = station.settings.bur->maxRadiusMm();
+    scene.burLengthMm = station.settings.bur->lengthMm();
+    loop::CuttingOptions cut;
+    cut.pedal = pedal;
+    cut.depthMm = o.depthMm;
+    cut.lengthMm = o.lengthMm;
+    cut.isthmusMm = o.isthmusMm;
+    cut.heightMm = o.heightMm;
+    cut.dwellS = o.dwellS;
+    if (o.speedGiven) cut.feedMmS = o.speedMmS;
+    cut.offsetMm = {o.at[0], o.at[1]};
+    return loop::cuttingMotionByName(o.motion, *method, scene, cut);
+}
+
+void cutCommand(const RunOptions& o, RunSettings settings) {
+    if (o.inputs.method != "field")
+        throw core::Error(fmt::format("the method \"{}\" knows no tooth that changes", o.inputs.method), "--method",
+                          "cut with field");
+    // A cut is judged by what the hand intends, and an eye leads it there: the simulated hand alone is blind, and would
+    // come to rest where its spring and the device's friction let it.
+    if (!o.handGiven) settings.device.rigidHand = true;
+    const tooth::PrepareSettings prepare = prepareSettingsOf(o.inputs);
+    Outputs outputs(o.out);  // before the work: a folder that cannot be written is told at once
+    const tooth::Case toothCase = tooth::readCase(o.inputs.tooth);
+    const Station station =
+        makeStation(toothCase, stationSettingsOf(o, settings, toothCase, prepare), prepare.useCache);
+    settings.parameters = station.settings.parameters;
+    device::Motion motion = cutMotionOf(o, settings, toothCase, station);
+    if (o.tremorUm > 0.0) motion = withTremor(motion, 1e-3 * o.tremorUm, o.seed);
+    const CutOutcome outcome =
+        runCut(station, toothCase, settings, motion, {o.code, o.undoAtS, o.redoAtS, o.resetAtS}, outputs);
+
+    Json json = summaryJson(o, outcome.summary, "field", settings.device.rigidHand ? "rigid" : o.hand);
+    Json removed, left;
+    for (const tooth::Tissue t : station.tooth->tissues.tissues()) {
+        const std::string name(tooth::properties(t).name);
+        removed[name] = outcome.summary.removedMm3[static_cast<std::size_t>(t)];
+        left[name] = outcome.leftMm3[static_cast<std::size_t>(t)];
+    }
+    json["pedal"] = o.pedalGiven ? o.pedal : 1.0;
+    json["full_removal"] = o.fullRemoval;
+    json["seed"] = o.seed;
+    json["tremor_um"] = o.tremorUm;
+    json["voxel_um"] = o.inputs.voxelUm;
+    json["ability"] = station.settings.ability.name;
+    json["drive"] = station.settings.drive.name;
+    json["removed_mm3"] = removed;
+    json["left_mm3"] = left;
+    json["cut_stl_mm3"] = outcome.cutMeshMm3;
+    json["outer_mm3"] = geometry::enclosedVolumeMm3(toothCase.outer);
+    json["cutting_ticks"] = outcome.summary.cuttingTicks;
+    json["rpm_while_cutting"] = {{"least", outcome.summary.leastRpm}, {"most", outcome.summary.mostRpm}};
+    json["stalled_ticks"] = outcome.summary.stalledTicks;
+    json["out_of_bricks_ticks"] = outcome.summary.outOfBricksTicks;
+    json["undo_steps_taken"] = outcome.undone;
+    json["state_hash"] = hashText(outcome.stateHash);
+    json["session"] = {{"records", outcome.recording.writtenRecords},
+                       {"lost_records", outcome.recording.lostRecords},
+                       {"bytes", outcome.recording.sizeBytes},
+                       {"message", outcome.recording.message}};
+    const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
+    outputs.write("summary.json", text + "\n");
+    outputs.keep();
+    if (o.json) {
+        fmt::print("{}\n", text);
+        return;
+    }
+    printSummary(o, outcome.summary, "field");
+    std::string volumes;
+    for (const auto& [name, mm3] : removed.items())
+        if (mm3.get<double>() > 0.0)
+            volumes += fmt::format("{}{} {:.4f}", volumes.empty() ? "" : ", ", name, mm3.get<double>());
+    printRow("removed", volumes.empty() ? "nothing" : volumes + " mm3");
+    if (outcome.summary.cuttingTicks > 0)
+        printRow("rotor",
+                 fmt::format("{:.0f} to {:.0f} rpm while cutting", outcome.summary.leastRpm, outcome.summary.mostRpm));
+    if (outcome.summary.stalledTicks > 0) printRow("stalled", fmt::format("{} ticks", outcome.summary.stalledTicks));
+    if (outcome.summary.outOfBricksTicks > 0)
+        printRow("memory", "the tooth's memory for cuts was used up: cut no deeper (take larger voxels)");
+    printRow("state", hashText(outcome.stateHash));
+    printRow("files",
+             "session.h5 cut.stl cut/ trace.csv depth.svg speed.svg force.svg rotor.svg feed.svg removed.svg "
+             "summary.json");
+}
+
 void runCommand(const RunOptions& o, const MethodRegistry& methods) {
     const RunSettings settings = settingsOf(o);
-    const bool isFile = fs::path(o.motion).has_extension() || o.motion == "-";
+    if (o.pedalGiven || o.fullRemoval || isCuttingMotion(o.motion)) return cutCommand(o, settings);
+    const bool isFile = isMotionFile(o.motion);
     std::unique_ptr<device::Motion> motion;
     if (isFile) motion = std::make_unique<device::Motion>(readMotion(o.motion, settings.device.capability, o.rateHz));
     Outputs outputs(o.out);  // before the work: a folder that cannot be written is told at once
@@ -246,50 +281,24 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
     if (!motion) motion = std::make_unique<device::Motion>(motionOf(o, settings, *method, tooth->outer.bounds()));
 
     const double duration = o.durationS > 0.0 ? o.durationS : motion->durationS();
-    Curve depth(duration), force(duration), applied(duration);
-    Curve speed[3] = {Curve(duration), Curve(duration), Curve(duration)};
-    TextWriter trace(outputs.path("trace.csv").string());
-    trace.write(kHeader);
-    fmt::memory_buffer buffer;
+    RunTrace trace(outputs.path("trace.csv"), duration);
     ProgressBar bar("running");
     const core::Progress progress = bar.listener();
-    std::uint64_t count = 0;
-    RunSummary summary = runLoop(settings, *motion, std::move(method), [&](const HapticSample& s) {
-        writeLine(trace, buffer, s);
-        // A bound, not a distance, where nothing is within reach: a gap in the plot.
-        const bool far = s.contactStatus == static_cast<std::uint8_t>(contact::Status::beyondReach);
-        if (!far) depth.take(s.timeS, s.depthMm);
-        force.take(s.timeS, forceOf(s));
-        applied.take(s.timeS, std::hypot(s.appliedForceN[0], s.appliedForceN[1], s.appliedForceN[2]));
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            speed[axis].take(s.timeS, s.velocityMmS[axis]);
-        if (++count % 256 == 0) progress(s.timeS / duration);
+    const RunSummary summary = runLoop(settings, *motion, std::move(method), [&](const messages::HapticSample& s) {
+        trace.take(s);
+        if (s.tick % 256 == 0) progress(s.timeS / duration);
     });
     bar.finish();
-
-    const auto plot = [](std::string title, std::string label, std::vector<Series> series, std::vector<Limit> limits) {
-        return toSvg({std::move(title), "time [s]", std::move(label), std::move(series), std::move(limits)}, true);
-    };
-    const double limitN = settings.device.capability.maxForceN;
-    const std::string depthSvg =
-        plot("Depth (above 0) and distance (below)", "depth [mm]", {depth.series("")}, {{0.0, "touch"}});
-    const std::string speedSvg = plot("Speed of the bur, filtered", "speed [mm/s]",
-                                      {speed[0].series("x"), speed[1].series("y"), speed[2].series("z")}, {});
-    const std::string forceSvg =
-        plot("Force on the hand", "force [N]", {applied.series("applied"), force.series("commanded")},
-             {{limitN, fmt::format("the device's limit, {:.1f} N", limitN)}});
-    const std::string json = summaryJson(o, summary, methodName).dump(2, ' ', false, Json::error_handler_t::replace);
-    trace.commit();
-    outputs.wrote("trace.csv");
-    outputs.write("depth.svg", depthSvg);
-    outputs.write("speed.svg", speedSvg);
-    outputs.write("force.svg", forceSvg);
-    outputs.write("summary.json", json + "\n");
+    trace.finish(outputs, settings.device.capability.maxForceN, false);
+    const Json json = summaryJson(o, summary, methodName, o.hand);
+    const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
+    outputs.write("summary.json", text + "\n");
     outputs.keep();
     if (o.json) {
-        fmt::print("{}\n", json);
+        fmt::print("{}\n", text);
     } else {
         printSummary(o, summary, methodName);
+        printRow("files", "trace.csv depth.svg speed.svg force.svg summary.json");
     }
 }
 
@@ -303,13 +312,16 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
     std::string motions;
     for (const loop::BuiltInMotion& m : loop::builtInMotions())
         motions += fmt::format("{}{} ({})", motions.empty() ? "" : ", ", m.name, m.description);
+    std::string cutNames;
+    for (const loop::BuiltInMotion& m : loop::cuttingMotions())
+        cutNames += fmt::format("{}{} ({})", cutNames.empty() ? "" : ", ", m.name, m.description);
     std::string models;
     for (const device::Capability& c : device::knownDevices())
         models += (models.empty() ? "" : ", ") + c.name;
     const auto add = [&](const char* name, auto& value, std::string help) {
         return command->add_option(name, value, std::move(help))->capture_default_str();
     };
-    add("--motion", o.motion, motions + "; or a CSV of t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz");
+    add("--motion", o.motion, motions + "; cuts: " + cutNames + "; or a CSV of t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz");
     command->add_option("--out", o.out, "folder for trace.csv, the plots and summary.json")->required();
     add("--device", o.device, "simulated");
     add("--device-model", o.deviceModel, "what the simulated device is like: " + models);
@@ -318,15 +330,39 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
     add("--force", o.force, "proxy, or penalty (the paper's)");
     add("--stiffness", o.stiffness, "multiplier on every tissue's stiffness");
     add("--damping", o.damping, "multiplier on every tissue's damping");
-    add("--speed", o.speedMmS, "of the named motions [mm/s]");
+    add("--slide-friction", o.slide, "multiplier on every tissue's friction under a still bur");
+    add("--speed", o.speedMmS, "of the named motions [mm/s]; the feed of a cut: 2 unless given");
     add("--load", o.loadN, "what the hand presses with, as far as it gives way [N]")->check(CLI::PositiveNumber);
     add("--depth", o.depthMm, "instead of a load: how far beyond the surface the hand intends to go [mm]")
         ->check(CLI::NonNegativeNumber);
     add("--length", o.lengthMm, "of a slide or drag [mm]; 0: 60 % of the tooth");
     add("--at", o.at, "x and y of the first touch from the tooth's middle [mm]")->expected(2);
-    add("--hand", o.hand, "loose, normal, stiff, or rigid (exactly on the path)");
+    add("--hand", o.hand, "loose, normal, stiff, or rigid (exactly on the path; cuts are rigid unless given)");
     add("--delay", o.delayMs, "from the command to the force [ms]");
     add("--friction", o.frictionN, "of the device [N]");
+    std::string drives;
+    for (const instrument::Drive& d : instrument::drives())
+        drives += (drives.empty() ? "" : ", ") + d.name;
+    const auto cut = [&](const char* name, auto& value, std::string help) {
+        return command->add_option(name, value, std::move(help))->capture_default_str()->group("Cutting");
+    };
+    cut("--pedal", o.pedal, "0 to 1: the bur turns and cuts (1 for the cutting motions)")->check(CLI::Range(0.0, 1.0));
+    command
+        ->add_flag("--full-removal", o.fullRemoval, "take away all that the bur sweeps, whatever the load (rigid hand)")
+        ->group("Cutting");
+    cut("--drive", o.drive, drives);
+    cut("--ability", o.ability, "of the bur, instead of its own: see docs/burs.md");
+    cut("--abilities", o.abilities, "TOML file with abilities and burs of one's own");
+    cut("--tissues", o.tissues, "TOML file with tissues of one's own");
+    cut("--isthmus", o.isthmusMm, "width of a class I cavity [mm]");
+    cut("--height", o.heightMm, "of a shoulder over z = 0 of the tooth [mm]");
+    cut("--dwell", o.dwellS, "at the end of a cut [s]");
+    cut("--tremor", o.tremorUm, "of the hand, root mean square [um]")->check(CLI::Range(0.0, 1000.0));
+    cut("--seed", o.seed, "of the tremor");
+    cut("--code", o.code, "kept in the session: who cut, as letters, digits, - and _; never a name");
+    cut("--undo-at", o.undoAtS, "take the last stroke back at this time [s]; may be given several times");
+    cut("--redo-at", o.redoAtS, "do it again at this time [s]");
+    cut("--reset-at", o.resetAtS, "make the tooth whole at this time [s]");
     command->add_flag("--real-time", o.realTime, "on the wall clock, with what priority the machine grants");
     command->add_flag("--json", o.json, "print summary.json instead of a table");
     command->footer(
@@ -334,8 +370,16 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
         "Examples:\n"
         "  handpiece run --tooth molar --motion drop --out drop\n"
         "  handpiece run --tooth molar --bur round-4 --motion drag --rate 4000 --real-time --out drag\n"
+        "  handpiece run --case molar --bur 330 --motion class-one --out cavity\n"
+        "  handpiece run --case molar --bur round-4 --motion excavate --drive low-speed --out decay\n"
+        "  handpiece run --case molar --bur mine.stl --motion path.csv --full-removal --out swept\n"
         "  handpiece run --tooth molar --method hull --force penalty --motion press --speed 60 --out hull");
-    command->callback([options, &methods] { runCommand(*options, methods); });
+    command->callback([options, command, &methods] {
+        options->pedalGiven = command->count("--pedal") > 0;
+        options->handGiven = command->count("--hand") > 0;
+        options->speedGiven = command->count("--speed") > 0;
+        runCommand(*options, methods);
+    });
 }
 
 }  // namespace handpiece::cli

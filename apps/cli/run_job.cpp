@@ -30,6 +30,15 @@ void RunSummary::take(const messages::HapticSample& s, double periodS) {
     limitedTicks += (s.flags & messages::kForceLimited) != 0;
     slopeLimitedTicks += (s.flags & messages::kSlopeLimited) != 0;
     faultTicks += (s.flags & (messages::kInvalidPose | messages::kFault)) != 0;
+    removedMm3 = s.removedMm3;
+    worstCutUs = std::max(worstCutUs, static_cast<double>(s.cutUs));
+    stalledTicks += (s.flags & messages::kStalled) != 0;
+    outOfBricksTicks += (s.flags & messages::kOutOfBricks) != 0;
+    if ((s.flags & messages::kCutting) != 0) {
+        leastRpm = cuttingTicks == 0 ? s.speedRpm : std::min(leastRpm, s.speedRpm);
+        mostRpm = std::max(mostRpm, s.speedRpm);
+        ++cuttingTicks;
+    }
     truncatedTicks += s.contactStatus == static_cast<std::uint8_t>(contact::Status::truncated);
 }
 
@@ -69,20 +78,27 @@ device::Motion readMotion(const std::string& file, const device::Capability& cap
 
 RunSummary runLoop(const RunSettings& settings, const device::Motion& motion, std::unique_ptr<contact::Method> method,
                    const loop::Listener& listener) {
-    method->reset();  // whatever was felt on the way to this run leaves no trace in it
+    return runLoop(settings, motion, loop::Work{std::move(method), nullptr},
+                   [&](loop::HapticLoop&, const messages::HapticSample& sample) { listener(sample); }, {});
+}
+
+RunSummary runLoop(const RunSettings& settings, const device::Motion& motion, loop::Work work,
+                   const LoopListener& listener, const loop::BrickListener& bricks) {
+    work.method->reset();  // whatever was felt on the way to this run leaves no trace in it
     loop::LoopSettings loopSettings;
     loopSettings.rateHz = settings.rateHz;
     loop::HapticLoop haptic(loopSettings, std::make_unique<device::SimulatedDevice>(settings.device, motion),
-                            std::move(method), settings.parameters);
+                            std::move(work), settings.parameters, settings.drive);
     RunSummary summary;
     const double period = haptic.periodS();
     const loop::Listener each = [&](const messages::HapticSample& sample) {
         summary.take(sample, period);
-        listener(sample);
+        listener(haptic, sample);
         if (cancelled()) haptic.requestStop();
     };
     const double duration = settings.durationS > 0.0 ? settings.durationS : std::max(motion.durationS(), period);
-    summary.report = settings.realTime ? haptic.runRealTime(duration, each) : haptic.runSimulated(duration, each);
+    summary.report =
+        settings.realTime ? haptic.runRealTime(duration, each, bricks) : haptic.runSimulated(duration, each, bricks);
     summary.stopped = cancelled();
     return summary;
 }

@@ -22,6 +22,7 @@ struct RunSettings {
     bool realTime = false;
     device::SimulatedDeviceSettings device;
     force::Parameters parameters = force::defaultParameters();
+    instrument::Drive drive;
 };
 
 /// What a run comes to, gathered sample by sample.
@@ -29,6 +30,9 @@ struct RunSummary {
     double durationS = 0.0, peakForceN = 0.0, deepestMm = 0.0, contactS = 0.0, largestAreaMm2 = 0.0;
     std::uint64_t samples = 0, limitedTicks = 0, slopeLimitedTicks = 0, faultTicks = 0, truncatedTicks = 0;
     bool touched = false, stopped = false;  ///< stopped: by Ctrl-C
+    std::array<double, tooth::kTissueCount> removedMm3{};
+    double leastRpm = 0.0, mostRpm = 0.0, worstCutUs = 0.0;  ///< speed while cutting
+    std::uint64_t cuttingTicks = 0, stalledTicks = 0, outOfBricksTicks = 0;
     loop::RunReport report;
     void take(const messages::HapticSample& sample, double periodS);
 };
@@ -40,6 +44,10 @@ struct RunSummary {
 /// Runs `motion`; `listener` gets each sample in order, may throw. Ends early, cleanly, when cancelled().
 RunSummary runLoop(const RunSettings& settings, const device::Motion& motion, std::unique_ptr<contact::Method> method,
                    const loop::Listener& listener);
+/// The same for a tooth that is cut: `listener` may give the loop commands (undo), `bricks` hears what was cut.
+using LoopListener = std::function<void(loop::HapticLoop&, const messages::HapticSample&)>;
+RunSummary runLoop(const RunSettings& settings, const device::Motion& motion, loop::Work work,
+                   const LoopListener& listener, const loop::BrickListener& bricks);
 
 /// runLoop() with all samples kept: about 0.4 kB each.
 struct RunRecord {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// One run that cuts: trace, session, plots, and the tooth that is left.
+
+#include <string>
+#include <vector>
+
+#include "cli/cut_session.h"
+#include "cli/run_job.h"
+#include "cli/run_output.h"
+#include "cli/station.h"
+
+namespace handpiece::cli {
+
+struct CutRunOptions {
+    std::string code;                                ///< typed by the student; may be empty
+    std::vector<double> undoAtS, redoAtS, resetAtS;  ///< each as soon as no stroke is under way
+};
+
+struct CutOutcome {
+    RunSummary summary;
+    std::uint64_t stateHash = 0;
+    tooth::TissueVolumes leftMm3{};
+    session::RecorderStatus recording;
+    std::size_t undone = 0;   ///< steps taken back or forth
+    double cutMeshMm3 = 0.0;  ///< volume of cut.stl
+    std::vector<std::string> files;
+};
+
+/// Runs the motion on the station and writes trace.csv, session.h5, the plots, cut.stl and cut/ into `outputs`.
+[[nodiscard]] CutOutcome runCut(const Station& station, const tooth::Case& toothCase, const RunSettings& settings,
+                                const device::Motion& motion, const CutRunOptions& options, Outputs& outputs);
+
+/// The motion with the pedal at `pedal` all the way and let go at its end.
+[[nodiscard]] device::Motion withPedal(const device::Motion& motion, double pedal);
+/// The motion of a hand that trembles: 8 to 12 Hz, root mean square `amplitudeMm` along each axis; the same for the
+/// same seed. Physiological tremor lies in that band [R].
+[[nodiscard]] device::Motion withTremor(const device::Motion& motion, double amplitudeMm, std::uint64_t seed);
+
+}  // namespace handpiece::cli

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// A tooth that can be cut, a bur, what turns it and what it feels like: from names to a loop, for run, replay and
+/// reproduce alike.
+
+#include <memory>
+#include <string>
+
+#include "cli/inputs.h"
+#include "handpiece/model/instrument/catalogue.h"
+#include "handpiece/model/instrument/rotor.h"
+#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/tick/cutting/cutter.h"
+#include "handpiece/tick/device/device.h"
+#include "handpiece/tick/force/parameters.h"
+#include "handpiece/tick/loop/haptic_loop.h"
+
+namespace handpiece::cli {
+
+/// All that decides what a cut does, besides the tooth and the hand. What a session keeps of it is enough to cut again.
+struct StationSettings {
+    double rateHz = 1000.0;
+    tooth::FieldSettings field;
+    tooth::CutSettings cut;
+    std::shared_ptr<const instrument::Bur> bur;
+    instrument::Ability ability;
+    instrument::Drive drive;
+    tooth::TissueTable tissues = tooth::builtInTissues();
+    device::Capability capability;
+    force::Parameters parameters = force::defaultParameters();
+    bool fullRemoval = false;
+};
+
+/// Everything but the tooth, as JSON; numbers come back bit for bit. Of the bur its outline is kept, which decides all
+/// that it does, and its name: of a file no folder.
+[[nodiscard]] std::string settingsJson(const StationSettings& settings);
+/// Throws core::Error naming `where` and what is missing or wrong.
+[[nodiscard]] StationSettings settingsFromJson(const std::string& json, const std::string& where);
+
+/// One tooth under one bur. The field is cut by the loop that gets the work.
+struct Station {
+    std::shared_ptr<const tooth::CuttableTooth> tooth;
+    std::shared_ptr<tooth::CutField> field;
+    StationSettings settings;
+
+    /// A method and a cutter on the field, for a loop. One loop at a time.
+    [[nodiscard]] loop::Work work() const;
+};
+/// Reads or reopens the fields, with a progress bar.
+[[nodiscard]] Station makeStation(const tooth::Case& toothCase, StationSettings settings, bool useCache);
+
+}  // namespace handpiece::cli

@@ -2,9 +2,7 @@
 #include "handpiece/tick/cutting/sweeper.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 
 #include "handpiece/model/instrument/piece.h"
 
@@ -20,11 +18,17 @@ namespace {
 constexpr std::uint8_t kUnknown = 255, kMixed = 254;
 /// Coarse values are known to this depth (see CutField).
 constexpr double kCoarseReachMm = 2.0;
-/// Between two poses that are cut on a way: what is left standing on a round bur's wall, and what a corner of the
-/// outline leaves in voxels; more on a way longer than kFastMm.
 /// A brick's pieces are those of a region so much larger, and looked up again when the bur has moved as far.
 constexpr double kPiecesVoxels = 1.0;
+/// Between two poses that are cut on a way: what is left standing on a round bur's wall, and what a corner of the
+/// outline leaves in voxels; more on a way longer than kFastMm.
 constexpr double kScallopMm = 1e-3, kNotchVoxels = 0.04, kFastNotchVoxels = 0.2, kFastMm = 0.1;
+/// A way of metres is no way of a hand: it is cut at so many poses.
+constexpr double kMostSteps = 512.0;
+/// Of angles round the bur, where a corner's way is looked at.
+constexpr double kCosines[] = {1.0, 0.9238795325112867,  0.7071067811865476,  0.3826834323650898,
+                               0.0, -0.3826834323650898, -0.7071067811865476, -0.9238795325112867,
+                               -1.0};
 
 SweepKernels kernelsFor(core::SimdLevel level) {
 #if defined(__x86_64__)
@@ -320,13 +324,6 @@ void Sweeper::raiseCoarse(const core::Pose& pose, bool all) noexcept {
 /// How deep a notch, over the way between two poses, is left standing where a corner is the outermost part of the bur
 /// seen along the way; `direction` (unit) in the bur's frame.
 double Sweeper::notchOf(const Vec3& direction) const noexcept {
-    constexpr int kAzimuths = 8;
-    static const std::array<double, kAzimuths + 1> kCosines = [] {
-        std::array<double, kAzimuths + 1> cosines{};
-        for (int i = 0; i <= kAzimuths; ++i)
-            cosines[static_cast<std::size_t>(i)] = std::cos(std::numbers::pi * i / kAzimuths);
-        return cosines;
-    }();
     const double sideways = std::hypot(direction.x(), direction.y());
     double most = 0.0;
     for (const Corner& corner : corners_) {
@@ -348,13 +345,13 @@ double Sweeper::stepsBetween(const core::Pose& from, const core::Pose& to, doubl
     const double shifted = way.norm(), turned = reach * from.orientation.angularDistance(to.orientation);
     movedMm = shifted + turned;
     double steps = std::ceil(movedMm / stepMm_);
-    if (corners_.empty()) return steps;
+    if (corners_.empty()) return std::min(steps, kMostSteps);
     const double notch = (movedMm > kFastMm ? kFastNotchVoxels : kNotchVoxels) * voxelMm_;
     // A turn moves points in all directions: as bad as it gets at a right angle.
     const bool onlyTop = corners_.size() == 1 && corners_[0].atTop;
     double left = 0.5 * turned * (onlyTop ? kNotchVoxels / kFastNotchVoxels : 1.0);
     if (shifted > 0.0) left += shifted * notchOf(from.orientation.conjugate() * (way / shifted));
-    return std::max(steps, std::ceil(left / notch));
+    return std::min(std::max(steps, std::ceil(left / notch)), kMostSteps);
 }
 
 void Sweeper::setTravel(double mm) noexcept {

@@ -61,6 +61,19 @@ struct Place {
 void reproduceTables(Reproduction& r);
 void reproduceFigures(Reproduction& r);
 
+/// One depth query and the cut that follows it in a tick.
+struct CutTiming {
+    Timing field;     ///< ours, over a sweep in which each tick takes away all that the bur sweeps
+    Timing hullAnew;  ///< the hull of all vertices made anew (Qhull) and its depth (EPA), a few times
+    double removedMm3 = 0.0;
+};
+[[nodiscard]] CutTiming timeCut(const Reproduction& r, const Surface& surface, std::size_t count);
+/// Figure 11.
+void reproduceCutPictures(Reproduction& r, const Surface& surface);
+/// Figure 12, the same motions cutting and touching: their plots, and a row of results and of the table for each.
+void reproduceCutForces(Reproduction& r, const Surface& surface, Json& rows,
+                        std::vector<std::vector<std::string>>& cells);
+
 /// "yes" or "no".
 [[nodiscard]] inline std::string yesNo(bool yes) {
     return yes ? "yes" : "no";

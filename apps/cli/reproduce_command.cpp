@@ -136,9 +136,9 @@ void reproduce(const ReproduceOptions& o) {
     core::prepareOutputFolder(o.out);
     ProgressBar bar("reproducing");
     const core::Progress progress = bar.listener();
-    // Surfaces, timings, steps and drops of both methods on each, sixteen runs.
+    // Surfaces, timings, steps and drops of both methods on each, cuts on each, sixteen runs that touch, six that cut.
     const double surfaces = 1.0 + static_cast<double>(o.quick ? kQuickTeeth : kPercent.size());
-    const double steps = surfaces * (1.0 + 3.0 * 2.0) + 16.0;
+    const double steps = surfaces * (2.0 + 3.0 * 2.0) + 22.0;
     double done = 0.0;
     Reproduction r;
     r.quick = o.quick;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures 8, 9, 10, 12b and 13 of the paper.
+// Figures 8, 9, 10, 12b and 13 of the paper; those that cut are in reproduce_cutting.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -153,8 +153,6 @@ void drops(Reproduction& r) {
     r.report.heading("Figure 10: the same drop onto the plane");
     r.report.figure(shots10, "The slab whose top is the paper's plane, and the bur every 0.25 mm.");
     r.report.figure(toSvg(plane, false), "Both methods on the plane.");
-    r.report.heading("Figure 11: a tooth being cut");
-    r.report.paragraph("Follows with cutting.");
 }
 
 struct ForceRun {
@@ -218,9 +216,13 @@ void forces(Reproduction& r) {
     Json figure12 = Json::array(), figure13 = Json::array();
     std::vector<std::vector<std::string>> cells12, cells13;
     r.report.heading("Figure 12: force against time");
-    r.report.paragraph("(a) while cutting: follows with cutting.");
+    std::vector<std::vector<std::string>> cells12a;
+    reproduceCutForces(r, pictured(r), figure12, cells12a);
+    r.report.table({"", "motion", "peak force [N]", "removed [mm3]", "under 3.3 N"}, cells12a,
+                   "The same motions with the bur turning at full speed and with a still bur.");
     for (const char* motion : {"press", "drag"}) {
-        Plot plot{fmt::format("(b) while touching: a {}", motion), "time [s]", "force [N]", {}, {kPaperLimit}};
+        Plot plot{
+            fmt::format("(b) touching, by every method: a {}", motion), "time [s]", "force [N]", {}, {kPaperLimit}};
         for (const char* mode : {"proxy", "penalty"})
             for (const char* method : {"field", "hull"}) {
                 r.step("forces while touching");
@@ -233,7 +235,7 @@ void forces(Reproduction& r) {
             toSvg(plot, false),
             fmt::format("A normal hand on the simulated device at 1 kHz, on the tooth of {}.", pictured(r).name));
     }
-    r.report.table(kForceHeader, cells12, "All runs of Figure 12b.");
+    r.report.table(kForceHeader, cells12, "Touching, by both methods and both forces.");
     r.report.heading("Figure 13: approaching slowly and quickly");
     struct Approach {
         const char* name;
@@ -321,6 +323,7 @@ std::vector<Place> placesOn(const Surface& s) {
 
 void reproduceFigures(Reproduction& r) {
     drops(r);
+    reproduceCutPictures(r, pictured(r));
     forces(r);
 }
 

@@ -121,10 +121,16 @@ std::string stroboscopeSvg(const geometry::TriangleMesh& tooth, const instrument
         return d + "Z";
     };
     std::string body = fmt::format("<path class=\"hp-behind\" d=\"{}\"/>\n", path(silhouetteOf(tooth, 300), {0, 0}));
-    std::string section;
-    for (const std::vector<Vec2>& outline : sectionOf(tooth, shot.tipsMm.front().y()))
-        section += path(outline, {0, 0});
-    if (!section.empty()) body += fmt::format("<path class=\"hp-tooth\" fill-rule=\"evenodd\" d=\"{}\"/>\n", section);
+    const auto sectionPath = [&](const geometry::TriangleMesh& mesh) {
+        std::string d;
+        for (const std::vector<Vec2>& outline : sectionOf(mesh, shot.tipsMm.front().y()))
+            d += path(outline, {0, 0});
+        return d;
+    };
+    if (shot.before != nullptr)
+        body += fmt::format("<path class=\"hp-line hp-c7 hp-dash\" d=\"{}\"/>\n", sectionPath(*shot.before));
+    if (const std::string section = sectionPath(tooth); !section.empty())
+        body += fmt::format("<path class=\"hp-tooth\" fill-rule=\"evenodd\" d=\"{}\"/>\n", section);
     const std::vector<Vec2> outline = outlineOf(bur.profile());
     for (std::size_t i = 0; i < shot.tipsMm.size(); ++i)
         body += fmt::format("<path class=\"{}\" d=\"{}\"/>\n", shot.touching[i] ? "hp-bur-touch" : "hp-bur",

@@ -16,6 +16,7 @@ struct Stroboscope {
     std::vector<bool> touching;      ///< drawn stronger
     double upMm = 6.0;               ///< how much of the tooth below and of the air above the touch is shown
     int width = 760;
+    const geometry::TriangleMesh* before = nullptr;  ///< the tooth before it was cut, shown as a dashed outline
 };
 
 /// Section of the tooth through the tips' plane (x to the right, z up), behind it the silhouette, before it the bur.

@@ -13,15 +13,20 @@ class Reproduce(SystemTest):
         done = self.ok("reproduce", "--quick", "--out", out)
         self.assertIn("report.html", done.stdout)
         results = json.loads((out / "results.json").read_text())
-        for key in ("table1", "table2", "table3", "table4", "figure8", "figure9", "figure10", "figure12", "figure13"):
+        for key in ("table1", "table2", "table3", "table4", "figure8", "figure9", "figure10", "figure11", "figure12",
+                    "figure13"):
             self.assertTrue(results[key], key)
         for row in results["table3"]:
             for key in ("resolution", "faces", "method", "touching_us", "hovering_us"):
                 self.assertIn(key, row)
             self.assertGreater(row["touching_us"], 0)
+            self.assertGreater(row["cutting_us"], 0)
+            if row["method"] == "field":
+                self.assertGreater(row["removed_mm3"], 0.1)
         six, = (r for r in results["table3"] if r["resolution"] == "6 %" and r["method"] == "field")
         self.assertEqual((six["paper_cutting_ms"], six["paper_noncutting_ms"]), (154.9, 0.95))
         self.assertLess(six["touching_us"], 1000 * six["paper_cutting_ms"])
+        self.assertLess(six["cutting_us"], 1000 * six["paper_cutting_ms"])
         self.assertEqual({row["method"] for row in results["table3"]}, {"field", "hull"})
         for row in results["table2"]:
             if row.get("resolution") == "6 %":
@@ -37,9 +42,20 @@ class Reproduce(SystemTest):
             for row in results[name]:
                 self.assertEqual(len(row["t_s"]), len(row["force_n"]))
                 self.assertLessEqual(max(row["force_n"]), 3.3 + 1e-6)
+        # Figure 11: what the field lost is what the mesh lost.
+        for row in results["figure11"]:
+            self.assertAlmostEqual(row["outer_mm3"] - row["cut_mm3"], row["removed_mm3"], delta=0.001 * row["cut_mm3"])
+            self.assertEqual(len(row["cutting"]), len(row["tip_mm"]))
+            self.assertTrue(any(row["cutting"]))
+        # Figure 12: the same motion cutting and touching.
+        for motion in ("press", "drag"):
+            pair = {row["part"]: row for row in results["figure12"] if row["motion"] == motion and "pedal" in row}
+            self.assertEqual(len(pair["a"]["t_s"]), len(pair["b"]["t_s"]))
+            self.assertGreater(pair["a"]["removed_mm3"], 0.05)
+            self.assertEqual(pair["b"]["removed_mm3"], 0)
         page = (out / "report.html").read_text()
-        for word in ("Table I", "Table II", "Table III", "Table IV", "Figure 8", "Figure 9", "Figure 10", "Figure 12",
-                     "Figure 13", "<svg", "</html>"):
+        for word in ("Table I", "Table II", "Table III", "Table IV", "Figure 8", "Figure 9", "Figure 10", "Figure 11",
+                     "Figure 12", "Figure 13", "<svg", "</html>"):
             self.assertIn(word, page)
         self.assertNotIn("http://", page.replace("http://www.w3.org", ""), "one page, nothing from elsewhere")
         if not REAL_DATA.is_dir():

@@ -83,7 +83,8 @@ FieldDepth::FieldDepth(const LiveField& field, const instrument::Bur& bur, core:
       clearMm_(std::max(0.0, std::sqrt(std::max(0.0, outMm_ * outMm_ - 0.5 * instrument::kSurfaceSpacingMm *
                                                                            instrument::kSurfaceSpacingMm)) -
                                  0.1 * view_.voxelMm)),
-      inner_({}) {
+      inner_({}),
+      probe_({}) {
     const auto& rings = bur.rings();
     for (const instrument::SurfaceRing& r : rings) {
         const double around = r.rhoMm > kTinyMm ? r.normalRho / r.rhoMm : 0.0;
@@ -162,6 +163,15 @@ FieldDepth::FieldDepth(const LiveField& field, const instrument::Bur& bur, core:
         }
     }
     inner_ = RingArrays(shells);
+    std::vector<instrument::SurfaceRing> probes;
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        if (i % 2 != 0 && !spots_[i].isCorner && i + 1 != rings.size()) continue;
+        instrument::SurfaceRing ring = rings[i];
+        if (ring.count >= 16) ring.count = ring.count / 16 * 8;
+        probes.push_back(ring);
+        probeSpot_.push_back(i);
+    }
+    probe_ = RingArrays(probes);
     for (const instrument::MedialCurve& curve : bur.medialAxis())
         if (curve.onAxis) axis_.insert(axis_.end(), curve.balls.begin(), curve.balls.end());
     std::sort(axis_.begin(), axis_.end(), [](const MedialBall& a, const MedialBall& b) { return a.zMm < b.zMm; });
@@ -412,27 +422,31 @@ FieldTouch FieldDepth::search(const core::Pose& burInTooth, RingSensor& rings) n
         searchInside(frame, best);
         return best;
     }
-    const double least = rings.look(burInTooth, outMm_, kWindowMm);
+    // What the rings have sensed here serves again; else every second point of every second ring is near enough to
+    // begin to climb.
+    const bool sensed = rings.hasSensed(burInTooth, outMm_, kWindowMm);
+    if (!sensed) sense(probe_, frame);
+    const double least = sensed ? rings.leastMm() : leastOf(probe_);
     if (!(least <= outMm_)) return best;
     if (least <= -inMm_) searchInside(frame, best);
+    const RingArrays& arrays = sensed ? rings.arrays() : probe_;
     std::array<RingPoint, kStarts> points;
     const RingPose pose{frame.tip, frame.x, frame.y, frame.z};
-    const std::size_t count = pickNearest(rings.arrays(), pose, nullptr, kWindowMm, kApartMm, points);
+    const std::size_t count =
+        pickNearest(arrays, pose, nullptr, sensed ? kWindowMm : 2.0 * kWindowMm, kApartMm, points);
     for (std::size_t i = 0; i < count; ++i) {
         const RingPoint& p = points[i];
         if (p.gapMm <= -inMm_) continue;
-        const double in = spots_[p.ring].isCorner ? 0.0 : std::max(0.0, -p.gapMm);
+        const std::size_t spot = sensed ? p.ring : probeSpot_[p.ring];
+        const double in = spots_[spot].isCorner ? 0.0 : std::max(0.0, -p.gapMm);
         Climb(*this, frame,
-              {p.ring, static_cast<double>(rings.arrays().cosines[p.angle]),
-               static_cast<double>(rings.arrays().sines[p.angle]), in})
+              {spot, static_cast<double>(arrays.cosines[p.angle]), static_cast<double>(arrays.sines[p.angle]), in})
             .run(best);
     }
     return best;
 }
 
-/// Values on the bur's surface no longer tell how deep it is: its inside does.
-void FieldDepth::searchInside(const Frame& frame, FieldTouch& best) noexcept {
-    if (inner_.rings.empty()) return;
+void FieldDepth::sense(const RingArrays& arrays, const Frame& frame) const noexcept {
     RingQuery query{};
     store(query.tip, frame.tip);
     store(query.x, frame.x);
@@ -442,7 +456,13 @@ void FieldDepth::searchInside(const Frame& frame, FieldTouch& best) noexcept {
     query.farOutMm = static_cast<float>(field_.outMm());
     query.farInMm = static_cast<float>(field_.inMm());
     query.tissue = 0;
-    kernels_.sense(view_, inner_.bur, query, inner_.touch);
+    kernels_.sense(view_, arrays.bur, query, arrays.touch);
+}
+
+/// Values on the bur's surface no longer tell how deep it is: its inside does.
+void FieldDepth::searchInside(const Frame& frame, FieldTouch& best) noexcept {
+    if (inner_.rings.empty()) return;
+    sense(inner_, frame);
     std::array<RingPoint, kStarts> points;
     const RingPose pose{frame.tip, frame.x, frame.y, frame.z};
     const std::size_t count = pickNearest(inner_, pose, innerDepth_.data(), 2.0 * kWindowMm, kApartMm, points);

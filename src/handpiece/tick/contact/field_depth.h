@@ -54,6 +54,7 @@ class FieldDepth {
         double cosine, sine, inMm;
     };
     class Climb;
+    void sense(const RingArrays& arrays, const Frame& frame) const noexcept;
     void searchInside(const Frame& frame, FieldTouch& best) noexcept;
     [[nodiscard]] double scanAxis(const Frame& frame, double fromZ, double step, int count,
                                   double& topZ) const noexcept;
@@ -72,7 +73,8 @@ class FieldDepth {
     double outMm_, inMm_, clearMm_;  ///< values between -inMm_ and outMm_ are distances
     std::vector<Spot> spots_;        ///< by ring of the bur
     RingArrays inner_;               ///< shells inside the bur
-    std::vector<std::size_t> innerSpot_;
+    RingArrays probe_;               ///< some of the bur's points, to begin from
+    std::vector<std::size_t> innerSpot_, probeSpot_;
     std::vector<float> innerIn_, innerDepth_;   ///< how far inwards from the spot, and -phiB there
     std::vector<instrument::MedialBall> axis_;  ///< at rising z
 };

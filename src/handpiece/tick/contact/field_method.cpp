@@ -24,8 +24,8 @@ constexpr double kNoDirectionMm = 1e-9;
 constexpr double kFeelerFilletVoxels = 1.0;
 /// Between its nodes the field of a round wall stands in by h^2 / 8 r at most: a bur in its own cavity is given that
 /// and half as much again, or bumps of a micron would wedge it. r is taken as half the bur's radius.
-constexpr double kClearanceShare = 1.5 / 8.0;
-constexpr double kLeastClearanceMm = 0.0015;  // a proxy rests up to a micron inside
+constexpr double kSlackShare = 1.5 / 8.0;
+constexpr double kLeastSlackMm = 0.0015;  // a proxy rests up to a micron inside
 
 class FieldMethod final : public Method {
   public:
@@ -42,10 +42,9 @@ class FieldMethod final : public Method {
           feeler_(cut_ ? instrument::filleted(*bur_, kFeelerFilletVoxels * live_.field.settings().voxelMm) : *bur_),
           rings_(live_, feeler_, core::simdLevel()),
           field_(live_, feeler_, core::simdLevel()),
-          clearanceMm_(cut_ ? std::max(kLeastClearanceMm, kClearanceShare * live_.field.settings().voxelMm *
-                                                              live_.field.settings().voxelMm /
-                                                              (0.5 * bur_->maxRadiusMm()))
-                            : 0.0),
+          slackMm_(cut_ ? std::max(kLeastSlackMm, kSlackShare * live_.field.settings().voxelMm *
+                                                      live_.field.settings().voxelMm / (0.5 * bur_->maxRadiusMm()))
+                        : 0.0),
           farthestMm_(std::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {}
 
     [[nodiscard]] const char* name() const noexcept override { return "field"; }
@@ -74,11 +73,7 @@ class FieldMethod final : public Method {
     void patches(const core::Pose& burInTooth, PatchSet& out) noexcept override { rings_.patches(burInTooth, out); }
 
     Status constraints(const core::Pose& burInTooth, double reachMm, ConstraintSet& out) noexcept override {
-        const Status status = rings_.constraints(burInTooth, reachMm, out);
-        if (cut_ && burInTooth.isValid() && cut_->isCutNear(boxAround(burInTooth, reachMm)))
-            for (Constraint& c : out)
-                c.gapMm += clearanceMm_;
-        return status;
+        return rings_.constraints(burInTooth, reachMm, out);
     }
 
     void bearing(const core::Pose& burInTooth, const Vec3& direction, double leadMm, double leastRadiusMm,
@@ -150,8 +145,8 @@ class FieldMethod final : public Method {
             setFar(burInTooth, clear);
             return;
         }
-        FieldTouch found = field_.search(burInTooth, rings_);
-        if (cut_) found.depthMm -= clearanceMm_;
+        const FieldTouch found = field_.search(burInTooth, rings_);
+        result.slackMm = slackMm_;
         result.depthMm = std::max(found.depthMm, -settings_.reachMm);
         if (!(found.depthMm >= -settings_.reachMm)) {
             result.depthMm = std::max(-field_.clearMm(), -settings_.reachMm);
@@ -173,7 +168,7 @@ class FieldMethod final : public Method {
     instrument::Bur feeler_;  ///< the bur as the field is felt with it
     RingSensor rings_;
     FieldDepth field_;
-    double clearanceMm_;  ///< of the bur in its own cavity
+    double slackMm_;  ///< of the bur in its own cavity
     double farthestMm_;
     core::Pose farPose_;
     double clearMm_ = 0.0;  ///< distance at farPose_ when that was beyond reach

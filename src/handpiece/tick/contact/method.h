@@ -34,6 +34,9 @@ struct Depth {
     core::Vec3 toothPointMm = core::Vec3::Zero();  ///< the surface point of the tooth that decides
     tooth::Tissue tissue = tooth::Tissue::none;    ///< at that point
     Status status = Status::beyondReach;
+    /// By how much the surface here may seem nearer than it is, in constraints() as well: zero where it is exact. A
+    /// bur that is held off by more would hang in its own cavity.
+    double slackMm = 0.0;
 };
 
 /// A connected piece of the bur's surface within kContactMarginMm of tissue (or inside it).
@@ -81,7 +84,8 @@ struct Bearing {
 
 /// One way to find contact between one bur and one tooth. Built off the tick; the methods below run in it.
 ///
-/// Keeps a warm start between calls, so it belongs to one thread; answers do not depend on it beyond 1 nm.
+/// Keeps a warm start between calls, so it belongs to one thread; answers do not depend on it beyond 1 nm,
+/// on a surface that has been cut beyond 0.5 um.
 class Method {
   public:
     virtual ~Method() = default;

@@ -77,6 +77,13 @@ RingArrays::RingArrays(std::span<const instrument::SurfaceRing> given) {
              tissue.data(),       live.data(),     liveRing.data(), least.data(), skippedDeep.get()};
 }
 
+double leastOf(const RingArrays& arrays) noexcept {
+    float least = kNotLiveMm;
+    for (const float d : arrays.least)
+        least = std::min(least, d);
+    return static_cast<double>(least);
+}
+
 std::size_t pickNearest(const RingArrays& arrays, const RingPose& pose, const float* inMm, double windowMm,
                         double apartMm, std::span<RingPoint> out) noexcept {
     std::size_t count = 0;

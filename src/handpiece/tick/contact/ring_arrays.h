@@ -33,6 +33,9 @@ class RingArrays {
     RingTouch touch;
 };
 
+/// Least distance found; kNotLiveMm when no point is live.
+[[nodiscard]] double leastOf(const RingArrays& arrays) noexcept;
+
 /// The bur frame in the tooth frame.
 struct RingPose {
     core::Vec3 tip, x, y, z;

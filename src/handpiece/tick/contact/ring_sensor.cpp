@@ -102,19 +102,13 @@ void RingSensor::sense(const core::Pose& burInTooth, double thresholdMm, bool sk
 }
 
 double RingSensor::leastMm() const noexcept {
-    float least = kNotLiveMm;
-    for (const float d : arrays_.least)
-        least = std::min(least, d);
-    return static_cast<double>(least);
+    return leastOf(arrays_);
 }
 
-double RingSensor::look(const core::Pose& burInTooth, double thresholdMm, double windowMm) noexcept {
-    if (isSensed(burInTooth) && !*arrays_.skippedDeep) {
-        const double sensedMm = static_cast<double>(query_.thresholdMm), least = leastMm();
-        if (sensedMm >= thresholdMm || least + windowMm <= sensedMm) return least;
-    }
-    sense(burInTooth, thresholdMm, false);
-    return leastMm();
+bool RingSensor::hasSensed(const core::Pose& burInTooth, double thresholdMm, double windowMm) const noexcept {
+    if (!isSensed(burInTooth) || *arrays_.skippedDeep) return false;
+    const double sensedMm = static_cast<double>(query_.thresholdMm);
+    return sensedMm >= thresholdMm || leastMm() + windowMm <= sensedMm;
 }
 
 void RingSensor::bearing(const core::Pose& burInTooth, const Vec3& direction, double leadMm, double leastRadiusMm,

@@ -26,9 +26,10 @@ class RingSensor {
     void bearing(const core::Pose& burInTooth, const core::Vec3& direction, double leadMm, double leastRadiusMm,
                  Bearing& out) noexcept;
 
-    /// Least distance of the rings' points at this pose, kNotLiveMm when none is within the threshold. What was sensed
-    /// before at the same pose serves again when it holds every point up to `windowMm` above the nearest.
-    double look(const core::Pose& burInTooth, double thresholdMm, double windowMm) noexcept;
+    /// True when what was sensed last is of this pose and holds every point up to `windowMm` above the nearest.
+    [[nodiscard]] bool hasSensed(const core::Pose& burInTooth, double thresholdMm, double windowMm) const noexcept;
+    /// Least distance of the rings' points where they were sensed last; kNotLiveMm when none was within the threshold.
+    [[nodiscard]] double leastMm() const noexcept;
     [[nodiscard]] const RingArrays& arrays() const noexcept { return arrays_; }
 
   private:
@@ -47,7 +48,6 @@ class RingSensor {
 
     void sense(const core::Pose& burInTooth, double thresholdMm, bool skipsDeep) noexcept;
     [[nodiscard]] bool isSensed(const core::Pose& pose) const noexcept;
-    [[nodiscard]] double leastMm() const noexcept;
     [[nodiscard]] core::Vec3 pointMm(const BurRing& ring, std::int32_t j) const noexcept;
     [[nodiscard]] std::uint8_t tissueAt(std::int32_t at) const noexcept;
     std::size_t findRuns() noexcept;

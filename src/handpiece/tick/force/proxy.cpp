@@ -36,7 +36,9 @@ double Proxy::evaluate(contact::Method& method) noexcept {
     // The exact depth joins them, so that the bur rests on edges between its points, and rolls over them without
     // notches; and since it names but one of two walls at a time, so do its answers from nearby.
     const contact::Depth depth = method.depth(pose_);
-    clearanceMm_ = -depth.depthMm;
+    for (contact::Constraint& c : constraints_)
+        c.gapMm += depth.slackMm;
+    clearanceMm_ = depth.slackMm - depth.depthMm;
     const bool near = depth.status == contact::Status::ok && clearanceMm_ <= reach;
     const contact::Constraint exact{depth.normal, clearanceMm_, depth.toothPointMm, depth.tissue};
     if (near) {

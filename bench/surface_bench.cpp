@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// surface/<voxel_um>/<shallow|deep|full>: the surface kept up while a round-ended bur of 1 mm is drawn over the starter
-// molar, 6 um a tick. Counters p50_us, p99_us, p999_us, max_us are of one update a tick (the best of all passes for
-// each tick), raw_* of every tick of every pass, picture_* of one update for the 17 ticks of a picture (60 a second at
-// 1 kHz), with a17th of them a tick's share; dirty_bricks and triangles are those re-meshed in a tick. `full` is the
-// whole surface at once. HANDPIECE_BENCH_QUICK=1 makes a smoke test of it.
+// surface/<voxel_um>/<shallow|deep|full>: the surface kept up while a 330 bur is drawn over the starter molar, 6 um a
+// tick, and takes away all that it sweeps. Counters p50_us, p99_us, p999_us, max_us are of one update a tick (the best
+// of all passes for each tick), raw_* of every tick of every pass, picture_* of one update for the 17 ticks of a
+// picture (60 a second at 1 kHz), with a17th of them a tick's share, cut_to_mesh_* the same with the picture's cuts and
+// their way to the mesh; dirty_bricks and triangles are those whose mesh is another after a tick, touched_bricks those
+// with values to look at. `full` is the whole surface at once. HANDPIECE_BENCH_QUICK=1 makes a smoke test of it.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -14,18 +15,19 @@
 #include <cstdlib>
 #include <map>
 
+#include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/starter/starter.h"
 #include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/senses/surface/closed_surface.h"
 #include "handpiece/senses/surface/surface.h"
+#include "handpiece/tick/cutting/sweeper.h"
 
 namespace handpiece::bench {
 namespace {
 
 using core::Vec3;
-using tooth::kBrickCells, tooth::kBrickNodes;
 
-constexpr double kRadiusMm = 0.5, kLengthMm = 4.0, kStepMm = 0.006;
+constexpr double kStepMm = 0.006;
 constexpr std::size_t kPictureTicks = 17;
 
 bool isQuick() {
@@ -56,105 +58,69 @@ std::shared_ptr<const tooth::CuttableTooth> molar(int voxelUm) {
     return made;
 }
 
-/// The bur's axis as a segment; the tip's ball is about `from`.
-struct BurPose {
-    Vec3 from, to;
-};
-
 /// Over the crown from mesial to distal and back a little to the side, tilted by 15 degrees; the tip sinks in by
 /// 0.05 to 0.5 mm, or by 1.5 mm where `deep`.
-std::vector<BurPose> way(const tooth::ToothField& field, bool deep, std::size_t ticks) {
-    const Vec3 axis = Vec3(std::sin(M_PI / 12.0), 0.0, std::cos(M_PI / 12.0));
+std::vector<core::Pose> way(const tooth::ToothField& field, bool deep, std::size_t ticks) {
+    core::Pose pose;
+    pose.orientation = core::Quat(Eigen::AngleAxisd(M_PI / 12.0, Vec3::UnitY()));
     const double topMm = field.bounds().max.z();
-    std::vector<BurPose> poses;
+    std::vector<core::Pose> poses;
     for (std::size_t i = 0; i < ticks; ++i) {
         const double along = kStepMm * static_cast<double>(i);
         const double x = 3.0 * std::sin(along / 3.0), y = -1.5 + along / 8.0;
         const double depth = deep ? 1.5 : 0.275 + 0.225 * std::sin(2.0 * M_PI * along / 1.5);
-        // Down until the ball touches, then in by the depth.
-        Vec3 centre(x, y, topMm + kRadiusMm);
-        for (int step = 0; step < 2000 && field.distance(centre) > kRadiusMm; ++step)
-            centre.z() -= std::max(0.001, field.distance(centre) - kRadiusMm);
-        centre.z() -= depth;
-        poses.push_back({centre, centre + (kLengthMm - kRadiusMm) * axis});
+        // Down until the tip touches, then in by the depth.
+        pose.positionMm = Vec3(x, y, topMm);
+        while (pose.positionMm.z() > 0.0 && field.distance(pose.positionMm) > 0.0)
+            pose.positionMm.z() -= 0.005;
+        pose.positionMm.z() -= depth;
+        poses.push_back(pose);
     }
     return poses;
 }
 
-double burDistance(const BurPose& bur, const Vec3& p) {
-    const Vec3 along = bur.to - bur.from;
-    const double t = std::clamp((p - bur.from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    return (p - bur.from - t * along).norm() - kRadiusMm;
-}
-
-/// All that the bur holds is taken away: plain, and not timed.
-void cut(tooth::CutField& field, const BurPose& bur) {
-    const tooth::FieldView view = field.field().view();
-    const auto band = static_cast<float>(field.base().settings.bandMm);
-    const double brickMm = kBrickCells * view.voxelMm;
-    const Vec3 origin(view.originMm[0], view.originMm[1], view.originMm[2]);
-    core::Box box;
-    box.extend(bur.from);
-    box.extend(bur.to);
-    box = box.grown(kRadiusMm + band);
-    std::int32_t low[3], high[3];
-    for (int k = 0; k < 3; ++k) {
-        low[k] = std::max(0, static_cast<std::int32_t>(std::floor((box.min[k] - origin[k]) / brickMm)));
-        high[k] =
-            std::min(view.bricks[k] - 1, static_cast<std::int32_t>(std::floor((box.max[k] - origin[k]) / brickMm)));
-    }
-    for (std::int32_t z = low[2]; z <= high[2]; ++z)
-        for (std::int32_t y = low[1]; y <= high[1]; ++y)
-            for (std::int32_t x = low[0]; x <= high[0]; ++x) {
-                const Vec3 corner = origin + brickMm * Vec3(x, y, z);
-                if (burDistance(bur, corner + Vec3::Constant(0.5 * brickMm)) > band + brickMm) continue;
-                const auto dense = static_cast<std::uint32_t>(x + view.bricks[0] * (y + view.bricks[1] * z));
-                const std::int32_t stored = field.storeBrick(dense);
-                if (stored < 0) continue;
-                float* values = field.values(stored);
-                bool changes = false;
-                for (int i = 0; i < tooth::kBrickValues; ++i) {
-                    const Vec3 node(8 * x + i % kBrickNodes, 8 * y + i / kBrickNodes % kBrickNodes, 8 * z + i / 81);
-                    const auto fresh = static_cast<float>(-burDistance(bur, origin + view.voxelMm * node));
-                    if (fresh <= values[i]) continue;
-                    values[i] = std::min(fresh, static_cast<float>(field.base().bandOutMm));
-                    changes = true;
-                }
-                if (changes) field.noteChanged(dense, true);
-            }
-}
-
 struct Pass {
-    std::vector<double> us;
-    double bricks = 0.0, triangles = 0.0;
+    std::vector<double> us;     ///< of an update
+    std::vector<double> allUs;  ///< from the first cut since the last picture until the meshes are there
+    double touched = 0.0, bricks = 0.0, triangles = 0.0;
 };
 
-/// One pass over the way with an update every `every` ticks.
-Pass follow(const std::shared_ptr<const tooth::CuttableTooth>& base, const std::vector<BurPose>& poses,
-            std::size_t every) {
+/// One pass over the way with an update every `every` ticks. Cutting is part of what is timed as `allUs`: all that lies
+/// between a cut and its triangles, save waiting for the next tick and for the next picture.
+Pass follow(const std::shared_ptr<const tooth::CuttableTooth>& base, const instrument::Bur& bur,
+            const std::vector<core::Pose>& poses, std::size_t every) {
     tooth::CutField field(base);
+    cutting::Sweeper sweeper(field, bur, core::simdLevel());
     tooth::CutMirror mirror(base);
     const surface::MirrorSource source(mirror);
     surface::Surface shown(source, &base->tissues);
     shown.build();
     Pass pass;
+    double allUs = 0.0;
     for (std::size_t i = 0; i < poses.size(); ++i) {
-        cut(field, poses[i]);
+        const double cutUs = nowUs();
+        sweeper.sweepTo(poses[i]);
         field.handOver(field.waitingBricks(), [&](const tooth::BrickSnapshot& snapshot) {
             mirror.apply(snapshot);
             return true;
         });
+        allUs += nowUs() - cutUs;
         if (i % every != every - 1) continue;
-        const std::vector<std::uint32_t> touched = mirror.takeTouched();
         const double begin = nowUs();
+        const std::vector<std::uint32_t> touched = mirror.takeTouched();
         const std::vector<std::uint32_t> changed = shown.update(touched);
         pass.us.push_back(nowUs() - begin);
+        pass.allUs.push_back(allUs + pass.us.back());
+        allUs = 0.0;
+        pass.touched += static_cast<double>(touched.size());
         pass.bricks += static_cast<double>(changed.size());
         for (const std::uint32_t dense : changed)
             if (const auto mesh = shown.mesh(dense)) pass.triangles += static_cast<double>(mesh->triangles.size());
     }
-    pass.bricks /= static_cast<double>(pass.us.size());
-    pass.triangles /= static_cast<double>(pass.us.size());
+    const auto updates = static_cast<double>(pass.us.size());
+    pass.touched /= updates;
+    pass.bricks /= updates;
+    pass.triangles /= updates;
     return pass;
 }
 
@@ -166,25 +132,26 @@ void reportTimes(benchmark::State& state, const std::string& prefix, std::vector
     state.counters[prefix + "max_us"] = us.back();
 }
 
-std::vector<double> bestOf(const std::vector<Pass>& passes) {
-    std::vector<double> best = passes[0].us;
+std::vector<double> bestOf(const std::vector<Pass>& passes, std::vector<double> Pass::*of) {
+    std::vector<double> best = passes[0].*of;
     for (const Pass& pass : passes)
         for (std::size_t i = 0; i < best.size(); ++i)
-            best[i] = std::min(best[i], pass.us[i]);
+            best[i] = std::min(best[i], (pass.*of)[i]);
     return best;
 }
 
 void runCut(benchmark::State& state, int voxelUm, bool deep) {
     const auto base = molar(voxelUm);
-    const std::vector<BurPose> poses = way(base->tooth->field, deep, isQuick() ? 85 : 1020);
+    const instrument::Bur bur = instrument::makeBur("330");
+    const std::vector<core::Pose> poses = way(base->tooth->field, deep, isQuick() ? 85 : 1020);
     std::vector<Pass> single, picture;
     std::vector<double> raw;
     for (int pass = 0; pass < (isQuick() ? 1 : 3); ++pass) {
-        single.push_back(follow(base, poses, 1));
-        picture.push_back(follow(base, poses, kPictureTicks));
+        single.push_back(follow(base, bur, poses, 1));
+        picture.push_back(follow(base, bur, poses, kPictureTicks));
         raw.insert(raw.end(), single.back().us.begin(), single.back().us.end());
     }
-    const std::vector<double> best = bestOf(single), pictures = bestOf(picture);
+    const std::vector<double> best = bestOf(single, &Pass::us), pictures = bestOf(picture, &Pass::us);
     double sum = 0.0;
     for (const double us : best)
         sum += us;
@@ -193,10 +160,12 @@ void runCut(benchmark::State& state, int voxelUm, bool deep) {
     reportTimes(state, "", best);
     reportTimes(state, "raw_", raw);
     reportTimes(state, "picture_", pictures);
+    reportTimes(state, "cut_to_mesh_", bestOf(picture, &Pass::allUs));
     double shares = 0.0;
     for (const double us : pictures)
         shares += us;
     state.counters["a17th_us"] = shares / static_cast<double>(pictures.size() * kPictureTicks);
+    state.counters["touched_bricks"] = single[0].touched;
     state.counters["dirty_bricks"] = single[0].bricks;
     state.counters["triangles"] = single[0].triangles;
     state.counters["picture_bricks"] = picture[0].bricks;

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "handpiece/base/geometry/inspect.h"
+#include "handpiece/base/geometry/self_intersection.h"
 #include "handpiece/base/geometry/triangle_tree.h"
+#include "handpiece/senses/surface/closed_surface.h"
 #include "senses/surface/solids.h"
 #include "support/random.h"
 
@@ -44,9 +46,9 @@ std::vector<double> distancesUm(const geometry::TriangleMesh& mesh, const std::v
 
 /// An edge of the solid is an edge of the mesh: within 10 um at voxels of 50 um nearly everywhere, and never off by
 /// half a voxel.
-void expectSharp(const geometry::TriangleMesh& mesh, const std::vector<Vec3>& edge) {
+void expectSharp(const geometry::TriangleMesh& mesh, const std::vector<Vec3>& edge, std::size_t percent = 95) {
     const std::vector<double> off = distancesUm(mesh, edge);
-    EXPECT_LT(off[off.size() * 95 / 100], 10.0);
+    EXPECT_LT(off[off.size() * percent / 100], 10.0);
     EXPECT_LT(off.back(), 25.0);
 }
 
@@ -111,6 +113,11 @@ TEST(Surface, MarginAndFloorOfABoxCutByACylinderAreSharp) {
         const double volume = 8 * half.prod() - M_PI * radius * radius * (half.z() - floor);
         expectSharp(mesh, margin);
         expectSharp(mesh, corner);
+        const geometry::TriangleMesh exported = closedSurface(FieldSource(field));
+        EXPECT_TRUE(geometry::selfIntersections(exported).empty());
+        // A little is given up where faces crossed.
+        expectSharp(exported, margin, 90);
+        expectSharp(exported, corner, 90);
         EXPECT_NEAR(geometry::enclosedVolumeMm3(mesh) / volume, 1.0, 2e-3);
     }
 }

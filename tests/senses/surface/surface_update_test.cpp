@@ -9,6 +9,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/inspect.h"
+#include "handpiece/base/geometry/self_intersection.h"
 #include "handpiece/senses/surface/closed_surface.h"
 #include "handpiece/senses/surface/surface.h"
 #include "model/tooth/cut_support.h"
@@ -78,6 +79,13 @@ void expectClosed(const geometry::TriangleMesh& mesh) {
     EXPECT_TRUE(report.oriented()) << report.flippedFaces << " flipped";
     EXPECT_EQ(report.nonManifoldVertices, 0u);
     EXPECT_EQ(report.unusedVertices, 0u);
+}
+
+/// What files are asked for: closed, and no face through another.
+void expectSolid(const geometry::TriangleMesh& mesh) {
+    expectClosed(mesh);
+    const auto crossings = geometry::selfIntersections(mesh);
+    EXPECT_TRUE(crossings.empty()) << crossings.size() << " pairs of faces cross";
 }
 
 TEST(SurfaceUpdate, GivesTheSameMeshesAsMakingThemAnew) {
@@ -252,15 +260,19 @@ TEST(ClosedSurface, WholeAndPartsHoldWhatTheFieldHolds) {
     const auto ball = [](double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; };
     const geometry::TriangleMesh dentine = closedPart(source, cutting.base->tissues, Tissue::dentine),
                                  enamel = closedPart(source, cutting.base->tissues, Tissue::enamel);
-    expectClosed(dentine);
-    expectClosed(enamel);
+    expectSolid(dentine);
+    expectSolid(enamel);
     EXPECT_NEAR(geometry::enclosedVolumeMm3(dentine) / ball(0.83), 1.0, 3e-3);
     EXPECT_NEAR(geometry::enclosedVolumeMm3(enamel) / (ball(1.2) - ball(0.83)), 1.0, 3e-3);
     EXPECT_TRUE(closedPart(source, cutting.base->tissues, Tissue::pulp).triangles.empty());
+    std::size_t mended = 0;
     for (int i = 0; i < 6; ++i) {
         cutting.cutAtRandom(random);
         const geometry::TriangleMesh whole = closedSurface(source);
-        expectClosed(whole);
+        Surface shown(source);
+        shown.build();
+        mended += geometry::selfIntersections(shown.closedMesh()).size();
+        expectSolid(whole);
         const tooth::TissueVolumes left = cutting.field.volumesMm3();
         const auto fieldMm3 = [&](Tissue tissue) { return left[static_cast<std::size_t>(tissue)]; };
         const double all = fieldMm3(Tissue::dentine) + fieldMm3(Tissue::enamel);
@@ -268,11 +280,12 @@ TEST(ClosedSurface, WholeAndPartsHoldWhatTheFieldHolds) {
         double sum = 0.0;
         for (const Tissue tissue : {Tissue::dentine, Tissue::enamel}) {
             const geometry::TriangleMesh part = closedPart(source, cutting.base->tissues, tissue);
-            expectClosed(part);
+            expectSolid(part);
             sum += geometry::enclosedVolumeMm3(part);
         }
         EXPECT_NEAR(sum / geometry::enclosedVolumeMm3(whole), 1.0, 3e-3);
     }
+    EXPECT_GT(mended, 0u);  // else nothing was asked
     EXPECT_THROW((void)closedSurface(source, [](double share) { return share < 0.5; }), core::Error);
 }
 

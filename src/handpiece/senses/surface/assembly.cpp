@@ -11,6 +11,7 @@
 #include "handpiece/senses/surface/part_source.h"
 #include "handpiece/senses/surface/surface.h"
 #include "handpiece/senses/surface/triangle_list.h"
+#include "handpiece/senses/surface/untangle.h"
 
 namespace handpiece::surface {
 namespace {
@@ -60,9 +61,11 @@ geometry::TriangleMesh withoutSpecks(const geometry::TriangleMesh& mesh, double 
 
 geometry::TriangleMesh closedSurface(const BrickSource& source, const core::Progress& progress) {
     Surface surface(source);
-    surface.buildUpTo(1, progress);
+    surface.buildUpTo(1, core::part(progress, 0.0, 0.4));
+    geometry::TriangleMesh mesh = surface.closedMesh();
+    untangle(source, surface.bricks_, mesh, core::part(progress, 0.4, 1.0));
     const double voxelMm = source.grid().voxelMm;
-    return withoutSpecks(surface.closedMesh(), voxelMm * voxelMm * voxelMm);
+    return withoutSpecks(mesh, voxelMm * voxelMm * voxelMm);
 }
 
 geometry::TriangleMesh closedPart(const BrickSource& source, const tooth::TissueMap& tissues, tooth::Tissue tissue,

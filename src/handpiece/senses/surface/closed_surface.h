@@ -11,7 +11,8 @@
 namespace handpiece::surface {
 
 /// The whole surface at full detail: closed, oriented, two-manifold; empty when there is none. Islands
-/// and bubbles that hold less than one voxel are left out. In parallel, the same bytes at any thread count. Throws
+/// and bubbles that hold less than one voxel are left out. Where faces would cross, vertices are drawn back into their
+/// cells, up to half a voxel, until none do. In parallel, the same bytes at any thread count. Throws
 /// core::Error when cancelled.
 [[nodiscard]] geometry::TriangleMesh closedSurface(const BrickSource& source, const core::Progress& progress = {});
 

@@ -27,7 +27,7 @@ inline constexpr int kMaxLevel = 2;
 /// Planes are taken on their own side of an edge of the solid. Where several sheets pass through a cell each has its
 /// vertex, so the whole is closed and two-manifold at full detail. A vertex stays in its cell, save that one on an edge
 /// of the solid may stand half a voxel out, short of the crossings of the cells beside it; the surface can still fold
-/// over itself there by a fraction of a voxel. Bricks of less detail have one vertex for all in a block of cells, and
+/// over itself there by a fraction of a voxel (closedSurface() mends that). Bricks of less detail have one vertex for all in a block of cells, and
 /// their neighbours use it too: no crack opens, though sheets nearer than the block grow together. Off the tick; one
 /// thread at a time; results do not depend on the thread count.
 class Surface {

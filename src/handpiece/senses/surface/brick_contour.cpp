@@ -265,7 +265,8 @@ struct PlaneSum {
 /// The work of one brick; kept by each thread, because it is large.
 class Contourer {
   public:
-    bool contour(const BrickSource& source, std::uint32_t dense, BrickContour& out) {
+    bool contour(const BrickSource& source, std::uint32_t dense, BrickContour& out, const BrickContour* before,
+                 const CellMask* dirty) {
         alignas(32) float scratch[tooth::kBrickValues];
         const float* own = source.values(dense, scratch);
         unsigned any = 0, all = 0x1ff;
@@ -297,8 +298,14 @@ class Contourer {
                                r3 = row(out, y + 1, z + 1);
                 const unsigned some = r0 | r1 | r2 | r3, every = r0 & r1 & r2 & r3;
                 unsigned active = (some | some >> 1) & ~(every & every >> 1) & 0xff;
+                const unsigned keeps =
+                    before == nullptr ? 0u : ~unsigned{(*dirty)[static_cast<std::size_t>(y + 8 * z)]};
                 for (; active != 0; active &= active - 1) {
                     const int x = std::countr_zero(active);
+                    if ((keeps >> x & 1) != 0) {
+                        keepCell(out, *before, x, y, z);
+                        continue;
+                    }
                     const unsigned bits = (r0 >> x & 3) | (r1 >> x & 3) << 2 | (r2 >> x & 3) << 4 | (r3 >> x & 3) << 6;
                     addCell(out, x, y, z, bits);
                 }
@@ -349,13 +356,26 @@ class Contourer {
         return joined;
     }
 
+    static void noteReach(BrickContour& out, const int (&at)[3]) {
+        for (int k = 0; k < 3; ++k)
+            out.reach = static_cast<std::uint8_t>(out.reach | (at[k] < kApron ? 1 << (2 * k) : 0) |
+                                                  (at[k] >= 8 - kApron ? 2 << (2 * k) : 0));
+    }
+
+    void keepCell(BrickContour& out, const BrickContour& before, int x, int y, int z) const {
+        noteReach(out, {x, y, z});
+        const auto number = static_cast<std::size_t>(x + 8 * (y + 8 * z));
+        out.cases[number] = before.cases[number];
+        out.first[number] = static_cast<std::uint16_t>(out.vertices.size());
+        const auto first = before.vertices.begin() + before.first[number];
+        out.vertices.insert(out.vertices.end(), first, first + cases_[before.cases[number]].sheets);
+    }
+
     void addCell(BrickContour& out, int x, int y, int z, unsigned bits) {
         const int at[3] = {x, y, z};
         if (ambiguous_[bits] != 0) bits |= joinedFaces(at, ambiguous_[bits]) << 8;
         const CellCase& cell = cases_[bits];
-        for (int k = 0; k < 3; ++k)
-            out.reach = static_cast<std::uint8_t>(out.reach | (at[k] < kApron ? 1 << (2 * k) : 0) |
-                                                  (at[k] >= 8 - kApron ? 2 << (2 * k) : 0));
+        noteReach(out, at);
         const auto number = static_cast<std::uint16_t>(x + 8 * (y + 8 * z));
         out.cases[number] = static_cast<std::uint16_t>(bits);
         out.first[number] = static_cast<std::uint16_t>(out.vertices.size());
@@ -484,9 +504,78 @@ class Contourer {
 
 }  // namespace
 
-bool contourBrick(const BrickSource& source, std::uint32_t dense, BrickContour& out) {
+CellMask cellsThatAsk(const NodeMask* own, const std::array<const NodeMask*, 6>& beside) {
+    // The nodes a cell looks at: its own, and from each of them two on along every axis. Bit x + kApron of a row.
+    constexpr int kNodes = kBrickNodes, kCells = kNodes - 1;
+    std::array<std::uint16_t, kSide * kSide> changed{};
+    const auto row = [&](int y, int z) -> std::uint16_t& {
+        return changed[static_cast<std::size_t>(y + kApron + kSide * (z + kApron))];
+    };
+    const auto of = [](const NodeMask& mask, int y, int z) -> unsigned {
+        return mask[static_cast<std::size_t>(y + kNodes * z)];
+    };
+    const auto put = [&](int y, int z, unsigned bits) { row(y, z) = static_cast<std::uint16_t>(row(y, z) | bits); };
+    for (int q = 0; q < kNodes; ++q)
+        for (int p = 0; p < kNodes; ++p) {
+            if (own != nullptr) put(p, q, of(*own, p, q) << kApron);
+            // Two layers beside: nodes kCells - 2 and kCells - 1 of the brick below, 1 and 2 of the one above.
+            if (beside[0] != nullptr) put(p, q, of(*beside[0], p, q) >> (kCells - kApron) & 3);
+            if (beside[1] != nullptr) put(p, q, (of(*beside[1], p, q) >> 1 & 3) << (kNodes + kApron));
+            for (int layer = 1; layer <= kApron; ++layer) {
+                if (beside[2] != nullptr) put(-layer, q, of(*beside[2], kCells - layer, q) << kApron);
+                if (beside[3] != nullptr) put(kCells + layer, q, of(*beside[3], layer, q) << kApron);
+                if (beside[4] != nullptr) put(q, -layer, of(*beside[4], q, kCells - layer) << kApron);
+                if (beside[5] != nullptr) put(q, kCells + layer, of(*beside[5], q, layer) << kApron);
+            }
+        }
+    std::array<unsigned, kNodes * kNodes> asked;  // bit x of row y + 9 z: by a cell that has this node
+    for (int z = 0; z < kNodes; ++z)
+        for (int y = 0; y < kNodes; ++y) {
+            const unsigned here = row(y, z);
+            unsigned bits = here | here << 1 | here << 2 | here >> 1 | here >> 2;
+            for (int d = 1; d <= kApron; ++d)
+                bits |= row(y - d, z) | row(y + d, z) | row(y, z - d) | row(y, z + d);
+            asked[static_cast<std::size_t>(y + kNodes * z)] = bits >> kApron;
+        }
+    CellMask cells;
+    for (std::size_t z = 0; z < 8; ++z)
+        for (std::size_t y = 0; y < 8; ++y) {
+            const std::size_t at = y + kNodes * z;
+            const unsigned bits = asked[at] | asked[at + 1] | asked[at + kNodes] | asked[at + kNodes + 1];
+            cells[y + 8 * z] = static_cast<std::uint8_t>(bits | bits >> 1);
+        }
+    return cells;
+}
+
+bool hasActive(const CellMask& mask, const BrickContour& contour) {
+    return std::any_of(contour.vertices.begin(), contour.vertices.end(),
+                       [&](const SheetVertex& v) { return (mask[v.cell >> 3] >> (v.cell & 7) & 1) != 0; });
+}
+
+std::uint8_t whoSees(const BrickContour& before, const BrickContour& now) {
+    if (before.cases == now.cases && before.rows == now.rows && before.vertices == now.vertices) return 0;
+    std::uint8_t seen = 1;
+    for (std::size_t cell = 0; cell < 512; ++cell) {
+        const std::uint16_t bits = now.cases[cell];
+        if ((bits | before.cases[cell]) == 0) continue;
+        const auto sides = static_cast<std::uint8_t>(((cell & 7) == 7 ? 1 : 0) | ((cell >> 3 & 7) == 7 ? 2 : 0) |
+                                                     (cell >> 6 == 7 ? 4 : 0));
+        if (sides == 0) continue;
+        const bool isSame =
+            bits == before.cases[cell] && std::equal(now.vertices.begin() + now.first[cell],
+                                                     now.vertices.begin() + now.first[cell] + cellCases()[bits].sheets,
+                                                     before.vertices.begin() + before.first[cell]);
+        if (isSame) continue;
+        for (unsigned slot = 1; slot < 8; ++slot)
+            if ((slot & sides) == slot) seen = static_cast<std::uint8_t>(seen | 1u << slot);
+    }
+    return seen;
+}
+
+bool contourBrick(const BrickSource& source, std::uint32_t dense, BrickContour& out, const BrickContour* before,
+                  const CellMask* dirty) {
     static thread_local Contourer contourer;
-    return contourer.contour(source, dense, out);
+    return contourer.contour(source, dense, out, before, dirty);
 }
 
 }  // namespace handpiece::surface

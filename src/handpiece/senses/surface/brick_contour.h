@@ -30,14 +30,26 @@ struct BrickContour {
     std::array<std::uint16_t, 512> first;  ///< of a cell that the surface passes through: its first vertex
     std::vector<SheetVertex> vertices;     ///< by cell, then by sheet
     std::uint8_t reach = 0;  ///< bit 2 k: depends on the brick below along axis k; 2 k + 1: on the one above
-
-    /// `first` follows from the rest.
-    [[nodiscard]] bool isSame(const BrickContour& other) const {
-        return rows == other.rows && cases == other.cases && reach == other.reach && vertices == other.vertices;
-    }
 };
 
-/// False when no surface passes through the brick (then `out` counts for nothing).
-bool contourBrick(const BrickSource& source, std::uint32_t dense, BrickContour& out);
+/// Bit x of row y + 9 z: a node of a brick.
+using NodeMask = std::array<std::uint16_t, 81>;
+/// Bit x of row y + 8 z: a cell of a brick.
+using CellMask = std::array<std::uint8_t, 64>;
+
+/// Cells that ask for the value of a node that has changed: of those changed in the brick itself, and in the six beside
+/// it (2 k: below along axis k); null where none has.
+[[nodiscard]] CellMask cellsThatAsk(const NodeMask* own, const std::array<const NodeMask*, 6>& beside);
+/// Cells of `mask` through which the surface passes.
+[[nodiscard]] bool hasActive(const CellMask& mask, const BrickContour& contour);
+/// Who sees that `before` has become `now`. Bit 0: they differ at all; bit s > 0: they differ in a cell that the brick
+/// in slot s of neighbours above looks at (bit k of a slot: one brick up along axis k).
+[[nodiscard]] std::uint8_t whoSees(const BrickContour& before, const BrickContour& now);
+
+/// False when no surface passes through the brick (then `out` counts for nothing). Where `before` is given it is the
+/// brick's contour as it was, and what it has for cells not in `dirty` holds still; only new vertices lack their
+/// tissue.
+bool contourBrick(const BrickSource& source, std::uint32_t dense, BrickContour& out,
+                  const BrickContour* before = nullptr, const CellMask* dirty = nullptr);
 
 }  // namespace handpiece::surface

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
@@ -17,6 +18,7 @@ namespace {
 
 /// Marks of update().
 constexpr std::uint8_t kContour = 1, kEmit = 2;
+constexpr std::uint32_t kNoChange = 0xffffffffu;
 /// Fewer bricks than this are done before other threads would have woken.
 constexpr std::size_t kWorthThreads = 48;
 
@@ -41,7 +43,9 @@ Surface::Surface(const BrickSource& source, const tooth::TissueMap* tissues)
       tissues_(tissues),
       bricks_(source.grid().count()),
       levels_(source.grid().count(), 0),
-      marks_(source.grid().count(), 0) {}
+      marks_(source.grid().count(), 0),
+      changeAt_(source.grid().count(), kNoChange),
+      seen_(source.grid().count()) {}
 
 Surface::~Surface() = default;
 
@@ -49,24 +53,65 @@ void Surface::label(std::uint32_t dense, std::span<SheetVertex> vertices) const 
     if (tissues_ == nullptr) return;
     const tooth::Tissue whole = tissues_->ofBrick(dense);
     for (SheetVertex& v : vertices)
-        v.tissue =
-            whole != tooth::Tissue::none ? whole : tissues_->at({v.positionMm[0], v.positionMm[1], v.positionMm[2]});
+        if (v.tissue == tooth::Tissue::none)
+            v.tissue = whole != tooth::Tissue::none ? whole
+                                                    : tissues_->at({v.positionMm[0], v.positionMm[1], v.positionMm[2]});
 }
 
-bool Surface::contour(std::uint32_t dense) {
+/// Which nodes of a brick are others than when it was touched before.
+struct Surface::Change {
+    NodeMask nodes{};
+    bool isAny = false, hasTurned = false;  ///< hasTurned: a node has come in or gone out
+};
+
+Surface::Change Surface::changeOf(std::uint32_t dense) {
+    Change change;
+    std::array<float, tooth::kBrickValues> scratch;
+    const float* now = source_.values(dense, scratch.data());
+    auto& seen = seen_[dense];
+    if (seen == nullptr) {
+        seen = std::make_unique<std::array<float, tooth::kBrickValues>>();
+        change.nodes.fill(0x1ff);
+        change.isAny = change.hasTurned = true;
+    } else {
+        constexpr std::size_t kRow = tooth::kBrickNodes;
+        for (std::size_t row = 0; row < change.nodes.size(); ++row) {
+            const float *from = seen->data() + kRow * row, *to = now + kRow * row;
+            if (std::memcmp(from, to, sizeof(float) * kRow) == 0) continue;
+            change.isAny = true;
+            unsigned bits = 0;
+            bool hasTurned = false;
+            for (std::size_t x = 0; x < kRow; ++x) {
+                bits |= static_cast<unsigned>(from[x] != to[x]) << x;
+                hasTurned |= (from[x] < 0.0f) != (to[x] < 0.0f);
+            }
+            change.nodes[row] = static_cast<std::uint16_t>(bits);
+            change.hasTurned |= hasTurned;
+        }
+        if (!change.isAny) return change;
+    }
+    std::copy(now, now + tooth::kBrickValues, seen->begin());
+    return change;
+}
+
+std::uint8_t Surface::contour(std::uint32_t dense, const CellMask* dirty) {
     static thread_local BrickContour fresh;
     std::unique_ptr<BrickState>& brick = bricks_[dense];
     const bool was = brick != nullptr;
-    if ((!was && !source_.mayHoldSurface(dense)) || !contourBrick(source_, dense, fresh)) {
+    constexpr std::uint8_t kAll = 0xff;
+    if ((!was && !source_.mayHoldSurface(dense)) ||
+        !contourBrick(source_, dense, fresh, was && dirty != nullptr ? &brick->contour : nullptr, dirty)) {
         brick.reset();
-        return was;
+        return was ? kAll : 0;
     }
     label(dense, fresh.vertices);
-    if (was && brick->level == levels_[dense] && fresh.isSame(brick->contour)) return false;
+    const bool isCoarse = was && (brick->level != 0 || levels_[dense] != 0);
+    std::uint8_t seen = was && brick->level == levels_[dense] ? whoSees(brick->contour, fresh) : kAll;
+    if (seen != 0 && isCoarse) seen = kAll;
     if (!was) brick = std::make_unique<BrickState>();
     std::swap(brick->contour, fresh);
-    coarsen(*brick, dense);
-    return true;
+    if (seen != 0) coarsen(*brick, dense);
+    return seen;
 }
 
 /// One vertex for all in a block of cells: the mean of those on an edge of the solid, or of all when none is.
@@ -132,6 +177,7 @@ void Surface::buildUpTo(std::size_t rounds, const core::Progress& progress) {
     std::vector<std::uint32_t> bricks;
     for (std::uint32_t dense = 0; dense < bricks_.size(); ++dense) {
         bricks_[dense].reset();
+        seen_[dense].reset();
         if (source_.mayHoldSurface(dense)) bricks.push_back(dense);
     }
     levelsSet_.clear();
@@ -144,7 +190,7 @@ void Surface::buildUpTo(std::size_t rounds, const core::Progress& progress) {
             for (std::size_t i = begin + from; i < begin + to; ++i) {
                 const std::uint32_t dense = bricks[i];
                 if (step < kSteps)
-                    contour(dense);
+                    contour(dense, nullptr);
                 else if (bricks_[dense] != nullptr)
                     bricks_[dense]->mesh = makeMesh(dense);
             }
@@ -155,17 +201,26 @@ void Surface::buildUpTo(std::size_t rounds, const core::Progress& progress) {
 
 std::vector<std::uint32_t> Surface::update(std::span<const std::uint32_t> touched) {
     std::vector<std::uint32_t> contours, emits, changed;
+    const auto beside = [&](std::uint32_t dense, std::size_t side) {
+        int step[3] = {0, 0, 0};
+        step[side / 2] = (side & 1) != 0 ? 1 : -1;
+        return grid().neighbour(dense, step[0], step[1], step[2]);
+    };
     const auto mark = [&](std::uint32_t dense, std::uint8_t bit, std::vector<std::uint32_t>& list) {
         if ((marks_[dense] & bit) != 0) return;
         marks_[dense] |= bit;
         list.push_back(dense);
     };
+    std::vector<Change> changes;
     for (const std::uint32_t dense : touched) {
+        if (changeAt_[dense] != kNoChange) continue;
+        const Change change = changeOf(dense);
+        if (!change.isAny) continue;
+        changeAt_[dense] = static_cast<std::uint32_t>(changes.size());
+        changes.push_back(change);
         mark(dense, kContour, contours);
-        for (int side = 0; side < 6; ++side) {
-            int step[3] = {0, 0, 0};
-            step[side / 2] = (side & 1) != 0 ? 1 : -1;
-            const std::int64_t other = grid().neighbour(dense, step[0], step[1], step[2]);
+        for (std::size_t side = 0; side < 6; ++side) {
+            const std::int64_t other = beside(dense, side);
             if (other < 0) continue;
             const BrickState* brick = bricks_[static_cast<std::size_t>(other)].get();
             // From there this brick lies on the opposite side.
@@ -177,13 +232,31 @@ std::vector<std::uint32_t> Surface::update(std::span<const std::uint32_t> touche
         if (bricks_[dense] != nullptr && bricks_[dense]->level != levels_[dense]) mark(dense, kContour, contours);
     levelsSet_.clear();
     std::sort(contours.begin(), contours.end());
-    std::vector<std::uint8_t> isChanged(contours.size());
-    forEach(contours.size(), [&](std::size_t i) { isChanged[i] = contour(contours[i]) ? 1 : 0; });
+    std::vector<std::uint8_t> seen(contours.size());
+    const auto changeIn = [&](std::int64_t dense) -> const Change* {
+        const std::uint32_t at = dense < 0 ? kNoChange : changeAt_[static_cast<std::size_t>(dense)];
+        return at == kNoChange ? nullptr : &changes[at];
+    };
+    forEach(contours.size(), [&](std::size_t i) {
+        const std::uint32_t dense = contours[i];
+        const BrickState* brick = bricks_[dense].get();
+        const Change* own = changeIn(dense);
+        std::array<const NodeMask*, 6> around{};
+        for (std::size_t side = 0; side < 6; ++side)
+            if (const Change* change = changeIn(beside(dense, side))) around[side] = &change->nodes;
+        const CellMask dirty = cellsThatAsk(own != nullptr ? &own->nodes : nullptr, around);
+        const bool mayMove = brick == nullptr || brick->level != levels_[dense] || (own != nullptr && own->hasTurned) ||
+                             hasActive(dirty, brick->contour);
+        seen[i] = mayMove ? contour(dense, &dirty) : 0;
+    });
+    for (const std::uint32_t dense : touched)
+        changeAt_[dense] = kNoChange;
     for (std::size_t i = 0; i < contours.size(); ++i) {
         marks_[contours[i]] &= static_cast<std::uint8_t>(~kContour);
-        if (isChanged[i] == 0) continue;
+        if (seen[i] == 0) continue;
         mark(contours[i], kEmit, emits);
         for (int slot = 1; slot < 8; ++slot) {
+            if ((seen[i] >> slot & 1) == 0) continue;
             const std::int64_t other = grid().neighbour(contours[i], slot & 1, slot >> 1 & 1, slot >> 2);
             if (other < 0) continue;
             const BrickState* brick = bricks_[static_cast<std::size_t>(other)].get();
@@ -192,7 +265,7 @@ std::vector<std::uint32_t> Surface::update(std::span<const std::uint32_t> touche
         }
     }
     std::sort(emits.begin(), emits.end());
-    isChanged.assign(emits.size(), 1);
+    std::vector<std::uint8_t> isChanged(emits.size(), 1);
     forEach(emits.size(), [&](std::size_t i) {
         BrickState* brick = bricks_[emits[i]].get();
         if (brick == nullptr) return;

@@ -3,6 +3,7 @@
 /// @file
 /// The surface of a tooth as triangles, brick by brick, kept up while the tooth is cut.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -27,9 +28,9 @@ inline constexpr int kMaxLevel = 2;
 /// Planes are taken on their own side of an edge of the solid. Where several sheets pass through a cell each has its
 /// vertex, so the whole is closed and two-manifold at full detail. A vertex stays in its cell, save that one on an edge
 /// of the solid may stand half a voxel out, short of the crossings of the cells beside it; the surface can still fold
-/// over itself there by a fraction of a voxel (closedSurface() mends that). Bricks of less detail have one vertex for all in a block of cells, and
-/// their neighbours use it too: no crack opens, though sheets nearer than the block grow together. Off the tick; one
-/// thread at a time; results do not depend on the thread count.
+/// over itself there by a fraction of a voxel (closedSurface() mends that). Bricks of less detail have one vertex for
+/// all in a block of cells, and their neighbours use it too: no crack opens, though sheets nearer than the block grow
+/// together. Off the tick; one thread at a time; results do not depend on the thread count.
 class Surface {
   public:
     /// Keeps references to both. Without tissues all is Tissue::none.
@@ -62,7 +63,10 @@ class Surface {
   private:
     friend geometry::TriangleMesh closedSurface(const BrickSource& source, const core::Progress& progress);
     void buildUpTo(std::size_t rounds, const core::Progress& progress);
-    bool contour(std::uint32_t dense);  // true when it is another than before
+    /// Who sees that the brick's contour is another now (see whoSees()). `dirty`: cells that may have changed.
+    std::uint8_t contour(std::uint32_t dense, const std::array<std::uint8_t, 64>* dirty);
+    struct Change;
+    [[nodiscard]] Change changeOf(std::uint32_t dense);
     void coarsen(BrickState& brick, std::uint32_t dense) const;
     void label(std::uint32_t dense, std::span<SheetVertex> vertices) const;
     [[nodiscard]] std::shared_ptr<const BrickMesh> makeMesh(std::uint32_t dense);
@@ -73,6 +77,9 @@ class Surface {
     std::vector<std::uint8_t> levels_;                 ///< by dense brick, as set
     std::vector<std::uint32_t> levelsSet_;             ///< since the last update
     std::vector<std::uint8_t> marks_;                  ///< by dense brick: scratch of update()
+    std::vector<std::uint32_t> changeAt_;              ///< by dense brick: scratch of update()
+    /// By dense brick: values as they were when it was touched last; null: as never.
+    std::vector<std::unique_ptr<std::array<float, tooth::kBrickValues>>> seen_;
 };
 
 }  // namespace handpiece::surface

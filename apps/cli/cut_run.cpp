@@ -11,7 +11,9 @@
 #include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/model/tooth/attempt.h"
 #include "handpiece/model/tooth/case_bytes.h"
+#include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/senses/surface/closed_surface.h"
 
 namespace handpiece::cli {
@@ -52,6 +54,26 @@ void writeCut(const Station& station, const tooth::Case& toothCase, const tooth:
     geometry::writeStl(outputs.path("cut.stl"), cut.outer);
     outputs.wrote("cut.stl");
     tooth::writeCase(cut, outputs.path("cut"));
+}
+
+/// What was cut, to go on with later.
+void writeAttempt(const Station& station, const tooth::Case& toothCase, const tooth::CutState& state,
+                  const CutRunOptions& options, const CutOutcome& outcome, const Outputs& outputs) {
+    tooth::Attempt attempt;
+    attempt.caseFile = std::filesystem::absolute(options.casePath);
+    attempt.caseKey = tooth::contentKey(toothCase);
+    attempt.caseName = toothCase.name;
+    attempt.state = tooth::encodeState(state, tooth::identityOf(*station.tooth));
+    attempt.voxelMm = station.settings.field.voxelMm;
+    attempt.removedMm3 = state.removedMm3;
+    attempt.bur = station.settings.bur->name();
+    attempt.ability = station.settings.ability.name;
+    attempt.drive = station.settings.drive.name;
+    attempt.elapsedS = options.elapsedS + outcome.summary.durationS;
+    attempt.student = options.code;
+    attempt.session = "session.h5";
+    attempt.undoDepth = static_cast<std::int64_t>(outcome.undoSteps);
+    tooth::writeAttempt(attempt, outputs.path("attempt"));
 }
 
 }  // namespace
@@ -149,8 +171,10 @@ CutOutcome runCut(const Station& station, const tooth::Case& toothCase, const Ru
     outcome.leftMm3 = station.field->volumesMm3();
     session.finish(state, lastTick);
     outcome.recording = recorder.close();
+    outcome.undoSteps = session.history().undoSteps();
     if (!told && !outcome.recording.message.empty())
         fmt::print(stderr, "handpiece: recording has stopped: {}\n", outcome.recording.message);
+    writeAttempt(station, toothCase, state, options, outcome, outputs);
     writeCut(station, toothCase, state, outputs, outcome);
     trace.finish(outputs, settings.device.capability.maxForceN, true);
     return outcome;

@@ -15,6 +15,8 @@ namespace handpiece::cli {
 
 struct CutRunOptions {
     std::string code;                                ///< typed by the student; may be empty
+    double elapsedS = 0.0;                           ///< before, of an attempt that goes on
+    std::filesystem::path casePath;                  ///< for the attempt
     std::vector<double> undoAtS, redoAtS, resetAtS;  ///< each as soon as no stroke is under way
 };
 
@@ -23,12 +25,14 @@ struct CutOutcome {
     std::uint64_t stateHash = 0;
     tooth::TissueVolumes leftMm3{};
     session::RecorderStatus recording;
-    std::size_t undone = 0;   ///< steps taken back or forth
-    double cutMeshMm3 = 0.0;  ///< volume of cut.stl
+    std::size_t undoSteps = 0;  ///< strokes that could still be undone
+    std::size_t undone = 0;     ///< steps taken back or forth
+    double cutMeshMm3 = 0.0;    ///< volume of cut.stl
     std::vector<std::string> files;
 };
 
-/// Runs the motion on the station and writes trace.csv, session.h5, the plots, cut.stl and cut/ into `outputs`.
+/// Runs the motion on the station and writes trace.csv, session.h5, the plots, cut.stl, cut/ and attempt/ into
+/// `outputs`.
 [[nodiscard]] CutOutcome runCut(const Station& station, const tooth::Case& toothCase, const RunSettings& settings,
                                 const device::Motion& motion, const CutRunOptions& options, Outputs& outputs);
 

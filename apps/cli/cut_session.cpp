@@ -34,6 +34,7 @@ CutSession::CutSession(const Station& station, session::Recorder* recorder, bool
     mirror_.apply(state);
     (void)mirror_.takeTouched();
     history_.start(state);
+    if (recorder_ != nullptr && station.settings.resumed) recorder_->keyFrame(0, tooth::encodeState(state, key_));
 }
 
 void CutSession::tell(std::uint64_t tick, EventName name, std::string_view text) {

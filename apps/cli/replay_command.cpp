@@ -85,6 +85,12 @@ void replay(const ReplayOptions& o) {
     const std::vector<session::Event> events = reader.events();
     const tooth::Case toothCase = tooth::decodeCase(reader.info().tooth, o.session);
     const Station station = makeStation(toothCase, settingsFromJson(reader.info().settings, o.session), !o.noCache);
+    if (station.settings.resumed) {
+        if (reader.keyFrameTicks().empty())
+            throw core::Error("the state that the session began with is missing", o.session, "take another copy");
+        station.resume(
+            tooth::decodeState(reader.keyFrame(0).state, tooth::identityOf(*station.tooth), *station.tooth, o.session));
+    }
     const auto told = toldBy(reader, events, station, records.back().tick, o.session);
 
     std::vector<device::Reading> readings;

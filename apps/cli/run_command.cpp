@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/cut_run.h"
@@ -16,6 +17,8 @@
 #include "cli/run_output.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/instrument/catalogue.h"
+#include "handpiece/model/tooth/attempt.h"
+#include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/tick/device/capability.h"
 #include "handpiece/tick/loop/built_in_motion.h"
 #include "handpiece/tick/loop/cutting_motion.h"
@@ -206,14 +209,28 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     if (!o.handGiven) settings.device.rigidHand = true;
     const tooth::PrepareSettings prepare = prepareSettingsOf(o.inputs);
     Outputs outputs(o.out);  // before the work: a folder that cannot be written is told at once
-    const tooth::Case toothCase = tooth::readCase(o.inputs.tooth);
-    const Station station =
-        makeStation(toothCase, stationSettingsOf(o, settings, toothCase, prepare), prepare.useCache);
+    // An attempt goes on where it was.
+    std::optional<tooth::OpenAttempt> before;
+    if (tooth::isAttempt(o.inputs.tooth)) before = tooth::openAttempt(o.inputs.tooth);
+    const tooth::Case toothCase = before ? before->toothCase : tooth::readCase(o.inputs.tooth);
+    StationSettings stationSettings = stationSettingsOf(o, settings, toothCase, prepare);
+    if (before && std::abs(before->attempt.voxelMm - prepare.field.voxelMm) > 1e-9)
+        throw core::Error(fmt::format("the attempt was cut with voxels of {:.6g} um, not {:.6g}",
+                                      1e3 * before->attempt.voxelMm, o.inputs.voxelUm),
+                          o.inputs.tooth, fmt::format("give --voxel {:.6g}", 1e3 * before->attempt.voxelMm));
+    stationSettings.resumed = before.has_value();
+    const Station station = makeStation(toothCase, std::move(stationSettings), prepare.useCache);
+    if (before)
+        station.resume(tooth::decodeState(before->attempt.state, tooth::identityOf(*station.tooth), *station.tooth,
+                                          o.inputs.tooth));
     settings.parameters = station.settings.parameters;
     device::Motion motion = cutMotionOf(o, settings, toothCase, station);
     if (o.tremorUm > 0.0) motion = withTremor(motion, 1e-3 * o.tremorUm, o.seed);
     const CutOutcome outcome =
-        runCut(station, toothCase, settings, motion, {o.code, o.undoAtS, o.redoAtS, o.resetAtS}, outputs);
+        runCut(station, toothCase, settings, motion,
+               {o.code, before ? before->attempt.elapsedS : 0.0,
+                before ? before->attempt.caseFile : fs::path(o.inputs.tooth), o.undoAtS, o.redoAtS, o.resetAtS},
+               outputs);
 
     Json json = summaryJson(o, outcome.summary, "field", settings.device.rigidHand ? "rigid" : o.hand);
     Json removed, left;
@@ -264,7 +281,7 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
         printRow("memory", "the tooth's memory for cuts was used up: cut no deeper (take larger voxels)");
     printRow("state", hashText(outcome.stateHash));
     printRow("files",
-             "session.h5 cut.stl cut/ trace.csv depth.svg speed.svg force.svg rotor.svg feed.svg removed.svg "
+             "session.h5 attempt/ cut.stl cut/ trace.csv depth.svg speed.svg force.svg rotor.svg feed.svg removed.svg "
              "summary.json");
 }
 

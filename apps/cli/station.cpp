@@ -198,7 +198,8 @@ std::string settingsJson(const StationSettings& s) {
         {"tissues", toJson(s.tissues)},
         {"device", toJson(s.capability)},
         {"force", toJson(s.parameters)},
-        {"full_removal", s.fullRemoval}};
+        {"full_removal", s.fullRemoval},
+        {"resumed", s.resumed}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -222,6 +223,7 @@ StationSettings settingsFromJson(const std::string& text, const std::string& whe
         from(json.at("device"), s.capability);
         from(json.at("force"), s.parameters);
         s.fullRemoval = json.at("full_removal");
+        s.resumed = json.at("resumed");
     } catch (const Json::exception& e) {
         throw core::Error(fmt::format("the settings inside cannot be read: {}", e.what()), where,
                           "record the session anew, or use the version that wrote it");
@@ -231,6 +233,14 @@ StationSettings settingsFromJson(const std::string& text, const std::string& whe
     instrument::validate(s.drive);
     force::validate(s.parameters);
     return s;
+}
+
+void Station::resume(const tooth::CutState& state) const {
+    for (std::size_t next = 0; next < state.bricks.size();)
+        next = field->restore(state, next, state.bricks.size());
+    while (field->handOver(state.bricks.size(), [](const tooth::BrickSnapshot&) { return true; }) > 0) {
+        // Whoever listens begins with this state.
+    }
 }
 
 loop::Work Station::work() const {

@@ -30,6 +30,7 @@ struct StationSettings {
     device::Capability capability;
     force::Parameters parameters = force::defaultParameters();
     bool fullRemoval = false;
+    bool resumed = false;  ///< the tooth was cut before: the session begins with a key frame
 };
 
 /// Everything but the tooth, as JSON; numbers come back bit for bit. Of the bur its outline is kept, which decides all
@@ -44,6 +45,8 @@ struct Station {
     std::shared_ptr<tooth::CutField> field;
     StationSettings settings;
 
+    /// Puts a tooth in place that was cut before. Not while a loop runs.
+    void resume(const tooth::CutState& state) const;
     /// A method and a cutter on the field, for a loop. One loop at a time.
     [[nodiscard]] loop::Work work() const;
 };

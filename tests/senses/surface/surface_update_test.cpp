@@ -10,8 +10,10 @@
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/self_intersection.h"
+#include "handpiece/model/instrument/shapes.h"
 #include "handpiece/senses/surface/closed_surface.h"
 #include "handpiece/senses/surface/surface.h"
+#include "handpiece/tick/cutting/sweeper.h"
 #include "model/tooth/cut_support.h"
 #include "senses/surface/solids.h"
 
@@ -112,6 +114,40 @@ TEST(SurfaceUpdate, GivesTheSameMeshesAsMakingThemAnew) {
         expectClosed(kept.closedMesh());
         EXPECT_EQ(test::openEdges(joined(kept)), 0u);
         EXPECT_TRUE(kept.update({}).empty());
+    }
+}
+
+TEST(SurfaceUpdate, GivesTheSameMeshesAfterEveryTickOfARealCut) {
+    std::mt19937_64 random(test::seed());
+    for (const char* name : {"330", "cylinder-flat:1.0x4.0"}) {
+        Cutting cutting;
+        const instrument::Bur bur = instrument::makeBur(name);
+        cutting::Sweeper sweeper(cutting.field, bur, core::simdLevel());
+        const MirrorSource source(cutting.mirror);
+        Surface kept(source, &cutting.base->tissues);
+        kept.build();
+        core::Pose pose;
+        pose.orientation = test::randomRotation(random);
+        const Vec3 shank = pose.orientation * Vec3::UnitZ(), aside = shank.unitOrthogonal();
+        std::size_t touched = 0, changed = 0;
+        for (int tick = 0; tick < 120; ++tick) {
+            const double along = 0.007 * tick;
+            pose.positionMm = (1.1 - 0.2 * std::sin(3.0 * along)) * shank + (along - 0.4) * aside;
+            sweeper.sweepTo(pose);
+            cutting.field.handOver(cutting.field.waitingBricks(), [&](const tooth::BrickSnapshot& snapshot) {
+                cutting.mirror.apply(snapshot);
+                return true;
+            });
+            const auto bricks = cutting.mirror.takeTouched();
+            touched += bricks.size();
+            changed += kept.update(bricks).size();
+            if (tick % 5 != 0) continue;
+            Surface fresh(source, &cutting.base->tissues);
+            fresh.build();
+            ASSERT_TRUE(isSame(kept, fresh)) << name << " in tick " << tick;
+        }
+        EXPECT_GT(changed, 100u);
+        EXPECT_LT(changed, touched);
     }
 }
 

@@ -44,7 +44,8 @@ class Sampler {
   public:
     static int index(int x, int y, int z) { return x + kApron + kSide * (y + kApron + kSide * (z + kApron)); }
 
-    void gather(const BrickSource& source, std::uint32_t dense, const float* own) {
+    /// `sides`: bit 2 k: the layers below along axis k are wanted; 2 k + 1: those above.
+    void gather(const BrickSource& source, std::uint32_t dense, const float* own, unsigned sides) {
         const BrickGrid& grid = source.grid();
         const auto scale = static_cast<float>(1.0 / grid.voxelMm);
         for (int z = 0; z < kBrickNodes; ++z)
@@ -56,6 +57,7 @@ class Sampler {
             }
         alignas(32) float scratch[tooth::kBrickValues];
         for (int side = 0; side < 6; ++side) {
+            if ((sides >> side & 1) == 0) continue;
             const int axis = side / 2, up = side & 1;
             int step[3] = {0, 0, 0};
             step[axis] = up != 0 ? 1 : -1;
@@ -280,7 +282,25 @@ class Contourer {
             all &= bits;
         }
         if (any == 0 || all == 0x1ff) return false;
-        sampler_.gather(source, dense, own);
+        // Cells that the surface passes through, and the sides that those to be made anew are near.
+        unsigned fresh = 0, sides = 0;
+        std::array<std::uint8_t, 64> active;
+        for (int z = 0; z < 8; ++z)
+            for (int y = 0; y < 8; ++y) {
+                const unsigned r0 = row(out, y, z), r1 = row(out, y + 1, z), r2 = row(out, y, z + 1),
+                               r3 = row(out, y + 1, z + 1);
+                const unsigned some = r0 | r1 | r2 | r3, every = r0 & r1 & r2 & r3;
+                const unsigned bits = (some | some >> 1) & ~(every & every >> 1) & 0xff;
+                const auto at = static_cast<std::size_t>(y + 8 * z);
+                active[at] = static_cast<std::uint8_t>(bits);
+                const unsigned made = before == nullptr ? bits : bits & (*dirty)[at];
+                if (made == 0) continue;
+                fresh |= made;
+                sides |= (y < kApron ? 4u : 0u) | (y >= 8 - kApron ? 8u : 0u) | (z < kApron ? 16u : 0u) |
+                         (z >= 8 - kApron ? 32u : 0u);
+            }
+        sides |= ((fresh & 0x03) != 0 ? 1u : 0u) | ((fresh & 0xc0) != 0 ? 2u : 0u);
+        sampler_.gather(source, dense, own, sides);
         out.cases.fill(0);
         out.vertices.clear();
         out.reach = 0;
@@ -296,12 +316,12 @@ class Contourer {
             for (int y = 0; y < 8; ++y) {
                 const unsigned r0 = row(out, y, z), r1 = row(out, y + 1, z), r2 = row(out, y, z + 1),
                                r3 = row(out, y + 1, z + 1);
-                const unsigned some = r0 | r1 | r2 | r3, every = r0 & r1 & r2 & r3;
-                unsigned active = (some | some >> 1) & ~(every & every >> 1) & 0xff;
+                unsigned left = active[static_cast<std::size_t>(y + 8 * z)];
+                if (left == 0) continue;
                 const unsigned keeps =
                     before == nullptr ? 0u : ~unsigned{(*dirty)[static_cast<std::size_t>(y + 8 * z)]};
-                for (; active != 0; active &= active - 1) {
-                    const int x = std::countr_zero(active);
+                for (; left != 0; left &= left - 1) {
+                    const int x = std::countr_zero(left);
                     if ((keeps >> x & 1) != 0) {
                         keepCell(out, *before, x, y, z);
                         continue;

@@ -83,6 +83,10 @@ class FieldMethod final : public Method {
 
     [[nodiscard]] std::uint64_t toothVersion() const noexcept override { return live_.version(); }
 
+    [[nodiscard]] bool isCutNear(const core::Pose& burInTooth) const noexcept override {
+        return cut_ && burInTooth.isValid() && cut_->isCutNear(boxAround(burInTooth, live_.outMm()));
+    }
+
     void reset() noexcept override {
         axis_.reset();
         clearMm_ = 0.0;

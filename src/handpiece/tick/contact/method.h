@@ -110,6 +110,11 @@ class Method {
     /// Another number after the tooth has changed: what was found at the same one still holds.
     [[nodiscard]] virtual std::uint64_t toothVersion() const noexcept HANDPIECE_REALTIME { return 0; }
 
+    /// Whether the surface near the bur is one that cutting has left: rough by fractions of a micron, in a field.
+    [[nodiscard]] virtual bool isCutNear(const core::Pose& /*burInTooth*/) const noexcept HANDPIECE_REALTIME {
+        return false;
+    }
+
     /// Forget the warm start (after a jump).
     virtual void reset() noexcept {}
 };

@@ -6,7 +6,6 @@ namespace {
 
 using Vec4 = Eigen::Vector4d;
 
-constexpr double kSlackScale = 1e-3;
 constexpr double kViolatedMm = 1e-9;
 constexpr double kDependent = 1e-12;  // squared sine below which two normals count as one
 
@@ -73,10 +72,10 @@ struct ActiveSet {
 
 }  // namespace
 
-Projection project(const contact::ConstraintSet& constraints, const core::Vec3& wantedMm) noexcept {
+Projection project(const contact::ConstraintSet& constraints, const core::Vec3& wantedMm, double e) noexcept {
     const auto normalOf = [&](std::size_t i) {
         const core::Vec3& n = constraints[i].normal;
-        return Vec4(n.x(), n.y(), n.z(), kSlackScale);
+        return Vec4(n.x(), n.y(), n.z(), e);
     };
     Vec4 x(wantedMm.x(), wantedMm.y(), wantedMm.z(), 0.0);
     ActiveSet active;
@@ -125,7 +124,7 @@ Projection project(const contact::ConstraintSet& constraints, const core::Vec3& 
         ++result.iterations;
     }
     result.stepMm = x.head<3>();
-    result.slackMm = kSlackScale * x[3];
+    result.slackMm = e * x[3];
     result.activeCount = active.count;
     result.active = active.index;
     result.multiplierMm = active.multiplier;

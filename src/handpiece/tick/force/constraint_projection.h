@@ -22,14 +22,15 @@ struct Projection {
     int iterations = 0;
 };
 
-/// Minimises |step - wanted|^2 + slack^2 / e^2 subject to gap_i + n_i . step + slack >= 0, with e = 1e-3: exact to 1e-6
-/// of the distance by which the constraints hold the step back, and with the violation shared evenly where they
-/// contradict each other (a bur wedged tighter than the gap).
+/// Minimises |step - wanted|^2 + slack^2 / e^2 subject to gap_i + n_i . step + slack >= 0. With the default e it is
+/// exact to 1e-6 of the distance by which the constraints hold the step back, and the violation is shared evenly where
+/// they contradict each other (a bur wedged tighter than the gap). A larger e gives way sooner: no step is longer than
+/// 1 / e times the violation that it mends.
 ///
 /// Dual active set (Goldfarb & Idnani 1983) in four dimensions: always solvable, at most kMaxProjectionIterations.
 /// The same inputs give the same bits. A microsecond or less.
-[[nodiscard]] Projection project(const contact::ConstraintSet& constraints,
-                                 const core::Vec3& wantedMm) noexcept HANDPIECE_REALTIME;
+[[nodiscard]] Projection project(const contact::ConstraintSet& constraints, const core::Vec3& wantedMm,
+                                 double e = 1e-3) noexcept HANDPIECE_REALTIME;
 inline constexpr int kMaxProjectionIterations = 64;
 
 }  // namespace handpiece::force

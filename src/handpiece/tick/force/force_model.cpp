@@ -10,6 +10,7 @@ namespace {
 using core::Vec3;
 
 constexpr double kDeepStartMm = 0.1;  // a bur that starts deeper than this gets its force faded in
+constexpr double kShareTauS = 0.01;   // with which the feel of a cut surface follows its tissues
 constexpr double kShallowMm = 1e-9;   // below it a direction cannot be told
 
 }  // namespace
@@ -58,6 +59,7 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     touch_.tissue = proxy_.strongestTissue();
     if (touch_.touching) {
         method.patches(touch_.proxyInTooth, touch_.patches);
+        smoothShares(method.isCutNear(touch_.proxyInTooth), periodS);
         double most = 0.0;
         for (std::size_t i = 0; i < tooth::kTissueCount; ++i) {
             if (touch_.patches.tissueShare[i] > most) {
@@ -67,6 +69,17 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
         }
     }
     return touch_;
+}
+
+void ForceModel::smoothShares(bool isCutNear, double periodS) noexcept {
+    // In its own cavity a whole ring of the bur comes from one tissue into another at once.
+    std::array<double, tooth::kTissueCount>& shares = touch_.patches.tissueShare;
+    if (isCutNear && wasTouching_) {
+        const double news = periodS / (kShareTauS + periodS);
+        for (std::size_t i = 0; i < tooth::kTissueCount; ++i)
+            shares[i] = lastShares_[i] + news * (shares[i] - lastShares_[i]);
+    }
+    lastShares_ = shares;
 }
 
 void ForceModel::updateVelocity(const Vec3& positionMm, bool fresh, double periodS) noexcept {

@@ -68,6 +68,7 @@ class ForceModel {
     struct KelvinVoigt {
         double stiffnessNPerMm, dampingNSPerMm;
     };
+    void smoothShares(bool isCutNear, double periodS) noexcept;
     void updateVelocity(const core::Vec3& positionMm, bool fresh, double periodS) noexcept;
     [[nodiscard]] KelvinVoigt coupling(const Touch& touch) const noexcept;
     [[nodiscard]] core::Vec3 proxyForce(const Touch& touch) const noexcept;
@@ -85,6 +86,7 @@ class ForceModel {
     core::Vec3 velocityMmS_ = core::Vec3::Zero(), lastPositionMm_ = core::Vec3::Zero();
     core::Vec3 heldForceN_ = core::Vec3::Zero();                                    // when the fault began
     core::Vec3 bristleMm_ = core::Vec3::Zero(), lastProxyMm_ = core::Vec3::Zero();  // of friction
+    std::array<double, tooth::kTissueCount> lastShares_{};                          // of the tissues in the contact
     bool waiting_ = false, wasWaiting_ = false, wasFaulted_ = false, wasTouching_ = false;
 };
 

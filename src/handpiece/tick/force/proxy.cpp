@@ -10,6 +10,13 @@ namespace {
 using core::Vec3;
 
 constexpr double kSettledMm = 1e-5;  // 5 uN at 0.5 N/mm: what is left is walked in the next ticks
+// On a surface that cutting has left. Half-spaces are exact to the square of a step over the bur's diameter there, and
+// smoother than the field: a small step is trusted, and looked at in the next tick.
+constexpr double kTrustedStepMm = 0.01;
+// A bur that lies in its own cavity is held on all sides by half-spaces a micron apart: where they meet jumps by ten.
+// So there the proxy slides little farther in a tick than the device moved, and mends no micron by a hop.
+constexpr double kFollow = 1.25, kCreepMm = 0.001;
+constexpr double kYieldingSlack = 0.2, kFirmSlack = 1e-3;
 constexpr double kLeastReachMm = 0.04;
 constexpr double kLeverMm = 5.0;  // a turn moves points of the head by at most this times the angle
 constexpr double kSmallestRadiusMm = 1e-6;
@@ -152,10 +159,14 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth,
         return;
     }
     touching_ = false;
-    lastRest_.setZero();
+    const bool isCutNear = method.isCutNear(pose_);
+    if (!isCutNear) lastRest_.setZero();  // in its cavity the bur trembles from tick to tick, else from pass to pass
     Vec3 safe = pose_.positionMm;
     double safeGap = -std::numeric_limits<double>::infinity();
     bool settled = false;
+    const double settledMm = isCutNear ? kTrustedStepMm : kSettledMm;
+    const double leastMm = isCutNear ? std::max(moved, kSmallestRadiusMm) : kSmallestRadiusMm;
+    const double mostMm = isCutNear ? kFollow * moved + kCreepMm : std::numeric_limits<double>::infinity();
     for (int i = 0; i < settings_.iterations && !settled; ++i) {
         const double gap = evaluate(method);
         if (gap >= std::min(safeGap, -settings_.toleranceMm)) {
@@ -174,14 +185,15 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth,
         }
         Vec3 step = freeStep(wanted, allowed);
         if (touching_) {
-            const Vec3 restore =
-                gap < 0.0 ? limited(project(constraints_, Vec3::Zero()).stepMm, kMaxRestoreMm) : Vec3(Vec3::Zero());
+            const double slack = isCutNear ? kYieldingSlack : kFirmSlack;
+            const Vec3 restore = gap < 0.0 ? limited(project(constraints_, Vec3::Zero(), slack).stepMm, kMaxRestoreMm)
+                                           : Vec3(Vec3::Zero());
             Vec3 rest = step - restore;
-            radiusMm_ = rest.dot(lastRest_) < 0.0 ? std::max(0.4 * radiusMm_, kSmallestRadiusMm)
+            radiusMm_ = rest.dot(lastRest_) < 0.0 ? std::max(0.4 * radiusMm_, leastMm)
                                                   : std::min(2.0 * radiusMm_, settings_.maxStepMm);
             const double known = 0.5 * reachMm_;
             if (rest.norm() > known) reachMm_ = std::min(2.0 * reachMm_, 2.0 * settings_.maxStepMm);
-            rest = limited(rest, std::min(radiusMm_, known));
+            rest = limited(rest, std::min({radiusMm_, known, mostMm}));
             lastRest_ = rest;
             step = restore + rest;
         } else {
@@ -189,7 +201,7 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth,
             reachMm_ = std::min(2.0 * reachMm_, 2.0 * settings_.maxStepMm);
         }
         pose_.positionMm += step;
-        settled = step.norm() < kSettledMm;
+        settled = step.norm() < settledMm;
     }
     if (settled) return;
     for (int i = 0; i < 2 && evaluate(method) < -settings_.toleranceMm; ++i) {

@@ -22,8 +22,8 @@ except ImportError:  # another Python than Debian's, which has python3-h5py
 from support import HANDPIECE, SystemTest, box, rows_of, run, write_stl
 
 REMOVED = ["removed_enamel_mm3", "removed_dentine_mm3", "removed_caries_mm3", "removed_pulp_mm3"]
-OUTPUTS = ["cut", "cut.stl", "depth.svg", "feed.svg", "force.svg", "removed.svg", "rotor.svg", "session.h5",
-           "speed.svg", "summary.json", "trace.csv"]
+OUTPUTS = ["attempt", "cut", "cut.stl", "depth.svg", "feed.svg", "force.svg", "removed.svg", "rotor.svg",
+           "session.h5", "speed.svg", "summary.json", "trace.csv"]
 TOP, DEPTH, RADIUS, LENGTH = 4.0, 0.8, 0.5, 2.0  # of the block and of the groove in it
 DEVICE_LIMIT_N = 3.3
 
@@ -93,6 +93,7 @@ class Cutting(SystemTest):
         self.assertAlmostEqual(mesh["volume_mm3"], summary["cut_stl_mm3"], delta=1e-3)
         info = json.loads(self.ok("case", "info", out / "cut", "--json").stdout)
         self.assertEqual([part["tissue"] for part in info["parts"]], ["enamel", "dentine", "caries"])
+        self.ok("case", "check", out / "cut")
         # What was left can be felt: the bur now goes deeper before it touches.
         depths = [rows_of(self.ok("probe", "--tooth", tooth, "--bur", "330", "--poses", "-",
                                   stdin=f"0,0,{TOP - 0.5},1,0,0,0\n").stdout)[0]["depth_mm"]
@@ -158,6 +159,23 @@ class Cutting(SystemTest):
 
         events = rows_of(self.ok("export", self.folder / "redone" / "session.h5", "--csv", "--events").stdout)
         self.assertEqual([e["name"] for e in events if e["name"] in ("undo", "redo")], ["undo", "redo"])
+
+    def test_an_attempt_goes_on_where_it_was(self):
+        first, before = self.cut("first", "--motion", "plunge", "--depth", "0.5", "--dwell", "0.5", "--code", "S-07")
+        self.ok("case", "pack", first / "attempt", self.folder / "first.handpiece")
+        for name, tooth in (("still", first / "attempt"), ("packed", self.folder / "first.handpiece")):
+            _, still = self.cut(name, "--motion", "hold", "--duration", "0.1", "--pedal", "0", tooth=tooth)
+            self.assertEqual(still["state_hash"], before["state_hash"])
+            self.assertEqual(still["removed_mm3"], before["removed_mm3"])
+        more, after = self.grooved("more", tooth=first / "attempt")
+        self.assertGreater(after["removed_mm3"]["enamel"], before["removed_mm3"]["enamel"] + 1)
+        replay = json.loads(self.ok("replay", more / "session.h5", "--json").stdout)
+        self.assertEqual((replay["state_hash"], replay["matches"]), (after["state_hash"], True))
+        self.refused("run", "--case", first / "attempt", "--motion", "plunge", "--voxel", "50", "--out",
+                     self.folder / "other", mentions=["100 um", "--voxel 100"])
+        write_stl(self.block, box((-3, -2, 0), (3, 2, TOP + 0.1)))
+        self.refused("run", "--case", first / "attempt", "--motion", "plunge", "--voxel", "100", "--out",
+                     self.folder / "other", mentions=["another"])
 
     def test_a_trembling_hand_repeats_by_its_seed(self):
         plunge = ["--motion", "plunge", "--depth", "0.4", "--dwell", "0.5"]

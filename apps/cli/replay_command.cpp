@@ -14,6 +14,7 @@
 #include "cli/progress_bar.h"
 #include "cli/station.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
 #include "handpiece/model/tooth/case_bytes.h"
 #include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/record/session/session_reader.h"
@@ -25,6 +26,7 @@ namespace {
 struct ReplayOptions {
     std::string session;
     bool json = false, noCache = false;
+    std::size_t threads = 0;
 };
 
 /// A state of the tooth that the session tells: at its end or, when it was cut off, in its last key frame.
@@ -80,6 +82,7 @@ std::optional<Told> toldBy(const session::SessionReader& reader, const std::vect
 }
 
 void replay(const ReplayOptions& o) {
+    core::setThreadCount(o.threads);
     const session::SessionReader reader(o.session);
     const std::vector<session::Record> records = allRecords(reader, o.session);
     const std::vector<session::Event> events = reader.events();
@@ -150,6 +153,9 @@ void addReplayCommand(CLI::App& app) {
     command->add_option("session", options->session, "session file (.h5)")->required();
     command->add_flag("--json", options->json, "print the result as JSON");
     command->add_flag("--no-cache", options->noCache, "build the fields anew");
+    command->add_option("--threads", options->threads, "threads for long work; 0: all cores")
+        ->check(CLI::Range(std::size_t{0}, std::size_t{1024}))
+        ->capture_default_str();
     command->footer(
         "The session holds the tooth, the bur and the hand. state_hash is that of the cut tooth, bit for bit, at the "
         "session's\nend, or at its last key frame when it was cut off; matches says whether it was the same then.\n"

@@ -8,9 +8,12 @@
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/starter/starter.h"
+#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
 #include "handpiece/tick/loop/built_in_motion.h"
+#include "handpiece/tick/loop/cutting_motion.h"
 #include "handpiece/tick/loop/haptic_loop.h"
 
 namespace handpiece {
@@ -48,6 +51,40 @@ void addSample(core::Hasher& hash, const messages::HapticSample& s) {
     hash.add(s.flags);
 }
 
+/// A plunge of a turning bur: the tooth that is left, the parts that it is of, and every sample on the way.
+void cut(const tooth::Case& molar, const std::shared_ptr<const tooth::Tooth>& whole,
+         const tooth::PrepareSettings& prepare) {
+    const auto base = tooth::prepareCutting(molar, whole, prepare);
+    const auto field = std::make_shared<tooth::CutField>(base);
+    const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur("330"));
+    const auto feeler = contact::makeFieldMethod(whole, bur);
+    loop::CuttingScene scene;
+    scene.toothBounds = whole->outer.bounds();
+    scene.burRadiusMm = bur->maxRadiusMm();
+    loop::CuttingOptions options;
+    options.depthMm = 0.6;
+    options.dwellS = 0.5;
+    device::Motion motion = loop::cuttingMotionByName("plunge", *feeler, scene, options);
+    device::SimulatedDeviceSettings arm;
+    arm.rigidHand = true;
+    const double duration = motion.durationS();
+    loop::Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
+                    std::make_unique<cutting::Cutter>(field, bur, instrument::Ability{}, tooth::builtInTissues(),
+                                                      cutting::Cutter::Settings{})};
+    loop::HapticLoop haptic({}, std::make_unique<device::SimulatedDevice>(arm, std::move(motion)), std::move(work),
+                            force::defaultParameters());
+    core::Hasher samples;
+    (void)haptic.runSimulated(duration, [&](const messages::HapticSample& s) {
+        addSample(samples, s);
+        samples.add(s.speedRpm);
+        for (const double mm3 : s.removedMm3)
+            samples.add(mm3);
+    });
+    print("tissues", tooth::identityOf(*base));
+    print("cutting", samples.value());
+    print("cut", field->stateHash());
+}
+
 void run() {
     const tooth::Case molar = starter::makeTooth(starter::ToothKind::lowerFirstMolar, {10000, 2000, false});
     core::Hasher surfaces;
@@ -76,6 +113,7 @@ void run() {
     });
     print("samples", samples.value());
     std::printf("touching %llu\n", static_cast<unsigned long long>(touching));
+    cut(molar, tooth, prepare);
 }
 
 }  // namespace

@@ -9,9 +9,10 @@ namespace {
 
 using core::Vec3;
 
-constexpr double kDeepStartMm = 0.1;  // a bur that starts deeper than this gets its force faded in
-constexpr double kShareTauS = 0.01;   // with which the feel of a cut surface follows its tissues
-constexpr double kShallowMm = 1e-9;   // below it a direction cannot be told
+constexpr double kDeepStartMm = 0.1;       // a bur that starts deeper than this gets its force faded in
+constexpr double kShareTauS = 0.01;        // with which the feel of a cut surface follows its tissues
+constexpr double kTangentialTauS = 0.003;  // of the turning bur's sideways force: it swings round with the wall
+constexpr double kShallowMm = 1e-9;        // below it a direction cannot be told
 
 }  // namespace
 
@@ -194,14 +195,20 @@ const ForceCommand& ForceModel::compute(const Touch& touch, double periodS, cons
         if (!wasFaulted_) heldForceN_ = last;
         wanted = guard_.gain() * heldForceN_;
         bristleMm_.setZero();
+        tangentialN_.setZero();
     } else if (waiting_) {
         bristleMm_.setZero();
+        tangentialN_.setZero();
     } else {
         wanted = parameters_.mode == Mode::proxy ? proxyForce(touch) : penaltyForce(touch);
         const double press = wanted.norm();
         command_.loadN = -guard_.gain() * std::min(1.0, limits_.maxForceN / std::max(press, kShallowMm)) * wanted;
         if (parameters_.mode == Mode::proxy) wanted += frictionForce(touch, wanted, turning);
-        if (touch.touching) wanted += parameters_.cuttingForceMultiplier * turning.tangentialN;
+        tangentialN_ =
+            touch.touching
+                ? Vec3(tangentialN_ + periodS / (kTangentialTauS + periodS) * (turning.tangentialN - tangentialN_))
+                : Vec3(Vec3::Zero());
+        wanted += parameters_.cuttingForceMultiplier * tangentialN_;
         const double size = wanted.norm();
         command_.forceLimited = size > limits_.maxForceN;
         if (command_.forceLimited) wanted *= limits_.maxForceN / size;

@@ -86,6 +86,7 @@ class ForceModel {
     core::Vec3 velocityMmS_ = core::Vec3::Zero(), lastPositionMm_ = core::Vec3::Zero();
     core::Vec3 heldForceN_ = core::Vec3::Zero();                                    // when the fault began
     core::Vec3 bristleMm_ = core::Vec3::Zero(), lastProxyMm_ = core::Vec3::Zero();  // of friction
+    core::Vec3 tangentialN_ = core::Vec3::Zero();                                   // of the turning bur, smoothed
     std::array<double, tooth::kTissueCount> lastShares_{};                          // of the tissues in the contact
     bool waiting_ = false, wasWaiting_ = false, wasFaulted_ = false, wasTouching_ = false;
 };

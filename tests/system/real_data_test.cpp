@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A molar and a bur that nobody here made: a segmented micro-CT of a carious molar, from labels to touch.
 //
-// HANDPIECE_KEEP_REAL names a folder in which the surface is kept as molar.stl.
+// HANDPIECE_KEEP_REAL names a folder in which the case is kept as molar/.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -21,9 +21,11 @@
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/base/geometry/repair.h"
 #include "handpiece/model/instrument/shapes.h"
+#include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
 #include "handpiece/tick/loop/built_in_motion.h"
+#include "handpiece/tick/loop/cutting_motion.h"
 #include "handpiece/tick/loop/haptic_loop.h"
 #include "support/brute_force_depth.h"
 #include "support/random.h"
@@ -74,8 +76,8 @@ Volume<std::uint8_t> readLabels(const std::filesystem::path& path) {
     return volume;
 }
 
-/// Voxels of solid in blocks of 2 x 2 x 2, as a share, inside a margin of emptiness.
-Volume<float> halved(const Volume<std::uint8_t>& labels, int margin) {
+/// Voxels of solid, or of one label, in blocks of 2 x 2 x 2, as a share, inside a margin of emptiness.
+Volume<float> halved(const Volume<std::uint8_t>& labels, int margin, std::uint8_t only = 0) {
     Volume<float> v;
     for (int a = 0; a < 3; ++a)
         v.size[static_cast<std::size_t>(a)] = (labels.size[static_cast<std::size_t>(a)] + 1) / 2 + 2 * margin;
@@ -84,7 +86,8 @@ Volume<float> halved(const Volume<std::uint8_t>& labels, int margin) {
     for (int z = 0; z < labels.size[2]; ++z)
         for (int y = 0; y < labels.size[1]; ++y)
             for (int x = 0; x < labels.size[0]; ++x)
-                if (labels.values[labels.at(x, y, z)] != 0)
+                if (const std::uint8_t label = labels.values[labels.at(x, y, z)];
+                    only != 0 ? label == only : label != 0)
                     v.values[v.at(x / 2 + margin, y / 2 + margin, z / 2 + margin)] += 0.125f;
     return v;
 }
@@ -227,8 +230,8 @@ void blur(Volume<float>& v) {
     });
 }
 
-/// Turned so that +z leaves the crown (the end where enamel lies), the middle at the origin.
-void crownUp(geometry::TriangleMesh& mesh, const Volume<std::uint8_t>& labels) {
+/// Turned so that +z leaves the crown (the end where enamel lies), the middle at the origin. Returns how.
+core::Pose crownUp(geometry::TriangleMesh& mesh, const Volume<std::uint8_t>& labels) {
     constexpr std::uint8_t kEnamel = 2;
     Vec3 enamel = Vec3::Zero(), all = Vec3::Zero();
     double enamelCount = 0.0, allCount = 0.0;
@@ -247,8 +250,20 @@ void crownUp(geometry::TriangleMesh& mesh, const Volume<std::uint8_t>& labels) {
     core::Pose turn;
     turn.orientation = core::Quat::FromTwoVectors(up, Vec3::UnitZ());
     mesh = geometry::transformed(std::move(mesh), turn);
-    turn = {-mesh.bounds().centre(), core::Quat::Identity()};
-    mesh = geometry::transformed(std::move(mesh), turn);
+    turn.positionMm = -mesh.bounds().centre();
+    mesh = geometry::transformed(std::move(mesh), {turn.positionMm, core::Quat::Identity()});
+    return turn;
+}
+
+geometry::TriangleMesh drawn(Volume<float> share) {
+    for (float& x : share.values)
+        x = 0.5f - x;
+    geometry::ScalarGrid grid;
+    grid.spacingMm = share.spacingMm;
+    for (std::size_t a = 0; a < 3; ++a)
+        grid.nodes[a] = static_cast<std::uint32_t>(share.size[a]);
+    grid.values = share.values;
+    return geometry::isosurface(grid);
 }
 
 class RealData : public testing::Test {
@@ -270,26 +285,31 @@ class RealData : public testing::Test {
             filledMm3_ += 8.0 * voxelMm3 * static_cast<double>(x);
         blur(share);
         blur(share);
-        for (float& x : share.values)
-            x = 0.5f - x;
-        geometry::ScalarGrid grid;
-        grid.spacingMm = share.spacingMm;
-        for (std::size_t a = 0; a < 3; ++a)
-            grid.nodes[a] = static_cast<std::uint32_t>(share.size[a]);
-        grid.values = share.values;
-        geometry::TriangleMesh surface = geometry::isosurface(grid);
-        const std::size_t drawn = surface.triangles.size();
+        geometry::TriangleMesh surface = drawn(std::move(share));
+        const std::size_t faces = surface.triangles.size();
         const geometry::RepairReport repaired = geometry::repair(surface);  // voxel debris is no part of the tooth
         surface = geometry::decimate(surface, 70000).mesh;
-        crownUp(surface, labels);
+        const core::Pose up = crownUp(surface, labels);
+        for (const auto& [label, tissue] :
+             {std::pair{std::uint8_t{1}, tooth::Tissue::caries}, std::pair{std::uint8_t{2}, tooth::Tissue::enamel},
+              std::pair{std::uint8_t{3}, tooth::Tissue::dentine}}) {
+            Volume<float> one = halved(labels, static_cast<int>(kGap) + 4, label);
+            blur(one);
+            tooth::Part part;
+            part.tissue = tissue;
+            part.name = tooth::properties(tissue).name;
+            part.priority = tooth::properties(tissue).priority;
+            part.mesh = geometry::transformed(drawn(std::move(one)), up);
+            (void)geometry::repair(part.mesh);
+            molar_.parts.push_back(std::move(part));
+        }
 
         molar_.name = "carious molar";
         molar_.outer = std::move(surface);
-        std::printf("  drawn with %zu faces, %zu pieces of debris dropped, thinned to %zu\n", drawn,
+        std::printf("  drawn with %zu faces, %zu pieces of debris dropped, thinned to %zu\n", faces,
                     repaired.droppedShells, molar_.outer.triangles.size());
         if (const char* keep = std::getenv("HANDPIECE_KEEP_REAL")) {
-            std::filesystem::create_directories(keep);
-            geometry::writeStl(std::filesystem::path(keep) / "molar.stl", molar_.outer);
+            tooth::writeCase(molar_, std::filesystem::path(keep) / "molar");
         }
         tooth::PrepareSettings settings;
         settings.useCache = false;
@@ -394,6 +414,43 @@ TEST_F(RealData, aDroppedBurIsHeldAtTheSurface) {
         EXPECT_LE(peakN, 3.3);
         EXPECT_LE(sinksMm, 0.002);
     }
+}
+
+TEST_F(RealData, aClassOneCavityIsCut) {
+    const auto base = tooth::prepareCutting(molar_, tooth_, {});
+    const auto field = std::make_shared<tooth::CutField>(base);
+    const auto bur = burs().front();
+    loop::CuttingScene scene;
+    scene.toothBounds = tooth_->outer.bounds();
+    scene.burRadiusMm = bur->maxRadiusMm();
+    loop::CuttingOptions options;
+    options.lengthMm = 3.0;
+    const auto feeler = contact::makeFieldMethod(tooth_, bur);
+    device::Motion motion = loop::cuttingMotionByName("class-one", *feeler, scene, options);
+    const double durationS = motion.durationS();
+    device::SimulatedDeviceSettings rigid;
+    rigid.rigidHand = true;
+    loop::Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
+                    std::make_unique<cutting::Cutter>(field, bur, instrument::Ability{}, tooth::builtInTissues(),
+                                                      cutting::Cutter::Settings{})};
+    loop::HapticLoop haptic({}, std::make_unique<device::SimulatedDevice>(rigid, std::move(motion)), std::move(work),
+                            force::defaultParameters());
+    double peakN = 0.0;
+    tooth::TissueVolumes removed{};
+    (void)haptic.runSimulated(durationS, [&](const messages::HapticSample& s) {
+        peakN = std::max(peakN, Vec3(s.forceN.data()).norm());
+        removed = s.removedMm3;
+    });
+    double total = 0.0;
+    const tooth::TissueVolumes left = field->volumesMm3();
+    for (std::size_t t = 0; t < tooth::kTissueCount; ++t) {
+        total += removed[t];
+        EXPECT_NEAR(removed[t], base->volumesMm3[t] - left[t], 1e-6);
+    }
+    std::printf("  cavity of %.3f mm3 (enamel %.3f, dentine %.3f, decay %.3f), peak %.2f N, state %016llx\n", total,
+                removed[1], removed[2], removed[4], peakN, static_cast<unsigned long long>(field->stateHash()));
+    EXPECT_GT(total, 1.0);
+    EXPECT_LT(peakN, 3.3);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "handpiece/tick/cutting/cutter.h"
 #include "measure.h"
 #include "peers/cut_peer.h"
+#include "surface_bench.h"
 #include "workload.h"
 
 namespace handpiece::bench {
@@ -371,6 +372,7 @@ int mainOf(int argc, char** argv) {
     benchmark::AddCustomContext("quick", quick ? "yes" : "no");
     Session session{Workload(quick), quick, {}, nullptr};
     registerAll(session);
+    registerSurface();
     benchmark::RunSpecifiedBenchmarks();
     benchmark::Shutdown();
     return 0;

@@ -5,6 +5,8 @@
 // picture (60 a second at 1 kHz), with a17th of them a tick's share, cut_to_mesh_* the same with the picture's cuts and
 // their way to the mesh; dirty_bricks and triangles are those whose mesh is another after a tick, touched_bricks those
 // with values to look at. `full` is the whole surface at once. HANDPIECE_BENCH_QUICK=1 makes a smoke test of it.
+#include "surface_bench.h"
+
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -195,9 +197,9 @@ void runFull(benchmark::State& state, int voxelUm) {
     state.counters["closed_triangles"] = static_cast<double>(whole.triangles.size());
 }
 
-int mainOf(int argc, char** argv) {
-    benchmark::Initialize(&argc, argv);
-    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+}  // namespace
+
+void registerSurface() {
     for (const int voxelUm : {100, 50, 25}) {
         for (const bool deep : {false, true})
             benchmark::RegisterBenchmark(fmt::format("surface/{}/{}", voxelUm, deep ? "deep" : "shallow").c_str(),
@@ -211,19 +213,6 @@ int mainOf(int argc, char** argv) {
             ->Iterations(isQuick() ? 1 : 5)
             ->Unit(benchmark::kMillisecond);
     }
-    benchmark::RunSpecifiedBenchmarks();
-    benchmark::Shutdown();
-    return 0;
 }
 
-}  // namespace
 }  // namespace handpiece::bench
-
-int main(int argc, char** argv) {
-    try {
-        return handpiece::bench::mainOf(argc, argv);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "surface_bench: %s\n", error.what());
-        return 1;
-    }
-}

@@ -29,7 +29,7 @@ TEST(Passivity, holdsAtTheDefaultsUpToAMillisecondForEveryHandTissueAndRate) {
         if (r.delayS > 0.002) continue;
         EXPECT_TRUE(r.holds) << where << ": margin " << r.marginNmm << " N mm";
         EXPECT_FALSE(r.growing) << where;
-        EXPECT_EQ(r.rippleN, 0.0) << where;  // dry friction of 0.05 N and more holds the arm still
+        EXPECT_LT(r.rippleN, 1e-12) << where;  // dry friction of 0.05 N and more holds the arm still
         held += r.holds;
     }
     std::printf("  holds at %zu of %zu up to 1 ms of delay, at %zu of %zu with 3 ms\n", held, rows.size() - three,

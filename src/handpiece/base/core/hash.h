@@ -25,7 +25,7 @@ class Hasher {
             mix(word);
         }
         std::uint64_t tail = 0;
-        std::memcpy(&tail, data.data() + i, data.size() - i);
+        if (i < data.size()) std::memcpy(&tail, data.data() + i, data.size() - i);
         mix(tail ^ (std::uint64_t{data.size()} << 56));
     }
     void add(std::string_view text) noexcept { add(std::as_bytes(std::span(text))); }

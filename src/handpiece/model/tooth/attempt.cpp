@@ -61,7 +61,7 @@ Parsed parse(std::string_view text, const std::string& where) {
     if (version != kFormatVersion)
         root.fail(fmt::format("the attempt's format is {}, this program reads format {}", version, kFormatVersion),
                   version > kFormatVersion ? "use a newer Handpiece" : kRemedy, "format");
-    root.allowOnly({"format", "case", "case_key", "case_name", "state_hash", "voxel_mm", "bur", "ability", "drive",
+    root.allowOnly({"format", "case", "case_key", "case_name", "state_file_hash", "voxel_mm", "bur", "ability", "drive",
                     "elapsed_s", "student", "session", "undo_depth", "removed_mm3", "counters"});
     Parsed parsed;
     Attempt& a = parsed.attempt;
@@ -70,7 +70,7 @@ Parsed parse(std::string_view text, const std::string& where) {
         root.fail("the attempt names no case", kRemedy);
     a.caseFile = caseFile;
     a.caseKey = hexOf(root, "case_key");
-    parsed.stateHash = hexOf(root, "state_hash");
+    parsed.stateHash = hexOf(root, "state_file_hash");
     a.caseName = root.text("case_name").value_or("");
     a.voxelMm = amountOf(root, "voxel_mm", a.voxelMm);
     if (!(a.voxelMm > 0.0)) root.fail("voxel_mm is 0", "it must be above zero", "voxel_mm");
@@ -104,7 +104,7 @@ std::string toml(const Attempt& a, const std::string& caseFile) {
     std::string out = "# What has been cut of a case: docs/case-format.md#attempts.\n";
     out += fmt::format("format = {}\ncase = {}\ncase_key = \"{:016x}\"\ncase_name = {}\n", kFormatVersion,
                        tomlText(caseFile), a.caseKey, tomlText(a.caseName));
-    out += fmt::format("state_hash = \"{:016x}\"\nvoxel_mm = {}\n", hashOf(a.state), tomlNumber(a.voxelMm));
+    out += fmt::format("state_file_hash = \"{:016x}\"\nvoxel_mm = {}\n", hashOf(a.state), tomlNumber(a.voxelMm));
     out += fmt::format("bur = {}\nability = {}\ndrive = {}\n", tomlText(a.bur), tomlText(a.ability), tomlText(a.drive));
     out += fmt::format("elapsed_s = {}\nstudent = {}\nsession = {}\nundo_depth = {}\n", tomlNumber(a.elapsedS),
                        tomlText(a.student), tomlText(a.session), a.undoDepth);

@@ -197,8 +197,10 @@ SessionWriter::SessionWriter(const std::filesystem::path& path, const SessionInf
     s.events = Growing(file, "events", s.eventType.id(), 1, kEventChunk, false);
     s.keyFrameIndex = Growing(keyFrames.id(), "index", s.keyFrameType.id(), 1, kKeyFrameIndexChunk, false);
     s.keyFrameData = Growing(keyFrames.id(), "data", H5T_STD_U8LE, 1, kKeyFrameDataChunk, false);
-    if (H5Fstart_swmr_write(file) < 0) made(-1, "a file that survives");
-    if (!s.fileState.failure.empty()) throw core::Error(s.fileState.failure, {}, "make room or choose another place");
+    const bool started = H5Fstart_swmr_write(file) >= 0;
+    if (!s.fileState.failure.empty())
+        throw core::Error(s.fileState.failure, path.string(), "make room or choose another place");
+    if (!started) made(-1, "a file that survives");
 }
 
 SessionWriter::~SessionWriter() {

@@ -12,7 +12,7 @@ constexpr double kPositionSteps = 1 << 20;  // a millimetre
 constexpr double kQuaternionSteps = 1 << 30;
 constexpr double kPedalSteps = 1 << 16;
 /// Bricks handed over in a tick, and put in place by an undo.
-constexpr std::size_t kBricksPerTick = 16, kRestoredPerTick = 32;
+constexpr std::size_t kBricksPerTick = 16, kRestoredPerMs = 32, kLeastRestored = 4;
 /// The bur's surface moves at this radius, as a share of the largest, in the mean over its head.
 constexpr double kMeanRadius = 2.0 / 3.0;
 
@@ -121,7 +121,10 @@ void HapticLoop::restoreSome() noexcept {
     Restore& restore = restore_.current()->value;
     cutFlags_ |= messages::kRestoring;
     force_.waitUntilClear();  // until the last brick is in place
-    restore.next = work_.current()->value.cutter->field().restore(restore.change, restore.next, kRestoredPerTick);
+    // The same share of a period at every rate.
+    const auto most = static_cast<std::size_t>(1e3 * periodS_ * static_cast<double>(kRestoredPerMs));
+    restore.next =
+        work_.current()->value.cutter->field().restore(restore.change, restore.next, std::max(most, kLeastRestored));
     isRestoring_ = restore.next < restore.change.bricks.size();
     if (!isRestoring_) restoring_.store(false, std::memory_order_release);
 }

@@ -272,6 +272,27 @@ TEST(CuttingLoop, theForceDoesNotCogWithTheVoxels) {
         }
 }
 
+TEST(CuttingLoop, aSharpRimBearsAndCutsOnASlope) {
+    // Flat ends tilted against the block: the rim alone touches.
+    const auto base = block({});
+    for (const char* bur : {"cylinder-flat:1.0x3.0", "inverted-cone:1.0x1.0", "taper-flat:1.0x3.0"}) {
+        const Bench bench(base, bur);
+        const Quat tilt(Eigen::AngleAxisd(0.3, Vec3::UnitY()));
+        const auto pose = [&](double z) { return Pose{Vec3(0.1, 0.0, z), tilt}; };
+        const std::vector<device::TimedPose> poses{
+            {0.0, pose(0.6), 1.0}, {1.0, pose(0.6), 1.0}, {2.0, pose(-0.1), 1.0}, {4.0, pose(-0.1), 1.0}};
+        auto loop = bench.loop(poses);
+        HapticSample last;
+        double largestArea = 0.0;
+        (void)loop->runSimulated(4.0, [&](const HapticSample& s) {
+            largestArea = std::max(largestArea, s.contactAreaMm2);
+            last = s;
+        });
+        EXPECT_GT(largestArea, 0.0) << bur;
+        EXPECT_GT(last.removedMm3[static_cast<std::size_t>(Tissue::enamel)], 0.01) << bur;
+    }
+}
+
 TEST(CuttingLoop, aWeakTurbineStallsAndRecovers) {
     instrument::Drive weak;
     weak.stallTorqueNmm = 0.02;

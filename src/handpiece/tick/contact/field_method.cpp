@@ -41,6 +41,8 @@ class FieldMethod final : public Method {
           sheets_(*bur_, tooth_->field, core::simdLevel()),
           feeler_(cut_ ? instrument::filleted(*bur_, kFeelerFilletVoxels * live_.field.settings().voxelMm) : *bur_),
           rings_(live_, feeler_, core::simdLevel()),
+          isRounded_(feeler_.profile().pieces.size() != bur_->profile().pieces.size()),
+          ownRings_(live_, *bur_, core::simdLevel()),
           field_(live_, feeler_, core::simdLevel()),
           slackMm_(cut_ ? std::max(kLeastSlackMm, kSlackShare * live_.field.settings().voxelMm *
                                                       live_.field.settings().voxelMm / (0.5 * bur_->maxRadiusMm()))
@@ -70,7 +72,7 @@ class FieldMethod final : public Method {
         return result;
     }
 
-    void patches(const core::Pose& burInTooth, PatchSet& out) noexcept override { rings_.patches(burInTooth, out); }
+    void patches(const core::Pose& burInTooth, PatchSet& out) noexcept override { ownRings_.patches(burInTooth, out); }
 
     Status constraints(const core::Pose& burInTooth, double reachMm, ConstraintSet& out) noexcept override {
         return rings_.constraints(burInTooth, reachMm, out);
@@ -79,6 +81,21 @@ class FieldMethod final : public Method {
     void bearing(const core::Pose& burInTooth, const Vec3& direction, double leadMm, double leastRadiusMm,
                  Bearing& out) noexcept override {
         rings_.bearing(burInTooth, direction, leadMm, leastRadiusMm, out);
+        if (!isRounded_) return;
+        // A sharp rim on a slope bears before the rounded one does; in its own cavity the rounded one is the steadier.
+        Bearing sharp;
+        ownRings_.bearing(burInTooth, direction, leadMm, leastRadiusMm, sharp);
+        double rounded = 0.0, own = 0.0;
+        for (std::size_t t = 0; t < tooth::kTissueCount; ++t) {
+            rounded += out.resistanceMm[t];
+            own += sharp.resistanceMm[t];
+        }
+        const double share = own > 0.0 ? std::clamp((rounded / own - 0.2) / 0.3, 0.0, 1.0) : 1.0;
+        for (std::size_t t = 0; t < tooth::kTissueCount; ++t) {
+            out.areaMm2[t] += (1.0 - share) * (sharp.areaMm2[t] - out.areaMm2[t]);
+            out.resistanceMm[t] += (1.0 - share) * (sharp.resistanceMm[t] - out.resistanceMm[t]);
+            out.tangentMm[t] += (1.0 - share) * (sharp.tangentMm[t] - out.tangentMm[t]);
+        }
     }
 
     [[nodiscard]] std::uint64_t toothVersion() const noexcept override { return live_.version(); }
@@ -171,6 +188,9 @@ class FieldMethod final : public Method {
     SheetSearch sheets_;
     instrument::Bur feeler_;  ///< the bur as the field is felt with it
     RingSensor rings_;
+    bool isRounded_;  ///< the feeler is not the bur itself
+    RingSensor
+        ownRings_;  ///< with its edges as they are: a sharp rim on a slope bears, and cuts, before the feeler does
     FieldDepth field_;
     double slackMm_;  ///< of the bur in its own cavity
     double farthestMm_;

@@ -9,6 +9,10 @@
 
 namespace handpiece::messages {
 
+/// Steps of a tick's inputs: the loop rounds what it reads from a device to them before using it, so that a record of
+/// whole steps gives the inputs back bit for bit.
+inline constexpr double kPositionStepMm = 0x1p-20, kOrientationStep = 0x1p-30, kPedalStep = 0x1p-16;
+
 /// One tick. Poses are bur in tooth [mm], quaternions w x y z; forces on the hand in the tooth frame [N].
 struct HapticSample {
     std::uint64_t tick = 0;

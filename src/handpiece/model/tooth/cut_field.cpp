@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::uint8_t kChanged = 1, kWaiting = 2, kShows = 4;
 constexpr std::size_t kBrickBytes = sizeof(float) * kBrickValues;
-/// Bounds at the centres inside are held to this, so that a cut corrects them only in its neighbourhood.
-constexpr float kCoarseDepthMm = 2.0f;
 
 }  // namespace
 

@@ -27,6 +27,9 @@ inline constexpr float kOccupancyHalfWidth = 0.5f;
     return std::clamp(0.5f - valueMm * inverseVoxelMm * (0.5f / kOccupancyHalfWidth), 0.0f, 1.0f);
 }
 
+/// Distances at bricks' centres are held to this depth, so that a cut need not reach farther to keep them right.
+inline constexpr float kCoarseDepthMm = 2.0f;
+
 struct CutSettings {
     double bandMm = 0.0;  ///< how deep under the surface the field follows a cut; 0: 0.2 mm, at least 3 voxels
     std::size_t reserveBricks = 0;  ///< bricks kept ready for the tooth's interior; 0: all of it, at most 256 MB

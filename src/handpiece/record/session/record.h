@@ -17,9 +17,8 @@
 
 namespace handpiece::session {
 
-/// Steps of the inputs. The loop rounds what it reads from a device to them before using it, so a record gives the
-/// tick's inputs back bit for bit.
-inline constexpr double kPositionStepMm = 0x1p-20, kOrientationStep = 0x1p-30, kPedalStep = 0x1p-16;
+// Of the inputs: what the loop rounds them to.
+using messages::kOrientationStep, messages::kPedalStep, messages::kPositionStepMm;
 /// Stands for an input that was not finite or out of range; such ticks carry messages::kInvalidPose.
 inline constexpr std::int32_t kNoNumber = std::numeric_limits<std::int32_t>::min();
 

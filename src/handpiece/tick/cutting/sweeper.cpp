@@ -16,8 +16,7 @@ using tooth::kBrickValues;
 namespace {
 
 constexpr std::uint8_t kUnknown = 255, kMixed = 254;
-/// Coarse values are known to this depth (see CutField).
-constexpr double kCoarseReachMm = 2.0;
+constexpr double kCoarseReachMm{tooth::kCoarseDepthMm};
 /// A brick's pieces are those of a region so much larger, and looked up again when the bur has moved as far.
 constexpr double kPiecesVoxels = 1.0;
 /// Between two poses that are cut on a way: what is left standing on a round bur's wall, and what a corner of the

@@ -7,18 +7,14 @@
 namespace handpiece::loop {
 namespace {
 
-/// What a record holds exactly: what is computed is computed from these.
-constexpr double kPositionSteps = 1 << 20;  // a millimetre
-constexpr double kQuaternionSteps = 1 << 30;
-constexpr double kPedalSteps = 1 << 16;
 /// Bricks handed over in a tick, and put in place by an undo.
 constexpr std::size_t kBricksPerTick = 16, kRestoredPerMs = 32, kLeastRestored = 4;
 /// The bur's surface moves at this radius, as a share of the largest, in the mean over its head.
 constexpr double kMeanRadius = 2.0 / 3.0;
 
-double rounded(double x, double steps) noexcept {
-    const double scaled = x * steps;
-    return std::abs(scaled) < 2147483647.0 ? std::nearbyint(scaled) / steps : x;
+double rounded(double x, double step) noexcept {
+    const double steps = x / step;
+    return std::abs(steps) < 2147483647.0 ? std::nearbyint(steps) * step : x;
 }
 
 }  // namespace
@@ -54,11 +50,12 @@ void HapticLoop::tick(const rt::Beat& beat) noexcept {
 device::Reading HapticLoop::readDevice(double elapsedS) noexcept {
     device::Reading reading = device_->read(elapsedS);
     for (int k = 0; k < 3; ++k)
-        reading.burInTooth.positionMm[k] = rounded(reading.burInTooth.positionMm[k], kPositionSteps);
+        reading.burInTooth.positionMm[k] = rounded(reading.burInTooth.positionMm[k], messages::kPositionStepMm);
     for (int k = 0; k < 4; ++k)
         reading.burInTooth.orientation.coeffs()[k] =
-            rounded(reading.burInTooth.orientation.coeffs()[k], kQuaternionSteps);
-    reading.pedal = std::isfinite(reading.pedal) ? rounded(std::clamp(reading.pedal, 0.0, 1.0), kPedalSteps) : 0.0;
+            rounded(reading.burInTooth.orientation.coeffs()[k], messages::kOrientationStep);
+    reading.pedal =
+        std::isfinite(reading.pedal) ? rounded(std::clamp(reading.pedal, 0.0, 1.0), messages::kPedalStep) : 0.0;
     return reading;
 }
 

@@ -41,8 +41,9 @@ class FieldMethod final : public Method {
           sheets_(*bur_, tooth_->field, core::simdLevel()),
           feeler_(cut_ ? instrument::filleted(*bur_, kFeelerFilletVoxels * live_.field.settings().voxelMm) : *bur_),
           rings_(live_, feeler_, core::simdLevel()),
-          isRounded_(feeler_.profile().pieces.size() != bur_->profile().pieces.size()),
-          ownRings_(live_, *bur_, core::simdLevel()),
+          sharpRings_(feeler_.profile().pieces.size() != bur_->profile().pieces.size()
+                          ? std::make_unique<RingSensor>(live_, *bur_, core::simdLevel())
+                          : nullptr),
           field_(live_, feeler_, core::simdLevel()),
           slackMm_(cut_ ? std::max(kLeastSlackMm, kSlackShare * live_.field.settings().voxelMm *
                                                       live_.field.settings().voxelMm / (0.5 * bur_->maxRadiusMm()))
@@ -60,9 +61,7 @@ class FieldMethod final : public Method {
         }
         if (isStillFar(burInTooth)) return result;
         clearMm_ = 0.0;
-        if (settings_.depthSource == DepthSource::field)
-            depthInField(burInTooth, result);
-        else if (cut_ && cut_->isCutNear(boxAround(burInTooth, live_.outMm())))
+        if (settings_.depthSource == DepthSource::field || isCutNear(burInTooth))
             depthInField(burInTooth, result);
         else
             depthOfWhole(burInTooth, result);
@@ -72,7 +71,9 @@ class FieldMethod final : public Method {
         return result;
     }
 
-    void patches(const core::Pose& burInTooth, PatchSet& out) noexcept override { ownRings_.patches(burInTooth, out); }
+    void patches(const core::Pose& burInTooth, PatchSet& out) noexcept override {
+        (sharpRings_ ? *sharpRings_ : rings_).patches(burInTooth, out);
+    }
 
     Status constraints(const core::Pose& burInTooth, double reachMm, ConstraintSet& out) noexcept override {
         return rings_.constraints(burInTooth, reachMm, out);
@@ -81,10 +82,10 @@ class FieldMethod final : public Method {
     void bearing(const core::Pose& burInTooth, const Vec3& direction, double leadMm, double leastRadiusMm,
                  Bearing& out) noexcept override {
         rings_.bearing(burInTooth, direction, leadMm, leastRadiusMm, out);
-        if (!isRounded_) return;
+        if (!sharpRings_) return;
         // A sharp rim on a slope bears before the rounded one does; in its own cavity the rounded one is the steadier.
         Bearing sharp;
-        ownRings_.bearing(burInTooth, direction, leadMm, leastRadiusMm, sharp);
+        sharpRings_->bearing(burInTooth, direction, leadMm, leastRadiusMm, sharp);
         double rounded = 0.0, own = 0.0;
         for (std::size_t t = 0; t < tooth::kTissueCount; ++t) {
             rounded += out.resistanceMm[t];
@@ -188,9 +189,9 @@ class FieldMethod final : public Method {
     SheetSearch sheets_;
     instrument::Bur feeler_;  ///< the bur as the field is felt with it
     RingSensor rings_;
-    bool isRounded_;  ///< the feeler is not the bur itself
-    RingSensor
-        ownRings_;  ///< with its edges as they are: a sharp rim on a slope bears, and cuts, before the feeler does
+    /// With the bur's edges as they are, where the feeler's are not: a sharp rim on a slope bears, and cuts, before the
+    /// feeler does.
+    std::unique_ptr<RingSensor> sharpRings_;
     FieldDepth field_;
     double slackMm_;  ///< of the bur in its own cavity
     double farthestMm_;

@@ -94,25 +94,28 @@ void ForceModel::updateVelocity(const Vec3& positionMm, bool fresh, double perio
 }
 
 ForceModel::KelvinVoigt ForceModel::coupling(const Touch& touch) const noexcept {
-    double stiffness = 0.0, damping = 0.0, total = 0.0;
+    double stiffness = 0.0, damping = 0.0, friction = 0.0, total = 0.0;
     for (std::size_t i = 0; i < tooth::kTissueCount; ++i) {
         const double share = touch.patches.tissueShare[i];
         total += share;
         stiffness += share * parameters_.tissues[i].stiffnessFraction;
         damping += share * parameters_.tissues[i].dampingNSPerMm;
+        friction += share * parameters_.tissues[i].friction;
     }
     if (total > 0.0) {
         stiffness /= total;
         damping /= total;
+        friction /= total;
     } else {
         // On the surface but with no point within the margin of it: the tissue that holds the proxy.
         const TissueFeel& feel = parameters_.tissues[static_cast<std::size_t>(touch.tissue)];
         stiffness = feel.stiffnessFraction;
         damping = feel.dampingNSPerMm;
+        friction = feel.friction;
     }
     return {
         std::min(stiffness * limits_.maxStiffnessNPerMm * parameters_.stiffnessMultiplier, limits_.maxStiffnessNPerMm),
-        std::min(damping * parameters_.dampingMultiplier, limits_.maxDampingNSPerMm)};
+        std::min(damping * parameters_.dampingMultiplier, limits_.maxDampingNSPerMm), friction};
 }
 
 Vec3 ForceModel::proxyForce(const Touch& touch) const noexcept {
@@ -149,18 +152,12 @@ Vec3 ForceModel::frictionForce(const Touch& touch, const Vec3& pressN, const Tur
         bristleMm_.setZero();
         return Vec3::Zero();
     }
-    double friction = 0.0, total = 0.0;
-    for (std::size_t i = 0; i < tooth::kTissueCount; ++i) {
-        friction += touch.patches.tissueShare[i] * parameters_.tissues[i].friction;
-        total += touch.patches.tissueShare[i];
-    }
-    friction = total > 0.0 ? friction / total : parameters_.tissues[static_cast<std::size_t>(touch.tissue)].friction;
     const Vec3 normal = pressN / press;
     const auto alongSurface = [&](const Vec3& v) { return Vec3(v - normal * normal.dot(v)); };
     // Friction points against the slip of surface on surface: of a turning bur the hand's share of that is small.
     const double slide = alongSurface(velocityMmS_).norm();
     const double share = turning.surfaceSpeedMmS > 0.0 ? slide / std::hypot(slide, turning.surfaceSpeedMmS) : 1.0;
-    const double limit = parameters_.frictionMultiplier * friction * share * press / kv.stiffnessNPerMm;
+    const double limit = parameters_.frictionMultiplier * kv.friction * share * press / kv.stiffnessNPerMm;
     bristleMm_ = alongSurface(bristleMm_ + moved);
     const double length = bristleMm_.norm();
     if (length > limit) bristleMm_ *= limit / length;

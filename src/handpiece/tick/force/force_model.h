@@ -66,7 +66,7 @@ class ForceModel {
 
   private:
     struct KelvinVoigt {
-        double stiffnessNPerMm, dampingNSPerMm;
+        double stiffnessNPerMm, dampingNSPerMm, friction;  ///< means over the tissues that are pressed
     };
     void smoothShares(bool isCutNear, double periodS) noexcept;
     void updateVelocity(const core::Vec3& positionMm, bool fresh, double periodS) noexcept;

@@ -63,7 +63,7 @@ void writeAttempt(const Station& station, const tooth::Case& toothCase, const to
     attempt.caseFile = std::filesystem::absolute(options.casePath);
     attempt.caseKey = tooth::contentKey(toothCase);
     attempt.caseName = toothCase.name;
-    attempt.state = tooth::encodeState(state, tooth::identityOf(*station.tooth));
+    attempt.state = tooth::encodeState(state, station.identity);
     attempt.voxelMm = station.settings.field.voxelMm;
     attempt.removedMm3 = state.removedMm3;
     attempt.bur = station.settings.bur->name();

@@ -28,13 +28,13 @@ CutSession::CutSession(const Station& station, session::Recorder* recorder, bool
       mayWait_(mayWait),
       mirror_(station.tooth),
       source_(mirror_),
-      watch_([this](std::uint64_t tick, EventName name, std::string_view text) { tell(tick, name, text); }),
-      key_(tooth::identityOf(*station.tooth)) {
+      watch_([this](std::uint64_t tick, EventName name, std::string_view text) { tell(tick, name, text); }) {
     const tooth::CutState state = station.field->state();
     mirror_.apply(state);
     (void)mirror_.takeTouched();
     history_.start(state);
-    if (recorder_ != nullptr && station.settings.resumed) recorder_->keyFrame(0, tooth::encodeState(state, key_));
+    if (recorder_ != nullptr && station.settings.resumed)
+        recorder_->keyFrame(0, tooth::encodeState(state, station_.identity));
 }
 
 void CutSession::tell(std::uint64_t tick, EventName name, std::string_view text) {
@@ -70,7 +70,7 @@ void CutSession::keepKeyFrame(const messages::HapticSample& sample) {
     if (recorder_ == nullptr) return;
     if (keyFrameBytes_ > kKeyFrameFirstBytes + kKeyFrameBytesPerS * sample.timeS) return;
     lastKeyFrameS_ = sample.timeS;
-    std::vector<std::byte> bytes = tooth::encodeState(mirror_.state(sample.removedMm3), key_);
+    std::vector<std::byte> bytes = tooth::encodeState(mirror_.state(sample.removedMm3), station_.identity);
     keyFrameBytes_ += static_cast<double>(bytes.size());
     recorder_->keyFrame(sample.tick, std::move(bytes));
 }
@@ -89,7 +89,7 @@ bool CutSession::take(Step step, loop::HapticLoop& loop) {
 
 void CutSession::finish(const tooth::CutState& state, std::uint64_t tick) {
     if (recorder_ == nullptr) return;
-    recorder_->keyFrame(tick, tooth::encodeState(state, key_));
+    recorder_->keyFrame(tick, tooth::encodeState(state, station_.identity));
     recorder_->event(tick, EventName::end,
                      fmt::format("{{\"state_hash\": \"{}\"}}", hashText(tooth::stateHash(state))));
 }

@@ -48,7 +48,7 @@ class CutSession {
     history::MirrorSource source_;
     history::History history_;
     session::EventWatch watch_;
-    std::uint64_t strokes_ = 0, key_ = 0;
+    std::uint64_t strokes_ = 0;
     struct Pending {
         std::uint64_t command;
         session::EventName name;

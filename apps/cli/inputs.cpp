@@ -9,8 +9,7 @@
 #include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
-#include "handpiece/base/geometry/mesh_io.h"
-#include "handpiece/model/instrument/shapes.h"
+#include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/tick/contact/hull_method.h"
 
 namespace handpiece::cli {
@@ -59,11 +58,7 @@ std::shared_ptr<const tooth::Tooth> loadTooth(const ContactInputs& inputs) {
 }
 
 std::shared_ptr<const instrument::Bur> loadBur(const std::string& nameOrFile) {
-    const bool isFile = geometry::meshFormatOf(nameOrFile) != geometry::MeshFormat::unknown;
-    if (isFile)
-        return std::make_shared<instrument::Bur>(instrument::burFromMesh(fs::path(nameOrFile).filename().string(),
-                                                                         geometry::readMesh(fs::path(nameOrFile))));
-    return std::make_shared<instrument::Bur>(instrument::makeBur(nameOrFile));
+    return instrument::makeInstrument(nameOrFile).bur;
 }
 
 std::unique_ptr<contact::Method> makeMethod(const std::string& name, const MethodRegistry& extra,

@@ -76,8 +76,7 @@ std::optional<Told> toldBy(const session::SessionReader& reader, const std::vect
     }
     const auto frame = reader.keyFrameBefore(lastTick);
     if (!frame) return std::nullopt;
-    const tooth::CutState state =
-        tooth::decodeState(frame->state, tooth::identityOf(*station.tooth), *station.tooth, where);
+    const tooth::CutState state = tooth::decodeState(frame->state, station.identity, *station.tooth, where);
     return Told{frame->tick, hashText(tooth::stateHash(state))};
 }
 
@@ -91,8 +90,7 @@ void replay(const ReplayOptions& o) {
     if (station.settings.resumed) {
         if (reader.keyFrameTicks().empty())
             throw core::Error("the state that the session began with is missing", o.session, "take another copy");
-        station.resume(
-            tooth::decodeState(reader.keyFrame(0).state, tooth::identityOf(*station.tooth), *station.tooth, o.session));
+        station.resume(tooth::decodeState(reader.keyFrame(0).state, station.identity, *station.tooth, o.session));
     }
     const auto told = toldBy(reader, events, station, records.back().tick, o.session);
 

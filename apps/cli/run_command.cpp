@@ -221,8 +221,7 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     stationSettings.resumed = before.has_value();
     const Station station = makeStation(toothCase, std::move(stationSettings), prepare.useCache);
     if (before)
-        station.resume(tooth::decodeState(before->attempt.state, tooth::identityOf(*station.tooth), *station.tooth,
-                                          o.inputs.tooth));
+        station.resume(tooth::decodeState(before->attempt.state, station.identity, *station.tooth, o.inputs.tooth));
     settings.parameters = station.settings.parameters;
     device::Motion motion = cutMotionOf(o, settings, toothCase, station);
     if (o.tremorUm > 0.0) motion = withTremor(motion, 1e-3 * o.tremorUm, o.seed);

@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <concepts>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 #include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/tick/contact/field_method.h"
 
 namespace handpiece::cli {
@@ -16,71 +19,134 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-Json toJson(const core::Vec3& v) {
-    return Json::array({v.x(), v.y(), v.z()});
+// What a session keeps of each thing, named once: Write puts the members into JSON, Read takes them out.
+
+template <class Visit, class Ability>
+void members(Visit&& visit, Ability& a) requires std::same_as<std::remove_const_t<Ability>, instrument::Ability> {
+    visit("name", a.name);
+    visit("cutting", a.cutting);
+    visit("load_cap_n", a.loadCapN);
+    visit("friction_cutting", a.frictionCutting);
+    visit("chip_mm", a.chipMm);
+    visit("edges", a.edges);
+    visit("centre_radius", a.centreRadius);
 }
 
-Json toJson(const instrument::Ability& a) {
-    return {{"name", a.name},
-            {"cutting", a.cutting},
-            {"load_cap_n", a.loadCapN},
-            {"friction_cutting", a.frictionCutting},
-            {"chip_mm", a.chipMm},
-            {"edges", a.edges},
-            {"centre_radius", a.centreRadius}};
+template <class Visit, class Drive>
+void members(Visit&& visit, Drive& d) requires std::same_as<std::remove_const_t<Drive>, instrument::Drive> {
+    visit("name", d.name);
+    visit("free_speed_rpm", d.freeSpeedRpm);
+    visit("stall_torque_nmm", d.stallTorqueNmm);
+    visit("inertia_nmms2", d.inertiaNmmS2);
+    visit("bearing_torque_nmm", d.bearingTorqueNmm);
 }
 
-Json toJson(const instrument::Drive& d) {
-    return {{"name", d.name},
-            {"free_speed_rpm", d.freeSpeedRpm},
-            {"stall_torque_nmm", d.stallTorqueNmm},
-            {"inertia_nmms2", d.inertiaNmmS2},
-            {"bearing_torque_nmm", d.bearingTorqueNmm}};
+template <class Visit, class Properties>
+void members(Visit&& visit,
+             Properties& t) requires std::same_as<std::remove_const_t<Properties>, tooth::TissueProperties> {
+    visit("stiffness", t.stiffnessFraction);
+    visit("damping", t.dampingNSPerMm);
+    visit("friction", t.friction);
+    visit("cutting", t.cuttingMm2PerN);
+    visit("priority", t.priority);
+    visit("colour", t.colour);
 }
 
-Json toJson(const tooth::TissueTable& table) {
-    Json rows;
-    for (const tooth::TissueProperties& t : table.rows)
-        rows[std::string(t.name)] = {{"stiffness", t.stiffnessFraction}, {"damping", t.dampingNSPerMm},
-                                     {"friction", t.friction},           {"cutting", t.cuttingMm2PerN},
-                                     {"priority", t.priority},           {"colour", t.colour}};
-    return rows;
+template <class Visit, class Table>
+void members(Visit&& visit, Table& table) requires std::same_as<std::remove_const_t<Table>, tooth::TissueTable> {
+    for (auto& row : table.rows)
+        visit(std::string(row.name), row);
 }
 
-Json toJson(const device::Capability& c) {
-    return {{"name", c.name},
-            {"max_force_n", c.maxForceN},
-            {"continuous_force_n", c.continuousForceN},
-            {"max_stiffness_n_per_mm", c.maxStiffnessNPerMm},
-            {"max_damping_ns_per_mm", c.maxDampingNSPerMm},
-            {"max_force_slope_n_per_s", c.maxForceSlopeNPerS},
-            {"max_torque_nmm", c.maxTorqueNmm},
-            {"encoder_step_mm", c.encoderStepMm},
-            {"workspace_mm", toJson(c.workspaceMm)},
-            {"sensed_axes", c.sensedAxes},
-            {"driven_axes", c.drivenAxes},
-            {"rate_hz", c.rateHz}};
+template <class Visit, class Capability>
+void members(Visit&& visit, Capability& c) requires std::same_as<std::remove_const_t<Capability>, device::Capability> {
+    visit("name", c.name);
+    visit("max_force_n", c.maxForceN);
+    visit("continuous_force_n", c.continuousForceN);
+    visit("max_stiffness_n_per_mm", c.maxStiffnessNPerMm);
+    visit("max_damping_ns_per_mm", c.maxDampingNSPerMm);
+    visit("max_force_slope_n_per_s", c.maxForceSlopeNPerS);
+    visit("max_torque_nmm", c.maxTorqueNmm);
+    visit("encoder_step_mm", c.encoderStepMm);
+    visit("workspace_mm", c.workspaceMm);
+    visit("sensed_axes", c.sensedAxes);
+    visit("driven_axes", c.drivenAxes);
+    visit("rate_hz", c.rateHz);
 }
 
-Json toJson(const force::Parameters& p) {
-    Json tissues = Json::array();
-    for (const force::TissueFeel& t : p.tissues)
-        tissues.push_back({t.stiffnessFraction, t.dampingNSPerMm, t.friction});
-    return {{"mode", p.mode == force::Mode::proxy ? "proxy" : "penalty"},
-            {"stiffness_multiplier", p.stiffnessMultiplier},
-            {"damping_multiplier", p.dampingMultiplier},
-            {"friction_multiplier", p.frictionMultiplier},
-            {"cutting_force_multiplier", p.cuttingForceMultiplier},
-            {"tissues", tissues},
-            {"penalty_stiffness_n_per_mm", p.penaltyStiffnessNPerMm},
-            {"penalty_damping_ns_per_mm", p.penaltyDampingNSPerMm},
-            {"velocity_tau_s", p.velocityTauS},
-            {"damping_ramp_mm", p.dampingRampMm},
-            {"grip_mm", toJson(p.gripMm)},
-            {"fade_in_s", p.fadeInS},
-            {"proxy_iterations", p.proxy.iterations},
-            {"proxy_max_step_mm", p.proxy.maxStepMm},
-            {"proxy_tolerance_mm", p.proxy.toleranceMm}};
+template <class Visit, class Parameters>
+void members(Visit&& visit, Parameters& p) requires std::same_as<std::remove_const_t<Parameters>, force::Parameters> {
+    visit("mode", p.mode);
+    visit("stiffness_multiplier", p.stiffnessMultiplier);
+    visit("damping_multiplier", p.dampingMultiplier);
+    visit("friction_multiplier", p.frictionMultiplier);
+    visit("cutting_force_multiplier", p.cuttingForceMultiplier);
+    visit("tissues", p.tissues);
+    visit("penalty_stiffness_n_per_mm", p.penaltyStiffnessNPerMm);
+    visit("penalty_damping_ns_per_mm", p.penaltyDampingNSPerMm);
+    visit("velocity_tau_s", p.velocityTauS);
+    visit("damping_ramp_mm", p.dampingRampMm);
+    visit("grip_mm", p.gripMm);
+    visit("fade_in_s", p.fadeInS);
+    visit("proxy_iterations", p.proxy.iterations);
+    visit("proxy_max_step_mm", p.proxy.maxStepMm);
+    visit("proxy_tolerance_mm", p.proxy.toleranceMm);
+}
+
+using TissueFeels = decltype(force::Parameters::tissues);
+
+struct Write {
+    Json json = Json::object();
+    template <class T>
+    void operator()(const std::string& key, const T& value) {
+        if constexpr (requires { Json(value); } && !std::is_enum_v<T>) {
+            json[key] = value;
+        } else {
+            Write inner;
+            members(inner, value);
+            json[key] = std::move(inner.json);
+        }
+    }
+    void operator()(const std::string& key, const core::Vec3& v) { json[key] = {v.x(), v.y(), v.z()}; }
+    void operator()(const std::string& key, force::Mode mode) {
+        json[key] = mode == force::Mode::proxy ? "proxy" : "penalty";
+    }
+    void operator()(const std::string& key, const TissueFeels& tissues) {
+        for (const force::TissueFeel& t : tissues)
+            json[key].push_back({t.stiffnessFraction, t.dampingNSPerMm, t.friction});
+    }
+};
+
+struct Read {
+    const Json& json;
+    template <class T>
+    void operator()(const std::string& key, T& value) const {
+        if constexpr (requires(const Json& j) { j.get_to(value); }) {
+            json.at(key).get_to(value);
+        } else {
+            members(Read{json.at(key)}, value);
+        }
+    }
+    void operator()(const std::string& key, core::Vec3& v) const {
+        for (std::size_t k = 0; k < 3; ++k)
+            v[static_cast<int>(k)] = json.at(key).at(k).get<double>();
+    }
+    void operator()(const std::string& key, force::Mode& mode) const {
+        mode = force::modeByName(json.at(key).get<std::string>());
+    }
+    void operator()(const std::string& key, TissueFeels& tissues) const {
+        for (std::size_t i = 0; i < tissues.size(); ++i) {
+            const Json& row = json.at(key).at(i);
+            tissues[i] = {row.at(0), row.at(1), row.at(2)};
+        }
+    }
+};
+
+template <class T>
+Json toJson(const T& value) {
+    Write write;
+    members(write, value);
+    return std::move(write.json);
 }
 
 Json toJson(const instrument::Profile& profile) {
@@ -108,77 +174,6 @@ void from(const Json& j, instrument::Profile& profile) {
         }
         profile.pieces.push_back(p);
     }
-}
-
-void from(const Json& j, core::Vec3& v) {
-    for (std::size_t k = 0; k < 3; ++k)
-        v[static_cast<int>(k)] = j.at(k).get<double>();
-}
-
-void from(const Json& j, instrument::Ability& a) {
-    a.name = j.at("name");
-    a.cutting = j.at("cutting");
-    a.loadCapN = j.at("load_cap_n");
-    a.frictionCutting = j.at("friction_cutting");
-    a.chipMm = j.at("chip_mm");
-    a.edges = j.at("edges");
-    a.centreRadius = j.at("centre_radius");
-}
-
-void from(const Json& j, instrument::Drive& d) {
-    d.name = j.at("name");
-    d.freeSpeedRpm = j.at("free_speed_rpm");
-    d.stallTorqueNmm = j.at("stall_torque_nmm");
-    d.inertiaNmmS2 = j.at("inertia_nmms2");
-    d.bearingTorqueNmm = j.at("bearing_torque_nmm");
-}
-
-void from(const Json& j, tooth::TissueTable& table) {
-    for (tooth::TissueProperties& t : table.rows) {
-        const Json& row = j.at(std::string(t.name));
-        t.stiffnessFraction = row.at("stiffness");
-        t.dampingNSPerMm = row.at("damping");
-        t.friction = row.at("friction");
-        t.cuttingMm2PerN = row.at("cutting");
-        t.priority = row.at("priority");
-        t.colour = row.at("colour");
-    }
-}
-
-void from(const Json& j, device::Capability& c) {
-    c.name = j.at("name");
-    c.maxForceN = j.at("max_force_n");
-    c.continuousForceN = j.at("continuous_force_n");
-    c.maxStiffnessNPerMm = j.at("max_stiffness_n_per_mm");
-    c.maxDampingNSPerMm = j.at("max_damping_ns_per_mm");
-    c.maxForceSlopeNPerS = j.at("max_force_slope_n_per_s");
-    c.maxTorqueNmm = j.at("max_torque_nmm");
-    c.encoderStepMm = j.at("encoder_step_mm");
-    from(j.at("workspace_mm"), c.workspaceMm);
-    c.sensedAxes = j.at("sensed_axes");
-    c.drivenAxes = j.at("driven_axes");
-    c.rateHz = j.at("rate_hz");
-}
-
-void from(const Json& j, force::Parameters& p) {
-    p.mode = force::modeByName(j.at("mode").get<std::string>());
-    p.stiffnessMultiplier = j.at("stiffness_multiplier");
-    p.dampingMultiplier = j.at("damping_multiplier");
-    p.frictionMultiplier = j.at("friction_multiplier");
-    p.cuttingForceMultiplier = j.at("cutting_force_multiplier");
-    for (std::size_t i = 0; i < p.tissues.size(); ++i) {
-        const Json& row = j.at("tissues").at(i);
-        p.tissues[i] = {row.at(0), row.at(1), row.at(2)};
-    }
-    p.penaltyStiffnessNPerMm = j.at("penalty_stiffness_n_per_mm");
-    p.penaltyDampingNSPerMm = j.at("penalty_damping_ns_per_mm");
-    p.velocityTauS = j.at("velocity_tau_s");
-    p.dampingRampMm = j.at("damping_ramp_mm");
-    from(j.at("grip_mm"), p.gripMm);
-    p.fadeInS = j.at("fade_in_s");
-    p.proxy.iterations = j.at("proxy_iterations");
-    p.proxy.maxStepMm = j.at("proxy_max_step_mm");
-    p.proxy.toleranceMm = j.at("proxy_tolerance_mm");
 }
 
 }  // namespace
@@ -209,6 +204,7 @@ StationSettings settingsFromJson(const std::string& text, const std::string& whe
     std::string bur;
     try {
         const Json json = Json::parse(text);
+        const Read read{json};
         s.rateHz = json.at("rate_hz");
         s.field.voxelMm = json.at("field").at("voxel_mm");
         s.field.bandOutMm = json.at("field").at("band_out_mm");
@@ -217,11 +213,11 @@ StationSettings settingsFromJson(const std::string& text, const std::string& whe
         s.cut.reserveBricks = json.at("cut").at("reserve_bricks");
         from(json.at("outline_mm"), outline);
         bur = json.at("bur");
-        from(json.at("ability"), s.ability);
-        from(json.at("drive"), s.drive);
-        from(json.at("tissues"), s.tissues);
-        from(json.at("device"), s.capability);
-        from(json.at("force"), s.parameters);
+        read("ability", s.ability);
+        read("drive", s.drive);
+        read("tissues", s.tissues);
+        read("device", s.capability);
+        read("force", s.parameters);
         s.fullRemoval = json.at("full_removal");
         s.resumed = json.at("resumed");
     } catch (const Json::exception& e) {
@@ -258,6 +254,7 @@ Station makeStation(const tooth::Case& toothCase, StationSettings settings, bool
     const core::Progress progress = bar.listener();
     const auto tooth = tooth::prepareTooth(toothCase, prepare, core::part(progress, 0.0, 0.6));
     station.tooth = tooth::prepareCutting(toothCase, tooth, prepare, settings.cut, core::part(progress, 0.6, 1.0));
+    station.identity = tooth::identityOf(*station.tooth);
     station.field = std::make_shared<tooth::CutField>(station.tooth);
     station.settings = std::move(settings);
     return station;

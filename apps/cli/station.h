@@ -42,6 +42,7 @@ struct StationSettings {
 /// One tooth under one bur. The field is cut by the loop that gets the work.
 struct Station {
     std::shared_ptr<const tooth::CuttableTooth> tooth;
+    std::uint64_t identity = 0;  ///< of the tooth, for states in files
     std::shared_ptr<tooth::CutField> field;
     StationSettings settings;
 

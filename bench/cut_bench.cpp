@@ -4,16 +4,15 @@
 // what each counter is. HANDPIECE_BENCH_QUICK=1 makes a smoke test of it.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <sched.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <memory>
 #include <numbers>
 
-#include "handpiece/base/core/simd.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/tick/cutting/cutter.h"
 #include "measure.h"
@@ -350,42 +349,15 @@ void registerAll(Session& session) {
             [&session, us](benchmark::State& s) { runConstantLoad(s, us, session.quick); });
 }
 
-const char* simdName() {
-    switch (core::simdLevel()) {
-        case core::SimdLevel::avx512:
-            return "AVX-512";
-        case core::SimdLevel::avx2:
-            return "AVX2";
-        case core::SimdLevel::base:
-            break;
-    }
-    return "baseline";
-}
-
-int mainOf(int argc, char** argv) {
-    const bool quick = std::getenv("HANDPIECE_BENCH_QUICK") != nullptr;
-    benchmark::Initialize(&argc, argv);
-    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-    benchmark::AddCustomContext("handpiece_simd", simdName());
-    benchmark::AddCustomContext("pinned", PinnedToCore::description());
-    benchmark::AddCustomContext("scheduler", sched_getscheduler(0) == SCHED_FIFO ? "SCHED_FIFO" : "normal");
-    benchmark::AddCustomContext("quick", quick ? "yes" : "no");
-    Session session{Workload(quick), quick, {}, nullptr};
-    registerAll(session);
-    registerSurface();
-    benchmark::RunSpecifiedBenchmarks();
-    benchmark::Shutdown();
-    return 0;
-}
-
 }  // namespace
 }  // namespace handpiece::bench
 
 int main(int argc, char** argv) {
-    try {
-        return handpiece::bench::mainOf(argc, argv);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "cut_bench: %s\n", error.what());
-        return 1;
-    }
+    using namespace handpiece::bench;
+    std::unique_ptr<Session> session;
+    return runBenchmarks(argc, argv, "cut_bench", [&](bool quick) {
+        session.reset(new Session{Workload(quick), quick, {}, nullptr});
+        registerAll(*session);
+        registerSurface();
+    });
 }

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "measure.h"
 
+#include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <sched.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
+
+#include "handpiece/base/core/simd.h"
 
 namespace handpiece::bench {
 namespace {
@@ -117,6 +122,41 @@ double ConstantLoad::depthMm(const core::Pose&) {
     for (long i = 0; i < steps_; ++i)
         x = 3.7 * x * (1.0 - x);  // each step waits for the last
     return x;
+}
+
+namespace {
+
+const char* simdName() {
+    switch (core::simdLevel()) {
+        case core::SimdLevel::avx512:
+            return "AVX-512";
+        case core::SimdLevel::avx2:
+            return "AVX2";
+        case core::SimdLevel::base:
+            break;
+    }
+    return "baseline";
+}
+
+}  // namespace
+
+int runBenchmarks(int argc, char** argv, const char* name, const std::function<void(bool quick)>& registerAll) {
+    try {
+        const bool quick = std::getenv("HANDPIECE_BENCH_QUICK") != nullptr;
+        benchmark::Initialize(&argc, argv);
+        if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+        benchmark::AddCustomContext("handpiece_simd", simdName());
+        benchmark::AddCustomContext("pinned", PinnedToCore::description());
+        benchmark::AddCustomContext("scheduler", sched_getscheduler(0) == SCHED_FIFO ? "SCHED_FIFO" : "normal");
+        benchmark::AddCustomContext("quick", quick ? "yes" : "no");
+        registerAll(quick);
+        benchmark::RunSpecifiedBenchmarks();
+        benchmark::Shutdown();
+        return 0;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s: %s\n", name, error.what());
+        return 1;
+    }
 }
 
 }  // namespace handpiece::bench

@@ -3,6 +3,7 @@
 /// @file
 /// Times a query along a trajectory, tick by tick.
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,6 +45,10 @@ class PinnedToCore {
   private:
     std::vector<unsigned char> before_;
 };
+
+/// The whole of a benchmark's main: reads the options, tells machine and mode in the output, lets `registerAll(quick)`
+/// register, runs. Quick, for smoke tests, when HANDPIECE_BENCH_QUICK is set. Returns the exit code.
+int runBenchmarks(int argc, char** argv, const char* name, const std::function<void(bool quick)>& registerAll);
 
 /// A fixed amount of arithmetic that takes about `us` on this machine: shows the machine's own tails.
 class ConstantLoad final : public Query {

@@ -5,23 +5,15 @@
 #include <gtest/gtest.h>
 
 #include "handpiece/base/core/error.h"
+#include "support/error_of.h"
 
 namespace handpiece::config {
 namespace {
 
+using test::errorOf;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-template <class Work>
-std::string errorOf(const Work& work) {
-    try {
-        work();
-    } catch (const core::Error& e) {
-        return e.what();
-    }
-    return {};
-}
 
 const char* kText = R"(name = "molar"
 count = 3

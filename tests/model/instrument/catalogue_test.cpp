@@ -10,23 +10,15 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "support/error_of.h"
 #include "support/random.h"
 
 namespace handpiece::instrument {
 namespace {
 
+using test::errorOf;
 using testing::AllOf;
 using testing::HasSubstr;
-
-template <class Work>
-std::string errorOf(const Work& work) {
-    try {
-        work();
-    } catch (const core::Error& e) {
-        return e.what();
-    }
-    return {};
-}
 
 TEST(Catalogue, HasEachBurOnceUnderEachOfItsNames) {
     std::set<std::string> names, isoNumbers;

@@ -9,25 +9,17 @@
 #include "handpiece/model/tooth/case_check.h"
 #include "handpiece/model/tooth/package.h"
 #include "handpiece/model/tooth/tooth.h"
+#include "support/error_of.h"
 #include "support/random.h"
 
 namespace handpiece::tooth {
 namespace {
 
 namespace fs = std::filesystem;
+using test::errorOf;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-template <class Work>
-std::string errorOf(const Work& work) {
-    try {
-        work();
-    } catch (const core::Error& e) {
-        return e.what();
-    }
-    return {};
-}
 
 Case boxes() {
     Case c;

@@ -101,8 +101,8 @@ TEST(CuttingPassivity, cuttingAndWedgedTheLoopStaysPassive) {
                         }
     std::vector<std::shared_ptr<const tooth::CuttableTooth>> bases;
     for (const Tissue t : {Tissue::enamel, Tissue::dentine, Tissue::caries})
-        for (const auto& whole : {flat, groove})
-            bases.push_back(cuttable(whole, t));
+        for (const auto& tooth : {flat, groove})
+            bases.push_back(cuttable(tooth, t));
     core::parallelFor(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t t = rows[i].tissue == Tissue::enamel ? 0 : rows[i].tissue == Tissue::dentine ? 1 : 2;

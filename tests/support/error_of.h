@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What an error says, for tests of messages.
+
+#include <string>
+
+#include "handpiece/base/core/error.h"
+
+namespace handpiece::test {
+
+/// The text of the core::Error that `work` throws; empty when it throws none.
+template <class Work>
+std::string errorOf(const Work& work) {
+    try {
+        work();
+    } catch (const core::Error& e) {
+        return e.what();
+    }
+    return {};
+}
+
+}  // namespace handpiece::test

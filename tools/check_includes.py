@@ -19,12 +19,16 @@ THIRD_PARTY = {
     r"hdf5\.h|H5": r"src/handpiece/record/session/\w+\.cpp",
     r"zlib\.h": r"src/handpiece/record/history/\w+\.cpp|src/handpiece/model/tooth/cut_state_file\.cpp|tests/.*",
     r"CLI/|CLI11": r"apps/cli/.*",
-    r"nlohmann/": r"apps/cli/.*|bench/.*",
+    r"nlohmann/": r"apps/(cli|station)/.*|bench/.*",
     r"gtest/|gmock/|rapidcheck": r"tests/.*",
     r"benchmark/": r"bench/.*",
     r"ccd/|fcl/": r"tests/.*|bench/.*",
     r"btBullet|BulletCollision|LinearMath/|ode/|embree3/|openvdb/": r"bench/.*",
-    r"Q[A-Z]\w+$|QtWidgets/|QtCore/": r"apps/desktop/.*",
+    r"EGL/|GL/": r"src/handpiece/senses/view/(\w+\.cpp|gl\.h)",
+    r"png\.h": r"src/handpiece/senses/view/image\.cpp",
+    r"sndfile\.h": r"src/handpiece/senses/sound/wav\.cpp",
+    r"AL/": r"src/handpiece/senses/sound/\w+\.cpp",
+    r"Q[A-Z]\w+$|QtWidgets/|QtCore/|QtTest/": r"(apps|tests)/desktop/.*",
 }
 # What the tick's own rooms never include: anything that locks, waits, prints or touches a file. The device drivers and
 # the loop's runner may talk to base/rt, which hides the threads.

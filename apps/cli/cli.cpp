@@ -26,6 +26,8 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods) {
     addRunCommand(app, extraMethods);
     addReplayCommand(app);
     addExportCommand(app);
+    addReportCommand(app);
+    addPictureCommand(app);
     addReproduceCommand(app);
     addBenchCommand(app);
     addPassivityCommand(app);

@@ -18,8 +18,10 @@ void addProbeCommand(CLI::App& app, const MethodRegistry& methods);
 void addRunCommand(CLI::App& app, const MethodRegistry& methods);
 void addReplayCommand(CLI::App& app);
 void addExportCommand(CLI::App& app);
+void addReportCommand(CLI::App& app);
 void addReproduceCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addPassivityCommand(CLI::App& app);
+void addPictureCommand(CLI::App& app);
 
 }  // namespace handpiece::cli

@@ -23,14 +23,14 @@ using messages::HapticSample;
 
 /// Steps of one kind that are still to be taken.
 struct Due {
-    CutSession::Step step;
+    station::CutSession::Step step;
     std::vector<double> atS;
     std::size_t next = 0;
 };
 
 /// The tooth that is left, as one closed surface and as a case of its own.
-void writeCut(const Station& station, const tooth::Case& toothCase, const tooth::CutState& state, Outputs& outputs,
-              CutOutcome& outcome) {
+void writeCut(const station::Station& station, const tooth::Case& toothCase, const tooth::CutState& state,
+              Outputs& outputs, CutOutcome& outcome) {
     ProgressBar bar("shaping the cut tooth");
     const core::Progress progress = bar.listener();
     tooth::CutMirror mirror(station.tooth);
@@ -57,7 +57,7 @@ void writeCut(const Station& station, const tooth::Case& toothCase, const tooth:
 }
 
 /// What was cut, to go on with later.
-void writeAttempt(const Station& station, const tooth::Case& toothCase, const tooth::CutState& state,
+void writeAttempt(const station::Station& station, const tooth::Case& toothCase, const tooth::CutState& state,
                   const CutRunOptions& options, const CutOutcome& outcome, const Outputs& outputs) {
     tooth::Attempt attempt;
     attempt.caseFile = std::filesystem::absolute(options.casePath);
@@ -125,21 +125,21 @@ device::Motion withTremor(const device::Motion& motion, double amplitudeMm, std:
     return device::Motion(std::move(poses));
 }
 
-CutOutcome runCut(const Station& station, const tooth::Case& toothCase, const RunSettings& settings,
+CutOutcome runCut(const station::Station& station, const tooth::Case& toothCase, const RunSettings& settings,
                   const device::Motion& motion, const CutRunOptions& options, Outputs& outputs) {
     const double duration = settings.durationS > 0.0 ? settings.durationS : motion.durationS();
     session::SessionInfo info;
     info.rateHz = settings.rateHz;
     info.code = options.code;
     info.version = HANDPIECE_VERSION;
-    info.settings = settingsJson(station.settings);
+    info.settings = station::settingsJson(station.settings);
     info.tooth = tooth::encodeCase(toothCase);
     // Written where it stays: what was cut is worth keeping, also when the rest fails.
     session::Recorder recorder(outputs.path("session.h5"), info);
-    CutSession session(station, &recorder, !settings.realTime);
-    std::vector<Due> due{{CutSession::Step::undo, options.undoAtS},
-                         {CutSession::Step::redo, options.redoAtS},
-                         {CutSession::Step::reset, options.resetAtS}};
+    station::CutSession session(station, &recorder, !settings.realTime);
+    std::vector<Due> due{{station::CutSession::Step::undo, options.undoAtS},
+                         {station::CutSession::Step::redo, options.redoAtS},
+                         {station::CutSession::Step::reset, options.resetAtS}};
     CutOutcome outcome;
     RunTrace trace(outputs.path("trace.csv"), duration);
     ProgressBar bar("cutting");
@@ -151,6 +151,7 @@ CutOutcome runCut(const Station& station, const tooth::Case& toothCase, const Ru
         [&](loop::HapticLoop& loop, const HapticSample& s) {
             trace.take(s);
             session.hear(s);
+            if (options.listener) options.listener(s);
             lastTick = s.tick;
             for (Due& d : due)
                 if (d.next < d.atS.size() && s.timeS >= d.atS[d.next] && !session.inStroke() && !loop.restoring()) {

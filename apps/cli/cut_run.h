@@ -3,21 +3,23 @@
 /// @file
 /// One run that cuts: trace, session, plots, and the tooth that is left.
 
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "cli/cut_session.h"
 #include "cli/run_job.h"
 #include "cli/run_output.h"
-#include "cli/station.h"
+#include "station/cut_session.h"
+#include "station/station.h"
 
 namespace handpiece::cli {
 
 struct CutRunOptions {
-    std::string code;                                ///< typed by the student; may be empty
-    double elapsedS = 0.0;                           ///< before, of an attempt that goes on
-    std::filesystem::path casePath;                  ///< for the attempt
-    std::vector<double> undoAtS, redoAtS, resetAtS;  ///< each as soon as no stroke is under way
+    std::string code;                                             ///< typed by the student; may be empty
+    double elapsedS = 0.0;                                        ///< before, of an attempt that goes on
+    std::filesystem::path casePath;                               ///< for the attempt
+    std::vector<double> undoAtS, redoAtS, resetAtS;               ///< each as soon as no stroke is under way
+    std::function<void(const messages::HapticSample&)> listener;  ///< hears each sample, in order; may be empty
 };
 
 struct CutOutcome {
@@ -33,8 +35,9 @@ struct CutOutcome {
 
 /// Runs the motion on the station and writes trace.csv, session.h5, the plots, cut.stl, cut/ and attempt/ into
 /// `outputs`.
-[[nodiscard]] CutOutcome runCut(const Station& station, const tooth::Case& toothCase, const RunSettings& settings,
-                                const device::Motion& motion, const CutRunOptions& options, Outputs& outputs);
+[[nodiscard]] CutOutcome runCut(const station::Station& station, const tooth::Case& toothCase,
+                                const RunSettings& settings, const device::Motion& motion, const CutRunOptions& options,
+                                Outputs& outputs);
 
 /// The motion with the pedal at `pedal` all the way and let go at its end.
 [[nodiscard]] device::Motion withPedal(const device::Motion& motion, double pedal);

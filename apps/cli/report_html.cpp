@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "cli/plot.h"
+#include "handpiece/base/core/file.h"
+#include "station/report_figures.h"
 
 namespace handpiece::cli {
 namespace {
@@ -26,7 +28,7 @@ th { text-align: left; vertical-align: bottom; border-bottom: 1.5px solid #8a93a
 td { border-bottom: 1px solid #dfe3e8; padding: 0.25rem 0.6rem; } tbody tr:hover { background: #f1f4f8; }
 td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 td.yes { color: #1d7a3f; } td.no { color: #c62828; font-weight: 600; }
-figure { margin: 1.2rem 0; } figure svg { width: 100%; height: auto; display: block; }
+figure { margin: 1.2rem 0; } figure svg, figure img { width: 100%; height: auto; display: block; }
 figcaption { color: #59636f; font-size: 0.85rem; margin-top: 0.4rem; }
 @media (prefers-color-scheme: dark) {
 body { color: #dfe4ec; background: #14181f; } h2 { border-color: #3a4250; } td { border-color: #2a313c; }
@@ -79,6 +81,16 @@ void HtmlReport::table(const std::vector<std::string>& header, const std::vector
 
 void HtmlReport::figure(std::string_view svg, std::string_view caption) {
     body_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, escaped(caption));
+}
+
+void HtmlReport::picture(const std::filesystem::path& png, std::string_view caption) {
+    const std::vector<std::byte> bytes = core::readFile(png);
+    std::vector<std::uint8_t> numbers(bytes.size());
+    std::transform(bytes.begin(), bytes.end(), numbers.begin(),
+                   [](std::byte b) { return std::to_integer<std::uint8_t>(b); });
+    body_ += fmt::format(
+        "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
+        escaped(caption), station::base64Of(numbers));
 }
 
 std::string HtmlReport::text() const {

@@ -3,6 +3,7 @@
 /// @file
 /// One self-contained HTML page: headings, text, tables, pictures. Nothing is loaded from elsewhere.
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,8 @@ class HtmlReport {
                std::string_view caption);
     /// `svg` as made by toSvg() or stroboscopeSvg(), without a style of its own.
     void figure(std::string_view svg, std::string_view caption);
+    /// A PNG file, taken into the page.
+    void picture(const std::filesystem::path& png, std::string_view caption);
     /// The page.
     [[nodiscard]] std::string text() const;
 

@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "cli/report_html.h"
+#include "cli/stroboscope.h"
 #include "cli/timing.h"
 #include "handpiece/model/instrument/bur.h"
+#include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/model/tooth/tooth.h"
 #include "handpiece/tick/contact/method.h"
 
@@ -34,6 +36,7 @@ struct Surface {
 
 struct Reproduction {
     bool quick = false, ownTooth = false;
+    std::filesystem::path out;
     std::shared_ptr<const instrument::Bur> bur;
     std::vector<Surface> surfaces;  ///< the plane first, then coarse to fine
     HtmlReport report{"Touching and cutting a tooth: the paper's experiments, repeated"};
@@ -61,6 +64,14 @@ struct Place {
 void reproduceTables(Reproduction& r);
 void reproduceFigures(Reproduction& r);
 
+/// How long a picture of each surface takes, drawn anew and read back.
+struct DrawTiming {
+    std::vector<double> ms;  ///< median, by surface; empty without OpenGL
+    std::string renderer;    ///< what drew
+    std::string missing;     ///< why nothing was drawn
+};
+[[nodiscard]] DrawTiming timeDraw(const Reproduction& r);
+
 /// One depth query and the cut that follows it in a tick.
 struct CutTiming {
     Timing field;     ///< ours, over a sweep in which each tick takes away all that the bur sweeps
@@ -68,6 +79,13 @@ struct CutTiming {
     double removedMm3 = 0.0;
 };
 [[nodiscard]] CutTiming timeCut(const Reproduction& r, const Surface& surface, std::size_t count);
+/// A surface of enamel throughout, to be cut.
+[[nodiscard]] std::shared_ptr<const tooth::CuttableTooth> wholeOf(const Surface& surface);
+/// A stroboscope picture in three dimensions, in the report and as a file beside it; gives the file's name, or null
+/// when there is no OpenGL: then the report says so.
+Json addStroboscope(Reproduction& r, const std::shared_ptr<const tooth::CuttableTooth>& whole,
+                    const tooth::CutState& state, const Stroboscope& shot, const std::string& file,
+                    const std::string& caption);
 /// Figure 11.
 void reproduceCutPictures(Reproduction& r, const Surface& surface);
 /// Figure 12, the same motions cutting and touching: their plots, and a row of results and of the table for each.

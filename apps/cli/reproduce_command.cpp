@@ -136,12 +136,14 @@ void reproduce(const ReproduceOptions& o) {
     core::prepareOutputFolder(o.out);
     ProgressBar bar("reproducing");
     const core::Progress progress = bar.listener();
-    // Surfaces, timings, steps and drops of both methods on each, cuts on each, sixteen runs that touch, six that cut.
+    // Surfaces, timings, steps and drops of both methods on each, cuts on each, sixteen runs that touch, six that cut,
+    // four pictures.
     const double surfaces = 1.0 + static_cast<double>(o.quick ? kQuickTeeth : kPercent.size());
-    const double steps = surfaces * (2.0 + 3.0 * 2.0) + 22.0;
+    const double steps = surfaces * (2.0 + 3.0 * 2.0) + 26.0;
     double done = 0.0;
     Reproduction r;
     r.quick = o.quick;
+    r.out = o.out;
     r.ownTooth = !o.tooth.empty();
     r.step = [&](const std::string&) { core::report(progress, std::min(1.0, done++ / steps)); };
     r.bur = std::make_shared<instrument::Bur>(instrument::makeBur("paper"));

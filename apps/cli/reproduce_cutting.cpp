@@ -10,11 +10,11 @@
 #include "cli/plot.h"
 #include "cli/reproduce.h"
 #include "cli/run_job.h"
-#include "cli/station.h"
-#include "cli/stroboscope.h"
+#include "cli/stroboscope_picture.h"
 #include "handpiece/senses/surface/closed_surface.h"
 #include "handpiece/tick/contact/hull_method.h"
 #include "handpiece/tick/loop/built_in_motion.h"
+#include "station/station.h"
 
 namespace handpiece::cli {
 namespace {
@@ -23,18 +23,14 @@ using Clock = std::chrono::steady_clock;
 using messages::HapticSample;
 
 /// The surface under the paper's bur, whole. One tissue throughout, as the paper's teeth are.
-Station stationOn(const Reproduction& r, const std::shared_ptr<const tooth::CuttableTooth>& whole) {
-    Station station;
+station::Station stationOn(const Reproduction& r, const std::shared_ptr<const tooth::CuttableTooth>& whole) {
+    station::Station station;
     station.tooth = whole;
     station.field = std::make_shared<tooth::CutField>(whole);
     station.settings.bur = r.bur;
     station.settings.ability = instrument::makeInstrument("paper").ability;
     station.settings.capability = device::SimulatedDeviceSettings{}.capability;
     return station;
-}
-
-std::shared_ptr<const tooth::CuttableTooth> wholeOf(const Surface& s) {
-    return tooth::prepareCutting(s.tooth, tooth::TissueMap::uniform(s.tooth->field, tooth::Tissue::enamel));
 }
 
 double usSince(Clock::time_point start) {
@@ -52,7 +48,8 @@ struct CutTrial {
     std::vector<HapticSample> samples;
 };
 
-CutTrial trial(const Station& station, const RunSettings& settings, const device::Motion& motion, double pedal) {
+CutTrial trial(const station::Station& station, const RunSettings& settings, const device::Motion& motion,
+               double pedal) {
     CutTrial result;
     result.summary = runLoop(
         settings, withPedal(motion, pedal), station.work(),
@@ -89,7 +86,7 @@ void figure11(Reproduction& r, const Surface& s, const std::shared_ptr<const too
     };
     for (const CutPicture& picture : pictures) {
         r.step("cutting");
-        const Station station = stationOn(r, whole);
+        const station::Station station = stationOn(r, whole);
         loop::MotionOptions options;
         options.speedMmS = picture.speedMmS;
         options.depthMm = picture.depthMm;
@@ -111,11 +108,16 @@ void figure11(Reproduction& r, const Surface& s, const std::shared_ptr<const too
                 "dashed, its outline before. {:.3f} mm3 were removed at {:.1f} mm/s, with at most {:.2f} N.",
                 picture.caption, picture.everyS, s.name, cut.samples.back().removedMm3[1], picture.speedMmS,
                 cut.summary.peakForceN));
+        const Json file = addStroboscope(
+            r, whole, station.field->state(), shot, fmt::format("figure11-{}.png", picture.motion),
+            fmt::format("The same in three dimensions: the tooth afterwards, cut open at the bur, and the bur every "
+                        "{:.1f} s.",
+                        picture.everyS));
         const double before = geometry::enclosedVolumeMm3(s.tooth->outer), after = geometry::enclosedVolumeMm3(left);
         Json row{
             {"resolution", s.name},    {"motion", picture.motion}, {"removed_mm3", cut.samples.back().removedMm3[1]},
             {"outer_mm3", before},     {"cut_mm3", after},         {"peak_n", cut.summary.peakForceN},
-            {"tip_mm", Json::array()}, {"cutting", shot.touching}};
+            {"tip_mm", Json::array()}, {"cutting", shot.touching}, {"picture", file}};
         for (const core::Vec3& tip : shot.tipsMm)
             row["tip_mm"].push_back({tip.x(), tip.y(), tip.z()});
         if (cut.summary.removedMm3[1] <= 0.0)
@@ -123,10 +125,26 @@ void figure11(Reproduction& r, const Surface& s, const std::shared_ptr<const too
         rows.push_back(std::move(row));
     }
     r.results["figure11"] = std::move(rows);
-    r.report.paragraph("Drawn as projections; pictures in three dimensions follow with the renderer.", true);
 }
 
 }  // namespace
+
+std::shared_ptr<const tooth::CuttableTooth> wholeOf(const Surface& s) {
+    return tooth::prepareCutting(s.tooth, tooth::TissueMap::uniform(s.tooth->field, tooth::Tissue::enamel));
+}
+
+Json addStroboscope(Reproduction& r, const std::shared_ptr<const tooth::CuttableTooth>& whole,
+                    const tooth::CutState& state, const Stroboscope& shot, const std::string& file,
+                    const std::string& caption) {
+    r.step("drawing " + file);
+    const std::filesystem::path path = r.out / file;
+    if (const std::string missing = writeStroboscope(whole, state, *r.bur, shot, path); !missing.empty()) {
+        r.report.paragraph("No picture in three dimensions: " + missing, true);
+        return {};
+    }
+    r.report.picture(path, caption);
+    return file;
+}
 
 CutTiming timeCut(const Reproduction& r, const Surface& s, std::size_t count) {
     constexpr int kPasses = 3, kHulls = 5;
@@ -135,7 +153,7 @@ CutTiming timeCut(const Reproduction& r, const Surface& s, std::size_t count) {
     CutTiming timing;
     std::vector<double> best(poses.size(), std::numeric_limits<double>::infinity());
     for (int pass = 0; pass < kPasses; ++pass) {
-        Station station = stationOn(r, whole);
+        station::Station station = stationOn(r, whole);
         station.settings.fullRemoval = true;
         const loop::Work work = station.work();
         cutting::CutInput input;
@@ -184,7 +202,7 @@ void reproduceCutForces(Reproduction& r, const Surface& s, Json& rows, std::vect
         const device::Motion motion = loop::motionByName(name, *s.field, s.tooth->outer.bounds(), options);
         for (const bool cuts : {true, false}) {
             r.step("forces while cutting");
-            const Station station = stationOn(r, whole);
+            const station::Station station = stationOn(r, whole);
             const RunSettings settings;
             const CutTrial run = trial(station, settings, motion, cuts ? 1.0 : 0.0);
             Series curve;

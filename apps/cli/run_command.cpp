@@ -15,6 +15,7 @@
 #include "cli/progress_bar.h"
 #include "cli/run_job.h"
 #include "cli/run_output.h"
+#include "cli/sound_track.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/model/tooth/attempt.h"
@@ -31,7 +32,8 @@ using Json = nlohmann::ordered_json;
 
 struct RunOptions {
     ContactInputs inputs;
-    std::string motion = "drop", device = "simulated", deviceModel = "simulated", hand = "normal", force = "proxy", out;
+    std::string motion = "drop", device = "simulated", deviceModel = "simulated", hand = "normal", force = "proxy", out,
+                sound;
     double rateHz = 1000.0, durationS = 0.0, stiffness = 1.0, damping = 1.0, slide = 1.0, speedMmS = 10.0;
     double loadN = 1.0, depthMm = 0.0, delayMs = 0.0, frictionN = 0.26, lengthMm = 0.0;
     std::vector<double> at{0.0, 0.0};
@@ -154,9 +156,9 @@ bool isMotionFile(const std::string& name) {
     return fs::path(name).has_extension() || name == "-";
 }
 
-StationSettings stationSettingsOf(const RunOptions& o, const RunSettings& run, const tooth::Case& toothCase,
-                                  const tooth::PrepareSettings& prepare) {
-    StationSettings s;
+station::StationSettings stationSettingsOf(const RunOptions& o, const RunSettings& run, const tooth::Case& toothCase,
+                                           const tooth::PrepareSettings& prepare) {
+    station::StationSettings s;
     s.rateHz = run.rateHz;
     s.field = prepare.field;
     const instrument::Instrument instrument = instrument::makeInstrument(o.inputs.bur, o.abilities, o.ability);
@@ -173,7 +175,7 @@ StationSettings stationSettingsOf(const RunOptions& o, const RunSettings& run, c
 }
 
 device::Motion cutMotionOf(const RunOptions& o, const RunSettings& settings, const tooth::Case& toothCase,
-                           const Station& station) {
+                           const station::Station& station) {
     const double pedal = o.pedalGiven ? o.pedal : 1.0;
     const auto& tooth = station.tooth->tooth;
     const auto method = contact::makeFieldMethod(tooth, station.settings.bur);
@@ -213,23 +215,34 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     std::optional<tooth::OpenAttempt> before;
     if (tooth::isAttempt(o.inputs.tooth)) before = tooth::openAttempt(o.inputs.tooth);
     const tooth::Case toothCase = before ? before->toothCase : tooth::readCase(o.inputs.tooth);
-    StationSettings stationSettings = stationSettingsOf(o, settings, toothCase, prepare);
+    station::StationSettings stationSettings = stationSettingsOf(o, settings, toothCase, prepare);
     if (before && std::abs(before->attempt.voxelMm - prepare.field.voxelMm) > 1e-9)
         throw core::Error(fmt::format("the attempt was cut with voxels of {:.6g} um, not {:.6g}",
                                       1e3 * before->attempt.voxelMm, o.inputs.voxelUm),
                           o.inputs.tooth, fmt::format("give --voxel {:.6g}", 1e3 * before->attempt.voxelMm));
     stationSettings.resumed = before.has_value();
-    const Station station = makeStation(toothCase, std::move(stationSettings), prepare.useCache);
+    ProgressBar preparing("preparing the tooth");
+    const station::Station station =
+        station::makeStation(toothCase, std::move(stationSettings), prepare.useCache, preparing.listener());
+    preparing.finish();
     if (before)
         station.resume(tooth::decodeState(before->attempt.state, station.identity, *station.tooth, o.inputs.tooth));
     settings.parameters = station.settings.parameters;
     device::Motion motion = cutMotionOf(o, settings, toothCase, station);
     if (o.tremorUm > 0.0) motion = withTremor(motion, 1e-3 * o.tremorUm, o.seed);
+    std::optional<SoundTrack> sound;
+    if (!o.sound.empty())
+        sound.emplace(o.sound, *station.settings.bur, station.settings.ability, station.settings.drive, settings.rateHz,
+                      settings.durationS > 0.0 ? settings.durationS : motion.durationS());
     const CutOutcome outcome =
         runCut(station, toothCase, settings, motion,
                {o.code, before ? before->attempt.elapsedS : 0.0,
-                before ? before->attempt.caseFile : fs::path(o.inputs.tooth), o.undoAtS, o.redoAtS, o.resetAtS},
+                before ? before->attempt.caseFile : fs::path(o.inputs.tooth), o.undoAtS, o.redoAtS, o.resetAtS,
+                [&](const messages::HapticSample& s) {
+                    if (sound) sound->take(s);
+                }},
                outputs);
+    if (sound) sound->finish();
 
     Json json = summaryJson(o, outcome.summary, "field", settings.device.rigidHand ? "rigid" : o.hand);
     Json removed, left;
@@ -254,7 +267,7 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     json["stalled_ticks"] = outcome.summary.stalledTicks;
     json["out_of_bricks_ticks"] = outcome.summary.outOfBricksTicks;
     json["undo_steps_taken"] = outcome.undone;
-    json["state_hash"] = hashText(outcome.stateHash);
+    json["state_hash"] = station::hashText(outcome.stateHash);
     json["session"] = {{"records", outcome.recording.writtenRecords},
                        {"lost_records", outcome.recording.lostRecords},
                        {"bytes", outcome.recording.sizeBytes},
@@ -278,10 +291,11 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     if (outcome.summary.stalledTicks > 0) printRow("stalled", fmt::format("{} ticks", outcome.summary.stalledTicks));
     if (outcome.summary.outOfBricksTicks > 0)
         printRow("memory", "the tooth's memory for cuts was used up: cut no deeper (take larger voxels)");
-    printRow("state", hashText(outcome.stateHash));
+    printRow("state", station::hashText(outcome.stateHash));
     printRow("files",
              "session.h5 attempt/ cut.stl cut/ trace.csv depth.svg speed.svg force.svg rotor.svg feed.svg removed.svg "
              "summary.json");
+    if (!o.sound.empty()) printRow("sound", o.sound);
 }
 
 void runCommand(const RunOptions& o, const MethodRegistry& methods) {
@@ -298,14 +312,21 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
 
     const double duration = o.durationS > 0.0 ? o.durationS : motion->durationS();
     RunTrace trace(outputs.path("trace.csv"), duration);
+    std::optional<SoundTrack> sound;
+    if (!o.sound.empty()) {
+        const instrument::Instrument held = instrument::makeInstrument(o.inputs.bur);
+        sound.emplace(o.sound, *held.bur, held.ability, settings.drive, settings.rateHz, duration);
+    }
     ProgressBar bar("running");
     const core::Progress progress = bar.listener();
     const RunSummary summary = runLoop(settings, *motion, std::move(method), [&](const messages::HapticSample& s) {
         trace.take(s);
+        if (sound) sound->take(s);
         if (s.tick % 256 == 0) progress(s.timeS / duration);
     });
     bar.finish();
     trace.finish(outputs, settings.device.capability.maxForceN, false);
+    if (sound) sound->finish();
     const Json json = summaryJson(o, summary, methodName, o.hand);
     const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
     outputs.write("summary.json", text + "\n");
@@ -315,6 +336,7 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
     } else {
         printSummary(o, summary, methodName);
         printRow("files", "trace.csv depth.svg speed.svg force.svg summary.json");
+        if (!o.sound.empty()) printRow("sound", o.sound);
     }
 }
 
@@ -339,6 +361,7 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
     };
     add("--motion", o.motion, motions + "; cuts: " + cutNames + "; or a CSV of t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz");
     command->add_option("--out", o.out, "folder for trace.csv, the plots and summary.json")->required();
+    command->add_option("--sound", o.sound, "WAV file of what is heard, for headphones (48 kHz stereo)");
     add("--device", o.device, "simulated");
     add("--device-model", o.deviceModel, "what the simulated device is like: " + models);
     add("--rate", o.rateHz, "ticks a second: 1000, 2000, 4000 or 8000");

@@ -5,6 +5,7 @@ import json
 import unittest
 
 from support import REAL_DATA, SystemTest, poses, rows_of
+from test_picture import read_png
 
 
 class Reproduce(SystemTest):
@@ -28,7 +29,10 @@ class Reproduce(SystemTest):
         self.assertLess(six["touching_us"], 1000 * six["paper_cutting_ms"])
         self.assertLess(six["cutting_us"], 1000 * six["paper_cutting_ms"])
         self.assertEqual({row["method"] for row in results["table3"]}, {"field", "hull"})
+        # Without OpenGL there is no drawing to time, and the report says why.
+        told = any("Table II, drawing" in remark for remark in results["remarks"])
         for row in results["table2"]:
+            self.assertTrue(told if row["draw_ms"] is None else row["draw_ms"] > 0, row)
             if row.get("resolution") == "6 %":
                 self.assertAlmostEqual(row["faces"] / 9760, 1, delta=0.01)
         steps = {row["step_um"] for row in results["table4"]}
@@ -47,6 +51,17 @@ class Reproduce(SystemTest):
             self.assertAlmostEqual(row["outer_mm3"] - row["cut_mm3"], row["removed_mm3"], delta=0.001 * row["cut_mm3"])
             self.assertEqual(len(row["cutting"]), len(row["tip_mm"]))
             self.assertTrue(any(row["cutting"]))
+        pictures = [row["picture"] for name in ("figure8", "figure11") for row in results[name] if "picture" in row]
+        self.assertEqual(len(pictures), 4)
+        for name in pictures[::2]:
+            if name is None:
+                self.assertTrue(told)
+            else:
+                width, height, rows = read_png(out / name)
+                self.assertEqual((width, height), (1120, 840))
+                # The bur where it overlaps the tooth is red, and nothing else is.
+                red = sum(row[4 * x] > row[4 * x + 1] + 40 for row in rows[::8] for x in range(0, width, 8))
+                self.assertTrue(50 < red < 0.5 * (width // 8) * (height // 8), (name, red))
         # Figure 12: the same motion cutting and touching.
         for motion in ("press", "drag"):
             pair = {row["part"]: row for row in results["figure12"] if row["motion"] == motion and "pedal" in row}

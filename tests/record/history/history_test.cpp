@@ -192,5 +192,37 @@ TEST_F(HistoryTest, MemoryIsBoundedAndTheLeastStepsAreKept) {
     EXPECT_LT(history.memoryBytes(), full);
 }
 
+TEST_F(HistoryTest, PutTogetherAgainItTakesTheSameSteps) {
+    history::History history;
+    history.start({});
+    for (int i = 0; i < 6; ++i)
+        ASSERT_TRUE(stroke(history, 5));
+    for (int i = 0; i < 2; ++i)
+        mirror.apply(*history.undo());
+    tooth::CutState now;
+    now.removedMm3 = mirror.removed;
+    for (const auto& [dense, values] : mirror.bricks)
+        now.bricks.push_back({dense, false, values});
+    history::History again;
+    again.start(now);
+    for (std::size_t i = 0; i < history.undoSteps() + history.redoSteps(); ++i)
+        again.append(history.step(i), i < history.undoSteps());
+    EXPECT_EQ(again.undoSteps(), 4u);
+    EXPECT_EQ(again.redoSteps(), 2u);
+    FakeMirror other = mirror;
+    const auto both = [&](std::optional<tooth::CutState> a, std::optional<tooth::CutState> b) {
+        ASSERT_EQ(a.has_value(), b.has_value());
+        if (!a) return;
+        mirror.apply(*a);
+        other.apply(*b);
+        ASSERT_TRUE(mirror == other);
+    };
+    both(history.redo(), again.redo());
+    for (int i = 0; i < 6; ++i)
+        both(history.undo(), again.undo());
+    EXPECT_TRUE(other.bricks.empty());
+    EXPECT_EQ(other.removed, tooth::TissueVolumes{});
+}
+
 }  // namespace
 }  // namespace handpiece

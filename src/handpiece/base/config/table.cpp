@@ -46,7 +46,8 @@ Table Table::parse(std::string_view text, std::string where) {
         auto root = std::make_shared<toml::table>(toml::parse(text, where));
         return {std::shared_ptr<const void>(std::move(root)), std::move(where)};
     } catch (const toml::parse_error& e) {
-        throw core::Error(fmt::format("line {}: {}", e.source().begin.line, e.description()), where, "mend the file");
+        const std::string problem = fmt::format("line {}: {}", e.source().begin.line, e.description());
+        throw core::Error(problem, where, "mend the file").as("bad-text", {problem});
     }
 }
 
@@ -69,7 +70,8 @@ std::vector<std::string> Table::keys() const {
 void Table::fail(const std::string& problem, const std::string& remedy, std::string_view key) const {
     const toml::node* at = key.empty() ? nullptr : tomlOf(node_).get(key);
     const auto line = (at ? *at : static_cast<const toml::node&>(tomlOf(node_))).source().begin.line;
-    throw core::Error(line > 0 ? fmt::format("{} (line {})", problem, line) : problem, where_, remedy);
+    const std::string told = line > 0 ? fmt::format("{} (line {})", problem, line) : problem;
+    throw core::Error(told, where_, remedy).as("bad-text", {told});
 }
 
 std::optional<std::string> Table::text(std::string_view key) const {

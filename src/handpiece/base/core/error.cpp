@@ -12,4 +12,10 @@ Error::Error(std::string what, std::string where, std::string remedy)
     if (!remedy_.empty()) message_ += " (" + remedy_ + ")";
 }
 
+Error Error::as(std::string id, std::vector<std::string> arguments) && {
+    id_ = std::move(id);
+    arguments_ = std::move(arguments);
+    return std::move(*this);
+}
+
 }  // namespace handpiece::core

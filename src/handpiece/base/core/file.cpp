@@ -40,15 +40,18 @@ fs::path temporaryBeside(const fs::path& path) {
 std::vector<std::byte> readFile(const fs::path& path, std::uint64_t limitBytes) {
     std::error_code ec;
     const fs::file_status status = fs::status(path, ec);
-    if (!fs::exists(status)) throw Error("there is no such file", path.string(), "check the name");
-    if (fs::is_directory(status)) throw Error("this is a folder, not a file", path.string());
+    if (!fs::exists(status)) throw Error("there is no such file", path.string(), "check the name").as("file-not-found");
+    if (fs::is_directory(status)) throw Error("this is a folder, not a file", path.string()).as("is-a-folder");
     File file(std::fopen(path.string().c_str(), "rb"));
-    if (!file) throw Error(fmt::format("cannot be read: {}", reason()), path.string(), "check its permissions");
+    if (!file)
+        throw Error(fmt::format("cannot be read: {}", reason()), path.string(), "check its permissions")
+            .as("not-readable", {reason()});
     std::vector<std::byte> data;
     const std::uint64_t size = fs::is_regular_file(status) ? fs::file_size(path, ec) : 0;
     if (size > limitBytes)
         throw Error(fmt::format("the file has {} bytes, more than the {} that are read", size, limitBytes),
-                    path.string());
+                    path.string())
+            .as("too-large");
     data.resize(size);
     std::size_t have = size == 0 ? 0 : std::fread(data.data(), 1, size, file.get());
     data.resize(have);
@@ -59,25 +62,31 @@ std::vector<std::byte> readFile(const fs::path& path, std::uint64_t limitBytes) 
         if (data.size() > limitBytes)
             throw Error(fmt::format("the input has more than the {} bytes that are read", limitBytes), path.string());
     }
-    if (std::ferror(file.get())) throw Error(fmt::format("cannot be read: {}", reason()), path.string());
+    if (std::ferror(file.get()))
+        throw Error(fmt::format("cannot be read: {}", reason()), path.string()).as("not-readable", {reason()});
     return data;
+}
+
+std::string writeErrorId(int errorNumber) {
+    const bool full = errorNumber == ENOSPC || errorNumber == EDQUOT || errorNumber == EFBIG;
+    return full ? "no-space" : "not-writable";
 }
 
 void writeFile(const fs::path& path, std::span<const std::byte> data) {
     const fs::path temporary = temporaryBeside(path);
     bool written = false;
-    std::string why;
+    int why = 0;
     {
         File file(std::fopen(temporary.string().c_str(), "wb"));
         if (!file) {
-            why = reason();
+            why = errno;
         } else {
             written = data.empty() || std::fwrite(data.data(), 1, data.size(), file.get()) == data.size();
             written = written && std::fflush(file.get()) == 0;
-            if (!written) why = reason();
+            if (!written) why = errno;
             if (std::fclose(file.release()) != 0 && written) {
                 written = false;
-                why = reason();
+                why = errno;
             }
         }
     }
@@ -85,11 +94,12 @@ void writeFile(const fs::path& path, std::span<const std::byte> data) {
     if (written) {
         fs::rename(temporary, path, ec);
         if (!ec) return;
-        why = ec.message();
+        why = ec.value();
     }
     fs::remove(temporary, ec);
-    throw Error(fmt::format("cannot be written: {}", why), path.string(),
-                "check the folder, its permissions and the free space");
+    throw Error(fmt::format("cannot be written: {}", std::strerror(why)), path.string(),
+                "check the folder, its permissions and the free space")
+        .as(writeErrorId(why), {std::strerror(why)});
 }
 
 void writeFile(const fs::path& path, std::string_view text) {
@@ -102,12 +112,14 @@ void prepareOutputFolder(const fs::path& path) {
     if (!fs::is_directory(path))
         throw Error(
             fmt::format("cannot be created as a folder: {}", ec ? ec.message() : "a file of that name is in the way"),
-            path.string(), "name another output folder");
+            path.string(), "name another output folder")
+            .as("not-writable", {ec.message()});
     const fs::path probe = temporaryBeside(path / "probe");
     File file(std::fopen(probe.string().c_str(), "wb"));
     if (!file)
         throw Error(fmt::format("nothing can be written into this folder: {}", reason()), path.string(),
-                    "name another output folder");
+                    "name another output folder")
+            .as("not-writable", {reason()});
     file.reset();
     fs::remove(probe, ec);
 }

@@ -21,6 +21,9 @@ namespace handpiece::core {
 void writeFile(const std::filesystem::path& path, std::span<const std::byte> data);
 void writeFile(const std::filesystem::path& path, std::string_view text);
 
+/// What an error of writing is called (Error::id): "no-space" where the disk is full, else "not-writable".
+[[nodiscard]] std::string writeErrorId(int errorNumber);
+
 /// Creates the folder and its parents and proves that a file can be written there. Throws core::Error.
 void prepareOutputFolder(const std::filesystem::path& path);
 

@@ -31,7 +31,7 @@ struct Source {
         if (notes) notes->push_back(std::move(sentence));
     }
     [[noreturn]] void fail(std::string problem, std::string remedy = {}) const {
-        throw core::Error(std::move(problem), where, std::move(remedy));
+        throw core::Error(problem, where, std::move(remedy)).as("bad-mesh", {problem});
     }
 };
 

@@ -178,6 +178,74 @@ double TriangleTree::signedDistance(const Vec3& p, NearestPoint* nearestPoint, s
     return side(p, n) * n.distanceMm;
 }
 
+RayMeeting TriangleTree::firstMeeting(const Vec3& origin, const Vec3& direction, double farMm) const noexcept {
+    RayMeeting first{farMm, kNoTriangle};
+    const auto consider = [&](std::uint32_t i) {
+        // Moeller & Trumbore 1997; corners' weights may be negative by rounding.
+        constexpr double kEdge = -1e-10;
+        const TreeTriangle& t = triangles_[i];
+        const Vec3 ab = load(t.ab), ac = load(t.ac), p = direction.cross(ac);
+        const double det = ab.dot(p);
+        if (!(std::abs(det) > 1e-14 * ab.norm() * ac.norm())) return;
+        const Vec3 s = origin - load(t.a), q = s.cross(ab);
+        const double u = s.dot(p) / det, v = direction.dot(q) / det, at = ac.dot(q) / det;
+        if (u < kEdge || v < kEdge || u + v > 1.0 - kEdge || at < 0.0 || !(at <= first.distanceMm)) return;
+        first = {at, i};
+    };
+    struct Entry {
+        std::int32_t child;
+        float near;
+        std::uint32_t count;
+    };
+    Entry stack[kStackSize];
+    int top = 0;
+    stack[top++] = {0, 0.0f, 0};
+    // A direction along an axis: a slab's bounds then lie infinitely far to either side, as they should. Boxes are
+    // looked at from the origin in float, so they are taken a hair larger by what that loses.
+    const float from[3] = {static_cast<float>(origin.x()), static_cast<float>(origin.y()),
+                           static_cast<float>(origin.z())};
+    float slowness[3], slack = 1e-5f;
+    for (int k = 0; k < 3; ++k) {
+        const double d = std::abs(direction[k]) > 1e-12 ? direction[k] : std::copysign(1e-12, direction[k]);
+        slowness[k] = static_cast<float>(1.0 / d);
+        slack += 2e-7f * std::abs(from[k]);
+    }
+    while (top > 0) {
+        const Entry entry = stack[--top];
+        if (static_cast<double>(entry.near) > first.distanceMm) continue;
+        if (entry.child < 0) {
+            const auto begin = static_cast<std::uint32_t>(~entry.child);
+            for (std::uint32_t i = begin; i < begin + entry.count; ++i)
+                consider(i);
+            continue;
+        }
+        const TreeNode& node = nodes_[static_cast<std::size_t>(entry.child)];
+        const float(*low[3])[8] = {&node.minX, &node.minY, &node.minZ};
+        const float(*high[3])[8] = {&node.maxX, &node.maxY, &node.maxZ};
+        Floats enter{}, leave = Floats{} + std::numeric_limits<float>::max();
+        for (int k = 0; k < 3; ++k) {
+            const Floats a = (loadLanes(*low[k]) - slack - from[k]) * slowness[k];
+            const Floats b = (loadLanes(*high[k]) + slack - from[k]) * slowness[k];
+            const Floats in = a < b ? a : b, out = a < b ? b : a;
+            enter = in > enter ? in : enter;
+            leave = out < leave ? out : leave;
+        }
+        float near[8], gone[8];
+        __builtin_memcpy(near, &enter, sizeof near);
+        __builtin_memcpy(gone, &leave, sizeof gone);
+        const int base = top;
+        for (int lane = 0; lane < node.lanes; ++lane) {
+            const float begins = near[lane] * (1.0f - 1e-5f);
+            if (!(begins <= gone[lane] * (1.0f + 1e-5f)) || static_cast<double>(begins) > first.distanceMm) continue;
+            int i = top++;
+            for (; i > base && stack[i - 1].near < begins; --i)
+                stack[i] = stack[i - 1];
+            stack[i] = {node.child[lane], begins, node.count[lane]};
+        }
+    }
+    return first;
+}
+
 double TriangleTree::windingNumber(const Vec3& p) const noexcept {
     // Farther than this many radii a subtree is one dipole: error below 1 % of its own solid angle.
     constexpr double kFar = 2.3;

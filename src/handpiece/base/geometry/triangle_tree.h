@@ -22,6 +22,12 @@ struct NearestPoint {
     std::uint8_t feature = 0;              ///< 0 face, 1..3 edge ab, bc, ca, 4..6 vertex a, b, c
 };
 
+/// Where a ray meets the surface.
+struct RayMeeting {
+    double distanceMm = 0.0;               ///< along the ray
+    std::uint32_t triangle = kNoTriangle;  ///< in tree order; kNoTriangle when it meets none
+};
+
 /// Built once off the tick; queries are const, noexcept, allocate nothing and may run on any number of threads.
 class TriangleTree {
   public:
@@ -43,6 +49,11 @@ class TriangleTree {
 
     /// +1 outside, -1 inside, for a point whose nearest point is `n`.
     [[nodiscard]] double side(const core::Vec3& p, const NearestPoint& n) const noexcept;
+
+    /// The first triangle that a ray meets from `origin` to `farMm` along `direction` (unit), from either side. Edges
+    /// belong to both their triangles, so that a ray does not slip through between them.
+    [[nodiscard]] RayMeeting firstMeeting(const core::Vec3& origin, const core::Vec3& direction,
+                                          double farMm = std::numeric_limits<double>::infinity()) const noexcept;
 
     /// Generalised winding number (Jacobson 2013; tree acceleration after Barill 2018): about 1 inside, 0 outside.
     [[nodiscard]] double windingNumber(const core::Vec3& p) const noexcept;

@@ -28,8 +28,11 @@ struct HapticSample {
     std::array<double, 4> proxyOrientation{1, 0, 0, 0};
     std::array<double, 3> appliedForceN{};  ///< that acts on the device now, after its delay
     double contactAreaMm2 = 0.0;            ///< at the proxy
-    std::uint8_t tissue = 0;                ///< tooth::Tissue that carries most of the pressure
-    std::uint8_t contactStatus = 0;         ///< contact::Status
+    /// Where the proxy bears on the tooth: the middle of the patch that carries most of the pressure, its normal out of
+    /// the tooth, unit. Without contact the normal is zero.
+    std::array<double, 3> contactPointMm{}, contactNormal{};
+    std::uint8_t tissue = 0;         ///< tooth::Tissue that carries most of the pressure
+    std::uint8_t contactStatus = 0;  ///< contact::Status
     std::uint16_t patchCount = 0;
     std::uint32_t flags = 0;              ///< SampleFlag bits
     float workUs = 0.0f;                  ///< from reading the pose to having the force
@@ -39,6 +42,7 @@ struct HapticSample {
     std::int32_t elapsedPeriods = 1;      ///< since the tick before
     std::uint32_t buttons = 0;            ///< bit 0: the upper one
     std::uint32_t waitingBricks = 0;      ///< changed bricks not handed over yet
+    std::uint64_t handedBricks = 0;       ///< changed bricks handed over so far: those before this sample
     std::uint64_t lastCommand = 0;        ///< number of the newest staged command that has taken effect
     double pedal = 0.0;                   ///< 0..1
     double speedRpm = 0.0;                ///< of the bur

@@ -71,7 +71,8 @@ void requireSize(const std::string& name, const geometry::TriangleMesh& mesh) {
         }
     throw core::Error(
         fmt::format("a bur is {} to {} mm long, this one is {:.4g} mm", kLeastExtentMm, kLargestExtentMm, extent), name,
-        guess);
+        guess)
+        .as("bur-size", {fmt::format("{:.4g}", extent)});
 }
 
 /// Angle between z and the mesh's own axis, where the shape shows one.
@@ -87,7 +88,8 @@ void requireUpright(const std::string& name, const Mat3& covariance) {
     if (tilt > kMostTiltRad)
         throw core::Error(fmt::format("the bur's axis is {:.1f} degrees off z (it runs along {:.3f}, {:.3f}, {:.3f})",
                                       tilt * 180.0 / std::numbers::pi, direction.x(), direction.y(), direction.z()),
-                          name, "turn the mesh so that its axis is z, tip down");
+                          name, "turn the mesh so that its axis is z, tip down")
+            .as("bur-not-round");
 }
 
 void requireRound(const std::string& name, const Mat3& covariance) {
@@ -97,7 +99,8 @@ void requireRound(const std::string& name, const Mat3& covariance) {
     if (!(ratio <= kMostUnroundness))
         throw core::Error(
             fmt::format("the mesh is not round about z: {:.3g} times as wide one way as across it", ratio), name,
-            "a bur is a solid of revolution about z");
+            "a bur is a solid of revolution about z")
+            .as("bur-not-round");
 }
 
 /// Radius of the flat (or, at a point, zero) at the lower or upper end of an outline.
@@ -109,23 +112,26 @@ double endRadius(const Profile& profile, bool upper) {
 }  // namespace
 
 Bur burFromMesh(std::string name, geometry::TriangleMesh mesh) {
-    if (mesh.triangles.empty()) throw core::Error("the bur's mesh has no triangles", name, "give a closed mesh");
+    if (mesh.triangles.empty())
+        throw core::Error("the bur's mesh has no triangles", name, "give a closed mesh").as("bur-not-solid");
     for (const geometry::Triangle& t : mesh.triangles)
         for (const std::uint32_t v : t)
             if (v >= mesh.vertices.size() || !mesh.vertices[v].allFinite())
-                throw core::Error("the bur's mesh has a corner that is missing or not finite", name, "export it again");
+                throw core::Error("the bur's mesh has a corner that is missing or not finite", name, "export it again")
+                    .as("bur-not-solid");
     requireSize(name, mesh);
     const core::Vec3 size = mesh.bounds().size();
     const SurfaceMoments moments = momentsOf(mesh);
     if (!(size.minCoeff() > 1e-3 * size.maxCoeff()) || !(moments.areaMm2 > 0.0))
-        throw core::Error("the bur's mesh is flat: it encloses no volume", name,
-                          "give a closed mesh of the bur's head");
+        throw core::Error("the bur's mesh is flat: it encloses no volume", name, "give a closed mesh of the bur's head")
+            .as("bur-not-solid");
     requireUpright(name, moments.covariance);
     requireRound(name, moments.covariance);
     if (moments.vectorArea.norm() > kLargestOpening * moments.areaMm2)
         throw core::Error(fmt::format("the bur's mesh is open: {:.0f} % of its surface is missing or turned inside out",
                                       100.0 * moments.vectorArea.norm() / moments.areaMm2),
-                          name, "close its holes and orient it first: handpiece mesh repair");
+                          name, "close its holes and orient it first: handpiece mesh repair")
+            .as("bur-not-solid");
 
     const double bottom = mesh.bounds().min.z();
     for (Vec3& v : mesh.vertices)
@@ -141,7 +147,8 @@ Bur burFromMesh(std::string name, geometry::TriangleMesh mesh) {
     const double enclosed = std::abs(geometry::enclosedVolumeMm3(mesh));
     if (!(enclosed > kLeastVolumeShare * volumeMm3(profile)))
         throw core::Error(fmt::format("the bur's mesh encloses no volume ({:.3g} mm3)", enclosed), name,
-                          "close its holes and orient it first: handpiece mesh repair");
+                          "close its holes and orient it first: handpiece mesh repair")
+            .as("bur-not-solid");
     return Bur(std::move(name), std::move(profile), std::move(mesh));
 }
 

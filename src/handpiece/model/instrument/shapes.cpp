@@ -227,7 +227,8 @@ Bur makeBur(std::string_view name) {
     const std::size_t colon = name.find(':');
     if (colon == std::string_view::npos)
         throw core::Error("there is no bur of this name", std::string(name),
-                          "choose " + listOfNames() + ", or SHAPE:DIAMETERxLENGTH such as cylinder-round:1.0x4.0");
+                          "choose " + listOfNames() + ", or SHAPE:DIAMETERxLENGTH such as cylinder-round:1.0x4.0")
+            .as("bur-unknown", {std::string(name)});
     const Shape shape = shapeByName(name.substr(0, colon));
     const std::string_view size = name.substr(colon + 1);
     const std::size_t times = size.find('x');

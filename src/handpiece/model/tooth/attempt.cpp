@@ -133,14 +133,16 @@ fs::path baseOf(const fs::path& attempt) {
 Attempt readFrom(const CaseFiles& files, const fs::path& path) {
     if (!files.has(kAttemptFile))
         throw core::Error(fmt::format("this is no attempt: it has no {}", kAttemptFile), path.string(),
-                          "name the folder or .handpiece file that was saved");
+                          "name the folder or .handpiece file that was saved")
+            .as("not-an-attempt");
     const std::vector<std::byte> text = files.read(kAttemptFile);
     Parsed parsed = parse({reinterpret_cast<const char*>(text.data()), text.size()}, files.where(kAttemptFile));
     Attempt& a = parsed.attempt;
     a.state = files.read(kAttemptStateFile);
     if (a.state.size() > kMostStateBytes || hashOf(a.state) != parsed.stateHash)
         throw core::Error("this is not the state that the attempt was saved with, or it is damaged",
-                          files.where(kAttemptStateFile), "save the attempt again, or copy both its files");
+                          files.where(kAttemptStateFile), "save the attempt again, or copy both its files")
+            .as("attempt-damaged");
     a.caseFile = (baseOf(path) / a.caseFile).lexically_normal();
     return std::move(parsed.attempt);
 }
@@ -204,13 +206,15 @@ OpenAttempt openAttempt(const fs::path& path) {
     std::error_code ec;
     if (!holdsCase && !fs::exists(attempt.caseFile, ec))
         throw core::Error(fmt::format("the case that was cut is no longer at {}", attempt.caseFile.string()),
-                          path.string(), fmt::format("put \"{}\" back there", attempt.caseName));
+                          path.string(), fmt::format("put \"{}\" back there", attempt.caseName))
+            .as("case-moved", {attempt.caseFile.string()});
     Case toothCase =
         holdsCase ? readCaseFiles(filesInPackage(path, *content, kCaseInAttempt)) : readCase(attempt.caseFile);
     if (contentKey(toothCase) != attempt.caseKey)
         throw core::Error(fmt::format("the case at {} has changed since: it is another tooth now",
                                       holdsCase ? path.string() : attempt.caseFile.string()),
-                          path.string(), fmt::format("put the old \"{}\" back, or start anew", attempt.caseName));
+                          path.string(), fmt::format("put the old \"{}\" back, or start anew", attempt.caseName))
+            .as("case-changed", {holdsCase ? path.string() : attempt.caseFile.string()});
     return {attempt, std::move(toothCase)};
 }
 

@@ -110,7 +110,8 @@ CaseFiles filesInPackage(const fs::path& package, const PackageFiles& content, c
     files.read = [&content, prefix, where](const std::string& name) {
         // Written as a person may write it: "a/../b.stl" is refused before, "./b.stl" is b.stl.
         const auto found = content.find(prefix + fs::path(name).lexically_normal().generic_string());
-        if (found == content.end()) throw core::Error("there is no such file", where(name), "pack the case again");
+        if (found == content.end())
+            throw core::Error("there is no such file", where(name), "pack the case again").as("file-not-found");
         return found->second;
     };
     return files;
@@ -154,7 +155,8 @@ Case readCaseFiles(const CaseFiles& files) {
     made.scenery = readParts(root, "scenery", files, made.tissues, strict);
     if (const auto exercise = root.table("exercise")) made.exercise = readExercise(*exercise);
     if (made.outer.triangles.empty() && made.parts.empty())
-        throw core::Error("the case has neither an outer surface nor a part", root.where(), kRemedy);
+        throw core::Error("the case has neither an outer surface nor a part", root.where(), kRemedy)
+            .as("case-without-surface");
     return made;
 }
 
@@ -164,7 +166,8 @@ Case readCase(const fs::path& path) {
         const CaseFiles files = filesInFolder(path);
         if (!files.has(kCaseFile))
             throw core::Error(fmt::format("this folder has no {}", kCaseFile), path.string(),
-                              "name a case folder (handpiece make tooth writes one), a .handpiece file or a mesh file");
+                              "name a case folder (handpiece make tooth writes one), a .handpiece file or a mesh file")
+                .as("not-a-case", {kCaseFile});
         return readCaseFiles(files);
     }
     if (isPackageName(path)) {
@@ -173,7 +176,8 @@ Case readCase(const fs::path& path) {
             if (const CaseFiles files = filesInPackage(path, content, prefix); files.has(kCaseFile))
                 return readCaseFiles(files);
         throw core::Error(fmt::format("there is no {} in it", kCaseFile), path.string(),
-                          "an attempt that was packed without its case needs that case");
+                          "an attempt that was packed without its case needs that case")
+            .as("not-a-case", {kCaseFile});
     }
     Case made;
     made.source = path;

@@ -70,7 +70,8 @@ std::string_view wrongWith(std::string_view name) {
 std::vector<std::byte> readEntry(zip_t* archive, zip_uint64_t index, std::uint64_t size, const std::string& where,
                                  const std::string& name) {
     const auto damaged = [&] {
-        return core::Error(fmt::format("\"{}\" in it is damaged", shown(name)), where, "copy the file again");
+        return core::Error(fmt::format("\"{}\" in it is damaged", shown(name)), where, "copy the file again")
+            .as("not-a-package", {std::string(shown(name))});
     };
     const Entry entry(zip_fopen_index(archive, index, 0));
     if (!entry) throw damaged();
@@ -158,7 +159,8 @@ PackageFiles readPackage(std::span<const std::byte> zip, const std::string& wher
     const Archive archive(zip_open_from_source(source.get(), ZIP_RDONLY | ZIP_CHECKCONS, &error));
     if (!archive)
         throw core::Error(fmt::format("this is no .handpiece file, or a damaged one: {}", messageOf(error)), where,
-                          "copy the file again");
+                          "copy the file again")
+            .as("not-a-package", {messageOf(error)});
     (void)source.release();  // the archive's now
     PackageFiles files;
     for (const Listed& listed : listOf(archive.get(), zip.size(), where, limits)) {
@@ -168,7 +170,9 @@ PackageFiles readPackage(std::span<const std::byte> zip, const std::string& wher
                               "get it from where it was made");
         place->second = readEntry(archive.get(), listed.index, listed.bytes, where, listed.name);
     }
-    if (files.empty()) throw core::Error("this .handpiece file is empty", where, "copy the file again");
+    if (files.empty())
+        throw core::Error("this .handpiece file is empty", where, "copy the file again")
+            .as("not-a-package", {"0 bytes"});
     return files;
 }
 
@@ -242,7 +246,8 @@ void writeFolder(const fs::path& folder, const PackageFiles& files, const std::s
         if (fs::exists(old, ec) && !fs::exists(place, ec)) fs::rename(old, place, ec);
         fs::remove_all(beside, ec);
         throw core::Error(fmt::format("cannot be written: {}", e.code().message()), folder.string(),
-                          "check the folder, its permissions and the free space");
+                          "check the folder, its permissions and the free space")
+            .as("not-writable", {e.code().message()});
     } catch (const core::Error&) {
         fs::remove_all(beside, ec);
         throw;

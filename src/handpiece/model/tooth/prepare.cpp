@@ -21,10 +21,12 @@ const geometry::TriangleMesh& outerOf(const Case& toothCase) {
     if (!toothCase.outer.triangles.empty()) return toothCase.outer;
     if (toothCase.parts.empty())
         throw core::Error("the case has no surface to feel", toothCase.source.string(),
-                          "name at least one part in case.toml");
+                          "name at least one part in case.toml")
+            .as("case-without-surface");
     if (toothCase.parts.size() > 1)
         throw core::Error("a case of several parts needs outer.stl, the whole tooth as one closed surface",
-                          toothCase.source.string(), "export the union of its parts and name it in case.toml");
+                          toothCase.source.string(), "export the union of its parts and name it in case.toml")
+            .as("case-without-surface");
     return toothCase.parts.front().mesh;
 }
 

@@ -103,12 +103,11 @@ void History::add(Step&& step) {
     }
 }
 
-/// Goes to the other side of a step, which then leads back.
-tooth::CutState History::exchange(Step& step) {
+tooth::CutState History::unpacked(const Step& step) {
     tooth::CutState change;
     change.bricks.resize(step.bricks.size());
     std::size_t i = 0;
-    for (auto& [dense, packed] : step.bricks) {
+    for (const auto& [dense, packed] : step.bricks) {
         tooth::CutState::Brick& brick = change.bricks[i++];
         brick.dense = dense;
         brick.whole = packed.empty();
@@ -117,10 +116,31 @@ tooth::CutState History::exchange(Step& step) {
         } else {
             unpack(packed, brick.values.data());
         }
-        std::swap(packed, now_[dense]);
     }
+    change.removedMm3 = step.removedMm3;
+    return change;
+}
+
+tooth::CutState History::step(std::size_t index) const {
+    return unpacked(steps_.at(index));
+}
+
+void History::append(const tooth::CutState& otherSide, bool isDone) {
+    Step step;
+    for (const tooth::CutState::Brick& brick : otherSide.bricks)
+        step.bricks[brick.dense] = brick.whole ? Packed{} : pack(brick.values.data());
+    step.removedMm3 = otherSide.removedMm3;
+    memoryBytes_ += bytesOf(step);
+    steps_.push_back(std::move(step));
+    if (isDone) done_ = steps_.size();
+}
+
+/// Goes to the other side of a step, which then leads back.
+tooth::CutState History::exchange(Step& step) {
+    tooth::CutState change = unpacked(step);
+    for (auto& [dense, packed] : step.bricks)
+        std::swap(packed, now_[dense]);
     std::swap(step.removedMm3, removedMm3_);
-    change.removedMm3 = removedMm3_;
     return change;
 }
 

@@ -69,6 +69,15 @@ class History {
     /// What makes the tooth whole; a step that can be undone. None when it is whole.
     [[nodiscard]] std::optional<tooth::CutState> reset();
 
+    // To be kept and put together again, on a tooth in the same state.
+
+    /// Of undoSteps() + redoSteps(), the oldest first: to where the step leads, back when done and on when not.
+    [[nodiscard]] tooth::CutState step(std::size_t index) const;
+    /// One more at the end, as step() gave it. After start(), those done first.
+    void append(const tooth::CutState& otherSide, bool isDone);
+
+    /// Of the tooth where the steps have led.
+    [[nodiscard]] const tooth::TissueVolumes& removedMm3() const noexcept { return removedMm3_; }
     /// Of all that is kept.
     [[nodiscard]] std::size_t memoryBytes() const noexcept { return memoryBytes_; }
 
@@ -80,6 +89,7 @@ class History {
         tooth::TissueVolumes removedMm3{};
     };
     void add(Step&& step);
+    static tooth::CutState unpacked(const Step& step);
     tooth::CutState exchange(Step& step);
     static std::size_t bytesOf(const Step& step);
 

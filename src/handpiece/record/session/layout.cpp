@@ -82,6 +82,8 @@ std::string_view readme() noexcept {
              bytes and hash of each, 'data' the bytes.
 /closed      1 once the recorder has closed the file; 0 after a kill or a full disk.
 /tooth       the tooth it is cut from, as bytes for the program.
+/history     only of a tooth that was cut before: strokes that could be undone at the beginning, for the program.
+/scenery     what stands around it, where there is something, for the program.
 /settings    JSON: bur, parameters, all that a replay needs.
 
 Attributes of the file: format, format_version, handpiece_version, hdf5_version, rate_hz, and code, which the student

@@ -104,9 +104,11 @@ struct KeyFrame {
 struct SessionInfo {
     double rateHz = 1000;
     std::string code;  ///< typed by the student; never a user's or a machine's name. Up to 32 letters, digits, - and _
-    std::string version;           ///< of the program
-    std::string settings;          ///< JSON: bur, parameters, all that a replay needs beside the tooth
-    std::vector<std::byte> tooth;  ///< the tooth it is cut from (tooth::encodeCase), or nothing
+    std::string version;               ///< of the program
+    std::string settings;              ///< JSON: bur, parameters, all that a replay needs beside the tooth
+    std::vector<std::byte> tooth;      ///< the tooth it is cut from (tooth::encodeCase), or nothing
+    std::vector<std::byte> scenery{};  ///< what stands around it (the parts of a tooth::encodeCase), or nothing
+    std::vector<std::byte> history{};  ///< strokes before it that can be undone, of a tooth that was cut before
 };
 
 }  // namespace handpiece::session

@@ -5,11 +5,13 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstring>
 #include <mutex>
 #include <thread>
 #include <variant>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/base/rt/spsc_queue.h"
 #include "handpiece/record/session/session_writer.h"
 
@@ -77,6 +79,10 @@ struct Recorder::State {
         if (!message.empty() && status.message.empty()) {
             status.recording = false;
             status.message = "the session is no longer recorded: " + message;
+            if (!writer.failure().empty()) {
+                status.id = core::writeErrorId(writer.errorNumber());
+                status.reason = std::strerror(writer.errorNumber());
+            }
         }
     }
 

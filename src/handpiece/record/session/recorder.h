@@ -19,6 +19,7 @@ namespace handpiece::session {
 struct RecorderStatus {
     bool recording = true;             ///< false once the disk has refused, and after close()
     std::string message;               ///< why it stopped, to be told once; empty while all is well
+    std::string id, reason;            ///< of that: core::Error's id and the system's word; empty where there is none
     std::uint64_t writtenRecords = 0;  ///< ticks in the file
     std::uint64_t lostRecords = 0;     ///< ticks that did not fit the queue: the session cannot be replayed past them
     std::uint64_t lostItems = 0;       ///< events and key frames that did not fit

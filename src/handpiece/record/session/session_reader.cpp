@@ -23,7 +23,9 @@ class Source {
   public:
     explicit Source(std::filesystem::path path) : path_(std::move(path)) {}
     [[nodiscard]] std::string name() const { return path_.string(); }
-    [[noreturn]] void damaged(std::string what) const { throw core::Error(std::move(what), path_.string(), kRemedy); }
+    [[noreturn]] void damaged(std::string what) const {
+        throw core::Error(what, path_.string(), kRemedy).as("session-damaged", {what});
+    }
     void require(bool good, std::string_view name, std::string_view what) const {
         if (!good) damaged(fmt::format("{}: {}", name, what));
     }
@@ -156,6 +158,12 @@ struct SessionReader::State {
                        name, "is of another kind");
         return set;
     }
+    [[nodiscard]] std::vector<std::byte> bytesOf(const char* name, std::size_t most) const {
+        const Rows rows(source, file.id(), name, H5T_STD_U8LE, 1, most);
+        std::vector<std::byte> bytes(static_cast<std::size_t>(rows.count()));
+        rows.read(0, bytes.size(), H5T_NATIVE_UINT8, bytes.data());
+        return bytes;
+    }
     void readHead();
     void openTables();
 };
@@ -168,7 +176,8 @@ void SessionReader::State::readHead() {
     if (version > kFormatVersion) {
         throw core::Error(
             fmt::format("the session has format {}; this program reads up to {}", version, kFormatVersion),
-            source.name(), "read it with a newer Handpiece");
+            source.name(), "read it with a newer Handpiece")
+            .as("session-newer");
     }
     source.require(version >= 1, "format_version", "is no version");
     info.version = source.text(f, "handpiece_version");
@@ -199,9 +208,10 @@ void SessionReader::State::openTables() {
         columns.emplace_back(source, samples.id(), column.name, fileType(column.type), column.width, kMostRows);
         size = std::min(size, columns.back().count());
     }
-    const Rows tooth(source, file.id(), "tooth", H5T_STD_U8LE, 1, kMostToothBytes);
-    info.tooth.resize(static_cast<std::size_t>(tooth.count()));
-    tooth.read(0, info.tooth.size(), H5T_NATIVE_UINT8, info.tooth.data());
+    info.tooth = bytesOf("tooth", kMostToothBytes);
+    const auto has = [&](const char* name) { return H5Lexists(file.id(), name, H5P_DEFAULT) > 0; };
+    if (has("scenery")) info.scenery = bytesOf("scenery", kMostToothBytes);
+    if (has("history")) info.history = bytesOf("history", kMostHistoryBytes);
     events = Rows(source, file.id(), "events", eventType.id(), 1, kMostEvents);
     keyFrameIndex = Rows(source, frames.id(), "index", keyFrameType.id(), 1, kMostKeyFrames);
     keyFrameData = Rows(source, frames.id(), "data", H5T_STD_U8LE, 1, hsize_t{1} << 40);
@@ -221,10 +231,13 @@ SessionReader::SessionReader(const std::filesystem::path& path) : state_(std::ma
     State& s = *state_;
     std::error_code ec;
     const auto status = std::filesystem::status(path, ec);
-    if (!std::filesystem::exists(status)) throw core::Error("there is no such file", path.string(), "check the name");
-    if (std::filesystem::is_directory(status)) throw core::Error("this is a folder, not a session", path.string());
+    if (!std::filesystem::exists(status))
+        throw core::Error("there is no such file", path.string(), "check the name").as("file-not-found");
+    if (std::filesystem::is_directory(status))
+        throw core::Error("this is a folder, not a session", path.string()).as("is-a-folder");
     const std::string name = path.string();
-    if (H5Fis_hdf5(name.c_str()) <= 0) throw core::Error("this is no session: it is not an HDF5 file", name);
+    if (H5Fis_hdf5(name.c_str()) <= 0)
+        throw core::Error("this is no session: it is not an HDF5 file", name).as("not-a-session");
     const Hdf5Object access(H5Pcreate(H5P_FILE_ACCESS));
     H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
     s.file = Hdf5Object(H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()));

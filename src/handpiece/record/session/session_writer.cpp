@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/record/session/hdf5_object.h"
 #include "handpiece/record/session/survivable_file.h"
 
@@ -52,12 +53,12 @@ void writeText(hid_t file, const char* name, std::string_view text) {
     if (H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, copy.data()) < 0) made(-1, name);
 }
 
-void writeBytes(hid_t file, const char* name, const std::vector<std::byte>& bytes) {
+void writeBytes(hid_t file, const char* name, const std::vector<std::byte>& bytes, bool packed) {
     const hsize_t size = bytes.size(), chunk = kBytesChunk;
     const Hdf5Object creation(H5Pcreate(H5P_DATASET_CREATE));
     H5Pset_obj_track_times(creation.id(), false);
     H5Pset_chunk(creation.id(), 1, &chunk);
-    H5Pset_deflate(creation.id(), kDeflateLevel);
+    if (packed) H5Pset_deflate(creation.id(), kDeflateLevel);
     const hsize_t limit = std::max(size, chunk);  // a chunk may not exceed what a dataset of fixed size can hold
     const Hdf5Object room(H5Screate_simple(1, &size, size < chunk ? &limit : &size));
     const Hdf5Object dataset(
@@ -124,6 +125,8 @@ void check(const SessionInfo& info) {
     if (!plain || info.code.size() > 32)
         throw core::Error("this cannot be a session's code", "code", "use up to 32 letters a to z, digits, - and _");
     if (info.settings.size() > kMostTextBytes) throw core::Error("the settings are too long", "session");
+    if (info.history.size() > kMostHistoryBytes) throw core::Error("the history is too long", "session");
+    if (info.scenery.size() > kMostToothBytes) throw core::Error("the scenery is too large", "session");
     if (info.tooth.size() > kMostToothBytes) throw core::Error("the tooth is too large", "session");
 }
 
@@ -179,7 +182,9 @@ SessionWriter::SessionWriter(const std::filesystem::path& path, const SessionInf
     writeText(file, "README", readme());
     writeText(file, "settings", info.settings);
 
-    writeBytes(file, "tooth", info.tooth);
+    writeBytes(file, "tooth", info.tooth, true);
+    if (!info.scenery.empty()) writeBytes(file, "scenery", info.scenery, false);  // quickly: somebody waits
+    if (!info.history.empty()) writeBytes(file, "history", info.history, false);  // it is packed already
     s.closedFlag = makeClosedFlag(file);
 
     s.rowsPerChunk = chunkRows(info.rateHz);
@@ -199,8 +204,10 @@ SessionWriter::SessionWriter(const std::filesystem::path& path, const SessionInf
     s.keyFrameData = Growing(keyFrames.id(), "data", H5T_STD_U8LE, 1, kKeyFrameDataChunk, false);
     const bool started = H5Fstart_swmr_write(file) >= 0;
     if (!s.fileState.failure.empty())
-        throw core::Error(s.fileState.failure, path.string(), "make room or choose another place");
+        throw core::Error(s.fileState.failure, path.string(), "make room or choose another place")
+            .as(core::writeErrorId(s.fileState.errorNumber), {std::strerror(s.fileState.errorNumber)});
     if (!started) made(-1, "a file that survives");
+    putInPlace(s.fileState);
 }
 
 SessionWriter::~SessionWriter() {
@@ -268,6 +275,10 @@ void SessionWriter::close() {
 
 const std::string& SessionWriter::failure() const noexcept {
     return state_->fileState.failure;
+}
+
+int SessionWriter::errorNumber() const noexcept {
+    return state_->fileState.errorNumber;
 }
 
 std::uint64_t SessionWriter::writtenRecords() const noexcept {

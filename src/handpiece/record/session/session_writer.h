@@ -38,6 +38,8 @@ class SessionWriter {
 
     /// Why writing has stopped, for people; empty while all is well.
     [[nodiscard]] const std::string& failure() const noexcept;
+    /// The system's number for it.
+    [[nodiscard]] int errorNumber() const noexcept;
     /// Ticks that are in the file.
     [[nodiscard]] std::uint64_t writtenRecords() const noexcept;
     [[nodiscard]] std::uint64_t sizeBytes() const noexcept;

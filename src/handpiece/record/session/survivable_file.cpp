@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 
 namespace handpiece::session {
 namespace fs = std::filesystem;
@@ -25,6 +26,8 @@ constexpr std::size_t kSuperblockBytes = 48, kFlagsAt = 11, kEndAt = 28, kChecks
 constexpr std::uint64_t kGrowthBytes = 1u << 18;
 // Metadata is kept from crossing pages of the system's cache, in which a write is done or not done.
 constexpr std::uint64_t kPageBytes = 4096;
+// Of a file that is not yet sound.
+constexpr const char* kBegunSuffix = ".begun";
 // Metadata and data each take the file's space in stretches of this much.
 constexpr std::uint64_t kMetadataStretch = 1u << 15, kDataStretch = 1u << 17;
 
@@ -65,7 +68,6 @@ struct DriverInfo {
 struct File {
     H5FD_t base;  // first: HDF5 knows this part only
     std::FILE* stream;
-    fs::path path;
     FileState* state;
     haddr_t allocatedEnd, writtenEnd, promisedEnd;
     struct Stretch {
@@ -77,7 +79,8 @@ struct File {
 
     void fail(const char* doing) {
         if (state->failure.empty()) {
-            state->failure = fmt::format("{}: {} failed: {}", path.string(), doing, std::strerror(errno));
+            state->errorNumber = errno;
+            state->failure = fmt::format("{}: {} failed: {}", state->place.string(), doing, std::strerror(errno));
         }
     }
     [[nodiscard]] bool failed() const { return !state->failure.empty(); }
@@ -94,7 +97,7 @@ struct File {
     }
     bool resize(haddr_t bytes) {
         std::error_code ec;
-        fs::resize_file(path, bytes, ec);
+        fs::resize_file(state->begun, bytes, ec);
         if (ec) {
             errno = ec.value();
             fail("growing the file");
@@ -150,7 +153,6 @@ H5FD_t* openFile(const char* name, unsigned flags, hid_t fapl, haddr_t) {
     if (!info || !(flags & H5F_ACC_CREAT)) return nullptr;
     auto file = std::make_unique<File>();
     file->state = info->state;
-    file->path = name;
     file->stream = std::fopen(name, "w+b");
     if (!file->stream) {
         file->fail("opening");
@@ -244,20 +246,43 @@ const H5FD_class_t& driverClass() {
 
 std::int64_t createSurvivableFile(const fs::path& path, FileState& state) {
     static const hid_t driver = H5FDregister(&driverClass());
+    state.place = state.begun = path;
+    std::error_code ec;
+    // A device (/dev/full) is no file to be replaced.
+    const fs::file_status there = fs::status(path, ec);
+    if (!fs::exists(there) || fs::is_regular_file(there)) state.begun += kBegunSuffix;
     const DriverInfo info{&state};
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_driver(access, driver, &info);
     H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
     const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_file_space_strategy(creation, H5F_FSPACE_STRATEGY_NONE, false, 1);
-    const hid_t file = H5Fcreate(path.string().c_str(), H5F_ACC_TRUNC, creation, access);
+    const hid_t file = H5Fcreate(state.begun.string().c_str(), H5F_ACC_TRUNC, creation, access);
     H5Pclose(creation);
     H5Pclose(access);
     if (file < 0) {
         throw core::Error(state.failure.empty() ? "the session file cannot be made" : state.failure, path.string(),
-                          "choose another place");
+                          "choose another place")
+            .as(core::writeErrorId(state.errorNumber), {std::strerror(state.errorNumber)});
     }
     return file;
+}
+
+void putInPlace(FileState& state) {
+    if (state.begun == state.place) return;
+    std::error_code ec;
+    fs::rename(state.begun, state.place, ec);
+    if (ec) {
+        throw core::Error(fmt::format("{}: renaming failed: {}", state.place.string(), ec.message()),
+                          state.place.string(), "choose another place")
+            .as(core::writeErrorId(ec.value()), {ec.message()});
+    }
+    state.begun = state.place;
+}
+
+FileState::~FileState() {
+    std::error_code ignored;
+    if (begun != place) fs::remove(begun, ignored);
 }
 
 }  // namespace handpiece::session

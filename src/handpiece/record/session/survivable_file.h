@@ -18,14 +18,20 @@ namespace handpiece::session {
 
 /// What the driver found out; outlives the HDF5 file.
 struct FileState {
+    ~FileState();                 ///< a file that never came into its place is given up
+    std::filesystem::path place;  ///< where the file belongs
+    std::filesystem::path begun;  ///< where it is now: beside that until putInPlace()
     std::string failure;          ///< why nothing is written any more; empty while all is well
+    int errorNumber = 0;          ///< of the system, with it
     std::uint64_t sizeBytes = 0;  ///< written so far
     /// For tests: sees every change of the file. `data` empty: the file's length becomes `address`.
     std::function<void(std::uint64_t address, std::span<const unsigned char> data)> observer;
 };
 
-/// Makes a new HDF5 file through the driver, replacing what was there. Returns the file's identifier (hid_t), to be
-/// closed by H5Fclose. Throws core::Error when the place cannot be written.
+/// Makes a new HDF5 file through the driver, beside its place: until the single-writer mode begins a file is no sound
+/// one. Returns the file's identifier (hid_t), to be closed by H5Fclose. Throws core::Error when the place cannot be
+/// written.
 [[nodiscard]] std::int64_t createSurvivableFile(const std::filesystem::path& path, FileState& state);
-
+/// From now on it is sound at every moment: puts it in its place, in place of what was there. Throws core::Error.
+void putInPlace(FileState& state);
 }  // namespace handpiece::session

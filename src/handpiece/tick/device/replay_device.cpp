@@ -8,10 +8,15 @@
 
 namespace handpiece::device {
 
-ReplayDevice::ReplayDevice(Capability capability, std::vector<Reading> readings)
-    : capability_(std::move(capability)), readings_(std::move(readings)) {
+ReplayDevice::ReplayDevice(Capability capability, std::vector<Reading> readings) : capability_(std::move(capability)) {
     validate(capability_);
-    if (readings_.empty()) throw core::Error("there is nothing to replay", "replay", "record at least one tick");
+    continueWith(std::move(readings));
+}
+
+void ReplayDevice::continueWith(std::vector<Reading> readings) {
+    if (readings.empty()) throw core::Error("there is nothing to replay", "replay", "record at least one tick");
+    readings_ = std::move(readings);
+    next_ = 0;
 }
 
 Reading ReplayDevice::read(double) noexcept {

@@ -24,7 +24,10 @@ class ReplayDevice final : public Device {
     core::Vec3 truePositionMm() const noexcept override;
     core::Vec3 appliedForceN() const noexcept override { return forceN_; }
 
-    /// Readings given so far.
+    /// Goes on with these when the ones before have been read: a long record comes by stretches. Between two ticks;
+    /// what was not read yet is dropped. Throws core::Error when there is none.
+    void continueWith(std::vector<Reading> readings);
+    /// Readings given so far, of the present stretch.
     [[nodiscard]] std::size_t played() const noexcept { return next_; }
 
   private:

@@ -16,7 +16,9 @@ Mode modeByName(std::string_view name) {
 void validate(const Parameters& p) {
     const auto require = [](double value, double low, double high, const char* what) {
         if (!(value >= low && value <= high)) {
-            throw core::Error(fmt::format("{} is {}", what, value), "force", fmt::format("give {} to {}", low, high));
+            throw core::Error(fmt::format("{} is {}", what, value), "force", fmt::format("give {} to {}", low, high))
+                .as("parameter-refused",
+                    {what, fmt::format("{}", value), fmt::format("{}", low), fmt::format("{}", high)});
         }
     };
     require(p.stiffnessMultiplier, 0.0, 100.0, "the stiffness multiplier");

@@ -17,6 +17,24 @@ double rounded(double x, double step) noexcept {
     return std::abs(steps) < 2147483647.0 ? std::nearbyint(steps) * step : x;
 }
 
+std::array<double, 3> array(const core::Vec3& v) noexcept {
+    return {v.x(), v.y(), v.z()};
+}
+
+void tellContact(const force::Touch& touch, messages::HapticSample& sample) noexcept {
+    if (!touch.touching) return;
+    core::Vec3 point = touch.depth.toothPointMm, normal = touch.depth.normal;  // without patches, as in penalty mode
+    double most = 0.0;
+    for (const contact::Patch& patch : touch.patches.patches) {
+        if (!(patch.pressureShare > most)) continue;
+        most = patch.pressureShare;
+        point = patch.centreMm;
+        normal = patch.normal;
+    }
+    sample.contactPointMm = array(point);
+    sample.contactNormal = array(normal);
+}
+
 }  // namespace
 
 void HapticLoop::tick(const rt::Beat& beat) noexcept {
@@ -110,8 +128,8 @@ void HapticLoop::cut(const device::Reading& reading, const force::Touch& touch, 
     turning_.tangentialN = cut_.tangentialN;
     turning_.surfaceSpeedMmS = rotor_.speedRadS() * kMeanRadius * cutter->largestRadiusMm();
     if (cutter->field().outOfBricks()) cutFlags_ |= messages::kOutOfBricks;
-    cutter->field().handOver(kBricksPerTick,
-                             [this](const tooth::BrickSnapshot& brick) noexcept { return bricks_.tryPush(brick); });
+    handedBricks_ += cutter->field().handOver(
+        kBricksPerTick, [this](const tooth::BrickSnapshot& brick) noexcept { return bricks_.tryPush(brick); });
 }
 
 void HapticLoop::restoreSome() noexcept {
@@ -128,7 +146,6 @@ void HapticLoop::restoreSome() noexcept {
 
 void HapticLoop::publish(const device::Reading& reading, const force::Touch& touch, const force::ForceCommand& command,
                          const rt::Beat& beat, std::int64_t workNs, std::int64_t cutNs) noexcept {
-    const auto array = [](const core::Vec3& v) { return std::array<double, 3>{v.x(), v.y(), v.z()}; };
     const auto wxyz = [](const core::Quat& q) { return std::array<double, 4>{q.w(), q.x(), q.y(), q.z()}; };
     messages::HapticSample sample;
     sample.tick = tick_;
@@ -144,6 +161,7 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     sample.proxyOrientation = wxyz(touch.proxyInTooth.orientation);
     sample.appliedForceN = array(device_->appliedForceN());
     sample.contactAreaMm2 = touch.patches.areaMm2;
+    tellContact(touch, sample);
     sample.tissue = static_cast<std::uint8_t>(touch.tissue);
     sample.contactStatus = static_cast<std::uint8_t>(touch.depth.status);
     sample.patchCount = static_cast<std::uint16_t>(touch.patches.patches.size());
@@ -157,6 +175,7 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     sample.feedMmS = static_cast<float>(cut_.feedMmS);
     sample.elapsedPeriods = static_cast<std::int32_t>(beat.periods);
     sample.buttons = reading.buttons;
+    sample.handedBricks = handedBricks_;
     sample.lastCommand = lastCommand_;
     sample.pedal = reading.pedal;
     sample.speedRpm = rotor_.speedRpm();

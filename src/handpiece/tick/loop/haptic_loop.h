@@ -74,6 +74,14 @@ class HapticLoop {
     /// On the wall clock, in a thread with what real-time privileges there are; this thread feeds the listener
     /// meanwhile.
     RunReport runRealTime(double durationS, const Listener& listener = {}, const BrickListener& bricks = {});
+    /// The same without an end, for a caller who does more than listen: `attend` is called every two milliseconds or
+    /// so on this thread, with one line about the scheduling; it calls fetch(), and requestStop() to end the run. What
+    /// it throws ends the run and comes out of here. However it ends, the device is left without force.
+    using Attend = std::function<void(const std::string& scheduling)>;
+    void runAttended(bool realTime, const Attend& attend);
+    /// Gives what the tick has told since the last call, in its order: each sample after the bricks that were handed
+    /// over up to it, and no later ones. One consumer, who does not take from samples() or bricks() as well.
+    void fetch(const Listener& listener, const BrickListener& bricks);
     /// Ends a run after the tick under way. Any thread, also a signal handler.
     void requestStop() noexcept { stop_.store(true, std::memory_order_relaxed); }
 
@@ -118,6 +126,7 @@ class HapticLoop {
     void publish(const device::Reading& reading, const force::Touch& touch, const force::ForceCommand& command,
                  const rt::Beat& beat, std::int64_t workNs, std::int64_t cutNs) noexcept;
     std::uint64_t ticksFor(double durationS);
+    std::string tickOnClock(std::uint64_t ticks, bool realTime, const Attend& attend);
     RunReport finish(const Statistics& statistics, std::string scheduling) const;
 
     LoopSettings settings_;
@@ -138,6 +147,8 @@ class HapticLoop {
     std::uint32_t cutFlags_ = 0;
     rt::SpscQueue<messages::HapticSample> samples_;
     rt::SpscQueue<tooth::BrickSnapshot> bricks_;
+    std::uint64_t handedBricks_ = 0, fetchedBricks_ = 0;  // by the tick; by the listener
+    tooth::BrickSnapshot fetched_;
     std::atomic<bool> stop_{false};
     bool started_ = false;
     std::uint64_t tick_ = 0;

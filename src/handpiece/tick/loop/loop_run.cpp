@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <thread>
 #include <vector>
 
@@ -55,25 +56,18 @@ Spread spreadOf(std::vector<float> values) {
 /// Gathers work and lateness of the samples on their way to the listener.
 class HapticLoop::Statistics {
   public:
-    Statistics(const Listener& listener, const BrickListener& bricks) : listener_(listener), bricks_(bricks) {}
-    void drain(rt::SpscQueue<messages::HapticSample>& samples, rt::SpscQueue<tooth::BrickSnapshot>& bricks) {
-        // Bricks first: whoever hears of a sample knows what was cut before it.
-        while (bricks_ && bricks.tryPop(brick_))
-            bricks_(brick_);
-        messages::HapticSample sample;
-        while (samples.tryPop(sample)) {
-            workUs_.push_back(sample.workUs);
-            lateUs_.push_back(sample.lateUs);
-            if (listener_) listener_(sample);
-        }
-    }
+    explicit Statistics(const Listener& listener)
+        : each_([this, &listener](const messages::HapticSample& sample) {
+              workUs_.push_back(sample.workUs);
+              lateUs_.push_back(sample.lateUs);
+              if (listener) listener(sample);
+          }) {}
+    [[nodiscard]] const Listener& each() const { return each_; }
     [[nodiscard]] Spread workUs() const { return spreadOf(workUs_); }
     [[nodiscard]] Spread lateUs() const { return spreadOf(lateUs_); }
 
   private:
-    const Listener& listener_;
-    const BrickListener& bricks_;
-    tooth::BrickSnapshot brick_;
+    Listener each_;
     std::vector<float> workUs_, lateUs_;
 };
 
@@ -153,43 +147,76 @@ RunReport HapticLoop::finish(const Statistics& statistics, std::string schedulin
 
 RunReport HapticLoop::runSimulated(double durationS, const Listener& listener, const BrickListener& bricks) {
     const std::uint64_t ticks = ticksFor(durationS);
-    Statistics statistics(listener, bricks);
+    Statistics statistics(listener);
     for (std::uint64_t i = 0; i < ticks && !stop_.load(std::memory_order_relaxed); ++i) {
         tick(rt::Beat{});
-        statistics.drain(samples_, bricks_);
+        fetch(statistics.each(), bricks);
     }
     return finish(statistics, "simulated time: as fast as possible");
 }
 
-RunReport HapticLoop::runRealTime(double durationS, const Listener& listener, const BrickListener& bricks) {
-    const std::uint64_t ticks = ticksFor(durationS);
-    Statistics statistics(listener, bricks);
+void HapticLoop::fetch(const Listener& listener, const BrickListener& bricks) {
+    messages::HapticSample sample;
+    while (samples_.tryPop(sample)) {
+        for (; bricks && fetchedBricks_ < sample.handedBricks && bricks_.tryPop(fetched_); ++fetchedBricks_)
+            bricks(fetched_);
+        if (listener) listener(sample);
+    }
+}
+
+/// Ticks in a thread of its own, while this one attends to it.
+std::string HapticLoop::tickOnClock(std::uint64_t ticks, bool realTime, const Attend& attend) {
     rt::PeriodicClock clock(std::llround(1e9 * periodS_), std::llround(1e3 * settings_.spinUs));
     std::atomic<bool> done{false};
-    std::string scheduling;
-    {
-        rt::RealtimeThread thread([&] {
-            clock.start();
-            for (std::uint64_t served = 0; served < ticks && !stop_.load(std::memory_order_relaxed);) {
-                const rt::Beat beat = clock.wait();
-                served += static_cast<std::uint64_t>(beat.periods);
-                tick(beat);
-            }
-            done.store(true, std::memory_order_release);
-        });
-        scheduling = thread.grant().line;
+    const auto body = [&] {
+        clock.start();
+        for (std::uint64_t served = 0; served < ticks && !stop_.load(std::memory_order_relaxed);) {
+            const rt::Beat beat = clock.wait();
+            served += static_cast<std::uint64_t>(beat.periods);
+            tick(beat);
+        }
+        done.store(true, std::memory_order_release);
+    };
+    std::string scheduling = "no real-time scheduling was asked for";
+    const auto released = [this] { device_->command(core::Vec3::Zero(), core::Vec3::Zero()); };
+    try {
+        std::unique_ptr<rt::RealtimeThread> privileged;
+        std::jthread plain;
+        if (realTime) {
+            privileged = std::make_unique<rt::RealtimeThread>(body);
+            scheduling = privileged->grant().line;
+        } else {
+            plain = std::jthread(body);
+        }
         try {
             while (!done.load(std::memory_order_acquire)) {
-                statistics.drain(samples_, bricks_);
+                attend(scheduling);
                 std::this_thread::sleep_for(std::chrono::milliseconds(2));
             }
         } catch (...) {
             requestStop();  // the listener failed: let the tick end before its loop goes
             throw;
         }
+    } catch (...) {
+        released();
+        throw;
     }
-    statistics.drain(samples_, bricks_);
+    released();
+    return scheduling;
+}
+
+RunReport HapticLoop::runRealTime(double durationS, const Listener& listener, const BrickListener& bricks) {
+    const std::uint64_t ticks = ticksFor(durationS);
+    Statistics statistics(listener);
+    std::string scheduling = tickOnClock(ticks, true, [&](const std::string&) { fetch(statistics.each(), bricks); });
+    fetch(statistics.each(), bricks);
     return finish(statistics, std::move(scheduling));
+}
+
+void HapticLoop::runAttended(bool realTime, const Attend& attend) {
+    stop_.store(false, std::memory_order_relaxed);
+    ticksDone_ = lateTicks_ = missedPeriods_ = 0;
+    (void)tickOnClock(std::numeric_limits<std::uint64_t>::max(), realTime, attend);
 }
 
 }  // namespace handpiece::loop

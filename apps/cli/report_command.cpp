@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// handpiece report: a session as one page to print.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/progress_bar.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/base/core/parallel.h"
+#include "station/session_report.h"
+
+namespace handpiece::cli {
+namespace {
+
+struct ReportOptions {
+    std::string session, out;
+    bool noPictures = false, noCache = false;
+    std::size_t threads = 0;
+};
+
+void report(const ReportOptions& o) {
+    core::setThreadCount(o.threads);
+    ProgressBar preparing("preparing the tooth");
+    station::SessionPlayer player(o.session, {!o.noCache, true, {}}, preparing.listener());
+    preparing.finish();
+    station::ReportSettings settings;
+    settings.pictures = !o.noPictures;
+    ProgressBar bar("cutting again");
+    const std::string page = station::sessionReport(player, settings, bar.listener());
+    bar.finish();
+    core::writeFile(o.out, page);
+    fmt::print("{}\n", o.out);
+}
+
+}  // namespace
+
+void addReportCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("report", "Write a session as one page to print");
+    const auto options = std::make_shared<ReportOptions>();
+    command->add_option("session", options->session, "session file (.h5)")->required();
+    command->add_option("--out", options->out, "the page (.html)")->required();
+    command->add_flag("--no-pictures", options->noPictures, "without pictures of the tooth");
+    command->add_flag("--no-cache", options->noCache, "build the fields anew");
+    command->add_option("--threads", options->threads, "threads for long work; 0: all cores")
+        ->check(CLI::Range(std::size_t{0}, std::size_t{1024}))
+        ->capture_default_str();
+    command->footer(
+        "The page needs nothing beside it: views before and after, volumes, times, forces, speed, events, settings,\n"
+        "and whether the tooth comes out the same when it is cut again.\n"
+        "Example:\n  handpiece report session.h5 --out report.html");
+    command->callback([options] { report(*options); });
+}
+
+}  // namespace handpiece::cli

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// One line on how it goes: device, rate, late ticks, load, record.
+
+#include <QString>
+#include <QWidget>
+#include <cstdint>
+
+#include "panels/detail.h"
+
+class QLabel;
+
+namespace handpiece::desktop {
+
+class Lamp;
+
+/// What the line shows.
+struct StatusFigures {
+    enum class Recording { off, on, stopped };
+    QString device;
+    double rateHz = 0.0;  ///< measured
+    std::uint64_t lateTicks = 0, missedPeriods = 0;
+    double load = 0.0;  ///< 0..1
+    Recording recording = Recording::off;
+    QString recordingNote;  ///< why it stopped
+    bool late = false;      ///< the last second had late ticks worth a word
+    bool busy = false;      ///< undo or loading under way
+    friend bool operator==(const StatusFigures&, const StatusFigures&) = default;
+};
+
+/// [statusLine]. In Practice one plain word: "Ready", "Recording", "Late".
+class StatusLine : public QWidget {
+    Q_OBJECT
+  public:
+    explicit StatusLine(QWidget* parent = nullptr);
+    void setFigures(const StatusFigures& figures);
+    void setDetail(Detail detail);
+    [[nodiscard]] QString word() const;
+
+  private:
+    void refresh();
+
+    StatusFigures figures_;
+    Detail detail_ = Detail::practice;
+    Lamp* lamp_;
+    QLabel *word_, *deviceText_, *rate_, *late_, *load_, *record_;
+};
+
+}  // namespace handpiece::desktop

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// How much of each tissue is gone.
+
+#include <QWidget>
+#include <array>
+#include <vector>
+
+#include "handpiece/senses/view/look.h"
+#include "panels/detail.h"
+
+namespace handpiece::desktop {
+
+/// Bars with values, one a tissue [volumeBars].
+class VolumeBars : public QWidget {
+    Q_OBJECT
+  public:
+    explicit VolumeBars(QWidget* parent = nullptr);
+
+    /// By tooth::Tissue [mm3].
+    void setVolumes(const std::array<double, tooth::kTissueCount>& removedMm3);
+    /// The tissues shown and their colours; a tissue without an entry appears once something of it is gone.
+    void setLegend(const std::vector<view::LegendEntry>& entries);
+    void setDetail(Detail detail);
+    /// Off where a dock's title says it already: then the first line says that it is the total.
+    void setHeadingShown(bool shown);
+
+    [[nodiscard]] QSize sizeHint() const override;
+    [[nodiscard]] QSize minimumSizeHint() const override;
+
+  protected:
+    void paintEvent(QPaintEvent* event) override;
+    bool event(QEvent* event) override;
+
+  private:
+    [[nodiscard]] std::vector<view::LegendEntry> rows() const;
+
+    std::array<double, tooth::kTissueCount> removedMm3_{};
+    std::vector<view::LegendEntry> entries_;
+    Detail detail_ = Detail::practice;
+    bool headingShown_ = true;
+};
+
+}  // namespace handpiece::desktop

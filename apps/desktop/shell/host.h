@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The program around the window: settings, language, colours, the work; a window that can be made anew.
+
+#include <QObject>
+#include <memory>
+
+#include "shell/command_line.h"
+#include "shell/language.h"
+#include "shell/main_window.h"
+#include "shell/run_statistics.h"
+#include "shell/settings.h"
+#include "shell/simulator.h"
+
+class QApplication;
+
+namespace handpiece::desktop {
+
+/// One for a program. The window speaks one language from its making to its end, so another language is another window
+/// onto the same work.
+class Host : public QObject {
+    Q_OBJECT
+  public:
+    Host(QApplication& application, const CommandLine& line, const Simulator::Options& options);
+    ~Host() override;
+
+    /// Shows the window and begins to open what was asked for.
+    void start();
+    [[nodiscard]] MainWindow& window() const noexcept { return *window_; }
+    [[nodiscard]] Simulator& simulator() noexcept { return simulator_; }
+    [[nodiscard]] Settings& settings() noexcept { return settings_; }
+
+  private:
+    void makeWindow();
+    void chooseLanguage(const QString& code);
+    void chooseAppearance(Appearance appearance);
+    void takeScreenshot();
+    /// Nobody is there to answer a question.
+    void endWithoutAsking(int code);
+    void writeStats();
+
+    QApplication& application_;
+    CommandLine line_;
+    PictureStatistics picture_;
+    double firstPictureMs_ = 0.0;
+    Settings settings_;
+    Language language_;
+    Simulator simulator_;
+    std::unique_ptr<MainWindow> window_;
+};
+
+}  // namespace handpiece::desktop

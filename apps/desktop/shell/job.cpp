@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shell/job.h"
+
+#include <QMetaObject>
+#include <new>
+
+namespace handpiece::desktop {
+
+Job::Job(QString title, Work work, QObject* parent)
+    : QObject(parent), title_(std::move(title)), work_(std::move(work)) {}
+
+Job::~Job() {
+    cancel();
+    if (thread_.joinable()) thread_.join();
+}
+
+void Job::start() {
+    thread_ = std::thread([this] { run(); });
+}
+
+void Job::tell(std::function<void()> what) {
+    QMetaObject::invokeMethod(this, std::move(what), Qt::QueuedConnection);
+}
+
+void Job::run() {
+    const core::Progress progress = [this](double fraction) {
+        const int percent = static_cast<int>(100.0 * fraction);
+        if (told_.exchange(percent) != percent) tell([this, fraction] { emit progressed(fraction); });
+        return !cancelled_.load(std::memory_order_relaxed);
+    };
+    try {
+        core::report(progress, 0.0);
+        work_(progress);
+        tell([this] { emit done(); });
+    } catch (const core::Error& error) {
+        if (cancelled_.load()) {
+            tell([this] { emit cancelled(); });
+        } else {
+            tell([this, problem = problemOf(error)] { emit failed(problem); });
+        }
+    } catch (const std::bad_alloc&) {
+        const core::Error error("there is not enough memory", title_.toStdString(),
+                                "close other programs, or choose a coarser tooth or voxel size");
+        tell([this, problem = problemOf(error)] { emit failed(problem); });
+    }
+}
+
+}  // namespace handpiece::desktop

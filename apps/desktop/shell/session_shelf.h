@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The recordings of all sittings, and which of them hold work that nobody saved.
+
+#include <QLockFile>
+#include <QString>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace handpiece::desktop {
+
+/// What a marker beside a recording says.
+struct SessionNote {
+    QString caseFile;      ///< the tooth's place
+    QString title;         ///< as shown
+    QString attemptFile;   ///< where it was saved last; may be empty
+    bool unsaved = false;  ///< something was cut that no file holds
+    QString starter = {};  ///< kind of a starter tooth; empty for others
+    std::size_t faces = 0;
+};
+
+/// A recording whose program ended without a word.
+struct Crashed {
+    std::filesystem::path session;
+    SessionNote note;
+};
+
+/// A folder of SESSION-ID.h5 with SESSION-ID.json (the marker) and SESSION-ID.lock (while its program lives).
+class SessionShelf {
+  public:
+    struct Limits {
+        std::size_t sessions = 20;
+        std::uint64_t bytes = 2ull << 30;
+    };
+    explicit SessionShelf(std::filesystem::path folder);
+    SessionShelf(std::filesystem::path folder, Limits limits);
+
+    /// A name for the next recording, taken for this program until end(). Throws core::Error when the folder cannot be
+    /// written.
+    [[nodiscard]] std::filesystem::path begin(const SessionNote& note);
+    /// What is known of the recording under way has changed.
+    void note(const SessionNote& note);
+    /// The recording is closed, and what it holds is saved or given up.
+    void end();
+    /// The recording is closed, but its marker stays: whoever comes finds what it holds.
+    void leave();
+    /// The recording under way; empty when there is none.
+    [[nodiscard]] const std::filesystem::path& current() const noexcept { return current_; }
+
+    /// Recordings with unsaved work whose program is gone, the newest first. Empty ones count as none.
+    [[nodiscard]] std::vector<Crashed> crashed() const;
+    /// Its work is saved elsewhere by now, or given up: it becomes a recording like any other.
+    void settle(const std::filesystem::path& session);
+    /// Deletes the oldest recordings beyond the limits, never one with a marker. Returns how many.
+    std::size_t tidy();
+
+  private:
+    std::filesystem::path folder_;
+    Limits limits_;
+    std::filesystem::path current_;
+    std::unique_ptr<QLockFile> lock_;
+};
+
+}  // namespace handpiece::desktop

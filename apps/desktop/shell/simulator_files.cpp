@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+// The simulator's long work: opening, saving, cutting again.
+#include "handpiece/base/core/file.h"
+#include "handpiece/model/tooth/attempt.h"
+#include "shell/simulator.h"
+#include "station/session_report.h"
+
+namespace handpiece::desktop {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<Starter> starterOf(const SessionNote& note) {
+    for (const starter::ToothKindInfo& info : starter::toothKinds())
+        if (note.starter == QLatin1String(info.name.data(), static_cast<qsizetype>(info.name.size())))
+            return Starter{info.kind, note.faces};
+    return std::nullopt;
+}
+
+}  // namespace
+
+void Simulator::start(const QString& title, Job::Work work, std::function<void()> done,
+                      std::function<void()> otherwise) {
+    job_ = std::make_unique<Job>(title, std::move(work));
+    // The job lets go of itself only after its signal has been dealt with.
+    const auto end = [this] {
+        job_.release()->deleteLater();
+        emit jobEnded();
+    };
+    connect(job_.get(), &Job::progressed, this, &Simulator::jobProgressed);
+    connect(job_.get(), &Job::done, this, [this, end, done = std::move(done)] {
+        end();
+        try {
+            done();
+        } catch (const core::Error& error) {
+            emit failed(problemOf(error));
+        }
+    });
+    connect(job_.get(), &Job::failed, this, [this, end, otherwise](const Problem& problem) {
+        end();
+        emit failed(problem);
+        if (otherwise) otherwise();
+    });
+    connect(job_.get(), &Job::cancelled, this, [end, otherwise = std::move(otherwise)] {
+        end();
+        if (otherwise) otherwise();
+    });
+    emit jobStarted(title);
+    job_->start();
+}
+
+void Simulator::cancelJob() {
+    if (job_) job_->cancel();
+}
+
+LoadRequest Simulator::request() const {
+    LoadRequest request;
+    request.starterFolder = options_.folders.starters;
+    request.bur = burName_.toStdString();
+    request.drive = driveName_.toStdString();
+    request.speedRpm = speedRpm_;
+    request.settings = settings_;
+    request.settings.resumed = false;
+    request.settings.field = {};
+    request.settings.field.voxelMm = 1e-3 * options_.voxelUm;
+    return request;
+}
+
+void Simulator::load(LoadRequest request, const QString& title, std::function<void()> done) {
+    if (job_) return;
+    const auto loaded = std::make_shared<LoadedTooth>();
+    start(
+        title, [loaded, request](const core::Progress& progress) { *loaded = loadTooth(request, progress); },
+        [this, loaded, done = std::move(done)] {
+            sit(std::move(*loaded));
+            if (done) done();
+        });
+}
+
+void Simulator::openStarter(const Starter& starter) {
+    LoadRequest wanted = request();
+    wanted.starter = starter;
+    load(std::move(wanted), tr("Preparing the tooth"));
+}
+
+void Simulator::open(const fs::path& path) {
+    FileKind kind = FileKind::unknown;
+    try {
+        kind = fileKindOf(path);
+    } catch (const core::Error& error) {
+        emit failed(problemOf(error));
+        return;
+    }
+    if (kind == FileKind::unknown) {
+        std::error_code error;
+        emit failed(
+            problemById(fs::exists(path, error) ? QStringLiteral("unknown-file") : QStringLiteral("file-not-found"), {},
+                        toQString(path)));
+        return;
+    }
+    if (kind == FileKind::session) {
+        openSession(path);
+        return;
+    }
+    LoadRequest wanted = request();
+    wanted.path = path;
+    load(std::move(wanted), tr("Opening %1").arg(toQString(path.filename())));
+}
+
+void Simulator::openSession(const fs::path& path) {
+    if (job_) return;
+    const auto player = std::make_shared<std::unique_ptr<station::SessionPlayer>>();
+    start(
+        tr("Opening %1").arg(toQString(path.filename())),
+        [player, path](const core::Progress& progress) {
+            *player = std::make_unique<station::SessionPlayer>(path, true, progress);
+        },
+        [this, player, path] {
+            std::shared_ptr<Left> left = std::move(leftFor_);
+            stopAll();
+            leftFor_ = std::move(left);
+            unsaved_ = false;
+            document_ = {};
+            document_.name = path.filename().string();
+            document_.caseFile = path;
+            watch(std::make_unique<ReplayDriver>(std::move(*player), replayEar()));
+            emit unsavedChanged(false);
+        },
+        [this] {
+            if (leftFor_) closeReplay();
+        });
+}
+
+Simulator::Left Simulator::leaveSitting() {
+    Left left{{shelf_.current(), noteNow()}, {}, history::History()};
+    LoadedTooth& tooth = left.tooth;
+    tooth.document = document_;
+    tooth.toothCase = toothCase_;
+    tooth.bur = burName_.toStdString();
+    tooth.drive = driveName_.toStdString();
+    tooth.speedRpm = speedRpm_;
+    tooth.code = sessionCode_;
+    sitting_->stop();
+    tooth.station = sitting_->station();
+    tooth.station.settings = sitting_->settings();
+    tooth.station.settings.hull = false;
+    tooth.station.settings.resumed = true;
+    tooth.state = sitting_->state();
+    tooth.elapsedS = elapsedS_ + sitting_->status().timeS;
+    left.history = sitting_->history();
+    // Only a recording that was closed is whole.
+    stopSitting(true);
+    return left;
+}
+
+void Simulator::comeBack(const std::shared_ptr<Left>& left, std::function<void()> then) {
+    const auto loaded = std::make_shared<LoadedTooth>(left->tooth);
+    start(
+        tr("Bringing the tooth back"),
+        [left, loaded](const core::Progress& progress) {
+            // A field of its own: what the old loop had yet to hand over is in the state.
+            loaded->station.field = std::make_shared<tooth::CutField>(loaded->station.tooth);
+            loaded->station.resume(loaded->state);
+            loaded->history = station::keepHistory(left->history, loaded->state, loaded->station);
+            loaded->liveTooth = std::make_shared<station::LiveTooth>(loaded->station.tooth, loaded->state, progress);
+        },
+        [this, left, loaded, then = std::move(then)] {
+            leftFor_.reset();
+            sit(std::move(*loaded));
+            takeOver(left->file);
+            if (then) then();
+        });
+}
+
+/// What was brought back is in no file yet: the recording that begins now holds it, and says so.
+void Simulator::takeOver(const Crashed& file) {
+    if (file.note.unsaved) {
+        savedMm3_ = {};
+        markUnsaved(true);
+    }
+    shelf_.settle(file.session);
+}
+
+void Simulator::replayThis() {
+    if (job_ || mode_ != Mode::sitting || shelf_.current().empty()) return;
+    leftFor_ = std::make_shared<Left>(leaveSitting());
+    openSession(leftFor_->file.session);
+}
+
+void Simulator::closeReplay(std::function<void()> then) {
+    if (job_) return;
+    if (leftFor_) {
+        comeBack(leftFor_, std::move(then));
+    } else {
+        close();
+    }
+}
+
+void Simulator::giveUpBehindReplay() {
+    if (leftFor_) leftFor_->file.note.unsaved = false;
+}
+
+void Simulator::setCode(const QString& asked) {
+    // What a session's header takes: with anything else nothing would be recorded.
+    QString code;
+    for (const QChar c : asked.trimmed())
+        if (c.unicode() < 128 && (c.isLetterOrNumber() || c == QLatin1Char('-') || c == QLatin1Char('_'))) code += c;
+    code.truncate(32);
+    if (code == code_) return;
+    code_ = code;
+    sessionCode_ = code.toStdString();
+    if (job_ || mode_ != Mode::sitting) return;
+    if (!status_.cut && status_.strokes == 0 && document_.attemptFile.empty()) {
+        LoadRequest wanted = request();
+        wanted.starter = document_.starter;
+        wanted.path = document_.caseFile;
+        load(std::move(wanted), tr("Preparing the tooth"));
+    } else {
+        emit noticed(QStringLiteral("code-later"), {code});
+    }
+}
+
+void Simulator::recover(const Crashed& crashed, std::function<void()> then) {
+    LoadRequest wanted = request();
+    wanted.path = crashed.session;
+    wanted.recover = true;
+    wanted.recovered.caseFile = toPath(crashed.note.caseFile);
+    wanted.recovered.attemptFile = toPath(crashed.note.attemptFile);
+    wanted.recovered.name = crashed.note.title.toStdString();
+    wanted.recovered.starter = starterOf(crashed.note);
+    load(std::move(wanted), tr("Bringing the tooth back"), [this, crashed, then = std::move(then)] {
+        takeOver(crashed);
+        if (then) then();
+    });
+}
+
+void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
+    if (job_) return;
+    if (mode_ != Mode::sitting) {
+        emit failed(problemById(QStringLiteral("nothing-open")));
+        return;
+    }
+    std::error_code error;
+    const bool vanished = !fs::exists(document_.caseFile, error);
+    const bool packed = path.extension() == ".handpiece";
+    if (vanished && !packed) {
+        emit failed(problemById(QStringLiteral("case-vanished"), {toQString(document_.caseFile)}));
+        return;
+    }
+    const auto attempt = std::make_shared<tooth::Attempt>(sitting_->attempt(document_.caseFile));
+    if (!code_.isEmpty()) attempt->student = code_.toStdString();
+    const tooth::TissueVolumes removedMm3 = attempt->removedMm3;
+    start(
+        tr("Saving"),
+        [attempt, packed, path, toothCase = toothCase_](const core::Progress&) {
+            tooth::writeAttempt(*attempt, path, packed ? toothCase.get() : nullptr);
+        },
+        [this, path, removedMm3, vanished, then = std::move(then)] {
+            document_.attemptFile = path;
+            document_.name = path.stem().string();
+            savedMm3_ = removedMm3;
+            markUnsaved(sample_.removedMm3 != savedMm3_, true);  // its place has changed in any case
+            emit saved(toQString(path));
+            if (vanished) emit noticed(QStringLiteral("case-vanished"), {toQString(document_.caseFile)});
+            if (then) then();
+        });
+}
+
+void Simulator::exportStl(const fs::path& path) {
+    if (job_) return;
+    if (!tooth_) {
+        emit failed(problemById(QStringLiteral("nothing-open")));
+        return;
+    }
+    start(
+        tr("Writing the STL file"),
+        [path, tooth = tooth_, removedMm3 = sample_.removedMm3](const core::Progress& progress) {
+            const auto base = std::shared_ptr<const tooth::CuttableTooth>(tooth, &tooth->base());
+            desktop::exportStl(base, tooth->state(removedMm3), path, progress);
+        },
+        [this, path] { emit saved(toQString(path)); });
+}
+
+void Simulator::writeReport(const fs::path& file) {
+    const fs::path session = mode_ == Mode::replay ? document_.caseFile : shelf_.current();
+    if (job_ || session.empty()) {
+        if (!job_) emit failed(problemById(QStringLiteral("no-recording")));
+        return;
+    }
+    start(
+        tr("Writing the report"),
+        [session, file](const core::Progress& progress) {
+            station::SessionPlayer player(session, true, core::part(progress, 0.0, 0.2));
+            core::writeFile(file, station::sessionReport(player, {}, core::part(progress, 0.2, 1.0)));
+        },
+        [this, file] { emit saved(toQString(file)); });
+}
+
+void Simulator::copyRecording(const fs::path& file) {
+    if (job_ || shelf_.current().empty()) return;
+    start(
+        tr("Copying the recording"),
+        [from = shelf_.current(), file](const core::Progress&) { core::writeFile(file, core::readFile(from)); },
+        [this, file] { emit saved(toQString(file)); });
+}
+
+void Simulator::setVoxel(int um) {
+    if (mode_ == Mode::empty && !job_) options_.voxelUm = voxelUm_ = um;
+    if (job_ || mode_ != Mode::sitting || um == voxelUm_) return;
+    if (status_.inStroke) {
+        emit failed(problemById(QStringLiteral("voxel-in-stroke")));
+        emit settingsChanged();
+        return;
+    }
+    options_.voxelUm = um;
+    if (!status_.cut) {
+        LoadRequest wanted = request();
+        wanted.starter = document_.starter;
+        wanted.path = document_.caseFile;
+        load(std::move(wanted), tr("Preparing the tooth"));
+        return;
+    }
+    if (settings_.resumed || shelf_.current().empty()) {
+        emit failed(problemById(settings_.resumed ? QStringLiteral("voxel-resumed") : QStringLiteral("no-recording")));
+        emit settingsChanged();
+        return;
+    }
+    tooth::FieldSettings field;
+    field.voxelMm = 1e-3 * um;
+    const auto left = std::make_shared<Left>(leaveSitting());
+    const auto loaded = std::make_shared<LoadedTooth>(left->tooth);
+    start(
+        tr("Cutting the tooth again"),
+        [loaded, field, session = left->file.session](const core::Progress& progress) {
+            station::Recut recut = station::recutAt(session, field, true, core::part(progress, 0.0, 0.8));
+            loaded->station = std::move(recut.station);
+            loaded->station.settings.hull = false;
+            loaded->station.settings.resumed = true;
+            loaded->state = std::move(recut.state);
+            loaded->history = station::keepHistory(recut.history, loaded->state, loaded->station);
+            loaded->liveTooth = std::make_shared<station::LiveTooth>(loaded->station.tooth, loaded->state,
+                                                                     core::part(progress, 0.8, 1.0));
+        },
+        [this, loaded, left] {
+            sit(std::move(*loaded));
+            takeOver(left->file);
+        },
+        // Refused or cancelled: the tooth as it was.
+        [this, left] { comeBack(left); });
+}
+
+}  // namespace handpiece::desktop

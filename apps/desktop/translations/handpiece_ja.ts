@@ -1,0 +1,3624 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1" language="ja_JP" sourcelanguage="en">
+<context>
+    <name>Actions</name>
+    <message>
+        <source>Open case...</source>
+        <translation>症例を開く...</translation>
+    </message>
+    <message>
+        <source>Open a case, or an attempt that was saved</source>
+        <translation>症例または保存した作業を開きます</translation>
+    </message>
+    <message>
+        <source>Open STL...</source>
+        <translation>STL を開く...</translation>
+    </message>
+    <message>
+        <source>Open one closed surface as a tooth of enamel</source>
+        <translation>閉じた曲面 1 つを、エナメル質だけの歯として開きます</translation>
+    </message>
+    <message>
+        <source>Open recording...</source>
+        <translation>記録を開く...</translation>
+    </message>
+    <message>
+        <source>Open a recorded session to watch it</source>
+        <translation>記録された実習を開いて再生します</translation>
+    </message>
+    <message>
+        <source>Choose tooth...</source>
+        <translation>歯を選ぶ...</translation>
+    </message>
+    <message>
+        <source>Choose a tooth on the chart of the mouth</source>
+        <translation>歯列図から歯を選びます</translation>
+    </message>
+    <message>
+        <source>Resume last attempt</source>
+        <translation>前回の続き</translation>
+    </message>
+    <message>
+        <source>Go on with the tooth that was saved last</source>
+        <translation>最後に保存した歯の続きから始めます</translation>
+    </message>
+    <message>
+        <source>Save</source>
+        <translation>保存</translation>
+    </message>
+    <message>
+        <source>Save what was cut</source>
+        <translation>切削した歯を保存します</translation>
+    </message>
+    <message>
+        <source>Save as...</source>
+        <translation>名前を付けて保存...</translation>
+    </message>
+    <message>
+        <source>Save what was cut under another name</source>
+        <translation>切削した歯を別の名前で保存します</translation>
+    </message>
+    <message>
+        <source>Export STL...</source>
+        <translation>STL に書き出す...</translation>
+    </message>
+    <message>
+        <source>Write what is left of the tooth as one closed STL surface</source>
+        <translation>残っている歯を、閉じた 1 つの STL 曲面として書き出します</translation>
+    </message>
+    <message>
+        <source>Picture...</source>
+        <translation>画像を保存...</translation>
+    </message>
+    <message>
+        <source>Keep what is seen as a PNG file</source>
+        <translation>表示中の画面を PNG ファイルに保存します</translation>
+    </message>
+    <message>
+        <source>Report...</source>
+        <translation>レポート...</translation>
+    </message>
+    <message>
+        <source>Write a page to print: before and after, volumes, times, forces</source>
+        <translation>印刷用のページを作ります（切削前後、切削量、時間、力）</translation>
+    </message>
+    <message>
+        <source>Quit</source>
+        <translation>終了</translation>
+    </message>
+    <message>
+        <source>Close the program</source>
+        <translation>プログラムを終了します</translation>
+    </message>
+    <message>
+        <source>Undo</source>
+        <translation>元に戻す</translation>
+    </message>
+    <message>
+        <source>Put back what the last stroke took away</source>
+        <translation>直前のストロークで削った部分を元に戻します</translation>
+    </message>
+    <message>
+        <source>Redo</source>
+        <translation>やり直す</translation>
+    </message>
+    <message>
+        <source>Take the stroke away again</source>
+        <translation>元に戻したストロークをもう一度行います</translation>
+    </message>
+    <message>
+        <source>Reset the tooth</source>
+        <translation>歯を最初の状態に戻す</translation>
+    </message>
+    <message>
+        <source>Put back all that was cut</source>
+        <translation>削った部分をすべて元に戻します</translation>
+    </message>
+    <message>
+        <source>Occlusal</source>
+        <translation>咬合面</translation>
+    </message>
+    <message>
+        <source>Look onto the chewing surface (key 1)</source>
+        <translation>咬合面を見ます（1 キー）</translation>
+    </message>
+    <message>
+        <source>Buccal</source>
+        <translation>頬側</translation>
+    </message>
+    <message>
+        <source>Look from the cheek (key 2)</source>
+        <translation>頬側から見ます（2 キー）</translation>
+    </message>
+    <message>
+        <source>Lingual</source>
+        <translation>舌側</translation>
+    </message>
+    <message>
+        <source>Look from the tongue (key 3)</source>
+        <translation>舌側から見ます（3 キー）</translation>
+    </message>
+    <message>
+        <source>Mesial</source>
+        <translation>近心</translation>
+    </message>
+    <message>
+        <source>Look from the front of the arch (key 4)</source>
+        <translation>近心側から見ます（4 キー）</translation>
+    </message>
+    <message>
+        <source>Distal</source>
+        <translation>遠心</translation>
+    </message>
+    <message>
+        <source>Look from the back of the arch (key 5)</source>
+        <translation>遠心側から見ます（5 キー）</translation>
+    </message>
+    <message>
+        <source>Oblique</source>
+        <translation>斜め</translation>
+    </message>
+    <message>
+        <source>Look from above and the cheek (key 6)</source>
+        <translation>頬側の斜め上から見ます（6 キー）</translation>
+    </message>
+    <message>
+        <source>Whole tooth</source>
+        <translation>歯全体</translation>
+    </message>
+    <message>
+        <source>Show the whole tooth (key Home)</source>
+        <translation>歯全体を表示します（Home キー）</translation>
+    </message>
+    <message>
+        <source>Go to the bur</source>
+        <translation>バーへ移動</translation>
+    </message>
+    <message>
+        <source>Look closely at the bur (key F)</source>
+        <translation>バーの先を拡大します（F キー）</translation>
+    </message>
+    <message>
+        <source>Practice</source>
+        <translation>実習</translation>
+    </message>
+    <message>
+        <source>A large picture and what one needs to cut</source>
+        <translation>大きな画面と、切削に必要なものだけを表示します</translation>
+    </message>
+    <message>
+        <source>Laboratory</source>
+        <translation>実験</translation>
+    </message>
+    <message>
+        <source>Every figure</source>
+        <translation>すべての数値を表示します</translation>
+    </message>
+    <message>
+        <source>As in the paper</source>
+        <translation>論文の配置</translation>
+    </message>
+    <message>
+        <source>The blocks of the paper&apos;s Figure 5</source>
+        <translation>論文の図 5 と同じ構成で表示します</translation>
+    </message>
+    <message>
+        <source>Panels to their places</source>
+        <translation>パネルを元の位置に戻す</translation>
+    </message>
+    <message>
+        <source>Undo all moving of panels in this layout</source>
+        <translation>この配置で動かしたパネルをすべて元の位置に戻します</translation>
+    </message>
+    <message>
+        <source>Full screen</source>
+        <translation>全画面表示</translation>
+    </message>
+    <message>
+        <source>Fill the whole screen</source>
+        <translation>画面全体に表示します</translation>
+    </message>
+    <message>
+        <source>As the desktop</source>
+        <translation>デスクトップに合わせる</translation>
+    </message>
+    <message>
+        <source>Light or dark as the desktop is</source>
+        <translation>明るさをデスクトップの設定に合わせます</translation>
+    </message>
+    <message>
+        <source>Light</source>
+        <translation>ライト</translation>
+    </message>
+    <message>
+        <source>Dark text on light ground</source>
+        <translation>明るい背景に暗い文字で表示します</translation>
+    </message>
+    <message>
+        <source>Dark</source>
+        <translation>ダーク</translation>
+    </message>
+    <message>
+        <source>Light text on dark ground</source>
+        <translation>暗い背景に明るい文字で表示します</translation>
+    </message>
+    <message>
+        <source>Touch</source>
+        <translation>触る</translation>
+    </message>
+    <message>
+        <source>The left button touches with the bur still</source>
+        <translation>左ボタンで、回転していないバーを歯に当てます</translation>
+    </message>
+    <message>
+        <source>Cut</source>
+        <translation>切削</translation>
+    </message>
+    <message>
+        <source>The left button presses and cuts</source>
+        <translation>左ボタンで、バーを押し当てて削ります</translation>
+    </message>
+    <message>
+        <source>Hold the pedal down</source>
+        <translation>ペダルを踏み続ける</translation>
+    </message>
+    <message>
+        <source>The turbine keeps turning (key P)</source>
+        <translation>タービンを回し続けます（P キー）</translation>
+    </message>
+    <message>
+        <source>Measure a distance</source>
+        <translation>距離を測る</translation>
+    </message>
+    <message>
+        <source>Calliper: click two points of the tooth</source>
+        <translation>ノギス：歯の上の 2 点をクリックします</translation>
+    </message>
+    <message>
+        <source>Measure a depth</source>
+        <translation>深さを測る</translation>
+    </message>
+    <message>
+        <source>Click a cut place: how far it lies below the uncut surface</source>
+        <translation>削った場所をクリックすると、切削前の表面からの深さを示します</translation>
+    </message>
+    <message>
+        <source>Measure to the pulp</source>
+        <translation>歯髄までを測る</translation>
+    </message>
+    <message>
+        <source>Click a cut place: how much dentine is left over the pulp</source>
+        <translation>削った場所をクリックすると、歯髄までに残る象牙質の厚さを示します</translation>
+    </message>
+    <message>
+        <source>Section</source>
+        <translation>断面</translation>
+    </message>
+    <message>
+        <source>Cut the picture open to look inside</source>
+        <translation>歯を断面で表示して内部を見ます</translation>
+    </message>
+    <message>
+        <source>Mouth mirror</source>
+        <translation>デンタルミラー</translation>
+    </message>
+    <message>
+        <source>Hold a mouth mirror</source>
+        <translation>デンタルミラーを使います</translation>
+    </message>
+    <message>
+        <source>Before and after</source>
+        <translation>切削前後の比較</translation>
+    </message>
+    <message>
+        <source>The uncut tooth beside the cut one</source>
+        <translation>切削前の歯を並べて表示します</translation>
+    </message>
+    <message>
+        <source>Clear measurements</source>
+        <translation>計測を消す</translation>
+    </message>
+    <message>
+        <source>Take all measurements away</source>
+        <translation>計測の表示をすべて消します</translation>
+    </message>
+    <message>
+        <source>Keep recording...</source>
+        <translation>記録を保存...</translation>
+    </message>
+    <message>
+        <source>Every session is recorded; keep a copy of this one</source>
+        <translation>実習は毎回記録されます。今回の記録の写しを保存します</translation>
+    </message>
+    <message>
+        <source>Replay</source>
+        <translation>再生</translation>
+    </message>
+    <message>
+        <source>Watch what you have done so far; closing the replay brings the tooth back</source>
+        <translation>ここまでの操作を再生します。再生を閉じると歯に戻ります</translation>
+    </message>
+    <message>
+        <source>Keys and mouse...</source>
+        <translation>キーとマウスの設定...</translation>
+    </message>
+    <message>
+        <source>Choose which key or button does what</source>
+        <translation>キーやボタンの働きを選びます</translation>
+    </message>
+    <message>
+        <source>Mute</source>
+        <translation>消音</translation>
+    </message>
+    <message>
+        <source>No sound</source>
+        <translation>音を出しません</translation>
+    </message>
+    <message>
+        <source>Motor louder</source>
+        <translation>モーター音を大きく</translation>
+    </message>
+    <message>
+        <source>Motor sound louder</source>
+        <translation>モーター音を大きくします</translation>
+    </message>
+    <message>
+        <source>Motor softer</source>
+        <translation>モーター音を小さく</translation>
+    </message>
+    <message>
+        <source>Motor sound softer</source>
+        <translation>モーター音を小さくします</translation>
+    </message>
+    <message>
+        <source>Cutting louder</source>
+        <translation>切削音を大きく</translation>
+    </message>
+    <message>
+        <source>Cutting sound louder</source>
+        <translation>切削音を大きくします</translation>
+    </message>
+    <message>
+        <source>Cutting softer</source>
+        <translation>切削音を小さく</translation>
+    </message>
+    <message>
+        <source>Cutting sound softer</source>
+        <translation>切削音を小さくします</translation>
+    </message>
+    <message>
+        <source>Keys and mouse at a glance</source>
+        <translation>キーとマウスの一覧</translation>
+    </message>
+    <message>
+        <source>Show which key does what</source>
+        <translation>どのキーで何ができるかを表示します</translation>
+    </message>
+    <message>
+        <source>About Handpiece</source>
+        <translation>Handpiece について</translation>
+    </message>
+    <message>
+        <source>Version, licences</source>
+        <translation>バージョンとライセンスを表示します</translation>
+    </message>
+    <message>
+        <source>Open</source>
+        <translation>開く</translation>
+    </message>
+    <message>
+        <source>Teeth</source>
+        <translation>歯列</translation>
+    </message>
+    <message>
+        <source>Resume</source>
+        <translation>続き</translation>
+    </message>
+    <message>
+        <source>Reset</source>
+        <translation>初期化</translation>
+    </message>
+    <message>
+        <source>Mirror</source>
+        <translation>ミラー</translation>
+    </message>
+    <message>
+        <source>Distance</source>
+        <translation>距離</translation>
+    </message>
+    <message>
+        <source>Depth</source>
+        <translation>深さ</translation>
+    </message>
+    <message>
+        <source>To pulp</source>
+        <translation>歯髄まで</translation>
+    </message>
+    <message>
+        <source>Compare</source>
+        <translation>比較</translation>
+    </message>
+    <message>
+        <source>Record</source>
+        <translation>記録</translation>
+    </message>
+    <message>
+        <source>Recover...</source>
+        <translation>復元...</translation>
+    </message>
+    <message>
+        <source>Bring back, or give up, work that ended without saving</source>
+        <translation>保存されずに終わった作業を復元、または破棄します</translation>
+    </message>
+    <message>
+        <source>Your code...</source>
+        <translation>受講者コード...</translation>
+    </message>
+    <message>
+        <source>The code your teacher gave you: it goes into recordings and saved attempts</source>
+        <translation>先生から渡されたコードです。記録と、保存した作業に書き込まれます</translation>
+    </message>
+</context>
+<context>
+    <name>BurPicture</name>
+    <message>
+        <source>black</source>
+        <translation>黒</translation>
+    </message>
+    <message>
+        <source>green</source>
+        <translation>緑</translation>
+    </message>
+    <message>
+        <source>blue</source>
+        <translation>青</translation>
+    </message>
+    <message>
+        <source>red</source>
+        <translation>赤</translation>
+    </message>
+    <message>
+        <source>yellow</source>
+        <translation>黄</translation>
+    </message>
+    <message>
+        <source>white</source>
+        <translation>白</translation>
+    </message>
+    <message>
+        <source>Round</source>
+        <translation>ラウンド</translation>
+    </message>
+    <message>
+        <source>Inverted cone</source>
+        <translation>インバーテッドコーン</translation>
+    </message>
+    <message>
+        <source>Cylinder, flat end</source>
+        <translation>シリンダー（平頭）</translation>
+    </message>
+    <message>
+        <source>Cylinder, round end</source>
+        <translation>シリンダー（丸頭）</translation>
+    </message>
+    <message>
+        <source>Taper, flat end</source>
+        <translation>テーパー（平頭）</translation>
+    </message>
+    <message>
+        <source>Taper, round end</source>
+        <translation>テーパー（丸頭）</translation>
+    </message>
+    <message>
+        <source>Pear</source>
+        <translation>ペアシェイプ</translation>
+    </message>
+    <message>
+        <source>Flame</source>
+        <translation>フレーム（火炎形）</translation>
+    </message>
+    <message>
+        <source>Torpedo</source>
+        <translation>トーピード</translation>
+    </message>
+    <message>
+        <source>Wheel</source>
+        <translation>ホイール</translation>
+    </message>
+    <message>
+        <source>Diamond, extra fine</source>
+        <translation>ダイヤモンド（超微粒子）</translation>
+    </message>
+    <message>
+        <source>Diamond, fine</source>
+        <translation>ダイヤモンド（微粒子）</translation>
+    </message>
+    <message>
+        <source>Diamond, medium</source>
+        <translation>ダイヤモンド（普通粒子）</translation>
+    </message>
+    <message>
+        <source>Diamond, coarse</source>
+        <translation>ダイヤモンド（粗粒子）</translation>
+    </message>
+    <message>
+        <source>Carbide</source>
+        <translation>カーバイド</translation>
+    </message>
+    <message>
+        <source>Carbide, cross-cut</source>
+        <translation>カーバイド（クロスカット）</translation>
+    </message>
+    <message>
+        <source>Carbide, finishing</source>
+        <translation>カーバイド（仕上げ用）</translation>
+    </message>
+    <message>
+        <source>Steel</source>
+        <translation>スチール</translation>
+    </message>
+</context>
+<context>
+    <name>HelpCard</name>
+    <message>
+        <source>or</source>
+        <translation>または</translation>
+    </message>
+</context>
+<context>
+    <name>KeyBindings</name>
+    <message>
+        <source>Ctrl</source>
+        <translation>Ctrl</translation>
+    </message>
+    <message>
+        <source>Shift</source>
+        <translation>Shift</translation>
+    </message>
+    <message>
+        <source>left button</source>
+        <translation>左ボタン</translation>
+    </message>
+    <message>
+        <source>right button</source>
+        <translation>右ボタン</translation>
+    </message>
+    <message>
+        <source>middle button</source>
+        <translation>中ボタン</translation>
+    </message>
+    <message>
+        <source>back button</source>
+        <translation>戻るボタン</translation>
+    </message>
+    <message>
+        <source>forward button</source>
+        <translation>進むボタン</translation>
+    </message>
+    <message>
+        <source>Cut: pedal down, press and drag</source>
+        <translation>切削：ペダルを踏み、押し当てて動かす</translation>
+    </message>
+    <message>
+        <source>Touch with the bur still</source>
+        <translation>バーを回さずに触る</translation>
+    </message>
+    <message>
+        <source>Turn the view</source>
+        <translation>視点を回す</translation>
+    </message>
+    <message>
+        <source>Shift the view</source>
+        <translation>視点をずらす</translation>
+    </message>
+    <message>
+        <source>Nearer, farther</source>
+        <translation>近づく・遠ざかる</translation>
+    </message>
+    <message>
+        <source>Load on the bur</source>
+        <translation>バーにかける荷重</translation>
+    </message>
+    <message>
+        <source>Depth stop</source>
+        <translation>深さ制限</translation>
+    </message>
+    <message>
+        <source>Five times slower, finer steps</source>
+        <translation>5 分の 1 の速さ、細かい動き</translation>
+    </message>
+    <message>
+        <source>Hold and move: turn the view</source>
+        <translation>押しながら動かす：視点を回す</translation>
+    </message>
+    <message>
+        <source>Hold and move: shift the view</source>
+        <translation>押しながら動かす：視点をずらす</translation>
+    </message>
+    <message>
+        <source>Hold and move: tilt about the tip</source>
+        <translation>押しながら動かす：先端を軸に傾ける</translation>
+    </message>
+    <message>
+        <source>Roll to the left</source>
+        <translation>左に回す</translation>
+    </message>
+    <message>
+        <source>Roll to the right</source>
+        <translation>右に回す</translation>
+    </message>
+    <message>
+        <source>Bur square to the surface</source>
+        <translation>バーを表面に垂直に</translation>
+    </message>
+    <message>
+        <source>Bur along the tooth&apos;s long axis</source>
+        <translation>バーを歯軸に平行に</translation>
+    </message>
+    <message>
+        <source>Bur to the left</source>
+        <translation>バーを左へ</translation>
+    </message>
+    <message>
+        <source>Bur to the right</source>
+        <translation>バーを右へ</translation>
+    </message>
+    <message>
+        <source>Bur up</source>
+        <translation>バーを上へ</translation>
+    </message>
+    <message>
+        <source>Bur down</source>
+        <translation>バーを下へ</translation>
+    </message>
+    <message>
+        <source>Bur in along its axis</source>
+        <translation>バーを軸方向に進める</translation>
+    </message>
+    <message>
+        <source>Bur out along its axis</source>
+        <translation>バーを軸方向に引く</translation>
+    </message>
+    <message>
+        <source>Hold: cut where the bur is</source>
+        <translation>押している間：その場で切削</translation>
+    </message>
+    <message>
+        <source>Pedal stays down</source>
+        <translation>ペダルを踏み続ける</translation>
+    </message>
+    <message>
+        <source>More speed</source>
+        <translation>回転を速く</translation>
+    </message>
+    <message>
+        <source>Less speed</source>
+        <translation>回転を遅く</translation>
+    </message>
+    <message>
+        <source>Bur before</source>
+        <translation>前のバー</translation>
+    </message>
+    <message>
+        <source>Next bur</source>
+        <translation>次のバー</translation>
+    </message>
+    <message>
+        <source>From above (occlusal)</source>
+        <translation>咬合面から</translation>
+    </message>
+    <message>
+        <source>From the cheek (buccal)</source>
+        <translation>頬側から</translation>
+    </message>
+    <message>
+        <source>From the tongue (lingual)</source>
+        <translation>舌側から</translation>
+    </message>
+    <message>
+        <source>From the front (mesial)</source>
+        <translation>近心から</translation>
+    </message>
+    <message>
+        <source>From the back (distal)</source>
+        <translation>遠心から</translation>
+    </message>
+    <message>
+        <source>Oblique</source>
+        <translation>斜めから</translation>
+    </message>
+    <message>
+        <source>Whole tooth</source>
+        <translation>歯全体</translation>
+    </message>
+    <message>
+        <source>To the bur</source>
+        <translation>バーへ移動</translation>
+    </message>
+    <message>
+        <source>Section</source>
+        <translation>断面</translation>
+    </message>
+    <message>
+        <source>Mouth mirror</source>
+        <translation>デンタルミラー</translation>
+    </message>
+    <message>
+        <source>Before and after</source>
+        <translation>切削前後の比較</translation>
+    </message>
+    <message>
+        <source>Stop: pedal up, bur lifts</source>
+        <translation>停止：ペダルを離し、バーを上げる</translation>
+    </message>
+    <message>
+        <source>This card</source>
+        <translation>この一覧</translation>
+    </message>
+    <message>
+        <source>Cutting</source>
+        <translation>切削</translation>
+    </message>
+    <message>
+        <source>The hand</source>
+        <translation>手の動き</translation>
+    </message>
+    <message>
+        <source>The view</source>
+        <translation>視点</translation>
+    </message>
+    <message>
+        <source>Tools</source>
+        <translation>道具</translation>
+    </message>
+    <message>
+        <source>wheel</source>
+        <translation>ホイール</translation>
+    </message>
+    <message>
+        <source>Distance, depth, pulp in turn</source>
+        <translation>距離・深さ・歯髄を順に</translation>
+    </message>
+</context>
+<context>
+    <name>Measuring</name>
+    <message>
+        <source>%1 mm</source>
+        <translation>%1 mm</translation>
+    </message>
+    <message>
+        <source>%1 deep, %2 along the bur</source>
+        <translation>深さ %1、バー軸方向 %2</translation>
+    </message>
+    <message>
+        <source>%1 deep</source>
+        <translation>深さ %1</translation>
+    </message>
+    <message>
+        <source>%1 over the pulp</source>
+        <translation>歯髄まで %1</translation>
+    </message>
+    <message>
+        <source>Bucco-lingual</source>
+        <translation>頬舌断</translation>
+    </message>
+    <message>
+        <source>Mesio-distal</source>
+        <translation>近遠心断</translation>
+    </message>
+    <message>
+        <source>Horizontal</source>
+        <translation>水平断</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>なし</translation>
+    </message>
+    <message>
+        <source>Enamel</source>
+        <translation>エナメル質</translation>
+    </message>
+    <message>
+        <source>Dentine</source>
+        <translation>象牙質</translation>
+    </message>
+    <message>
+        <source>Pulp</source>
+        <translation>歯髄</translation>
+    </message>
+    <message>
+        <source>Caries</source>
+        <translation>う蝕</translation>
+    </message>
+    <message>
+        <source>Cementum</source>
+        <translation>セメント質</translation>
+    </message>
+    <message>
+        <source>Gum</source>
+        <translation>歯肉</translation>
+    </message>
+    <message>
+        <source>Bone</source>
+        <translation>骨</translation>
+    </message>
+    <message>
+        <source>Neighbour</source>
+        <translation>隣在歯</translation>
+    </message>
+    <message>
+        <source>Restoration</source>
+        <translation>修復物</translation>
+    </message>
+</context>
+<context>
+    <name>Notation</name>
+    <message>
+        <source>central incisor</source>
+        <translation>中切歯</translation>
+    </message>
+    <message>
+        <source>lateral incisor</source>
+        <translation>側切歯</translation>
+    </message>
+    <message>
+        <source>canine</source>
+        <translation>犬歯</translation>
+    </message>
+    <message>
+        <source>first premolar</source>
+        <translation>第一小臼歯</translation>
+    </message>
+    <message>
+        <source>second premolar</source>
+        <translation>第二小臼歯</translation>
+    </message>
+    <message>
+        <source>first molar</source>
+        <translation>第一大臼歯</translation>
+    </message>
+    <message>
+        <source>second molar</source>
+        <translation>第二大臼歯</translation>
+    </message>
+    <message>
+        <source>third molar</source>
+        <translation>第三大臼歯</translation>
+    </message>
+    <message>
+        <source>primary central incisor</source>
+        <translation>乳中切歯</translation>
+    </message>
+    <message>
+        <source>primary lateral incisor</source>
+        <translation>乳側切歯</translation>
+    </message>
+    <message>
+        <source>primary canine</source>
+        <translation>乳犬歯</translation>
+    </message>
+    <message>
+        <source>primary first molar</source>
+        <translation>第一乳臼歯</translation>
+    </message>
+    <message>
+        <source>primary second molar</source>
+        <translation>第二乳臼歯</translation>
+    </message>
+    <message>
+        <source>Upper right %1</source>
+        <translation>上顎右側%1</translation>
+    </message>
+    <message>
+        <source>Upper left %1</source>
+        <translation>上顎左側%1</translation>
+    </message>
+    <message>
+        <source>Lower left %1</source>
+        <translation>下顎左側%1</translation>
+    </message>
+    <message>
+        <source>Lower right %1</source>
+        <translation>下顎右側%1</translation>
+    </message>
+</context>
+<context>
+    <name>Notices</name>
+    <message>
+        <source>This session is not being recorded: %1</source>
+        <translation>この実習は記録されていません：%1</translation>
+    </message>
+    <message>
+        <source>The pulp is open.</source>
+        <translation>露髄しました。</translation>
+    </message>
+    <message>
+        <source>The device gives all the force it has.</source>
+        <translation>デバイスの出せる最大の力に達しています。</translation>
+    </message>
+    <message>
+        <source>The bur has stalled: press less.</source>
+        <translation>バーが止まりました。押す力を弱めてください。</translation>
+    </message>
+    <message>
+        <source>The device reports a fault.</source>
+        <translation>デバイスに異常があります。</translation>
+    </message>
+    <message>
+        <source>There is no memory left to cut more of this tooth.</source>
+        <translation>メモリーが足りないため、この歯はこれ以上削れません。</translation>
+    </message>
+    <message>
+        <source>The recording has a gap: ticks that are missing: %1</source>
+        <translation>記録に抜けがあります。抜けた周期の数：%1</translation>
+    </message>
+    <message>
+        <source>The computer is too busy. Samples lost: %1</source>
+        <translation>コンピューターの負荷が高すぎます。失われたデータの数：%1</translation>
+    </message>
+    <message>
+        <source>There is nothing to undo.</source>
+        <translation>元に戻す操作がありません。</translation>
+    </message>
+    <message>
+        <source>There is nothing to redo.</source>
+        <translation>やり直す操作がありません。</translation>
+    </message>
+    <message>
+        <source>Nothing was cut yet.</source>
+        <translation>まだ何も削っていません。</translation>
+    </message>
+    <message>
+        <source>Not while you cut: lift the bur first.</source>
+        <translation>切削中はできません。先にバーを上げてください。</translation>
+    </message>
+    <message>
+        <source>With the convex hull the bur touches and does not cut.</source>
+        <translation>凸包では、バーは歯に触れるだけで、切削はできません。</translation>
+    </message>
+    <message>
+        <source>This could not be done: %1</source>
+        <translation>実行できませんでした：%1</translation>
+    </message>
+    <message>
+        <source>The neighbouring tooth was touched.</source>
+        <translation>隣在歯に触れました。</translation>
+    </message>
+    <message>
+        <source>The bur has reached dentine.</source>
+        <translation>バーが象牙質に達しました。</translation>
+    </message>
+    <message>
+        <source>The convex hull knows the whole tooth only, and this one is cut. Reset the tooth first.</source>
+        <translation>凸包は切削前の歯にしか使えませんが、この歯は削られています。先に歯を最初の状態に戻してください。</translation>
+    </message>
+    <message>
+        <source>The settings could not be read and start anew. The old file is kept at %1</source>
+        <translation>設定を読み込めなかったため、初期設定で始めます。元のファイルは %1 に残してあります</translation>
+    </message>
+    <message>
+        <source>The bur it was cut with, %1, is not at hand: %2 is in its place.</source>
+        <translation>切削に使ったバー %1 がないため、代わりに %2 を使います。</translation>
+    </message>
+    <message>
+        <source>This exercise does not allow the bur %1.</source>
+        <translation>この課題ではバー %1 を使えません。</translation>
+    </message>
+    <message>
+        <source>The tooth you opened is no longer at %1. It was saved together with the attempt.</source>
+        <translation>開いた歯が %1 に見つかりません。歯は作業と一緒に保存してあります。</translation>
+    </message>
+    <message>
+        <source>Saved: %1</source>
+        <translation>保存しました：%1</translation>
+    </message>
+    <message>
+        <source>There is no translation into this language: the window speaks English.</source>
+        <translation>この言語の翻訳がないため、英語で表示します。</translation>
+    </message>
+    <message>
+        <source>The last session ended without saving. What was cut of &quot;%1&quot; can be brought back, now or later with File, Recover.</source>
+        <translation>前回は保存されずに終わりました。切削した「%1」を、今すぐ、または後で「ファイル」の「復元」から復元できます。</translation>
+    </message>
+    <message>
+        <source>Your code goes into what you save from now on. This recording began without it.</source>
+        <translation>受講者コードは、これから保存するものに書き込まれます。今の記録はコードなしで始まっています。</translation>
+    </message>
+    <message>
+        <source>There is no picture. Everything else goes on. Technical detail: %1</source>
+        <translation>画像を表示できません。ほかの機能はすべて使えます。技術的な詳細：%1</translation>
+    </message>
+</context>
+<context>
+    <name>Overlay</name>
+    <message>
+        <source>Removed</source>
+        <translation>切削深さ</translation>
+    </message>
+    <message>
+        <source>%1 mm</source>
+        <translation>%1 mm</translation>
+    </message>
+    <message>
+        <source>lifted</source>
+        <translation>退避</translation>
+    </message>
+    <message>
+        <source>down</source>
+        <translation>オン</translation>
+    </message>
+    <message>
+        <source>up</source>
+        <translation>オフ</translation>
+    </message>
+    <message>
+        <source>Pedal</source>
+        <translation>ペダル</translation>
+    </message>
+    <message>
+        <source>Load</source>
+        <translation>荷重</translation>
+    </message>
+    <message>
+        <source>%1 N</source>
+        <translation>%1 N</translation>
+    </message>
+    <message>
+        <source>off</source>
+        <translation>なし</translation>
+    </message>
+    <message>
+        <source>Thinnest: %1</source>
+        <translation>最も薄い所：%1</translation>
+    </message>
+    <message>
+        <source>Before</source>
+        <translation>切削前</translation>
+    </message>
+    <message>
+        <source>Now</source>
+        <translation>現在</translation>
+    </message>
+    <message>
+        <source>stays down</source>
+        <translation>踏んだまま</translation>
+    </message>
+    <message>
+        <source>Bur</source>
+        <translation>バー</translation>
+    </message>
+    <message>
+        <source>Depth stop</source>
+        <translation>深さ制限</translation>
+    </message>
+</context>
+<context>
+    <name>Problem</name>
+    <message>
+        <source>There is no such file.</source>
+        <translation>ファイルが見つかりません。</translation>
+    </message>
+    <message>
+        <source>Check the name, or choose the file again.</source>
+        <translation>名前を確かめるか、ファイルを選び直してください。</translation>
+    </message>
+    <message>
+        <source>This is a folder, not a file.</source>
+        <translation>これはファイルではなくフォルダーです。</translation>
+    </message>
+    <message>
+        <source>Choose a file inside it.</source>
+        <translation>フォルダーの中のファイルを選んでください。</translation>
+    </message>
+    <message>
+        <source>This folder holds no case: it has no %1.</source>
+        <translation>このフォルダーは症例ではありません。%1 がありません。</translation>
+    </message>
+    <message>
+        <source>Choose a folder with case.toml, a .handpiece file or an STL file.</source>
+        <translation>case.toml のあるフォルダー、.handpiece ファイル、または STL ファイルを選んでください。</translation>
+    </message>
+    <message>
+        <source>The file cannot be read: %1.</source>
+        <translation>ファイルを読み込めません：%1。</translation>
+    </message>
+    <message>
+        <source>Check its permissions.</source>
+        <translation>アクセス権を確かめてください。</translation>
+    </message>
+    <message>
+        <source>The disk is full: %1. Nothing is lost, the tooth is still open.</source>
+        <translation>ディスクがいっぱいです：%1。何も失われていません。歯は開いたままです。</translation>
+    </message>
+    <message>
+        <source>Make room, or save to another disk.</source>
+        <translation>空きを作るか、別のディスクに保存してください。</translation>
+    </message>
+    <message>
+        <source>This place cannot be written: %1. Nothing is lost, the tooth is still open.</source>
+        <translation>この場所には書き込めません：%1。何も失われていません。歯は開いたままです。</translation>
+    </message>
+    <message>
+        <source>Save under another name or in another folder.</source>
+        <translation>別の名前で、または別のフォルダーに保存してください。</translation>
+    </message>
+    <message>
+        <source>Take another copy of it.</source>
+        <translation>別の写しを使ってください。</translation>
+    </message>
+    <message>
+        <source>This file holds no surface.</source>
+        <translation>このファイルには曲面がありません。</translation>
+    </message>
+    <message>
+        <source>Choose an STL, PLY or OBJ file of a tooth.</source>
+        <translation>歯の STL、PLY または OBJ ファイルを選んでください。</translation>
+    </message>
+    <message>
+        <source>Mend it first: handpiece mesh repair FILE MENDED.stl</source>
+        <translation>先に修復してください：handpiece mesh repair FILE MENDED.stl</translation>
+    </message>
+    <message>
+        <source>%1 mm is no size for a tooth.</source>
+        <translation>%1 mm は歯の大きさではありません。</translation>
+    </message>
+    <message>
+        <source>The file&apos;s unit is probably not the millimetre: scale it first.</source>
+        <translation>ファイルの単位がミリメートルではないようです。先に寸法を直してください。</translation>
+    </message>
+    <message>
+        <source>The tooth that was cut is no longer at %1.</source>
+        <translation>切削した歯が %1 に見つかりません。</translation>
+    </message>
+    <message>
+        <source>Put it back there, or open an attempt that was saved as one .handpiece file.</source>
+        <translation>元の場所に戻すか、.handpiece ファイルとして保存した作業を開いてください。</translation>
+    </message>
+    <message>
+        <source>The tooth at %1 has changed since: it is another tooth now.</source>
+        <translation>%1 の歯はその後変更され、別の歯になっています。</translation>
+    </message>
+    <message>
+        <source>Put the one that was cut back there.</source>
+        <translation>切削した歯を元の場所に戻してください。</translation>
+    </message>
+    <message>
+        <source>This is no recorded session.</source>
+        <translation>これは実習の記録ではありません。</translation>
+    </message>
+    <message>
+        <source>Sessions are files that end in .h5.</source>
+        <translation>実習の記録は .h5 で終わるファイルです。</translation>
+    </message>
+    <message>
+        <source>Nothing was recorded in this session.</source>
+        <translation>この実習では何も記録されていません。</translation>
+    </message>
+    <message>
+        <source>It ended before its first second was over.</source>
+        <translation>始まってから 1 秒たたないうちに終わりました。</translation>
+    </message>
+    <message>
+        <source>Install libegl-mesa0 and libgl1-mesa-dri. Everything but the picture goes on.</source>
+        <translation>libegl-mesa0 と libgl1-mesa-dri をインストールしてください。歯の画面以外はこのまま使えます。</translation>
+    </message>
+    <message>
+        <source>The tooth you opened is no longer at %1. Nothing that was cut is lost.</source>
+        <translation>開いた歯が %1 に見つかりません。切削した内容は失われていません。</translation>
+    </message>
+    <message>
+        <source>Save as a .handpiece file: it takes the tooth along.</source>
+        <translation>.handpiece ファイルとして保存すると、歯も一緒に保存されます。</translation>
+    </message>
+    <message>
+        <source>There is no attempt to resume yet.</source>
+        <translation>続きから始められる作業はまだありません。</translation>
+    </message>
+    <message>
+        <source>Save what you cut with File, Save: the next start finds it.</source>
+        <translation>「ファイル」の「保存」で保存すると、次回から見つけられます。</translation>
+    </message>
+    <message>
+        <source>The convex hull knows the whole tooth only, and this one is cut.</source>
+        <translation>凸包は切削前の歯にしか使えませんが、この歯は削られています。</translation>
+    </message>
+    <message>
+        <source>Reset the tooth first.</source>
+        <translation>先に歯を最初の状態に戻してください。</translation>
+    </message>
+    <message>
+        <source>The voxel size cannot change while the bur is at work.</source>
+        <translation>切削中はボクセルの大きさを変えられません。</translation>
+    </message>
+    <message>
+        <source>Lift the bur first.</source>
+        <translation>先にバーを上げてください。</translation>
+    </message>
+    <message>
+        <source>Nothing is being recorded.</source>
+        <translation>何も記録されていません。</translation>
+    </message>
+    <message>
+        <source>Open a tooth first: its recording begins by itself.</source>
+        <translation>先に歯を開いてください。記録は自動で始まります。</translation>
+    </message>
+    <message>
+        <source>The voxel size of a tooth that was cut before this recording cannot change.</source>
+        <translation>この記録より前に切削した歯では、ボクセルの大きさを変えられません。</translation>
+    </message>
+    <message>
+        <source>Reset the tooth, or open the case anew, and choose the size before cutting.</source>
+        <translation>歯を最初の状態に戻すか、症例を開き直して、切削の前に大きさを選んでください。</translation>
+    </message>
+    <message>
+        <source>No tooth is open.</source>
+        <translation>歯が開かれていません。</translation>
+    </message>
+    <message>
+        <source>Open a case or a starter tooth first.</source>
+        <translation>先に症例か練習用の歯を開いてください。</translation>
+    </message>
+    <message>
+        <source>This kind of file cannot be opened.</source>
+        <translation>この種類のファイルは開けません。</translation>
+    </message>
+    <message>
+        <source>Cases are folders, .handpiece, .stl, .ply or .obj files; sessions are .h5 files.</source>
+        <translation>症例はフォルダーか .handpiece、.stl、.ply、.obj ファイル、実習の記録は .h5 ファイルです。</translation>
+    </message>
+    <message>
+        <source>The file is too large to be read.</source>
+        <translation>ファイルが大きすぎて読み込めません。</translation>
+    </message>
+    <message>
+        <source>Choose another file.</source>
+        <translation>別のファイルを選んでください。</translation>
+    </message>
+    <message>
+        <source>This case names no surface of a whole tooth.</source>
+        <translation>このケースには歯全体の表面が指定されていません。</translation>
+    </message>
+    <message>
+        <source>Name the tooth in case.toml: outer.stl, or one part.</source>
+        <translation>case.toml に歯を指定してください（outer.stl または一つの部品）。</translation>
+    </message>
+    <message>
+        <source>This is no attempt that was saved.</source>
+        <translation>これは保存された実習ではありません。</translation>
+    </message>
+    <message>
+        <source>Choose the folder or .handpiece file that was saved.</source>
+        <translation>保存したフォルダーまたは .handpiece ファイルを選んでください。</translation>
+    </message>
+    <message>
+        <source>What was cut in this attempt cannot be read: it is damaged.</source>
+        <translation>この実習の切削内容は壊れていて読み込めません。</translation>
+    </message>
+    <message>
+        <source>Mend the file, or take another copy of it.</source>
+        <translation>ファイルを直すか、別のコピーを使ってください。</translation>
+    </message>
+    <message>
+        <source>Export it again as an STL, PLY or OBJ file.</source>
+        <translation>STL、PLY または OBJ ファイルとして書き出し直してください。</translation>
+    </message>
+    <message>
+        <source>The surface is not closed. Open edges: %1, holes: %2, the first at %3.</source>
+        <translation>表面が閉じていません。開いた辺：%1、穴：%2、最初の位置：%3。</translation>
+    </message>
+    <message>
+        <source>The surface forks. Edges of more than two faces: %1, the first at %2.</source>
+        <translation>表面が枝分かれしています。三つ以上の面が接する辺：%1、最初の位置：%2。</translation>
+    </message>
+    <message>
+        <source>The surface has only one side.</source>
+        <translation>表面に裏表がありません。</translation>
+    </message>
+    <message>
+        <source>Draw it anew in a mesh editor.</source>
+        <translation>メッシュ編集ソフトで作り直してください。</translation>
+    </message>
+    <message>
+        <source>The surface is turned inside out in places. Places: %1, the first at %2.</source>
+        <translation>表面の一部が裏返っています。箇所：%1、最初の位置：%2。</translation>
+    </message>
+    <message>
+        <source>The surface encloses no volume.</source>
+        <translation>表面が体積を囲んでいません。</translation>
+    </message>
+    <message>
+        <source>Choose the closed surface of a tooth.</source>
+        <translation>閉じた歯の表面を選んでください。</translation>
+    </message>
+    <message>
+        <source>The surface crosses itself. Pairs of faces: %1, the first at %2.</source>
+        <translation>表面が自分自身と交差しています。面の組：%1、最初の位置：%2。</translation>
+    </message>
+    <message>
+        <source>This session was recorded by a newer Handpiece.</source>
+        <translation>この記録は新しい版の Handpiece で作られています。</translation>
+    </message>
+    <message>
+        <source>Open it with that one.</source>
+        <translation>その版で開いてください。</translation>
+    </message>
+    <message>
+        <source>This session has a gap: the disk was too slow.</source>
+        <translation>この記録には欠けた部分があります。ディスクが遅すぎました。</translation>
+    </message>
+    <message>
+        <source>Go on behind the gap, or export it as a table.</source>
+        <translation>欠けた部分の後から再生するか、表として書き出してください。</translation>
+    </message>
+    <message>
+        <source>%1 mm is no size for a bur.</source>
+        <translation>%1 mm はバーの大きさではありません。</translation>
+    </message>
+    <message>
+        <source>This bur is not round about z, tip down.</source>
+        <translation>このバーは z 軸まわりに丸くなっていません（先端は下向き）。</translation>
+    </message>
+    <message>
+        <source>Turn it so in a mesh editor. A bur is a solid of revolution.</source>
+        <translation>メッシュ編集ソフトで向きを直してください。バーは回転体です。</translation>
+    </message>
+    <message>
+        <source>The bur&apos;s surface is not closed.</source>
+        <translation>バーの表面が閉じていません。</translation>
+    </message>
+    <message>
+        <source>There is no bur %1.</source>
+        <translation>%1 というバーはありません。</translation>
+    </message>
+    <message>
+        <source>Choose one in the list.</source>
+        <translation>一覧から選んでください。</translation>
+    </message>
+    <message>
+        <source>Choose a value from %3 to %4.</source>
+        <translation>%3 から %4 までの値を選んでください。</translation>
+    </message>
+    <message>
+        <source>There is no microphone.</source>
+        <translation>マイクがありません。</translation>
+    </message>
+    <message>
+        <source>Connect one, and allow the program to use it.</source>
+        <translation>マイクを接続し、このプログラムに使用を許可してください。</translation>
+    </message>
+    <message>
+        <source>There is no sound card. Everything but the sound goes on.</source>
+        <translation>サウンドカードがありません。音のほかはすべて使えます。</translation>
+    </message>
+    <message>
+        <source>Connect one and check the settings of the desktop.</source>
+        <translation>接続して、デスクトップの設定を確かめてください。</translation>
+    </message>
+    <message>
+        <source>This is no WAV file that can be read.</source>
+        <translation>これは読み込める WAV ファイルではありません。</translation>
+    </message>
+    <message>
+        <source>Save the sound as WAV with one or two channels, PCM of 16 or 24 bits.</source>
+        <translation>音を 1 または 2 チャンネル、16 または 24 ビット PCM の WAV で保存してください。</translation>
+    </message>
+    <message>
+        <source>The rate of this recording cannot be used.</source>
+        <translation>この録音のサンプリング周波数は使えません。</translation>
+    </message>
+    <message>
+        <source>Record with 48,000 samples a second.</source>
+        <translation>毎秒 48,000 サンプルで録音してください。</translation>
+    </message>
+    <message>
+        <source>The recording is too long.</source>
+        <translation>録音が長すぎます。</translation>
+    </message>
+    <message>
+        <source>Cut out up to a minute in which the drill runs evenly.</source>
+        <translation>ドリルが一定に回っている部分を 1 分以内で切り出してください。</translation>
+    </message>
+    <message>
+        <source>The recording is too short.</source>
+        <translation>録音が短すぎます。</translation>
+    </message>
+    <message>
+        <source>A tenth of a second is the least.</source>
+        <translation>少なくとも 0.1 秒は必要です。</translation>
+    </message>
+    <message>
+        <source>The recording is silent.</source>
+        <translation>録音に音が入っていません。</translation>
+    </message>
+    <message>
+        <source>Check the microphone and its level.</source>
+        <translation>マイクと入力レベルを確かめてください。</translation>
+    </message>
+    <message>
+        <source>There is no OpenGL 3.3 to draw with.</source>
+        <translation>描画に使える OpenGL 3.3 がありません。</translation>
+    </message>
+    <message>
+        <source>The graphics card has no memory left.</source>
+        <translation>グラフィックスカードのメモリーが足りません。</translation>
+    </message>
+    <message>
+        <source>Choose a lower picture quality or a smaller window.</source>
+        <translation>画質を下げるか、ウィンドウを小さくしてください。</translation>
+    </message>
+    <message>
+        <source>The simulation has stopped. Technical detail: %1</source>
+        <translation>シミュレーションが止まりました。技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>Save what was cut, then open the tooth again.</source>
+        <translation>切削した歯を保存してから、もう一度開いてください。</translation>
+    </message>
+    <message>
+        <source>Technical detail: %1</source>
+        <translation>技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>Technical advice: %1</source>
+        <translation>技術的な助言：%1</translation>
+    </message>
+    <message>
+        <source>Its text cannot be understood. Technical detail: %1</source>
+        <translation>内容を解釈できません。技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>This is no .handpiece file, or a damaged one. Technical detail: %1</source>
+        <translation>これは .handpiece ファイルではないか、壊れています。技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>This file holds no mesh that can be read. Technical detail: %1</source>
+        <translation>このファイルには読み込めるメッシュがありません。技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>This session is damaged. Technical detail: %1</source>
+        <translation>この記録は壊れています。技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>This value cannot be set: %2.</source>
+        <translation>この値は設定できません：%2。</translation>
+    </message>
+</context>
+<context>
+    <name>Pulp</name>
+    <message>
+        <source>Enough is left</source>
+        <translation>十分に残っています</translation>
+    </message>
+    <message>
+        <source>Little is left</source>
+        <translation>残りわずかです</translation>
+    </message>
+    <message>
+        <source>Too little is left</source>
+        <translation>残りが少なすぎます</translation>
+    </message>
+</context>
+<context>
+    <name>QShortcut</name>
+    <message>
+        <source>Backspace</source>
+        <translation>Backspace</translation>
+    </message>
+</context>
+<context>
+    <name>Tissue</name>
+    <message>
+        <source>None</source>
+        <translation>なし</translation>
+    </message>
+    <message>
+        <source>Enamel</source>
+        <translation>エナメル質</translation>
+    </message>
+    <message>
+        <source>Dentine</source>
+        <translation>象牙質</translation>
+    </message>
+    <message>
+        <source>Pulp</source>
+        <translation>歯髄</translation>
+    </message>
+    <message>
+        <source>Caries</source>
+        <translation>う蝕</translation>
+    </message>
+    <message>
+        <source>Cementum</source>
+        <translation>セメント質</translation>
+    </message>
+    <message>
+        <source>Gum</source>
+        <translation>歯肉</translation>
+    </message>
+    <message>
+        <source>Bone</source>
+        <translation>骨</translation>
+    </message>
+    <message>
+        <source>Neighbour tooth</source>
+        <translation>隣在歯</translation>
+    </message>
+    <message>
+        <source>Filling</source>
+        <translation>修復物</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::BurModel</name>
+    <message>
+        <source>%1 mm</source>
+        <translation>%1 mm</translation>
+    </message>
+    <message>
+        <source>Own bur</source>
+        <translation>自作のバー</translation>
+    </message>
+    <message>
+        <source>US %1 · %2</source>
+        <translation>US %1 · %2</translation>
+    </message>
+    <message>
+        <source>%1, %2, diameter %3</source>
+        <translation>%1、%2、直径 %3</translation>
+    </message>
+    <message>
+        <source>%1, %2</source>
+        <translation>%1、%2</translation>
+    </message>
+    <message>
+        <source>Diameter %1, length %2</source>
+        <translation>直径 %1、長さ %2</translation>
+    </message>
+    <message>
+        <source>US number %1</source>
+        <translation>US 番号 %1</translation>
+    </message>
+    <message>
+        <source>ISO number %1</source>
+        <translation>ISO 番号 %1</translation>
+    </message>
+    <message>
+        <source>Ring: %1</source>
+        <translation>色リング：%1</translation>
+    </message>
+    <message>
+        <source>Not part of this exercise.</source>
+        <translation>この課題では使えません。</translation>
+    </message>
+    <message>
+        <source>Round %1</source>
+        <translation>ラウンド %1</translation>
+    </message>
+    <message>
+        <source>Steel round %1</source>
+        <translation>スチールラウンド %1</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::DrillBar</name>
+    <message>
+        <source>High speed (air turbine)</source>
+        <translation>高速（エアタービン）</translation>
+    </message>
+    <message>
+        <source>High speed, weak air</source>
+        <translation>高速（弱いエア）</translation>
+    </message>
+    <message>
+        <source>Drill</source>
+        <translation>ドリル</translation>
+    </message>
+    <message>
+        <source>Bur in hand</source>
+        <translation>使用中のバー</translation>
+    </message>
+    <message>
+        <source>Find a bur</source>
+        <translation>バーを探す</translation>
+    </message>
+    <message>
+        <source>Find a bur by name, US or ISO number, diameter or shape</source>
+        <translation>名前、US 番号、ISO 番号、直径、形でバーを探します</translation>
+    </message>
+    <message>
+        <source>Shape of the burs shown</source>
+        <translation>表示するバーの形</translation>
+    </message>
+    <message>
+        <source>Burs</source>
+        <translation>バー</translation>
+    </message>
+    <message>
+        <source>Choose a bur: click, or arrow keys and Enter</source>
+        <translation>バーを選びます：クリック、または矢印キーと Enter</translation>
+    </message>
+    <message>
+        <source>Own bur from a file…</source>
+        <translation>自作のバーを開く…</translation>
+    </message>
+    <message>
+        <source>Open an own bur</source>
+        <translation>自作のバーを開く</translation>
+    </message>
+    <message>
+        <source>Use a bur of your own from an STL file</source>
+        <translation>自作のバーを STL ファイルから読み込みます</translation>
+    </message>
+    <message>
+        <source>Handpiece</source>
+        <translation>ハンドピース</translation>
+    </message>
+    <message>
+        <source>The bur has stopped</source>
+        <translation>バーが止まりました</translation>
+    </message>
+    <message>
+        <source>Speed</source>
+        <translation>回転数</translation>
+    </message>
+    <message>
+        <source>Set speed</source>
+        <translation>設定回転数</translation>
+    </message>
+    <message>
+        <source>Set speed, with the pedal down and the bur in the air (+ and -)</source>
+        <translation>ペダルを踏み、バーが何にも触れていないときの回転数です（+ と -）</translation>
+    </message>
+    <message>
+        <source>Set speed in turns a minute</source>
+        <translation>毎分の設定回転数</translation>
+    </message>
+    <message>
+        <source> rpm</source>
+        <translation> rpm</translation>
+    </message>
+    <message>
+        <source>All shapes</source>
+        <translation>すべての形</translation>
+    </message>
+    <message>
+        <source>This exercise allows only the burs that are not grey.</source>
+        <translation>この課題では、灰色でないバーだけを使えます。</translation>
+    </message>
+    <message>
+        <source>None</source>
+        <translation>なし</translation>
+    </message>
+    <message>
+        <source>Own bur</source>
+        <translation>自作のバー</translation>
+    </message>
+    <message>
+        <source>mm</source>
+        <translation>mm</translation>
+    </message>
+    <message>
+        <source>US %1</source>
+        <translation>US %1</translation>
+    </message>
+    <message>
+        <source>ISO %1</source>
+        <translation>ISO %1</translation>
+    </message>
+    <message>
+        <source>Up to %1 turns a minute</source>
+        <translation>最高 %1 回転/分</translation>
+    </message>
+    <message>
+        <source>The bur has stopped: press less hard.</source>
+        <translation>バーが止まりました。押す力を弱めてください。</translation>
+    </message>
+    <message>
+        <source>Stalled: the load is more than the drive can turn.</source>
+        <translation>停止：荷重が大きすぎて回転できません。</translation>
+    </message>
+    <message>
+        <source>Low speed</source>
+        <translation>低速</translation>
+    </message>
+    <message>
+        <source>Red ring (speed-increasing)</source>
+        <translation>赤リング（増速）</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ErrorDialog</name>
+    <message>
+        <source>That did not work</source>
+        <translation>実行できませんでした</translation>
+    </message>
+    <message>
+        <source>Copy text</source>
+        <translation>文をコピー</translation>
+    </message>
+    <message>
+        <source>Copy this message, to send it to somebody</source>
+        <translation>このメッセージをコピーして、人に送れるようにします</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ForceGauge</name>
+    <message>
+        <source>How hard the bur presses</source>
+        <translation>バーを押す力</translation>
+    </message>
+    <message>
+        <source>How hard the bur presses. The line is the highest of the last two seconds.</source>
+        <translation>バーを押す力です。線は直前 2 秒間の最大値を示します。</translation>
+    </message>
+    <message>
+        <source>N</source>
+        <translation>N</translation>
+    </message>
+    <message>
+        <source>Gentle</source>
+        <translation>軽い</translation>
+    </message>
+    <message>
+        <source>Firm</source>
+        <translation>強い</translation>
+    </message>
+    <message>
+        <source>Too hard</source>
+        <translation>強すぎます</translation>
+    </message>
+    <message>
+        <source>At the limit</source>
+        <translation>限界です</translation>
+    </message>
+    <message>
+        <source>Pressure</source>
+        <translation>押す力</translation>
+    </message>
+    <message>
+        <source>Force</source>
+        <translation>力</translation>
+    </message>
+    <message>
+        <source>peak %1</source>
+        <translation>最大 %1</translation>
+    </message>
+    <message>
+        <source>limit %1</source>
+        <translation>限界 %1</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::HelpCard</name>
+    <message>
+        <source>%1: %2</source>
+        <translation>%1：%2</translation>
+    </message>
+    <message>
+        <source>Click or press a key to close</source>
+        <translation>クリックするか、キーを押すと閉じます</translation>
+    </message>
+    <message>
+        <source>The window</source>
+        <translation>ウィンドウ</translation>
+    </message>
+    <message>
+        <source>Keys and mouse</source>
+        <translation>キーとマウス</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::JobStrip</name>
+    <message>
+        <source>Progress</source>
+        <translation>進み具合</translation>
+    </message>
+    <message>
+        <source>How far it is</source>
+        <translation>どこまで進んだかを示します</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>中止</translation>
+    </message>
+    <message>
+        <source>Stop this; what was open stays as it is</source>
+        <translation>この処理を中止します。開いていたものはそのまま残ります</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::KeyBindingsDialog</name>
+    <message>
+        <source>Actions and their keys</source>
+        <translation>操作とキーの一覧</translation>
+    </message>
+    <message>
+        <source>Choose a key, then press Change</source>
+        <translation>キーを選んでから「変更」を押します</translation>
+    </message>
+    <message>
+        <source>Action</source>
+        <translation>操作</translation>
+    </message>
+    <message>
+        <source>Key or button</source>
+        <translation>キーまたはボタン</translation>
+    </message>
+    <message>
+        <source>Or</source>
+        <translation>または</translation>
+    </message>
+    <message>
+        <source>Change</source>
+        <translation>変更</translation>
+    </message>
+    <message>
+        <source>Then press the new key or mouse button</source>
+        <translation>続けて新しいキーかマウスボタンを押します</translation>
+    </message>
+    <message>
+        <source>Clear</source>
+        <translation>消去</translation>
+    </message>
+    <message>
+        <source>Leave this place without a key</source>
+        <translation>この欄のキーをなくします</translation>
+    </message>
+    <message>
+        <source>Take it over</source>
+        <translation>置き換える</translation>
+    </message>
+    <message>
+        <source>The other action loses this key</source>
+        <translation>もう一方の操作からこのキーを外します</translation>
+    </message>
+    <message>
+        <source>Right-handed</source>
+        <translation>右手用</translation>
+    </message>
+    <message>
+        <source>As delivered, with the mouse in the right hand</source>
+        <translation>最初の設定です。マウスを右手で使います</translation>
+    </message>
+    <message>
+        <source>Left-handed</source>
+        <translation>左手用</translation>
+    </message>
+    <message>
+        <source>With the mouse in the left hand</source>
+        <translation>マウスを左手で使います</translation>
+    </message>
+    <message>
+        <source>%1 is already used for &quot;%2&quot;.</source>
+        <translation>%1 はすでに「%2」に使われています。</translation>
+    </message>
+    <message>
+        <source>&quot;%1&quot; cannot be done with %2.</source>
+        <translation>「%1」に %2 は使えません。</translation>
+    </message>
+    <message>
+        <source>Press the new key, mouse button or turn the wheel; %1 leaves it as it is.</source>
+        <translation>新しいキーかマウスボタンを押すか、ホイールを回してください。%1 で元のままにします。</translation>
+    </message>
+    <message>
+        <source>Keys and mouse</source>
+        <translation>キーとマウス</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::Legend</name>
+    <message>
+        <source>Legend</source>
+        <translation>凡例</translation>
+    </message>
+    <message>
+        <source>What the colours mean</source>
+        <translation>色の意味</translation>
+    </message>
+    <message>
+        <source>Removed depth</source>
+        <translation>切削深さ</translation>
+    </message>
+    <message>
+        <source>mm</source>
+        <translation>mm</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::MainWindow</name>
+    <message>
+        <source>Show or hide this panel</source>
+        <translation>このパネルの表示を切り替えます</translation>
+    </message>
+    <message>
+        <source>Drill</source>
+        <translation>ドリル</translation>
+    </message>
+    <message>
+        <source>View</source>
+        <translation>表示</translation>
+    </message>
+    <message>
+        <source>Pressure</source>
+        <translation>押す力</translation>
+    </message>
+    <message>
+        <source>Measure</source>
+        <translation>計測</translation>
+    </message>
+    <message>
+        <source>Removed</source>
+        <translation>切削量</translation>
+    </message>
+    <message>
+        <source>Sound</source>
+        <translation>音</translation>
+    </message>
+    <message>
+        <source>Parameters</source>
+        <translation>パラメーター</translation>
+    </message>
+    <message>
+        <source>Plots</source>
+        <translation>グラフ</translation>
+    </message>
+    <message>
+        <source>File bar</source>
+        <translation>ファイルバー</translation>
+    </message>
+    <message>
+        <source>Starter tooth&apos;s resolution</source>
+        <translation>練習用の歯の解像度</translation>
+    </message>
+    <message>
+        <source>The starter tooth at one of the five resolutions of the paper&apos;s Table II</source>
+        <translation>練習用の歯を、論文の表 II にある 5 つの解像度から選んで開きます</translation>
+    </message>
+    <message>
+        <source>Starter tooth</source>
+        <translation>練習用の歯</translation>
+    </message>
+    <message>
+        <source>%1 % · %2 faces</source>
+        <translation>%1 % · %2 面</translation>
+    </message>
+    <message>
+        <source>Tool bar</source>
+        <translation>ツールバー</translation>
+    </message>
+    <message>
+        <source>Views</source>
+        <translation>視点</translation>
+    </message>
+    <message>
+        <source>Standard dental views</source>
+        <translation>歯科の標準的な視点</translation>
+    </message>
+    <message>
+        <source>Mixing ratio of motor and cutting sound</source>
+        <translation>モーター音と切削音の割合</translation>
+    </message>
+    <message>
+        <source>Mixing ratio: left the motor alone, right the cutting alone</source>
+        <translation>割合：左端はモーター音だけ、右端は切削音だけです</translation>
+    </message>
+    <message>
+        <source>Motor</source>
+        <translation>モーター</translation>
+    </message>
+    <message>
+        <source>Cutting</source>
+        <translation>切削</translation>
+    </message>
+    <message>
+        <source>File</source>
+        <translation>ファイル</translation>
+    </message>
+    <message>
+        <source>Open this starter tooth</source>
+        <translation>この練習用の歯を開きます</translation>
+    </message>
+    <message>
+        <source>Open recent</source>
+        <translation>最近使ったファイル</translation>
+    </message>
+    <message>
+        <source>Edit</source>
+        <translation>編集</translation>
+    </message>
+    <message>
+        <source>Panels</source>
+        <translation>パネル</translation>
+    </message>
+    <message>
+        <source>Show or hide this bar</source>
+        <translation>このバーの表示を切り替えます</translation>
+    </message>
+    <message>
+        <source>Colours of the window</source>
+        <translation>ウィンドウの配色</translation>
+    </message>
+    <message>
+        <source>Language</source>
+        <translation>言語</translation>
+    </message>
+    <message>
+        <source>As the desktop</source>
+        <translation>デスクトップに合わせる</translation>
+    </message>
+    <message>
+        <source>The language of the window</source>
+        <translation>ウィンドウの言語</translation>
+    </message>
+    <message>
+        <source>Tools</source>
+        <translation>ツール</translation>
+    </message>
+    <message>
+        <source>Help</source>
+        <translation>ヘルプ</translation>
+    </message>
+    <message>
+        <source>Save what was cut?</source>
+        <translation>切削した歯を保存しますか？</translation>
+    </message>
+    <message>
+        <source>The tooth has been cut since it was saved.</source>
+        <translation>保存した後に、さらに切削しています。</translation>
+    </message>
+    <message>
+        <source>Without saving, it can only be watched in the recording, not cut on.</source>
+        <translation>保存しないと、記録を見ることはできますが、切削の続きはできません。</translation>
+    </message>
+    <message>
+        <source>Bring it back</source>
+        <translation>復元する</translation>
+    </message>
+    <message>
+        <source>Save as...</source>
+        <translation>名前を付けて保存...</translation>
+    </message>
+    <message>
+        <source>Open case</source>
+        <translation>症例を開く</translation>
+    </message>
+    <message>
+        <source>Cases and attempts (*.handpiece case.toml attempt.toml);;All files (*)</source>
+        <translation>症例と作業 (*.handpiece case.toml attempt.toml);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Open STL</source>
+        <translation>STL を開く</translation>
+    </message>
+    <message>
+        <source>Surfaces (*.stl *.ply *.obj);;All files (*)</source>
+        <translation>曲面 (*.stl *.ply *.obj);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Open recording</source>
+        <translation>記録を開く</translation>
+    </message>
+    <message>
+        <source>Recordings (*.h5);;All files (*)</source>
+        <translation>記録 (*.h5);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Export STL</source>
+        <translation>STL に書き出す</translation>
+    </message>
+    <message>
+        <source>STL (*.stl)</source>
+        <translation>STL (*.stl)</translation>
+    </message>
+    <message>
+        <source>Open it again</source>
+        <translation>もう一度開きます</translation>
+    </message>
+    <message>
+        <source>Save the attempt</source>
+        <translation>作業を保存</translation>
+    </message>
+    <message>
+        <source>Attempt with its tooth (*.handpiece)</source>
+        <translation>作業と歯 (*.handpiece)</translation>
+    </message>
+    <message>
+        <source>Keep the picture</source>
+        <translation>画像を保存</translation>
+    </message>
+    <message>
+        <source>Picture (*.png)</source>
+        <translation>画像 (*.png)</translation>
+    </message>
+    <message>
+        <source>Write the report</source>
+        <translation>レポートを書き出す</translation>
+    </message>
+    <message>
+        <source>Page to print (*.html)</source>
+        <translation>印刷用ページ (*.html)</translation>
+    </message>
+    <message>
+        <source>Keep the recording</source>
+        <translation>記録を保存</translation>
+    </message>
+    <message>
+        <source>Recording (*.h5)</source>
+        <translation>記録 (*.h5)</translation>
+    </message>
+    <message>
+        <source>Save the plots</source>
+        <translation>グラフを保存</translation>
+    </message>
+    <message>
+        <source>Choose a tooth</source>
+        <translation>歯を選ぶ</translation>
+    </message>
+    <message>
+        <source>Notation</source>
+        <translation>歯式</translation>
+    </message>
+    <message>
+        <source>How teeth are numbered</source>
+        <translation>歯の番号の付け方を選びます</translation>
+    </message>
+    <message>
+        <source>FDI (ISO 3950)</source>
+        <translation>FDI (ISO 3950)</translation>
+    </message>
+    <message>
+        <source>Universal</source>
+        <translation>ユニバーサル</translation>
+    </message>
+    <message>
+        <source>Palmer</source>
+        <translation>パーマー（ジグモンディ）</translation>
+    </message>
+    <message>
+        <source>The teeth in full colour come with the program. Others are opened as cases.</source>
+        <translation>灰色でない歯はプログラムに付属しています。ほかの歯は症例として開いてください。</translation>
+    </message>
+    <message>
+        <source>About Handpiece</source>
+        <translation>Handpiece について</translation>
+    </message>
+    <message>
+        <source>&lt;h3&gt;Handpiece %1&lt;/h3&gt;&lt;p&gt;An open dental surgery simulator: touch a tooth and drill it.&lt;/p&gt;</source>
+        <translation>&lt;h3&gt;Handpiece %1&lt;/h3&gt;&lt;p&gt;オープンな歯科手術シミュレーターです。歯に触れ、削ることができます。&lt;/p&gt;</translation>
+    </message>
+    <message>
+        <source>&lt;p&gt;Licensed under the Apache License 2.0. For teaching; no medical device.&lt;/p&gt;&lt;p&gt;It stands on: Qt %1 (LGPL 3), OpenAL Soft (LGPL 2), Mesa (MIT), Eigen (MPL 2), fmt (MIT), oneTBB (Apache 2.0), Qhull (Qhull licence), HDF5 (BSD), libzip (BSD), zlib (zlib), libpng (libpng), toml++ (MIT), nlohmann-json (MIT), CLI11 (BSD).&lt;/p&gt;&lt;p&gt;Draws with: %2&lt;/p&gt;&lt;p&gt;Sound: %3&lt;/p&gt;</source>
+        <translation>&lt;p&gt;Apache License 2.0 で公開しています。教育用であり、医療機器ではありません。&lt;/p&gt;&lt;p&gt;使用しているソフトウェア：Qt %1 (LGPL 3)、OpenAL Soft (LGPL 2)、Mesa (MIT)、Eigen (MPL 2)、fmt (MIT)、oneTBB (Apache 2.0)、Qhull (Qhull licence)、HDF5 (BSD)、libzip (BSD)、zlib (zlib)、libpng (libpng)、toml++ (MIT)、nlohmann-json (MIT)、CLI11 (BSD)。&lt;/p&gt;&lt;p&gt;描画：%2&lt;/p&gt;&lt;p&gt;音：%3&lt;/p&gt;</translation>
+    </message>
+    <message>
+        <source>nothing yet</source>
+        <translation>まだありません</translation>
+    </message>
+    <message>
+        <source>Pulp</source>
+        <translation>歯髄</translation>
+    </message>
+    <message>
+        <source>A bur of your own</source>
+        <translation>自作のバー</translation>
+    </message>
+    <message>
+        <source>Surfaces (*.stl *.ply *.obj)</source>
+        <translation>曲面 (*.stl *.ply *.obj)</translation>
+    </message>
+    <message>
+        <source>Sound of a real drill</source>
+        <translation>実際のドリルの音</translation>
+    </message>
+    <message>
+        <source>Sound (*.wav)</source>
+        <translation>音声 (*.wav)</translation>
+    </message>
+    <message>
+        <source>No sound</source>
+        <translation>音なし</translation>
+    </message>
+    <message>
+        <source>Muted</source>
+        <translation>消音中</translation>
+    </message>
+    <message>
+        <source>Nothing is played: %1</source>
+        <translation>音を再生していません：%1</translation>
+    </message>
+    <message>
+        <source>Stroke begins</source>
+        <translation>ストローク開始</translation>
+    </message>
+    <message>
+        <source>Stroke ends</source>
+        <translation>ストローク終了</translation>
+    </message>
+    <message>
+        <source>Another bur</source>
+        <translation>バー交換</translation>
+    </message>
+    <message>
+        <source>Dentine reached</source>
+        <translation>象牙質に到達</translation>
+    </message>
+    <message>
+        <source>Pulp opened</source>
+        <translation>露髄</translation>
+    </message>
+    <message>
+        <source>Neighbour touched</source>
+        <translation>隣在歯に接触</translation>
+    </message>
+    <message>
+        <source>Bur stalled</source>
+        <translation>バー停止</translation>
+    </message>
+    <message>
+        <source>Pressed too hard</source>
+        <translation>押しすぎ</translation>
+    </message>
+    <message>
+        <source>Undo</source>
+        <translation>元に戻す</translation>
+    </message>
+    <message>
+        <source>Redo</source>
+        <translation>やり直す</translation>
+    </message>
+    <message>
+        <source>Reset</source>
+        <translation>最初の状態に戻す</translation>
+    </message>
+    <message>
+        <source>Settings changed</source>
+        <translation>設定変更</translation>
+    </message>
+    <message>
+        <source>Fault</source>
+        <translation>異常</translation>
+    </message>
+    <message>
+        <source>End</source>
+        <translation>終了</translation>
+    </message>
+    <message>
+        <source>Mouse</source>
+        <translation>マウス</translation>
+    </message>
+    <message>
+        <source>Simulated device</source>
+        <translation>模擬デバイス</translation>
+    </message>
+    <message>
+        <source>The code your teacher gave you: File, Your code...</source>
+        <translation>先生から渡されたコード：ファイル、受講者コード...</translation>
+    </message>
+    <message>
+        <source>Not now</source>
+        <translation>後で</translation>
+    </message>
+    <message>
+        <source>Work that ended without saving</source>
+        <translation>保存されずに終わった作業</translation>
+    </message>
+    <message>
+        <source>There is none: everything was saved or given up.</source>
+        <translation>ありません。すべて保存または破棄されています。</translation>
+    </message>
+    <message>
+        <source>Choose what to bring back:</source>
+        <translation>復元するものを選んでください：</translation>
+    </message>
+    <message>
+        <source>The newest first</source>
+        <translation>新しい順に並んでいます</translation>
+    </message>
+    <message>
+        <source>%1, %2</source>
+        <translation>%1、%2</translation>
+    </message>
+    <message>
+        <source>Open the tooth as it was when the program ended</source>
+        <translation>プログラムが終わったときの状態で歯を開きます</translation>
+    </message>
+    <message>
+        <source>Give it up</source>
+        <translation>破棄する</translation>
+    </message>
+    <message>
+        <source>It is not offered again; its recording stays for a while</source>
+        <translation>次からは表示されません。記録はしばらく残ります</translation>
+    </message>
+    <message>
+        <source>Your code</source>
+        <translation>受講者コード</translation>
+    </message>
+    <message>
+        <source>Code (given by your teacher). No name: recordings and saved attempts carry it.</source>
+        <translation>先生から渡されたコード。記録と保存した作業に入るため、名前は書かないでください。</translation>
+    </message>
+    <message>
+        <source>Code: %1</source>
+        <translation>コード：%1</translation>
+    </message>
+    <message>
+        <source>Reading the sound</source>
+        <translation>音を読み込んでいます</translation>
+    </message>
+    <message>
+        <source>There is no sound card.</source>
+        <translation>サウンドカードがありません。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::MeasureBox</name>
+    <message>
+        <source>Measuring</source>
+        <translation>計測</translation>
+    </message>
+    <message>
+        <source>Depth below the surface</source>
+        <translation>表面からの深さ</translation>
+    </message>
+    <message>
+        <source>How deep the tip is below the tooth&apos;s first surface</source>
+        <translation>切削前の表面から測った、バー先端の深さです</translation>
+    </message>
+    <message>
+        <source>Distance measured</source>
+        <translation>測った距離</translation>
+    </message>
+    <message>
+        <source>Between the two points of the calliper</source>
+        <translation>ノギスの 2 点間の距離です</translation>
+    </message>
+    <message>
+        <source>Dentine over the pulp</source>
+        <translation>歯髄までの象牙質</translation>
+    </message>
+    <message>
+        <source>What is left between the bur and the pulp</source>
+        <translation>バーと歯髄の間に残る厚さです</translation>
+    </message>
+    <message>
+        <source>Dentine over the pulp, in words</source>
+        <translation>歯髄までの象牙質の目安</translation>
+    </message>
+    <message>
+        <source>This exercise hides the depths.</source>
+        <translation>この課題では深さを表示しません。</translation>
+    </message>
+    <message>
+        <source>Calliper</source>
+        <translation>ノギス</translation>
+    </message>
+    <message>
+        <source>Click two points on the tooth to measure between them (D)</source>
+        <translation>歯の上の 2 点をクリックして距離を測ります（D）</translation>
+    </message>
+    <message>
+        <source>How hard to press</source>
+        <translation>押す強さ</translation>
+    </message>
+    <message>
+        <source>How hard the left button presses (Shift and the wheel)</source>
+        <translation>左ボタンで押す強さです（Shift とホイール）</translation>
+    </message>
+    <message>
+        <source>Stop at a depth of</source>
+        <translation>深さ制限</translation>
+    </message>
+    <message>
+        <source>Depth stop</source>
+        <translation>深さ制限</translation>
+    </message>
+    <message>
+        <source>The bur goes no deeper than this (Ctrl and the wheel)</source>
+        <translation>バーはこれより深く入りません（Ctrl とホイール）</translation>
+    </message>
+    <message>
+        <source>Depth of the stop</source>
+        <translation>制限する深さ</translation>
+    </message>
+    <message>
+        <source> mm</source>
+        <translation> mm</translation>
+    </message>
+    <message>
+        <source>Section</source>
+        <translation>断面</translation>
+    </message>
+    <message>
+        <source>Cut the tooth open</source>
+        <translation>歯を断面で表示する</translation>
+    </message>
+    <message>
+        <source>Cut the tooth open to look inside (X)</source>
+        <translation>歯を断面で表示して内部を見ます（X）</translation>
+    </message>
+    <message>
+        <source>Direction of the section</source>
+        <translation>断面の方向</translation>
+    </message>
+    <message>
+        <source>From cheek to tongue</source>
+        <translation>頬舌断</translation>
+    </message>
+    <message>
+        <source>From front to back</source>
+        <translation>近遠心断</translation>
+    </message>
+    <message>
+        <source>Level</source>
+        <translation>水平断</translation>
+    </message>
+    <message>
+        <source>Place of the section</source>
+        <translation>断面の位置</translation>
+    </message>
+    <message>
+        <source>Place of the section in millimetres</source>
+        <translation>断面の位置（ミリメートル）</translation>
+    </message>
+    <message>
+        <source>mm</source>
+        <translation>mm</translation>
+    </message>
+    <message>
+        <source>The pulp is open</source>
+        <translation>露髄しています</translation>
+    </message>
+    <message>
+        <source>very light</source>
+        <translation>とても軽い</translation>
+    </message>
+    <message>
+        <source>light</source>
+        <translation>軽い</translation>
+    </message>
+    <message>
+        <source>as usual</source>
+        <translation>普通</translation>
+    </message>
+    <message>
+        <source>firm</source>
+        <translation>やや強い</translation>
+    </message>
+    <message>
+        <source>hard</source>
+        <translation>強い</translation>
+    </message>
+    <message>
+        <source>N</source>
+        <translation>N</translation>
+    </message>
+    <message>
+        <source>This exercise has no sections.</source>
+        <translation>この課題では断面を使えません。</translation>
+    </message>
+    <message>
+        <source>Press</source>
+        <translation>押す力</translation>
+    </message>
+    <message>
+        <source>Load</source>
+        <translation>荷重</translation>
+    </message>
+    <message>
+        <source>Measure a distance</source>
+        <translation>距離を測る</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::NoticeBar</name>
+    <message>
+        <source>Message</source>
+        <translation>メッセージ</translation>
+    </message>
+    <message>
+        <source>Remedy</source>
+        <translation>対処方法</translation>
+    </message>
+    <message>
+        <source>Close the message</source>
+        <translation>メッセージを閉じる</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n more</source>
+        <translation>
+            <numerusform>ほか %n 件</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>Not now</source>
+        <translation>後で</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ParameterBox</name>
+    <message>
+        <source>What the tooth feels like</source>
+        <translation>歯の手触り</translation>
+    </message>
+    <message>
+        <source>Reset</source>
+        <translation>元の値に戻す</translation>
+    </message>
+    <message>
+        <source>Reset spring, damper and friction</source>
+        <translation>ばね、ダンパー、摩擦を元の値に戻す</translation>
+    </message>
+    <message>
+        <source>Back to the tissues&apos; own values (all at 1)</source>
+        <translation>組織の元の値に戻します（すべて 1）</translation>
+    </message>
+    <message>
+        <source>Multiplies every tissue&apos;s own value; 1 is the tissue&apos;s own.</source>
+        <translation>すべての組織の値に掛ける倍率です。1 で組織の元の値になります。</translation>
+    </message>
+    <message>
+        <source>Each tissue as the hand feels it</source>
+        <translation>手に伝わる組織ごとの値</translation>
+    </message>
+    <message>
+        <source>Tissue</source>
+        <translation>組織</translation>
+    </message>
+    <message>
+        <source>Spring
+[N/mm]</source>
+        <translation>ばね
+[N/mm]</translation>
+    </message>
+    <message>
+        <source>Damper
+[N s/mm]</source>
+        <translation>ダンパー
+[N s/mm]</translation>
+    </message>
+    <message>
+        <source>Friction</source>
+        <translation>摩擦</translation>
+    </message>
+    <message>
+        <source>Cutting
+[mm²/N]</source>
+        <translation>切削
+[mm²/N]</translation>
+    </message>
+    <message>
+        <source>Stiffness: the tissue&apos;s fraction times the multiplier times the device&apos;s limit</source>
+        <translation>剛性：組織の割合 × 倍率 × デバイスの限界</translation>
+    </message>
+    <message>
+        <source>Damping on the approach</source>
+        <translation>近づくときの減衰</translation>
+    </message>
+    <message>
+        <source>Coulomb friction of the still bur</source>
+        <translation>回転していないバーのクーロン摩擦</translation>
+    </message>
+    <message>
+        <source>Volume a second for load, angular speed and radius; 0: cannot be cut</source>
+        <translation>荷重、角速度、半径に対する 1 秒当たりの体積。0 は切削できないことを示します</translation>
+    </message>
+    <message>
+        <source>Contact by</source>
+        <translation>接触の計算</translation>
+    </message>
+    <message>
+        <source>Contact method</source>
+        <translation>接触の計算方法</translation>
+    </message>
+    <message>
+        <source>Distance field (cuts)</source>
+        <translation>距離場（切削できます）</translation>
+    </message>
+    <message>
+        <source>Convex hull, as in the paper (touch only)</source>
+        <translation>凸包、論文の方法（触るだけ）</translation>
+    </message>
+    <message>
+        <source>Voxel size</source>
+        <translation>ボクセルの大きさ</translation>
+    </message>
+    <message>
+        <source>%1 µm</source>
+        <translation>%1 µm</translation>
+    </message>
+    <message>
+        <source>%1 gives at most %2, %3 and %4.</source>
+        <translation>%1の限界は %2、%3、%4 です。</translation>
+    </message>
+    <message>
+        <source>The device</source>
+        <translation>デバイス</translation>
+    </message>
+    <message>
+        <source>N</source>
+        <translation>N</translation>
+    </message>
+    <message>
+        <source>N/mm</source>
+        <translation>N/mm</translation>
+    </message>
+    <message>
+        <source>N s/mm</source>
+        <translation>N s/mm</translation>
+    </message>
+    <message>
+        <source>Held by the device&apos;s limit: %1 was asked for.</source>
+        <translation>デバイスの限界に抑えています。設定値は %1 です。</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>なし</translation>
+    </message>
+    <message>
+        <source>▲ Held by the device&apos;s limit: the hand feels no more than that.</source>
+        <translation>▲ デバイスの限界に抑えています。これより強くは伝わりません。</translation>
+    </message>
+    <message>
+        <source>All values lie within what the device can give.</source>
+        <translation>すべての値がデバイスの限界内です。</translation>
+    </message>
+    <message>
+        <source>Lift the bur first.</source>
+        <translation>先にバーを上げてください。</translation>
+    </message>
+    <message>
+        <source>The hull knows only whole teeth: reset the tooth to choose it.</source>
+        <translation>凸包は切削前の歯にしか使えません。歯を最初の状態に戻すと選べます。</translation>
+    </message>
+    <message>
+        <source>The hull touches but does not cut.</source>
+        <translation>凸包では触れますが、切削はできません。</translation>
+    </message>
+    <message>
+        <source>Changes at once.</source>
+        <translation>すぐに変わります。</translation>
+    </message>
+    <message>
+        <source>What you cut will be cut again at the new size; this takes a while and can be cancelled.</source>
+        <translation>削った部分を新しい大きさで削り直します。しばらくかかりますが、途中で中止できます。</translation>
+    </message>
+    <message>
+        <source>The tooth is made anew at that size; smaller is finer and slower.</source>
+        <translation>その大きさで歯を作り直します。小さいほど細かく、遅くなります。</translation>
+    </message>
+    <message>
+        <source>Hardness</source>
+        <translation>硬さ</translation>
+    </message>
+    <message>
+        <source>How hard the tooth feels</source>
+        <translation>歯の硬さの感じ方</translation>
+    </message>
+    <message>
+        <source>Cushion</source>
+        <translation>弾み</translation>
+    </message>
+    <message>
+        <source>How much the touch is cushioned</source>
+        <translation>触れたときの衝撃の和らぎ方</translation>
+    </message>
+    <message>
+        <source>Roughness</source>
+        <translation>ざらつき</translation>
+    </message>
+    <message>
+        <source>How rough the surface feels</source>
+        <translation>表面のざらつきの感じ方</translation>
+    </message>
+    <message>
+        <source>Spring</source>
+        <translation>ばね</translation>
+    </message>
+    <message>
+        <source>Multiplier of every tissue&apos;s stiffness</source>
+        <translation>すべての組織の剛性に掛ける倍率</translation>
+    </message>
+    <message>
+        <source>Spring multiplier</source>
+        <translation>ばねの倍率</translation>
+    </message>
+    <message>
+        <source>Damper</source>
+        <translation>ダンパー</translation>
+    </message>
+    <message>
+        <source>Multiplier of every tissue&apos;s damping</source>
+        <translation>すべての組織の減衰に掛ける倍率</translation>
+    </message>
+    <message>
+        <source>Damper multiplier</source>
+        <translation>ダンパーの倍率</translation>
+    </message>
+    <message>
+        <source>Multiplier of every tissue&apos;s friction</source>
+        <translation>すべての組織の摩擦に掛ける倍率</translation>
+    </message>
+    <message>
+        <source>Friction multiplier</source>
+        <translation>摩擦の倍率</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::PlotPanel</name>
+    <message>
+        <source>Plots</source>
+        <translation>グラフ</translation>
+    </message>
+    <message>
+        <source>Hold the plots</source>
+        <translation>グラフを止める</translation>
+    </message>
+    <message>
+        <source>Hold the plots; what comes is kept</source>
+        <translation>グラフの表示を止めます。その間の値も残ります</translation>
+    </message>
+    <message>
+        <source>Save the plots</source>
+        <translation>グラフを保存</translation>
+    </message>
+    <message>
+        <source>Drawing (SVG)…</source>
+        <translation>図（SVG）…</translation>
+    </message>
+    <message>
+        <source>Picture (PNG)…</source>
+        <translation>画像（PNG）…</translation>
+    </message>
+    <message>
+        <source>Table (CSV)…</source>
+        <translation>表（CSV）…</translation>
+    </message>
+    <message>
+        <source>Let the plots go on</source>
+        <translation>グラフを再開します</translation>
+    </message>
+    <message>
+        <source>Force, depth and rotor speed</source>
+        <translation>力、深さ、回転数</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::PlotView</name>
+    <message>
+        <source>Force, depth and speed of the last 20 seconds</source>
+        <translation>直前 20 秒間の力、深さ、回転数</translation>
+    </message>
+    <message>
+        <source>Pressure</source>
+        <translation>押す力</translation>
+    </message>
+    <message>
+        <source>Force [N]</source>
+        <translation>力 [N]</translation>
+    </message>
+    <message>
+        <source>Depth [mm]</source>
+        <translation>深さ [mm]</translation>
+    </message>
+    <message>
+        <source>Speed [1000 turns a minute]</source>
+        <translation>回転数 [1000 回転/分]</translation>
+    </message>
+    <message>
+        <source>Rotor speed [1000 rpm]</source>
+        <translation>回転数 [1000 rpm]</translation>
+    </message>
+    <message>
+        <source>the device gives no more</source>
+        <translation>デバイスの限界</translation>
+    </message>
+    <message>
+        <source>device&apos;s limit %1 N</source>
+        <translation>デバイスの限界 %1 N</translation>
+    </message>
+    <message>
+        <source>now</source>
+        <translation>現在</translation>
+    </message>
+    <message>
+        <source>%1 s</source>
+        <translation>%1 秒</translation>
+    </message>
+    <message>
+        <source>%1 s: depth %2 mm, %3 turns a minute</source>
+        <translation>%1 秒：深さ %2 mm、%3 回転/分</translation>
+    </message>
+    <message>
+        <source>%1 s: %2 N, %3 mm, %4 rpm</source>
+        <translation>%1 秒：%2 N、%3 mm、%4 rpm</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ReplayBar</name>
+    <message>
+        <source>Replay</source>
+        <translation>再生</translation>
+    </message>
+    <message>
+        <source>Stroke before</source>
+        <translation>前のストローク</translation>
+    </message>
+    <message>
+        <source>To the stroke before</source>
+        <translation>前のストロークへ</translation>
+    </message>
+    <message>
+        <source>Play</source>
+        <translation>再生</translation>
+    </message>
+    <message>
+        <source>Play or pause</source>
+        <translation>再生・一時停止</translation>
+    </message>
+    <message>
+        <source>Next stroke</source>
+        <translation>次のストローク</translation>
+    </message>
+    <message>
+        <source>To the next stroke</source>
+        <translation>次のストロークへ</translation>
+    </message>
+    <message>
+        <source>Time and length</source>
+        <translation>時刻と長さ</translation>
+    </message>
+    <message>
+        <source>Speed of the replay</source>
+        <translation>再生の速さ</translation>
+    </message>
+    <message>
+        <source>× %1</source>
+        <translation>× %1</translation>
+    </message>
+    <message>
+        <source>End the replay</source>
+        <translation>再生を終える</translation>
+    </message>
+    <message>
+        <source>Pause</source>
+        <translation>一時停止</translation>
+    </message>
+    <message>
+        <source>%1 / %2</source>
+        <translation>%1 / %2</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::SectionBar</name>
+    <message>
+        <source>Cut the tooth open in this direction</source>
+        <translation>この方向の断面で歯を表示します</translation>
+    </message>
+    <message>
+        <source>Place of the section</source>
+        <translation>断面の位置</translation>
+    </message>
+    <message>
+        <source>Where the section lies, from the middle of the tooth&apos;s frame</source>
+        <translation>歯の座標の原点から測った断面の位置です</translation>
+    </message>
+    <message>
+        <source> mm</source>
+        <translation> mm</translation>
+    </message>
+    <message>
+        <source>Other side</source>
+        <translation>反対側</translation>
+    </message>
+    <message>
+        <source>Take the other side away</source>
+        <translation>反対側を取り除いて表示します</translation>
+    </message>
+    <message>
+        <source>Close the section</source>
+        <translation>断面を閉じる</translation>
+    </message>
+    <message>
+        <source>Show the whole tooth again</source>
+        <translation>歯全体の表示に戻します</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::Simulator</name>
+    <message>
+        <source>switched off</source>
+        <translation>オフ</translation>
+    </message>
+    <message>
+        <source>Preparing the tooth</source>
+        <translation>歯を準備しています</translation>
+    </message>
+    <message>
+        <source>Opening %1</source>
+        <translation>%1 を開いています</translation>
+    </message>
+    <message>
+        <source>Bringing the tooth back</source>
+        <translation>歯を復元しています</translation>
+    </message>
+    <message>
+        <source>Saving</source>
+        <translation>保存しています</translation>
+    </message>
+    <message>
+        <source>Writing the STL file</source>
+        <translation>STL ファイルを書き出しています</translation>
+    </message>
+    <message>
+        <source>Writing the report</source>
+        <translation>レポートを書き出しています</translation>
+    </message>
+    <message>
+        <source>Copying the recording</source>
+        <translation>記録をコピーしています</translation>
+    </message>
+    <message>
+        <source>Cutting the tooth again</source>
+        <translation>歯を削り直しています</translation>
+    </message>
+    <message>
+        <source>Reading the sound</source>
+        <translation>音を読み込んでいます</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::SoundControl</name>
+    <message>
+        <source>Too loud</source>
+        <translation>大きすぎます</translation>
+    </message>
+    <message>
+        <source>Level %1 %</source>
+        <translation>音量 %1 %</translation>
+    </message>
+    <message>
+        <source>Good</source>
+        <translation>適正</translation>
+    </message>
+    <message>
+        <source>Quiet</source>
+        <translation>小さい</translation>
+    </message>
+    <message>
+        <source>%1 %</source>
+        <translation>%1 %</translation>
+    </message>
+    <message>
+        <source>Sound</source>
+        <translation>音</translation>
+    </message>
+    <message>
+        <source>Mute</source>
+        <translation>消音</translation>
+    </message>
+    <message>
+        <source>Sound off</source>
+        <translation>音を消す</translation>
+    </message>
+    <message>
+        <source>Motor</source>
+        <translation>モーター</translation>
+    </message>
+    <message>
+        <source>Loudness of the motor</source>
+        <translation>モーター音の大きさ</translation>
+    </message>
+    <message>
+        <source>Cutting</source>
+        <translation>切削</translation>
+    </message>
+    <message>
+        <source>Loudness of the cutting</source>
+        <translation>切削音の大きさ</translation>
+    </message>
+    <message>
+        <source>Mixture</source>
+        <translation>割合</translation>
+    </message>
+    <message>
+        <source>motor</source>
+        <translation>モーター</translation>
+    </message>
+    <message>
+        <source>cutting</source>
+        <translation>切削</translation>
+    </message>
+    <message>
+        <source>Mixture of motor and cutting</source>
+        <translation>モーター音と切削音の割合</translation>
+    </message>
+    <message>
+        <source>Mixture: left the motor alone, right the cutting alone</source>
+        <translation>割合：左端はモーター音だけ、右端は切削音だけです</translation>
+    </message>
+    <message>
+        <source>Where the sound comes from</source>
+        <translation>音の種類</translation>
+    </message>
+    <message>
+        <source>Level of the microphone</source>
+        <translation>マイクの音量</translation>
+    </message>
+    <message>
+        <source>Sound on</source>
+        <translation>音を出す</translation>
+    </message>
+    <message>
+        <source>Source of the motor&apos;s sound</source>
+        <translation>モーター音の種類</translation>
+    </message>
+    <message>
+        <source>Source of the cutting&apos;s sound</source>
+        <translation>切削音の種類</translation>
+    </message>
+    <message>
+        <source>Computed</source>
+        <translation>合成音</translation>
+    </message>
+    <message>
+        <source>Recording from a file…</source>
+        <translation>ファイルの録音…</translation>
+    </message>
+    <message>
+        <source>Record with the microphone</source>
+        <translation>マイクで録音</translation>
+    </message>
+    <message>
+        <source>Record the motor</source>
+        <translation>モーター音を録音</translation>
+    </message>
+    <message>
+        <source>Record the cutting</source>
+        <translation>切削音を録音</translation>
+    </message>
+    <message>
+        <source>Record what the microphone hears; click again to end</source>
+        <translation>マイクの音を録音します。もう一度クリックすると終わります</translation>
+    </message>
+    <message>
+        <source>End recording</source>
+        <translation>録音を終える</translation>
+    </message>
+    <message>
+        <source>Record</source>
+        <translation>録音</translation>
+    </message>
+    <message>
+        <source>No sound card was found: everything else works.</source>
+        <translation>サウンドカードが見つかりません。ほかの機能は使えます。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::SpeedDial</name>
+    <message>
+        <source>Speed of the bur now</source>
+        <translation>現在のバーの回転数</translation>
+    </message>
+    <message>
+        <source>Speed of the bur now. The mark on the rim is the speed that is set.</source>
+        <translation>現在のバーの回転数です。縁の印は設定回転数を示します。</translation>
+    </message>
+    <message>
+        <source>%1 turns a minute</source>
+        <translation>%1 回転/分</translation>
+    </message>
+    <message>
+        <source>turns a minute</source>
+        <translation>回転/分</translation>
+    </message>
+    <message>
+        <source>× 1000</source>
+        <translation>× 1000</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::StatusLine</name>
+    <message>
+        <source>Status</source>
+        <translation>状態</translation>
+    </message>
+    <message>
+        <source>How the simulator is doing</source>
+        <translation>シミュレーターの状態です</translation>
+    </message>
+    <message>
+        <source>Record of the session</source>
+        <translation>実習の記録</translation>
+    </message>
+    <message>
+        <source>Everything you do is recorded</source>
+        <translation>操作はすべて記録されます</translation>
+    </message>
+    <message>
+        <source>Device</source>
+        <translation>デバイス</translation>
+    </message>
+    <message>
+        <source>What holds the handpiece</source>
+        <translation>ハンドピースを動かす装置です</translation>
+    </message>
+    <message>
+        <source>Tick rate</source>
+        <translation>更新頻度</translation>
+    </message>
+    <message>
+        <source>Ticks of the force loop a second</source>
+        <translation>力の計算の 1 秒当たりの回数です</translation>
+    </message>
+    <message>
+        <source>Late ticks</source>
+        <translation>遅れ</translation>
+    </message>
+    <message>
+        <source>Ticks that began late, and periods that were missed altogether</source>
+        <translation>開始が遅れた回数と、抜けた周期の数です</translation>
+    </message>
+    <message>
+        <source>Load</source>
+        <translation>負荷</translation>
+    </message>
+    <message>
+        <source>Share of each period that the force loop works</source>
+        <translation>1 周期のうち力の計算が占める割合です</translation>
+    </message>
+    <message>
+        <source>One moment</source>
+        <translation>お待ちください</translation>
+    </message>
+    <message>
+        <source>Not recording</source>
+        <translation>記録していません</translation>
+    </message>
+    <message>
+        <source>Late</source>
+        <translation>遅れています</translation>
+    </message>
+    <message>
+        <source>Recording</source>
+        <translation>記録中</translation>
+    </message>
+    <message>
+        <source>Ready</source>
+        <translation>準備完了</translation>
+    </message>
+    <message>
+        <source>The computer is too busy: what the hand feels may come late. Close other programs.</source>
+        <translation>コンピューターの負荷が高く、手に伝わる力が遅れることがあります。ほかのプログラムを閉じてください。</translation>
+    </message>
+    <message>
+        <source>Recording stopped</source>
+        <translation>記録が止まりました</translation>
+    </message>
+    <message>
+        <source>No device</source>
+        <translation>デバイスなし</translation>
+    </message>
+    <message>
+        <source>%1 Hz</source>
+        <translation>%1 Hz</translation>
+    </message>
+    <message>
+        <source>%1 late, %2 missed</source>
+        <translation>遅れ %1、抜け %2</translation>
+    </message>
+    <message>
+        <source>%1 late</source>
+        <translation>遅れ %1</translation>
+    </message>
+    <message>
+        <source>load %1 %</source>
+        <translation>負荷 %1 %</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::Timeline</name>
+    <message>
+        <source>Time of the replay</source>
+        <translation>再生の時刻</translation>
+    </message>
+    <message>
+        <source>%1 of %2</source>
+        <translation>%1 / %2</translation>
+    </message>
+    <message numerus="yes">
+        <source>and %n more</source>
+        <translation>
+            <numerusform>ほか %n 件</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ToothChart</name>
+    <message>
+        <source>Tooth chart</source>
+        <translation>歯列図</translation>
+    </message>
+    <message>
+        <source>%1 (FDI %2, Universal %3)</source>
+        <translation>%1（FDI %2、ユニバーサル %3）</translation>
+    </message>
+    <message>
+        <source>There is no such tooth to open.</source>
+        <translation>この歯は用意されていません。</translation>
+    </message>
+    <message>
+        <source>Right</source>
+        <translation>右</translation>
+    </message>
+    <message>
+        <source>Left</source>
+        <translation>左</translation>
+    </message>
+    <message>
+        <source>Upper</source>
+        <translation>上顎</translation>
+    </message>
+    <message>
+        <source>Lower</source>
+        <translation>下顎</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ViewBar</name>
+    <message>
+        <source>Views and look</source>
+        <translation>視点と表示</translation>
+    </message>
+    <message>
+        <source>Look from</source>
+        <translation>見る方向</translation>
+    </message>
+    <message>
+        <source>Whole tooth</source>
+        <translation>歯全体</translation>
+    </message>
+    <message>
+        <source>Show the whole tooth (Home)</source>
+        <translation>歯全体を表示します（Home）</translation>
+    </message>
+    <message>
+        <source>What to see</source>
+        <translation>表示するもの</translation>
+    </message>
+    <message>
+        <source>Colours</source>
+        <translation>配色</translation>
+    </message>
+    <message>
+        <source>Colours of the tissues</source>
+        <translation>組織の配色</translation>
+    </message>
+    <message>
+        <source>As in the mouth</source>
+        <translation>口腔内の色</translation>
+    </message>
+    <message>
+        <source>As in a textbook</source>
+        <translation>教科書の色</translation>
+    </message>
+    <message>
+        <source>For any colour vision</source>
+        <translation>色覚に配慮した色</translation>
+    </message>
+    <message>
+        <source>Tooth</source>
+        <translation>歯</translation>
+    </message>
+    <message>
+        <source>The tooth now, before, or both</source>
+        <translation>現在の歯、切削前の歯、または両方を表示します</translation>
+    </message>
+    <message>
+        <source>As it is now</source>
+        <translation>現在</translation>
+    </message>
+    <message>
+        <source>Before cutting</source>
+        <translation>切削前</translation>
+    </message>
+    <message>
+        <source>Removed part as glass</source>
+        <translation>削った部分を半透明で</translation>
+    </message>
+    <message>
+        <source>Quality</source>
+        <translation>画質</translation>
+    </message>
+    <message>
+        <source>Finer pictures need a faster computer</source>
+        <translation>画質を上げるほど速いコンピューターが必要です</translation>
+    </message>
+    <message>
+        <source>Fast</source>
+        <translation>速さ優先</translation>
+    </message>
+    <message>
+        <source>Fine</source>
+        <translation>高画質</translation>
+    </message>
+    <message>
+        <source>Rich (needs a graphics card)</source>
+        <translation>最高画質（要グラフィックスカード）</translation>
+    </message>
+    <message>
+        <source>In depth</source>
+        <translation>立体視</translation>
+    </message>
+    <message>
+        <source>Pictures for two eyes</source>
+        <translation>左右の目のための画像を表示します</translation>
+    </message>
+    <message>
+        <source>Off</source>
+        <translation>なし</translation>
+    </message>
+    <message>
+        <source>Side by side</source>
+        <translation>左右に並べる</translation>
+    </message>
+    <message>
+        <source>Red and cyan glasses</source>
+        <translation>赤シアンめがね</translation>
+    </message>
+    <message>
+        <source>Removed depth</source>
+        <translation>切削深さ</translation>
+    </message>
+    <message>
+        <source>Colour by how much was cut away</source>
+        <translation>削った深さを色で示します</translation>
+    </message>
+    <message>
+        <source>Scale bar</source>
+        <translation>スケール</translation>
+    </message>
+    <message>
+        <source>Wet tooth</source>
+        <translation>濡れた歯</translation>
+    </message>
+    <message>
+        <source>Shine of wet enamel</source>
+        <translation>濡れたエナメル質のつやを表示します</translation>
+    </message>
+    <message>
+        <source>Water spray</source>
+        <translation>注水</translation>
+    </message>
+    <message>
+        <source>Water from the handpiece</source>
+        <translation>ハンドピースからの注水を表示します</translation>
+    </message>
+    <message>
+        <source>Debris</source>
+        <translation>切削片</translation>
+    </message>
+    <message>
+        <source>What flies off while cutting</source>
+        <translation>切削中に飛ぶ切削片を表示します</translation>
+    </message>
+    <message>
+        <source>Shadows</source>
+        <translation>影</translation>
+    </message>
+    <message>
+        <source>Shade in fissures and cavities</source>
+        <translation>裂溝や窩洞の影を表示します</translation>
+    </message>
+    <message>
+        <source>Handpiece</source>
+        <translation>ハンドピース</translation>
+    </message>
+    <message>
+        <source>The handpiece that holds the bur</source>
+        <translation>バーを保持するハンドピースを表示します</translation>
+    </message>
+    <message>
+        <source>Contact arrow</source>
+        <translation>接触点</translation>
+    </message>
+    <message>
+        <source>Where the bur touches</source>
+        <translation>バーが触れている場所を示します</translation>
+    </message>
+    <message>
+        <source>Force arrow</source>
+        <translation>力の矢印</translation>
+    </message>
+    <message>
+        <source>The force on the hand</source>
+        <translation>手に伝わる力を示します</translation>
+    </message>
+    <message>
+        <source>Tissues shown</source>
+        <translation>表示する組織</translation>
+    </message>
+    <message>
+        <source>Show or hide: %1</source>
+        <translation>表示・非表示：%1</translation>
+    </message>
+    <message>
+        <source>Locked by this exercise.</source>
+        <translation>この課題では変更できません。</translation>
+    </message>
+    <message>
+        <source>Top</source>
+        <translation>咬合面</translation>
+    </message>
+    <message>
+        <source>Occlusal: onto the chewing surface (1)</source>
+        <translation>咬合面を見ます（1）</translation>
+    </message>
+    <message>
+        <source>Cheek</source>
+        <translation>頬側</translation>
+    </message>
+    <message>
+        <source>Buccal: from the cheek (2)</source>
+        <translation>頬側から見ます（2）</translation>
+    </message>
+    <message>
+        <source>Tongue</source>
+        <translation>舌側</translation>
+    </message>
+    <message>
+        <source>Lingual: from the tongue (3)</source>
+        <translation>舌側から見ます（3）</translation>
+    </message>
+    <message>
+        <source>Mesial</source>
+        <translation>近心</translation>
+    </message>
+    <message>
+        <source>Mesial: from the front of the arch (4)</source>
+        <translation>近心側から見ます（4）</translation>
+    </message>
+    <message>
+        <source>Distal</source>
+        <translation>遠心</translation>
+    </message>
+    <message>
+        <source>Distal: from the back of the arch (5)</source>
+        <translation>遠心側から見ます（5）</translation>
+    </message>
+    <message>
+        <source>Slanted</source>
+        <translation>斜め</translation>
+    </message>
+    <message>
+        <source>From above at a slant (6)</source>
+        <translation>斜め上から見ます（6）</translation>
+    </message>
+    <message>
+        <source>A scale in millimetres in the picture</source>
+        <translation>画像の中のミリメートル目盛り</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ViewWidget</name>
+    <message>
+        <source>%1: cut   ·   %2: turn the view   ·   %3: all keys</source>
+        <translation>%1：切削   ·   %2：視点を回す   ·   %3：キーの一覧</translation>
+    </message>
+    <message>
+        <source>Click the second point</source>
+        <translation>2 点目をクリックしてください</translation>
+    </message>
+    <message>
+        <source>Click the first point</source>
+        <translation>1 点目をクリックしてください</translation>
+    </message>
+    <message>
+        <source>Point at the cavity&apos;s floor; a click keeps the reading</source>
+        <translation>窩底を指してください。クリックすると値が残ります</translation>
+    </message>
+    <message>
+        <source>Point at the cavity&apos;s floor; a click keeps what is left over the pulp</source>
+        <translation>窩底を指してください。クリックすると歯髄までの厚さが残ります</translation>
+    </message>
+    <message>
+        <source>Drag, turn the wheel or use the arrow keys to move the section</source>
+        <translation>ドラッグ、ホイール、矢印キーで断面を動かします</translation>
+    </message>
+    <message>
+        <source>Drag the mirror; the wheel moves it nearer or farther</source>
+        <translation>ミラーはドラッグで動かし、ホイールで近づけたり遠ざけたりします</translation>
+    </message>
+    <message>
+        <source>The picture cannot be drawn: %1</source>
+        <translation>画面を描画できません：%1</translation>
+    </message>
+    <message>
+        <source>No tooth is open</source>
+        <translation>歯が開かれていません</translation>
+    </message>
+    <message>
+        <source>Picture of the tooth</source>
+        <translation>歯の画面</translation>
+    </message>
+    <message>
+        <source>Mouse and keys move the bur; F1 shows them.</source>
+        <translation>マウスとキーでバーを動かします。F1 で一覧を表示します。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::VolumeBars</name>
+    <message>
+        <source>mm³</source>
+        <translation>mm³</translation>
+    </message>
+    <message>
+        <source>Removed of each tissue</source>
+        <translation>組織ごとの切削量</translation>
+    </message>
+    <message>
+        <source>Removed</source>
+        <translation>切削量</translation>
+    </message>
+    <message>
+        <source>Nothing yet</source>
+        <translation>まだありません</translation>
+    </message>
+    <message>
+        <source>%1: %2 cut away since the tooth was whole</source>
+        <translation>%1：切削を始めてから %2 削りました</translation>
+    </message>
+    <message>
+        <source>What was cut away since the tooth was whole</source>
+        <translation>切削を始めてから削った量です</translation>
+    </message>
+    <message>
+        <source>Total</source>
+        <translation>合計</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::WelcomeStrip</name>
+    <message>
+        <source>First steps</source>
+        <translation>はじめに</translation>
+    </message>
+    <message>
+        <source>Show no hints</source>
+        <translation>ヒントを表示しない</translation>
+    </message>
+    <message>
+        <source>Move the mouse over the tooth. Hold the left button to cut.</source>
+        <translation>マウスを歯の上に動かし、左ボタンを押し続けると削れます。</translation>
+    </message>
+    <message>
+        <source>Move the handpiece to the tooth. Hold its upper button to cut.</source>
+        <translation>ハンドピースを歯に近づけ、上のボタンを押し続けると削れます。</translation>
+    </message>
+    <message>
+        <source>Hold the left button and drag to cut.</source>
+        <translation>左ボタンを押したまま動かすと削れます。</translation>
+    </message>
+    <message>
+        <source>Hold the upper button to cut.</source>
+        <translation>上のボタンを押し続けると削れます。</translation>
+    </message>
+    <message>
+        <source>Hold the right mouse button and drag to look from another side.</source>
+        <translation>右ボタンを押したまま動かすと、別の側から見られます。</translation>
+    </message>
+    <message>
+        <source>Turn the mouse wheel to come nearer.</source>
+        <translation>マウスのホイールを回すと近づけます。</translation>
+    </message>
+    <message>
+        <source>Something went wrong? Ctrl+Z takes the last stroke back.</source>
+        <translation>失敗したときは、Ctrl+Z で直前のストロークを元に戻せます。</translation>
+    </message>
+    <message>
+        <source>%1 of %2</source>
+        <translation>%1 / %2</translation>
+    </message>
+</context>
+</TS>

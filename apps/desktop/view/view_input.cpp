@@ -1,0 +1,505 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QWheelEvent>
+#include <algorithm>
+#include <cmath>
+
+#include "desktop/view/view_state.h"
+
+namespace handpiece::desktop {
+
+namespace {
+
+constexpr double kOrbitRadPerPixel = 0.008, kZoomPerNotch = 1.15, kRollRad = 0.0524, kFineRollRad = 0.0105;
+constexpr double kLoadStepN = 0.1, kSectionStepMm = 0.1, kFineSectionStepMm = 0.02, kMirrorStepMm = 0.5;
+constexpr double kLeastStopMm = station::kStopStepMm, kMostStopMm = 10.0;
+constexpr double kHandleReach = 14.0;  // pixels around the section's handle
+constexpr std::size_t kMostMeasurements = 12;
+
+QPointF difference(const QPointF& to, const QPointF& from) {
+    return to - from;
+}
+
+}  // namespace
+
+void ViewWidget::State::begin(Drag what, const Binding& by) {
+    end();
+    drag = what;
+    dragKind = by.kind;
+    dragCode = by.code;
+    if (hand && (what == Drag::orbit || what == Drag::pan)) hand->freeze(true);
+    updateCursor();
+}
+
+void ViewWidget::State::end() {
+    const Drag was = std::exchange(drag, Drag::none);
+    if (was == Drag::none) return;
+    dragKind = Binding::Kind::none;
+    if (was == Drag::press && hand) {
+        hand->release();
+        render->pointerMoved();
+        emit widget->pressedChanged(false);
+    }
+    if (hand && (was == Drag::orbit || was == Drag::pan)) {
+        hand->freeze(tool != Tool::drill);
+        hoverAgain();
+    }
+    updateCursor();
+    widget->update();
+}
+
+void ViewWidget::State::updateCursor() {
+    Qt::CursorShape shape = Qt::CrossCursor;
+    if (drag == Drag::orbit)
+        shape = Qt::ClosedHandCursor;
+    else if (drag == Drag::pan)
+        shape = Qt::SizeAllCursor;
+    else if (tool == Tool::section)
+        shape = Qt::SizeHorCursor;
+    else if (tool == Tool::mirror)
+        shape = Qt::OpenHandCursor;
+    widget->setCursor(shape);
+}
+
+void ViewWidget::State::moveSection(double byMm) {
+    if (!section) return;
+    SectionPlace place = *section;
+    place.offsetMm = std::round((place.offsetMm + byMm) * 100.0) / 100.0;
+    widget->setSection(place);
+}
+
+void ViewWidget::State::dragSection(const QPointF& from, const QPointF& to) {
+    if (!section) return;
+    // As far as the plane's normal, seen on the screen, goes with the pointer.
+    core::Vec3 axis = core::Vec3::Zero();
+    axis[axisAcross(section->direction)] = 1.0;
+    const view::Viewport port = viewport();
+    core::Vec3 middle = bounds.centre();
+    middle[axisAcross(section->direction)] = section->offsetMm;
+    const auto a = view::pixelOf(camera, port, middle), b = view::pixelOf(camera, port, middle + axis);
+    if (!a || !b) return;
+    const core::Vec2 perMm = *b - *a;
+    const QPointF d = difference(to, from);
+    const core::Vec2 moved(d.x(), d.y());
+    const double least = 0.15 / view::mmPerPixel(camera, port, middle);  // seen along its normal: slow, up is away
+    SectionPlace place = *section;
+    if (perMm.norm() > least)
+        place.offsetMm += moved.dot(perMm) / perMm.squaredNorm();
+    else
+        place.offsetMm -=
+            moved.y() * view::mmPerPixel(camera, port, middle) * (camera.forward().dot(axis) > 0 ? 1 : -1);
+    widget->setSection(place);
+}
+
+void ViewWidget::State::dragMirror(const QPointF& from, const QPointF& to) {
+    if (!mirrorCentreMm) return;
+    const double mm = view::mmPerPixel(camera, viewport(), *mirrorCentreMm);
+    const QPointF d = difference(to, from);
+    *mirrorCentreMm += camera.right() * (d.x() * mm) - camera.upward() * (d.y() * mm);
+    wish();
+}
+
+void ViewWidget::State::read(const QPointF& position) {
+    pointerMm.reset();
+    reading.reset();
+    if (tool != Tool::calliper && tool != Tool::depth && tool != Tool::pulp) return;
+    widget->update();
+    const auto hit = hitAt(position);
+    if (!hit) return;
+    pointerMm = hit->pointMm;
+    if (tool == Tool::calliper) return;
+    Measurement now;
+    now.fromMm = now.toMm = hit->pointMm;
+    if (tool == Tool::depth) {
+        now.kind = Measurement::Kind::depth;
+        const core::Vec3 axis = burAxis();
+        tooth->withProbe([&](const measure::ToothProbe& p) {
+            now.valueMm = std::max(0.0, p.depthBelowUncutMm(hit->pointMm));
+            now.alongAxisMm = p.depthAlongMm(hit->pointMm, axis);
+        });
+    } else {
+        now.kind = Measurement::Kind::pulp;
+        const auto left =
+            tooth->withProbe([&](const measure::ToothProbe& p) { return p.leftOverPulpMm(hit->pointMm); });
+        if (!left) return;
+        now.valueMm = *left;
+    }
+    reading = now;
+}
+
+void ViewWidget::State::pressTool(const QPointF& position) {
+    read(position);
+    const auto keep = [&](const Measurement& one) {
+        measurements.push_back(one);
+        if (measurements.size() > kMostMeasurements) measurements.erase(measurements.begin());
+        widget->update();
+        emit widget->measured(one);
+    };
+    if (tool == Tool::calliper && pointerMm) {
+        if (!calliperStartMm) {
+            calliperStartMm = pointerMm;
+        } else {
+            Measurement one;
+            one.fromMm = *calliperStartMm;
+            one.toMm = *pointerMm;
+            one.valueMm = (one.toMm - one.fromMm).norm();
+            calliperStartMm.reset();
+            keep(one);
+        }
+    }
+    if ((tool == Tool::depth || tool == Tool::pulp) && reading) keep(*reading);
+    widget->update();
+}
+
+void ViewWidget::State::moveTo(const QPointF& position, Qt::KeyboardModifiers modifiers) {
+    const QPointF from = std::exchange(last, position);
+    pointer = position;
+    const QPointF d = difference(position, from);
+    switch (drag) {
+        case Drag::orbit:
+            camera = view::orbited(camera, d.x() * kOrbitRadPerPixel, -d.y() * kOrbitRadPerPixel);
+            everTurned = true;
+            eyeMoved();
+            return;
+        case Drag::pan:
+            camera = view::panned(camera, viewport(), {d.x(), d.y()});
+            eyeMoved();
+            return;
+        case Drag::section:
+            dragSection(from, position);
+            return;
+        case Drag::mirror:
+            dragMirror(from, position);
+            return;
+        case Drag::pivot:
+            if (hand) {
+                followHand();
+                hand->pivot({d.x(), d.y()});
+                render->pointerMoved();
+            }
+            return;
+        case Drag::press:
+            if (dragKind == Binding::Kind::key) return;  // pressed from the keyboard: the mouse does not push it
+            break;
+        case Drag::none:
+            break;
+    }
+    if (tool != Tool::drill) {
+        read(position);
+        return;
+    }
+    if (!hand) return;
+    followHand();
+    const bool wasAway = hand->isAway();
+    hand->move(pixel(position), bindings.isSlow(modifiers));
+    byMouse = true;
+    render->pointerMoved();
+    if (wasAway) widget->update();
+}
+
+void ViewWidget::mousePressEvent(QMouseEvent* event) {
+    State& s = *state_;
+    s.last = event->position();
+    s.pointer = event->position();
+    if (s.drag != Drag::none || !s.tooth) return;
+    const Binding binding{Binding::Kind::button, static_cast<int>(event->button()),
+                          event->modifiers() & (Qt::ShiftModifier | Qt::ControlModifier)};
+    const auto action = s.bindings.actionFor(binding);
+    if (!action) return;
+    if (*action == Action::orbit || *action == Action::pan) {
+        s.begin(*action == Action::orbit ? Drag::orbit : Drag::pan, binding);
+        return;
+    }
+    if (*action != Action::cut && *action != Action::touch) return;
+    if (const auto handle = sectionHandle(s.overlay(), s.viewport())) {
+        const core::Vec2 at = s.pixel(event->position());
+        if (std::hypot(at.x() - handle->x(), at.y() - handle->y()) < kHandleReach) {
+            s.begin(Drag::section, binding);
+            return;
+        }
+    }
+    if (s.tool == Tool::section || s.tool == Tool::mirror) {
+        s.begin(s.tool == Tool::section ? Drag::section : Drag::mirror, binding);
+        return;
+    }
+    if (s.tool != Tool::drill) {
+        s.pressTool(event->position());
+        return;
+    }
+    if (!s.hand) return;
+    s.begin(Drag::press, binding);
+    s.everPressed = true;
+    s.followHand();
+    s.hand->press(s.pixel(event->position()), *action == Action::cut);
+    s.render->pointerMoved();
+    update();
+    emit pressedChanged(true);
+}
+
+void ViewWidget::mouseDoubleClickEvent(QMouseEvent* event) {
+    mousePressEvent(event);
+}
+
+void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
+    state_->moveTo(event->position(), event->modifiers());
+}
+
+void ViewWidget::mouseReleaseEvent(QMouseEvent* event) {
+    State& s = *state_;
+    if (s.dragKind == Binding::Kind::button && s.dragCode == static_cast<int>(event->button())) s.end();
+}
+
+void ViewWidget::enterEvent(QEnterEvent* event) {
+    // The keys are the hand's as soon as the pointer is over the tooth: a click, to take them from a panel, would cut.
+    if (isActiveWindow()) setFocus(Qt::OtherFocusReason);
+    QWidget::enterEvent(event);
+}
+
+void ViewWidget::leaveEvent(QEvent*) {
+    State& s = *state_;
+    s.pointer.reset();
+    s.reading.reset();
+    s.pointerMm.reset();
+    update();
+}
+
+void ViewWidget::State::turnWheel(const QWheelEvent& event) {
+    const double turned = (event.angleDelta().y() != 0 ? event.angleDelta().y() : event.angleDelta().x()) / 120.0;
+    const auto action =
+        bindings.actionFor({Binding::Kind::wheel, 0, event.modifiers() & (Qt::ShiftModifier | Qt::ControlModifier)});
+    if (!action || !tooth || turned == 0.0) return;
+    if (*action == Action::zoom && tool != Tool::section && tool != Tool::mirror) {
+        std::optional<core::Vec3> under;
+        if (const auto hit = hitAt(event.position())) under = hit->pointMm;
+        camera = view::zoomed(camera, viewport(), pixel(event.position()), std::pow(kZoomPerNotch, turned), under);
+        eyeMoved();
+        return;
+    }
+    wheelRest += turned;
+    const double notches = std::trunc(wheelRest + (wheelRest > 0 ? 1e-9 : -1e-9));
+    if (notches == 0.0) return;
+    wheelRest -= notches;
+    if (*action == Action::zoom && tool == Tool::section) moveSection(notches * kSectionStepMm);
+    if (*action == Action::zoom && tool == Tool::mirror && mirrorCentreMm) {
+        *mirrorCentreMm -= camera.forward() * (notches * kMirrorStepMm);
+        wish();
+    }
+    if (!hand) return;
+    if (*action == Action::load) widget->setLoad(hand->loadN() + notches * kLoadStepN);
+    if (*action == Action::stop) {
+        if (!hand->stopMm()) {
+            if (notches > 0) widget->setStop(lastStopMm);
+            return;
+        }
+        const double next = std::round((*hand->stopMm() + notches * station::kStopStepMm) * 10.0) / 10.0;
+        if (next < kLeastStopMm - 1e-9)
+            widget->setStop(std::nullopt);
+        else
+            widget->setStop(std::min(next, kMostStopMm));
+    }
+}
+
+void ViewWidget::wheelEvent(QWheelEvent* event) {
+    state_->turnWheel(*event);
+    event->accept();
+}
+
+bool ViewWidget::State::stepTool(Action action, bool slow) {
+    const double step = slow ? kFineSectionStepMm : kSectionStepMm;
+    if (tool == Tool::section) {
+        if (action == Action::moveRight || action == Action::moveUp) return moveSection(step), true;
+        if (action == Action::moveLeft || action == Action::moveDown) return moveSection(-step), true;
+    }
+    if (tool == Tool::mirror && mirrorCentreMm) {
+        core::Vec3 by = core::Vec3::Zero();
+        if (action == Action::moveRight) by = camera.right();
+        if (action == Action::moveLeft) by = -camera.right();
+        if (action == Action::moveUp) by = camera.upward();
+        if (action == Action::moveDown) by = -camera.upward();
+        if (action == Action::advance) by = camera.forward();
+        if (action == Action::retreat) by = -camera.forward();
+        if (by.isZero()) return false;
+        *mirrorCentreMm += by * (slow ? 0.1 : kMirrorStepMm);
+        wish();
+        return true;
+    }
+    return false;
+}
+
+bool ViewWidget::State::keyAction(Action action, bool slow, bool repeated, const Binding& by) {
+    const auto toggleTool = [&](Tool wanted) { widget->setTool(tool == wanted ? Tool::drill : wanted); };
+    switch (action) {
+        case Action::viewOcclusal:
+        case Action::viewBuccal:
+        case Action::viewLingual:
+        case Action::viewMesial:
+        case Action::viewDistal:
+        case Action::viewOblique: {
+            const auto index = static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::viewOcclusal);
+            widget->showStandardView(view::standardViews()[index].first);
+            return true;
+        }
+        case Action::fit:
+            widget->fitTooth();
+            return true;
+        case Action::goToBur:
+            widget->goToBur();
+            return true;
+        case Action::orbitHold:
+        case Action::panHold:
+            if (!repeated && drag == Drag::none) begin(action == Action::orbitHold ? Drag::orbit : Drag::pan, by);
+            return true;
+        case Action::pivot:
+            if (!repeated && drag == Drag::none && hand && tool == Tool::drill) begin(Drag::pivot, by);
+            return true;
+        case Action::measure:
+            if (repeated) return true;
+            switch (tool) {
+                case Tool::calliper:
+                    widget->setTool(Tool::depth);
+                    break;
+                case Tool::depth:
+                    widget->setTool(Tool::pulp);
+                    break;
+                case Tool::pulp:
+                    widget->setTool(Tool::drill);
+                    break;
+                default:
+                    widget->setTool(Tool::calliper);
+                    break;
+            }
+            return true;
+        case Action::section:
+            if (repeated) return true;
+            if (section)
+                widget->setSection(std::nullopt);
+            else
+                widget->setTool(Tool::section);
+            return true;
+        case Action::mirror:
+            if (repeated) return true;
+            if (mirrorCentreMm)
+                widget->setMirrorShown(false);
+            else
+                toggleTool(Tool::mirror);
+            return true;
+        case Action::compare:
+            if (!repeated) widget->setCompare(!compare);
+            return true;
+        case Action::help:
+            if (!repeated) emit widget->helpRequested();
+            return true;
+        case Action::escape:
+            widget->escape();
+            widget->setTool(Tool::drill);
+            return true;
+        case Action::faster:
+            emit widget->speedStepRequested(1);
+            return true;
+        case Action::slower:
+            emit widget->speedStepRequested(-1);
+            return true;
+        case Action::nextBur:
+            emit widget->burStepRequested(1);
+            return true;
+        case Action::previousBur:
+            emit widget->burStepRequested(-1);
+            return true;
+        default:
+            break;
+    }
+    if (stepTool(action, slow)) return true;
+    if (!hand || tool != Tool::drill) return false;
+    byMouse = byMouse && !(action >= Action::moveLeft && action <= Action::retreat);
+    const double step = slow ? station::kFineNudgeMm : station::kNudgeMm, roll = slow ? kFineRollRad : kRollRad;
+    followHand();
+    switch (action) {
+        case Action::moveLeft:
+            hand->nudge(-step, 0, 0);
+            break;
+        case Action::moveRight:
+            hand->nudge(step, 0, 0);
+            break;
+        case Action::moveUp:
+            hand->nudge(0, step, 0);
+            break;
+        case Action::moveDown:
+            hand->nudge(0, -step, 0);
+            break;
+        case Action::advance:
+            hand->nudge(0, 0, step);
+            break;
+        case Action::retreat:
+            hand->nudge(0, 0, -step);
+            break;
+        case Action::rollLeft:
+            hand->roll(roll);
+            break;
+        case Action::rollRight:
+            hand->roll(-roll);
+            break;
+        case Action::alignNormal:
+            hand->alignToNormal();
+            break;
+        case Action::alignTooth:
+            hand->alignToTooth();
+            break;
+        case Action::latchPedal:
+            if (!repeated) widget->latchPedal(!hand->pedalLatched());
+            break;
+        case Action::cutKey: {
+            if (repeated || drag != Drag::none) return true;
+            begin(Drag::press, by);
+            everPressed = true;
+            const auto at = view::pixelOf(camera, viewport(), proxyPose(render->sample()).positionMm);
+            hand->press(at.value_or(core::Vec2(viewport().width / 2.0, viewport().height / 2.0)), true);
+            emit widget->pressedChanged(true);
+            break;
+        }
+        default:
+            return false;
+    }
+    render->pointerMoved();
+    widget->update();
+    return true;
+}
+
+void ViewWidget::keyPressEvent(QKeyEvent* event) {
+    State& s = *state_;
+    const Binding binding = bindingOf(*event);
+    const auto action = s.bindings.actionFor(binding);
+    const bool slow = s.bindings.isSlow(event->modifiers());
+    if (action && s.keyAction(*action, slow, event->isAutoRepeat(), binding))
+        event->accept();
+    else
+        QWidget::keyPressEvent(event);
+}
+
+void ViewWidget::keyReleaseEvent(QKeyEvent* event) {
+    State& s = *state_;
+    if (!event->isAutoRepeat() && s.dragKind == Binding::Kind::key && s.dragCode == event->key())
+        s.end();
+    else
+        QWidget::keyReleaseEvent(event);
+}
+
+void ViewWidget::focusOutEvent(QFocusEvent* event) {
+    escape();
+    QWidget::focusOutEvent(event);
+}
+
+bool ViewWidget::event(QEvent* event) {
+    // Keys bound here are not a menu's while one works in the picture.
+    if (event->type() == QEvent::ShortcutOverride) {
+        const auto* key = static_cast<QKeyEvent*>(event);
+        if (state_->bindings.actionFor(bindingOf(*key))) {
+            event->accept();
+            return true;
+        }
+    }
+    if (event->type() == QEvent::WindowDeactivate) escape();
+    return QWidget::event(event);
+}
+
+}  // namespace handpiece::desktop

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What the picture widget holds; its events, its tools and its settings share it.
+
+#include <QElapsedTimer>
+#include <QPointer>
+#include <atomic>
+#include <set>
+
+#include "desktop/view/help_card.h"
+#include "desktop/view/overlay.h"
+#include "desktop/view/probe_thread.h"
+#include "desktop/view/render_thread.h"
+#include "desktop/view/section_bar.h"
+#include "desktop/view/view_widget.h"
+
+namespace handpiece::desktop {
+
+/// What a held button or key makes of the pointer's moves.
+enum class Drag { none, press, orbit, pan, pivot, section, mirror };
+
+struct ViewWidget::State {
+    explicit State(ViewWidget* of);
+    ~State();
+
+    ViewWidget* widget;
+    std::shared_ptr<station::LiveTooth> tooth;
+    core::Box bounds{core::Vec3::Zero(), core::Vec3::Zero()};     // of the tooth
+    core::Box eyeBounds{core::Vec3::Zero(), core::Vec3::Zero()};  // of what of it is to be looked at
+    int buccalSign = 1;
+    std::vector<tooth::Tissue> tissues;
+    std::shared_ptr<const instrument::Bur> bur;
+    std::unique_ptr<station::PointerHand> hand;
+    view::Look look;
+    view::Camera camera;
+    KeyBindings bindings;
+    std::set<std::string, std::less<>> locked;
+    bool legendShown = true, sectionBarShown = true;
+    QString problem, remedy;  // why nothing is drawn
+    std::optional<Frame> frame;
+    bool everPressed = false, everTurned = false;
+
+    // Tools.
+    Tool tool = Tool::drill;
+    bool compare = false;
+    std::optional<view::Camera> wholeEye, halfEye;  // before the halves were fitted, and fitted to them
+    std::optional<SectionPlace> section;
+    SectionPlace lastSection;
+    bool sectionPlaced = false;
+    std::optional<core::Vec3> mirrorCentreMm;
+    std::vector<Measurement> measurements;
+    std::optional<core::Vec3> calliperStartMm, pointerMm;
+    std::optional<Measurement> reading, thinnest;
+
+    // The pointer.
+    Drag drag = Drag::none;
+    int dragCode = 0;  // the button or key that ends it
+    Binding::Kind dragKind = Binding::Kind::none;
+    QPointF last;                    // where the pointer was
+    std::optional<QPointF> pointer;  // over the widget
+    bool byMouse = false;            // the bur is where the pointer put it, not where keys moved it
+    double wheelRest = 0.0;          // of a notch
+    double lastStopMm = 1.5;
+
+    QPointer<HelpCard> card;
+    HelpCard::Commands commands;  // of the window, for the card
+    SectionBar* sectionBar = nullptr;
+    std::atomic<bool> framePosted{false};
+
+    // Last: their threads call back into what stands above.
+    std::unique_ptr<ProbeThread> probe;
+    std::unique_ptr<RenderThread> render;
+
+    // Where things are.
+    [[nodiscard]] view::Viewport viewport() const;  // of one picture
+    [[nodiscard]] core::Vec2 pixel(const QPointF& position) const;
+    [[nodiscard]] std::optional<measure::Hit> hitAt(const QPointF& position) const;
+    [[nodiscard]] view::Look effectiveLook() const;
+    [[nodiscard]] OverlayState overlay() const;
+    [[nodiscard]] QString hint() const;
+    [[nodiscard]] std::optional<view::MirrorPose> mirrorPose() const;
+    [[nodiscard]] core::Vec3 burAxis() const;
+
+    void turnHalf();    // the eye, for two pictures or for one again
+    void wish();        // tells the drawing thread what is to be seen
+    void eyeMoved();    // and the hand, and listeners
+    void hoverAgain();  // under the pointer that stood still while the eye moved
+    void followHand();
+    void takeFrame();
+    void layOut();
+
+    // Input (view_input.cpp).
+    void begin(Drag what, const Binding& by);
+    void end();
+    void pressTool(const QPointF& position);
+    void moveTo(const QPointF& position, Qt::KeyboardModifiers modifiers);
+    void read(const QPointF& position);
+    void turnWheel(const QWheelEvent& event);
+    bool keyAction(Action action, bool slow, bool repeated, const Binding& by);
+    bool stepTool(Action action, bool slow);
+    void moveSection(double byMm);
+    void dragSection(const QPointF& from, const QPointF& to);
+    void dragMirror(const QPointF& from, const QPointF& to);
+    void updateCursor();
+};
+
+}  // namespace handpiece::desktop

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// A tooth that can be cut, a bur, what turns it and what it feels like: from names to a loop, for the command line and
+/// the window alike.
+
+#include <memory>
+#include <string>
+
+#include "handpiece/model/instrument/catalogue.h"
+#include "handpiece/model/instrument/rotor.h"
+#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/tick/cutting/cutter.h"
+#include "handpiece/tick/device/device.h"
+#include "handpiece/tick/force/parameters.h"
+#include "handpiece/tick/loop/haptic_loop.h"
+
+namespace handpiece::station {
+
+/// All that decides what a cut does, besides the tooth and the hand. What a session keeps of it is enough to cut again.
+struct StationSettings {
+    double rateHz = 1000.0;
+    tooth::FieldSettings field;
+    tooth::CutSettings cut;
+    std::shared_ptr<const instrument::Bur> bur;
+    instrument::Ability ability;
+    instrument::Drive drive;
+    tooth::TissueTable tissues = tooth::builtInTissues();
+    device::Capability capability;
+    force::Parameters parameters = force::defaultParameters();
+    bool fullRemoval = false;
+    bool hull = false;     ///< feels the paper's hulls instead of the field: touching only
+    bool resumed = false;  ///< the tooth was cut before: the session begins with a key frame
+};
+
+/// Everything but the tooth, as JSON; numbers come back bit for bit. Of the bur its outline is kept, which decides all
+/// that it does, and its name: of a file no folder.
+[[nodiscard]] std::string settingsJson(const StationSettings& settings);
+/// Throws core::Error naming `where` and what is missing or wrong.
+[[nodiscard]] StationSettings settingsFromJson(const std::string& json, const std::string& where);
+
+/// What changes while one works, as the text of the event that tells it.
+[[nodiscard]] std::string burChangeJson(const StationSettings& settings);  ///< bur, ability, hull or field
+[[nodiscard]] std::string driveChangeJson(const StationSettings& settings);
+[[nodiscard]] std::string parameterChangeJson(const StationSettings& settings);
+/// Which of them a text told.
+struct Changed {
+    bool work = false, drive = false, parameters = false;
+};
+/// Puts a change into `settings`. Throws core::Error naming `where`.
+Changed applyChange(const std::string& json, StationSettings& settings, const std::string& where);
+
+/// One tooth under one bur. The field is cut by the loop that gets the work.
+struct Station {
+    std::shared_ptr<const tooth::CuttableTooth> tooth;
+    std::uint64_t identity = 0;  ///< of the tooth, for states in files
+    std::shared_ptr<tooth::CutField> field;
+    StationSettings settings;
+
+    /// Puts a tooth in place that was cut before. Not while a loop runs.
+    void resume(const tooth::CutState& state) const;
+    /// A method and a cutter on the field, for a loop; of hulls a method alone. One loop at a time; while it runs
+    /// another may be made for it, on another thread. Throws core::Error for what has no hull.
+    [[nodiscard]] loop::Work work() const;
+};
+/// Reads or reopens the fields. Throws core::Error.
+[[nodiscard]] Station makeStation(const tooth::Case& toothCase, StationSettings settings, bool useCache,
+                                  const core::Progress& progress = {});
+
+}  // namespace handpiece::station

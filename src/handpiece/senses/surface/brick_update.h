@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// News of one brick's triangles, from whoever keeps the surface up to whoever draws it.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "handpiece/senses/surface/brick_mesh.h"
+
+namespace handpiece::surface {
+
+/// The triangles of one brick, as handed over. A null mesh: the brick has none (any more).
+struct BrickUpdate {
+    std::uint32_t dense = 0;
+    std::shared_ptr<const BrickMesh> mesh;                     ///< full detail
+    std::shared_ptr<const BrickMesh> coarse;                   ///< level 2, for an eye in motion; null: none
+    std::shared_ptr<const std::vector<float>> removedDepthMm;  ///< by vertex of `mesh`; null: not asked for
+};
+
+}  // namespace handpiece::surface

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Meshes made ready to be drawn: normals, and cut into small pieces that can be left out alone. Private to this room.
+
+#include <vector>
+
+#include "handpiece/base/geometry/triangle_mesh.h"
+#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/senses/surface/brick_update.h"
+#include "handpiece/senses/view/mesh_pool.h"
+
+namespace handpiece::view {
+
+/// As it comes from the surface. `removedDepthMm`: by vertex, or null.
+[[nodiscard]] MeshPiece pieceOf(const surface::BrickMesh& mesh, const std::vector<float>* removedDepthMm);
+
+/// Smooth but across edges sharper than `creaseRad`. Cut by a grid of `cellMm` (0: by number of vertices alone).
+[[nodiscard]] std::vector<MeshPiece> piecesOf(const geometry::TriangleMesh& mesh, tooth::Tissue tissue,
+                                              double creaseRad, double cellMm);
+
+}  // namespace handpiece::view

@@ -1,0 +1,487 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/senses/view/renderer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/senses/view/effects.h"
+#include "handpiece/senses/view/gl.h"
+#include "handpiece/senses/view/instruments.h"
+#include "handpiece/senses/view/passes.h"
+#include "handpiece/senses/view/scene.h"
+#include "handpiece/senses/view/shaders.h"
+#include "handpiece/senses/view/strips.h"
+#include "handpiece/senses/view/tooth_layer.h"
+
+namespace handpiece::view {
+namespace {
+
+constexpr int kMostSize = 8192;
+constexpr int kSmoothMargin = 8;  // pixels that smoothing looks away
+/// Pictures for which the eye must have stood still before full detail comes back.
+constexpr int kRestPictures = 2;
+/// While the eye moves, quick pictures of a software renderer are drawn with no more pixels and made larger.
+constexpr double kMotionPixels = 380e3;
+
+double nowMs() {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+bool sameCamera(const Camera& a, const Camera& b) {
+    return a.eyeMm == b.eyeMm && a.targetMm == b.targetMm && a.up == b.up && a.fieldOfViewRad == b.fieldOfViewRad;
+}
+
+/// Whose plane a section's face is: the numbers may have gone through a file.
+bool samePlane(const Plane& a, const Plane& b) {
+    return (a.normal - b.normal).norm() < 1e-6 && std::abs(a.offsetMm - b.offsetMm) < 1e-6;
+}
+
+/// Edges are smoothed after the drawing: not at all while a quick picture moves; the tooth once, as it is kept, and the
+/// bur (or all instruments), where that is to be quick; else all of the picture.
+enum class Smoothing { none, toothAndBur, toothAndInstruments, all };
+bool inPieces(Smoothing smoothing) {
+    return smoothing == Smoothing::toothAndBur || smoothing == Smoothing::toothAndInstruments;
+}
+
+/// What one eye sees, kept from picture to picture.
+struct EyeTarget {
+    ToothLayer layer;
+    gl::Texture colour, depth, smoothed, smoothedTooth;
+    gl::Framebuffer composed, smooth, smoothTooth;
+    std::uint64_t layerSerial = 0;   ///< of the layer's picture in this one
+    PixelRect instruments, passing;  ///< where instruments, and the rest over the tooth, lay in the last picture
+    std::uint64_t appearance = 0;    ///< of the instruments, then
+    Smoothing was = Smoothing::none;
+
+    void allocate(const Viewport& viewport) {
+        if (colour.width() == viewport.width && colour.height() == viewport.height) return;
+        colour.allocate(viewport.width, viewport.height, GL_RGBA8, true);
+        depth.allocate(viewport.width, viewport.height, GL_DEPTH_COMPONENT24);
+        smoothed.allocate(viewport.width, viewport.height, GL_RGBA8);
+        composed.attach({&colour}, &depth);
+        smooth.attach({&smoothed}, nullptr);
+        smoothedTooth.allocate(viewport.width, viewport.height, GL_RGBA8);
+        smoothTooth.attach({&smoothedTooth}, nullptr);
+        instruments = {0, 0, viewport.width, viewport.height};
+        appearance = 0;
+        was = Smoothing::none;
+    }
+};
+
+}  // namespace
+
+struct Renderer::State {
+    gl::Context context;
+    Shaders shaders;
+    Scene scene;
+    Instruments instruments;
+    Section section;
+    gl::Texture depthScale;
+    double depthScaleMm = -1.0;
+    gl::VertexArray none;
+    EyeTarget left, right, mirror, moving;
+    std::vector<std::unique_ptr<Pass>> effects;
+    Image rightPicture, leftPicture, smallPicture;
+
+    std::optional<Camera> camera;
+    std::optional<Look> lastLook;  ///< drawn
+    Viewport viewport;
+    int still = 0;
+    bool responsive = false;
+
+    State() : effects(makeEffects([this] { return instruments.headRadiusMm(); })) {}
+
+    void renewDepthScale(double mostMm);
+    Detail detailFor(const Camera& to, const Viewport& size, const Look& look, FrameReport& report);
+    [[nodiscard]] LayerWants wantsFor(const Eye& eye, const Viewport& size, const Look& look, const Lighting& lighting,
+                                      Detail detail) const;
+    std::size_t drawGhost(const Eye& eye, const Viewport& size, const PixelRect& rect, const Look& look,
+                          const Lighting& lighting);
+    const gl::Texture& drawReflection(const Eye& eye, const Viewport& size, const Look& look, const Moment& moment,
+                                      const Lighting& lighting, FrameReport& report);
+    void drawEye(EyeTarget& target, const Camera& from, const Eye& eye, const Viewport& size, const Look& look,
+                 const Moment& moment, Detail detail, FrameReport& report);
+    void smooth(const gl::Texture& from, const gl::Framebuffer& to, std::span<const PixelRect> rects,
+                const Viewport& size);
+    void smooth(const gl::Texture& from, const gl::Framebuffer& to, const PixelRect& rect, const Viewport& size) {
+        smooth(from, to, std::span(&rect, rect.isEmpty() ? 0 : 1), size);
+    }
+    bool drawSmall(const Camera& camera, const Viewport& size, const Look& look, const Moment& moment, Detail detail,
+                   Image& out, FrameReport& report);
+    void read(const gl::Framebuffer& from, const Viewport& size, Image& out, FrameReport& report) const;
+    static const gl::Framebuffer& pictureOf(const EyeTarget& target) {
+        return target.was == Smoothing::all ? target.smooth : target.composed;
+    }
+};
+
+void Renderer::State::renewDepthScale(double mostMm) {
+    if (mostMm == depthScaleMm) return;
+    depthScaleMm = mostMm;
+    constexpr int kSteps = 256;
+    std::vector<std::uint8_t> colours;
+    for (int i = 0; i < kSteps; ++i) {
+        const auto c = removedDepthColour(mostMm * i / (kSteps - 1), mostMm);
+        colours.insert(colours.end(), {c[0], c[1], c[2], 255});
+    }
+    depthScale.fill(kSteps, 1, GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE, colours.data(), true);
+}
+
+Detail Renderer::State::detailFor(const Camera& to, const Viewport& size, const Look& look, FrameReport& report) {
+    const bool moved =
+        camera && (!sameCamera(*camera, to) || viewport.width != size.width || viewport.height != size.height ||
+                   (responsive && lastLook && !sameTooth(*lastLook, look)));
+    lastLook = look;
+    if (!camera)
+        still = kRestPictures;
+    else
+        still = moved ? 0 : std::min(still + 1, kRestPictures);
+    camera = to;
+    viewport = size;
+    const bool mayBeCoarse =
+        scene.hasCoarse() && (look.quality == Quality::fast || (look.quality == Quality::fine && context.isSoftware()));
+    report.refining = still < kRestPictures;
+    return mayBeCoarse && report.refining ? Detail::coarse : Detail::full;
+}
+
+LayerWants Renderer::State::wantsFor(const Eye& eye, const Viewport& size, const Look& look, const Lighting& lighting,
+                                     Detail detail) const {
+    LayerWants wants{eye, size, look, lighting, detail, 0};
+    if (look.cutAway && section.serial != 0 && samePlane(*look.cutAway, section.face.plane))
+        wants.sectionSerial = section.serial;
+    return wants;
+}
+
+std::size_t Renderer::State::drawGhost(const Eye& eye, const Viewport& size, const PixelRect& rect, const Look& look,
+                                       const Lighting& lighting) {
+    const Culler culler(eye, size, rect, true);
+    const auto& meshes = scene.cutAway(culler);
+    gl::Program& program = shaders.ghost;
+    program.use();
+    program.set("viewProjection", eye.viewProjection());
+    program.set("eye", eye.positionMm);
+    program.set("lamp", lighting.lamp);
+    program.set("clipPlane", planeOf(look.cutAway));
+    program.set("mirrorPlane", planeOf(eye.clip));
+    glEnable(GL_CULL_FACE);
+    glFrontFace(eye.mirrored ? GL_CCW : GL_CW);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    const std::size_t triangles = scene.draw(meshes);
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_CULL_FACE);
+    return triangles;
+}
+
+namespace {
+void copy(const gl::Framebuffer& from, const gl::Framebuffer& to, const PixelRect& r, GLbitfield what) {
+    if (r.isEmpty()) return;
+    glDisable(GL_SCISSOR_TEST);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, from.name());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to.name());
+    glBlitFramebuffer(r.x0, r.y0, r.x1, r.y1, r.x0, r.y0, r.x1, r.y1, what, GL_NEAREST);
+    glEnable(GL_SCISSOR_TEST);
+    to.bind();
+}
+void scissorTo(const PixelRect& r) {
+    glScissor(r.x0, r.y0, std::max(0, r.x1 - r.x0), std::max(0, r.y1 - r.y0));
+}
+}  // namespace
+
+const gl::Texture& Renderer::State::drawReflection(const Eye& eye, const Viewport& size, const Look& look,
+                                                   const Moment& moment, const Lighting& lighting,
+                                                   FrameReport& report) {
+    mirror.allocate(size);
+    const Detail detail = context.isSoftware() && scene.hasCoarse() ? Detail::coarse : Detail::full;
+    Look seen = look;
+    // One shadow map a picture is enough, and it is the main eye's.
+    if (seen.quality == Quality::rich) seen.quality = Quality::fine;
+    const PixelRect whole{0, 0, size.width, size.height};
+    // What the glass shows, the lamp lights by way of the glass too: mostly from there.
+    Lighting also = lighting;
+    if (eye.clip) {
+        const gl::Vec3f n = eye.clip->normal.cast<float>();
+        also.lamp = (0.5f * lighting.lamp + lighting.lamp - 2.0f * n.dot(lighting.lamp) * n).normalized();
+        if (-n.dot(lighting.lamp) <= 0.0f) also.lamp = lighting.lamp;
+    }
+    report.triangles +=
+        mirror.layer.update(shaders, scene, section, depthScale, wantsFor(eye, size, seen, also, detail)).triangles;
+    copy(mirror.layer.framebuffer(), mirror.composed, whole, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glViewport(0, 0, size.width, size.height);
+    const PixelRect shadow = instruments.shadowRect(eye, size, look, moment, lighting).common(whole);
+    if (!shadow.isEmpty()) {
+        scissorTo(shadow);
+        none.bind();
+        instruments.drawShadow(shaders, eye, size, shadow, moment, lighting, mirror.layer.depth());
+    }
+    scissorTo(whole);
+    report.triangles += instruments.draw(shaders, eye, size, whole, look, moment, lighting);
+    return mirror.colour;
+}
+
+void Renderer::State::drawEye(EyeTarget& target, const Camera& from, const Eye& eye, const Viewport& size,
+                              const Look& look, const Moment& moment, Detail detail, FrameReport& report) {
+    const PixelRect whole{0, 0, size.width, size.height};
+    const Lighting lighting = lightingOf(from);
+    target.allocate(size);
+    const ToothLayer::Drawn drawn =
+        target.layer.update(shaders, scene, section, depthScale, wantsFor(eye, size, look, lighting, detail),
+                            responsive ? ToothLayer::Haste::refined : ToothLayer::Haste::whole);
+    report.triangles += drawn.triangles;
+    report.toothRedrawn = report.toothRedrawn || drawn.all;
+    report.refining = report.refining || !target.layer.isComplete();
+
+    PassContext context_{from,
+                         size,
+                         eye,
+                         look,
+                         moment,
+                         lighting.lamp,
+                         target.layer.depth(),
+                         target.layer.colour(),
+                         target.composed.name(),
+                         whole,
+                         context.isSoftware(),
+                         [&](const Eye& other, int width, int height) -> const gl::Texture& {
+                             return drawReflection(other, {width, height}, look, moment, lighting, report);
+                         }};
+    const core::Box& bounds = scene.bounds();
+    const PixelRect content =
+        bounds.isEmpty() ? PixelRect{} : rectOf(bounds.min.cast<float>(), bounds.max.cast<float>(), eye, size);
+    const PixelRect shadow = instruments.shadowRect(eye, size, look, moment, lighting).common(content);
+    const PixelRect solid = shadow.joined(instruments.rect(eye, size, look, moment).common(whole));
+    PixelRect passing;
+    std::vector<Pass*> passes;
+    for (const auto& effect : effects) {
+        const PixelRect touched = effect->touches(context_).common(whole);
+        if (touched.isEmpty()) continue;
+        passing = passing.joined(touched);
+        passes.push_back(effect.get());
+    }
+    const bool ghost = look.tooth == ToothShown::ghost && scene.isCut();
+    const PixelRect ghostRect = ghost ? scene.rectOfCut(eye, size).common(whole) : PixelRect{};
+    passing = passing.joined(ghostRect);
+
+    const bool quick = look.quality == Quality::fast;
+    const Smoothing smoothing = look.quality == Quality::rich || (!quick && !context.isSoftware()) ? Smoothing::all
+                                : !quick          ? Smoothing::toothAndInstruments
+                                : report.refining ? Smoothing::none
+                                                  : Smoothing::toothAndBur;
+    PixelRect dirty = passing.joined(target.passing).joined(drawn.rect);
+    // Instruments that look as they did are there already.
+    const std::uint64_t appearance = instruments.appearance(moment, look);
+    if (appearance != target.appearance) dirty = dirty.joined(solid).joined(target.instruments);
+    dirty = dirty.common(whole);
+    const bool all = drawn.all || target.layerSerial != target.layer.serial() || smoothing != target.was;
+    target.layerSerial = target.layer.serial();
+    PixelRect smoothedBur;
+    std::vector<PixelRect> smoothedStrips;
+    if (inPieces(smoothing)) {
+        const PixelRect tooth = all                    ? whole
+                                : drawn.rect.isEmpty() ? PixelRect{}
+                                                       : drawn.rect.grown(kSmoothMargin).common(whole);
+        // The background has no edges.
+        copy(target.layer.framebuffer(), target.smoothTooth, tooth, GL_COLOR_BUFFER_BIT);
+        smooth(target.layer.colour(), target.smoothTooth, content.grown(kSmoothMargin).common(tooth), size);
+        dirty = dirty.joined(tooth);
+        // Smoothed as a whole or not at all: what is smoothed already must not be so again.
+        Look which = look;
+        if (smoothing == Smoothing::toothAndBur) which.turbine = false;
+        smoothedBur = instruments.rect(eye, size, which, moment).common(whole);
+        smoothedStrips = instruments.strips(eye, size, which, moment, smoothedBur);
+        if (!smoothedBur.grown(kSmoothMargin).common(dirty).isEmpty() && !smoothedBur.isEmpty())
+            dirty = dirty.joined(smoothedBur.grown(kSmoothMargin)).common(whole);
+        else
+            smoothedBur = {};
+    }
+    if (all) dirty = whole;
+    target.instruments = solid;
+    target.passing = passing;
+    target.appearance = appearance;
+    target.was = smoothing;
+    if (dirty.isEmpty()) return;
+
+    const bool fromSmooth = inPieces(smoothing);
+    copy(target.layer.framebuffer(), target.composed, dirty,
+         static_cast<GLbitfield>(GL_DEPTH_BUFFER_BIT) | (fromSmooth ? 0u : GL_COLOR_BUFFER_BIT));
+    if (fromSmooth) copy(target.smoothTooth, target.composed, dirty, GL_COLOR_BUFFER_BIT);
+    glViewport(0, 0, size.width, size.height);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glFrontFace(GL_CW);
+    if (const PixelRect darkened = shadow.common(dirty); !darkened.isEmpty()) {
+        scissorTo(darkened);
+        none.bind();
+        instruments.drawShadow(shaders, eye, size, darkened, moment, lighting, target.layer.depth());
+    }
+    scissorTo(dirty);
+    context_.scissor = dirty;
+    report.triangles += instruments.draw(shaders, eye, size, dirty, look, moment, lighting);
+    if (!smoothedBur.isEmpty()) {
+        smooth(target.colour, target.smooth, smoothedStrips, size);
+        for (const PixelRect& strip : smoothedStrips)
+            copy(target.smooth, target.composed, strip, GL_COLOR_BUFFER_BIT);
+        scissorTo(dirty);
+    }
+    if (ghost) report.triangles += drawGhost(eye, size, ghostRect, look, lighting);
+    for (Pass* pass : passes)
+        report.triangles += pass->draw(context_);
+
+    if (smoothing == Smoothing::all)
+        smooth(target.colour, target.smooth, dirty.grown(kSmoothMargin).common(whole), size);
+}
+
+void Renderer::State::smooth(const gl::Texture& from, const gl::Framebuffer& to, std::span<const PixelRect> rects,
+                             const Viewport& size) {
+    if (rects.empty()) return;
+    to.bind();
+    glViewport(0, 0, size.width, size.height);
+    glDisable(GL_DEPTH_TEST);
+    none.bind();
+    shaders.smooth.use();
+    shaders.smooth.set("picture", from, 0);
+    shaders.smooth.set("pixel",
+                       gl::Vec2f(1.0f / static_cast<float>(size.width), 1.0f / static_cast<float>(size.height)));
+    for (const PixelRect& rect : rects) {
+        scissorTo(rect);
+        gl::drawFullScreen();
+    }
+    glEnable(GL_DEPTH_TEST);
+}
+
+/// A picture in motion, drawn small and made as large as asked for; whether that is worth it.
+bool Renderer::State::drawSmall(const Camera& from, const Viewport& size, const Look& look, const Moment& moment,
+                                Detail detail, Image& out, FrameReport& report) {
+    const double scale = std::sqrt(kMotionPixels / (static_cast<double>(size.width) * size.height));
+    if (look.quality != Quality::fast || !context.isSoftware() || scale > 0.9) return false;
+    if (detail == Detail::full) {
+        // A small picture goes on being shown until the large one is there, unseen, strip by strip.
+        if (!responsive || !moving.layer.isComplete() || !scene.hasCoarse()) return false;
+        const LayerWants wants = wantsFor(eyeOf(from, size), size, look, lightingOf(from), Detail::full);
+        if (left.layer.isComplete(scene, wants)) return false;
+        report.triangles +=
+            left.layer.update(shaders, scene, section, depthScale, wants, ToothLayer::Haste::strips).triangles;
+        if (left.layer.isComplete()) return false;
+        detail = Detail::coarse;
+        report.refining = true;
+    }
+    const Viewport small{static_cast<int>(std::lround(scale * size.width)),
+                         static_cast<int>(std::lround(scale * size.height))};
+    drawEye(moving, from, eyeOf(from, small), small, look, moment, detail, report);
+    read(pictureOf(moving), small, smallPicture, report);
+    enlarge(smallPicture, size, out);
+    return true;
+}
+
+void Renderer::State::read(const gl::Framebuffer& from, const Viewport& size, Image& out, FrameReport& report) const {
+    glFinish();
+    const double begin = nowMs();
+    out.width = size.width;
+    out.height = size.height;
+    out.rgba.resize(4 * static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height));
+    from.bind();
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glReadPixels(0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, out.rgba.data());
+    report.readMs += nowMs() - begin;
+}
+
+Renderer::Renderer() : state_(std::make_unique<State>()) {}
+Renderer::~Renderer() {
+    state_->context.makeCurrent();
+}
+
+const std::string& Renderer::description() const noexcept {
+    return state_->context.description();
+}
+bool Renderer::isSoftware() const noexcept {
+    return state_->context.isSoftware();
+}
+
+void Renderer::setTooth(const core::Box& bounds) {
+    state_->context.makeCurrent();
+    state_->scene.setTooth(bounds);
+}
+
+void Renderer::updateBricks(std::span<const surface::BrickUpdate> bricks, bool before) {
+    state_->context.makeCurrent();
+    state_->scene.updateBricks(bricks, before);
+}
+
+void Renderer::setMesh(const geometry::TriangleMesh& mesh, tooth::Tissue tissue) {
+    state_->context.makeCurrent();
+    state_->scene.setMesh(mesh, tissue);
+}
+
+void Renderer::setScenery(std::span<const tooth::Part> parts) {
+    state_->context.makeCurrent();
+    state_->scene.setScenery(parts);
+}
+
+void Renderer::setParts(std::span<const tooth::Part> parts) {
+    state_->context.makeCurrent();
+    state_->scene.setParts(parts);
+}
+
+void Renderer::setBur(const geometry::TriangleMesh& mesh, double headLengthMm, double headRadiusMm, BurFinish finish) {
+    state_->context.makeCurrent();
+    state_->instruments.setBur(mesh, headLengthMm, headRadiusMm, finish);
+}
+
+void Renderer::setTurbine(const geometry::TriangleMesh& mesh) {
+    state_->context.makeCurrent();
+    state_->instruments.setTurbine(mesh);
+}
+
+void Renderer::setResponsive(bool responsive) {
+    state_->responsive = responsive;
+}
+
+void Renderer::setSectionFace(SectionFace face) {
+    state_->context.makeCurrent();
+    const auto pixels =
+        static_cast<std::size_t>(std::max(0, face.width)) * static_cast<std::size_t>(std::max(0, face.height));
+    if (pixels == 0 || face.tissue.size() != pixels || !(face.mmPerPixel > 0.0))
+        throw core::Error("a section's face has no size, or not one tissue a pixel", "section face",
+                          "give width x height tissues and a positive size of a pixel");
+    Section& section = state_->section;
+    section.tissues.fill(face.width, face.height, GL_R8, GL_RED, GL_UNSIGNED_BYTE, face.tissue.data());
+    section.face = std::move(face);
+    ++section.serial;
+}
+
+FrameReport Renderer::draw(const Camera& camera, const Viewport& viewport, const Look& look, const Moment& moment,
+                           Image& out) {
+    if (viewport.width < 1 || viewport.height < 1 || viewport.width > kMostSize || viewport.height > kMostSize)
+        throw core::Error("a picture cannot have this size", "viewport", "choose 1 to 8192 pixels a side");
+    State& s = *state_;
+    s.context.makeCurrent();
+    FrameReport report;
+    const double begin = nowMs();
+    s.renewDepthScale(look.removedDepthMostMm);
+    const Detail detail = s.detailFor(camera, viewport, look, report);
+    const bool one = look.stereo == Stereo::none;
+    if (one && s.drawSmall(camera, viewport, look, moment, detail, out, report)) {
+        // Done.
+    } else if (one) {
+        s.drawEye(s.left, camera, eyeOf(camera, viewport), viewport, look, moment, detail, report);
+        s.read(State::pictureOf(s.left), viewport, out, report);
+    } else {
+        const Viewport each = stereoViewport(viewport, look.stereo);
+        s.drawEye(s.left, camera, stereoEye(camera, each, look.eyeSeparationMm, -1), each, look, moment, detail,
+                  report);
+        s.read(State::pictureOf(s.left), each, s.leftPicture, report);
+        s.drawEye(s.right, camera, stereoEye(camera, each, look.eyeSeparationMm, 1), each, look, moment, detail,
+                  report);
+        s.read(State::pictureOf(s.right), each, s.rightPicture, report);
+        composeStereo(s.leftPicture, s.rightPicture, viewport, look.stereo, out);
+    }
+    gl::check("a picture");
+    report.drawMs = nowMs() - begin - report.readMs;
+    return report;
+}
+
+}  // namespace handpiece::view

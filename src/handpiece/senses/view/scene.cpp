@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/senses/view/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "handpiece/senses/view/mesh_pieces.h"
+
+namespace handpiece::view {
+namespace {
+
+/// More than this, and drawing all is as quick as finding what changed.
+constexpr std::size_t kMostChanges = 20000;
+constexpr double kCreaseRad = 0.9;
+constexpr double kCrownCentreMm = 3.0;  // under a crown's top
+
+}  // namespace
+
+void Scene::changeAll() {
+    ++epoch_;
+    changes_.clear();
+}
+
+void Scene::note(const PooledMesh& mesh) {
+    if (mesh.indexCount == 0) return;
+    if (changes_.size() >= kMostChanges) changeAll();
+    changes_.push_back({mesh.minMm, mesh.maxMm});
+}
+
+void Scene::measure() {
+    bounds_ = toothBounds_;
+    for (const auto* meshes : {&mesh_, &scenery_, &parts_})
+        for (const Static& s : *meshes) {
+            bounds_.extend(s.mesh.minMm.cast<double>());
+            bounds_.extend(s.mesh.maxMm.cast<double>());
+        }
+}
+
+void Scene::setTooth(const core::Box& bounds) {
+    for (const Brick& brick : bricks_) {
+        pool_.remove(brick.now);
+        pool_.remove(brick.coarse);
+        if (brick.isCut) {
+            pool_.remove(brick.before);
+            pool_.remove(brick.beforeCoarse);
+        }
+    }
+    bricks_.clear();
+    slot_.clear();
+    sorted_ = true;
+    coarseCount_ = cutCount_ = 0;
+    hasBefore_ = false;
+    drop(mesh_);
+    drop(parts_);
+    toothBounds_ = bounds;
+    measure();
+    changeAll();
+}
+
+void Scene::updateBricks(std::span<const surface::BrickUpdate> bricks, bool before) {
+    hasBefore_ = hasBefore_ || before;
+    for (const surface::BrickUpdate& update : bricks)
+        put(update, before);
+}
+
+void Scene::put(const surface::BrickUpdate& update, bool before) {
+    const auto [found, isNew] = slot_.try_emplace(update.dense, static_cast<std::uint32_t>(bricks_.size()));
+    if (isNew) {
+        if (!bricks_.empty() && bricks_.back().dense > update.dense) sorted_ = false;
+        bricks_.push_back({});
+        bricks_.back().dense = update.dense;
+    }
+    Brick& brick = bricks_[found->second];
+    const PooledMesh now =
+        update.mesh != nullptr ? pool_.add(pieceOf(*update.mesh, update.removedDepthMm.get())) : PooledMesh{};
+    const PooledMesh coarse = update.coarse != nullptr ? pool_.add(pieceOf(*update.coarse, nullptr)) : PooledMesh{};
+    const bool hasCoarse = update.coarse != nullptr;
+    note(brick.now);
+    coarseCount_ -= brick.hasCoarse ? 1 : 0;
+    coarseCount_ += hasCoarse ? 1 : 0;
+    const bool isFirst = before || (isNew && !hasBefore_);
+    if (isFirst) {
+        // As it was and as it is are one again.
+        if (brick.isCut) {
+            note(brick.before);
+            pool_.remove(brick.before);
+            pool_.remove(brick.beforeCoarse);
+            --cutCount_;
+        }
+        pool_.remove(brick.now);
+        pool_.remove(brick.coarse);
+        brick.isCut = false;
+    } else if (!brick.isCut) {
+        // What it showed so far is kept; for a brick that is new that is nothing.
+        brick.before = brick.now;
+        brick.beforeCoarse = brick.coarse;
+        brick.beforeHasCoarse = brick.hasCoarse;
+        brick.isCut = true;
+        ++cutCount_;
+    } else {
+        pool_.remove(brick.now);
+        pool_.remove(brick.coarse);
+    }
+    brick.now = now;
+    brick.coarse = coarse;
+    brick.hasCoarse = hasCoarse;
+    note(now);
+}
+
+void Scene::drop(std::vector<Static>& meshes) {
+    for (const Static& s : meshes)
+        pool_.remove(s.mesh);
+    meshes.clear();
+}
+
+void Scene::add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, tooth::Tissue tissue) {
+    const core::Box box = mesh.bounds();
+    if (box.isEmpty()) return;
+    // Pieces of about a thousand triangles.
+    const double cells = std::max(1.0, static_cast<double>(mesh.triangles.size()) / 1000.0);
+    for (const MeshPiece& piece : piecesOf(mesh, tissue, kCreaseRad, box.size().maxCoeff() / std::sqrt(cells)))
+        to.push_back({tissue, pool_.add(piece), box});
+}
+
+void Scene::setMesh(const geometry::TriangleMesh& mesh, tooth::Tissue tissue) {
+    setTooth(mesh.bounds());
+    add(mesh_, mesh, tissue);
+    measure();
+}
+
+void Scene::setScenery(std::span<const tooth::Part> parts) {
+    drop(scenery_);
+    for (const tooth::Part& part : parts)
+        add(scenery_, part.mesh, part.tissue);
+    measure();
+    changeAll();
+}
+
+void Scene::setParts(std::span<const tooth::Part> parts) {
+    drop(parts_);
+    for (const tooth::Part& part : parts)
+        add(parts_, part.mesh, part.tissue);
+    changeAll();
+}
+
+namespace {
+
+/// Whether the way from `from` to `to` leads through the box.
+bool leadsThrough(const core::Box& box, const core::Vec3& from, const core::Vec3& to) {
+    double enter = 0.0, leave = 1.0;
+    for (int k = 0; k < 3; ++k) {
+        const double way = to[k] - from[k];
+        if (std::abs(way) < 1e-9) {
+            if (from[k] < box.min[k] || from[k] > box.max[k]) return false;
+            continue;
+        }
+        const double a = (box.min[k] - from[k]) / way, b = (box.max[k] - from[k]) / way;
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+    }
+    return enter < leave;
+}
+
+}  // namespace
+
+const std::vector<const PooledMesh*>& Scene::visible(const Look& look, Detail detail, const Culler& culler,
+                                                     const std::optional<gl::Vec3f>& eyeMm) {
+    if (!sorted_) {
+        std::sort(bricks_.begin(), bricks_.end(), [](const Brick& a, const Brick& b) { return a.dense < b.dense; });
+        for (std::uint32_t i = 0; i < bricks_.size(); ++i)
+            slot_[bricks_[i].dense] = i;
+        sorted_ = true;
+    }
+    visible_.clear();
+    const auto offer = [&](const PooledMesh& mesh) {
+        if (mesh.indexCount > 0 && culler.mayBeSeen(mesh)) visible_.push_back(&mesh);
+    };
+    const bool asItWas = look.tooth == ToothShown::before, coarse = detail == Detail::coarse;
+    for (const Brick& brick : bricks_) {
+        if (asItWas && brick.isCut)
+            offer(coarse && brick.beforeHasCoarse ? brick.beforeCoarse : brick.before);
+        else
+            offer(coarse && brick.hasCoarse ? brick.coarse : brick.now);
+    }
+    const auto isVisible = [&](tooth::Tissue tissue) { return look.visible[static_cast<std::size_t>(tissue)]; };
+    const auto offerAll = [&](const std::vector<Static>& meshes) {
+        for (const Static& s : meshes)
+            if (isVisible(s.tissue)) offer(s.mesh);
+    };
+    offerAll(mesh_);
+    // Inner tissues lie under the surface; they matter only where one of those around them is left out.
+    if (std::any_of(parts_.begin(), parts_.end(), [&](const Static& s) { return !isVisible(s.tissue); }))
+        offerAll(parts_);
+    const core::Vec3 crown =
+        toothBounds_.isEmpty()
+            ? core::Vec3(core::Vec3::Zero())
+            : core::Vec3(toothBounds_.centre().x(), toothBounds_.centre().y(),
+                         toothBounds_.max.z() - std::min(kCrownCentreMm, 0.5 * toothBounds_.size().z()));
+    for (const Static& s : scenery_) {
+        const bool inTheWay = eyeMm && !toothBounds_.isEmpty() && s.tissue == tooth::Tissue::neighbour &&
+                              leadsThrough(s.wholeMm, eyeMm->cast<double>(), crown);
+        if (isVisible(s.tissue) && !inTheWay) offer(s.mesh);
+    }
+    return visible_;
+}
+
+const std::vector<const PooledMesh*>& Scene::cutAway(const Culler& culler) {
+    cut_.clear();
+    for (const Brick& brick : bricks_)
+        if (brick.isCut && brick.before.indexCount > 0 && culler.mayBeSeen(brick.before)) cut_.push_back(&brick.before);
+    return cut_;
+}
+
+PixelRect Scene::rectOfCut(const Eye& eye, const Viewport& viewport) const {
+    PixelRect rect;
+    for (const Brick& brick : bricks_)
+        if (brick.isCut && brick.before.indexCount > 0)
+            rect = rect.joined(rectOf(brick.before.minMm, brick.before.maxMm, eye, viewport));
+    return rect;
+}
+
+}  // namespace handpiece::view

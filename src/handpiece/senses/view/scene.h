@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What there is to draw: the tooth by bricks, as it is and as it was, its inner tissues, the scenery. Private to this
+/// room.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "handpiece/base/geometry/triangle_mesh.h"
+#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/senses/surface/brick_update.h"
+#include "handpiece/senses/view/mesh_pool.h"
+
+namespace handpiece::view {
+
+enum class Detail { full, coarse };
+
+class Scene {
+  public:
+    void setTooth(const core::Box& bounds);
+    void updateBricks(std::span<const surface::BrickUpdate> bricks, bool before);
+    void setMesh(const geometry::TriangleMesh& mesh, tooth::Tissue tissue);
+    void setScenery(std::span<const tooth::Part> parts);
+    void setParts(std::span<const tooth::Part> parts);
+
+    [[nodiscard]] const core::Box& toothBounds() const noexcept { return toothBounds_; }
+    /// All that may be seen, scenery too.
+    [[nodiscard]] const core::Box& bounds() const noexcept { return bounds_; }
+    [[nodiscard]] bool hasCoarse() const noexcept { return coarseCount_ > 0; }
+
+    /// Counts up when all is another; a brick's change only adds to changes().
+    [[nodiscard]] std::uint64_t epoch() const noexcept { return epoch_; }
+    /// Boxes of what changed, the oldest first; forgotten when the epoch changes. A reader keeps its place.
+    struct Change {
+        gl::Vec3f minMm, maxMm;
+    };
+    [[nodiscard]] const std::vector<Change>& changes() const noexcept { return changes_; }
+
+    /// What `look` and `culler` let through, in an order that does not depend on the rest. Good until the next change.
+    /// Seen from `eyeMm`, neighbours that would stand before the tooth's crown are left out: a look from mesial or
+    /// distal shows this tooth.
+    [[nodiscard]] const std::vector<const PooledMesh*>& visible(const Look& look, Detail detail, const Culler& culler,
+                                                                const std::optional<gl::Vec3f>& eyeMm = {});
+    /// The tooth as it was, where it is another now.
+    [[nodiscard]] const std::vector<const PooledMesh*>& cutAway(const Culler& culler);
+    [[nodiscard]] bool isCut() const noexcept { return cutCount_ > 0; }
+    [[nodiscard]] PixelRect rectOfCut(const Eye& eye, const Viewport& viewport) const;
+    std::size_t draw(const std::vector<const PooledMesh*>& meshes) { return pool_.draw(meshes); }
+
+  private:
+    struct Brick {
+        std::uint32_t dense = 0;
+        PooledMesh now, coarse, before, beforeCoarse;
+        bool hasCoarse = false, beforeHasCoarse = false;
+        bool isCut = false;  ///< `now` is not `before`, which then owns its own range
+    };
+    struct Static {
+        tooth::Tissue tissue;
+        PooledMesh mesh;
+        core::Box wholeMm;  ///< of the part that it is a piece of
+    };
+    void put(const surface::BrickUpdate& update, bool before);
+    void drop(std::vector<Static>& meshes);
+    void add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, tooth::Tissue tissue);
+    void note(const PooledMesh& mesh);
+    void changeAll();
+    void measure();
+
+    MeshPool pool_;
+    std::vector<Brick> bricks_;                              ///< by rising dense
+    std::unordered_map<std::uint32_t, std::uint32_t> slot_;  ///< dense -> place in bricks_ (sorted only when asked)
+    bool sorted_ = true;
+    std::vector<Static> mesh_, scenery_, parts_;
+    core::Box toothBounds_, bounds_;
+    std::size_t coarseCount_ = 0, cutCount_ = 0;
+    bool hasBefore_ = false;
+    std::uint64_t epoch_ = 1;
+    std::vector<Change> changes_;
+    std::vector<const PooledMesh*> visible_, cut_;
+};
+
+}  // namespace handpiece::view

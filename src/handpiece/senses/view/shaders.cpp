@@ -1,0 +1,477 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/senses/view/shaders.h"
+
+#include <string>
+
+#include "handpiece/senses/view/instrument_shaders.h"
+
+namespace handpiece::view {
+namespace {
+
+using gl::kFullScreenVertex;
+
+constexpr const char* kSurfaceVertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec4 normal;
+layout(location = 2) in uint tissue;
+layout(location = 3) in float removed;
+uniform mat4 viewProjection;
+uniform int visibleTissues;
+#ifdef CLIPPED
+uniform vec4 clipPlane;
+uniform vec4 mirrorPlane;
+out float gl_ClipDistance[2];
+#endif
+out vec3 normalOut;
+out float removedOut;
+flat out float kind;
+void main() {
+    vec4 at = vec4(position, 1.0);
+    // All corners of a triangle are of one tissue: one that is not to be seen goes out of the picture as a whole.
+    bool shown = (visibleTissues >> int(tissue) & 1) != 0;
+    gl_Position = shown ? viewProjection * at : vec4(0.0, 0.0, -2.0, 1.0);
+#ifdef CLIPPED
+    gl_ClipDistance[0] = dot(clipPlane, at);
+    gl_ClipDistance[1] = dot(mirrorPlane, at);
+#endif
+    normalOut = 0.5 * normal.xyz + 0.5;
+    removedOut = removed;
+    kind = float(tissue);
+}
+)";
+
+constexpr const char* kSurfaceFragment = R"(
+in vec3 normalOut;
+in float removedOut;
+flat in float kind;
+layout(location = 0) out vec4 surface;
+void main() {
+    float k = kind;
+#ifdef CLIPPED
+    if (!gl_FrontFacing) {
+        // What was cut through: scenery is filled with its own colour, a tooth shows its walls.
+        if (kind == 6.0 || kind == 7.0 || kind == 8.0) {
+            surface = vec4(0.5, 0.5, 0.5, (kind * 4096.0 + 1.0) / 65535.0);
+            return;
+        }
+        k = 10.0;
+    }
+#endif
+    float depth = min(4095.0, floor(removedOut * 13107.0));
+    surface = vec4(normalOut, (k * 4096.0 + depth) / 65535.0);
+}
+)";
+
+// The face of a section: four corners made of the vertex's number.
+constexpr const char* kCapVertex = R"(
+uniform mat4 viewProjection;
+uniform vec3 origin, uStep, vStep;
+uniform vec2 size;
+out vec2 at;
+void main() {
+    at = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * size;
+    gl_Position = viewProjection * vec4(origin + (at.x - 0.5) * uStep + (at.y - 0.5) * vStep, 1.0);
+}
+)";
+
+constexpr const char* kCapFragment = R"(
+in vec2 at;
+uniform sampler2D tissues;
+uniform int visibleTissues;
+uniform float mmPerPixel;
+uniform int grid;
+uniform vec2 gridOrigin;
+layout(location = 0) out vec4 surface;
+// The tissue that most of the four around a point are of, weighted as for a linear blend: smooth outlines.
+int tissueAt(vec2 p) {
+    vec2 q = p - 0.5;
+    ivec2 low = ivec2(floor(q));
+    vec2 f = q - floor(q);
+    ivec2 last = textureSize(tissues, 0) - 1;
+    int t[4];
+    float w[4];
+    for (int i = 0; i < 4; ++i) {
+        ivec2 o = ivec2(i & 1, i >> 1);
+        t[i] = int(texelFetch(tissues, clamp(low + o, ivec2(0), last), 0).r * 255.0 + 0.5);
+        w[i] = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
+    }
+    int best = 0;
+    float most = -1.0;
+    for (int i = 0; i < 4; ++i) {
+        float sum = 0.0;
+        for (int j = 0; j < 4; ++j) sum += t[j] == t[i] ? w[j] : 0.0;
+        if (sum > most) { most = sum; best = t[i]; }
+    }
+    return best;
+}
+void main() {
+    int kind = tissueAt(at);
+    if (kind == 0 || (visibleTissues >> kind & 1) == 0) discard;
+    vec2 perPixel = vec2(length(vec2(dFdx(at.x), dFdy(at.x))), length(vec2(dFdx(at.y), dFdy(at.y))));
+    // Edges of tissues, and of the tooth, as a line of a pixel.
+    vec2 s = 0.8 * max(perPixel, vec2(0.15));
+    if (tissueAt(at + vec2(s.x, 0.0)) != kind || tissueAt(at + vec2(0.0, s.y)) != kind ||
+        tissueAt(at - vec2(s.x, 0.0)) != kind || tissueAt(at - vec2(0.0, s.y)) != kind)
+        kind = 12;
+    if (grid != 0) {
+        vec2 mm = (at - 0.5) * mmPerPixel + gridOrigin;
+        vec2 away = abs(mm - round(mm)) / (perPixel * mmPerPixel);
+        if (min(away.x, away.y) < 0.55) kind = 11;
+    }
+    surface = vec4(0.5, 0.5, 0.5, float(kind) * 4096.0 / 65535.0);
+}
+)";
+
+// Alchemy ambient occlusion (McGuire, Osman, Bukowski, Hennessy 2011) on a spiral, at half the resolution.
+constexpr const char* kOcclusionFragment = R"(
+uniform sampler2D surface;
+uniform sampler2D depth;
+uniform mat3 toEye;
+uniform vec4 unproject;   // x and y of a pixel per unit of depth: scale, shift
+uniform vec2 depthTerms;  // p22, p23
+uniform float radiusMm;
+uniform float pixelsPerMm;  // at unit depth
+uniform float mostPixels;
+uniform int samples;
+uniform float turns;
+layout(location = 0) out vec4 result;
+float eyeDepth(ivec2 p) { return depthTerms.y / (2.0 * texelFetch(depth, p, 0).r - 1.0 + depthTerms.x); }
+void main() {
+    ivec2 last = textureSize(depth, 0) - 1;
+    ivec2 p = min(2 * ivec2(gl_FragCoord.xy), last);
+    float d = texelFetch(depth, p, 0).r;
+    if (d >= 1.0) { result = vec4(1.0, 60000.0, 0.0, 0.0); return; }
+    float z = depthTerms.y / (2.0 * d - 1.0 + depthTerms.x);
+    vec3 c = vec3((vec2(p) + 0.5) * unproject.xy + unproject.zw, -1.0) * z;
+    vec3 n = texelFetch(surface, p, 0).xyz * 2.0 - 1.0;
+    float open = 1.0;
+    if (dot(n, n) > 0.1) {
+        n = toEye * normalize(n);
+        float r2 = radiusMm * radiusMm;
+        float reach = min(mostPixels, radiusMm * pixelsPerMm / z);
+        // Sixteen directions to begin with, in a pattern of 4 x 4 that the blur takes away again.
+        ivec2 q = ivec2(gl_FragCoord.xy) & 3;
+        int index = ((q.x ^ q.y) & 1) * 8 + (q.x & 1) * 4 + ((q.x ^ q.y) & 2) * 1 + ((q.x >> 1) & 1);
+        float phase = float(index) * 0.39269908;
+        float sum = 0.0;
+        for (int i = 0; i < samples; ++i) {
+            float share = (float(i) + 0.5) / float(samples);
+            float angle = share * turns + phase;
+            vec2 step = vec2(cos(angle), sin(angle)) * (reach * share * share + 1.0);
+            ivec2 s = clamp(p + ivec2(step), ivec2(0), last);
+            float sz = eyeDepth(s);
+            vec3 v = vec3((vec2(s) + 0.5) * unproject.xy + unproject.zw, -1.0) * sz - c;
+            float vv = dot(v, v), vn = dot(v, n) - 0.0012 * z;
+            float fall = max(0.0, 1.0 - vv / r2);
+            sum += fall * fall * max(0.0, vn) * inversesqrt(vv + 1e-4);
+        }
+        open = max(0.0, 1.0 - 2.6 * sum / float(samples));
+    }
+    result = vec4(open, z, 0.0, 0.0);
+}
+)";
+
+constexpr const char* kOcclusionBlurFragment = R"(
+uniform sampler2D occlusion;
+layout(location = 0) out vec4 result;
+void main() {
+    ivec2 last = textureSize(occlusion, 0) - 1;
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    vec2 middle = texelFetch(occlusion, p, 0).rg;
+    float sum = 0.0, weights = 1e-4;
+    for (int y = -2; y < 2; ++y)
+        for (int x = -2; x < 2; ++x) {
+            vec2 s = texelFetch(occlusion, clamp(p + ivec2(x, y), ivec2(0), last), 0).rg;
+            float w = max(0.0, 1.0 - abs(s.g - middle.g) * 3.0) + 1e-5;
+            sum += s.r * w;
+            weights += w;
+        }
+    result = vec4(sum / weights, middle.g, 0.0, 0.0);
+}
+)";
+
+constexpr const char* kBackgroundFragment = R"(
+in vec2 uv;
+uniform vec3 top, bottom;
+out vec4 colour;
+void main() {
+    vec3 c = mix(top, bottom, uv.y);
+    vec2 m = uv - vec2(0.5, 0.45);
+    c *= 1.0 + 0.22 * max(0.0, 1.0 - 2.6 * dot(m, m));
+    // Half a step of noise: a dark gradient shows its steps otherwise.
+    float noise = fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy), vec2(0.06711056, 0.00583715))));
+    colour = vec4(c + (noise - 0.5) / 255.0, 1.0);
+}
+)";
+
+constexpr const char* kLightFragment = R"(
+in vec2 uv;
+uniform sampler2D surface;
+uniform sampler2D depth;
+uniform sampler2D occlusion;
+uniform sampler2D depthScale;
+uniform mat4 toTooth;   // from NDC
+uniform vec2 depthTerms;
+uniform vec3 eye, lamp, eyeUp, eyeRight;
+uniform vec3 palette[16];   // linear
+uniform vec4 material[16];  // wrap, gloss, sharpness of it, how far light goes under
+uniform float wet;
+uniform int natural;
+uniform vec2 crown;         // where it begins and ends along z
+uniform int removedColours;
+uniform float removedMost;
+#ifdef SHADOWS
+uniform sampler2DShadow shadowMap;
+uniform mat4 toShadow;
+#endif
+out vec4 colour;
+#ifdef FINE
+float hash(vec3 p) {
+    p = fract(p * 0.3183099 + 0.1);
+    p *= 17.0;
+    return fract(p.x * p.y * p.z * (p.x + p.y + p.z));
+}
+float noise(vec3 x) {
+    vec3 i = floor(x), f = fract(x);
+    f = f * f * (3.0 - 2.0 * f);
+    return mix(mix(mix(hash(i), hash(i + vec3(1, 0, 0)), f.x), mix(hash(i + vec3(0, 1, 0)), hash(i + vec3(1, 1, 0)), f.x), f.y),
+               mix(mix(hash(i + vec3(0, 0, 1)), hash(i + vec3(1, 0, 1)), f.x), mix(hash(i + vec3(0, 1, 1)), hash(i + vec3(1, 1, 1)), f.x), f.y), f.z);
+}
+#endif
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    float d = texelFetch(depth, p, 0).r;
+    if (d >= 1.0) discard;
+    vec4 g = texelFetch(surface, p, 0);
+    float code = floor(g.w * 65535.0 + 0.5);
+    int kind = int(code / 4096.0);
+    vec3 n = g.xyz * 2.0 - 1.0;
+    vec3 albedo = palette[kind];
+    if (dot(n, n) < 0.1) {  // a section's face: as a drawing
+        float tone = code - float(kind) * 4096.0 > 0.5 ? 0.55 : 0.92;
+        colour = vec4(pow(albedo * tone, vec3(1.0 / 2.2)), 1.0);
+        return;
+    }
+    n = normalize(n);
+    vec4 h = toTooth * vec4(2.0 * uv - 1.0, 2.0 * d - 1.0, 1.0);
+    vec3 at = h.xyz / h.w;
+    vec3 v = normalize(eye - at);
+    if (kind == 10) n = dot(n, v) < 0.0 ? -n : n;
+    float nv = clamp(dot(n, v), 0.0, 1.0);
+
+    float open = 1.0;
+    {
+        // From half resolution, without mixing near and far.
+        float z = depthTerms.y / (2.0 * d - 1.0 + depthTerms.x);
+        vec2 q = 0.5 * gl_FragCoord.xy - 0.25;
+        ivec2 low = max(ivec2(floor(q)), ivec2(0)), last = textureSize(occlusion, 0) - 1;
+        vec2 f = fract(q);
+        float sum = 0.0, weights = 0.0;
+        for (int i = 0; i < 4; ++i) {
+            ivec2 o = ivec2(i & 1, i >> 1);
+            vec2 s = texelFetch(occlusion, min(low + o, last), 0).rg;
+            float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y) + 0.01;
+            w *= max(0.0, 1.0 - abs(s.g - z) * 2.0) + 1e-4;
+            sum += s.r * w;
+            weights += w;
+        }
+        open = sum / weights;
+    }
+
+    vec4 m = material[kind];
+    bool isTooth = kind == 1 || kind == 8;
+    if (natural != 0) {
+        if (isTooth) {
+            // Warmer and darker towards the neck, where dentine shines through; greyer and bluer at the tips.
+            float up = kind == 8 ? 0.7 : clamp((at.z - crown.x) / (crown.y - crown.x), 0.0, 1.0);
+            albedo *= mix(vec3(0.93, 0.79, 0.58), vec3(1.0), smoothstep(0.0, 0.65, up));
+            float tip = smoothstep(0.72, 1.0, up) * (0.35 + 0.65 * (1.0 - nv));
+            albedo *= mix(vec3(1.0), vec3(0.93, 0.965, 1.0), tip);
+            // What stays in fissures.
+            float deep = clamp(1.0 - open, 0.0, 1.0);
+            albedo *= mix(vec3(1.0), vec3(0.70, 0.52, 0.33), smoothstep(0.22, 0.85, deep) * 0.9);
+        }
+        if (kind == 6) {
+#ifdef FINE
+            float blotch = noise(at * 0.9) * 0.6 + noise(at * 5.0) * 0.4;
+#else
+            float blotch = 0.5;
+#endif
+            albedo *= mix(vec3(0.93, 0.82, 0.84), vec3(1.05, 1.06, 1.04), blotch);
+        }
+#ifdef FINE
+        if (isTooth || kind == 2 || kind == 4 || kind == 5) {
+            float grain = kind == 4 ? noise(at * 9.0) * 0.5 + noise(at * 3.0) * 0.5 : noise(at * vec3(1.6, 1.6, 3.2));
+            albedo *= 1.0 + (kind == 4 ? 0.75 : 0.07) * (grain - 0.5);
+        }
+#endif
+    }
+    if (removedColours != 0 && kind != 6 && kind != 7 && kind != 8 && kind != 10)
+        albedo = texture(depthScale, vec2((code - float(kind) * 4096.0) * 0.005 / removedMost, 0.5)).rgb;
+
+    // Light goes into tissue and comes out beside: red farther than blue.
+    float nl = dot(n, lamp);
+    vec3 wrap = m.x * vec3(1.25, 1.0, 0.8);
+    vec3 key = max(vec3(0.0), (nl + wrap) / (1.0 + wrap));
+    float lit = 1.0;
+#ifdef SHADOWS
+    vec4 s = toShadow * vec4(at + n * 0.06, 1.0);
+    float sum = 0.0;
+    vec2 texel = 1.6 / vec2(textureSize(shadowMap, 0));
+    for (int i = 0; i < 16; ++i) {
+        vec2 o = vec2(float(i & 3), float(i >> 2)) - 1.5;
+        sum += texture(shadowMap, vec3(s.xy + o * texel, s.z));
+    }
+    lit = sum / 16.0;
+#endif
+    key *= mix(vec3(0.16, 0.12, 0.10) * m.w + 0.04, vec3(1.0), lit);
+    float sky = 0.5 + 0.5 * dot(n, eyeUp);
+    vec3 side = normalize(0.85 * eyeRight + 0.25 * eyeUp + 0.35 * (eye - at) / length(eye - at));
+    float fill = max(0.0, 0.25 + 0.75 * dot(n, side));
+    // Light that goes to and fro in a hollow takes up the colour of its walls.
+    vec3 a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417, c = 2.7552 * albedo + 0.6903;
+    // Half of it: a fissure is to be read.
+    vec3 openColour = mix(vec3(open), max(vec3(open), ((open * a + b) * open + c) * open), 0.5);
+    vec3 keyOpen = mix(vec3(1.0), openColour, 0.7);
+    vec3 light = key * keyOpen * vec3(1.62, 1.56, 1.46) +
+                 (mix(vec3(0.17, 0.15, 0.15), vec3(0.42, 0.46, 0.52), sky) + fill * vec3(0.20, 0.23, 0.28)) * openColour;
+    vec3 sum3 = albedo * light * 0.62;
+    // Seen along the surface, enamel lets light of the other side through.
+    float rim = (1.0 - nv) * (1.0 - nv);
+    sum3 += albedo * m.w * rim * rim * vec3(0.10, 0.13, 0.17) * open;
+
+    vec3 half3 = normalize(lamp + v);
+    float nh = dot(n, half3);
+    float fresnel = 0.04 + 0.96 * pow(1.0 - nv, 5.0);
+    vec3 r = reflect(-v, n);
+    float gloss = m.y * mix(0.45, 1.0, wet);
+    float sharp = m.z * mix(0.35, 1.0, wet);
+    float spark = exp(sharp * 14.0 * (nh - 1.0)) * 0.16 + wet * exp(sharp * 110.0 * (nh - 1.0)) * 0.95;
+    float window = smoothstep(0.72, 0.93, dot(r, side)) * 0.30;
+    float above = smoothstep(-0.3, 0.9, dot(r, eyeUp));
+    float shade = clamp(open * 1.3 - 0.2, 0.0, 1.0);
+    sum3 += gloss * shade * (spark * max(0.0, min(1.0, 4.0 * nl + 0.2)) * lit * vec3(1.0, 0.98, 0.94) +
+             fresnel * (window + above * 0.38 + 0.05) * vec3(0.86, 0.94, 1.0) * (0.55 + 0.9 * wet));
+    sum3 = sum3 * (1.0 + sum3 * 0.10) / (1.0 + 0.22 * sum3);
+    colour = vec4(pow(clamp(sum3, 0.0, 1.0), vec3(1.0 / 2.2)), 1.0);
+}
+)";
+
+// After FXAA (Lottes 2009), the short way: along an edge, by the brightness around it.
+constexpr const char* kSmoothFragment = R"(
+in vec2 uv;
+uniform sampler2D picture;
+uniform vec2 pixel;
+out vec4 colour;
+void main() {
+    const vec3 weights = vec3(0.299, 0.587, 0.114);
+    ivec2 p = ivec2(gl_FragCoord.xy), last = textureSize(picture, 0) - 1;
+    vec3 middle = texelFetch(picture, p, 0).rgb;
+    float m = dot(middle, weights);
+    float nw = dot(texelFetch(picture, max(p - 1, ivec2(0)), 0).rgb, weights);
+    float ne = dot(texelFetch(picture, clamp(p + ivec2(1, -1), ivec2(0), last), 0).rgb, weights);
+    float sw = dot(texelFetch(picture, clamp(p + ivec2(-1, 1), ivec2(0), last), 0).rgb, weights);
+    float se = dot(texelFetch(picture, min(p + 1, last), 0).rgb, weights);
+    float low = min(m, min(min(nw, ne), min(sw, se))), high = max(m, max(max(nw, ne), max(sw, se)));
+    vec2 along = vec2(-((nw + ne) - (sw + se)), (nw + sw) - (ne + se));
+    float reduce = max((nw + ne + sw + se) * 0.03125, 0.0078125);
+    along = clamp(along / (min(abs(along.x), abs(along.y)) + reduce), -6.0, 6.0) * pixel;
+    vec3 near = 0.5 * (texture(picture, uv - along / 6.0).rgb + texture(picture, uv + along / 6.0).rgb);
+    vec3 far = 0.5 * near + 0.25 * (texture(picture, uv - 0.5 * along).rgb + texture(picture, uv + 0.5 * along).rgb);
+    float f = dot(far, weights);
+    vec3 result = f < low || f > high ? near : far;
+    colour = vec4(high - low < max(0.03, high * 0.08) ? middle : result, 1.0);
+}
+)";
+
+// Shadow and nearness of the bur, as two capsules: multiplied into what is there.
+constexpr const char* kBurShadowFragment = R"(
+in vec2 uv;
+uniform sampler2D depth;
+uniform mat4 toTooth;
+uniform vec3 lamp;
+uniform vec3 begin[2], end[2];
+uniform float radius[2];
+uniform float reach;
+out vec4 colour;
+float distanceTo(vec3 p, vec3 a, vec3 b) {
+    vec3 ab = b - a;
+    return length(p - a - ab * clamp(dot(p - a, ab) / dot(ab, ab), 0.0, 1.0));
+}
+void main() {
+    float d = texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r;
+    if (d >= 1.0) discard;
+    vec4 h = toTooth * vec4(2.0 * uv - 1.0, 2.0 * d - 1.0, 1.0);
+    vec3 p = h.xyz / h.w;
+    float light = 1.0, nearness = 1.0;
+    for (int i = 0; i < 2; ++i) {
+        // Where the ray to the lamp comes nearest to the axis.
+        vec3 ab = end[i] - begin[i], w = p - begin[i];
+        float aa = dot(ab, ab), bl = dot(ab, lamp), bw = dot(ab, w), lw = dot(lamp, w);
+        float denominator = max(1e-5, aa - bl * bl);
+        float along = clamp((bw - bl * lw) / denominator, 0.0, 1.0);
+        float t = max(0.0, dot(begin[i] + along * ab - p, lamp));
+        along = clamp(dot(p + t * lamp - begin[i], ab) / aa, 0.0, 1.0);
+        float away = length(p + t * lamp - begin[i] - along * ab) - radius[i];
+        float soft = 0.10 + 0.13 * t;
+        float dark = 1.0 - smoothstep(-soft, soft, away);
+        light = min(light, 1.0 - dark * clamp(1.0 - t / reach, 0.0, 1.0) * smoothstep(0.0, 0.12, t));
+    }
+    float gap = max(0.0, distanceTo(p, begin[0], end[0]) - radius[0]);
+    nearness = 1.0 - 0.55 * exp(-gap * 3.2);
+    vec3 shade = mix(vec3(0.34, 0.31, 0.31), vec3(1.0), light) * nearness;
+    colour = vec4(shade, 1.0);
+}
+)";
+
+constexpr const char* kGhostVertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec4 normal;
+uniform mat4 viewProjection;
+out vec3 at, normalOut;
+void main() {
+    at = position;
+    normalOut = normal.xyz;
+    gl_Position = viewProjection * vec4(position, 1.0);
+}
+)";
+constexpr const char* kGhostFragment = R"(
+in vec3 at, normalOut;
+uniform vec3 eye, lamp;
+uniform vec4 clipPlane;
+uniform vec4 mirrorPlane;
+out vec4 colour;
+void main() {
+    if (dot(clipPlane, vec4(at, 1.0)) < 0.0 || dot(mirrorPlane, vec4(at, 1.0)) < 0.0) discard;
+    vec3 n = normalize(normalOut), v = normalize(eye - at);
+    float rim = 1.0 - abs(dot(n, v));
+    float spark = exp(90.0 * (dot(n, normalize(lamp + v)) - 1.0));
+    colour = vec4(mix(vec3(0.45, 0.72, 0.95), vec3(1.0), spark), clamp(0.30 + 0.5 * rim * rim + 0.6 * spark, 0.0, 0.9));
+}
+)";
+
+std::string with(const char* define, const char* text) {
+    return std::string("#define ") + define + "\n" + text;
+}
+
+}  // namespace
+
+Shaders::Shaders()
+    : surface("surface", kSurfaceVertex, kSurfaceFragment),
+      clippedSurface("clipped surface", with("CLIPPED", kSurfaceVertex), with("CLIPPED", kSurfaceFragment)),
+      cap("section", kCapVertex, kCapFragment),
+      occlusion("occlusion", kFullScreenVertex, kOcclusionFragment),
+      occlusionBlur("occlusion blur", kFullScreenVertex, kOcclusionBlurFragment),
+      background("background", kFullScreenVertex, kBackgroundFragment),
+      light("light", kFullScreenVertex, kLightFragment),
+      fineLight("fine light", kFullScreenVertex, with("FINE", kLightFragment)),
+      shadowedLight("light with shadows", kFullScreenVertex, with("FINE", with("SHADOWS", kLightFragment).c_str())),
+      smooth("smooth", kFullScreenVertex, kSmoothFragment),
+      burShadow("bur shadow", kFullScreenVertex, kBurShadowFragment),
+      bur("bur", kInstrumentVertex, with("BUR", kInstrumentFragment)),
+      glassBur("bur as glass", kInstrumentVertex, with("GLASS", with("BUR", kInstrumentFragment).c_str())),
+      turbine("turbine", kInstrumentVertex, kInstrumentFragment),
+      glassTurbine("turbine as glass", kInstrumentVertex, with("GLASS", kInstrumentFragment)),
+      ghost("ghost", kGhostVertex, kGhostFragment) {}
+
+}  // namespace handpiece::view

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The whole program under the offscreen platform, with folders of its own. The starter teeth that it finds in its
+/// cache are put there by the test: an egg of enamel about dentine and pulp, beside a gum. Making real ones takes a
+/// quarter of a minute; one test does.
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <QAbstractButton>
+#include <QApplication>
+#include <QDropEvent>
+#include <QMimeData>
+#include <QTemporaryDir>
+#include <QTest>
+#include <QUrl>
+#include <csignal>
+#include <functional>
+#include <memory>
+
+#include "shell/error_dialog.h"
+#include "shell/host.h"
+#include "support/closed_meshes.h"
+
+namespace handpiece::desktop {
+
+/// Waits, with the window's events, for what must come about.
+inline bool waitFor(const std::function<bool()>& what, int timeoutMs = 120000) {
+    return QTest::qWaitFor(what, timeoutMs);
+}
+
+inline tooth::Case eggTooth(starter::ToothKind kind) {
+    const starter::ToothKindInfo& info = starter::infoOf(kind);
+    const auto egg = [](int level, double scale) {
+        return test::icosphere(level, [scale](const core::Vec3& v) {
+            return core::Vec3(scale * 4.5 * v.x(), scale * 4.0 * v.y(), scale * 6.0 * v.z());
+        });
+    };
+    tooth::Case made;
+    made.name = std::string(info.name) + " (egg)";
+    made.kind = info.name;
+    made.fdiNumber = info.fdiNumber;
+    made.buccalSign = info.buccalSign;
+    made.outer = egg(4, 1.0);
+    const auto part = [](const char* name, tooth::Tissue tissue, int priority, geometry::TriangleMesh mesh) {
+        return tooth::Part{name, tissue, priority, std::move(mesh)};
+    };
+    made.parts = {part("enamel", tooth::Tissue::enamel, 0, egg(4, 1.0)),
+                  part("dentine", tooth::Tissue::dentine, 1, egg(3, 0.8)),
+                  part("pulp", tooth::Tissue::pulp, 2, egg(2, 0.3))};
+    made.scenery = {
+        part("gum", tooth::Tissue::gum, 0, test::boxMesh(core::Vec3(-9.0, -7.0, -9.0), core::Vec3(9.0, 7.0, -4.0)))};
+    return made;
+}
+
+class ShellTest : public ::testing::Test {
+  protected:
+    /// Shared by all tests of a program, and by those that they start.
+    static QTemporaryDir& shared() {
+        static QTemporaryDir folder;
+        static const bool made = [] {
+            for (const starter::ToothKind kind :
+                 {starter::ToothKind::lowerFirstMolar, starter::ToothKind::upperIncisor})
+                tooth::writeCase(eggTooth(kind),
+                                 toPath(folder.filePath("starter")) /
+                                     (std::string(starter::infoOf(kind).name) + "-4000-" HANDPIECE_VERSION));
+            return true;
+        }();
+        static_cast<void>(made);
+        return folder;
+    }
+    [[nodiscard]] std::filesystem::path at(const char* name) const {
+        return toPath(own_.filePath(QLatin1String(name)));
+    }
+
+    [[nodiscard]] Simulator::Options options() const {
+        Simulator::Options options;
+        options.folders = {at("config/handpiece.ini"), at("data/sessions"), toPath(shared().filePath("starter"))};
+        options.starter = {starter::ToothKind::lowerFirstMolar, 4000};
+        options.sound = false;
+        options.realTime = false;
+        options.voxelUm = 100;
+        return options;
+    }
+    void start(const CommandLine& line = {}) {
+        host_.reset();
+        host_ = std::make_unique<Host>(*qApp, line, options());
+        window().questions.unsaved = [this] {
+            ++asked_;
+            return answer_;
+        };
+        window().questions.fileToOpen =
+            window().questions.fileToSave = [this](const QString&, const QString&, const QString&) { return file_; };
+        window().resize(1000, 700);
+        host_->start();
+    }
+    void startWithTooth(const CommandLine& line = {}) {
+        start(line);
+        ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+        view()->showStandardView(view::StandardView::occlusal);
+    }
+    [[nodiscard]] MainWindow& window() { return host_->window(); }
+    [[nodiscard]] Simulator& simulator() { return host_->simulator(); }
+    [[nodiscard]] ViewWidget* view() { return window().view(); }
+    [[nodiscard]] QAction* action(const char* name) { return window().actions()[name]; }
+    [[nodiscard]] double removedMm3() {
+        double sum = 0.0;
+        for (const double v : simulator().sample().removedMm3)
+            sum += v;
+        return sum;
+    }
+    /// Presses in the middle of the picture until something is gone, as a newcomer would.
+    [[nodiscard]] bool cut() {
+        const QPoint middle = view()->rect().center();
+        const double before = removedMm3();
+        QMouseEvent move(QEvent::MouseMove, QPointF(middle), view()->mapToGlobal(QPointF(middle)), Qt::NoButton,
+                         Qt::NoButton, Qt::NoModifier);
+        QApplication::sendEvent(view(), &move);
+        QTest::qWait(300);
+        QTest::mousePress(view(), Qt::LeftButton, Qt::NoModifier, middle);
+        const bool gone = waitFor([&] { return removedMm3() > before + 0.02; });
+        QTest::mouseRelease(view(), Qt::LeftButton, Qt::NoModifier, middle);
+        // The stroke ends with the pedal: undo knows it from then on.
+        return gone && waitFor([this] { return !simulator().status().inStroke && simulator().status().undoSteps > 0; });
+    }
+    /// One step after the other until there is none.
+    [[nodiscard]] bool undoAll() {
+        for (std::size_t left = simulator().status().undoSteps; left > 0; --left) {
+            action("actionUndo")->trigger();
+            if (!waitFor([&] { return simulator().status().undoSteps == left - 1 && !simulator().status().restoring; },
+                         20000))
+                return false;
+        }
+        return true;
+    }
+    [[nodiscard]] bool idle() {
+        return waitFor([this] { return !simulator().isBusy(); });
+    }
+
+    QTemporaryDir own_;
+    std::unique_ptr<Host> host_;
+    MainWindow::Questions::Unsaved answer_ = MainWindow::Questions::Unsaved::discard;
+    /// Drops a file onto the window, as a file manager does.
+    void drop(const QString& file) {
+        QMimeData data;
+        data.setUrls({QUrl::fromLocalFile(file)});
+        QDragEnterEvent enter(QPoint(50, 50), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(&window(), &enter);
+        EXPECT_TRUE(enter.isAccepted());
+        QDropEvent event(QPointF(50, 50), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(&window(), &event);
+    }
+
+    QString file_;
+    int asked_ = 0;
+};
+
+}  // namespace handpiece::desktop

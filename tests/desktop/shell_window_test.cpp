@@ -1,0 +1,549 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program as a student uses it: open, cut, undo, save, open again, crash.
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDialog>
+#include <QDockWidget>
+#include <QDoubleSpinBox>
+#include <QFile>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QLabel>
+#include <QMenu>
+#include <QMenuBar>
+#include <QProcess>
+#include <QSet>
+#include <QStatusBar>
+#include <fstream>
+
+#include "desktop/view/section_bar.h"
+#include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/record/session/session_reader.h"
+#include "panels/drill_bar.h"
+#include "panels/measure_box.h"
+#include "panels/notice_bar.h"
+#include "panels/parameter_box.h"
+#include "shell_support.h"
+
+namespace handpiece::desktop {
+namespace {
+
+namespace fs = std::filesystem;
+
+void collect(const QMenu* menu, QSet<QAction*>& into) {
+    for (QAction* action : menu->actions()) {
+        into.insert(action);
+        if (action->menu()) collect(action->menu(), into);
+    }
+}
+
+TEST_F(ShellTest, OpensOnTheStarterToothWithBur330AndNoDialog) {
+    start();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+    EXPECT_EQ(simulator().toothCase()->kind, "lower-first-molar");
+    EXPECT_EQ(window().findChild<DrillBar*>()->bur(), "330");
+    EXPECT_EQ(window().detail(), Detail::practice);
+    for (const QWidget* widget : QApplication::topLevelWidgets())
+        EXPECT_FALSE(widget->isVisible() && qobject_cast<const QDialog*>(widget)) << qPrintable(widget->objectName());
+    EXPECT_TRUE(view()->hasTooth());
+    EXPECT_FALSE(simulator().isUnsaved());
+}
+
+TEST_F(ShellTest, EveryCommandHasANameATooltipAKeyAndAPlaceInTheMenus) {
+    start();
+    QSet<QAction*> inMenus;
+    for (QAction* top : window().menuBar()->actions())
+        collect(top->menu(), inMenus);
+    QSet<QString> names, keys;
+    for (QAction* action : window().actions().all()) {
+        EXPECT_TRUE(inMenus.contains(action)) << qPrintable(action->objectName());
+        EXPECT_FALSE(action->toolTip().isEmpty()) << qPrintable(action->objectName());
+        EXPECT_FALSE(action->shortcut().isEmpty()) << qPrintable(action->objectName());
+        EXPECT_FALSE(action->shortcut().toString().contains("Alt")) << qPrintable(action->objectName());
+        EXPECT_FALSE(action->text().contains('&')) << qPrintable(action->text());
+        EXPECT_FALSE(keys.contains(action->shortcut().toString())) << qPrintable(action->shortcut().toString());
+        keys.insert(action->shortcut().toString());
+        EXPECT_FALSE(names.contains(action->objectName()));
+        names.insert(action->objectName());
+    }
+    for (const char* name : {"actionStarter_lower-first-molar_6", "actionStarter_lower-first-molar_100",
+                             "actionStarter_upper-incisor_25", "actionLanguage_ja"})
+        EXPECT_NE(window().findChild<QAction*>(name), nullptr) << name;
+}
+
+TEST_F(ShellTest, CutsUndoesSavesAndResumes) {
+    startWithTooth();
+    ASSERT_TRUE(cut());
+    EXPECT_TRUE(simulator().isUnsaved());
+    EXPECT_TRUE(window().isWindowModified());
+    action("actionUndo")->trigger();
+    ASSERT_TRUE(waitFor([this] { return removedMm3() == 0.0 && !simulator().isUnsaved(); }));
+    action("actionRedo")->trigger();
+    ASSERT_TRUE(waitFor([this] { return removedMm3() > 0.0 && !simulator().status().restoring; }));
+    const double cutMm3 = removedMm3();
+
+    file_ = own_.filePath("mine.handpiece");
+    action("actionSaveAs")->trigger();
+    ASSERT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !simulator().isUnsaved(); }));
+    EXPECT_EQ(asked_, 0);
+    // Another tooth in between: nothing is unsaved, so nobody asks.
+    window().openStarter({starter::ToothKind::upperIncisor, 4000});
+    ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "upper-incisor"; }));
+    action("actionResume")->trigger();
+    ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "lower-first-molar"; }));
+    EXPECT_EQ(asked_, 0);
+    ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 10; }));
+    EXPECT_NEAR(removedMm3(), cutMm3, 1e-9);
+
+    // The same in the next start, from its settings.
+    window().rememberAll();
+    startWithTooth();
+    action("actionResume")->trigger();
+    ASSERT_TRUE(waitFor([&] { return std::abs(removedMm3() - cutMm3) < 1e-9 && simulator().sample().tick > 10; }));
+}
+
+TEST_F(ShellTest, AsksBeforeUnsavedWorkGoes) {
+    startWithTooth();
+    ASSERT_TRUE(cut());
+    answer_ = MainWindow::Questions::Unsaved::cancel;
+    window().close();
+    EXPECT_EQ(asked_, 1);
+    EXPECT_TRUE(window().isVisible());
+    EXPECT_GT(removedMm3(), 0.0);
+    answer_ = MainWindow::Questions::Unsaved::save;
+    file_ = own_.filePath("at-closing.handpiece");
+    window().close();
+    EXPECT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !window().isVisible(); }));
+}
+
+TEST_F(ShellTest, AFullDiskLosesNothing) {
+    startWithTooth();
+    ASSERT_TRUE(cut());
+    const double cutMm3 = removedMm3();
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit none{512, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &none), 0);
+    file_ = own_.filePath("full.handpiece");
+    action("actionSaveAs")->trigger();
+    const bool told = waitFor([this] { return window().errorDialog() != nullptr; });
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    ASSERT_TRUE(told);
+    EXPECT_FALSE(window().errorDialog()->problem().remedy.isEmpty()) << qPrintable(window().errorDialog()->text());
+    EXPECT_FALSE(fs::exists(toPath(file_)));
+    EXPECT_TRUE(simulator().isUnsaved());
+    EXPECT_EQ(removedMm3(), cutMm3);
+    window().errorDialog()->reject();
+    action("actionSaveAs")->trigger();
+    EXPECT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !simulator().isUnsaved(); }));
+}
+
+TEST_F(ShellTest, ACaseThatVanishesIsSavedWithTheAttempt) {
+    const tooth::Case made = eggTooth(starter::ToothKind::lowerFirstMolar);
+    tooth::writeCase(made, at("case"));
+    CommandLine line;
+    line.file = own_.filePath("case");
+    startWithTooth(line);
+    ASSERT_TRUE(cut());
+    fs::remove_all(at("case"));
+    ASSERT_TRUE(idle());
+    simulator().saveAs(at("folder"));
+    ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
+    EXPECT_EQ(window().errorDialog()->problem().id, "case-vanished");
+    window().errorDialog()->reject();
+    file_ = own_.filePath("kept.handpiece");
+    action("actionSaveAs")->trigger();
+    ASSERT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !simulator().isUnsaved(); }));
+    const double cutMm3 = removedMm3();
+    window().openFile(file_);
+    ASSERT_TRUE(
+        waitFor([this] { return simulator().document().attemptFile == toPath(file_) && !simulator().isBusy(); }));
+    ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 10; }));
+    EXPECT_NEAR(removedMm3(), cutMm3, 1e-9);
+}
+
+TEST_F(ShellTest, BadFilesAreToldAndTheToothStays) {
+    startWithTooth();
+    const auto before = simulator().tooth();
+    std::ofstream(at("no.stl")) << "rubbish";
+    std::ofstream(at("no.handpiece")) << "rubbish";
+    std::ofstream(at("no.h5")) << "rubbish";
+    std::ofstream(at("no.txt")) << "rubbish";
+    fs::create_directories(at("empty"));
+    for (const char* name :
+         {"no.stl", "no.handpiece", "no.h5", "no.txt", "empty", "missing.stl", "missing.handpiece"}) {
+        window().openFile(own_.filePath(name));
+        ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; })) << name;
+        EXPECT_TRUE(window().errorDialog()->text().size() > 20) << name;
+        window().errorDialog()->reject();
+        ASSERT_TRUE(waitFor([this] { return window().errorDialog() == nullptr; }));
+        ASSERT_TRUE(idle());
+    }
+    EXPECT_EQ(simulator().tooth(), before);
+    EXPECT_EQ(simulator().mode(), Simulator::Mode::sitting);
+}
+
+TEST_F(ShellTest, ParametersReachTheLoopAndTheRecording) {
+    startWithTooth();
+    auto* box = window().findChild<ParameterBox*>();
+    emit box->multipliersChanged(0.5, 2.0, 0.0);
+    EXPECT_EQ(simulator().parameters().stiffnessMultiplier, 0.5);
+    EXPECT_EQ(box->multipliers(), (ParameterBox::Multipliers{0.5, 2.0, 0.0}));
+    const std::uint64_t tick = simulator().sample().tick;
+    ASSERT_TRUE(waitFor([&] { return simulator().sample().lastCommand > 0 && simulator().sample().tick > tick; }));
+    emit window().findChild<DrillBar*>()->burChosen("round-4");
+    EXPECT_EQ(simulator().bur()->name(), "round-4");
+    const std::uint64_t command = simulator().sample().lastCommand;
+    EXPECT_TRUE(waitFor([&] { return simulator().sample().lastCommand > command; }));
+}
+
+TEST_F(ShellTest, TheVoxelChangesBeforeAndAfterCutting) {
+    startWithTooth();
+    simulator().setVoxel(150);
+    ASSERT_TRUE(waitFor([this] { return simulator().voxelUm() == 150 && !simulator().isBusy(); }));
+    view()->showStandardView(view::StandardView::occlusal);
+    ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 100; }));
+    ASSERT_TRUE(cut());
+    const double cutMm3 = removedMm3();
+    simulator().setVoxel(100);
+    ASSERT_TRUE(waitFor([this] { return simulator().voxelUm() == 100 && !simulator().isBusy(); }));
+    ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 10; }));
+    EXPECT_EQ(window().errorDialog(), nullptr);
+    EXPECT_GT(removedMm3(), 0.3 * cutMm3);
+    EXPECT_LT(removedMm3(), 3.0 * cutMm3);
+    EXPECT_TRUE(simulator().isUnsaved());
+    const double againMm3 = removedMm3();
+    EXPECT_GT(simulator().status().undoSteps, 0u);
+    ASSERT_TRUE(undoAll());
+    EXPECT_TRUE(waitFor([this] { return removedMm3() == 0.0; }));
+    action("actionRedo")->trigger();
+    EXPECT_TRUE(waitFor([&] { return removedMm3() > 0.5 * againMm3; }));
+}
+
+TEST_F(ShellTest, ReplaysWhatWasDoneAndComesBack) {
+    startWithTooth();
+    ASSERT_TRUE(cut());
+    const double cutMm3 = removedMm3();
+    action("actionReplay")->trigger();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
+    EXPECT_GT(simulator().replay()->durationS(), 0.1);
+    simulator().setReplaySpeed(32.0);
+    simulator().play(true);
+    ASSERT_TRUE(waitFor([this] { return !simulator().replay()->now().playing; }));
+    ASSERT_TRUE(waitFor([&] { return std::abs(removedMm3() - cutMm3) < 1e-9; }));
+    EXPECT_EQ(simulator().toothCase()->scenery.size(), 1u);
+    simulator().closeReplay();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+    ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 10; }));
+    EXPECT_NEAR(removedMm3(), cutMm3, 1e-9);
+    EXPECT_TRUE(simulator().isUnsaved());
+    EXPECT_EQ(simulator().toothCase()->scenery.size(), 1u);
+    // What was done before can be undone, what is done now as well, and a second replay changes nothing of that.
+    ASSERT_TRUE(cut());
+    ASSERT_TRUE(waitFor([this] { return simulator().status().undoSteps == 2; }));
+    action("actionReplay")->trigger();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
+    simulator().closeReplay();
+    ASSERT_TRUE(waitFor([&] { return simulator().mode() == Simulator::Mode::sitting && removedMm3() > cutMm3; }));
+    ASSERT_TRUE(waitFor([this] { return simulator().status().undoSteps == 2; }));
+    ASSERT_TRUE(undoAll());
+    EXPECT_TRUE(waitFor([this] { return removedMm3() == 0.0 && !simulator().isUnsaved(); }));
+    EXPECT_EQ(simulator().status().redoSteps, 2u);
+}
+
+TEST_F(ShellTest, LayoutsLanguagesAndColoursChangeWhileOneWorks) {
+    startWithTooth();
+    const auto tooth = simulator().tooth();
+    for (const char* name : {"actionLayoutLaboratory", "actionLayoutPaper", "actionLayoutPractice", "actionThemeDark",
+                             "actionThemeLight"}) {
+        action(name)->trigger();
+        QTest::qWait(50);
+    }
+    EXPECT_EQ(window().detail(), Detail::practice);
+    action("actionLayoutPaper")->trigger();
+    for (const char* code : {"ja", "en"}) {
+        window().findChild<QAction*>(QStringLiteral("actionLanguage_%1").arg(code))->trigger();
+        QTest::qWait(100);
+        EXPECT_TRUE(window().isVisible());
+        EXPECT_EQ(window().detail(), Detail::paper);
+        EXPECT_TRUE(view()->hasTooth());
+    }
+    EXPECT_EQ(simulator().tooth(), tooth);
+    EXPECT_EQ(simulator().mode(), Simulator::Mode::sitting);
+    // And it is so at the next start.
+    window().rememberAll();
+    start();
+    EXPECT_EQ(window().detail(), Detail::paper);
+    EXPECT_TRUE(action("actionThemeLight")->isChecked());
+}
+
+TEST_F(ShellTest, AFileThatCannotBeOpenedIsToldOfAndThereIsAToothAllTheSame) {
+    CommandLine line;
+    line.file = own_.filePath("missing.stl");
+    start(line);
+    ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
+    window().errorDialog()->reject();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+    EXPECT_EQ(simulator().toothCase()->kind, "lower-first-molar");
+}
+
+TEST_F(ShellTest, ACaseASurfaceAndARecordingAreOpenedByDroppingThem) {
+    startWithTooth();
+    const tooth::Case made = eggTooth(starter::ToothKind::upperIncisor);
+    tooth::writeCase(made, at("incisor"));
+    drop(own_.filePath("incisor"));
+    ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "upper-incisor"; }));
+    geometry::writeMesh(at("outer.stl"), made.outer);
+    drop(own_.filePath("outer.stl"));
+    ASSERT_TRUE(waitFor([this] { return simulator().document().name == "outer" && !simulator().isBusy(); }))
+        << simulator().document().name;
+    const QString recording = toQString(simulator().recording());
+    QTest::qWait(1500);
+    simulator().openStarter({starter::ToothKind::lowerFirstMolar, 4000});
+    ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "lower-first-molar"; }));
+    drop(recording);
+    EXPECT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
+}
+
+TEST_F(ShellTest, AsksForWorkThatWaitsBehindAReplay) {
+    startWithTooth();
+    ASSERT_TRUE(cut());
+    action("actionReplay")->trigger();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
+    answer_ = MainWindow::Questions::Unsaved::cancel;
+    window().openStarter({starter::ToothKind::upperIncisor, 4000});
+    EXPECT_EQ(asked_, 1);
+    EXPECT_EQ(simulator().mode(), Simulator::Mode::replay);
+    answer_ = MainWindow::Questions::Unsaved::save;
+    file_ = own_.filePath("behind.handpiece");
+    window().openStarter({starter::ToothKind::upperIncisor, 4000});
+    ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "upper-incisor"; }));
+    EXPECT_TRUE(fs::exists(toPath(file_)));
+    EXPECT_EQ(asked_, 2);
+}
+
+TEST_F(ShellTest, TheCodeGoesIntoRecordingsAndAttempts) {
+    startWithTooth();
+    const fs::path before = simulator().recording();
+    simulator().setCode("A-17 \u00fc");
+    ASSERT_TRUE(waitFor([&] { return simulator().recording() != before && !simulator().isBusy(); }));
+    const fs::path recording = simulator().recording();
+    view()->showStandardView(view::StandardView::occlusal);
+    ASSERT_TRUE(cut());
+    // Too late for this recording: it is said, and what is saved has it.
+    simulator().setCode("B-4");
+    EXPECT_EQ(window().findChild<NoticeBar*>()->current(), "code-later");
+    file_ = own_.filePath("coded.handpiece");
+    action("actionSaveAs")->trigger();
+    ASSERT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !simulator().isUnsaved(); }));
+    EXPECT_EQ(tooth::openAttempt(toPath(file_)).attempt.student, "B-4");
+    simulator().close();
+    EXPECT_EQ(session::SessionReader(recording).info().code, "A-17");
+}
+
+TEST_F(ShellTest, SectionControlsStayInStep) {
+    startWithTooth();
+    auto* box = window().findChild<MeasureBox*>();
+    auto* on = box->findChild<QCheckBox*>("sectionOn");
+    auto* offset = box->findChild<QDoubleSpinBox*>("sectionOffset");
+    auto* bar = window().findChild<SectionBar*>();
+    action("actionSection")->trigger();
+    EXPECT_TRUE(on->isChecked());
+    EXPECT_FALSE(bar->isVisible());
+    EXPECT_NEAR(offset->value(), view()->section()->offsetMm, 0.05);
+    // Beyond the tooth there is nothing to cut.
+    offset->setValue(100.0);
+    EXPECT_NEAR(offset->value(), view()->section()->offsetMm, 0.05);
+    action("actionLayoutLaboratory")->trigger();
+    EXPECT_TRUE(bar->isVisible());
+    view()->setSection(SectionPlace{SectionPlace::Direction::horizontal, 1.0, true});
+    EXPECT_NEAR(offset->value(), 1.0, 1e-9);
+    EXPECT_NEAR(bar->place().offsetMm, 1.0, 1e-9);
+    offset->setValue(1.5);
+    EXPECT_NEAR(bar->place().offsetMm, 1.5, 1e-9);
+    EXPECT_TRUE(view()->section()->flipped);
+    on->setChecked(false);
+    EXPECT_FALSE(view()->section());
+    EXPECT_FALSE(action("actionSection")->isChecked());
+}
+
+TEST_F(ShellTest, VoxelAndSoundsAreThereAtTheNextStart) {
+    sound::Wav wav;
+    wav.samples.assign(4800, 0.25f);
+    sound::writeWav(wav, at("motor.wav"));
+    startWithTooth();
+    simulator().setVoxel(150);
+    ASSERT_TRUE(waitFor([this] { return simulator().voxelUm() == 150 && !simulator().isBusy(); }));
+    auto* control = window().findChild<SoundControl*>();
+    file_ = own_.filePath("motor.wav");
+    emit control->recordingFileRequested(SoundControl::Channel::motor);
+    ASSERT_TRUE(waitFor([this] { return !simulator().isReadingSound(); }));
+    window().rememberAll();
+    startWithTooth();
+    EXPECT_EQ(simulator().voxelUm(), 150);
+    auto* source = window().findChild<SoundControl*>()->findChild<QComboBox*>("motorSource");
+    EXPECT_EQ(source->currentIndex(), 1);
+}
+
+TEST_F(ShellTest, ARunIsToldInFigures) {
+    CommandLine line;
+    line.stats = own_.filePath("run.json");
+    startWithTooth(line);
+    ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 200; }));
+    simulator().close();
+    QMetaObject::invokeMethod(qApp, "aboutToQuit");
+    QFile file(line.stats);
+    ASSERT_TRUE(file.open(QIODevice::ReadOnly));
+    const QJsonObject tick = QJsonDocument::fromJson(file.readAll()).object()["tick"].toObject();
+    EXPECT_GT(tick["ticks"].toInt(), 200);
+    const QJsonObject work = tick["workUs"].toObject();
+    EXPECT_GT(work["p50"].toDouble(), 0.0);
+    EXPECT_LE(work["p50"].toDouble(), work["p99"].toDouble());
+    EXPECT_LE(work["p99"].toDouble(), work["max"].toDouble());
+}
+
+TEST_F(ShellTest, AStarterToothIsMadeAtTheFirstStartAndKept) {
+    Simulator::Options mine = options();
+    mine.folders.starters = at("fresh");
+    mine.starter = {starter::ToothKind::upperIncisor, 4000};
+    fs::file_time_type made;
+    for (const bool first : {true, false}) {
+        host_ = std::make_unique<Host>(*qApp, CommandLine{}, mine);
+        host_->start();
+        ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+        EXPECT_EQ(simulator().toothCase()->kind, "upper-incisor");
+        EXPECT_EQ(simulator().toothCase()->outer.triangles.size(), 4000u);
+        EXPECT_GT(simulator().toothCase()->scenery.size(), 1u);
+        const fs::file_time_type now = fs::last_write_time(simulator().document().caseFile / "case.toml");
+        if (first) {
+            made = now;
+        } else {
+            EXPECT_EQ(now, made);
+        }
+        host_.reset();
+    }
+}
+
+TEST_F(ShellTest, AHintGoesByItselfAndCoversNothing) {
+    startWithTooth();
+    auto* notices = window().findChild<NoticeBar*>();
+    window().hintMs = 300;
+    file_ = own_.filePath("kept.png");
+    action("actionPicture")->trigger();
+    EXPECT_EQ(notices->current(), "saved");
+    EXPECT_TRUE(waitFor([&] { return notices->current().isEmpty(); }, 5000));
+    // Beside something of the work it stands in the status bar.
+    window().hintMs = 1500;
+    window().tell("stalled");
+    file_ = own_.filePath("other.png");
+    action("actionPicture")->trigger();
+    EXPECT_EQ(notices->current(), "stalled");
+    EXPECT_TRUE(window().statusBar()->currentMessage().contains("other.png"));
+    EXPECT_TRUE(waitFor([&] { return notices->current().isEmpty(); }, 5000));
+    EXPECT_TRUE(waitFor([&] { return window().statusBar()->currentMessage().isEmpty(); }, 5000));
+    // A warning stays until somebody has read it.
+    window().hintMs = 100;
+    window().tell("neighbour-touched");
+    QTest::qWait(400);
+    EXPECT_EQ(notices->current(), "neighbour-touched");
+}
+
+TEST_F(ShellTest, EveryLayoutFitsASmallScreenAndSaysEachTitleOnce) {
+    startWithTooth();
+    for (const char* code : {"en", "ja"}) {
+        window().findChild<QAction*>(QStringLiteral("actionLanguage_%1").arg(QLatin1String(code)))->trigger();
+        QTest::qWait(50);
+        for (const char* layout : {"actionLayoutPractice", "actionLayoutLaboratory", "actionLayoutPaper"}) {
+            SCOPED_TRACE(std::string(code) + " " + layout);
+            action(layout)->trigger();
+            for (const QSize screen : {QSize(1366, 768), QSize(1280, 720)}) {
+                const QSize size = MainWindow::firstSize(screen);
+                window().resize(size);
+                QTest::qWait(50);
+                EXPECT_EQ(window().size(), size)
+                    << window().minimumSizeHint().width() << " x " << window().minimumSizeHint().height();
+                EXPECT_GT(view()->width(), 400);
+                EXPECT_GT(view()->height(), 250);
+            }
+            for (const QDockWidget* dock : window().findChildren<QDockWidget*>())
+                for (const QLabel* label : dock->findChildren<QLabel*>())
+                    EXPECT_FALSE(label->isVisible() && label->text() == dock->windowTitle())
+                        << qPrintable(label->text());
+        }
+    }
+}
+
+TEST_F(ShellTest, BrokenSettingsAreToldInAStrip) {
+    fs::create_directories(at("config"));
+    std::ofstream(at("config/handpiece.ini")) << "no settings\n[at all";
+    start();
+    EXPECT_EQ(window().findChild<NoticeBar*>()->current(), "settings-broken");
+    EXPECT_TRUE(fs::exists(at("config/handpiece.ini.broken")));
+}
+
+/// Not a test of its own: the program that AfterACrash kills.
+TEST_F(ShellTest, DISABLED_CutsUntilItIsKilled) {
+    own_ = QTemporaryDir(qEnvironmentVariable("HANDPIECE_TEST_FOLDER") + "/XXXXXX");
+    Simulator::Options mine = options();
+    mine.folders.sessions = toPath(qEnvironmentVariable("HANDPIECE_TEST_FOLDER") + "/data/sessions");
+    mine.folders.starters = toPath(qEnvironmentVariable("HANDPIECE_TEST_STARTER"));
+    host_ = std::make_unique<Host>(*qApp, CommandLine{}, mine);
+    window().resize(1000, 700);
+    host_->start();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+    view()->showStandardView(view::StandardView::occlusal);
+    ASSERT_TRUE(cut());
+    QTest::qWait(2500);  // what is older than a second is in the file
+    std::printf("cut %.9f\n", removedMm3());
+    std::fflush(stdout);
+    QTest::qWait(60000);
+}
+
+TEST_F(ShellTest, AfterACrashTheToothComesBack) {
+    QProcess child;
+    QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
+    environment.insert("HANDPIECE_TEST_FOLDER", own_.path());
+    environment.insert("HANDPIECE_TEST_STARTER", shared().filePath("starter"));
+    child.setProcessEnvironment(environment);
+    child.start(QCoreApplication::applicationFilePath(),
+                {"--gtest_also_run_disabled_tests", "--gtest_filter=*DISABLED_CutsUntilItIsKilled"});
+    QByteArray said;
+    const bool cutThere = waitFor(
+        [&] {
+            said += child.readAllStandardOutput();
+            return said.contains("\ncut ") || child.state() == QProcess::NotRunning;
+        },
+        90000);
+    child.kill();
+    child.waitForFinished();
+    ASSERT_TRUE(cutThere && said.contains("\ncut ")) << said.constData();
+    const double cutMm3 = said.mid(said.indexOf("\ncut ") + 5).split('\n').front().toDouble();
+    ASSERT_GT(cutMm3, 0.0);
+
+    start();
+    auto* notices = window().findChild<NoticeBar*>();
+    EXPECT_EQ(notices->current(), "crashed");
+    // Named as the window names it, not as its folder.
+    EXPECT_FALSE(notices->findChild<QLabel*>("noticeText")->text().contains("lower-first-molar"));
+    // Later is another time: it is still there.
+    QTest::mouseClick(notices->findChild<QAbstractButton*>("noticeLater"), Qt::LeftButton);
+    EXPECT_EQ(notices->current(), QString());
+    EXPECT_EQ(simulator().crashed().size(), 1u);
+    window().greet();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting && !simulator().isBusy(); }));
+    emit notices->remedyChosen("crashed");
+    ASSERT_TRUE(waitFor([&] { return std::abs(removedMm3() - cutMm3) < 1e-6 && simulator().sample().tick > 10; }))
+        << removedMm3() << " not " << cutMm3;
+    EXPECT_TRUE(simulator().isUnsaved());
+    EXPECT_TRUE(simulator().crashed().empty());
+    EXPECT_EQ(simulator().toothCase()->scenery.size(), 1u);
+    EXPECT_EQ(simulator().status().undoSteps, 1u);
+    ASSERT_TRUE(undoAll());
+    EXPECT_TRUE(waitFor([this] { return removedMm3() == 0.0; }));
+    EXPECT_FALSE(window().windowTitle().contains("lower-first-molar")) << qPrintable(window().windowTitle());
+}
+
+}  // namespace
+}  // namespace handpiece::desktop

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// A tooth on which everything that is measured is known.
+
+#include <memory>
+
+#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth.h"
+#include "support/closed_meshes.h"
+
+namespace handpiece::desktop {
+
+inline constexpr double kRadius = 5.0, kPulpRadius = 2.0;
+
+/// A ball of enamel with a ball of pulp in it: what is measured on it is known.
+inline tooth::Case ballCase() {
+    tooth::Case ball;
+    ball.name = "ball";
+    ball.buccalSign = 1;
+    ball.outer = test::sphereMesh(5, kRadius);
+    ball.parts.push_back({"enamel", tooth::Tissue::enamel, 1, ball.outer});
+    ball.parts.push_back({"pulp", tooth::Tissue::pulp, 5, test::sphereMesh(4, kPulpRadius)});
+    return ball;
+}
+
+inline const std::shared_ptr<const tooth::CuttableTooth>& cuttableBall() {
+    static const std::shared_ptr<const tooth::CuttableTooth> ball = [] {
+        tooth::PrepareSettings settings;
+        settings.useCache = false;
+        settings.field.voxelMm = 0.2;
+        const tooth::Case toothCase = ballCase();
+        return tooth::prepareCutting(toothCase, tooth::prepareTooth(toothCase, settings), settings);
+    }();
+    return ball;
+}
+
+}  // namespace handpiece::desktop

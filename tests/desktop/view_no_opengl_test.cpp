@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <QApplication>
+#include <QSignalSpy>
+#include <QTest>
+
+#include "desktop/view/view_widget.h"
+#include "view_ball.h"
+
+namespace handpiece::desktop {
+namespace {
+
+TEST(ViewWithoutOpenGl, SaysSoAndGoesOn) {
+    // The loader of OpenGL drivers reads this when the first display is opened: hence a program of its own.
+    qputenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent/vendor.json");
+    ViewWidget view;
+    QSignalSpy missing(&view, &ViewWidget::openGlMissing);
+    view.resize(500, 400);
+    view.show();
+    ASSERT_TRUE(missing.count() || missing.wait(5000));
+    EXPECT_FALSE(missing[0][0].toString().isEmpty());
+    EXPECT_FALSE(missing[0][1].toString().isEmpty());
+    view.setTooth(std::make_shared<station::LiveTooth>(cuttableBall(), tooth::CutState{}), ballCase(), nullptr);
+    auto mailbox = std::make_shared<device::PointerMailbox>();
+    view.setPointer(mailbox, {});
+    QTest::mousePress(&view, Qt::LeftButton, Qt::NoModifier, {250, 200});
+    EXPECT_EQ(mailbox->read().pedal, 1.0);
+    EXPECT_FALSE(view.snapshot().isNull());
+    EXPECT_TRUE(view.rendererDescription().isEmpty());
+}
+
+}  // namespace
+}  // namespace handpiece::desktop
+
+int main(int argc, char** argv) {
+    qputenv("QT_QPA_PLATFORM", "offscreen");
+    ::testing::InitGoogleTest(&argc, argv);
+    QApplication application(argc, argv);
+    return RUN_ALL_TESTS();
+}

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recorded sitting played again: bit for bit from the beginning, near enough after a jump.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/model/instrument/catalogue.h"
+#include "handpiece/model/tooth/case_bytes.h"
+#include "handpiece/model/tooth/cut_state_file.h"
+#include "station/cut_session.h"
+#include "station/session_player.h"
+#include "station/sitting_fixture.h"
+
+namespace handpiece::station {
+namespace {
+
+constexpr SessionPlayer::Settings kUnseen{false, false, {}};
+
+double removed(const tooth::TissueVolumes& mm3) {
+    double sum = 0.0;
+    for (const double v : mm3)
+        sum += v;
+    return sum;
+}
+
+/// Recorded once for all tests.
+struct Recorded {
+    Recorded() : state(workThreeSeconds(folder.path / "session.h5", 1000, folder.path / "cut-off.h5")) {}
+    Folder folder;
+    tooth::CutState state;
+    [[nodiscard]] std::filesystem::path file() const { return folder.path / "session.h5"; }
+    [[nodiscard]] std::filesystem::path cutOff() const { return folder.path / "cut-off.h5"; }
+};
+const Recorded& recorded() {
+    static const Recorded it;
+    return it;
+}
+
+std::size_t count(const SessionPlayer& player, const char* name) {
+    return static_cast<std::size_t>(std::count_if(player.events().begin(), player.events().end(),
+                                                  [&](const session::Event& e) { return e.name == name; }));
+}
+
+TEST(SessionPlayer, cutsTheSameToothThroughEveryChange) {
+    SessionPlayer player(recorded().file(), kUnseen);
+    EXPECT_EQ(count(player, "bur change"), 1u);
+    EXPECT_EQ(count(player, "parameter change"), 4u);
+    EXPECT_EQ(count(player, "undo"), 2u);
+    EXPECT_EQ(count(player, "redo"), 2u);
+    const Verdict verdict = player.compareAll();
+    EXPECT_TRUE(verdict.matches);
+    EXPECT_TRUE(verdict.complete);
+    EXPECT_EQ(verdict.differingTicks, 0u) << "first " << verdict.firstDifferingTick;
+    EXPECT_TRUE(player.isExact());
+    EXPECT_EQ(verdict.hash, hashText(tooth::stateHash(recorded().state)));
+    EXPECT_EQ(player.station().settings.drive.name, "turbine");
+    EXPECT_NEAR(player.station().settings.bur->maxRadiusMm(), 0.6, 1e-9);
+    EXPECT_DOUBLE_EQ(player.station().settings.parameters.frictionMultiplier, 0.5);
+    EXPECT_DOUBLE_EQ(player.timeS(), player.durationS());
+}
+
+TEST(SessionPlayer, jumpsAnywhereAndGivesTheSameEachTime) {
+    SessionPlayer exact(recorded().file(), kUnseen), player(recorded().file(), {false, true, {}});
+    player.seek(player.durationS());
+    EXPECT_FALSE(player.isExact());
+    EXPECT_EQ(tooth::stateHash(player.state()), tooth::stateHash(recorded().state)) << "the last key frame";
+    for (const double timeS : {1.45, 2.45, 1.2, 2.9, 0.6}) {
+        SCOPED_TRACE(timeS);
+        exact.advance(0.0);
+        player.seek(timeS);
+        EXPECT_NEAR(player.timeS(), timeS, 0.0015);
+        EXPECT_EQ(player.sample().tick, static_cast<std::uint64_t>(std::llround(player.timeS() * 1000)));
+        const tooth::CutState once = player.state();
+        EXPECT_EQ(tooth::stateHash(player.tooth()->state({})), tooth::stateHash(once)) << "what is shown";
+        player.seek(0.0);
+        player.seek(player.durationS());
+        player.seek(timeS);
+        EXPECT_EQ(tooth::stateHash(player.state()), tooth::stateHash(once)) << "depends on where it came from";
+        SessionPlayer played(recorded().file(), kUnseen);
+        played.advance(timeS);
+        EXPECT_NEAR(removed(once.removedMm3), removed(played.state().removedMm3),
+                    0.02 * removed(played.state().removedMm3) + 1e-3);
+        EXPECT_NEAR(player.sample().speedRpm, played.sample().speedRpm, 0.02 * played.sample().speedRpm + 100);
+    }
+    player.seek(0.0);
+    EXPECT_TRUE(player.isExact());
+    player.advance(player.durationS());
+    EXPECT_EQ(player.differingTicks(), 0u);
+}
+
+TEST(SessionPlayer, plotsWhatWasRecorded) {
+    const SessionPlayer player(recorded().file(), kUnseen);
+    const std::vector<PlotPoint> points = player.plot(0.05);
+    ASSERT_NEAR(static_cast<double>(points.size()), player.durationS() / 0.05, 3.0);
+    float most = 0.0f, expected = 0.0f;
+    for (const PlotPoint& p : points)
+        most = std::max(most, p.forceN);
+    for (const session::Record& r : player.reader().records(0, 100000))
+        expected = std::max(expected, std::hypot(r.forceN[0], r.forceN[1], r.forceN[2]));
+    EXPECT_EQ(most, expected);
+    EXPECT_NEAR(static_cast<double>(points.back().removedMm3[2]), recorded().state.removedMm3[2], 1e-3);
+}
+
+TEST(SessionPlayer, aSessionThatWasNeverClosedGivesTheToothBack) {
+    const Recovered recovered = recover(recorded().cutOff());
+    EXPECT_EQ(recovered.code, "test");
+    EXPECT_EQ(recovered.toothCase.name, "block");
+    EXPECT_GT(recovered.elapsedS, 1.0);
+    EXPECT_NEAR(recovered.settings.bur->maxRadiusMm(), 0.6, 1e-9);
+    SessionPlayer played(recorded().cutOff(), kUnseen);
+    played.advance(played.durationS());
+    EXPECT_EQ(played.differingTicks(), 0u);
+    const double expected = removed(played.state().removedMm3);
+    EXPECT_GT(expected, 0.05);
+    EXPECT_NEAR(removed(recovered.state.removedMm3), expected, 0.02 * expected);
+    EXPECT_FALSE(played.compareAll().complete);
+
+    const Recovered whole = recover(recorded().file());
+    EXPECT_EQ(tooth::stateHash(whole.state), tooth::stateHash(recorded().state));
+}
+
+TEST(SessionPlayer, theSameHandInAnotherFieldCutsAsMuch) {
+    tooth::FieldSettings field = blockSettings().field;
+    field.voxelMm = 0.05;
+    const Recut recut = recutAt(recorded().file(), field, false);
+    EXPECT_EQ(recut.station.settings.field.voxelMm, 0.05);
+    EXPECT_EQ(recut.skippedSteps, 0u);
+    EXPECT_EQ(recut.station.field->stateHash(), tooth::stateHash(recut.state));
+    EXPECT_NEAR(removed(recut.state.removedMm3), removed(recorded().state.removedMm3),
+                0.1 * removed(recorded().state.removedMm3));
+    // A state of that station: it can be packed and put in place.
+    const auto bytes = tooth::encodeState(recut.state, recut.station.identity);
+    EXPECT_NO_THROW((void)tooth::decodeState(bytes, recut.station.identity, *recut.station.tooth));
+}
+
+/// Undoes all there is at a tooth in this state, in a sitting of its own that is recorded to `file`.
+void undoAll(const Station& begun, const tooth::CutState& state, const history::History& strokes, std::size_t steps,
+             const std::filesystem::path& file) {
+    Station station = begun;
+    station.field = std::make_shared<tooth::CutField>(station.tooth);
+    station.resume(state);
+    station.settings.resumed = true;
+    SittingSettings settings;
+    settings.sessionFile = file;
+    settings.history = keepHistory(strokes, state, station);
+    Sitting sitting(station, blockCase(),
+                    handOf(device::Motion({{0.0, {core::Vec3(0, 0, 1), core::Quat::Identity()}, 0}})), settings,
+                    nullptr);
+    ASSERT_TRUE(waitUntil(sitting, 0.05));
+    EXPECT_EQ(sitting.status().undoSteps, steps);
+    for (std::size_t i = 0; i < steps; ++i)
+        sitting.undo();
+    ASSERT_TRUE(waitUntil(sitting, 0.3));
+    EXPECT_EQ(removed(sitting.state().removedMm3), 0.0);
+    EXPECT_TRUE(sitting.state().bricks.empty());
+    EXPECT_EQ(sitting.status().redoSteps, steps);
+    sitting.redo();
+    ASSERT_TRUE(waitUntil(sitting, 0.5));
+    EXPECT_GT(removed(sitting.state().removedMm3), 0.05);
+    ASSERT_TRUE(waitUntil(sitting, 1.6));  // a chunk is in the file
+    sitting.stop();
+    EXPECT_EQ(sitting.history().undoSteps(), 1u);
+}
+
+/// A session that began with strokes is repeated bit for bit, and tells them again.
+void playsAgain(const std::filesystem::path& file, std::size_t steps) {
+    SessionPlayer player(file, kUnseen);
+    const Verdict verdict = player.compareAll();
+    EXPECT_TRUE(verdict.matches);
+    EXPECT_EQ(verdict.differingTicks, 0u) << verdict.firstDifferingTick;
+    EXPECT_EQ(player.skippedSteps(), 0u);
+    const Recovered again = recover(file);
+    EXPECT_EQ(again.history.undoSteps(), 1u);
+    EXPECT_EQ(again.history.redoSteps(), steps - 1);
+}
+
+TEST(SessionPlayer, strokesCanBeUndoneAfterARecovery) {
+    const Folder folder;
+    const Recovered recovered = recover(recorded().file());
+    const Station station = makeStation(recovered.toothCase, recovered.settings, false);
+    EXPECT_EQ(recovered.history.undoSteps(), 2u);
+    undoAll(station, recovered.state, recovered.history, 2, folder.path / "next.h5");
+    playsAgain(folder.path / "next.h5", 2);
+
+    const Recovered cutOff = recover(recorded().cutOff());
+    EXPECT_GE(cutOff.history.undoSteps(), 1u);
+    undoAll(station, cutOff.state, cutOff.history, cutOff.history.undoSteps(), folder.path / "other.h5");
+}
+
+TEST(SessionPlayer, strokesCanBeUndoneInAnotherField) {
+    const Folder folder;
+    tooth::FieldSettings field = blockSettings().field;
+    field.voxelMm = 0.05;
+    const Recut recut = recutAt(recorded().file(), field, false);
+    EXPECT_EQ(recut.history.undoSteps(), 2u);
+    undoAll(recut.station, recut.state, recut.history, 2, folder.path / "next.h5");
+    playsAgain(folder.path / "next.h5", 2);
+}
+
+TEST(SessionPlayer, strokesOfADamagedSessionAreOneError) {
+    const Recovered recovered = recover(recorded().file());
+    const Station station = makeStation(recovered.toothCase, recovered.settings, false);
+    const KeptHistory kept = keepHistory(recovered.history, recovered.state, station);
+    ASSERT_GT(kept.bytes.size(), 600u);
+    const auto decode = [&](std::span<const std::byte> bytes) {
+        (void)decodeHistory(bytes, recovered.state, station, "here");
+    };
+    EXPECT_NO_THROW(decode(kept.bytes));
+    for (const std::size_t size : {std::size_t{0}, std::size_t{3}, std::size_t{20}, kept.bytes.size() - 1})
+        EXPECT_THROW(decode(std::span(kept.bytes).first(size)), core::Error) << size;
+    for (const std::size_t at : {0u, 4u, 12u, 20u, 30u, 500u}) {
+        std::vector<std::byte> hurt = kept.bytes;
+        hurt[at] ^= std::byte{0x55};
+        EXPECT_THROW(decode(hurt), core::Error) << at;
+    }
+}
+
+TEST(SessionPlayer, whatStandsAroundTheToothIsInTheSession) {
+    const Folder folder;
+    tooth::Case around = blockCase();
+    tooth::Part gum;
+    gum.tissue = tooth::Tissue::gum;
+    gum.name = "gum";
+    gum.mesh = test::boxMesh(core::Vec3(-4, -4, -4), core::Vec3(4, 4, -2));
+    around.scenery.push_back(gum);
+    SittingSettings settings;
+    settings.sessionFile = folder.path / "session.h5";
+    {
+        Sitting sitting(blockStation(), around, handOf(twoHoles()), settings, nullptr);
+        ASSERT_TRUE(waitUntil(sitting, 0.8));
+    }
+    const SessionPlayer player(settings.sessionFile, kUnseen);
+    ASSERT_EQ(player.toothCase().scenery.size(), 1u);
+    EXPECT_EQ(player.toothCase().scenery[0].tissue, tooth::Tissue::gum);
+    EXPECT_EQ(player.toothCase().scenery[0].mesh.triangles.size(), gum.mesh.triangles.size());
+    EXPECT_EQ(player.toothCase().parts.size(), 1u);
+}
+
+TEST(SessionPlayer, hullAndFieldInOneSession) {
+    const Folder folder;
+    SittingSettings settings;
+    settings.sessionFile = folder.path / "session.h5";
+    Station station = blockStation();
+    // Up at first: the hull is for a whole tooth at rest.
+    std::vector<device::TimedPose> poses = twoHoles().poses();
+    for (device::TimedPose& p : poses)
+        if (p.timeS < 1.7) p.pedal = 0.0;
+    {
+        Sitting sitting(station, blockCase(), handOf(device::Motion(poses)), settings, nullptr);
+        sitting.setHullMethod(true);
+        EXPECT_TRUE(waitUntil(sitting, 1.3));
+        EXPECT_TRUE(sitting.status().hull);
+        sitting.setBur(burOf("pear:1.0x2.5"), {});
+        sitting.setHullMethod(false);
+        EXPECT_TRUE(waitUntil(sitting, 3.0));
+        EXPECT_FALSE(sitting.status().hull);
+    }
+    SessionPlayer player(settings.sessionFile, kUnseen);
+    const Verdict verdict = player.compareAll();
+    EXPECT_TRUE(verdict.matches);
+    EXPECT_EQ(verdict.differingTicks, 0u) << verdict.firstDifferingTick;
+    EXPECT_GT(removed(player.state().removedMm3), 0.05);
+}
+
+TEST(SessionPlayer, aSessionWithoutTicksOrToothIsOneError) {
+    const Folder folder;
+    EXPECT_THROW(SessionPlayer(folder.path / "none.h5", kUnseen), core::Error);
+    session::SessionInfo info;
+    info.settings = settingsJson(blockSettings());
+    { session::Recorder recorder(folder.path / "empty.h5", info); }
+    EXPECT_THROW(SessionPlayer(folder.path / "empty.h5", kUnseen), core::Error);
+}
+
+}  // namespace
+}  // namespace handpiece::station

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// A block of enamel over dentine, a hand that cuts two holes in three seconds, and a sitting at it.
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "handpiece/model/instrument/catalogue.h"
+#include "handpiece/model/instrument/shapes.h"
+#include "handpiece/tick/device/simulated_device.h"
+#include "station/sitting.h"
+#include "support/closed_meshes.h"
+
+namespace handpiece::station {
+
+inline tooth::Case blockCase() {
+    using core::Vec3;
+    tooth::Case made;
+    made.name = "block";
+    made.outer = test::boxMesh(Vec3(-2, -1.5, -2), Vec3(2, 1.5, 0));
+    tooth::Part dentine;
+    dentine.tissue = tooth::Tissue::dentine;
+    dentine.name = "dentine";
+    dentine.priority = 1;
+    dentine.mesh = test::boxMesh(Vec3(-1.9, -1.4, -1.9), Vec3(1.9, 1.4, -0.3));
+    made.parts.push_back(std::move(dentine));
+    return made;
+}
+
+inline std::shared_ptr<const instrument::Bur> burOf(const char* shape) {
+    return std::make_shared<const instrument::Bur>(instrument::makeBur(shape));
+}
+
+inline StationSettings blockSettings() {
+    StationSettings settings;
+    settings.field.voxelMm = 0.08;
+    settings.bur = burOf("round:1.0x0.9");
+    return settings;
+}
+
+inline Station blockStation() {
+    return makeStation(blockCase(), blockSettings(), false);
+}
+
+/// Down at x = -0.9 until 1.1 s, and at x = 0.9 from 1.8 to 2.8 s, the pedal up in between.
+inline device::Motion twoHoles() {
+    const auto at = [](double timeS, double x, double z, double pedal) {
+        return device::TimedPose{timeS, {core::Vec3(x, 0, z), core::Quat::Identity()}, pedal};
+    };
+    return device::Motion({at(0.0, -0.9, 0.3, 1), at(0.4, -0.9, 0.3, 1), at(0.7, -0.9, -1.8, 1), at(1.0, -0.9, -1.8, 1),
+                           at(1.1, -0.9, 0.3, 1), at(1.101, -0.9, 0.3, 0), at(1.5, -0.9, 0.4, 0), at(1.7, 0.9, 0.3, 0),
+                           at(1.701, 0.9, 0.3, 1), at(2.0, 0.9, 0.3, 1), at(2.2, 0.9, -1.8, 1), at(2.6, 0.9, -1.8, 1),
+                           at(2.8, 0.9, 0.3, 1), at(2.801, 0.9, 0.3, 0), at(3.2, 0.9, 0.3, 0)});
+}
+
+inline std::unique_ptr<device::Device> handOf(device::Motion motion) {
+    device::SimulatedDeviceSettings settings;
+    settings.rigidHand = true;
+    return std::make_unique<device::SimulatedDevice>(settings, std::move(motion));
+}
+
+/// A folder that goes with the test.
+struct Folder {
+    Folder() {
+        std::string name = (std::filesystem::temp_directory_path() / "handpiece-station-XXXXXX").string();
+        path = mkdtemp(name.data());
+    }
+    ~Folder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    std::filesystem::path path;
+};
+
+/// Waits until the sitting has come so far; false when it has ended or a minute has passed.
+inline bool waitUntil(const Sitting& sitting, double timeS) {
+    for (int i = 0; i < 12000; ++i) {
+        const SittingStatus now = sitting.status();
+        if (!now.fault.empty()) return false;
+        if (now.timeS >= timeS) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+}
+
+/// Three seconds of work in which all changes that can. Returns the state at the end.
+inline tooth::CutState workThreeSeconds(const std::filesystem::path& file, double rateHz = 1000,
+                                        const std::filesystem::path& copyAt2700ms = {}) {
+    Station station = makeStation(
+        blockCase(),
+        [&] {
+            StationSettings settings = blockSettings();
+            settings.rateHz = rateHz;
+            return settings;
+        }(),
+        false);
+    SittingSettings settings;
+    settings.sessionFile = file;
+    settings.code = "test";
+    Sitting sitting(station, blockCase(), handOf(twoHoles()), settings, nullptr);
+    force::Parameters parameters = station.settings.parameters;
+    parameters.stiffnessMultiplier = 0.7;
+    waitUntil(sitting, 0.7);
+    sitting.setParameters(parameters);
+    waitUntil(sitting, 1.15);
+    sitting.undo();
+    sitting.redo();
+    sitting.undo();
+    sitting.setBur(burOf("cylinder-flat:1.2x4"), instrument::abilityByName("diamond-medium"));
+    sitting.setDrive(instrument::driveByName("speed-increasing"));
+    waitUntil(sitting, 1.4);
+    sitting.redo();
+    waitUntil(sitting, 2.2);
+    parameters.stiffnessMultiplier = 1.0;
+    parameters.frictionMultiplier = 0.5;
+    sitting.setParameters(parameters);
+    sitting.setDrive(instrument::driveByName("turbine"));
+    waitUntil(sitting, 2.7);
+    if (!copyAt2700ms.empty())
+        std::filesystem::copy_file(file, copyAt2700ms, std::filesystem::copy_options::overwrite_existing);
+    waitUntil(sitting, 3.1);
+    sitting.stop();
+    return sitting.state();
+}
+
+}  // namespace handpiece::station

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// The live sitting: what it tells, what it refuses, how it ends.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <csignal>
+#include <set>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/model/instrument/catalogue.h"
+#include "handpiece/record/session/session_reader.h"
+#include "handpiece/senses/surface/surface.h"
+#include "station/sitting_fixture.h"
+#include "support/error_of.h"
+
+namespace handpiece::station {
+namespace {
+
+bool wasTold(const std::vector<Notice>& notices, const char* id) {
+    return std::any_of(notices.begin(), notices.end(), [&](const Notice& n) { return n.id == id; });
+}
+
+double removed(const tooth::CutState& state) {
+    double sum = 0.0;
+    for (const double v : state.removedMm3)
+        sum += v;
+    return sum;
+}
+
+TEST(Sitting, tellsWhatIsCutAndWhatIsShownIsWhatIsLeft) {
+    const Station station = blockStation();
+    const auto live = std::make_shared<LiveTooth>(station.tooth, tooth::CutState{});
+    Sitting sitting(station, blockCase(), handOf(twoHoles()), {}, live);
+    const auto feed = sitting.subscribe();
+    ASSERT_TRUE(waitUntil(sitting, 1.3));
+    EXPECT_GE(feed->read().timeS, 1.2);
+    EXPECT_GT(feed->read().removedMm3[2], 0.0);
+    const tooth::CutState midway = sitting.state();
+    EXPECT_GT(removed(midway), 0.1);
+    EXPECT_EQ(sitting.status().undoSteps, 1u);
+    ASSERT_TRUE(waitUntil(sitting, 3.0));
+    sitting.stop();
+    sitting.stop();
+
+    const tooth::CutState state = sitting.state();
+    EXPECT_GT(removed(state), 1.5 * removed(midway));
+    EXPECT_EQ(tooth::stateHash(state), station.field->stateHash());
+    const SittingStatus status = sitting.status();
+    EXPECT_EQ(status.fault, "");
+    EXPECT_EQ(status.strokes, 2u);
+    EXPECT_EQ(status.undoSteps, 2u);
+    EXPECT_TRUE(status.cut);
+    EXPECT_FALSE(status.recording.recording);
+    EXPECT_GT(status.workUs.p50, 0.0);
+    const std::vector<PlotPoint> plot = sitting.takePlot();
+    ASSERT_GT(plot.size(), 100u);
+    EXPECT_TRUE(std::is_sorted(plot.begin(), plot.end(),
+                               [](const PlotPoint& a, const PlotPoint& b) { return a.timeS < b.timeS; }));
+    EXPECT_GT(std::max_element(plot.begin(), plot.end(),
+                               [](const PlotPoint& a, const PlotPoint& b) { return a.forceN < b.forceN; })
+                  ->forceN,
+              0.1f);
+    EXPECT_TRUE(sitting.takePlot().empty());
+
+    // The surface kept up by news is that of the tooth that is left, built at once.
+    tooth::CutMirror mirror(station.tooth);
+    mirror.apply(state);
+    const surface::MirrorSource source(mirror);
+    surface::Surface fine(source, &station.tooth->tissues);
+    fine.build();
+    std::vector<std::shared_ptr<const surface::BrickMesh>> shown(source.grid().count());
+    for (const surface::BrickUpdate& update : live->wholeSurface())
+        shown[update.dense] = update.mesh;
+    std::set<std::uint32_t> seen;
+    const std::vector<surface::BrickUpdate> news = live->takeNews();
+    EXPECT_FALSE(news.empty());
+    for (const surface::BrickUpdate& update : news) {
+        EXPECT_TRUE(seen.insert(update.dense).second) << "told twice";
+        shown[update.dense] = update.mesh;
+    }
+    for (std::uint32_t dense = 0; dense < shown.size(); ++dense) {
+        const auto expected = fine.mesh(dense);
+        ASSERT_EQ(expected == nullptr, shown[dense] == nullptr) << dense;
+        ASSERT_TRUE(expected == nullptr || *expected == *shown[dense]) << dense;
+    }
+    EXPECT_FALSE(live->hasNews());
+    EXPECT_EQ(tooth::stateHash(live->state({})), tooth::stateHash(state));
+
+    // Another window over the same tooth shows the same.
+    shown.assign(shown.size(), nullptr);
+    for (const surface::BrickUpdate& update : live->wholeSurface())
+        shown[update.dense] = update.mesh;
+    for (const surface::BrickUpdate& update : live->takeNews())
+        shown[update.dense] = update.mesh;
+    for (std::uint32_t dense = 0; dense < shown.size(); ++dense) {
+        const auto expected = fine.mesh(dense);
+        ASSERT_EQ(expected == nullptr, shown[dense] == nullptr) << dense;
+        ASSERT_TRUE(expected == nullptr || *expected == *shown[dense]) << dense;
+    }
+
+    live->wantRemovedDepths(true);
+    live->refresh();
+    float deepest = 0.0f;
+    for (const surface::BrickUpdate& update : live->takeNews())
+        if (update.removedDepthMm) {
+            ASSERT_EQ(update.removedDepthMm->size(), update.mesh->vertices.size());
+            for (const float d : *update.removedDepthMm)
+                deepest = std::max(deepest, d);
+        }
+    EXPECT_GT(deepest, 0.2f);
+    EXPECT_LT(deepest, 1.3f);
+}
+
+TEST(Sitting, refusesWhatCannotBeDoneNow) {
+    Sitting sitting(blockStation(), blockCase(), handOf(twoHoles()), {}, nullptr);
+    ASSERT_TRUE(waitUntil(sitting, 0.05));
+    sitting.setHullMethod(true);
+    ASSERT_TRUE(waitUntil(sitting, 0.1));
+    EXPECT_TRUE(wasTold(sitting.takeNotices(), "hull-needs-whole-tooth"));
+    EXPECT_FALSE(sitting.status().hull);
+    ASSERT_TRUE(waitUntil(sitting, 0.9));
+    sitting.undo();
+    ASSERT_TRUE(waitUntil(sitting, 1.0));
+    EXPECT_TRUE(wasTold(sitting.takeNotices(), "not-while-cutting"));
+    ASSERT_TRUE(waitUntil(sitting, 1.25));
+    sitting.setHullMethod(true);
+    ASSERT_TRUE(waitUntil(sitting, 1.4));
+    EXPECT_TRUE(wasTold(sitting.takeNotices(), "hull-needs-whole-tooth"));
+    EXPECT_FALSE(sitting.settings().hull);
+    sitting.undo();
+    sitting.undo();
+    sitting.setHullMethod(true);
+    ASSERT_TRUE(waitUntil(sitting, 1.65));
+    EXPECT_TRUE(wasTold(sitting.takeNotices(), "nothing-to-undo"));
+    EXPECT_TRUE(sitting.status().hull);
+    sitting.redo();
+    ASSERT_TRUE(waitUntil(sitting, 2.6));
+    EXPECT_TRUE(wasTold(sitting.takeNotices(), "hull-only-touches"));
+    sitting.stop();
+    EXPECT_TRUE(sitting.state().bricks.empty());
+    EXPECT_THROW(sitting.setBur(nullptr, {}), core::Error);
+}
+
+TEST(Sitting, aListenerThatFailsEndsItWithAFaultAndKeepsTheCut) {
+    const Folder folder;
+    SittingSettings settings;
+    settings.sessionFile = folder.path / "session.h5";
+    const Station station = blockStation();
+    Sitting sitting(station, blockCase(), handOf(twoHoles()), settings, nullptr);
+    sitting.setListener([](const messages::HapticSample& sample) {
+        if (sample.timeS > 1.0) throw core::Error("no room in the head", "listener");
+    });
+    EXPECT_FALSE(waitUntil(sitting, 60.0));
+    EXPECT_NE(sitting.status().fault.find("no room in the head"), std::string::npos);
+    const tooth::CutState state = sitting.state();
+    EXPECT_GT(removed(state), 0.1);
+    sitting.undo();
+    sitting.stop();
+    const session::SessionReader reader(settings.sessionFile);
+    EXPECT_TRUE(reader.isComplete());
+    ASSERT_FALSE(reader.events().empty());
+    EXPECT_EQ(reader.events().back().name, "end");
+}
+
+TEST(Sitting, stopsInAnyStateAndKeepsAnAttempt) {
+    for (const double after : {0.0, 0.05, 0.9}) {
+        Sitting sitting(blockStation(), blockCase(), handOf(twoHoles()), {}, nullptr);
+        ASSERT_TRUE(waitUntil(sitting, after));
+        if (after > 0.5) {
+            const tooth::Attempt attempt = sitting.attempt("block");
+            EXPECT_EQ(attempt.caseKey, tooth::contentKey(blockCase()));
+            EXPECT_GT(attempt.elapsedS, 0.8);
+            EXPECT_EQ(attempt.bur, "round:1.0x0.9");
+            EXPECT_FALSE(attempt.state.empty());
+        }
+    }
+}
+
+TEST(Sitting, aFullDiskIsToldAndTheSittingGoesOn) {
+    const Folder folder;
+    SittingSettings settings;
+    settings.sessionFile = folder.path / "session.h5";
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    Sitting sitting(blockStation(), blockCase(), handOf(twoHoles()), settings, nullptr);
+    const rlimit full{std::filesystem::file_size(settings.sessionFile) / 2, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+    const bool cameThrough = waitUntil(sitting, 2.9);
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    ASSERT_TRUE(cameThrough);
+    sitting.stop();
+    EXPECT_TRUE(wasTold(sitting.takeNotices(), "recording-stopped"));
+    EXPECT_NE(sitting.status().recording.message, "");
+    EXPECT_GT(removed(sitting.state()), 0.1);
+}
+
+TEST(Sitting, aSessionFileThatCannotBeBegunIsOneError) {
+    SittingSettings settings;
+    settings.sessionFile = "/nowhere/at/all/session.h5";
+    EXPECT_THROW(Sitting(blockStation(), blockCase(), handOf(twoHoles()), settings, nullptr), core::Error);
+}
+
+}  // namespace
+}  // namespace handpiece::station

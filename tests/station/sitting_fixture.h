@@ -78,15 +78,24 @@ struct Folder {
     std::filesystem::path path;
 };
 
-/// Waits until the sitting has come so far; false when it has ended or a minute has passed.
-inline bool waitUntil(const Sitting& sitting, double timeS) {
+/// Asks until it is so; false when a minute has passed.
+template <typename Condition>
+bool waitUntilTrue(Condition&& isSo) {
     for (int i = 0; i < 12000; ++i) {
-        const SittingStatus now = sitting.status();
-        if (!now.fault.empty()) return false;
-        if (now.timeS >= timeS) return true;
+        if (isSo()) return true;
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     return false;
+}
+
+/// Waits until the sitting has come so far; false when it has ended or a minute has passed.
+inline bool waitUntil(const Sitting& sitting, double timeS) {
+    SittingStatus now;
+    const auto hasCome = [&] {
+        now = sitting.status();
+        return !now.fault.empty() || now.timeS >= timeS;
+    };
+    return waitUntilTrue(hasCome) && now.fault.empty();
 }
 
 /// Three seconds of work in which all changes that can. Returns the state at the end.

@@ -185,14 +185,21 @@ TEST(Sitting, aFullDiskIsToldAndTheSittingGoesOn) {
     ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
     const auto handler = std::signal(SIGXFSZ, SIG_IGN);
     Sitting sitting(blockStation(), blockCase(), handOf(twoHoles()), settings, nullptr);
-    const rlimit full{std::filesystem::file_size(settings.sessionFile) / 2, before.rlim_max};
+    // A page: wherever in the file the next chunk belongs, there is no room for it.
+    const rlimit full{4096, before.rlim_max};
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
     const bool cameThrough = waitUntil(sitting, 2.9);
+    std::vector<Notice> told;
+    const bool isTold = waitUntilTrue([&] {
+        for (Notice& notice : sitting.takeNotices())
+            told.push_back(std::move(notice));
+        return wasTold(told, "recording-stopped");
+    });
     setrlimit(RLIMIT_FSIZE, &before);
     std::signal(SIGXFSZ, handler);
     ASSERT_TRUE(cameThrough);
+    EXPECT_TRUE(isTold);
     sitting.stop();
-    EXPECT_TRUE(wasTold(sitting.takeNotices(), "recording-stopped"));
     EXPECT_NE(sitting.status().recording.message, "");
     EXPECT_GT(removed(sitting.state()), 0.1);
 }

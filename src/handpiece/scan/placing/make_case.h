@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// A case out of surfaces.
+
+#include <string>
+#include <vector>
+
+#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/scan/placing/placing.h"
+
+namespace handpiece::placing {
+
+struct CaseText {
+    std::string name = "scanned tooth";  ///< chosen by a person, never taken from the scan
+    std::string kind;
+    int fdiNumber = 0;
+    int buccalSign = 0;
+    std::string tissuesToml;  ///< what the case changes about its tissues
+};
+/// In the tooth's frame; `scenery` (neighbours, gum, bone) is in the scanner's frame like the surfaces. Authored
+/// lesions are named "caries (authored)".
+[[nodiscard]] tooth::Case makeCase(const surfacing::Surfaces& surfaces, const Placed& placed, const CaseText& text,
+                                   const std::vector<tooth::Part>& scenery = {});
+
+}  // namespace handpiece::placing

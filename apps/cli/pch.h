@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Precompiled once for the commands: what nearly every one includes.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>

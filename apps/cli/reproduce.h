@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,9 +35,17 @@ struct Surface {
     [[nodiscard]] bool isPlane() const { return name == "plane"; }
 };
 
+/// Slices that a tooth is made of; without a path the starter tooth is imaged.
+struct ScanSource {
+    std::filesystem::path path;
+    std::optional<double> spacingMm;
+    bool labels = false;  ///< tissue numbers, not grey values
+};
+
 struct Reproduction {
     bool quick = false, ownTooth = false;
     std::filesystem::path out;
+    ScanSource scan;
     std::shared_ptr<const instrument::Bur> bur;
     std::vector<Surface> surfaces;  ///< the plane first, then coarse to fine
     HtmlReport report{"Touching and cutting a tooth: the paper's experiments, repeated"};
@@ -64,13 +73,24 @@ struct Place {
 void reproduceTables(Reproduction& r);
 void reproduceFigures(Reproduction& r);
 
-/// How long a picture of each surface takes, drawn anew and read back.
+/// How long a picture of each mesh takes, drawn anew and read back.
 struct DrawTiming {
-    std::vector<double> ms;  ///< median, by surface; empty without OpenGL
+    std::vector<double> ms;  ///< median, by mesh; empty without OpenGL
     std::string renderer;    ///< what drew
     std::string missing;     ///< why nothing was drawn
 };
-[[nodiscard]] DrawTiming timeDraw(const Reproduction& r);
+[[nodiscard]] DrawTiming timeDraw(const Reproduction& r, const std::vector<geometry::TriangleMesh>& meshes);
+/// Time to read a mesh file: the fastest of five, so that the file comes from memory as the paper's may have.
+[[nodiscard]] double loadMsOf(const std::filesystem::path& file, geometry::TriangleMesh& mesh);
+
+/// What the paper printed of a tooth in Table II.
+struct PaperTooth {
+    double loadMs, drawMs;
+};
+[[nodiscard]] PaperTooth paperTooth(const std::string& resolution);
+
+/// Table II of a tooth that comes out of slices.
+void reproduceScan(Reproduction& r);
 
 /// One depth query and the cut that follows it in a tick.
 struct CutTiming {

@@ -27,14 +27,16 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ReproduceOptions {
-    std::string out, tooth;
-    bool quick = false, json = false;
+    std::string out, tooth, scan;
+    double spacingMm = 0.0;
+    bool quick = false, json = false, labels = false;
 };
 
 constexpr std::array kPercent{6.0, 12.0, 25.0, 50.0, 100.0};  // as the paper's resolutions are called
 constexpr std::size_t kQuickTeeth = 2;
 
-/// Time to read a mesh file: the fastest of five, so that the file comes from memory as the paper's may have.
+}  // namespace
+
 double loadMsOf(const fs::path& file, geometry::TriangleMesh& mesh) {
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 5; ++i) {
@@ -45,6 +47,8 @@ double loadMsOf(const fs::path& file, geometry::TriangleMesh& mesh) {
     }
     return best;
 }
+
+namespace {
 
 /// What is there from an earlier run is used when it has the faces wanted.
 bool isThere(const fs::path& file, std::size_t faces) {
@@ -137,14 +141,15 @@ void reproduce(const ReproduceOptions& o) {
     ProgressBar bar("reproducing");
     const core::Progress progress = bar.listener();
     // Surfaces, timings, steps and drops of both methods on each, cuts on each, sixteen runs that touch, six that cut,
-    // four pictures.
+    // four pictures; slices, their surface, five resolutions drawn.
     const double surfaces = 1.0 + static_cast<double>(o.quick ? kQuickTeeth : kPercent.size());
-    const double steps = surfaces * (2.0 + 3.0 * 2.0) + 26.0;
+    const double steps = surfaces * (2.0 + 3.0 * 2.0) + 39.0;
     double done = 0.0;
     Reproduction r;
     r.quick = o.quick;
     r.out = o.out;
     r.ownTooth = !o.tooth.empty();
+    r.scan = {o.scan, o.spacingMm > 0.0 ? std::optional(o.spacingMm) : std::nullopt, o.labels};
     r.step = [&](const std::string&) { core::report(progress, std::min(1.0, done++ / steps)); };
     r.bur = std::make_shared<instrument::Bur>(instrument::makeBur("paper"));
     introduce(r, o);
@@ -175,6 +180,13 @@ void addReproduceCommand(CLI::App& app) {
     const auto options = std::make_shared<ReproduceOptions>();
     command->add_option("--out", options->out, "folder for the report; the teeth are kept in it")->required();
     command->add_option("--tooth", options->tooth, "case folder or mesh file instead of the starter molar");
+    CLI::Option* scan = command->add_option(
+        "--scan", options->scan, "slices for Table II instead of the starter molar as the phantom scanner images it");
+    command
+        ->add_option("--spacing", options->spacingMm, "distance of the scan's voxels [mm], where its files do not tell")
+        ->check(CLI::PositiveNumber)
+        ->needs(scan);
+    command->add_flag("--labels", options->labels, "the scan holds tissue numbers, not grey values")->needs(scan);
     command->add_flag("--quick", options->quick, "the two coarsest teeth and shorter drops only");
     command->add_flag("--json", options->json, "print results.json");
     command->footer(

@@ -16,7 +16,7 @@ constexpr double kTurnRad = 0.02;
 
 }  // namespace
 
-DrawTiming timeDraw(const Reproduction& r) {
+DrawTiming timeDraw(const Reproduction& r, const std::vector<geometry::TriangleMesh>& meshes) {
     DrawTiming timing;
     std::optional<view::Renderer> renderer;
     try {
@@ -33,11 +33,11 @@ DrawTiming timeDraw(const Reproduction& r) {
     moment.burShown = false;
     view::Image image;
     const std::size_t count = r.quick ? 5 : 21;
-    for (const Surface& s : r.surfaces) {
-        r.step("drawing " + s.name);
-        renderer->setTooth(s.tooth->outer.bounds());
-        renderer->setMesh(s.tooth->outer, tooth::Tissue::enamel);
-        view::Camera camera = view::standardView(view::StandardView::oblique, s.tooth->outer.bounds(), 1, kPicture);
+    for (const geometry::TriangleMesh& mesh : meshes) {
+        r.step("drawing");
+        renderer->setTooth(mesh.bounds());
+        renderer->setMesh(mesh, tooth::Tissue::enamel);
+        view::Camera camera = view::standardView(view::StandardView::oblique, mesh.bounds(), 1, kPicture);
         std::vector<double> ms;
         for (std::size_t i = 0; i < count; ++i) {
             camera = view::orbited(camera, kTurnRad, 0.0);

@@ -37,6 +37,15 @@ const PaperRow& paperRow(const std::string& resolution) {
                          [&](const PaperRow& row) { return resolution == row.resolution; });
 }
 
+}  // namespace
+
+PaperTooth paperTooth(const std::string& resolution) {
+    const PaperRow& row = paperRow(resolution);
+    return {row.loadMs, row.drawMs};
+}
+
+namespace {
+
 std::string number(std::size_t n) {
     return fmt::format("{}", n);
 }
@@ -70,7 +79,10 @@ void table1(Reproduction& r) {
 void table2(Reproduction& r) {
     Json rows = Json::array();
     std::vector<std::vector<std::string>> cells;
-    const DrawTiming drawing = timeDraw(r);
+    std::vector<geometry::TriangleMesh> meshes;
+    for (const Surface& s : r.surfaces)
+        meshes.push_back(s.tooth->outer);
+    const DrawTiming drawing = timeDraw(r, meshes);
     if (!drawing.missing.empty()) r.remarks.push_back("Table II, drawing: " + drawing.missing);
     for (std::size_t i = 0; i < r.surfaces.size(); ++i) {
         const Surface& s = r.surfaces[i];

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "handpiece/base/core/error.h"
@@ -140,11 +141,15 @@ class Collapser {
             parent_[v] = v;
     }
 
+    /// May be called again with a lower target: it goes on as if that had been asked for at once.
     void run(std::size_t target, const core::Progress& progress) {
         const std::size_t start = faces_;
         while (faces_ > target) {
-            const std::size_t before = faces_;
-            fillHeap();
+            if (!isInRound_) {
+                roundStart_ = faces_;
+                fillHeap();
+                isInRound_ = true;
+            }
             std::size_t sinceReport = 0;
             while (faces_ > target && !heap_.empty()) {
                 std::pop_heap(heap_.begin(), heap_.end());
@@ -157,8 +162,10 @@ class Collapser {
                 if (++sinceReport % 16384 == 0)
                     core::report(progress, static_cast<double>(start - faces_) / static_cast<double>(start - target));
             }
+            if (faces_ <= target) return;
             // Edges that were refused may have become possible since; a round that gained nothing is the end.
-            if (faces_ == before) return;
+            isInRound_ = false;
+            if (faces_ == roundStart_) return;
         }
     }
 
@@ -399,20 +406,42 @@ class Collapser {
     std::uint32_t markNow_ = 0;
     std::vector<std::uint32_t> ring_;
     std::vector<Candidate> heap_;
-    std::size_t faces_ = 0;
+    std::size_t faces_ = 0, roundStart_ = 0;
+    bool isInRound_ = false;
 };
 
 }  // namespace
 
-Decimated decimate(const TriangleMesh& mesh, std::size_t targetFaces, const core::Progress& progress) {
-    if (targetFaces < 4)
-        throw core::Error(fmt::format("a closed surface has at least 4 faces, {} were asked for", targetFaces),
-                          "decimate");
+std::vector<Decimated> decimateSteps(const TriangleMesh& mesh, std::span<const std::size_t> targets,
+                                     const core::Progress& progress) {
+    for (const std::size_t target : targets)
+        if (target < 4)
+            throw core::Error(fmt::format("a closed surface has at least 4 faces, {} were asked for", target),
+                              "decimate");
+    std::vector<std::size_t> order(targets.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return targets[a] > targets[b]; });
+    std::vector<Decimated> steps(targets.size());
+    if (targets.empty()) return steps;
     Collapser collapser(mesh);
-    collapser.run(targetFaces + targetFaces % 2, progress);
-    Decimated out = collapser.result();
+    // The share of the collapses done says how far it is.
+    const auto left = [&](std::size_t faces) {
+        const std::size_t least = targets[order.back()], all = std::max(mesh.triangles.size(), least + 1);
+        return 1.0 - static_cast<double>(std::min(faces, all) - least) / static_cast<double>(all - least);
+    };
+    std::size_t faces = mesh.triangles.size();
+    for (const std::size_t i : order) {
+        const std::size_t target = targets[i] + targets[i] % 2;
+        collapser.run(target, core::part(progress, left(faces), left(target)));
+        steps[i] = collapser.result();
+        faces = std::min(faces, target);
+    }
     core::report(progress, 1.0);
-    return out;
+    return steps;
+}
+
+Decimated decimate(const TriangleMesh& mesh, std::size_t targetFaces, const core::Progress& progress) {
+    return std::move(decimateSteps(mesh, std::span(&targetFaces, 1), progress).front());
 }
 
 }  // namespace handpiece::geometry

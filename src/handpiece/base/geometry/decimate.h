@@ -4,6 +4,8 @@
 /// Fewer triangles, the same shape.
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "handpiece/base/core/progress.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
@@ -24,5 +26,9 @@ struct Decimated {
 /// Throws core::Error when the mesh is not closed and consistently oriented, or the target is below 4.
 [[nodiscard]] Decimated decimate(const TriangleMesh& mesh, std::size_t targetFaces,
                                  const core::Progress& progress = {});
+
+/// The same at each of several targets, bit for bit, in one run down to the least. In the order of `targets`.
+[[nodiscard]] std::vector<Decimated> decimateSteps(const TriangleMesh& mesh, std::span<const std::size_t> targets,
+                                                   const core::Progress& progress = {});
 
 }  // namespace handpiece::geometry

@@ -130,18 +130,30 @@ class Marcher {
     Marcher(const core::Box& box, const ScalarFunction& f, const IsosurfaceSettings& settings,
             const core::Progress& progress)
         : f_(f), h_(settings.spacingMm), lipschitz_(settings.lipschitz), progress_(progress), origin_(box.min) {
-        for (int a = 0; a < 3; ++a) {
-            cells_[a] = std::max<std::int64_t>(2, static_cast<std::int64_t>(std::ceil(box.size()[a] / h_ - 1e-9)));
-            blocks_[a] = (cells_[a] + kCells - 1) / kCells;
-        }
-        if (static_cast<double>(blocks_[0]) * static_cast<double>(blocks_[1]) * static_cast<double>(blocks_[2]) > 1e9)
-            throw core::Error(fmt::format("a spacing of {} mm is too fine for a box of {:.1f} x {:.1f} x {:.1f} mm", h_,
-                                          box.size().x(), box.size().y(), box.size().z()),
-                              "isosurface", "choose a coarser spacing");
+        layOut(box);
+    }
+
+    /// Over the grid's own nodes and a layer of outside around them: nothing is known of it in between, so every node
+    /// is read, but only blocks of both signs are looked into.
+    Marcher(const ScalarGrid& grid, const core::Progress& progress)
+        : f_(noFunction()),
+          h_(grid.spacingMm),
+          lipschitz_(0.0),
+          progress_(progress),
+          origin_(grid.originMm - Vec3::Constant(grid.spacingMm)),
+          grid_(&grid) {
+        const Vec3 nodes(grid.nodes[0], grid.nodes[1], grid.nodes[2]);
+        layOut({origin_, grid.originMm + h_ * nodes});
+        for (const float v : grid.values)
+            gridOutside_ = std::max(gridOutside_, std::abs(v));
+        if (!(gridOutside_ > 0.0f)) gridOutside_ = 1.0f;
     }
 
     TriangleMesh run() {
-        findBlocks();
+        if (grid_)
+            findGridBlocks();
+        else
+            findBlocks();
         core::report(progress_, 0.1);
         core::parallelFor(active_.size(), 8, [&](std::size_t b, std::size_t e) {
             for (std::size_t i = b; i < e; ++i)
@@ -154,6 +166,21 @@ class Marcher {
     }
 
   private:
+    static const ScalarFunction& noFunction() {
+        static const ScalarFunction none;
+        return none;
+    }
+    void layOut(const core::Box& box) {
+        for (int a = 0; a < 3; ++a) {
+            cells_[a] = std::max<std::int64_t>(2, static_cast<std::int64_t>(std::ceil(box.size()[a] / h_ - 1e-9)));
+            blocks_[a] = (cells_[a] + kCells - 1) / kCells;
+        }
+        if (static_cast<double>(blocks_[0]) * static_cast<double>(blocks_[1]) * static_cast<double>(blocks_[2]) > 1e9)
+            throw core::Error(fmt::format("a spacing of {} mm is too fine for a box of {:.1f} x {:.1f} x {:.1f} mm", h_,
+                                          box.size().x(), box.size().y(), box.size().z()),
+                              "isosurface", "choose a coarser spacing");
+    }
+
     [[nodiscard]] Vec3 nodeMm(std::int64_t x, std::int64_t y, std::int64_t z) const {
         return origin_ + h_ * Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
     }
@@ -192,6 +219,52 @@ class Marcher {
                         }
             }
         });
+        takeBlocks(found);
+    }
+
+    // The same order of blocks as findBlocks: groups of 4^3.
+    void findGridBlocks() {
+        constexpr std::int64_t kGroup = 4;
+        std::array<std::int64_t, 3> groups;
+        for (int a = 0; a < 3; ++a)
+            groups[a] = (blocks_[a] + kGroup - 1) / kGroup;
+        const auto total = static_cast<std::size_t>(groups[0] * groups[1] * groups[2]);
+        std::vector<std::vector<std::array<std::int32_t, 3>>> found(total);
+        core::parallelFor(total, 4, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t g = begin; g < end; ++g) {
+                const auto index = static_cast<std::int64_t>(g);
+                const std::int64_t first[3] = {index % groups[0] * kGroup, index / groups[0] % groups[1] * kGroup,
+                                               index / (groups[0] * groups[1]) * kGroup};
+                for (std::int64_t z = first[2]; z < std::min(first[2] + kGroup, blocks_[2]); ++z)
+                    for (std::int64_t y = first[1]; y < std::min(first[1] + kGroup, blocks_[1]); ++y)
+                        for (std::int64_t x = first[0]; x < std::min(first[0] + kGroup, blocks_[0]); ++x)
+                            if (hasBothSigns(x * kCells, y * kCells, z * kCells))
+                                found[g].push_back({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
+                                                    static_cast<std::int32_t>(z)});
+            }
+        });
+        takeBlocks(found);
+    }
+
+    /// Of the block whose first node this is; what lies around the grid is outside.
+    [[nodiscard]] bool hasBothSigns(std::int64_t x0, std::int64_t y0, std::int64_t z0) const {
+        const std::int64_t nx = grid_->nodes[0], ny = grid_->nodes[1], nz = grid_->nodes[2];
+        bool outside = x0 == 0 || y0 == 0 || z0 == 0 || x0 + kCells > nx || y0 + kCells > ny || z0 + kCells > nz;
+        bool inside = false;
+        for (std::int64_t z = std::max<std::int64_t>(z0, 1); z <= std::min(z0 + kCells, nz); ++z)
+            for (std::int64_t y = std::max<std::int64_t>(y0, 1); y <= std::min(y0 + kCells, ny); ++y) {
+                const float* row = &grid_->values[static_cast<std::size_t>(nx * (y - 1 + ny * (z - 1)))];
+                for (std::int64_t x = std::max<std::int64_t>(x0, 1); x <= std::min(x0 + kCells, nx); ++x) {
+                    const bool in = row[x - 1] < 0.0f;
+                    inside |= in;
+                    outside |= !in;
+                }
+                if (inside && outside) return true;
+            }
+        return false;
+    }
+
+    void takeBlocks(const std::vector<std::vector<std::array<std::int32_t, 3>>>& found) {
         blockAt_.assign(static_cast<std::size_t>(blocks_[0] * blocks_[1] * blocks_[2]), -1);
         for (const auto& list : found)
             for (const auto& at : list) {
@@ -212,6 +285,14 @@ class Marcher {
     // Values on the nodes, coarse to fine: where a coarser value proves that no edge of a node can cross, its sign is
     // enough and f is not asked.
     void evaluate(const Block& block, double* values) const {
+        if (grid_) {
+            for (int z = 0; z < kNodes; ++z)
+                for (int y = 0; y < kNodes; ++y)
+                    for (int x = 0; x < kNodes; ++x)
+                        *values++ = gridValue(block.at[0] * kCells + x - 1, block.at[1] * kCells + y - 1,
+                                              block.at[2] * kCells + z - 1);
+            return;
+        }
         for (int stride = kCells; stride >= 1; stride /= 2)
             for (int z = 0; z < kNodes; z += stride)
                 for (int y = 0; y < kNodes; y += stride)
@@ -235,6 +316,12 @@ class Marcher {
                         value =
                             f_(nodeMm(block.at[0] * kCells + x, block.at[1] * kCells + y, block.at[2] * kCells + z));
                     }
+    }
+
+    [[nodiscard]] double gridValue(std::int64_t x, std::int64_t y, std::int64_t z) const {
+        const auto& n = grid_->nodes;
+        if (x < 0 || y < 0 || z < 0 || x >= n[0] || y >= n[1] || z >= n[2]) return gridOutside_;
+        return grid_->values[static_cast<std::size_t>(x + n[0] * (y + std::int64_t{n[1]} * z))];
     }
 
     void sample(Block& block) const {
@@ -362,6 +449,8 @@ class Marcher {
     const core::Progress& progress_;
     Vec3 origin_;
     std::array<std::int64_t, 3> cells_{}, blocks_{};
+    const ScalarGrid* grid_ = nullptr;
+    float gridOutside_ = 0.0f;
     std::vector<std::int32_t> blockAt_;
     std::vector<Block> active_;
 };
@@ -464,24 +553,9 @@ TriangleMesh isosurface(const ScalarGrid& grid, const core::Progress& progress) 
             fmt::format("{} values do not fill a grid of {} x {} x {}", grid.values.size(), n[0], n[1], n[2]),
             "isosurface");
     if (!(grid.spacingMm > 0.0)) throw core::Error("the grid's spacing is not positive", "isosurface");
-    float largest = 0.0f;
-    for (const float v : grid.values)
-        largest = std::max(largest, std::abs(v));
-    const double outside = largest > 0.0f ? largest : 1.0;
-    const auto nodeValue = [&](const Vec3& p) {
-        const Vec3 at = (p - grid.originMm) / grid.spacingMm;
-        const std::int64_t x = std::llround(at.x()), y = std::llround(at.y()), z = std::llround(at.z());
-        if (x < 0 || y < 0 || z < 0 || x >= n[0] || y >= n[1] || z >= n[2]) return outside;
-        return static_cast<double>(grid.values[static_cast<std::size_t>(x + n[0] * (y + std::int64_t{n[1]} * z))]);
-    };
-    IsosurfaceSettings settings;
-    settings.spacingMm = grid.spacingMm;
-    settings.project = false;
-    // Nothing is known of a grid between its nodes: every block is looked at.
-    settings.lipschitz = 1e30;
-    core::Box box{grid.originMm - Vec3::Constant(grid.spacingMm),
-                  grid.originMm + grid.spacingMm * Vec3(n[0], n[1], n[2])};
-    return isosurface(box, nodeValue, settings, progress);
+    TriangleMesh mesh = Marcher(grid, progress).run();
+    core::report(progress, 1.0);
+    return mesh;
 }
 
 }  // namespace handpiece::geometry

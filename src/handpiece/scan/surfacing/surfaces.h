@@ -4,6 +4,8 @@
 /// From a region's solids to closed surfaces that do not cross, at chosen numbers of faces.
 
 #include <array>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "handpiece/base/core/progress.h"
@@ -19,23 +21,38 @@ struct Surface {
     bool isAuthored = false;
 };
 /// The whole tooth first, then its tissues in the region's order.
+///
+/// As parts of a tooth::Case they overlap, and the higher priority wins: the enamel's part is the whole tooth itself
+/// (the lowest priority of all), dentine lies in it, pulp in the dentine, caries and restorations where they are.
+/// Where dentine (at the root), caries or a restoration reach the tooth's outside, their surface does not run along the
+/// outer one, which would leave flakes of enamel between the two, but a little outside it: `standOutMm`, below
+/// tooth::kCaseToleranceMm. Nothing outside the outer surface is felt or counted, so no volume changes by that.
 struct Surfaces {
     Surface outer;
     std::vector<Surface> tissues;
-    double leastGapMm = 0;  ///< between a nested surface and the one around it; where a tissue reaches the outside it
-                            ///< stands out of the tooth by this much instead, and the tooth's own surface bounds it
+    double leastGapMm = 0;  ///< the pulp keeps this distance at least from the dentine's and the tooth's surface
+    double standOutMm = 0;  ///< where a tissue reaches the outside it stands out of the tooth by about this much
+    std::vector<std::string> notes;  ///< what a person should know: parts left out, targets that could not be kept
 };
 
 struct Settings {
     bool smooth = true;  ///< without shrinking: the volume is kept to 0.1 %
 };
+/// Isosurfaces of the region's solids, smoothed by Taubin's low-pass within a fraction of a voxel of them, each shell
+/// then set to the volume that its solid has below the voxel. Of the tooth and its dentine the largest shell is kept,
+/// of the other tissues those of 20 voxels and more. The same bytes at any thread count. Throws core::Error for a
+/// region without a tooth, values that do not fill its grid, a grid that is not isotropic.
 [[nodiscard]] Surfaces makeSurfaces(const segmentation::Region& region, const Settings& settings = {},
                                     const core::Progress& progress = {});
 
 /// The paper's Table II.
 inline constexpr std::array<double, 5> kTableTwoPercents{6, 12, 25, 50, 100};
-/// All surfaces at a percentage (0..100] of their faces; 100 gives them back.
+/// All surfaces at a percentage (0..100] of their faces, to the even number nearest; 100 gives them back. What was
+/// nested stays so: where fewer faces let a tissue come out, its vertices are pushed back.
 [[nodiscard]] Surfaces decimated(const Surfaces& full, double percent, const core::Progress& progress = {});
+/// The same as decimated() at each percentage, in one go.
+[[nodiscard]] std::vector<Surfaces> decimatedSteps(const Surfaces& full, std::span<const double> percents,
+                                                   const core::Progress& progress = {});
 /// All surfaces together at about `faces` faces, the outer one's share by its area.
 [[nodiscard]] Surfaces decimatedTo(const Surfaces& full, std::size_t faces, const core::Progress& progress = {});
 

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <optional>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/geometry/decimate.h"
+#include "handpiece/base/geometry/self_intersection.h"
+#include "handpiece/base/geometry/triangle_tree.h"
+#include "handpiece/scan/surfacing/nesting.h"
+#include "handpiece/scan/surfacing/surfaces.h"
+
+namespace handpiece::surfacing {
+namespace {
+
+using core::Vec3;
+using geometry::TriangleMesh;
+using geometry::TriangleTree;
+using tooth::Tissue;
+
+constexpr std::size_t kFewestFaces = 4;     ///< a tetrahedron
+constexpr double kCoarseStandOutMm = 0.02;  ///< least, where faces are large: flakes of what is below stay away
+constexpr double kMostStandOutMm = 0.08;    ///< below tooth::kCaseToleranceMm
+constexpr double kFarMm = 1.0;
+
+/// One run per surface at a time on each core; the progress of all is the mean of theirs, by faces.
+class SharedProgress {
+  public:
+    SharedProgress(const core::Progress& progress, std::vector<double> weights)
+        : progress_(progress), weights_(std::move(weights)), done_(weights_.size(), 0.0) {
+        for (const double w : weights_)
+            sum_ += w;
+    }
+    [[nodiscard]] core::Progress of(std::size_t i) {
+        if (!progress_) return {};
+        return [this, i](double fraction) {
+            const std::lock_guard lock(mutex_);
+            done_[i] = fraction * weights_[i] / sum_;
+            double all = 0.0;
+            for (const double d : done_)
+                all += d;
+            return progress_(all);
+        };
+    }
+
+  private:
+    const core::Progress& progress_;
+    std::vector<double> weights_, done_;
+    double sum_ = 0.0;
+    std::mutex mutex_;
+};
+
+std::vector<const Surface*> allOf(const Surfaces& surfaces) {
+    std::vector<const Surface*> all{&surfaces.outer};
+    for (const Surface& tissue : surfaces.tissues)
+        all.push_back(&tissue);
+    return all;
+}
+
+/// Holds the surfaces of fewer faces to the sides that the full ones have of each other.
+class Mender {
+  public:
+    explicit Mender(const Surfaces& full) : full_(full) {}
+
+    void mend(Surfaces& coarse, const core::Progress& progress) {
+        const Surface* dentine = nullptr;
+        for (std::size_t i = 0; i < coarse.tissues.size(); ++i) {
+            Surface& tissue = coarse.tissues[i];
+            if (tissue.tissue == Tissue::pulp) {
+                if (dentine) inside(coarse, tissue, dentine->mesh, "the dentine");
+                inside(coarse, tissue, coarse.outer.mesh, "the tooth");
+            } else {
+                sides(coarse, tissue, i);
+            }
+            if (tissue.tissue == Tissue::dentine) dentine = &tissue;
+            core::report(progress, static_cast<double>(i + 1) / static_cast<double>(coarse.tissues.size()));
+        }
+    }
+
+  private:
+    const TriangleTree& fullTree(std::size_t index) {
+        if (trees_.empty()) trees_.resize(full_.tissues.size() + 1);
+        std::optional<TriangleTree>& tree = trees_[index];
+        if (!tree) tree.emplace(index == 0 ? full_.outer.mesh : full_.tissues[index - 1].mesh);
+        return *tree;
+    }
+
+    void inside(Surfaces& coarse, Surface& pulp, const TriangleMesh& around, std::string_view name) {
+        const double gap = 2.0 * full_.leastGapMm;
+        const std::vector<Bounds> in(pulp.mesh.vertices.size(), {Bounds{}.low, -gap}),
+            out(around.vertices.size(), {gap, Bounds{}.high});
+        finish(coarse, pulp, holdApart(pulp.mesh, in, around, out, kFarMm, true, {}), name);
+    }
+
+    /// Vertices on the side of the full surface that they were on; where they were on it they are free.
+    static Bounds sideOf(double fullMm, double standOutMm, double gapMm) {
+        // Outside: out of the way of flat faces. Inside: no thinner than half of what was there.
+        if (fullMm > 0.25 * standOutMm) return {std::min(fullMm, kCoarseStandOutMm), kMostStandOutMm};
+        if (fullMm < -standOutMm) return {Bounds{}.low, -std::min(-0.5 * fullMm, gapMm)};
+        return {Bounds{}.low, kMostStandOutMm};
+    }
+
+    void sides(Surfaces& coarse, Surface& tissue, std::size_t index) {
+        const TriangleTree &outer = fullTree(0), &own = fullTree(index + 1);
+        std::vector<Bounds> onTissue(tissue.mesh.vertices.size()), onOuter(coarse.outer.mesh.vertices.size());
+        core::parallelFor(onTissue.size(), 512, [&](std::size_t b, std::size_t e) {
+            for (std::size_t v = b; v < e; ++v)
+                onTissue[v] = sideOf(outer.signedDistance(tissue.mesh.vertices[v]), full_.standOutMm, full_.leastGapMm);
+        });
+        core::parallelFor(onOuter.size(), 512, [&](std::size_t b, std::size_t e) {
+            for (std::size_t v = b; v < e; ++v) {
+                const Vec3& p = coarse.outer.mesh.vertices[v];
+                const geometry::NearestPoint n = own.nearest(p, kFarMm);
+                if (n.triangle == geometry::kNoTriangle) continue;
+                const double mm = own.side(p, n) * n.distanceMm;
+                if (mm > full_.standOutMm) onOuter[v].low = std::min(0.5 * mm, full_.leastGapMm);
+                if (mm < -0.25 * full_.standOutMm && mm > -2.0 * full_.standOutMm)
+                    onOuter[v].high = -0.25 * full_.standOutMm;
+            }
+        });
+        finish(coarse, tissue, holdApart(tissue.mesh, onTissue, coarse.outer.mesh, onOuter, kFarMm, false, {}),
+               "the tooth");
+    }
+
+    static void finish(Surfaces& coarse, const Surface& tissue, const Apart& apart, std::string_view name) {
+        const std::string_view own = tooth::properties(tissue.tissue).name;
+        if (apart.failed > 0)
+            coarse.notes.push_back(
+                fmt::format("{} with {} faces does not keep its distance to {} at {} places, one at ({:.2f}, {:.2f}, "
+                            "{:.2f}) mm: choose more faces",
+                            own, tissue.mesh.triangles.size(), name, apart.failed, apart.failedMm.x(),
+                            apart.failedMm.y(), apart.failedMm.z()));
+        if (apart.moved > 0 && !geometry::selfIntersections(tissue.mesh, 1).empty())
+            coarse.notes.push_back(
+                fmt::format("{} with {} faces crosses itself: choose more faces", own, tissue.mesh.triangles.size()));
+    }
+
+    const Surfaces& full_;
+    std::vector<std::optional<TriangleTree>> trees_;
+};
+
+/// targets[step][surface], each below the surface's own count unless it stays as it is.
+std::vector<Surfaces> toTargets(const Surfaces& full, const std::vector<std::vector<std::size_t>>& targets,
+                                const core::Progress& progress) {
+    const std::vector<const Surface*> all = allOf(full);
+    std::vector<Surfaces> steps(targets.size(), Surfaces{});
+    for (Surfaces& step : steps) {
+        step.leastGapMm = full.leastGapMm;
+        step.standOutMm = full.standOutMm;
+        step.notes = full.notes;
+        step.tissues.resize(full.tissues.size());
+    }
+    std::vector<double> weights;
+    for (const Surface* surface : all)
+        weights.push_back(static_cast<double>(surface->mesh.triangles.size()) + 1.0);
+    const core::Progress collapsing = core::part(progress, 0.0, 0.7);
+    SharedProgress shared(collapsing, weights);
+    core::parallelFor(all.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            std::vector<std::size_t> wanted, at;
+            for (std::size_t s = 0; s < targets.size(); ++s) {
+                Surface& to = i == 0 ? steps[s].outer : steps[s].tissues[i - 1];
+                if (targets[s][i] >= all[i]->mesh.triangles.size()) {
+                    to = *all[i];
+                    continue;
+                }
+                to.tissue = all[i]->tissue;
+                to.isAuthored = all[i]->isAuthored;
+                wanted.push_back(targets[s][i]);
+                at.push_back(s);
+            }
+            std::vector<geometry::Decimated> made = geometry::decimateSteps(all[i]->mesh, wanted, shared.of(i));
+            for (std::size_t k = 0; k < at.size(); ++k) {
+                Surface& to = i == 0 ? steps[at[k]].outer : steps[at[k]].tissues[i - 1];
+                to.mesh = std::move(made[k].mesh);
+                to.errorBoundMm = all[i]->errorBoundMm + made[k].errorBoundMm;
+            }
+        }
+    });
+    Mender mender(full);
+    for (std::size_t s = 0; s < steps.size(); ++s) {
+        const double from = 0.7 + 0.3 * static_cast<double>(s) / static_cast<double>(steps.size());
+        bool isWhole = true;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            isWhole = isWhole && targets[s][i] >= all[i]->mesh.triangles.size();
+        if (!isWhole) mender.mend(steps[s], core::part(progress, from, from + 0.3 / static_cast<double>(steps.size())));
+    }
+    core::report(progress, 1.0);
+    return steps;
+}
+
+/// The even number nearest to `faces`.
+std::size_t evenNear(double faces) {
+    return std::max(kFewestFaces, 2 * static_cast<std::size_t>(std::llround(0.5 * faces)));
+}
+
+}  // namespace
+
+std::vector<Surfaces> decimatedSteps(const Surfaces& full, std::span<const double> percents,
+                                     const core::Progress& progress) {
+    std::vector<std::vector<std::size_t>> targets;
+    for (const double percent : percents) {
+        if (!(percent > 0.0 && percent <= 100.0))
+            throw core::Error(fmt::format("{} percent of the faces is not possible", percent), "--percent",
+                              "give a number above 0, up to 100");
+        targets.emplace_back();
+        for (const Surface* surface : allOf(full))
+            targets.back().push_back(evenNear(0.01 * percent * static_cast<double>(surface->mesh.triangles.size())));
+    }
+    return toTargets(full, targets, progress);
+}
+
+Surfaces decimated(const Surfaces& full, double percent, const core::Progress& progress) {
+    return std::move(decimatedSteps(full, std::span(&percent, 1), progress).front());
+}
+
+Surfaces decimatedTo(const Surfaces& full, std::size_t faces, const core::Progress& progress) {
+    constexpr std::size_t kFewestEach = 100;
+    const std::vector<const Surface*> all = allOf(full);
+    if (faces < kFewestEach * all.size())
+        throw core::Error(fmt::format("{} faces are too few for {} surfaces", faces, all.size()), "--faces",
+                          fmt::format("give {} at least", kFewestEach * all.size()));
+    double areaMm2 = 0.0;
+    for (const Surface* surface : all)
+        areaMm2 += geometry::surfaceAreaMm2(surface->mesh);
+    std::vector<std::size_t> targets;
+    for (const Surface* surface : all)
+        targets.push_back(std::max(
+            kFewestEach, evenNear(static_cast<double>(faces) * geometry::surfaceAreaMm2(surface->mesh) / areaMm2)));
+    return std::move(toTargets(full, {targets}, progress).front());
+}
+
+}  // namespace handpiece::surfacing

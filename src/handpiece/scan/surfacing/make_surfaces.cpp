@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/scan/surfacing/nesting.h"
+#include "handpiece/scan/surfacing/smoothing.h"
+#include "handpiece/scan/surfacing/solid_field.h"
+#include "handpiece/scan/surfacing/surfaces.h"
+
+namespace handpiece::surfacing {
+namespace {
+
+using core::Vec3;
+using geometry::TriangleMesh;
+using segmentation::Region;
+using segmentation::Solid;
+using tooth::Tissue;
+
+constexpr double kLeastGapMm = 0.005;
+constexpr double kLeastShellVoxels = 20.0;
+constexpr Smoothing kDistanceSmoothing{10, 0.5};    ///< reach in voxels
+constexpr Smoothing kStaircaseSmoothing{40, 0.75};  ///< half a voxel is the step itself
+
+void check(const Region& region) {
+    const volume::Grid& grid = region.grid;
+    const double h = grid.spacingMm.x();
+    if (!(h > 0.0) || !(grid.spacingMm - Vec3::Constant(h)).isZero(1e-6 * h))
+        throw core::Error(fmt::format("the region's voxels are {} x {} x {} mm, not cubes", grid.spacingMm.x(),
+                                      grid.spacingMm.y(), grid.spacingMm.z()),
+                          "surfaces", "segment the scan again");
+    const auto fits = [&](const Solid& solid, std::string_view name) {
+        if (solid.insideMm.size() != grid.count())
+            throw core::Error(fmt::format("{} values of {} do not fill a grid of {} x {} x {}", solid.insideMm.size(),
+                                          name, grid.size[0], grid.size[1], grid.size[2]),
+                              "surfaces", "segment the scan again");
+        if (const auto bad = std::find_if_not(solid.insideMm.begin(), solid.insideMm.end(),
+                                              [](float v) { return std::isfinite(v); });
+            bad != solid.insideMm.end())
+            throw core::Error(
+                fmt::format("{} has a value that is no number, the {}th", name, bad - solid.insideMm.begin() + 1),
+                "surfaces", "segment the scan again");
+    };
+    fits(region.outer, "the tooth");
+    for (const Solid& solid : region.solids)
+        fits(solid, tooth::properties(solid.tissue).name);
+    if (std::none_of(region.outer.insideMm.begin(), region.outer.insideMm.end(), [](float v) { return v > 0.0f; }))
+        throw core::Error("there is no tooth in the region", "surfaces",
+                          "lower the tooth's threshold, or point at the tooth");
+}
+
+/// The shells that are a tissue and not a speck. Of the tooth and its dentine the largest alone, without hollows.
+TriangleMesh withoutSpecks(const TriangleMesh& mesh, bool isWhole, double voxelMm3, std::size_t& left) {
+    const Shells shells = shellsOf(mesh);
+    std::vector<bool> keep(shells.volumeMm3.size());
+    const auto largest = std::max_element(shells.volumeMm3.begin(), shells.volumeMm3.end());
+    for (std::size_t s = 0; s < keep.size(); ++s) {
+        keep[s] = isWhole ? s == static_cast<std::size_t>(largest - shells.volumeMm3.begin()) && *largest > 0.0
+                          : std::abs(shells.volumeMm3[s]) >= kLeastShellVoxels * voxelMm3;
+        left += keep[s] ? 0 : 1;
+    }
+    if (std::all_of(keep.begin(), keep.end(), [](bool k) { return k; })) return mesh;
+    return keptShells(mesh, shells, keep);
+}
+
+/// A solid's surface in the grid's own axes.
+TriangleMesh surfaceOf(const Region& region, int index, const Settings& settings, std::size_t& left,
+                       const core::Progress& progress) {
+    const double h = region.grid.spacingMm.x();
+    TriangleMesh mesh;
+    {
+        const std::vector<float> field = fieldOf(region, index);
+        mesh = fieldSurface(field, region.grid.size, h, core::part(progress, 0.0, 0.4));
+    }
+    const bool isWhole = index < 0 || region.solids[static_cast<std::size_t>(index)].tissue == Tissue::dentine;
+    mesh = withoutSpecks(mesh, isWhole, h * h * h, left);
+    if (mesh.triangles.empty() || !settings.smooth) return mesh;
+    Smoothing smoothing = isStaircase(mesh, h) ? kStaircaseSmoothing : kDistanceSmoothing;
+    smoothing.reachMm *= h;
+    smoothKeepingVolume(mesh, smoothing, core::part(progress, 0.4, 1.0));
+    return mesh;
+}
+
+/// Keeps the pulp inside a surface around it; only where a solid's values say that the two come near.
+void keepPulpInside(TriangleMesh& pulp, const TriangleMesh& around, const Region& region, const Solid& solid,
+                    std::string_view name) {
+    const volume::Grid& grid = region.grid;
+    const double h = grid.spacingMm.x();
+    std::vector<Vec3> close;
+    for (const Vec3& p : pulp.vertices) {
+        std::array<int, 3> at{};
+        for (int a = 0; a < 3; ++a)
+            at[static_cast<std::size_t>(a)] =
+                std::clamp(static_cast<int>(std::lround(p[a] / h)), 0, grid.size[static_cast<std::size_t>(a)] - 1);
+        if (solid.insideMm[grid.index(at[0], at[1], at[2])] < 2.0 * h) close.push_back(p);
+    }
+    if (close.empty()) return;
+    const TriangleMesh piece = facesNear(around, close, 3.0 * h);
+    // Twice the gap at the vertices leaves it between the faces too.
+    const std::vector<Bounds> inside(pulp.vertices.size(), {Bounds{}.low, -2.0 * kLeastGapMm}),
+        outside(piece.vertices.size(), {2.0 * kLeastGapMm, Bounds{}.high});
+    const Apart apart = holdApart(pulp, inside, piece, outside, std::max(h, 4.0 * kLeastGapMm), true, {});
+    if (apart.failed > 0) {
+        const Vec3 at = grid.originMm + grid.axes * apart.failedMm;
+        throw core::Error(
+            fmt::format("the pulp comes out of {} at ({:.2f}, {:.2f}, {:.2f}) mm", name, at.x(), at.y(), at.z()),
+            "surfaces", "mark what is there as dentine, or close the pulp there");
+    }
+}
+
+}  // namespace
+
+Surfaces makeSurfaces(const Region& region, const Settings& settings, const core::Progress& progress) {
+    check(region);
+    core::report(progress, 0.0);
+    Surfaces made;
+    const double h = region.grid.spacingMm.x();
+    made.leastGapMm = kLeastGapMm;
+    made.standOutMm = standOutMm(h);
+    const double share = 0.95 / static_cast<double>(region.solids.size() + 1);
+    std::size_t left = 0;
+    made.outer.mesh = surfaceOf(region, -1, settings, left, core::part(progress, 0.0, share));
+    made.outer.isAuthored = region.outer.isAuthored;
+    const Solid* dentine = nullptr;
+    const Surface* dentineSurface = nullptr;
+    made.tissues.reserve(region.solids.size());
+    for (std::size_t i = 0; i < region.solids.size(); ++i) {
+        const Solid& solid = region.solids[i];
+        const double from = share * static_cast<double>(i + 1);
+        std::size_t specks = 0;
+        TriangleMesh mesh =
+            surfaceOf(region, static_cast<int>(i), settings, specks, core::part(progress, from, from + share));
+        if (mesh.triangles.empty()) {
+            made.notes.push_back(fmt::format("{} is left out: nothing of it is as large as {} voxels",
+                                             tooth::properties(solid.tissue).name, kLeastShellVoxels));
+            continue;
+        }
+        if (specks > 0)
+            made.notes.push_back(fmt::format("{}: {} loose {} left out", tooth::properties(solid.tissue).name, specks,
+                                             specks == 1 ? "speck" : "specks"));
+        if (solid.tissue == Tissue::pulp) {
+            if (dentine) keepPulpInside(mesh, dentineSurface->mesh, region, *dentine, "the dentine");
+            keepPulpInside(mesh, made.outer.mesh, region, region.outer, "the tooth");
+        }
+        made.tissues.push_back({solid.tissue, std::move(mesh), 0.0, solid.isAuthored});
+        if (solid.tissue == Tissue::dentine) {
+            dentine = &solid;
+            dentineSurface = &made.tissues.back();
+        }
+    }
+    const auto place = [&](TriangleMesh& mesh) {
+        for (Vec3& v : mesh.vertices)
+            v = region.grid.originMm + region.grid.axes * v;
+    };
+    place(made.outer.mesh);
+    for (Surface& tissue : made.tissues)
+        place(tissue.mesh);
+    core::report(progress, 1.0);
+    return made;
+}
+
+}  // namespace handpiece::surfacing

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Surfaces held apart: which side of another surface each vertex stays on, and how far. Private to this room.
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "handpiece/base/core/progress.h"
+#include "handpiece/base/geometry/triangle_mesh.h"
+
+namespace handpiece::surfacing {
+
+/// What a vertex' signed distance to the other surface [mm] is held to.
+struct Bounds {
+    double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+};
+
+struct Apart {
+    std::size_t moved = 0;   ///< vertices
+    std::size_t failed = 0;  ///< bounds that could not be kept
+    core::Vec3 failedMm = core::Vec3::Zero();
+};
+
+/// Moves vertices of `moving` until they keep `onMoving` to `still`, and until the vertices of `still` keep `onStill`
+/// to it. Only what lies within `nearMm` of the other surface is looked at, so `still` may be a piece of a surface.
+/// With `strictly`, no face of one may cross the other either.
+[[nodiscard]] Apart holdApart(geometry::TriangleMesh& moving, std::span<const Bounds> onMoving,
+                              const geometry::TriangleMesh& still, std::span<const Bounds> onStill, double nearMm,
+                              bool strictly, const core::Progress& progress);
+
+/// The faces of a surface with a vertex within about `reachMm` of one of the points.
+[[nodiscard]] geometry::TriangleMesh facesNear(const geometry::TriangleMesh& mesh, std::span<const core::Vec3> points,
+                                               double reachMm);
+
+}  // namespace handpiece::surfacing

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/scan/surfacing/solid_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/geometry/isosurface.h"
+
+namespace handpiece::surfacing {
+namespace {
+
+using core::Vec3;
+using tooth::Tissue;
+
+constexpr double kMostStandOutMm = 0.04;
+constexpr double kStandOutVoxels = 0.35;  // less than half a voxel, so that enamel of one voxel is not swallowed
+constexpr double kPulpGapVoxels = 0.25;   // in the field; the mesh is held to the least gap afterwards
+constexpr std::size_t kGrain = std::size_t{1} << 16;
+
+/// Where the cubic through values at -1, 0, 1, 2 crosses zero between 0 and 1, about the line's own crossing.
+double cubicCrossing(const double (&v)[4]) {
+    const double line = v[1] / (v[1] - v[2]);
+    const double c3 = (v[3] - 3.0 * v[2] + 3.0 * v[1] - v[0]) / 6.0, c2 = 0.5 * (v[0] + v[2]) - v[1],
+                 c1 = v[2] - v[0] / 3.0 - 0.5 * v[1] - v[3] / 6.0, c0 = v[1];
+    double low = 0.0, high = 1.0, t = line;
+    for (int i = 0; i < 6; ++i) {
+        const double value = ((c3 * t + c2) * t + c1) * t + c0, slope = (3.0 * c3 * t + 2.0 * c2) * t + c1;
+        // The sign at 0 is that of c0: keep the crossing between low and high whatever the slope says.
+        ((value < 0.0) == (c0 < 0.0) ? low : high) = t;
+        const double next = t - value / slope;
+        t = next > low && next < high ? next : 0.5 * (low + high);
+    }
+    // A field with a crease or clamped beside the edge has no cubic: stay near the line.
+    return std::clamp(t, line - 0.15, line + 0.15);
+}
+
+}  // namespace
+
+double standOutMm(double voxelMm) {
+    return std::min(kMostStandOutMm, kStandOutVoxels * voxelMm);
+}
+
+std::vector<float> fieldOf(const segmentation::Region& region, int index) {
+    const std::vector<float>& outer = region.outer.insideMm;
+    std::vector<float> field(outer.size());
+    if (index < 0) {
+        core::parallelFor(field.size(), kGrain, [&](std::size_t b, std::size_t e) {
+            for (std::size_t i = b; i < e; ++i)
+                field[i] = -outer[i];
+        });
+        return field;
+    }
+    const segmentation::Solid& solid = region.solids[static_cast<std::size_t>(index)];
+    const std::vector<float>& inside = solid.insideMm;
+    const double voxelMm = region.grid.spacingMm.x();
+    const auto standOut = static_cast<float>(standOutMm(voxelMm));
+    const auto gap = static_cast<float>(kPulpGapVoxels * voxelMm);
+    const std::vector<float>* dentine = nullptr;
+    for (const segmentation::Solid& other : region.solids)
+        if (other.tissue == Tissue::dentine) dentine = &other.insideMm;
+    core::parallelFor(field.size(), kGrain, [&](std::size_t b, std::size_t e) {
+        for (std::size_t i = b; i < e; ++i) {
+            if (solid.tissue == Tissue::pulp) {
+                const float around = dentine ? std::min(outer[i], (*dentine)[i]) : outer[i];
+                field[i] = -std::min(inside[i], around - gap);
+            } else {
+                // What covers it here is as thick as the two distances differ: where that is nothing it stands out.
+                const float cover = (outer[i] - inside[i]) / (2.0f * standOut);
+                field[i] = -std::min(inside[i] + standOut * std::clamp(1.0f - cover, 0.0f, 1.0f), outer[i] + standOut);
+            }
+        }
+    });
+    return field;
+}
+
+geometry::TriangleMesh fieldSurface(const std::vector<float>& field, const std::array<int, 3>& size, double voxelMm,
+                                    const core::Progress& progress) {
+    geometry::ScalarGrid grid;
+    grid.spacingMm = voxelMm;
+    for (std::size_t a = 0; a < 3; ++a)
+        grid.nodes[a] = static_cast<std::uint32_t>(size[a]);
+    grid.values = field;
+    geometry::TriangleMesh mesh = geometry::isosurface(grid, progress);
+    const std::array<std::size_t, 3> step{1, static_cast<std::size_t>(size[0]),
+                                          static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1])};
+    core::parallelFor(mesh.vertices.size(), 4096, [&](std::size_t b, std::size_t e) {
+        for (std::size_t v = b; v < e; ++v) {
+            // A vertex lies on an edge of the grid, or it is the middle of a cell and stays.
+            Vec3& p = mesh.vertices[v];
+            std::array<int, 3> node{};
+            int axis = -1;
+            bool onEdge = true;
+            for (int a = 0; a < 3; ++a) {
+                const double at = p[a] / voxelMm, whole = std::round(at);
+                node[static_cast<std::size_t>(a)] = static_cast<int>(whole);
+                if (std::abs(at - whole) < 1e-6) continue;
+                onEdge = onEdge && axis < 0;
+                axis = a;
+                node[static_cast<std::size_t>(a)] = static_cast<int>(std::floor(at));
+            }
+            if (!onEdge || axis < 0) continue;
+            const auto along = static_cast<std::size_t>(axis);
+            bool within = node[along] >= 1 && node[along] + 2 < size[along];
+            for (std::size_t a = 0; a < 3; ++a)
+                within = within && node[a] >= 0 && node[a] < size[a];
+            if (!within) continue;
+            const float* first =
+                &field[static_cast<std::size_t>(node[0]) + step[1] * static_cast<std::size_t>(node[1]) +
+                       step[2] * static_cast<std::size_t>(node[2]) - step[along]];
+            const double values[4] = {first[0], first[step[along]], first[2 * step[along]], first[3 * step[along]]};
+            if ((values[1] < 0.0) == (values[2] < 0.0)) continue;
+            p[axis] = voxelMm * (node[along] + std::clamp(cubicCrossing(values), 0.05, 0.95));
+        }
+    });
+    return mesh;
+}
+
+bool isStaircase(const geometry::TriangleMesh& surface, double voxelMm) {
+    std::size_t halves = 0;
+    for (const Vec3& p : surface.vertices)
+        for (int a = 0; a < 3; ++a) {
+            const double at = p[a] / voxelMm;
+            halves += std::abs(at - std::floor(at) - 0.5) < 1e-3;
+        }
+    return 2 * halves > surface.vertices.size();
+}
+
+}  // namespace handpiece::surfacing

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// A region's solids made ready for meshing: nested, or standing out of the tooth, never grazing it. Private to this
+/// room.
+
+#include <vector>
+
+#include "handpiece/base/geometry/triangle_mesh.h"
+#include "handpiece/scan/segmentation/segment.h"
+
+namespace handpiece::surfacing {
+
+/// By how much a tissue that reaches the outside stands out of the tooth, for voxels of this size.
+[[nodiscard]] double standOutMm(double voxelMm);
+
+/// The values of solid `index` of the region (-1: outer), turned to negative inside.
+[[nodiscard]] std::vector<float> fieldOf(const segmentation::Region& region, int index);
+
+/// The surface where a field (negative inside, on a grid of `size` nodes `voxelMm` apart from the origin) is zero;
+/// vertices found along the grid's edges by cubics, which follow a curved distance where a line cuts it short.
+[[nodiscard]] geometry::TriangleMesh fieldSurface(const std::vector<float>& field, const std::array<int, 3>& size,
+                                                  double voxelMm, const core::Progress& progress);
+
+/// Whether a surface out of fieldSurface is the staircase of whole voxels.
+[[nodiscard]] bool isStaircase(const geometry::TriangleMesh& surface, double voxelMm);
+
+}  // namespace handpiece::surfacing

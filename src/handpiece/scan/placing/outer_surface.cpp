@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+// A registered crown as the tooth's outer surface: two distances blended on a grid, so that the result is closed and
+// two-manifold whatever the crown is like.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/geometry/inspect.h"
+#include "handpiece/base/geometry/isosurface.h"
+#include "handpiece/base/geometry/mesh_edges.h"
+#include "handpiece/base/geometry/triangle_tree.h"
+#include "handpiece/scan/placing/placing.h"
+
+namespace handpiece::placing {
+namespace {
+
+using core::Vec3;
+using geometry::TriangleMesh;
+using geometry::TriangleTree;
+
+constexpr double kFinestMm = 0.05, kCoarsestMm = 0.15;     ///< of the grid
+constexpr double kRimBlendMm = 0.8;                        ///< from none of the crown to all of it, along its rim
+constexpr double kFirstBlendMm = 0.3, kLastBlendMm = 2.0;  ///< the same around a place where the two do not agree
+constexpr double kLeastLayerMm = 0.01;                     ///< left around a tissue that the crown would bare
+constexpr double kLeastCosine = 0.1;                       ///< of the normals where the two agree
+constexpr double kFollowMm = 0.3;                          ///< tissues this near below the surface move with it
+constexpr int kBlock = 8;
+
+double smoothStep(double t) {
+    const double x = std::clamp(t, 0.0, 1.0);
+    return x * x * (3.0 - 2.0 * x);
+}
+
+Vec3 pseudonormal(const TriangleTree& tree, const geometry::NearestPoint& n) {
+    const float* v = tree.pseudonormals().data() + (std::size_t{n.triangle} * 7 + n.feature) * 3;
+    return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
+double meanEdge(const TriangleMesh& mesh) {
+    double sum = 0.0;
+    for (const geometry::Triangle& t : mesh.triangles)
+        for (std::size_t k = 0; k < 3; ++k)
+            sum += (mesh.vertices[t[k]] - mesh.vertices[t[(k + 1) % 3]]).norm();
+    return sum / (3.0 * static_cast<double>(mesh.triangles.size()));
+}
+
+/// Vertices as triangles without area: a tree of points.
+std::unique_ptr<TriangleTree> treeOf(const std::vector<Vec3>& vertices, const std::vector<std::uint8_t>& which) {
+    TriangleMesh points;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        if (!which[i]) continue;
+        const auto index = static_cast<std::uint32_t>(points.vertices.size());
+        points.vertices.push_back(vertices[i]);
+        points.triangles.push_back({index, index, index});
+    }
+    return points.triangles.empty() ? nullptr : std::make_unique<TriangleTree>(points);
+}
+
+/// The two surfaces and how far each counts.
+class Blend {
+  public:
+    Blend(const TriangleMesh& ct, const TriangleMesh& crown, double reachMm)
+        : ct_(ct), crown_(crown), reachMm_(reachMm) {
+        const std::size_t n = crown.vertices.size();
+        std::vector<std::uint8_t> isRim(n, 0), differs(n, 0);
+        std::vector<Vec3> normals(n, Vec3::Zero());
+        std::vector<double> areas(n, 0.0);
+        for (const geometry::Triangle& t : crown.triangles) {
+            const Vec3 normal =
+                0.5 * (crown.vertices[t[1]] - crown.vertices[t[0]]).cross(crown.vertices[t[2]] - crown.vertices[t[0]]);
+            for (const std::uint32_t v : t) {
+                normals[v] += normal;
+                areas[v] += normal.norm() / 3.0;
+            }
+        }
+        const geometry::MeshEdges edges(crown);
+        for (const auto& e : edges.edges())
+            if (e.count != 2) isRim[e.low] = isRim[e.high] = 1;
+        core::parallelFor(n, 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (!(areas[i] > 0.0)) continue;
+                const auto nearest = ct_.nearest(crown.vertices[i], reachMm);
+                differs[i] = nearest.triangle == geometry::kNoTriangle ||
+                             pseudonormal(ct_, nearest).dot(normals[i].normalized()) < kLeastCosine;
+            }
+        });
+        // A few vertices with wild normals are noise; a patch of them is another surface.
+        std::vector<std::uint32_t> around(n, 0), with(n, 0);
+        for (const auto& e : edges.edges()) {
+            ++around[e.low], ++around[e.high];
+            with[e.low] += differs[e.high], with[e.high] += differs[e.low];
+        }
+        double good = 0.0, all = 0.0;
+        for (std::size_t i = 0; i < n; ++i) {
+            if (2 * with[i] < around[i]) differs[i] = 0;
+            all += areas[i];
+            if (!differs[i]) good += areas[i];
+        }
+        agreeing_ = all > 0.0 ? good / all : 0.0;
+        rim_ = treeOf(crown.vertices, isRim);
+        differing_ = treeOf(crown.vertices, differs);
+    }
+
+    [[nodiscard]] double agreeing() const { return agreeing_; }
+    [[nodiscard]] bool differsAnywhere() const { return differing_ != nullptr; }
+    [[nodiscard]] const TriangleTree& ct() const { return ct_; }
+    void setBlend(double mm) { blendMm_ = mm; }
+
+    /// Signed distance of the blended surface near it, negative inside; `weight` of the crown.
+    [[nodiscard]] double value(const Vec3& p, double ctMm, double& weight) const {
+        weight = weightAt(p);
+        if (!(weight > 0.0)) return ctMm;
+        return (1.0 - weight) * ctMm + weight * crown_.signedDistance(p);
+    }
+
+  private:
+    /// 0 at the points of a tree, or within `fromMm` of them; 1 from overMm farther.
+    [[nodiscard]] static double awayFrom(const TriangleTree* tree, const Vec3& p, double fromMm, double overMm) {
+        if (tree == nullptr) return 1.0;
+        const geometry::NearestPoint n = tree->nearest(p, fromMm + overMm);
+        return n.triangle == geometry::kNoTriangle ? 1.0 : smoothStep((n.distanceMm - fromMm) / overMm);
+    }
+    [[nodiscard]] double weightAt(const Vec3& p) const {
+        const double farMm = 1.5 * reachMm_;
+        const geometry::NearestPoint n = crown_.nearest(p, farMm);
+        if (n.triangle == geometry::kNoTriangle) return 0.0;
+        const double near = 1.0 - smoothStep((n.distanceMm - reachMm_) / (farMm - reachMm_));
+        // Nothing counts whose nearest place may be the rim: on which side of the crown it lies would be a guess.
+        const double within = awayFrom(rim_.get(), p, farMm, kRimBlendMm);
+        return within > 0.0 ? near * within * awayFrom(differing_.get(), p, 0.0, blendMm_) : 0.0;
+    }
+
+    TriangleTree ct_, crown_;
+    double reachMm_, agreeing_ = 0.0, blendMm_ = kFirstBlendMm;
+    std::unique_ptr<TriangleTree> rim_, differing_;  ///< vertices; null where there are none
+};
+
+/// The surface where `value` is zero, sampled within bandMm of the tree's own.
+template <class Value>
+TriangleMesh surfaceOf(const TriangleTree& ct, const core::Box& box, double h, double bandMm, const Value& newValue,
+                       const core::Progress& progress) {
+    geometry::ScalarGrid grid;
+    grid.originMm = box.min;
+    grid.spacingMm = h;
+    std::array<std::size_t, 3> nodes{}, blocks{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        blocks[a] = static_cast<std::size_t>(std::ceil(box.size()[static_cast<Eigen::Index>(a)] / h / kBlock)) + 1;
+        nodes[a] = blocks[a] * kBlock;
+        grid.nodes[a] = static_cast<std::uint32_t>(nodes[a]);
+    }
+    std::vector<float> values(nodes[0] * nodes[1] * nodes[2]);
+    const double halfBlock = 0.5 * std::sqrt(3.0) * kBlock * h;
+    const std::size_t count = blocks[0] * blocks[1] * blocks[2];
+    core::parallelFor(count, 8, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block) {
+            const std::array<std::size_t, 3> first{kBlock * (block % blocks[0]),
+                                                   kBlock * (block / blocks[0] % blocks[1]),
+                                                   kBlock * (block / blocks[0] / blocks[1])};
+            const auto node = [&](std::size_t i, std::size_t j, std::size_t k) {
+                return Vec3(box.min + h * Vec3(static_cast<double>(first[0] + i), static_cast<double>(first[1] + j),
+                                               static_cast<double>(first[2] + k)));
+            };
+            geometry::NearestPoint seed;
+            const double middleMm =
+                ct.signedDistance(0.5 * (node(0, 0, 0) + node(kBlock - 1, kBlock - 1, kBlock - 1)), &seed);
+            const bool isFar = std::abs(middleMm) > halfBlock + bandMm;
+            for (std::size_t k = 0; k < kBlock; ++k)
+                for (std::size_t j = 0; j < kBlock; ++j)
+                    for (std::size_t i = 0; i < kBlock; ++i) {
+                        double value = middleMm > 0.0 ? bandMm : -bandMm;
+                        if (!isFar) {
+                            const Vec3 p = node(i, j, k);
+                            value = ct.signedDistance(p, nullptr, seed.triangle);
+                            if (std::abs(value) < bandMm) value = newValue(p, value);
+                        }
+                        values[((first[2] + k) * nodes[1] + first[1] + j) * nodes[0] + first[0] + i] =
+                            static_cast<float>(value);
+                    }
+            core::report(progress, 0.85 * static_cast<double>(block) / static_cast<double>(count));
+        }
+    });
+    grid.values = values;
+    return geometry::isosurface(grid, core::part(progress, 0.85, 1.0));
+}
+
+}  // namespace
+
+surfacing::Surfaces withOuterSurface(const surfacing::Surfaces& surfaces, const TriangleMesh& crown, double reachMm,
+                                     const core::Progress& progress) {
+    if (surfaces.outer.mesh.triangles.empty() || crown.triangles.empty())
+        throw core::Error("a surface is empty", "intraoral scan", "give meshes with triangles");
+    if (!(reachMm > 0.0 && reachMm <= 2.0))
+        throw core::Error("the reach must lie above 0 and not above 2 mm", fmt::format("{}", reachMm),
+                          "half a millimetre is usual");
+    const TriangleMesh& outer = surfaces.outer.mesh;
+    Blend blend(outer, crown, reachMm);
+    if (blend.agreeing() < 0.05)
+        throw core::Error(fmt::format("only {:.0f} % of the crown lies within {:.2f} mm of the tooth",
+                                      100.0 * blend.agreeing(), reachMm),
+                          "intraoral scan", "register it first, or give a larger reach");
+    std::vector<TriangleTree> tissues;
+    for (const surfacing::Surface& s : surfaces.tissues)
+        if (!s.mesh.triangles.empty()) tissues.emplace_back(s.mesh);
+    const double layer = std::max(surfaces.leastGapMm, kLeastLayerMm);
+    /// The new surface, negative inside; never within a layer of a tissue that the old one covered.
+    const auto newOuter = [&](const Vec3& p, double ctMm) {
+        double weight = 0.0;
+        const double blended = blend.value(p, ctMm, weight);
+        if (!(weight > 0.0)) return blended;
+        double tissue = 1e300;
+        for (const TriangleTree& tree : tissues)
+            tissue = std::min(tissue, tree.signedDistance(p));
+        return std::min(blended, std::max(tissue - layer, ctMm));
+    };
+
+    const double h = std::clamp(std::min(meanEdge(outer), meanEdge(crown)), kFinestMm, kCoarsestMm);
+    const core::Box box = outer.bounds().grown(reachMm + 3.0 * h);
+    surfacing::Surfaces result = surfaces;
+    // Around a place where they differ the surface climbs from one to the other; too steep a climb tears it.
+    const auto genusOf = [](const TriangleMesh& mesh) { return geometry::inspect(mesh).genus.value_or(1 << 20); };
+    const auto genus = genusOf(outer);
+    for (double mm = kFirstBlendMm;; mm *= 2.0) {
+        blend.setBlend(mm);
+        result.outer.mesh = surfaceOf(blend.ct(), box, h, reachMm + 2.0 * h, newOuter, core::part(progress, 0.0, 0.95));
+        if (!blend.differsAnywhere() || genusOf(result.outer.mesh) <= genus) break;
+        if (mm > kLastBlendMm)
+            throw core::Error("the crown and the tooth differ so much that no surface joins them", "intraoral scan",
+                              "cut away what is not this tooth, or give another reach");
+    }
+    // Tissues at the surface (a lesion, roots at the neck) follow it, else a film of enamel would lie over them.
+    for (surfacing::Surface& s : result.tissues)
+        core::parallelFor(s.mesh.vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                Vec3& v = s.mesh.vertices[i];
+                geometry::NearestPoint n;
+                const double ctMm = blend.ct().signedDistance(v, &n);
+                if (ctMm < -kFollowMm) continue;
+                double weight = 0.0;
+                const double moved = ctMm - blend.value(v, ctMm, weight);
+                v += smoothStep(1.0 + std::min(ctMm, 0.0) / kFollowMm) * moved * pseudonormal(blend.ct(), n);
+            }
+        });
+    core::report(progress, 1.0);
+    return result;
+}
+
+}  // namespace handpiece::placing

@@ -71,17 +71,21 @@ TriangleMesh withoutSpecks(const TriangleMesh& mesh, bool isWhole, double voxelM
 TriangleMesh surfaceOf(const Region& region, int index, const Settings& settings, std::size_t& left,
                        const core::Progress& progress) {
     const double h = region.grid.spacingMm.x();
+    const bool isWhole = index < 0 || region.solids[static_cast<std::size_t>(index)].tissue == Tissue::dentine;
     TriangleMesh mesh;
+    std::vector<Vec3> normals;
+    bool steps = false;
     {
         const std::vector<float> field = fieldOf(region, index);
-        mesh = fieldSurface(field, region.grid.size, h, core::part(progress, 0.0, 0.4));
+        mesh = withoutSpecks(fieldSurface(field, region.grid.size, h, core::part(progress, 0.0, 0.4)), isWhole,
+                             h * h * h, left);
+        if (mesh.triangles.empty() || !settings.smooth) return mesh;
+        steps = isStaircase(mesh, h);
+        if (!steps) normals = fieldNormals(field, region.grid.size, h, mesh);
     }
-    const bool isWhole = index < 0 || region.solids[static_cast<std::size_t>(index)].tissue == Tissue::dentine;
-    mesh = withoutSpecks(mesh, isWhole, h * h * h, left);
-    if (mesh.triangles.empty() || !settings.smooth) return mesh;
-    Smoothing smoothing = isStaircase(mesh, h) ? kStaircaseSmoothing : kDistanceSmoothing;
+    Smoothing smoothing = steps ? kStaircaseSmoothing : kDistanceSmoothing;
     smoothing.reachMm *= h;
-    smoothKeepingVolume(mesh, smoothing, core::part(progress, 0.4, 1.0));
+    smoothKeepingVolume(mesh, normals, smoothing, core::part(progress, 0.4, 1.0));
     return mesh;
 }
 

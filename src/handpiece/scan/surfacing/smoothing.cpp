@@ -156,7 +156,8 @@ std::vector<Vec3> vertexNormals(const TriangleMesh& mesh) {
     return normals;
 }
 
-void smoothKeepingVolume(TriangleMesh& mesh, const Smoothing& smoothing, const core::Progress& progress) {
+void smoothKeepingVolume(TriangleMesh& mesh, const std::vector<Vec3>& normals, const Smoothing& smoothing,
+                         const core::Progress& progress) {
     if (mesh.triangles.empty()) return;
     const Rings rings(mesh);
     const Shells shells = shellsOf(mesh);
@@ -165,14 +166,16 @@ void smoothKeepingVolume(TriangleMesh& mesh, const Smoothing& smoothing, const c
         for (const std::uint32_t v : mesh.triangles[f])
             shellOfVertex[v] = shells.ofFace[f];
     const std::vector<Vec3> home = mesh.vertices;
+    std::vector<double> wanted;
+    if (!normals.empty()) wanted = bulgesMm3(mesh, normals, shells);
     std::vector<Vec3> other(home.size());
     for (int round = 0; round < smoothing.rounds; ++round) {
         step(mesh.vertices, other, rings, kShrink, home, smoothing.reachMm);
         step(other, mesh.vertices, rings, kSwell, home, smoothing.reachMm);
         core::report(progress, 0.6 * (round + 1) / smoothing.rounds);
     }
-    // Smooth normals tell how the surface bulges; the marched ones are too uneven for it.
-    std::vector<double> wanted = bulgesMm3(mesh, vertexNormals(mesh), shells);
+    // The normals of a staircase say nothing: those of the surface that it became do.
+    if (normals.empty()) wanted = bulgesMm3(mesh, vertexNormals(mesh), shells);
     for (std::size_t s = 0; s < wanted.size(); ++s)
         wanted[s] += shells.volumeMm3[s];
     setVolumes(mesh, shells, shellOfVertex, wanted, 0.5 * smoothing.reachMm);

@@ -41,7 +41,8 @@ struct Smoothing {
     double reachMm = 0;  ///< how far a vertex may go
 };
 /// Smooths, sets each shell to the volume of its solid, takes back what made the surface cross itself. The solid's
-/// volume is the given mesh's and what bulges between its vertices.
-void smoothKeepingVolume(geometry::TriangleMesh& mesh, const Smoothing& smoothing, const core::Progress& progress);
+/// volume is the given mesh's and what bulges between its vertices, by the solid's `normals` there; empty: not known.
+void smoothKeepingVolume(geometry::TriangleMesh& mesh, const std::vector<core::Vec3>& normals,
+                         const Smoothing& smoothing, const core::Progress& progress);
 
 }  // namespace handpiece::surfacing

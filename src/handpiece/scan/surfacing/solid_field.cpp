@@ -116,6 +116,48 @@ geometry::TriangleMesh fieldSurface(const std::vector<float>& field, const std::
     return mesh;
 }
 
+std::vector<Vec3> fieldNormals(const std::vector<float>& field, const std::array<int, 3>& size, double voxelMm,
+                               const geometry::TriangleMesh& surface) {
+    std::vector<Vec3> normals(surface.vertices.size());
+    const auto valueAt = [&](const std::array<int, 3>& at) {
+        std::size_t index = 0;
+        for (std::size_t a = 3; a-- > 0;)
+            index =
+                index * static_cast<std::size_t>(size[a]) + static_cast<std::size_t>(std::clamp(at[a], 0, size[a] - 1));
+        return static_cast<double>(field[index]);
+    };
+    core::parallelFor(normals.size(), 4096, [&](std::size_t b, std::size_t e) {
+        for (std::size_t v = b; v < e; ++v) {
+            std::array<int, 3> low{};
+            Vec3 part;
+            for (int a = 0; a < 3; ++a) {
+                const double at = surface.vertices[v][a] / voxelMm;
+                low[static_cast<std::size_t>(a)] = static_cast<int>(std::floor(at));
+                part[a] = at - std::floor(at);
+            }
+            Vec3 gradient = Vec3::Zero();
+            for (int corner = 0; corner < 8; ++corner) {
+                double weight = 1.0;
+                std::array<int, 3> node = low;
+                for (int a = 0; a < 3; ++a) {
+                    const int up = corner >> a & 1;
+                    weight *= up ? part[a] : 1.0 - part[a];
+                    node[static_cast<std::size_t>(a)] += up;
+                }
+                if (weight < 1e-9) continue;
+                for (std::size_t a = 0; a < 3; ++a) {
+                    std::array<int, 3> before = node, after = node;
+                    --before[a], ++after[a];
+                    gradient[static_cast<int>(a)] += weight * (valueAt(after) - valueAt(before));
+                }
+            }
+            const double length = gradient.norm();
+            normals[v] = length > 0.0 ? (gradient / length).eval() : gradient;
+        }
+    });
+    return normals;
+}
+
 bool isStaircase(const geometry::TriangleMesh& surface, double voxelMm) {
     std::size_t halves = 0;
     for (const Vec3& p : surface.vertices)

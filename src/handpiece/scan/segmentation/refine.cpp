@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/scan/segmentation/work.h"
+
+namespace handpiece::segmentation {
+
+namespace {
+constexpr int kRounds = 6;
+constexpr float kLeastContrast = 0.12f;  ///< of the step from outside to dentine: below it grey values say nothing
+constexpr float kReach = 1.6f;           ///< voxels beside a surface that are moved
+constexpr double kSqrtPi = 1.7724538509055159;
+
+/// One inner tissue as the model of the scan sees it.
+struct Layer {
+    Field* inside;
+    float level;
+};
+
+/// Standard deviation of the blur [voxels]: how far the outer surface's profile lies from a step. `work.outer` must be
+/// a distance; only places with one tissue behind them count.
+double blurOf(const Work& work) {
+    const Shape& shape = work.shape;
+    const Thresholds& t = work.levels;
+    constexpr int kBins = 24;
+    std::vector<double> sum(kBins, 0.0), count(kBins, 0.0);
+    for (int k = 3; k + 3 < shape.size[2]; ++k)
+        for (int j = 3; j + 3 < shape.size[1]; ++j)
+            for (int i = 3; i + 3 < shape.size[0]; ++i) {
+                const std::size_t at = shape.index(i, j, k);
+                const float d = work.outer[at];
+                if (d <= -2.9f || d >= 2.9f) continue;
+                const bool isDentine = work.dentine[at] > 2.5f;
+                if (!isDentine && work.dentine[at] > -2.5f) continue;
+                if (!work.caries.empty() && work.caries[at] > -2.5f) continue;
+                if (!work.pulp.empty() && work.pulp[at] > -2.5f) continue;
+                if (!work.restoration.empty() && work.restoration[at] > -2.5f) continue;
+                const float level = isDentine ? t.dentine : t.enamel;
+                const double share = (work.raw[at] - t.outside) / (level - t.outside);
+                const int bin = static_cast<int>((d + 3) / 6 * kBins);
+                sum[static_cast<std::size_t>(bin)] += share;
+                count[static_cast<std::size_t>(bin)] += 1;
+            }
+    double area = 0;
+    for (int b = 0; b < kBins; ++b) {
+        const auto n = static_cast<std::size_t>(b);
+        if (count[n] < 20) return work.sigma;
+        const double mean = sum[n] / count[n];
+        const double d = (b + 0.5) / kBins * 6 - 3;
+        area += (d > 0 ? 1 - mean : mean) * 6 / kBins;
+    }
+    // A step blurred by sigma leaves an area of 2 sigma / sqrt(2 pi); a voxel's own width is modelled apart.
+    const double whole = area * 2.5066 / 2;
+    return std::clamp(std::sqrt(std::max(0.0, whole * whole - 1.0 / 12)), 0.35, 2.5);
+}
+
+/// The scan as the surfaces would give it: grey levels by how far each tissue fills a voxel, before blur.
+void compose(const Work& work, const std::vector<Layer>& layers, Field& out) {
+    out.resize(work.shape.count());
+    const Thresholds& t = work.levels;
+    core::parallelFor(out.size(), 1 << 15, [&](std::size_t from, std::size_t to) {
+        for (std::size_t n = from; n < to; ++n)
+            out[n] = t.enamel;
+        for (const Layer& layer : layers) {
+            const float* inside = layer.inside->data();
+            for (std::size_t n = from; n < to; ++n)
+                out[n] += coverage(inside[n]) * (layer.level - out[n]);
+        }
+        for (std::size_t n = from; n < to; ++n)
+            out[n] = t.outside + coverage(work.outer[n]) * (out[n] - t.outside);
+    });
+}
+
+/// Moves every surface by what the blurred difference says, each by its own contrast.
+void move(Work& work, const std::vector<Layer>& layers, const Field& pull, float gain) {
+    const Thresholds& t = work.levels;
+    const float least = kLeastContrast * (t.dentine - t.outside);
+    core::parallelFor(pull.size(), 1 << 14, [&](std::size_t from, std::size_t to) {
+        for (std::size_t n = from; n < to; ++n) {
+            if (work.outer[n] <= -kReach) continue;
+            float level = t.enamel;
+            for (const Layer& layer : layers) {
+                float& inside = (*layer.inside)[n];
+                const float c = coverage(inside);
+                if (std::abs(inside) < kReach && work.outer[n] > 0) {
+                    const float contrast = layer.level - level;
+                    if (std::abs(contrast) > least)
+                        inside +=
+                            std::clamp(gain * pull[n] / contrast, -0.35f, 0.35f) * std::min(1.0f, work.outer[n] + 0.3f);
+                }
+                level += c * (layer.level - level);
+            }
+            if (std::abs(work.outer[n]) < kReach && !work.held[n]) {
+                const float contrast = level - t.outside;
+                if (contrast > least) work.outer[n] += std::clamp(gain * pull[n] / contrast, -0.35f, 0.35f);
+            }
+        }
+    });
+}
+
+/// Evens a surface out a little, where it is one.
+void even(const Shape& shape, Field& inside, Field& scratch, float share) {
+    scratch = inside;
+    forRows(shape, [&](int j, int k) {
+        if (j == 0 || k == 0 || j + 1 == shape.size[1] || k + 1 == shape.size[2]) return;
+        for (int i = 1; i + 1 < shape.size[0]; ++i) {
+            const std::size_t at = shape.index(i, j, k);
+            if (std::abs(inside[at]) > 2) continue;
+            const float mean =
+                (scratch[at - 1] + scratch[at + 1] + scratch[at - shape.rowStride()] + scratch[at + shape.rowStride()] +
+                 scratch[at - shape.sliceStride()] + scratch[at + shape.sliceStride()]) /
+                6;
+            inside[at] += share * (mean - scratch[at]);
+        }
+    });
+}
+}  // namespace
+
+void refine(Work& work, const core::Progress& progress) {
+    const Thresholds& t = work.levels;
+    std::vector<Layer> layers{{&work.dentine, t.dentine}};
+    if (!work.pulp.empty()) layers.push_back({&work.pulp, t.pulp});
+    if (!work.caries.empty()) layers.push_back({&work.caries, work.cariesLevel});
+    if (!work.restoration.empty()) layers.push_back({&work.restoration, work.restorationLevel});
+    const float brightest =
+        work.restoration.empty() ? t.enamel + 0.5f * (t.enamel - t.outside) : work.restorationLevel * 1.2f;
+    Field& difference = work.damped;  // no stage after this one needs it
+    for (int round = 0; round < kRounds; ++round) {
+        core::report(progress, static_cast<double>(round) / kRounds);
+        if (round < 3) work.sigma = blurOf(work);
+        compose(work, layers, difference);
+        blur(work.shape, difference, difference, work.scratch, work.sigma);
+        core::parallelFor(difference.size(), 1 << 15, [&](std::size_t from, std::size_t to) {
+            for (std::size_t n = from; n < to; ++n)
+                difference[n] = work.outer[n] <= -kBand ? 0.0f : std::min(work.raw[n], brightest) - difference[n];
+        });
+        core::report(progress, (round + 0.4) / kRounds);
+        blur(work.shape, difference, difference, work.scratch, work.sigma);
+        const double gain = 0.7 * 2 * std::sqrt(work.sigma * work.sigma + 1.0 / 24) * kSqrtPi;
+        move(work, layers, difference, static_cast<float>(gain));
+        core::report(progress, (round + 0.7) / kRounds);
+        even(work.shape, work.outer, work.scratch, 0.06f);
+        redistance(work.shape, work.outer, kBand);
+        for (const Layer& layer : layers) {
+            even(work.shape, *layer.inside, work.scratch, 0.06f);
+            redistance(work.shape, *layer.inside, kBand);
+        }
+    }
+    core::report(progress, 1);
+}
+
+}  // namespace handpiece::segmentation

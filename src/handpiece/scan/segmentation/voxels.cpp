@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/scan/segmentation/voxels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "handpiece/base/core/parallel.h"
+
+namespace handpiece::segmentation {
+
+void forRows(const Shape& shape, const std::function<void(int, int)>& body) {
+    core::parallelFor(static_cast<std::size_t>(shape.size[2]), 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t k = from; k < to; ++k)
+            for (int j = 0; j < shape.size[1]; ++j)
+                body(j, static_cast<int>(k));
+    });
+}
+
+void blur(const Shape& shape, const Field& in, Field& out, Field& scratch, double sigma) {
+    const int radius = std::max(1, static_cast<int>(std::ceil(2.8 * sigma)));
+    std::vector<float> weights(static_cast<std::size_t>(2 * radius + 1));
+    double sum = 0;
+    for (int n = -radius; n <= radius; ++n)
+        sum += std::exp(-0.5 * n * n / (sigma * sigma));
+    for (int n = -radius; n <= radius; ++n)
+        weights[static_cast<std::size_t>(n + radius)] =
+            static_cast<float>(std::exp(-0.5 * n * n / (sigma * sigma)) / sum);
+    scratch.resize(in.size());
+    out.resize(in.size());
+    const int nx = shape.size[0], ny = shape.size[1], nz = shape.size[2];
+    const auto width = static_cast<std::size_t>(nx);
+    core::parallelFor(static_cast<std::size_t>(nz), 1, [&](std::size_t from, std::size_t to) {
+        std::vector<float> padded(width + 2 * static_cast<std::size_t>(radius)), slice(shape.sliceStride());
+        for (std::size_t k = from; k < to; ++k) {
+            for (int j = 0; j < ny; ++j) {
+                const float* row = &in[shape.index(0, j, static_cast<int>(k))];
+                std::copy(row, row + nx, padded.begin() + radius);
+                std::fill(padded.begin(), padded.begin() + radius, row[0]);
+                std::fill(padded.end() - radius, padded.end(), row[nx - 1]);
+                float* to1 = &slice[static_cast<std::size_t>(j) * width];
+                std::fill(to1, to1 + nx, 0.0f);
+                for (int n = 0; n <= 2 * radius; ++n) {
+                    const float w = weights[static_cast<std::size_t>(n)];
+                    const float* shifted = padded.data() + n;
+                    for (int i = 0; i < nx; ++i)
+                        to1[i] += w * shifted[i];
+                }
+            }
+            for (int j = 0; j < ny; ++j) {
+                float* to2 = &scratch[shape.index(0, j, static_cast<int>(k))];
+                std::fill(to2, to2 + nx, 0.0f);
+                for (int n = -radius; n <= radius; ++n) {
+                    const float w = weights[static_cast<std::size_t>(n + radius)];
+                    const float* row = &slice[static_cast<std::size_t>(std::clamp(j + n, 0, ny - 1)) * width];
+                    for (int i = 0; i < nx; ++i)
+                        to2[i] += w * row[i];
+                }
+            }
+        }
+    });
+    core::parallelFor(static_cast<std::size_t>(nz), 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t k = from; k < to; ++k)
+            for (int j = 0; j < ny; ++j) {
+                float* result = &out[shape.index(0, j, static_cast<int>(k))];
+                std::fill(result, result + nx, 0.0f);
+                for (int n = -radius; n <= radius; ++n) {
+                    const float w = weights[static_cast<std::size_t>(n + radius)];
+                    const float* row = &scratch[shape.index(0, j, std::clamp(static_cast<int>(k) + n, 0, nz - 1))];
+                    for (int i = 0; i < nx; ++i)
+                        result[i] += w * row[i];
+                }
+            }
+    });
+}
+
+void dampKeepingEdges(const Shape& shape, Field& values, Field& scratch, float kappa, int rounds) {
+    const float inverse = 1.0f / (kappa * kappa);
+    const int nx = shape.size[0];
+    scratch.resize(values.size());
+    for (int round = 0; round < rounds; ++round) {
+        forRows(shape, [&](int j, int k) {
+            const auto row = [&](int jj, int kk) {
+                return &values[shape.index(0, std::clamp(jj, 0, shape.size[1] - 1),
+                                           std::clamp(kk, 0, shape.size[2] - 1))];
+            };
+            const float *own = row(j, k), *a = row(j - 1, k), *b = row(j + 1, k), *c = row(j, k - 1),
+                        *d = row(j, k + 1);
+            float* out = &scratch[shape.index(0, j, k)];
+            const auto flow = [inverse](float delta) { return delta / (1.0f + delta * delta * inverse); };
+            const auto at = [&](int i, float left, float right) {
+                const float v = own[i];
+                out[i] = v + (1.0f / 7.0f) * (flow(left - v) + flow(right - v) + flow(a[i] - v) + flow(b[i] - v) +
+                                              flow(c[i] - v) + flow(d[i] - v));
+            };
+            at(0, own[0], own[std::min(1, nx - 1)]);
+            for (int i = 1; i + 1 < nx; ++i)
+                at(i, own[i - 1], own[i + 1]);
+            if (nx > 1) at(nx - 1, own[nx - 2], own[nx - 1]);
+        });
+        values.swap(scratch);
+    }
+}
+
+float sample(const Shape& shape, const Field& values, const core::Vec3& at) {
+    std::array<int, 3> low{};
+    std::array<float, 3> part{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const int last = shape.size[static_cast<std::size_t>(axis)] - 1;
+        const double x = std::clamp(at[axis], 0.0, static_cast<double>(last));
+        low[static_cast<std::size_t>(axis)] = std::min(static_cast<int>(x), std::max(0, last - 1));
+        part[static_cast<std::size_t>(axis)] = static_cast<float>(x - low[static_cast<std::size_t>(axis)]);
+    }
+    const std::size_t base = shape.index(low[0], low[1], low[2]);
+    const std::size_t dx = shape.size[0] > 1 ? 1 : 0, dy = shape.size[1] > 1 ? shape.rowStride() : 0,
+                      dz = shape.size[2] > 1 ? shape.sliceStride() : 0;
+    const auto line = [&](std::size_t from) { return values[from] + part[0] * (values[from + dx] - values[from]); };
+    const float y0 = line(base), y1 = line(base + dy), z0 = line(base + dz), z1 = line(base + dy + dz);
+    const float near = y0 + part[1] * (y1 - y0), far = z0 + part[1] * (z1 - z0);
+    return near + part[2] * (far - near);
+}
+
+core::Vec3 gradient(const Shape& shape, const Field& values, int i, int j, int k) {
+    const std::array<int, 3> at{i, j, k};
+    core::Vec3 result;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::array<int, 3> low = at, high = at;
+        low[axis] = std::max(0, at[axis] - 1);
+        high[axis] = std::min(shape.size[axis] - 1, at[axis] + 1);
+        const int apart = std::max(1, high[axis] - low[axis]);
+        result[static_cast<int>(axis)] =
+            (values[shape.index(high[0], high[1], high[2])] - values[shape.index(low[0], low[1], low[2])]) / apart;
+    }
+    return result;
+}
+
+namespace {
+/// Lower envelope of parabolas along one line.
+void distanceLine(const std::vector<float>& f, std::vector<float>& d, std::vector<int>& v, std::vector<float>& z,
+                  int n) {
+    int k = 0;
+    v[0] = 0;
+    z[0] = -1e20f;
+    z[1] = 1e20f;
+    const auto meet = [&](int q, int p) {
+        return ((f[static_cast<std::size_t>(q)] + static_cast<float>(q) * static_cast<float>(q)) -
+                (f[static_cast<std::size_t>(p)] + static_cast<float>(p) * static_cast<float>(p))) /
+               static_cast<float>(2 * q - 2 * p);
+    };
+    for (int q = 1; q < n; ++q) {
+        float s = meet(q, v[static_cast<std::size_t>(k)]);
+        while (k > 0 && s <= z[static_cast<std::size_t>(k)])
+            s = meet(q, v[static_cast<std::size_t>(--k)]);
+        ++k;
+        v[static_cast<std::size_t>(k)] = q;
+        z[static_cast<std::size_t>(k)] = s;
+        z[static_cast<std::size_t>(k) + 1] = 1e20f;
+    }
+    k = 0;
+    for (int q = 0; q < n; ++q) {
+        while (z[static_cast<std::size_t>(k) + 1] < static_cast<float>(q))
+            ++k;
+        const int p = v[static_cast<std::size_t>(k)];
+        d[static_cast<std::size_t>(q)] = static_cast<float>((q - p) * (q - p)) + f[static_cast<std::size_t>(p)];
+    }
+}
+}  // namespace
+
+Field squaredDistance(const Shape& shape, const Mask& mask) {
+    constexpr float kFar = 1e12f;
+    Field result(mask.size());
+    forRows(shape, [&](int j, int k) {
+        // Along i two passes do: what is set is binary.
+        const std::size_t from = shape.index(0, j, k);
+        const int n = shape.size[0];
+        float last = 1e6f;
+        for (int i = 0; i < n; ++i) {
+            last = mask[from + static_cast<std::size_t>(i)] ? 0.0f : last + 1.0f;
+            result[from + static_cast<std::size_t>(i)] = last;
+        }
+        last = 1e6f;
+        for (int i = n - 1; i >= 0; --i) {
+            float& r = result[from + static_cast<std::size_t>(i)];
+            last = mask[from + static_cast<std::size_t>(i)] ? 0.0f : last + 1.0f;
+            r = std::min(r, last);
+            r = r >= 1e6f ? kFar : r * r;
+        }
+    });
+    for (std::size_t axis = 1; axis < 3; ++axis) {
+        const int n = shape.size[axis];
+        const std::size_t stride = axis == 1 ? shape.rowStride() : shape.sliceStride();
+        const int others = axis == 1 ? shape.size[2] : shape.size[1];
+        core::parallelFor(static_cast<std::size_t>(others), 1, [&](std::size_t begin, std::size_t end) {
+            const auto size = static_cast<std::size_t>(n);
+            std::vector<float> f(size), d(size), z(size + 1);
+            std::vector<int> v(size);
+            for (std::size_t other = begin; other < end; ++other)
+                for (int i = 0; i < shape.size[0]; ++i) {
+                    const int o = static_cast<int>(other);
+                    const std::size_t from = axis == 1 ? shape.index(i, 0, o) : shape.index(i, o, 0);
+                    bool any = false;
+                    for (std::size_t q = 0; q < size; ++q) {
+                        f[q] = result[from + q * stride];
+                        any = any || f[q] > 0;
+                    }
+                    if (!any) continue;
+                    distanceLine(f, d, v, z, n);
+                    for (std::size_t q = 0; q < size; ++q)
+                        result[from + q * stride] = std::min(d[q], kFar);
+                }
+        });
+    }
+    return result;
+}
+
+std::uint32_t Parts::largest() const {
+    std::uint32_t best = 0;
+    std::size_t most = 0;
+    for (std::uint32_t p = 1; p < counts.size(); ++p)
+        if (counts[p] > most) most = counts[best = p];
+    return best;
+}
+
+Parts connectedParts(const Shape& shape, const Mask& mask) {
+    Parts parts;
+    parts.of.assign(mask.size(), 0);
+    parts.counts.push_back(0);
+    // Runs along i are joined by union and find: one pass over the voxels, one over the runs.
+    std::vector<std::uint32_t> parent{0};
+    const auto root = [&](std::uint32_t a) {
+        while (parent[a] != a)
+            a = parent[a] = parent[parent[a]];
+        return a;
+    };
+    for (int k = 0; k < shape.size[2]; ++k)
+        for (int j = 0; j < shape.size[1]; ++j) {
+            std::size_t at = shape.index(0, j, k);
+            std::uint32_t run = 0;
+            for (int i = 0; i < shape.size[0]; ++i, ++at) {
+                if (!mask[at]) {
+                    run = 0;
+                    continue;
+                }
+                if (run == 0) {
+                    run = static_cast<std::uint32_t>(parent.size());
+                    parent.push_back(run);
+                }
+                parts.of[at] = run;
+                for (const std::uint32_t other :
+                     {j > 0 ? parts.of[at - shape.rowStride()] : 0u, k > 0 ? parts.of[at - shape.sliceStride()] : 0u})
+                    if (other != 0) {
+                        const std::uint32_t a = root(run), b = root(other);
+                        if (a != b) parent[std::max(a, b)] = std::min(a, b);
+                    }
+            }
+        }
+    std::vector<std::uint32_t> name(parent.size(), 0);
+    for (std::uint32_t p = 1; p < parent.size(); ++p)
+        if (root(p) == p) {
+            name[p] = static_cast<std::uint32_t>(parts.counts.size());
+            parts.counts.push_back(0);
+        }
+    for (std::uint32_t p = 1; p < parent.size(); ++p)
+        name[p] = name[root(p)];
+    for (std::uint32_t& p : parts.of) {
+        p = name[p];
+        ++parts.counts[p];
+    }
+    return parts;
+}
+
+namespace {
+Mask combined(const Shape& shape, const Mask& mask, bool grow) {
+    Mask result(mask.size());
+    forRows(shape, [&](int j, int k) {
+        const auto row = [&](int jj, int kk) {
+            return &mask[shape.index(0, std::clamp(jj, 0, shape.size[1] - 1), std::clamp(kk, 0, shape.size[2] - 1))];
+        };
+        const std::uint8_t *own = row(j, k), *a = row(j - 1, k), *b = row(j + 1, k), *c = row(j, k - 1),
+                           *d = row(j, k + 1);
+        std::uint8_t* out = &result[shape.index(0, j, k)];
+        for (int i = 0; i < shape.size[0]; ++i) {
+            const std::uint8_t left = own[std::max(0, i - 1)], right = own[std::min(shape.size[0] - 1, i + 1)];
+            out[i] = grow ? static_cast<std::uint8_t>(own[i] | left | right | a[i] | b[i] | c[i] | d[i])
+                          : static_cast<std::uint8_t>(own[i] & left & right & a[i] & b[i] & c[i] & d[i]);
+        }
+    });
+    return result;
+}
+}  // namespace
+
+Mask eroded(const Shape& shape, const Mask& mask) {
+    return combined(shape, mask, false);
+}
+
+Mask dilated(const Shape& shape, const Mask& mask) {
+    return combined(shape, mask, true);
+}
+
+void redistance(const Shape& shape, Field& values, float band) {
+    // Distances at the voxels beside the zero from where it crosses the grid's lines; further ones layer by layer from
+    // the ones already known (first-order upwind solution of |grad| = 1).
+    const int layers = static_cast<int>(std::ceil(band)) + 1;
+    std::vector<std::vector<std::uint32_t>> beside(static_cast<std::size_t>(shape.size[2]));
+    std::vector<std::vector<float>> distances(static_cast<std::size_t>(shape.size[2]));
+    forRows(shape, [&](int j, int k) {
+        const std::size_t from = shape.index(0, j, k);
+        for (int i = 0; i < shape.size[0]; ++i) {
+            const std::size_t at = from + static_cast<std::size_t>(i);
+            const float v = values[at];
+            const bool in = v > 0;
+            float inverse = 0;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const int c = axis == 0 ? i : (axis == 1 ? j : k);
+                const std::size_t stride = axis == 0 ? 1 : (axis == 1 ? shape.rowStride() : shape.sliceStride());
+                float nearest = 2;
+                const auto cross = [&](float n) {
+                    if ((n > 0) == in) return;
+                    const float whole = std::abs(v) + std::abs(n);
+                    nearest = std::min(nearest, whole > 0 ? std::abs(v) / whole : 0.5f);
+                };
+                if (c > 0) cross(values[at - stride]);
+                if (c + 1 < shape.size[axis]) cross(values[at + stride]);
+                if (nearest < 2) {
+                    nearest = std::max(nearest, 1e-4f);
+                    inverse += 1.0f / (nearest * nearest);
+                }
+            }
+            if (inverse > 0) {
+                beside[static_cast<std::size_t>(k)].push_back(static_cast<std::uint32_t>(at));
+                distances[static_cast<std::size_t>(k)].push_back(1.0f / std::sqrt(inverse));
+            }
+        }
+    });
+    constexpr float kUnknown = 1e9f;
+    core::parallelFor(values.size(), 1 << 18, [&](std::size_t from, std::size_t to) {
+        for (std::size_t n = from; n < to; ++n)
+            values[n] = values[n] > 0 ? kUnknown : -kUnknown;
+    });
+    std::vector<std::uint32_t> layer;
+    for (std::size_t k = 0; k < beside.size(); ++k)
+        for (std::size_t n = 0; n < beside[k].size(); ++n) {
+            float& v = values[beside[k][n]];
+            v = v > 0 ? distances[k][n] : -distances[k][n];
+            layer.push_back(beside[k][n]);
+        }
+    std::vector<std::uint32_t> next;
+    std::vector<float> solved;
+    for (int round = 0; round < layers; ++round) {
+        next.clear();
+        for (const std::uint32_t at : layer)
+            forNeighbours(shape, at, [&](std::size_t n) {
+                if (std::abs(values[n]) == kUnknown) {
+                    values[n] = values[n] > 0 ? 2 * kUnknown : -2 * kUnknown;
+                    next.push_back(static_cast<std::uint32_t>(n));
+                }
+            });
+        solved.resize(next.size());
+        core::parallelFor(next.size(), 4096, [&](std::size_t from, std::size_t to) {
+            for (std::size_t n = from; n < to; ++n) {
+                std::array<float, 3> low{kUnknown, kUnknown, kUnknown};
+                const std::size_t at = next[n];
+                const auto c = shape.at(at);
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const std::size_t stride = axis == 0 ? 1 : (axis == 1 ? shape.rowStride() : shape.sliceStride());
+                    if (c[axis] > 0) low[axis] = std::min(low[axis], std::abs(values[at - stride]));
+                    if (c[axis] + 1 < shape.size[axis]) low[axis] = std::min(low[axis], std::abs(values[at + stride]));
+                }
+                std::sort(low.begin(), low.end());
+                float d = low[0] + 1;
+                if (d > low[1]) {
+                    d = 0.5f * (low[0] + low[1] + std::sqrt(std::max(0.0f, 2 - (low[0] - low[1]) * (low[0] - low[1]))));
+                    if (d > low[2]) {
+                        const float sum = low[0] + low[1] + low[2];
+                        const float squares = low[0] * low[0] + low[1] * low[1] + low[2] * low[2];
+                        d = (sum + std::sqrt(std::max(0.0f, sum * sum - 3 * (squares - 1)))) / 3;
+                    }
+                }
+                solved[n] = d;
+            }
+        });
+        for (std::size_t n = 0; n < next.size(); ++n) {
+            float& v = values[next[n]];
+            v = v > 0 ? solved[n] : -solved[n];
+        }
+        layer.swap(next);
+    }
+    core::parallelFor(values.size(), 1 << 18, [&](std::size_t from, std::size_t to) {
+        for (std::size_t n = from; n < to; ++n)
+            values[n] = std::clamp(values[n], -band, band);
+    });
+}
+
+}  // namespace handpiece::segmentation

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/scan/volume/files.h"
+
+#include <fmt/format.h>
+#include <zip.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <system_error>
+
+#include "handpiece/base/core/error.h"
+
+namespace handpiece::volume {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kWindowBytes = 16384, kMostFiles = 200000;
+/// Deflate cannot do better than 1032 to 1: an entry that claims more lies.
+constexpr std::uint64_t kMostRatio = 1100, kSmallBytes = 1 << 20;
+
+bool isDigit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+struct CloseEntry {
+    void operator()(zip_file_t* entry) const noexcept { zip_fclose(entry); }
+};
+
+}  // namespace
+
+Input::Input(const fs::path& path) : file_(std::fopen(path.string().c_str(), "rb")), where_(path.string()) {
+    if (!file_)
+        throw core::Error(fmt::format("cannot be read: {}", std::strerror(errno)), where_, "check its permissions")
+            .as("not-readable", {std::strerror(errno)});
+    std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // the window below does that
+    std::error_code ec;
+    size_ = fs::file_size(path, ec);
+    if (ec) throw core::Error("this is no file that can be read", where_, "name a file");
+}
+
+Input::Input(std::shared_ptr<const std::vector<std::byte>> data, std::string where)
+    : memory_(std::move(data)), where_(std::move(where)), size_(memory_->size()) {}
+
+std::size_t Input::readAt(std::uint64_t at, void* to, std::size_t count) {
+    if (at >= size_ || count == 0) return 0;
+    count = static_cast<std::size_t>(std::min<std::uint64_t>(count, size_ - at));
+    if (memory_) {
+        std::memcpy(to, memory_->data() + at, count);
+        return count;
+    }
+    const auto fromDisk = [&](std::uint64_t place, void* into, std::size_t bytes) {
+        if (std::fseek(file_.get(), static_cast<long>(place), SEEK_SET) != 0) return std::size_t{0};
+        return std::fread(into, 1, bytes, file_.get());
+    };
+    if (count >= kWindowBytes) return fromDisk(at, to, count);
+    if (at < windowAt_ || at + count > windowAt_ + window_.size()) {
+        window_.resize(kWindowBytes);
+        window_.resize(fromDisk(at, window_.data(), kWindowBytes));
+        windowAt_ = at;
+        count = std::min(count, window_.size());
+    }
+    std::memcpy(to, window_.data() + (at - windowAt_), count);
+    return count;
+}
+
+/// An open ZIP; its library knows no threads.
+struct FileSet::Archive {
+    zip_t* zip = nullptr;
+    std::map<std::string, zip_uint64_t> byName;
+    std::mutex mutex;
+    Archive() = default;
+    Archive(const Archive&) = delete;
+    Archive& operator=(const Archive&) = delete;
+    ~Archive() {
+        if (zip) zip_discard(zip);
+    }
+};
+
+FileSet::FileSet() = default;
+FileSet::~FileSet() = default;
+
+std::shared_ptr<const FileSet> FileSet::inMemory(std::string name, std::vector<std::byte> data) {
+    const std::shared_ptr<FileSet> set(new FileSet);
+    set->entries_.push_back({std::move(name), data.size()});
+    set->where_ = set->entries_[0].name;
+    set->memory_ = std::make_shared<const std::vector<std::byte>>(std::move(data));
+    set->named_ = 0;
+    return set;
+}
+
+std::shared_ptr<const FileSet> FileSet::open(const fs::path& path) {
+    const std::shared_ptr<FileSet> set(new FileSet);
+    set->where_ = path.string();
+    std::error_code ec;
+    const fs::file_status status = fs::status(path, ec);
+    if (!fs::exists(status))
+        throw core::Error("there is no such file or folder", path.string(), "check the name").as("file-not-found");
+    if (fs::is_directory(status)) {
+        set->addFolder(path);
+        set->sort();
+        return set;
+    }
+    if (!fs::is_regular_file(status))
+        throw core::Error("this is neither a file nor a folder", path.string(), "name a file or a folder");
+    Input input(path);
+    char magic[4] = {};
+    (void)input.readAt(0, magic, sizeof magic);
+    if (std::memcmp(magic, "PK\3\4", 4) == 0 || std::memcmp(magic, "PK\5\6", 4) == 0) {
+        set->addArchive(path);
+        set->sort();
+        return set;
+    }
+    // Files beside it belong to it: a header's data, a description, the files of a DICOMDIR.
+    const std::string name = path.filename().string();
+    set->root_ = path.parent_path().empty() ? fs::path(".") : path.parent_path();
+    std::string upper = name;
+    std::transform(upper.begin(), upper.end(), upper.begin(),
+                   [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; });
+    if (upper == "DICOMDIR") {
+        set->addFolder(set->root_);
+    } else {
+        set->entries_.push_back({name, input.size()});
+        const std::string stem = fs::path(name).stem().string();
+        for (const std::string& beside : {std::string("scan.toml"), stem + ".toml", name + ".toml"})
+            if (beside != name && fs::is_regular_file(set->root_ / beside, ec))
+                set->entries_.push_back({beside, fs::file_size(set->root_ / beside, ec)});
+        const std::string extension = extensionOf(name);
+        if (extension == ".toml" || extension == ".nhdr" || extension == ".mhd" || extension == ".hdr" ||
+            extension == ".nrrd" || extension == ".mha") {
+            std::size_t count = 0;
+            for (const fs::directory_entry& e : fs::directory_iterator(set->root_, ec)) {
+                const std::string other = e.path().filename().string();
+                if (++count > kMostFiles) break;
+                const bool isThere = std::any_of(set->entries_.begin(), set->entries_.end(),
+                                                 [&](const Entry& entry) { return entry.name == other; });
+                if (!isThere && e.is_regular_file(ec)) set->entries_.push_back({other, e.file_size(ec)});
+            }
+        }
+    }
+    set->sort();
+    for (std::size_t i = 0; i < set->entries_.size(); ++i)
+        if (set->entries_[i].name == name) set->named_ = i;
+    return set;
+}
+
+void FileSet::addFolder(const fs::path& folder) {
+    root_ = folder;
+    std::error_code ec;
+    fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, ec);
+    if (ec)
+        throw core::Error(fmt::format("this folder cannot be read: {}", ec.message()), folder.string(),
+                          "check its permissions")
+            .as("not-readable", {ec.message()});
+    for (; it != fs::recursive_directory_iterator(); it.increment(ec)) {
+        if (ec) break;
+        const std::string name = it->path().filename().string();
+        const bool isFolder = it->is_directory(ec);
+        if (name.empty() || name[0] == '.' || name == "__MACOSX") {  // what systems and programs hide
+            if (isFolder) it.disable_recursion_pending();
+            continue;
+        }
+        if (isFolder) {
+            ++folders_;
+            if (it.depth() >= 16) it.disable_recursion_pending();
+            continue;
+        }
+        if (!it->is_regular_file(ec)) continue;
+        entries_.push_back({it->path().lexically_relative(folder).generic_string(), it->file_size(ec)});
+        if (entries_.size() > kMostFiles)
+            throw core::Error(fmt::format("this folder holds more than {} files", kMostFiles), folder.string(),
+                              "name the folder of the scan itself");
+    }
+}
+
+void FileSet::addArchive(const fs::path& file) {
+    const auto damaged = [&](std::string_view why) {
+        return core::Error(fmt::format("this ZIP is damaged: {}", why), file.string(), "copy or pack it again");
+    };
+    archive_ = std::make_unique<Archive>();
+    int code = 0;
+    archive_->zip = zip_open(file.string().c_str(), ZIP_RDONLY, &code);
+    if (!archive_->zip) {
+        zip_error_t error;
+        zip_error_init_with_code(&error, code);
+        const std::string why = zip_error_strerror(&error);
+        zip_error_fini(&error);
+        throw damaged(why);
+    }
+    const zip_int64_t count = zip_get_num_entries(archive_->zip, 0);
+    if (count > static_cast<zip_int64_t>(kMostFiles))
+        throw core::Error(fmt::format("this ZIP holds more than {} files", kMostFiles), file.string(),
+                          "pack the scan alone");
+    for (zip_int64_t i = 0; i < count; ++i) {
+        zip_stat_t stat;
+        if (zip_stat_index(archive_->zip, static_cast<zip_uint64_t>(i), 0, &stat) != 0 ||
+            (stat.valid & (ZIP_STAT_NAME | ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE)) !=
+                (ZIP_STAT_NAME | ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE))
+            throw damaged(fmt::format("its entry {} cannot be read", i + 1));
+        const std::string name = stat.name;
+        if (name.empty()) continue;
+        if (name.back() == '/') {
+            ++folders_;
+            continue;
+        }
+        const std::string last = name.substr(folderOf(name).size());
+        if (last[0] == '.' || name.rfind("__MACOSX", 0) == 0) continue;
+        if ((stat.valid & ZIP_STAT_ENCRYPTION_METHOD) != 0 && stat.encryption_method != ZIP_EM_NONE)
+            throw core::Error("this ZIP is encrypted", file.string(), "unpack it with its password, name the folder");
+        if (stat.size > kSmallBytes && stat.size / kMostRatio > stat.comp_size)
+            throw damaged("an entry claims to unpack to more than is possible");
+        if (archive_->byName.try_emplace(name, static_cast<zip_uint64_t>(i)).second)
+            entries_.push_back({name, stat.size});
+    }
+}
+
+void FileSet::sort() {
+    std::sort(entries_.begin(), entries_.end(),
+              [](const Entry& a, const Entry& b) { return naturalLess(a.name, b.name); });
+}
+
+std::string FileSet::where(std::size_t index) const {
+    if (memory_) return where_;
+    if (archive_) return where_ + ": " + entries_[index].name;
+    return (root_ / entries_[index].name).string();
+}
+
+Input FileSet::open(std::size_t index) const {
+    if (memory_) return Input(memory_, where_);
+    if (!archive_) return Input(root_ / entries_[index].name);
+    const Entry& entry = entries_[index];
+    const auto damaged = [&] {
+        return core::Error(fmt::format("\"{}\" in this ZIP is damaged", entry.name), where_, "copy or pack it again");
+    };
+    auto data = std::make_shared<std::vector<std::byte>>(entry.bytes);
+    const std::lock_guard lock(archive_->mutex);
+    const std::unique_ptr<zip_file_t, CloseEntry> open(
+        zip_fopen_index(archive_->zip, archive_->byName.at(entry.name), 0));
+    if (!open) throw damaged();
+    for (std::size_t have = 0; have < data->size();) {
+        const zip_int64_t got = zip_fread(open.get(), data->data() + have, data->size() - have);
+        if (got <= 0) throw damaged();
+        have += static_cast<std::size_t>(got);
+    }
+    std::byte more;
+    if (zip_fread(open.get(), &more, 1) != 0) throw damaged();  // also checks the sum
+    return Input(std::move(data), where(index));
+}
+
+std::vector<std::byte> FileSet::bytes(std::size_t index, std::uint64_t limitBytes) const {
+    const auto tooLarge = [&] {
+        return core::Error(fmt::format("the file has {} MB, more than the {} MB that are read",
+                                       entries_[index].bytes >> 20, limitBytes >> 20),
+                           where(index), "name the right file")
+            .as("too-large");
+    };
+    if (entries_[index].bytes > limitBytes) throw tooLarge();
+    Input input = open(index);
+    if (input.size() > limitBytes) throw tooLarge();
+    std::vector<std::byte> data(input.size());
+    data.resize(input.readAt(0, data.data(), data.size()));
+    return data;
+}
+
+std::optional<std::size_t> FileSet::find(std::string_view beside, std::string_view name) const {
+    const std::string full = std::string(folderOf(beside)) + std::string(name);
+    for (std::size_t i = 0; i < entries_.size(); ++i)
+        if (entries_[i].name == full) return i;
+    return {};
+}
+
+bool naturalLess(std::string_view a, std::string_view b) {
+    std::size_t i = 0, j = 0;
+    while (i < a.size() && j < b.size()) {
+        if (isDigit(a[i]) && isDigit(b[j])) {
+            const std::size_t startA = i, startB = j;
+            while (i < a.size() && isDigit(a[i]))
+                ++i;
+            while (j < b.size() && isDigit(b[j]))
+                ++j;
+            std::string_view runA = a.substr(startA, i - startA), runB = b.substr(startB, j - startB);
+            runA.remove_prefix(std::min(runA.find_first_not_of('0'), runA.size()));
+            runB.remove_prefix(std::min(runB.find_first_not_of('0'), runB.size()));
+            if (runA.size() != runB.size()) return runA.size() < runB.size();
+            if (runA != runB) return runA < runB;
+            continue;
+        }
+        if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
+        ++i;
+        ++j;
+    }
+    if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+    return a < b;  // "1" and "01": some order, always the same
+}
+
+std::string extensionOf(std::string_view name) {
+    const std::string_view last = name.substr(folderOf(name).size());
+    const std::size_t dot = last.rfind('.');
+    if (dot == std::string_view::npos || dot == 0) return {};
+    std::string extension(last.substr(dot));
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    return extension;
+}
+
+std::string_view folderOf(std::string_view name) {
+    const std::size_t slash = name.rfind('/');
+    return slash == std::string_view::npos ? std::string_view() : name.substr(0, slash + 1);
+}
+
+}  // namespace handpiece::volume

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <tiffio.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include "handpiece/scan/volume/header_text.h"
+#include "handpiece/scan/volume/pictures.h"
+#include "handpiece/scan/volume/samples.h"
+
+namespace handpiece::volume {
+namespace {
+
+constexpr int kMostPages = 100000;
+constexpr tmsize_t kMostPiece = 1ll << 30;
+
+/// What libtiff reads from or writes to.
+struct Stream {
+    Input* input = nullptr;
+    std::vector<std::byte>* out = nullptr;
+    std::uint64_t at = 0;
+    std::string text;  ///< the first error
+};
+
+tmsize_t readSome(thandle_t handle, void* to, tmsize_t count) {
+    auto* s = static_cast<Stream*>(handle);
+    if (count < 0) return -1;
+    std::size_t got = 0;
+    if (s->out) {
+        got =
+            s->at < s->out->size() ? std::min<std::size_t>(static_cast<std::size_t>(count), s->out->size() - s->at) : 0;
+        std::memcpy(to, s->out->data() + s->at, got);
+    } else {
+        got = s->input->readAt(s->at, to, static_cast<std::size_t>(count));
+    }
+    s->at += got;
+    return static_cast<tmsize_t>(got);
+}
+tmsize_t writeSome(thandle_t handle, void* from, tmsize_t count) {
+    auto* s = static_cast<Stream*>(handle);
+    if (!s->out || count < 0) return -1;
+    s->out->resize(std::max<std::size_t>(s->out->size(), s->at + static_cast<std::size_t>(count)));
+    std::memcpy(s->out->data() + s->at, from, static_cast<std::size_t>(count));
+    s->at += static_cast<std::uint64_t>(count);
+    return count;
+}
+toff_t sizeOf(thandle_t handle) {
+    auto* s = static_cast<Stream*>(handle);
+    return s->out ? s->out->size() : s->input->size();
+}
+toff_t seek(thandle_t handle, toff_t offset, int from) {
+    auto* s = static_cast<Stream*>(handle);
+    s->at = from == SEEK_SET ? offset : from == SEEK_CUR ? s->at + offset : sizeOf(handle) + offset;
+    return s->at;
+}
+int closeNothing(thandle_t /*handle*/) {
+    return 0;
+}
+
+int onError(TIFF* /*tiff*/, void* user, const char* /*module*/, const char* format, va_list arguments) {
+    auto* s = static_cast<Stream*>(user);
+    if (s->text.empty()) {
+        char text[200];
+        std::vsnprintf(text, sizeof text, format, arguments);
+        s->text = shown(text);
+    }
+    return 1;
+}
+int onWarning(TIFF* /*tiff*/, void* /*user*/, const char* /*module*/, const char* /*format*/, va_list /*arguments*/) {
+    return 1;
+}
+
+struct Close {
+    void operator()(TIFF* tiff) const noexcept { TIFFClose(tiff); }
+};
+using Tiff = std::unique_ptr<TIFF, Close>;
+
+Tiff open(Stream& stream, const char* mode) {
+    TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
+    TIFFOpenOptionsSetErrorHandlerExtR(options, onError, &stream);
+    TIFFOpenOptionsSetWarningHandlerExtR(options, onWarning, &stream);
+    TIFFOpenOptionsSetMaxSingleMemAlloc(options, kMostPiece);
+    Tiff tiff(TIFFClientOpenExt("slice", mode, &stream, readSome, writeSome, seek, closeNothing, sizeOf, nullptr,
+                                nullptr, options));
+    TIFFOpenOptionsFree(options);
+    return tiff;
+}
+
+struct Page {
+    int columns = 0, rows = 0;
+    SampleType type = SampleType::u8;
+    std::uint16_t samples = 1, bits = 8, photometric = PHOTOMETRIC_MINISBLACK;
+    bool isReduced = false;
+};
+
+Page pageOf(TIFF* tiff, const Input& input) {
+    Page page;
+    std::uint32_t columns = 0, rows = 0, kind = 0;
+    std::uint16_t format = SAMPLEFORMAT_UINT, planar = PLANARCONFIG_CONTIG;
+    TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &columns);
+    TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &rows);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &page.bits);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &page.samples);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &format);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_PLANARCONFIG, &planar);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_SUBFILETYPE, &kind);
+    TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &page.photometric);
+    if (columns < 1 || rows < 1 || columns > 100000 || rows > 100000)
+        throw damagedPicture(input, fmt::format("its size is {} x {}", columns, rows));
+    page.columns = static_cast<int>(columns);
+    page.rows = static_cast<int>(rows);
+    page.isReduced = (kind & FILETYPE_REDUCEDIMAGE) != 0;
+    const bool isColour = page.samples >= 3;
+    if ((isColour && (page.bits != 8 || planar != PLANARCONFIG_CONTIG)) ||
+        (page.samples == 2 && planar != PLANARCONFIG_CONTIG) || page.samples > 4)
+        throw core::Error("its pixels are of a kind that is not read", input.where(),
+                          "save it as 8-bit or 16-bit grey");
+    using enum SampleType;
+    const bool isFloat = format == SAMPLEFORMAT_IEEEFP, isSigned = format == SAMPLEFORMAT_INT;
+    if (page.bits == 8 && !isFloat)
+        page.type = isSigned ? i8 : u8;
+    else if (page.bits == 16 && !isFloat)
+        page.type = isSigned ? i16 : u16;
+    else if (page.bits == 32)
+        page.type = isFloat ? f32 : isSigned ? i32 : u32;
+    else if (page.bits == 64 && isFloat)
+        page.type = f64;
+    else
+        throw core::Error(fmt::format("it has {} bits a pixel", page.bits), input.where(),
+                          "save it as 8-bit or 16-bit grey");
+    return page;
+}
+
+/// ImageJ writes the spacing of its stacks as text and resolution; only its own keys are looked for.
+std::optional<core::Vec3> imageJSpacing(TIFF* tiff) {
+    const char* text = nullptr;
+    float x = 0.0f, y = 0.0f;
+    if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) != 1 || !text) return {};
+    const std::string_view description(text);
+    if (description.rfind("ImageJ=", 0) != 0) return {};
+    const auto value = [&](std::string_view key) -> std::string_view {
+        const std::size_t at = description.find(key);
+        if (at == std::string_view::npos) return {};
+        const std::size_t begin = at + key.size();
+        return trimmed(description.substr(begin, description.find('\n', begin) - begin));
+    };
+    const std::string_view unit = value("\nunit=");
+    const double mm = unit == "mm"   ? 1.0
+                      : unit == "cm" ? 10.0
+                      : unit == "um" || unit == "micron" || unit == "\\u00B5m" || unit == "\xc2\xb5m" || unit == "\xb5m"
+                          ? 1e-3
+                          : 0.0;
+    if (mm == 0.0 || TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x) != 1 ||
+        TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y) != 1)
+        return {};
+    const core::Vec3 spacing(mm / static_cast<double>(x), mm / static_cast<double>(y),
+                             mm * numberOf(value("\nspacing=")).value_or(0.0));
+    if (!isSpacing(spacing.x()) || !isSpacing(spacing.y())) return {};
+    return spacing;
+}
+
+/// A row or a tile to grey numbers.
+void toGrey(const Page& page, const std::uint16_t* const palette[3], const std::byte* from, std::size_t count,
+            float* to) {
+    if (page.samples >= 3) {
+        const auto* rgb = reinterpret_cast<const std::uint8_t*>(from);
+        for (std::size_t i = 0; i < count; ++i, rgb += page.samples)
+            to[i] = greyOf(rgb[0], rgb[1], rgb[2]);
+        return;
+    }
+    const std::size_t each = bytesOf(page.type);
+    constexpr bool kIsBig = std::endian::native == std::endian::big;  // libtiff has put them in the machine's order
+    if (page.samples == 1)
+        convert(page.type, kIsBig, 1.0, 0.0, from, count, to);
+    else
+        for (std::size_t i = 0; i < count; ++i)
+            convert(page.type, kIsBig, 1.0, 0.0, from + i * each * page.samples, 1, to + i);
+    if (palette[0] && page.bits == 8) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto c = static_cast<std::size_t>(to[i]);
+            to[i] = greyOf(palette[0][c] >> 8, palette[1][c] >> 8, palette[2][c] >> 8);
+        }
+    } else if (page.photometric == PHOTOMETRIC_MINISWHITE && page.bits <= 16) {
+        const float white = page.bits == 8 ? 255.0f : 65535.0f;
+        for (std::size_t i = 0; i < count; ++i)
+            to[i] = white - to[i];
+    }
+}
+
+void readPage(TIFF* tiff, Stream& stream, const Page& page, float* to) {
+    const auto cut = [&] {
+        return damagedPicture(*stream.input, stream.text.empty() ? "its pixel data is truncated" : stream.text);
+    };
+    std::uint16_t* palette[3] = {};
+    if (page.photometric == PHOTOMETRIC_PALETTE)
+        TIFFGetField(tiff, TIFFTAG_COLORMAP, &palette[0], &palette[1], &palette[2]);
+    const auto columns = static_cast<std::size_t>(page.columns), rows = static_cast<std::size_t>(page.rows);
+    const std::size_t pixel = bytesOf(page.type) * page.samples;
+    if (TIFFIsTiled(tiff) == 0) {
+        const tmsize_t bytes = TIFFScanlineSize(tiff);
+        if (bytes < static_cast<tmsize_t>(columns * pixel) || bytes > kMostPiece) throw cut();
+        std::vector<std::byte> row(static_cast<std::size_t>(bytes));
+        for (std::size_t y = 0; y < rows; ++y) {
+            if (TIFFReadScanline(tiff, row.data(), static_cast<std::uint32_t>(y), 0) != 1) throw cut();
+            toGrey(page, palette, row.data(), columns, to + y * columns);
+        }
+        return;
+    }
+    std::uint32_t width = 0, height = 0;
+    TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &width);
+    TIFFGetField(tiff, TIFFTAG_TILELENGTH, &height);
+    const tmsize_t bytes = TIFFTileSize(tiff);
+    if (width < 1 || height < 1 || bytes > kMostPiece ||
+        static_cast<std::uint64_t>(width) * height * pixel > static_cast<std::uint64_t>(bytes))
+        throw cut();
+    std::vector<std::byte> tile(static_cast<std::size_t>(bytes));
+    for (std::size_t y0 = 0; y0 < rows; y0 += height)
+        for (std::size_t x0 = 0; x0 < columns; x0 += width) {
+            if (TIFFReadTile(tiff, tile.data(), static_cast<std::uint32_t>(x0), static_cast<std::uint32_t>(y0), 0, 0) <
+                0)
+                throw cut();
+            for (std::size_t y = y0; y < std::min<std::size_t>(rows, y0 + height); ++y)
+                toGrey(page, palette, tile.data() + (y - y0) * width * pixel,
+                       std::min<std::size_t>(width, columns - x0), to + y * columns + x0);
+        }
+}
+
+}  // namespace
+
+PictureInfo tiffInfo(Input& input) {
+    Stream stream;
+    stream.input = &input;
+    const Tiff tiff = open(stream, "rm");
+    if (!tiff) throw damagedPicture(input, stream.text.empty() ? "this is no TIFF" : stream.text);
+    PictureInfo info;
+    const Page first = pageOf(tiff.get(), input);
+    info.columns = first.columns;
+    info.rows = first.rows;
+    info.bits = first.bits;
+    info.isColour = first.samples >= 3;
+    info.spacingMm = imageJSpacing(tiff.get());
+    while (TIFFReadDirectory(tiff.get()) == 1) {
+        const Page page = pageOf(tiff.get(), input);
+        if (page.isReduced) continue;
+        if (page.columns != first.columns || page.rows != first.rows)
+            throw core::Error(fmt::format("its pages have different sizes: {} x {} and, page {}, {} x {}",
+                                          first.columns, first.rows, info.pages + 1, page.columns, page.rows),
+                              input.where(), "save pages of one size");
+        if (++info.pages > kMostPages) throw damagedPicture(input, "it claims too many pages");
+    }
+    if (!stream.text.empty()) throw damagedPicture(input, stream.text);
+    return info;
+}
+
+void readTiff(Input& input, const PictureInfo& info, int first, int count, float* to, const core::Progress& progress) {
+    Stream stream;
+    stream.input = &input;
+    const Tiff tiff = open(stream, "rm");
+    if (!tiff) throw damagedPicture(input, stream.text.empty() ? "this is no TIFF" : stream.text);
+    const std::size_t each = static_cast<std::size_t>(info.columns) * static_cast<std::size_t>(info.rows);
+    int index = -1, done = 0;
+    do {
+        const Page page = pageOf(tiff.get(), input);
+        if (page.isReduced && index >= 0) continue;
+        if (++index < first) continue;
+        if (page.columns != info.columns || page.rows != info.rows) throw damagedPicture(input, "its size changed");
+        readPage(tiff.get(), stream, page, to + static_cast<std::size_t>(done) * each);
+        core::report(progress, static_cast<double>(++done) / count);
+        if (done == count) return;
+    } while (TIFFReadDirectory(tiff.get()) == 1);
+    throw damagedPicture(input, stream.text.empty() ? "it has fewer pages than before" : stream.text);
+}
+
+std::vector<std::byte> tiffBytes(std::span<const std::uint16_t> grey, int columns, int rows,
+                                 const core::Vec3& spacingMm) {
+    std::vector<std::byte> out;
+    Stream stream;
+    stream.out = &out;
+    Tiff tiff = open(stream, "wl");
+    const auto failed = [&] {
+        return core::Error(fmt::format("cannot be made a TIFF: {}", stream.text), "slice", "choose another format");
+    };
+    if (!tiff) throw failed();
+    TIFFSetField(tiff.get(), TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(columns));
+    TIFFSetField(tiff.get(), TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(rows));
+    TIFFSetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, 16);
+    TIFFSetField(tiff.get(), TIFFTAG_SAMPLESPERPIXEL, 1);
+    TIFFSetField(tiff.get(), TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
+    TIFFSetField(tiff.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    TIFFSetField(tiff.get(), TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+    TIFFSetField(tiff.get(), TIFFTAG_COMPRESSION, COMPRESSION_NONE);
+    TIFFSetField(tiff.get(), TIFFTAG_ROWSPERSTRIP, static_cast<std::uint32_t>(rows));
+    TIFFSetField(tiff.get(), TIFFTAG_RESOLUTIONUNIT, RESUNIT_CENTIMETER);
+    TIFFSetField(tiff.get(), TIFFTAG_XRESOLUTION, 10.0 / spacingMm.x());
+    TIFFSetField(tiff.get(), TIFFTAG_YRESOLUTION, 10.0 / spacingMm.y());
+    if (TIFFWriteEncodedStrip(tiff.get(), 0, const_cast<std::uint16_t*>(grey.data()),
+                              static_cast<tmsize_t>(grey.size_bytes())) < 0 ||
+        TIFFFlush(tiff.get()) != 1)
+        throw failed();
+    tiff.reset();
+    return out;
+}
+
+}  // namespace handpiece::volume

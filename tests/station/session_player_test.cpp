@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/instrument/catalogue.h"
@@ -27,7 +28,7 @@ double removed(const tooth::TissueVolumes& mm3) {
 
 /// Recorded once for all tests.
 struct Recorded {
-    Recorded() : state(workThreeSeconds(folder.path / "session.h5", 1000, folder.path / "cut-off.h5")) {}
+    Recorded() : state(workThreeSeconds(folder.path / "session.h5", folder.path / "cut-off.h5")) {}
     Folder folder;
     tooth::CutState state;
     [[nodiscard]] std::filesystem::path file() const { return folder.path / "session.h5"; }
@@ -48,6 +49,14 @@ double recordedTimeS(const SessionPlayer& player, double timeS) {
     const auto tick = static_cast<std::uint64_t>(std::floor(timeS * 1000 + 1e-6));
     const std::uint64_t at = player.reader().indexOfTick(tick + 1);
     return static_cast<double>(player.reader().records(at - 1, 1).front().tick) / 1000;
+}
+
+/// When strokes began or ended: on a busy machine the hand takes longer than three seconds for its way.
+std::vector<double> timesOf(const SessionPlayer& player, const char* event) {
+    std::vector<double> times;
+    for (const session::Event& e : player.events())
+        if (e.name == event) times.push_back(static_cast<double>(e.tick) / 1000);
+    return times;
 }
 
 TEST(SessionPlayer, cutsTheSameToothThroughEveryChange) {
@@ -73,14 +82,26 @@ TEST(SessionPlayer, jumpsAnywhereAndGivesTheSameEachTime) {
     player.seek(player.durationS());
     EXPECT_FALSE(player.isExact());
     EXPECT_EQ(tooth::stateHash(player.state()), tooth::stateHash(recorded().state)) << "the last key frame";
-    for (const double timeS : {1.45, 2.45, 1.2, 2.9, 0.6}) {
+    const std::vector<double> begun = timesOf(player, "stroke begin"), ended = timesOf(player, "stroke end");
+    ASSERT_EQ(begun.size(), 2u);
+    ASSERT_EQ(ended.size(), 2u);
+    const auto between = [](double from, double to, double share) { return from + share * (to - from); };
+    int shown = 0;
+    // After the redo, in the second hole, after the first, at the end, in the first.
+    for (const double timeS :
+         {between(ended[0], begun[1], 0.6), between(begun[1], ended[1], 0.7), between(ended[0], begun[1], 0.15),
+          between(ended[1], player.durationS(), 0.3), between(begun[0], ended[0], 0.55)}) {
         SCOPED_TRACE(timeS);
         exact.advance(0.0);
         player.seek(timeS);
         EXPECT_DOUBLE_EQ(player.timeS(), recordedTimeS(player, timeS));
         EXPECT_EQ(player.sample().tick, static_cast<std::uint64_t>(std::llround(player.timeS() * 1000)));
         const tooth::CutState once = player.state();
-        EXPECT_EQ(tooth::stateHash(player.tooth()->state({})), tooth::stateHash(once)) << "what is shown";
+        // In the midst of a cut some bricks are still on their way to the eye.
+        if (player.sample().waitingBricks == 0) {
+            EXPECT_EQ(tooth::stateHash(player.tooth()->state({})), tooth::stateHash(once)) << "what is shown";
+            ++shown;
+        }
         player.seek(0.0);
         player.seek(player.durationS());
         player.seek(timeS);
@@ -91,6 +112,7 @@ TEST(SessionPlayer, jumpsAnywhereAndGivesTheSameEachTime) {
                     0.02 * removed(played.state().removedMm3) + 1e-3);
         EXPECT_NEAR(player.sample().speedRpm, played.sample().speedRpm, 0.02 * played.sample().speedRpm + 100);
     }
+    EXPECT_GE(shown, 3);  // between strokes none is
     player.seek(0.0);
     EXPECT_TRUE(player.isExact());
     player.advance(player.durationS());
@@ -100,13 +122,17 @@ TEST(SessionPlayer, jumpsAnywhereAndGivesTheSameEachTime) {
 TEST(SessionPlayer, plotsWhatWasRecorded) {
     const SessionPlayer player(recorded().file(), kUnseen);
     const std::vector<PlotPoint> points = player.plot(0.05);
-    ASSERT_NEAR(static_cast<double>(points.size()), player.durationS() / 0.05, 3.0);
     float most = 0.0f, expected = 0.0f;
     for (const PlotPoint& p : points)
         most = std::max(most, p.forceN);
-    for (const session::Record& r : player.reader().records(0, 100000))
+    std::set<std::uint64_t> stretches;  // of fifty ticks, in which there is a record
+    for (const session::Record& r : player.reader().records(0, static_cast<std::size_t>(player.reader().size()))) {
         expected = std::max(expected, std::hypot(r.forceN[0], r.forceN[1], r.forceN[2]));
+        stretches.insert(r.tick / 50);
+    }
     EXPECT_EQ(most, expected);
+    EXPECT_EQ(points.size(), stretches.size());
+    EXPECT_GT(points.size(), 3u);
     EXPECT_NEAR(static_cast<double>(points.back().removedMm3[2]), recorded().state.removedMm3[2], 1e-3);
 }
 
@@ -155,18 +181,18 @@ void undoAll(const Station& begun, const tooth::CutState& state, const history::
     Sitting sitting(station, blockCase(),
                     handOf(device::Motion({{0.0, {core::Vec3(0, 0, 1), core::Quat::Identity()}, 0}})), settings,
                     nullptr);
-    ASSERT_TRUE(waitUntil(sitting, 0.05));
-    EXPECT_EQ(sitting.status().undoSteps, steps);
+    const auto feed = sitting.subscribe();
+    EXPECT_TRUE(waitUntilTrue([&] { return sitting.status().undoSteps == steps; }));
     for (std::size_t i = 0; i < steps; ++i)
         sitting.undo();
-    ASSERT_TRUE(waitUntil(sitting, 0.3));
+    EXPECT_TRUE(waitUntilTaken(*feed, steps));
+    EXPECT_TRUE(waitUntilTrue([&] { return sitting.state().bricks.empty(); }));
     EXPECT_EQ(removed(sitting.state().removedMm3), 0.0);
-    EXPECT_TRUE(sitting.state().bricks.empty());
     EXPECT_EQ(sitting.status().redoSteps, steps);
     sitting.redo();
-    ASSERT_TRUE(waitUntil(sitting, 0.5));
+    EXPECT_TRUE(waitUntilTaken(*feed, steps + 1));
     EXPECT_GT(removed(sitting.state().removedMm3), 0.05);
-    ASSERT_TRUE(waitUntil(sitting, 1.6));  // a chunk is in the file
+    EXPECT_TRUE(waitUntilTrue([&] { return sitting.status().recording.writtenRecords > 0; }));
     sitting.stop();
     EXPECT_EQ(sitting.history().undoSteps(), 1u);
 }
@@ -236,7 +262,7 @@ TEST(SessionPlayer, whatStandsAroundTheToothIsInTheSession) {
     settings.sessionFile = folder.path / "session.h5";
     {
         Sitting sitting(blockStation(), around, handOf(twoHoles()), settings, nullptr);
-        ASSERT_TRUE(waitUntil(sitting, 0.8));
+        ASSERT_TRUE(waitUntil(sitting, 0.1));
     }
     const SessionPlayer player(settings.sessionFile, kUnseen);
     ASSERT_EQ(player.toothCase().scenery.size(), 1u);
@@ -255,13 +281,17 @@ TEST(SessionPlayer, hullAndFieldInOneSession) {
     for (device::TimedPose& p : poses)
         if (p.timeS < 1.7) p.pedal = 0.0;
     {
-        Sitting sitting(station, blockCase(), handOf(device::Motion(poses)), settings, nullptr);
+        const auto lead = std::make_shared<Lead>();
+        Sitting sitting(station, blockCase(), handOf(device::Motion(poses), lead), settings, nullptr);
+        const auto feed = sitting.subscribe();
         sitting.setHullMethod(true);
-        EXPECT_TRUE(waitUntil(sitting, 1.3));
+        EXPECT_TRUE(waitUntilTaken(*feed, 1));
+        EXPECT_TRUE(leadTo(sitting, *lead, 1.3));
         EXPECT_TRUE(sitting.status().hull);
         sitting.setBur(burOf("pear:1.0x2.5"), {});
         sitting.setHullMethod(false);
-        EXPECT_TRUE(waitUntil(sitting, 3.0));
+        EXPECT_TRUE(waitUntilTaken(*feed, 3));
+        EXPECT_TRUE(leadTo(sitting, *lead, 3.0));
         EXPECT_FALSE(sitting.status().hull);
     }
     SessionPlayer player(settings.sessionFile, kUnseen);

@@ -3,6 +3,8 @@
 /// @file
 /// A block of enamel over dentine, a hand that cuts two holes in three seconds, and a sitting at it.
 
+#include <gtest/gtest.h>
+
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -11,7 +13,7 @@
 
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/model/instrument/shapes.h"
-#include "handpiece/tick/device/simulated_device.h"
+#include "station/led_hand.h"
 #include "station/sitting.h"
 #include "support/closed_meshes.h"
 
@@ -57,10 +59,8 @@ inline device::Motion twoHoles() {
                            at(2.8, 0.9, 0.3, 1), at(2.801, 0.9, 0.3, 0), at(3.2, 0.9, 0.3, 0)});
 }
 
-inline std::unique_ptr<device::Device> handOf(device::Motion motion) {
-    device::SimulatedDeviceSettings settings;
-    settings.rigidHand = true;
-    return std::make_unique<device::SimulatedDevice>(settings, std::move(motion));
+inline std::unique_ptr<device::Device> handOf(device::Motion motion, std::shared_ptr<Lead> lead = nullptr) {
+    return std::make_unique<LedHand>(std::move(motion), std::move(lead));
 }
 
 /// A folder that goes with the test.
@@ -98,42 +98,70 @@ inline bool waitUntil(const Sitting& sitting, double timeS) {
     return waitUntilTrue(hasCome) && now.fault.empty();
 }
 
+/// Leads the hand on to a moment of its motion and waits until the sitting has heard of it; false when it has ended or
+/// a minute has passed.
+inline bool leadTo(const Sitting& sitting, Lead& lead, double motionS) {
+    lead.untilS = motionS;
+    const auto hasCome = [&] { return lead.atS >= motionS || !sitting.status().fault.empty(); };
+    return waitUntilTrue(hasCome) && waitUntil(sitting, lead.loopS - 1e-6);
+}
+
+/// Waits until a tick has taken this many of the sitting's changes and steps, and has put what they change in place.
+inline bool waitUntilTaken(SampleFeed& feed, std::uint64_t commands) {
+    return waitUntilTrue([&] {
+        const messages::HapticSample& sample = feed.read();
+        return sample.lastCommand >= commands && (sample.flags & messages::kRestoring) == 0;
+    });
+}
+
+/// Copies a file that grows meanwhile, between two of its writes.
+inline void copyGrowing(const std::filesystem::path& from, const std::filesystem::path& to) {
+    std::filesystem::file_time_type before;
+    do {
+        before = std::filesystem::last_write_time(from);
+        std::filesystem::copy_file(from, to, std::filesystem::copy_options::overwrite_existing);
+    } while (std::filesystem::last_write_time(from) != before);
+}
+
 /// Three seconds of work in which all changes that can. Returns the state at the end.
-inline tooth::CutState workThreeSeconds(const std::filesystem::path& file, double rateHz = 1000,
+inline tooth::CutState workThreeSeconds(const std::filesystem::path& file,
                                         const std::filesystem::path& copyAt2700ms = {}) {
-    Station station = makeStation(
-        blockCase(),
-        [&] {
-            StationSettings settings = blockSettings();
-            settings.rateHz = rateHz;
-            return settings;
-        }(),
-        false);
+    const Station station = blockStation();
     SittingSettings settings;
     settings.sessionFile = file;
     settings.code = "test";
-    Sitting sitting(station, blockCase(), handOf(twoHoles()), settings, nullptr);
+    const auto lead = std::make_shared<Lead>();
+    Sitting sitting(station, blockCase(), handOf(twoHoles(), lead), settings, nullptr);
+    const auto feed = sitting.subscribe();
     force::Parameters parameters = station.settings.parameters;
     parameters.stiffnessMultiplier = 0.7;
-    waitUntil(sitting, 0.7);
+    EXPECT_TRUE(leadTo(sitting, *lead, 0.7));
     sitting.setParameters(parameters);
-    waitUntil(sitting, 1.15);
+    EXPECT_TRUE(waitUntilTaken(*feed, 1));
+    EXPECT_TRUE(leadTo(sitting, *lead, 1.15));
+    EXPECT_TRUE(waitUntilTrue([&] { return sitting.status().undoSteps == 1; }));
     sitting.undo();
     sitting.redo();
     sitting.undo();
     sitting.setBur(burOf("cylinder-flat:1.2x4"), instrument::abilityByName("diamond-medium"));
     sitting.setDrive(instrument::driveByName("speed-increasing"));
-    waitUntil(sitting, 1.4);
+    EXPECT_TRUE(waitUntilTaken(*feed, 6));
+    EXPECT_TRUE(leadTo(sitting, *lead, 1.4));
     sitting.redo();
-    waitUntil(sitting, 2.2);
+    EXPECT_TRUE(waitUntilTaken(*feed, 7));
+    EXPECT_TRUE(leadTo(sitting, *lead, 2.2));
     parameters.stiffnessMultiplier = 1.0;
     parameters.frictionMultiplier = 0.5;
     sitting.setParameters(parameters);
     sitting.setDrive(instrument::driveByName("turbine"));
-    waitUntil(sitting, 2.7);
-    if (!copyAt2700ms.empty())
-        std::filesystem::copy_file(file, copyAt2700ms, std::filesystem::copy_options::overwrite_existing);
-    waitUntil(sitting, 3.1);
+    EXPECT_TRUE(waitUntilTaken(*feed, 9));
+    EXPECT_TRUE(leadTo(sitting, *lead, 2.7));
+    if (!copyAt2700ms.empty()) {
+        // By then the first stroke and more than half of the work are in the file.
+        EXPECT_TRUE(waitUntilTrue([&] { return sitting.status().recording.writtenRecords > 2000; }));
+        copyGrowing(file, copyAt2700ms);
+    }
+    EXPECT_TRUE(leadTo(sitting, *lead, 3.1));
     sitting.stop();
     return sitting.state();
 }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <cstring>
 #include <limits>
 #include <thread>
@@ -223,20 +225,32 @@ TEST(HapticLoop, runsOnTheWallClockAndSaysUnderWhichScheduler) {
 
 TEST(HapticLoop, parametersChangeWhileItRunsOnTheWallClock) {
     HapticLoop loop = makeLoop(2000);
+    std::atomic<bool> begun{false};
+    std::atomic<std::uint64_t> taken{0};
     std::thread person([&] {
+        const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(2)); };
+        while (!begun)
+            pause();
         force::Parameters p = force::defaultParameters();
+        std::uint64_t given = 0;
         for (int i = 0; i < 100; ++i) {
             p.stiffnessMultiplier = 0.5 + 0.005 * i;
-            loop.setParameters(p);
-            if (i % 10 == 0) loop.setMethod(planeMethod());
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            given = loop.setParameters(p);
+            if (i % 10 == 0) given = loop.setMethod(planeMethod());
+            pause();
         }
+        while (taken < given)
+            pause();
         loop.requestStop();
     });
-    const RunReport report = loop.runRealTime(30.0);
+    const RunReport report = loop.runRealTime(600.0, [&](const HapticSample& s) {
+        begun = true;
+        taken = s.lastCommand;
+    });
     person.join();
     EXPECT_GT(report.ticks, 0u);
-    EXPECT_LT(report.ticks, 30u * 2000u);
+    EXPECT_LT(report.ticks, 600u * 2000u);
+    EXPECT_EQ(taken, 110u);
 }
 
 TEST(HapticLoop, aFailingListenerEndsTheRun) {

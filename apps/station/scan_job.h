@@ -34,11 +34,13 @@ struct ScanJob {
                                            ///< empty: they are those
     // Which tooth, of what.
     segmentation::Settings segmentation;
+    std::optional<double> toothFrom, enamelFrom;  ///< grey values that win over those found, where
+                                                  ///< segmentation.thresholds has none
     bool smooth = true;
     // An intraoral scan as the outer surface.
-    std::filesystem::path intraoral;            ///< mesh; empty: none
-    std::optional<core::Pose> intraoralInScan;  ///< roughly, by hand; none: found by features
-    double intraoralReachMm = 0.5;
+    std::filesystem::path intraoral;                        ///< mesh; empty: none
+    std::optional<core::Pose> intraoralInScan;              ///< roughly, by hand; none: found by features
+    double intraoralReachMm = 0.5, intraoralOverlap = 0.5;  ///< as placing::withOuterSurface, RegisterSettings
     // The tooth's own frame and the case's words.
     placing::Hints placing;  ///< with the FDI number
     std::string name = "scanned tooth";
@@ -97,7 +99,9 @@ struct ScanResult {
     std::optional<placing::Registered> registered;  ///< of the intraoral scan
     // place
     placing::Placed placed;
-    std::vector<tooth::Part> scenery;  ///< scanner's frame
+    bool isPlaced = false;
+    std::vector<tooth::Part> scenery;   ///< scanner's frame
+    std::vector<std::string> ownNotes;  ///< of the work here; notes() has all
     // decimate
     std::vector<ScannedCase> cases;
 

@@ -106,6 +106,56 @@ double squaredDistance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& 
     return (ap - vb / sum * ab - vc / sum * ac).squaredNorm();
 }
 
+/// The cheapest first, as one heap of all would give them. Only the cheapest part is kept as a heap, small enough for a
+/// processor's cache; the dearer rest waits unsorted until its turn comes.
+class CandidateQueue {
+  public:
+    void assign(std::vector<Candidate> all) {
+        rest_ = std::move(all);
+        near_.clear();
+        limit_ = -1.0f;
+    }
+    void push(const Candidate& candidate) {
+        if (candidate.cost > limit_) {
+            rest_.push_back(candidate);
+            return;
+        }
+        near_.push_back(candidate);
+        std::push_heap(near_.begin(), near_.end());
+    }
+    /// False when there is none left. `isStale` tells which need not be kept.
+    template <class IsStale>
+    bool pop(Candidate& cheapest, const IsStale& isStale) {
+        if (near_.empty()) refill(isStale);
+        if (near_.empty()) return false;
+        std::pop_heap(near_.begin(), near_.end());
+        cheapest = near_.back();
+        near_.pop_back();
+        return true;
+    }
+
+  private:
+    template <class IsStale>
+    void refill(const IsStale& isStale) {
+        constexpr std::size_t kLeast = 8192, kShare = 24;
+        std::erase_if(rest_, isStale);
+        if (rest_.empty()) return;
+        const std::size_t count = std::min(rest_.size() - 1, std::max(kLeast, rest_.size() / kShare));
+        // The larger of two candidates is the cheaper.
+        const auto split = rest_.begin() + static_cast<std::ptrdiff_t>(count);
+        std::nth_element(rest_.begin(), split, rest_.end(),
+                         [](const Candidate& l, const Candidate& r) { return r < l; });
+        limit_ = split->cost;
+        const auto dearer = std::partition(split, rest_.end(), [&](const Candidate& c) { return !(c.cost > limit_); });
+        near_.assign(rest_.begin(), dearer);
+        rest_.erase(rest_.begin(), dearer);
+        std::make_heap(near_.begin(), near_.end());
+    }
+
+    std::vector<Candidate> near_, rest_;
+    float limit_ = -1.0f;  ///< all that costs no more is in near_
+};
+
 class Collapser {
   public:
     explicit Collapser(const TriangleMesh& mesh)
@@ -147,17 +197,16 @@ class Collapser {
         while (faces_ > target) {
             if (!isInRound_) {
                 roundStart_ = faces_;
-                fillHeap();
+                fillQueue();
                 isInRound_ = true;
             }
             std::size_t sinceReport = 0;
-            while (faces_ > target && !heap_.empty()) {
-                std::pop_heap(heap_.begin(), heap_.end());
-                const Candidate candidate = heap_.back();
-                heap_.pop_back();
-                if (version_[candidate.a] + version_[candidate.b] != candidate.versions ||
-                    parent_[candidate.a] != candidate.a || parent_[candidate.b] != candidate.b)
-                    continue;
+            Candidate candidate{};
+            const auto isStale = [this](const Candidate& c) {
+                return version_[c.a] + version_[c.b] != c.versions || parent_[c.a] != c.a || parent_[c.b] != c.b;
+            };
+            while (faces_ > target && queue_.pop(candidate, isStale)) {
+                if (isStale(candidate)) continue;
                 tryCollapse(candidate);
                 if (++sinceReport % 16384 == 0)
                     core::report(progress, static_cast<double>(start - faces_) / static_cast<double>(start - target));
@@ -261,17 +310,17 @@ class Collapser {
         return {static_cast<float>(cost), a, b, version_[a] + version_[b]};
     }
 
-    void fillHeap() {
+    void fillQueue() {
         std::vector<std::uint32_t> edges;
         edges.reserve(faces_ * 3 / 2);
         for (std::uint32_t h = 0; h < corner_.size(); ++h)
             if (corner_[h] != kNone && h < twin_[h]) edges.push_back(h);
-        heap_.resize(edges.size());
+        std::vector<Candidate> all(edges.size());
         core::parallelFor(edges.size(), 4096, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                heap_[i] = candidateOf(corner_[edges[i]], corner_[nextOf(edges[i])]);
+                all[i] = candidateOf(corner_[edges[i]], corner_[nextOf(edges[i])]);
         });
-        std::make_heap(heap_.begin(), heap_.end());
+        queue_.assign(std::move(all));
     }
 
     void tryCollapse(const Candidate& candidate) {
@@ -306,10 +355,7 @@ class Collapser {
         parent_[b] = a;
         faces_ -= 2;
         ++version_[a];
-        forRing(a, [&](std::uint32_t e) {
-            heap_.push_back(candidateOf(a, corner_[nextOf(e)]));
-            std::push_heap(heap_.begin(), heap_.end());
-        });
+        forRing(a, [&](std::uint32_t e) { queue_.push(candidateOf(a, corner_[nextOf(e)])); });
     }
 
     // The two ends share exactly the two corners opposite their edge: the collapse keeps the surface two-manifold.
@@ -405,7 +451,7 @@ class Collapser {
     std::vector<std::uint32_t> mark_;
     std::uint32_t markNow_ = 0;
     std::vector<std::uint32_t> ring_;
-    std::vector<Candidate> heap_;
+    CandidateQueue queue_;
     std::size_t faces_ = 0, roundStart_ = 0;
     bool isInRound_ = false;
 };

@@ -13,6 +13,7 @@
 #include "handpiece/base/geometry/self_intersection.h"
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/scan/surfacing/nesting.h"
+#include "handpiece/scan/surfacing/smoothing.h"
 #include "handpiece/scan/surfacing/surfaces.h"
 
 namespace handpiece::surfacing {
@@ -26,7 +27,9 @@ using tooth::Tissue;
 constexpr std::size_t kFewestFaces = 4;     ///< a tetrahedron
 constexpr double kCoarseStandOutMm = 0.02;  ///< least, where faces are large: flakes of what is below stay away
 constexpr double kMostStandOutMm = 0.08;    ///< below tooth::kCaseToleranceMm
-constexpr double kFarMm = 1.0;
+constexpr double kMostOffsetMm = 0.02;      ///< a step of putting lost volume back
+constexpr int kInsideRounds = 40, kSideRounds = 8;
+constexpr double kRemarkMm = 0.01;  ///< a side kept worse than this is worth a remark
 
 /// One run per surface at a time on each core; the progress of all is the mean of theirs, by faces.
 class SharedProgress {
@@ -72,8 +75,8 @@ class Mender {
         for (std::size_t i = 0; i < coarse.tissues.size(); ++i) {
             Surface& tissue = coarse.tissues[i];
             if (tissue.tissue == Tissue::pulp) {
-                if (dentine) inside(coarse, tissue, dentine->mesh, "the dentine");
-                inside(coarse, tissue, coarse.outer.mesh, "the tooth");
+                if (dentine) inside(coarse, tissue, *dentine, "the dentine");
+                inside(coarse, tissue, coarse.outer, "the tooth");
             } else {
                 sides(coarse, tissue, i);
             }
@@ -90,11 +93,17 @@ class Mender {
         return *tree;
     }
 
-    void inside(Surfaces& coarse, Surface& pulp, const TriangleMesh& around, std::string_view name) {
+    /// Farther from each other than this two surfaces cannot have crossed by losing faces.
+    [[nodiscard]] double nearOf(const Surface& a, const Surface& b) const {
+        return 2.0 * (a.errorBoundMm + b.errorBoundMm) + 4.0 * full_.standOutMm + 4.0 * full_.leastGapMm;
+    }
+
+    void inside(Surfaces& coarse, Surface& pulp, const Surface& around, std::string_view name) {
         const double gap = 2.0 * full_.leastGapMm;
         const std::vector<Bounds> in(pulp.mesh.vertices.size(), {Bounds{}.low, -gap}),
-            out(around.vertices.size(), {gap, Bounds{}.high});
-        finish(coarse, pulp, holdApart(pulp.mesh, in, around, out, kFarMm, true, {}), name);
+            out(around.mesh.vertices.size(), {gap, Bounds{}.high});
+        finish(coarse, pulp, holdApart(pulp.mesh, in, around.mesh, out, nearOf(around, pulp), kInsideRounds, true, {}),
+               0.0, name);
     }
 
     /// Vertices on the side of the full surface that they were on; where they were on it they are free.
@@ -108,28 +117,37 @@ class Mender {
     void sides(Surfaces& coarse, Surface& tissue, std::size_t index) {
         const TriangleTree &outer = fullTree(0), &own = fullTree(index + 1);
         std::vector<Bounds> onTissue(tissue.mesh.vertices.size()), onOuter(coarse.outer.mesh.vertices.size());
+        const double nearMm = nearOf(coarse.outer, tissue);
+        // No nearest point within reach: deep inside, and so it stays.
+        const auto distance = [nearMm](const TriangleTree& tree, const Vec3& p) -> std::optional<double> {
+            const geometry::NearestPoint n = tree.nearest(p, nearMm);
+            if (n.triangle == geometry::kNoTriangle) return {};
+            return tree.side(p, n) * n.distanceMm;
+        };
         core::parallelFor(onTissue.size(), 512, [&](std::size_t b, std::size_t e) {
             for (std::size_t v = b; v < e; ++v)
-                onTissue[v] = sideOf(outer.signedDistance(tissue.mesh.vertices[v]), full_.standOutMm, full_.leastGapMm);
+                if (const std::optional<double> mm = distance(outer, tissue.mesh.vertices[v]))
+                    onTissue[v] = sideOf(*mm, full_.standOutMm, full_.leastGapMm);
         });
         core::parallelFor(onOuter.size(), 512, [&](std::size_t b, std::size_t e) {
             for (std::size_t v = b; v < e; ++v) {
-                const Vec3& p = coarse.outer.mesh.vertices[v];
-                const geometry::NearestPoint n = own.nearest(p, kFarMm);
-                if (n.triangle == geometry::kNoTriangle) continue;
-                const double mm = own.side(p, n) * n.distanceMm;
-                if (mm > full_.standOutMm) onOuter[v].low = std::min(0.5 * mm, full_.leastGapMm);
-                if (mm < -0.25 * full_.standOutMm && mm > -2.0 * full_.standOutMm)
-                    onOuter[v].high = -0.25 * full_.standOutMm;
+                const std::optional<double> mm = distance(own, coarse.outer.mesh.vertices[v]);
+                if (!mm) continue;
+                const double over = *mm / full_.standOutMm;
+                if (over > 1.0) onOuter[v].low = std::min(0.5 * *mm, full_.leastGapMm);
+                if (over < -0.25 && over > -2.0) onOuter[v].high = -0.25 * full_.standOutMm;
             }
         });
-        finish(coarse, tissue, holdApart(tissue.mesh, onTissue, coarse.outer.mesh, onOuter, kFarMm, false, {}),
-               "the tooth");
+        finish(coarse, tissue,
+               holdApart(tissue.mesh, onTissue, coarse.outer.mesh, onOuter, nearOf(coarse.outer, tissue), kSideRounds,
+                         false, {}),
+               kRemarkMm, "the tooth");
     }
 
-    static void finish(Surfaces& coarse, const Surface& tissue, const Apart& apart, std::string_view name) {
+    static void finish(Surfaces& coarse, Surface& tissue, const Apart& apart, double allowedMm, std::string_view name) {
+        tissue.errorBoundMm += apart.movedMm;
         const std::string_view own = tooth::properties(tissue.tissue).name;
-        if (apart.failed > 0)
+        if (apart.failed > 0 && apart.failedByMm > allowedMm)
             coarse.notes.push_back(
                 fmt::format("{} with {} faces does not keep its distance to {} at {} places, one at ({:.2f}, {:.2f}, "
                             "{:.2f}) mm: choose more faces",
@@ -143,6 +161,13 @@ class Mender {
     const Surfaces& full_;
     std::vector<std::optional<TriangleTree>> trees_;
 };
+
+/// Flat faces cut off what is round: the volume they lost is put back along the normals. Gives back by how much.
+double restoreVolume(TriangleMesh& mesh, const Surface& full) {
+    Shells together = shellsOf(mesh);
+    std::fill(together.ofFace.begin(), together.ofFace.end(), 0u);
+    return setVolumes(mesh, together, {geometry::enclosedVolumeMm3(full.mesh)}, kMostOffsetMm);
+}
 
 /// targets[step][surface], each below the surface's own count unless it stays as it is.
 std::vector<Surfaces> toTargets(const Surfaces& full, const std::vector<std::vector<std::size_t>>& targets,
@@ -178,7 +203,7 @@ std::vector<Surfaces> toTargets(const Surfaces& full, const std::vector<std::vec
             for (std::size_t k = 0; k < at.size(); ++k) {
                 Surface& to = i == 0 ? steps[at[k]].outer : steps[at[k]].tissues[i - 1];
                 to.mesh = std::move(made[k].mesh);
-                to.errorBoundMm = all[i]->errorBoundMm + made[k].errorBoundMm;
+                to.errorBoundMm = all[i]->errorBoundMm + made[k].errorBoundMm + restoreVolume(to.mesh, *all[i]);
             }
         }
     });

@@ -22,6 +22,7 @@ using segmentation::Solid;
 using tooth::Tissue;
 
 constexpr double kLeastGapMm = 0.005;
+constexpr int kRounds = 40;
 constexpr double kLeastShellVoxels = 20.0;
 constexpr Smoothing kDistanceSmoothing{10, 0.5};    ///< reach in voxels
 constexpr Smoothing kStaircaseSmoothing{40, 0.75};  ///< half a voxel is the step itself
@@ -107,7 +108,7 @@ void keepPulpInside(TriangleMesh& pulp, const TriangleMesh& around, const Region
     // Twice the gap at the vertices leaves it between the faces too.
     const std::vector<Bounds> inside(pulp.vertices.size(), {Bounds{}.low, -2.0 * kLeastGapMm}),
         outside(piece.vertices.size(), {2.0 * kLeastGapMm, Bounds{}.high});
-    const Apart apart = holdApart(pulp, inside, piece, outside, std::max(h, 4.0 * kLeastGapMm), true, {});
+    const Apart apart = holdApart(pulp, inside, piece, outside, std::max(h, 4.0 * kLeastGapMm), kRounds, true, {});
     if (apart.failed > 0) {
         const Vec3 at = grid.originMm + grid.axes * apart.failedMm;
         throw core::Error(

@@ -21,7 +21,6 @@ using geometry::TriangleTree;
 
 namespace {
 
-constexpr int kRounds = 40;
 constexpr double kMore = 1.1;  ///< of the way asked for, so that rounds come to an end
 
 /// A bound that a point breaks: how far its distance has to change, and along which way it grows.
@@ -92,23 +91,30 @@ std::vector<std::uint32_t> crossingVertices(const TriangleMesh& moving, const Tr
 }  // namespace
 
 Apart holdApart(TriangleMesh& moving, std::span<const Bounds> onMoving, const TriangleMesh& still,
-                std::span<const Bounds> onStill, double nearMm, bool strictly, const core::Progress& progress) {
+                std::span<const Bounds> onStill, double nearMm, int rounds, bool strictly,
+                const core::Progress& progress) {
     Apart result;
     if (moving.triangles.empty() || still.triangles.empty()) return result;
     const TriangleTree stillTree(still);
-    std::vector<std::uint8_t> touched(moving.vertices.size(), 0);
+    std::map<std::uint32_t, Vec3> touched;  // where they were
     const bool asksStill =
         std::any_of(onStill.begin(), onStill.end(), [](const Bounds& b) { return b.low > -1e300 || b.high < 1e300; });
-    for (int round = 0; round < kRounds; ++round) {
-        core::report(progress, static_cast<double>(round) / kRounds);
+    const auto fail = [&](double byMm, const Vec3& at) {
+        if (std::abs(byMm) <= result.failedByMm) return;
+        result.failedByMm = std::abs(byMm);
+        result.failedMm = at;
+    };
+    for (int round = 0; round < rounds; ++round) {
+        core::report(progress, static_cast<double>(round) / rounds);
         result.failed = 0;
+        result.failedByMm = 0.0;
         // First the vertices themselves; what moved before anything else is looked at need not be looked at twice.
         std::map<std::uint32_t, Vec3> moves;
         const std::vector<Breach> own = breaches(moving, onMoving, stillTree, nearMm);
         for (std::uint32_t v = 0; v < own.size(); ++v)
             if (own[v].byMm != 0.0) {
                 moves[v] = kMore * own[v].byMm * own[v].gradient;
-                result.failedMm = moving.vertices[v];
+                fail(own[v].byMm, moving.vertices[v]);
             }
         if (moves.empty() && asksStill) {
             const TriangleTree tree(moving);
@@ -119,24 +125,26 @@ Apart holdApart(TriangleMesh& moving, std::span<const Bounds> onMoving, const Tr
                 const Triangle& t = moving.triangles[tree.triangles()[others[u].triangle].index];
                 for (const std::uint32_t v : t)
                     longest(moves, v, -kMore * others[u].byMm * others[u].gradient);
-                result.failedMm = still.vertices[u];
+                fail(others[u].byMm, still.vertices[u]);
             }
         }
         if (moves.empty() && strictly) {
             const std::vector<Vec3> normals = vertexNormals(moving);
             for (const std::uint32_t v : crossingVertices(moving, still)) {
                 moves[v] = -0.1 * nearMm * normals[v];
-                result.failedMm = moving.vertices[v];
+                fail(nearMm, moving.vertices[v]);
             }
         }
         result.failed = moves.size();
         if (moves.empty()) break;
         for (const auto& [v, move] : moves) {
+            touched.try_emplace(v, moving.vertices[v]);
             moving.vertices[v] += move;
-            touched[v] = 1;
         }
     }
-    result.moved = static_cast<std::size_t>(std::count(touched.begin(), touched.end(), 1));
+    result.moved = touched.size();
+    for (const auto& [v, was] : touched)
+        result.movedMm = std::max(result.movedMm, (moving.vertices[v] - was).norm());
     return result;
 }
 

@@ -19,7 +19,9 @@ struct Bounds {
 
 struct Apart {
     std::size_t moved = 0;   ///< vertices
-    std::size_t failed = 0;  ///< bounds that could not be kept
+    double movedMm = 0;      ///< farthest of them
+    std::size_t failed = 0;  ///< vertices left that break a bound
+    double failedByMm = 0;   ///< by how much at most
     core::Vec3 failedMm = core::Vec3::Zero();
 };
 
@@ -28,7 +30,7 @@ struct Apart {
 /// With `strictly`, no face of one may cross the other either.
 [[nodiscard]] Apart holdApart(geometry::TriangleMesh& moving, std::span<const Bounds> onMoving,
                               const geometry::TriangleMesh& still, std::span<const Bounds> onStill, double nearMm,
-                              bool strictly, const core::Progress& progress);
+                              int rounds, bool strictly, const core::Progress& progress);
 
 /// The faces of a surface with a vertex within about `reachMm` of one of the points.
 [[nodiscard]] geometry::TriangleMesh facesNear(const geometry::TriangleMesh& mesh, std::span<const core::Vec3> points,

@@ -55,29 +55,6 @@ std::vector<double> bulgesMm3(const TriangleMesh& mesh, const std::vector<Vec3>&
     return bulge;
 }
 
-void setVolumes(TriangleMesh& mesh, const Shells& shells, const std::vector<std::uint32_t>& shellOfVertex,
-                const std::vector<double>& wantedMm3, double mostMm) {
-    for (int round = 0; round < kVolumeRounds; ++round) {
-        std::vector<double> volume(wantedMm3.size(), 0.0), area(wantedMm3.size(), 0.0);
-        const Vec3 origin = mesh.vertices.front();
-        for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-            const Triangle& t = mesh.triangles[f];
-            volume[shells.ofFace[f]] += sixVolume(mesh, t, origin) / 6.0;
-            area[shells.ofFace[f]] +=
-                0.5 *
-                (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]).norm();
-        }
-        std::vector<double> offset(wantedMm3.size());
-        for (std::size_t s = 0; s < offset.size(); ++s)
-            offset[s] = std::clamp((wantedMm3[s] - volume[s]) / area[s], -mostMm, mostMm);
-        const std::vector<Vec3> normals = vertexNormals(mesh);
-        core::parallelFor(mesh.vertices.size(), kGrain, [&](std::size_t b, std::size_t e) {
-            for (std::size_t v = b; v < e; ++v)
-                mesh.vertices[v] += offset[shellOfVertex[v]] * normals[v];
-        });
-    }
-}
-
 }  // namespace
 
 Rings::Rings(const TriangleMesh& mesh) : first_(mesh.vertices.size() + 1, 0), around_(3 * mesh.triangles.size()) {
@@ -156,15 +133,42 @@ std::vector<Vec3> vertexNormals(const TriangleMesh& mesh) {
     return normals;
 }
 
+double setVolumes(TriangleMesh& mesh, const Shells& shells, const std::vector<double>& wantedMm3, double mostMm) {
+    std::vector<std::uint32_t> shellOfVertex(mesh.vertices.size(), 0);
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+        for (const std::uint32_t v : mesh.triangles[f])
+            shellOfVertex[v] = shells.ofFace[f];
+    std::vector<double> way(wantedMm3.size(), 0.0);
+    for (int round = 0; round < kVolumeRounds; ++round) {
+        std::vector<double> volume(wantedMm3.size(), 0.0), area(wantedMm3.size(), 0.0);
+        const Vec3 origin = mesh.vertices.front();
+        for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+            const Triangle& t = mesh.triangles[f];
+            volume[shells.ofFace[f]] += sixVolume(mesh, t, origin) / 6.0;
+            area[shells.ofFace[f]] +=
+                0.5 *
+                (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]).norm();
+        }
+        std::vector<double> offset(wantedMm3.size());
+        for (std::size_t s = 0; s < offset.size(); ++s)
+            way[s] += offset[s] = std::clamp((wantedMm3[s] - volume[s]) / area[s], -mostMm, mostMm);
+        const std::vector<Vec3> normals = vertexNormals(mesh);
+        core::parallelFor(mesh.vertices.size(), kGrain, [&](std::size_t b, std::size_t e) {
+            for (std::size_t v = b; v < e; ++v)
+                mesh.vertices[v] += offset[shellOfVertex[v]] * normals[v];
+        });
+    }
+    double longest = 0.0;
+    for (const double w : way)
+        longest = std::max(longest, std::abs(w));
+    return longest;
+}
+
 void smoothKeepingVolume(TriangleMesh& mesh, const std::vector<Vec3>& normals, const Smoothing& smoothing,
                          const core::Progress& progress) {
     if (mesh.triangles.empty()) return;
     const Rings rings(mesh);
     const Shells shells = shellsOf(mesh);
-    std::vector<std::uint32_t> shellOfVertex(mesh.vertices.size(), 0);
-    for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
-        for (const std::uint32_t v : mesh.triangles[f])
-            shellOfVertex[v] = shells.ofFace[f];
     const std::vector<Vec3> home = mesh.vertices;
     std::vector<double> wanted;
     if (!normals.empty()) wanted = bulgesMm3(mesh, normals, shells);
@@ -178,7 +182,7 @@ void smoothKeepingVolume(TriangleMesh& mesh, const std::vector<Vec3>& normals, c
     if (normals.empty()) wanted = bulgesMm3(mesh, vertexNormals(mesh), shells);
     for (std::size_t s = 0; s < wanted.size(); ++s)
         wanted[s] += shells.volumeMm3[s];
-    setVolumes(mesh, shells, shellOfVertex, wanted, 0.5 * smoothing.reachMm);
+    setVolumes(mesh, shells, wanted, 0.5 * smoothing.reachMm);
     core::report(progress, 0.75);
     // Thin sheets may have gone through each other: there the marched surface, which never does, is taken back.
     std::vector<std::uint8_t> back(home.size(), 0);

@@ -36,6 +36,10 @@ struct Shells {
 /// Unit normals at the vertices, by area.
 [[nodiscard]] std::vector<core::Vec3> vertexNormals(const geometry::TriangleMesh& mesh);
 
+/// Sets each shell to its volume by going along the normals, each step by `mostMm` at most. Gives back the longest way.
+double setVolumes(geometry::TriangleMesh& mesh, const Shells& shells, const std::vector<double>& wantedMm3,
+                  double mostMm);
+
 struct Smoothing {
     int rounds = 0;      ///< of Taubin's shrinking and swelling step
     double reachMm = 0;  ///< how far a vertex may go

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "handpiece/model/tooth/case_check.h"
+#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/scan/surfacing/surfaces.h"
+#include "scan/surfacing/regions.h"
+
+namespace handpiece::surfacing {
+namespace {
+
+using test::BallTooth;
+using tooth::Tissue;
+
+/// As Surfaces says: the enamel's part is the whole tooth.
+tooth::Case caseOf(const Surfaces& surfaces) {
+    tooth::Case made;
+    made.outer = surfaces.outer.mesh;
+    made.parts.push_back({"enamel", Tissue::enamel, tooth::properties(Tissue::enamel).priority, surfaces.outer.mesh});
+    for (const Surface& tissue : surfaces.tissues)
+        made.parts.push_back({std::string(tooth::properties(tissue.tissue).name), tissue.tissue,
+                              tooth::properties(tissue.tissue).priority, tissue.mesh});
+    return made;
+}
+
+tooth::TissueVolumes fieldVolumes(const tooth::Case& made, double voxelMm) {
+    tooth::PrepareSettings settings;
+    settings.useCache = false;
+    settings.field.voxelMm = voxelMm;
+    return tooth::prepareCutting(made, tooth::prepareTooth(made, settings), settings)->volumesMm3;
+}
+
+// What a bur will find in the tooth against closed forms, at all faces and at few.
+TEST(SurfacesCase, CanBeCutAndHasTheRegionsVolumes) {
+    const BallTooth truth;
+    const double whole = test::ballMm3(truth.radiusMm), pulp = test::ballMm3(truth.pulpMm);
+    const double dentine = test::lensMm3(truth.radiusMm, truth.enamelMm);  // with what lies in it
+    const segmentation::Region region = truth.region(0.1);
+    // Caries has no simple closed form: counted on a fine grid.
+    double caries = 0.0, cariesInDentine = 0.0;
+    const double step = 0.04;
+    for (double z = 4; z < 8; z += step)
+        for (double y = 2; y < 6; y += step)
+            for (double x = 2; x < 6; x += step) {
+                const core::Vec3 p(x, y, z);
+                if (truth.caries()(p) > 0.0) continue;
+                caries += step * step * step;
+                cariesInDentine += truth.dentine()(p) <= 0.0 ? step * step * step : 0.0;
+            }
+    const Surfaces full = makeSurfaces(region);
+    for (const double percent : {100.0, 12.0}) {
+        SCOPED_TRACE(percent);
+        const tooth::Case made = caseOf(decimated(full, percent));
+        for (const tooth::CaseFinding& finding : tooth::checkCase(made))
+            ADD_FAILURE() << finding.part << ": " << finding.what;
+        const tooth::TissueVolumes mm3 = fieldVolumes(made, 0.08);
+        const auto of = [&](Tissue tissue) { return mm3[static_cast<std::size_t>(tissue)]; };
+        EXPECT_NEAR(of(Tissue::pulp) / pulp, 1.0, 0.01);
+        EXPECT_NEAR(of(Tissue::caries) / caries, 1.0, 0.01);
+        EXPECT_NEAR(of(Tissue::dentine) / (dentine - pulp - cariesInDentine), 1.0, 0.01);
+        EXPECT_NEAR(of(Tissue::enamel) / (whole - dentine - caries + cariesInDentine), 1.0, 0.01);
+    }
+}
+
+TEST(SurfacesCase, OfLabelsCanBeCutToo) {
+    const BallTooth truth;
+    const Surfaces full = makeSurfaces(truth.region(0.1, true));
+    const tooth::Case made = caseOf(decimated(full, 25));
+    for (const tooth::CaseFinding& finding : tooth::checkCase(made))
+        ADD_FAILURE() << finding.part << ": " << finding.what;
+    const tooth::TissueVolumes mm3 = fieldVolumes(made, 0.08);
+    const double whole = test::ballMm3(truth.radiusMm), dentine = test::lensMm3(truth.radiusMm, truth.enamelMm);
+    EXPECT_NEAR(mm3[static_cast<std::size_t>(Tissue::dentine)] / (dentine - test::ballMm3(truth.pulpMm)), 1.0, 0.02);
+    EXPECT_GT(mm3[static_cast<std::size_t>(Tissue::enamel)], 0.9 * (whole - dentine) - test::ballMm3(truth.cariesMm));
+}
+
+}  // namespace
+}  // namespace handpiece::surfacing

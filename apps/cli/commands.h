@@ -12,6 +12,7 @@ class App;
 namespace handpiece::cli {
 
 void addMakeCommand(CLI::App& app);
+void addMakeScanCommand(CLI::App& make);
 void addMeshCommand(CLI::App& app);
 void addCaseCommand(CLI::App& app);
 void addProbeCommand(CLI::App& app, const MethodRegistry& methods);

@@ -69,7 +69,7 @@ void makeBurFile(const MakeOptions& o) {
 }  // namespace
 
 void addMakeCommand(CLI::App& app) {
-    CLI::App* make = app.add_subcommand("make", "Generate a tooth, a bur, a turbine or the paper's plane");
+    CLI::App* make = app.add_subcommand("make", "Generate a tooth, a bur, a turbine, the paper's plane or a scan");
     make->require_subcommand(1);
     make->footer(
         "Examples:\n  handpiece make tooth --kind lower-first-molar --faces 68150 --out molar\n"
@@ -119,6 +119,8 @@ void addMakeCommand(CLI::App& app) {
         geometry::writeMesh(options->out, mesh);
         tellMesh(options->out, mesh);
     });
+
+    addMakeScanCommand(*make);
 }
 
 }  // namespace handpiece::cli

@@ -184,7 +184,7 @@ tooth::Part makeFilling(const tooth::Case& toothCase) {
 }
 
 std::array<double, tooth::kTissueCount> volumesMm3(const tooth::Case& toothCase, const core::Progress& progress) {
-    constexpr double kSteps = 400.0;  // along the longest side, 21 rays each: some million rays
+    constexpr double kSteps = 160.0;  // along the longest side: some hundred thousand rays
     const core::Box box = wholeTooth(toothCase).bounds();
     if (box.isEmpty())
         throw core::Error("the case has no surface that could be imaged", toothCase.name, "give one with an outer.stl");

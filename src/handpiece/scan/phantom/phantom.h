@@ -59,7 +59,7 @@ struct Image {
 [[nodiscard]] Image image(const tooth::Case& toothCase, const Settings& settings = {},
                           const core::Progress& progress = {});
 
-/// Image::volumesMm3 of a case, independent of any scan: lengths of some million rays through its surfaces.
+/// Image::volumesMm3 of a case, independent of any scan: lengths of some hundred thousand rays through its surfaces.
 [[nodiscard]] std::array<double, tooth::kTissueCount> volumesMm3(const tooth::Case& toothCase,
                                                                  const core::Progress& progress = {});
 /// The filling that Settings::metal puts in: in the middle of the biting surface, sunk into it.

@@ -15,7 +15,7 @@ using core::Vec3;
 
 constexpr std::int64_t kUnits = 65536;  ///< of a voxel
 /// The Fibonacci lattice's second step.
-constexpr int kLatticeStep = 13;
+constexpr int kLatticeStep = 21;
 /// A gap in the parts up to this long [voxels] is shared by what lies at its ends; a longer one goes to the nearest
 /// part, looked up at steps of this length.
 constexpr double kSlit = 0.25;

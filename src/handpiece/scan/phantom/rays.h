@@ -26,7 +26,7 @@ struct Stretch {
 
 /// Where in a voxel's face the rays of a row pass: one through its middle (ray 0), then kRays that share the face
 /// evenly, a Fibonacci lattice, so that a wall along an axis meets them one after the other.
-inline constexpr int kRays = 21;
+inline constexpr int kRays = 34;
 
 /// The surfaces of a case laid on a grid. Const, any thread. Corners are rounded to 1/65536 of a voxel across the rays,
 /// so that whether a ray meets a triangle is decided in whole numbers and no ray slips through a closed surface.

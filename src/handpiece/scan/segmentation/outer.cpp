@@ -10,7 +10,7 @@ namespace handpiece::segmentation {
 using core::Vec3;
 
 namespace {
-constexpr double kCloseMm = 0.45;     ///< mouths up to this radius are closed
+constexpr double kCloseMm = 0.5;      ///< mouths up to this radius are closed
 constexpr double kMouthShare = 0.12;  ///< of a closed-off place's surface that may be mouth: else it is a groove
 constexpr double kLeastCavityMm3 = 0.02;
 constexpr float kSlope = 2.5066f;  ///< sqrt(2 pi): steepness of a blurred step at its middle

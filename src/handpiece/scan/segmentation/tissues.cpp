@@ -14,7 +14,9 @@ constexpr float kSlope = 2.5066f;  ///< sqrt(2 pi)
 constexpr double kLeastPulpMm3 = 0.02;
 constexpr double kLeastCariesMm3 = 0.12;
 constexpr double kCariesReachMm = 0.8;  ///< a lesion lies this near to enamel or to the outside
+constexpr double kChannelMm = 0.5;      ///< half the width of a channel through the enamel, at most
 constexpr double kLeastEnamelMm3 = 0.3;
+constexpr float kFaintEnamel = 0.3f;  ///< of the step from dentine: so bright is an edge thinner than the blur
 
 float median(std::vector<float>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -96,6 +98,32 @@ void findPulp(Work& work, const core::Progress& progress) {
     core::report(progress, 1);
 }
 
+/// Where a lesion went in through the enamel: a dark channel from it to the tooth's surface, too thin for dentine.
+void addChannels(const Work& work, Mask& lesion) {
+    const Shape& shape = work.shape;
+    const double r = kChannelMm / work.spacingMm();
+    Mask bright(shape.count());
+    for (std::size_t n = 0; n < bright.size(); ++n)
+        bright[n] = work.outer[n] <= 0 || work.damped[n] > work.levels.enamelFrom;
+    const Field depth = squaredDistance(shape, bright);
+    Mask thick(shape.count());
+    for (std::size_t n = 0; n < thick.size(); ++n)
+        thick[n] = depth[n] > r * r;
+    const Field toThick = squaredDistance(shape, thick);
+    Mask thin(shape.count());
+    for (std::size_t n = 0; n < thin.size(); ++n)
+        thin[n] = !bright[n] && work.outer[n] > 1.8f && toThick[n] > r * r;
+    const Mask near = dilated(shape, dilated(shape, lesion));
+    const Parts parts = connectedParts(shape, thin);
+    std::vector<std::uint8_t> touches(parts.counts.size(), 0), surfaces(parts.counts.size(), 0);
+    for (std::size_t n = 0; n < thin.size(); ++n) {
+        if (near[n]) touches[parts.of[n]] = 1;
+        if (work.outer[n] < 2.8f) surfaces[parts.of[n]] = 1;
+    }
+    for (std::size_t n = 0; n < thin.size(); ++n)
+        if (const std::uint32_t p = parts.of[n]; p != 0 && touches[p] && surfaces[p]) lesion[n] = 1;
+}
+
 /// Demineralised tissue: darker than sound dentine, brighter than pulp, and no mere mixture at one of their surfaces.
 void findCaries(Work& work, const core::Progress& progress) {
     const Shape& shape = work.shape;
@@ -106,10 +134,10 @@ void findCaries(Work& work, const core::Progress& progress) {
     Mask candidate(shape.count());
     for (std::size_t n = 0; n < candidate.size(); ++n)
         candidate[n] = work.outer[n] > 1.8f && work.damped[n] < from && (work.pulp.empty() || work.pulp[n] < -2.2f);
-    Mask hard(shape.count());
-    for (std::size_t n = 0; n < hard.size(); ++n)
-        hard[n] = work.outer[n] < 0 || (work.outer[n] > 1 && work.damped[n] > t.enamelFrom);
-    const Field toSurface = squaredDistance(shape, hard);
+    Mask enamel(shape.count());
+    for (std::size_t n = 0; n < enamel.size(); ++n)
+        enamel[n] = work.outer[n] > 1 && work.damped[n] > t.enamelFrom;
+    const Field toEnamel = squaredDistance(shape, enamel);
     core::report(progress, 0.3);
     const Parts parts = connectedParts(shape, candidate);
     const double reach = kCariesReachMm / h;
@@ -117,7 +145,7 @@ void findCaries(Work& work, const core::Progress& progress) {
     const Mask core = eroded(shape, candidate);
     for (std::size_t n = 0; n < candidate.size(); ++n) {
         if (!candidate[n]) continue;
-        if (toSurface[n] < reach * reach) isNear[parts.of[n]] = 1;
+        if (toEnamel[n] < reach * reach) isNear[parts.of[n]] = 1;
         if (core[n]) hasCore[parts.of[n]] = 1;
     }
     Mask lesion(shape.count(), 0);
@@ -129,7 +157,9 @@ void findCaries(Work& work, const core::Progress& progress) {
         any = any || lesion[n];
     }
     if (!any) return;
-    work.cariesLevel = levelOf(work, lesion, 3, from);
+    const float level = levelOf(work, lesion, 3, from);
+    addChannels(work, lesion);
+    work.cariesLevel = level;
     core::report(progress, 0.6);
     // Its surface: halfway to dentine, or to enamel where that is what lies beside it.
     const Mask near = dilated(shape, dilated(shape, dilated(shape, lesion)));
@@ -235,9 +265,15 @@ void findDentine(Work& work, const core::Progress& progress) {
             if (n.norm() < 0.1) continue;
             n.normalize();
             const Vec3 here(i, j, k);
-            float least = depth > 0 ? plain[at] : kBand;
+            float least = depth > 0 ? plain[at] : kBand, brightest = t.dentine;
             for (const double d : {1.0, 1.6, 2.2})
                 if (d > depth) least = std::min(least, sample(shape, plain, here + (d - depth) * n));
+            // An edge thinner than the blur never gets as bright as enamel: as thick as its brightness says.
+            for (const double d : {0.5, 1.0, 1.5})
+                brightest = std::max(brightest, sample(shape, work.damped, here + (d - depth) * n));
+            const float share = (brightest - t.dentine) / step;
+            if (share > kFaintEnamel)
+                least = std::min(least, depth - std::max(0.8f, kSlope * static_cast<float>(work.sigma) * share));
             work.dentine[at] = least;
         }
     });

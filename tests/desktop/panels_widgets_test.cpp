@@ -44,7 +44,7 @@ W* part(QWidget& panel, const char* name) {
 void show(QWidget& widget, QSize size = {360, 700}) {
     widget.resize(size);
     widget.show();
-    QVERIFY(QTest::qWaitForWindowExposed(&widget));
+    QVERIFY(QTest::qWaitForWindowExposed(&widget, 60000));
 }
 /// WCAG 2 contrast.
 double contrast(const QColor& a, const QColor& b) {

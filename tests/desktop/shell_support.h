@@ -15,6 +15,7 @@
 #include <QTemporaryDir>
 #include <QTest>
 #include <QUrl>
+#include <cmath>
 #include <csignal>
 #include <functional>
 #include <memory>
@@ -25,9 +26,9 @@
 
 namespace handpiece::desktop {
 
-/// Waits, with the window's events, for what must come about.
-inline bool waitFor(const std::function<bool()>& what, int timeoutMs = 120000) {
-    return QTest::qWaitFor(what, timeoutMs);
+/// Waits, with the window's events, for what must come about; five minutes at most, for a machine that is busy.
+inline bool waitFor(const std::function<bool()>& what) {
+    return QTest::qWaitFor(what, 300000);
 }
 
 inline tooth::Case eggTooth(starter::ToothKind kind) {
@@ -117,19 +118,29 @@ class ShellTest : public ::testing::Test {
         QMouseEvent move(QEvent::MouseMove, QPointF(middle), view()->mapToGlobal(QPointF(middle)), Qt::NoButton,
                          Qt::NoButton, Qt::NoModifier);
         QApplication::sendEvent(view(), &move);
-        QTest::qWait(300);
+        const std::uint64_t tick = simulator().sample().tick;
+        if (!waitFor([&] { return simulator().sample().tick > tick + 300 && speedMmS() < 1.0; })) return false;
         QTest::mousePress(view(), Qt::LeftButton, Qt::NoModifier, middle);
         const bool gone = waitFor([&] { return removedMm3() > before + 0.02; });
         QTest::mouseRelease(view(), Qt::LeftButton, Qt::NoModifier, middle);
-        // The stroke ends with the pedal: undo knows it from then on.
-        return gone && waitFor([this] { return !simulator().status().inStroke && simulator().status().undoSteps > 0; });
+        // The stroke ends with the pedal: undo knows it from then on, and no sample on its way has less removed.
+        return gone && waitFor([this] {
+                   return simulator().sample().pedal == 0.0 && !simulator().status().inStroke &&
+                          simulator().status().undoSteps > 0;
+               });
     }
+    /// Of the bur.
+    [[nodiscard]] double speedMmS() {
+        const auto& v = simulator().sample().velocityMmS;
+        return std::hypot(v[0], v[1], v[2]);
+    }
+    /// No undo or redo is being put in place.
+    [[nodiscard]] bool settled() { return (simulator().sample().flags & messages::kRestoring) == 0; }
     /// One step after the other until there is none.
     [[nodiscard]] bool undoAll() {
         for (std::size_t left = simulator().status().undoSteps; left > 0; --left) {
             action("actionUndo")->trigger();
-            if (!waitFor([&] { return simulator().status().undoSteps == left - 1 && !simulator().status().restoring; },
-                         20000))
+            if (!waitFor([&] { return simulator().status().undoSteps == left - 1 && !simulator().status().restoring; }))
                 return false;
         }
         return true;

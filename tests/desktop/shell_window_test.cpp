@@ -79,7 +79,7 @@ TEST_F(ShellTest, CutsUndoesSavesAndResumes) {
     action("actionUndo")->trigger();
     ASSERT_TRUE(waitFor([this] { return removedMm3() == 0.0 && !simulator().isUnsaved(); }));
     action("actionRedo")->trigger();
-    ASSERT_TRUE(waitFor([this] { return removedMm3() > 0.0 && !simulator().status().restoring; }));
+    ASSERT_TRUE(waitFor([this] { return removedMm3() > 0.0 && settled(); }));
     const double cutMm3 = removedMm3();
 
     file_ = own_.filePath("mine.handpiece");
@@ -215,7 +215,7 @@ TEST_F(ShellTest, TheVoxelChangesBeforeAndAfterCutting) {
     EXPECT_LT(removedMm3(), 3.0 * cutMm3);
     EXPECT_TRUE(simulator().isUnsaved());
     const double againMm3 = removedMm3();
-    EXPECT_GT(simulator().status().undoSteps, 0u);
+    EXPECT_TRUE(waitFor([this] { return simulator().status().undoSteps > 0; }));
     ASSERT_TRUE(undoAll());
     EXPECT_TRUE(waitFor([this] { return removedMm3() == 0.0; }));
     action("actionRedo")->trigger();
@@ -300,7 +300,7 @@ TEST_F(ShellTest, ACaseASurfaceAndARecordingAreOpenedByDroppingThem) {
     ASSERT_TRUE(waitFor([this] { return simulator().document().name == "outer" && !simulator().isBusy(); }))
         << simulator().document().name;
     const QString recording = toQString(simulator().recording());
-    QTest::qWait(1500);
+    ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 100; }));
     simulator().openStarter({starter::ToothKind::lowerFirstMolar, 4000});
     ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "lower-first-molar"; }));
     drop(recording);
@@ -397,7 +397,8 @@ TEST_F(ShellTest, ARunIsToldInFigures) {
     QFile file(line.stats);
     ASSERT_TRUE(file.open(QIODevice::ReadOnly));
     const QJsonObject tick = QJsonDocument::fromJson(file.readAll()).object()["tick"].toObject();
-    EXPECT_GT(tick["ticks"].toInt(), 200);
+    EXPECT_GT(tick["ticks"].toInt(), 0);
+    EXPECT_GT(tick["ticks"].toInt() + tick["missedPeriods"].toInt(), 200);
     const QJsonObject work = tick["workUs"].toObject();
     EXPECT_GT(work["p50"].toDouble(), 0.0);
     EXPECT_LE(work["p50"].toDouble(), work["p99"].toDouble());
@@ -433,7 +434,7 @@ TEST_F(ShellTest, AHintGoesByItselfAndCoversNothing) {
     file_ = own_.filePath("kept.png");
     action("actionPicture")->trigger();
     EXPECT_EQ(notices->current(), "saved");
-    EXPECT_TRUE(waitFor([&] { return notices->current().isEmpty(); }, 5000));
+    EXPECT_TRUE(waitFor([&] { return notices->current().isEmpty(); }));
     // Beside something of the work it stands in the status bar.
     window().hintMs = 1500;
     window().tell("stalled");
@@ -441,8 +442,8 @@ TEST_F(ShellTest, AHintGoesByItselfAndCoversNothing) {
     action("actionPicture")->trigger();
     EXPECT_EQ(notices->current(), "stalled");
     EXPECT_TRUE(window().statusBar()->currentMessage().contains("other.png"));
-    EXPECT_TRUE(waitFor([&] { return notices->current().isEmpty(); }, 5000));
-    EXPECT_TRUE(waitFor([&] { return window().statusBar()->currentMessage().isEmpty(); }, 5000));
+    EXPECT_TRUE(waitFor([&] { return notices->current().isEmpty(); }));
+    EXPECT_TRUE(waitFor([&] { return window().statusBar()->currentMessage().isEmpty(); }));
     // A warning stays until somebody has read it.
     window().hintMs = 100;
     window().tell("neighbour-touched");
@@ -461,7 +462,7 @@ TEST_F(ShellTest, EveryLayoutFitsASmallScreenAndSaysEachTitleOnce) {
             for (const QSize screen : {QSize(1366, 768), QSize(1280, 720)}) {
                 const QSize size = MainWindow::firstSize(screen);
                 window().resize(size);
-                QTest::qWait(50);
+                QTest::qWait(50);  // what is asked for and what the layouts want instead
                 EXPECT_EQ(window().size(), size)
                     << window().minimumSizeHint().width() << " x " << window().minimumSizeHint().height();
                 EXPECT_GT(view()->width(), 400);
@@ -495,10 +496,11 @@ TEST_F(ShellTest, DISABLED_CutsUntilItIsKilled) {
     ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
     view()->showStandardView(view::StandardView::occlusal);
     ASSERT_TRUE(cut());
-    QTest::qWait(2500);  // what is older than a second is in the file
+    const std::uint64_t soFar = simulator().sample().tick;
+    ASSERT_TRUE(waitFor([&] { return simulator().status().recording.writtenRecords > soFar; }));
     std::printf("cut %.9f\n", removedMm3());
     std::fflush(stdout);
-    QTest::qWait(60000);
+    (void)waitFor([] { return false; });
 }
 
 TEST_F(ShellTest, AfterACrashTheToothComesBack) {
@@ -510,12 +512,11 @@ TEST_F(ShellTest, AfterACrashTheToothComesBack) {
     child.start(QCoreApplication::applicationFilePath(),
                 {"--gtest_also_run_disabled_tests", "--gtest_filter=*DISABLED_CutsUntilItIsKilled"});
     QByteArray said;
-    const bool cutThere = waitFor(
-        [&] {
-            said += child.readAllStandardOutput();
-            return said.contains("\ncut ") || child.state() == QProcess::NotRunning;
-        },
-        90000);
+    const bool cutThere = waitFor([&] {
+        said += child.readAllStandardOutput();
+        const auto at = said.indexOf("\ncut ");
+        return (at >= 0 && said.indexOf('\n', at + 1) > 0) || child.state() == QProcess::NotRunning;
+    });
     child.kill();
     child.waitForFinished();
     ASSERT_TRUE(cutThere && said.contains("\ncut ")) << said.constData();
@@ -539,7 +540,7 @@ TEST_F(ShellTest, AfterACrashTheToothComesBack) {
     EXPECT_TRUE(simulator().isUnsaved());
     EXPECT_TRUE(simulator().crashed().empty());
     EXPECT_EQ(simulator().toothCase()->scenery.size(), 1u);
-    EXPECT_EQ(simulator().status().undoSteps, 1u);
+    EXPECT_TRUE(waitFor([this] { return simulator().status().undoSteps == 1; }));
     ASSERT_TRUE(undoAll());
     EXPECT_TRUE(waitFor([this] { return removedMm3() == 0.0; }));
     EXPECT_FALSE(window().windowTitle().contains("lower-first-molar")) << qPrintable(window().windowTitle());

@@ -61,13 +61,20 @@ TEST_F(NamesTest, EveryNameBelongsToOneWidget) {
     }
     // Dialogs come into the window, too.
     for (const char* name : {"actionChooseTooth", "actionBindings", "actionCode", "actionAbout", "actionRecover"}) {
-        QTimer::singleShot(300, &window(), [&] {
-            expectUnique(window(), name);
-            for (QDialog* dialog : window().findChildren<QDialog*>())
+        // Some have a loop of their own: a timer looks for them.
+        bool seen = false;
+        QTimer look;
+        QObject::connect(&look, &QTimer::timeout, [&] {
+            for (QDialog* dialog : window().findChildren<QDialog*>()) {
+                if (!dialog->isVisible()) continue;
+                if (!seen) expectUnique(window(), name);
+                seen = true;
                 dialog->reject();
+            }
         });
+        look.start(20);
         action(name)->trigger();
-        QTest::qWait(500);
+        EXPECT_TRUE(waitFor([&] { return seen; })) << name;
     }
 }
 
@@ -105,7 +112,7 @@ TEST_F(NamesTest, TheGuideTellsEveryName) {
 TEST_F(NamesTest, F10OpensTheMenus) {
     startWithTooth();
     window().activateWindow();
-    ASSERT_TRUE(QTest::qWaitForWindowActive(&window()));
+    ASSERT_TRUE(QTest::qWaitForWindowActive(&window(), 60000));
     view()->setFocus();
     QTest::keyClick(view(), Qt::Key_F10);
     QWidget* open = QApplication::activePopupWidget();

@@ -18,7 +18,7 @@ REAL_DATA = pathlib.Path(os.environ["HANDPIECE_REAL_DATA"])
 
 def run(*arguments, program=HANDPIECE, stdin=None, cwd=None):
     """The finished process, with its output as text."""
-    return subprocess.run([program, *map(str, arguments)], input=stdin, capture_output=True, text=True, timeout=300,
+    return subprocess.run([program, *map(str, arguments)], input=stdin, capture_output=True, text=True, timeout=1200,
                           cwd=cwd, check=False)
 
 

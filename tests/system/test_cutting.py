@@ -283,7 +283,7 @@ class Cutting(SystemTest):
         out = self.folder / "full"
         done = subprocess.run([HANDPIECE, "run", "--case", self.block, "--bur", "cylinder-round:1.0x4.0", "--voxel",
                                "100", "--no-cache", "--full-removal", "--motion", self.groove, "--out", out],
-                              text=True, preexec_fn=limited, capture_output=True, timeout=300, check=False)
+                              text=True, preexec_fn=limited, capture_output=True, timeout=1200, check=False)
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
         self.assertIn("cannot be written", done.stderr)

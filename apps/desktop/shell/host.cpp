@@ -111,6 +111,7 @@ void Host::chooseLanguage(const QString& code) {
     // The old window goes first: the picture's feed has one reader.
     window_.reset();
     makeWindow();
+    emit windowMade();
     window_->show();
     if (!speaks) window_->tell(QStringLiteral("translation-missing"));
 }

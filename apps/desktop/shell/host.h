@@ -31,6 +31,10 @@ class Host : public QObject {
     [[nodiscard]] Simulator& simulator() noexcept { return simulator_; }
     [[nodiscard]] Settings& settings() noexcept { return settings_; }
 
+  signals:
+    /// Another window took the place of the first.
+    void windowMade();
+
   private:
     void makeWindow();
     void chooseLanguage(const QString& code);

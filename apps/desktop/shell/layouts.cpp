@@ -230,7 +230,7 @@ void MainWindow::makeMenus() {
     };
     // No mnemonics: Alt belongs to the window manager, F10 opens the first menu.
     QMenu* file = menu("menuFile", tr("File"));
-    fill(file, {"actionOpenCase", "actionOpenStl"});
+    fill(file, {"actionOpenCase", "actionOpenStl", "actionNewScan"});
     QMenu* starters = under(file, "menuStarter", tr("Starter tooth"));
     for (const starter::ToothKindInfo& info : starter::toothKinds()) {
         QMenu* kind = under(starters, "", toothName(info.fdiNumber));

@@ -4,6 +4,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/senses/sound/player.h"
+#include "scan/install.h"
 #include "shell/host.h"
 #include "shell/widget_map.h"
 
@@ -37,6 +38,10 @@ int main(int argc, char** argv) {
         desktop::Simulator::Options options;
         options.sound = line.sound;
         desktop::Host host(application, line, options);
+        // The scan wizard stands upon the window's library: the program brings the two together.
+        const auto furnish = [&host] { desktop::installScanWizard(host.window()); };
+        furnish();
+        QObject::connect(&host, &desktop::Host::windowMade, &host, furnish);
         host.start();
         if (const QString map = qEnvironmentVariable("HANDPIECE_WIDGET_MAP"); !map.isEmpty())
             desktop::writeWidgetMap(&application, map);

@@ -78,6 +78,8 @@ class MainWindow : public QMainWindow {
         std::function<Unsaved()> unsaved;
     };
     Questions questions;
+    /// Opens the wizard from a scan to a case, at this file or folder or (empty) none. None: this window has no wizard.
+    std::function<void(const QString& path)> newCaseFromScan;
 
   signals:
     void languageChosen(const QString& code);

@@ -45,6 +45,21 @@ QString withExtension(QString file, const QString& extension) {
     return file;
 }
 
+/// A folder that is no case and no attempt, or a file whose name only scans have.
+bool mayBeScan(const QFileInfo& info) {
+    if (info.isDir()) {
+        const QDir folder(info.absoluteFilePath());
+        return !folder.exists(QStringLiteral("case.toml")) && !folder.exists(QStringLiteral("attempt.toml")) &&
+               !folder.isEmpty();
+    }
+    static const QStringList endings{QStringLiteral("nrrd"), QStringLiteral("nhdr"), QStringLiteral("nii"),
+                                     QStringLiteral("mha"),  QStringLiteral("mhd"),  QStringLiteral("dcm"),
+                                     QStringLiteral("zip"),  QStringLiteral("tif"),  QStringLiteral("tiff")};
+    const QString name = info.fileName().toLower();
+    return endings.contains(info.suffix().toLower()) || name.endsWith(QLatin1String(".nii.gz")) ||
+           name == QLatin1String("dicomdir") || name == QLatin1String("scan.toml");
+}
+
 }  // namespace
 
 void MainWindow::connectFiles() {
@@ -57,6 +72,9 @@ void MainWindow::connectFiles() {
     on("actionOpenStl", [this] {
         openFile(
             questions.fileToOpen(tr("Open STL"), startFolder(), tr("Surfaces (*.stl *.ply *.obj);;All files (*)")));
+    });
+    on("actionNewScan", [this] {
+        if (newCaseFromScan) newCaseFromScan({});
     });
     on("actionOpenSession", [this] {
         openFile(questions.fileToOpen(tr("Open recording"), toQString(Folders::standard().sessions),
@@ -151,6 +169,10 @@ void MainWindow::ifFree(std::function<void()> then) {
 void MainWindow::openFile(const QString& file) {
     if (file.isEmpty()) return;
     QFileInfo info(file);
+    if (newCaseFromScan && mayBeScan(info)) {
+        newCaseFromScan(info.absoluteFilePath());
+        return;
+    }
     // case.toml and attempt.toml stand for their folders.
     const QString path = info.suffix() == QLatin1String("toml") ? info.absolutePath() : info.absoluteFilePath();
     ifFree([this, path] {

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// A scan and what became of it, made ready to be looked at. Any thread, no widgets.
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "handpiece/base/core/progress.h"
+#include "scan/scan_figures.h"
+#include "station/scan_job.h"
+
+namespace handpiece::desktop {
+
+/// How often grey values occur, between those of all but a thousandth at either end.
+struct GreyHistogram {
+    static constexpr int kBins = 256;
+    float low = 0, high = 1;
+    std::array<std::uint64_t, kBins> counts{};
+};
+[[nodiscard]] GreyHistogram histogramOf(const volume::Volume& volume);
+
+struct ShownScan {
+    std::shared_ptr<const volume::Scan> scan;
+    std::shared_ptr<const volume::Scan>
+        coarse;  ///< for previews: at least kPreviewMm; the scan itself where it is that
+    std::shared_ptr<const volume::Labels> labels, coarseLabels;  ///< of a scan that is labels
+    GreyHistogram histogram;
+};
+inline constexpr double kPreviewMm = 0.1;
+inline constexpr std::size_t kPreviewVoxels = 12'000'000;  ///< more would not be seen within about a second
+
+/// Means of blocks of voxels (of labels: their first) so that a preview of it is quick.
+[[nodiscard]] volume::Volume coarsened(const volume::Volume& volume, bool isLabels);
+/// `job` says whether it is labels, and what they mean. Throws core::Error for labels that are none.
+[[nodiscard]] ShownScan shownScan(volume::Scan scan, const station::ScanJob& job, const core::Progress& progress);
+
+/// A result, and its surfaces as one sees them: in the tooth's frame, the outside in pieces by tissue.
+struct ShownResult {
+    station::ScanResult result;
+    std::vector<tooth::Part> parts;
+    core::Box bounds;     ///< tooth frame
+    ScanFigures figures;  ///< of a finished one
+};
+/// With figures when the result holds cases.
+[[nodiscard]] ShownResult shownResult(station::ScanResult result, const core::Progress& progress = {});
+
+/// Teeth are about this long, crown to apex [mm]: the mean of lower and upper first molars.
+inline constexpr double kMeanMolarMm = 21.0;
+/// Spacing [mm] at which the largest tooth of a scan, read as if voxels were 1 mm, is as long as a mean molar.
+[[nodiscard]] double spacingByMolar(const volume::Volume& volume, const core::Progress& progress);
+
+}  // namespace handpiece::desktop

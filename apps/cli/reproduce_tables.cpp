@@ -261,6 +261,7 @@ void table4(Reproduction& r) {
 void reproduceTables(Reproduction& r) {
     table1(r);
     table2(r);
+    reproduceScan(r);
     table3(r);
     table4(r);
 }

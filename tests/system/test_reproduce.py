@@ -35,6 +35,14 @@ class Reproduce(SystemTest):
             self.assertTrue(told if row["draw_ms"] is None else row["draw_ms"] > 0, row)
             if row.get("resolution") == "6 %":
                 self.assertAlmostEqual(row["faces"] / 9760, 1, delta=0.01)
+        # The same table from slices: exact percentages, closed surfaces have two vertices fewer than half their faces.
+        scanned = results["table2_scanned"]["rows"]
+        self.assertEqual([row["resolution"] for row in scanned], ["6 %", "12 %", "25 %", "50 %", "100 %"])
+        for row, percent in zip(scanned, (6, 12, 25, 50, 100)):
+            self.assertAlmostEqual(row["faces"], percent / 100 * scanned[-1]["faces"], delta=2)
+            self.assertEqual(row["faces"] % 2, 0)
+            self.assertTrue(told if row["draw_ms"] is None else row["draw_ms"] > 0, row)
+            self.assertGreater(row["load_ms"], 0)
         steps = {row["step_um"] for row in results["table4"]}
         self.assertTrue({100, 50, 25, 20, 15, 10, 5, 1, 0.1, 0.01} <= steps, steps)
         for row in results["table4"]:

@@ -151,8 +151,8 @@ class Assembly {
         if (place.spacingMm) spacing = {(*place.spacingMm)[1], (*place.spacingMm)[0], 0.0};
         for (const Slice& s : slices)
             if (!c.problem && s.place.spacingMm && place.spacingMm &&
-                (std::abs((*s.place.spacingMm)[0] - (*place.spacingMm)[0]) > 1e-3 * (*place.spacingMm)[0] ||
-                 std::abs((*s.place.spacingMm)[1] - (*place.spacingMm)[1]) > 1e-3 * (*place.spacingMm)[1]))
+                (std::abs((*s.place.spacingMm)[0] - (*place.spacingMm)[0]) > 1e-3 * std::abs((*place.spacingMm)[0]) ||
+                 std::abs((*s.place.spacingMm)[1] - (*place.spacingMm)[1]) > 1e-3 * std::abs((*place.spacingMm)[1])))
                 c.problem = core::Error("its pixels are larger or smaller than those of other slices",
                                         files_->where(s.file), "put it into a folder of its own");
         c.grid.axes = group_.axes;

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+// Folders, ZIPs, discs and pictures: what belongs together, and what is told where nothing does.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tiffio.h>
+#include <zip.h>
+
+#include "handpiece/scan/volume/files.h"
+#include "scan_support.h"
+
+namespace handpiece::volume {
+namespace {
+
+namespace fs = std::filesystem;
+using test::errorOf;
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+
+class ScanFiles : public testing::Test {
+  protected:
+    test::TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path() / "scan";
+
+    void SetUp() override { fs::create_directories(folder_); }
+    [[nodiscard]] std::string error(const fs::path& path) const {
+        return errorOf([&] { (void)readScan(path); });
+    }
+    [[nodiscard]] std::string error() const { return error(folder_); }
+    /// The folder as a ZIP.
+    [[nodiscard]] fs::path zipped(bool isPacked = true) const {
+        const fs::path file = temporary_.path() / "scan.zip";
+        fs::remove(file);
+        int code = 0;
+        zip_t* zip = zip_open(file.c_str(), ZIP_CREATE, &code);
+        for (const auto& e : fs::recursive_directory_iterator(folder_)) {
+            const std::string name = e.path().lexically_relative(folder_.parent_path()).generic_string();
+            if (e.is_directory()) {
+                zip_dir_add(zip, name.c_str(), 0);
+                continue;
+            }
+            const zip_int64_t i = zip_file_add(zip, name.c_str(), zip_source_file(zip, e.path().c_str(), 0, -1), 0);
+            zip_set_file_compression(zip, static_cast<zip_uint64_t>(i), isPacked ? ZIP_CM_DEFLATE : ZIP_CM_STORE, 0);
+        }
+        zip_close(zip);
+        return file;
+    }
+};
+
+TEST(NaturalOrder, CountsAsPeopleDo) {
+    std::vector<std::string> names{"s10", "s9", "s1", "s01", "a", "s9b", "s9a2", "s9a10", "t"};
+    std::sort(names.begin(), names.end(), [](const auto& a, const auto& b) { return naturalLess(a, b); });
+    EXPECT_THAT(names, testing::ElementsAre("a", "s01", "s1", "s9", "s9a2", "s9a10", "s9b", "s10", "t"));
+}
+
+TEST_F(ScanFiles, NothingFitsSaysWhatIsThere) {
+    EXPECT_THAT(error(), HasSubstr("it is empty"));
+    EXPECT_THAT(error(temporary_.path() / "none"), HasSubstr("no such file"));
+    for (int i = 0; i < 12; ++i)
+        test::writeBytes(folder_ / ("a" + std::to_string(i) + ".pdf"), "%PDF");
+    fs::create_directories(folder_ / "x" / "y");
+    fs::create_directories(folder_ / "z");
+    test::writeBytes(folder_ / "README", "hello");
+    EXPECT_THAT(error(),
+                AllOf(HasSubstr("12 PDF files"), HasSubstr("3 folders"), HasSubstr("1 file without an ending")));
+    EXPECT_THAT(errorOf([&] { (void)findSeries(zipped()); }), AllOf(HasSubstr("12 PDF files"), HasSubstr("folder")));
+    test::writeBytes(temporary_.path() / "one.pdf", "%PDF");
+    EXPECT_THAT(error(temporary_.path() / "one.pdf"), HasSubstr("1 PDF file"));
+}
+
+TEST_F(ScanFiles, ZipIsReadAsItsFolder) {
+    for (const ScanFormat format : {ScanFormat::dicom, ScanFormat::tiff, ScanFormat::raw, ScanFormat::nrrd}) {
+        writeScan(test::sampleVolume(), folder_, format);
+        const Scan folder = readScan(folder_);
+        for (const bool isPacked : {true, false}) {
+            const Scan zip = readScan(zipped(isPacked));
+            EXPECT_EQ(folder.volume.values, zip.volume.values);
+            EXPECT_EQ(folder.volume.grid.spacingMm, zip.volume.grid.spacingMm);
+            EXPECT_EQ(folder.volume.grid.axes, zip.volume.grid.axes);
+        }
+    }
+    const fs::path zip = zipped();
+    test::cutFile(zip, 0.7);
+    EXPECT_THAT(error(zip), HasSubstr("ZIP"));
+    writeScan(test::sampleVolume(), folder_, ScanFormat::nrrd);
+    std::string bytes = test::readBytes(zipped(false));
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    test::writeBytes(zip, bytes);
+    EXPECT_THAT(error(zip), HasSubstr("damaged"));
+}
+
+TEST_F(ScanFiles, MixedFolderShowsAllSeriesAndWhatWasLeftOut) {
+    writeScan(test::sampleVolume({20, 20, 20}), folder_ / "ct", ScanFormat::dicom);
+    writeScan(test::sampleVolume({20, 20, 10}), folder_ / "micro", ScanFormat::tiff);
+    writeScan(test::sampleVolume({20, 20, 5}), folder_ / "n", ScanFormat::nrrd);
+    test::writeBytes(folder_ / "broken.nrrd", "NRRD0004\n");
+    test::writeBytes(folder_ / "settings.toml", "colour = \"blue\"\n");
+    test::writeBytes(folder_ / ".hidden" / "x.dcm", "rubbish");
+    const auto found = findSeries(folder_);
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_EQ(found[0].format, "DICOM");
+    EXPECT_EQ(found[1].format, "TIFF slices");
+    EXPECT_EQ(found[2].format, "NRRD");
+    EXPECT_THAT(found[0].notes, Contains(AllOf(HasSubstr("left out"), HasSubstr("broken.nrrd"))));
+    ReadSettings settings;
+    settings.series = "2";
+    EXPECT_EQ(readScan(folder_, settings).volume.grid.size, (std::array{20, 20, 10}));
+}
+
+TEST_F(ScanFiles, PicturesInNaturalOrderWithGapsDoublesAndSizesTold) {
+    const Volume scan = test::sampleVolume({9, 7, 12});
+    writeScan(scan, folder_, ScanFormat::png);
+    for (int k = 1; k <= 12; ++k) {
+        char old[32];
+        std::snprintf(old, sizeof old, "slice_%04d.png", k);
+        fs::rename(folder_ / old, folder_ / ("tooth" + std::to_string(k) + "_rec.png"));
+    }
+    EXPECT_EQ(readScan(folder_).volume.values, scan.values);
+    fs::copy_file(folder_ / "tooth7_rec.png", folder_ / "tooth07_rec.png");
+    EXPECT_THAT(error(), AllOf(HasSubstr("slice 7 is there twice"), HasSubstr("tooth07_rec.png")));
+    fs::remove(folder_ / "tooth07_rec.png");
+    fs::remove(folder_ / "tooth8_rec.png");
+    EXPECT_THAT(error(), AllOf(HasSubstr("missing"), HasSubstr("tooth7_rec.png"), HasSubstr("tooth9_rec.png")));
+    writeScan(test::sampleVolume({10, 7, 1}), temporary_.path() / "other", ScanFormat::png);
+    fs::copy_file(temporary_.path() / "other" / "slice_0001.png", folder_ / "tooth8_rec.png");
+    EXPECT_THAT(error(), AllOf(HasSubstr("different sizes"), HasSubstr("tooth8_rec.png"), HasSubstr("10 x 7")));
+}
+
+TEST_F(ScanFiles, PicturesWithoutADescriptionNeedTheirSpacing) {
+    for (const ScanFormat format : {ScanFormat::bmp, ScanFormat::jpeg, ScanFormat::png, ScanFormat::tiff}) {
+        writeScan(test::sampleVolume(), folder_, format);
+        fs::remove(folder_ / "scan.toml");
+        EXPECT_FALSE(findSeries(folder_)[0].isSpacingKnown);
+        EXPECT_THAT(error(), HasSubstr("give the spacing"));
+        ReadSettings settings;
+        settings.spacingMm = core::Vec3::Constant(0.1);
+        const Scan scan = readScan(folder_, settings);
+        EXPECT_EQ(scan.volume.grid.spacingMm, core::Vec3::Constant(0.1));
+        EXPECT_EQ(scan.volume.grid.axes, core::Mat3(core::Mat3::Identity()));
+    }
+}
+
+TEST_F(ScanFiles, TruncatedPicturesAreNamed) {
+    for (const auto& [format, name] : std::map<ScanFormat, std::string>{{ScanFormat::bmp, "slice_0004.bmp"},
+                                                                        {ScanFormat::jpeg, "slice_0004.jpg"},
+                                                                        {ScanFormat::png, "slice_0004.png"},
+                                                                        {ScanFormat::tiff, "slice_0004.tif"}}) {
+        for (const double share : {0.6, 0.02, 0.0}) {
+            writeScan(test::sampleVolume({64, 64, 6}), folder_, format);
+            test::cutFile(folder_ / name, share);
+            EXPECT_THAT(error(), AllOf(HasSubstr(name), HasSubstr("damaged"))) << share;
+        }
+    }
+}
+
+TEST_F(ScanFiles, PicturesThatClaimGigabytesAreRefused) {
+    const auto put = [](std::string& s, std::size_t at, std::uint32_t v, bool isBig) {
+        for (std::size_t i = 0; i < 4; ++i)
+            s[at + i] = static_cast<char>(v >> 8 * (isBig ? 3 - i : i) & 0xff);
+    };
+    writeScan(test::sampleVolume({16, 16, 1}), folder_, ScanFormat::bmp);
+    std::string bmp = test::readBytes(folder_ / "slice_0001.bmp");
+    put(bmp, 18, 99999, false);
+    put(bmp, 22, 99999, false);
+    test::writeBytes(folder_ / "slice_0001.bmp", bmp);
+    EXPECT_THAT(error(), HasSubstr("GB of memory"));
+    EXPECT_EQ(findSeries(folder_).size(), 1u);
+    writeScan(test::sampleVolume({16, 16, 1}), folder_, ScanFormat::tiff);
+    TIFF* tiff = TIFFOpen((folder_ / "slice_0001.tif").c_str(), "r+");
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 99999);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 99999);
+    TIFFRewriteDirectory(tiff);
+    TIFFClose(tiff);
+    EXPECT_THAT(error(), HasSubstr("GB of memory"));
+    // PNG: the sum over the header must fit the new size, computed bit by bit.
+    writeScan(test::sampleVolume({16, 16, 1}), folder_, ScanFormat::png);
+    std::string png = test::readBytes(folder_ / "slice_0001.png");
+    put(png, 16, 99999, true);
+    put(png, 20, 99999, true);
+    std::uint32_t crc = ~0u;
+    for (std::size_t i = 12; i < 29; ++i) {
+        crc ^= static_cast<unsigned char>(png[i]);
+        for (int bit = 0; bit < 8; ++bit)
+            crc = crc & 1 ? crc >> 1 ^ 0xedb88320u : crc >> 1;
+    }
+    put(png, 29, ~crc, true);
+    test::writeBytes(folder_ / "slice_0001.png", png);
+    EXPECT_THAT(error(), HasSubstr("GB of memory"));
+    writeScan(test::sampleVolume({16, 16, 1}), folder_, ScanFormat::jpeg);
+    std::string jpeg = test::readBytes(folder_ / "slice_0001.jpg");
+    const std::size_t frame = jpeg.find("\xff\xc0");
+    jpeg.replace(frame + 5, 4, "\xff\xdc\xff\xdc");  // 65500 x 65500
+    test::writeBytes(folder_ / "slice_0001.jpg", jpeg);
+    EXPECT_THAT(error(), HasSubstr("GB of memory"));
+}
+
+TEST_F(ScanFiles, BmpOf24And32BitsAndFromTheTop) {
+    for (const int bits : {24, 32})
+        for (const bool isFromTop : {false, true}) {
+            const int w = 5, h = 3, row = (w * bits / 8 + 3) / 4 * 4;
+            std::string out = "BM" + std::string(52, '\0') + std::string(static_cast<std::size_t>(row * h), '\0');
+            const auto put = [&](std::size_t at, int v, int n) {
+                for (int i = 0; i < n; ++i)
+                    out[at + static_cast<std::size_t>(i)] = static_cast<char>(v >> 8 * i & 0xff);
+            };
+            put(10, 54, 4);
+            put(14, 40, 4);
+            put(18, w, 4);
+            put(22, isFromTop ? -h : h, 4);
+            put(26, 1, 2);
+            put(28, bits, 2);
+            for (int y = 0; y < h; ++y)
+                for (int x = 0; x < w; ++x)
+                    for (int c = 0; c < 3; ++c)
+                        put(static_cast<std::size_t>(54 + (isFromTop ? y : h - 1 - y) * row + x * bits / 8 + c),
+                            40 * y + 3 * x, 1);
+            test::writeBytes(folder_ / "a.bmp", out);
+            ReadSettings settings;
+            settings.spacingMm = core::Vec3::Ones();
+            const Volume v = readScan(folder_ / "a.bmp", settings).volume;
+            ASSERT_EQ(v.grid.size, (std::array{5, 3, 1}));
+            for (int y = 0; y < h; ++y)
+                for (int x = 0; x < w; ++x)
+                    EXPECT_EQ(v.values[v.grid.index(x, y, 0)], static_cast<float>(40 * y + 3 * x)) << bits << isFromTop;
+        }
+}
+
+/// A TIFF of several pages, floats in tiles or packed 8-bit strips, described as ImageJ does.
+void writePages(const fs::path& file, int pages, bool isFloat, const char* description) {
+    TIFF* tiff = TIFFOpen(file.c_str(), "w");
+    for (int k = 0; k < pages; ++k) {
+        TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 20);
+        TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 18);
+        TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, isFloat ? 32 : 8);
+        TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+        TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, isFloat ? SAMPLEFORMAT_IEEEFP : SAMPLEFORMAT_UINT);
+        TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+        TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+        TIFFSetField(tiff, TIFFTAG_COMPRESSION, isFloat ? COMPRESSION_NONE : COMPRESSION_LZW);
+        if (k == 0 && description) {
+            TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, description);
+            TIFFSetField(tiff, TIFFTAG_XRESOLUTION, 10.0);
+            TIFFSetField(tiff, TIFFTAG_YRESOLUTION, 20.0);
+        }
+        if (isFloat) {
+            TIFFSetField(tiff, TIFFTAG_TILEWIDTH, 16);
+            TIFFSetField(tiff, TIFFTAG_TILELENGTH, 16);
+            for (int ty = 0; ty < 2; ++ty)
+                for (int tx = 0; tx < 2; ++tx) {
+                    float tile[256];
+                    for (int n = 0; n < 256; ++n)
+                        tile[n] = 0.25f * static_cast<float>(1000 * k + 20 * (16 * ty + n / 16) + 16 * tx + n % 16);
+                    TIFFWriteTile(tiff, tile, static_cast<std::uint32_t>(16 * tx), static_cast<std::uint32_t>(16 * ty),
+                                  0, 0);
+                }
+        } else {
+            for (int y = 0; y < 18; ++y) {
+                std::uint8_t line[20];
+                for (int x = 0; x < 20; ++x)
+                    line[x] = static_cast<std::uint8_t>(7 * k + 9 * y + x);
+                TIFFWriteScanline(tiff, line, static_cast<std::uint32_t>(y), 0);
+            }
+        }
+        TIFFWriteDirectory(tiff);
+    }
+    TIFFClose(tiff);
+}
+
+TEST_F(ScanFiles, TiffPagesOfFloatsAndOfImageJ) {
+    writePages(folder_ / "stack.tif", 4, true, "ImageJ=1.53t\nimages=4\nslices=4\nunit=mm\nspacing=0.3\nloop=false\n");
+    const Volume v = readScan(folder_ / "stack.tif").volume;
+    ASSERT_EQ(v.grid.size, (std::array{20, 18, 4}));
+    EXPECT_TRUE(v.grid.spacingMm.isApprox(core::Vec3(0.1, 0.05, 0.3), 1e-6));
+    for (int k = 0; k < 4; ++k)
+        for (int y = 0; y < 18; ++y)
+            for (int x = 0; x < 20; ++x)
+                ASSERT_EQ(v.values[v.grid.index(x, y, k)], 0.25f * static_cast<float>(1000 * k + 20 * y + x));
+    writePages(folder_ / "stack.tif", 3, false, "Made by somebody\nunit=mm\nspacing=3\n");
+    EXPECT_THAT(error(), HasSubstr("give the spacing"));
+    ReadSettings settings;
+    settings.spacingMm = core::Vec3::Ones();
+    const Volume bytes = readScan(folder_, settings).volume;
+    EXPECT_EQ(bytes.values[bytes.grid.index(5, 4, 2)], 14.0f + 36 + 5);
+    EXPECT_FALSE(findSeries(folder_)[0].thumbnail.empty());
+    test::cutFile(folder_ / "stack.tif", 0.5);
+    EXPECT_THAT(error(), HasSubstr("stack.tif"));
+}
+
+TEST_F(ScanFiles, DicomdirOfTheFilesItLists) {
+    // Only what a reader needs of it: the file ids in the records.
+    test::writeSeries(test::dicomSeries(4), folder_ / "DATA" / "CT");
+    test::writeSeries(test::dicomSeries(2), folder_ / "OTHER");
+    const test::DicomMaker d;
+    const auto item = [&](const std::string& content) {
+        return d.number(0xfffe, 2, false) + d.number(0xe000, 2, false) +
+               d.number(static_cast<std::uint32_t>(content.size()), 4, false) + content;
+    };
+    std::string records;
+    for (int k = 1; k <= 5; ++k)
+        records +=
+            item(d.element(4, 0x1430, "CS", "IMAGE") + d.element(4, 0x1500, "CS", "data\\CT\\IM" + std::to_string(k)));
+    test::writeBytes(folder_ / "DICOMDIR", std::string(128, '\0') + "DICM" + d.element(2, 0x10, "UI", d.syntax, true) +
+                                               d.element(4, 0x1220, "SQ", records));
+    const auto found = findSeries(folder_ / "DICOMDIR");
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].slices, 4);
+    EXPECT_THAT(found[0].notes, Contains(HasSubstr("1 file that the DICOMDIR lists is missing")));
+    fs::remove_all(folder_ / "DATA");
+    EXPECT_THAT(error(folder_ / "DICOMDIR"), HasSubstr("none of the files"));
+}
+
+}  // namespace
+}  // namespace handpiece::volume

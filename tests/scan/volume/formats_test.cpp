@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: Apache-2.0
+// NRRD, MetaImage, NIfTI and raw numbers, made by hand after their descriptions and by NIfTI's own library.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nifti1_io.h>
+#include <zlib.h>
+
+#include "scan_support.h"
+
+namespace handpiece::volume {
+namespace {
+
+using test::errorOf;
+using test::numbers;
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+
+class Formats : public testing::Test {
+  protected:
+    test::TemporaryFolder temporary_;
+    [[nodiscard]] std::filesystem::path at(const std::string& name) const { return temporary_.path() / name; }
+    [[nodiscard]] Scan read(const std::string& name, const std::string& bytes,
+                            const ReadSettings& settings = {}) const {
+        test::writeBytes(at(name), bytes);
+        return readScan(at(name), settings);
+    }
+    [[nodiscard]] std::string error(const std::string& name, const std::string& bytes) const {
+        return errorOf([&] { (void)read(name, bytes); });
+    }
+};
+
+/// 4 x 3 x 2, the value of (i, j, k) is 100 k + 10 j + i.
+template <class T>
+std::vector<T> small() {
+    std::vector<T> v;
+    for (int k = 0; k < 2; ++k)
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 4; ++i)
+                v.push_back(static_cast<T>(100 * k + 10 * j + i));
+    return v;
+}
+const std::vector<float> kSmall = small<float>();
+
+std::string zipped(const std::string& bytes, bool isGzip) {
+    std::string out(bytes.size() + 1000, '\0');
+    z_stream z{};
+    deflateInit2(&z, 6, Z_DEFLATED, isGzip ? 31 : 15, 8, Z_DEFAULT_STRATEGY);
+    z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    z.avail_in = static_cast<uInt>(bytes.size());
+    z.next_out = reinterpret_cast<Bytef*>(out.data());
+    z.avail_out = static_cast<uInt>(out.size());
+    deflate(&z, Z_FINISH);
+    out.resize(z.total_out);
+    deflateEnd(&z);
+    return out;
+}
+
+std::string nrrd(const std::string& type, const std::string& more, const std::string& data) {
+    return "NRRD0005\n# somebody's remark\ntype: " + type + "\ndimension: 3\nsizes: 4 3 2\n" + more + "\n" + data;
+}
+const std::string kLittle = "endian: little\nencoding: raw\nspacings: 0.1 0.2 0.3\n";
+
+TEST_F(Formats, NrrdTypesAndByteOrders) {
+    for (const bool isBig : {false, true}) {
+        const std::string order =
+            std::string("endian: ") + (isBig ? "big" : "little") + "\nencoding: raw\nspacings: 0.1 0.2 0.3\n";
+        const std::map<std::string, std::string> data{{"uchar", numbers(small<std::uint8_t>())},
+                                                      {"signed char", numbers(small<std::int8_t>())},
+                                                      {"short", numbers(small<std::int16_t>(), isBig)},
+                                                      {"uint16_t", numbers(small<std::uint16_t>(), isBig)},
+                                                      {"int", numbers(small<std::int32_t>(), isBig)},
+                                                      {"unsigned int", numbers(small<std::uint32_t>(), isBig)},
+                                                      {"longlong", numbers(small<std::int64_t>(), isBig)},
+                                                      {"float", numbers(small<float>(), isBig)},
+                                                      {"double", numbers(small<double>(), isBig)}};
+        for (const auto& [type, bytes] : data) {
+            const Scan scan = read("a.nrrd", nrrd(type, order, bytes));
+            EXPECT_EQ(scan.volume.values, kSmall) << type << isBig;
+            EXPECT_EQ(scan.volume.grid.spacingMm, core::Vec3(0.1, 0.2, 0.3));
+        }
+    }
+}
+
+TEST_F(Formats, NrrdPackedDetachedAndSkipped) {
+    const std::string data = numbers(small<std::int16_t>());
+    const std::string packed = "endian: little\nencoding: gzip\nspacings: 1 1 1\n";
+    EXPECT_EQ(read("a.nrrd", nrrd("short", packed, zipped(data, true))).volume.values, kSmall);
+    // Two gzip members, as parallel packers write them.
+    EXPECT_EQ(read("a.nrrd", nrrd("short", packed, zipped(data.substr(0, 20), true) + zipped(data.substr(20), true)))
+                  .volume.values,
+              kSmall);
+    test::writeBytes(at("b.bin"), "line\nxx" + data);
+    EXPECT_EQ(
+        read("b.nhdr", nrrd("short", kLittle + "data file: b.bin\nline skip: 1\nbyte skip: 2\n", "")).volume.values,
+        kSmall);
+    EXPECT_EQ(read("b.nhdr", nrrd("short", kLittle + "data file: b.bin\nbyte skip: -1\n", "")).volume.values, kSmall);
+    EXPECT_THAT(error("c.nhdr", nrrd("short", kLittle + "data file: ../b.bin\n", "")), HasSubstr("is missing"));
+    EXPECT_THAT(error("c.nhdr", nrrd("short", kLittle + "data file: c%03d.raw 1 9 1\n", "")),
+                HasSubstr("a list of files is not read"));
+}
+
+TEST_F(Formats, NrrdDirectionsBecomeLpsAndRightHanded) {
+    const std::string directions =
+        "endian: little\nencoding: raw\nspace: right-anterior-superior\nspace directions: (0,0.5,0) (0.25,0,0) "
+        "(0,0,2)\n"
+        "space origin: (1,2,3)\nspace units: \"mm\" \"mm\" \"mm\"\n";
+    const Volume v = read("a.nrrd", nrrd("float", directions, numbers(kSmall))).volume;
+    const Grid& g = v.grid;
+    EXPECT_NEAR(g.axes.determinant(), 1.0, 1e-12);
+    EXPECT_TRUE(g.spacingMm.isApprox(core::Vec3(0.5, 0.25, 2)));
+    // Voxel (i, j, k) of the file lies at (1 + j/4, 2 + i/2, 3 + 2k) in RAS, whatever the order of slices is now.
+    for (int k = 0; k < 2; ++k)
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 4; ++i) {
+                const core::Vec3 ras(1 + j * 0.25, 2 + i * 0.5, 3 + 2 * k), lps(-ras.x(), -ras.y(), ras.z());
+                const core::Vec3 at = g.toVoxels(lps);
+                const auto index = g.index(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())),
+                                           static_cast<int>(std::lround(at.z())));
+                EXPECT_LE((at - at.array().round().matrix()).norm(), 1e-9);
+                EXPECT_EQ(v.values[index], static_cast<float>(100 * k + 10 * j + i));
+            }
+}
+
+TEST_F(Formats, NrrdUnitsShearAndBadSpacing) {
+    const std::string um =
+        "endian: little\nencoding: raw\nspace dimension: 3\nspace directions: (50,0,0) (0,50,0) (0,0,60)\nspace units: "
+        "\"um\" \"um\" \"um\"\n";
+    EXPECT_TRUE(read("a.nrrd", nrrd("float", um, numbers(kSmall)))
+                    .volume.grid.spacingMm.isApprox(core::Vec3(0.05, 0.05, 0.06)));
+    const std::string skew = "endian: little\nencoding: raw\nspace directions: (1,0,0) (1,1,0) (0,0,1)\n";
+    EXPECT_THAT(error("a.nrrd", nrrd("float", skew, numbers(kSmall))), HasSubstr("right angles"));
+    for (const char* wrong : {"0 1 1", "nan 1 1", "-1 1 1", "inf 1 1", "1 1"})
+        EXPECT_THAT(
+            error("a.nrrd", nrrd("float", "endian: little\nencoding: raw\nspacings: " + std::string(wrong) + "\n",
+                                 numbers(kSmall))),
+            AllOf(HasSubstr("spacing"), HasSubstr("a.nrrd")))
+            << wrong;
+    EXPECT_THAT(error("a.nrrd", nrrd("float", "endian: little\nencoding: raw\n", numbers(kSmall))),
+                HasSubstr("tells no spacing"));
+}
+
+TEST_F(Formats, NrrdBadInput) {
+    const std::string data = numbers(small<std::int16_t>());
+    EXPECT_THAT(error("a.nrrd", nrrd("short", kLittle, data.substr(0, 30))),
+                AllOf(HasSubstr("truncated: 30 of 48"), HasSubstr("a.nrrd")));
+    EXPECT_THAT(error("a.nrrd", nrrd("short", "encoding: raw\n", data)), HasSubstr("byte order"));
+    EXPECT_THAT(error("a.nrrd", nrrd("block", kLittle, data)), HasSubstr("\"block\""));
+    EXPECT_THAT(error("a.nrrd", nrrd("short", "endian: little\nencoding: bzip2\n", data)), HasSubstr("bzip2"));
+    EXPECT_THAT(error("a.nrrd", "NRRD0005\ntype: short\n"), HasSubstr("does not end"));
+    EXPECT_THAT(error("a.nrrd", nrrd("short", "endian: little\nencoding: gzip\nspacings: 1 1 1\n",
+                                     zipped(data, true).substr(0, 25))),
+                HasSubstr("ends before"));
+    EXPECT_THAT(error("a.nrrd", "NRRD0005\ntype: uchar\ndimension: 4\nsizes: 2 2 2 2\nencoding: raw\n\n"),
+                HasSubstr("dimensions"));
+}
+
+TEST_F(Formats, HeadersThatClaim40GigabytesAreRefused) {
+    EXPECT_THAT(error("a.nrrd", "NRRD0005\ntype: short\ndimension: 3\nsizes: 3000 3000 1100\n" + kLittle + "\nabc"),
+                HasSubstr("GB of memory"));
+    EXPECT_THAT(
+        error("a.nrrd", "NRRD0005\ntype: short\ndimension: 3\nsizes: 900000 900000 900000\n" + kLittle + "\nabc"),
+        HasSubstr("no memory holds"));
+    EXPECT_THAT(error("a.nrrd", "NRRD0005\ntype: short\ndimension: 3\nsizes: 3000 -3000 9000000000000000000000\n" +
+                                    kLittle + "\nabc"),
+                HasSubstr("cannot be"));
+    EXPECT_THAT(error("a.mha",
+                      "NDims = 3\nDimSize = 3000 3000 1100\nElementType = MET_FLOAT\nElementSpacing = 1 1 "
+                      "1\nElementDataFile = LOCAL\n"),
+                HasSubstr("GB of memory"));
+    nifti_1_header h{};
+    h.sizeof_hdr = 348;
+    h.dim[0] = 3;
+    h.dim[1] = h.dim[2] = 30000;
+    h.dim[3] = 11;
+    h.datatype = 4;
+    h.vox_offset = 352;
+    std::memcpy(h.magic, "n+1", 4);
+    EXPECT_THAT(error("a.nii", std::string(reinterpret_cast<const char*>(&h), sizeof h)), HasSubstr("GB of memory"));
+    test::writeBytes(at("scan.raw"), "abc");
+    EXPECT_THAT(error("scan.toml",
+                      "file = \"scan.raw\"\nsize = [3000, 3000, 1100]\ntype = \"uint16\"\nspacing_mm = [1, 1, 1]\n"),
+                HasSubstr("GB of memory"));
+    // Within the limit and not within the file.
+    EXPECT_THAT(error("a.nrrd",
+                      "NRRD0005\ntype: short\ndimension: 3\nsizes: 300 300 300\nendian: little\nencoding: "
+                      "gzip\nspacings: 1 1 1\n\nabc"),
+                HasSubstr("cannot hold"));
+    ReadSettings tight;
+    tight.limitBytes = 95;
+    EXPECT_THAT(errorOf([&] { (void)read("b.nrrd", nrrd("float", kLittle, numbers(kSmall)), tight); }),
+                HasSubstr("memory"));
+    tight.limitBytes = 96;
+    EXPECT_EQ(read("b.nrrd", nrrd("float", kLittle, numbers(kSmall)), tight).volume.values, kSmall);
+}
+
+std::string metaImage(const std::string& more, const std::string& data, const std::string& type = "MET_SHORT") {
+    return "ObjectType = Image\nNDims = 3\nDimSize = 4 3 2\nElementType = " + type + "\n" + more +
+           "ElementDataFile = LOCAL\n" + data;
+}
+
+TEST_F(Formats, MetaImage) {
+    const std::string data = numbers(small<std::int16_t>()), big = numbers(small<std::int16_t>(), true);
+    const std::string spacing = "ElementSpacing = 0.1 0.2 0.3\n";
+    EXPECT_EQ(read("a.mha", metaImage(spacing, data)).volume.values, kSmall);
+    EXPECT_EQ(read("a.mha", metaImage(spacing + "BinaryDataByteOrderMSB = True\n", big)).volume.values, kSmall);
+    EXPECT_EQ(read("a.mha", metaImage(spacing + "CompressedData = True\n", zipped(data, false))).volume.values, kSmall);
+    const Grid g =
+        read("a.mha", metaImage(spacing + "Offset = 1 2 3\nTransformMatrix = 0 1 0 -1 0 0 0 0 1\n", data)).volume.grid;
+    EXPECT_EQ(g.originMm, core::Vec3(1, 2, 3));
+    EXPECT_TRUE(core::Vec3(g.axes.col(0)).isApprox(core::Vec3(0, 1, 0)));
+    EXPECT_TRUE(core::Vec3(g.axes.col(1)).isApprox(core::Vec3(-1, 0, 0)));
+    test::writeBytes(at("v.raw"), "head" + data);
+    std::string detached = metaImage(spacing + "HeaderSize = -1\n", "");
+    detached.replace(detached.find("LOCAL"), 5, "v.raw");
+    EXPECT_EQ(read("v.mhd", detached).volume.values, kSmall);
+    EXPECT_EQ(readScan(temporary_.path(),
+                       [] {
+                           ReadSettings s;
+                           s.takeLargest = true;
+                           return s;
+                       }())
+                  .volume.values,
+              kSmall);
+    EXPECT_THAT(error("a.mha", metaImage(spacing, data.substr(1))), HasSubstr("truncated"));
+    EXPECT_THAT(error("a.mha", metaImage("", data)), HasSubstr("tells no spacing"));
+    EXPECT_THAT(error("a.mha", metaImage("ElementSpacing = 0 1 1\n", data)), HasSubstr("spacing of 0 x 1 x 1"));
+    EXPECT_THAT(error("a.mha", metaImage(spacing + "ElementNumberOfChannels = 3\n", data)),
+                HasSubstr("3 values a voxel"));
+    EXPECT_THAT(error("a.mha", "ObjectType = Image\n"), HasSubstr("ElementDataFile"));
+}
+
+TEST_F(Formats, NiftiOfItsOwnLibraryIsReadTheSame) {
+    for (const char* name : {"n.nii", "n.nii.gz", "n.hdr"}) {
+        const std::int64_t dims[8] = {3, 4, 3, 2, 1, 1, 1, 1};
+#ifdef NIFTI2_IO_H
+        nifti_image* image = nifti_make_new_nim(dims, DT_INT16, 1);
+#else
+        const int narrow[8] = {3, 4, 3, 2, 1, 1, 1, 1};
+        (void)dims;
+        nifti_image* image = nifti_make_new_nim(narrow, DT_INT16, 1);
+#endif
+        const auto values = small<std::int16_t>();
+        std::memcpy(image->data, values.data(), values.size() * 2);
+        image->xyz_units = NIFTI_UNITS_MICRON;
+        image->dx = image->pixdim[1] = 100;
+        image->dy = image->pixdim[2] = 200;
+        image->dz = image->pixdim[3] = 300;
+        image->scl_slope = 2;
+        image->scl_inter = -5;
+        image->qform_code = 1;
+        image->quatern_d = 0.5f;  // turned about z
+        image->qoffset_x = 1000;
+        image->qoffset_y = 2000;
+        image->qoffset_z = 3000;
+        image->qfac = 1;
+        image->qto_xyz = nifti_quatern_to_mat44(image->quatern_b, image->quatern_c, image->quatern_d, image->qoffset_x,
+                                                image->qoffset_y, image->qoffset_z, image->dx, image->dy, image->dz, 1);
+        if (std::string(name) == "n.hdr") image->nifti_type = NIFTI_FTYPE_NIFTI1_2;
+        ASSERT_EQ(nifti_set_filenames(image, at(name).c_str(), 0, 1), 0);
+        nifti_image_write(image);
+        const Volume v = readScan(at(name)).volume;
+        for (int k = 0; k < 2; ++k)
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 4; ++i) {
+                    const auto& m = image->qto_xyz.m;
+                    core::Vec3 ras;
+                    for (int r = 0; r < 3; ++r)
+                        ras[r] = 1e-3 *
+                                 static_cast<double>(m[r][0] * static_cast<float>(i) + m[r][1] * static_cast<float>(j) +
+                                                     m[r][2] * static_cast<float>(k) + m[r][3]);
+                    EXPECT_LE((v.grid.toMm({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)}) -
+                               core::Vec3(-ras.x(), -ras.y(), ras.z()))
+                                  .norm(),
+                              1e-5);
+                    EXPECT_EQ(v.values[v.grid.index(i, j, k)], static_cast<float>(2 * (100 * k + 10 * j + i) - 5));
+                }
+        nifti_image_free(image);
+    }
+}
+
+TEST_F(Formats, NiftiOfOursIsReadByItsLibrary) {
+    Volume scan = test::sampleVolume({12, 9, 5}, -800);
+    scan.grid.axes = test::obliqueAxes();
+    writeScan(scan, temporary_.path(), ScanFormat::nifti);
+    nifti_image* image = nifti_image_read(at("scan.nii").c_str(), 1);
+    ASSERT_TRUE(image);
+    ASSERT_EQ(image->nvox, 12u * 9u * 5u);
+    const auto* data = static_cast<const std::int16_t*>(image->data);
+    for (std::size_t i = 0; i < scan.values.size(); ++i)
+        ASSERT_EQ(static_cast<float>(data[i]), scan.values[i]);
+    const core::Vec3 mm = scan.grid.toMm({3, 4, 2});
+    for (int r = 0; r < 3; ++r) {
+        const auto& m = image->sto_xyz.m[r];
+        EXPECT_NEAR(static_cast<double>(m[0] * 3 + m[1] * 4 + m[2] * 2 + m[3]), (r < 2 ? -1 : 1) * mm[r], 1e-4);
+    }
+    nifti_image_free(image);
+}
+
+TEST_F(Formats, NiftiSwappedLeftHandedAndBroken) {
+    nifti_1_header h{};
+    h.sizeof_hdr = 348;
+    h.dim[0] = 3;
+    h.dim[1] = 4;
+    h.dim[2] = 3;
+    h.dim[3] = 2;
+    h.datatype = 512;
+    h.bitpix = 16;
+    h.vox_offset = 352;
+    h.pixdim[1] = h.pixdim[2] = h.pixdim[3] = 0.5f;
+    h.sform_code = 1;
+    h.srow_x[0] = -0.5f;  // right to left: with LPS' two flips this is left-handed
+    h.srow_y[1] = 0.5f;
+    h.srow_z[2] = 0.5f;
+    std::memcpy(h.magic, "n+1", 4);
+    const auto bytes = [](const nifti_1_header& header) {
+        return std::string(reinterpret_cast<const char*>(&header), sizeof header) + std::string(4, '\0');
+    };
+    const Volume v = read("a.nii", bytes(h) + numbers(small<std::uint16_t>())).volume;
+    EXPECT_NEAR(v.grid.axes.determinant(), 1.0, 1e-9);
+    EXPECT_EQ(v.values[0], 100.0f);  // the last slice comes first now
+    EXPECT_TRUE(v.grid.toMm({0, 0, 0}).isApprox(core::Vec3(0, 0, 0.5)));
+    nifti_1_header swapped = h;
+    swap_nifti_header(&swapped, 1);
+    EXPECT_EQ(read("b.nii", bytes(swapped) + numbers(small<std::uint16_t>(), true)).volume.values, v.values);
+    EXPECT_THAT(error("c.nii", bytes(h) + "abc"), HasSubstr("truncated"));
+    EXPECT_THAT(error("c.nii", bytes(h).substr(0, 200)), HasSubstr("header"));
+    h.sform_code = 0;
+    for (const float wrong : {0.0f, NAN, INFINITY}) {
+        h.pixdim[2] = wrong;
+        EXPECT_THAT(error("c.nii", bytes(h) + numbers(small<std::uint16_t>())), HasSubstr("spacing")) << wrong;
+    }
+    h.datatype = 128;
+    EXPECT_THAT(error("c.nii", bytes(h)), HasSubstr("type 128"));
+}
+
+TEST_F(Formats, RawByItsDescription) {
+    const std::string text = "file = \"t.raw\"\nsize = [4, 3, 2]\ntype = \"uint16\"\nspacing_mm = [0.1, 0.2, 0.3]\n";
+    test::writeBytes(at("t.raw"), numbers(small<std::uint16_t>(), true));
+    test::writeBytes(at("scan.toml"), text + "byte_order = \"big\"\n");
+    for (const char* name : {"t.raw", "scan.toml", ""})
+        EXPECT_EQ(readScan(at(name)).volume.values, kSmall) << name;
+    test::writeBytes(at("scan.toml"), text + "byte_order = \"big\"\nslope = 0.5\nintercept = 7\n");
+    EXPECT_EQ(readScan(at("")).volume.values[23], 0.5f * 123 + 7);
+    EXPECT_THAT(error("scan.toml", text + "header_bytes = 1\n"), HasSubstr("truncated"));
+    EXPECT_THAT(error("scan.toml", "file = \"t.raw\"\nsize = [4, 3, 1]\ntype = \"uint16\"\nspacing_mm = [1, 1, 1]\n"),
+                AllOf(HasSubstr("48 bytes"), HasSubstr("are 24")));
+    EXPECT_THAT(error("scan.toml", "file = \"t.raw\"\nsize = [4, 3, 2]\ntype = \"uint16\"\n"), HasSubstr("spacing_mm"));
+    EXPECT_THAT(error("scan.toml", text + "byteorder = \"big\"\n"), HasSubstr("byteorder"));
+    EXPECT_THAT(error("scan.toml", "file = \"none.raw\"\nsize = [4, 3, 2]\ntype = \"uint16\"\n"),
+                HasSubstr("\"none.raw\" is missing"));
+    EXPECT_THAT(error("scan.toml", "file = \"/etc/passwd\"\nsize = [4, 3, 2]\ntype = \"uint8\"\n"),
+                HasSubstr("is missing"));
+    EXPECT_THAT(error("scan.toml", "file = \"t.raw\"\nsize = [4, 3, 2]\ntype = \"uint17\"\n"), HasSubstr("uint17"));
+    for (const char* wrong : {"[0, 1, 1]", "[nan, 1, 1]", "[1, 1]", "[-1, 1, 1]"})
+        EXPECT_THAT(error("scan.toml", "file = \"t.raw\"\nsize = [4, 3, 2]\ntype = \"uint16\"\nspacing_mm = " +
+                                           std::string(wrong) + "\n"),
+                    HasSubstr("spacing_mm"))
+            << wrong;
+    std::filesystem::remove(at("scan.toml"));
+    EXPECT_THAT(errorOf([&] { (void)readScan(at("t.raw")); }), HasSubstr("write a scan.toml"));
+}
+
+TEST_F(Formats, WrongByteOrderIsToldAndRightOneIsNot) {
+    std::mt19937_64 generator(test::seed());
+    const Volume smooth = test::sampleVolume({40, 40, 30}, 300, 3000);
+    std::vector<std::uint16_t> values(smooth.values.begin(), smooth.values.end()), noise(values.size()),
+        dark(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        noise[i] = static_cast<std::uint16_t>(generator());
+        dark[i] = static_cast<std::uint16_t>(generator() & 0xff);
+    }
+    const auto told = [&](const std::vector<std::uint16_t>& v, bool isBigInFile, bool isBigInHeader) {
+        test::writeBytes(at("s.raw"), numbers(v, isBigInFile));
+        return error(
+            "scan.toml",
+            std::string(
+                "file = \"s.raw\"\nsize = [40, 40, 30]\ntype = \"uint16\"\nspacing_mm = [1, 1, 1]\nbyte_order = \"") +
+                (isBigInHeader ? "big" : "little") + "\"\n");
+    };
+    EXPECT_EQ(told(values, false, false), "");
+    EXPECT_EQ(told(values, true, true), "");
+    EXPECT_THAT(told(values, true, false), AllOf(HasSubstr("s.raw"), HasSubstr("byte_order = \"big\"")));
+    EXPECT_THAT(told(values, false, true), HasSubstr("byte_order = \"little\""));
+    // What is noise either way, or nothing, is let pass.
+    EXPECT_EQ(told(noise, false, false), "");
+    EXPECT_EQ(told(dark, false, false), "");
+    EXPECT_EQ(told(std::vector<std::uint16_t>(values.size(), 7), false, false), "");
+    EXPECT_THAT(error("o.nrrd", "NRRD0005\ntype: ushort\ndimension: 3\nsizes: 40 40 30\n" + kLittle + "\n" +
+                                    numbers(values, true)),
+                HasSubstr("endian: big"));
+}
+
+TEST_F(Formats, NonNumbersAreReadAsNothingAndTold) {
+    std::vector<float> values = kSmall;
+    values[3] = NAN;
+    values[5] = INFINITY;
+    const Scan scan = read("a.nrrd", nrrd("float", kLittle, numbers(values)));
+    EXPECT_EQ(scan.volume.values[3], 0.0f);
+    EXPECT_EQ(scan.volume.values[5], 0.0f);
+    EXPECT_THAT(scan.series.notes, Contains(HasSubstr("2 values are no numbers")));
+}
+
+TEST_F(Formats, GivenSpacingWins) {
+    ReadSettings settings;
+    settings.spacingMm = core::Vec3(0.034, 0.034, 0.034);
+    const Scan scan = read("a.nrrd", nrrd("float", kLittle, numbers(kSmall)), settings);
+    EXPECT_EQ(scan.volume.grid.spacingMm, *settings.spacingMm);
+    EXPECT_EQ(scan.series.spacingMm, *settings.spacingMm);
+    settings.spacingMm = core::Vec3(0.034, NAN, 0.034);
+    EXPECT_NE(errorOf([&] { (void)read("a.nrrd", nrrd("float", kLittle, numbers(kSmall)), settings); }), "");
+}
+
+}  // namespace
+}  // namespace handpiece::volume

@@ -22,6 +22,7 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods) {
     addMakeCommand(app);
     addMeshCommand(app);
     addCaseCommand(app);
+    addScanCommand(app);
     addProbeCommand(app, extraMethods);
     addRunCommand(app, extraMethods);
     addReplayCommand(app);

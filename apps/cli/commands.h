@@ -24,5 +24,6 @@ void addReproduceCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addPassivityCommand(CLI::App& app);
 void addPictureCommand(CLI::App& app);
+void addScanCommand(CLI::App& app);
 
 }  // namespace handpiece::cli

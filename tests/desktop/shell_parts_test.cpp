@@ -11,8 +11,11 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/instrument/catalogue.h"
+#include "handpiece/model/tooth/case_bytes.h"
+#include "handpiece/record/session/recorder.h"
 #include "handpiece/record/session/session_reader.h"
 #include "handpiece/senses/sound/player.h"
+#include "handpiece/tick/device/simulated_device.h"
 #include "shell/command_line.h"
 #include "shell/language.h"
 #include "shell/run_statistics.h"
@@ -140,6 +143,45 @@ TEST(SessionShelf, DeletesTheOldestButNeverUnsavedWork) {
     EXPECT_TRUE(fs::exists(path / "20260100-000000-000-1.h5"));
     EXPECT_TRUE(fs::exists(path / "20260106-000000-000-1.h5"));
     EXPECT_FALSE(fs::exists(path / "20260105-000000-000-1.h5"));
+}
+
+/// A fifth of a second over a block; in its middle the machine slept for half a second.
+void recordWithAGap(const fs::path& file) {
+    tooth::Case block;
+    block.name = "block";
+    block.outer = test::boxMesh(core::Vec3(-2, -2, -2), core::Vec3(2, 2, 0));
+    station::StationSettings settings;
+    settings.field.voxelMm = 0.2;
+    settings.bur = instrument::makeInstrument("round-4").bur;
+    const station::Station station = station::makeStation(block, settings, false);
+    session::SessionInfo info;
+    info.rateHz = settings.rateHz;
+    info.settings = station::settingsJson(station.settings);
+    info.tooth = tooth::encodeCase(block);
+    session::Recorder recorder(file, info);
+    loop::HapticLoop loop(
+        {},
+        std::make_unique<device::SimulatedDevice>(device::SimulatedDeviceSettings{},
+                                                  device::hold({core::Vec3(0, 0, 3), core::Quat::Identity()}, 1.0)),
+        station.work(), station.settings.parameters, station.settings.drive);
+    for (int i = 0; i < 200; ++i) {
+        rt::Beat beat;
+        beat.periods = i == 100 ? 500 : 1;
+        loop.tick(beat);
+        loop.fetch([&](const messages::HapticSample& sample) { recorder.pushWaiting(session::recordOf(sample)); }, {});
+    }
+}
+
+TEST(ReplayDriver, PlaysOnWhereTheMachineLeftPeriodsOut) {
+    const QTemporaryDir folder;
+    const fs::path file = toPath(folder.filePath("session.h5"));
+    recordWithAGap(file);
+    ReplayDriver driver(std::make_unique<station::SessionPlayer>(file, false));
+    EXPECT_GT(driver.durationS(), 0.6);
+    driver.play(true);
+    EXPECT_TRUE(waitFor([&] { return !driver.now().playing; }));
+    EXPECT_EQ(driver.now().timeS, driver.durationS());
+    EXPECT_FALSE(driver.now().problem);
 }
 
 core::Error errorOf(const std::function<void()>& work) {

@@ -76,6 +76,8 @@ void ReplayDriver::run() {
         return !end_ && !seek_;
     };
     auto last = Clock::now();
+    // Time goes on where no tick was recorded, too: a machine that was busy left periods out, maybe half a second.
+    double atS = player_->timeS();
     for (;;) {
         std::optional<double> target;
         double speed = 1.0;
@@ -84,6 +86,7 @@ void ReplayDriver::run() {
             if (!now_.playing && !seek_) {
                 wake_.wait(lock, [this] { return end_ || seek_ || now_.playing; });
                 last = Clock::now();
+                atS = player_->timeS();
             } else if (!seek_) {
                 wake_.wait_for(lock, kStep, [this] { return end_ || seek_; });
             }
@@ -95,12 +98,14 @@ void ReplayDriver::run() {
         try {
             if (target) {
                 player_->seek(*target, untilEnd);
+                atS = player_->timeS();
                 last = Clock::now();
             } else {
                 const auto time = Clock::now();
                 const double stepS = std::min(kLongStepS, std::chrono::duration<double>(time - last).count() * speed);
                 last = time;
-                player_->advance(std::min(durationS_, player_->timeS() + stepS), untilEnd);
+                atS = std::min(durationS_, atS + stepS);
+                player_->advance(atS, untilEnd);
                 if (heard_) heard_(player_->sample(), stepS, player_->station());
             }
             publish();

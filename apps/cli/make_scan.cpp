@@ -138,6 +138,7 @@ void makeScan(MakeScanOptions& o) {
         return core::Quat(Eigen::AngleAxisd(o.turnDeg[axis] * std::numbers::pi / 180.0, direction));
     };
     o.settings.turn = about(2, core::Vec3::UnitZ()) * about(1, core::Vec3::UnitY()) * about(0, core::Vec3::UnitX());
+    phantom::check(o.settings);
     core::setThreadCount(o.threads);
 
     ProgressBar bar("making the scan");

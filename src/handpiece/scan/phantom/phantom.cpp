@@ -71,17 +71,6 @@ void require(double value, double least, double most, const char* what, const ch
                           fmt::format("give {:g} to {:g}", least, most));
 }
 
-void check(const Settings& s) {
-    require(s.voxelUm, 1.0, 5000.0, "a voxel [um]", "--voxel");
-    require(s.noise, 0.0, 1.0, "noise", "--noise");
-    require(s.blurVoxels, 0.0, 20.0, "a blur [voxels]", "--blur");
-    require(s.ring, 0.0, 1.0, "a ring", "--ring");
-    require(s.metal, 0.0, 1.0, "metal", "--metal");
-    require(s.marginMm, 0.0, 100.0, "a margin [mm]", "margin");
-    if (!core::Pose{Vec3::Zero(), s.turn}.isValid())
-        throw core::Error("the turn is no rotation", "--turn", "give a unit quaternion");
-}
-
 /// Grey values of a slice before any blur, and its truth.
 void imageSlice(const Rays& rays, int k, Scanner scanner, Image& image) {
     const volume::Grid& grid = image.volume.grid;
@@ -145,6 +134,17 @@ Scanner scannerByName(std::string_view name) {
 
 std::string_view nameOf(Scanner scanner) {
     return scanner == Scanner::cbct ? "cbct" : "micro-ct";
+}
+
+void check(const Settings& s) {
+    require(s.voxelUm, 1.0, 5000.0, "a voxel [um]", "--voxel");
+    require(s.noise, 0.0, 1.0, "noise", "--noise");
+    require(s.blurVoxels, 0.0, 20.0, "a blur [voxels]", "--blur");
+    require(s.ring, 0.0, 1.0, "a ring", "--ring");
+    require(s.metal, 0.0, 1.0, "metal", "--metal");
+    require(s.marginMm, 0.0, 100.0, "a margin [mm]", "margin");
+    if (!core::Pose{Vec3::Zero(), s.turn}.isValid())
+        throw core::Error("the turn is no rotation", "--turn", "give a unit quaternion");
 }
 
 double greyOf(Scanner scanner, Tissue tissue) {

@@ -52,6 +52,8 @@ struct Image {
     std::array<double, tooth::kTissueCount> volumesMm3{};  ///< of the tooth, each tissue where no other lies on it
     std::optional<tooth::Part> filling;                    ///< that was put in, in the tooth's frame
 };
+/// Throws core::Error for settings out of range, naming the option of `handpiece make scan`.
+void check(const Settings& settings);
 /// Sharp tissues averaged over each voxel, blurred, with noise; the same bytes at any thread count.
 ///
 /// A point of the tooth is of the part of highest priority that holds it; slits between parts are shared by those

@@ -151,7 +151,7 @@ void recordWithAGap(const fs::path& file) {
     block.name = "block";
     block.outer = test::boxMesh(core::Vec3(-2, -2, -2), core::Vec3(2, 2, 0));
     station::StationSettings settings;
-    settings.field.voxelMm = 0.2;
+    settings.field.voxelMm = 0.1;
     settings.bur = instrument::makeInstrument("round-4").bur;
     const station::Station station = station::makeStation(block, settings, false);
     session::SessionInfo info;

@@ -10,7 +10,6 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/decimate.h"
-#include "handpiece/base/geometry/self_intersection.h"
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/scan/surfacing/nesting.h"
 #include "handpiece/scan/surfacing/smoothing.h"
@@ -28,6 +27,7 @@ constexpr std::size_t kFewestFaces = 4;     ///< a tetrahedron
 constexpr double kCoarseStandOutMm = 0.02;  ///< least, where faces are large: flakes of what is below stay away
 constexpr double kMostStandOutMm = 0.08;    ///< below tooth::kCaseToleranceMm
 constexpr double kMostOffsetMm = 0.02;      ///< a step of putting lost volume back
+constexpr double kMostPulpMm = 0.5;         ///< a pulp of few faces may have to leave a thin wall by this
 constexpr int kInsideRounds = 40, kSideRounds = 8;
 constexpr double kRemarkMm = 0.01;  ///< a side kept worse than this is worth a remark
 
@@ -71,6 +71,11 @@ class Mender {
     explicit Mender(const Surfaces& full) : full_(full) {}
 
     void mend(Surfaces& coarse, const core::Progress& progress) {
+        std::size_t left = 0;
+        coarse.outer.errorBoundMm += uncross(coarse.outer.mesh, left);
+        if (left > 0)
+            coarse.notes.push_back(fmt::format("the tooth with {} faces crosses itself: choose more faces",
+                                               coarse.outer.mesh.triangles.size()));
         const Surface* dentine = nullptr;
         for (std::size_t i = 0; i < coarse.tissues.size(); ++i) {
             Surface& tissue = coarse.tissues[i];
@@ -102,7 +107,8 @@ class Mender {
         const double gap = 2.0 * full_.leastGapMm;
         const std::vector<Bounds> in(pulp.mesh.vertices.size(), {Bounds{}.low, -gap}),
             out(around.mesh.vertices.size(), {gap, Bounds{}.high});
-        finish(coarse, pulp, holdApart(pulp.mesh, in, around.mesh, out, nearOf(around, pulp), kInsideRounds, true, {}),
+        finish(coarse, pulp,
+               holdApart(pulp.mesh, in, around.mesh, out, nearOf(around, pulp), kMostPulpMm, kInsideRounds, true, {}),
                0.0, name);
     }
 
@@ -139,8 +145,7 @@ class Mender {
             }
         });
         finish(coarse, tissue,
-               holdApart(tissue.mesh, onTissue, coarse.outer.mesh, onOuter, nearOf(coarse.outer, tissue), kSideRounds,
-                         false, {}),
+               holdApart(tissue.mesh, onTissue, coarse.outer.mesh, onOuter, nearMm, nearMm, kSideRounds, false, {}),
                kRemarkMm, "the tooth");
     }
 
@@ -153,7 +158,9 @@ class Mender {
                             "{:.2f}) mm: choose more faces",
                             own, tissue.mesh.triangles.size(), name, apart.failed, apart.failedMm.x(),
                             apart.failedMm.y(), apart.failedMm.z()));
-        if (apart.moved > 0 && !geometry::selfIntersections(tissue.mesh, 1).empty())
+        std::size_t left = 0;
+        tissue.errorBoundMm += uncross(tissue.mesh, left);
+        if (left > 0)
             coarse.notes.push_back(
                 fmt::format("{} with {} faces crosses itself: choose more faces", own, tissue.mesh.triangles.size()));
     }

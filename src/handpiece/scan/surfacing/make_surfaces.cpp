@@ -23,6 +23,8 @@ using tooth::Tissue;
 
 constexpr double kLeastGapMm = 0.005;
 constexpr int kRounds = 40;
+constexpr std::int64_t kMostHandles = 6;  ///< of canals that join and part; more are noise
+constexpr int kMostEvenings = 3;
 constexpr double kLeastShellVoxels = 20.0;
 constexpr Smoothing kDistanceSmoothing{10, 0.5};    ///< reach in voxels
 constexpr Smoothing kStaircaseSmoothing{40, 0.75};  ///< half a voxel is the step itself
@@ -68,8 +70,21 @@ TriangleMesh withoutSpecks(const TriangleMesh& mesh, bool isWhole, double voxelM
     return keptShells(mesh, shells, keep);
 }
 
+/// Tunnels through a surface of any number of shells.
+std::int64_t handlesOf(const TriangleMesh& mesh) {
+    const auto shells = static_cast<std::int64_t>(shellsOf(mesh).volumeMm3.size());
+    return shells +
+           (static_cast<std::int64_t>(mesh.triangles.size()) / 2 - static_cast<std::int64_t>(mesh.vertices.size())) / 2;
+}
+
+/// What of a solid is not in its surface.
+struct LeftOut {
+    std::size_t specks = 0;
+    std::int64_t handles = 0;
+};
+
 /// A solid's surface in the grid's own axes.
-TriangleMesh surfaceOf(const Region& region, int index, const Settings& settings, std::size_t& left,
+TriangleMesh surfaceOf(const Region& region, int index, const Settings& settings, LeftOut& left,
                        const core::Progress& progress) {
     const double h = region.grid.spacingMm.x();
     const bool isWhole = index < 0 || region.solids[static_cast<std::size_t>(index)].tissue == Tissue::dentine;
@@ -77,10 +92,21 @@ TriangleMesh surfaceOf(const Region& region, int index, const Settings& settings
     std::vector<Vec3> normals;
     bool steps = false;
     {
-        const std::vector<float> field = fieldOf(region, index);
-        mesh = withoutSpecks(fieldSurface(field, region.grid.size, h, core::part(progress, 0.0, 0.4)), isWhole,
-                             h * h * h, left);
-        if (mesh.triangles.empty() || !settings.smooth) return mesh;
+        std::vector<float> field = fieldOf(region, index);
+        for (int evened = 0;; ++evened) {
+            std::size_t specks = 0;
+            mesh = withoutSpecks(fieldSurface(field, region.grid.size, h, core::part(progress, 0.0, 0.4)), isWhole,
+                                 h * h * h, specks);
+            if (evened == 0) left.specks = specks;
+            if (mesh.triangles.empty() || !settings.smooth) return mesh;
+            const std::int64_t handles = handlesOf(mesh);
+            if (evened == 0) left.handles = handles;
+            if (evened == kMostEvenings || handles <= kMostHandles) {
+                left.handles -= handles;
+                break;
+            }
+            evenOut(field, region.grid.size, h);
+        }
         steps = isStaircase(mesh, h);
         if (!steps) normals = fieldNormals(field, region.grid.size, h, mesh);
     }
@@ -108,7 +134,8 @@ void keepPulpInside(TriangleMesh& pulp, const TriangleMesh& around, const Region
     // Twice the gap at the vertices leaves it between the faces too.
     const std::vector<Bounds> inside(pulp.vertices.size(), {Bounds{}.low, -2.0 * kLeastGapMm}),
         outside(piece.vertices.size(), {2.0 * kLeastGapMm, Bounds{}.high});
-    const Apart apart = holdApart(pulp, inside, piece, outside, std::max(h, 4.0 * kLeastGapMm), kRounds, true, {});
+    const Apart apart =
+        holdApart(pulp, inside, piece, outside, std::max(h, 4.0 * kLeastGapMm), 4.0 * h, kRounds, true, {});
     if (apart.failed > 0) {
         const Vec3 at = grid.originMm + grid.axes * apart.failedMm;
         throw core::Error(
@@ -127,8 +154,17 @@ Surfaces makeSurfaces(const Region& region, const Settings& settings, const core
     made.leastGapMm = kLeastGapMm;
     made.standOutMm = standOutMm(h);
     const double share = 0.95 / static_cast<double>(region.solids.size() + 1);
-    std::size_t left = 0;
-    made.outer.mesh = surfaceOf(region, -1, settings, left, core::part(progress, 0.0, share));
+    const auto tell = [&](std::string_view name, const LeftOut& left) {
+        if (left.specks > 0)
+            made.notes.push_back(
+                fmt::format("{}: {} loose {} left out", name, left.specks, left.specks == 1 ? "speck" : "specks"));
+        if (left.handles > 0)
+            made.notes.push_back(fmt::format("{}: {} {} of about a voxel closed", name, left.handles,
+                                             left.handles == 1 ? "tunnel" : "tunnels"));
+    };
+    LeftOut ofOuter;
+    made.outer.mesh = surfaceOf(region, -1, settings, ofOuter, core::part(progress, 0.0, share));
+    tell("the tooth", ofOuter);
     made.outer.isAuthored = region.outer.isAuthored;
     const Solid* dentine = nullptr;
     const Surface* dentineSurface = nullptr;
@@ -136,17 +172,15 @@ Surfaces makeSurfaces(const Region& region, const Settings& settings, const core
     for (std::size_t i = 0; i < region.solids.size(); ++i) {
         const Solid& solid = region.solids[i];
         const double from = share * static_cast<double>(i + 1);
-        std::size_t specks = 0;
+        LeftOut left;
         TriangleMesh mesh =
-            surfaceOf(region, static_cast<int>(i), settings, specks, core::part(progress, from, from + share));
+            surfaceOf(region, static_cast<int>(i), settings, left, core::part(progress, from, from + share));
         if (mesh.triangles.empty()) {
             made.notes.push_back(fmt::format("{} is left out: nothing of it is as large as {} voxels",
                                              tooth::properties(solid.tissue).name, kLeastShellVoxels));
             continue;
         }
-        if (specks > 0)
-            made.notes.push_back(fmt::format("{}: {} loose {} left out", tooth::properties(solid.tissue).name, specks,
-                                             specks == 1 ? "speck" : "specks"));
+        tell(tooth::properties(solid.tissue).name, left);
         if (solid.tissue == Tissue::pulp) {
             if (dentine) keepPulpInside(mesh, dentineSurface->mesh, region, *dentine, "the dentine");
             keepPulpInside(mesh, made.outer.mesh, region, region.outer, "the tooth");

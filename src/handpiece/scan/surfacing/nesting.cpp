@@ -91,7 +91,7 @@ std::vector<std::uint32_t> crossingVertices(const TriangleMesh& moving, const Tr
 }  // namespace
 
 Apart holdApart(TriangleMesh& moving, std::span<const Bounds> onMoving, const TriangleMesh& still,
-                std::span<const Bounds> onStill, double nearMm, int rounds, bool strictly,
+                std::span<const Bounds> onStill, double nearMm, double mostMm, int rounds, bool strictly,
                 const core::Progress& progress) {
     Apart result;
     if (moving.triangles.empty() || still.triangles.empty()) return result;
@@ -138,8 +138,10 @@ Apart holdApart(TriangleMesh& moving, std::span<const Bounds> onMoving, const Tr
         result.failed = moves.size();
         if (moves.empty()) break;
         for (const auto& [v, move] : moves) {
-            touched.try_emplace(v, moving.vertices[v]);
-            moving.vertices[v] += move;
+            const Vec3& was = touched.try_emplace(v, moving.vertices[v]).first->second;
+            const Vec3 way = moving.vertices[v] + move - was;
+            const double length = way.norm();
+            moving.vertices[v] = was + (length > mostMm ? mostMm / length : 1.0) * way;
         }
     }
     result.moved = touched.size();

@@ -27,10 +27,10 @@ struct Apart {
 
 /// Moves vertices of `moving` until they keep `onMoving` to `still`, and until the vertices of `still` keep `onStill`
 /// to it. Only what lies within `nearMm` of the other surface is looked at, so `still` may be a piece of a surface.
-/// With `strictly`, no face of one may cross the other either.
+/// No vertex goes farther than `mostMm`. With `strictly`, no face of one may cross the other either.
 [[nodiscard]] Apart holdApart(geometry::TriangleMesh& moving, std::span<const Bounds> onMoving,
                               const geometry::TriangleMesh& still, std::span<const Bounds> onStill, double nearMm,
-                              int rounds, bool strictly, const core::Progress& progress);
+                              double mostMm, int rounds, bool strictly, const core::Progress& progress);
 
 /// The faces of a surface with a vertex within about `reachMm` of one of the points.
 [[nodiscard]] geometry::TriangleMesh facesNear(const geometry::TriangleMesh& mesh, std::span<const core::Vec3> points,

@@ -55,6 +55,21 @@ std::vector<double> bulgesMm3(const TriangleMesh& mesh, const std::vector<Vec3>&
     return bulge;
 }
 
+/// The vertices of crossing faces and their neighbours, in their order.
+std::vector<std::uint32_t> around(const TriangleMesh& mesh, const Rings& rings,
+                                  const std::vector<geometry::CrossingFaces>& crossings) {
+    std::vector<std::uint32_t> found;
+    for (const geometry::CrossingFaces& c : crossings)
+        for (const std::uint32_t f : {c.first, c.second})
+            for (const std::uint32_t v : mesh.triangles[f]) {
+                found.push_back(v);
+                found.insert(found.end(), rings.begin(v), rings.end(v));
+            }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+}
+
 }  // namespace
 
 Rings::Rings(const TriangleMesh& mesh) : first_(mesh.vertices.size() + 1, 0), around_(3 * mesh.triangles.size()) {
@@ -190,22 +205,41 @@ void smoothKeepingVolume(TriangleMesh& mesh, const std::vector<Vec3>& normals, c
         const std::vector<geometry::CrossingFaces> crossings = geometry::selfIntersections(mesh);
         core::report(progress, 0.8 + 0.2 * round / kUncrossRounds);
         if (crossings.empty()) break;
-        std::vector<std::uint32_t> found;
-        for (const geometry::CrossingFaces& c : crossings)
-            for (const std::uint32_t f : {c.first, c.second})
-                for (const std::uint32_t v : mesh.triangles[f]) {
-                    found.push_back(v);
-                    found.insert(found.end(), rings.begin(v), rings.end(v));
-                }
-        std::sort(found.begin(), found.end());
-        found.erase(std::unique(found.begin(), found.end()), found.end());
-        for (const std::uint32_t v : found) {
+        for (const std::uint32_t v : around(mesh, rings, crossings)) {
             // Half the way, then all of it.
             mesh.vertices[v] = back[v] == 0 ? (0.5 * (mesh.vertices[v] + home[v])).eval() : home[v];
             back[v] = 1;
         }
     }
     core::report(progress, 1.0);
+}
+
+double uncross(TriangleMesh& mesh, std::size_t& left) {
+    std::vector<geometry::CrossingFaces> crossings = geometry::selfIntersections(mesh);
+    left = crossings.size();
+    if (left == 0) return 0.0;
+    const Rings rings(mesh);
+    const std::vector<Vec3> home = mesh.vertices;
+    std::vector<std::uint32_t> moved;
+    for (int round = 0; round < 2 * kUncrossRounds && left > 0; ++round) {
+        const std::vector<std::uint32_t> found = around(mesh, rings, crossings);
+        std::vector<Vec3> to;
+        for (const std::uint32_t v : found) {
+            Vec3 sum = Vec3::Zero();
+            for (const std::uint32_t* n = rings.begin(v); n != rings.end(v); ++n)
+                sum += mesh.vertices[*n];
+            to.push_back(0.5 * (mesh.vertices[v] + sum / static_cast<double>(rings.count(v))));
+        }
+        for (std::size_t i = 0; i < found.size(); ++i)
+            mesh.vertices[found[i]] = to[i];
+        moved.insert(moved.end(), found.begin(), found.end());
+        crossings = geometry::selfIntersections(mesh);
+        left = crossings.size();
+    }
+    double longest = 0.0;
+    for (const std::uint32_t v : moved)
+        longest = std::max(longest, (mesh.vertices[v] - home[v]).norm());
+    return longest;
 }
 
 }  // namespace handpiece::surfacing

@@ -49,4 +49,8 @@ struct Smoothing {
 void smoothKeepingVolume(geometry::TriangleMesh& mesh, const std::vector<core::Vec3>& normals,
                          const Smoothing& smoothing, const core::Progress& progress);
 
+/// Draws vertices where faces cross each other to the middle of their neighbours until none do. Gives back the farthest
+/// way; `left`: pairs of faces that still cross.
+double uncross(geometry::TriangleMesh& mesh, std::size_t& left);
+
 }  // namespace handpiece::surfacing

@@ -74,6 +74,61 @@ std::vector<float> fieldOf(const segmentation::Region& region, int index) {
     return field;
 }
 
+void evenOut(std::vector<float>& field, const std::array<int, 3>& size, double voxelMm) {
+    const auto h = static_cast<float>(voxelMm);
+    const std::size_t nx = static_cast<std::size_t>(size[0]), ny = static_cast<std::size_t>(size[1]),
+                      nz = static_cast<std::size_t>(size[2]), layer = nx * ny;
+    // By layers, and so the same sum at any thread count.
+    const auto inside = [&](float level) {
+        std::vector<double> sums(nz, 0.0);
+        core::parallelFor(nz, 4, [&](std::size_t b, std::size_t e) {
+            for (std::size_t k = b; k < e; ++k)
+                for (std::size_t i = k * layer; i < (k + 1) * layer; ++i)
+                    sums[k] += std::clamp(0.5f - (field[i] - level) / h, 0.0f, 1.0f);
+        });
+        double sum = 0.0;
+        for (const double s : sums)
+            sum += s;
+        return sum;
+    };
+    const double wanted = inside(0.0f);
+    // Deep values say nothing of the surface and would pull at it.
+    const float most = 1.5f * h;
+    core::parallelFor(field.size(), kGrain, [&](std::size_t b, std::size_t e) {
+        for (std::size_t i = b; i < e; ++i)
+            field[i] = std::clamp(field[i], -most, most);
+    });
+    // 1 2 1 along each axis, twice: a standard deviation of one voxel.
+    const auto lines = [&](std::size_t count, std::size_t length, std::size_t stride, const auto& firstOf) {
+        core::parallelFor(count, 64, [&](std::size_t b, std::size_t e) {
+            for (std::size_t line = b; line < e; ++line) {
+                float* at = field.data() + firstOf(line);
+                for (int pass = 0; pass < 2; ++pass) {
+                    float before = at[0];
+                    for (std::size_t i = 0; i < length; ++i) {
+                        const float now = at[i * stride], after = i + 1 < length ? at[(i + 1) * stride] : now;
+                        at[i * stride] = 0.25f * (before + after) + 0.5f * now;
+                        before = now;
+                    }
+                }
+            }
+        });
+    };
+    lines(ny * nz, nx, 1, [&](std::size_t l) { return l * nx; });
+    lines(nx * nz, ny, nx, [&](std::size_t l) { return l / nx * layer + l % nx; });
+    lines(layer, nz, layer, [](std::size_t l) { return l; });
+    float low = -h, high = h;
+    for (int i = 0; i < 12; ++i) {
+        const float middle = 0.5f * (low + high);
+        (inside(middle) < wanted ? low : high) = middle;
+    }
+    const float level = 0.5f * (low + high);
+    core::parallelFor(field.size(), kGrain, [&](std::size_t b, std::size_t e) {
+        for (std::size_t i = b; i < e; ++i)
+            field[i] -= level;
+    });
+}
+
 geometry::TriangleMesh fieldSurface(const std::vector<float>& field, const std::array<int, 3>& size, double voxelMm,
                                     const core::Progress& progress) {
     geometry::ScalarGrid grid;

@@ -17,6 +17,10 @@ namespace handpiece::surfacing {
 /// The values of solid `index` of the region (-1: outer), turned to negative inside.
 [[nodiscard]] std::vector<float> fieldOf(const segmentation::Region& region, int index);
 
+/// Evens a field out over about a voxel and moves its level so that as many voxels are inside as before: what joins or
+/// divides by less than that goes.
+void evenOut(std::vector<float>& field, const std::array<int, 3>& size, double voxelMm);
+
 /// The surface where a field (negative inside, on a grid of `size` nodes `voxelMm` apart from the origin) is zero;
 /// vertices found along the grid's edges by cubics, which follow a curved distance where a line cuts it short.
 [[nodiscard]] geometry::TriangleMesh fieldSurface(const std::vector<float>& field, const std::array<int, 3>& size,

@@ -40,8 +40,9 @@ struct Settings {
 };
 /// Isosurfaces of the region's solids, smoothed by Taubin's low-pass within a fraction of a voxel of them, each shell
 /// then set to the volume that its solid has below the voxel. Of the tooth and its dentine the largest shell is kept,
-/// of the other tissues those of 20 voxels and more. The same bytes at any thread count. Throws core::Error for a
-/// region without a tooth, values that do not fill its grid, a grid that is not isotropic.
+/// of the other tissues those (and the hollows) of 20 voxels and more. A solid with more than a few tunnels is noise:
+/// it is evened out over a voxel, its volume kept, and the notes tell. The same bytes at any thread count. Throws
+/// core::Error for a region without a tooth, values that do not fill its grid, a grid that is not isotropic.
 [[nodiscard]] Surfaces makeSurfaces(const segmentation::Region& region, const Settings& settings = {},
                                     const core::Progress& progress = {});
 

@@ -202,9 +202,8 @@ void requireFolder(const fs::path& out) {
         throw core::Error("there is no such folder", folder.string(), "make it first");
 }
 
-ScanResult worked(const ScanOptions& o, ScanStage last) {
+ScanResult worked(const ScanOptions& o, const ScanJob& job, ScanStage last) {
     core::setThreadCount(o.threads);
-    const ScanJob job = jobOf(o);
     // Before the work, so that a job that is cancelled can be taken up again.
     if (!o.saveJob.empty()) station::writeScanJob(job, o.saveJob);
     StageBars bars;
@@ -336,7 +335,7 @@ void segment(const ScanOptions& o) {
     if (fs::path(o.out).extension() != ".nrrd")
         throw core::Error("labels are written as .nrrd", o.out, "name the output so");
     requireFolder(o.out);
-    const ScanResult result = worked(o, ScanStage::segment);
+    const ScanResult result = worked(o, jobOf(o), ScanStage::segment);
     const volume::Labels labels = segmentation::labelsOf(*result.region);
     volume::writeLabels(labels, o.out);
     fmt::print("{}: {} x {} x {} voxels of {:.4g} mm\n", o.out, labels.grid.size[0], labels.grid.size[1],
@@ -359,7 +358,7 @@ std::string fileNameOf(const surfacing::Surface& s) {
 void surface(const ScanOptions& o) {
     requireFolder(o.out);
     const bool isNew = !fs::exists(o.out);
-    const ScanResult result = worked(o, ScanStage::decimate);
+    const ScanResult result = worked(o, jobOf(o), ScanStage::decimate);
     core::prepareOutputFolder(o.out);
     std::vector<fs::path> made;
     try {
@@ -403,11 +402,16 @@ fs::path reportPlace(const fs::path& out, const std::vector<fs::path>& places) {
 
 void makeCase(const ScanOptions& o) {
     requireFolder(o.out);
-    const ScanResult result = worked(o, ScanStage::decimate);
+    const ScanJob job = jobOf(o);
+    for (const fs::path& place : station::casePlaces(job, o.out))
+        if (fs::is_directory(place) && !fs::is_empty(place) && !fs::exists(place / "case.toml"))
+            throw core::Error("this folder holds something else and is not replaced", place.string(),
+                              "name a new folder, or one with an old case.toml");
+    const ScanResult result = worked(o, job, ScanStage::decimate);
     std::string page;
     if (o.report) {
         ProgressBar bar("drawing the report");
-        page = station::scanReport(result, station::casePlaces(result, o.out), {}, bar.listener());
+        page = station::scanReport(result, station::casePlaces(job, o.out), {}, bar.listener());
     }
     const std::vector<fs::path> places = station::writeScanCases(result, o.out);
     for (std::size_t i = 0; i < places.size(); ++i) {

@@ -214,6 +214,7 @@ std::vector<std::string> ScanResult::notes() const {
 
 ScanResult runScanJob(const ScanJob& job, const ScanProgress& progress, const ScanResult* before, ScanStage last) {
     requireJob(job);
+    placing::requireFdi(job.placing.fdiNumber);
     // Known to be missing now, not after a minute of work.
     (void)tissuesOf(job.tissuesFile);
     if (!job.intraoral.empty() && !fs::is_regular_file(job.intraoral))
@@ -277,16 +278,16 @@ ScanResult runScanJob(const ScanJob& job, const ScanProgress& progress, const Sc
     return result;
 }
 
-std::vector<fs::path> casePlaces(const ScanResult& result, const fs::path& out) {
+std::vector<fs::path> casePlaces(const ScanJob& job, const fs::path& out) {
     if (out.empty() || !out.has_filename())
         throw core::Error("a case needs a folder or a .handpiece file", "output", "name one");
-    if (result.cases.size() == 1) return {out};
+    if (job.faces > 0 || job.percents.size() == 1) return {out};
     std::vector<fs::path> places;
-    for (const ScannedCase& c : result.cases) {
+    for (const double percent : job.percents) {
         fs::path place = out;
         const bool isPackage = tooth::isPackageName(out);
         place.replace_filename(fmt::format("{}-{}{}", (isPackage ? out.stem() : out.filename()).string(),
-                                           shown(c.percent), isPackage ? out.extension().string() : ""));
+                                           shown(percent), isPackage ? out.extension().string() : ""));
         places.push_back(place);
     }
     return places;
@@ -294,7 +295,7 @@ std::vector<fs::path> casePlaces(const ScanResult& result, const fs::path& out) 
 
 std::vector<fs::path> writeScanCases(const ScanResult& result, const fs::path& out) {
     if (result.cases.empty()) throw core::Error("there is no case to write", "scan", "finish the scan's job first");
-    const std::vector<fs::path> places = casePlaces(result, out);
+    const std::vector<fs::path> places = casePlaces(result.job, out);
     std::vector<fs::path> made;
     try {
         for (std::size_t i = 0; i < places.size(); ++i) {

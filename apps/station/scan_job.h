@@ -118,7 +118,7 @@ struct ScanResult {
 
 /// The places that writeScanCases() writes to: `out` for one case; for several CASE-6, CASE-12, ... (mine.handpiece:
 /// mine-6.handpiece, ...).
-[[nodiscard]] std::vector<std::filesystem::path> casePlaces(const ScanResult& result, const std::filesystem::path& out);
+[[nodiscard]] std::vector<std::filesystem::path> casePlaces(const ScanJob& job, const std::filesystem::path& out);
 /// Every case of a finished result, folder or .handpiece file by its name; returns the places. An error leaves none.
 std::vector<std::filesystem::path> writeScanCases(const ScanResult& result, const std::filesystem::path& out);
 

@@ -12,6 +12,8 @@ int buccalSignOf(int fdi) {
     return fdi == 0 ? 0 : quadrant % 2 == 1 ? 1 : -1;
 }
 
+}  // namespace
+
 void requireFdi(int fdi) {
     const int quadrant = fdi / 10, place = fdi % 10;
     const bool isPermanent = quadrant >= 1 && quadrant <= 4 && place >= 1 && place <= 8;
@@ -19,8 +21,6 @@ void requireFdi(int fdi) {
     if (fdi != 0 && !isPermanent && !isMilk)
         throw core::Error("there is no tooth of this FDI number", std::to_string(fdi), "give 11 to 48 or 51 to 85");
 }
-
-}  // namespace
 
 tooth::Case makeCase(const surfacing::Surfaces& surfaces, const Placed& placed, const CaseText& text,
                      const std::vector<tooth::Part>& scenery) {

@@ -18,6 +18,8 @@ struct CaseText {
     int buccalSign = 0;
     std::string tissuesToml;  ///< what the case changes about its tissues
 };
+/// Throws core::Error unless `fdi` is 0 or the number of a tooth there is.
+void requireFdi(int fdi);
 /// In the tooth's frame; `scenery` (neighbours, gum, bone) is in the scanner's frame like the surfaces. Authored
 /// lesions are named "caries (authored)".
 [[nodiscard]] tooth::Case makeCase(const surfacing::Surfaces& surfaces, const Placed& placed, const CaseText& text,

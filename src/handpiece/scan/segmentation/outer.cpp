@@ -189,14 +189,14 @@ void findOuter(Work& work, const CoarseTeeth& teeth, std::size_t chosen, const v
             const double steep = g.norm();
             if (steep < flat) continue;
             const Vec3 n = g / steep, here(i, j, k);
-            float inner = v, below = ground;
-            for (const double d : {0.8, 1.6, 2.4})
+            float inner = v, darkestNear = v;
+            for (const double d : {0.8, 1.6, 2.4}) {
                 inner = std::max(inner, sample(shape, work.damped, here + d * n));
-            if (isGroundVaried) {
-                for (const double d : {0.8, 1.6, 2.4})
-                    below = std::min(below, sample(shape, work.damped, here - d * n));
-                below = std::max(below, t.outside);
+                darkestNear = std::min(darkestNear, sample(shape, work.damped, here - d * n));
             }
+            // A step inside the tooth (enamel beside a lesion) is none of the outline's.
+            if (darkestNear > t.toothFrom - 0.3f * (t.toothFrom - t.outside)) continue;
+            const float below = isGroundVaried ? std::clamp(darkestNear, t.outside, ground) : t.outside;
             inner = std::clamp(inner, t.dentine, t.enamel);
             const float f = (v - below) / (inner - below);
             out = std::clamp((f - 0.5f) * kSlope * static_cast<float>(work.sigma), -kBand, kBand);

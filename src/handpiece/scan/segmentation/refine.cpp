@@ -16,7 +16,8 @@ constexpr double kSqrtPi = 1.7724538509055159;
 /// One inner tissue as the model of the scan sees it.
 struct Layer {
     Field* inside;
-    float level;
+    float* level;
+    bool isOpen;  ///< the level is fitted too
 };
 
 /// Standard deviation of the blur [voxels]: how far the outer surface's profile lies from a step. `work.outer` must be
@@ -65,12 +66,21 @@ void compose(const Work& work, const std::vector<Layer>& layers, Field& out) {
             out[n] = t.enamel;
         for (const Layer& layer : layers) {
             const float* inside = layer.inside->data();
+            const float level = *layer.level;
             for (std::size_t n = from; n < to; ++n)
-                out[n] += coverage(inside[n]) * (layer.level - out[n]);
+                out[n] += coverage(inside[n]) * (level - out[n]);
         }
         for (std::size_t n = from; n < to; ++n)
             out[n] = t.outside + coverage(work.outer[n]) * (out[n] - t.outside);
     });
+}
+
+/// By how much a tissue is brighter than the model says, well inside it.
+float levelError(const Work& work, const Field& inside, const Field& difference) {
+    double sum = 0, count = 0;
+    for (std::size_t n = 0; n < inside.size(); ++n)
+        if (inside[n] > 0.8f && work.outer[n] > 2) sum += static_cast<double>(difference[n]), count += 1;
+    return count < 20 ? 0.0f : static_cast<float>(sum / count);
 }
 
 /// Moves every surface by what the blurred difference says, each by its own contrast.
@@ -85,12 +95,12 @@ void move(Work& work, const std::vector<Layer>& layers, const Field& pull, float
                 float& inside = (*layer.inside)[n];
                 const float c = coverage(inside);
                 if (std::abs(inside) < kReach && work.outer[n] > 0) {
-                    const float contrast = layer.level - level;
+                    const float contrast = *layer.level - level;
                     if (std::abs(contrast) > least)
                         inside +=
                             std::clamp(gain * pull[n] / contrast, -0.35f, 0.35f) * std::min(1.0f, work.outer[n] + 0.3f);
                 }
-                level += c * (layer.level - level);
+                level += c * (*layer.level - level);
             }
             if (std::abs(work.outer[n]) < kReach && !work.held[n]) {
                 const float contrast = level - t.outside;
@@ -119,11 +129,11 @@ void even(const Shape& shape, Field& inside, Field& scratch, float share) {
 }  // namespace
 
 void refine(Work& work, const core::Progress& progress) {
-    const Thresholds& t = work.levels;
-    std::vector<Layer> layers{{&work.dentine, t.dentine}};
-    if (!work.pulp.empty()) layers.push_back({&work.pulp, t.pulp});
-    if (!work.caries.empty()) layers.push_back({&work.caries, work.cariesLevel});
-    if (!work.restoration.empty()) layers.push_back({&work.restoration, work.restorationLevel});
+    Thresholds& t = work.levels;
+    std::vector<Layer> layers{{&work.dentine, &t.dentine, false}};
+    if (!work.pulp.empty()) layers.push_back({&work.pulp, &t.pulp, false});
+    if (!work.caries.empty()) layers.push_back({&work.caries, &work.cariesLevel, true});
+    if (!work.restoration.empty()) layers.push_back({&work.restoration, &work.restorationLevel, true});
     const float brightest =
         work.restoration.empty() ? t.enamel + 0.5f * (t.enamel - t.outside) : work.restorationLevel * 1.2f;
     Field& difference = work.damped;  // no stage after this one needs it
@@ -136,6 +146,9 @@ void refine(Work& work, const core::Progress& progress) {
             for (std::size_t n = from; n < to; ++n)
                 difference[n] = work.outer[n] <= -kBand ? 0.0f : std::min(work.raw[n], brightest) - difference[n];
         });
+        if (round > 0)
+            for (const Layer& layer : layers)
+                if (layer.isOpen) *layer.level += levelError(work, *layer.inside, difference);
         core::report(progress, (round + 0.4) / kRounds);
         blur(work.shape, difference, difference, work.scratch, work.sigma);
         const double gain = 0.7 * 2 * std::sqrt(work.sigma * work.sigma + 1.0 / 24) * kSqrtPi;

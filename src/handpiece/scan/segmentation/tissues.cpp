@@ -16,7 +16,7 @@ constexpr double kLeastCariesMm3 = 0.12;
 constexpr double kCariesReachMm = 0.8;  ///< a lesion lies this near to enamel or to the outside
 constexpr double kChannelMm = 0.5;      ///< half the width of a channel through the enamel, at most
 constexpr double kLeastEnamelMm3 = 0.3;
-constexpr float kFaintEnamel = 0.3f;  ///< of the step from dentine: so bright is an edge thinner than the blur
+constexpr float kFaintEnamel = 0.18f;  ///< of the step from dentine: so bright is an edge thinner than the blur
 
 float median(std::vector<float>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -38,28 +38,66 @@ float levelOf(const Work& work, Mask mask, int rounds, float otherwise) {
     return values.size() < 30 ? otherwise : median(values);
 }
 
+/// Where a lesion may begin: close to enamel, on its dentine side or in it.
+Mask nearEnamel(const Work& work) {
+    const Shape& shape = work.shape;
+    Mask mask(shape.count());
+    for (std::size_t n = 0; n < mask.size(); ++n)
+        mask[n] = work.outer[n] > 1 && work.damped[n] > work.levels.enamelFrom;
+    const Field far = squaredDistance(shape, mask);
+    const double reach = kCariesReachMm / work.spacingMm();
+    for (std::size_t n = 0; n < mask.size(); ++n)
+        mask[n] = far[n] < reach * reach;
+    return mask;
+}
+
 /// Pulp: dark, inside, connected; and the thin canals that go on from it.
-void findPulp(Work& work, const core::Progress& progress) {
+void findPulp(Work& work, const Mask& nearEnamel, bool isLevelOpen, const core::Progress& progress) {
     const Shape& shape = work.shape;
     Thresholds& t = work.levels;
     const double voxelMm3 = work.grid.voxelMm3();
-    const auto sure = [&](float level) {
+    const double least = std::max(8.0, kLeastPulpMm3 / voxelMm3);
+    const auto darker = [&](float level) {
         Mask dark(shape.count());
         for (std::size_t n = 0; n < dark.size(); ++n)
             dark[n] = work.outer[n] > 2.2f && work.damped[n] < level;
         const Parts parts = connectedParts(shape, dark);
-        const double least = std::max(8.0, kLeastPulpMm3 / voxelMm3);
         for (std::size_t n = 0; n < dark.size(); ++n)
             dark[n] = dark[n] && static_cast<double>(parts.counts[parts.of[n]]) >= least;
         return dark;
     };
+    if (isLevelOpen) t.pulp = levelOf(work, darker(t.toothFrom), 3, t.pulp);
+    // Well below the middle between the two it is pulp, and what blurs around that. Near the middle it is a canal if it
+    // is thin, and a lesion if it is several voxels thick.
+    Mask lesion;
+    const auto find = [&] {
+        const float contrast = t.dentine - t.pulp;
+        Mask seed = darker(t.pulp + 0.32f * contrast);
+        seed = dilated(shape, dilated(shape, seed));
+        lesion.assign(shape.count(), 0);
+        for (std::size_t n = 0; n < lesion.size(); ++n)
+            lesion[n] = work.outer[n] > 1.5f && !seed[n] && work.damped[n] < t.dentine - 0.2f * contrast;
+        lesion = eroded(shape, lesion);
+        if (work.spacingMm() < 0.13) lesion = eroded(shape, lesion);
+        const Parts parts = connectedParts(shape, lesion);
+        std::vector<std::uint8_t> isNear(parts.counts.size(), 0);
+        for (std::size_t n = 0; n < lesion.size(); ++n)
+            if (nearEnamel[n]) isNear[parts.of[n]] = 1;
+        for (std::size_t n = 0; n < lesion.size(); ++n)
+            lesion[n] = lesion[n] && isNear[parts.of[n]];
+        for (int round = 0; round < 4; ++round)
+            lesion = dilated(shape, lesion);
+        Mask dark = darker(t.pulp + 0.5f * contrast);
+        for (std::size_t n = 0; n < dark.size(); ++n)
+            dark[n] = dark[n] && (seed[n] || !lesion[n]);
+        return dark;
+    };
     // What is dark tells how dark the pulp is, and that tells again what is.
-    Mask dark = sure(0.5f * (t.dentine + t.pulp));
-    for (int round = 0; round < 2; ++round) {
+    Mask dark = find();
+    if (isLevelOpen) {
         const float level = levelOf(work, dark, 3, t.pulp);
-        if (level >= t.dentine - 0.15f * (t.dentine - t.outside)) break;
-        t.pulp = level;
-        dark = sure(0.5f * (t.dentine + t.pulp));
+        if (level < t.dentine - 0.15f * (t.dentine - t.outside)) t.pulp = level;
+        dark = find();
     }
     core::report(progress, 0.4);
     const float contrast = t.dentine - t.pulp;
@@ -68,17 +106,22 @@ void findPulp(Work& work, const core::Progress& progress) {
         work.notes.emplace_back("no pulp was found");
         return;
     }
-    // Canals about as thin as a voxel: darker than dentine and than their surroundings.
-    Field& wide = work.scratch;
+    // Canals about as thin as a voxel: darker than dentine and than their surroundings once noise is averaged out.
+    constexpr double kAverage = 0.8;
+    Field even, wide;
+    blur(shape, work.raw, even, work.scratch, kAverage);
     wide.resize(shape.count());
     for (std::size_t n = 0; n < wide.size(); ++n)
-        wide[n] = std::clamp(work.damped[n], t.pulp, t.dentine);
-    blur(shape, wide, wide, work.scratch2, 2.2);
+        wide[n] = std::clamp(even[n], t.pulp, t.dentine);
+    blur(shape, wide, wide, work.scratch, 2.6);
     Mask thin(shape.count());
-    const float faint = std::max(0.18f * contrast, 1.2f * work.noise);
-    for (std::size_t n = 0; n < thin.size(); ++n)
-        thin[n] = dark[n] || (work.outer[n] > 2.5f && work.damped[n] < t.dentine - faint &&
-                              work.damped[n] < wide[n] - 0.08f * contrast && work.damped[n] < t.enamelFrom);
+    const float faint = std::max(0.11f * contrast, 5 * 0.21f * work.noise);
+    for (std::size_t n = 0; n < thin.size(); ++n) {
+        // Beside enamel a small lesion is likelier than a canal: what counts there must be plainer.
+        const float strict = nearEnamel[n] ? 1.7f : 1.0f;
+        thin[n] = dark[n] || (!lesion[n] && work.outer[n] > 2.5f && even[n] < t.dentine - strict * faint &&
+                              even[n] < wide[n] - strict * strict * 0.05f * contrast);
+    }
     const Parts parts = connectedParts(shape, thin);
     std::vector<std::uint8_t> has(parts.counts.size(), 0);
     for (std::size_t n = 0; n < dark.size(); ++n)
@@ -125,27 +168,21 @@ void addChannels(const Work& work, Mask& lesion) {
 }
 
 /// Demineralised tissue: darker than sound dentine, brighter than pulp, and no mere mixture at one of their surfaces.
-void findCaries(Work& work, const core::Progress& progress) {
+void findCaries(Work& work, const Mask& nearEnamel, const core::Progress& progress) {
     const Shape& shape = work.shape;
     const Thresholds& t = work.levels;
-    const double h = work.spacingMm();
     const float contrast = t.dentine - std::max(t.pulp, t.outside);
     const float from = t.dentine - std::max(0.22f * contrast, 2.0f * work.noise);
     Mask candidate(shape.count());
     for (std::size_t n = 0; n < candidate.size(); ++n)
         candidate[n] = work.outer[n] > 1.8f && work.damped[n] < from && (work.pulp.empty() || work.pulp[n] < -2.2f);
-    Mask enamel(shape.count());
-    for (std::size_t n = 0; n < enamel.size(); ++n)
-        enamel[n] = work.outer[n] > 1 && work.damped[n] > t.enamelFrom;
-    const Field toEnamel = squaredDistance(shape, enamel);
     core::report(progress, 0.3);
     const Parts parts = connectedParts(shape, candidate);
-    const double reach = kCariesReachMm / h;
     std::vector<std::uint8_t> isNear(parts.counts.size(), 0), hasCore(parts.counts.size(), 0);
     const Mask core = eroded(shape, candidate);
     for (std::size_t n = 0; n < candidate.size(); ++n) {
         if (!candidate[n]) continue;
-        if (toEnamel[n] < reach * reach) isNear[parts.of[n]] = 1;
+        if (nearEnamel[n]) isNear[parts.of[n]] = 1;
         if (core[n]) hasCore[parts.of[n]] = 1;
     }
     Mask lesion(shape.count(), 0);
@@ -324,8 +361,9 @@ void findTissues(Work& work, const Settings& settings, const core::Progress& pro
         }
     }
     core::report(progress, 0.1);
-    findPulp(work, core::part(progress, 0.1, 0.4));
-    if (settings.findCaries) findCaries(work, core::part(progress, 0.4, 0.6));
+    const Mask near = nearEnamel(work);
+    findPulp(work, near, !settings.thresholds, core::part(progress, 0.1, 0.4));
+    if (settings.findCaries) findCaries(work, near, core::part(progress, 0.4, 0.6));
     findRestoration(work);
     findDentine(work, core::part(progress, 0.6, 1));
 }

@@ -122,7 +122,7 @@ class Desk:
                            capture_output=True, check=False, timeout=10)
             time.sleep(0.1)
 
-    def until(self, happens, what, seconds=20):
+    def until(self, happens, what, seconds=120):
         """What `happens` gave, as soon as that is something."""
         deadline = time.monotonic() + seconds
         while True:
@@ -135,6 +135,16 @@ class Desk:
                 self.shot(self.folder / "failed.png")
                 raise SystemExit(f"no {what} after {seconds} s; what was seen is in {self.folder / 'failed.png'}")
             time.sleep(0.1)
+
+    @staticmethod
+    def comes_true(happens, seconds):
+        """Whether it happens in time."""
+        deadline = time.monotonic() + seconds
+        while time.monotonic() < deadline:
+            if happens():
+                return True
+            time.sleep(0.1)
+        return bool(happens())
 
     def wait_for(self, name, seconds=60, gone=False):
         self.until(lambda: (name in self.widgets()) != gone, f"{'end of ' if gone else ''}{name}", seconds)

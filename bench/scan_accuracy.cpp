@@ -221,6 +221,24 @@ json tellVolumes(const char* of, const std::array<double, tooth::kTissueCount>& 
     return all;
 }
 
+/// Where a person would click: dentine (never the pulp) nearest to the middle of the crown.
+core::Vec3 inCrown(const phantom::Image& image) {
+    const volume::Grid& grid = image.truth.grid;
+    const core::Vec3 middle = image.toothInScan.apply(core::Vec3(0.0, 0.0, 3.0));
+    core::Vec3 best = middle;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < grid.size[2]; ++k)
+        for (int j = 0; j < grid.size[1]; ++j)
+            for (int i = 0; i < grid.size[0]; ++i) {
+                if (image.truth.values[grid.index(i, j, k)] != phantom::labelOf(Tissue::dentine)) continue;
+                const core::Vec3 p = grid.toMm(core::Vec3(i, j, k));
+                if ((p - middle).squaredNorm() >= nearest) continue;
+                nearest = (p - middle).squaredNorm();
+                best = p;
+            }
+    return best;
+}
+
 json measure(const Options& o, const std::string& kind, const std::string& scanner, double voxelUm) {
     phantom::Settings settings = o.settings;
     settings.scanner = phantom::scannerByName(scanner);
@@ -248,7 +266,7 @@ json measure(const Options& o, const std::string& kind, const std::string& scann
                 {"image", imaging.told()}};
     tellCost("image", row["image"]);
     segmentation::Settings wanted = o.segmentation;
-    if (settings.scenery) wanted.toothAtMm = image.toothInScan.apply(core::Vec3(0.0, 0.0, 2.0));
+    if (settings.scenery) wanted.toothAtMm = inCrown(image);
     const Cost segmenting;
     const segmentation::Region region =
         o.labels ? segmentation::segmentLabels(image.truth, wanted) : segmentation::segment(image.volume, wanted);

@@ -71,6 +71,28 @@ void require(double value, double least, double most, const char* what, const ch
                           fmt::format("give {:g} to {:g}", least, most));
 }
 
+/// A neighbour is one surface in a case; a scanner sees enamel, dentine and pulp of it. Enamel: from nothing at the
+/// neck (z = 0) to its full thickness; pulp: what lies deep. In the truth all of it is the neighbour.
+std::vector<tooth::Part> insideOf(const tooth::Part& neighbour) {
+    constexpr double kEnamelMm = 1.0, kFullFromMm = 3.0, kDeepMm = 2.6;
+    const geometry::TriangleTree tree(neighbour.mesh);
+    geometry::IsosurfaceSettings settings;
+    settings.spacingMm = 0.25;
+    settings.lipschitz = 1.0 + kEnamelMm / kFullFromMm;
+    const core::Box box = neighbour.mesh.bounds().grown(0.5);
+    const int priority = tooth::properties(Tissue::restoration).priority;
+    std::vector<tooth::Part> parts{{neighbour.name, Tissue::enamel, priority, neighbour.mesh}};
+    const auto add = [&](Tissue tissue, const geometry::ScalarFunction& f) {
+        geometry::TriangleMesh mesh = geometry::isosurface(box, f, settings);
+        if (!mesh.triangles.empty())
+            parts.push_back({neighbour.name, tissue, priority + static_cast<int>(parts.size()), std::move(mesh)});
+    };
+    add(Tissue::dentine,
+        [&](const Vec3& p) { return tree.signedDistance(p) + kEnamelMm * std::clamp(p.z() / kFullFromMm, 0.01, 1.0); });
+    add(Tissue::pulp, [&](const Vec3& p) { return tree.signedDistance(p) + kDeepMm; });
+    return parts;
+}
+
 /// Grey values of a slice before any blur, and its truth.
 void imageSlice(const Rays& rays, int k, Scanner scanner, Image& image) {
     const volume::Grid& grid = image.volume.grid;
@@ -93,10 +115,12 @@ void imageSlice(const Rays& rays, int k, Scanner scanner, Image& image) {
                 addStep(static_cast<std::size_t>(j), s.to, -by);
                 continue;
             }
+            const bool isNeighbour = s.isScenery && s.tissue != Tissue::gum && s.tissue != Tissue::bone;
+            const std::uint8_t label = isNeighbour ? kNeighbourLabel : labelOf(s.tissue);
             const int first = static_cast<int>(std::ceil(std::max(s.from, 0.0)));
             const int last = static_cast<int>(std::ceil(std::min(s.to, static_cast<double>(columns)))) - 1;
             for (int i = first; i <= last; ++i)
-                image.truth.values[grid.index(i, j, k)] = labelOf(s.tissue);
+                image.truth.values[grid.index(i, j, k)] = label;
         }
     });
     for (int j = 0; j < grid.size[1]; ++j) {
@@ -244,6 +268,18 @@ Image image(const tooth::Case& toothCase, const Settings& settings, const core::
     image.volumesMm3 = volumesMm3(imaged, core::part(progress, 0.0, 0.15));
     const std::vector<double> weights = normalWeights(settings.blurVoxels);
     {
+        if (settings.scenery) {
+            std::vector<tooth::Part> scenery;
+            for (tooth::Part& part : imaged.scenery) {
+                if (part.tissue != Tissue::neighbour) {
+                    scenery.push_back(std::move(part));
+                    continue;
+                }
+                for (tooth::Part& piece : insideOf(part))
+                    scenery.push_back(std::move(piece));
+            }
+            imaged.scenery = std::move(scenery);
+        }
         const Rays rays(imaged, image.toothInScan, grid, settings.scenery);
         const auto slices = static_cast<std::size_t>(grid.size[2]);
         const auto area = static_cast<std::size_t>(grid.size[0]) * static_cast<std::size_t>(grid.size[1]);

@@ -96,12 +96,15 @@ TEST_F(ScanFiles, MixedFolderShowsAllSeriesAndWhatWasLeftOut) {
     test::writeBytes(folder_ / "broken.nrrd", "NRRD0004\n");
     test::writeBytes(folder_ / "settings.toml", "colour = \"blue\"\n");
     test::writeBytes(folder_ / ".hidden" / "x.dcm", "rubbish");
+    writeScan(test::sampleVolume({90, 90, 1}), temporary_.path() / "photo", ScanFormat::jpeg);
+    fs::copy_file(temporary_.path() / "photo" / "slice_0001.jpg", folder_ / "clinic.jpg");
     const auto found = findSeries(folder_);
     ASSERT_EQ(found.size(), 3u);
     EXPECT_EQ(found[0].format, "DICOM");
     EXPECT_EQ(found[1].format, "TIFF slices");
     EXPECT_EQ(found[2].format, "NRRD");
     EXPECT_THAT(found[0].notes, Contains(AllOf(HasSubstr("left out"), HasSubstr("broken.nrrd"))));
+    EXPECT_THAT(found[0].notes, Contains(HasSubstr("1 single picture was left out")));
     ReadSettings settings;
     settings.series = "2";
     EXPECT_EQ(readScan(folder_, settings).volume.grid.size, (std::array{20, 20, 10}));

@@ -47,7 +47,7 @@ using Failures = std::vector<core::Error>;
 [[nodiscard]] std::vector<std::size_t> listedFiles(const FileSet& files, std::size_t dicomdir, int& missing);
 /// BMP, JPEG, PNG and TIFF.
 [[nodiscard]] std::vector<Candidate> findSlices(const Files& files, const std::vector<std::size_t>& which,
-                                                Failures& failures);
+                                                Failures& failures, const core::Progress& progress);
 [[nodiscard]] Candidate openNrrd(const Files& files, std::size_t index);
 [[nodiscard]] Candidate openMetaImage(const Files& files, std::size_t index);
 [[nodiscard]] Candidate openNifti(const Files& files, std::size_t index);

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <map>
 #include <mutex>
 #include <system_error>
 
@@ -83,12 +82,16 @@ struct FileSet::Archive {
 FileSet::FileSet() = default;
 FileSet::~FileSet() = default;
 
-std::shared_ptr<const FileSet> FileSet::inMemory(std::string name, std::vector<std::byte> data) {
+std::shared_ptr<const FileSet> FileSet::inMemory(std::vector<InMemory> files) {
     const std::shared_ptr<FileSet> set(new FileSet);
-    set->entries_.push_back({std::move(name), data.size()});
-    set->where_ = set->entries_[0].name;
-    set->memory_ = std::make_shared<const std::vector<std::byte>>(std::move(data));
-    set->named_ = 0;
+    if (!files.empty()) set->where_ = files[0].name;
+    for (InMemory& file : files) {
+        set->entries_.push_back({file.name, file.data.size()});
+        set->memory_[file.name] = std::make_shared<const std::vector<std::byte>>(std::move(file.data));
+    }
+    set->sort();
+    for (std::size_t i = 0; i < set->entries_.size(); ++i)
+        if (set->entries_[i].name == set->where_) set->named_ = i;
     return set;
 }
 
@@ -223,13 +226,13 @@ void FileSet::sort() {
 }
 
 std::string FileSet::where(std::size_t index) const {
-    if (memory_) return where_;
+    if (!memory_.empty()) return entries_[index].name;
     if (archive_) return where_ + ": " + entries_[index].name;
     return (root_ / entries_[index].name).string();
 }
 
 Input FileSet::open(std::size_t index) const {
-    if (memory_) return Input(memory_, where_);
+    if (!memory_.empty()) return Input(memory_.at(entries_[index].name), entries_[index].name);
     if (!archive_) return Input(root_ / entries_[index].name);
     const Entry& entry = entries_[index];
     const auto damaged = [&] {
@@ -248,6 +251,15 @@ Input FileSet::open(std::size_t index) const {
     std::byte more;
     if (zip_fread(open.get(), &more, 1) != 0) throw damaged();  // also checks the sum
     return Input(std::move(data), where(index));
+}
+
+std::size_t FileSet::head(std::size_t index, void* to, std::size_t count) const {
+    if (!archive_) return open(index).readAt(0, to, count);
+    const std::lock_guard lock(archive_->mutex);
+    const std::unique_ptr<zip_file_t, CloseEntry> open(
+        zip_fopen_index(archive_->zip, archive_->byName.at(entries_[index].name), 0));
+    const zip_int64_t got = open ? zip_fread(open.get(), to, count) : 0;
+    return got > 0 ? static_cast<std::size_t>(got) : 0;
 }
 
 std::vector<std::byte> FileSet::bytes(std::size_t index, std::uint64_t limitBytes) const {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,8 +50,12 @@ class FileSet {
 
     /// Throws core::Error (missing, unreadable, a damaged ZIP, too many files).
     [[nodiscard]] static std::shared_ptr<const FileSet> open(const std::filesystem::path& path);
-    /// One file that is in memory.
-    [[nodiscard]] static std::shared_ptr<const FileSet> inMemory(std::string name, std::vector<std::byte> data);
+    struct InMemory {
+        std::string name;
+        std::vector<std::byte> data;
+    };
+    /// Files that are in memory; the first is the one that was named.
+    [[nodiscard]] static std::shared_ptr<const FileSet> inMemory(std::vector<InMemory> files);
 
     FileSet(const FileSet&) = delete;
     FileSet& operator=(const FileSet&) = delete;
@@ -63,6 +68,8 @@ class FileSet {
     [[nodiscard]] std::string where(std::size_t index) const;
     /// From several threads at once.
     [[nodiscard]] Input open(std::size_t index) const;
+    /// Its first bytes, without unpacking the rest.
+    [[nodiscard]] std::size_t head(std::size_t index, void* to, std::size_t count) const;
     /// The whole file; throws core::Error where it is larger.
     [[nodiscard]] std::vector<std::byte> bytes(std::size_t index, std::uint64_t limitBytes) const;
     /// In the folder of `beside`; names that lead elsewhere are never found.
@@ -82,7 +89,7 @@ class FileSet {
     std::string where_;
     int folders_ = 0;
     std::unique_ptr<Archive> archive_;
-    std::shared_ptr<const std::vector<std::byte>> memory_;
+    std::map<std::string, std::shared_ptr<const std::vector<std::byte>>> memory_;
     std::optional<std::size_t> named_;
 };
 

@@ -216,6 +216,13 @@ std::string whatIsThere(const FileSet& files) {
     return text.empty() ? "nothing" : text;
 }
 
+/// For notes: the file's own name, so that it can be found, and not where it lies.
+std::string brief(const core::Error& error) {
+    std::string name = error.where();
+    name.erase(0, name.find_last_of('/') + 1);
+    return fmt::format("\"{}\", {}", shown(name), error.problem());
+}
+
 Candidate choose(std::vector<Candidate>& candidates, const ReadSettings& settings, const std::string& where) {
     if (!settings.series.empty()) {
         for (Candidate& c : candidates)
@@ -291,8 +298,8 @@ std::vector<Candidate> findCandidates(const Files& files, const core::Progress& 
             std::array<std::uint8_t, 352> head{};
             std::size_t got = 0;
             try {
-                Input input = files->open(i);
-                got = input.readAt(0, head.data(), head.size());
+                // What lies beside a file that was named is known by its name.
+                if (!only || *only == i) got = files->head(i, head.data(), head.size());
             } catch (const core::Error&) {
                 got = 0;  // by its name then; whoever reads it will say why it cannot be
             }
@@ -372,8 +379,16 @@ std::vector<Candidate> findCandidates(const Files& files, const core::Progress& 
         for (Candidate& c : findDicom(files, dicom, failures, core::part(progress, 0.2, 0.9)))
             found.push_back(std::move(c));
     if (!pictures.empty())
-        for (Candidate& c : findSlices(files, pictures, failures))
+        for (Candidate& c : findSlices(files, pictures, failures, core::part(progress, 0.2, 0.9)))
             found.push_back(std::move(c));
+    // A photograph or a program's preview beside a scan is no series of its own.
+    if (std::any_of(found.begin(), found.end(), [](const Candidate& c) { return c.grid.size[2] > 1; })) {
+        const std::size_t before = found.size();
+        std::erase_if(found,
+                      [](const Candidate& c) { return c.grid.size[2] == 1 && c.series.format.ends_with("slices"); });
+        if (const std::size_t singles = before - found.size(); singles > 0)
+            notes.push_back(fmt::format("{} single picture{} left out", singles, singles == 1 ? " was" : "s were"));
+    }
     if (found.empty()) {
         if (!failures.empty()) throw failures.front();
         const std::string there = whatIsThere(*files);
@@ -396,11 +411,9 @@ std::vector<Candidate> findCandidates(const Files& files, const core::Progress& 
         if (!failures.empty())
             series.notes.push_back(
                 failures.size() == 1
-                    ? fmt::format("one file was left out: {}", failures.front().what())
-                    : fmt::format("{} files were left out, the first: {}", failures.size(), failures.front().what()));
-        if (found[i].problem) series.notes.push_back(fmt::format("cannot be read: {}", found[i].problem->what()));
-        if (!found[i].spacingProblem.empty())
-            series.notes.push_back(fmt::format("the spacing must be given: {}", found[i].spacingProblem));
+                    ? fmt::format("one file was left out: {}", brief(failures.front()))
+                    : fmt::format("{} files were left out, the first: {}", failures.size(), brief(failures.front())));
+        if (found[i].problem) series.notes.push_back(fmt::format("cannot be read: {}", brief(*found[i].problem)));
     }
     core::report(progress, 0.9);
     return found;
@@ -411,6 +424,8 @@ std::vector<Series> findSeries(const std::filesystem::path& path, const core::Pr
     std::vector<Series> out;
     for (const Candidate& candidate : found) {
         Series series = describe(candidate);
+        if (!candidate.spacingProblem.empty())
+            series.notes.push_back(fmt::format("the spacing must be given: {}", candidate.spacingProblem));
         const auto& size = candidate.grid.size;
         if (candidate.slice && static_cast<double>(size[0]) * size[1] < 1e8) {
             std::vector<float> slice(static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]));
@@ -418,7 +433,7 @@ std::vector<Series> findSeries(const std::filesystem::path& path, const core::Pr
                 candidate.slice(size[2] / 2, slice.data());
                 makeThumbnail(slice.data(), size[0], size[1], series);
             } catch (const core::Error& e) {
-                series.notes.push_back(fmt::format("its middle slice cannot be shown: {}", e.what()));
+                series.notes.push_back(fmt::format("its middle slice cannot be shown: {}", brief(e)));
             }
         }
         out.push_back(std::move(series));

@@ -151,11 +151,14 @@ std::vector<std::byte> wholeOf(Input& input) {
     return data;
 }
 
-std::vector<Candidate> findSlices(const Files& files, const std::vector<std::size_t>& which, Failures& failures) {
+std::vector<Candidate> findSlices(const Files& files, const std::vector<std::size_t>& which, Failures& failures,
+                                  const core::Progress& progress) {
     std::vector<Candidate> found;
     std::map<Key, std::vector<Slice>> groups;
     std::map<std::size_t, PictureInfo> known;
+    std::size_t done = 0;
     for (const std::size_t file : which) {
+        core::report(progress, 0.5 * static_cast<double>(done++) / static_cast<double>(which.size()));
         const std::string& name = files->entries()[file].name;
         Key key{std::string(folderOf(name)), {}, {}, {}};
         Slice slice;
@@ -220,6 +223,7 @@ std::vector<Candidate> findSlices(const Files& files, const std::vector<std::siz
         c.series.format = nameOf(key.kind);
         std::vector<PictureInfo> infos;
         for (const Slice& slice : slices) {
+            core::report(progress, 0.5 * static_cast<double>(done++) / static_cast<double>(which.size()));
             try {
                 Input input = files->open(slice.file);
                 const auto old = known.find(slice.file);

@@ -18,6 +18,7 @@ namespace handpiece::station {
 namespace {
 
 constexpr double kSectionPixelMm = 0.03;
+constexpr double kFinestFieldMm = 0.05, kCoarsestFieldMm = 0.1;
 constexpr int kSliceWidth = 420;  ///< pixels of a slice's picture, at least
 using core::Vec3;
 
@@ -151,9 +152,10 @@ NamedPicture sliceOf(const ScanResult& result, int axis) {
 
 class Artist {
   public:
-    Artist(const tooth::Case& toothCase, int width, int height, const core::Progress& progress)
+    Artist(const tooth::Case& toothCase, double voxelMm, int width, int height, const core::Progress& progress)
         : buccal_(toothCase.buccalSign), viewport_{width, height} {
         StationSettings settings;
+        settings.field.voxelMm = voxelMm;
         settings.tissues = toothCase.tissues;
         const Station station = makeStation(toothCase, std::move(settings), false, core::part(progress, 0.0, 0.6));
         live_ = std::make_unique<LiveTooth>(station.tooth, tooth::CutState{}, core::part(progress, 0.6, 0.8));
@@ -227,7 +229,9 @@ std::vector<NamedPicture> viewsOf(const ScanResult& result, int width, int heigh
     const auto finest = std::max_element(result.cases.begin(), result.cases.end(),
                                          [](const auto& a, const auto& b) { return a.percent < b.percent; });
     using view::StandardView;
-    Artist artist(finest->toothCase, width, height, core::part(progress, 0.0, 0.8));
+    // Half the scan's voxel shows all that it holds.
+    const double voxelMm = std::clamp(0.5 * result.region->grid.spacingMm.x(), kFinestFieldMm, kCoarsestFieldMm);
+    Artist artist(finest->toothCase, voxelMm, width, height, core::part(progress, 0.0, 0.8));
     const bool isGuessed = result.placed.isMesialGuessed;
     std::vector<NamedPicture> pictures;
     for (const auto& [from, name] : view::standardViews())

@@ -50,7 +50,8 @@ for k in range(nz):
     d.BitsAllocated, d.BitsStored, d.HighBit, d.PixelRepresentation = 16, 16, 15, 1
     d.RescaleIntercept, d.RescaleSlope = 0, 1
     d.PixelData = values[k].tobytes()
-    d.save_as(folder + "/%s_%04d.dcm" % (patient["name"], k), enforce_file_format=True)
+    d.is_little_endian, d.is_implicit_VR = True, False
+    d.save_as(folder + "/%s_%04d.dcm" % (patient["name"], k), write_like_original=False)
 """
 
 
@@ -105,9 +106,9 @@ class Scan(SystemTest):
         touched = json.loads((self.folder / "drop" / "summary.json").read_text())
         cut = json.loads(self.ok("run", "--case", case, "--bur", "round-4", "--motion", "plunge", "--voxel", 100,
                                  "--out", self.folder / "cut", "--json").stdout)
-        self.assertGreater(float(touched["contact"]["contact_s"] if "contact" in touched else 1), 0)
-        removed = json.dumps(cut)
-        self.assertIn("enamel", removed)
+        self.assertGreater(touched["contact_s"], 0.1)
+        self.assertGreater(touched["peak_force_n"], 0.1)
+        self.assertGreater(cut["removed_mm3"]["enamel"], 0.01)
 
         # The job does it again, bit for bit.
         again = self.folder / "again"
@@ -170,8 +171,8 @@ class Scan(SystemTest):
         said = [self.ok("scan", "info", folder).stdout, self.ok("scan", "info", folder, "--json").stdout]
         out = self.folder / "out"
         out.mkdir()
-        for name in ("case", "packed.handpiece"):
-            done = self.ok("scan", "case", folder, "--out", out / name, "--report", "--scenery")
+        for name, more in (("case", ("--report", "--scenery")), ("packed.handpiece", ("--percent", 25))):
+            done = self.ok("scan", "case", folder, "--out", out / name, *more)
             said += [done.stdout, done.stderr]
         done = self.ok("scan", "segment", folder, "--out", out / "labels.nrrd")
         said.append(done.stdout)
@@ -184,7 +185,7 @@ class Scan(SystemTest):
         with zipfile.ZipFile(out / "packed.handpiece") as packed:
             packed.extractall(out / "unpacked")
         with self.subTest("the files that were looked for are there"):
-            for name in ("case/case.toml", "case/report.html", "packed-report.html", "unpacked/case.toml", "labels.nrrd"):
+            for name in ("case/case.toml", "case/report.html", "unpacked/case.toml", "labels.nrrd"):
                 self.assertTrue((out / name).is_file(), name)
             self.assertTrue(list(out.rglob("*.h5")) or list((out / "case" / ".handpiece-cache").iterdir()))
         traces = [text.encode(code) for text in PATIENT.values() for code in ("utf-8", "utf-16-le")]

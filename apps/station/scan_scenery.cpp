@@ -20,6 +20,7 @@ constexpr double kCoarsestMm = 0.3;      ///< between samples, unless the scan i
 constexpr double kGapMm = 0.15;          ///< kept around the tooth itself
 constexpr double kLeastVolumeMm3 = 4.0;  ///< smaller pieces are noise
 constexpr std::size_t kMostFaces = 40000;
+constexpr std::uint8_t kNeighbourLabel = 8;  ///< another tooth as a whole, where labels tell it
 
 /// Trilinear, `outside` beyond the border.
 template <class Values>
@@ -146,7 +147,9 @@ std::vector<tooth::Part> sceneryOf(const volume::Labels& labels, const geometry:
     double done = 0.0;
     for (const Kind& kind : kKinds) {
         const auto isIt = [&](std::size_t i) {
-            return labels.values[i] >= kind.from && labels.values[i] <= kind.to ? 1.0 : 0.0;
+            const std::uint8_t label = labels.values[i];
+            const bool isOther = label == kNeighbourLabel && kind.tissue == tooth::Tissue::neighbour;
+            return (label >= kind.from && label <= kind.to) || isOther ? 1.0 : 0.0;
         };
         add(parts, kind.name, kind.tissue,
             around(

@@ -281,7 +281,7 @@ ScanJob scanJobFromToml(std::string_view text, const std::string& where) {
     job.isLabels = table.flag("labels").value_or(false);
     for (const double v : table.numbers("label_order")) {
         if (!(v >= 0.0 && v <= 255.0) || v != std::floor(v))
-            table.fail("a label is no whole number from 0 to 255", "give 0 to 7", "label_order");
+            table.fail("label_order holds what is no whole number from 0 to 255", "give 0 to 7", "label_order");
         job.labelOrder.push_back(static_cast<std::uint8_t>(v));
     }
     job.smooth = table.flag("smooth").value_or(job.smooth);

@@ -24,12 +24,14 @@
 #include "handpiece/model/tooth/tooth.h"
 #include "handpiece/scan/volume/write_scan.h"
 #include "scan/histogram_view.h"
+#include "scan/install.h"
 #include "scan/placing_page.h"
 #include "scan/report_page.h"
 #include "scan/scan_wizard.h"
 #include "scan/slice_view.h"
 #include "scan/solid_view.h"
 #include "scan/tissue_page.h"
+#include "shell_support.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -37,10 +39,6 @@ namespace {
 namespace fs = std::filesystem;
 using core::Vec3;
 using tooth::Tissue;
-
-bool waitFor(const std::function<bool()>& what, int timeoutMs = 60000) {
-    return QTest::qWaitFor(what, timeoutMs);
-}
 
 std::string textOf(const fs::path& file) {
     const std::vector<std::byte> bytes = core::readFile(file);
@@ -183,7 +181,7 @@ TEST_F(ScanWizardTest, FromAFileToACaseThatCanBeRead) {
     QString tried;
     QObject::connect(wizard_.get(), &ScanWizard::tryNow, wizard_.get(), [&](const QString& place) { tried = place; });
     wizard_->reportPage()->setPlace(own_.filePath(QStringLiteral("egg")));
-    EXPECT_TRUE(fs::exists(unfinished()) || waitFor([this] { return fs::exists(unfinished()); }, 3000));
+    EXPECT_TRUE(fs::exists(unfinished()) || waitFor([this] { return fs::exists(unfinished()); }));
     click("scanTry");
     ASSERT_TRUE(waitFor([&] { return !tried.isEmpty() || model().problem(); })) << this->said();
     ASSERT_FALSE(tried.isEmpty()) << this->said();
@@ -421,12 +419,45 @@ TEST_F(ScanWizardTest, SpacingIsAskedForWhereTheScanDoesNotTellIt) {
     EXPECT_TRUE(model().isSpacingAsked());
     EXPECT_FALSE(find<QPushButton>("scanNext")->isEnabled());
     click("scanEstimate");
-    ASSERT_TRUE(waitFor([this] { return model().molarSpacingMm() > 0 || model().problem(); })) << said();
+    ASSERT_TRUE(waitFor([this] { return model().molarSpacingMm() || model().problem(); })) << said();
     // The tooth is 13 mm of 65 voxels; a mean molar would be 21.
-    EXPECT_NEAR(model().molarSpacingMm(), kVoxelMm * kMeanMolarMm / (2.0 * kOuterMm.z()), 0.02);
+    ASSERT_TRUE(model().molarSpacingMm());
+    EXPECT_NEAR(model().molarSpacingMm()->x(), kVoxelMm * kMeanMolarMm / (2.0 * kOuterMm.z()), 0.02);
     ASSERT_TRUE(job().spacingMm);
     ASSERT_TRUE(waitFor([this] { return model().scan() != nullptr || model().problem(); })) << said();
     EXPECT_TRUE(find<QPushButton>("scanNext")->isEnabled());
+}
+
+TEST_F(ScanWizardTest, LabelsAreTakenAsTheyAre) {
+    const volume::Volume grey = toothVolume();
+    volume::Labels labels;
+    labels.grid = grey.grid;
+    std::array<double, 8> count{};
+    for (int k = 0; k < grey.grid.size[2]; ++k)
+        for (int j = 0; j < grey.grid.size[1]; ++j)
+            for (int i = 0; i < grey.grid.size[0]; ++i) {
+                const Vec3 p = grey.grid.toMm(Vec3(i, j, k));
+                const std::uint8_t label = inside(p, kOuterMm) <= 0                                ? 0
+                                           : inside(p, kPulp * kOuterMm) > 0                       ? 4
+                                           : inside(p, kDentine * kOuterMm) > 0 || p.z() < kNeckMm ? 3
+                                                                                                   : 2;
+                labels.values.push_back(label);
+                ++count[label];
+            }
+    const fs::path file = toPath(own_.filePath(QStringLiteral("labels.nrrd")));
+    volume::writeLabels(labels, file);
+    wizard_->take(toQString(file));
+    ASSERT_TRUE(waitFor([this] { return model().isSeriesKnown() || model().problem(); })) << said();
+    find<QCheckBox>("scanIsLabels")->setChecked(true);
+    ASSERT_TRUE(waitFor([this] { return (model().scan() && model().scan()->labels) || model().problem(); })) << said();
+    ASSERT_TRUE(wizard_->goTo(ScanWizard::tissues));
+    ASSERT_TRUE(previewed()) << said();
+    EXPECT_FALSE(find<HistogramView>("histogram")->isVisible());
+    for (const auto& [tissue, label] :
+         {std::pair{Tissue::enamel, 2}, std::pair{Tissue::dentine, 3}, std::pair{Tissue::pulp, 4}}) {
+        const double mm3 = count[static_cast<std::size_t>(label)] * labels.grid.voxelMm3();
+        EXPECT_NEAR(volumeOf(tissue), mm3, 0.05 * mm3 + 0.3) << label;
+    }
 }
 
 TEST_F(ScanWizardTest, StepsAreSavedForTheCommandLine) {
@@ -484,6 +515,48 @@ TEST_F(ScanWizardTest, EveryPartHasANameOfItsOwn) {
     }
     for (auto it = names.begin(); it != names.end(); ++it)
         EXPECT_EQ(it.value(), 1) << it.key().toStdString();
+}
+
+/// The window that the wizard is opened from.
+class ScanInWindowTest : public ShellTest {};
+
+TEST_F(ScanInWindowTest, AFolderOfSlicesDroppedOnTheWindowOpensTheWizard) {
+    start();
+    installScanWizard(window());
+    const QString folder = own_.filePath(QStringLiteral("slices"));
+    volume::writeScan(toothVolume(), toPath(folder), volume::ScanFormat::png);
+    drop(folder);
+    auto* wizard = window().findChild<ScanWizard*>();
+    ASSERT_TRUE(wizard);
+    EXPECT_TRUE(wizard->isVisible());
+    ASSERT_TRUE(waitFor([&] { return wizard->model().scan() != nullptr || wizard->model().problem(); }));
+    EXPECT_FALSE(wizard->model().problem());
+    EXPECT_FALSE(window().errorDialog());
+    // The menu brings the same one to the front.
+    action("actionNewScan")->trigger();
+    EXPECT_EQ(window().findChildren<ScanWizard*>().size(), 1);
+    // "Try it now" is the window's matter.
+    const fs::path place = toPath(own_.filePath(QStringLiteral("egg.handpiece")));
+    tooth::writeCase(eggTooth(starter::ToothKind::lowerFirstMolar), place);
+    emit wizard->tryNow(toQString(place));
+    ASSERT_TRUE(waitFor([&] {
+        return !simulator().isBusy() && simulator().mode() == Simulator::Mode::sitting &&
+               simulator().document().caseFile == place;
+    }));
+    EXPECT_TRUE(waitFor([this] { return window().findChild<ScanWizard*>() == nullptr; }));
+}
+
+TEST_F(ScanInWindowTest, CasesAndMeshesAreNoScans) {
+    start();
+    installScanWizard(window());
+    const fs::path folder = toPath(own_.filePath(QStringLiteral("case")));
+    tooth::writeCase(eggTooth(starter::ToothKind::lowerFirstMolar), folder);
+    drop(toQString(folder));
+    EXPECT_FALSE(window().findChild<ScanWizard*>());
+    ASSERT_TRUE(waitFor([&] {
+        return !simulator().isBusy() && simulator().mode() == Simulator::Mode::sitting &&
+               simulator().document().caseFile == folder;
+    }));
 }
 
 }  // namespace

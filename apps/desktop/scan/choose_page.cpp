@@ -24,7 +24,8 @@
 namespace handpiece::desktop {
 namespace {
 
-constexpr int kThumbnail = 72;
+constexpr int kThumbnail = 72, kPicture = 260;
+constexpr double kOddMm = 0.6;  // no scanner for teeth is so coarse
 
 QImage pictureOf(const volume::Series& series) {
     if (series.thumbnail.empty() || series.thumbnailSize[0] <= 0) return {};
@@ -85,14 +86,16 @@ ChoosePage::ChoosePage(ScanModel& model, ScanQuestions& questions, QWidget* pare
     inDrop->addLayout(buttons);
     column->addWidget(drop_);
 
-    auto* row = new QHBoxLayout;
+    found_ = new QWidget(this);
+    auto* row = new QHBoxLayout(found_);
+    row->setContentsMargins(0, 0, 0, 0);
     row->setSpacing(12);
     list_ = named(new QListWidget(this), "scanSeries", tr("What was found"), tr("Choose the scan of the tooth"));
     list_->setIconSize({kThumbnail, kThumbnail});
     list_->setSpacing(3);
     list_->setUniformItemSizes(true);
     list_->setWordWrap(true);
-    row->addWidget(list_, 3);
+    row->addWidget(list_, 2);
 
     auto* scroll = new QScrollArea(this);
     scroll->setObjectName(QStringLiteral("scanDetailsScroll"));
@@ -100,14 +103,16 @@ ChoosePage::ChoosePage(ScanModel& model, ScanQuestions& questions, QWidget* pare
     scroll->setFrameShape(QFrame::NoFrame);
     details_ = new QFrame;
     details_->setObjectName(QStringLiteral("scanDetails"));
-    auto* inDetails = new QVBoxLayout(details_);
-    inDetails->setContentsMargins(8, 0, 4, 0);
-    inDetails->setSpacing(10);
+    auto* across = new QHBoxLayout(details_);
+    across->setContentsMargins(0, 0, 4, 0);
+    across->setSpacing(18);
     picture_ = new QLabel(details_);
     picture_->setObjectName(QStringLiteral("scanPicture"));
     picture_->setAccessibleName(tr("The middle slice"));
-    picture_->setAlignment(Qt::AlignCenter);
-    inDetails->addWidget(picture_);
+    across->addWidget(picture_, 0, Qt::AlignTop);
+    auto* inDetails = new QVBoxLayout;
+    inDetails->setSpacing(10);
+    across->addLayout(inDetails, 1);
     what_ = new QLabel(details_);
     what_->setObjectName(QStringLiteral("scanWhat"));
     what_->setWordWrap(true);
@@ -134,6 +139,7 @@ ChoosePage::ChoosePage(ScanModel& model, ScanQuestions& questions, QWidget* pare
         box->setSuffix(tr(" mm"));
         box->setSpecialValueText(tr("not said yet"));
         box->setKeyboardTracking(false);
+        box->setMaximumWidth(160);
         connect(box, &QDoubleSpinBox::valueChanged, this, [this] { takeSpacing(); });
         return box;
     };
@@ -156,8 +162,18 @@ ChoosePage::ChoosePage(ScanModel& model, ScanQuestions& questions, QWidget* pare
     inDetails->addWidget(labels_);
     inDetails->addStretch(1);
     scroll->setWidget(details_);
-    row->addWidget(scroll, 2);
-    column->addLayout(row, 1);
+    row->addWidget(scroll, 5);
+    column->addWidget(found_, 1);
+    way_ =
+        new QLabel(tr("<ol><li>Choose the scan.</li><li>See which tissues were found in it; correct by hand where the "
+                      "program is wrong.</li><li>Say how fine the surfaces shall be.</li><li>Say which way is up, and "
+                      "give the case a name.</li><li>Read how good it is, save it, try it.</li></ol>"),
+                   this);
+    way_->setObjectName(QStringLiteral("scanWay"));
+    way_->setWordWrap(true);
+    way_->setAlignment(Qt::AlignTop);
+    way_->setFont(scaledFont(font(), 1.08));
+    column->addWidget(way_, 1);
 
     connect(folder, &QPushButton::clicked, this, [this] { take(questions_.folder(tr("A folder of slices"))); });
     connect(file, &QPushButton::clicked, this, [this] {
@@ -176,8 +192,7 @@ ChoosePage::ChoosePage(ScanModel& model, ScanQuestions& questions, QWidget* pare
     });
     connect(estimate_, &QPushButton::clicked, this, [this] { this->model().estimateSpacing(); });
     connect(&model, &ScanModel::spacingEstimated, this, [this] {
-        const double mm = this->model().molarSpacingMm();
-        if (mm > 0) decide([mm](station::ScanJob& job) { job.spacingMm = core::Vec3::Constant(mm); });
+        if (const auto mm = this->model().molarSpacingMm()) decide([&](station::ScanJob& job) { job.spacingMm = *mm; });
         showDetails();
     });
     connect(&model, &ScanModel::seriesFound, this, &ChoosePage::showSeries);
@@ -257,16 +272,20 @@ void ChoosePage::showDetails() {
     showing_ = true;
     const volume::Series* series = model().chosenSeries();
     details_->setVisible(series != nullptr);
+    list_->setVisible(model().series().size() > 1);
+    found_->setVisible(!model().series().empty());
+    way_->setVisible(model().series().empty());
     if (series) {
         const QImage image = pictureOf(*series);
         picture_->setVisible(!image.isNull());
         if (!image.isNull())
             picture_->setPixmap(
-                QPixmap::fromImage(image.scaled(190, 190, Qt::KeepAspectRatio, Qt::SmoothTransformation)));
+                QPixmap::fromImage(image.scaled(kPicture, kPicture, Qt::KeepAspectRatio, Qt::SmoothTransformation)));
         QStringList lines{tr("%1, %2 voxels, %3 bits each")
                               .arg(QString::fromStdString(series->format), sizeOf(*series))
                               .arg(series->bits),
                           spacingOf(*series)};
+        if (model().job().spacingMm) lines.back() += tr("; another size was given by hand");
         if (const auto scan = model().scan()) {
             const volume::Grid& g = scan->scan->volume.grid;
             const auto mm = [&](int a) {
@@ -280,21 +299,26 @@ void ChoosePage::showDetails() {
             notes << QStringLiteral("•  ") + QString::fromStdString(text);
         notes_->setText(notes.join(QLatin1Char('\n')));
         notes_->setVisible(!notes.isEmpty());
-        spacingWhy_->setText(series->isSpacingKnown
-                                 ? tr("The scan tells it. Change it only when you know better.")
-                                 : tr("The scan does not tell it, and every millimetre depends on it. The scanner's "
-                                      "record or report has it."));
+        // Many programs write 1 mm where they know nothing.
+        const bool isOdd = series->isSpacingKnown && series->spacingMm.maxCoeff() >= kOddMm;
+        spacingWhy_->setText(
+            !series->isSpacingKnown ? tr("The scan does not tell it, and every millimetre depends on it. The scanner's "
+                                         "record or report has it.")
+            : isOdd
+                ? tr("The scan says so, but it is too coarse for a tooth: some programs write 1 mm when they do not "
+                     "know. The scanner's record or report has it.")
+                : tr("The scan tells it. Change it only when you know better."));
         const core::Vec3 now =
             model().job().spacingMm.value_or(series->isSpacingKnown ? series->spacingMm : core::Vec3::Zero());
         within_->setValue(now.x());
         between_->setValue(now.z());
-        estimate_->setVisible(!series->isSpacingKnown);
-        const double mm = model().molarSpacingMm();
-        molar_->setVisible(!series->isSpacingKnown);
-        molar_->setText(mm > 0 ? tr("With %1 mm the tooth is 21 mm long, as a mean first molar is. Teeth differ: every "
-                                    "millimetre of this case will be a guess.")
-                                     .arg(QLocale().toString(mm, 'f', 3))
-                               : tr("If you do not know it and the tooth is a molar, a mean one can stand in for it."));
+        estimate_->setVisible(!series->isSpacingKnown || isOdd);
+        molar_->setVisible(!series->isSpacingKnown || isOdd);
+        const auto mm = model().molarSpacingMm();
+        molar_->setText(mm ? tr("With %1 mm the tooth is 21 mm long, as a mean first molar is. Teeth differ: every "
+                                "millimetre of this case will be a guess.")
+                                 .arg(QLocale().toString(mm->x(), 'f', 3))
+                           : tr("If you do not know it and the tooth is a molar, a mean one can stand in for it."));
     }
     showing_ = false;
 }

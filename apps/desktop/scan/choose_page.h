@@ -46,8 +46,9 @@ class ChoosePage : public ScanPage {
     void takeSpacing();
 
     ScanQuestions& questions_;
+    QWidget* found_;
     QFrame *drop_, *details_, *spacingBox_;
-    QLabel *dropText_, *source_, *picture_, *what_, *notes_, *spacingWhy_, *molar_;
+    QLabel *dropText_, *source_, *picture_, *what_, *notes_, *spacingWhy_, *molar_, *way_;
     QListWidget* list_;
     QDoubleSpinBox *within_, *between_;
     QPushButton* estimate_;

@@ -148,11 +148,10 @@ void HistogramView::paintEvent(QPaintEvent* event) {
     for (const std::uint64_t count : histogram_.counts)
         most = std::max(most, std::log1p(static_cast<double>(count)));
     QPainterPath path(area.bottomLeft());
-    for (int b = 0; b < GreyHistogram::kBins; ++b)
-        path.lineTo(
-            area.left() + (b + 0.5) / GreyHistogram::kBins * area.width(),
-            area.bottom() -
-                area.height() * std::log1p(static_cast<double>(histogram_.counts[static_cast<std::size_t>(b)])) / most);
+    const std::size_t bins = std::max<std::size_t>(1, histogram_.counts.size());
+    for (std::size_t b = 0; b < histogram_.counts.size(); ++b)
+        path.lineTo(area.left() + (static_cast<double>(b) + 0.5) / static_cast<double>(bins) * area.width(),
+                    area.bottom() - area.height() * std::log1p(static_cast<double>(histogram_.counts[b])) / most);
     path.lineTo(area.bottomRight());
     path.closeSubpath();
     QColor fill = palette().color(QPalette::WindowText);

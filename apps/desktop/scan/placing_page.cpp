@@ -198,7 +198,7 @@ void PlacingPage::showResult() {
         lines << (placed.confidence >= 0.75  ? tr("The program is sure which way is up.")
                   : placed.confidence >= 0.4 ? tr("The program is fairly sure which way is up: have a look.")
                                              : tr("The program guessed which way is up: have a look."));
-    if (placed.isMesialGuessed) lines << tr("Which side is mesial is a guess.");
+    if (placed.isMesialGuessed && placed.notes.empty()) lines << tr("Which side is mesial is a guess.");
     for (const std::string& text : placed.notes)
         lines << QString::fromStdString(text);
     confidence_->setText(lines.join(QLatin1Char('\n')));

@@ -207,9 +207,7 @@ QString ReportPage::reportHtml() const {
         bool isAuthored = false;
         for (const segmentation::Solid& solid : r.region->solids)
             isAuthored = isAuthored || (solid.tissue == tissue && solid.isAuthored);
-        line(QStringLiteral("<span style='color:%1'>■</span>&nbsp;%2")
-                 .arg(tissueColour(tissue).name(), tissueName(tissue)),
-             tr("%1 mm³").arg(number(volume, volume < 10 ? 2 : 1)),
+        line(swatchHtml(tissue) + tissueName(tissue), tr("%1 mm³").arg(number(volume, volume < 10 ? 2 : 1)),
              isAuthored ? tr("with an authored lesion") : tr("%1 %").arg(number(100 * volume / sum, 1)));
     }
     line(tr("Together"), tr("%1 mm³").arg(number(sum, 1)));

@@ -109,6 +109,7 @@ void ScanModel::changed() {
     paused_ = false;
     finished_ = false;
     clearProblem();
+    if (history_.size() == 1 || seriesKey_ != keyOf(Work::looking)) molarSpacingMm_.reset();
     if (!job().source.empty()) remembers_.start();
     if (seriesKey_ != keyOf(Work::looking) && !series_.empty()) {
         series_.clear();
@@ -237,16 +238,18 @@ void ScanModel::next() {
             return;
         }
         case Work::estimating: {
-            auto spacing = std::make_shared<double>(0);
+            auto spacing = std::make_shared<core::Vec3>(core::Vec3::Ones());
+            if (const volume::Series* chosen = chosenSeries(); chosen && chosen->isSpacingKnown)
+                *spacing = chosen->spacingMm / chosen->spacingMm.x();
             begin(
                 work, key,
                 [spacing, job](const core::Progress& progress) {
                     volume::ReadSettings settings;
                     settings.series = job.series;
                     settings.takeLargest = true;
-                    settings.spacingMm = core::Vec3::Ones();
+                    settings.spacingMm = *spacing;
                     const volume::Scan scan = volume::readScan(job.source, settings, core::part(progress, 0.0, 0.5));
-                    *spacing = spacingByMolar(scan.volume, core::part(progress, 0.5, 1.0));
+                    *spacing *= scaleByMolar(scan.volume, core::part(progress, 0.5, 1.0));
                 },
                 [this, spacing] {
                     estimateAsked_ = false;

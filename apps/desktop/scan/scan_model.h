@@ -70,8 +70,8 @@ class ScanModel : public QObject {
     [[nodiscard]] const volume::Series* chosenSeries() const;
     /// Whether the slices' spacing must be given by the person.
     [[nodiscard]] bool isSpacingAsked() const;
-    /// What a mean molar of this many voxels' height makes of it [mm]; 0 until it is known.
-    [[nodiscard]] double molarSpacingMm() const noexcept { return molarSpacingMm_; }
+    /// What a mean molar makes of it [mm], in proportion to what the scan tells; none until it was asked for.
+    [[nodiscard]] const std::optional<core::Vec3>& molarSpacingMm() const noexcept { return molarSpacingMm_; }
     void estimateSpacing();
     [[nodiscard]] std::shared_ptr<const ShownScan> scan() const noexcept { return scan_; }
     [[nodiscard]] std::shared_ptr<const ShownResult> preview() const noexcept { return preview_; }
@@ -126,7 +126,7 @@ class ScanModel : public QObject {
 
     std::vector<volume::Series> series_;
     std::string seriesKey_, scanKey_, previewKey_, fullKey_;
-    double molarSpacingMm_ = 0;
+    std::optional<core::Vec3> molarSpacingMm_;
     bool estimateAsked_ = false;
     std::shared_ptr<const ShownScan> scan_;
     std::shared_ptr<const ShownResult> preview_, full_;

@@ -123,7 +123,10 @@ ScanWizard::ScanWizard(std::filesystem::path unfinished, const QString& folder, 
         steps_->addItem(QStringLiteral("%1  %2").arg(steps_->count() + 1).arg(each->title()));
         steps_->item(steps_->count() - 1)->setSizeHint({0, fontMetrics().height() + 18});
     }
-    steps_->setFixedWidth(steps_->sizeHintForColumn(0) + 34);
+    int widest = 0;
+    for (int i = 0; i < steps_->count(); ++i)
+        widest = std::max(widest, fontMetrics().horizontalAdvance(steps_->item(i)->text()));
+    steps_->setFixedWidth(widest + 30);
     right->addWidget(pages_, 1);
     middle->addLayout(right, 1);
     column->addLayout(middle, 1);
@@ -162,6 +165,8 @@ ScanWizard::ScanWizard(std::filesystem::path unfinished, const QString& folder, 
     back_ = named(new QPushButton(tr("Back"), this), "scanBack", tr("Back"), tr("To the step before"));
     next_ = named(new QPushButton(tr("Next"), this), "scanNext", tr("Next"), tr("To the next step"));
     next_->setDefault(true);
+    for (QPushButton* button : findChildren<QPushButton*>())
+        button->setAutoDefault(false);
     close_ = named(new QPushButton(tr("Close"), this), "scanClose", tr("Close"),
                    tr("What was decided is kept; the next time you can go on with it"));
     bottom->addWidget(undo_);
@@ -290,10 +295,17 @@ void ScanWizard::showProblem() {
     const auto& problem = model_.problem();
     problem_->setVisible(problem.has_value());
     if (!problem) return;
-    QString what = sentence(problem->what);
-    if (!problem->where.isEmpty()) what += QStringLiteral(" (%1)").arg(problem->where);
+    // In the language of the libraries the words speak for themselves.
+    const auto own = [](QString text) {
+        for (const char* prefix : {"Technical detail: ", "Technical advice: "})
+            if (text.startsWith(QLatin1String(prefix))) text.remove(0, qstrlen(prefix));
+        return sentence(text);
+    };
+    QString what = own(problem->what);
+    if (!problem->where.isEmpty() && problem->where != QLatin1String("scan"))
+        what += QStringLiteral(" (%1)").arg(problem->where);
     problemWhat_->setText(what);
-    problemRemedy_->setText(sentence(problem->remedy));
+    problemRemedy_->setText(own(problem->remedy));
     problemRemedy_->setVisible(!problem->remedy.isEmpty());
     problem_->setAccessibleName(what);
     problem_->setAccessibleDescription(problem->remedy);

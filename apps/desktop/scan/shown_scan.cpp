@@ -100,10 +100,22 @@ GreyHistogram histogramOf(const volume::Volume& volume) {
         --last;
     histogram.low = low + width * static_cast<float>(first) / kFine;
     histogram.high = low + width * static_cast<float>(last + 1) / kFine;
-    const float scale = GreyHistogram::kBins / std::max(1e-6f, histogram.high - histogram.low);
+    // Bins between whole numbers would stay empty.
+    constexpr float kMostBins = 256.0f;
+    const bool isWhole = std::all_of(volume.values.begin(), volume.values.end(),
+                                     [](float v) { return v == std::floor(v) && std::abs(v) < 1e7f; });
+    float each = (histogram.high - histogram.low) / kMostBins;
+    if (isWhole) {
+        each = std::max(1.0f, std::ceil(each));
+        histogram.low = std::floor(histogram.low) - 0.5f;
+        histogram.high = histogram.low + each * std::ceil((histogram.high - histogram.low) / each);
+    }
+    each = std::max(each, 1e-12f);
+    histogram.counts.assign(
+        static_cast<std::size_t>(std::max(1.0f, std::round((histogram.high - histogram.low) / each))), 0);
     for (const float value : volume.values) {
-        const float bin = (value - histogram.low) * scale;
-        if (bin >= 0.0f && bin < static_cast<float>(GreyHistogram::kBins))
+        const float bin = (value - histogram.low) / each;
+        if (bin >= 0.0f && bin < static_cast<float>(histogram.counts.size()))
             ++histogram.counts[static_cast<std::size_t>(bin)];
     }
     return histogram;
@@ -196,13 +208,13 @@ ShownResult shownResult(station::ScanResult result, const core::Progress& progre
     return shown;
 }
 
-double spacingByMolar(const volume::Volume& volume, const core::Progress& progress) {
+double scaleByMolar(const volume::Volume& volume, const core::Progress& progress) {
     const segmentation::Thresholds thresholds = segmentation::findThresholds(volume, core::part(progress, 0.0, 0.6));
     const auto teeth = segmentation::findTeeth(volume, thresholds, core::part(progress, 0.6, 1.0));
     if (teeth.empty())
         throw core::Error("no tooth stands out in this scan", {},
                           "read the spacing from the scanner's record and type it");
-    const double longest = teeth.front().boundsMm.size().cwiseQuotient(volume.grid.spacingMm).maxCoeff();
+    const double longest = teeth.front().boundsMm.size().maxCoeff();
     return longest > 0 ? kMeanMolarMm / longest : 0.0;
 }
 

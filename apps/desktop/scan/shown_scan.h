@@ -15,9 +15,8 @@ namespace handpiece::desktop {
 
 /// How often grey values occur, between those of all but a thousandth at either end.
 struct GreyHistogram {
-    static constexpr int kBins = 256;
     float low = 0, high = 1;
-    std::array<std::uint64_t, kBins> counts{};
+    std::vector<std::uint64_t> counts;  ///< evenly from low to high; one a value where values are few whole numbers
 };
 [[nodiscard]] GreyHistogram histogramOf(const volume::Volume& volume);
 
@@ -48,7 +47,7 @@ struct ShownResult {
 
 /// Teeth are about this long, crown to apex [mm]: the mean of lower and upper first molars.
 inline constexpr double kMeanMolarMm = 21.0;
-/// Spacing [mm] at which the largest tooth of a scan, read as if voxels were 1 mm, is as long as a mean molar.
-[[nodiscard]] double spacingByMolar(const volume::Volume& volume, const core::Progress& progress);
+/// What the millimetres of a scan must be multiplied with for its largest tooth to be as long as a mean molar.
+[[nodiscard]] double scaleByMolar(const volume::Volume& volume, const core::Progress& progress);
 
 }  // namespace handpiece::desktop

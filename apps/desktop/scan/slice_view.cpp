@@ -409,7 +409,7 @@ void SliceView::use(const QPointF& at) {
             emit picked(point);
             break;
         case SliceTool::brush:
-            emit painted(point);
+            emit painted({point});
             break;
         case SliceTool::lesion:
             emit lesionPlaced(point);
@@ -432,10 +432,17 @@ void SliceView::mouseMoveEvent(QMouseEvent* event) {
     hovering_ = true;
     if (held_ == Qt::LeftButton) {
         if (tool_ == SliceTool::look) emit crossMoved(pointAt(at));
-        // A stroke is a row of balls, half a radius apart.
-        if (tool_ == SliceTool::brush && std::hypot(by.x(), by.y()) < std::max(2.0, 0.5 * radiusMm_ * pixelsPerMm()))
-            return update();
-        if (tool_ == SliceTool::brush) emit painted(pointAt(at));
+        if (tool_ == SliceTool::brush) {
+            // A stroke is a row of balls, half a radius apart: close enough to be even, far enough to be few.
+            constexpr int kMostBalls = 100;
+            const double apart = std::max(2.0, 0.5 * radiusMm_ * pixelsPerMm()), far = std::hypot(by.x(), by.y());
+            const int balls = std::min(kMostBalls, static_cast<int>(far / apart));
+            if (balls == 0) return update();
+            std::vector<core::Vec3> points;
+            for (int i = 1; i <= balls; ++i)
+                points.push_back(pointAt(last_ + by * (double(i) / balls)));
+            emit painted(points);
+        }
     } else if (held_ == Qt::RightButton) {
         const float unit = (white_ - black_) / 200.0f;
         const float middle = 0.5f * (black_ + white_) + static_cast<float>(by.y()) * unit;

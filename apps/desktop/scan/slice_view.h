@@ -51,7 +51,7 @@ class SliceView : public QWidget {
     void crossMoved(const handpiece::core::Vec3& mm);
     void windowDragged(float black, float white);
     void picked(const handpiece::core::Vec3& mm);
-    void painted(const handpiece::core::Vec3& mm);  ///< along a stroke
+    void painted(const std::vector<handpiece::core::Vec3>& mm);  ///< the next balls of a stroke
     void strokeEnded();
     void cutDrawn(const handpiece::core::Vec3& fromMm, const handpiece::core::Vec3& toMm,
                   const handpiece::core::Vec3& sliceNormal);

@@ -4,7 +4,8 @@
 #include <QEvent>
 #include <QMouseEvent>
 #include <QPainter>
-#include <QPointer>
+#include <QToolButton>
+#include <QVBoxLayout>
 #include <QWheelEvent>
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,10 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/senses/view/renderer.h"
+#include "panels/parameter_box.h"
+#include "panels/parts.h"
 #include "panels/theme.h"
+#include "scan/tissue_colours.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -135,6 +139,13 @@ SolidView::SolidView(const char* name, QWidget* parent) : QWidget(parent) {
     look_.debris = look_.spray = false;
     look_.palette = view::Palette::textbook;
     look_.quality = view::Quality::fast;
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(8, 8, 8, 8);
+    column->addStretch(1);
+    tissues_ = new QHBoxLayout;
+    tissues_->setSpacing(4);
+    column->addLayout(tissues_);
+    tissues_->addStretch(1);
     worker_ = std::make_unique<Worker>(this);
 }
 
@@ -154,8 +165,43 @@ void SolidView::setParts(std::shared_ptr<const std::vector<tooth::Part>> parts, 
                                (bounds.centre() - bounds_.centre()).norm() > 0.2 * bounds_.size().norm()));
     parts_ = std::move(parts);
     bounds_ = bounds;
+    makeTissueButtons();
     if (another || !placed_) fit();
     wish();
+}
+
+void SolidView::makeTissueButtons() {
+    std::vector<tooth::Tissue> there;
+    for (const tooth::Tissue tissue : {tooth::Tissue::enamel, tooth::Tissue::dentine, tooth::Tissue::pulp,
+                                       tooth::Tissue::caries, tooth::Tissue::restoration})
+        if (parts_ && std::any_of(parts_->begin(), parts_->end(), [&](const auto& p) { return p.tissue == tissue; }))
+            there.push_back(tissue);
+    if (there == there_) return;
+    there_ = there;
+    while (tissues_->count() > 1)
+        if (QLayoutItem* item = tissues_->takeAt(0)) {
+            delete item->widget();
+            delete item;
+        }
+    int at = 0;
+    for (const tooth::Tissue tissue : there_) {
+        auto* button = named(new QToolButton(this), "", tissueName(tissue), tr("Show or hide this tissue"));
+        button->setObjectName(objectName() + QLatin1Char('_') +
+                              QString::fromUtf8(tooth::properties(tissue).name.data(),
+                                                static_cast<qsizetype>(tooth::properties(tissue).name.size())));
+        button->setText(tissueName(tissue));
+        QPixmap swatch(12, 12);
+        swatch.fill(tissueColour(tissue));
+        button->setIcon(swatch);
+        button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+        button->setCheckable(true);
+        button->setChecked(look_.visible[static_cast<std::size_t>(tissue)]);
+        button->setFont(scaledFont(font(), 0.85));
+        button->setCursor(Qt::ArrowCursor);
+        button->setFocusPolicy(Qt::StrongFocus);
+        connect(button, &QToolButton::toggled, this, [this, tissue](bool on) { setTissueShown(tissue, on); });
+        tissues_->insertWidget(at++, button);
+    }
 }
 
 void SolidView::setCaption(const QString& caption, bool isStale) {
@@ -229,9 +275,14 @@ void SolidView::drawAxes(QPainter& painter) const {
     };
     painter.setFont(scaledFont(font(), 0.95, true));
     for (const Arrow& arrow : arrows) {
-        const double length = std::max(reach, std::abs(arrow.along.dot(bounds_.size())) * 0.5 + 2.0);
+        double length = std::max(reach, std::abs(arrow.along.dot(bounds_.size())) * 0.5 + 2.0);
         const auto from = view::pixelOf(camera_, viewport, bounds_.centre());
-        const auto to = view::pixelOf(camera_, viewport, bounds_.centre() + length * arrow.along);
+        auto to = view::pixelOf(camera_, viewport, bounds_.centre() + length * arrow.along);
+        // Shorter, where its end would lie outside the picture.
+        for (int i = 0; !to && i < 12; ++i) {
+            length *= 0.85;
+            to = view::pixelOf(camera_, viewport, bounds_.centre() + length * arrow.along);
+        }
         if (!from || !to) continue;
         const QPointF a(from->x(), from->y()), b(to->x(), to->y());
         painter.setPen(QPen(QColor(0, 0, 0, 130), 4, Qt::SolidLine, Qt::RoundCap));

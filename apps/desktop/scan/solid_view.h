@@ -12,6 +12,8 @@
 #include "handpiece/senses/view/camera.h"
 #include "handpiece/senses/view/look.h"
 
+class QHBoxLayout;
+
 namespace handpiece::desktop {
 
 /// Drag: turn; right or middle button: shift; wheel: nearer; double click or Home: all of it; arrow keys turn. Drawn in
@@ -28,6 +30,7 @@ class SolidView : public QWidget {
     void setCaption(const QString& caption, bool isStale);
     /// Occlusal, mesial and the sides as arrows; `buccalSign` 0: the sides without names.
     void setAxesShown(bool shown, int buccalSign);
+    /// As the buttons below the picture do, one a tissue that there is [NAME_enamel, ...].
     void setTissueShown(tooth::Tissue tissue, bool shown);
     void lookFrom(view::StandardView from, int buccalSign = 0);
     /// The latest picture is of the latest wish.
@@ -55,6 +58,7 @@ class SolidView : public QWidget {
     void wish();
     void take();
     void fit();
+    void makeTissueButtons();
     void drawAxes(QPainter& painter) const;
 
     std::unique_ptr<Worker> worker_;
@@ -68,6 +72,8 @@ class SolidView : public QWidget {
     int buccalSign_ = 0;
     Qt::MouseButton held_ = Qt::NoButton;
     QPointF last_;
+    QHBoxLayout* tissues_;
+    std::vector<tooth::Tissue> there_;
 };
 
 }  // namespace handpiece::desktop

@@ -242,16 +242,15 @@ void SurfacePage::showResult() {
         if (s) {
             const auto surface = [&](const QString& name, const surfacing::Surface& of) {
                 line(name, {tr("%1 faces").arg(number(of.mesh.triangles.size())),
-                            tr("%1 mm³").arg(QLocale().toString(geometry::enclosedVolumeMm3(of.mesh), 'f', 1)),
+                            tr("encloses %1 mm³").arg(QLocale().toString(geometry::enclosedVolumeMm3(of.mesh), 'f', 1)),
                             of.errorBoundMm > 0
                                 ? tr("reduced by at most %1 mm").arg(QLocale().toString(of.errorBoundMm, 'f', 3))
                                 : QString()});
             };
             surface(tr("Whole tooth"), s->outer);
             for (const auto& t : s->tissues)
-                surface(QStringLiteral("<span style='color:%1'>■</span>&nbsp;%2")
-                            .arg(tissueColour(t.tissue).name(),
-                                 t.isAuthored ? tr("%1, authored").arg(tissueName(t.tissue)) : tissueName(t.tissue)),
+                surface(swatchHtml(t.tissue) +
+                            (t.isAuthored ? tr("%1, authored").arg(tissueName(t.tissue)) : tissueName(t.tissue)),
                         t);
         }
     }

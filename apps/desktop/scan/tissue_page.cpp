@@ -4,6 +4,7 @@
 #include <QButtonGroup>
 #include <QCheckBox>
 #include <QComboBox>
+#include <QCoreApplication>
 #include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QGridLayout>
@@ -52,6 +53,10 @@ const Tool kTools[] = {
          "Click where caries shall be that the patient does not have. The case says that it was authored")},
 };
 
+QString translated(const char* text) {
+    return QCoreApplication::translate("TissuePage", text);
+}
+
 QString mm(double value, int decimals = 1) {
     return quantity(value, decimals, TissuePage::tr("mm"));
 }
@@ -73,7 +78,7 @@ std::vector<DecisionRow> decisionRows(const Settings& settings) {
         std::size_t end = first + 1;
         while (end < marks.size() && marks[end].tissue == marks[first].tissue &&
                marks[end].radiusMm == marks[first].radiusMm &&
-               (marks[end].centreMm - marks[end - 1].centreMm).norm() < 2.0 * marks[first].radiusMm + 0.5)
+               (marks[end].centreMm - marks[end - 1].centreMm).norm() < 1.1 * marks[first].radiusMm)
             ++end;
         const QString what = marks[first].tissue == tooth::Tissue::none ? TissuePage::tr("Nothing here")
                                                                         : tissueName(marks[first].tissue);
@@ -134,11 +139,13 @@ TissuePage::TissuePage(ScanModel& model, QWidget* parent) : ScanPage(model, pare
         connect(view, &SliceView::picked, this, [this](const core::Vec3& at) {
             decide([&](station::ScanJob& job) { job.segmentation.toothAtMm = at; });
         });
-        connect(view, &SliceView::painted, this, [this](const core::Vec3& at) {
+        connect(view, &SliceView::painted, this, [this](const std::vector<core::Vec3>& points) {
             decide(
                 [&](station::ScanJob& job) {
-                    job.segmentation.marks.push_back(
-                        {at, brushRadius_->value(), static_cast<tooth::Tissue>(brushTissue_->currentData().toInt())});
+                    for (const core::Vec3& at : points)
+                        job.segmentation.marks.push_back(
+                            {at, brushRadius_->value(),
+                             static_cast<tooth::Tissue>(brushTissue_->currentData().toInt())});
                 },
                 QStringLiteral("stroke"));
         });
@@ -197,9 +204,9 @@ QWidget* TissuePage::makeTools() {
     tools_ = new QButtonGroup(this);
     int n = 0;
     for (const Tool& t : kTools) {
-        auto* button = named(new QToolButton(tools), t.name, tr(t.text), tr(t.tip));
+        auto* button = named(new QToolButton(tools), t.name, translated(t.text), translated(t.tip));
         button->setIcon(icon(QLatin1String(t.icon)));
-        button->setText(tr(t.text));
+        button->setText(translated(t.text));
         button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
         button->setCheckable(true);
         button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
@@ -216,7 +223,7 @@ QWidget* TissuePage::makeTools() {
         auto* page = new QWidget;
         auto* form = new QFormLayout(page);
         form->setContentsMargins(0, 0, 0, 0);
-        form->addRow(note(tr(t.tip), page));
+        form->addRow(note(translated(t.tip), page));
         if (t.tool == SliceTool::brush) {
             brushTissue_ = named(new QComboBox(page), "scanBrushTissue", tr("This is"));
             for (const tooth::Tissue tissue : {tooth::Tissue::none, tooth::Tissue::enamel, tooth::Tissue::dentine,
@@ -400,9 +407,8 @@ void TissuePage::showPreview() {
         const double volume = preview->result.volumesMm3[static_cast<std::size_t>(tissue)];
         sum += volume;
         if (volume <= 0) continue;
-        table +=
-            QStringLiteral("<tr><td><span style='color:%1'>■</span>&nbsp;%2</td><td align='right'>&nbsp;%3</td></tr>")
-                .arg(tissueColour(tissue).name(), tissueName(tissue), quantity(volume, 1, tr("mm³")));
+        table += QStringLiteral("<tr><td>%1%2</td><td align='right'>&nbsp;%3</td></tr>")
+                     .arg(swatchHtml(tissue), tissueName(tissue), quantity(volume, 1, tr("mm³")));
     }
     table += QStringLiteral("<tr><td>%1</td><td align='right'>&nbsp;%2</td></tr></table>")
                  .arg(tr("Together"), quantity(sum, 1, tr("mm³")));

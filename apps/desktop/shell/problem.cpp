@@ -104,6 +104,16 @@ constexpr std::array kEntries = {
         QT_TRANSLATE_NOOP("Problem", "Install libegl-mesa0 and libgl1-mesa-dri. Everything but the picture goes on.")},
     Entry{"opengl-failed", QT_TRANSLATE_NOOP("Problem", "The graphics card has no memory left."),
           QT_TRANSLATE_NOOP("Problem", "Choose a lower picture quality or a smaller window.")},
+    // Scans.
+    Entry{"no-scan", QT_TRANSLATE_NOOP("Problem", "There is no scan in it. What was found: %1."),
+          QT_TRANSLATE_NOOP("Problem",
+                            "Choose a folder, ZIP or file with slices (DICOM, TIFF, PNG, JPEG, BMP), NRRD, "
+                            "NIfTI, MetaImage, or raw numbers with a scan.toml.")},
+    Entry{"no-spacing", QT_TRANSLATE_NOOP("Problem", "The scan does not tell how large its voxels are."),
+          QT_TRANSLATE_NOOP("Problem", "Type the size of a voxel: the scanner's record has it.")},
+    Entry{"too-large",
+          QT_TRANSLATE_NOOP("Problem", "It is larger than a scan of a tooth can be, or its header is damaged."),
+          QT_TRANSLATE_NOOP("Problem", "Crop the scan around the tooth, or take another copy of it.")},
     // The window's own.
     Entry{"case-vanished",
           QT_TRANSLATE_NOOP("Problem", "The tooth you opened is no longer at %1. Nothing that was cut is lost."),

@@ -459,6 +459,14 @@
         <source>The code your teacher gave you: it goes into recordings and saved attempts</source>
         <translation>先生から渡されたコードです。記録と、保存した作業に書き込まれます</translation>
     </message>
+    <message>
+        <source>New case from scan...</source>
+        <translation>スキャンから新しい症例...</translation>
+    </message>
+    <message>
+        <source>Make a tooth to be cut out of a CT: slices, a DICOM folder, a volume</source>
+        <translation>CT（スライス画像のフォルダー、ボリューム）から、切削できる歯を作ります</translation>
+    </message>
 </context>
 <context>
     <name>BurPicture</name>
@@ -1483,6 +1491,30 @@
         <source>This value cannot be set: %2.</source>
         <translation>この値は設定できません：%2。</translation>
     </message>
+    <message>
+        <source>There is no scan in it. What was found: %1.</source>
+        <translation>この中にスキャンがありません。見つかったもの：%1。</translation>
+    </message>
+    <message>
+        <source>Choose a folder, ZIP or file with slices (DICOM, TIFF, PNG, JPEG, BMP), NRRD, NIfTI, MetaImage, or raw numbers with a scan.toml.</source>
+        <translation>スライス（DICOM、TIFF、PNG、JPEG、BMP）、NRRD、NIfTI、MetaImage、または scan.toml を添えた生データのフォルダー、ZIP、ファイルを選んでください。</translation>
+    </message>
+    <message>
+        <source>The scan does not tell how large its voxels are.</source>
+        <translation>スキャンにボクセルの大きさが書かれていません。</translation>
+    </message>
+    <message>
+        <source>Type the size of a voxel: the scanner&apos;s record has it.</source>
+        <translation>ボクセルの大きさを入力してください。撮影装置の記録にあります。</translation>
+    </message>
+    <message>
+        <source>It is larger than a scan of a tooth can be, or its header is damaged.</source>
+        <translation>歯のスキャンとしては大きすぎるか、ヘッダーが壊れています。</translation>
+    </message>
+    <message>
+        <source>Crop the scan around the tooth, or take another copy of it.</source>
+        <translation>歯の周りだけを切り出すか、別のコピーを使ってください。</translation>
+    </message>
 </context>
 <context>
     <name>Pulp</name>
@@ -1550,6 +1582,49 @@
     </message>
 </context>
 <context>
+    <name>TissuePage</name>
+    <message>
+        <source>Look</source>
+        <translation>見る</translation>
+    </message>
+    <message>
+        <source>Click or drag in a slice: the other two follow</source>
+        <translation>スライス上でクリックまたはドラッグすると、ほかの 2 つも追従します</translation>
+    </message>
+    <message>
+        <source>This tooth</source>
+        <translation>この歯</translation>
+    </message>
+    <message>
+        <source>Click in the crown or a root of the tooth that is wanted; the rest is left out</source>
+        <translation>使いたい歯の歯冠か歯根をクリックします。ほかは除かれます</translation>
+    </message>
+    <message>
+        <source>Brush</source>
+        <translation>ブラシ</translation>
+    </message>
+    <message>
+        <source>Drag over what the program took for something else</source>
+        <translation>プログラムが取り違えた場所をドラッグで塗ります</translation>
+    </message>
+    <message>
+        <source>Cut off</source>
+        <translation>切り離す</translation>
+    </message>
+    <message>
+        <source>Draw a line between the tooth and what it touches: a plane through it parts the two</source>
+        <translation>歯と、歯に接しているものとの間に線を引くと、その線を通る平面で切り離します</translation>
+    </message>
+    <message>
+        <source>Lesion</source>
+        <translation>病変</translation>
+    </message>
+    <message>
+        <source>Click where caries shall be that the patient does not have. The case says that it was authored</source>
+        <translation>患者にはないう蝕を置く場所をクリックします。症例には作成された病変と記されます</translation>
+    </message>
+</context>
+<context>
     <name>handpiece::desktop::BurModel</name>
     <message>
         <source>%1 mm</source>
@@ -1598,6 +1673,165 @@
     <message>
         <source>Steel round %1</source>
         <translation>スチールラウンド %1</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ChoosePage</name>
+    <message>
+        <source>size of a voxel not told</source>
+        <translation>ボクセルの大きさ：記載なし</translation>
+    </message>
+    <message>
+        <source>voxels of %1 mm</source>
+        <translation>ボクセル %1 mm</translation>
+    </message>
+    <message>
+        <source>voxels of %1 × %2 × %3 mm</source>
+        <translation>ボクセル %1 × %2 × %3 mm</translation>
+    </message>
+    <message>
+        <source>Drop a folder of slices, a ZIP or a file here</source>
+        <translation>スライスのフォルダー、ZIP、ファイルをここにドロップ</translation>
+    </message>
+    <message>
+        <source>DICOM, slices as TIFF, PNG, JPEG or BMP, NRRD, NIfTI, MetaImage, raw with a description. Names of patients stay in the scan: nothing of them goes into the case.</source>
+        <translation>DICOM、TIFF・PNG・JPEG・BMP のスライス、NRRD、NIfTI、MetaImage、説明付きの生データを読み込めます。患者の名前はスキャンの中にとどまり、症例には入りません。</translation>
+    </message>
+    <message>
+        <source>Folder...</source>
+        <translation>フォルダー...</translation>
+    </message>
+    <message>
+        <source>Choose a folder of slices</source>
+        <translation>スライスのフォルダーを選びます</translation>
+    </message>
+    <message>
+        <source>File...</source>
+        <translation>ファイル...</translation>
+    </message>
+    <message>
+        <source>Choose a file or a ZIP</source>
+        <translation>ファイルまたは ZIP を選びます</translation>
+    </message>
+    <message>
+        <source>What was found</source>
+        <translation>見つかったもの</translation>
+    </message>
+    <message>
+        <source>Choose the scan of the tooth</source>
+        <translation>歯のスキャンを選びます</translation>
+    </message>
+    <message>
+        <source>The middle slice</source>
+        <translation>中央のスライス</translation>
+    </message>
+    <message>
+        <source>How large is a voxel?</source>
+        <translation>ボクセルの大きさ</translation>
+    </message>
+    <message>
+        <source> mm</source>
+        <translation> mm</translation>
+    </message>
+    <message>
+        <source>not said yet</source>
+        <translation>未入力</translation>
+    </message>
+    <message>
+        <source>Between pixels of a slice</source>
+        <translation>スライス内の画素の間隔</translation>
+    </message>
+    <message>
+        <source>Between slices</source>
+        <translation>スライスの間隔</translation>
+    </message>
+    <message>
+        <source>Estimate by a mean molar</source>
+        <translation>平均的な大臼歯から見積もる</translation>
+    </message>
+    <message>
+        <source>The size at which the tooth is as long as a mean first molar, 21 mm</source>
+        <translation>歯の長さが平均的な第一大臼歯と同じ 21 mm になる大きさ</translation>
+    </message>
+    <message>
+        <source>These are tissues already, not grey values</source>
+        <translation>濃度値ではなく、組織のラベルである</translation>
+    </message>
+    <message>
+        <source>This is a label volume</source>
+        <translation>これはラベルボリュームです</translation>
+    </message>
+    <message>
+        <source>A label volume from another program: 0 nothing, 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 filling</source>
+        <translation>ほかのプログラムで作ったラベルボリューム：0 なし、1 う蝕、2 エナメル質、3 象牙質、4 歯髄、5 充填物</translation>
+    </message>
+    <message>
+        <source>&lt;ol&gt;&lt;li&gt;Choose the scan.&lt;/li&gt;&lt;li&gt;See which tissues were found in it; correct by hand where the program is wrong.&lt;/li&gt;&lt;li&gt;Say how fine the surfaces shall be.&lt;/li&gt;&lt;li&gt;Say which way is up, and give the case a name.&lt;/li&gt;&lt;li&gt;Read how good it is, save it, try it.&lt;/li&gt;&lt;/ol&gt;</source>
+        <translation>&lt;ol&gt;&lt;li&gt;スキャンを選びます。&lt;/li&gt;&lt;li&gt;見つかった組織を確かめ、誤りがあれば手で直します。&lt;/li&gt;&lt;li&gt;表面の細かさを決めます。&lt;/li&gt;&lt;li&gt;上下の向きを確かめ、症例に名前を付けます。&lt;/li&gt;&lt;li&gt;出来ばえを読み、保存して、試します。&lt;/li&gt;&lt;/ol&gt;</translation>
+    </message>
+    <message>
+        <source>A folder of slices</source>
+        <translation>スライスのフォルダー</translation>
+    </message>
+    <message>
+        <source>A scan</source>
+        <translation>スキャン</translation>
+    </message>
+    <message>
+        <source>Scans (*.nrrd *.nhdr *.nii *.nii.gz *.mha *.mhd *.zip *.dcm *.tif *.tiff *.toml DICOMDIR);;All files (*)</source>
+        <translation>スキャン (*.nrrd *.nhdr *.nii *.nii.gz *.mha *.mhd *.zip *.dcm *.tif *.tiff *.toml DICOMDIR);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Choose a scan first</source>
+        <translation>まずスキャンを選んでください</translation>
+    </message>
+    <message>
+        <source>Nothing was found yet</source>
+        <translation>まだ何も見つかっていません</translation>
+    </message>
+    <message>
+        <source>Choose one of the scans</source>
+        <translation>スキャンを 1 つ選んでください</translation>
+    </message>
+    <message>
+        <source>Say how large a voxel is</source>
+        <translation>ボクセルの大きさを入力してください</translation>
+    </message>
+    <message>
+        <source>%1, %2 voxels, %3 bits each</source>
+        <translation>%1、%2 ボクセル、各 %3 ビット</translation>
+    </message>
+    <message>
+        <source>; another size was given by hand</source>
+        <translation>（別の大きさを手動で入力）</translation>
+    </message>
+    <message>
+        <source>%1 × %2 × %3 mm, read</source>
+        <translation>%1 × %2 × %3 mm、読み込み済み</translation>
+    </message>
+    <message>
+        <source>The scan does not tell it, and every millimetre depends on it. The scanner&apos;s record or report has it.</source>
+        <translation>スキャンに書かれていません。すべての寸法がこの値で決まります。撮影装置の記録か報告書で確かめてください。</translation>
+    </message>
+    <message>
+        <source>The scan says so, but it is too coarse for a tooth: some programs write 1 mm when they do not know. The scanner&apos;s record or report has it.</source>
+        <translation>スキャンにはこう書かれていますが、歯には粗すぎます。不明なときに 1 mm と書くプログラムもあります。撮影装置の記録か報告書で確かめてください。</translation>
+    </message>
+    <message>
+        <source>The scan tells it. Change it only when you know better.</source>
+        <translation>スキャンに書かれている値です。確かな値を知っている場合だけ変えてください。</translation>
+    </message>
+    <message>
+        <source>With %1 mm the tooth is 21 mm long, as a mean first molar is. Teeth differ: every millimetre of this case will be a guess.</source>
+        <translation>%1 mm とすると、歯の長さは平均的な第一大臼歯と同じ 21 mm になります。歯には個体差があり、この症例の寸法はすべて推定値になります。</translation>
+    </message>
+    <message>
+        <source>If you do not know it and the tooth is a molar, a mean one can stand in for it.</source>
+        <translation>値が分からず、歯が大臼歯なら、平均的な大臼歯で代用できます。</translation>
+    </message>
+    <message>
+        <source>Choose the scan</source>
+        <translation>スキャンを選ぶ</translation>
     </message>
 </context>
 <context>
@@ -1743,6 +1977,45 @@
     </message>
 </context>
 <context>
+    <name>handpiece::desktop::FdiPicker</name>
+    <message>
+        <source>FDI number of the tooth</source>
+        <translation>歯の FDI 番号</translation>
+    </message>
+    <message>
+        <source>Two digits: quadrant and place, 46 for the lower right first molar</source>
+        <translation>2 桁の数字：顎の区分と位置。下顎右側第一大臼歯は 46</translation>
+    </message>
+    <message>
+        <source>Chart...</source>
+        <translation>歯列図...</translation>
+    </message>
+    <message>
+        <source>Choose the tooth on the chart of the mouth</source>
+        <translation>歯列図から歯を選びます</translation>
+    </message>
+    <message>
+        <source>not said yet</source>
+        <translation>未入力</translation>
+    </message>
+    <message>
+        <source>There is no tooth %1</source>
+        <translation>%1 という歯はありません</translation>
+    </message>
+    <message>
+        <source>Which tooth is it?</source>
+        <translation>どの歯ですか</translation>
+    </message>
+    <message>
+        <source>Primary teeth too</source>
+        <translation>乳歯も表示</translation>
+    </message>
+    <message>
+        <source>Show the primary teeth inside the arches</source>
+        <translation>歯列の内側に乳歯を表示します</translation>
+    </message>
+</context>
+<context>
     <name>handpiece::desktop::ForceGauge</name>
     <message>
         <source>How hard the bur presses</source>
@@ -1806,6 +2079,49 @@
     <message>
         <source>Keys and mouse</source>
         <translation>キーとマウス</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::HistogramView</name>
+    <message>
+        <source>tooth from</source>
+        <translation>歯の下限</translation>
+    </message>
+    <message>
+        <source>enamel from</source>
+        <translation>エナメル質の下限</translation>
+    </message>
+    <message>
+        <source>filling from</source>
+        <translation>充填物の下限</translation>
+    </message>
+    <message>
+        <source>Grey values and where tissues begin</source>
+        <translation>濃度値と組織の境目</translation>
+    </message>
+    <message>
+        <source>Drag a handle to say where a tissue begins. Keys: Up and Down choose a handle, Left and Right move it.</source>
+        <translation>つまみをドラッグして組織の始まりを決めます。キー：上下でつまみを選び、左右で動かします。</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>なし</translation>
+    </message>
+    <message>
+        <source>Grey values appear when the scan is read</source>
+        <translation>スキャンを読み込むと濃度値が表示されます</translation>
+    </message>
+    <message>
+        <source>set by hand</source>
+        <translation>手動で設定</translation>
+    </message>
+    <message>
+        <source>found by the program</source>
+        <translation>自動で決定</translation>
+    </message>
+    <message>
+        <source>no filling</source>
+        <translation>充填物なし</translation>
     </message>
 </context>
 <context>
@@ -2746,6 +3062,173 @@
     </message>
 </context>
 <context>
+    <name>handpiece::desktop::PlacingPage</name>
+    <message>
+        <source>What is the case called?</source>
+        <translation>症例の名前</translation>
+    </message>
+    <message>
+        <source>Name of the case</source>
+        <translation>症例の名前</translation>
+    </message>
+    <message>
+        <source>Students see it. No patient&apos;s name</source>
+        <translation>学生に表示されます。患者の名前は入れないでください</translation>
+    </message>
+    <message>
+        <source>for example: Molar with deep caries</source>
+        <translation>例：深いう蝕のある大臼歯</translation>
+    </message>
+    <message>
+        <source>Students see it. It is never taken from the scan: no name of a patient here.</source>
+        <translation>学生に表示されます。スキャンから取られることはありません。患者の名前は入れないでください。</translation>
+    </message>
+    <message>
+        <source>Which tooth is it?</source>
+        <translation>どの歯ですか</translation>
+    </message>
+    <message>
+        <source>Which way is up?</source>
+        <translation>上下の向き</translation>
+    </message>
+    <message>
+        <source>Upside down</source>
+        <translation>上下を逆にする</translation>
+    </message>
+    <message>
+        <source>The crown is where the roots are shown</source>
+        <translation>歯冠と歯根が逆に表示されている場合</translation>
+    </message>
+    <message>
+        <source>Mesial is on the other side</source>
+        <translation>近心を反対側にする</translation>
+    </message>
+    <message>
+        <source>Turn by half about the long axis</source>
+        <translation>歯軸の周りに半回転します</translation>
+    </message>
+    <message>
+        <source>Turn 90° left</source>
+        <translation>左へ 90°</translation>
+    </message>
+    <message>
+        <source>Seen from above</source>
+        <translation>上から見た向き</translation>
+    </message>
+    <message>
+        <source>Turn 90° right</source>
+        <translation>右へ 90°</translation>
+    </message>
+    <message>
+        <source>5° left</source>
+        <translation>左へ 5°</translation>
+    </message>
+    <message>
+        <source>Turn a little, seen from above</source>
+        <translation>上から見て少し回します</translation>
+    </message>
+    <message>
+        <source>5° right</source>
+        <translation>右へ 5°</translation>
+    </message>
+    <message>
+        <source>Tip 5° to mesial</source>
+        <translation>近心へ 5° 傾ける</translation>
+    </message>
+    <message>
+        <source>The crown goes towards mesial</source>
+        <translation>歯冠が近心へ動きます</translation>
+    </message>
+    <message>
+        <source>Tip 5° to distal</source>
+        <translation>遠心へ 5° 傾ける</translation>
+    </message>
+    <message>
+        <source>The crown goes towards distal</source>
+        <translation>歯冠が遠心へ動きます</translation>
+    </message>
+    <message>
+        <source>Tip 5° to the side</source>
+        <translation>横へ 5° 傾ける</translation>
+    </message>
+    <message>
+        <source>The crown goes towards the green arrow</source>
+        <translation>歯冠が緑の矢印の側へ動きます</translation>
+    </message>
+    <message>
+        <source>Tip 5° back</source>
+        <translation>逆の横へ 5° 傾ける</translation>
+    </message>
+    <message>
+        <source>The crown goes away from the green arrow</source>
+        <translation>歯冠が緑の矢印と反対側へ動きます</translation>
+    </message>
+    <message>
+        <source>As the program found it</source>
+        <translation>自動の向きに戻す</translation>
+    </message>
+    <message>
+        <source>Forget all turning by hand</source>
+        <translation>手動の回転をすべて取り消します</translation>
+    </message>
+    <message>
+        <source>From occlusal</source>
+        <translation>咬合面から</translation>
+    </message>
+    <message>
+        <source>From buccal</source>
+        <translation>頬側から</translation>
+    </message>
+    <message>
+        <source>From mesial</source>
+        <translation>近心から</translation>
+    </message>
+    <message>
+        <source>Oblique</source>
+        <translation>斜めから</translation>
+    </message>
+    <message>
+        <source>Give the case a name</source>
+        <translation>症例に名前を付けてください</translation>
+    </message>
+    <message>
+        <source>Being turned</source>
+        <translation>回転中</translation>
+    </message>
+    <message>
+        <source>The blue arrow goes out of the crown, the red one towards the midline of the mouth. Say which tooth it is, and the sides get their names.</source>
+        <translation>青い矢印は歯冠の外へ、赤い矢印は正中へ向きます。どの歯かを指定すると、頬側と舌側の名前が付きます。</translation>
+    </message>
+    <message>
+        <source>The blue arrow goes out of the crown, the red one towards the midline of the mouth. Are the sides wrong, then mesial is on the other side, or it is the other side&apos;s tooth.</source>
+        <translation>青い矢印は歯冠の外へ、赤い矢印は正中へ向きます。頬側と舌側が逆なら、近心が反対か、反対側の歯です。</translation>
+    </message>
+    <message>
+        <source>Turned by hand.</source>
+        <translation>手動で向きを変えました。</translation>
+    </message>
+    <message>
+        <source>The program is sure which way is up.</source>
+        <translation>上下の向きは確実です。</translation>
+    </message>
+    <message>
+        <source>The program is fairly sure which way is up: have a look.</source>
+        <translation>上下の向きはほぼ確実ですが、確かめてください。</translation>
+    </message>
+    <message>
+        <source>The program guessed which way is up: have a look.</source>
+        <translation>上下の向きは推定です。確かめてください。</translation>
+    </message>
+    <message>
+        <source>Which side is mesial is a guess.</source>
+        <translation>近心の側は推定です。</translation>
+    </message>
+    <message>
+        <source>Name and placing</source>
+        <translation>名前と向き</translation>
+    </message>
+</context>
+<context>
     <name>handpiece::desktop::PlotPanel</name>
     <message>
         <source>Plots</source>
@@ -2891,6 +3374,399 @@
     </message>
 </context>
 <context>
+    <name>handpiece::desktop::ReportPage</name>
+    <message>
+        <source>Report of the case</source>
+        <translation>症例のレポート</translation>
+    </message>
+    <message>
+        <source>Save the case as</source>
+        <translation>症例の保存先</translation>
+    </message>
+    <message>
+        <source>A file that ends in .handpiece, or a folder</source>
+        <translation>.handpiece で終わるファイル、またはフォルダー</translation>
+    </message>
+    <message>
+        <source>Where...</source>
+        <translation>参照...</translation>
+    </message>
+    <message>
+        <source>Choose where the case is saved</source>
+        <translation>症例の保存先を選びます</translation>
+    </message>
+    <message>
+        <source>Save the case</source>
+        <translation>症例を保存</translation>
+    </message>
+    <message>
+        <source>Try it now</source>
+        <translation>すぐに試す</translation>
+    </message>
+    <message>
+        <source>Save the case and open it in the simulator</source>
+        <translation>症例を保存して、シミュレーターで開きます</translation>
+    </message>
+    <message>
+        <source>Cases (*.handpiece);;All files (*)</source>
+        <translation>症例 (*.handpiece);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Saved: %1</source>
+        <translation>保存しました：%1</translation>
+    </message>
+    <message>
+        <source>Preview</source>
+        <translation>プレビュー</translation>
+    </message>
+    <message>
+        <source>The case is being made in full. The report comes with it.</source>
+        <translation>症例を作成しています。出来上がるとレポートが表示されます。</translation>
+    </message>
+    <message>
+        <source>The case is not made yet.</source>
+        <translation>症例はまだ作られていません。</translation>
+    </message>
+    <message>
+        <source>mm</source>
+        <translation>mm</translation>
+    </message>
+    <message>
+        <source>Volumes</source>
+        <translation>体積</translation>
+    </message>
+    <message>
+        <source>%1 mm³</source>
+        <translation>%1 mm³</translation>
+    </message>
+    <message>
+        <source>with an authored lesion</source>
+        <translation>作成された病変を含む</translation>
+    </message>
+    <message>
+        <source>%1 %</source>
+        <translation>%1 %</translation>
+    </message>
+    <message>
+        <source>Together</source>
+        <translation>合計</translation>
+    </message>
+    <message>
+        <source>Sizes</source>
+        <translation>寸法</translation>
+    </message>
+    <message>
+        <source>Mesiodistal × buccolingual × length</source>
+        <translation>近遠心 × 頬舌 × 長さ</translation>
+    </message>
+    <message>
+        <source>%1 × %2 × %3 mm</source>
+        <translation>%1 × %2 × %3 mm</translation>
+    </message>
+    <message>
+        <source>Enamel over dentine</source>
+        <translation>象牙質を覆うエナメル質</translation>
+    </message>
+    <message>
+        <source>%1 in the middle</source>
+        <translation>中央値 %1</translation>
+    </message>
+    <message>
+        <source>at most %1</source>
+        <translation>最大 %1</translation>
+    </message>
+    <message>
+        <source>Over the pulp, in the crown</source>
+        <translation>歯冠部の歯髄を覆う厚さ</translation>
+    </message>
+    <message>
+        <source>at least %1</source>
+        <translation>最小 %1</translation>
+    </message>
+    <message>
+        <source>How good it is</source>
+        <translation>出来ばえ</translation>
+    </message>
+    <message>
+        <source>Voxels of the scan</source>
+        <translation>スキャンのボクセル</translation>
+    </message>
+    <message>
+        <source>given by hand</source>
+        <translation>手動で入力</translation>
+    </message>
+    <message>
+        <source>Blur of the scan</source>
+        <translation>スキャンのぼけ</translation>
+    </message>
+    <message>
+        <source>standard deviation</source>
+        <translation>標準偏差</translation>
+    </message>
+    <message>
+        <source>Enamel stands out of dentine by</source>
+        <translation>エナメル質と象牙質の差</translation>
+    </message>
+    <message>
+        <source>%1 × the noise</source>
+        <translation>ノイズの %1 倍</translation>
+    </message>
+    <message>
+        <source>little: look at their border in the slices</source>
+        <translation>差が小さいので、境目をスライスで確かめてください</translation>
+    </message>
+    <message>
+        <source>Thresholds</source>
+        <translation>しきい値</translation>
+    </message>
+    <message>
+        <source>set by hand</source>
+        <translation>手動で設定</translation>
+    </message>
+    <message>
+        <source>found by the program</source>
+        <translation>自動で決定</translation>
+    </message>
+    <message>
+        <source>Intraoral scan</source>
+        <translation>口腔内スキャン</translation>
+    </message>
+    <message>
+        <source>rms %1</source>
+        <translation>二乗平均 %1</translation>
+    </message>
+    <message>
+        <source>95 % within %1</source>
+        <translation>95 % が %1 以内</translation>
+    </message>
+    <message>
+        <source>Faces</source>
+        <translation>面の数</translation>
+    </message>
+    <message>
+        <source>reduced by at most %1</source>
+        <translation>簡略化による誤差は最大 %1</translation>
+    </message>
+    <message>
+        <source>as made from the scan</source>
+        <translation>スキャンから作ったまま</translation>
+    </message>
+    <message>
+        <source>Surfaces closed and nested</source>
+        <translation>閉じて入れ子になった表面</translation>
+    </message>
+    <message>
+        <source>yes</source>
+        <translation>はい</translation>
+    </message>
+    <message>
+        <source>no</source>
+        <translation>いいえ</translation>
+    </message>
+    <message>
+        <source>it can be cut</source>
+        <translation>切削できます</translation>
+    </message>
+    <message>
+        <source>findings: %1</source>
+        <translation>指摘 %1 件</translation>
+    </message>
+    <message>
+        <source>To know</source>
+        <translation>知っておくこと</translation>
+    </message>
+    <message>
+        <source>What the scan cannot show</source>
+        <translation>スキャンに写らないもの</translation>
+    </message>
+    <message>
+        <source>Anything thinner than about %1: hairline cracks, narrow canals, the thin edge of the enamel.</source>
+        <translation>およそ %1 より薄いもの：微小な亀裂、細い根管、エナメル質の薄い縁。</translation>
+    </message>
+    <message>
+        <source>Cementum: it is taken for dentine. Gum and ligament: X-rays pass them.</source>
+        <translation>セメント質：象牙質として扱われます。歯肉と歯根膜：X 線が透過します。</translation>
+    </message>
+    <message>
+        <source>Early caries: only what has lost enough mineral is darker. How soft it is, is not seen at all.</source>
+        <translation>初期う蝕：ミネラルが十分に失われた部分だけが暗く写ります。軟らかさはまったく写りません。</translation>
+    </message>
+    <message>
+        <source>The authored lesion is the teacher&apos;s: no patient had it.</source>
+        <translation>作成された病変は教員によるもので、患者にはありません。</translation>
+    </message>
+    <message>
+        <source>Report and finish</source>
+        <translation>レポートと完了</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ScanModel</name>
+    <message>
+        <source>Looking what is there</source>
+        <translation>内容を調べています</translation>
+    </message>
+    <message>
+        <source>Reading the slices</source>
+        <translation>スライスを読み込んでいます</translation>
+    </message>
+    <message>
+        <source>Measuring the tooth</source>
+        <translation>歯を測っています</translation>
+    </message>
+    <message>
+        <source>Writing the case</source>
+        <translation>症例を書き出しています</translation>
+    </message>
+    <message>
+        <source>Finding the tissues</source>
+        <translation>組織を見分けています</translation>
+    </message>
+    <message>
+        <source>Making surfaces</source>
+        <translation>表面を作っています</translation>
+    </message>
+    <message>
+        <source>Finding which way is up</source>
+        <translation>向きを調べています</translation>
+    </message>
+    <message>
+        <source>Reducing the faces</source>
+        <translation>面の数を減らしています</translation>
+    </message>
+    <message>
+        <source>Preview: %1</source>
+        <translation>プレビュー：%1</translation>
+    </message>
+    <message>
+        <source>In full: %1</source>
+        <translation>本番：%1</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ScanWizard</name>
+    <message>
+        <source>New case from scan</source>
+        <translation>スキャンから新しい症例</translation>
+    </message>
+    <message>
+        <source>Steps</source>
+        <translation>手順</translation>
+    </message>
+    <message>
+        <source>The five steps; those that can be gone to</source>
+        <translation>5 つの手順。選べるものに移動できます</translation>
+    </message>
+    <message>
+        <source>Go on with the unfinished scan?</source>
+        <translation>途中のスキャンを続けますか？</translation>
+    </message>
+    <message>
+        <source>Go on</source>
+        <translation>続ける</translation>
+    </message>
+    <message>
+        <source>Go on with the unfinished scan</source>
+        <translation>途中のスキャンを続ける</translation>
+    </message>
+    <message>
+        <source>With all that was decided when it was closed</source>
+        <translation>閉じたときに決めてあった内容から続けます</translation>
+    </message>
+    <message>
+        <source>Start anew</source>
+        <translation>最初から始める</translation>
+    </message>
+    <message>
+        <source>Forget what was decided</source>
+        <translation>決めた内容を破棄します</translation>
+    </message>
+    <message>
+        <source>Progress</source>
+        <translation>進み具合</translation>
+    </message>
+    <message>
+        <source>How far it is</source>
+        <translation>どこまで進んだかを示します</translation>
+    </message>
+    <message>
+        <source>Stop</source>
+        <translation>中止</translation>
+    </message>
+    <message>
+        <source>Stop this work; nothing decided is lost</source>
+        <translation>この処理を中止します。決めた内容は失われません</translation>
+    </message>
+    <message>
+        <source>Begin the work again that was stopped</source>
+        <translation>中止した処理をもう一度始めます</translation>
+    </message>
+    <message>
+        <source>Undo</source>
+        <translation>元に戻す</translation>
+    </message>
+    <message>
+        <source>Take the last decision back (Ctrl+Z)</source>
+        <translation>最後の決定を取り消します（Ctrl+Z）</translation>
+    </message>
+    <message>
+        <source>Redo</source>
+        <translation>やり直す</translation>
+    </message>
+    <message>
+        <source>Decide it again (Ctrl+Shift+Z)</source>
+        <translation>取り消した決定をやり直します（Ctrl+Shift+Z）</translation>
+    </message>
+    <message>
+        <source>Save the steps...</source>
+        <translation>手順を保存...</translation>
+    </message>
+    <message>
+        <source>Save the steps</source>
+        <translation>手順を保存</translation>
+    </message>
+    <message>
+        <source>All decisions as a file; &quot;handpiece scan case --job FILE&quot; makes the same case of it</source>
+        <translation>すべての決定をファイルに保存します。「handpiece scan case --job FILE」で同じ症例を作れます</translation>
+    </message>
+    <message>
+        <source>Back</source>
+        <translation>戻る</translation>
+    </message>
+    <message>
+        <source>To the step before</source>
+        <translation>前の手順へ</translation>
+    </message>
+    <message>
+        <source>Next</source>
+        <translation>次へ</translation>
+    </message>
+    <message>
+        <source>To the next step</source>
+        <translation>次の手順へ</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation>閉じる</translation>
+    </message>
+    <message>
+        <source>What was decided is kept; the next time you can go on with it</source>
+        <translation>決めた内容は残り、次回に続けられます</translation>
+    </message>
+    <message>
+        <source>Finish</source>
+        <translation>完了</translation>
+    </message>
+    <message>
+        <source>Stopped</source>
+        <translation>中止しました</translation>
+    </message>
+    <message>
+        <source>Steps (*.toml)</source>
+        <translation>手順 (*.toml)</translation>
+    </message>
+</context>
+<context>
     <name>handpiece::desktop::SectionBar</name>
     <message>
         <source>Cut the tooth open in this direction</source>
@@ -2966,6 +3842,84 @@
     <message>
         <source>Reading the sound</source>
         <translation>音を読み込んでいます</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::SliceView</name>
+    <message>
+        <source>Slice across (axial)</source>
+        <translation>水平断のスライス</translation>
+    </message>
+    <message>
+        <source>Slice along, from the front (coronal)</source>
+        <translation>前から見た縦のスライス（冠状断）</translation>
+    </message>
+    <message>
+        <source>Slice along, from the side (sagittal)</source>
+        <translation>横から見た縦のスライス（矢状断）</translation>
+    </message>
+    <message>
+        <source>Wheel: through the slices. Ctrl and wheel: nearer. Right button: brightness and contrast. Middle button: shift. Double click: all of the slice.</source>
+        <translation>ホイール：スライス送り。Ctrl + ホイール：拡大。右ボタン：明るさとコントラスト。中ボタン：移動。ダブルクリック：全体表示。</translation>
+    </message>
+    <message>
+        <source>slice %1 of %2</source>
+        <translation>スライス %1 / %2</translation>
+    </message>
+    <message>
+        <source>Axial</source>
+        <translation>水平断</translation>
+    </message>
+    <message>
+        <source>Coronal</source>
+        <translation>冠状断</translation>
+    </message>
+    <message>
+        <source>Sagittal</source>
+        <translation>矢状断</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::SolidView</name>
+    <message>
+        <source>The tooth, to be turned</source>
+        <translation>回転できる歯</translation>
+    </message>
+    <message>
+        <source>Drag: turn. Right button: shift. Wheel: nearer. Double click: all of it. Arrow keys turn.</source>
+        <translation>ドラッグ：回転。右ボタン：移動。ホイール：拡大。ダブルクリック：全体表示。矢印キーでも回せます。</translation>
+    </message>
+    <message>
+        <source>Show or hide this tissue</source>
+        <translation>この組織を表示または非表示にします</translation>
+    </message>
+    <message>
+        <source>Buccal</source>
+        <translation>頬側</translation>
+    </message>
+    <message>
+        <source>Lingual</source>
+        <translation>舌側</translation>
+    </message>
+    <message>
+        <source>Occlusal</source>
+        <translation>咬合面</translation>
+    </message>
+    <message>
+        <source>Mesial</source>
+        <translation>近心</translation>
+    </message>
+    <message>
+        <source>side</source>
+        <translation>横</translation>
+    </message>
+    <message>
+        <source>The tooth appears here when its tissues are found</source>
+        <translation>組織が見つかると、ここに歯が表示されます</translation>
+    </message>
+    <message>
+        <source>There is no picture. Technical detail: %1</source>
+        <translation>画像を表示できません。技術情報：%1</translation>
     </message>
 </context>
 <context>
@@ -3218,6 +4172,177 @@
     </message>
 </context>
 <context>
+    <name>handpiece::desktop::SurfacePage</name>
+    <message>
+        <source>How fine?</source>
+        <translation>細かさ</translation>
+    </message>
+    <message>
+        <source>More faces show more and draw slower. What is cut is as fine either way: the simulator cuts voxels of its own.</source>
+        <translation>面が多いほど細かく表示され、描画は遅くなります。切削の細かさは変わりません。シミュレーターは独自のボクセルを削ります。</translation>
+    </message>
+    <message>
+        <source>Faces</source>
+        <translation>面の数</translation>
+    </message>
+    <message>
+        <source>A share of the faces of the scan itself</source>
+        <translation>スキャンから作られた面に対する割合</translation>
+    </message>
+    <message>
+        <source>All of the scan&apos;s (100 %)</source>
+        <translation>スキャンのすべて（100 %）</translation>
+    </message>
+    <message>
+        <source>%1 % of them</source>
+        <translation>その %1 %</translation>
+    </message>
+    <message>
+        <source>Five cases: 6, 12, 25, 50, 100 %</source>
+        <translation>5 つの症例：6、12、25、50、100 %</translation>
+    </message>
+    <message>
+        <source>A number of faces</source>
+        <translation>面の数を指定</translation>
+    </message>
+    <message>
+        <source>Number of faces</source>
+        <translation>面の数</translation>
+    </message>
+    <message>
+        <source>Of all surfaces together</source>
+        <translation>すべての表面の合計</translation>
+    </message>
+    <message>
+        <source>Grid of the tissues</source>
+        <translation>組織の格子</translation>
+    </message>
+    <message>
+        <source>How close the points lie at which the tissues are told; finer than the scan shows nothing more</source>
+        <translation>組織を判定する点の間隔。スキャンより細かくしても情報は増えません</translation>
+    </message>
+    <message>
+        <source> mm</source>
+        <translation> mm</translation>
+    </message>
+    <message>
+        <source>as the scan</source>
+        <translation>スキャンと同じ</translation>
+    </message>
+    <message>
+        <source>Smooth (volumes are kept)</source>
+        <translation>滑らかにする（体積は保たれます）</translation>
+    </message>
+    <message>
+        <source>Smooth</source>
+        <translation>滑らかにする</translation>
+    </message>
+    <message>
+        <source>Takes away the steps of voxels without shrinking the tooth</source>
+        <translation>歯を縮めずにボクセルの段差を取り除きます</translation>
+    </message>
+    <message>
+        <source>Neighbours and bone around it, to look at</source>
+        <translation>周りの歯と骨も表示する</translation>
+    </message>
+    <message>
+        <source>Neighbours and bone around it</source>
+        <translation>周りの歯と骨</translation>
+    </message>
+    <message>
+        <source>What stands around the tooth in the scan</source>
+        <translation>スキャンで歯の周りにあるもの</translation>
+    </message>
+    <message>
+        <source>A scan from the mouth</source>
+        <translation>口腔内スキャン</translation>
+    </message>
+    <message>
+        <source>An intraoral scan (STL, PLY, OBJ) is finer than a CT. It is laid onto the tooth and becomes its outside where the two agree.</source>
+        <translation>口腔内スキャン（STL、PLY、OBJ）は CT より精細です。歯に重ね合わせ、一致する場所では外側の表面になります。</translation>
+    </message>
+    <message>
+        <source>Choose...</source>
+        <translation>選ぶ...</translation>
+    </message>
+    <message>
+        <source>Choose an intraoral scan</source>
+        <translation>口腔内スキャンを選びます</translation>
+    </message>
+    <message>
+        <source>Without</source>
+        <translation>使わない</translation>
+    </message>
+    <message>
+        <source>Without an intraoral scan</source>
+        <translation>口腔内スキャンを使いません</translation>
+    </message>
+    <message>
+        <source>Taken where they agree within</source>
+        <translation>採用する差の範囲</translation>
+    </message>
+    <message>
+        <source>An intraoral scan</source>
+        <translation>口腔内スキャン</translation>
+    </message>
+    <message>
+        <source>Surfaces (*.stl *.ply *.obj);;All files (*)</source>
+        <translation>曲面 (*.stl *.ply *.obj);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>No tooth was found yet</source>
+        <translation>まだ歯が見つかっていません</translation>
+    </message>
+    <message>
+        <source>None</source>
+        <translation>なし</translation>
+    </message>
+    <message>
+        <source>As it will be</source>
+        <translation>出来上がり</translation>
+    </message>
+    <message>
+        <source>Preview; the fine surfaces are being made</source>
+        <translation>プレビュー：細かい表面を作成中</translation>
+    </message>
+    <message>
+        <source>Preview; the fine surfaces were not made</source>
+        <translation>プレビュー：細かい表面は未作成</translation>
+    </message>
+    <message>
+        <source>It lies on the tooth to %1 mm (rms; 95 % within %2 mm), %3 % of it has a counterpart.</source>
+        <translation>歯との差は %1 mm（二乗平均、95 % が %2 mm 以内）、%3 % が対応しています。</translation>
+    </message>
+    <message>
+        <source>%1 %</source>
+        <translation>%1 %</translation>
+    </message>
+    <message>
+        <source>%1 faces</source>
+        <translation>%1 面</translation>
+    </message>
+    <message>
+        <source>reduced by at most %1 mm</source>
+        <translation>簡略化による誤差は最大 %1 mm</translation>
+    </message>
+    <message>
+        <source>encloses %1 mm³</source>
+        <translation>内部の体積 %1 mm³</translation>
+    </message>
+    <message>
+        <source>Whole tooth</source>
+        <translation>歯全体</translation>
+    </message>
+    <message>
+        <source>%1, authored</source>
+        <translation>%1（作成）</translation>
+    </message>
+    <message>
+        <source>Surfaces</source>
+        <translation>表面</translation>
+    </message>
+</context>
+<context>
     <name>handpiece::desktop::Timeline</name>
     <message>
         <source>Time of the replay</source>
@@ -3232,6 +4357,153 @@
         <translation>
             <numerusform>ほか %n 件</numerusform>
         </translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::TissuePage</name>
+    <message>
+        <source>mm</source>
+        <translation>mm</translation>
+    </message>
+    <message>
+        <source>This tooth, by a click</source>
+        <translation>この歯（クリックで指定）</translation>
+    </message>
+    <message>
+        <source>Nothing here</source>
+        <translation>何もない</translation>
+    </message>
+    <message>
+        <source>Brush: %1, %2</source>
+        <translation>ブラシ：%1、%2</translation>
+    </message>
+    <message>
+        <source>Cut off, plane %1</source>
+        <translation>切り離し：平面 %1</translation>
+    </message>
+    <message>
+        <source>Lesion, authored, %1</source>
+        <translation>作成された病変、%1</translation>
+    </message>
+    <message>
+        <source>Preview</source>
+        <translation>プレビュー</translation>
+    </message>
+    <message>
+        <source>Preview, being renewed</source>
+        <translation>プレビュー（更新中）</translation>
+    </message>
+    <message>
+        <source>What was found</source>
+        <translation>見つかったもの</translation>
+    </message>
+    <message>
+        <source>The mouse in a slice</source>
+        <translation>スライスでのマウスの働き</translation>
+    </message>
+    <message>
+        <source>This is</source>
+        <translation>組織</translation>
+    </message>
+    <message>
+        <source>Radius of the brush</source>
+        <translation>ブラシの半径</translation>
+    </message>
+    <message>
+        <source>Radius</source>
+        <translation>半径</translation>
+    </message>
+    <message>
+        <source>Radius of the lesion</source>
+        <translation>病変の半径</translation>
+    </message>
+    <message>
+        <source> mm</source>
+        <translation> mm</translation>
+    </message>
+    <message>
+        <source>Decided by hand</source>
+        <translation>手動の決定</translation>
+    </message>
+    <message>
+        <source>What you said; the last one wins</source>
+        <translation>指定した内容。後のものが優先されます</translation>
+    </message>
+    <message>
+        <source>Take back</source>
+        <translation>取り消す</translation>
+    </message>
+    <message>
+        <source>Take the chosen decision back</source>
+        <translation>選んだ決定を取り消します</translation>
+    </message>
+    <message>
+        <source>Other side</source>
+        <translation>反対側</translation>
+    </message>
+    <message>
+        <source>Keep what lies on the other side of the chosen plane</source>
+        <translation>選んだ平面の反対側を残します</translation>
+    </message>
+    <message>
+        <source>Thresholds found by the program</source>
+        <translation>自動のしきい値に戻す</translation>
+    </message>
+    <message>
+        <source>Forget the thresholds that were dragged</source>
+        <translation>手動のしきい値を破棄します</translation>
+    </message>
+    <message>
+        <source>Damp noise and streaks</source>
+        <translation>ノイズと金属アーチファクトを抑える</translation>
+    </message>
+    <message>
+        <source>Edges are kept</source>
+        <translation>境目は保たれます</translation>
+    </message>
+    <message>
+        <source>Look for caries</source>
+        <translation>う蝕を探す</translation>
+    </message>
+    <message>
+        <source>Dark places in enamel and dentine</source>
+        <translation>エナメル質と象牙質の暗い場所</translation>
+    </message>
+    <message>
+        <source>Colour the tissues in the slices</source>
+        <translation>スライスの組織に色を付ける</translation>
+    </message>
+    <message>
+        <source>Off: their outlines only</source>
+        <translation>オフ：輪郭だけを表示します</translation>
+    </message>
+    <message>
+        <source>Which tooth is it?</source>
+        <translation>どの歯ですか</translation>
+    </message>
+    <message>
+        <source>The scan is not read yet</source>
+        <translation>スキャンはまだ読み込まれていません</translation>
+    </message>
+    <message>
+        <source>No tooth was found yet</source>
+        <translation>まだ歯が見つかっていません</translation>
+    </message>
+    <message>
+        <source>Nothing yet</source>
+        <translation>まだありません</translation>
+    </message>
+    <message>
+        <source>mm³</source>
+        <translation>mm³</translation>
+    </message>
+    <message>
+        <source>Together</source>
+        <translation>合計</translation>
+    </message>
+    <message>
+        <source>Tissues</source>
+        <translation>組織</translation>
     </message>
 </context>
 <context>

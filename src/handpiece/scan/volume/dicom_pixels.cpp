@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels of DICOM files: plain ones here, packed ones by GDCM's decoders, which get nothing but the packed frame.
+// Pixels of DICOM files: plain ones and run lengths here, JPEG's family by GDCM's decoders, which get nothing but the
+// packed frame.
 #include <fmt/format.h>
 
 #include <cstring>
@@ -12,7 +13,6 @@
 #include <gdcmJPEG2000Codec.h>
 #include <gdcmJPEGCodec.h>
 #include <gdcmJPEGLSCodec.h>
-#include <gdcmRLECodec.h>
 #include <gdcmSequenceOfFragments.h>
 #include <gdcmTrace.h>
 
@@ -104,6 +104,39 @@ std::vector<char> packedFrame(Input& input, const DicomHeader& header, int index
     return data;
 }
 
+/// Run lengths, a segment for each byte of a value, the highest first (PS3.5 annex G). Not by GDCM: its decoder reads
+/// beyond the end of damaged data.
+bool unpackRle(const std::vector<char>& data, std::size_t planes, std::size_t frameBytes, std::vector<std::byte>& out) {
+    const auto number = [&](std::size_t at) {
+        std::uint32_t v = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            v |= static_cast<std::uint32_t>(static_cast<unsigned char>(data[at + i])) << 8 * i;
+        return v;
+    };
+    // At best 128 values come out of two bytes.
+    if (data.size() < 64 || number(0) != planes || frameBytes / 64 > data.size()) return false;
+    out.resize(frameBytes);
+    const std::size_t count = frameBytes / planes;
+    for (std::size_t plane = 0; plane < planes; ++plane) {
+        std::size_t at = number(4 + 4 * plane), done = 0;
+        const auto put = [&](char value) {
+            out[done++ * planes + (planes - 1 - plane)] = static_cast<std::byte>(value);
+        };
+        if (at < 64) return false;
+        while (done < count) {
+            if (at >= data.size()) return false;
+            const int run = static_cast<signed char>(data[at++]);
+            if (run == -128) continue;
+            const std::size_t length = static_cast<std::size_t>(run < 0 ? 1 - run : run + 1);
+            if (at + (run < 0 ? 1 : length) > data.size()) return false;
+            for (std::size_t i = 0; i < length && done < count; ++i)
+                put(data[run < 0 ? at : at + i]);
+            at += run < 0 ? 1 : length;
+        }
+    }
+    return true;
+}
+
 std::vector<std::byte> unpack(Input& input, const DicomHeader& header, int index, Packing packing,
                               std::size_t frameBytes) {
     static std::once_flag silent;
@@ -116,7 +149,13 @@ std::vector<std::byte> unpack(Input& input, const DicomHeader& header, int index
         return core::Error(why, input.where(), "copy or export it again, or convert it with \"gdcmconv --raw IN OUT\"");
     };
     std::vector<char> data = packedFrame(input, header, index);
-    if (packing != Packing::rle) {
+    if (packing == Packing::rle) {
+        std::vector<std::byte> bytes;
+        if (!unpackRle(data, static_cast<std::size_t>(header.allocated / 8), frameBytes, bytes))
+            throw wrong("its packed pixel data is damaged or truncated");
+        return bytes;
+    }
+    {
         const auto size = packedSize(packing, data);
         if (!size) throw wrong("its pixel data is not packed as its transfer syntax says, or damaged");
         if ((*size)[0] != static_cast<unsigned>(header.columns) || (*size)[1] != static_cast<unsigned>(header.rows) ||
@@ -147,12 +186,6 @@ std::vector<std::byte> unpack(Input& input, const DicomHeader& header, int index
     bool isGood = false;
     try {
         switch (packing) {
-            case Packing::rle: {
-                gdcm::RLECodec codec;
-                codec.SetBufferLength(frameBytes);
-                isGood = decode(codec);
-                break;
-            }
             case Packing::jpeg: {
                 gdcm::JPEGCodec codec;
                 isGood = decode(codec);
@@ -169,6 +202,7 @@ std::vector<std::byte> unpack(Input& input, const DicomHeader& header, int index
                 isGood = decode(codec);
                 break;
             }
+            case Packing::rle:
             case Packing::none:
                 break;
         }

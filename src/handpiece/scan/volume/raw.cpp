@@ -2,6 +2,7 @@
 // Numbers without a header, and the scan.toml that describes them or the slices beside it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "handpiece/base/config/table.h"
@@ -41,8 +42,11 @@ std::optional<core::Vec3> threeNumbers(const config::Table& table, const char* k
 
 Description readDescription(const FileSet& files, std::size_t index) {
     const std::vector<std::byte> bytes = files.bytes(index, kMostDescription);
-    const config::Table table = config::Table::parse(
-        std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()), files.where(index));
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (std::any_of(text.begin(), text.end(),
+                    [](char c) { return c >= 0 && c < 0x20 && c != '\n' && c != '\r' && c != '\t'; }))
+        throw core::Error("this is no text", files.where(index), "mend the file").as("bad-text", {"no text"});
+    const config::Table table = config::Table::parse(text, files.where(index));
     table.allowOnly({"format", "file", "size", "type", "byte_order", "header_bytes", "spacing_mm", "origin_mm", "axes",
                      "slope", "intercept"});
     Description d;

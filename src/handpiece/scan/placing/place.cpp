@@ -22,6 +22,9 @@ using geometry::TriangleMesh;
 
 /// Enamel thinner than this is the two surfaces' noise.
 constexpr double kLeastEnamelMm = 0.05;
+/// A fine surface is looked at through one of its vertices a cell: where the neck runs needs no more.
+constexpr std::size_t kManyFaces = 60000;
+constexpr double kCellMm = 0.25;
 /// With less of either there is no telling which end is the crown.
 constexpr double kLeastShare = 0.02;
 /// A hint that is this near to the other axis (cosine) says nothing.
@@ -90,17 +93,45 @@ Axes principalAxes(const Mat3& covariance) {
     return axes;
 }
 
+/// The same surface with one vertex, of its own, in each cell. Not manifold; no triangle twice.
+TriangleMesh thinned(const TriangleMesh& mesh) {
+    const Vec3 from = mesh.bounds().min;
+    std::vector<std::pair<std::array<int, 3>, std::uint32_t>> cells(mesh.vertices.size());
+    for (std::uint32_t v = 0; v < cells.size(); ++v) {
+        const Vec3 at = (mesh.vertices[v] - from) / kCellMm;
+        cells[v] = {{static_cast<int>(at.x()), static_cast<int>(at.y()), static_cast<int>(at.z())}, v};
+    }
+    std::sort(cells.begin(), cells.end());
+    TriangleMesh thin;
+    std::vector<std::uint32_t> number(mesh.vertices.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (i == 0 || cells[i].first != cells[i - 1].first) thin.vertices.push_back(mesh.vertices[cells[i].second]);
+        number[cells[i].second] = static_cast<std::uint32_t>(thin.vertices.size() - 1);
+    }
+    for (const geometry::Triangle& t : mesh.triangles) {
+        geometry::Triangle made{number[t[0]], number[t[1]], number[t[2]]};
+        if (geometry::repeatsCorner(made)) continue;
+        std::rotate(made.begin(), std::min_element(made.begin(), made.end()), made.end());
+        thin.triangles.push_back(made);
+    }
+    std::sort(thin.triangles.begin(), thin.triangles.end());
+    thin.triangles.erase(std::unique(thin.triangles.begin(), thin.triangles.end()), thin.triangles.end());
+    return thin;
+}
+
 /// Which triangles of the outer surface have enamel under them.
 std::vector<std::uint8_t> enamelOf(const TriangleMesh& outer, const TriangleMesh& dentine) {
     const geometry::TriangleTree tree(dentine);
-    std::vector<std::uint8_t> isEnamel(outer.triangles.size(), 0);
-    core::parallelFor(outer.triangles.size(), 512, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint8_t> isEnamel(outer.triangles.size(), 0), isAtVertex(outer.vertices.size(), 0);
+    core::parallelFor(outer.vertices.size(), 512, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const geometry::Triangle& t = outer.triangles[i];
-            const Vec3 p = (outer.vertices[t[0]] + outer.vertices[t[1]] + outer.vertices[t[2]]) / 3.0;
-            isEnamel[i] = tree.signedDistance(p) > kLeastEnamelMm ? 1 : 0;
+            isAtVertex[i] = tree.signedDistance(outer.vertices[i]) > kLeastEnamelMm ? 1 : 0;
         }
     });
+    for (std::size_t i = 0; i < isEnamel.size(); ++i) {
+        const geometry::Triangle& t = outer.triangles[i];
+        isEnamel[i] = isAtVertex[t[0]] + isAtVertex[t[1]] + isAtVertex[t[2]] >= 2 ? 1 : 0;
+    }
     return isEnamel;
 }
 
@@ -111,8 +142,8 @@ void keepLargest(std::vector<std::uint8_t>& isEnamel, const TriangleMesh& outer,
         geometry::DisjointSets sets(outer.triangles.size());
         for (const auto& e : edges.edges()) {
             const auto halves = edges.halfEdges(e);
-            if (halves.size() == 2 && isEnamel[halves[0] / 3] == isEnamel[halves[1] / 3])
-                sets.join(halves[0] / 3, halves[1] / 3);
+            for (std::size_t i = 1; i < halves.size(); ++i)
+                if (isEnamel[halves[0] / 3] == isEnamel[halves[i] / 3]) sets.join(halves[0] / 3, halves[i] / 3);
         }
         std::map<std::uint32_t, double> area;
         for (std::uint32_t i = 0; i < outer.triangles.size(); ++i) {
@@ -226,11 +257,13 @@ Placed place(const surfacing::Surfaces& surfaces, const Hints& hints) {
     });
     std::vector<std::uint8_t> isEnamel;
     Crown crown;
+    TriangleMesh seen = outer;
     if (dentine != surfaces.tissues.end()) {
-        const geometry::MeshEdges edges(outer);
-        isEnamel = enamelOf(outer, dentine->mesh);
-        keepLargest(isEnamel, outer, edges);
-        crown = crownOf(outer, isEnamel, edges);
+        if (outer.triangles.size() > kManyFaces) seen = thinned(outer);
+        const geometry::MeshEdges edges(seen);
+        isEnamel = enamelOf(seen, dentine->mesh);
+        keepLargest(isEnamel, seen, edges);
+        crown = crownOf(seen, isEnamel, edges);
     }
 
     Vec3 occlusal;
@@ -265,7 +298,7 @@ Placed place(const surfacing::Surfaces& surfaces, const Hints& hints) {
         neckAt = crown.neck.mean.dot(occlusal);
         centre = crown.neck.mean;
         if (!hints.occlusal)
-            confidence *= std::clamp(2.0 * orderAlong(outer, isEnamel, occlusal, neckAt) - 1.0, 0.0, 1.0);
+            confidence *= std::clamp(2.0 * orderAlong(seen, isEnamel, occlusal, neckAt) - 1.0, 0.0, 1.0);
     } else {
         double low = 1e300, high = -1e300;
         for (const Vec3& p : outer.vertices) {

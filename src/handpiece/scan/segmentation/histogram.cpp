@@ -61,7 +61,6 @@ std::vector<Peak> findPeaks(const Shape& shape, const Field& values) {
         if (steps[n] >= 0 && std::isfinite(values[n])) sorted.push_back(steps[n]);
     if (sorted.size() < 100) throw nothingFound("the scan is too small");
     std::sort(sorted.begin(), sorted.end());
-    const float limit = std::max(sorted[sorted.size() * 6 / 10], 1e-20f);
 
     std::vector<float> greys;
     for (std::size_t n = 0; n < values.size(); n += stride)
@@ -69,6 +68,8 @@ std::vector<Peak> findPeaks(const Shape& shape, const Field& values) {
     std::sort(greys.begin(), greys.end());
     const float low = greys[greys.size() / 2000], high = greys[greys.size() - 1 - greys.size() / 2000];
     if (!(high > low)) return {{low, 1.0}};
+    // Without noise nearly all is flat: then a little slope counts as flat too.
+    const float limit = std::max(sorted[sorted.size() * 6 / 10], 0.015f * (high - low));
     constexpr int kBins = 1024;
     std::vector<double> bins(kBins, 0.0), sums(kBins, 0.0);
     double all = 0;

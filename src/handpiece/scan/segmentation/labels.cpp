@@ -52,15 +52,16 @@ Mask labelsOn(const Work& work, const volume::Labels& labels, const core::Progre
 }
 
 /// A distance to the smoothed boundary of what is set, nowhere further than half a voxel from the boundary between the
-/// voxels: a voxel's centre never changes sides. `fill` are voxels outside the tooth that go along (2 in `side`).
+/// voxels: a voxel's centre never changes sides.
 Field smoothed(const Shape& shape, const Field& share, Field& scratch, Field& scratch2) {
     Field inside;
+    // Twice the blurred less the twice blurred: smooth, but a small ball does not shrink.
     blur(shape, share, scratch2, scratch, kSmoothVoxels);
-    inside.resize(share.size());
+    blur(shape, scratch2, inside, scratch, kSmoothVoxels);
     // Halfway is the surface; a voxel's own side is kept.
     core::parallelFor(inside.size(), 1 << 16, [&](std::size_t from, std::size_t to) {
         for (std::size_t n = from; n < to; ++n) {
-            const float f = (scratch2[n] - 0.5f) * 2.5066f * static_cast<float>(kSmoothVoxels);
+            const float f = (2 * scratch2[n] - inside[n] - 0.5f) * 2.5066f * static_cast<float>(kSmoothVoxels);
             inside[n] = share[n] > 0.5f ? std::max(f, 0.02f) : std::min(f, -0.02f);
         }
     });

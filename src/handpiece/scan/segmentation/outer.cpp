@@ -205,21 +205,25 @@ void findOuter(Work& work, const CoarseTeeth& teeth, std::size_t chosen, const v
     // What a neighbour or a person cuts off.
     const Field side = ownSide(teeth, chosen);
     const double perVoxel = work.spacingMm();
+    work.held.assign(shape.count(), 0);
+    const auto cut = [&](std::size_t at, double inside) {
+        const float to =
+            static_cast<float>(std::clamp(inside, -static_cast<double>(kBand), static_cast<double>(kBand)));
+        if (to >= work.outer[at]) return;
+        work.outer[at] = to;
+        work.held[at] = kHeldCut;
+    };
     if (!side.empty() || !settings.cutPlanes.empty())
         forRows(shape, [&](int j, int k) {
             for (int i = 0; i < shape.size[0]; ++i) {
-                float& out = work.outer[shape.index(i, j, k)];
+                const std::size_t at = shape.index(i, j, k);
                 const Vec3 mm = work.grid.toMm(Vec3(i, j, k));
-                if (!side.empty()) {
-                    const float s = sample(teeth.coarse.shape, side, teeth.coarse.fromVoxels(scan.toVoxels(mm)));
-                    out = std::min(
-                        out, std::clamp(1.5f * s * static_cast<float>(teeth.coarse.spacingMm.mean() / perVoxel), -kBand,
-                                        kBand));
-                }
+                if (!side.empty())
+                    cut(at, 1.5 * teeth.coarse.spacingMm.mean() / perVoxel *
+                                static_cast<double>(
+                                    sample(teeth.coarse.shape, side, teeth.coarse.fromVoxels(scan.toVoxels(mm)))));
                 for (const CutPlane& plane : settings.cutPlanes)
-                    out = std::min(out, static_cast<float>(
-                                            std::clamp(-plane.normal.normalized().dot(mm - plane.pointMm) / perVoxel,
-                                                       -static_cast<double>(kBand), static_cast<double>(kBand))));
+                    cut(at, -plane.normal.normalized().dot(mm - plane.pointMm) / perVoxel);
             }
         });
     core::report(progress, 0.6);
@@ -249,7 +253,8 @@ void findOuter(Work& work, const CoarseTeeth& teeth, std::size_t chosen, const v
     core::report(progress, 0.7);
     const Mask cavity = closedCavities(shape, mask, work.spacingMm());
     core::report(progress, 0.9);
-    work.held = cavity;
+    for (std::size_t n = 0; n < cavity.size(); ++n)
+        if (cavity[n]) work.held[n] = kHeldCavity;
     for (std::size_t n = 0; n < mask.size(); ++n) {
         float& out = work.outer[n];
         if (cavity[n])

@@ -26,21 +26,22 @@ double blurOf(const Work& work) {
     const Shape& shape = work.shape;
     const Thresholds& t = work.levels;
     constexpr int kBins = 24;
+    constexpr float kWindow = 2.4f, kAlone = 2.0f;  // voxels: samples, and how far any other surface is
     std::vector<double> sum(kBins, 0.0), count(kBins, 0.0);
     for (int k = 3; k + 3 < shape.size[2]; ++k)
         for (int j = 3; j + 3 < shape.size[1]; ++j)
             for (int i = 3; i + 3 < shape.size[0]; ++i) {
                 const std::size_t at = shape.index(i, j, k);
                 const float d = work.outer[at];
-                if (d <= -2.9f || d >= 2.9f) continue;
-                const bool isDentine = work.dentine[at] > 2.5f;
-                if (!isDentine && work.dentine[at] > -2.5f) continue;
-                if (!work.caries.empty() && work.caries[at] > -2.5f) continue;
-                if (!work.pulp.empty() && work.pulp[at] > -2.5f) continue;
-                if (!work.restoration.empty() && work.restoration[at] > -2.5f) continue;
+                if (d <= -kWindow || d >= kWindow) continue;
+                const bool isDentine = work.dentine[at] > kAlone;
+                if (!isDentine && work.dentine[at] > -kAlone) continue;
+                if (!work.caries.empty() && work.caries[at] > -kAlone) continue;
+                if (!work.pulp.empty() && work.pulp[at] > -kAlone) continue;
+                if (!work.restoration.empty() && work.restoration[at] > -kAlone) continue;
                 const float level = isDentine ? t.dentine : t.enamel;
                 const double share = (work.raw[at] - t.outside) / (level - t.outside);
-                const int bin = static_cast<int>((d + 3) / 6 * kBins);
+                const int bin = static_cast<int>((d + kWindow) / (2 * kWindow) * kBins);
                 sum[static_cast<std::size_t>(bin)] += share;
                 count[static_cast<std::size_t>(bin)] += 1;
             }
@@ -49,8 +50,8 @@ double blurOf(const Work& work) {
         const auto n = static_cast<std::size_t>(b);
         if (count[n] < 20) return work.sigma;
         const double mean = sum[n] / count[n];
-        const double d = (b + 0.5) / kBins * 6 - 3;
-        area += (d > 0 ? 1 - mean : mean) * 6 / kBins;
+        const double d = ((b + 0.5) / kBins * 2 - 1) * static_cast<double>(kWindow);
+        area += (d > 0 ? 1 - mean : mean) * 2 * static_cast<double>(kWindow) / kBins;
     }
     // A step blurred by sigma leaves an area of 2 sigma / sqrt(2 pi); a voxel's own width is modelled apart.
     const double whole = area * 2.5066 / 2;
@@ -81,6 +82,27 @@ float levelError(const Work& work, const Field& inside, const Field& difference)
     for (std::size_t n = 0; n < inside.size(); ++n)
         if (inside[n] > 0.8f && work.outer[n] > 2) sum += static_cast<double>(difference[n]), count += 1;
     return count < 20 ? 0.0f : static_cast<float>(sum / count);
+}
+
+/// Dentine's and enamel's levels likewise; what is thin never shows its own grey, but its share of the blur is known.
+void fitHardTissues(Work& work, const Field& difference) {
+    double enamel = 0, enamelCount = 0, dentine = 0, dentineCount = 0;
+    for (std::size_t n = 0; n < difference.size(); ++n) {
+        if (work.outer[n] < 1.5f) continue;
+        const auto isNear = [&](const Field& inside) { return !inside.empty() && inside[n] > -1.5f; };
+        if (isNear(work.pulp) || isNear(work.caries) || isNear(work.restoration)) continue;
+        if (work.dentine[n] > 1.2f && work.outer[n] > 2)
+            dentine += static_cast<double>(difference[n]), dentineCount += 1;
+        if (work.dentine[n] < -1.0f) enamel += static_cast<double>(difference[n]), enamelCount += 1;
+    }
+    Thresholds& t = work.levels;
+    if (dentineCount > 200) t.dentine += static_cast<float>(dentine / dentineCount);
+    if (!std::isfinite(t.enamelFrom)) {
+        t.enamel = t.dentine;
+        return;
+    }
+    if (enamelCount > 200) t.enamel += static_cast<float>(enamel / enamelCount);
+    t.enamelFrom = 0.5f * (t.dentine + t.enamel);
 }
 
 /// Moves every surface by what the blurred difference says, each by its own contrast.
@@ -149,6 +171,7 @@ void refine(Work& work, const core::Progress& progress) {
         if (round > 0)
             for (const Layer& layer : layers)
                 if (layer.isOpen) *layer.level += levelError(work, *layer.inside, difference);
+        if (round > 0 && work.areLevelsOpen) fitHardTissues(work, difference);
         core::report(progress, (round + 0.4) / kRounds);
         blur(work.shape, difference, difference, work.scratch, work.sigma);
         const double gain = 0.7 * 2 * std::sqrt(work.sigma * work.sigma + 1.0 / 24) * kSqrtPi;

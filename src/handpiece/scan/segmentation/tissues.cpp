@@ -130,7 +130,7 @@ void findPulp(Work& work, const Mask& nearEnamel, bool isLevelOpen, const core::
     const Mask near = dilated(shape, dilated(shape, dark));
     for (std::size_t n = 0; n < work.pulp.size(); ++n) {
         const float f = (half - work.damped[n]) / contrast * kSlope * static_cast<float>(work.sigma);
-        if (dark[n] || (work.held[n] && work.outer[n] > 0))
+        if (dark[n] || (work.held[n] == kHeldCavity && work.outer[n] > 0))
             work.pulp[n] = std::max(f, 0.05f);
         else if (thin[n] && has[parts.of[n]])
             work.pulp[n] = std::max(f, 0.1f);
@@ -314,6 +314,16 @@ void findDentine(Work& work, const core::Progress& progress) {
             work.dentine[at] = least;
         }
     });
+    // Further out as at the band's edge, lest a surface stand there.
+    Mask known(shape.count());
+    for (std::size_t n = 0; n < known.size(); ++n)
+        known[n] = work.outer[n] > -kBand;
+    Mask beyond = known;
+    for (int round = 0; round < 3; ++round)
+        beyond = dilated(shape, beyond);
+    for (std::size_t n = 0; n < beyond.size(); ++n)
+        beyond[n] = known[n] ? 0 : (beyond[n] ? 1 : 2);
+    spreadInto(shape, work.dentine, beyond);
     core::report(progress, 0.6);
     // Specks of noise in either.
     Mask enamel(shape.count());
@@ -345,7 +355,8 @@ void findDentine(Work& work, const core::Progress& progress) {
 void findTissues(Work& work, const Settings& settings, const core::Progress& progress) {
     // Peaks of the whole scan are near; what lies well inside this tooth is right.
     Thresholds& t = work.levels;
-    if (!settings.thresholds) {
+    work.areLevelsOpen = !settings.thresholds;
+    if (work.areLevelsOpen) {
         Mask enamel(work.shape.count()), dentine(work.shape.count());
         for (std::size_t n = 0; n < enamel.size(); ++n) {
             const bool isDeep = work.outer[n] > 2.0f;

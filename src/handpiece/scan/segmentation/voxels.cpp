@@ -355,32 +355,38 @@ void redistance(const Shape& shape, Field& values, float band) {
                 }
             });
         solved.resize(next.size());
-        core::parallelFor(next.size(), 4096, [&](std::size_t from, std::size_t to) {
-            for (std::size_t n = from; n < to; ++n) {
-                std::array<float, 3> low{kUnknown, kUnknown, kUnknown};
-                const std::size_t at = next[n];
-                const auto c = shape.at(at);
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    const std::size_t stride = axis == 0 ? 1 : (axis == 1 ? shape.rowStride() : shape.sliceStride());
-                    if (c[axis] > 0) low[axis] = std::min(low[axis], std::abs(values[at - stride]));
-                    if (c[axis] + 1 < shape.size[axis]) low[axis] = std::min(low[axis], std::abs(values[at + stride]));
-                }
-                std::sort(low.begin(), low.end());
-                float d = low[0] + 1;
-                if (d > low[1]) {
-                    d = 0.5f * (low[0] + low[1] + std::sqrt(std::max(0.0f, 2 - (low[0] - low[1]) * (low[0] - low[1]))));
-                    if (d > low[2]) {
-                        const float sum = low[0] + low[1] + low[2];
-                        const float squares = low[0] * low[0] + low[1] * low[1] + low[2] * low[2];
-                        d = (sum + std::sqrt(std::max(0.0f, sum * sum - 3 * (squares - 1)))) / 3;
+        // Twice: the second time a layer's voxels know each other.
+        for (int pass = 0; pass < 2; ++pass) {
+            core::parallelFor(next.size(), 4096, [&](std::size_t from, std::size_t to) {
+                for (std::size_t n = from; n < to; ++n) {
+                    std::array<float, 3> low{kUnknown, kUnknown, kUnknown};
+                    const std::size_t at = next[n];
+                    const auto c = shape.at(at);
+                    for (std::size_t axis = 0; axis < 3; ++axis) {
+                        const std::size_t stride =
+                            axis == 0 ? 1 : (axis == 1 ? shape.rowStride() : shape.sliceStride());
+                        if (c[axis] > 0) low[axis] = std::min(low[axis], std::abs(values[at - stride]));
+                        if (c[axis] + 1 < shape.size[axis])
+                            low[axis] = std::min(low[axis], std::abs(values[at + stride]));
                     }
+                    std::sort(low.begin(), low.end());
+                    float d = low[0] + 1;
+                    if (d > low[1]) {
+                        d = 0.5f *
+                            (low[0] + low[1] + std::sqrt(std::max(0.0f, 2 - (low[0] - low[1]) * (low[0] - low[1]))));
+                        if (d > low[2]) {
+                            const float sum = low[0] + low[1] + low[2];
+                            const float squares = low[0] * low[0] + low[1] * low[1] + low[2] * low[2];
+                            d = (sum + std::sqrt(std::max(0.0f, sum * sum - 3 * (squares - 1)))) / 3;
+                        }
+                    }
+                    solved[n] = d;
                 }
-                solved[n] = d;
+            });
+            for (std::size_t n = 0; n < next.size(); ++n) {
+                float& v = values[next[n]];
+                v = v > 0 ? solved[n] : -solved[n];
             }
-        });
-        for (std::size_t n = 0; n < next.size(); ++n) {
-            float& v = values[next[n]];
-            v = v > 0 ? solved[n] : -solved[n];
         }
         layer.swap(next);
     }

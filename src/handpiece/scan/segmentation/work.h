@@ -12,6 +12,7 @@
 
 namespace handpiece::segmentation {
 
+inline constexpr std::uint8_t kHeldCavity = 1, kHeldCut = 2;
 inline constexpr float kBand = 3;  ///< voxels: beyond it distances are clamped
 
 /// Distances are in voxels, positive inside. What is empty is not there.
@@ -22,10 +23,11 @@ struct Work {
     Field raw;     ///< grey values as scanned
     Field damped;  ///< noise taken out, edges kept
     Field outer, dentine, pulp, caries, restoration;
-    Mask held;  ///< cavities that a person or the closing decided: grey values have no say at their mouths
+    Mask held;  ///< cavities that were closed and what was cut off: grey values have no say there
     float cariesLevel = 0, restorationLevel = 0;
-    double sigma = 0.85;  ///< blur [voxels]
-    float noise = 0;      ///< grey values
+    bool areLevelsOpen = true;  ///< grey levels are fitted: nobody gave them
+    double sigma = 0.85;        ///< blur [voxels]
+    float noise = 0;            ///< grey values
     std::vector<std::string> notes;
     Field scratch, scratch2;
 

@@ -8,7 +8,8 @@
 namespace handpiece::segmentation {
 
 namespace {
-constexpr int kRounds = 6;
+constexpr int kRounds = 7, kMostRounds = 14;
+constexpr double kWideBlur = 1.2;        ///< voxels: above it surfaces start further off and need more rounds
 constexpr float kLeastContrast = 0.12f;  ///< of the step from outside to dentine: below it grey values say nothing
 constexpr float kReach = 1.6f;           ///< voxels beside a surface that are moved
 constexpr double kSqrtPi = 1.7724538509055159;
@@ -159,9 +160,11 @@ void refine(Work& work, const core::Progress& progress) {
     const float brightest =
         work.restoration.empty() ? t.enamel + 0.5f * (t.enamel - t.outside) : work.restorationLevel * 1.2f;
     Field& difference = work.damped;  // no stage after this one needs it
-    for (int round = 0; round < kRounds; ++round) {
-        core::report(progress, static_cast<double>(round) / kRounds);
-        if (round < 3) work.sigma = blurOf(work);
+    int rounds = kRounds;
+    for (int round = 0; round < rounds; ++round) {
+        if (round == 3 && work.sigma > kWideBlur) rounds = kMostRounds;
+        core::report(progress, static_cast<double>(round) / rounds);
+        if (round < 4) work.sigma = blurOf(work);
         compose(work, layers, difference);
         blur(work.shape, difference, difference, work.scratch, work.sigma);
         core::parallelFor(difference.size(), 1 << 15, [&](std::size_t from, std::size_t to) {
@@ -172,11 +175,11 @@ void refine(Work& work, const core::Progress& progress) {
             for (const Layer& layer : layers)
                 if (layer.isOpen) *layer.level += levelError(work, *layer.inside, difference);
         if (round > 0 && work.areLevelsOpen) fitHardTissues(work, difference);
-        core::report(progress, (round + 0.4) / kRounds);
+        core::report(progress, (round + 0.4) / rounds);
         blur(work.shape, difference, difference, work.scratch, work.sigma);
         const double gain = 0.7 * 2 * std::sqrt(work.sigma * work.sigma + 1.0 / 24) * kSqrtPi;
         move(work, layers, difference, static_cast<float>(gain));
-        core::report(progress, (round + 0.7) / kRounds);
+        core::report(progress, (round + 0.7) / rounds);
         even(work.shape, work.outer, work.scratch, 0.06f);
         redistance(work.shape, work.outer, kBand);
         for (const Layer& layer : layers) {

@@ -114,8 +114,7 @@ TriangleMesh coarserOf(ToothKind kind) {
 
 class PlacingEachKind : public ::testing::TestWithParam<ToothKind> {};
 INSTANTIATE_TEST_SUITE_P(Starter, PlacingEachKind,
-                         ::testing::Values(ToothKind::lowerFirstMolar, ToothKind::upperIncisor,
-                                           ToothKind::upperPremolar));
+                         ::testing::Values(ToothKind::lowerFirstMolar, ToothKind::upperIncisor));
 
 TEST_P(PlacingEachKind, FindsTheFrameHoweverTheToothLies) {
     std::mt19937_64 generator(test::seed());
@@ -162,6 +161,19 @@ TEST(Placing, GuessesFromTheShapeWhereThereIsNoEnamelAndSaysSo) {
     EXPECT_LT(degrees(placed.scanInTooth.orientation * (turned.orientation * Vec3::UnitZ()), Vec3::UnitZ()), 20.0);
     EXPECT_LE(placed.confidence, 0.4);
     EXPECT_THAT(placed.notes, ::testing::Contains(HasSubstr("guessed from the shape")));
+}
+
+TEST(Placing, TheNumberSaysWhichSideIsTheLonger) {
+    // Lower molars are longer from mesial to distal, upper ones and premolars from buccal to lingual.
+    const surfacing::Surfaces& scan = surfacesOf(ToothKind::upperIncisor);
+    const auto mesialOf = [&](int fdi) {
+        return Vec3(place(scan, {Vec3::UnitZ(), std::nullopt, fdi}).scanInTooth.orientation.conjugate() *
+                    Vec3::UnitX());
+    };
+    for (const int along : {0, 11, 22, 36, 47, 51, 74, 85})
+        EXPECT_LT(std::abs(mesialOf(along).y()), 0.2) << along;
+    for (const int across : {13, 14, 25, 16, 27, 31, 42, 33, 44, 35, 53, 54, 65})
+        EXPECT_LT(std::abs(mesialOf(across).x()), 0.2) << across;
 }
 
 TEST(Placing, RefusesSenselessHints) {

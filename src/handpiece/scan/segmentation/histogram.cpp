@@ -230,7 +230,7 @@ Thresholds findThresholds(const volume::Volume& volume, const core::Progress& pr
     for (std::size_t e = peaks.size() - 1; e > outside + 1 && enamel == 0; --e)
         for (std::size_t d = e - 1; d > outside; --d) {
             const double ratio = (peaks[e].value - t.outside) / (peaks[d].value - t.outside);
-            if (ratio < 1.15 || ratio > 2.7) continue;
+            if (ratio < 1.25 || ratio > 2.7) continue;
             if (peaks[e].mass < 0.04 * peaks[d].mass || peaks[d].mass < 0.3 * peaks[e].mass) continue;
             dentine = d, enamel = e;
             break;

@@ -173,6 +173,7 @@ void findOuter(Work& work, const CoarseTeeth& teeth, std::size_t chosen, const v
     const float darkest = t.outside + 0.15f * (t.toothFrom - t.outside);
     const float ground =
         2 * t.toothFrom - t.dentine;  // the outside that toothFrom stands for: bone, where there is any
+    work.groundLevel = ground;
     const bool isGroundVaried = ground > t.outside + 0.05f * (t.dentine - t.outside);
     const float brightest = t.outside + 0.85f * (t.enamel - t.outside);
     const float flat = 0.08f * (t.dentine - t.outside);

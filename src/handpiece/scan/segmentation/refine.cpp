@@ -106,10 +106,17 @@ void fitHardTissues(Work& work, const Field& difference) {
     t.enamelFrom = 0.5f * (t.dentine + t.enamel);
 }
 
+/// Bone and gum around the tooth: one grey level does not stand for the outside, so its outline stays as it was found.
+bool isGroundVaried(const Work& work) {
+    const Thresholds& t = work.levels;
+    return work.groundLevel > t.outside + 0.05f * (t.dentine - t.outside);
+}
+
 /// Moves every surface by what the blurred difference says, each by its own contrast.
 void move(Work& work, const std::vector<Layer>& layers, const Field& pull, float gain) {
     const Thresholds& t = work.levels;
     const float least = kLeastContrast * (t.dentine - t.outside);
+    const bool isVaried = isGroundVaried(work);
     core::parallelFor(pull.size(), 1 << 14, [&](std::size_t from, std::size_t to) {
         for (std::size_t n = from; n < to; ++n) {
             if (work.outer[n] <= -kReach) continue;
@@ -125,7 +132,7 @@ void move(Work& work, const std::vector<Layer>& layers, const Field& pull, float
                 }
                 level += c * (*layer.level - level);
             }
-            if (std::abs(work.outer[n]) < kReach && !work.held[n]) {
+            if (std::abs(work.outer[n]) < kReach && !work.held[n] && !isVaried) {
                 const float contrast = level - t.outside;
                 if (contrast > least) work.outer[n] += std::clamp(gain * pull[n] / contrast, -0.35f, 0.35f);
             }
@@ -160,16 +167,19 @@ void refine(Work& work, const core::Progress& progress) {
     const float brightest =
         work.restoration.empty() ? t.enamel + 0.5f * (t.enamel - t.outside) : work.restorationLevel * 1.2f;
     Field& difference = work.damped;  // no stage after this one needs it
+    const bool isVaried = isGroundVaried(work);
     int rounds = kRounds;
     for (int round = 0; round < rounds; ++round) {
         if (round == 3 && work.sigma > kWideBlur) rounds = kMostRounds;
         core::report(progress, static_cast<double>(round) / rounds);
-        if (round < 4) work.sigma = blurOf(work);
+        if (round < 4 && !isVaried) work.sigma = blurOf(work);
         compose(work, layers, difference);
         blur(work.shape, difference, difference, work.scratch, work.sigma);
         core::parallelFor(difference.size(), 1 << 15, [&](std::size_t from, std::size_t to) {
             for (std::size_t n = from; n < to; ++n)
-                difference[n] = work.outer[n] <= -kBand ? 0.0f : std::min(work.raw[n], brightest) - difference[n];
+                difference[n] = work.outer[n] <= (isVaried ? 1.5f : -kBand)
+                                    ? 0.0f
+                                    : std::min(work.raw[n], brightest) - difference[n];
         });
         if (round > 0)
             for (const Layer& layer : layers)

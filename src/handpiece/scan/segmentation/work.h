@@ -26,6 +26,7 @@ struct Work {
     Mask held;  ///< cavities that were closed and what was cut off: grey values have no say there
     float cariesLevel = 0, restorationLevel = 0;
     bool areLevelsOpen = true;  ///< grey levels are fitted: nobody gave them
+    float groundLevel = 0;      ///< the brightest thing around the tooth: bone, else as outside
     double sigma = 0.85;        ///< blur [voxels]
     float noise = 0;            ///< grey values
     std::vector<std::string> notes;

@@ -270,7 +270,14 @@ std::vector<segmentation::Candidate> teethOf(const ScanOptions& o, const volume:
     const volume::Scan scan = volume::readScan(o.path, settings, core::part(progress, 0.0, 0.3));
     const segmentation::Thresholds thresholds =
         segmentation::findThresholds(scan.volume, core::part(progress, 0.3, 0.5));
-    return segmentation::findTeeth(scan.volume, thresholds, core::part(progress, 0.5, 1.0));
+    std::vector<segmentation::Candidate> all =
+        segmentation::findTeeth(scan.volume, thresholds, core::part(progress, 0.5, 1.0));
+    // Specks are no teeth, and a skull is none either.
+    constexpr double kLeastMm3 = 30.0, kMostMm = 45.0;
+    std::erase_if(all, [&](const segmentation::Candidate& c) {
+        return c.volumeMm3 < kLeastMm3 || c.boundsMm.size().maxCoeff() > kMostMm;
+    });
+    return all;
 }
 
 void info(const ScanOptions& o) {
@@ -323,6 +330,7 @@ void info(const ScanOptions& o) {
                    s.bits);
         tellNotes(s.notes);
     }
+    if (o.teeth && teeth.empty()) fmt::print("no tooth was told apart in it\n");
     for (const segmentation::Candidate& c : teeth)
         fmt::print("tooth: --at {:.2f},{:.2f},{:.2f}  {:.0f} mm3, {:.1f} x {:.1f} x {:.1f} mm{}\n", c.atMm.x(),
                    c.atMm.y(), c.atMm.z(), c.volumeMm3, c.boundsMm.size().x(), c.boundsMm.size().y(),
@@ -490,7 +498,7 @@ void addScanCommand(CLI::App& app) {
     looking->add_option("PATH", o.path, "file, folder, ZIP or DICOMDIR")->required();
     looking->add_flag("--json", o.json, "print JSON instead of a table");
     looking->add_option("--pictures", o.pictures, "folder for a small picture of each series");
-    looking->add_flag("--teeth", o.teeth, "also the teeth in it, each with its --at");
+    looking->add_flag("--teeth", o.teeth, "also what may be a tooth in it, each with its --at");
     looking->add_option("--series", o.series, "of which series --teeth tells");
     looking->add_option("--spacing", o.spacing, "for --teeth, where the file tells none [mm]");
     looking->add_option("--threads", o.threads, "threads for long work; 0: all cores")->capture_default_str();

@@ -192,10 +192,15 @@ class Artist {
         look_.sectionGrid = false;
         return made;
     }
-    NamedPicture scenery() {
+    NamedPicture scenery(const std::vector<tooth::Part>& parts) {
+        core::Box all = bounds_;
+        for (const tooth::Part& part : parts)
+            for (const Vec3& v : part.mesh.vertices)
+                all.extend(v);
         for (const tooth::Tissue t : {tooth::Tissue::neighbour, tooth::Tissue::bone, tooth::Tissue::gum})
             look_.visible[static_cast<std::size_t>(t)] = true;
-        return view(view::StandardView::oblique, "with what stands around it");
+        return drawn(view::standardView(view::StandardView::buccal, all, buccal_, viewport_),
+                     "with what stands around it");
     }
 
   private:
@@ -245,7 +250,7 @@ std::vector<NamedPicture> viewsOf(const ScanResult& result, int width, int heigh
         artist.section(Vec3::UnitX(), StandardView::mesial, "cut open across mesial, lines every millimetre"));
     pictures.push_back(
         artist.section(Vec3::UnitY(), StandardView::buccal, "cut open across buccal, lines every millimetre"));
-    if (!finest->toothCase.scenery.empty()) pictures.push_back(artist.scenery());
+    if (!finest->toothCase.scenery.empty()) pictures.push_back(artist.scenery(finest->toothCase.scenery));
     core::report(progress, 1.0);
     return pictures;
 }

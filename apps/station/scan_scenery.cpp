@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "station/scan_scenery.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -19,7 +21,7 @@ using core::Vec3;
 constexpr double kCoarsestMm = 0.3;      ///< between samples, unless the scan is coarser
 constexpr double kGapMm = 0.15;          ///< kept around the tooth itself
 constexpr double kLeastVolumeMm3 = 4.0;  ///< smaller pieces are noise
-constexpr std::size_t kMostFaces = 40000;
+constexpr std::size_t kMostFaces = 40000, kFewestFaces = 200, kMostPieces = 12;
 constexpr std::uint8_t kNeighbourLabel = 8;  ///< another tooth as a whole, where labels tell it
 
 /// Trilinear, `outside` beyond the border.
@@ -48,34 +50,53 @@ double sample(const volume::Grid& grid, const Values& values, const Vec3& mm, do
     return sum;
 }
 
-/// Pieces of a mesh that are large enough, together with at most kMostFaces.
-geometry::TriangleMesh tidied(const geometry::TriangleMesh& mesh) {
+/// The pieces of a mesh that are large enough, the largest first, together with at most about kMostFaces. Pieces of
+/// their own, so that a view can leave out one that stands in its way.
+std::vector<geometry::TriangleMesh> piecesOf(const geometry::TriangleMesh& mesh) {
     if (mesh.triangles.empty()) return {};
     const geometry::Shells shells = geometry::shellsOf(mesh, geometry::MeshEdges(mesh));
     const std::vector<double> volumes = geometry::shellVolumesMm3(mesh, shells);
-    geometry::TriangleMesh kept;
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t s = 0; s < shells.count; ++s)
+        if (volumes[s] > kLeastVolumeMm3) order.push_back(s);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t x, std::uint32_t y) { return volumes[x] > volumes[y]; });
+    if (order.size() > kMostPieces) order.resize(kMostPieces);
+    std::vector<std::size_t> place(shells.count, order.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        place[order[i]] = i;
+    std::vector<geometry::TriangleMesh> pieces(order.size());
     std::vector<std::uint32_t> number(mesh.vertices.size(), geometry::kNoTriangle);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (!(volumes[shells.ofFace[t]] > kLeastVolumeMm3)) continue;
+        if (place[shells.ofFace[t]] == order.size()) continue;
+        geometry::TriangleMesh& piece = pieces[place[shells.ofFace[t]]];
         geometry::Triangle made{};
         for (std::size_t k = 0; k < 3; ++k) {
             std::uint32_t& n = number[mesh.triangles[t][k]];
             if (n == geometry::kNoTriangle) {
-                n = static_cast<std::uint32_t>(kept.vertices.size());
-                kept.vertices.push_back(mesh.vertices[mesh.triangles[t][k]]);
+                n = static_cast<std::uint32_t>(piece.vertices.size());
+                piece.vertices.push_back(mesh.vertices[mesh.triangles[t][k]]);
             }
             made[k] = n;
         }
-        kept.triangles.push_back(made);
+        piece.triangles.push_back(made);
     }
-    if (kept.triangles.size() > kMostFaces) kept = geometry::decimate(kept, kMostFaces).mesh;
-    return kept;
+    std::size_t faces = 0;
+    for (const geometry::TriangleMesh& piece : pieces)
+        faces += piece.triangles.size();
+    if (faces > kMostFaces)
+        for (geometry::TriangleMesh& piece : pieces)
+            piece = geometry::decimate(piece,
+                                       std::max<std::size_t>(kFewestFaces, kMostFaces * piece.triangles.size() / faces))
+                        .mesh;
+    return pieces;
 }
 
 /// The surface where `outsideMm` (about a distance near zero, negative in the thing) is zero, near the tooth but
 /// apart from it.
-geometry::TriangleMesh around(const volume::Grid& scan, const geometry::TriangleMesh& outer, double reachMm,
-                              const std::function<double(const Vec3&)>& outsideMm, const core::Progress& progress) {
+std::vector<geometry::TriangleMesh> around(const volume::Grid& scan, const geometry::TriangleMesh& outer,
+                                           double reachMm, const std::function<double(const Vec3&)>& outsideMm,
+                                           const core::Progress& progress) {
     const geometry::TriangleTree tree(outer);
     geometry::ScalarGrid grid;
     grid.spacingMm = std::max(kCoarsestMm, scan.spacingMm.maxCoeff());
@@ -102,12 +123,14 @@ geometry::TriangleMesh around(const volume::Grid& scan, const geometry::Triangle
         }
     });
     grid.values = values;
-    return tidied(geometry::isosurface(grid, core::part(progress, 0.8, 1.0)));
+    return piecesOf(geometry::isosurface(grid, core::part(progress, 0.8, 1.0)));
 }
 
-void add(std::vector<tooth::Part>& parts, const char* name, tooth::Tissue tissue, geometry::TriangleMesh mesh) {
-    if (mesh.triangles.empty()) return;
-    parts.push_back({name, tissue, tooth::properties(tissue).priority, std::move(mesh)});
+void add(std::vector<tooth::Part>& parts, const char* name, tooth::Tissue tissue,
+         std::vector<geometry::TriangleMesh> pieces) {
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        parts.push_back(
+            {fmt::format("{} {}", name, i + 1), tissue, tooth::properties(tissue).priority, std::move(pieces[i])});
 }
 
 }  // namespace
@@ -119,7 +142,7 @@ std::vector<tooth::Part> sceneryOf(const volume::Volume& volume, const segmentat
     const double step = std::max(1e-6, std::abs(from - static_cast<double>(thresholds.outside)));
     const double voxelMm = volume.grid.spacingMm.maxCoeff();
     std::vector<tooth::Part> parts;
-    add(parts, "neighbours and bone", tooth::Tissue::neighbour,
+    add(parts, "neighbour or bone", tooth::Tissue::neighbour,
         around(
             volume.grid, outer, reachMm,
             [&](const Vec3& p) {
@@ -139,7 +162,7 @@ std::vector<tooth::Part> sceneryOf(const volume::Labels& labels, const geometry:
         tooth::Tissue tissue;
         std::uint8_t from, to;
     };
-    constexpr std::array<Kind, 3> kKinds{{{"neighbours", tooth::Tissue::neighbour, 1, 5},
+    constexpr std::array<Kind, 3> kKinds{{{"neighbour", tooth::Tissue::neighbour, 1, 5},
                                           {"bone", tooth::Tissue::bone, 6, 6},
                                           {"gum", tooth::Tissue::gum, 7, 7}}};
     const double voxelMm = labels.grid.spacingMm.maxCoeff();

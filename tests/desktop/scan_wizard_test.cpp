@@ -521,7 +521,7 @@ TEST_F(ScanWizardTest, EveryPartHasANameOfItsOwn) {
 class ScanInWindowTest : public ShellTest {};
 
 TEST_F(ScanInWindowTest, AFolderOfSlicesDroppedOnTheWindowOpensTheWizard) {
-    start();
+    startWithTooth();
     installScanWizard(window());
     const QString folder = own_.filePath(QStringLiteral("slices"));
     volume::writeScan(toothVolume(), toPath(folder), volume::ScanFormat::png);
@@ -547,7 +547,7 @@ TEST_F(ScanInWindowTest, AFolderOfSlicesDroppedOnTheWindowOpensTheWizard) {
 }
 
 TEST_F(ScanInWindowTest, CasesAndMeshesAreNoScans) {
-    start();
+    startWithTooth();
     installScanWizard(window());
     const fs::path folder = toPath(own_.filePath(QStringLiteral("case")));
     tooth::writeCase(eggTooth(starter::ToothKind::lowerFirstMolar), folder);

@@ -289,16 +289,19 @@ void ScanModel::next() {
             first.labels = isPreview ? scan_->coarseLabels : scan_->labels;
             begin(
                 work, key,
-                [this, made, before, asked, first, isPreview](const core::Progress& progress) {
+                [this, made, before, asked, first, isPreview, shown = scan_](const core::Progress& progress) {
+                    ScanResult from = before ? before->result : first;
+                    if (isPreview && (!before || from.job.segmentation.toothAtMm != asked.segmentation.toothAtMm))
+                        from.scan = previewScan(*shown, asked.segmentation);
                     const station::ScanProgress told = [&](ScanStage stage, double fraction) {
                         stage_.store(static_cast<int>(stage), std::memory_order_relaxed);
                         // The last share is for what is shown of it.
                         const double stages = isPreview ? 4.2 : 5.5;
                         return !progress || progress(std::min(1.0, (static_cast<double>(stage) + fraction) / stages));
                     };
-                    *made = shownResult(station::runScanJob(asked, told, before ? &before->result : &first,
-                                                            isPreview ? ScanStage::place : ScanStage::decimate),
-                                        core::part(progress, isPreview ? 0.95 : 0.91, 1.0));
+                    *made = shownResult(
+                        station::runScanJob(asked, told, &from, isPreview ? ScanStage::place : ScanStage::decimate),
+                        core::part(progress, isPreview ? 0.95 : 0.91, 1.0));
                 },
                 [this, made, key, isPreview] {
                     (isPreview ? preview_ : full_) = made;
@@ -338,8 +341,11 @@ void ScanModel::begin(Work work, const std::string& key, Job::Work what, std::fu
     Job* job = running_.get();
     connect(job, &Job::progressed, this, [this](double fraction) { emit progressed(fraction); });
     connect(job, &Job::done, this, [this, then = std::move(then)] {
+        // An old preview is better than none; what was found in another scan is not.
+        const bool stale =
+            workKey_ != keyOf(work_) && (work_ == Work::looking || work_ == Work::reading || work_ == Work::estimating);
         ended();
-        then();
+        if (!stale) then();
         next();
         emit workChanged();
     });

@@ -273,6 +273,8 @@ void ScanWizard::showSteps() {
     missing_->setText(step() == report ? QString() : missing);
     back_->setEnabled(step() > choose);
     next_->setText(step() == report ? tr("Finish") : tr("Next"));
+    // A button that cannot be pressed gives its focus to the next one: that would be Close.
+    if (next_->hasFocus() && !missing.isEmpty()) steps_->setFocus();
     next_->setEnabled(step() == report ? !model_.written().empty() : missing.isEmpty());
     undo_->setEnabled(model_.canUndo());
     redo_->setEnabled(model_.canRedo());

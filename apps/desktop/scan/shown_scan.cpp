@@ -189,6 +189,36 @@ ShownScan shownScan(volume::Scan scan, const station::ScanJob& job, const core::
     return shown;
 }
 
+std::shared_ptr<const volume::Scan> previewScan(const ShownScan& shown, const segmentation::Settings& settings) {
+    // From a click in the crown to the end of the longest root, and some more.
+    constexpr double kReachMm = 27.0;
+    if (!settings.toothAtMm || shown.labels || shown.coarse == shown.scan) return shown.coarse;
+    const volume::Volume& whole = shown.scan->volume;
+    const core::Vec3 at = whole.grid.toVoxels(*settings.toothAtMm);
+    volume::Scan part{{}, shown.scan->series};
+    part.volume.grid = whole.grid;
+    std::array<int, 3> first{};
+    for (int a = 0; a < 3; ++a) {
+        const auto n = static_cast<std::size_t>(a);
+        const double reach = kReachMm / whole.grid.spacingMm[a];
+        first[n] = std::clamp(static_cast<int>(at[a] - reach), 0, whole.grid.size[n] - 1);
+        const int last = std::clamp(static_cast<int>(at[a] + reach), first[n], whole.grid.size[n] - 1);
+        part.volume.grid.size[n] = last - first[n] + 1;
+    }
+    if (2 * part.volume.grid.count() > whole.grid.count()) return shown.coarse;
+    part.volume.grid.originMm = whole.grid.toMm(core::Vec3(first[0], first[1], first[2]));
+    const auto& size = part.volume.grid.size;
+    part.volume.values.reserve(part.volume.grid.count());
+    for (int k = 0; k < size[2]; ++k)
+        for (int j = 0; j < size[1]; ++j) {
+            const auto row = whole.values.begin() +
+                             static_cast<std::ptrdiff_t>(whole.grid.index(first[0], first[1] + j, first[2] + k));
+            part.volume.values.insert(part.volume.values.end(), row, row + size[0]);
+        }
+    part.volume = coarsened(part.volume, false);
+    return std::make_shared<const volume::Scan>(std::move(part));
+}
+
 ShownResult shownResult(station::ScanResult result, const core::Progress& progress) {
     ShownResult shown;
     // The finest there is; a case's surfaces where there is one.

@@ -33,6 +33,9 @@ inline constexpr std::size_t kPreviewVoxels = 12'000'000;  ///< more would not b
 /// Means of blocks of voxels (of labels: their first) so that a preview of it is quick.
 [[nodiscard]] volume::Volume coarsened(const volume::Volume& volume, bool isLabels);
 /// `job` says whether it is labels, and what they mean. Throws core::Error for labels that are none.
+/// What a preview is made of: the coarse scan, or of a jaw the surroundings of the tooth that was picked, less coarse.
+[[nodiscard]] std::shared_ptr<const volume::Scan> previewScan(const ShownScan& shown,
+                                                              const segmentation::Settings& settings);
 [[nodiscard]] ShownScan shownScan(volume::Scan scan, const station::ScanJob& job, const core::Progress& progress);
 
 /// A result, and its surfaces as one sees them: in the tooth's frame, the outside in pieces by tissue.

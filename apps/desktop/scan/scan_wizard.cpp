@@ -165,8 +165,6 @@ ScanWizard::ScanWizard(std::filesystem::path unfinished, const QString& folder, 
     back_ = named(new QPushButton(tr("Back"), this), "scanBack", tr("Back"), tr("To the step before"));
     next_ = named(new QPushButton(tr("Next"), this), "scanNext", tr("Next"), tr("To the next step"));
     next_->setDefault(true);
-    for (QPushButton* button : findChildren<QPushButton*>())
-        button->setAutoDefault(false);
     close_ = named(new QPushButton(tr("Close"), this), "scanClose", tr("Close"),
                    tr("What was decided is kept; the next time you can go on with it"));
     bottom->addWidget(undo_);
@@ -178,6 +176,8 @@ ScanWizard::ScanWizard(std::filesystem::path unfinished, const QString& folder, 
     bottom->addWidget(next_);
     bottom->addWidget(close_);
     column->addLayout(bottom);
+    for (QPushButton* button : findChildren<QPushButton*>())
+        button->setAutoDefault(false);
 
     connect(undo_, &QToolButton::clicked, this, [this] { model_.undo(); });
     connect(redo_, &QToolButton::clicked, this, [this] { model_.redo(); });

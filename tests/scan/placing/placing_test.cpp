@@ -275,7 +275,7 @@ TEST(OuterSurface, TheCrownReplacesWhatTheScannerBlurred) {
     const surfacing::Surfaces& truth = surfacesOf(ToothKind::lowerFirstMolar);
     const geometry::TriangleTree right(truth.outer.mesh);
     geometry::IsosurfaceSettings coarse;
-    coarse.spacingMm = 0.15;
+    coarse.spacingMm = 0.2;
     coarse.relaxations = 0;
     coarse.project = false;  // as a scanner's voxels would give it
     surfacing::Surfaces ct = truth;

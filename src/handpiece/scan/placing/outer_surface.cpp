@@ -12,6 +12,7 @@
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/isosurface.h"
 #include "handpiece/base/geometry/mesh_edges.h"
+#include "handpiece/base/geometry/self_intersection.h"
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/scan/placing/placing.h"
 
@@ -245,6 +246,33 @@ class Sampled {
     std::vector<float> values_, mending_;
 };
 
+/// The mesh with its vertices moved; by less where it would cross itself, as where both walls of a fissure pull.
+TriangleMesh followed(const TriangleMesh& mesh, std::vector<Vec3> moves) {
+    if (std::all_of(moves.begin(), moves.end(), [](const Vec3& m) { return m.isZero(); })) return mesh;
+    const geometry::MeshEdges edges(mesh);
+    constexpr int kEvening = 4;
+    for (int pass = 0; pass < kEvening; ++pass) {
+        std::vector<Vec3> sums(moves);
+        std::vector<double> counts(moves.size(), 1.0);
+        for (const auto& e : edges.edges()) {
+            sums[e.low] += moves[e.high];
+            sums[e.high] += moves[e.low];
+            counts[e.low] += 1.0;
+            counts[e.high] += 1.0;
+        }
+        for (std::size_t i = 0; i < moves.size(); ++i)
+            moves[i] = sums[i] / counts[i];
+    }
+    constexpr double kLeastShare = 0.1;
+    for (double share = 1.0; share > kLeastShare; share *= 0.5) {
+        TriangleMesh moved = mesh;
+        for (std::size_t i = 0; i < moves.size(); ++i)
+            moved.vertices[i] += share * moves[i];
+        if (geometry::selfIntersections(moved).empty()) return moved;
+    }
+    return mesh;
+}
+
 }  // namespace
 
 surfacing::Surfaces withOuterSurface(const surfacing::Surfaces& surfaces, const TriangleMesh& crown, double reachMm,
@@ -296,18 +324,21 @@ surfacing::Surfaces withOuterSurface(const surfacing::Surfaces& surfaces, const 
         core::report(progress, 0.85);
     }
     // Tissues at the surface (a lesion, roots at the neck) follow it, else a film of enamel would lie over them.
-    for (surfacing::Surface& s : result.tissues)
-        core::parallelFor(s.mesh.vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (surfacing::Surface& s : result.tissues) {
+        std::vector<Vec3> moves(s.mesh.vertices.size(), Vec3::Zero());
+        core::parallelFor(moves.size(), 256, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-                Vec3& v = s.mesh.vertices[i];
+                const Vec3& v = s.mesh.vertices[i];
                 geometry::NearestPoint n;
                 const double ctMm = blend.ct().signedDistance(v, &n);
                 if (ctMm < -kFollowMm) continue;
                 double weight = 0.0;
                 const double moved = ctMm - blend.value(v, ctMm, weight);
-                v += smoothStep(1.0 + std::min(ctMm, 0.0) / kFollowMm) * moved * pseudonormal(blend.ct(), n);
+                moves[i] = smoothStep(1.0 + std::min(ctMm, 0.0) / kFollowMm) * moved * pseudonormal(blend.ct(), n);
             }
         });
+        s.mesh = followed(s.mesh, moves);
+    }
     core::report(progress, 1.0);
     return result;
 }

@@ -18,7 +18,6 @@
 #include "panels/parameter_box.h"
 #include "panels/parts.h"
 #include "panels/theme.h"
-#include "scan/tissue_colours.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -191,7 +190,8 @@ void SolidView::makeTissueButtons() {
                                                 static_cast<qsizetype>(tooth::properties(tissue).name.size())));
         button->setText(tissueName(tissue));
         QPixmap swatch(12, 12);
-        swatch.fill(tissueColour(tissue));
+        const auto colour = view::colourOf(tissue, look_.palette);  // as in the picture above it
+        swatch.fill(QColor(colour[0], colour[1], colour[2]));
         button->setIcon(swatch);
         button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
         button->setCheckable(true);

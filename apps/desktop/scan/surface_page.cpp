@@ -254,7 +254,14 @@ void SurfacePage::showResult() {
                         t);
         }
     }
-    figures_->setText(table + QStringLiteral("</table>"));
+    table += QStringLiteral("</table>");
+    // More than the finest of our own teeth has.
+    constexpr std::size_t kManyFaces = 400'000;
+    if (fresh && best->result.cases.size() == 1 && best->figures.faces > kManyFaces)
+        table +=
+            QStringLiteral("<p>%1</p>")
+                .arg(tr("These are many faces: it will be slow to open and to draw. Take a smaller share of them."));
+    figures_->setText(table);
 }
 
 }  // namespace handpiece::desktop

@@ -4341,6 +4341,10 @@
         <source>Surfaces</source>
         <translation>表面</translation>
     </message>
+    <message>
+        <source>These are many faces: it will be slow to open and to draw. Take a smaller share of them.</source>
+        <translation>面の数が多く、開くのも描画も遅くなります。割合を小さくしてください。</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::Timeline</name>

@@ -114,6 +114,18 @@ constexpr std::array kEntries = {
     Entry{"too-large",
           QT_TRANSLATE_NOOP("Problem", "It is larger than a scan of a tooth can be, or its header is damaged."),
           QT_TRANSLATE_NOOP("Problem", "Crop the scan around the tooth, or take another copy of it.")},
+    Entry{"scan-empty", QT_TRANSLATE_NOOP("Problem", "No tooth was found in the scan. Technical detail: %1"),
+          QT_TRANSLATE_NOOP("Problem", "Choose the series that shows the tooth, or set the thresholds by hand.")},
+    Entry{"labels-empty", QT_TRANSLATE_NOOP("Problem", "None of the labels is of a tooth."),
+          QT_TRANSLATE_NOOP(
+              "Problem", "Tell what the file's numbers mean: 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 restoration.")},
+    Entry{"tooth-cut-off", QT_TRANSLATE_NOOP("Problem", "The tooth is cut off by the border of the scan."),
+          QT_TRANSLATE_NOOP("Problem", "Choose another tooth, or a scan that shows all of it.")},
+    Entry{"no-tooth-there", QT_TRANSLATE_NOOP("Problem", "There is no tooth at the place that was pointed at."),
+          QT_TRANSLATE_NOOP("Problem", "Point at the crown or a root of a tooth.")},
+    Entry{"scan-too-coarse",
+          QT_TRANSLATE_NOOP("Problem", "The scan is too coarse: voxels of %1 mm cannot show enamel and pulp."),
+          QT_TRANSLATE_NOOP("Problem", "Use a scan of %2 mm or finer.")},
     // The window's own.
     Entry{"case-vanished",
           QT_TRANSLATE_NOOP("Problem", "The tooth you opened is no longer at %1. Nothing that was cut is lost."),

@@ -1515,6 +1515,46 @@
         <source>Crop the scan around the tooth, or take another copy of it.</source>
         <translation>歯の周りだけを切り出すか、別のコピーを使ってください。</translation>
     </message>
+    <message>
+        <source>No tooth was found in the scan. Technical detail: %1</source>
+        <translation>スキャンに歯が見つかりません。技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>Choose the series that shows the tooth, or set the thresholds by hand.</source>
+        <translation>歯が写っているシリーズを選ぶか、しきい値を手動で決めてください。</translation>
+    </message>
+    <message>
+        <source>None of the labels is of a tooth.</source>
+        <translation>歯のラベルがひとつもありません。</translation>
+    </message>
+    <message>
+        <source>Tell what the file&apos;s numbers mean: 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 restoration.</source>
+        <translation>ファイルの番号が何を表すかを指定してください：1 う蝕、2 エナメル質、3 象牙質、4 歯髄、5 修復物。</translation>
+    </message>
+    <message>
+        <source>The tooth is cut off by the border of the scan.</source>
+        <translation>歯がスキャンの端で切れています。</translation>
+    </message>
+    <message>
+        <source>Choose another tooth, or a scan that shows all of it.</source>
+        <translation>別の歯を選ぶか、歯の全体が写っているスキャンを使ってください。</translation>
+    </message>
+    <message>
+        <source>There is no tooth at the place that was pointed at.</source>
+        <translation>指した場所に歯がありません。</translation>
+    </message>
+    <message>
+        <source>Point at the crown or a root of a tooth.</source>
+        <translation>歯冠か歯根を指してください。</translation>
+    </message>
+    <message>
+        <source>The scan is too coarse: voxels of %1 mm cannot show enamel and pulp.</source>
+        <translation>スキャンが粗すぎます。%1 mm のボクセルではエナメル質と歯髄を見分けられません。</translation>
+    </message>
+    <message>
+        <source>Use a scan of %2 mm or finer.</source>
+        <translation>%2 mm 以下のスキャンを使ってください。</translation>
+    </message>
 </context>
 <context>
     <name>Pulp</name>

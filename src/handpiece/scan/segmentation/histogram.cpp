@@ -13,7 +13,8 @@ using core::Vec3;
 
 core::Error nothingFound(const std::string& why) {
     return core::Error("empty segmentation: " + why, "scan",
-                       "choose the series that shows the tooth, or give thresholds by hand");
+                       "choose the series that shows the tooth, or give thresholds by hand")
+        .as("scan-empty", {why});
 }
 
 Coarse coarsen(const volume::Volume& volume, double spacingMm, const core::Progress& progress) {

@@ -78,7 +78,8 @@ Region segmentLabels(const volume::Labels& labels, const Settings& settings, con
         throw core::Error("the spacing of the voxels is not known", "labels", "give it in millimetres");
     if (scan.spacingMm.maxCoeff() > 0.6)
         throw core::Error(fmt::format("the labels are too coarse: voxels of {:.3g} mm", scan.spacingMm.maxCoeff()),
-                          "labels", "use labels of 0.6 mm or finer");
+                          "labels", "use labels of 0.6 mm or finer")
+            .as("scan-too-coarse", {fmt::format("{:.3g}", scan.spacingMm.maxCoeff()), "0.6"});
     // Where the tooth's labels are.
     std::array<int, 3> low{1 << 30, 1 << 30, 1 << 30}, high{-1, -1, -1};
     bool hasUnknown = false;
@@ -100,7 +101,8 @@ Region segmentLabels(const volume::Labels& labels, const Settings& settings, con
     if (high[0] < 0)
         throw core::Error(
             "empty segmentation: no label of a tooth (1 caries, 2 enamel, 3 dentine, 4 pulp, 5 restoration)", "labels",
-            "map the file's numbers to these");
+            "map the file's numbers to these")
+            .as("labels-empty");
     Work work;
     if (hasUnknown) work.notes.emplace_back("labels above 7 mean nothing here and were left out");
     const double h = settings.spacingMm > 0 ? settings.spacingMm : std::max(0.03, scan.spacingMm.minCoeff());
@@ -139,7 +141,8 @@ Region segmentLabels(const volume::Labels& labels, const Settings& settings, con
         }
         if (chosen == 0)
             throw core::Error("there is no tooth at the place that was pointed at", "labels",
-                              "point at a labelled voxel");
+                              "point at a labelled voxel")
+                .as("no-tooth-there");
         for (std::size_t n = 0; n < solid.size(); ++n)
             if (parts.of[n] != chosen) label[n] = solid[n] = 0;
     }

@@ -28,7 +28,8 @@ void checkScan(const volume::Grid& grid, std::size_t values) {
             fmt::format("the scan is too coarse: voxels of {:.3g} x {:.3g} x {:.3g} mm cannot show enamel "
                         "and pulp",
                         grid.spacingMm.x(), grid.spacingMm.y(), grid.spacingMm.z()),
-            "scan", fmt::format("use a scan of {} mm or finer", kCoarsestMm));
+            "scan", fmt::format("use a scan of {} mm or finer", kCoarsestMm))
+            .as("scan-too-coarse", {fmt::format("{:.3g}", coarsest), fmt::format("{}", kCoarsestMm)});
 }
 
 void checkPoint(const volume::Grid& grid, const Vec3& mm, const char* what) {
@@ -93,7 +94,8 @@ std::size_t choose(const CoarseTeeth& teeth, const volume::Grid& grid, const Set
     if (best == teeth.teeth.size())
         throw core::Error(fmt::format("there is no tooth at ({:.2f}, {:.2f}, {:.2f}) mm", settings.toothAtMm->x(),
                                       settings.toothAtMm->y(), settings.toothAtMm->z()),
-                          "scan", "point at the crown or a root of a tooth");
+                          "scan", "point at the crown or a root of a tooth")
+            .as("no-tooth-there");
     return best;
 }
 
@@ -123,7 +125,8 @@ void checkBorder(Work& work, const volume::Grid& scan) {
             const double share = static_cast<double>(cut) / most, enamel = static_cast<double>(cutEnamel) / most;
             if (share > kTipShare || enamel > kGrazeShare)
                 throw core::Error("the tooth is cut off by the border of the scan", "scan",
-                                  "choose another tooth, or a scan that shows all of it");
+                                  "choose another tooth, or a scan that shows all of it")
+                    .as("tooth-cut-off");
             if (share > 0.002)
                 work.notes.emplace_back(
                     "the border of the scan cuts off a little of the tooth (tips of its roots); it is closed there");

@@ -116,6 +116,45 @@ TEST_F(ShellTest, AsksBeforeUnsavedWorkGoes) {
     EXPECT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !window().isVisible(); }));
 }
 
+TEST_F(ShellTest, WhatIsOpenedWhileAnotherToothIsOpeningIsNotLost) {
+    const fs::path first = at("first"), last = at("last");
+    for (const fs::path& place : {first, last}) {
+        tooth::Case made = eggTooth(starter::ToothKind::lowerFirstMolar);
+        made.name = place.filename().string();
+        tooth::writeCase(made, place);
+    }
+    startWithTooth();
+    window().openStarter({starter::ToothKind::upperIncisor, 4000});
+    ASSERT_TRUE(simulator().isBusy());
+    window().openFile(toQString(first));
+    window().openFile(toQString(last));
+    ASSERT_TRUE(simulator().isBusy());
+    bool sawFirst = false;
+    ASSERT_TRUE(waitFor([&] {
+        sawFirst = sawFirst || simulator().document().name == "first";
+        return simulator().document().name == "last" && !simulator().isBusy();
+    })) << simulator().document().name;
+    EXPECT_FALSE(sawFirst);
+    EXPECT_FALSE(window().errorDialog());
+
+    // At the very start, before there is any tooth; and what was cut is asked about when it is known.
+    start();
+    ASSERT_TRUE(simulator().isBusy());
+    window().openFile(toQString(last));
+    ASSERT_TRUE(waitFor([&] { return simulator().document().name == "last" && !simulator().isBusy(); }));
+    EXPECT_EQ(asked_, 0);
+    view()->showStandardView(view::StandardView::occlusal);
+    ASSERT_TRUE(cut());
+    answer_ = MainWindow::Questions::Unsaved::cancel;
+    simulator().exportStl(at("left.stl"));
+    ASSERT_TRUE(simulator().isBusy());
+    window().openFile(toQString(first));
+    EXPECT_EQ(asked_, 0);
+    ASSERT_TRUE(waitFor([&] { return asked_ == 1; }));
+    EXPECT_EQ(simulator().document().name, "last");
+    EXPECT_TRUE(simulator().isUnsaved());
+}
+
 TEST_F(ShellTest, AFullDiskLosesNothing) {
     startWithTooth();
     ASSERT_TRUE(cut());

@@ -16,6 +16,7 @@
 #include <QListWidget>
 #include <QMenu>
 #include <QMessageBox>
+#include <QPointer>
 #include <QPushButton>
 #include <QRegularExpressionValidator>
 #include <QSaveFile>
@@ -143,7 +144,14 @@ QString MainWindow::startFolder() const {
 
 /// Asks about unsaved work; runs `then` unless that was cancelled.
 void MainWindow::ifFree(std::function<void()> then) {
-    if (simulator_.isBusy()) simulator_.cancelJob();
+    if (simulator_.isBusy()) {
+        // Cancelled work takes its time to end. What is unsaved is known afterwards; a new window has its own wishes.
+        simulator_.cancelJob();
+        simulator_.whenFree([self = QPointer<MainWindow>(this), then = std::move(then)]() mutable {
+            if (self) self->ifFree(std::move(then));
+        });
+        return;
+    }
     const bool behind = simulator_.isUnsavedBehindReplay();
     if (!simulator_.isUnsaved() && !behind) {
         then();

@@ -213,6 +213,7 @@ void Simulator::stopAll() {
 }
 
 void Simulator::close() {
+    waiting_ = {};
     job_.reset();
     stopAll();
     document_ = {};

@@ -87,6 +87,8 @@ class Simulator : public QObject {
     /// Gives up what a crash left behind; the recording itself stays for a while.
     void forget(const Crashed& crashed) { shelf_.settle(crashed.session); }
     void cancelJob();
+    /// At once, or when the work that goes on is over; the last one asked for, the others are given up.
+    void whenFree(std::function<void()> what);
     /// Plays what this sitting has recorded so far; closeReplay() brings the tooth back as it was.
     void replayThis();
     /// Back to the tooth that replayThis() left, or to nothing; `then` once it is there.
@@ -170,6 +172,7 @@ class Simulator : public QObject {
     void takeOver(const Crashed& file);
     void comeBack(const std::shared_ptr<Left>& left, std::function<void()> then = {});
     void start(const QString& title, Job::Work work, std::function<void()> done, std::function<void()> otherwise = {});
+    void goOn();
     void load(LoadRequest request, const QString& title, std::function<void()> done = {});
     void openSession(const std::filesystem::path& path);
     void sit(LoadedTooth loaded);
@@ -210,6 +213,7 @@ class Simulator : public QObject {
     std::unique_ptr<station::Sitting> sitting_;
     std::unique_ptr<ReplayDriver> replay_;
     std::unique_ptr<Job> job_, soundJob_;
+    std::function<void()> waiting_;  ///< for job_ to end
     QTimer timer_;
 };
 

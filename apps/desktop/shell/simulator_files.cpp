@@ -35,15 +35,18 @@ void Simulator::start(const QString& title, Job::Work work, std::function<void()
         } catch (const core::Error& error) {
             emit failed(problemOf(error));
         }
+        goOn();
     });
     connect(job_.get(), &Job::failed, this, [this, end, otherwise](const Problem& problem) {
         end();
         emit failed(problem);
         if (otherwise) otherwise();
+        goOn();
     });
-    connect(job_.get(), &Job::cancelled, this, [end, otherwise = std::move(otherwise)] {
+    connect(job_.get(), &Job::cancelled, this, [this, end, otherwise = std::move(otherwise)] {
         end();
         if (otherwise) otherwise();
+        goOn();
     });
     emit jobStarted(title);
     job_->start();
@@ -51,6 +54,19 @@ void Simulator::start(const QString& title, Job::Work work, std::function<void()
 
 void Simulator::cancelJob() {
     if (job_) job_->cancel();
+}
+
+void Simulator::whenFree(std::function<void()> what) {
+    waiting_ = std::move(what);
+    goOn();
+}
+
+/// What ended may have begun more: a tooth that is brought back.
+void Simulator::goOn() {
+    if (job_ || !waiting_) return;
+    const std::function<void()> what = std::move(waiting_);
+    waiting_ = {};
+    what();
 }
 
 LoadRequest Simulator::request() const {

@@ -19,7 +19,6 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/mesh_io.h"
-#include "handpiece/model/tooth/package.h"
 #include "handpiece/scan/volume/write_scan.h"
 #include "handpiece/senses/view/image.h"
 #include "station/scan_job.h"
@@ -401,13 +400,6 @@ void surface(const ScanOptions& o) {
     tellNotes(result.notes());
 }
 
-/// Where a case's page goes: into its folder; beside a .handpiece file, and beside several cases.
-fs::path reportPlace(const fs::path& out, const std::vector<fs::path>& places) {
-    if (places.size() == 1 && !tooth::isPackageName(out)) return out / "report.html";
-    const fs::path stem = tooth::isPackageName(out) ? out.stem() : out.filename();
-    return out.parent_path() / (stem.string() + "-report.html");
-}
-
 void makeCase(const ScanOptions& o) {
     requireFolder(o.out);
     const ScanJob job = jobOf(o);
@@ -438,7 +430,7 @@ void makeCase(const ScanOptions& o) {
     tellTimes(result);
     tellNotes(result.notes());
     if (o.report) {
-        const fs::path place = reportPlace(o.out, places);
+        const fs::path place = station::scanReportPlace(o.out, places);
         core::writeFile(place, page);
         fmt::print("{}: the case's report\n", place.string());
     }

@@ -249,4 +249,11 @@ std::string scanReport(const ScanResult& result, const std::vector<std::filesyst
         escapedText(result.job.name), kStyle, body);
 }
 
+std::filesystem::path scanReportPlace(const std::filesystem::path& out,
+                                      const std::vector<std::filesystem::path>& places) {
+    if (places.size() == 1 && !tooth::isPackageName(out)) return out / "report.html";
+    const std::filesystem::path stem = tooth::isPackageName(out) ? out.stem() : out.filename();
+    return out.parent_path() / (stem.string() + "-report.html");
+}
+
 }  // namespace handpiece::station

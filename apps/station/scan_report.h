@@ -23,4 +23,8 @@ struct ScanReportSettings {
 [[nodiscard]] std::string scanReport(const ScanResult& result, const std::vector<std::filesystem::path>& places,
                                      const ScanReportSettings& settings = {}, const core::Progress& progress = {});
 
+/// Where it goes: into a case's folder; beside a .handpiece file, and beside several cases, as NAME-report.html.
+[[nodiscard]] std::filesystem::path scanReportPlace(const std::filesystem::path& out,
+                                                    const std::vector<std::filesystem::path>& places);
+
 }  // namespace handpiece::station

@@ -45,6 +45,15 @@ std::string textOf(const fs::path& file) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+/// Without its pictures, whose letters are anything by chance.
+std::string wordsOf(const fs::path& file) {
+    std::string words = textOf(file);
+    const std::string picture = "data:image/png;base64,";
+    for (std::size_t at = 0; (at = words.find(picture, at)) != std::string::npos; at += picture.size())
+        words.erase(at + picture.size(), words.find('"', at) - at - picture.size());
+    return words;
+}
+
 // Half axes of the whole tooth; the dentine is this share of it under the enamel, which ends at the neck, z = kNeckMm.
 const Vec3 kOuterMm(4.0, 3.4, 6.5);
 constexpr double kDentine = 0.78, kPulp = 0.24, kNeckMm = 0.5, kVoxelMm = 0.2;
@@ -102,6 +111,10 @@ class ScanWizardTest : public ::testing::Test {
         wizard_->questions.folder = [this](const QString&) { return answer_; };
         wizard_->questions.fileToOpen = [this](const QString&, const QString&) { return answer_; };
         wizard_->questions.fileToSave = [this](const QString&, const QString&, const QString&) { return answer_; };
+        wizard_->questions.showPage = [this](const QString& file) {
+            shown_ = file;
+            return true;
+        };
         wizard_->resize(1180, 800);
         wizard_->show();
         QTest::qWait(20);
@@ -141,7 +154,7 @@ class ScanWizardTest : public ::testing::Test {
 
     QTemporaryDir own_;
     std::unique_ptr<ScanWizard> wizard_;
-    QString answer_;
+    QString answer_, shown_;
 };
 
 TEST_F(ScanWizardTest, FromAFileToACaseThatCanBeRead) {
@@ -200,7 +213,34 @@ TEST_F(ScanWizardTest, FromAFileToACaseThatCanBeRead) {
     // What is written needs no second start, and holds nothing of where it came from.
     EXPECT_FALSE(fs::exists(unfinished()));
     for (const auto& entry : fs::directory_iterator(toPath(tried)))
-        EXPECT_EQ(textOf(entry.path()).find("Doe"), std::string::npos) << entry.path();
+        EXPECT_EQ(wordsOf(entry.path()).find("Doe"), std::string::npos) << entry.path();
+
+    // The page of it lies there too.
+    const fs::path place = toPath(tried) / "report.html";
+    ASSERT_TRUE(fs::exists(place));
+    const std::string page = wordsOf(place);
+    EXPECT_GT(fs::file_size(place), 10 * page.size()) << "no pictures";
+    EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0u);
+    for (const char* part : {"Egg with a cap", "<h2>Volumes", "What this scan cannot show", "Try it now", "</html>"})
+        EXPECT_NE(page.find(part), std::string::npos) << part;
+    for (const std::string& secret : {scanFile().parent_path().string(), scanFile().filename().string(),
+                                      std::string("Doe"), own_.path().toStdString()})
+        EXPECT_EQ(page.find(secret), std::string::npos) << secret;
+    click("scanOpenReport");
+    EXPECT_EQ(toPath(shown_), place);
+    // It is of the case that was saved, not of another decision.
+    QTest::keyClicks(find<QLineEdit>("scanName"), QStringLiteral("2"));
+    EXPECT_FALSE(find<QPushButton>("scanOpenReport")->isEnabled());
+
+    // Without a report there is still the case.
+    ASSERT_TRUE(fs::create_directory(toPath(own_.filePath(QStringLiteral("egg-report.html")))));
+    wizard_->reportPage()->setPlace(own_.filePath(QStringLiteral("egg.handpiece")));
+    ASSERT_TRUE(waitFor([this] { return model().isFullFresh() || model().problem(); })) << this->said();
+    click("scanSave");
+    ASSERT_TRUE(waitFor([this] { return model().problem().has_value(); }));
+    EXPECT_EQ(model().problem()->id, QLatin1String("scan-report-missing")) << this->said();
+    EXPECT_FALSE(find<QPushButton>("scanOpenReport")->isEnabled());
+    EXPECT_EQ(tooth::readCase(toPath(own_.filePath(QStringLiteral("egg.handpiece")))).name, "Egg with a cap2");
 }
 
 TEST_F(ScanWizardTest, AThresholdIsDraggedAndTakenBack) {
@@ -301,6 +341,20 @@ TEST_F(ScanWizardTest, EveryDecisionInASliceCanBeTakenBack) {
     click("scanRemove");
     EXPECT_TRUE(job().segmentation.marks.empty());
     EXPECT_EQ(job().segmentation.lesions.size(), 1u);
+}
+
+TEST_F(ScanWizardTest, APlaceWithoutAToothIsToldOfInWordsOfTheWindow) {
+    openTissues();
+    station::ScanJob far = job();
+    far.segmentation.toothAtMm = Vec3(-4.8, -4.2, -7.3);
+    model().decide(far);
+    ASSERT_TRUE(waitFor([this] { return model().problem().has_value() || model().isPreviewFresh(); }));
+    ASSERT_TRUE(model().problem());
+    EXPECT_EQ(model().problem()->id, QLatin1String("no-tooth-there")) << said();
+    EXPECT_TRUE(find<QLabel>("scanProblemWhat")->isVisible());
+    EXPECT_FALSE(find<QLabel>("scanProblemWhat")->text().contains(QLatin1String("detail")));
+    click("scanUndo");
+    EXPECT_TRUE(previewed()) << said();
 }
 
 TEST_F(ScanWizardTest, SlicesFollowWheelDragAndKeys) {

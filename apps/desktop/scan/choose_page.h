@@ -16,11 +16,12 @@ class QPushButton;
 
 namespace handpiece::desktop {
 
-/// Asks for a file or folder; tests put their own answers here.
+/// Asks for a file or folder, or shows one; tests put their own answers here.
 struct ScanQuestions {
     std::function<QString(const QString& title)> folder;
     std::function<QString(const QString& title, const QString& filter)> fileToOpen;
     std::function<QString(const QString& title, const QString& name, const QString& filter)> fileToSave;
+    std::function<bool(const QString& file)> showPage;
 };
 
 class ChoosePage : public ScanPage {

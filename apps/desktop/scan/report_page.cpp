@@ -88,8 +88,14 @@ ReportPage::ReportPage(ScanModel& model, ScanQuestions& questions, const QString
                  tr("Save the case and open it in the simulator"));
     line->addWidget(try_);
     column->addLayout(line);
+    auto* after = new QHBoxLayout;
     saved_ = note({}, this, "scanSaved");
-    column->addWidget(saved_);
+    after->addWidget(saved_, 1);
+    open_ = named(new QPushButton(tr("Open the report"), this), "scanOpenReport", tr("Open the report"),
+                  tr("The page to print that was saved with the case, with its pictures"));
+    open_->setEnabled(false);
+    after->addWidget(open_, 0, Qt::AlignTop);
+    column->addLayout(after);
 
     connect(place_, &QLineEdit::textEdited, this, [this] { placeChosen_ = true; });
     connect(browse, &QPushButton::clicked, this, [this] {
@@ -99,6 +105,10 @@ ReportPage::ReportPage(ScanModel& model, ScanQuestions& questions, const QString
     });
     connect(save_, &QPushButton::clicked, this, [this] { save(false); });
     connect(try_, &QPushButton::clicked, this, [this] { save(true); });
+    connect(open_, &QPushButton::clicked, this, [this] {
+        const QString page = QFileInfo(toQString(this->model().report())).absoluteFilePath();
+        if (!questions_.showPage(page)) this->model().setProblem(problemById(QStringLiteral("no-browser"), {}, page));
+    });
     connect(&model, &ScanModel::decided, this, &ReportPage::showJob);
     for (const auto signal : {&ScanModel::previewReady, &ScanModel::fullReady, &ScanModel::workChanged})
         connect(&model, signal, this, &ReportPage::showResult);
@@ -110,6 +120,7 @@ ReportPage::ReportPage(ScanModel& model, ScanQuestions& questions, const QString
         for (const auto& place : this->model().written())
             names << QDir::toNativeSeparators(toQString(place));
         saved_->setText(tr("Saved: %1").arg(names.join(QStringLiteral(", "))));
+        open_->setEnabled(!this->model().report().empty());
         if (!std::exchange(tryWhenSaved_, false) || this->model().written().empty()) return;
         // Of several the one that is pleasant to work with.
         std::size_t best = 0;
@@ -145,6 +156,7 @@ void ReportPage::save(bool thenTry) {
     }
     tryWhenSaved_ = thenTry;
     saved_->clear();
+    open_->setEnabled(false);
     model().write(toPath(place()));
 }
 
@@ -154,6 +166,7 @@ void ReportPage::showJob() {
                                                  fileNameOf(QString::fromStdString(model().job().name)) +
                                                  QStringLiteral(".handpiece")));
     saved_->clear();
+    open_->setEnabled(false);
     showResult();
 }
 

@@ -39,7 +39,7 @@ class ReportPage : public ScanPage {
     QString folder_;
     QLabel* text_;
     QLineEdit* place_;
-    QPushButton *save_, *try_;
+    QPushButton *save_, *try_, *open_;
     QLabel* saved_;
     SolidView* solid_;
     bool placeChosen_ = false, tryWhenSaved_ = false;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "handpiece/base/core/file.h"
 #include "shell/settings.h"
+#include "station/scan_report.h"
 
 namespace handpiece::desktop {
 
@@ -15,6 +17,7 @@ namespace {
 
 constexpr int kPatienceMs = 150, kRememberMs = 700;
 constexpr std::size_t kMostSteps = 500;
+constexpr int kDrawing = 100;  ///< behind the stages of station::ScanStage: the report is drawn
 
 /// What reading depends on.
 ScanJob readPart(const ScanJob& job) {
@@ -314,18 +317,40 @@ void ScanModel::next() {
             return;
         }
         case Work::writing: {
-            auto places = std::make_shared<std::vector<std::filesystem::path>>();
+            struct Written {
+                std::vector<std::filesystem::path> places;
+                std::filesystem::path report;
+                std::optional<Problem> problem;
+            };
+            auto made = std::make_shared<Written>();
             begin(
                 work, key,
-                [places, result = full_, out = out_](const core::Progress&) {
-                    *places = station::writeScanCases(result->result, out);
+                [this, made, result = full_, out = out_](const core::Progress& progress) {
+                    made->places = station::writeScanCases(result->result, out);
+                    stage_.store(kDrawing, std::memory_order_relaxed);
+                    const std::filesystem::path place = station::scanReportPlace(out, made->places);
+                    try {
+                        core::writeFile(place, station::scanReport(result->result, made->places, {},
+                                                                   core::part(progress, 0.1, 1.0)));
+                        made->report = place;
+                    } catch (const core::Error& error) {
+                        // The case is there. Whoever stopped the drawing knows that there is none.
+                        if (progress(1.0))
+                            made->problem = problemById(QStringLiteral("scan-report-missing"), {problemOf(error).what},
+                                                        toQString(place));
+                    }
                 },
-                [this, places] {
-                    written_ = *places;
+                [this, made, key] {
+                    written_ = made->places;
+                    report_ = made->report;
                     writeAsked_ = false;
-                    finished_ = true;
-                    giveUp();
+                    // A decision of the meantime is unfinished again.
+                    if (key == keyOf(Work::writing)) {
+                        finished_ = true;
+                        giveUp();
+                    }
                     emit casesWritten();
+                    if (made->problem) setProblem(*made->problem);
                 });
             return;
         }
@@ -384,7 +409,8 @@ QString ScanModel::doing() const {
         case Work::estimating:
             return tr("Measuring the tooth");
         case Work::writing:
-            return tr("Writing the case");
+            return stage_.load(std::memory_order_relaxed) == kDrawing ? tr("Drawing the report")
+                                                                      : tr("Writing the case");
         case Work::previewing:
         case Work::finishing:
             break;

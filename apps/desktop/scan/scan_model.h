@@ -82,9 +82,11 @@ class ScanModel : public QObject {
     /// The full one when it is fresh, else the preview.
     [[nodiscard]] std::shared_ptr<const ShownResult> best() const;
 
-    /// Writes the finished case or cases.
+    /// Writes the finished case or cases, and then their report: where that fails, the cases stay.
     void write(const std::filesystem::path& out);
     [[nodiscard]] const std::vector<std::filesystem::path>& written() const noexcept { return written_; }
+    /// Of what was written; empty where it could not be made, or was stopped.
+    [[nodiscard]] const std::filesystem::path& report() const noexcept { return report_; }
 
   signals:
     void decided();      ///< job() is another
@@ -130,7 +132,7 @@ class ScanModel : public QObject {
     bool estimateAsked_ = false;
     std::shared_ptr<const ShownScan> scan_;
     std::shared_ptr<const ShownResult> preview_, full_;
-    std::filesystem::path out_;
+    std::filesystem::path out_, report_;
     std::vector<std::filesystem::path> written_;
     bool writeAsked_ = false, finished_ = false;
 };

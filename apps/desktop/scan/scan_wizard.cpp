@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scan/scan_wizard.h"
 
+#include <QDesktopServices>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QHBoxLayout>
@@ -14,6 +15,7 @@
 #include <QStackedWidget>
 #include <QStyle>
 #include <QToolButton>
+#include <QUrl>
 #include <QVBoxLayout>
 
 #include "panels/icon_factory.h"
@@ -57,6 +59,7 @@ ScanWizard::ScanWizard(std::filesystem::path unfinished, const QString& folder, 
     questions.fileToSave = [this](const QString& title, const QString& name, const QString& filter) {
         return QFileDialog::getSaveFileName(this, title, name, filter);
     };
+    questions.showPage = [](const QString& file) { return QDesktopServices::openUrl(QUrl::fromLocalFile(file)); };
 
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(14, 14, 14, 12);

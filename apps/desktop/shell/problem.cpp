@@ -126,6 +126,10 @@ constexpr std::array kEntries = {
     Entry{"scan-too-coarse",
           QT_TRANSLATE_NOOP("Problem", "The scan is too coarse: voxels of %1 mm cannot show enamel and pulp."),
           QT_TRANSLATE_NOOP("Problem", "Use a scan of %2 mm or finer.")},
+    Entry{"scan-report-missing", QT_TRANSLATE_NOOP("Problem", "The case is saved, but its report is not. %1"),
+          QT_TRANSLATE_NOOP("Problem", "Save the case again, or in another folder.")},
+    Entry{"no-browser", QT_TRANSLATE_NOOP("Problem", "There is no program that shows this page."),
+          QT_TRANSLATE_NOOP("Problem", "Open the file with a web browser.")},
     // The window's own.
     Entry{"case-vanished",
           QT_TRANSLATE_NOOP("Problem", "The tooth you opened is no longer at %1. Nothing that was cut is lost."),

@@ -1555,6 +1555,22 @@
         <source>Use a scan of %2 mm or finer.</source>
         <translation>%2 mm 以下のスキャンを使ってください。</translation>
     </message>
+    <message>
+        <source>The case is saved, but its report is not. %1</source>
+        <translation>症例は保存しましたが、レポートは保存できませんでした。%1</translation>
+    </message>
+    <message>
+        <source>Save the case again, or in another folder.</source>
+        <translation>症例をもう一度保存するか、別のフォルダーに保存してください。</translation>
+    </message>
+    <message>
+        <source>There is no program that shows this page.</source>
+        <translation>このページを表示するプログラムがありません。</translation>
+    </message>
+    <message>
+        <source>Open the file with a web browser.</source>
+        <translation>ウェブブラウザーでファイルを開いてください。</translation>
+    </message>
 </context>
 <context>
     <name>Pulp</name>
@@ -3456,6 +3472,14 @@
         <translation>保存しました：%1</translation>
     </message>
     <message>
+        <source>Open the report</source>
+        <translation>レポートを開く</translation>
+    </message>
+    <message>
+        <source>The page to print that was saved with the case, with its pictures</source>
+        <translation>症例とともに保存された、画像入りの印刷用ページ</translation>
+    </message>
+    <message>
         <source>Preview</source>
         <translation>プレビュー</translation>
     </message>
@@ -3657,6 +3681,10 @@
     <message>
         <source>Writing the case</source>
         <translation>症例を書き出しています</translation>
+    </message>
+    <message>
+        <source>Drawing the report</source>
+        <translation>レポートを描いています</translation>
     </message>
     <message>
         <source>Finding the tissues</source>

@@ -61,8 +61,6 @@ void cutOut(Work& work, const volume::Volume& volume, const Vec3& lowVoxel, cons
     });
 }
 
-namespace {
-/// Standard deviation, from what a voxel differs from the mean of its neighbours along i; edges are the exception.
 float noiseOf(const Shape& shape, const Field& values) {
     std::vector<float> differences;
     const std::size_t stride = 1 + values.size() / 300000;
@@ -77,7 +75,6 @@ float noiseOf(const Shape& shape, const Field& values) {
                      differences.end());
     return differences[differences.size() / 2] / 0.6745f * 0.8165f;
 }
-}  // namespace
 
 void damp(Work& work, const core::Progress& progress) {
     work.noise = noiseOf(work.shape, work.raw);

@@ -175,6 +175,30 @@ std::size_t outsidePeak(const Coarse& coarse, const std::vector<Peak>& peaks) {
     return best;
 }
 
+constexpr float kHiding = 0.04f;  ///< of the step from the darkest peak to the brightest: such noise may hide peaks
+
+/// Which peaks stand for the outside, dentine and enamel; enamel 0: no two hard tissues were told apart.
+struct HardPeaks {
+    std::size_t outside = 0, dentine = 0, enamel = 0;
+};
+HardPeaks hardPeaks(const Coarse& coarse, const std::vector<Peak>& peaks) {
+    HardPeaks found;
+    if (peaks.size() < 2) return found;
+    found.outside = outsidePeak(coarse, peaks);
+    const float outside = peaks[found.outside].value;
+    // Enamel is the brightest thing of which there is enough; dentine the next below. Metal is too little or too far
+    // up; bone and caries are darker than dentine.
+    for (std::size_t e = peaks.size() - 1; e > found.outside + 1; --e)
+        for (std::size_t d = e - 1; d > found.outside; --d) {
+            const double ratio = (peaks[e].value - outside) / (peaks[d].value - outside);
+            if (ratio < 1.25 || ratio > 2.7) continue;
+            if (peaks[e].mass < 0.04 * peaks[d].mass || peaks[d].mass < 0.3 * peaks[e].mass) continue;
+            found.dentine = d, found.enamel = e;
+            return found;
+        }
+    return found;
+}
+
 /// The peak inside dark places that the tooth encloses, or the outside's.
 float pulpPeak(const Coarse& coarse, const Thresholds& t) {
     const Shape& shape = coarse.shape;
@@ -216,26 +240,31 @@ Thresholds findThresholds(const volume::Volume& volume, const core::Progress& pr
         block += spacing;
     if (spacing >= 0.15) block = spacing;
     const Coarse coarse = coarsen(volume, block, core::part(progress, 0, 0.6));
-    const std::vector<Peak> peaks = findPeaks(coarse.shape, coarse.values);
+    // Noise may hide a peak between two others: averaging shows it, but costs what is thin. So only where it is needed.
+    std::vector<Peak> peaks = findPeaks(coarse.shape, coarse.values);
+    HardPeaks found = hardPeaks(coarse, peaks);
+    const bool isNoisy =
+        peaks.size() > 1 && noiseOf(coarse.shape, coarse.values) > kHiding * (peaks.back().value - peaks.front().value);
+    for (const double sigma : {0.8, 1.2}) {
+        if (found.enamel != 0 && !(isNoisy && sigma < 1)) break;
+        core::report(progress, 0.7);
+        Field even, scratch;
+        blur(coarse.shape, coarse.values, even, scratch, sigma);
+        std::vector<Peak> others = findPeaks(coarse.shape, even);
+        const HardPeaks again = hardPeaks(coarse, others);
+        if (again.enamel == 0 || (found.enamel != 0 && others.size() <= peaks.size())) continue;
+        peaks.swap(others);
+        found = again;
+    }
     core::report(progress, 0.8);
     if (peaks.size() < 2) throw nothingFound("all grey values belong together, there is nothing in the scan");
-    const std::size_t outside = outsidePeak(coarse, peaks);
+    const std::size_t outside = found.outside, enamel = found.enamel;
+    std::size_t dentine = found.dentine;
     if (outside + 1 >= peaks.size()) throw nothingFound("nothing is brighter than the surroundings");
 
     Thresholds t;
     t.outside = peaks[outside].value;
     t.restorationFrom = std::numeric_limits<float>::infinity();
-    // Enamel is the brightest thing of which there is enough; dentine the next below. Metal is too little or too far
-    // up; bone and caries are darker than dentine.
-    std::size_t dentine = 0, enamel = 0;
-    for (std::size_t e = peaks.size() - 1; e > outside + 1 && enamel == 0; --e)
-        for (std::size_t d = e - 1; d > outside; --d) {
-            const double ratio = (peaks[e].value - t.outside) / (peaks[d].value - t.outside);
-            if (ratio < 1.25 || ratio > 2.7) continue;
-            if (peaks[e].mass < 0.04 * peaks[d].mass || peaks[d].mass < 0.3 * peaks[e].mass) continue;
-            dentine = d, enamel = e;
-            break;
-        }
     if (enamel == 0) {  // one hard tissue alone
         dentine = outside + 1;
         for (std::size_t p = outside + 1; p < peaks.size(); ++p)

@@ -42,6 +42,48 @@ Field ownSide(const CoarseTeeth& teeth, std::size_t chosen) {
 }
 }  // namespace
 
+namespace {
+/// Where another tooth is in a contact: how much nearer this one is than the other [voxels]; positive on its own side.
+/// What lies between the two (by `side`) belongs to the one whose body is nearer through hard tissue, so that the face
+/// of a neighbour, which a contact ties to this tooth, goes with the neighbour.
+Field nearerThanOther(const Shape& shape, const Field& outer, const Field& side) {
+    constexpr float kSure = 0.8f;
+    Mask of(outer.size(), 0);  // 1 own, 2 other
+    std::vector<std::uint32_t> layer, next;
+    for (std::size_t n = 0; n < of.size(); ++n)
+        if (outer[n] > 0 && std::abs(side[n]) > kSure) {
+            of[n] = side[n] > 0 ? 1 : 2;
+            layer.push_back(static_cast<std::uint32_t>(n));
+        }
+    while (!layer.empty()) {
+        next.clear();
+        for (const std::uint32_t at : layer)
+            forNeighbours(shape, at, [&](std::size_t n) {
+                if (of[n] != 0 || outer[n] <= 0) return;
+                of[n] = of[at];
+                next.push_back(static_cast<std::uint32_t>(n));
+            });
+        layer.swap(next);
+    }
+    for (std::size_t n = 0; n < of.size(); ++n)
+        if (of[n] == 0 && outer[n] > 0) of[n] = side[n] > 0 ? 1 : 2;
+    Mask own(of.size()), other(of.size());
+    for (std::size_t n = 0; n < of.size(); ++n) {
+        own[n] = of[n] == 1;
+        other[n] = of[n] == 2;
+    }
+    Field result = squaredDistance(shape, other);
+    const Field toOwn = squaredDistance(shape, own);
+    for (std::size_t n = 0; n < result.size(); ++n) {
+        const float a = std::min(std::sqrt(toOwn[n]), 8.0f), b = std::min(std::sqrt(result[n]), 8.0f);
+        result[n] = own[n] ? b - 0.5f : (other[n] ? 0.5f - a : b - a);
+    }
+    Field scratch;
+    blur(shape, result, result, scratch, 0.8);
+    return result;
+}
+}  // namespace
+
 void spreadInto(const Shape& shape, Field& values, const Mask& unknown) {
     std::vector<std::uint32_t> layer, next;
     Mask open = unknown;
@@ -214,17 +256,23 @@ void findOuter(Work& work, const CoarseTeeth& teeth, std::size_t chosen, const v
         work.outer[at] = to;
         work.held[at] = kHeldCut;
     };
-    if (!side.empty() || !settings.cutPlanes.empty())
+    if (!side.empty()) {
+        Field fine(shape.count());
+        forRows(shape, [&](int j, int k) {
+            for (int i = 0; i < shape.size[0]; ++i)
+                fine[shape.index(i, j, k)] = sample(
+                    teeth.coarse.shape, side, teeth.coarse.fromVoxels(scan.toVoxels(work.grid.toMm(Vec3(i, j, k)))));
+        });
+        const Field nearer = nearerThanOther(shape, work.outer, fine);
+        for (std::size_t n = 0; n < nearer.size(); ++n)
+            cut(n, static_cast<double>(nearer[n]));
+    }
+    if (!settings.cutPlanes.empty())
         forRows(shape, [&](int j, int k) {
             for (int i = 0; i < shape.size[0]; ++i) {
-                const std::size_t at = shape.index(i, j, k);
                 const Vec3 mm = work.grid.toMm(Vec3(i, j, k));
-                if (!side.empty())
-                    cut(at, 1.5 * teeth.coarse.spacingMm.mean() / perVoxel *
-                                static_cast<double>(
-                                    sample(teeth.coarse.shape, side, teeth.coarse.fromVoxels(scan.toVoxels(mm)))));
                 for (const CutPlane& plane : settings.cutPlanes)
-                    cut(at, -plane.normal.normalized().dot(mm - plane.pointMm) / perVoxel);
+                    cut(shape.index(i, j, k), -plane.normal.normalized().dot(mm - plane.pointMm) / perVoxel);
             }
         });
     core::report(progress, 0.6);

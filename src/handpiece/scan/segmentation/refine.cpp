@@ -8,10 +8,11 @@
 namespace handpiece::segmentation {
 
 namespace {
-constexpr int kRounds = 7, kMostRounds = 14;
+constexpr int kRounds = 7, kMostRounds = 14, kVariedRounds = 10;
 constexpr double kWideBlur = 1.2;        ///< voxels: above it surfaces start further off and need more rounds
 constexpr float kLeastContrast = 0.12f;  ///< of the step from outside to dentine: below it grey values say nothing
 constexpr float kReach = 1.6f;           ///< voxels beside a surface that are moved
+constexpr float kAside = 0.7f;           ///< voxels: further out than this nothing of the tooth fills a voxel
 constexpr double kSqrtPi = 1.7724538509055159;
 
 /// One inner tissue as the model of the scan sees it.
@@ -22,12 +23,15 @@ struct Layer {
 };
 
 /// Standard deviation of the blur [voxels]: how far the outer surface's profile lies from a step. `work.outer` must be
-/// a distance; only places with one tissue behind them count.
-double blurOf(const Work& work) {
+/// a distance; only places with one tissue behind them count, and, where `seen` is not empty, only those that it shows
+/// free: others have bone or gum before them.
+double blurOf(const Work& work, const Field& seen) {
     const Shape& shape = work.shape;
     const Thresholds& t = work.levels;
     constexpr int kBins = 24;
     constexpr float kWindow = 2.4f, kAlone = 2.0f;  // voxels: samples, and how far any other surface is
+    constexpr double kAhead = 3;
+    const float free = t.outside + 0.12f * (t.dentine - t.outside);
     std::vector<double> sum(kBins, 0.0), count(kBins, 0.0);
     for (int k = 3; k + 3 < shape.size[2]; ++k)
         for (int j = 3; j + 3 < shape.size[1]; ++j)
@@ -40,6 +44,11 @@ double blurOf(const Work& work) {
                 if (!work.caries.empty() && work.caries[at] > -kAlone) continue;
                 if (!work.pulp.empty() && work.pulp[at] > -kAlone) continue;
                 if (!work.restoration.empty() && work.restoration[at] > -kAlone) continue;
+                if (!seen.empty()) {
+                    const core::Vec3 n = gradient(shape, work.outer, i, j, k).normalized();
+                    const core::Vec3 before = core::Vec3(i, j, k) - (d + kAhead) * n;
+                    if (!(sample(shape, seen, before) < free && sample(shape, seen, before - n) < free)) continue;
+                }
                 const float level = isDentine ? t.dentine : t.enamel;
                 const double share = (work.raw[at] - t.outside) / (level - t.outside);
                 const int bin = static_cast<int>((d + kWindow) / (2 * kWindow) * kBins);
@@ -72,9 +81,19 @@ void compose(const Work& work, const std::vector<Layer>& layers, Field& out) {
             for (std::size_t n = from; n < to; ++n)
                 out[n] += coverage(inside[n]) * (level - out[n]);
         }
-        for (std::size_t n = from; n < to; ++n)
-            out[n] = t.outside + coverage(work.outer[n]) * (out[n] - t.outside);
+        for (std::size_t n = from; n < to; ++n) {
+            const float outside = work.around.empty() ? t.outside : work.around[n];
+            out[n] = outside + coverage(work.outer[n]) * (out[n] - outside);
+        }
     });
+}
+
+/// Goes on with what lies around the tooth up to its surface and a little into it: grey values there are mixed.
+void spreadAround(Work& work) {
+    Mask unknown(work.shape.count());
+    for (std::size_t n = 0; n < unknown.size(); ++n)
+        unknown[n] = work.outer[n] < -kAside ? 0 : (work.outer[n] < 2.5f ? 1 : 2);
+    spreadInto(work.shape, work.around, unknown);
 }
 
 /// By how much a tissue is brighter than the model says, well inside it.
@@ -106,7 +125,7 @@ void fitHardTissues(Work& work, const Field& difference) {
     t.enamelFrom = 0.5f * (t.dentine + t.enamel);
 }
 
-/// Bone and gum around the tooth: one grey level does not stand for the outside, so its outline stays as it was found.
+/// Bone and gum around the tooth: one grey level does not stand for the outside.
 bool isGroundVaried(const Work& work) {
     const Thresholds& t = work.levels;
     return work.groundLevel > t.outside + 0.05f * (t.dentine - t.outside);
@@ -116,7 +135,6 @@ bool isGroundVaried(const Work& work) {
 void move(Work& work, const std::vector<Layer>& layers, const Field& pull, float gain) {
     const Thresholds& t = work.levels;
     const float least = kLeastContrast * (t.dentine - t.outside);
-    const bool isVaried = isGroundVaried(work);
     core::parallelFor(pull.size(), 1 << 14, [&](std::size_t from, std::size_t to) {
         for (std::size_t n = from; n < to; ++n) {
             if (work.outer[n] <= -kReach) continue;
@@ -132,8 +150,8 @@ void move(Work& work, const std::vector<Layer>& layers, const Field& pull, float
                 }
                 level += c * (*layer.level - level);
             }
-            if (std::abs(work.outer[n]) < kReach && !work.held[n] && !isVaried) {
-                const float contrast = level - t.outside;
+            if (std::abs(work.outer[n]) < kReach && !work.held[n]) {
+                const float contrast = level - (work.around.empty() ? t.outside : work.around[n]);
                 if (contrast > least) work.outer[n] += std::clamp(gain * pull[n] / contrast, -0.35f, 0.35f);
             }
         }
@@ -168,18 +186,25 @@ void refine(Work& work, const core::Progress& progress) {
         work.restoration.empty() ? t.enamel + 0.5f * (t.enamel - t.outside) : work.restorationLevel * 1.2f;
     Field& difference = work.damped;  // no stage after this one needs it
     const bool isVaried = isGroundVaried(work);
-    int rounds = kRounds;
+    Field seen;
+    if (isVaried) {
+        seen = work.damped;
+        work.around = seen;
+        spreadAround(work);
+    }
+    int rounds = isVaried ? kVariedRounds : kRounds;
     for (int round = 0; round < rounds; ++round) {
         if (round == 3 && work.sigma > kWideBlur) rounds = kMostRounds;
         core::report(progress, static_cast<double>(round) / rounds);
-        if (round < 4 && !isVaried) work.sigma = blurOf(work);
+        if (round < 4) work.sigma = blurOf(work, seen);
         compose(work, layers, difference);
         blur(work.shape, difference, difference, work.scratch, work.sigma);
         core::parallelFor(difference.size(), 1 << 15, [&](std::size_t from, std::size_t to) {
-            for (std::size_t n = from; n < to; ++n)
-                difference[n] = work.outer[n] <= (isVaried ? 1.5f : -kBand)
-                                    ? 0.0f
-                                    : std::min(work.raw[n], brightest) - difference[n];
+            for (std::size_t n = from; n < to; ++n) {
+                // What is around is as it must be for its blur to look like the scan.
+                if (isVaried && work.outer[n] < -kAside) work.around[n] += seen[n] - difference[n];
+                difference[n] = work.outer[n] <= -kBand ? 0.0f : std::min(work.raw[n], brightest) - difference[n];
+            }
         });
         if (round > 0)
             for (const Layer& layer : layers)
@@ -196,6 +221,7 @@ void refine(Work& work, const core::Progress& progress) {
             even(work.shape, *layer.inside, work.scratch, 0.06f);
             redistance(work.shape, *layer.inside, kBand);
         }
+        if (isVaried) spreadAround(work);
     }
     core::report(progress, 1);
 }

@@ -17,6 +17,7 @@ constexpr double kLeastToothMm3 = 2.0;  ///< smaller things are calculus, bone, 
 constexpr double kNeckShare = 0.55;     ///< a neck narrower than this share of the thinner side parts two teeth
 constexpr double kLeastRadiusMm = 0.9;  ///< a part thinner than this is no tooth of its own
 constexpr double kApexRadiusMm = 0.6;   ///< openings up to this radius are closed before cavities are looked for
+constexpr float kSpeckShare = 0.36f;    ///< of the step from what surrounds a tooth: more noise than this is averaged
 
 /// The mask with its cavities filled, those with narrow mouths too.
 Mask filled(const Shape& shape, const Mask& mask, double spacingMm) {
@@ -99,6 +100,12 @@ CoarseTeeth partTeeth(const volume::Volume& volume, const Thresholds& thresholds
     CoarseTeeth result;
     result.coarse = coarsen(volume, std::max(kBlockMm, volume.grid.spacingMm.minCoeff()), core::part(progress, 0, 0.4));
     const Shape& shape = result.coarse.shape;
+    // Where bone is nearly as bright as a tooth, noise would tie teeth together by specks.
+    const float noise = noiseOf(shape, result.coarse.values);
+    if (noise > kSpeckShare * (thresholds.dentine - thresholds.toothFrom)) {
+        Field scratch;
+        blur(shape, result.coarse.values, result.coarse.values, scratch, 0.8);
+    }
     Mask mask(shape.count());
     for (std::size_t n = 0; n < mask.size(); ++n)
         mask[n] = result.coarse.values[n] > thresholds.toothFrom;

@@ -39,6 +39,9 @@ void forRows(const Shape& shape, const std::function<void(int, int)>& body);
 /// Gaussian of `sigma` voxels, edges repeated. `in` and `out` may be the same; `scratch` is given its size.
 void blur(const Shape& shape, const Field& in, Field& out, Field& scratch, double sigma);
 
+/// Standard deviation, from what a voxel differs from the mean of its neighbours along i; edges are the exception.
+[[nodiscard]] float noiseOf(const Shape& shape, const Field& values);
+
 /// Diffusion that stops at steps above `kappa` (Perona and Malik 1990), 6 neighbours.
 void dampKeepingEdges(const Shape& shape, Field& values, Field& scratch, float kappa, int rounds);
 

@@ -22,6 +22,7 @@ struct Work {
     Thresholds levels;
     Field raw;     ///< grey values as scanned
     Field damped;  ///< noise taken out, edges kept
+    Field around;  ///< grey values outside the tooth where they differ (bone, gum, neighbours); empty: levels.outside
     Field outer, dentine, pulp, caries, restoration;
     Mask held;  ///< cavities that were closed and what was cut off: grey values have no say there
     float cariesLevel = 0, restorationLevel = 0;

@@ -111,7 +111,7 @@ constexpr std::array kEntries = {
                             "NIfTI, MetaImage, or raw numbers with a scan.toml.")},
     Entry{"no-spacing", QT_TRANSLATE_NOOP("Problem", "The scan does not tell how large its voxels are."),
           QT_TRANSLATE_NOOP("Problem", "Type the size of a voxel: the scanner's record has it.")},
-    Entry{"too-large",
+    Entry{"scan-too-large",
           QT_TRANSLATE_NOOP("Problem", "It is larger than a scan of a tooth can be, or its header is damaged."),
           QT_TRANSLATE_NOOP("Problem", "Crop the scan around the tooth, or take another copy of it.")},
     Entry{"scan-empty", QT_TRANSLATE_NOOP("Problem", "No tooth was found in the scan. Technical detail: %1"),

@@ -267,7 +267,7 @@ std::vector<std::byte> FileSet::bytes(std::size_t index, std::uint64_t limitByte
         return core::Error(fmt::format("the file has {} MB, more than the {} MB that are read",
                                        entries_[index].bytes >> 20, limitBytes >> 20),
                            where(index), "name the right file")
-            .as("too-large");
+            .as("scan-too-large");
     };
     if (entries_[index].bytes > limitBytes) throw tooLarge();
     Input input = open(index);

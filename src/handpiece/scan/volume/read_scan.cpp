@@ -71,7 +71,7 @@ std::uint64_t checkedBytes(const Candidate& candidate, std::uint64_t limitBytes)
             fmt::format("{} x {} x {} voxels need {:.1f} GB of memory, more than the {:.1f} GB that are allowed",
                         size[0], size[1], size[2], bytes / (1 << 30), static_cast<double>(limitBytes) / (1 << 30)),
             candidate.where, "crop or halve the scan, or allow more memory; or the header is damaged")
-            .as("too-large");
+            .as("scan-too-large");
     return static_cast<std::uint64_t>(bytes);
 }
 

@@ -200,7 +200,7 @@ void checkSize(const std::array<std::int64_t, 3>& size, const std::string& where
         throw core::Error(
             fmt::format("its header claims {} x {} x {} voxels, which no memory holds", size[0], size[1], size[2]),
             where, "the header is damaged: copy or save the file again")
-            .as("too-large");
+            .as("scan-too-large");
 }
 
 void setSamples(Candidate& candidate, Samples samples) {

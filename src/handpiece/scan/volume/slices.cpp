@@ -145,7 +145,7 @@ std::vector<std::byte> wholeOf(Input& input) {
     if (input.size() > kMostPicture)
         throw core::Error(fmt::format("a picture of {} MB is no slice", input.size() >> 20), input.where(),
                           "name the right file")
-            .as("too-large");
+            .as("scan-too-large");
     std::vector<std::byte> data(input.size());
     data.resize(input.readAt(0, data.data(), data.size()));
     return data;
@@ -185,9 +185,9 @@ std::vector<Candidate> findSlices(const Files& files, const std::vector<std::siz
                         Input in = files->open(file);
                         readTiff(in, info, k, 1, to, {});
                     };
-                    c.load = [files, file, info](float* to, const core::Progress& progress) {
+                    c.load = [files, file, info](float* to, const core::Progress& told) {
                         Input in = files->open(file);
-                        readTiff(in, info, 0, info.pages, to, progress);
+                        readTiff(in, info, 0, info.pages, to, told);
                     };
                     found.push_back(std::move(c));
                     continue;

@@ -40,7 +40,8 @@ std::optional<Packing> packingOf(const std::string& syntax) {
 }
 
 /// Columns, rows and components as the packed picture itself tells them, or nothing: GDCM's decoders trust these.
-std::optional<std::array<unsigned, 3>> packedSize(Packing packing, const std::vector<char>& data) {
+/// Of a JPEG the segments that say nothing of the pixels are taken out.
+std::optional<std::array<unsigned, 3>> packedSize(Packing packing, std::vector<char>& data) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(data[i])); };
     const auto two = [&](std::size_t i) { return byte(i) << 8 | byte(i + 1); };
     const auto four = [&](std::size_t i) { return two(i) << 16 | two(i + 2); };
@@ -51,18 +52,43 @@ std::optional<std::array<unsigned, 3>> packedSize(Packing packing, const std::ve
         if (four(16) != 0 || four(20) != 0 || (count == 1 && (byte(43) != 1 || byte(44) != 1))) return {};
         return std::array{four(8), four(12), count};
     }
+    // Segments one after the other up to the first scan, nothing between them: GDCM's decoder stops the program at
+    // what its header reader only warns of (stray bytes, odd application segments), so these are dropped or refused.
     if (data.size() < 4 || two(0) != 0xffd8) return {};
-    for (std::size_t at = 2; at + 10 < data.size();) {
+    std::vector<char> clean = {data[0], data[1]};
+    std::optional<std::array<unsigned, 3>> size;
+    unsigned component = 0;
+    for (std::size_t at = 2; at + 4 <= data.size();) {
         if (byte(at) != 0xff) return {};
         const unsigned marker = byte(at + 1);
         if (marker == 0xff) {
             ++at;
             continue;
         }
+        const unsigned length = two(at + 2);
+        if (length < 2 || at + 2 + length > data.size()) return {};
         const bool isFrame =
-            (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc) || marker == 0xf7;
-        if (isFrame) return std::array{two(at + 7), two(at + 5), byte(at + 9)};
-        at += 2 + two(at + 2);
+            packing == Packing::jpegLs ? marker == 0xf7 : marker == 0xc0 || marker == 0xc1 || marker == 0xc3;
+        const bool isTable = marker == 0xc4 || marker == 0xdb || marker == 0xdd || marker == 0xf8;
+        const bool isNote = (marker >= 0xe0 && marker <= 0xef) || marker == 0xfe;
+        if (isFrame) {
+            if (size || length < 11 || length != 8 + 3 * byte(at + 9)) return {};
+            size = std::array{two(at + 7), two(at + 5), byte(at + 9)};
+            component = byte(at + 10);
+        } else if (marker == 0xda) {
+            // Of several components the size alone is told: the caller refuses them.
+            if (!size) return {};
+            if ((*size)[2] == 1 && (length != 8 || byte(at + 4) != 1 || byte(at + 5) != component)) return {};
+            clean.insert(clean.end(), data.begin() + static_cast<std::ptrdiff_t>(at), data.end());
+            data = std::move(clean);
+            return size;
+        } else if (!isTable && !isNote) {
+            return {};
+        }
+        if (!isNote)
+            clean.insert(clean.end(), data.begin() + static_cast<std::ptrdiff_t>(at),
+                         data.begin() + static_cast<std::ptrdiff_t>(at + 2 + length));
+        at += 2 + length;
     }
     return {};
 }

@@ -32,6 +32,7 @@ THIRD_PARTY = {
     r"nifti": r"tests/.*",
     r"sndfile\.h": r"src/handpiece/senses/sound/wav\.cpp",
     r"AL/": r"src/handpiece/senses/sound/\w+\.cpp",
+    r"boost/": r"src/handpiece/devices/drivers/\w+\.cpp|tests/devices/.*",
     r"Q[A-Z]\w+$|QtWidgets/|QtCore/|QtTest/": r"(apps|tests)/desktop/.*",
 }
 # What the tick's own rooms never include: anything that locks, waits, prints or touches a file. The device drivers and
@@ -40,7 +41,7 @@ TICK_FORBIDDEN = re.compile(r"<(mutex|shared_mutex|condition_variable|future|thr
 # Files of the tick's wing that run beside it, not in it: the runner that starts the thread and feeds a listener.
 OFF_TICK = {"src/handpiece/tick/loop/loop_run.cpp"}
 POSIX = re.compile(r"<(pthread\.h|sched\.h|unistd\.h|time\.h|sys/[a-z]+\.h|dlfcn\.h|spawn\.h)>")
-POSIX_ALLOWED = re.compile(r"src/handpiece/base/rt/.*\.cpp|src/handpiece/tick/device/driver_\w+\.cpp|apps/.*|tests/.*|bench/.*")
+POSIX_ALLOWED = re.compile(r"src/handpiece/base/rt/.*\.cpp|src/handpiece/devices/(link|drivers)/\w+\.cpp|apps/.*|tests/.*|bench/.*")
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"][^>"]+[>"])', re.MULTILINE)
 

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/devices/link/driver.h"
+
+namespace handpiece::link {
+namespace {
+
+struct Words {
+    std::string_view id, sentence, remedy;
+};
+
+constexpr std::array<Words, 13> kWords{{
+    {"none", "The device is well.", ""},
+    {"starting", "The device has not told its pose yet.", "Wait a moment."},
+    {"unplugged", "The device is gone.", "Check its cable and power, then connect it again."},
+    {"vendor-error", "The device's own software reports an error.", "See its code; switch the device off and on."},
+    {"bad-data", "The device sent something that cannot be read.", "Start its service again, or update it."},
+    {"stalled", "The device has stopped telling its pose.", "Check its cable; close other programs that use it."},
+    {"tick-stalled", "The simulation stood still.", "Close other programs; the force comes back by itself."},
+    {"not-finite", "A pose or a force was not a number.", "Lift the bur off the tooth; calibrate the device."},
+    {"jumped", "The pose jumped farther than a hand can move.", "Lift the bur off the tooth; calibrate the device."},
+    {"not-calibrated", "The device is not calibrated.", "Calibrate it: Device, Calibrate."},
+    {"hot", "The device's motors are too warm.", "Let the device rest for some minutes."},
+    {"input-lost", "Nobody holds the device.", "Take the stylus in the hand."},
+    {"stopped", "The device was stopped.", "Connect it again."},
+}};
+
+const Words& wordsOf(Trouble trouble) noexcept {
+    const auto at = static_cast<std::size_t>(trouble);
+    return kWords[at < kWords.size() ? at : static_cast<std::size_t>(Trouble::vendorError)];
+}
+
+}  // namespace
+
+std::string_view idOf(Trouble trouble) noexcept {
+    return wordsOf(trouble).id;
+}
+std::string_view sentenceOf(Trouble trouble) noexcept {
+    return wordsOf(trouble).sentence;
+}
+std::string_view remedyOf(Trouble trouble) noexcept {
+    return wordsOf(trouble).remedy;
+}
+
+}  // namespace handpiece::link

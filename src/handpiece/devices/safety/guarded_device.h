@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// A vendor's device as the tick sees it. The only way from a Driver to a Device: so no force passes the gate by.
+
+#include <memory>
+
+#include "handpiece/devices/link/driver.h"
+#include "handpiece/devices/safety/gate.h"
+#include "handpiece/devices/workspace/placing.h"
+#include "handpiece/tick/device/device.h"
+#include "handpiece/tick/stability/shaper.h"
+
+namespace handpiece::safety {
+
+struct GuardSettings {
+    GateSettings gate;
+    workspace::Placing placing;
+    stability::ShaperSettings shaping;
+    double readingTimeoutS = 0.02;               ///< the tick calls an older reading lost
+    double clutchButton = 2;                     ///< bit of the button that is the clutch; below 0: none
+    bool upperButtonCuts = true;                 ///< when the device has no pedal of its own
+    std::int64_t (*nowNs)() noexcept = nullptr;  ///< null: rt::monotonicNs
+};
+
+/// How it stands, for other threads than tick and servo. Plain.
+struct Health {
+    GateStatus gate;
+    stability::ShaperStatus shaping;
+    std::uint64_t frames = 0;            ///< of the device's servo
+    double servoHz = 0.0;                ///< over the last second
+    std::array<double, 3> positionMm{};  ///< of the stylus, device frame
+    std::array<double, 4> orientation{1, 0, 0, 0};
+    std::uint32_t buttons = 0;
+    std::array<double, 3> sentN{};  ///< last force that went to the device, device frame
+    bool clutched = false;
+};
+
+/// Shared by the device, which writes, and one listener, who reads. Made before the device.
+class HealthBoard;
+
+/// Reads the driver's latest frame, places it, hands the tick's force through shaper, link and gate. read() and
+/// command() belong to the tick; the driver's thread runs beside it and the two meet in triple buffers only.
+class GuardedDevice final : public device::Device {
+  public:
+    /// Starts the driver. Throws core::Error as Driver::start does, and for settings out of range. The capability is
+    /// that at the bur.
+    GuardedDevice(std::unique_ptr<link::Driver> driver, const GuardSettings& settings);
+    ~GuardedDevice() override;  ///< stops the driver first
+
+    [[nodiscard]] const device::Capability& capability() const noexcept override;
+    device::Reading read(double periodS) noexcept HANDPIECE_REALTIME override;
+    void command(const core::Vec3& forceN, const core::Vec3& torqueNmm) noexcept HANDPIECE_REALTIME override;
+    core::Vec3 truePositionMm() const noexcept override;
+    core::Vec3 appliedForceN() const noexcept override;  ///< what the gate let through last, tooth frame
+
+    [[nodiscard]] const link::DriverInfo& info() const noexcept;
+    /// Outlives the device; one reader besides the device's own.
+    [[nodiscard]] std::shared_ptr<HealthBoard> health() const noexcept;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+class HealthBoard {
+  public:
+    virtual ~HealthBoard() = default;
+    /// The latest; one reader thread.
+    [[nodiscard]] virtual Health read() noexcept = 0;
+    /// Takes effect at the tick's next read; from one thread that is not the tick's. The bur keeps still until it is
+    /// clear of the tooth: ForceModel's guard sees a jump.
+    virtual void place(const workspace::Placing& placing) = 0;
+    virtual void shape(const stability::ShaperSettings& settings) = 0;
+};
+
+}  // namespace handpiece::safety

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// How a hand's movements at a device become movements of a bur at a tooth: where the tooth lies, how the stylus is the
+/// handpiece's handle, which hand, what scale, and the clutch.
+
+#include "handpiece/base/core/realtime.h"
+#include "handpiece/base/core/vec.h"
+#include "handpiece/devices/link/driver.h"
+
+namespace handpiece::workspace {
+
+/// The stylus is the handle of the handpiece; the bur sits in its head at an angle to it.
+struct Placing {
+    /// The hand here (device frame) has the bur's tip there (tooth frame).
+    core::Vec3 deviceMm = core::Vec3::Zero(), toothMm = core::Vec3::Zero();
+    core::Quat toothInDevice = core::Quat::Identity();  ///< rotation that turns tooth axes into device axes
+    double scale = 1.0;                                 ///< millimetres of the hand for one of the bur: 1, 2 or 3
+    bool leftHanded = false;                            ///< the head is mirrored left to right on its handle
+    bool burAlongStylus = false;                        ///< the bur goes on along the stylus instead
+    double headAngleDeg = 100.0;  ///< between handle and bur, as in a contra-angle head; docs/devices.md#placing
+    core::Vec3 tipFromStylusMm =
+        core::Vec3::Zero();  ///< bur's tip in the stylus frame. Zero: force acts where it is felt
+};
+/// Throws core::Error naming the value.
+void validate(const Placing& placing);
+
+/// The arithmetic of a Placing, for the tick.
+class Mapping {
+  public:
+    explicit Mapping(const Placing& placing) noexcept;
+    [[nodiscard]] core::Pose burInTooth(const link::DriverReading& reading) const noexcept HANDPIECE_REALTIME;
+    /// Tooth frame to device frame. A force is the same whatever the scale: stiffness per millimetre of the hand's
+    /// motion is then stiffness at the tooth over the scale.
+    [[nodiscard]] core::Vec3 inDevice(const core::Vec3& inTooth) const noexcept HANDPIECE_REALTIME;
+    [[nodiscard]] core::Vec3 inTooth(const core::Vec3& inDevice) const noexcept HANDPIECE_REALTIME;
+    /// The clutch: the bur stays where it is while the hand goes elsewhere. Called with the reading at which it is let
+    /// go and the pose the bur was left at, so that it goes on from there.
+    void regrip(const link::DriverReading& reading, const core::Vec3& burMm) noexcept HANDPIECE_REALTIME;
+    [[nodiscard]] const Placing& placing() const noexcept { return placing_; }
+
+  private:
+    Placing placing_;
+    core::Quat burInStylus_;
+};
+
+/// What the device can do as seen at the bur: forces as they are, stiffness and damping times the scale (so that they
+/// are the device's own per millimetre of the hand), steps and workspace over it.
+[[nodiscard]] device::Capability atTheBur(const device::Capability& atTheHand, const Placing& placing);
+
+}  // namespace handpiece::workspace

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The one way from a name to a haptic device, for the command line and the window: which there are, one opened behind
+/// its gate, its profile, and where a tooth lies in its reach.
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/vec.h"
+#include "handpiece/devices/drivers/catalogue.h"
+#include "handpiece/devices/safety/guarded_device.h"
+#include "handpiece/devices/safety/injector.h"
+#include "handpiece/devices/workspace/profile.h"
+#include "handpiece/tick/device/device.h"
+#include "handpiece/tick/device/pointer_device.h"
+#include "handpiece/tick/force/parameters.h"
+
+namespace handpiece::station {
+
+/// drivers::look(), and the simulated arm at the end, which is always there. Opens and moves nothing.
+[[nodiscard]] std::vector<drivers::Found> lookForDevices();
+[[nodiscard]] std::vector<std::string> deviceNames();
+
+/// The tooth as far as its place in an arm's reach depends on it. tooth::Case has the last two: 0 when not known.
+struct ToothPlace {
+    core::Box box;  ///< of its outer surface, tooth frame
+    int fdiNumber = 0, buccalSign = 1;
+};
+/// Where a tooth lies comfortably in a device's reach: the middle of its top at `profile`'s point, occlusal up, and the
+/// handle where startPose() has it when it comes from the right and the front (a left hand's from the left).
+[[nodiscard]] workspace::Placing placingFor(const workspace::Profile& profile, const ToothPlace& tooth);
+/// The turn alone: tooth axes into device axes.
+[[nodiscard]] core::Quat toothTurnFor(const ToothPlace& tooth, bool leftHanded);
+
+struct DeviceChoice {
+    std::string name = "simulated";       ///< of deviceNames()
+    std::string which;                    ///< device name or serial within the driver; empty: its default
+    double servoHz = 0.0;                 ///< 0: the driver's own choice
+    std::filesystem::path profileFolder;  ///< empty: workspace::profileFolder()
+    std::filesystem::path profile;        ///< this file instead of the one of the device; empty: the device's
+    /// Instead of the profile's.
+    std::optional<double> scale, forceScale;
+    std::optional<bool> leftHanded, passivityController, frictionCompensation;
+    std::optional<workspace::Placing> placing;  ///< whole: nothing is fitted to the tooth
+    std::string faults;                         ///< safety::parseFaults(); empty: none
+    bool pedal = false;                         ///< a foot pedal too, where there is one: throws when there is none
+    device::PointerHandSettings hand;           ///< of devices that do not push
+    ToothPlace tooth;
+};
+
+/// A driver by name that was not started: for fidelity::check() and calibration. Throws as drivers::open().
+[[nodiscard]] std::unique_ptr<link::Driver> openDriver(const DeviceChoice& choice);
+/// The profile that `choice` asks for, its overrides in place, without the tooth. Throws core::Error.
+[[nodiscard]] workspace::Profile profileOf(const DeviceChoice& choice, const link::DriverInfo& info);
+
+/// Calibration of a device that runs; for one thread that is not the tick's.
+struct Calibration {
+    std::function<link::CalibrationState()> state;
+    std::function<std::string()> step;  ///< what the person does, in one sentence
+    std::function<bool()> tryOnce;      ///< true when it is calibrated now
+};
+
+/// A device that runs.
+struct OpenDevice {
+    std::unique_ptr<device::Device> device;       ///< for the loop
+    std::shared_ptr<safety::HealthBoard> health;  ///< outlives the device; one reader
+    link::DriverInfo info;
+    workspace::Profile profile;         ///< with the overrides and the tooth's place in it
+    device::Capability capability;      ///< at the bur: the device's own
+    Calibration calibration;            ///< as long as the device lives
+    std::vector<safety::Fault> faults;  ///< that will be injected
+    /// What each came to; whenever, complete once the device is gone.
+    std::function<std::vector<safety::FaultOutcome>()> outcomes;
+};
+/// Throws core::Error: no such device, its driver's reasons, a bad profile, a bad --inject.
+[[nodiscard]] OpenDevice openDevice(const DeviceChoice& choice);
+/// The same for a driver that was made elsewhere (a simulated arm with a motion of its own).
+[[nodiscard]] OpenDevice openDevice(std::unique_ptr<link::Driver> driver, const DeviceChoice& choice);
+
+/// What the force model must know of the device: torque about its stylus where it has torque axes.
+[[nodiscard]] force::Parameters fittedTo(const OpenDevice& device, force::Parameters parameters);
+
+/// Trouble as a message for people: an id of link::idOf() ("unplugged"), its sentence, remedy, and the code in words
+/// where the vendor's library told one. Nothing while all is well (or starting).
+[[nodiscard]] std::optional<core::Error> troubleOf(const safety::GateStatus& status, const std::string& deviceName);
+
+}  // namespace handpiece::station

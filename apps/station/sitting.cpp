@@ -17,6 +17,7 @@
 #include "handpiece/model/tooth/case_bytes.h"
 #include "handpiece/model/tooth/cut_state_file.h"
 #include "station/cut_session.h"
+#include "station/held_button.h"
 #include "station/tick_statistics.h"
 
 namespace handpiece::station {
@@ -125,6 +126,7 @@ struct Sitting::State {
     loop::HapticLoop loop;
     TickStatistics statistics;
     PlotGatherer gatherer;
+    HeldButton lower;
     HapticSample last;
     bool any = false, fresh = false, outOfBricks = false, toldStopped = false, toldIncomplete = false;
     std::uint64_t toldLost = 0;
@@ -173,6 +175,7 @@ struct Sitting::State {
             if (plot.size() > kMostPlotPoints) plot.pop_front();
         });
         if ((sample.flags & messages::kOutOfBricks) != 0 && !std::exchange(outOfBricks, true)) notice("out-of-bricks");
+        if (settings.lowerButtonUndoes && lower.take(sample)) post(TakeStep{CutSession::Step::undo});
         if (listener) listener(sample);
     }
 

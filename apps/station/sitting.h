@@ -33,6 +33,7 @@ struct SittingSettings {
     KeptHistory history;                ///< strokes before, that led to the station's tooth as it is
     bool realTime = true;               ///< asks for real-time scheduling
     double spinUs = 0.0;
+    bool lowerButtonUndoes = true;  ///< of a device's stylus: held half a second with the bur clear (HeldButton)
 };
 
 /// How it stands, for the status bar.

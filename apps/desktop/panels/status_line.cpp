@@ -4,6 +4,7 @@
 #include <QHBoxLayout>
 #include <QLocale>
 #include <QPainter>
+#include <QToolButton>
 
 #include "panels/parts.h"
 #include "panels/theme.h"
@@ -59,7 +60,12 @@ StatusLine::StatusLine(QWidget* parent) : QWidget(parent) {
     };
     word_ = add("statusWord", tr("Status"), tr("How the simulator is doing"));
     record_ = add("statusRecording", tr("Record of the session"), tr("Everything you do is recorded"));
-    deviceText_ = add("statusDevice", tr("Device"), tr("What holds the handpiece"));
+    device_ = named(new QToolButton(this), "statusDevice", tr("Device"), tr("What holds the handpiece"));
+    device_->setAutoRaise(true);
+    device_->setFocusPolicy(Qt::TabFocus);
+    connect(device_, &QToolButton::clicked, this, &StatusLine::deviceClicked);
+    row->addWidget(device_);
+    row->addSpacing(10);
     rate_ = add("statusRate", tr("Tick rate"), tr("Ticks of the force loop a second"));
     late_ = add("statusLate", tr("Late ticks"), tr("Ticks that began late, and periods that were missed altogether"));
     load_ = add("statusLoad", tr("Load"), tr("Share of each period that the force loop works"));
@@ -104,15 +110,27 @@ void StatusLine::refresh() {
                                                          : tr("Not recording"));
     record_->setToolTip(figures_.recordingNote.isEmpty() ? tr("Everything you do is recorded")
                                                          : figures_.recordingNote);
-    deviceText_->setText(figures_.device.isEmpty() ? tr("No device") : figures_.device);
     const QLocale locale;
+    QString device = figures_.device.isEmpty() ? tr("No device") : figures_.device;
+    if (!figures_.deviceTrouble.isEmpty()) {
+        device = tr("%1: %2").arg(device, figures_.deviceTrouble);
+    } else if (figures_.servoHz > 0.0) {
+        device = tr("%1, %2 Hz").arg(device, locale.toString(figures_.servoHz, 'f', 0));
+    }
+    device_->setText(device);
+    device_->setToolTip(figures_.deviceTrouble.isEmpty()
+                            ? tr("What holds the handpiece, and how often its own servo answers. Press to choose.")
+                            : tr("The device gives no force: %1").arg(figures_.deviceTrouble));
+    QPalette tinted = palette();
+    if (!figures_.deviceTrouble.isEmpty()) tinted.setColor(QPalette::ButtonText, tonesOf(tinted).bad);
+    device_->setPalette(tinted);
     rate_->setText(tr("%1 Hz").arg(locale.toString(figures_.rateHz, 'f', 0)));
     late_->setText(figures_.missedPeriods > 0 ? tr("%1 late, %2 missed")
                                                     .arg(locale.toString(qulonglong(figures_.lateTicks)),
                                                          locale.toString(qulonglong(figures_.missedPeriods)))
                                               : tr("%1 late").arg(locale.toString(qulonglong(figures_.lateTicks))));
     load_->setText(tr("load %1 %").arg(locale.toString(100 * figures_.load, 'f', 0)));
-    for (QLabel* label : {record_, deviceText_, rate_, late_, load_})
+    for (QLabel* label : {record_, rate_, late_, load_})
         label->setVisible(!practice);
 }
 

@@ -10,6 +10,7 @@
 #include "panels/detail.h"
 
 class QLabel;
+class QToolButton;
 
 namespace handpiece::desktop {
 
@@ -19,7 +20,9 @@ class Lamp;
 struct StatusFigures {
     enum class Recording { off, on, stopped };
     QString device;
-    double rateHz = 0.0;  ///< measured
+    double servoHz = 0.0;   ///< of the device's own loop, measured; 0: it has none
+    QString deviceTrouble;  ///< a word or two; empty: it is well
+    double rateHz = 0.0;    ///< measured
     std::uint64_t lateTicks = 0, missedPeriods = 0;
     double load = 0.0;  ///< 0..1
     Recording recording = Recording::off;
@@ -29,7 +32,7 @@ struct StatusFigures {
     friend bool operator==(const StatusFigures&, const StatusFigures&) = default;
 };
 
-/// [statusLine]. In Practice one plain word: "Ready", "Recording", "Late".
+/// [statusLine]. In Practice one plain word, "Ready", "Recording", "Late", and the device.
 class StatusLine : public QWidget {
     Q_OBJECT
   public:
@@ -38,13 +41,18 @@ class StatusLine : public QWidget {
     void setDetail(Detail detail);
     [[nodiscard]] QString word() const;
 
+  signals:
+    /// The field of the device was pressed.
+    void deviceClicked();
+
   private:
     void refresh();
 
     StatusFigures figures_;
     Detail detail_ = Detail::practice;
     Lamp* lamp_;
-    QLabel *word_, *deviceText_, *rate_, *late_, *load_, *record_;
+    QToolButton* device_;
+    QLabel *word_, *rate_, *late_, *load_, *record_;
 };
 
 }  // namespace handpiece::desktop

@@ -10,7 +10,8 @@ CommandLine parseCommandLine(const QStringList& arguments) {
     CommandLine line;
     static const QSet<QString> withValue{QStringLiteral("--layout"),     QStringLiteral("--language"),
                                          QStringLiteral("--screenshot"), QStringLiteral("--after"),
-                                         QStringLiteral("--stats"),      QStringLiteral("--run-for")};
+                                         QStringLiteral("--stats"),      QStringLiteral("--run-for"),
+                                         QStringLiteral("--device"),     QStringLiteral("--inject")};
     for (qsizetype i = 1; i < arguments.size(); ++i) {
         QString option = arguments[i], value;
         if (!option.startsWith(QLatin1String("--"))) {
@@ -38,6 +39,11 @@ CommandLine parseCommandLine(const QStringList& arguments) {
             line.language = value;
             if (value != QLatin1String("en") && value != QLatin1String("ja"))
                 line.wrong = QStringLiteral("there is no language \"%1\": en, ja").arg(value);
+        } else if (option == QLatin1String("--device")) {
+            line.device = value;
+            if (value.isEmpty()) line.wrong = QStringLiteral("--device needs a name: handpiece device list tells them");
+        } else if (option == QLatin1String("--inject")) {
+            line.inject = value;
         } else if (option == QLatin1String("--screenshot")) {
             line.screenshot = value;
         } else if (option == QLatin1String("--after")) {
@@ -76,6 +82,8 @@ QString usage() {
         "\n"
         "  --layout practice|laboratory|paper   which panels are shown\n"
         "  --language en|ja                     the language of this start\n"
+        "  --device NAME                        what holds the handpiece: mouse, or a name of handpiece device list\n"
+        "  --inject FAULTS                      faults of that device on purpose (docs/devices.md#faults)\n"
         "  --no-sound                           silent\n"
         "  --screenshot FILE.png                write the window as a picture and quit\n"
         "  --after SECONDS                      ... so long after the start (3)\n"

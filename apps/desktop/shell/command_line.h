@@ -13,6 +13,8 @@ struct CommandLine {
     QString file;      ///< case, attempt, STL or session to open; empty: the starter tooth
     QString layout;    ///< "practice", "laboratory", "paper"; empty: as it was
     QString language;  ///< "en", "ja"; empty: as it was
+    QString device;    ///< that holds the handpiece: a driver's name, "mouse"; empty: as it was
+    QString inject;    ///< faults on purpose, for it
     bool sound = true, timing = false;
     QString screenshot;  ///< PNG to write, then quit
     double afterS = 3.0;

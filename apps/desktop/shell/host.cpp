@@ -10,9 +10,25 @@
 #include "handpiece/base/core/file.h"
 
 namespace handpiece::desktop {
+namespace {
+
+Simulator::Options withFaults(Simulator::Options options, const CommandLine& line) {
+    if (!line.inject.isEmpty()) options.hands.inject = line.inject.toStdString();
+    return options;
+}
+
+/// What the school has chosen for all, below what the person has.
+QString schoolDevice() {
+    return {};
+}
+
+}  // namespace
 
 Host::Host(QApplication& application, const CommandLine& line, const Simulator::Options& options)
-    : application_(application), line_(line), settings_(options.folders.settingsFile), simulator_(options) {
+    : application_(application),
+      line_(line),
+      settings_(options.folders.settingsFile),
+      simulator_(withFaults(options, line)) {
     const QString theme = settings_.value(QStringLiteral("window/theme"), QStringLiteral("system")).toString();
     chooseAppearance(theme == QLatin1String("dark")    ? Appearance::dark
                      : theme == QLatin1String("light") ? Appearance::light
@@ -74,11 +90,20 @@ void Host::start() {
             static_cast<Qt::ConnectionType>(Qt::QueuedConnection | Qt::SingleShotConnection));
         window_->openFile(line_.file);
     }
+    // Last: what is told of a device that is not there stands beside the tooth.
+    if (const QString device = firstDevice(); !device.isEmpty()) simulator_.hands().choose(device);
     if (line_.runForS)
         QTimer::singleShot(static_cast<int>(1e3 * *line_.runForS), this, [this] { endWithoutAsking(0); });
     if (!line_.stats.isEmpty()) connect(&application_, &QApplication::aboutToQuit, this, &Host::writeStats);
     if (!line_.screenshot.isEmpty())
         QTimer::singleShot(static_cast<int>(1e3 * line_.afterS), this, &Host::takeScreenshot);
+}
+
+QString Host::firstDevice() const {
+    QString device = line_.device;
+    if (device.isEmpty()) device = settings_.value(QStringLiteral("work/device")).toString();
+    if (device.isEmpty()) device = schoolDevice();
+    return device == QLatin1String("mouse") ? QString() : device;
 }
 
 void Host::takeScreenshot() {

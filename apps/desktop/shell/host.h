@@ -39,6 +39,8 @@ class Host : public QObject {
     void makeWindow();
     void chooseLanguage(const QString& code);
     void chooseAppearance(Appearance appearance);
+    /// By the command line, by the person's settings, by the school's; empty: the mouse.
+    [[nodiscard]] QString firstDevice() const;
     void takeScreenshot();
     /// Nobody is there to answer a question.
     void endWithoutAsking(int code);

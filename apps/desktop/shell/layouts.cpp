@@ -290,6 +290,7 @@ void MainWindow::makeMenus() {
           "actionMirror", "actionCompare", "actionClearMeasurements", "", "actionBindings"});
     fill(menu("menuSound", tr("Sound")),
          {"actionMute", "", "actionMotorLouder", "actionMotorSofter", "actionCuttingLouder", "actionCuttingSofter"});
+    devices_ = menu("menuDevice", tr("Device"));
     fill(menu("menuHelp", tr("Help")), {"actionHelp", "", "actionAbout"});
     auto* menus = new QShortcut(Qt::Key_F10, this);
     connect(menus, &QShortcut::activated, this, [this] { menuBar()->setActiveAction(menuBar()->actions().front()); });

@@ -52,6 +52,7 @@ MainWindow::MainWindow(Simulator& simulator, Settings& settings, QWidget* parent
     connectView();
     connectPanels();
     connectSound();
+    connectDevice();
     recallBindings();
     recallLook();
     recallRecordings();
@@ -100,6 +101,8 @@ void MainWindow::tell(const QString& id, const QStringList& arguments) {
     const NoticeText text = noticeText(id, arguments);
     const QString remedy = id == QLatin1String("crashed")         ? tr("Bring it back")
                            : id == QLatin1String("case-vanished") ? tr("Save as...")
+                           : id == QLatin1String("device-lost")   ? tr("Reconnect")
+                           : id == QLatin1String("device-absent") ? tr("Try again")
                                                                   : QString();
     notices_->add({id,
                    text.grave  ? NoticeBar::Kind::error
@@ -183,6 +186,10 @@ NoticeText Notices::of(const QString& id, const QStringList& arguments) {
     if (id == QLatin1String("force-limited")) return {tr("The device gives all the force it has."), false, true};
     if (id == QLatin1String("stalled")) return {tr("The bur has stalled: press less."), false, true};
     if (id == QLatin1String("device-fault")) return {tr("The device reports a fault."), true};
+    if (id == QLatin1String("device-lost"))
+        return {tr("%1 %2 The mouse holds the handpiece now; nothing that was cut is lost.").arg(first, second), true};
+    if (id == QLatin1String("device-absent")) return {tr("%1 %2 The mouse holds the handpiece.").arg(first, second)};
+    if (id == QLatin1String("device-trouble")) return {tr("The device gives no force. %1 %2").arg(first, second), true};
     if (id == QLatin1String("out-of-bricks")) return {tr("There is no memory left to cut more of this tooth."), true};
     if (id == QLatin1String("recording-incomplete"))
         return {tr("The recording has a gap: ticks that are missing: %1").arg(first)};

@@ -37,6 +37,7 @@ class ParameterBox;
 class PlotPanel;
 class ReplayBar;
 class StatusLine;
+struct StatusFigures;
 class ViewBar;
 class VolumeBars;
 
@@ -80,6 +81,8 @@ class MainWindow : public QMainWindow {
     Questions questions;
     /// Opens the wizard from a scan to a case, at this file or folder or (empty) none. None: this window has no wizard.
     std::function<void(const QString& path)> newCaseFromScan;
+    /// Open the page about the device, and its first three steps. None: this window has no such dialogs.
+    std::function<void()> openDevicePage, setUpDevice;
 
   signals:
     void languageChosen(const QString& code);
@@ -120,6 +123,13 @@ class MainWindow : public QMainWindow {
     void showAbout();
     void savePlot(const QString& format);
     [[nodiscard]] QString startFolder() const;
+
+    // main_window_device.cpp
+    void connectDevice();
+    void listDevices();
+    void chooseDevice(const QString& name);
+    void tellDevice(link::Trouble trouble);
+    void showDevice(StatusFigures& figures) const;
 
     // main_window_wiring.cpp
     void connectWork();
@@ -172,7 +182,7 @@ class MainWindow : public QMainWindow {
     QToolBar *fileBar_, *toolBar_;
     QComboBox* resolution_;
     QSlider* mix_;
-    QMenu *recent_, *panelsMenu_;
+    QMenu *recent_, *panelsMenu_, *devices_;
     QList<QDockWidget*> docks_;
     QPointer<ErrorDialog> errorDialog_;
     QTimer readouts_, eyeTimer_, microphoneTimer_;
@@ -185,7 +195,12 @@ class MainWindow : public QMainWindow {
     qint64 rateSinceNs_ = 0;
     double rateHz_ = 0.0;
     bool late_ = false;
+    bool deviceAsked_ = false;  ///< a person is waiting for it: what goes wrong is worth a dialog
+    QString deviceTried_;
 };
+
+/// What holds the handpiece, for a person; devices of makers keep the names they have.
+[[nodiscard]] QString deviceText(const device::Capability& device);
 
 /// What a notice says in the person's language; `grave`: worth red.
 struct NoticeText {

@@ -65,13 +65,12 @@ std::vector<tooth::Tissue> presentOf(const tooth::Case& toothCase) {
     return present;
 }
 
-/// What holds the handpiece, for a person; devices of makers keep the names they have.
+}  // namespace
+
 QString deviceText(const device::Capability& device) {
     if (device.name == "pointer") return MainWindow::tr("Mouse");
     return device.name == "simulated" ? MainWindow::tr("Simulated device") : QString::fromStdString(device.name);
 }
-
-}  // namespace
 
 void MainWindow::connectWork() {
     const Actions& a = *actions_;
@@ -447,7 +446,7 @@ void MainWindow::showTick() {
         rateSinceNs_ = nowNs;
     }
     StatusFigures figures;
-    figures.device = deviceText(simulator_.capability());
+    showDevice(figures);
     figures.rateHz = rateHz_;
     figures.lateTicks = status.lateTicks;
     figures.missedPeriods = status.missedPeriods;

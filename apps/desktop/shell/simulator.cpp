@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/simulator.h"
 
+#include <algorithm>
 #include <atomic>
 
 namespace handpiece::desktop {
@@ -43,15 +44,19 @@ struct Simulator::Ear {
 };
 
 Simulator::Simulator(const Options& options, QObject* parent)
-    : QObject(parent), options_(options), shelf_(options.folders.sessions, options.shelf), voxelUm_(options.voxelUm) {
+    : QObject(parent),
+      options_(options),
+      hands_(options.hands),
+      shelf_(options.folders.sessions, options.shelf),
+      voxelUm_(options.voxelUm) {
     const instrument::Instrument made = instrument::makeInstrument(burName_.toStdString());
     settings_.bur = made.bur;
     settings_.ability = made.ability;
     settings_.drive = driveAt(driveName_.toStdString(), 0.0);
     speedRpm_ = settings_.drive.freeSpeedRpm;
     settings_.field.voxelMm = 1e-3 * voxelUm_;
-    settings_.capability =
-        device::PointerDevice({}, std::make_shared<device::PointerMailbox>(), core::Pose{}).capability();
+    settings_.capability = device::pointerCapability();
+    connect(&hands_, &Hands::changed, this, &Simulator::passHandpiece);
     if (options.sound) player_ = std::make_unique<sound::Player>();
     connect(&timer_, &QTimer::timeout, this, &Simulator::poll);
     timer_.setTimerType(Qt::PreciseTimer);
@@ -109,7 +114,6 @@ void Simulator::sit(LoadedTooth loaded) {
     savedMm3_ = loaded.state.removedMm3;
     unsaved_ = false;
     startPose_ = poseAbove(*toothCase_);
-    mailbox_ = std::make_shared<device::PointerMailbox>();
 
     station::SittingSettings sitting;
     sitting.code = loaded.code.empty() ? code_.toStdString() : loaded.code;
@@ -117,6 +121,9 @@ void Simulator::sit(LoadedTooth loaded) {
     sitting.elapsedS = elapsedS_ = loaded.elapsedS;
     sitting.history = std::move(loaded.history);
     sitting.realTime = options_.realTime;
+    const std::vector<std::string> locked =
+        toothCase_->exercise ? toothCase_->exercise->lockedHelps : std::vector<std::string>();
+    sitting.lowerButtonUndoes = std::find(locked.begin(), locked.end(), "undo") == locked.end();
     if (options_.record) {
         try {
             sitting.sessionFile = shelf_.begin(noteNow());
@@ -125,10 +132,13 @@ void Simulator::sit(LoadedTooth loaded) {
         }
     }
     const auto make = [&] {
-        return std::make_unique<station::Sitting>(
-            loaded.station, *toothCase_,
-            std::make_unique<device::PointerDevice>(device::PointerHandSettings{}, mailbox_, startPose_), sitting,
-            tooth_);
+        std::unique_ptr<device::Device> device = takeHandpiece();
+        settings_.capability = device->capability();
+        settings_.parameters.gripMm = force::Parameters{}.gripMm;
+        if (usedHand_) settings_.parameters = usedHand_->fitted(settings_.parameters);
+        loaded.station.settings.capability = settings_.capability;
+        loaded.station.settings.parameters = settings_.parameters;
+        return std::make_unique<station::Sitting>(loaded.station, *toothCase_, std::move(device), sitting, tooth_);
     };
     try {
         sitting_ = make();
@@ -195,6 +205,7 @@ void Simulator::stopSitting(bool keepMarker) {
     pictureFeed_.reset();
     pollFeed_.reset();
     mailbox_.reset();
+    usedHand_.reset();
     if (keepMarker) {
         shelf_.leave();
     } else {

@@ -16,6 +16,7 @@
 #include "handpiece/senses/sound/player.h"
 #include "handpiece/tick/device/pointer_device.h"
 #include "shell/documents.h"
+#include "shell/hand.h"
 #include "shell/job.h"
 #include "shell/problem.h"
 #include "shell/replay_driver.h"
@@ -37,6 +38,7 @@ class Simulator : public QObject {
         Starter starter;  ///< that an empty start opens
         bool sound = true, realTime = true, record = true;
         int voxelUm = 50;
+        Hands::Options hands;
     };
     explicit Simulator(const Options& options, QObject* parent = nullptr);
     ~Simulator() override;
@@ -50,6 +52,7 @@ class Simulator : public QObject {
     [[nodiscard]] const std::shared_ptr<station::LiveTooth>& tooth() const noexcept { return tooth_; }
     /// For the picture, made with each sitting; null in a replay.
     [[nodiscard]] const std::shared_ptr<station::SampleFeed>& pictureFeed() const noexcept { return pictureFeed_; }
+    /// Null in a replay, and while a device holds the handpiece: the mouse looks and measures then.
     [[nodiscard]] const std::shared_ptr<device::PointerMailbox>& mailbox() const noexcept { return mailbox_; }
     [[nodiscard]] const core::Pose& startPose() const noexcept { return startPose_; }
     [[nodiscard]] std::shared_ptr<const instrument::Bur> bur() const noexcept { return settings_.bur; }
@@ -107,6 +110,15 @@ class Simulator : public QObject {
     void copyRecording(const std::filesystem::path& file);
     /// Ends sitting or replay. Unsaved work counts as given up.
     void close();
+
+    // Who holds the handpiece. Another device, or none, takes over the tooth as it is.
+
+    [[nodiscard]] Hands& hands() noexcept { return hands_; }
+    [[nodiscard]] const Hands& hands() const noexcept { return hands_; }
+    /// The device of the sitting under way; null: the mouse.
+    [[nodiscard]] const std::shared_ptr<Hand>& usedHand() const noexcept { return usedHand_; }
+    /// The mouse works on while something else has the device (its set-up, its check), until it is given back.
+    void lendHand(bool away);
 
     // The work.
 
@@ -178,6 +190,8 @@ class Simulator : public QObject {
     void sit(LoadedTooth loaded);
     void watch(std::unique_ptr<ReplayDriver> driver);
     void stopAll();
+    [[nodiscard]] std::unique_ptr<device::Device> takeHandpiece();
+    void passHandpiece();
     void stopSitting(bool keepMarker);
     void poll();
     void markUnsaved(bool unsaved, bool inAnyCase = false);
@@ -188,6 +202,9 @@ class Simulator : public QObject {
     [[nodiscard]] ReplayDriver::Heard replayEar();
 
     Options options_;
+    Hands hands_;
+    std::shared_ptr<Hand> usedHand_;
+    bool handLentAway_ = false, handChanged_ = false;
     SessionShelf shelf_;
     Mode mode_ = Mode::empty;
     Document document_;

@@ -63,6 +63,7 @@ void Simulator::whenFree(std::function<void()> what) {
 
 /// What ended may have begun more: a tooth that is brought back.
 void Simulator::goOn() {
+    if (!job_ && handChanged_) passHandpiece();
     if (job_ || !waiting_) return;
     const std::function<void()> what = std::move(waiting_);
     waiting_ = {};

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What holds the handpiece when it is not the mouse: which devices there are, the one that was chosen, how it does.
+
+#include <QObject>
+#include <QString>
+#include <QStringList>
+#include <QTimer>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shell/job.h"
+#include "shell/problem.h"
+#include "station/device_desk.h"
+
+namespace handpiece::desktop {
+
+/// A device that was opened. It lives from its choice until another takes its place: sittings come and go meanwhile,
+/// one at a time, and each reads and commands it from its own tick. Otherwise the window's thread.
+class Hand {
+  public:
+    Hand(std::string name, station::OpenDevice opened, std::filesystem::path profiles);
+
+    [[nodiscard]] const std::string& name() const noexcept { return name_; }  ///< of the driver
+    [[nodiscard]] const link::DriverInfo& info() const noexcept { return opened_.info; }
+    [[nodiscard]] device::Device& device() noexcept { return *opened_.device; }
+    [[nodiscard]] safety::HealthBoard& health() noexcept { return *opened_.health; }
+    [[nodiscard]] const station::Calibration& calibration() const noexcept { return opened_.calibration; }
+    [[nodiscard]] const workspace::Profile& profile() const noexcept { return profile_; }
+    [[nodiscard]] bool wasSetUp() const;  ///< its profile is in a file
+    /// Writes it. What cannot be changed while it runs (scale, shares, clutch) is true from the next opening on:
+    /// then this returns false. Throws core::Error.
+    bool setProfile(const workspace::Profile& profile);
+    /// Puts the tooth into the arm's reach.
+    void placeFor(const station::ToothPlace& tooth);
+    /// Where the hand is now, it has the bur where it begins: over the tooth.
+    void placeHere(const core::Vec3& handMm);
+    /// For the force model: about which point torque is counted.
+    [[nodiscard]] force::Parameters fitted(const force::Parameters& parameters) const {
+        return station::fittedTo(opened_, parameters);
+    }
+
+  private:
+    std::string name_;
+    station::OpenDevice opened_;
+    std::filesystem::path profiles_;
+    workspace::Profile profile_;
+    station::ToothPlace tooth_;
+};
+
+/// One device of the list.
+struct DeviceRow {
+    QString name, text;  ///< "openhaptics"; "3D Systems Touch, ... (OpenHaptics HD)"
+    bool available = false, pushes = true;
+    QString why, remedy;  ///< when it is not there
+};
+
+/// How devices are found and opened. A test may put its own there.
+struct HandDesk {
+    std::function<std::vector<drivers::Found>()> look = station::lookForDevices;
+    std::function<station::OpenDevice(const station::DeviceChoice&)> open = [](const station::DeviceChoice& choice) {
+        return station::openDevice(choice);
+    };
+    /// Not started: for the fidelity check.
+    std::function<std::unique_ptr<link::Driver>(const station::DeviceChoice&)> driver = station::openDriver;
+};
+
+/// Lives on the window's thread; looking, opening and closing are done beside it.
+class Hands : public QObject {
+    Q_OBJECT
+  public:
+    struct Options {
+        std::filesystem::path profiles;  ///< empty: workspace::profileFolder()
+        std::string inject;              ///< faults on purpose, for the next devices that are opened
+        HandDesk desk;
+        /// A device that has gone for so long gives way to the mouse.
+        std::chrono::milliseconds patience{1500};
+    };
+    explicit Hands(Options options, QObject* parent = nullptr);
+    ~Hands() override;
+
+    void look();
+    [[nodiscard]] const std::vector<DeviceRow>& rows() const noexcept { return rows_; }
+    [[nodiscard]] bool isLooking() const noexcept { return looking_ != nullptr; }
+
+    /// Opens it beside everything else; opened() or refused() tells. The one that is open is closed before. An empty
+    /// name: the mouse, at once.
+    void choose(const QString& name);
+    /// The mouse holds the handpiece from now on.
+    void letGo();
+    [[nodiscard]] bool isOpening() const noexcept { return opening_ != nullptr; }
+    /// The one that was asked for last; empty: the mouse.
+    [[nodiscard]] const QString& wanted() const noexcept { return wanted_; }
+    /// Null: the mouse.
+    [[nodiscard]] const std::shared_ptr<Hand>& current() const noexcept { return current_; }
+    [[nodiscard]] const safety::Health& health() const noexcept { return health_; }
+    /// The trouble it has now that a person should know of.
+    [[nodiscard]] link::Trouble trouble() const noexcept { return trouble_; }
+    [[nodiscard]] const Options& options() const noexcept { return options_; }
+    /// How the device of this name is opened.
+    [[nodiscard]] station::DeviceChoice choiceOf(const QString& name) const;
+    /// To what a person calls it.
+    [[nodiscard]] QString textOf(const QString& name) const;
+
+  signals:
+    void foundChanged();
+    void opened();
+    void refused(const QString& name, const handpiece::desktop::Problem& problem);
+    /// It gives no force and says why; or it is well again (none).
+    void troubled(handpiece::link::Trouble trouble, int vendorCode);
+    /// It has been gone for longer than the patience; the mouse has taken over.
+    void lost(const QString& name, handpiece::link::Trouble trouble);
+    /// About 30 times a second while one is open.
+    void polled();
+    /// Another device, or none.
+    void changed();
+
+  private:
+    void poll();
+    void dispose(std::shared_ptr<Hand> hand);
+
+    Options options_;
+    std::vector<DeviceRow> rows_;
+    QString wanted_;
+    std::shared_ptr<Hand> current_;
+    safety::Health health_;
+    link::Trouble trouble_ = link::Trouble::none;
+    std::chrono::steady_clock::time_point since_;
+    std::unique_ptr<Job> looking_, opening_;
+    std::vector<std::unique_ptr<Job>> closing_;
+    QTimer timer_;
+};
+
+/// A device of the window's, lent to one loop.
+class LentDevice final : public device::Device {
+  public:
+    explicit LentDevice(std::shared_ptr<Hand> hand) : hand_(std::move(hand)), device_(hand_->device()) {}
+    [[nodiscard]] const device::Capability& capability() const noexcept override { return device_.capability(); }
+    device::Reading read(double periodS) noexcept HANDPIECE_REALTIME override { return device_.read(periodS); }
+    void command(const core::Vec3& forceN, const core::Vec3& torqueNmm) noexcept HANDPIECE_REALTIME override {
+        device_.command(forceN, torqueNmm);
+    }
+    void vibrate(double amplitudeN) noexcept HANDPIECE_REALTIME override { device_.vibrate(amplitudeN); }
+    core::Vec3 truePositionMm() const noexcept override { return device_.truePositionMm(); }
+    core::Vec3 appliedForceN() const noexcept override { return device_.appliedForceN(); }
+
+  private:
+    std::shared_ptr<Hand> hand_;
+    device::Device& device_;
+};
+
+/// What a trouble is called among the problems: "device-unplugged".
+[[nodiscard]] QString problemIdOf(link::Trouble trouble);
+
+}  // namespace handpiece::desktop

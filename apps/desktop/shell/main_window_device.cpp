@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// The menu of devices, and what is told of the one that holds the handpiece.
+#include <QActionGroup>
+#include <QMenu>
+
+#include "panels/notice_bar.h"
+#include "panels/status_line.h"
+#include "shell/main_window.h"
+
+namespace handpiece::desktop {
+
+void MainWindow::connectDevice() {
+    Hands& hands = simulator_.hands();
+    const Actions& a = *actions_;
+    connect(devices_, &QMenu::aboutToShow, this, [this, &hands] {
+        if (hands.rows().empty()) hands.look();
+        listDevices();
+    });
+    connect(status_, &StatusLine::deviceClicked, this,
+            [this] { devices_->popup(status_->mapToGlobal(QPoint(0, -devices_->sizeHint().height()))); });
+    connect(a["actionDeviceSearch"], &QAction::triggered, &hands, &Hands::look);
+    connect(a["actionDevicePage"], &QAction::triggered, this, [this] {
+        if (openDevicePage) openDevicePage();
+    });
+    connect(a["actionDeviceSetUp"], &QAction::triggered, this, [this] {
+        if (setUpDevice) setUpDevice();
+    });
+    connect(&hands, &Hands::foundChanged, this, &MainWindow::listDevices);
+    connect(&hands, &Hands::changed, this, [this] {
+        listDevices();
+        showSettings();
+    });
+    connect(&hands, &Hands::opened, this, [this, &hands] {
+        notices_->remove(QStringLiteral("device-lost"));
+        notices_->remove(QStringLiteral("device-absent"));
+        deviceAsked_ = false;
+        settings_.set(QStringLiteral("work/device"), hands.wanted());
+        // Its first three steps come by themselves, once.
+        const QString seen = QStringLiteral("device/seen_") + hands.wanted();
+        const Hand& hand = *hands.current();
+        if (!setUpDevice || !hand.info().pushes || hand.wasSetUp() || settings_.value(seen).toBool()) return;
+        settings_.set(seen, true);
+        setUpDevice();
+    });
+    connect(&hands, &Hands::refused, this, [this](const QString& name, const Problem& problem) {
+        deviceTried_ = name;
+        if (std::exchange(deviceAsked_, false)) {
+            showProblem(problem);
+        } else {
+            tell(QStringLiteral("device-absent"), {problem.what, problem.remedy});
+        }
+    });
+    connect(&hands, &Hands::troubled, this, &MainWindow::tellDevice);
+    connect(&hands, &Hands::lost, this, [this](const QString& name, link::Trouble trouble) {
+        deviceTried_ = name;
+        notices_->remove(QStringLiteral("device-trouble"));
+        const Problem problem = problemById(problemIdOf(trouble));
+        tell(QStringLiteral("device-lost"), {problem.what, problem.remedy});
+    });
+    connect(notices_, &NoticeBar::remedyChosen, this, [this](const QString& id) {
+        if (id != QLatin1String("device-lost") && id != QLatin1String("device-absent")) return;
+        notices_->remove(id);
+        chooseDevice(deviceTried_);
+    });
+    listDevices();
+}
+
+void MainWindow::chooseDevice(const QString& name) {
+    Hands& hands = simulator_.hands();
+    if (name.isEmpty()) {
+        settings_.set(QStringLiteral("work/device"), QStringLiteral("mouse"));
+        for (const char* id : {"device-lost", "device-absent", "device-trouble"})
+            notices_->remove(QLatin1String(id));
+        hands.letGo();
+        return;
+    }
+    if (hands.isOpening() || (hands.current() && hands.wanted() == name)) {
+        listDevices();
+        return;
+    }
+    deviceAsked_ = true;
+    hands.choose(name);
+}
+
+void MainWindow::tellDevice(link::Trouble trouble) {
+    notices_->remove(QStringLiteral("device-trouble"));
+    if (trouble == link::Trouble::none) return;
+    const Problem problem = problemById(problemIdOf(trouble));
+    tell(QStringLiteral("device-trouble"), {problem.what, problem.remedy});
+}
+
+/// Made anew: what is connected changes.
+void MainWindow::listDevices() {
+    const Hands& hands = simulator_.hands();
+    // The actions of the list belong to the group and go with it.
+    delete devices_->findChild<QActionGroup*>(QStringLiteral("deviceGroup"));
+    devices_->clear();
+    auto* group = new QActionGroup(devices_);
+    group->setObjectName(QStringLiteral("deviceGroup"));
+    const auto add = [this, group](const QString& name, const QString& text, const QString& tip, bool chosen) {
+        auto* action = new QAction(text, group);
+        action->setObjectName(QStringLiteral("actionDevice_") + (name.isEmpty() ? QStringLiteral("mouse") : name));
+        action->setToolTip(tip);
+        action->setStatusTip(tip);
+        action->setCheckable(true);
+        action->setChecked(chosen);
+        connect(action, &QAction::triggered, this, [this, name] { chooseDevice(name); });
+        devices_->addAction(action);
+    };
+    add({}, tr("Mouse and keyboard"), tr("Always there"), hands.wanted().isEmpty());
+    bool listed = hands.wanted().isEmpty();
+    for (const DeviceRow& row : hands.rows()) {
+        const bool chosen = row.name == hands.wanted();
+        listed = listed || chosen;
+        const bool there = row.available || (chosen && hands.current());
+        QString tip = row.pushes ? tr("Gives force") : tr("Moves the handpiece, gives no force");
+        if (!there) tip = row.remedy.isEmpty() ? row.why : row.why + QLatin1Char(' ') + row.remedy;
+        add(row.name, there ? row.text : tr("%1: not there").arg(row.text), tip, chosen);
+    }
+    if (!listed) add(hands.wanted(), hands.textOf(hands.wanted()), {}, true);
+    if (hands.isLooking()) {
+        QAction* looking = devices_->addAction(tr("Looking..."));
+        looking->setObjectName(QStringLiteral("actionDevice_looking"));
+        looking->setEnabled(false);
+    }
+    devices_->addSeparator();
+    const Actions& a = *actions_;
+    for (const char* name : {"actionDevicePage", "actionDeviceSetUp", "actionDeviceSearch"})
+        devices_->addAction(a[name]);
+    a["actionDeviceSearch"]->setEnabled(!hands.isLooking());
+    a["actionDeviceSetUp"]->setEnabled(hands.current() != nullptr);
+}
+
+void MainWindow::showDevice(StatusFigures& figures) const {
+    const Hands& hands = simulator_.hands();
+    figures.device = deviceText(simulator_.capability());
+    if (hands.isOpening()) figures.deviceTrouble = tr("being opened");
+    if (!hands.current()) return;
+    figures.servoHz = hands.health().servoHz;
+    if (hands.trouble() != link::Trouble::none) figures.deviceTrouble = problemById(problemIdOf(hands.trouble())).what;
+}
+
+}  // namespace handpiece::desktop

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who holds the handpiece: the mouse, or a device that was chosen.
+#include "shell/simulator.h"
+
+namespace handpiece::desktop {
+
+namespace {
+
+core::Box boundsOf(const tooth::Case& toothCase) {
+    core::Box box = toothCase.outer.bounds();
+    if (toothCase.outer.vertices.empty())
+        for (const tooth::Part& part : toothCase.parts)
+            for (const core::Vec3& v : part.mesh.vertices)
+                box.extend(v);
+    return box;
+}
+
+}  // namespace
+
+std::unique_ptr<device::Device> Simulator::takeHandpiece() {
+    handChanged_ = false;
+    usedHand_ = hands_.current() && !handLentAway_ ? hands_.current() : nullptr;
+    if (usedHand_) {
+        mailbox_.reset();
+        usedHand_->placeFor({boundsOf(*toothCase_), toothCase_->fdiNumber, toothCase_->buccalSign});
+        return std::make_unique<LentDevice>(usedHand_);
+    }
+    mailbox_ = std::make_shared<device::PointerMailbox>();
+    return std::make_unique<device::PointerDevice>(device::PointerHandSettings{}, mailbox_, startPose_);
+}
+
+/// The same tooth, as it is, in another hand: what was cut stays, with what can be undone.
+void Simulator::passHandpiece() {
+    const std::shared_ptr<Hand> now = handLentAway_ ? nullptr : hands_.current();
+    settings_.capability = now ? now->device().capability() : device::pointerCapability();
+    handChanged_ = mode_ == Mode::sitting && now != usedHand_;
+    // A job that is under way ends first.
+    if (handChanged_ && !job_) {
+        const auto left = std::make_shared<Left>(leaveSitting());
+        comeBack(left);
+    }
+    emit settingsChanged();
+}
+
+void Simulator::lendHand(bool away) {
+    if (away == handLentAway_) return;
+    handLentAway_ = away;
+    passHandpiece();
+}
+
+}  // namespace handpiece::desktop

@@ -74,6 +74,17 @@ void members(Visit&& visit, Capability& c) requires std::same_as<std::remove_con
     visit("rate_hz", c.rateHz);
 }
 
+/// A part of the force that is felt and cuts nothing; sessions from before there was one are without it.
+template <class T>
+concept Crisp = std::same_as<std::remove_const_t<T>, force::ContactTransients> ||
+    std::same_as<std::remove_const_t<T>, force::CuttingVibration>;
+
+template <class Visit, Crisp Part>
+void members(Visit&& visit, Part& part) {
+    visit("on", part.on);
+    visit("gain", part.gain);
+}
+
 template <class Visit, class Parameters>
 void members(Visit&& visit, Parameters& p) requires std::same_as<std::remove_const_t<Parameters>, force::Parameters> {
     visit("mode", p.mode);
@@ -91,6 +102,8 @@ void members(Visit&& visit, Parameters& p) requires std::same_as<std::remove_con
     visit("proxy_iterations", p.proxy.iterations);
     visit("proxy_max_step_mm", p.proxy.maxStepMm);
     visit("proxy_tolerance_mm", p.proxy.toleranceMm);
+    visit("transients", p.transients);
+    visit("vibration", p.vibration);
 }
 
 using TissueFeels = decltype(force::Parameters::tissues);
@@ -133,6 +146,10 @@ struct Read {
     }
     void operator()(const std::string& key, force::Mode& mode) const {
         mode = force::modeByName(json.at(key).get<std::string>());
+    }
+    template <Crisp Part>
+    void operator()(const std::string& key, Part& part) const {
+        if (json.contains(key)) members(Read{json.at(key)}, part);
     }
     void operator()(const std::string& key, TissueFeels& tissues) const {
         for (std::size_t i = 0; i < tissues.size(); ++i) {

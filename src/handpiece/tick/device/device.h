@@ -44,6 +44,9 @@ class Device {
     virtual Reading read(double periodS) noexcept HANDPIECE_REALTIME = 0;
     /// Force on the hand [N] and torque about the grip [N mm], tooth frame; holds until the next call.
     virtual void command(const core::Vec3& forceN, const core::Vec3& torqueNmm) noexcept HANDPIECE_REALTIME = 0;
+    /// Amplitude of the bur's hum [N], which is in the force already: for what has no force but can shake. Each tick,
+    /// after command().
+    virtual void vibrate(double amplitudeN) noexcept HANDPIECE_REALTIME { (void)amplitudeN; }
     /// For records: where the device truly is and what force acts on it now. Real devices return what they know.
     virtual core::Vec3 truePositionMm() const noexcept = 0;
     virtual core::Vec3 appliedForceN() const noexcept = 0;

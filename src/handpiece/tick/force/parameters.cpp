@@ -39,6 +39,8 @@ void validate(const Parameters& p) {
     require(p.fadeInS, 0.0, 10.0, "the fade-in [s]");
     require(p.proxy.iterations, 1, 64, "the proxy's iterations");
     require(p.proxy.maxStepMm, 1e-4, 1.0, "the proxy's largest step [mm]");
+    require(p.transients.gain, 0.0, 4.0, "the gain of the contact transients");
+    require(p.vibration.gain, 0.0, 4.0, "the gain of the cutting vibration");
     require(p.proxy.toleranceMm, 1e-6, 0.1, "the proxy's tolerance [mm]");
 }
 

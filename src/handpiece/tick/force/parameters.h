@@ -35,6 +35,19 @@ struct TissueFeel {
     double friction = 0.0;  ///< Coulomb, of a still bur that slides
 };
 
+/// A short decaying sinusoid along the surface's normal when the bur strikes it.
+/// docs/physics.md#crisp-contact-and-vibration.
+struct ContactTransients {
+    bool on = false;
+    double gain = 1.0;  ///< on its amplitude, 0..4
+};
+
+/// What the turning bur makes the hand feel between 100 and 400 Hz. docs/physics.md#crisp-contact-and-vibration.
+struct CuttingVibration {
+    bool on = false;
+    double gain = 1.0;  ///< on its amplitude, 0..4
+};
+
 /// Set off the tick, staged into it. defaultParameters() fills the tissues from the tooth's table.
 struct Parameters {
     Mode mode = Mode::proxy;
@@ -50,6 +63,8 @@ struct Parameters {
     core::Vec3 gripMm{0.0, 0.0, 80.0};  ///< where the fingers hold, bur frame: torque is about it
     double fadeInS = 0.2;               ///< after a fault
     ProxySettings proxy;
+    ContactTransients transients;  ///< felt, but no part of the load that cuts
+    CuttingVibration vibration;    ///< likewise
 };
 /// docs/physics.md#force and #tissues.
 [[nodiscard]] Parameters defaultParameters(const tooth::TissueTable& tissues = tooth::builtInTissues());

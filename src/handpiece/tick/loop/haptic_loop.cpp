@@ -51,8 +51,10 @@ void HapticLoop::tick(const rt::Beat& beat) noexcept {
     const force::Touch& touch = force_.feel(*work_.current()->value.method, reading.burInTooth, lost, elapsedS);
     // Compute the force.
     const force::ForceCommand& command = force_.compute(touch, elapsedS, turning_);
-    // Send it to the hand.
-    device_->command(command.forceN, command.torqueNmm);
+    // Send it to the hand, with the knock and the hum that make it crisp and that cut nothing.
+    device_->command(crisp_.add(force_, touch, command, {rotor_.speedRpm(), cut_.feedMmS}, elapsedS),
+                     command.torqueNmm);
+    device_->vibrate(crisp_.vibrationN());
     const std::int64_t sentNs = rt::monotonicNs();
     // Then cut: that never delays the hand.
     cut(reading, touch, command, elapsedS);
@@ -153,7 +155,7 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     sample.positionMm = array(reading.burInTooth.positionMm);
     sample.orientation = wxyz(reading.burInTooth.orientation);
     sample.velocityMmS = array(force_.velocityMmS());
-    sample.forceN = array(command.forceN);
+    sample.forceN = array(crisp_.forceN());
     sample.torqueNmm = array(command.fullTorqueNmm);
     sample.depthMm = touch.depth.depthMm;
     sample.truePositionMm = array(device_->truePositionMm());
@@ -165,8 +167,8 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     sample.tissue = static_cast<std::uint8_t>(touch.tissue);
     sample.contactStatus = static_cast<std::uint8_t>(touch.depth.status);
     sample.patchCount = static_cast<std::uint16_t>(touch.patches.patches.size());
-    sample.flags = cutFlags_ | (command.forceLimited ? messages::kForceLimited : 0u) |
-                   (command.slopeLimited ? messages::kSlopeLimited : 0u) |
+    sample.flags = cutFlags_ | (command.forceLimited || crisp_.forceLimited() ? messages::kForceLimited : 0u) |
+                   (command.slopeLimited || crisp_.slopeLimited() ? messages::kSlopeLimited : 0u) |
                    (force_.guard().invalidNow() ? messages::kInvalidPose : 0u) |
                    (force_.guard().faulted() ? messages::kFault : 0u) | (force_.waiting() ? messages::kWaiting : 0u);
     sample.workUs = static_cast<float>(static_cast<double>(workNs) * 1e-3);

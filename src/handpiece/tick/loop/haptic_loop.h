@@ -19,6 +19,7 @@
 #include "handpiece/tick/contact/method.h"
 #include "handpiece/tick/cutting/cutter.h"
 #include "handpiece/tick/device/device.h"
+#include "handpiece/tick/force/crisp_force.h"
 #include "handpiece/tick/force/force_model.h"
 
 namespace handpiece::loop {
@@ -141,6 +142,7 @@ class HapticLoop {
     std::atomic<bool> restoring_{false};  // from restore() to the last brick in place
     bool isRestoring_ = false;            // the tick's own: the change has been taken
     force::ForceModel force_;
+    force::CrispForce crisp_;
     instrument::Rotor rotor_;
     cutting::CutResult cut_;
     force::Turning turning_;

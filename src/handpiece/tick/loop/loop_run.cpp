@@ -85,6 +85,7 @@ HapticLoop::HapticLoop(const LoopSettings& settings, std::unique_ptr<device::Dev
       drive_(std::make_unique<Command<instrument::Drive>>(Command<instrument::Drive>{drive})),
       restore_(nullptr),
       force_(limitsOf(device_->capability()), parameters),
+      crisp_(limitsOf(device_->capability()), settings.rateHz),
       rotor_(drive),
       samples_(settings.queueCapacity),
       bricks_(settings.brickCapacity) {

@@ -57,6 +57,7 @@ TEST_F(ProfileTest, comesBackBitForBit) {
     p.shaping.delayS = 0.0031;
     p.forceShare = 0.9;
     p.stiffnessShare = 0.7;
+    p.clutchButton = -1;
     writeProfile(folder_, p);
     const Profile q = profileFor(info_, folder_);
     EXPECT_EQ(q.placing.deviceMm, p.placing.deviceMm);
@@ -72,6 +73,7 @@ TEST_F(ProfileTest, comesBackBitForBit) {
     EXPECT_NEAR(q.shaping.delayS, 0.0031, 1e-15);
     EXPECT_EQ(q.forceShare, 0.9);
     EXPECT_EQ(q.stiffnessShare, 0.7);
+    EXPECT_EQ(q.clutchButton, -1);
     // Limits are the device's, within the shares.
     EXPECT_NEAR(q.shaping.maxForceN, 0.9 * 3.3, 1e-12);
     EXPECT_NEAR(q.shaping.stiffnessNPerMm, 0.7 * info_.capability.maxStiffnessNPerMm, 1e-12);
@@ -115,6 +117,7 @@ TEST_F(ProfileTest, whatIsWrongIsToldWithItsLine) {
     EXPECT_NE(problem(head + "[shaping]\nforce_scale = 3\n").find("0 to 2"), std::string::npos);
     EXPECT_NE(problem(head + "[limits]\nforce_share = 1.2\n").find("force_share"), std::string::npos);
     EXPECT_NE(problem(head + "[limits]\nmax_force_n = 9\n").find("max_force_n"), std::string::npos);
+    EXPECT_NE(problem(head + "[buttons]\nclutch = 32\n").find("0 to 31"), std::string::npos);
     EXPECT_NE(problem("format = 2\n").find("format 1"), std::string::npos);
     EXPECT_NE(problem("").find("format 1"), std::string::npos);
     EXPECT_NE(problem("format = 1\n").find("whose"), std::string::npos);

@@ -147,6 +147,7 @@ Profile defaultProfile(const link::DriverInfo& info) {
     p.model = info.model;
     p.serial = info.serial;
     p.shaping.frictionN = info.frictionN;
+    if (info.massKg > 0.0) p.shaping.massKg = info.massKg;
     p.shaping.delayS = kDefaultDelayPeriods / std::max(info.servoHz, 1.0);
     applyLimits(info.capability, p);
     return p;
@@ -168,7 +169,7 @@ fs::path profileFile(const fs::path& folder, const link::DriverInfo& info) {
 
 Profile readProfile(const fs::path& file, const link::DriverInfo& info) {
     const Table root = Table::read(file);
-    root.allowOnly({"format", "device", "placing", "shaping", "limits"});
+    root.allowOnly({"format", "device", "placing", "shaping", "limits", "buttons"});
     if (root.integer("format").value_or(0) != 1)
         root.fail("this is no device profile of format 1", "calibrate the device: handpiece device calibrate");
     Profile p = defaultProfile(info);
@@ -195,6 +196,13 @@ Profile readProfile(const fs::path& file, const link::DriverInfo& info) {
         take(*t, "force_share", p.forceShare, 0.05, 1.0);
         take(*t, "stiffness_share", p.stiffnessShare, 0.05, 1.0);
     }
+    if (const auto t = root.table("buttons")) {
+        t->allowOnly({"clutch"});
+        const auto bit = t->integer("clutch").value_or(p.clutchButton);
+        if (bit < -1 || bit > 31)
+            t->fail(fmt::format("\"clutch\" is {}", bit), "give a button from 0 to 31, or -1 for none", "clutch");
+        p.clutchButton = static_cast<int>(bit);
+    }
     applyLimits(info.capability, p);
     return p;
 }
@@ -214,6 +222,8 @@ void writeProfile(const fs::path& folder, const Profile& p) {
     };
     share(p.forceShare, "force_share");
     share(p.stiffnessShare, "stiffness_share");
+    if (p.clutchButton < -1 || p.clutchButton > 31)
+        throw core::Error(fmt::format("no button {}", p.clutchButton), "clutch", "give 0 to 31, or -1 for none");
     const auto yes = [](bool b) { return b ? "true" : "false"; };
     const Placing& at = p.placing;
     const stability::ShaperSettings& s = p.shaping;
@@ -233,7 +243,8 @@ void writeProfile(const fs::path& folder, const Profile& p) {
         "friction_n = {}\nfriction_share = {}\nthermal_tau_s = {}\ndelay_ms = {}\n\n",
         yes(s.passivityController), yes(s.frictionCompensation), yes(s.thermalBudget), s.forceScale, s.frictionN,
         s.frictionShare, s.thermalTauS, 1e3 * s.delayS);
-    text += fmt::format("[limits]\nforce_share = {}\nstiffness_share = {}\n", p.forceShare, p.stiffnessShare);
+    text += fmt::format("[limits]\nforce_share = {}\nstiffness_share = {}\n\n[buttons]\nclutch = {}\n", p.forceShare,
+                        p.stiffnessShare, p.clutchButton);
     link::DriverInfo info;
     info.driver = p.driver;
     info.model = p.model;

@@ -18,6 +18,7 @@ struct Profile {
     stability::ShaperSettings shaping;
     /// At most this share of the device's own limits; what was found stable for this unit.
     double forceShare = 1.0, stiffnessShare = 1.0;
+    int clutchButton = 2;  ///< bit of the button that is the clutch; -1: none
 };
 
 /// What fits a device's model: the middle of its reach, limits and friction of its record.

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/devices/drivers/catalogue.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/devices/drivers/openhaptics.h"
+
+namespace handpiece::drivers {
+namespace {
+
+struct Row {
+    const char* name;
+    Found (*look)();
+    std::unique_ptr<link::Driver> (*open)(const OpenOptions&);
+};
+
+// The one list of drivers, in the order in which people are shown them.
+constexpr Row kRows[] = {
+    {"openhaptics", &lookOpenHaptics, &openOpenHaptics},
+};
+
+}  // namespace
+
+std::vector<Found> look() {
+    std::vector<Found> found;
+    for (const Row& row : kRows)
+        found.push_back(row.look());
+    return found;
+}
+
+const std::vector<std::string>& names() {
+    static const std::vector<std::string> all = [] {
+        std::vector<std::string> list;
+        for (const Row& row : kRows)
+            list.emplace_back(row.name);
+        return list;
+    }();
+    return all;
+}
+
+std::unique_ptr<link::Driver> open(std::string_view driver, const OpenOptions& options) {
+    for (const Row& row : kRows)
+        if (driver == row.name) return row.open(options);
+    throw core::Error(fmt::format("no device driver is called \"{}\"", driver), "device",
+                      fmt::format("there are {}", fmt::join(names(), ", ")))
+        .as("no-such-device", {std::string(driver), fmt::format("{}", fmt::join(names(), ", "))});
+}
+
+}  // namespace handpiece::drivers

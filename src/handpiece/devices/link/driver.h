@@ -100,6 +100,10 @@ class Driver {
     /// Sends zero force if that is still possible, ends the servo thread, closes the device. Idempotent; never throws;
     /// returns within a second even when the device is gone.
     virtual void stop() noexcept = 0;
+    /// Called from a thread of its own when no exchange() has come for too long, so while the servo thread may hang:
+    /// switches the motors off if the vendor's library can be asked to from another thread; never waits. They are on
+    /// again before the answer of a next exchange() is sent, which is zero.
+    virtual void relax() noexcept {}
     /// Whether it knows where its axes are. Any time after start().
     [[nodiscard]] virtual CalibrationState calibration() { return CalibrationState::notNeeded; }
     /// What the person does for it ("Put the stylus into the inkwell and press it home."), in one sentence.

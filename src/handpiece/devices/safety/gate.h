@@ -21,8 +21,11 @@ struct GateSettings {
     double clearAfterS = 0.05;       ///< without doubt, before a force is let through again
     double warmFrom = 0.8, hotFrom = 0.98;  ///< of motorTemperature: force fades from one to the other
 };
-/// From a capability, the rest as above. Throws core::Error for values out of range.
+/// From a capability, the rest as above; the reading timeout of a servo slower than 625 Hz is 2.5 of its periods.
+/// Throws core::Error for values out of range.
 [[nodiscard]] GateSettings gateSettingsFor(const device::Capability& capability);
+/// Throws core::Error naming the value.
+void validate(const GateSettings& settings);
 
 /// What the gate did, for everybody else; plain.
 struct GateStatus {
@@ -37,6 +40,11 @@ struct GateStatus {
 };
 
 /// One device's gate. One thread (the driver's). Its answer to each reading is within the limits, whatever comes in.
+///
+/// While all is well: force and torque clamped, faded in and out, and changed no faster than the slope times the time
+/// since the exchange before. In doubt: from the force that was, straight to zero within releaseS (the slope does not
+/// stretch that), and zero until there was no doubt for clearAfterS; then the next force fades in. Of a servo slower
+/// than 1/releaseS the first answer in doubt is zero.
 class Gate {
   public:
     explicit Gate(const GateSettings& settings) noexcept;
@@ -48,12 +56,21 @@ class Gate {
   private:
     [[nodiscard]] link::Trouble judge(const link::DriverReading& reading, const link::DriverCommand& latest,
                                       std::int64_t nowNs) noexcept;
+    [[nodiscard]] link::Trouble judgePose(const link::DriverReading& reading, double elapsedS) noexcept;
+    [[nodiscard]] link::Trouble judgeCommand(const link::DriverCommand& latest, std::int64_t nowNs) noexcept;
+    void believe(link::Trouble found, const link::DriverReading& reading, std::int64_t nowNs) noexcept;
+    [[nodiscard]] link::DriverCommand released(double elapsedS) noexcept;
+    [[nodiscard]] link::DriverCommand let(const link::DriverCommand& latest, float temperature,
+                                          double elapsedS) noexcept;
+
     GateSettings settings_;
     GateStatus status_;
-    link::DriverReading lastReading_;
-    link::DriverCommand sent_;
-    std::int64_t lastNs_ = 0, wellSinceNs_ = 0;
-    bool any_ = false;
+    link::DriverReading lastReading_;  // the last whose pose is made of numbers
+    link::DriverCommand sent_, held_;  // held: what was sent when the doubt began
+    std::int64_t lastNs_ = 0, wellSinceNs_ = 0, frameSinceNs_ = 0, commandSinceNs_ = 0;
+    std::uint64_t frame_ = 0, number_ = 0;
+    double fade_ = 0.0, release_ = 0.0;
+    bool any_ = false, well_ = false, fading_ = false, posed_ = false;
 };
 
 }  // namespace handpiece::safety

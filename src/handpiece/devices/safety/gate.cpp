@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/devices/safety/gate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/tick/device/capability.h"
+
+namespace handpiece::safety {
+namespace {
+
+using link::DriverCommand;
+using link::DriverReading;
+using link::Trouble;
+using Triple = std::array<double, 3>;
+
+constexpr double kNsPerS = 1e9;
+constexpr double kMostMm = 1e4, kMostN = 1e6;  // beyond these a number is no place and no force
+constexpr double kUnitWithin = 0.01;           // of a quaternion's length
+constexpr double kJitterMm = 1.0;              // two readings close in time may differ by this all the same
+constexpr double kMostTurnRad = 0.6, kMostTurnRadS = 100.0;
+constexpr double kLeastStepS = 1e-4;  // a release goes on by this at least, also when time does not
+
+double secondsBetween(std::int64_t earlierNs, std::int64_t laterNs) noexcept {
+    // In double: the difference of two times that are garbage does not overflow.
+    return (static_cast<double>(laterNs) - static_cast<double>(earlierNs)) / kNsPerS;
+}
+
+bool finite(const Triple& v) noexcept {
+    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+double length(const Triple& v) noexcept {
+    return std::hypot(v[0], v[1], v[2]);
+}
+
+Triple scaled(const Triple& v, double by) noexcept {
+    return {v[0] * by, v[1] * by, v[2] * by};
+}
+
+/// At most `most` long.
+Triple clamped(const Triple& v, double most, bool& did) noexcept {
+    const double size = length(v);
+    if (size <= most) return v;
+    did = true;
+    return most > 0.0 ? scaled(v, most / size) : Triple{};
+}
+
+bool withinReach(const Triple& v, double most) noexcept {
+    return std::abs(v[0]) <= most && std::abs(v[1]) <= most && std::abs(v[2]) <= most;
+}
+
+bool isUnit(const std::array<double, 4>& q) noexcept {
+    const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    return std::abs(square - 1.0) < 2.0 * kUnitWithin;
+}
+
+/// Angle between two rotations; q and -q are the same one.
+double turnRad(const std::array<double, 4>& a, const std::array<double, 4>& b) noexcept {
+    const double dot = std::abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]);
+    return 2.0 * std::acos(std::min(1.0, dot));
+}
+
+}  // namespace
+
+void validate(const GateSettings& s) {
+    const auto require = [](bool good, const char* what, double value) {
+        if (!good || !std::isfinite(value)) {
+            throw core::Error(fmt::format("{} of {}", what, value), "safety gate", "correct the device's record")
+                .as("gate-setting", {what, fmt::format("{}", value)});
+        }
+    };
+    require(s.maxForceN > 0.0 && s.maxForceN <= 100.0, "a largest force [N]", s.maxForceN);
+    require(s.maxTorqueNmm >= 0.0 && s.maxTorqueNmm <= 1e5, "a largest torque [N mm]", s.maxTorqueNmm);
+    require(s.maxSlopeNPerS > 0.0 && s.maxSlopeNPerS <= 1e6, "a largest slope of force [N/s]", s.maxSlopeNPerS);
+    require(s.fadeInS >= 0.0 && s.fadeInS <= 10.0, "a fade-in [s]", s.fadeInS);
+    require(s.commandTimeoutS > 0.0 && s.commandTimeoutS <= 1.0, "a time-out of commands [s]", s.commandTimeoutS);
+    require(s.readingTimeoutS > 0.0 && s.readingTimeoutS <= 1.0, "a time-out of readings [s]", s.readingTimeoutS);
+    require(s.releaseS >= 0.0 && s.releaseS <= 0.05, "a release [s]", s.releaseS);
+    require(s.maxSpeedMmS > 0.0 && s.maxSpeedMmS <= 1e5, "a largest speed [mm/s]", s.maxSpeedMmS);
+    require(s.clearAfterS >= 0.0 && s.clearAfterS <= 10.0, "a time without doubt [s]", s.clearAfterS);
+    require(s.warmFrom >= 0.0 && s.warmFrom < s.hotFrom, "a warm motor's temperature", s.warmFrom);
+    require(s.hotFrom <= 10.0, "a hot motor's temperature", s.hotFrom);
+}
+
+GateSettings gateSettingsFor(const device::Capability& capability) {
+    device::validate(capability);
+    GateSettings settings;
+    settings.maxForceN = capability.maxForceN;
+    settings.maxTorqueNmm = capability.maxTorqueNmm;
+    settings.maxSlopeNPerS = capability.maxForceSlopeNPerS;
+    if (capability.rateHz > 0.0) settings.readingTimeoutS = std::max(settings.readingTimeoutS, 2.5 / capability.rateHz);
+    validate(settings);
+    return settings;
+}
+
+Gate::Gate(const GateSettings& settings) noexcept : settings_(settings) {}
+
+Trouble Gate::judgePose(const DriverReading& reading, double elapsedS) noexcept {
+    const auto& q = reading.orientation;
+    const bool numbers = finite(reading.positionMm) && std::isfinite(q[0]) && std::isfinite(q[1]) &&
+                         std::isfinite(q[2]) && std::isfinite(q[3]) && std::isfinite(reading.motorTemperature) &&
+                         std::isfinite(reading.pedal);
+    if (!numbers) return Trouble::notFinite;
+    if (!withinReach(reading.positionMm, kMostMm) || !isUnit(q)) return Trouble::badData;
+    const bool seen = posed_;
+    const DriverReading before = lastReading_;
+    lastReading_ = reading;
+    posed_ = true;
+    if (!seen) return Trouble::none;
+    const Triple moved{reading.positionMm[0] - before.positionMm[0], reading.positionMm[1] - before.positionMm[1],
+                       reading.positionMm[2] - before.positionMm[2]};
+    const bool jumped = length(moved) > kJitterMm + settings_.maxSpeedMmS * elapsedS ||
+                        turnRad(q, before.orientation) > kMostTurnRad + kMostTurnRadS * elapsedS;
+    return jumped ? Trouble::jumped : Trouble::none;
+}
+
+Trouble Gate::judgeCommand(const DriverCommand& latest, std::int64_t nowNs) noexcept {
+    if (latest.number == 0) return Trouble::starting;
+    // By its own stamp, and by when it was first seen here: a stamp of the future does not keep it young.
+    if (latest.number != number_) {
+        number_ = latest.number;
+        commandSinceNs_ = nowNs;
+    }
+    const double ageS = secondsBetween(latest.timeNs, nowNs);
+    if (!(std::abs(ageS) <= settings_.commandTimeoutS)) return Trouble::tickStalled;
+    if (!(secondsBetween(commandSinceNs_, nowNs) <= settings_.commandTimeoutS)) return Trouble::tickStalled;
+    if (!finite(latest.forceN) || !finite(latest.torqueNmm)) return Trouble::notFinite;
+    if (!withinReach(latest.forceN, kMostN) || !withinReach(latest.torqueNmm, kMostN * 1e3)) return Trouble::notFinite;
+    return Trouble::none;
+}
+
+Trouble Gate::judge(const DriverReading& reading, const DriverCommand& latest, std::int64_t nowNs) noexcept {
+    const double elapsedS = any_ ? secondsBetween(lastNs_, nowNs) : 0.0;
+    if (reading.frame != frame_ || !any_) {
+        frame_ = reading.frame;
+        frameSinceNs_ = nowNs;
+    }
+    // Looked at whatever else is wrong: what comes next is compared with it.
+    const Trouble pose = judgePose(reading, std::max(0.0, elapsedS));
+    const Trouble command = judgeCommand(latest, nowNs);
+    if (reading.trouble != Trouble::none)
+        return reading.trouble <= Trouble::stopped ? reading.trouble : Trouble::badData;
+    if (!(elapsedS >= 0.0 && elapsedS <= settings_.readingTimeoutS)) return Trouble::stalled;
+    const double ageS = secondsBetween(reading.timeNs, nowNs);
+    if (!(ageS >= -settings_.readingTimeoutS)) return Trouble::badData;
+    if (!(ageS <= settings_.readingTimeoutS)) return Trouble::stalled;
+    if (!(secondsBetween(frameSinceNs_, nowNs) <= settings_.readingTimeoutS)) return Trouble::stalled;
+    if (pose != Trouble::none) return pose;
+    if (reading.motorTemperature >= static_cast<float>(settings_.hotFrom)) return Trouble::hot;
+    return command;
+}
+
+void Gate::believe(Trouble found, const DriverReading& reading, std::int64_t nowNs) noexcept {
+    if (found == Trouble::none) {
+        if (status_.trouble == Trouble::none) {
+            status_.vendorCode = reading.vendorCode;  // a warning
+            return;
+        }
+        if (!well_) {
+            well_ = true;
+            wellSinceNs_ = nowNs;
+        }
+        if (secondsBetween(wellSinceNs_, nowNs) < settings_.clearAfterS) return;
+        status_.trouble = Trouble::none;
+        status_.vendorCode = 0;
+        fade_ = 0.0;
+        fading_ = false;
+        return;
+    }
+    well_ = false;
+    status_.vendorCode = reading.vendorCode;
+    if (found == status_.trouble) return;
+    if (status_.trouble == Trouble::none) {
+        held_ = sent_;
+        release_ = 1.0;
+    }
+    status_.trouble = status_.last = found;
+    status_.troubleSinceNs = nowNs;
+    ++status_.troubles;
+}
+
+DriverCommand Gate::released(double elapsedS) noexcept {
+    const double step = settings_.releaseS > 0.0 ? elapsedS / settings_.releaseS : 1.0;
+    release_ -= step;
+    // What is left of it is not worth another exchange: it would come too late at a slow servo.
+    if (!(release_ >= 0.5 * step) || !(release_ <= 1.0)) release_ = 0.0;
+    DriverCommand out;
+    out.forceN = scaled(held_.forceN, release_);
+    out.torqueNmm = scaled(held_.torqueNmm, release_);
+    out.vibration = static_cast<float>(held_.vibration * release_);
+    status_.gain = release_;
+    return out;
+}
+
+DriverCommand Gate::let(const DriverCommand& latest, float temperature, double elapsedS) noexcept {
+    DriverCommand out;
+    const bool wanted = length(latest.forceN) > 0.0 || length(latest.torqueNmm) > 0.0 || latest.vibration > 0.0f;
+    if (fading_) fade_ = settings_.fadeInS > 0.0 ? std::min(1.0, fade_ + elapsedS / settings_.fadeInS) : 1.0;
+    fading_ = fading_ || wanted;  // from zero, at the first force
+    const double heat =
+        std::clamp((settings_.hotFrom - temperature) / (settings_.hotFrom - settings_.warmFrom), 0.0, 1.0);
+    status_.gain = fade_ * heat;
+    out.forceN = scaled(clamped(latest.forceN, settings_.maxForceN, status_.clamped), status_.gain);
+    out.torqueNmm = scaled(clamped(latest.torqueNmm, settings_.maxTorqueNmm, status_.clamped), status_.gain);
+    out.vibration = static_cast<float>(std::clamp(static_cast<double>(latest.vibration), 0.0, 1.0) * status_.gain);
+    if (!std::isfinite(out.vibration)) out.vibration = 0.0f;
+    const double most = settings_.maxSlopeNPerS * elapsedS;
+    const Triple change{out.forceN[0] - sent_.forceN[0], out.forceN[1] - sent_.forceN[1],
+                        out.forceN[2] - sent_.forceN[2]};
+    const double size = length(change);
+    if (size > most) {
+        status_.slopeLimited = true;
+        for (std::size_t k = 0; k < 3; ++k)
+            out.forceN[k] = sent_.forceN[k] + change[k] * (most / size);
+    }
+    return out;
+}
+
+DriverCommand Gate::pass(const DriverReading& reading, const DriverCommand& latest, std::int64_t nowNs) noexcept {
+    const Trouble found = judge(reading, latest, nowNs);
+    const double elapsedS = any_ ? std::max(0.0, secondsBetween(lastNs_, nowNs)) : 0.0;
+    lastNs_ = nowNs;
+    any_ = true;
+    believe(found, reading, nowNs);
+    status_.clamped = status_.slopeLimited = false;
+    status_.motorTemperature = reading.motorTemperature;
+    DriverCommand out = status_.trouble == Trouble::none ? let(latest, reading.motorTemperature, elapsedS)
+                                                         : released(std::max(elapsedS, kLeastStepS));
+    // Whatever was overlooked above: nothing but numbers within the limits leaves here.
+    bool beyond = false;
+    out.forceN = finite(out.forceN) ? clamped(out.forceN, settings_.maxForceN, beyond) : Triple{};
+    out.torqueNmm = finite(out.torqueNmm) ? clamped(out.torqueNmm, settings_.maxTorqueNmm, beyond) : Triple{};
+    out.timeNs = nowNs;
+    out.number = latest.number;
+    sent_ = out;
+    return out;
+}
+
+}  // namespace handpiece::safety

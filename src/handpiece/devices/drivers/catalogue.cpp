@@ -15,11 +15,12 @@ struct Row {
     const char* name;
     Found (*look)();
     std::unique_ptr<link::Driver> (*open)(const OpenOptions&);
+    std::string (*words)(std::int32_t);  // of an error code; null: its interface has none
 };
 
 // The one list of drivers, in the order in which people are shown them.
 constexpr Row kRows[] = {
-    {"openhaptics", &lookOpenHaptics, &openOpenHaptics},
+    {"openhaptics", &lookOpenHaptics, &openOpenHaptics, &openHapticsErrorInWords},
 };
 
 }  // namespace
@@ -47,6 +48,13 @@ std::unique_ptr<link::Driver> open(std::string_view driver, const OpenOptions& o
     throw core::Error(fmt::format("no device driver is called \"{}\"", driver), "device",
                       fmt::format("there are {}", fmt::join(names(), ", ")))
         .as("no-such-device", {std::string(driver), fmt::format("{}", fmt::join(names(), ", "))});
+}
+
+std::string vendorErrorInWords(std::string_view driver, std::int32_t code) {
+    if (code == 0) return {};
+    for (const Row& row : kRows)
+        if (driver == row.name && row.words != nullptr) return row.words(code);
+    return fmt::format("the device's own software reports error {}", code);
 }
 
 }  // namespace handpiece::drivers

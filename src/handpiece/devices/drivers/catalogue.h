@@ -36,5 +36,7 @@ struct OpenOptions {
 /// Throws core::Error: no such driver (names what there is), library missing or wrong, device busy, no permission, no
 /// licence, two libraries at once: each with its remedy.
 [[nodiscard]] std::unique_ptr<link::Driver> open(std::string_view driver, const OpenOptions& options = {});
+/// What a vendorCode of a reading means and what to do, in one line; empty for 0.
+[[nodiscard]] std::string vendorErrorInWords(std::string_view driver, std::int32_t code);
 
 }  // namespace handpiece::drivers

@@ -4,6 +4,7 @@
 /// The one way from a name to a haptic device, for the command line and the window: which there are, one opened behind
 /// its gate, its profile, and where a tooth lies in its reach.
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -33,7 +34,8 @@ struct ToothPlace {
     int fdiNumber = 0, buccalSign = 1;
 };
 /// Where a tooth lies comfortably in a device's reach: the middle of its top at `profile`'s point, occlusal up, and the
-/// handle where startPose() has it when it comes from the right and the front (a left hand's from the left).
+/// handle where startPose() has it when it comes from the right and the front (a left hand's from the left). What the
+/// profile turns comes on top of that.
 [[nodiscard]] workspace::Placing placingFor(const workspace::Profile& profile, const ToothPlace& tooth);
 /// The turn alone: tooth axes into device axes.
 [[nodiscard]] core::Quat toothTurnFor(const ToothPlace& tooth, bool leftHanded);
@@ -52,9 +54,13 @@ struct DeviceChoice {
     bool pedal = false;                         ///< a foot pedal too, where there is one: throws when there is none
     device::PointerHandSettings hand;           ///< of devices that do not push
     ToothPlace tooth;
+    // Virtual time for drivers::SimulatedDriver, as safety::GuardSettings has it; empty: the clock on the wall.
+    std::function<std::int64_t()> nowNs;
+    std::function<void(double periodS)> advance;
 };
 
-/// A driver by name that was not started: for fidelity::check() and calibration. Throws as drivers::open().
+/// A driver by name that was not started: for fidelity::check() and calibration. Of the simulated arm: one held still
+/// (openDevice() has it draw circles above the tooth). Throws as drivers::open().
 [[nodiscard]] std::unique_ptr<link::Driver> openDriver(const DeviceChoice& choice);
 /// The profile that `choice` asks for, its overrides in place, without the tooth. Throws core::Error.
 [[nodiscard]] workspace::Profile profileOf(const DeviceChoice& choice, const link::DriverInfo& info);
@@ -71,12 +77,12 @@ struct OpenDevice {
     std::unique_ptr<device::Device> device;       ///< for the loop
     std::shared_ptr<safety::HealthBoard> health;  ///< outlives the device; one reader
     link::DriverInfo info;
-    workspace::Profile profile;         ///< with the overrides and the tooth's place in it
-    device::Capability capability;      ///< at the bur: the device's own
-    Calibration calibration;            ///< as long as the device lives
-    std::vector<safety::Fault> faults;  ///< that will be injected
-    /// What each came to; whenever, complete once the device is gone.
-    std::function<std::vector<safety::FaultOutcome>()> outcomes;
+    workspace::Profile profile;                  ///< with the overrides; to be changed and written again
+    workspace::Placing placing;                  ///< in use: the profile's with the tooth in it
+    device::Capability capability;               ///< at the bur: the device's own
+    Calibration calibration;                     ///< as long as the device lives
+    std::vector<safety::Fault> faults;           ///< that will be injected
+    std::shared_ptr<safety::FaultLog> faultLog;  ///< null without faults; to be read once the device is gone
 };
 /// Throws core::Error: no such device, its driver's reasons, a bad profile, a bad --inject.
 [[nodiscard]] OpenDevice openDevice(const DeviceChoice& choice);

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "station/device_desk.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "handpiece/devices/drivers/simulated_driver.h"
+#include "handpiece/tick/device/capability.h"
+#include "station/pointer_hand.h"
+
+namespace handpiece::station {
+namespace {
+
+using core::Quat;
+using core::Vec3;
+
+constexpr double kHeldAboveMm = 30.0;  // of a tooth, the simulated arm that is to be measured
+
+/// A hand that holds a pen over a desk comes from the right and the front alike; a left one from the left.
+Vec3 handComesFrom(bool leftHanded) {
+    return Vec3(leftHanded ? -1.0 : 1.0, 0.0, 1.0).normalized();
+}
+
+Calibration calibrationOf(safety::GuardedDevice& device) {
+    return {[&device] { return device.calibration(); }, [&device] { return device.calibrationStep(); },
+            [&device] { return device.calibrate(); }};
+}
+
+}  // namespace
+
+std::vector<drivers::Found> lookForDevices() {
+    std::vector<drivers::Found> found = drivers::look();
+    const auto simulated = [](const drivers::Found& f) { return f.driver == "simulated"; };
+    if (std::none_of(found.begin(), found.end(), simulated)) found.push_back(drivers::lookSimulated());
+    return found;
+}
+
+std::vector<std::string> deviceNames() {
+    std::vector<std::string> names = drivers::names();
+    if (std::find(names.begin(), names.end(), "simulated") == names.end()) names.emplace_back("simulated");
+    return names;
+}
+
+Quat toothTurnFor(const ToothPlace& tooth, bool leftHanded) {
+    // Where the handle goes when nobody turns it, along the occlusal plane of the tooth.
+    Vec3 handle = startPose(tooth.box, tooth.fdiNumber, tooth.buccalSign).orientation * Vec3::UnitX();
+    handle = Vec3(handle.x(), handle.y(), 0.0).normalized();
+    const Vec3 from = handComesFrom(leftHanded);
+    // Tooth axes as columns in the device frame: +z up, `handle` to where the hand comes from.
+    core::Mat3 inTooth, inDevice;
+    inTooth << handle, Vec3::UnitZ().cross(handle), Vec3::UnitZ();
+    inDevice << from, Vec3::UnitY().cross(from), Vec3::UnitY();
+    return Quat(core::Mat3(inDevice * inTooth.transpose())).normalized();
+}
+
+workspace::Placing placingFor(const workspace::Profile& profile, const ToothPlace& tooth) {
+    workspace::Placing placing = profile.placing;
+    if (tooth.box.isEmpty()) return placing;
+    placing.toothMm = {tooth.box.centre().x(), tooth.box.centre().y(), tooth.box.max.z()};
+    placing.toothInDevice = placing.toothInDevice * toothTurnFor(tooth, placing.leftHanded);
+    return placing;
+}
+
+std::unique_ptr<link::Driver> openDriver(const DeviceChoice& choice) {
+    if (choice.name != "simulated") return drivers::open(choice.name, {choice.which, choice.servoHz});
+    drivers::SimulatedSettings settings;
+    if (!choice.which.empty() && choice.which != settings.model) {
+        settings.arm.capability = device::capabilityByName(choice.which);
+        settings.model = choice.which;
+    }
+    if (choice.servoHz > 0.0) settings.servoHz = choice.servoHz;
+    const core::Pose held{Vec3(0.0, 0.0, kHeldAboveMm), Quat::Identity()};
+    settings.motion = device::Motion({{0.0, held, 0.0}, {1.0, held, 0.0}});
+    return std::make_unique<drivers::SimulatedDriver>(std::move(settings));
+}
+
+workspace::Profile profileOf(const DeviceChoice& choice, const link::DriverInfo& info) {
+    workspace::Profile p = choice.profile.empty()
+                               ? workspace::profileFor(info, choice.profileFolder.empty() ? workspace::profileFolder()
+                                                                                          : choice.profileFolder)
+                               : workspace::readProfile(choice.profile, info);
+    if (choice.placing) p.placing = *choice.placing;
+    if (choice.scale) p.placing.scale = *choice.scale;
+    if (choice.leftHanded) p.placing.leftHanded = *choice.leftHanded;
+    if (choice.forceScale) p.shaping.forceScale = *choice.forceScale;
+    if (choice.passivityController) p.shaping.passivityController = *choice.passivityController;
+    if (choice.frictionCompensation) p.shaping.frictionCompensation = *choice.frictionCompensation;
+    workspace::validate(p.placing);
+    stability::validate(p.shaping);
+    return p;
+}
+
+OpenDevice openDevice(const DeviceChoice& choice) {
+    if (choice.name == "simulated") return openDevice(drivers::openSimulated({choice.which, choice.servoHz}), choice);
+    return openDevice(openDriver(choice), choice);
+}
+
+OpenDevice openDevice(std::unique_ptr<link::Driver> driver, const DeviceChoice& choice) {
+    OpenDevice open;
+    open.info = driver->info();
+    open.profile = profileOf(choice, open.info);
+    // The simulated arm's own motion is told in the tooth's frame.
+    const bool fit = !choice.placing && open.info.driver != "simulated";
+    open.placing = fit ? placingFor(open.profile, choice.tooth) : open.profile.placing;
+    if (!choice.faults.empty()) {
+        open.faults = safety::parseFaults(choice.faults);
+        open.faultLog = std::make_shared<safety::FaultLog>();
+        driver = safety::withFaults(std::move(driver), open.faults, open.faultLog);
+    }
+    safety::GuardSettings guard;
+    guard.atTheHand = workspace::withinShares(open.info.capability, open.profile);
+    guard.gate = safety::gateSettingsFor(*guard.atTheHand);
+    guard.placing = open.placing;
+    guard.shaping = open.profile.shaping;
+    guard.clutchButton = open.profile.clutchButton;
+    guard.nowNs = choice.nowNs;
+    guard.advance = choice.advance;
+    auto guarded = std::make_unique<safety::GuardedDevice>(std::move(driver), guard);
+    open.health = guarded->health();
+    open.calibration = calibrationOf(*guarded);
+    open.capability = guarded->capability();
+    open.device = std::move(guarded);
+    return open;
+}
+
+force::Parameters fittedTo(const OpenDevice& device, force::Parameters parameters) {
+    if (device.capability.maxTorqueNmm > 0.0) parameters.gripMm = workspace::Mapping(device.placing).gripInBurMm();
+    return parameters;
+}
+
+std::optional<core::Error> troubleOf(const safety::GateStatus& status, const std::string& deviceName) {
+    const link::Trouble trouble = status.trouble;
+    if (trouble == link::Trouble::none || trouble == link::Trouble::starting) return std::nullopt;
+    std::string what(link::sentenceOf(trouble));
+    if (!what.empty() && what.back() == '.') what.pop_back();
+    if (status.vendorCode != 0)
+        what += fmt::format(" (its code is 0x{:04x})", static_cast<std::uint32_t>(status.vendorCode));
+    std::string remedy(link::remedyOf(trouble));
+    if (!remedy.empty() && remedy.back() == '.') remedy.pop_back();
+    return core::Error(what, deviceName, remedy)
+        .as(std::string(link::idOf(trouble)), {deviceName, fmt::format("{}", status.vendorCode)});
+}
+
+}  // namespace handpiece::station

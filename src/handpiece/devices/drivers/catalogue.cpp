@@ -6,6 +6,7 @@
 #include <array>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/devices/drivers/force_dimension.h"
 #include "handpiece/devices/drivers/openhaptics.h"
 
 namespace handpiece::drivers {
@@ -21,6 +22,7 @@ struct Row {
 // The one list of drivers, in the order in which people are shown them.
 constexpr Row kRows[] = {
     {"openhaptics", &lookOpenHaptics, &openOpenHaptics, &openHapticsErrorInWords},
+    {"forcedimension", &lookForceDimension, &openForceDimension, &dhdErrorInWords},
 };
 
 }  // namespace

@@ -474,11 +474,10 @@ bool orientationFromDhd(const double (&frame)[3][3], std::array<double, 4>& orie
     return true;
 }
 
-std::string_view sentenceOfDhdCode(int code) noexcept {
-    return dhd::wordsOf(code).sentence;
-}
-std::string_view remedyOfDhdCode(int code) noexcept {
-    return dhd::wordsOf(code).remedy;
+std::string dhdErrorInWords(std::int32_t code) {
+    const dhd::Words words = dhd::wordsOf(code);
+    return fmt::format("{} (DHD error {}): {}", words.sentence.substr(0, words.sentence.size() - 1), code,
+                       words.remedy);
 }
 
 Found lookForceDimension() {

@@ -4,8 +4,9 @@
 /// Force Dimension's arms (omega, delta, sigma, lambda) and whatever else speaks through their closed library DHD.
 
 #include <array>
+#include <cstdint>
 #include <memory>
-#include <string_view>
+#include <string>
 
 #include "handpiece/devices/drivers/catalogue.h"
 
@@ -19,9 +20,8 @@ namespace handpiece::drivers {
 /// A Falcon through the same library; told as driver "falcon". Throws core::Error like openForceDimension().
 [[nodiscard]] std::unique_ptr<link::Driver> openFalconThroughDhd(const OpenOptions& options);
 
-/// What a DriverReading::vendorCode of these drivers means, and what to do; one sentence each.
-[[nodiscard]] std::string_view sentenceOfDhdCode(int code) noexcept;
-[[nodiscard]] std::string_view remedyOfDhdCode(int code) noexcept;
+/// What a DriverReading::vendorCode of these drivers means, and what to do; two sentences.
+[[nodiscard]] std::string dhdErrorInWords(std::int32_t code);
 
 /// Between DHD's frame (metre; +x to the user, +y right, +z up) and the device frame (millimetre; +x right, +y up,
 /// +z to the user).

@@ -251,11 +251,17 @@ struct SessionPlayer::State {
         cutting->correct(state);
     }
 
+    /// The last tick up to a time: a time that is meant to be a tick's own may lie a rounding before it.
+    [[nodiscard]] std::uint64_t tickAt(double timeS) const {
+        return static_cast<std::uint64_t>(std::floor(std::max(timeS, 0.0) * first.rateHz + 1e-6));
+    }
+
     void playTo(double toS, const core::Progress& progress) {
         const std::uint64_t from = next;
         const double last = std::min(toS, timeOf(lastTick));
         const double most = std::max((last - sample.timeS) * first.rateHz, 1.0);
-        while (!isAtEnd() && timeOf(record().tick) <= toS) {
+        const std::uint64_t lastOfAll = tickAt(last);
+        while (!isAtEnd() && record().tick <= lastOfAll) {
             playOne();
             if ((next - from) % kReportEvery == 0)
                 core::report(progress, std::min(1.0, static_cast<double>(next - from) / most));
@@ -265,7 +271,7 @@ struct SessionPlayer::State {
 
     void seek(double toS, const core::Progress& progress) {
         const double target = std::clamp(toS, 0.0, timeOf(lastTick));
-        const auto tick = static_cast<std::uint64_t>(std::floor(target * first.rateHz + 1e-6));
+        const std::uint64_t tick = tickAt(target);
         const auto after = std::upper_bound(frames.begin(), frames.end(), tick);
         const bool isAhead = tick >= sample.tick;
         const bool framed = after != frames.begin() && !isOtherField;

@@ -119,6 +119,15 @@ TEST(SessionPlayer, jumpsAnywhereAndGivesTheSameEachTime) {
     EXPECT_EQ(player.differingTicks(), 0u);
 }
 
+TEST(SessionPlayer, aTimeThatIsARoundingBeforeATickIsThatTick) {
+    SessionPlayer player(recorded().file(), kUnseen);
+    for (std::uint64_t i = 100; i < 1000; i += 37) {
+        const double timeS = static_cast<double>(player.reader().records(i, 1).front().tick) / 1000;
+        player.seek(std::nextafter(timeS, 0.0));
+        EXPECT_DOUBLE_EQ(player.timeS(), timeS);
+    }
+}
+
 TEST(SessionPlayer, plotsWhatWasRecorded) {
     const SessionPlayer player(recorded().file(), kUnseen);
     const std::vector<PlotPoint> points = player.plot(0.05);

@@ -7,7 +7,10 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/devices/drivers/force_dimension.h"
+#include "handpiece/devices/drivers/gamepad.h"
+#include "handpiece/devices/drivers/haply.h"
 #include "handpiece/devices/drivers/openhaptics.h"
+#include "handpiece/devices/drivers/spacemouse.h"
 
 namespace handpiece::drivers {
 namespace {
@@ -23,6 +26,9 @@ struct Row {
 constexpr Row kRows[] = {
     {"openhaptics", &lookOpenHaptics, &openOpenHaptics, &openHapticsErrorInWords},
     {"forcedimension", &lookForceDimension, &openForceDimension, &dhdErrorInWords},
+    {"haply", &lookHaply, &openHaply, &haplyErrorInWords},
+    {"spacemouse", &lookSpaceMouse, &openSpaceMouse, nullptr},
+    {"gamepad", &lookGamepad, &openGamepad, nullptr},
 };
 
 }  // namespace

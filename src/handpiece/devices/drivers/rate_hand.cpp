@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/devices/drivers/rate_hand.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace handpiece::drivers {
+namespace {
+
+using core::Quat;
+using core::Vec3;
+
+constexpr double kMostStepS = 0.05;
+
+/// Nothing within the dead zone, then slowly at first: fine work is done near the middle.
+Vec3 shaped(const Vec3& deflection, double deadZone) noexcept {
+    Vec3 out = Vec3::Zero();
+    for (int i = 0; i < 3; ++i) {
+        const double size = std::abs(deflection[i]);
+        if (!(size > deadZone)) continue;
+        const double d = (std::min(size, 1.0) - deadZone) / (1.0 - deadZone);
+        out[i] = std::copysign(d * (0.3 + 0.7 * d * d), deflection[i]);
+    }
+    return out;
+}
+
+}  // namespace
+
+void RateHand::step(const Vec3& move, const Vec3& turn, bool goHome, double dtS) noexcept {
+    const double dt = dtS > 0.0 ? std::min(dtS, kMostStepS) : 0.0;
+    if (goHome) {
+        const double far = positionMm_.norm(), angle = orientation_.angularDistance(Quat::Identity());
+        const double step = settings_.returnMmS * dt, bit = settings_.returnRadS * dt;
+        positionMm_ = far > step ? Vec3(positionMm_ * (1.0 - step / far)) : Vec3(Vec3::Zero());
+        orientation_ = angle > bit ? orientation_.slerp(bit / angle, Quat::Identity()).normalized() : Quat::Identity();
+        return;
+    }
+    positionMm_ += settings_.speedMmS * dt * shaped(move, settings_.deadZone);
+    positionMm_ = positionMm_.cwiseMax(-settings_.reachMm).cwiseMin(settings_.reachMm);
+    const Vec3 w = settings_.turnRadS * dt * shaped(turn, settings_.deadZone);
+    if (w.isZero()) return;
+    // About the axes of the room, as a cap is turned.
+    const Quat next = (Quat(Eigen::AngleAxisd(w.norm(), w.normalized())) * orientation_).normalized();
+    const double angle = next.angularDistance(Quat::Identity());
+    orientation_ = angle > settings_.mostTurnRad ? Quat::Identity().slerp(settings_.mostTurnRad / angle, next) : next;
+}
+
+}  // namespace handpiece::drivers

@@ -1,0 +1,12 @@
+# Run by CPack before it packs: what belongs outside of /usr, and the -dev package's copyright.
+if(CPACK_GENERATOR STREQUAL "DEB")
+    set(packaging ${CPACK_HANDPIECE_PACKAGING})
+    set(tree ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/handpiece)
+    foreach(pair IN ITEMS udev/70-handpiece.rules:usr/lib/udev/rules.d limits.d/handpiece.conf:etc/security/limits.d settings.toml:etc/handpiece)
+        string(REPLACE ":" ";" pair ${pair})
+        list(GET pair 0 file)
+        list(GET pair 1 place)
+        file(INSTALL ${packaging}/${file} DESTINATION ${tree}/${place})
+    endforeach()
+    file(INSTALL ${packaging}/debian/copyright DESTINATION ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/dev/usr/share/doc/handpiece-dev)
+endif()

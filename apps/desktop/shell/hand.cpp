@@ -32,11 +32,19 @@ bool Hand::wasSetUp() const {
     return std::filesystem::exists(workspace::profileFile(profiles_, opened_.info), error);
 }
 
+void Hand::suit(std::optional<bool> leftHanded, std::optional<double> scale) {
+    if (wasSetUp() || (!leftHanded && !scale)) return;
+    profile_.placing.leftHanded = leftHanded.value_or(profile_.placing.leftHanded);
+    // A larger scale is within the limits that it was opened with.
+    profile_.placing.scale = std::max(profile_.placing.scale, scale.value_or(1.0));
+    opened_.health->place(station::placingFor(profile_, tooth_));
+}
+
 bool Hand::setProfile(const workspace::Profile& profile) {
     workspace::writeProfile(profiles_, profile);
     const workspace::Profile before = std::exchange(profile_, profile);
     if (before.placing.scale != profile.placing.scale || before.forceShare != profile.forceShare ||
-        before.stiffnessShare != profile.stiffnessShare)
+        before.stiffnessShare != profile.stiffnessShare || before.clutchButton != profile.clutchButton)
         return false;
     opened_.health->shape(profile.shaping);
     opened_.health->place(station::placingFor(profile_, tooth_));
@@ -59,10 +67,17 @@ QString problemIdOf(link::Trouble trouble) {
     return QStringLiteral("device-") + QString::fromUtf8(id.data(), static_cast<qsizetype>(id.size()));
 }
 
+Problem problemOf(link::Trouble trouble, std::int32_t vendorCode) {
+    return problemById(problemIdOf(trouble), {QStringLiteral("0x%1").arg(vendorCode, 4, 16, QLatin1Char('0'))});
+}
+
 Hands::Hands(Options options, QObject* parent) : QObject(parent), options_(std::move(options)) {
     if (options_.profiles.empty()) options_.profiles = workspace::profileFolder();
     timer_.setInterval(kPollMs);
     connect(&timer_, &QTimer::timeout, this, &Hands::poll);
+    closeTimer_.setInterval(kPollMs);
+    closeTimer_.setSingleShot(true);
+    connect(&closeTimer_, &QTimer::timeout, this, &Hands::goOnWhenClosed);
 }
 
 Hands::~Hands() {
@@ -132,42 +147,69 @@ void Hands::dispose(std::shared_ptr<Hand> hand) {
     raw->start();
 }
 
-void Hands::letGo() {
+void Hands::letGo(std::function<void()> then) {
     wanted_.clear();
-    if (!current_) return;
-    timer_.stop();
-    trouble_ = link::Trouble::none;
-    health_ = {};
-    std::shared_ptr<Hand> old = std::move(current_);
-    current_.reset();
-    emit changed();
-    dispose(std::move(old));
+    isOpening_ = false;
+    whenClosed_ = std::move(then);
+    if (current_) {
+        timer_.stop();
+        trouble_ = link::Trouble::none;
+        health_ = {};
+        std::shared_ptr<Hand> old = std::move(current_);
+        current_.reset();
+        before_ = old;
+        emit changed();
+        dispose(std::move(old));
+    }
+    goOnWhenClosed();
 }
 
-void Hands::choose(const QString& name) {
-    if (opening_) return;
-    letGo();
-    if (name.isEmpty()) return;
-    wanted_ = name;
-    const auto hand = std::make_shared<std::shared_ptr<Hand>>();
-    // The one before is closed first: it may be the same.
-    std::vector<std::shared_ptr<Job>> before;
-    for (auto& job : closing_) {
-        Job* raw = job.release();
-        raw->disconnect(this);
-        before.emplace_back(raw, [](Job* j) { j->deleteLater(); });
+/// A sitting that is busy with something else gives the device back when that has ended.
+void Hands::goOnWhenClosed() {
+    if (!whenClosed_) return;
+    if (!closing_.empty() || !before_.expired()) {
+        closeTimer_.start();
+        return;
     }
-    closing_.clear();
-    opening_ = std::make_unique<Job>(tr("Opening the device"), [hand, before, choice = choiceOf(name),
-                                                                open = options_.desk.open](const core::Progress&) {
-        for (const auto& job : before)
-            job->wait();
-        *hand = std::make_shared<Hand>(choice.name, open(choice), choice.profileFolder);
-    });
-    const auto end = [this] { opening_.release()->deleteLater(); };
-    connect(opening_.get(), &Job::done, this, [this, hand, end] {
+    const std::function<void()> then = std::move(whenClosed_);
+    whenClosed_ = {};
+    then();
+}
+
+void Hands::choose(QString name) {
+    if (opening_) return;
+    if (name.isEmpty()) {
+        letGo();
+        return;
+    }
+    // The one before is closed first: it may be the same.
+    letGo([this, name] { open(name); });
+    if (!opening_) wanted_ = name;
+    isOpening_ = true;
+    emit changed();
+}
+
+void Hands::open(const QString& name) {
+    wanted_ = name;
+    isOpening_ = true;
+    const auto hand = std::make_shared<std::shared_ptr<Hand>>();
+    opening_ = std::make_unique<Job>(
+        tr("Opening the device"), [hand, choice = choiceOf(name), open = options_.desk.open](const core::Progress&) {
+            *hand = std::make_shared<Hand>(choice.name, open(choice), choice.profileFolder);
+        });
+    const auto end = [this] {
+        opening_.release()->deleteLater();
+        isOpening_ = false;
+    };
+    connect(opening_.get(), &Job::done, this, [this, name, hand, end] {
         end();
+        // Somebody chose the mouse meanwhile.
+        if (wanted_ != name) {
+            dispose(std::move(*hand));
+            return;
+        }
         current_ = std::move(*hand);
+        current_->suit(options_.leftHanded, options_.scale);
         trouble_ = link::Trouble::none;
         since_ = std::chrono::steady_clock::now();
         timer_.start();
@@ -180,7 +222,6 @@ void Hands::choose(const QString& name) {
         emit refused(name, problem);
         emit changed();
     });
-    emit changed();
     opening_->start();
 }
 
@@ -196,8 +237,9 @@ void Hands::poll() {
     if (isGone(trouble_) && std::chrono::steady_clock::now() - since_ >= options_.patience) {
         const QString name = wanted_;
         const link::Trouble why = trouble_;
+        const int code = health_.gate.vendorCode;
         letGo();
-        emit lost(name, why);
+        emit lost(name, why, code);
         return;
     }
     emit polled();

@@ -37,6 +37,8 @@ class Hand {
     /// Writes it. What cannot be changed while it runs (scale, shares, clutch) is true from the next opening on:
     /// then this returns false. Throws core::Error.
     bool setProfile(const workspace::Profile& profile);
+    /// What a school has chosen, for a device that was not set up yet.
+    void suit(std::optional<bool> leftHanded, std::optional<double> scale);
     /// Puts the tooth into the arm's reach.
     void placeFor(const station::ToothPlace& tooth);
     /// Where the hand is now, it has the bur where it begins: over the tooth.
@@ -79,6 +81,8 @@ class Hands : public QObject {
         std::filesystem::path profiles;  ///< empty: workspace::profileFolder()
         std::string inject;              ///< faults on purpose, for the next devices that are opened
         HandDesk desk;
+        std::optional<bool> leftHanded;  ///< of a device that was not set up yet
+        std::optional<double> scale;
         /// A device that has gone for so long gives way to the mouse.
         std::chrono::milliseconds patience{1500};
     };
@@ -91,10 +95,10 @@ class Hands : public QObject {
 
     /// Opens it beside everything else; opened() or refused() tells. The one that is open is closed before. An empty
     /// name: the mouse, at once.
-    void choose(const QString& name);
-    /// The mouse holds the handpiece from now on.
-    void letGo();
-    [[nodiscard]] bool isOpening() const noexcept { return opening_ != nullptr; }
+    void choose(QString name);
+    /// The mouse holds the handpiece from now on; `then` once the device is closed and free for somebody else.
+    void letGo(std::function<void()> then = {});
+    [[nodiscard]] bool isOpening() const noexcept { return isOpening_; }
     /// The one that was asked for last; empty: the mouse.
     [[nodiscard]] const QString& wanted() const noexcept { return wanted_; }
     /// Null: the mouse.
@@ -115,7 +119,7 @@ class Hands : public QObject {
     /// It gives no force and says why; or it is well again (none).
     void troubled(handpiece::link::Trouble trouble, int vendorCode);
     /// It has been gone for longer than the patience; the mouse has taken over.
-    void lost(const QString& name, handpiece::link::Trouble trouble);
+    void lost(const QString& name, handpiece::link::Trouble trouble, int vendorCode);
     /// About 30 times a second while one is open.
     void polled();
     /// Another device, or none.
@@ -123,7 +127,9 @@ class Hands : public QObject {
 
   private:
     void poll();
+    void open(const QString& name);
     void dispose(std::shared_ptr<Hand> hand);
+    void goOnWhenClosed();
 
     Options options_;
     std::vector<DeviceRow> rows_;
@@ -134,7 +140,10 @@ class Hands : public QObject {
     std::chrono::steady_clock::time_point since_;
     std::unique_ptr<Job> looking_, opening_;
     std::vector<std::unique_ptr<Job>> closing_;
-    QTimer timer_;
+    std::weak_ptr<Hand> before_;  ///< a sitting may hold it yet
+    std::function<void()> whenClosed_;
+    bool isOpening_ = false;
+    QTimer timer_, closeTimer_;
 };
 
 /// A device of the window's, lent to one loop.
@@ -157,5 +166,7 @@ class LentDevice final : public device::Device {
 
 /// What a trouble is called among the problems: "device-unplugged".
 [[nodiscard]] QString problemIdOf(link::Trouble trouble);
+/// In the person's words, with what to do.
+[[nodiscard]] Problem problemOf(link::Trouble trouble, std::int32_t vendorCode);
 
 }  // namespace handpiece::desktop

@@ -4,6 +4,7 @@
 #include <QApplication>
 #include <QPixmap>
 #include <QTimer>
+#include <cmath>
 #include <cstdio>
 
 #include "handpiece/base/core/error.h"
@@ -12,14 +13,34 @@
 namespace handpiece::desktop {
 namespace {
 
-Simulator::Options withFaults(Simulator::Options options, const CommandLine& line) {
+/// Below what the person has chosen: the school's defaults; above it: the command line.
+Simulator::Options asAsked(Simulator::Options options, const CommandLine& line, const station::SchoolDefaults& school) {
     if (!line.inject.isEmpty()) options.hands.inject = line.inject.toStdString();
+    options.hands.leftHanded = school.leftHanded;
+    options.hands.scale = school.scale;
+    if (school.sessionsFolder) options.folders.sessions = *school.sessionsFolder;
+    if (school.record) options.record = *school.record;
+    if (school.voxelUm) options.voxelUm = static_cast<int>(std::lround(*school.voxelUm));
     return options;
 }
 
-/// What the school has chosen for all, below what the person has.
-QString schoolDevice() {
-    return {};
+/// What a person has not set yet is as the school has it.
+void fillIn(Settings& settings, const station::SchoolDefaults& school) {
+    const auto fill = [&settings](const char* key, const QVariant& value) {
+        if (!settings.value(QLatin1String(key)).isValid()) settings.set(QLatin1String(key), value);
+    };
+    if (school.language) fill("window/language", QString::fromStdString(*school.language));
+    if (school.layout) fill("window/layout", QString::fromStdString(*school.layout));
+    if (school.casesFolder) fill("files/folder", toQString(*school.casesFolder));
+    if (school.sound) fill("sound/muted", !*school.sound);
+    if (school.volume) {
+        fill("sound/motor", *school.volume);
+        fill("sound/cutting", *school.volume);
+    }
+    if (school.crisp) {
+        fill("work/crispContact", *school.crisp);
+        fill("work/cuttingVibration", *school.crisp);
+    }
 }
 
 }  // namespace
@@ -27,8 +48,10 @@ QString schoolDevice() {
 Host::Host(QApplication& application, const CommandLine& line, const Simulator::Options& options)
     : application_(application),
       line_(line),
+      school_(station::schoolDefaults()),
       settings_(options.folders.settingsFile),
-      simulator_(withFaults(options, line)) {
+      simulator_(asAsked(options, line, school_)) {
+    fillIn(settings_, school_);
     const QString theme = settings_.value(QStringLiteral("window/theme"), QStringLiteral("system")).toString();
     chooseAppearance(theme == QLatin1String("dark")    ? Appearance::dark
                      : theme == QLatin1String("light") ? Appearance::light
@@ -49,6 +72,8 @@ Host::Host(QApplication& application, const CommandLine& line, const Simulator::
         static_cast<int>(settings_.number(QStringLiteral("work/voxelUm"), options.voxelUm, 20.0, 400.0)));
     simulator_.setCode(settings_.value(QStringLiteral("work/code")).toString());
     simulator_.setMultipliers(kept("stiffness", 1.0, 3.0), kept("damping", 1.0, 3.0), kept("friction", 1.0, 3.0));
+    simulator_.setCrisp(settings_.value(QStringLiteral("work/crispContact")).toBool(),
+                        settings_.value(QStringLiteral("work/cuttingVibration")).toBool());
     makeWindow();
     if (!speaks) window_->tell(QStringLiteral("translation-missing"));
 }
@@ -78,6 +103,8 @@ void Host::start() {
         std::fflush(stdout);
     }
     window_->greet();
+    for (const std::string& problem : school_.problems)
+        window_->tell(QStringLiteral("school-settings"), {QString::fromStdString(problem)});
     if (line_.file.isEmpty()) {
         simulator_.openFirst();
     } else {
@@ -102,7 +129,7 @@ void Host::start() {
 QString Host::firstDevice() const {
     QString device = line_.device;
     if (device.isEmpty()) device = settings_.value(QStringLiteral("work/device")).toString();
-    if (device.isEmpty()) device = schoolDevice();
+    if (device.isEmpty() && school_.device) device = QString::fromStdString(*school_.device);
     return device == QLatin1String("mouse") ? QString() : device;
 }
 

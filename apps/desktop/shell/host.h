@@ -12,6 +12,7 @@
 #include "shell/run_statistics.h"
 #include "shell/settings.h"
 #include "shell/simulator.h"
+#include "station/school_defaults.h"
 
 class QApplication;
 
@@ -50,6 +51,7 @@ class Host : public QObject {
     CommandLine line_;
     PictureStatistics picture_;
     double firstPictureMs_ = 0.0;
+    station::SchoolDefaults school_;
     Settings settings_;
     Language language_;
     Simulator simulator_;

@@ -11,10 +11,6 @@ Job::Job(QString title, Work work, QObject* parent)
 
 Job::~Job() {
     cancel();
-    wait();
-}
-
-void Job::wait() {
     if (thread_.joinable()) thread_.join();
 }
 

@@ -26,8 +26,6 @@ class Job : public QObject {
 
     void start();
     void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
-    /// Until it is done; from any one thread that is not its own.
-    void wait();
     [[nodiscard]] const QString& title() const noexcept { return title_; }
 
   signals:

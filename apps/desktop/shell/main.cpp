@@ -2,6 +2,7 @@
 #include <QApplication>
 #include <cstdio>
 
+#include "device/install.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/senses/sound/player.h"
 #include "scan/install.h"
@@ -38,8 +39,12 @@ int main(int argc, char** argv) {
         desktop::Simulator::Options options;
         options.sound = line.sound;
         desktop::Host host(application, line, options);
-        // The scan wizard stands upon the window's library: the program brings the two together.
-        const auto furnish = [&host] { desktop::installScanWizard(host.window()); };
+        // The scan wizard and the dialogs about devices stand upon the window's library: the program brings them
+        // together.
+        const auto furnish = [&host] {
+            desktop::installScanWizard(host.window());
+            desktop::installDeviceDialogs(host.window(), host.simulator(), host.settings(), true);
+        };
         furnish();
         QObject::connect(&host, &desktop::Host::windowMade, &host, furnish);
         host.start();

@@ -188,6 +188,8 @@ NoticeText Notices::of(const QString& id, const QStringList& arguments) {
     if (id == QLatin1String("device-fault")) return {tr("The device reports a fault."), true};
     if (id == QLatin1String("device-lost"))
         return {tr("%1 %2 The mouse holds the handpiece now; nothing that was cut is lost.").arg(first, second), true};
+    if (id == QLatin1String("school-settings"))
+        return {tr("The school's settings have a mistake. Technical detail: %1").arg(first)};
     if (id == QLatin1String("device-absent")) return {tr("%1 %2 The mouse holds the handpiece.").arg(first, second)};
     if (id == QLatin1String("device-trouble")) return {tr("The device gives no force. %1 %2").arg(first, second), true};
     if (id == QLatin1String("out-of-bricks")) return {tr("There is no memory left to cut more of this tooth."), true};

@@ -128,7 +128,7 @@ class MainWindow : public QMainWindow {
     void connectDevice();
     void listDevices();
     void chooseDevice(const QString& name);
-    void tellDevice(link::Trouble trouble);
+    void tellDevice(link::Trouble trouble, int vendorCode);
     void showDevice(StatusFigures& figures) const;
 
     // main_window_wiring.cpp

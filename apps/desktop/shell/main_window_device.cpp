@@ -51,10 +51,10 @@ void MainWindow::connectDevice() {
         }
     });
     connect(&hands, &Hands::troubled, this, &MainWindow::tellDevice);
-    connect(&hands, &Hands::lost, this, [this](const QString& name, link::Trouble trouble) {
+    connect(&hands, &Hands::lost, this, [this](const QString& name, link::Trouble trouble, int vendorCode) {
         deviceTried_ = name;
         notices_->remove(QStringLiteral("device-trouble"));
-        const Problem problem = problemById(problemIdOf(trouble));
+        const Problem problem = problemOf(trouble, vendorCode);
         tell(QStringLiteral("device-lost"), {problem.what, problem.remedy});
     });
     connect(notices_, &NoticeBar::remedyChosen, this, [this](const QString& id) {
@@ -82,10 +82,10 @@ void MainWindow::chooseDevice(const QString& name) {
     hands.choose(name);
 }
 
-void MainWindow::tellDevice(link::Trouble trouble) {
+void MainWindow::tellDevice(link::Trouble trouble, int vendorCode) {
     notices_->remove(QStringLiteral("device-trouble"));
     if (trouble == link::Trouble::none) return;
-    const Problem problem = problemById(problemIdOf(trouble));
+    const Problem problem = problemOf(trouble, vendorCode);
     tell(QStringLiteral("device-trouble"), {problem.what, problem.remedy});
 }
 
@@ -137,7 +137,8 @@ void MainWindow::showDevice(StatusFigures& figures) const {
     if (hands.isOpening()) figures.deviceTrouble = tr("being opened");
     if (!hands.current()) return;
     figures.servoHz = hands.health().servoHz;
-    if (hands.trouble() != link::Trouble::none) figures.deviceTrouble = problemById(problemIdOf(hands.trouble())).what;
+    if (hands.trouble() != link::Trouble::none)
+        figures.deviceTrouble = problemOf(hands.trouble(), hands.health().gate.vendorCode).what;
 }
 
 }  // namespace handpiece::desktop

@@ -410,6 +410,8 @@ void MainWindow::showSettings() {
     settings_.set(QStringLiteral("work/stiffness"), p.stiffnessMultiplier);
     settings_.set(QStringLiteral("work/damping"), p.dampingMultiplier);
     settings_.set(QStringLiteral("work/friction"), p.frictionMultiplier);
+    settings_.set(QStringLiteral("work/crispContact"), p.transients.on);
+    settings_.set(QStringLiteral("work/cuttingVibration"), p.vibration.on);
 }
 
 void MainWindow::showTick() {

@@ -131,6 +131,8 @@ class Simulator : public QObject {
     void setSpeed(double rpm);
     void setMultipliers(double stiffness, double damping, double friction);
     void setHullMethod(bool hull);
+    /// A knock at each touch; the hum of the bur. Both off where nothing can be felt anyway: the mouse.
+    void setCrisp(bool contact, bool vibration);
     /// Cuts the tooth again with other voxels, by replaying what was recorded.
     void setVoxel(int um);
     /// Of the student: goes into recordings that begin from now on, and into attempts. An untouched tooth is opened

@@ -42,6 +42,14 @@ void Simulator::passHandpiece() {
     emit settingsChanged();
 }
 
+void Simulator::setCrisp(bool contact, bool vibration) {
+    if (mode_ == Mode::replay) return;
+    settings_.parameters.transients.on = contact;
+    settings_.parameters.vibration.on = vibration;
+    if (mayWork()) sitting_->setParameters(settings_.parameters);
+    emit settingsChanged();
+}
+
 void Simulator::lendHand(bool away) {
     if (away == handLentAway_) return;
     handLentAway_ = away;

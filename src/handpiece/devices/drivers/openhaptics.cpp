@@ -143,7 +143,7 @@ core::Error vendorError(unsigned code, const std::string& where) {
     if (code == hd::kAlreadyInitiated) id = "device-busy";
     std::string remedy = words.remedy;
     if (code == hd::kCommError) {
-        id = "device-not-there";
+        id = "device-missing";
         remedy +=
             "; close other programs that use it; see that this user may read and write its port "
             "(docs/devices/openhaptics.md, Permissions)";
@@ -469,8 +469,9 @@ class OpenHaptics final : public link::Driver {
     [[nodiscard]] const link::DriverInfo& info() const noexcept override { return info_; }
 
     void start(link::Servo& servo) override {
-        if (stopped_) throw core::Error("this device was closed", info_.model, "open it again");
-        if (started_) throw core::Error("this device has started already", info_.model, "stop it first");
+        if (stopped_) throw core::Error("this device was closed", info_.model, "open it again").as("device-stopped");
+        if (started_)
+            throw core::Error("this device has started already", info_.model, "stop it first").as("device-started");
         arm_->serve(servo);
         const auto failed = std::make_shared<std::optional<core::Error>>();
         const bool answered = within(5.0, [this, failed] {

@@ -4,7 +4,11 @@
 /// How good this station feels: servo, jitter, lateness, delay, noise and limits of a device, measured, each with a
 /// verdict and what to do.
 
+#include <cstdint>
+#include <functional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "handpiece/base/core/progress.h"
@@ -13,6 +17,8 @@
 namespace handpiece::fidelity {
 
 enum class Verdict : std::uint8_t { pass, warn, fail, notMeasured };
+/// "pass", "warn", "fail", "not-measured".
+[[nodiscard]] std::string_view idOf(Verdict verdict) noexcept;
 
 struct Finding {
     std::string id;     ///< "servo-period"
@@ -34,14 +40,20 @@ struct Report {
 };
 
 struct CheckSettings {
-    double durationS = 10.0;
-    double rateHz = 1000.0;  ///< of the tick
-    bool push = true;        ///< may push a small known force to measure slope and delay (announced first)
+    double durationS = 10.0;  ///< at least 1; with pushing at least 2
+    double rateHz = 1000.0;   ///< of the tick
+    bool push = true;         ///< may push a small known force to measure slope and delay (announced first)
+    /// Told in one sentence what comes next and what to do; on the calling thread.
+    std::function<void(const std::string& sentence)> announce;
+    // Virtual time, as safety::GuardSettings has it: nothing waits, and nothing is late.
+    std::function<std::int64_t()> nowNs;
+    std::function<void(double periodS)> advance;
 };
 
 /// Runs `driver` behind its gate for a while and measures. Throws core::Error as the driver does.
 [[nodiscard]] Report check(std::unique_ptr<link::Driver> driver, const CheckSettings& settings,
                            const core::Progress& progress = {});
+/// For machines; keys as the findings' ids and figures. docs/cli.md
 [[nodiscard]] std::string asJson(const Report& report);
 /// One page, printable, no outside references.
 [[nodiscard]] std::string asHtml(const Report& report);

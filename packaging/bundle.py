@@ -12,7 +12,7 @@ import sys
 # By name up to ".so": theirs must be those of the system's kernel, driver, display server or configuration.
 SYSTEM = """ld-linux-x86-64 libc libm libdl libpthread librt libresolv libstdc++ libgcc_s
 libEGL libGL libGLX libGLdispatch libOpenGL libgbm libdrm libvulkan
-libX11 libX11-xcb libxcb libXau libXdmcp libxkbcommon libxkbcommon-x11 libwayland-client libwayland-cursor libwayland-egl libICE libSM
+libX11 libX11-xcb libxcb libXau libXdmcp libwayland-client libwayland-cursor libwayland-egl
 libfontconfig libfreetype libexpat libz libuuid libasound libdbus-1 libsystemd libudev""".split()
 # What Qt loads by itself: a display (X11, Wayland, none), icons, the pictures we use.
 PLUGINS = ["platforms/libqxcb.so", "platforms/libqoffscreen.so", "platforms/libqminimal.so", "platforms/libqwayland-generic.so",

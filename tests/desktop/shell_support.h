@@ -75,7 +75,7 @@ class ShellTest : public ::testing::Test {
         return toPath(own_.filePath(QLatin1String(name)));
     }
 
-    [[nodiscard]] Simulator::Options options() const {
+    [[nodiscard]] virtual Simulator::Options options() const {
         Simulator::Options options;
         options.folders = {at("config/handpiece.ini"), at("data/sessions"), toPath(shared().filePath("starter"))};
         options.starter = {starter::ToothKind::lowerFirstMolar, 4000};

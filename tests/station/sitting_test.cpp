@@ -12,6 +12,8 @@
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/record/session/session_reader.h"
 #include "handpiece/senses/surface/surface.h"
+#include "station/held_button.h"
+#include "station/session_player.h"
 #include "station/sitting_fixture.h"
 #include "support/error_of.h"
 
@@ -209,6 +211,72 @@ TEST(Sitting, aSessionFileThatCannotBeBegunIsOneError) {
     SittingSettings settings;
     settings.sessionFile = "/nowhere/at/all/session.h5";
     EXPECT_THROW(Sitting(blockStation(), blockCase(), handOf(twoHoles()), settings, nullptr), core::Error);
+}
+
+/// A led hand with a button under its finger.
+class ButtonHand final : public device::Device {
+  public:
+    ButtonHand(std::unique_ptr<device::Device> hand, std::shared_ptr<std::atomic<std::uint32_t>> buttons)
+        : hand_(std::move(hand)), buttons_(std::move(buttons)) {}
+    [[nodiscard]] const device::Capability& capability() const noexcept override { return hand_->capability(); }
+    device::Reading read(double periodS) noexcept override {
+        device::Reading reading = hand_->read(periodS);
+        reading.buttons = *buttons_;
+        return reading;
+    }
+    void command(const core::Vec3& forceN, const core::Vec3& torqueNmm) noexcept override {
+        hand_->command(forceN, torqueNmm);
+    }
+    core::Vec3 truePositionMm() const noexcept override { return hand_->truePositionMm(); }
+    core::Vec3 appliedForceN() const noexcept override { return hand_->appliedForceN(); }
+
+  private:
+    std::unique_ptr<device::Device> hand_;
+    std::shared_ptr<std::atomic<std::uint32_t>> buttons_;
+};
+
+TEST(Sitting, theLowerButtonHeldClearOfTheToothUndoesOnceAndIsRecorded) {
+    const Folder folder;
+    for (const bool allowed : {true, false}) {
+        const std::filesystem::path file = folder.path / (allowed ? "undone.h5" : "kept.h5");
+        const auto lead = std::make_shared<Lead>();
+        const auto buttons = std::make_shared<std::atomic<std::uint32_t>>(0u);
+        SittingSettings settings;
+        settings.sessionFile = file;
+        settings.lowerButtonUndoes = allowed;
+        Sitting sitting(blockStation(), blockCase(), std::make_unique<ButtonHand>(handOf(twoHoles(), lead), buttons),
+                        settings, nullptr);
+        const auto feed = sitting.subscribe();
+        // Gripped hard in the tooth, with the bur turning: not meant.
+        ASSERT_TRUE(leadTo(sitting, *lead, 0.9));
+        *buttons = kLowerButton;
+        ASSERT_TRUE(waitUntil(sitting, lead->loopS + 0.8));
+        EXPECT_EQ(sitting.status().undoSteps + sitting.status().redoSteps, 0u);
+        *buttons = 0;
+        ASSERT_TRUE(leadTo(sitting, *lead, 1.6));
+        ASSERT_TRUE(waitUntilTrue([&] { return sitting.status().undoSteps == 1; }));
+        // Too short.
+        const double beganS = lead->loopS;
+        *buttons = kLowerButton;
+        ASSERT_TRUE(waitUntil(sitting, beganS + 0.1));
+        *buttons = 0;
+        ASSERT_TRUE(waitUntil(sitting, lead->loopS + 0.1));
+        if (lead->loopS - beganS < 0.4) {
+            EXPECT_EQ(sitting.status().redoSteps, 0u);
+        }
+        *buttons = kLowerButton;
+        ASSERT_TRUE(waitUntil(sitting, lead->loopS + 1.5));
+        EXPECT_TRUE(waitUntilTrue([&] { return sitting.status().redoSteps == (allowed ? 1u : 0u); }));
+        EXPECT_EQ(sitting.status().undoSteps, allowed ? 0u : 1u);
+        sitting.stop();
+        std::size_t undone = 0;
+        for (const session::Event& event : session::SessionReader(file).events())
+            undone += event.name == session::nameOf(session::EventName::undo) ? 1u : 0u;
+        EXPECT_EQ(undone, allowed ? 1u : 0u);
+        // What was recorded plays again.
+        SessionPlayer player(file, false);
+        EXPECT_EQ(player.compareAll().differingTicks, 0u);
+    }
 }
 
 }  // namespace

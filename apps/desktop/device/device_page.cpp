@@ -120,12 +120,16 @@ void DevicePage::takeProfile() {
     }
 }
 
-void DevicePage::startCheck(const fidelity::CheckSettings& settings) {
+void DevicePage::startCheck(fidelity::CheckSettings settings) {
     Hands& hands = simulator_.hands();
     if (checking_ || !hands.current()) return;
     checked_ = hands.wanted();
     const auto report = std::make_shared<fidelity::Report>();
     fidelity_->begin();
+    settings.announce = [box = fidelity_](const std::string& sentence) {
+        QMetaObject::invokeMethod(
+            box, [box, text = QString::fromStdString(sentence)] { box->say(text); }, Qt::QueuedConnection);
+    };
     checking_ = std::make_unique<Job>(
         tr("Checking the device"),
         [report, settings, check = check, choice = hands.choiceOf(checked_), open = hands.options().desk.driver](

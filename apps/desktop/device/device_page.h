@@ -40,7 +40,7 @@ class DevicePage : public QDialog {
     void showDevice();
     void showState();
     void takeProfile();
-    void startCheck(const fidelity::CheckSettings& settings);
+    void startCheck(fidelity::CheckSettings settings);
     void endCheck();
     void save();
 

@@ -29,7 +29,7 @@ FidelityBox::FidelityBox(QWidget* parent) : QWidget(parent) {
                    tr("Measures for as long as the field beside it says"));
     row->addWidget(start_);
     seconds_ = named(new QSpinBox(this), "fidelitySeconds", tr("Seconds"), tr("How long to measure"));
-    seconds_->setRange(1, 600);
+    seconds_->setRange(2, 600);
     seconds_->setValue(10);
     seconds_->setSuffix(tr(" s"));
     row->addWidget(seconds_);
@@ -116,6 +116,10 @@ void FidelityBox::begin() {
 
 void FidelityBox::setFraction(double fraction) {
     progress_->setValue(static_cast<int>(1000.0 * std::clamp(fraction, 0.0, 1.0)));
+}
+
+void FidelityBox::say(const QString& sentence) {
+    if (running_) verdict_->setText(sentence);
 }
 
 void FidelityBox::end(const QString& why) {

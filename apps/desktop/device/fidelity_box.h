@@ -26,6 +26,8 @@ class FidelityBox : public QWidget {
     void setAvailable(bool available);
     void begin();
     void setFraction(double fraction);
+    /// What comes next, and what the person does for it.
+    void say(const QString& sentence);
     /// It ended without findings; `why` in the person's words.
     void end(const QString& why);
     void setReport(const fidelity::Report& report);

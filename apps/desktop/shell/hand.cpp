@@ -9,6 +9,7 @@ namespace handpiece::desktop {
 namespace {
 
 constexpr int kPollMs = 33;
+constexpr double kOverMm = 5.0;
 
 /// It went away, and will not come back by itself.
 bool isGone(link::Trouble trouble) {
@@ -37,7 +38,7 @@ void Hand::suit(std::optional<bool> leftHanded, std::optional<double> scale) {
     profile_.placing.leftHanded = leftHanded.value_or(profile_.placing.leftHanded);
     // A larger scale is within the limits that it was opened with.
     profile_.placing.scale = std::max(profile_.placing.scale, scale.value_or(1.0));
-    opened_.health->place(station::placingFor(profile_, tooth_));
+    opened_.health->place(placing());
 }
 
 bool Hand::setProfile(const workspace::Profile& profile) {
@@ -47,19 +48,28 @@ bool Hand::setProfile(const workspace::Profile& profile) {
         before.stiffnessShare != profile.stiffnessShare || before.clutchButton != profile.clutchButton)
         return false;
     opened_.health->shape(profile.shaping);
-    opened_.health->place(station::placingFor(profile_, tooth_));
+    opened_.health->place(placing());
     return true;
+}
+
+workspace::Placing Hand::placing() const {
+    if (opened_.info.driver != "simulated") return station::placingFor(profile_, tooth_);
+    // The simulated arm moves in the tooth's own axes, above its top.
+    workspace::Placing placing = profile_.placing;
+    if (!tooth_.box.isEmpty()) placing.toothMm = {tooth_.box.centre().x(), tooth_.box.centre().y(), tooth_.box.max.z()};
+    return placing;
 }
 
 void Hand::placeFor(const station::ToothPlace& tooth) {
     tooth_ = tooth;
-    opened_.health->place(station::placingFor(profile_, tooth_));
+    opened_.health->place(placing());
 }
 
 void Hand::placeHere(const core::Vec3& handMm) {
-    profile_.placing.deviceMm = handMm;
+    const workspace::Placing now = placing();
+    profile_.placing.deviceMm = handMm - now.scale * (now.toothInDevice * core::Vec3(0.0, 0.0, kOverMm));
     workspace::writeProfile(profiles_, profile_);
-    opened_.health->place(station::placingFor(profile_, tooth_));
+    opened_.health->place(placing());
 }
 
 QString problemIdOf(link::Trouble trouble) {

@@ -49,6 +49,8 @@ class Hand {
     }
 
   private:
+    [[nodiscard]] workspace::Placing placing() const;
+
     std::string name_;
     station::OpenDevice opened_;
     std::filesystem::path profiles_;

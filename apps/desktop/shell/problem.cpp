@@ -149,6 +149,8 @@ constexpr std::array kEntries = {
           QT_TRANSLATE_NOOP("Problem", "Install the udev rules (docs/devices.md), then plug it in again.")},
     Entry{"device-error", QT_TRANSLATE_NOOP("Problem", "%1 reports an error: %2"),
           QT_TRANSLATE_NOOP("Problem", "Switch the device off and on, then choose it again.")},
+    Entry{"no-licence", QT_TRANSLATE_NOOP("Problem", "The maker's library asks for a licence: %1."),
+          QT_TRANSLATE_NOOP("Problem", "Install the licence with the maker's program, then choose the device again.")},
     Entry{"device-deaf", QT_TRANSLATE_NOOP("Problem", "The maker's library does not answer."),
           QT_TRANSLATE_NOOP("Problem", "Switch the device off and on and start Handpiece again.")},
     Entry{"haply-silent", QT_TRANSLATE_NOOP("Problem", "The Haply service at %1 does not answer."),

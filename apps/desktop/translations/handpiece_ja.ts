@@ -467,6 +467,30 @@
         <source>Make a tooth to be cut out of a CT: slices, a DICOM folder, a volume</source>
         <translation>CT（スライス画像のフォルダー、ボリューム）から、切削できる歯を作ります</translation>
     </message>
+    <message>
+        <source>Device page...</source>
+        <translation>デバイスのページ...</translation>
+    </message>
+    <message>
+        <source>How the device is doing, its settings, and a check of how good it feels</source>
+        <translation>デバイスの状態、設定、手ごたえの検査を表示します</translation>
+    </message>
+    <message>
+        <source>Set up...</source>
+        <translation>準備...</translation>
+    </message>
+    <message>
+        <source>Connect, calibrate, feel a block</source>
+        <translation>接続、校正、ブロックに触れる練習をします</translation>
+    </message>
+    <message>
+        <source>Look for devices</source>
+        <translation>デバイスを探す</translation>
+    </message>
+    <message>
+        <source>Look again which devices are connected</source>
+        <translation>接続されているデバイスをもう一度探します</translation>
+    </message>
 </context>
 <context>
     <name>BurPicture</name>
@@ -1037,6 +1061,22 @@
         <source>There is no picture. Everything else goes on. Technical detail: %1</source>
         <translation>画像を表示できません。ほかの機能はすべて使えます。技術的な詳細：%1</translation>
     </message>
+    <message>
+        <source>%1 %2 The mouse holds the handpiece now; nothing that was cut is lost.</source>
+        <translation>%1%2 いまはマウスでハンドピースを動かします。切削した内容は失われていません。</translation>
+    </message>
+    <message>
+        <source>The school&apos;s settings have a mistake. Technical detail: %1</source>
+        <translation>学校の設定に誤りがあります。技術情報：%1</translation>
+    </message>
+    <message>
+        <source>%1 %2 The mouse holds the handpiece.</source>
+        <translation>%1%2 マウスでハンドピースを動かします。</translation>
+    </message>
+    <message>
+        <source>The device gives no force. %1 %2</source>
+        <translation>デバイスは力を出していません。%1%2</translation>
+    </message>
 </context>
 <context>
     <name>Overlay</name>
@@ -1571,6 +1611,218 @@
         <source>Open the file with a web browser.</source>
         <translation>ウェブブラウザーでファイルを開いてください。</translation>
     </message>
+    <message>
+        <source>The software of the device&apos;s maker was not found: %1.</source>
+        <translation>デバイスの製造元のソフトウェアが見つかりません：%1。</translation>
+    </message>
+    <message>
+        <source>Install the maker&apos;s driver and library, then choose the device again.</source>
+        <translation>製造元のドライバーとライブラリをインストールし、もう一度デバイスを選んでください。</translation>
+    </message>
+    <message>
+        <source>The maker&apos;s library is of another version: %1 has no %2.</source>
+        <translation>製造元のライブラリの版が違います：%1 に %2 がありません。</translation>
+    </message>
+    <message>
+        <source>Install the version that docs/devices.md names.</source>
+        <translation>docs/devices.md にある版をインストールしてください。</translation>
+    </message>
+    <message>
+        <source>Two libraries want the same device: %1 and %2.</source>
+        <translation>二つのライブラリが同じデバイスを使おうとしています：%1 と %2。</translation>
+    </message>
+    <message>
+        <source>Name the one that is meant in HANDPIECE_HD_LIBRARY and start again.</source>
+        <translation>使う方を HANDPIECE_HD_LIBRARY に指定し、起動し直してください。</translation>
+    </message>
+    <message>
+        <source>There is no device called %1.</source>
+        <translation>%1 という名前のデバイスはありません。</translation>
+    </message>
+    <message>
+        <source>Choose one in the menu Device.</source>
+        <translation>メニュー「デバイス」から選んでください。</translation>
+    </message>
+    <message>
+        <source>The device is not there: %1.</source>
+        <translation>デバイスがありません：%1。</translation>
+    </message>
+    <message>
+        <source>Check its cable and power, then connect it again.</source>
+        <translation>ケーブルと電源を確かめ、もう一度接続してください。</translation>
+    </message>
+    <message>
+        <source>The device is in use already: %1.</source>
+        <translation>デバイスはすでに使われています：%1。</translation>
+    </message>
+    <message>
+        <source>Close the other program that uses it.</source>
+        <translation>それを使っているほかのプログラムを閉じてください。</translation>
+    </message>
+    <message>
+        <source>This account may not use the device: %1.</source>
+        <translation>このアカウントにはデバイスを使う権限がありません：%1。</translation>
+    </message>
+    <message>
+        <source>Install the udev rules (docs/devices.md), then plug it in again.</source>
+        <translation>udev の規則をインストールし（docs/devices.md）、つなぎ直してください。</translation>
+    </message>
+    <message>
+        <source>%1 reports an error: %2</source>
+        <translation>%1 がエラーを報告しています：%2</translation>
+    </message>
+    <message>
+        <source>Switch the device off and on, then choose it again.</source>
+        <translation>デバイスの電源を入れ直し、もう一度選んでください。</translation>
+    </message>
+    <message>
+        <source>The maker&apos;s library does not answer.</source>
+        <translation>製造元のライブラリが応答しません。</translation>
+    </message>
+    <message>
+        <source>Switch the device off and on and start Handpiece again.</source>
+        <translation>デバイスの電源を入れ直し、Handpiece を起動し直してください。</translation>
+    </message>
+    <message>
+        <source>The Haply service at %1 does not answer.</source>
+        <translation>%1 の Haply サービスが応答しません。</translation>
+    </message>
+    <message>
+        <source>Start Haply Hub, then choose the device again.</source>
+        <translation>Haply Hub を起動し、もう一度デバイスを選んでください。</translation>
+    </message>
+    <message>
+        <source>The device&apos;s service is not running at %1: %2.</source>
+        <translation>デバイスのサービスが %1 で動いていません：%2。</translation>
+    </message>
+    <message>
+        <source>Start it (Haply Hub), then choose the device again.</source>
+        <translation>サービス（Haply Hub）を起動し、もう一度デバイスを選んでください。</translation>
+    </message>
+    <message>
+        <source>The service at %1 sends what cannot be read.</source>
+        <translation>%1 のサービスから読めないデータが届いています。</translation>
+    </message>
+    <message>
+        <source>Update Haply Hub.</source>
+        <translation>Haply Hub を更新してください。</translation>
+    </message>
+    <message>
+        <source>The service of the SpaceMouse is not running: %1.</source>
+        <translation>SpaceMouse のサービスが動いていません：%1。</translation>
+    </message>
+    <message>
+        <source>Install and start spacenavd, then choose the device again.</source>
+        <translation>spacenavd をインストールして起動し、もう一度デバイスを選んでください。</translation>
+    </message>
+    <message>
+        <source>The device&apos;s settings are those of another device: %1.</source>
+        <translation>デバイスの設定が別のデバイスのものです：%1。</translation>
+    </message>
+    <message>
+        <source>Take the file away, then set the device up.</source>
+        <translation>ファイルを取り除き、デバイスの準備をしてください。</translation>
+    </message>
+    <message>
+        <source>The device has not told where it is yet.</source>
+        <translation>デバイスがまだ位置を知らせていません。</translation>
+    </message>
+    <message>
+        <source>Wait a moment.</source>
+        <translation>しばらくお待ちください。</translation>
+    </message>
+    <message>
+        <source>The device is gone.</source>
+        <translation>デバイスがなくなりました。</translation>
+    </message>
+    <message>
+        <source>Check its cable and power.</source>
+        <translation>ケーブルと電源を確かめてください。</translation>
+    </message>
+    <message>
+        <source>The device&apos;s own software reports an error (%1).</source>
+        <translation>デバイスのソフトウェアがエラーを報告しています（%1）。</translation>
+    </message>
+    <message>
+        <source>Switch the device off and on.</source>
+        <translation>デバイスの電源を入れ直してください。</translation>
+    </message>
+    <message>
+        <source>The device sends what cannot be read.</source>
+        <translation>デバイスから読めないデータが届いています。</translation>
+    </message>
+    <message>
+        <source>Start its service again, or update it.</source>
+        <translation>サービスを起動し直すか、更新してください。</translation>
+    </message>
+    <message>
+        <source>The device has stopped telling where it is.</source>
+        <translation>デバイスが位置を知らせなくなりました。</translation>
+    </message>
+    <message>
+        <source>Check its cable; close other programs that use it.</source>
+        <translation>ケーブルを確かめ、それを使っているほかのプログラムを閉じてください。</translation>
+    </message>
+    <message>
+        <source>The simulation stood still.</source>
+        <translation>シミュレーションが止まっていました。</translation>
+    </message>
+    <message>
+        <source>Close other programs; the force comes back by itself.</source>
+        <translation>ほかのプログラムを閉じてください。力は自動で戻ります。</translation>
+    </message>
+    <message>
+        <source>The device told a place that is no number.</source>
+        <translation>デバイスの知らせた位置が数ではありません。</translation>
+    </message>
+    <message>
+        <source>Lift the bur off the tooth; calibrate the device.</source>
+        <translation>バーを歯から離し、デバイスを校正してください。</translation>
+    </message>
+    <message>
+        <source>The stylus jumped farther than a hand can move.</source>
+        <translation>スタイラスが手では動かせないほど大きく飛びました。</translation>
+    </message>
+    <message>
+        <source>The device is not calibrated.</source>
+        <translation>デバイスが校正されていません。</translation>
+    </message>
+    <message>
+        <source>Calibrate it: Device, Set up...</source>
+        <translation>校正してください：「デバイス」→「準備」...</translation>
+    </message>
+    <message>
+        <source>The device&apos;s motors are too warm.</source>
+        <translation>デバイスのモーターが熱くなりすぎています。</translation>
+    </message>
+    <message>
+        <source>Let it rest for some minutes.</source>
+        <translation>数分間休ませてください。</translation>
+    </message>
+    <message>
+        <source>Nobody holds the stylus.</source>
+        <translation>スタイラスを誰も持っていません。</translation>
+    </message>
+    <message>
+        <source>Take it in the hand.</source>
+        <translation>手に取ってください。</translation>
+    </message>
+    <message>
+        <source>The device was stopped.</source>
+        <translation>デバイスが停止されました。</translation>
+    </message>
+    <message>
+        <source>Choose it again in the menu Device.</source>
+        <translation>メニュー「デバイス」からもう一度選んでください。</translation>
+    </message>
+    <message>
+        <source>The maker&apos;s library asks for a licence: %1.</source>
+        <translation>製造元のライブラリがライセンスを求めています：%1。</translation>
+    </message>
+    <message>
+        <source>Install the licence with the maker&apos;s program, then choose the device again.</source>
+        <translation>製造元のプログラムでライセンスを入れ、もう一度デバイスを選んでください。</translation>
+    </message>
 </context>
 <context>
     <name>Pulp</name>
@@ -1678,6 +1930,25 @@
     <message>
         <source>Click where caries shall be that the patient does not have. The case says that it was authored</source>
         <translation>患者にはないう蝕を置く場所をクリックします。症例には作成された病変と記されます</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::BlockView</name>
+    <message>
+        <source>The block and the bur</source>
+        <translation>ブロックとバー</translation>
+    </message>
+    <message>
+        <source>The block from the side, the bur where it rests, and the force on the hand as a line</source>
+        <translation>横から見たブロックとバーの位置、手にかかる力を線で示します</translation>
+    </message>
+    <message>
+        <source>touching</source>
+        <translation>接触中</translation>
+    </message>
+    <message>
+        <source>in the air</source>
+        <translation>空中</translation>
     </message>
 </context>
 <context>
@@ -1891,6 +2162,61 @@
     </message>
 </context>
 <context>
+    <name>handpiece::desktop::DevicePage</name>
+    <message>
+        <source>Device</source>
+        <translation>デバイス</translation>
+    </message>
+    <message>
+        <source>What holds the handpiece</source>
+        <translation>ハンドピースを動かす装置です</translation>
+    </message>
+    <message>
+        <source>Parts of the page</source>
+        <translation>ページの区分</translation>
+    </message>
+    <message>
+        <source>Now</source>
+        <translation>現在</translation>
+    </message>
+    <message>
+        <source>Settings</source>
+        <translation>設定</translation>
+    </message>
+    <message>
+        <source>Fidelity</source>
+        <translation>忠実度</translation>
+    </message>
+    <message>
+        <source>The check has the device; the mouse holds the handpiece meanwhile.</source>
+        <translation>検査中のため、その間はマウスでハンドピースを動かします。</translation>
+    </message>
+    <message>
+        <source>The device is being opened...</source>
+        <translation>デバイスを開いています...</translation>
+    </message>
+    <message>
+        <source>The mouse holds the handpiece: choose a device in the menu Device.</source>
+        <translation>マウスでハンドピースを動かしています。メニュー「デバイス」からデバイスを選んでください。</translation>
+    </message>
+    <message>
+        <source>Checking the device</source>
+        <translation>デバイスの検査</translation>
+    </message>
+    <message>
+        <source>The check was cancelled.</source>
+        <translation>検査を中止しました。</translation>
+    </message>
+    <message>
+        <source>Save report</source>
+        <translation>報告書の保存</translation>
+    </message>
+    <message>
+        <source>Page to print (*.html);;For machines (*.json)</source>
+        <translation>印刷用ページ (*.html);;機械用 (*.json)</translation>
+    </message>
+</context>
+<context>
     <name>handpiece::desktop::DrillBar</name>
     <message>
         <source>High speed (air turbine)</source>
@@ -2072,6 +2398,248 @@
     </message>
 </context>
 <context>
+    <name>handpiece::desktop::FidelityBox</name>
+    <message>
+        <source>How good this station feels</source>
+        <translation>この装置の手ごたえ</translation>
+    </message>
+    <message>
+        <source>Measures the device with this computer: how evenly its servo runs, how late a force comes, its noise and limits. Nothing else has the device meanwhile.</source>
+        <translation>このコンピューターでデバイスを測ります：サーボの規則正しさ、力の遅れ、雑音、限界。その間、デバイスはほかには使えません。</translation>
+    </message>
+    <message>
+        <source>Check now</source>
+        <translation>検査する</translation>
+    </message>
+    <message>
+        <source>Measures for as long as the field beside it says</source>
+        <translation>右の欄の時間だけ測ります</translation>
+    </message>
+    <message>
+        <source>Seconds</source>
+        <translation>秒数</translation>
+    </message>
+    <message>
+        <source>How long to measure</source>
+        <translation>測る時間です</translation>
+    </message>
+    <message>
+        <source> s</source>
+        <translation> 秒</translation>
+    </message>
+    <message>
+        <source>Push lightly</source>
+        <translation>軽く押す</translation>
+    </message>
+    <message>
+        <source>Pushes the stylus with a small known force to measure slope and delay: hold it loosely. Without it these are not measured.</source>
+        <translation>決まった小さな力でスタイラスを押し、立ち上がりと遅れを測ります。軽く持ってください。押さない場合、これらは測りません。</translation>
+    </message>
+    <message>
+        <source>Progress of the check</source>
+        <translation>検査の進み具合</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>中止</translation>
+    </message>
+    <message>
+        <source>Stops the check</source>
+        <translation>検査を止めます</translation>
+    </message>
+    <message>
+        <source>Result of the check</source>
+        <translation>検査の結果</translation>
+    </message>
+    <message>
+        <source>Findings</source>
+        <translation>所見</translation>
+    </message>
+    <message>
+        <source>Each finding with its figure; what to do stands below those that did not pass</source>
+        <translation>所見とその値です。合格しなかったものには、対処が下に示されます</translation>
+    </message>
+    <message>
+        <source>Result</source>
+        <translation>結果</translation>
+    </message>
+    <message>
+        <source>What</source>
+        <translation>項目</translation>
+    </message>
+    <message>
+        <source>Figure</source>
+        <translation>値</translation>
+    </message>
+    <message>
+        <source>Save report...</source>
+        <translation>報告書の保存...</translation>
+    </message>
+    <message>
+        <source>As a page to print (HTML) or for machines (JSON)</source>
+        <translation>印刷用ページ（HTML）または機械用（JSON）で保存します</translation>
+    </message>
+    <message>
+        <source>Passed</source>
+        <translation>合格</translation>
+    </message>
+    <message>
+        <source>Look at this</source>
+        <translation>要確認</translation>
+    </message>
+    <message>
+        <source>Failed</source>
+        <translation>不合格</translation>
+    </message>
+    <message>
+        <source>Not measured</source>
+        <translation>未測定</translation>
+    </message>
+    <message>
+        <source>Choose a device in the menu Device first</source>
+        <translation>先にメニュー「デバイス」からデバイスを選んでください</translation>
+    </message>
+    <message>
+        <source>Measuring...</source>
+        <translation>測定中...</translation>
+    </message>
+    <message>
+        <source>Failed: %1. To look at: %2.</source>
+        <translation>不合格：%1、要確認：%2。</translation>
+    </message>
+    <message>
+        <source>Nothing failed. To look at: %1.</source>
+        <translation>不合格はありません。要確認：%1。</translation>
+    </message>
+    <message>
+        <source>All that could be measured has passed.</source>
+        <translation>測れた項目はすべて合格です。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::FirstPlugIn</name>
+    <message>
+        <source>Set up the device</source>
+        <translation>デバイスの準備</translation>
+    </message>
+    <message>
+        <source>Step</source>
+        <translation>手順</translation>
+    </message>
+    <message>
+        <source>Later</source>
+        <translation>あとで</translation>
+    </message>
+    <message>
+        <source>Work with what fits the model; Device, Set up... comes back here</source>
+        <translation>機種に合った設定で作業します。「デバイス」→「準備」でここに戻れます</translation>
+    </message>
+    <message>
+        <source>Back</source>
+        <translation>戻る</translation>
+    </message>
+    <message>
+        <source>To the step before</source>
+        <translation>前の手順へ</translation>
+    </message>
+    <message>
+        <source>Next</source>
+        <translation>次へ</translation>
+    </message>
+    <message>
+        <source>Connection</source>
+        <translation>接続</translation>
+    </message>
+    <message>
+        <source>What to do</source>
+        <translation>すること</translation>
+    </message>
+    <message>
+        <source>Calibration</source>
+        <translation>校正</translation>
+    </message>
+    <message>
+        <source>Calibrate</source>
+        <translation>校正する</translation>
+    </message>
+    <message>
+        <source>Asks the device to take its place anew</source>
+        <translation>デバイスに位置を取り直させます</translation>
+    </message>
+    <message>
+        <source>1 of 3: Connect</source>
+        <translation>1／3：接続</translation>
+    </message>
+    <message>
+        <source>2 of 3: Calibrate</source>
+        <translation>2／3：校正</translation>
+    </message>
+    <message>
+        <source>3 of 3: Feel a block</source>
+        <translation>3／3：ブロックに触れる</translation>
+    </message>
+    <message>
+        <source>Finish</source>
+        <translation>完了</translation>
+    </message>
+    <message>
+        <source>Keeps this for the device and takes it to the tooth</source>
+        <translation>この設定をデバイス用に保存し、歯に移ります</translation>
+    </message>
+    <message>
+        <source>To the next step</source>
+        <translation>次の手順へ</translation>
+    </message>
+    <message>
+        <source>Lower the stylus onto the block: it should feel hard, and the line shows how it pushes back. Choose what suits your hand.</source>
+        <translation>スタイラスをブロックの上に下ろしてください。硬く感じられ、押し返す力が線で示されます。手に合うものを選んでください。</translation>
+    </message>
+    <message>
+        <source>The device is being opened...</source>
+        <translation>デバイスを開いています...</translation>
+    </message>
+    <message>
+        <source>The device is not there. Connect it and choose it again in the menu Device. The mouse works meanwhile.</source>
+        <translation>デバイスがありません。接続し、メニュー「デバイス」からもう一度選んでください。その間はマウスが使えます。</translation>
+    </message>
+    <message>
+        <source>Waiting for the device&apos;s first answer...</source>
+        <translation>デバイスの最初の応答を待っています...</translation>
+    </message>
+    <message>
+        <source>The device answers. Move the stylus: the picture follows.</source>
+        <translation>デバイスが応答しています。スタイラスを動かすと、図も動きます。</translation>
+    </message>
+    <message>
+        <source>This device calibrates by itself.</source>
+        <translation>このデバイスは自動で校正されます。</translation>
+    </message>
+    <message>
+        <source>Calibrated.</source>
+        <translation>校正済みです。</translation>
+    </message>
+    <message>
+        <source>Not calibrated yet.</source>
+        <translation>まだ校正されていません。</translation>
+    </message>
+    <message>
+        <source>Press Calibrate.</source>
+        <translation>「校正する」を押してください。</translation>
+    </message>
+    <message>
+        <source>Nothing is to be done. You may calibrate again.</source>
+        <translation>何もする必要はありません。もう一度校正することもできます。</translation>
+    </message>
+    <message>
+        <source>Calibrating...</source>
+        <translation>校正中...</translation>
+    </message>
+    <message>
+        <source>Not calibrated yet. Do as it says above, then try again.</source>
+        <translation>まだ校正されていません。上の説明のとおりにして、もう一度試してください。</translation>
+    </message>
+</context>
+<context>
     <name>handpiece::desktop::ForceGauge</name>
     <message>
         <source>How hard the bur presses</source>
@@ -2116,6 +2684,17 @@
     <message>
         <source>limit %1</source>
         <translation>限界 %1</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::Hands</name>
+    <message>
+        <source>Looking for devices</source>
+        <translation>デバイスを探しています</translation>
+    </message>
+    <message>
+        <source>Opening the device</source>
+        <translation>デバイスを開いています</translation>
     </message>
 </context>
 <context>
@@ -2295,6 +2874,153 @@
     <message>
         <source>mm</source>
         <translation>mm</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::LiveBox</name>
+    <message>
+        <source>How the device is doing</source>
+        <translation>デバイスの状態</translation>
+    </message>
+    <message>
+        <source>Force on the hand</source>
+        <translation>手にかかる力</translation>
+    </message>
+    <message>
+        <source>What the device pushes the hand with. The line is the highest of the last two seconds.</source>
+        <translation>デバイスが手を押す力です。線は過去2秒の最大値です。</translation>
+    </message>
+    <message>
+        <source>Device</source>
+        <translation>デバイス</translation>
+    </message>
+    <message>
+        <source>As its maker calls it, and the version of its software</source>
+        <translation>製造元による名前と、ソフトウェアの版です</translation>
+    </message>
+    <message>
+        <source>Place</source>
+        <translation>位置</translation>
+    </message>
+    <message>
+        <source>Of the stylus: to the right, up, and to the user</source>
+        <translation>スタイラスの位置：右、上、手前の順です</translation>
+    </message>
+    <message>
+        <source>Buttons</source>
+        <translation>ボタン</translation>
+    </message>
+    <message>
+        <source>The upper one cuts; the lower one, held, undoes</source>
+        <translation>上のボタンで切削し、下のボタンを押し続けると元に戻します</translation>
+    </message>
+    <message>
+        <source>Force sent</source>
+        <translation>送った力</translation>
+    </message>
+    <message>
+        <source>To the right, up, and to the user; after all limits</source>
+        <translation>右、上、手前の順で、すべての制限のあとの値です</translation>
+    </message>
+    <message>
+        <source>Motors</source>
+        <translation>モーター</translation>
+    </message>
+    <message>
+        <source>Warmth as the device tells it, and as the thermal budget counts it</source>
+        <translation>デバイスの知らせる温度と、熱の予算で数えた値です</translation>
+    </message>
+    <message>
+        <source>Servo</source>
+        <translation>サーボ</translation>
+    </message>
+    <message>
+        <source>How often the device&apos;s own loop asks for a force</source>
+        <translation>デバイス自身のループが力を求める頻度です</translation>
+    </message>
+    <message>
+        <source>Lateness</source>
+        <translation>遅れ</translation>
+    </message>
+    <message>
+        <source>How late the force loop begins, of 100 ticks the latest</source>
+        <translation>力のループの始まりの遅れです。100回のうち最も遅い値です</translation>
+    </message>
+    <message>
+        <source>Passivity</source>
+        <translation>受動性</translation>
+    </message>
+    <message>
+        <source>How often the controller had to take energy out</source>
+        <translation>制御器がエネルギーを取り除いた回数です</translation>
+    </message>
+    <message>
+        <source>Trouble</source>
+        <translation>異常</translation>
+    </message>
+    <message>
+        <source>Why it gives no force</source>
+        <translation>力を出さない理由です</translation>
+    </message>
+    <message>
+        <source>mm</source>
+        <translation>mm</translation>
+    </message>
+    <message>
+        <source>upper</source>
+        <translation>上</translation>
+    </message>
+    <message>
+        <source>lower</source>
+        <translation>下</translation>
+    </message>
+    <message>
+        <source>number %1</source>
+        <translation>%1 番</translation>
+    </message>
+    <message>
+        <source>clutch held</source>
+        <translation>クラッチ中</translation>
+    </message>
+    <message>
+        <source>none pressed</source>
+        <translation>押されていません</translation>
+    </message>
+    <message>
+        <source>N</source>
+        <translation>N</translation>
+    </message>
+    <message>
+        <source>gives no force</source>
+        <translation>力を出しません</translation>
+    </message>
+    <message>
+        <source>%1 % of what is allowed; budget %2 % used</source>
+        <translation>許容の %1 %、予算の使用 %2 %</translation>
+    </message>
+    <message>
+        <source>not told; budget %1 % used</source>
+        <translation>不明、予算の使用 %1 %</translation>
+    </message>
+    <message>
+        <source>%1 Hz (%2 by design), frames: %3</source>
+        <translation>%1 Hz（設計値 %2）、フレーム：%3</translation>
+    </message>
+    <message>
+        <source>controller engaged in ticks: %1</source>
+        <translation>制御器が働いたティック：%1</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>なし</translation>
+    </message>
+    <message>
+        <source>p99 %1 µs; late ticks: %2, missed: %3</source>
+        <translation>p99 %1 µs、遅れたティック：%2、欠け：%3</translation>
+    </message>
+    <message>
+        <source>Mouse and keyboard</source>
+        <translation>マウスとキーボード</translation>
     </message>
 </context>
 <context>
@@ -2722,6 +3448,46 @@
     <message>
         <source>There is no sound card.</source>
         <translation>サウンドカードがありません。</translation>
+    </message>
+    <message>
+        <source>Device</source>
+        <translation>デバイス</translation>
+    </message>
+    <message>
+        <source>Reconnect</source>
+        <translation>再接続</translation>
+    </message>
+    <message>
+        <source>Try again</source>
+        <translation>もう一度</translation>
+    </message>
+    <message>
+        <source>Mouse and keyboard</source>
+        <translation>マウスとキーボード</translation>
+    </message>
+    <message>
+        <source>Always there</source>
+        <translation>いつでも使えます</translation>
+    </message>
+    <message>
+        <source>Gives force</source>
+        <translation>力を出します</translation>
+    </message>
+    <message>
+        <source>Moves the handpiece, gives no force</source>
+        <translation>ハンドピースを動かします。力は出しません</translation>
+    </message>
+    <message>
+        <source>%1: not there</source>
+        <translation>%1：ありません</translation>
+    </message>
+    <message>
+        <source>Looking...</source>
+        <translation>探しています...</translation>
+    </message>
+    <message>
+        <source>being opened</source>
+        <translation>開いています</translation>
     </message>
 </context>
 <context>
@@ -3372,6 +4138,160 @@
     <message>
         <source>%1 s: %2 N, %3 mm, %4 rpm</source>
         <translation>%1 秒：%2 N、%3 mm、%4 rpm</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ProfileBox</name>
+    <message>
+        <source>Settings of the device</source>
+        <translation>デバイスの設定</translation>
+    </message>
+    <message>
+        <source>Hand</source>
+        <translation>手</translation>
+    </message>
+    <message>
+        <source>Which hand holds the stylus: for the left one the head of the handpiece is mirrored</source>
+        <translation>スタイラスを持つ手です。左手の場合、ハンドピースのヘッドは左右逆になります</translation>
+    </message>
+    <message>
+        <source>Right</source>
+        <translation>右</translation>
+    </message>
+    <message>
+        <source>Left</source>
+        <translation>左</translation>
+    </message>
+    <message>
+        <source>Scale</source>
+        <translation>倍率</translation>
+    </message>
+    <message>
+        <source>How far the hand goes for a millimetre of the bur. A larger scale is for fine work: the hand is steadier, the tooth feels softer.</source>
+        <translation>バーが1 mm動くのに手が動く距離です。大きな倍率は細かな作業向きで、手が安定し、歯は軟らかく感じられます。</translation>
+    </message>
+    <message>
+        <source>%1:1</source>
+        <translation>%1:1</translation>
+    </message>
+    <message>
+        <source>Bur</source>
+        <translation>バー</translation>
+    </message>
+    <message>
+        <source>The stylus is the handle: the bur sits in the head at an angle, or goes on along the stylus</source>
+        <translation>スタイラスが柄です。バーはヘッドに角度をつけて付くか、スタイラスの延長になります</translation>
+    </message>
+    <message>
+        <source>In the head, at its angle</source>
+        <translation>ヘッドに角度をつけて</translation>
+    </message>
+    <message>
+        <source>Along the stylus</source>
+        <translation>スタイラスの延長に</translation>
+    </message>
+    <message>
+        <source>Clutch</source>
+        <translation>クラッチ</translation>
+    </message>
+    <message>
+        <source>While this button is held the bur stays and the hand moves freely, to reach farther</source>
+        <translation>このボタンを押している間、バーは止まり、手だけを動かせます。遠くに届かせるためです</translation>
+    </message>
+    <message>
+        <source>No clutch</source>
+        <translation>クラッチなし</translation>
+    </message>
+    <message>
+        <source>Lower button</source>
+        <translation>下のボタン</translation>
+    </message>
+    <message>
+        <source>Button %1</source>
+        <translation>ボタン %1</translation>
+    </message>
+    <message>
+        <source>Place the tooth here</source>
+        <translation>歯をここに置く</translation>
+    </message>
+    <message>
+        <source>Where the hand is now, it has the bur over the tooth from now on</source>
+        <translation>いまの手の位置が、これからバーが歯の上にある位置になります</translation>
+    </message>
+    <message>
+        <source>Placing</source>
+        <translation>配置</translation>
+    </message>
+    <message>
+        <source>Force</source>
+        <translation>力</translation>
+    </message>
+    <message>
+        <source>All forces times this; the device&apos;s limits stay. Below 100 % everything feels softer and the motors stay cooler.</source>
+        <translation>すべての力にかける倍率です。デバイスの限界は変わりません。100 % より小さくすると、全体が軟らかく感じられ、モーターも熱くなりにくくなります。</translation>
+    </message>
+    <message>
+        <source> %</source>
+        <translation> %</translation>
+    </message>
+    <message>
+        <source>Passivity controller</source>
+        <translation>受動性の制御</translation>
+    </message>
+    <message>
+        <source>Takes out energy that the tooth did not give, so that the stylus never buzzes or kicks</source>
+        <translation>歯から来ていないエネルギーを取り除き、スタイラスが震えたり跳ねたりしないようにします</translation>
+    </message>
+    <message>
+        <source>Friction compensation</source>
+        <translation>摩擦の補償</translation>
+    </message>
+    <message>
+        <source>Gives back part of what the arm&apos;s own joints rub away, so that light touches are felt</source>
+        <translation>アームの関節の摩擦で失われる力の一部を補い、軽い接触も感じられるようにします</translation>
+    </message>
+    <message>
+        <source>Thermal budget</source>
+        <translation>熱の予算</translation>
+    </message>
+    <message>
+        <source>Lowers the force slowly when one presses hard for long, before the motors get too warm</source>
+        <translation>強く長く押したとき、モーターが熱くなりすぎる前に力をゆっくり下げます</translation>
+    </message>
+    <message>
+        <source>Crisp contact</source>
+        <translation>硬い接触</translation>
+    </message>
+    <message>
+        <source>A short knock at each touch, at the tissue&apos;s own pitch: makes a soft arm&apos;s enamel feel hard</source>
+        <translation>触れるたびに組織に応じた高さの短い衝撃を加え、力の弱いアームでもエナメル質を硬く感じさせます</translation>
+    </message>
+    <message>
+        <source>Cutting vibration</source>
+        <translation>切削の振動</translation>
+    </message>
+    <message>
+        <source>The hum of the bur in the hand while it cuts, 100 to 400 Hz</source>
+        <translation>切削中に手に伝わるバーの振動です（100〜400 Hz）</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ReachPicture</name>
+    <message>
+        <source>The stylus in the device&apos;s reach</source>
+        <translation>デバイスの届く範囲とスタイラス</translation>
+    </message>
+    <message>
+        <source>The stylus in the device&apos;s reach: from the front on the left, from above on the right</source>
+        <translation>デバイスの届く範囲とスタイラス：左は正面、右は上から</translation>
+    </message>
+    <message>
+        <source>From the front</source>
+        <translation>正面から</translation>
+    </message>
+    <message>
+        <source>From above</source>
+        <translation>上から</translation>
     </message>
 </context>
 <context>
@@ -4237,6 +5157,22 @@
     <message>
         <source>load %1 %</source>
         <translation>負荷 %1 %</translation>
+    </message>
+    <message>
+        <source>%1: %2</source>
+        <translation>%1：%2</translation>
+    </message>
+    <message>
+        <source>%1, %2 Hz</source>
+        <translation>%1、%2 Hz</translation>
+    </message>
+    <message>
+        <source>What holds the handpiece, and how often its own servo answers. Press to choose.</source>
+        <translation>ハンドピースを動かす装置と、そのサーボの頻度です。押すと選べます。</translation>
+    </message>
+    <message>
+        <source>The device gives no force: %1</source>
+        <translation>デバイスは力を出していません：%1</translation>
     </message>
 </context>
 <context>

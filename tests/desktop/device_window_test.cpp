@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: Apache-2.0
+// A device in the window: chosen, cut with, unplugged, set up, checked.
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDialog>
+#include <QFile>
+#include <QLabel>
+#include <QMenu>
+#include <QPushButton>
+#include <QRegularExpression>
+#include <QSpinBox>
+#include <QTabWidget>
+#include <QToolButton>
+#include <QTreeWidget>
+
+#include "device/fidelity_box.h"
+#include "device/first_plug_in.h"
+#include "device/install.h"
+#include "device/profile_box.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+#include "led_driver.h"
+#include "panels/notice_bar.h"
+#include "shell_support.h"
+#include "station/cut_session.h"
+#include "station/session_player.h"
+
+namespace handpiece::desktop {
+namespace {
+
+class DeviceWindowTest : public ShellTest {
+  protected:
+    [[nodiscard]] Simulator::Options options() const override {
+        Simulator::Options options = ShellTest::options();
+        options.hands.profiles = at("devices");
+        options.hands.patience = std::chrono::milliseconds(200);
+        options.hands.desk.look = [] {
+            drivers::Found there, absent;
+            there.driver = "openhaptics";
+            there.makes = "Led arms";
+            there.available = true;
+            there.models = {"Led Arm"};
+            absent.driver = "haply";
+            absent.makes = "Haply Inverse3";
+            absent.why = "Its service is not running.";
+            absent.remedy = "Start Haply Hub.";
+            return std::vector<drivers::Found>{there, absent};
+        };
+        options.hands.desk.open = [led = led_](const station::DeviceChoice& choice) {
+            if (choice.name != "openhaptics" || led->unplugged)
+                throw core::Error("it is not there", choice.name, "plug it in").as("device-missing", {choice.name});
+            return station::openDevice(std::make_unique<LedDriver>(led), choice);
+        };
+        options.hands.desk.driver = [led = led_](const station::DeviceChoice&) {
+            return std::make_unique<LedDriver>(led);
+        };
+        return options;
+    }
+    void startHere(const CommandLine& line = {}) {
+        startWithTooth(line);
+        if (::testing::Test::HasFatalFailure()) return;
+        installDeviceDialogs(window(), simulator(), host_->settings(), false);
+    }
+    [[nodiscard]] Hands& hands() { return simulator().hands(); }
+    [[nodiscard]] QAction* entry(const char* name) {
+        return window().findChild<QAction*>(QStringLiteral("actionDevice_") + QLatin1String(name));
+    }
+    template <class W>
+    [[nodiscard]] W* part(const char* name) {
+        return window().findChild<W*>(QLatin1String(name));
+    }
+    [[nodiscard]] QString noticed() { return window().findChild<NoticeBar*>()->current(); }
+    /// By the menu, as a person does.
+    [[nodiscard]] bool choose(const char* name) {
+        hands().look();
+        if (!waitFor([&] { return entry(name) != nullptr; })) return false;
+        entry(name)->trigger();
+        return true;
+    }
+    [[nodiscard]] bool chooseLed() {
+        host_->settings().set(QStringLiteral("device/seen_openhaptics"), true);
+        return choose("openhaptics") && waitFor([&] { return simulator().usedHand() && !simulator().isBusy(); });
+    }
+    /// Where the hand must be to have the bur there, tip down.
+    void leadBur(const core::Vec3& toothMm, const station::ToothPlace& place) {
+        const workspace::Placing p = station::placingFor(hands().current()->profile(), place);
+        const core::Quat stylus = p.toothInDevice * workspace::Mapping(p).burInStylus().conjugate();
+        const core::Vec3 at =
+            p.deviceMm + p.scale * (p.toothInDevice * (toothMm - p.toothMm)) - stylus * p.tipFromStylusMm;
+        const std::lock_guard lock(led_->mutex);
+        led_->orientation = {stylus.w(), stylus.x(), stylus.y(), stylus.z()};
+        led_->toMm = {at.x(), at.y(), at.z()};
+    }
+    [[nodiscard]] bool burTo(double x, double z) {
+        const tooth::Case& c = *simulator().toothCase();
+        const core::Box box = c.outer.bounds();
+        const core::Vec3 to(x, 0.0, box.max.z() + z);
+        leadBur(to, {box, c.fdiNumber, c.buccalSign});
+        return waitFor([&] {
+            const auto& at = simulator().sample().positionMm;
+            return led_->hasCome() && std::abs(at[0] - to.x()) < 0.02 && std::abs(at[2] - to.z()) < 0.02;
+        });
+    }
+    /// With the upper button down, into the middle of the crown.
+    [[nodiscard]] bool cutWithIt() {
+        const double before = removedMm3();
+        if (!burTo(0.0, 1.0)) return false;
+        led_->buttons = 1;
+        if (!waitFor([&] { return simulator().sample().pedal > 0.5 && simulator().sample().speedRpm > 1000.0; }))
+            return false;
+        const core::Box box = simulator().toothCase()->outer.bounds();
+        leadBur({0.0, 0.0, box.max.z() - 1.0},
+                {box, simulator().toothCase()->fdiNumber, simulator().toothCase()->buccalSign});
+        return waitFor([&] { return removedMm3() > before + 0.05; });
+    }
+    [[nodiscard]] bool liftIt() {
+        led_->buttons = 0;
+        return burTo(0.0, 2.0) && waitFor([&] { return !simulator().status().inStroke; });
+    }
+
+    std::shared_ptr<Led> led_ = std::make_shared<Led>();
+};
+
+TEST_F(DeviceWindowTest, CutsUntilItIsUnpluggedThenTheMouseGoesOnAndNothingIsLost) {
+    startHere();
+    ASSERT_TRUE(simulator().mailbox());
+    ASSERT_TRUE(choose("haply"));
+    ASSERT_TRUE(waitFor([&] { return window().errorDialog() != nullptr; }));
+    EXPECT_TRUE(window().errorDialog()->findChild<QLabel*>("errorWhat")->text().contains("haply"));
+    window().errorDialog()->close();
+    EXPECT_TRUE(simulator().mailbox());
+
+    ASSERT_TRUE(chooseLed());
+    EXPECT_FALSE(simulator().mailbox());
+    EXPECT_EQ(simulator().capability().maxForceN, 3.0);
+    EXPECT_TRUE(entry("openhaptics")->isChecked());
+    EXPECT_FALSE(entry("mouse")->isChecked());
+    EXPECT_EQ(host_->settings().value("work/device").toString(), "openhaptics");
+    const auto* field = part<QToolButton>("statusDevice");
+    EXPECT_TRUE(waitFor([&] { return field->text().contains("Led Arm") && field->text().contains("Hz"); }))
+        << field->text().toStdString();
+
+    ASSERT_TRUE(cutWithIt());
+    EXPECT_GT(led_->largestSentN, 0.05);
+    EXPECT_LE(led_->largestSentN, 3.0);
+    const std::filesystem::path session = simulator().recording();
+    // The mouse looks, and moves no bur.
+    QTest::mousePress(view(), Qt::LeftButton, Qt::NoModifier, view()->rect().center());
+    QTest::mouseRelease(view(), Qt::LeftButton, Qt::NoModifier, view()->rect().center());
+
+    led_->unplugged = true;
+    EXPECT_TRUE(waitFor([&] { return noticed() == "device-trouble" || noticed() == "device-lost"; }));
+    ASSERT_TRUE(waitFor([&] {
+        return noticed() == "device-lost" && !simulator().isBusy() && simulator().mode() == Simulator::Mode::sitting;
+    }));
+    EXPECT_FALSE(simulator().usedHand());
+    EXPECT_TRUE(simulator().mailbox());
+    EXPECT_TRUE(part<QLabel>("noticeText")->text().contains("gone"));
+    EXPECT_TRUE(waitFor([&] { return field->text() == "Mouse"; })) << field->text().toStdString();
+    EXPECT_TRUE(waitFor([&] { return led_->open == 0; }));
+
+    // The recording is whole, and what it ends with is the tooth that is open.
+    const station::SessionPlayer player(session, false);
+    EXPECT_GT(player.durationS(), 0.1);
+    ASSERT_FALSE(player.events().empty());
+    EXPECT_EQ(player.events().back().name, session::nameOf(session::EventName::end));
+    const tooth::CutState now = simulator().tooth()->state(simulator().sample().removedMm3);
+    EXPECT_NE(player.events().back().text.find(station::hashText(tooth::stateHash(now))), std::string::npos)
+        << player.events().back().text;
+    EXPECT_GT(removedMm3(), 0.05);
+    EXPECT_TRUE(simulator().isUnsaved());
+    ASSERT_TRUE(undoAll());
+    EXPECT_TRUE(waitFor([&] { return removedMm3() < 1e-9; }));
+
+    // It is offered again, and comes back.
+    led_->unplugged = false;
+    led_->buttons = 0;
+    auto* reconnect = part<QPushButton>("noticeRemedy");
+    ASSERT_TRUE(reconnect && !reconnect->isHidden());
+    reconnect->click();
+    EXPECT_TRUE(waitFor([&] { return simulator().usedHand() != nullptr && !simulator().isBusy(); }));
+    EXPECT_EQ(noticed(), "");
+    entry("mouse")->trigger();
+    EXPECT_TRUE(waitFor([&] { return simulator().mailbox() != nullptr && !simulator().isBusy(); }));
+    EXPECT_EQ(host_->settings().value("work/device").toString(), "mouse");
+}
+
+TEST_F(DeviceWindowTest, TheLowerButtonHeldInTheAirUndoes) {
+    startHere();
+    ASSERT_TRUE(chooseLed());
+    ASSERT_TRUE(cutWithIt());
+    ASSERT_TRUE(liftIt());
+    ASSERT_TRUE(waitFor([&] { return simulator().status().undoSteps >= 1; }));
+    led_->buttons = 2;
+    EXPECT_TRUE(waitFor([&] { return simulator().status().undoSteps == 0 && removedMm3() < 1e-9 && settled(); }));
+    const std::uint64_t tick = simulator().sample().tick;
+    ASSERT_TRUE(waitFor([&] { return simulator().sample().tick > tick + 800; }));
+    EXPECT_EQ(simulator().status().redoSteps, 1u) << "once a press";
+}
+
+TEST_F(DeviceWindowTest, TheFirstTimeThreeStepsComeByThemselvesAndBlockNothing) {
+    led_->wantsCalibration = true;
+    startHere();
+    ASSERT_TRUE(choose("openhaptics"));
+    ASSERT_TRUE(waitFor([&] { return part<FirstPlugIn>("firstPlugIn") != nullptr; }));
+    auto* steps = part<FirstPlugIn>("firstPlugIn");
+    EXPECT_FALSE(steps->isModal());
+    EXPECT_TRUE(simulator().mailbox()) << "the mouse works on";
+    ASSERT_TRUE(cut());
+    auto* next = steps->findChild<QPushButton*>("firstNext");
+    EXPECT_TRUE(waitFor([&] { return steps->findChild<QLabel*>("firstConnected")->text().contains("answers"); }))
+        << steps->findChild<QLabel*>("firstConnected")->text().toStdString();
+    EXPECT_TRUE(steps->findChild<QLabel*>("deviceModel")->text().contains("Led Arm"));
+    next->click();
+    EXPECT_EQ(steps->step(), FirstPlugIn::Step::calibrate);
+    ASSERT_TRUE(waitFor([&] { return steps->findChild<QLabel*>("firstCalibrationText")->text().contains("inkwell"); }));
+    steps->findChild<QPushButton*>("firstCalibrate")->click();
+    EXPECT_TRUE(waitFor([&] {
+        return led_->calibrations == 1 &&
+               steps->findChild<QLabel*>("firstCalibrationState")->text().startsWith("Calibrated");
+    }));
+    next->click();
+    EXPECT_EQ(steps->step(), FirstPlugIn::Step::feel);
+    ASSERT_TRUE(waitFor([&] { return steps->block().isRunning(); }));
+    leadBur({0.0, 0.0, 1.0}, FeelBlock::place());
+    ASSERT_TRUE(waitFor([&] { return led_->hasCome() && steps->block().sample().depthMm < 0.0; }));
+    leadBur({0.0, 0.0, -1.0}, FeelBlock::place());
+    EXPECT_TRUE(waitFor([&] {
+        const auto& f = steps->block().sample().forceN;
+        return f[2] > 0.1;
+    }));
+    EXPECT_TRUE(waitFor([&] { return led_->largestSentN > 0.05; }));
+    leadBur({0.0, 0.0, 2.0}, FeelBlock::place());
+    ASSERT_TRUE(waitFor([&] { return led_->hasCome(); }));
+    // Another scale is another opening; another hand is not.
+    auto* scale = steps->findChild<QComboBox*>("profileScale");
+    scale->setCurrentIndex(1);
+    emit scale->activated(1);
+    EXPECT_TRUE(waitFor([&] { return led_->opened == 2 && steps->block().isRunning(); }));
+    auto* hand = steps->findChild<QComboBox*>("profileHand");
+    hand->setCurrentIndex(1);
+    emit hand->activated(1);
+    next->click();
+    ASSERT_TRUE(waitFor([&] { return simulator().usedHand() && !simulator().isBusy(); }));
+    EXPECT_TRUE(hands().current()->wasSetUp());
+    const workspace::Profile kept = workspace::profileFor(hands().current()->info(), at("devices"));
+    EXPECT_TRUE(kept.placing.leftHanded);
+    EXPECT_EQ(kept.placing.scale, 2.0);
+    EXPECT_EQ(led_->opened, 2);
+    EXPECT_GT(removedMm3(), 0.0) << "what the mouse cut meanwhile is there";
+}
+
+TEST_F(DeviceWindowTest, ThePageTellsSetsAndChecks) {
+    startHere();
+    ASSERT_TRUE(chooseLed());
+    action("actionDevicePage")->trigger();
+    auto* page = part<QDialog>("devicePage");
+    ASSERT_TRUE(page);
+    EXPECT_TRUE(waitFor([&] {
+        return page->findChild<QLabel*>("devicePose")->text().contains("mm") &&
+               page->findChild<QLabel*>("deviceTemperature")->text().contains("25") &&
+               page->findChild<QLabel*>("deviceLate")->text().contains("p99");
+    }));
+    led_->buttons = 2;
+    EXPECT_TRUE(waitFor([&] { return page->findChild<QLabel*>("deviceButtons")->text().contains("lower"); }));
+    led_->buttons = 0;
+
+    auto* friction = page->findChild<QCheckBox*>("profileFriction");
+    friction->click();
+    EXPECT_EQ(workspace::profileFor(hands().current()->info(), at("devices")).shaping.frictionCompensation,
+              friction->isChecked());
+    page->findChild<QCheckBox*>("deviceCrisp")->click();
+    EXPECT_TRUE(simulator().parameters().transients.on);
+    EXPECT_TRUE(host_->settings().value("work/crispContact").toBool());
+    for (const QWidget* widget : page->findChildren<QWidget*>()) {
+        const QString name = widget->objectName();
+        if (name.startsWith("profile") || name.startsWith("deviceCrisp") || name.startsWith("deviceVibration")) {
+            EXPECT_GT(widget->toolTip().size(), 20) << name.toStdString();
+        }
+    }
+
+    auto* box = page->findChild<FidelityBox*>();
+    auto* list = page->findChild<QTreeWidget*>("fidelityList");
+    page->findChild<QSpinBox*>("fidelitySeconds")->setValue(600);
+    page->findChild<QPushButton*>("fidelityStart")->click();
+    EXPECT_TRUE(waitFor([&] { return led_->opened == 2; })) << "the check has it for itself";
+    EXPECT_TRUE(simulator().mailbox());
+    page->findChild<QPushButton*>("fidelityCancel")->click();
+    EXPECT_TRUE(waitFor([&] { return simulator().usedHand() != nullptr && !simulator().isBusy(); }));
+    EXPECT_FALSE(box->report());
+    page->findChild<QSpinBox*>("fidelitySeconds")->setValue(2);
+    page->findChild<QPushButton*>("fidelityStart")->click();
+    ASSERT_TRUE(waitFor([&] { return box->report().has_value(); }));
+    EXPECT_EQ(list->topLevelItemCount(), static_cast<int>(box->report()->findings.size()));
+    EXPECT_GT(list->topLevelItemCount(), 4);
+    for (const char* name : {"fidelity.html", "fidelity.json"}) {
+        file_ = own_.filePath(QLatin1String(name));
+        page->findChild<QPushButton*>("fidelitySave")->click();
+        QFile written(file_);
+        ASSERT_TRUE(written.open(QIODevice::ReadOnly)) << name;
+        EXPECT_TRUE(written.readAll().contains("Led Arm")) << name;
+    }
+    EXPECT_TRUE(waitFor([&] { return simulator().usedHand() != nullptr && !simulator().isBusy(); }));
+}
+
+TEST_F(DeviceWindowTest, EveryNameOfTheDialogsIsInTheGuide) {
+    startHere();
+    ASSERT_TRUE(chooseLed());
+    action("actionDevicePage")->trigger();
+    action("actionDeviceSetUp")->trigger();
+    QFile guide(QStringLiteral(HANDPIECE_DESKTOP_OBJECTS));
+    ASSERT_TRUE(guide.open(QIODevice::ReadOnly));
+    const QString text = QString::fromUtf8(guide.readAll());
+    int seen = 0;
+    for (const char* dialog : {"devicePage", "firstPlugIn"}) {
+        const auto* root = part<QDialog>(dialog);
+        ASSERT_TRUE(root) << dialog;
+        QSet<QString> names;
+        for (const QWidget* widget : root->findChildren<QWidget*>()) {
+            const QString name = widget->objectName();
+            if (name.isEmpty() || name.startsWith("qt_") || name.startsWith("Scroll")) continue;
+            EXPECT_FALSE(names.contains(name)) << "twice: " << name.toStdString();
+            names << name;
+            EXPECT_TRUE(text.contains(QStringLiteral("`%1`").arg(name))) << name.toStdString();
+            ++seen;
+        }
+    }
+    EXPECT_GT(seen, 40);
+}
+
+TEST_F(DeviceWindowTest, OneThatIsNotThereAtTheStartIsToldOfAndTheMouseWorks) {
+    CommandLine line;
+    line.device = QStringLiteral("haply");
+    startHere(line);
+    ASSERT_TRUE(waitFor([&] { return noticed() == "device-absent"; }));
+    EXPECT_FALSE(window().errorDialog());
+    EXPECT_TRUE(simulator().mailbox());
+    ASSERT_TRUE(cut());
+}
+
+TEST_F(DeviceWindowTest, TheSchoolChoosesBelowThePerson) {
+    const QString file = own_.filePath(QStringLiteral("school.toml"));
+    core::writeFile(toPath(file), "[hand]\ndevice = \"openhaptics\"\nleft_handed = true\n");
+    qputenv("HANDPIECE_SCHOOL_SETTINGS", file.toLocal8Bit());
+    startHere();
+    EXPECT_TRUE(waitFor([&] { return simulator().usedHand() != nullptr && !simulator().isBusy(); }));
+    EXPECT_TRUE(hands().current()->profile().placing.leftHanded);
+    const QMenu* menu = part<QMenu>("menuDevice");
+    ASSERT_TRUE(menu && entry("mouse"));
+    entry("mouse")->trigger();
+    ASSERT_TRUE(waitFor([&] { return simulator().mailbox() && !simulator().isBusy(); }));
+    startHere();
+    EXPECT_TRUE(hands().wanted().isEmpty());
+    qputenv("HANDPIECE_SCHOOL_SETTINGS", "");
+}
+
+/// The simulated arm by its name, as a person finds it, and a fault by the command line.
+TEST_F(ShellTest, TheSimulatedArmIsAlwaysThereAndAnInjectedFaultEndsInTheMouse) {
+    CommandLine line;
+    line.device = QStringLiteral("simulated");
+    line.inject = QStringLiteral("unplug@0.5:1000");
+    startWithTooth(line);
+    ASSERT_TRUE(waitFor([&] { return simulator().usedHand() != nullptr; }));
+    ASSERT_TRUE(waitFor([&] { return window().findChild<NoticeBar*>()->current() == "device-lost"; }));
+    ASSERT_TRUE(waitFor([&] { return simulator().mailbox() != nullptr && !simulator().isBusy(); }));
+    EXPECT_EQ(simulator().status().fault, "");
+    ASSERT_TRUE(cut());
+}
+
+}  // namespace
+}  // namespace handpiece::desktop

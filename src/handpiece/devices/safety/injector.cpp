@@ -81,7 +81,7 @@ class FaultyServo final : public link::Servo {
             last_.forceN = last_.torqueNmm = {};
             last_.vibration = 0.0f;
         }
-        note(given.timeNs, !stalls);
+        note(stalls ? given.timeNs : last_.timeNs, !stalls);
         return last_;
     }
 

@@ -126,6 +126,21 @@ TEST_F(SchoolDefaultsFile, noFileIsNoProblemAndAnUnreadableOneIsOne) {
     unsetenv("HANDPIECE_SCHOOL_SETTINGS");
 }
 
+TEST_F(SchoolDefaultsFile, theOneThatIsInstalledSaysNothingAndEachOfItsLinesIsGood) {
+    const SchoolDefaults asInstalled = readSchoolDefaults(HANDPIECE_SETTINGS_SAMPLE);
+    EXPECT_TRUE(asInstalled.problems.empty());
+    EXPECT_FALSE(asInstalled.file.empty());
+    EXPECT_FALSE(asInstalled.language || asInstalled.device || asInstalled.scale || asInstalled.record);
+    std::ifstream sample(HANDPIECE_SETTINGS_SAMPLE);
+    std::string all, line;
+    while (std::getline(sample, line))
+        all += (line.rfind("# ", 0) == 0 && line.find(" = ") != std::string::npos ? line.substr(2) : line) + "\n";
+    const SchoolDefaults d = of(all);
+    EXPECT_TRUE(d.problems.empty()) << d.problems.front();
+    EXPECT_TRUE(d.language && d.layout && d.device && d.leftHanded && d.scale && d.crisp && d.voxelUm &&
+                d.sessionsFolder && d.casesFolder && d.record && d.sound && d.volume);
+}
+
 TEST(StationSettings, keepKnockAndHumAndReadSessionsFromBeforeThem) {
     StationSettings settings = blockSettings();
     settings.parameters.transients = {true, 1.5};

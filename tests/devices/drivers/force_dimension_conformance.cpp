@@ -97,7 +97,7 @@ class ForceDimensionAdaptor : public Adaptor {
 /// A Falcon as the same library tells it.
 class FalconDhdAdaptor final : public ForceDimensionAdaptor {
   public:
-    FalconDhdAdaptor() : ForceDimensionAdaptor(DOUBLE_DHD, {kFalcon, kFalcon}) {}
+    FalconDhdAdaptor() : ForceDimensionAdaptor(HANDPIECE_DOUBLE_DHD, {kFalcon, kFalcon}) {}
     Traits traits() const override {
         Traits t = ForceDimensionAdaptor::traits();
         t.driver = "falcon";
@@ -108,10 +108,10 @@ class FalconDhdAdaptor final : public ForceDimensionAdaptor {
 };
 
 std::unique_ptr<Adaptor> makeSigmaAndOmega() {
-    return std::make_unique<ForceDimensionAdaptor>(DOUBLE_DHD, std::vector{kSigma, kOmega});
+    return std::make_unique<ForceDimensionAdaptor>(HANDPIECE_DOUBLE_DHD, std::vector{kSigma, kOmega});
 }
 std::unique_ptr<Adaptor> makeOmegas() {
-    return std::make_unique<ForceDimensionAdaptor>(DOUBLE_DHD_PLAIN, std::vector{kOmega, kOmega});
+    return std::make_unique<ForceDimensionAdaptor>(HANDPIECE_DOUBLE_DHD_PLAIN, std::vector{kOmega, kOmega});
 }
 std::unique_ptr<Adaptor> makeFalcons() {
     return std::make_unique<FalconDhdAdaptor>();

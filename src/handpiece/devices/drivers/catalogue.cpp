@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "handpiece/base/core/error.h"
+#include "handpiece/devices/drivers/falcon.h"
 #include "handpiece/devices/drivers/force_dimension.h"
 #include "handpiece/devices/drivers/gamepad.h"
 #include "handpiece/devices/drivers/haply.h"
 #include "handpiece/devices/drivers/openhaptics.h"
+#include "handpiece/devices/drivers/simulated_driver.h"
 #include "handpiece/devices/drivers/spacemouse.h"
 
 namespace handpiece::drivers {
@@ -26,9 +26,11 @@ struct Row {
 constexpr Row kRows[] = {
     {"openhaptics", &lookOpenHaptics, &openOpenHaptics, &openHapticsErrorInWords},
     {"forcedimension", &lookForceDimension, &openForceDimension, &dhdErrorInWords},
+    {"falcon", &lookFalcon, &openFalcon, &falconErrorInWords},
     {"haply", &lookHaply, &openHaply, &haplyErrorInWords},
     {"spacemouse", &lookSpaceMouse, &openSpaceMouse, nullptr},
     {"gamepad", &lookGamepad, &openGamepad, nullptr},
+    {"simulated", &lookSimulated, &openSimulated, nullptr},
 };
 
 }  // namespace

@@ -25,6 +25,7 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods) {
     addScanCommand(app);
     addProbeCommand(app, extraMethods);
     addRunCommand(app, extraMethods);
+    addDeviceCommand(app);
     addReplayCommand(app);
     addExportCommand(app);
     addReportCommand(app);

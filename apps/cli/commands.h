@@ -23,6 +23,7 @@ void addReportCommand(CLI::App& app);
 void addReproduceCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addPassivityCommand(CLI::App& app);
+void addDeviceCommand(CLI::App& app);
 void addPictureCommand(CLI::App& app);
 void addScanCommand(CLI::App& app);
 

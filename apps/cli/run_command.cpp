@@ -13,6 +13,7 @@
 #include "cli/cut_run.h"
 #include "cli/inputs.h"
 #include "cli/progress_bar.h"
+#include "cli/run_device.h"
 #include "cli/run_job.h"
 #include "cli/run_output.h"
 #include "cli/sound_track.h"
@@ -32,8 +33,8 @@ using Json = nlohmann::ordered_json;
 
 struct RunOptions {
     ContactInputs inputs;
-    std::string motion = "drop", device = "simulated", deviceModel = "simulated", hand = "normal", force = "proxy", out,
-                sound;
+    DeviceOptions device;
+    std::string motion = "drop", deviceModel = "simulated", hand = "normal", force = "proxy", out, sound;
     double rateHz = 1000.0, durationS = 0.0, stiffness = 1.0, damping = 1.0, slide = 1.0, speedMmS = 10.0;
     double loadN = 1.0, depthMm = 0.0, delayMs = 0.0, frictionN = 0.26, lengthMm = 0.0;
     std::vector<double> at{0.0, 0.0};
@@ -41,10 +42,18 @@ struct RunOptions {
     // Of a cut.
     double pedal = 0.0, isthmusMm = 1.2, heightMm = 2.5, dwellS = 4.0, tremorUm = 0.0;
     std::uint64_t seed = 1;
-    bool fullRemoval = false, pedalGiven = false, handGiven = false, speedGiven = false;
+    bool fullRemoval = false, pedalGiven = false, handGiven = false, speedGiven = false, motionGiven = false;
     std::string drive = "turbine", ability, abilities, tissues, code;
     std::vector<double> undoAtS, redoAtS, resetAtS;
 };
+
+constexpr std::uint64_t kWatchTicks = 64;
+
+/// Before a person's hand moves the bur.
+void printHint(const RunOptions& o, const RunSettings& settings) {
+    if (isReal(o.device) && !o.json)
+        fmt::print(stderr, "handpiece: the device is yours for {:.0f} s; Ctrl-C ends it sooner.\n", settings.durationS);
+}
 
 Json spreadJson(const loop::Spread& s) {
     return {{"p50", s.p50}, {"p99", s.p99}, {"p999", s.p999}, {"max", s.max}};
@@ -56,7 +65,7 @@ Json summaryJson(const RunOptions& o, const RunSummary& s, const std::string& me
             {"method", method},
             {"motion", o.motion},
             {"force", o.force},
-            {"device", o.device},
+            {"device", o.device.name},
             {"device_model", o.deviceModel},
             {"hand", hand},
             {"rate_hz", o.rateHz},
@@ -107,9 +116,9 @@ void printSummary(const RunOptions& o, const RunSummary& s, const std::string& m
 }
 
 RunSettings settingsOf(const RunOptions& o) {
-    if (o.device != "simulated")
-        throw core::Error(fmt::format("there is no device called \"{}\"", o.device), "--device",
-                          "there is: simulated (choose what it simulates with --device-model)");
+    validate(o.device);
+    if (isReal(o.device) && o.motionGiven)
+        throw core::Error("a person moves a real device", "--motion", "leave it out, or take --device simulated");
     // The loop says the same of rates out of range, but only after the tooth was read.
     if (!(o.rateHz >= 100.0 && o.rateHz <= 10000.0))
         throw core::Error(fmt::format("a rate of {} Hz cannot be run", o.rateHz), "--rate",
@@ -124,11 +133,13 @@ RunSettings settingsOf(const RunOptions& o) {
     s.device.frictionN = o.frictionN;
     s.device.delayS = 1e-3 * o.delayMs;
     s.device.rigidHand = o.hand == "rigid";
-    if (!s.device.rigidHand) s.device.hand = device::handByName(o.hand);
+    if (!s.device.rigidHand && !isReal(o.device)) s.device.hand = device::handByName(o.hand);
     s.parameters.mode = force::modeByName(o.force);
     s.parameters.stiffnessMultiplier = o.stiffness;
     s.parameters.dampingMultiplier = o.damping;
     s.parameters.frictionMultiplier = o.slide;
+    s.parameters.transients.on = s.parameters.vibration.on = o.device.crisp == "on";
+    s.controller = o.device.controller == "on" && !isGuarded(o.device);
     s.drive = instrument::driveByName(o.drive);
     force::validate(s.parameters);
     return s;
@@ -202,6 +213,15 @@ device::Motion cutMotionOf(const RunOptions& o, const RunSettings& settings, con
     return loop::cuttingMotionByName(o.motion, *method, scene, cut);
 }
 
+/// A motion for whoever moves by hand: it is not looked at.
+device::Motion noMotion() {
+    return device::Motion({{0.0, core::Pose{}, 0.0}, {1.0, core::Pose{}, 0.0}});
+}
+
+station::ToothPlace placeOf(const tooth::Case& toothCase, const station::Station& station) {
+    return {station.tooth->tooth->outer.bounds(), toothCase.fdiNumber, toothCase.buccalSign};
+}
+
 void cutCommand(const RunOptions& o, RunSettings settings) {
     if (o.inputs.method != "field")
         throw core::Error(fmt::format("the method \"{}\" knows no tooth that changes", o.inputs.method), "--method",
@@ -209,6 +229,8 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     // A cut is judged by what the hand intends, and an eye leads it there: the simulated hand alone is blind, and would
     // come to rest where its spring and the device's friction let it.
     if (!o.handGiven) settings.device.rigidHand = true;
+    std::optional<RunDevice> device;
+    if (isGuarded(o.device)) device.emplace(o.device);
     const tooth::PrepareSettings prepare = prepareSettingsOf(o.inputs);
     Outputs outputs(o.out);  // before the work: a folder that cannot be written is told at once
     // An attempt goes on where it was.
@@ -222,14 +244,20 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
                           o.inputs.tooth, fmt::format("give --voxel {:.6g}", 1e3 * before->attempt.voxelMm));
     stationSettings.resumed = before.has_value();
     ProgressBar preparing("preparing the tooth");
-    const station::Station station =
+    station::Station station =
         station::makeStation(toothCase, std::move(stationSettings), prepare.useCache, preparing.listener());
     preparing.finish();
     if (before)
         station.resume(tooth::decodeState(before->attempt.state, station.identity, *station.tooth, o.inputs.tooth));
     settings.parameters = station.settings.parameters;
-    device::Motion motion = cutMotionOf(o, settings, toothCase, station);
-    if (o.tremorUm > 0.0) motion = withTremor(motion, 1e-3 * o.tremorUm, o.seed);
+    device::Motion motion = isReal(o.device) ? noMotion() : cutMotionOf(o, settings, toothCase, station);
+    if (o.tremorUm > 0.0 && !isReal(o.device)) motion = withTremor(motion, 1e-3 * o.tremorUm, o.seed);
+    if (device) {
+        device->open(settings, &motion, placeOf(toothCase, station));
+        station.settings.capability = settings.device.capability;
+        station.settings.parameters = settings.parameters;
+        printHint(o, settings);
+    }
     std::optional<SoundTrack> sound;
     if (!o.sound.empty())
         sound.emplace(o.sound, *station.settings.bur, station.settings.ability, station.settings.drive, settings.rateHz,
@@ -240,11 +268,16 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
                 before ? before->attempt.caseFile : fs::path(o.inputs.tooth), o.undoAtS, o.redoAtS, o.resetAtS,
                 [&](const messages::HapticSample& s) {
                     if (sound) sound->take(s);
+                    if (device && s.tick % kWatchTicks == 0) device->watch();
                 }},
                outputs);
     if (sound) sound->finish();
 
-    Json json = summaryJson(o, outcome.summary, "field", settings.device.rigidHand ? "rigid" : o.hand);
+    Json json = summaryJson(o, outcome.summary, "field",
+                            isReal(o.device)            ? "person"
+                            : settings.device.rigidHand ? "rigid"
+                                                        : o.hand);
+    if (device) device->add(json);
     Json removed, left;
     for (const tooth::Tissue t : station.tooth->tissues.tissues()) {
         const std::string name(tooth::properties(t).name);
@@ -280,6 +313,7 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
         return;
     }
     printSummary(o, outcome.summary, "field");
+    if (device) device->print();
     std::string volumes;
     for (const auto& [name, mm3] : removed.items())
         if (mm3.get<double>() > 0.0)
@@ -299,16 +333,25 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
 }
 
 void runCommand(const RunOptions& o, const MethodRegistry& methods) {
-    const RunSettings settings = settingsOf(o);
-    if (o.pedalGiven || o.fullRemoval || isCuttingMotion(o.motion)) return cutCommand(o, settings);
-    const bool isFile = isMotionFile(o.motion);
+    RunSettings settings = settingsOf(o);
+    const bool real = isReal(o.device);
+    if (o.pedalGiven || o.fullRemoval || isCuttingMotion(o.motion) || (real && o.inputs.method == "field"))
+        return cutCommand(o, std::move(settings));
+    std::optional<RunDevice> device;
+    if (isGuarded(o.device)) device.emplace(o.device);
+    const bool isFile = !real && isMotionFile(o.motion);
     std::unique_ptr<device::Motion> motion;
     if (isFile) motion = std::make_unique<device::Motion>(readMotion(o.motion, settings.device.capability, o.rateHz));
     Outputs outputs(o.out);  // before the work: a folder that cannot be written is told at once
     const auto tooth = loadTooth(o.inputs);
     auto method = makeMethod(o.inputs.method, methods, tooth, loadBur(o.inputs.bur));
     const std::string methodName = method->name();
+    if (real) motion = std::make_unique<device::Motion>(noMotion());
     if (!motion) motion = std::make_unique<device::Motion>(motionOf(o, settings, *method, tooth->outer.bounds()));
+    if (device) {
+        device->open(settings, motion.get(), {tooth->outer.bounds(), 0, 1});
+        printHint(o, settings);
+    }
 
     const double duration = o.durationS > 0.0 ? o.durationS : motion->durationS();
     RunTrace trace(outputs.path("trace.csv"), duration);
@@ -322,12 +365,14 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
     const RunSummary summary = runLoop(settings, *motion, std::move(method), [&](const messages::HapticSample& s) {
         trace.take(s);
         if (sound) sound->take(s);
+        if (device && s.tick % kWatchTicks == 0) device->watch();
         if (s.tick % 256 == 0) progress(s.timeS / duration);
     });
     bar.finish();
     trace.finish(outputs, settings.device.capability.maxForceN, false);
     if (sound) sound->finish();
-    const Json json = summaryJson(o, summary, methodName, o.hand);
+    Json json = summaryJson(o, summary, methodName, real ? "person" : o.hand);
+    if (device) device->add(json);
     const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
     outputs.write("summary.json", text + "\n");
     outputs.keep();
@@ -335,6 +380,7 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
         fmt::print("{}\n", text);
     } else {
         printSummary(o, summary, methodName);
+        if (device) device->print();
         printRow("files", "trace.csv depth.svg speed.svg force.svg summary.json");
         if (!o.sound.empty()) printRow("sound", o.sound);
     }
@@ -343,7 +389,7 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
 }  // namespace
 
 void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
-    CLI::App* command = app.add_subcommand("run", "A simulated hand lowers a bur onto a tooth: trace, plots, summary");
+    CLI::App* command = app.add_subcommand("run", "A hand, simulated or real, works on a tooth: trace, plots, summary");
     const auto options = std::make_shared<RunOptions>();
     RunOptions& o = *options;
     addContactOptions(*command, o.inputs, methods);
@@ -362,7 +408,11 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
     add("--motion", o.motion, motions + "; cuts: " + cutNames + "; or a CSV of t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz");
     command->add_option("--out", o.out, "folder for trace.csv, the plots and summary.json")->required();
     command->add_option("--sound", o.sound, "WAV file of what is heard, for headphones (48 kHz stereo)");
-    add("--device", o.device, "simulated");
+    addDeviceOptions(*command, o.device);
+    command->add_option("--inject", o.device.inject, "faults on purpose, \"unplug@2.5, stall@3:0.2\" or \"random:100\"")
+        ->group("Device");
+    command->add_option("--crisp", o.device.crisp, "on or off: contact knocks, cutting hums")->group("Device");
+    command->add_flag("--foot-pedal", o.device.pedal, "a pedal beside the device")->group("Device");
     add("--device-model", o.deviceModel, "what the simulated device is like: " + models);
     add("--rate", o.rateHz, "ticks a second: 1000, 2000, 4000 or 8000");
     add("--duration", o.durationS, "seconds; 0: as long as the motion");
@@ -412,11 +462,16 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
         "  handpiece run --case molar --bur 330 --motion class-one --out cavity\n"
         "  handpiece run --case molar --bur round-4 --motion excavate --drive low-speed --out decay\n"
         "  handpiece run --case molar --bur mine.stl --motion path.csv --full-removal --out swept\n"
+        "  handpiece run --case molar --device openhaptics --scale 2 --out practice\n"
+        "  handpiece run --case molar --motion class-one --inject random:100 --out faults\n"
         "  handpiece run --tooth molar --method hull --force penalty --motion press --speed 60 --out hull");
     command->callback([options, command, &methods] {
         options->pedalGiven = command->count("--pedal") > 0;
         options->handGiven = command->count("--hand") > 0;
         options->speedGiven = command->count("--speed") > 0;
+        options->motionGiven = command->count("--motion") > 0;
+        applySchoolDefaults(*command, options->device);
+        if (isReal(options->device) && !options->motionGiven) options->motion = "hand";
         runCommand(*options, methods);
     });
 }

@@ -10,6 +10,7 @@
 #include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/tick/force/pose_guard.h"
+#include "handpiece/tick/loop/shaped_device.h"
 
 namespace handpiece::cli {
 
@@ -76,6 +77,21 @@ device::Motion readMotion(const std::string& file, const device::Capability& cap
     return device::Motion(std::move(poses));
 }
 
+namespace {
+
+std::unique_ptr<device::Device> deviceOf(const RunSettings& settings, const device::Motion& motion) {
+    if (settings.takeDevice) return settings.takeDevice();
+    auto arm = std::make_unique<device::SimulatedDevice>(settings.device, motion);
+    if (!settings.controller) return arm;
+    stability::ShaperSettings shaping = loop::shaperSettingsFor(settings.device.capability);
+    shaping.frictionN = settings.device.frictionN;
+    shaping.massKg = settings.device.massKg;
+    shaping.delayS = settings.device.delayS + 1.0 / settings.rateHz;
+    return std::make_unique<loop::ShapedDevice>(std::move(arm), shaping);
+}
+
+}  // namespace
+
 RunSummary runLoop(const RunSettings& settings, const device::Motion& motion, std::unique_ptr<contact::Method> method,
                    const loop::Listener& listener) {
     return runLoop(settings, motion, loop::Work{std::move(method), nullptr},
@@ -87,8 +103,8 @@ RunSummary runLoop(const RunSettings& settings, const device::Motion& motion, lo
     work.method->reset();  // whatever was felt on the way to this run leaves no trace in it
     loop::LoopSettings loopSettings;
     loopSettings.rateHz = settings.rateHz;
-    loop::HapticLoop haptic(loopSettings, std::make_unique<device::SimulatedDevice>(settings.device, motion),
-                            std::move(work), settings.parameters, settings.drive);
+    loop::HapticLoop haptic(loopSettings, deviceOf(settings, motion), std::move(work), settings.parameters,
+                            settings.drive);
     RunSummary summary;
     const double period = haptic.periodS();
     const loop::Listener each = [&](const messages::HapticSample& sample) {

@@ -23,6 +23,9 @@ struct RunSettings {
     device::SimulatedDeviceSettings device;
     force::Parameters parameters = force::defaultParameters();
     instrument::Drive drive;
+    /// Gives the device instead of a simulated arm of `device`, once; empty: none.
+    std::function<std::unique_ptr<device::Device>()> takeDevice;
+    bool controller = false;  ///< of a simulated arm: stability::Shaper on its force
 };
 
 /// What a run comes to, gathered sample by sample.

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "handpiece/devices/drivers/simulated_driver.h"
+#include "handpiece/devices/safety/input_device.h"
 #include "handpiece/tick/device/capability.h"
 #include "station/pointer_hand.h"
 
@@ -32,16 +32,11 @@ Calibration calibrationOf(safety::GuardedDevice& device) {
 }  // namespace
 
 std::vector<drivers::Found> lookForDevices() {
-    std::vector<drivers::Found> found = drivers::look();
-    const auto simulated = [](const drivers::Found& f) { return f.driver == "simulated"; };
-    if (std::none_of(found.begin(), found.end(), simulated)) found.push_back(drivers::lookSimulated());
-    return found;
+    return drivers::look();
 }
 
-std::vector<std::string> deviceNames() {
-    std::vector<std::string> names = drivers::names();
-    if (std::find(names.begin(), names.end(), "simulated") == names.end()) names.emplace_back("simulated");
-    return names;
+const std::vector<std::string>& deviceNames() {
+    return drivers::names();
 }
 
 Quat toothTurnFor(const ToothPlace& tooth, bool leftHanded) {
@@ -78,10 +73,11 @@ std::unique_ptr<link::Driver> openDriver(const DeviceChoice& choice) {
 }
 
 workspace::Profile profileOf(const DeviceChoice& choice, const link::DriverInfo& info) {
-    workspace::Profile p = choice.profile.empty()
-                               ? workspace::profileFor(info, choice.profileFolder.empty() ? workspace::profileFolder()
-                                                                                          : choice.profileFolder)
-                               : workspace::readProfile(choice.profile, info);
+    const std::filesystem::path folder =
+        choice.profileFolder.empty() ? workspace::profileFolder() : choice.profileFolder;
+    workspace::Profile p = !choice.profile.empty() ? workspace::readProfile(choice.profile, info)
+                           : choice.keptProfile    ? workspace::profileFor(info, folder)
+                                                   : workspace::defaultProfile(info);
     if (choice.placing) p.placing = *choice.placing;
     if (choice.scale) p.placing.scale = *choice.scale;
     if (choice.leftHanded) p.placing.leftHanded = *choice.leftHanded;
@@ -94,8 +90,7 @@ workspace::Profile profileOf(const DeviceChoice& choice, const link::DriverInfo&
 }
 
 OpenDevice openDevice(const DeviceChoice& choice) {
-    if (choice.name == "simulated") return openDevice(drivers::openSimulated({choice.which, choice.servoHz}), choice);
-    return openDevice(openDriver(choice), choice);
+    return openDevice(drivers::open(choice.name, {choice.which, choice.servoHz}), choice);
 }
 
 OpenDevice openDevice(std::unique_ptr<link::Driver> driver, const DeviceChoice& choice) {
@@ -110,6 +105,22 @@ OpenDevice openDevice(std::unique_ptr<link::Driver> driver, const DeviceChoice& 
         open.faultLog = std::make_shared<safety::FaultLog>();
         driver = safety::withFaults(std::move(driver), open.faults, open.faultLog);
     }
+    if (choice.pedal) open.pedal = std::make_shared<drivers::FootPedal>(drivers::PedalSettings{});
+    if (!open.info.pushes) {
+        safety::InputSettings input;
+        input.placing = open.placing;
+        input.hand = choice.hand;
+        input.clutchButton = open.profile.clutchButton;
+        input.nowNs = choice.nowNs;
+        auto steered = std::make_unique<safety::InputDevice>(std::move(driver), input);
+        if (open.pedal) steered->usePedal(open.pedal->value());
+        open.health = steered->health();
+        open.capability = steered->capability();
+        open.calibration = {[] { return link::CalibrationState::notNeeded; }, [] { return std::string(); },
+                            [] { return true; }};
+        open.device = std::move(steered);
+        return open;
+    }
     safety::GuardSettings guard;
     guard.atTheHand = workspace::withinShares(open.info.capability, open.profile);
     guard.gate = safety::gateSettingsFor(*guard.atTheHand);
@@ -123,6 +134,7 @@ OpenDevice openDevice(std::unique_ptr<link::Driver> driver, const DeviceChoice& 
     open.calibration = calibrationOf(*guarded);
     open.capability = guarded->capability();
     open.device = std::move(guarded);
+    if (open.pedal) open.device = safety::withPedal(std::move(open.device), open.pedal->value());
     return open;
 }
 
@@ -131,17 +143,17 @@ force::Parameters fittedTo(const OpenDevice& device, force::Parameters parameter
     return parameters;
 }
 
-std::optional<core::Error> troubleOf(const safety::GateStatus& status, const std::string& deviceName) {
+std::optional<core::Error> troubleOf(const safety::GateStatus& status, const link::DriverInfo& device) {
     const link::Trouble trouble = status.trouble;
     if (trouble == link::Trouble::none || trouble == link::Trouble::starting) return std::nullopt;
-    std::string what(link::sentenceOf(trouble));
-    if (!what.empty() && what.back() == '.') what.pop_back();
-    if (status.vendorCode != 0)
-        what += fmt::format(" (its code is 0x{:04x})", static_cast<std::uint32_t>(status.vendorCode));
-    std::string remedy(link::remedyOf(trouble));
-    if (!remedy.empty() && remedy.back() == '.') remedy.pop_back();
-    return core::Error(what, deviceName, remedy)
-        .as(std::string(link::idOf(trouble)), {deviceName, fmt::format("{}", status.vendorCode)});
+    const auto withoutStop = [](std::string_view text) {
+        return std::string(!text.empty() && text.back() == '.' ? text.substr(0, text.size() - 1) : text);
+    };
+    const std::string words = drivers::vendorErrorInWords(device.driver, status.vendorCode);
+    std::string what = withoutStop(link::sentenceOf(trouble));
+    if (!words.empty()) what += ": " + withoutStop(words);
+    return core::Error(what, device.model, withoutStop(link::remedyOf(trouble)))
+        .as(std::string(link::idOf(trouble)), {device.model, words});
 }
 
 }  // namespace handpiece::station

@@ -15,6 +15,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/vec.h"
 #include "handpiece/devices/drivers/catalogue.h"
+#include "handpiece/devices/drivers/pedal.h"
 #include "handpiece/devices/safety/guarded_device.h"
 #include "handpiece/devices/safety/injector.h"
 #include "handpiece/devices/workspace/profile.h"
@@ -24,9 +25,9 @@
 
 namespace handpiece::station {
 
-/// drivers::look(), and the simulated arm at the end, which is always there. Opens and moves nothing.
+/// drivers::look(); the simulated arm, which is always there, comes last. Opens and moves nothing.
 [[nodiscard]] std::vector<drivers::Found> lookForDevices();
-[[nodiscard]] std::vector<std::string> deviceNames();
+[[nodiscard]] const std::vector<std::string>& deviceNames();
 
 /// The tooth as far as its place in an arm's reach depends on it. tooth::Case has the last two: 0 when not known.
 struct ToothPlace {
@@ -46,6 +47,7 @@ struct DeviceChoice {
     double servoHz = 0.0;                 ///< 0: the driver's own choice
     std::filesystem::path profileFolder;  ///< empty: workspace::profileFolder()
     std::filesystem::path profile;        ///< this file instead of the one of the device; empty: the device's
+    bool keptProfile = true;              ///< false: what fits its model, whatever is kept in the folder
     /// Instead of the profile's.
     std::optional<double> scale, forceScale;
     std::optional<bool> leftHanded, passivityController, frictionCompensation;
@@ -83,6 +85,7 @@ struct OpenDevice {
     Calibration calibration;                     ///< as long as the device lives
     std::vector<safety::Fault> faults;           ///< that will be injected
     std::shared_ptr<safety::FaultLog> faultLog;  ///< null without faults; to be read once the device is gone
+    std::shared_ptr<drivers::FootPedal> pedal;   ///< null without; kept while the device is used
 };
 /// Throws core::Error: no such device, its driver's reasons, a bad profile, a bad --inject.
 [[nodiscard]] OpenDevice openDevice(const DeviceChoice& choice);
@@ -94,6 +97,6 @@ struct OpenDevice {
 
 /// Trouble as a message for people: an id of link::idOf() ("unplugged"), its sentence, remedy, and the code in words
 /// where the vendor's library told one. Nothing while all is well (or starting).
-[[nodiscard]] std::optional<core::Error> troubleOf(const safety::GateStatus& status, const std::string& deviceName);
+[[nodiscard]] std::optional<core::Error> troubleOf(const safety::GateStatus& status, const link::DriverInfo& device);
 
 }  // namespace handpiece::station

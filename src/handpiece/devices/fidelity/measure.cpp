@@ -15,7 +15,8 @@ namespace {
 constexpr double kNsPerS = 1e9;
 constexpr double kBeforeS = 0.010, kAfterS = 0.030;  // of a pulse, that are looked at
 constexpr double kLeastSteps = 1.5, kMostSteps = 60.0;
-constexpr double kLeastPathSteps = 5.0;  // a pulse that moves the arm less says nothing of time
+constexpr double kLeastPathSteps = 5.0;                         // a pulse that moves the arm less says nothing of time
+constexpr double kGoodErrorS = 0.001, kStraightErrorS = 0.001;  // the latter: what bending takes off a straight line
 constexpr double kMovedMm = 1.0, kWindowS = 0.05;
 constexpr std::size_t kLeastPoints = 4, kLeastChanges = 20;
 
@@ -65,25 +66,42 @@ std::optional<Response> responseOf(const Recording& recording, const Pulse& puls
     return response;
 }
 
-/// When the way was zero: t = d + p s + q s^2 through all points, s the root of the way. The square is what damping
-/// and the hand's spring bend.
-std::optional<double> onsetOf(const std::vector<Response>& responses, std::size_t without) {
+/// When the way was zero: t = d + p s (+ q s^2) through all points, s the root of the way. The square is what damping
+/// and the hand's spring bend; coarse encoders do not carry it.
+std::optional<double> onsetOf(const std::vector<Response>& responses, std::size_t without, bool bent) {
     std::size_t n = 0;
     for (std::size_t i = 0; i < responses.size(); ++i)
         if (i != without) n += responses[i].points.size();
     if (n < kLeastPoints) return std::nullopt;
-    Eigen::MatrixXd a(static_cast<Eigen::Index>(n), 3);
+    Eigen::MatrixXd a(static_cast<Eigen::Index>(n), bent ? 3 : 2);
     Eigen::VectorXd b(static_cast<Eigen::Index>(n));
     Eigen::Index row = 0;
     for (std::size_t i = 0; i < responses.size(); ++i) {
         if (i == without) continue;
         for (const Point& p : responses[i].points) {
-            a.row(row) << 1.0, p.root, p.root * p.root;
+            a(row, 0) = 1.0;
+            a(row, 1) = p.root;
+            if (bent) a(row, 2) = p.root * p.root;
             b[row++] = p.timeS;
         }
     }
-    const Eigen::Vector3d x = a.colPivHouseholderQr().solve(b);
+    const Eigen::VectorXd x = a.colPivHouseholderQr().solve(b);
     return x.allFinite() ? std::optional(x[0]) : std::nullopt;
+}
+
+/// The onset with twice its standard error, by leaving out one pulse after the other (jackknife).
+struct Fitted {
+    bool any = false;
+    double onsetS = 0.0, errorS = 0.0;
+};
+Fitted fitted(const std::vector<Response>& responses, bool bent) {
+    const auto all = onsetOf(responses, responses.size(), bent);
+    if (!all) return {};
+    const double n = static_cast<double>(responses.size());
+    double square = 0.0;
+    for (std::size_t i = 0; i < responses.size(); ++i)
+        if (const auto without = onsetOf(responses, i, bent)) square += (*without - *all) * (*without - *all);
+    return {true, *all, 2.0 * std::sqrt((n - 1.0) / n * square)};
 }
 
 }  // namespace
@@ -165,22 +183,15 @@ Delay roundTripOf(const Recording& recording) {
                                 kLeastPathSteps);
         return delay;
     }
-    const auto all = onsetOf(responses, responses.size());
-    if (!all) {
+    const Fitted bent = fitted(responses, true), straight = fitted(responses, false);
+    if (!straight.any) {
         delay.why = "too few frames saw it move";
         return delay;
     }
-    // Jackknife over the pulses; a frame to either side is the clock's.
-    const double n = static_cast<double>(responses.size());
-    double square = 0.0;
-    for (std::size_t i = 0; i < responses.size(); ++i) {
-        const auto without = onsetOf(responses, i);
-        if (!without) continue;
-        square += (*without - *all) * (*without - *all);
-    }
+    const bool useBent = bent.any && bent.errorS < kGoodErrorS;
     const double frameS = 1.0 / std::max(recording.info.servoHz, 1.0);
-    delay.seconds = std::max(0.0, *all);
-    delay.uncertaintyS = 2.0 * std::sqrt((n - 1.0) / n * square) + 0.5 * frameS;
+    delay.seconds = std::max(0.0, useBent ? bent.onsetS : straight.onsetS);
+    delay.uncertaintyS = 0.5 * frameS + (useBent ? bent.errorS : straight.errorS + kStraightErrorS);
     delay.measured = true;
     return delay;
 }

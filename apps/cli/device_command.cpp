@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// handpiece device: which devices there are, how good this station feels, the first three steps with a new one.
+#include "cli/device_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/progress_bar.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/devices/fidelity/fidelity.h"
+#include "station/school_defaults.h"
+
+namespace handpiece::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void list(bool json) {
+    const std::vector<drivers::Found> found = station::lookForDevices();
+    if (json) {
+        Json all = Json::array();
+        for (const drivers::Found& f : found)
+            all.push_back({{"driver", f.driver},
+                           {"makes", f.makes},
+                           {"pushes", f.pushes},
+                           {"available", f.available},
+                           {"models", f.models},
+                           {"why", f.why},
+                           {"remedy", f.remedy},
+                           {"tried_on_hardware", f.triedOnHardware}});
+        fmt::print("{}\n", all.dump(2, ' ', false, Json::error_handler_t::replace));
+        return;
+    }
+    for (const drivers::Found& f : found) {
+        fmt::print("{:<16}{}\n", f.driver, f.makes);
+        std::string state = f.available ? "there" : "not there";
+        if (!f.models.empty()) state += fmt::format(": {}", fmt::join(f.models, ", "));
+        if (!f.why.empty()) state += fmt::format("; {}", f.why);
+        fmt::print("{:<16}{}\n", "", state);
+        if (!f.available && !f.remedy.empty()) fmt::print("{:<16}to do: {}\n", "", f.remedy);
+        if (!f.pushes) fmt::print("{:<16}cannot push: it steers a simulated hand\n", "");
+        if (f.driver != "simulated" && !f.triedOnHardware)
+            fmt::print("{:<16}never tried on the hardware itself, only against a double of its interface\n", "");
+    }
+}
+
+struct CheckOptions {
+    DeviceOptions device;
+    double durationS = 10.0, rateHz = 1000.0;
+    bool json = false, noPush = false;
+    std::string report;
+};
+
+void check(const CheckOptions& o) {
+    validate(o.device);
+    station::DeviceChoice choice = choiceOf(o.device);
+    std::unique_ptr<link::Driver> driver = station::openDriver(choice);
+    fidelity::CheckSettings settings;
+    settings.durationS = o.durationS;
+    settings.rateHz = o.rateHz;
+    settings.push = !o.noPush;
+    settings.announce = [](const std::string& sentence) { fmt::print(stderr, "handpiece: {}\n", sentence); };
+    const fidelity::Report report = fidelity::check(std::move(driver), settings, [](double) { return !cancelled(); });
+    if (!o.report.empty()) core::writeFile(o.report, fidelity::asHtml(report));
+    if (o.json) {
+        fmt::print("{}", fidelity::asJson(report));
+        return;
+    }
+    fmt::print("{} ({}), {:.1f} s\n  {}\n", report.device.model, report.device.driver, report.durationS,
+               report.machine);
+    for (const fidelity::Finding& f : report.findings) {
+        fmt::print("  {:<13}{:<26}{}\n", fidelity::idOf(f.verdict), f.name, f.value);
+        const bool mind = f.verdict == fidelity::Verdict::warn || f.verdict == fidelity::Verdict::fail;
+        if (mind) fmt::print("  {:<13}{:<26}held against: {}\n", "", "", f.against);
+        if (mind && !f.remedy.empty()) fmt::print("  {:<13}{:<26}to do: {}\n", "", "", f.remedy);
+    }
+    fmt::print("{}\n", report.passed ? "fit to practise with" : "not fit to practise with");
+    if (!o.report.empty()) fmt::print("{}\n", o.report);
+}
+
+}  // namespace
+
+std::string deviceMeant() {
+    const station::SchoolDefaults school = station::schoolDefaults();
+    if (school.device) return *school.device;
+    for (const drivers::Found& f : station::lookForDevices())
+        if (f.available && f.pushes && !f.models.empty()) return f.driver;
+    return "simulated";
+}
+
+void addDeviceCommand(CLI::App& app) {
+    CLI::App* device = app.add_subcommand("device", "Haptic devices: which there are, how good they feel, first steps");
+    device->require_subcommand(1);
+
+    CLI::App* listing = device->add_subcommand("list", "Devices that can be used, and whether they are there");
+    const auto json = std::make_shared<bool>(false);
+    listing->add_flag("--json", *json, "as JSON");
+    listing->footer("Nothing is opened and nothing moves.\nExample:\n  handpiece device list");
+    listing->callback([json] { list(*json); });
+
+    CLI::App* checking = device->add_subcommand("check", "How good this station feels: the fidelity report");
+    const auto options = std::make_shared<CheckOptions>();
+    CheckOptions& o = *options;
+    checking->add_option("--device", o.device.name, "name from the list; else the one that is there, else simulated");
+    checking->add_option("--which", o.device.which, "device's name or serial, where there are several");
+    checking->add_option("--duration", o.durationS, "seconds")->capture_default_str();
+    checking->add_option("--rate", o.rateHz, "ticks a second")->capture_default_str();
+    checking->add_flag("--no-push", o.noPush, "send no force: slope and round trip are not measured");
+    checking->add_flag("--json", o.json, "the report as JSON on the output");
+    checking->add_option("--report", o.report, "the report as a page to print (.html)");
+    checking->footer(
+        "It pushes upwards, 0.8 N at most, some times for 60 ms, and says so before.\n"
+        "Example:\n  handpiece device check --device openhaptics --report station.html");
+    checking->callback([options, checking] {
+        if (checking->count("--device") == 0) options->device.name = deviceMeant();
+        check(*options);
+    });
+
+    addDeviceCalibrateCommand(*device);
+}
+
+}  // namespace handpiece::cli

@@ -8,6 +8,9 @@
 
 #include "handpiece/base/core/realtime.h"
 #include "handpiece/base/core/vec.h"
+#include "handpiece/tick/stability/friction_compensation.h"
+#include "handpiece/tick/stability/passivity_controller.h"
+#include "handpiece/tick/stability/thermal_budget.h"
 
 namespace handpiece::stability {
 
@@ -24,6 +27,7 @@ struct ShaperSettings {
     double encoderStepMm = 0.055;
     double stiffnessNPerMm = 0.5, dampingNSPerMm = 0.005;  ///< largest that the force model renders, at the hand
     double delayS = 0.002;                                 ///< from a reading to the force that answers it, at most
+    double massKg = 0.045;                                 ///< effective, of the arm at the grip: the least that moves
 };
 /// Throws core::Error naming the value.
 void validate(const ShaperSettings& settings);
@@ -37,6 +41,9 @@ struct ShaperStatus {
 };
 
 /// One device's shaper; the tick's thread. Device frame or any other fixed one: hand's millimetres and newtons.
+///
+/// In this order: force scale, friction given back, thermal budget, largest force, passivity. What is active by nature
+/// comes before the controller, so that it spends energy only where the tooth took some in.
 class Shaper {
   public:
     explicit Shaper(const ShaperSettings& settings) noexcept;
@@ -44,13 +51,18 @@ class Shaper {
     /// does not follow from the last one (start, trouble, clutch).
     [[nodiscard]] core::Vec3 shape(const core::Vec3& positionMm, const core::Vec3& wantedN, double periodS,
                                    bool fresh) noexcept HANDPIECE_REALTIME;
+    /// Keeps the heat, and what energy is known.
     void setSettings(const ShaperSettings& settings) noexcept HANDPIECE_REALTIME;
     [[nodiscard]] const ShaperStatus& status() const noexcept { return status_; }
+    /// For tests.
+    [[nodiscard]] const PassivityController& controller() const noexcept { return controller_; }
 
   private:
-    // To be designed by whoever builds it.
     ShaperSettings settings_;
     ShaperStatus status_;
+    FrictionCompensation friction_;
+    ThermalBudget thermal_;
+    PassivityController controller_;
 };
 
 }  // namespace handpiece::stability

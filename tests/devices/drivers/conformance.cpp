@@ -353,12 +353,16 @@ TEST_P(Conformance, stopsWhileTheInterfaceIsDead) {
     Probe probe;
     auto driver = started(0, probe);
     adaptor->stall(0, 3.0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // it has begun
     const auto then = std::chrono::steady_clock::now();
     driver->stop();
     EXPECT_LT(secondsSince(then), 2.0);
+    const std::uint64_t count = probe.count();
     driver.reset();
     EXPECT_LT(secondsSince(then), 2.0);
     adaptor->reset();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    EXPECT_EQ(probe.count(), count) << "a frame that was held up came after stop()";
 }
 
 }  // namespace

@@ -174,10 +174,14 @@ void HaplyDriver::choose(const OpenOptions& options, const std::string& url) {
     id_ = id;
     newer_ = state_.hasSession;
     calibrated_ = arm->calibrated != Said::no;
-    // A wireless grip rather than a wired one, should both be there.
-    for (std::size_t i = 0; i < state_.gripCount; ++i)
-        if (gripId_.empty() || (state_.grips[i].wireless && !state_.grip(gripId_)->wireless))
-            gripId_ = textOf(state_.grips[i].id);
+    // Which grip is held at which arm is not told: the wireless ones first, in the order of the arms.
+    std::array<const HaplyGrip*, HaplyState::kMost> grips{};
+    std::size_t count = 0;
+    for (const bool wireless : {true, false})
+        for (std::size_t i = 0; i < state_.gripCount; ++i)
+            if (state_.grips[i].wireless == wireless) grips[count++] = &state_.grips[i];
+    const auto index = static_cast<std::size_t>(arm - state_.arms.data());
+    if (count > 0) gripId_ = textOf(grips[std::min(index, count - 1)]->id);
 }
 
 void HaplyDriver::describe() {

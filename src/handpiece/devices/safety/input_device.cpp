@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -32,7 +33,10 @@ GateSettings gateFor(const InputSettings& settings) {
 
 class InputBoard final : public HealthBoard {
   public:
-    explicit InputBoard(const workspace::Placing& placing) : placings(std::make_unique<workspace::Placing>(placing)) {}
+    InputBoard(const InputSettings& settings, std::function<std::int64_t()> nowNs)
+        : placings(std::make_unique<workspace::Placing>(settings.placing)),
+          nowNs_(std::move(nowNs)),
+          timeoutS_(settings.readingTimeoutS) {}
 
     Health read() noexcept override {
         const Frame& frame = frames.read();
@@ -47,6 +51,10 @@ class InputBoard final : public HealthBoard {
         health.orientation = frame.reading.orientation;
         health.buttons = frame.reading.buttons;
         health.clutched = clutched.load(std::memory_order_relaxed);
+        if (frame.count > 0 && !(static_cast<double>(nowNs_() - frame.nowNs) / kNsPerS <= timeoutS_)) {
+            health.gate.trouble = health.gate.last = Trouble::stalled;
+            health.servoHz = 0.0;
+        }
         return health;
     }
     void place(const workspace::Placing& placing) override {
@@ -58,6 +66,10 @@ class InputBoard final : public HealthBoard {
     FrameBuffer frames;
     rt::Staged<workspace::Placing> placings;
     std::atomic<bool> clutched{false};
+
+  private:
+    std::function<std::int64_t()> nowNs_;
+    double timeoutS_;
 };
 
 class WithPedal final : public device::Device {
@@ -89,7 +101,7 @@ struct InputDevice::State {
         : driver(std::move(with)),
           settings(asked),
           nowNs(asked.nowNs ? asked.nowNs : std::function<std::int64_t()>(&rt::monotonicNs)),
-          board(std::make_shared<InputBoard>(asked.placing)),
+          board(std::make_shared<InputBoard>(asked, nowNs)),
           servo(gateFor(asked), nowNs, frames, board->frames),
           mapping(asked.placing),
           hand(asked.hand, mailbox, mapping.burInTooth({})) {}

@@ -516,9 +516,10 @@ static void switchTo(unsigned what, bool on, const char* who) {
     const Lock lock(world().mutex);
     Device* d = current(who);
     if (d == nullptr) return;
-    if (what == 0x4000)
+    if (what == 0x4000) {
         d->forceOutput = on;
-    else if (d->enabled.count(what) != 0)
+        if (!on) d->force = d->torque = {};
+    } else if (d->enabled.count(what) != 0)
         d->enabled[what] = on;
     else
         fail(INVALID_ENUM);
@@ -812,6 +813,11 @@ void double_unplug(int device) {
 }
 void double_stall(int device, double seconds) {
     with(device, [&](Device& d) { d.stallS = seconds; });
+}
+void double_wake() {
+    const Lock lock(world().mutex);
+    world().wake = true;
+    world().news.notify_all();
 }
 void double_error(int device, unsigned code, int atEnd, int times) {
     with(device, [&](Device& d) {

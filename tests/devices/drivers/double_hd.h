@@ -25,6 +25,8 @@ using DoublePress = void(int device, unsigned buttons);
 using DoubleForce = unsigned long long(int device, double* out);
 using DoubleUnplug = void(int device);
 /// hdBeginFrame of this device returns so much later, once.
+/// A stall ends with double_wake at the latest.
+using DoubleWake = void();
 using DoubleStall = void(int device, double seconds);
 /// Errors on the stack: `times` of them (below 0: in every frame), at the end of a frame or at its beginning.
 using DoubleError = void(int device, unsigned code, int atEnd, int times);

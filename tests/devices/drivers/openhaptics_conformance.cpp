@@ -19,6 +19,7 @@ const HdDouble& hdDouble() {
         shared.require(d.force, "double_force");
         shared.require(d.unplug, "double_unplug");
         shared.require(d.stall, "double_stall");
+        shared.require(d.wake, "double_wake");
         shared.require(d.error, "double_error");
         shared.require(d.calibration, "double_calibration");
         shared.require(d.switches, "double_switches");

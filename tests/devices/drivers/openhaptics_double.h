@@ -18,6 +18,7 @@ struct HdDouble {
     DoubleForce* force = nullptr;
     DoubleUnplug* unplug = nullptr;
     DoubleStall* stall = nullptr;
+    DoubleWake* wake = nullptr;
     DoubleError* error = nullptr;
     DoubleCalibration* calibration = nullptr;
     DoubleSwitches* switches = nullptr;

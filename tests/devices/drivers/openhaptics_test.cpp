@@ -223,6 +223,30 @@ TEST_F(OpenHaptics, aDeadSchedulerHoldsNobodyUp) {
     EXPECT_EQ(hd.breaches(), 0u) << hd.lastBreach();
 }
 
+TEST_F(OpenHaptics, motorsGoOffWhileTheServoHangsAndOnAgain) {
+    Probe probe;
+    auto driver = started(probe);
+    probe.push({0, 1, 0});
+    EXPECT_TRUE(await([&] { return hd.newton(0).norm() > 0.99; }));
+    hd.stall(0, 60.0);
+    std::uint64_t count = 0;
+    EXPECT_TRUE(await([&] {
+        count = probe.count();
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        return probe.count() == count;
+    }));
+    EXPECT_TRUE(await([&] {
+        driver->relax();
+        return hd.newton(0).isZero();
+    }));
+    EXPECT_EQ(probe.count(), count) << "the servo still hangs";
+    hd.wake();
+    EXPECT_TRUE(await([&] { return hd.newton(0).norm() > 0.99; }));
+    driver->stop();
+    driver->relax();
+    EXPECT_EQ(hd.breaches(), 0u) << hd.lastBreach();
+}
+
 TEST_F(OpenHaptics, aHandOnASpringGivesWay) {
     hd.sprung(0, 1);
     Probe probe;

@@ -13,6 +13,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <system_error>
 #include <thread>
 
 #include "handpiece/base/core/error.h"
@@ -179,6 +180,17 @@ class Arm {
     }
     void letGo() noexcept { gone_.store(true); }
 
+    /// While the servo hangs in the library: motors off. Where the current device is one for all threads, a frame that
+    /// comes back to life meanwhile is refused its force (FRAME_ERROR), and no other arm is in a frame.
+    void relax() noexcept {
+        if (gone_.load()) return;
+        hd_.makeCurrent(handle_);
+        hd_.disable(hd::kForceOutput);
+        (void)hd_.drain();
+        relaxed_.store(true);
+    }
+    std::atomic<bool> relaxing{false};  ///< one at a time
+
     [[nodiscard]] unsigned calibrationAnswer() const noexcept { return answer_.load(); }
     /// Asks the servo to calibrate; false when it does not come round in time. The code of an error, if there was one.
     bool calibrate(double seconds, unsigned& error) noexcept {
@@ -234,6 +246,7 @@ class Arm {
         pending_ = hd::kSuccess;
         note(hd_.drain());
         const link::DriverCommand command = exchange();
+        if (relaxed_.exchange(false)) hd_.enable(hd::kForceOutput);
         send(reading_.trouble == Trouble::none ? command : link::DriverCommand{});
         hd_.endFrame(handle_);
         // What the end of the frame tells belongs to the next one; what is fatal stops this device now.
@@ -375,7 +388,7 @@ class Arm {
     unsigned pending_ = hd::kSuccess;
     bool first_ = true, dead_ = false, lastZero_ = false, seenHeld_ = false, seenOut_ = false;
     bool hasTemperature_ = false, hasSafetySwitch_ = false, hasInkwellSwitch_ = false;
-    std::atomic<bool> closing_{false}, silent_{false}, gone_{false}, wanted_{false};
+    std::atomic<bool> closing_{false}, silent_{false}, gone_{false}, wanted_{false}, relaxed_{false};
     std::atomic<int> gate_{kOpen};
     std::atomic<unsigned> answer_{hd::kCalibrated}, calibrationError_{hd::kSuccess};
     std::atomic<std::uint32_t> calibrated_{0};
@@ -505,6 +518,19 @@ class OpenHaptics final : public link::Driver {
             (void)hd.drain();
             shared.open.erase(key);
         });
+    }
+
+    void relax() noexcept override {
+        if (!started_ || stopped_ || arm_->relaxing.exchange(true)) return;
+        try {
+            std::thread([arm = arm_] {
+                // Whoever opens or closes a device has stopped the servo anyway.
+                if (const std::unique_lock guard(desk().mutex, std::try_to_lock); guard.owns_lock()) arm->relax();
+                arm->relaxing.store(false);
+            }).detach();
+        } catch (const std::system_error&) {
+            arm_->relaxing.store(false);  // no thread to be had: asked again at the watchdog's next look
+        }
     }
 
     [[nodiscard]] CalibrationState calibration() override {

@@ -33,7 +33,7 @@ struct Bench {
         : gate(settings), periodNs(static_cast<std::int64_t>(1e9 / servoHz)) {
         reading.motorTemperature = 0.3f;
     }
-    /// One frame later; the tick runs at 1 kHz and has given its last command just before.
+    /// One frame later; the tick has given its last command just before.
     DriverCommand next() {
         nowNs += periodNs;
         if (deviceRuns) {
@@ -41,8 +41,8 @@ struct Bench {
             ++reading.frame;
         }
         if (tickRuns) {
-            command.timeNs = nowNs / kMs * kMs;
-            command.number = static_cast<std::uint64_t>(command.timeNs / kMs);
+            command.timeNs = nowNs;
+            ++command.number;
         }
         return gate.pass(reading, command, nowNs);
     }
@@ -88,6 +88,10 @@ TEST(Gate, clampsForceAndTorqueToTheRecord) {
     EXPECT_NEAR(length(out.forceN), 3.3, 1e-12);
     EXPECT_NEAR(out.forceN[0] / out.forceN[1], 0.75, 1e-12);
     EXPECT_NEAR(out.torqueNmm[2], -100.0, 1e-9);
+    EXPECT_TRUE(bench.gate.status().clamped);
+
+    bench.command.torqueNmm = {};
+    bench.next();
     EXPECT_TRUE(bench.gate.status().clamped);
 
     Bench without;  // no torque axes
@@ -253,6 +257,42 @@ TEST(Gate, aStampOfTheFutureKeepsNoCommandYoung) {
         EXPECT_EQ(length(bench.run(0.012).forceN), 0.0) << aheadMs;
         EXPECT_EQ(bench.gate.status().trouble, Trouble::tickStalled);
     }
+}
+
+TEST(Gate, aTickWhoseClockStandsIsNotBelieved) {
+    Bench bench;
+    bench.warmUp();
+    bench.tickRuns = false;
+    for (int ms = 0; ms < 12; ++ms) {  // commands go on, with the time of the first
+        ++bench.command.number;
+        bench.next();
+    }
+    EXPECT_EQ(bench.gate.status().gain, 0.0);
+    EXPECT_EQ(bench.gate.status().trouble, Trouble::tickStalled);
+}
+
+TEST(Gate, oneCommandStampedAnewIsStillOne) {
+    Bench bench;
+    bench.warmUp();
+    bench.tickRuns = false;
+    for (int ms = 0; ms < 12; ++ms) {
+        bench.command.timeNs = bench.nowNs;
+        bench.next();
+    }
+    EXPECT_EQ(bench.gate.status().gain, 0.0);
+    EXPECT_EQ(bench.gate.status().trouble, Trouble::tickStalled);
+}
+
+TEST(Gate, oneFrameStampedAnewIsStillOne) {
+    Bench bench;
+    bench.warmUp();
+    bench.deviceRuns = false;
+    for (int ms = 0; ms < 12; ++ms) {
+        bench.reading.timeNs = bench.nowNs + bench.periodNs;
+        bench.next();
+    }
+    EXPECT_EQ(bench.gate.status().gain, 0.0);
+    EXPECT_EQ(bench.gate.status().trouble, Trouble::stalled);
 }
 
 TEST(Gate, aQuickHandIsNoJump) {

@@ -79,7 +79,8 @@ device::Motion strokes(double topMm, double durationS) {
     };
     go(0.0, 0, 0, topMm + 0.5);
     for (int i = 0; t < durationS; ++i) {
-        const double x = 2.5 * std::sin(1.7 * i), y = 2.0 * std::sin(2.3 * i + 1.0), deep = topMm - 6.0;
+        const double x = 3.8 * std::sin(1.7 * i), y = 3.2 * std::sin(2.3 * i + 1.0);
+        const double deep = topMm - 4.0 - 6.0 * t / durationS;  // what is cut away is not felt again
         pedal = i % 3 == 2 ? 0.0 : 1.0;
         go(0.1, x, y, topMm + 0.5);
         go(0.15, x, y, deep);
@@ -132,7 +133,7 @@ Storm cutInAStorm(const StormSettings& settings) {
     const std::shared_ptr<HealthBoard> health = device->health();
 
     const auto field = std::make_shared<tooth::CutField>(base);
-    const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur("round:1.4x1.4"));
+    const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur("round:1.0x1.0"));
     loop::LoopSettings loopSettings;
     loopSettings.rateHz = settings.tickHz;
     std::unique_ptr<session::Recorder> recorder;

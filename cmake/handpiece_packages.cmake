@@ -27,8 +27,8 @@ set(CPACK_DEBIAN_HANDPIECE_PACKAGE_CONTROL_EXTRA
     ${PROJECT_SOURCE_DIR}/packaging/debian/postrm ${PROJECT_SOURCE_DIR}/packaging/debian/conffiles)
 set(CPACK_COMPONENT_HANDPIECE_DESCRIPTION
 "Feel and cut teeth with a haptic arm, a simulated one or the mouse.
- Window and command line: teeth from scans or made by the program, sessions that can be
- replayed and measured, drivers for haptic arms that are loaded at run time.")
+Window and command line: teeth from scans or made by the program, sessions that can be
+replayed and measured, drivers for haptic arms that are loaded at run time.")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME handpiece-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
@@ -36,5 +36,5 @@ set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
     "libeigen3-dev, libfmt-dev, libtbb-dev, libtomlplusplus-dev, libopenal-dev, libsndfile1-dev, libqhull-dev, libzip-dev, libhdf5-dev, zlib1g-dev, libpng-dev, libtiff-dev, libjpeg-dev, libgdcm-dev, libegl-dev, libopengl-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION
 "Build your own programs on the simulator's library.
- Headers, static libraries and the files for find_package(handpiece).")
+Headers, static libraries and the files for find_package(handpiece).")
 include(CPack)

@@ -286,6 +286,8 @@ TEST_F(ForceDimension, aLibraryThatHangsIsLeftBehind) {
     probe.push({0, 1, 0});
     EXPECT_TRUE(await([&] { return arm->sent(0).forceN[2] > 0.9; }));
     arm->stall(0, 30.0);
+    // Until its thread stands in a call, not in the pause between two.
+    EXPECT_TRUE(await([&] { return rt::monotonicNs() - probe.last().timeNs > 50'000'000; }));
     // The watchdog asks for the motors to be switched off and does not wait for it.
     std::int64_t then = rt::monotonicNs();
     driver->relax();

@@ -171,7 +171,8 @@ class FalconDriver final : public link::Driver {
         info_.sources =
             "stiffness and damping: device table of CHAI3D 3.3; geometry and motor units: open-source drivers; "
             "continuous force ours; all unchecked";
-        info_.servoHz = options.servoHz > 0 ? options.servoHz : info_.capability.rateHz;
+        if (options.servoHz > 0) info_.capability.rateHz = options.servoHz;
+        info_.servoHz = info_.capability.rateHz;
     }
     ~FalconDriver() override { FalconDriver::stop(); }
 
@@ -248,6 +249,11 @@ Found lookFalcon() {
     } catch (const core::Error& e) {
         found.why = e.problem();
         found.remedy = e.remedy();
+        // Without libusb the other library may still see one; which of its devices it is tells only opening it.
+        if (const Found other = lookForceDimension(); other.available) {
+            found.available = true;
+            found.models = other.models;
+        }
     }
     return found;
 }

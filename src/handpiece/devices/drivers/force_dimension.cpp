@@ -340,7 +340,8 @@ class ForceDimensionDriver final : public link::Driver {
             info_.capability.drivenAxes = 3;
         }
         if (!arm.wrist) info_.capability.sensedAxes = 3;
-        info_.servoHz = options.servoHz > 0 ? options.servoHz : info_.capability.rateHz;
+        if (options.servoHz > 0) info_.capability.rateHz = options.servoHz;
+        info_.servoHz = info_.capability.rateHz;
         info_.version = versionOf(*library, device.id);
         if (library->dhdIsLeftHanded && library->dhdIsLeftHanded(device.id)) info_.version += "; left-handed";
     }

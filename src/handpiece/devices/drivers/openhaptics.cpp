@@ -84,7 +84,7 @@ const Model& modelOf(std::string_view vendorsName) {
 
 /// What all devices of the program share. Never destroyed: the vendor's threads may outlive main().
 struct Desk {
-    std::timed_mutex mutex;  // held by a vendor's function that never returns: then nobody waits for it for ever
+    std::mutex mutex;  // held by a vendor's function that never returns: then nobody waits for it for ever
     std::set<std::string> open;
     int scheduled = 0;
     double rateHz = 0.0;  // 0: the library's own
@@ -692,7 +692,11 @@ Found lookOpenHaptics() {
         const Library& hd = hd::library();
         {
             Desk& shared = desk();
-            const std::unique_lock guard(shared.mutex, std::chrono::milliseconds(500));
+            std::unique_lock guard(shared.mutex, std::try_to_lock);
+            for (int i = 0; i < 100 && !guard.owns_lock(); ++i) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+                (void)guard.try_lock();
+            }
             if (!guard.owns_lock()) throw deaf();
             if (!shared.open.empty()) {
                 found.available = true;

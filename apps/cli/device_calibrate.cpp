@@ -196,7 +196,7 @@ void calibrate(const CalibrateOptions& o) {
     }  // closed: it is opened again with its new profile
     std::optional<RunSummary> felt;
     if (o.feelS > 0.0) {
-        say(fmt::format("Feel a block of enamel for {:.0f} s{}.", o.feelS, real ? ": touch it from above" : ""));
+        say(fmt::format("Feel a block of enamel for {:.3g} s{}.", o.feelS, real ? ": touch it from above" : ""));
         felt = feelBlock(o, profile);
         say(felt->touched ? fmt::format("  touched for {:.1f} s, {:.2f} N at most", felt->contactS, felt->peakForceN)
                           : "  it was not touched");

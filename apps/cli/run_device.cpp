@@ -153,7 +153,7 @@ void RunDevice::watch() {
     if (health.gate.trouble == s.told) return;
     const auto trouble = station::troubleOf(health.gate, s.opened->info);
     if (trouble)
-        fmt::print(stderr, "handpiece: {} No force until it is well again.\n", trouble->what());
+        fmt::print(stderr, "handpiece: {}. No force until it is well again.\n", trouble->what());
     else if (s.told != link::Trouble::none && s.told != link::Trouble::starting &&
              health.gate.trouble == link::Trouble::none)
         fmt::print(stderr, "handpiece: {} is well again.\n", s.opened->info.model);

@@ -152,7 +152,8 @@ std::optional<core::Error> troubleOf(const safety::GateStatus& status, const lin
     const std::string words = drivers::vendorErrorInWords(device.driver, status.vendorCode);
     std::string what = withoutStop(link::sentenceOf(trouble));
     if (!words.empty()) what += ": " + withoutStop(words);
-    return core::Error(what, device.model, withoutStop(link::remedyOf(trouble)))
+    // The words of a code say what to do about it themselves.
+    return core::Error(what, device.model, words.empty() ? withoutStop(link::remedyOf(trouble)) : std::string())
         .as(std::string(link::idOf(trouble)), {device.model, words});
 }
 

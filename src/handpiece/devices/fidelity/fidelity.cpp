@@ -74,7 +74,7 @@ class Ticker {
            std::function<std::int64_t()> nowNs)
         : device_(device), tap_(tap), plan_(plan), periodS_(periodS), nowNs_(std::move(nowNs)) {}
 
-    /// True while there is more to do.
+    /// True while there is more to do; afterwards nothing is noted any more.
     bool tick(double durationS, std::int64_t lateNs, std::int64_t periods) noexcept {
         (void)device_.read(periodS_ * static_cast<double>(periods));
         const std::int64_t now = nowNs_(), newest = tap_.newestNs.load(std::memory_order_acquire);
@@ -84,11 +84,11 @@ class Ticker {
         if (forceN > lastN_ && forceN >= plan_.pulseN && plan_.pulses > 0) (void)pulses.tryPush({now, lastN_, forceN});
         lastN_ = forceN;
         device_.command(Vec3(0.0, forceN, 0.0), Vec3::Zero());
-        if (firstNs_ != 0)
+        if (firstNs_ != 0 && timeS < durationS)
             (void)ticks.tryPush(
                 {now, lateNs, now - newest, static_cast<std::int32_t>(std::min<std::int64_t>(periods, 1 << 30))});
         elapsedS.store(timeS, std::memory_order_relaxed);
-        return timeS < durationS && !stop.load(std::memory_order_relaxed);
+        return timeS < durationS;
     }
 
     rt::SpscQueue<TickRecord> ticks{kQueue};
@@ -214,12 +214,12 @@ Report check(std::unique_ptr<link::Driver> driver, const CheckSettings& settings
         rt::RealtimeThread thread([&] {
             rt::PeriodicClock clock(static_cast<std::int64_t>(periodS * kNsPerS));
             clock.start();
-            for (;;) {
+            // On after the end, without force: how the device is doing is read while the simulation still runs.
+            while (!ticker.stop.load(std::memory_order_relaxed)) {
                 const rt::Beat beat = clock.wait();
-                if (!ticker.tick(settings.durationS, beat.lateNs, beat.periods)) break;
+                if (!ticker.tick(settings.durationS, beat.lateNs, beat.periods))
+                    ticker.ended.store(true, std::memory_order_release);
             }
-            device.command(Vec3::Zero(), Vec3::Zero());
-            ticker.ended.store(true, std::memory_order_release);
         });
         recording.grant = thread.grant();
         // What progress or announce throws ends the ticks before the device goes.
@@ -236,8 +236,9 @@ Report check(std::unique_ptr<link::Driver> driver, const CheckSettings& settings
             attend(ticker.elapsedS);
             requireFrames(static_cast<double>(rt::monotonicNs() - startNs) / kNsPerS);
         }
+        recording.health = device.health()->read();
     }
-    recording.health = device.health()->read();
+    if (settings.advance) recording.health = device.health()->read();
     recording.calibration = device.calibration();
     if (recording.calibration == link::CalibrationState::wanted ||
         recording.calibration == link::CalibrationState::wantedByHand)

@@ -49,6 +49,12 @@ std::vector<double> histogramOf(const std::vector<double>& valuesS) {
     return bins;
 }
 
+/// What makes threads come in time.
+std::string steadier(const Recording& r) {
+    return r.grant.realTime ? "close other programs; switch power saving off in the machine's set-up"
+                            : "let the machine grant real-time scheduling (docs/devices.md)";
+}
+
 std::vector<double> periodsOf(const Recording& r) {
     std::vector<double> periods;
     for (std::size_t i = 1; i < r.frames.size(); ++i)
@@ -101,7 +107,7 @@ Finding servoJitter(const Recording& r, const std::vector<double>& periods) {
     f.value = fmt::format("p50 {}, p99 {}, p99.9 {}, worst {}", ms(j.p50), ms(j.p99), ms(j.p999), ms(worst));
     addSpread(f, j);
     f.verdict = graded(j.p999, 0.5 * nominal, 2.0 * nominal);
-    if (f.verdict != Verdict::pass) f.remedy = "let the machine grant real-time scheduling (docs/devices.md)";
+    if (f.verdict != Verdict::pass) f.remedy = steadier(r);
     return f;
 }
 
@@ -112,7 +118,7 @@ Finding servoGaps(const Recording& r, const std::vector<double>& periods) {
     f.value = gaps == 0 ? "none" : fmt::format("{} in {:.1f} s", gaps, r.settings.durationS);
     f.figures = {{"gaps", static_cast<double>(gaps)}, {"limit_ms", 1e3 * r.gateTimeoutS}};
     f.verdict = gaps == 0 ? Verdict::pass : gaps <= 2 ? Verdict::warn : Verdict::fail;
-    if (gaps > 0) f.remedy = "close other programs; let the machine grant real-time scheduling (docs/devices.md)";
+    if (gaps > 0) f.remedy = steadier(r);
     return f;
 }
 
@@ -137,7 +143,7 @@ Finding tickLateness(const Recording& r, std::vector<double> late) {
     addSpread(f, q);
     f.figures.insert(f.figures.begin(), {"late_share", share});
     f.verdict = graded(share, kGoodLateShare, kMostLateShare);
-    if (f.verdict != Verdict::pass) f.remedy = "let the machine grant real-time scheduling (docs/devices.md)";
+    if (f.verdict != Verdict::pass) f.remedy = steadier(r);
     return f;
 }
 

@@ -89,7 +89,7 @@ Drawn drawnOf(const std::vector<double>& counts, bool fromZero) {
 
 /// Bars on a logarithmic scale: rare late ones are what matters.
 std::string histogramSvg(const std::vector<double>& counts, const std::string& title, bool fromZero) {
-    constexpr double kWidth = 640, kHeight = 150, kLeft = 46, kBottom = 34, kTop = 8, kRight = 10;
+    constexpr double kWidth = 640, kHeight = 150, kLeft = 46, kBottom = 34, kTop = 8, kRight = 24;
     const Drawn d = drawnOf(counts, fromZero);
     if (d.total <= 0.0) return {};
     const double w = kWidth - kLeft - kRight, h = kHeight - kBottom - kTop;

@@ -10,6 +10,7 @@
 #include "handpiece/model/tooth/case_bytes.h"
 #include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/tick/device/replay_device.h"
+#include "handpiece/tick/force/pose_guard.h"
 #include "station/cut_session.h"
 #include "station/history_bytes.h"
 
@@ -56,6 +57,24 @@ device::Reading readingOf(const Record& record) {
     reading.pedal = in.pedal;
     reading.buttons = in.buttons;
     return reading;
+}
+
+/// The hand as it was. A device that lost its pose goes on telling the last one: of a tick without a believable pose
+/// this finds, as the loop's guard did, whether the pose was lost or had jumped from the last one `believed`.
+std::vector<device::Reading> readingsOf(const std::vector<Record>& records, std::optional<core::Vec3>& believed) {
+    std::vector<device::Reading> readings;
+    readings.reserve(records.size());
+    for (const Record& record : records) {
+        device::Reading reading = readingOf(record);
+        const core::Vec3& place = reading.burInTooth.positionMm;
+        if ((record.flags & messages::kInvalidPose) != 0 &&
+            !(believed && (place - *believed).norm() > force::kMaxJumpMm))
+            reading.status = device::ReadStatus::lost;
+        else if (reading.burInTooth.isValid())
+            believed = place;
+        readings.push_back(reading);
+    }
+    return readings;
 }
 
 /// A state of the tooth that the session tells: at its end or, when it was cut off, in its last key frame.
@@ -117,6 +136,7 @@ struct SessionPlayer::State {
     std::uint64_t next = 0;  ///< record to be played
     std::size_t nextEvent = 0, nextFrame = 0;
     std::vector<Record> stretch;
+    std::optional<core::Vec3> believed;  // the last pose of the hand that was believed
     std::uint64_t stretchFirst = 0;
     bool isExact = true, isRunningUp = false;
     std::uint64_t differs = 0, firstDiffering = 0, skippedSteps = 0;
@@ -145,9 +165,9 @@ struct SessionPlayer::State {
         for (; index > 0 && nextEvent < events.size() && events[nextEvent].tick <= tick; ++nextEvent)
             if (isChange(events[nextEvent])) (void)applyChange(events[nextEvent].text, station.settings, where);
         nextFrame = static_cast<std::size_t>(std::lower_bound(frames.begin(), frames.end(), tick) - frames.begin());
-        std::vector<device::Reading> readings;
-        std::transform(stretch.begin(), stretch.end(), std::back_inserter(readings), readingOf);
-        auto device = std::make_unique<device::ReplayDevice>(station.settings.capability, std::move(readings));
+        believed.reset();
+        auto device =
+            std::make_unique<device::ReplayDevice>(station.settings.capability, readingsOf(stretch, believed));
         hand = device.get();
         loop::LoopSettings settings;
         settings.rateHz = first.rateHz;
@@ -185,9 +205,7 @@ struct SessionPlayer::State {
     const Record& record() {
         if (next - stretchFirst >= stretch.size()) {
             loadStretch();
-            std::vector<device::Reading> readings;
-            std::transform(stretch.begin(), stretch.end(), std::back_inserter(readings), readingOf);
-            hand->continueWith(std::move(readings));
+            hand->continueWith(readingsOf(stretch, believed));
         }
         return stretch[next - stretchFirst];
     }

@@ -53,6 +53,9 @@ struct Traits {
     bool exclusive = true;    ///< a device that is open cannot be opened again: core::Error
     bool calibrates = false;  ///< the double can ask for calibration
     bool tellsUnplug = true;
+    bool steered = true;            ///< false: the hand goes a way of its own
+    bool felt = true;               ///< what arrives at the motors can be read
+    bool stalls = true;             ///< its interface can be held up
     core::Vec3 workMm{20, 20, 20};  ///< the hand may go from -work to +work on each axis, device frame
 };
 
@@ -180,6 +183,7 @@ class Conformance : public testing::TestWithParam<MakeAdaptor> {
             << "trouble: " << link::idOf(probe.last().trouble);
         return driver;
     }
+    [[nodiscard]] bool felt() const { return traits.force && traits.felt; }
     std::unique_ptr<Adaptor> adaptor;
     Traits traits;
 };

@@ -33,12 +33,24 @@ def stem(name):
     return name.split(".so")[0]
 
 
-def package_of(path):
-    for candidate in (path, os.path.realpath(path), "/usr" + os.path.realpath(path), os.path.realpath(path).removeprefix("/usr")):
-        result = subprocess.run(["dpkg", "-S", candidate], capture_output=True, text=True)
-        if result.returncode == 0:
-            return result.stdout.split(":")[0]
-    return None
+def packages_of(paths):
+    """Path -> the package that owns it. Debian's list may know a file under /lib or under /usr/lib."""
+    spellings = {}
+    for path in paths:
+        real = os.path.realpath(path)
+        for name in (path, real, "/usr" + real, real.removeprefix("/usr")):
+            spellings.setdefault(name, path)
+    # It complains about the spellings it does not know, which is most of them.
+    out = subprocess.run(["dpkg", "-S", *spellings], capture_output=True, text=True, check=False).stdout
+    owners = {}
+    for line in out.splitlines():
+        owner, _, name = line.partition(": ")
+        if name in spellings:
+            owners[spellings[name]] = owner.split(":")[0].split(",")[0]
+    for path in paths:
+        if path not in owners:
+            sys.exit(f"bundle: no package owns {path}: its licence is not known")
+    return owners
 
 
 def main():
@@ -78,11 +90,8 @@ def main():
     notices = tree / "share/doc/handpiece/third-party"
     notices.mkdir(parents=True, exist_ok=True)
     packages = {}
-    for place in list(wanted.values()) + sources:
-        name = package_of(place)
-        if name is None:
-            sys.exit(f"bundle: no package owns {place}: its licence is not known")
-        packages[name] = subprocess.run(["dpkg-query", "-W", "-f=${Version}", name], capture_output=True, text=True).stdout.split("\n")[0]
+    for name in sorted(set(packages_of([*wanted.values(), *sources]).values())):
+        packages[name] = subprocess.run(["dpkg-query", "-W", "-f=${Version}\n", name], capture_output=True, text=True, check=True).stdout.split("\n")[0]
         shutil.copyfile(os.path.realpath(f"/usr/share/doc/{name}/copyright"), notices / f"{name}.copyright")
     lines = ["Libraries in lib/handpiece, from these packages of Debian 12, unchanged; each may be replaced by another build of it.",
              "Their licences are beside this file; their sources are at https://snapshot.debian.org under these versions.", ""]

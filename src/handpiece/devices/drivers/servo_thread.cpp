@@ -2,9 +2,8 @@
 #include "handpiece/devices/drivers/servo_thread.h"
 
 #include <cmath>
-#include <mutex>
+#include <system_error>
 #include <thread>
-#include <vector>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/rt/clock.h"
@@ -12,12 +11,14 @@
 namespace handpiece::drivers {
 namespace {
 
-/// Threads that hang in a vendor's call. They are neither joined nor freed: both would wait for the library.
-void leaveBehind(std::unique_ptr<rt::RealtimeThread> thread) {
-    static std::mutex mutex;
-    static auto* const left = new std::vector<std::unique_ptr<rt::RealtimeThread>>;
-    const std::lock_guard lock(mutex);
-    left->push_back(std::move(thread));
+/// A thread that hangs in a vendor's call: another one waits for it, for as long as the library takes.
+void leaveBehind(std::unique_ptr<rt::RealtimeThread> thread) noexcept {
+    rt::RealtimeThread* left = thread.release();
+    try {
+        std::thread([left] { delete left; }).detach();
+    } catch (const std::system_error&) {
+        // No thread can be made: then it is never joined, and its memory stays.
+    }
 }
 
 std::int64_t periodOf(double rateHz) {

@@ -27,7 +27,9 @@ QLabel* text(const char* name, const QString& accessible, QWidget* parent) {
 
 QString words(const safety::Health& health) {
     const link::Trouble trouble = health.gate.trouble;
-    if (trouble == link::Trouble::none || trouble == link::Trouble::tickStalled) return {};
+    // Before the first step that pushes there is no tick, and so nothing that it could be late with.
+    if (trouble == link::Trouble::none || trouble == link::Trouble::tickStalled || trouble == link::Trouble::starting)
+        return {};
     return problemOf(trouble, health.gate.vendorCode).what;
 }
 
@@ -54,7 +56,10 @@ FirstPlugIn::FirstPlugIn(Simulator& simulator, bool realTime, QWidget* parent)
     row->addStretch(1);
     back_ = named(new QPushButton(tr("Back"), this), "firstBack", tr("Back"), tr("To the step before"));
     next_ = named(new QPushButton(tr("Next"), this), "firstNext", tr("Next"));
+    for (QPushButton* other : {later_, back_})
+        other->setAutoDefault(false);
     next_->setDefault(true);
+    next_->setFocus();
     row->addWidget(back_);
     row->addWidget(next_);
     column->addLayout(row);

@@ -127,6 +127,9 @@ void MainWindow::listDevices() {
     const Actions& a = *actions_;
     for (const char* name : {"actionDevicePage", "actionDeviceSetUp", "actionDeviceSearch"})
         devices_->addAction(a[name]);
+    // What was found since makes it longer: it stands on the status bar.
+    if (risesFromStatus_ && devices_->isVisible())
+        devices_->move(status_->mapToGlobal(QPoint(0, -devices_->sizeHint().height())));
     a["actionDeviceSearch"]->setEnabled(!hands.isLooking());
     a["actionDeviceSetUp"]->setEnabled(hands.current() != nullptr);
 }
@@ -135,7 +138,7 @@ void MainWindow::showDevice(StatusFigures& figures) const {
     const Hands& hands = simulator_.hands();
     figures.device = deviceText(simulator_.capability());
     if (hands.isOpening()) figures.deviceTrouble = tr("being opened");
-    if (!hands.current()) return;
+    if (!hands.current() || !simulator_.usedHand()) return;
     figures.servoHz = hands.health().servoHz;
     if (hands.trouble() != link::Trouble::none)
         figures.deviceTrouble = problemOf(hands.trouble(), hands.health().gate.vendorCode).what;

@@ -2,7 +2,8 @@
 #pragma once
 /// @file
 /// What a test says to the double of Force Dimension's library (double_dhd.cpp): dlsym "doubleDhd" gives a function
-/// that returns it. Everything here is in the library's own frame and units.
+/// that returns it. With HANDPIECE_DHD_DOUBLE set it begins with one omega.6 whose hand goes round, for programs that
+/// cannot speak to it. Everything here is in the library's own frame and units.
 
 #include <cstdint>
 #include <string>

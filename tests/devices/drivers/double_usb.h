@@ -2,7 +2,7 @@
 #pragma once
 /// @file
 /// What a test says to the double of libusb (double_usb.cpp), which has Falcons plugged in: dlsym "doubleUsb" gives a
-/// function that returns it.
+/// function that returns it. With HANDPIECE_USB_DOUBLE set it begins with one, its grip in the middle.
 
 #include <array>
 #include <cstdint>

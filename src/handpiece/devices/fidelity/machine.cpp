@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the machine itself says: kernel, cores, governor, who may open the device's bus.
 #include <fmt/format.h>
-#include <sys/utsname.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -36,10 +34,10 @@ std::pair<std::string, std::string> usbIdsOf(const std::string& driver) {
 }  // namespace
 
 std::string machineLine(const rt::SchedulingGrant& grant) {
-    utsname name{};
-    const bool known = ::uname(&name) == 0;
-    return fmt::format("{} {} {}, {} cores; {}", known ? name.sysname : "unknown system", known ? name.release : "",
-                       known ? name.machine : "", std::max(1u, std::thread::hardware_concurrency()), grant.line);
+    const fs::path kernel = "/proc/sys/kernel";
+    const std::string system = lineOf(kernel / "ostype"), release = lineOf(kernel / "osrelease");
+    return fmt::format("{} {}, {} cores; {}", system.empty() ? "unknown system" : system, release,
+                       std::max(1u, std::thread::hardware_concurrency()), grant.line);
 }
 
 Finding governorFinding() {
@@ -81,7 +79,7 @@ Finding usbFinding(const std::string& driver) {
         try {
             const fs::path node = fmt::format("/dev/bus/usb/{:03}/{:03}", std::stoi(lineOf(entry.path() / "busnum")),
                                               std::stoi(lineOf(entry.path() / "devnum")));
-            const bool may = ::access(node.c_str(), R_OK | W_OK) == 0;
+            const bool may = std::fstream(node, std::ios::in | std::ios::out | std::ios::binary).is_open();
             f.value = fmt::format("{} {}", node.string(), may ? "may be opened" : "may not be opened");
             f.verdict = may ? Verdict::pass : Verdict::fail;
             if (!may) f.remedy = "install the udev rules (docs/devices.md) and connect the device again";

@@ -67,7 +67,7 @@ DevicePage::DevicePage(Simulator& simulator, Settings& settings, AskFile ask, QW
         if (checking_) checking_->cancel();
     });
     connect(fidelity_, &FidelityBox::saveRequested, this, &DevicePage::save);
-    resize(560, 620);
+    resize(820, 640);
     showDevice();
 }
 

@@ -147,7 +147,7 @@ void FidelityBox::setReport(const fidelity::Report& report) {
         const QString against = QString::fromStdString(finding.against),
                       remedy = QString::fromStdString(finding.remedy);
         for (int column = 0; column < 3; ++column)
-            item->setToolTip(column, against);
+            item->setToolTip(column, QString::fromStdString(finding.value) + QLatin1Char('\n') + against);
         if ((warn || fail) && !remedy.isEmpty()) {
             auto* below = new QTreeWidgetItem(item, {QString(), QString(), remedy});
             below->setToolTip(2, remedy);

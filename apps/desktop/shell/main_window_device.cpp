@@ -139,6 +139,7 @@ void MainWindow::showDevice(StatusFigures& figures) const {
     figures.device = deviceText(simulator_.capability());
     if (hands.isOpening()) figures.deviceTrouble = tr("being opened");
     if (!hands.current() || !simulator_.usedHand()) return;
+    figures.device = hands.textOf(hands.wanted());
     figures.servoHz = hands.health().servoHz;
     if (hands.trouble() != link::Trouble::none)
         figures.deviceTrouble = problemOf(hands.trouble(), hands.health().gate.vendorCode).what;

@@ -261,6 +261,8 @@ void Simulator::poll() {
         emit failed(problemById(QStringLiteral("sitting-ended"), {QString::fromStdString(status_.fault)}));
     emit plotted(sitting_->takePlot());
     for (const station::Notice& notice : sitting_->takeNotices()) {
+        // Hands says which, and what to do.
+        if (notice.id == "device-fault" && usedHand_) continue;
         QStringList arguments;
         for (const std::string& a : notice.arguments)
             arguments << QString::fromStdString(a);

@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/progress_bar.h"
+#include "cli/stability_picture.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/tick/loop/passivity.h"
@@ -19,6 +23,9 @@ namespace {
 struct PassivityOptions {
     std::string out;
     double stiffness = 1.0, damping = 1.0, limit = 0.0;
+    bool map = false, quick = false;
+    std::vector<std::string> motions;
+    double assumedDelayMs = -1.0;
 };
 
 /// One cell a combination: rows are tissues and rates, columns hands, frictions and delays. Blue holds, orange with a
@@ -72,7 +79,49 @@ std::string mapSvg(const loop::PassivitySweep& sweep, const std::vector<loop::Pa
     return svg + "</svg>\n";
 }
 
+/// Every loop twice, the controller off and on.
+void stabilityMap(const PassivityOptions& o) {
+    loop::StabilitySweep sweep = o.quick ? loop::quickStabilitySweep() : loop::StabilitySweep{};
+    if (!std::isfinite(o.assumedDelayMs) || o.assumedDelayMs > 10.0)
+        throw core::Error(fmt::format("a delay of {} ms", o.assumedDelayMs), "--assume-delay",
+                          "give 0 to 10; leave it out for the true one");
+    sweep.assumedDelayS = 1e-3 * o.assumedDelayMs;
+    if (!o.motions.empty()) {
+        std::vector<loop::LoopMotion> chosen;
+        for (const std::string& name : o.motions) {
+            const auto found = std::find_if(sweep.motions.begin(), sweep.motions.end(),
+                                            [&](loop::LoopMotion m) { return loop::nameOf(m) == name; });
+            if (found == sweep.motions.end())
+                throw core::Error(fmt::format("no motion is called \"{}\"", name), "--motion",
+                                  "there are touch, slide, cut and wedge");
+            chosen.push_back(*found);
+        }
+        sweep.motions = chosen;
+    }
+    core::prepareOutputFolder(o.out);
+    ProgressBar bar("touching, sliding, cutting, wedged");
+    const std::vector<loop::StabilityRow> rows = loop::stabilityMap(sweep, bar.listener());
+    bar.finish();
+    const std::filesystem::path out(o.out);
+    core::writeFile(out / "stability.csv", loop::stabilityCsv(rows));
+    for (const loop::LoopMotion motion : sweep.motions) {
+        const std::filesystem::path picture = out / fmt::format("stability-{}.svg", loop::nameOf(motion));
+        core::writeFile(picture, stabilitySvg(sweep, rows, motion));
+        std::size_t all = 0, off = 0, on = 0;
+        for (const loop::StabilityRow& row : rows) {
+            if (row.motion != motion) continue;
+            ++all;
+            off += row.off.holds;
+            on += row.on.holds;
+        }
+        fmt::print("{}: passive in {} of {} loops with the controller off, in {} with it on; {}\n",
+                   loop::nameOf(motion), off, all, on, picture.string());
+    }
+    fmt::print("{}\n", (out / "stability.csv").string());
+}
+
 void passivity(const PassivityOptions& o) {
+    if (o.map || o.quick) return stabilityMap(o);
     if (!(o.limit >= 0.0) || !std::isfinite(o.limit))
         throw core::Error(fmt::format("a stiffness limit of {} N/mm", o.limit), "--stiffness-limit",
                           "give a positive number; 0: the device's own");
@@ -106,14 +155,26 @@ void passivity(const PassivityOptions& o) {
 void addPassivityCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("passivity", "Map where hand, device and tooth stay passive together");
     const auto options = std::make_shared<PassivityOptions>();
-    command->add_option("--out", options->out, "folder for passivity.csv and passivity.svg")->required();
+    command->add_option("--out", options->out, "folder for the table and the pictures")->required();
     command->add_option("--stiffness", options->stiffness, "multiplier on every tissue's stiffness")
         ->capture_default_str();
     command->add_option("--damping", options->damping, "multiplier on every tissue's damping")->capture_default_str();
     command->add_option("--stiffness-limit", options->limit, "the device's stiffness limit [N/mm]; 0: its own");
+    CLI::Option* map =
+        command->add_flag("--map", options->map,
+                          "the whole stability map instead: contacts of 0.1 to 5 N/mm touched, slid over, cut and "
+                          "wedged, with the passivity controller off and on (minutes)");
+    CLI::Option* quick = command->add_flag("--quick", options->quick, "a small part of that map (seconds)");
+    command->add_option("--motion", options->motions, "of the map: touch, slide, cut, wedge; several allowed");
+    command->add_option("--assume-delay", options->assumedDelayMs,
+                        "of the map: the longest delay [ms] the controller is told; left out: the true one");
+    for (const char* name : {"--stiffness", "--damping", "--stiffness-limit"}) {
+        map->excludes(name);
+        quick->excludes(name);
+    }
     command->footer(
-        "The formula, the hands and the device are in docs/physics.md.\n"
-        "Example:\n  handpiece passivity --out out/passivity");
+        "The formula, the hands, the device and the controller are in docs/physics.md.\n"
+        "Examples:\n  handpiece passivity --out out/passivity\n  handpiece passivity --map --out out/stability");
     command->callback([options] { passivity(*options); });
 }
 

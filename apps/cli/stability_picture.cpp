@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/stability_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+namespace handpiece::cli {
+namespace {
+
+constexpr int kCell = 21, kLabels = 118, kGap = 40, kTop = 120, kBottom = 46;
+
+struct Count {
+    int all = 0, off = 0, on = 0;  ///< loops; that are not passive
+};
+using Key = std::tuple<double, double, std::string_view, double, double>;
+
+class Page {
+  public:
+    Page(int width, int height) {
+        svg_ = fmt::format(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+            "font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
+            width, height);
+    }
+    void text(double x, double y, const std::string& words, const char* anchor, int size = 11) {
+        svg_ +=
+            fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"{}\" font-size=\"{}\" fill=\"#222\">{}</text>\n",
+                        x, y, anchor, size, words);
+    }
+    void cell(double x, double y, int failed, const std::string& title) {
+        const char* colour = failed == 0 ? "#4a90c2" : failed < 4 ? "#f0b060" : "#d9661f";
+        svg_ += fmt::format(
+            "<rect x=\"{0:.0f}\" y=\"{1:.0f}\" width=\"{2}\" height=\"{2}\" fill=\"{3}\" stroke=\"#fff\"><title>{4}"
+            "</title></rect>\n",
+            x, y, kCell, colour, title);
+        if (failed > 0) text(x + 0.5 * kCell, y + 0.5 * kCell + 4, std::to_string(failed), "middle", 10);
+    }
+    [[nodiscard]] std::string finish() const { return svg_ + "</svg>\n"; }
+
+  private:
+    std::string svg_;
+};
+
+}  // namespace
+
+std::string stabilitySvg(const loop::StabilitySweep& sweep, const std::vector<loop::StabilityRow>& rows,
+                         loop::LoopMotion motion) {
+    const bool touch = motion == loop::LoopMotion::touch;
+    const std::vector<double>& rates = touch ? sweep.rateHz : sweep.molarRateHz;
+    const std::vector<double>& frictions = touch ? sweep.frictionN : sweep.molarFrictionN;
+    std::map<Key, Count> counts;
+    Count sum;
+    for (const loop::StabilityRow& r : rows) {
+        if (r.motion != motion) continue;
+        for (Count* c : {&counts[{r.limitNPerMm, r.rateHz, r.hand, r.frictionN, r.delayS}], &sum}) {
+            ++c->all;
+            c->off += !r.off.holds;
+            c->on += !r.on.holds;
+        }
+    }
+    const std::size_t delays = sweep.delayS.size(), columns = sweep.hands.size() * frictions.size() * delays;
+    const std::size_t lines = sweep.stiffnessNPerMm.size() * rates.size();
+    const int panel = static_cast<int>(columns) * kCell;
+    Page page(kLabels + 2 * panel + kGap + 20, kTop + static_cast<int>(lines) * kCell + kBottom);
+    page.text(
+        8, 20,
+        fmt::format("Stability map, {}: passive or not, {} tissues a cell", loop::nameOf(motion), sweep.tissues.size()),
+        "start", 15);
+    for (const bool on : {false, true}) {
+        const double left = kLabels + (on ? panel + kGap : 0);
+        page.text(left, 46,
+                  fmt::format("controller {}: {} of {} loops hold", on ? "on" : "off",
+                              sum.all - (on ? sum.on : sum.off), sum.all),
+                  "start", 13);
+        for (std::size_t c = 0; c < columns; ++c) {
+            const device::Hand& hand = sweep.hands[c / (delays * frictions.size())];
+            const double friction = frictions[c / delays % frictions.size()], delay = sweep.delayS[c % delays];
+            const double x = left + static_cast<double>(c) * kCell;
+            page.text(x + 0.5 * kCell, kTop - 8, fmt::format("{:.3g}", 1e3 * delay), "middle");
+            if (c % delays == 0)
+                page.text(x + 0.5 * kCell * static_cast<double>(delays), kTop - 24, fmt::format("{:.2f} N", friction),
+                          "middle");
+            if (c % (delays * frictions.size()) == 0)
+                page.text(x + 0.5 * kCell * static_cast<double>(delays * frictions.size()), kTop - 42,
+                          std::string(hand.name), "middle");
+            std::size_t l = 0;
+            for (const double limit : sweep.stiffnessNPerMm)
+                for (const double rate : rates) {
+                    const Count& count = counts[{limit, rate, hand.name, friction, delay}];
+                    const double y = kTop + static_cast<double>(l++) * kCell;
+                    page.cell(
+                        x, y, on ? count.on : count.off,
+                        fmt::format("{} N/mm, {:.0f} Hz, {} hand, {} N, {:.3g} ms: {} of {} not passive", limit, rate,
+                                    hand.name, friction, 1e3 * delay, on ? count.on : count.off, count.all));
+                }
+        }
+    }
+    std::size_t l = 0;
+    for (const double limit : sweep.stiffnessNPerMm)
+        for (const double rate : rates)
+            page.text(kLabels - 8, kTop + static_cast<double>(l++) * kCell + 15,
+                      fmt::format("{:.3g} N/mm, {:.3g} kHz", limit, 1e-3 * rate), "end");
+    page.text(8, kTop - 8, "delay [ms]", "start");
+    page.text(8, kTop - 24, "friction of the arm", "start");
+    page.text(8, kTop - 42, "hand", "start");
+    page.text(8, kTop + static_cast<double>(lines) * kCell + 24,
+              "blue: every tissue's loop is passive    orange: so many are not    down: stiffness of enamel, rate",
+              "start");
+    return page.finish();
+}
+
+}  // namespace handpiece::cli

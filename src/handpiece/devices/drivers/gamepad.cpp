@@ -108,8 +108,8 @@ void Pad::frame() noexcept {
 }
 
 void Pad::read(double dtS) noexcept {
-    const auto axis = [&](int which) { return unit(sdl->controllerAxis(controller, which)); };
-    const auto down = [&](int which) { return sdl->controllerButton(controller, which) != 0; };
+    const auto axis = [&](int number) { return unit(sdl->controllerAxis(controller, number)); };
+    const auto down = [&](int number) { return sdl->controllerButton(controller, number) != 0; };
     reading.buttons = 0;
     for (std::size_t bit = 0; bit < kButtons.size(); ++bit)
         if (down(kButtons[bit])) reading.buttons |= 1u << bit;

@@ -67,11 +67,11 @@ SdlLibrary::SdlLibrary() : library_("SDL 2", {"libSDL2-2.0.so.0", "libSDL2.so"},
 }
 
 std::string SdlLibrary::version() const {
-    void (*get)(Version*) = nullptr;
-    library_.find(get, "SDL_GetVersion");
+    void (*tell)(Version*) = nullptr;
+    library_.find(tell, "SDL_GetVersion");
     Version v{};
-    if (get == nullptr) return library_.name();
-    get(&v);
+    if (tell == nullptr) return library_.name();
+    tell(&v);
     return fmt::format("SDL {}.{}.{}", v.major, v.minor, v.patch);
 }
 

@@ -19,6 +19,7 @@
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/force/parameters.h"
+#include "handpiece/tick/stability/limits.h"
 
 namespace handpiece::cli {
 namespace {
@@ -117,6 +118,18 @@ Vec3 placeOf(const CalibrateOptions& o, const station::OpenDevice& device) {
     return tipNow(device.health->read(), device.profile.placing);
 }
 
+/// How stiff a wall this arm renders stably without help, by its figures; those that are unknown as of an Omni.
+stability::StableLimits stableFor(const link::DriverInfo& info, const workspace::Profile& profile) {
+    stability::DeviceFigures figures;
+    if (info.massKg > 0.0) figures.massKg = info.massKg;
+    if (info.frictionN > 0.0) figures.frictionN = info.frictionN;
+    figures.delayS = profile.shaping.delayS;
+    figures.rateHz = std::clamp(info.servoHz, 100.0, 10000.0);
+    figures.encoderStepMm = info.capability.encoderStepMm;
+    figures.maxForceN = info.capability.maxForceN;
+    return stability::limitsFor(figures, [](double) { return !cancelled(); });
+}
+
 /// A block of enamel whose top is at z = 0.
 tooth::Case blockCase() {
     tooth::Case block;
@@ -171,6 +184,7 @@ void calibrate(const CalibrateOptions& o) {
     choice.profileFolder = o.profiles;
     workspace::Profile profile;
     std::string calibrated;
+    std::optional<stability::StableLimits> stable;
     std::filesystem::path file;
     {
         const station::OpenDevice device = station::openDevice(choice);
@@ -187,6 +201,15 @@ void calibrate(const CalibrateOptions& o) {
         if (o.rightHanded) profile.placing.leftHanded = false;
         profile.placing.deviceMm = placeOf(o, device);
         workspace::validate(profile.placing);
+        if (device.info.pushes) {
+            stable = stableFor(device.info, profile);
+            // Never more than the record: an ideal arm in ideal hands is not this one.
+            profile.stiffnessShare =
+                std::clamp(stable->stiffnessNPerMm / device.info.capability.maxStiffnessNPerMm, 0.05, 1.0);
+            say(fmt::format(
+                "  stable without help up to {:.2f} N/mm; its record says {:.2f}, {:.0f} % of that are used",
+                stable->stiffnessNPerMm, device.info.capability.maxStiffnessNPerMm, 1e2 * profile.stiffnessShare));
+        }
         const std::filesystem::path folder =
             o.profiles.empty() ? workspace::profileFolder() : std::filesystem::path(o.profiles);
         workspace::writeProfile(folder, profile);
@@ -207,6 +230,10 @@ void calibrate(const CalibrateOptions& o) {
                 {"serial", profile.serial},  {"profile", file.string()},
                 {"calibration", calibrated}, {"device_mm", {at.deviceMm.x(), at.deviceMm.y(), at.deviceMm.z()}},
                 {"scale", at.scale},         {"left_handed", at.leftHanded}};
+    if (stable)
+        out["stable"] = {{"stiffness_n_per_mm", stable->stiffnessNPerMm},
+                         {"damping_n_s_per_mm", stable->dampingNSPerMm},
+                         {"share_of_record", profile.stiffnessShare}};
     if (felt) out["block"] = {{"contact_s", felt->contactS}, {"peak_force_n", felt->peakForceN}};
     fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
 }

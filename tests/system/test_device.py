@@ -86,6 +86,8 @@ class Device(SystemTest):
         self.assertEqual(result["device_mm"], [1.0, 2.0, 3.0])
         self.assertEqual(result["scale"], 2.0)
         self.assertTrue(result["left_handed"])
+        self.assertGreater(result["stable"]["stiffness_n_per_mm"], 0.05)
+        self.assertTrue(0.05 <= result["stable"]["share_of_record"] <= 1.0)
         profile = profiles / "simulated-simulated-arm.toml"
         self.assertEqual(result["profile"], str(profile))
         self.assertIn('hand = "left"', profile.read_text())

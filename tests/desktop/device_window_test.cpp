@@ -169,8 +169,9 @@ TEST_F(DeviceWindowTest, CutsUntilItIsUnpluggedThenTheMouseGoesOnAndNothingIsLos
         << player.events().back().text;
     EXPECT_GT(removedMm3(), 0.05);
     EXPECT_TRUE(simulator().isUnsaved());
+    ASSERT_TRUE(waitFor([&] { return simulator().status().undoSteps >= 1; }));
     ASSERT_TRUE(undoAll());
-    EXPECT_TRUE(waitFor([&] { return removedMm3() < 1e-9; }));
+    EXPECT_TRUE(waitFor([&] { return removedMm3() < 1e-9; })) << removedMm3();
 
     // It is offered again, and comes back.
     led_->unplugged = false;

@@ -15,13 +15,17 @@ inline constexpr double kHoldS = 0.5;
 class HeldButton {
   public:
     [[nodiscard]] bool take(const messages::HapticSample& sample) noexcept {
-        constexpr std::uint32_t kDoubt = messages::kInvalidPose | messages::kFault | messages::kWaiting;
+        // In doubt a device tells no button: the finger may be down all the same.
+        if ((sample.flags & (messages::kInvalidPose | messages::kFault)) != 0) {
+            since_ = -1.0;
+            return false;
+        }
         if ((sample.buttons & kLowerButton) == 0) {
             since_ = -1.0;
             done_ = false;
             return false;
         }
-        if (sample.depthMm >= 0.0 || sample.pedal > 0.0 || (sample.flags & kDoubt) != 0) {
+        if (sample.depthMm >= 0.0 || sample.pedal > 0.0 || (sample.flags & messages::kWaiting) != 0) {
             since_ = -1.0;
             return false;
         }

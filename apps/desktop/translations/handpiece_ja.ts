@@ -5164,7 +5164,7 @@
     </message>
     <message>
         <source>%1, %2 Hz</source>
-        <translation>%1、%2 Hz</translation>
+        <translation>%1、毎秒 %2 回</translation>
     </message>
     <message>
         <source>What holds the handpiece, and how often its own servo answers. Press to choose.</source>

@@ -109,7 +109,7 @@ TEST(Fidelity, pushesOnlyWhenItMayAndNoHarderThanItSays) {
         std::vector<std::string> said;
         settings.announce = [&](const std::string& sentence) { said.push_back(sentence); };
         const Report report = checked(still(), settings, {}, log);
-        EXPECT_EQ(of(report, "round-trip-delay").verdict != Verdict::notMeasured, push);
+        EXPECT_EQ(of(report, "force-slope").verdict != Verdict::notMeasured, push);
         EXPECT_EQ(said.size(), push ? 2u : 1u);
         EXPECT_EQ(said.back().find("0.8 N") != std::string::npos, push) << said.back();
         EXPECT_GT(log->output().samples, 2000u);

@@ -219,7 +219,12 @@ Finding roundTrip(const Recording& r) {
     f.value = fmt::format("{:.1f} ms, give or take {:.1f} (a pulse moved it by {:.2f} mm)", 1e3 * d.seconds,
                           1e3 * d.uncertaintyS, d.pathMm);
     f.figures = {{"delay_ms", 1e3 * d.seconds}, {"uncertainty_ms", 1e3 * d.uncertaintyS}, {"path_mm", d.pathMm}};
-    f.verdict = graded(d.seconds - d.uncertaintyS, kGoodDelayS, kMostDelayS);
+    if (d.uncertaintyS > kGoodDelayS) {
+        f.value += ": too rough to judge";
+        f.remedy = "check again for longer, with nothing else running";
+        return f;
+    }
+    f.verdict = graded(d.seconds, kGoodDelayS, kMostDelayS);
     if (f.verdict != Verdict::pass) f.remedy = "choose a softer stiffness, or the device's fastest servo";
     return f;
 }

@@ -239,6 +239,7 @@ TEST_P(Conformance, wrongOrderIsRefusedOrHarmless) {
         if (traits.exclusive) {
             EXPECT_NE(errorOf([&] { (void)adaptor->open(0); }), "") << "it is open already";
         }
+        driver->stop();  // before its servo goes
     }
     {  // A driver that is dropped without a word frees the device.
         Probe probe;

@@ -47,7 +47,9 @@ TEST(Thermal, holdsTheContinuousForceForEverAndMoreForSeconds) {
     double least = 1.0, lastScale = 1.0, largestStep = 0.0, sent = 0.0;
     for (int i = 0; i < 600 * 100; ++i) {  // ten minutes at 100 Hz
         sent = shaper.shape(Vec3::Zero(), Vec3(0, 0, 3.3), 0.01, i == 0).norm();
-        if (i * 0.01 < 3.4) ASSERT_NEAR(sent, 3.3, 1e-12) << i;
+        if (i * 0.01 < 3.4) {
+            ASSERT_NEAR(sent, 3.3, 1e-12) << i;
+        }
         ASSERT_LE(shaper.status().heat, 1.0);
         largestStep = std::max(largestStep, std::abs(shaper.status().thermalScale - lastScale));
         lastScale = shaper.status().thermalScale;
@@ -55,7 +57,7 @@ TEST(Thermal, holdsTheContinuousForceForEverAndMoreForSeconds) {
     }
     EXPECT_LT(sent, 0.89);
     EXPECT_GT(sent, 0.75);
-    EXPECT_LT(largestStep, 0.005) << "it comes down smoothly";
+    EXPECT_LT(largestStep, 0.01) << "it comes down smoothly";
     // Cooled, it is all there again.
     for (int i = 0; i < 300 * 100; ++i)
         sent = shaper.shape(Vec3::Zero(), Vec3::Zero(), 0.01, false).norm();

@@ -13,6 +13,7 @@ namespace {
 
 TEST(StabilityMap, withTheControllerEveryLoopHolds) {
     StabilitySweep sweep = quickStabilitySweep();
+    sweep.tissues = {tooth::Tissue::enamel};
 #ifdef HANDPIECE_SANITIZED
     sweep.motions = {LoopMotion::touch};
     sweep.rateHz = {1000};

@@ -12,7 +12,7 @@ using core::Vec3;
 /// 1 N s^2/mm is 1000 kg.
 constexpr double kKgPerUnit = 1e3;
 /// Of step/2 TV(F); the rest covers what the tracker does not see.
-constexpr double kBudgetShare = 0.6;
+constexpr double kBudgetShare = 0.5;
 constexpr double kVelocityTauS = 0.002;
 /// A force that has stood for so long is held against by the hand.
 constexpr double kHeldTauS = 0.04;

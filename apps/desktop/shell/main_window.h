@@ -195,7 +195,7 @@ class MainWindow : public QMainWindow {
     qint64 rateSinceNs_ = 0;
     double rateHz_ = 0.0;
     bool late_ = false;
-    bool deviceAsked_ = false;  ///< a person is waiting for it: what goes wrong is worth a dialog
+    bool deviceAsked_ = false;      ///< a person is waiting for it: what goes wrong is worth a dialog
     bool risesFromStatus_ = false;  ///< the menu of devices, now
     QString deviceTried_;
 };

@@ -10,7 +10,8 @@
 namespace handpiece::cli {
 namespace {
 
-constexpr int kCell = 21, kLabels = 118, kGap = 40, kTop = 120, kBottom = 46;
+constexpr int kCell = 21, kLabels = 122, kGap = 40, kTop = 120, kBottom = 46;
+constexpr int kFrictionLabel = 46, kPanelTitle = 250;  ///< px that the words over the columns need
 
 struct Count {
     int all = 0, off = 0, on = 0;  ///< loops; that are not passive
@@ -30,13 +31,13 @@ class Page {
             fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"{}\" font-size=\"{}\" fill=\"#222\">{}</text>\n",
                         x, y, anchor, size, words);
     }
-    void cell(double x, double y, int failed, const std::string& title) {
+    void cell(double x, double y, int width, int failed, const std::string& title) {
         const char* colour = failed == 0 ? "#4a90c2" : failed < 4 ? "#f0b060" : "#d9661f";
         svg_ += fmt::format(
-            "<rect x=\"{0:.0f}\" y=\"{1:.0f}\" width=\"{2}\" height=\"{2}\" fill=\"{3}\" stroke=\"#fff\"><title>{4}"
+            "<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{}\" height=\"{}\" fill=\"{}\" stroke=\"#fff\"><title>{}"
             "</title></rect>\n",
-            x, y, kCell, colour, title);
-        if (failed > 0) text(x + 0.5 * kCell, y + 0.5 * kCell + 4, std::to_string(failed), "middle", 10);
+            x, y, width, kCell, colour, title);
+        if (failed > 0) text(x + 0.5 * width, y + 0.5 * kCell + 4, std::to_string(failed), "middle", 10);
     }
     [[nodiscard]] std::string finish() const { return svg_ + "</svg>\n"; }
 
@@ -63,7 +64,9 @@ std::string stabilitySvg(const loop::StabilitySweep& sweep, const std::vector<lo
     }
     const std::size_t delays = sweep.delayS.size(), columns = sweep.hands.size() * frictions.size() * delays;
     const std::size_t lines = sweep.stiffnessNPerMm.size() * rates.size();
-    const int panel = static_cast<int>(columns) * kCell;
+    // With few delays a cell is as wide as the friction's label over it.
+    const int wide = std::max(kCell, kFrictionLabel / static_cast<int>(delays));
+    const int panel = std::max(static_cast<int>(columns) * wide, kPanelTitle);
     Page page(kLabels + 2 * panel + kGap + 20, kTop + static_cast<int>(lines) * kCell + kBottom);
     page.text(
         8, 20,
@@ -78,13 +81,13 @@ std::string stabilitySvg(const loop::StabilitySweep& sweep, const std::vector<lo
         for (std::size_t c = 0; c < columns; ++c) {
             const device::Hand& hand = sweep.hands[c / (delays * frictions.size())];
             const double friction = frictions[c / delays % frictions.size()], delay = sweep.delayS[c % delays];
-            const double x = left + static_cast<double>(c) * kCell;
-            page.text(x + 0.5 * kCell, kTop - 8, fmt::format("{:.3g}", 1e3 * delay), "middle");
+            const double x = left + static_cast<double>(c) * wide;
+            page.text(x + 0.5 * wide, kTop - 8, fmt::format("{:.3g}", 1e3 * delay), "middle");
             if (c % delays == 0)
-                page.text(x + 0.5 * kCell * static_cast<double>(delays), kTop - 24, fmt::format("{:.2f} N", friction),
+                page.text(x + 0.5 * wide * static_cast<double>(delays), kTop - 24, fmt::format("{:.2f} N", friction),
                           "middle");
             if (c % (delays * frictions.size()) == 0)
-                page.text(x + 0.5 * kCell * static_cast<double>(delays * frictions.size()), kTop - 42,
+                page.text(x + 0.5 * wide * static_cast<double>(delays * frictions.size()), kTop - 42,
                           std::string(hand.name), "middle");
             std::size_t l = 0;
             for (const double limit : sweep.stiffnessNPerMm)
@@ -92,7 +95,7 @@ std::string stabilitySvg(const loop::StabilitySweep& sweep, const std::vector<lo
                     const Count& count = counts[{limit, rate, hand.name, friction, delay}];
                     const double y = kTop + static_cast<double>(l++) * kCell;
                     page.cell(
-                        x, y, on ? count.on : count.off,
+                        x, y, wide, on ? count.on : count.off,
                         fmt::format("{} N/mm, {:.0f} Hz, {} hand, {} N, {:.3g} ms: {} of {} not passive", limit, rate,
                                     hand.name, friction, 1e3 * delay, on ? count.on : count.off, count.all));
                 }
@@ -107,7 +110,8 @@ std::string stabilitySvg(const loop::StabilitySweep& sweep, const std::vector<lo
     page.text(8, kTop - 24, "friction of the arm", "start");
     page.text(8, kTop - 42, "hand", "start");
     page.text(8, kTop + static_cast<double>(lines) * kCell + 24,
-              "blue: every tissue's loop is passive    orange: so many are not    down: stiffness of enamel, rate",
+              "blue: every tissue's loop is passive; orange: so many are not, four and more darker; down: stiffness of "
+              "enamel, rate",
               "start");
     return page.finish();
 }

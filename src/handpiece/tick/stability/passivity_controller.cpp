@@ -16,6 +16,7 @@ constexpr double kBudgetShare = 0.5;
 constexpr double kVelocityTauS = 0.002;
 /// A force that has stood for so long is held against by the hand.
 constexpr double kHeldTauS = 0.04;
+constexpr double kNoForceN2 = 1e-12;
 /// The least that a hand adds to the arm's mass.
 constexpr double kHandKg = 0.01;
 /// From no force to all of it, after the tank was empty: no click.
@@ -73,7 +74,11 @@ void PassivityController::advance(const Vec3& readMm) noexcept {
     // What the hand holds against for long moves nothing: only a force that is new does.
     const Vec3& acting = sent(lags_ - 1);
     held_ += periodS_ / (kHeldTauS + periodS_) * (acting - held_);
-    const Vec3 push = kKgPerUnit / (device_.massKg + kHandKg) * (acting - held_);
+    Vec3 unheld = acting - held_;
+    // But a force that falls does not pull: most often the hand gives way first, and faster than its force tells.
+    const double along = unheld.dot(held_), square = held_.squaredNorm();
+    if (along < 0.0 && square > kNoForceN2) unheld -= along / square * held_;
+    const Vec3 push = kKgPerUnit / (device_.massKg + kHandKg) * unheld;
     velocity_ += periodS_ * push;
     for (int k = 0; k < 3; ++k) {
         const double expected = position_[k] + periodS_ * (velocity_[k] - 0.5 * periodS_ * push[k]);

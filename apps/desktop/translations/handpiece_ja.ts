@@ -1823,6 +1823,146 @@
         <source>Install the licence with the maker&apos;s program, then choose the device again.</source>
         <translation>製造元のプログラムでライセンスを入れ、もう一度デバイスを選んでください。</translation>
     </message>
+    <message>
+        <source>The faults to inject cannot be read: %1 (character %2).</source>
+        <translation>入れる不具合の指定が読めません：%1（%2文字目）。</translation>
+    </message>
+    <message>
+        <source>Write for instance unplug@2.5, stall@3:0.2.</source>
+        <translation>たとえば unplug@2.5, stall@3:0.2 と書いてください。</translation>
+    </message>
+    <message>
+        <source>The placing of the device cannot be used: %1.</source>
+        <translation>デバイスの配置が使えません：%1。</translation>
+    </message>
+    <message>
+        <source>Set the device up again: Device, Set up...</source>
+        <translation>設定し直してください：デバイス、設定...</translation>
+    </message>
+    <message>
+        <source>The device runs already.</source>
+        <translation>デバイスはすでに動いています。</translation>
+    </message>
+    <message>
+        <source>The device %1 runs already, or was stopped.</source>
+        <translation>デバイス %1 はすでに動いているか、止められています。</translation>
+    </message>
+    <message>
+        <source>The firmware of the Falcon %1 is not loaded, and Handpiece may not bring it along.</source>
+        <translation>Falcon %1 のファームウェアが読み込まれていません。Handpieceには付属できません。</translation>
+    </message>
+    <message>
+        <source>Install the Force Dimension SDK, or name the maker&apos;s file in HANDPIECE_FALCON_FIRMWARE.</source>
+        <translation>Force DimensionのSDKを入れるか、HANDPIECE_FALCON_FIRMWARE に製造元のファイルを指定してください。</translation>
+    </message>
+    <message>
+        <source>The Falcon %1 does not take its firmware.</source>
+        <translation>Falcon %1 がファームウェアを受け付けません。</translation>
+    </message>
+    <message>
+        <source>Switch it off and on; check HANDPIECE_FALCON_FIRMWARE.</source>
+        <translation>電源を入れ直し、HANDPIECE_FALCON_FIRMWARE を確かめてください。</translation>
+    </message>
+    <message>
+        <source>The device&apos;s record has a value that cannot be: %1 of %2.</source>
+        <translation>デバイスの記録にあり得ない値があります：%1、%2。</translation>
+    </message>
+    <message>
+        <source>Take the device&apos;s settings away, then set it up again.</source>
+        <translation>デバイスの設定ファイルを取り除き、設定し直してください。</translation>
+    </message>
+    <message>
+        <source>Haply&apos;s service is set to turn or scale the arm&apos;s movements.</source>
+        <translation>Haplyのサービスがアームの動きを回転または拡大する設定になっています。</translation>
+    </message>
+    <message>
+        <source>Set basis, mount and workspace back in Haply Hub.</source>
+        <translation>Haply Hubでbasis、mount、workspaceを元に戻してください。</translation>
+    </message>
+    <message>
+        <source>A device that pushes was to be used as an input.</source>
+        <translation>力を出すデバイスが入力専用として使われようとしました。</translation>
+    </message>
+    <message>
+        <source>The device %1 does not tell where it is.</source>
+        <translation>デバイス %1 が位置を知らせません。</translation>
+    </message>
+    <message>
+        <source>Switch it off and on, and close other programs that use it.</source>
+        <translation>電源を入れ直し、それを使う他のプログラムを閉じてください。</translation>
+    </message>
+    <message>
+        <source>The device %1 cannot be calibrated before it is connected.</source>
+        <translation>デバイス %1 は接続する前に校正できません。</translation>
+    </message>
+    <message>
+        <source>Connect it first.</source>
+        <translation>先に接続してください。</translation>
+    </message>
+    <message>
+        <source>The pedal&apos;s settings cannot be used.</source>
+        <translation>ペダルの設定が使えません。</translation>
+    </message>
+    <message>
+        <source>Give an axis from 0 and a dead travel of 0 to 0.4.</source>
+        <translation>軸は0以上、遊びは0から0.4までにしてください。</translation>
+    </message>
+    <message>
+        <source>A scale of %1 is finer than the one the device was opened with, %2.</source>
+        <translation>倍率 %1 は、デバイスを開いたときの倍率 %2 より細かくなっています。</translation>
+    </message>
+    <message>
+        <source>Connect the device again with that scale.</source>
+        <translation>その倍率でデバイスを接続し直してください。</translation>
+    </message>
+    <message>
+        <source>SDL, which reads gamepads and pedals, does not start: %1.</source>
+        <translation>ゲームパッドとペダルを読むSDLが起動しません：%1。</translation>
+    </message>
+    <message>
+        <source>Install libsdl2-2.0-0 again.</source>
+        <translation>libsdl2-2.0-0 を入れ直してください。</translation>
+    </message>
+    <message>
+        <source>The device cannot run at %1 Hz.</source>
+        <translation>デバイスは %1 Hz では動きません。</translation>
+    </message>
+    <message>
+        <source>Ask for 50 to 8000 Hz.</source>
+        <translation>50から8000 Hzまでにしてください。</translation>
+    </message>
+    <message>
+        <source>This account may not use the SpaceMouse&apos;s service: %1.</source>
+        <translation>このアカウントはSpaceMouseのサービスを使えません：%1。</translation>
+    </message>
+    <message>
+        <source>Allow it to use spacenavd&apos;s socket.</source>
+        <translation>spacenavdのソケットを使えるように許可してください。</translation>
+    </message>
+    <message>
+        <source>This is no address of a service: %1.</source>
+        <translation>これはサービスのアドレスではありません：%1。</translation>
+    </message>
+    <message>
+        <source>Write it as ws://localhost:10001.</source>
+        <translation>ws://localhost:10001 のように書いてください。</translation>
+    </message>
+    <message>
+        <source>The service at %1 does not answer.</source>
+        <translation>%1 のサービスが応答しません。</translation>
+    </message>
+    <message>
+        <source>Start the device&apos;s service again.</source>
+        <translation>デバイスのサービスを起動し直してください。</translation>
+    </message>
+    <message>
+        <source>Another program answers at %1, not the device&apos;s service.</source>
+        <translation>%1 で応答したのはデバイスのサービスではなく、別のプログラムです。</translation>
+    </message>
+    <message>
+        <source>Check which port the service uses.</source>
+        <translation>サービスが使うポートを確かめてください。</translation>
+    </message>
 </context>
 <context>
     <name>Pulp</name>

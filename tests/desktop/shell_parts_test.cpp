@@ -280,7 +280,7 @@ TEST(ErrorDialogs, SayWhatWhereAndWhatToDo) {
 TEST(CommandLines, AreUnderstoodOrRefused) {
     const auto parsed = [](const QStringList& rest) { return parseCommandLine(QStringList{"program"} + rest); };
     const CommandLine line = parsed({"--layout", "paper", "tooth.stl", "--language=ja", "--no-sound", "--screenshot",
-                                     "a.png", "--after", "1.5", "--timing"});
+                                     "a.png", "--after", "1.5", "--timing", "--rate", "4000", "--no-realtime"});
     EXPECT_TRUE(line.wrong.isEmpty()) << qPrintable(line.wrong);
     EXPECT_EQ(line.file, "tooth.stl");
     EXPECT_EQ(line.layout, "paper");
@@ -289,8 +289,15 @@ TEST(CommandLines, AreUnderstoodOrRefused) {
     EXPECT_TRUE(line.timing);
     EXPECT_EQ(line.screenshot, "a.png");
     EXPECT_EQ(line.afterS, 1.5);
-    for (const QStringList& wrong :
-         {QStringList{"--layout", "x"}, {"--layout"}, {"--language", "xx"}, {"--after", "nan"}, {"--what"}, {"a", "b"}})
+    EXPECT_EQ(line.rateHz, 4000.0);
+    EXPECT_FALSE(line.realTime);
+    for (const QStringList& wrong : {QStringList{"--layout", "x"},
+                                     {"--layout"},
+                                     {"--language", "xx"},
+                                     {"--after", "nan"},
+                                     {"--rate", "1"},
+                                     {"--what"},
+                                     {"a", "b"}})
         EXPECT_FALSE(parsed(wrong).wrong.isEmpty()) << qPrintable(wrong.join(' '));
 }
 

@@ -8,10 +8,10 @@ namespace handpiece::desktop {
 
 CommandLine parseCommandLine(const QStringList& arguments) {
     CommandLine line;
-    static const QSet<QString> withValue{QStringLiteral("--layout"),     QStringLiteral("--language"),
-                                         QStringLiteral("--screenshot"), QStringLiteral("--after"),
-                                         QStringLiteral("--stats"),      QStringLiteral("--run-for"),
-                                         QStringLiteral("--device"),     QStringLiteral("--inject")};
+    static const QSet<QString> withValue{
+        QStringLiteral("--layout"), QStringLiteral("--language"), QStringLiteral("--screenshot"),
+        QStringLiteral("--after"),  QStringLiteral("--stats"),    QStringLiteral("--run-for"),
+        QStringLiteral("--device"), QStringLiteral("--inject"),   QStringLiteral("--rate")};
     for (qsizetype i = 1; i < arguments.size(); ++i) {
         QString option = arguments[i], value;
         if (!option.startsWith(QLatin1String("--"))) {
@@ -59,6 +59,14 @@ CommandLine parseCommandLine(const QStringList& arguments) {
             if (!ok || !(*line.runForS > 0.0 && *line.runForS <= 86400.0))
                 line.wrong =
                     QStringLiteral("--run-for takes seconds, more than 0 and at most 86400, not \"%1\"").arg(value);
+        } else if (option == QLatin1String("--rate")) {
+            bool ok = false;
+            line.rateHz = value.toDouble(&ok);
+            if (!ok || !(line.rateHz >= 100.0 && line.rateHz <= 10000.0))
+                line.wrong =
+                    QStringLiteral("--rate takes ticks a second, 1000, 2000, 4000 or 8000, not \"%1\"").arg(value);
+        } else if (option == QLatin1String("--no-realtime")) {
+            line.realTime = false;
         } else if (option == QLatin1String("--no-sound")) {
             line.sound = false;
         } else if (option == QLatin1String("--timing")) {
@@ -84,6 +92,8 @@ QString usage() {
         "  --language en|ja                     the language of this start\n"
         "  --device NAME                        what holds the handpiece: mouse, or a name of handpiece device list\n"
         "  --inject FAULTS                      faults of that device on purpose (docs/devices.md#faults)\n"
+        "  --rate HZ                            ticks a second: 1000, 2000, 4000 or 8000 (1000)\n"
+        "  --no-realtime                        do not ask for real-time scheduling\n"
         "  --no-sound                           silent\n"
         "  --screenshot FILE.png                write the window as a picture and quit\n"
         "  --after SECONDS                      ... so long after the start (3)\n"

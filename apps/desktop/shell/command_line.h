@@ -15,8 +15,9 @@ struct CommandLine {
     QString language;  ///< "en", "ja"; empty: as it was
     QString device;    ///< that holds the handpiece: a driver's name, "mouse"; empty: as it was
     QString inject;    ///< faults on purpose, for it
-    bool sound = true, timing = false;
-    QString screenshot;  ///< PNG to write, then quit
+    bool sound = true, timing = false, realTime = true;
+    double rateHz = 1000.0;  ///< of the tick
+    QString screenshot;      ///< PNG to write, then quit
     double afterS = 3.0;
     QString stats;                  ///< JSON to write at the end
     std::optional<double> runForS;  ///< then it closes without asking

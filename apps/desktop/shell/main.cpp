@@ -38,12 +38,14 @@ int main(int argc, char** argv) {
     try {
         desktop::Simulator::Options options;
         options.sound = line.sound;
+        options.rateHz = line.rateHz;
+        options.realTime = line.realTime;
         desktop::Host host(application, line, options);
         // The scan wizard and the dialogs about devices stand upon the window's library: the program brings them
         // together.
-        const auto furnish = [&host] {
+        const auto furnish = [&host, &line] {
             desktop::installScanWizard(host.window());
-            desktop::installDeviceDialogs(host.window(), host.simulator(), host.settings(), true);
+            desktop::installDeviceDialogs(host.window(), host.simulator(), host.settings(), line.realTime);
         };
         furnish();
         QObject::connect(&host, &desktop::Host::windowMade, &host, furnish);

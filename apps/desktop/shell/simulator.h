@@ -37,6 +37,7 @@ class Simulator : public QObject {
         SessionShelf::Limits shelf;
         Starter starter;  ///< that an empty start opens
         bool sound = true, realTime = true, record = true;
+        double rateHz = 1000.0;  ///< of the tick, of teeth that are opened; a session has its own
         int voxelUm = 50;
         Hands::Options hands;
     };

@@ -77,6 +77,7 @@ LoadRequest Simulator::request() const {
     request.drive = driveName_.toStdString();
     request.speedRpm = speedRpm_;
     request.settings = settings_;
+    request.settings.rateHz = options_.rateHz;
     request.settings.resumed = false;
     request.settings.field = {};
     request.settings.field.voxelMm = 1e-3 * options_.voxelUm;

@@ -160,8 +160,8 @@ WebSocket::WebSocket(const std::string& url, std::int64_t timeoutNs, const std::
     hints.ai_socktype = SOCK_STREAM;
     addrinfo* found = nullptr;
     // "localhost" is this machine, also where nothing is there to say so (RFC 6761): without a name both loopbacks.
-    const char* host = address.host == "localhost" ? nullptr : address.host.c_str();
-    if (const int failed = ::getaddrinfo(host, address.port.c_str(), &hints, &found); failed != 0)
+    const char* node = address.host == "localhost" ? nullptr : address.host.c_str();
+    if (const int failed = ::getaddrinfo(node, address.port.c_str(), &hints, &found); failed != 0)
         throw core::Error(fmt::format("this host is not known ({})", ::gai_strerror(failed)), url, remedy)
             .as("websocket-refused", {url, ::gai_strerror(failed)});
     int reason = ECONNREFUSED;

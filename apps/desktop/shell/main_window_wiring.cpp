@@ -29,10 +29,6 @@ namespace {
 
 constexpr int kReadoutMs = 100, kEyeMs = 700;
 
-core::Vec3 vec(const std::array<double, 3>& v) {
-    return {v[0], v[1], v[2]};
-}
-
 SectionPlace::Direction directionOf(MeasureBox::Orientation orientation) {
     switch (orientation) {
         case MeasureBox::Orientation::mesiodistal:
@@ -418,7 +414,7 @@ void MainWindow::showTick() {
     const messages::HapticSample& sample = simulator_.sample();
     const station::SittingStatus& status = simulator_.status();
     drill_->setActualSpeed(sample.speedRpm, (sample.flags & messages::kStalled) != 0);
-    gauge_->setForce(vec(sample.forceN).norm(), sample.timeS, (sample.flags & messages::kForceLimited) != 0);
+    gauge_->setForce(core::toVec(sample.forceN).norm(), sample.timeS, (sample.flags & messages::kForceLimited) != 0);
     tooth::TissueVolumes removed{};
     std::copy(sample.removedMm3.begin(), sample.removedMm3.end(), removed.begin());
     volumes_->setVolumes(removed);
@@ -474,7 +470,7 @@ void MainWindow::showReadouts() {
         measure_->setLeftOverPulp({});
         return;
     }
-    const core::Vec3 tip = vec(sample.proxyPositionMm);
+    const core::Vec3 tip = core::toVec(sample.proxyPositionMm);
     struct Read {
         double depthMm;
         std::optional<double> leftMm;

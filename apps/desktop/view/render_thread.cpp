@@ -21,10 +21,6 @@ constexpr double kDebrisS = 1.5;                        // particles fly on for 
 constexpr double kHeadHides = 0.82, kHeadClear = 0.78;  // cosines of bur's axis and line of sight, either way round
 constexpr double kMostSoftwarePixels = 1.6e6;           // more would be seen later than they are seen sharper
 
-core::Vec3 vec(const std::array<double, 3>& a) {
-    return {a[0], a[1], a[2]};
-}
-
 bool moved(const messages::HapticSample& a, const messages::HapticSample& b) {
     double most = 0.0;
     for (std::size_t i = 0; i < 3; ++i)
@@ -49,7 +45,7 @@ QImage toQt(const view::Image& image) {
 
 core::Pose proxyPose(const messages::HapticSample& sample) {
     const auto& q = sample.proxyOrientation;
-    return {vec(sample.proxyPositionMm), core::Quat(q[0], q[1], q[2], q[3])};
+    return {core::toVec(sample.proxyPositionMm), core::Quat(q[0], q[1], q[2], q[3])};
 }
 
 struct RenderThread::Shared {
@@ -122,10 +118,10 @@ struct RenderThread::Worker {
         moment.removalMm3S = removalMm3S;
         moment.tissue = static_cast<tooth::Tissue>(sample.tissue);
         moment.water = sample.pedal > 0.0 && sample.speedRpm > 0.0;
-        moment.contactNormal = vec(sample.contactNormal);
+        moment.contactNormal = core::toVec(sample.contactNormal);
         moment.contact = moment.contactNormal.norm() > 0.5;
-        moment.contactPointMm = moment.contact ? vec(sample.contactPointMm) : moment.burInTooth.positionMm;
-        moment.forceN = vec(sample.forceN);
+        moment.contactPointMm = moment.contact ? core::toVec(sample.contactPointMm) : moment.burInTooth.positionMm;
+        moment.forceN = core::toVec(sample.forceN);
         moment.mirror = wishes.mirror;
         return moment;
     }

@@ -16,6 +16,14 @@ using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 using Quat = Eigen::Quaterniond;
 
+/// Messages between threads and files hold plain arrays.
+[[nodiscard]] inline Vec3 toVec(const std::array<double, 3>& a) noexcept {
+    return {a[0], a[1], a[2]};
+}
+[[nodiscard]] inline std::array<double, 3> toArray(const Vec3& v) noexcept {
+    return {v.x(), v.y(), v.z()};
+}
+
 /// A rigid placement of one frame in another, named after both: `burInTooth` maps bur coordinates to tooth coordinates.
 struct Pose {
     Vec3 positionMm = Vec3::Zero();

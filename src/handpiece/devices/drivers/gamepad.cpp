@@ -120,10 +120,7 @@ void Pad::read(double dtS) noexcept {
     const double yaw = (down(Sdl::kLeft) ? 1.0 : 0.0) - (down(Sdl::kRight) ? 1.0 : 0.0);
     hand.step(Vec3(axis(Sdl::kLeftX), lift, axis(Sdl::kLeftY)), Vec3(axis(Sdl::kRightY), yaw, -axis(Sdl::kRightX)),
               down(Sdl::kY), dtS);
-    for (int i = 0; i < 3; ++i)
-        reading.positionMm[static_cast<std::size_t>(i)] = hand.positionMm()[i];
-    const core::Quat& q = hand.orientation();
-    reading.orientation = {q.w(), q.x(), q.y(), q.z()};
+    hand.tell(reading);
 }
 
 /// A force can only be told by shaking.

@@ -45,4 +45,9 @@ void RateHand::step(const Vec3& move, const Vec3& turn, bool goHome, double dtS)
     orientation_ = angle > settings_.mostTurnRad ? Quat::Identity().slerp(settings_.mostTurnRad / angle, next) : next;
 }
 
+void RateHand::tell(link::DriverReading& reading) const noexcept {
+    reading.positionMm = core::toArray(positionMm_);
+    reading.orientation = {orientation_.w(), orientation_.x(), orientation_.y(), orientation_.z()};
+}
+
 }  // namespace handpiece::drivers

@@ -5,6 +5,7 @@
 
 #include "handpiece/base/core/realtime.h"
 #include "handpiece/base/core/vec.h"
+#include "handpiece/devices/link/driver.h"
 
 namespace handpiece::drivers {
 
@@ -24,6 +25,8 @@ class RateHand {
     /// Lets `dtS` pass with the deflections (-1..1 on each axis; more is 1, what is no number is none), or on the way
     /// back to the middle. A machine that slept makes one step of 50 ms, no leap.
     void step(const core::Vec3& move, const core::Vec3& turn, bool goHome, double dtS) noexcept HANDPIECE_REALTIME;
+    /// Its pose, as a device's.
+    void tell(link::DriverReading& reading) const noexcept HANDPIECE_REALTIME;
     [[nodiscard]] const core::Vec3& positionMm() const noexcept { return positionMm_; }
     [[nodiscard]] const core::Quat& orientation() const noexcept { return orientation_; }
 

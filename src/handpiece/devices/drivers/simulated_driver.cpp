@@ -32,10 +32,6 @@ device::Motion circles() {
                               kCircles);
 }
 
-Vec3 vec(const std::array<double, 3>& a) noexcept {
-    return {a[0], a[1], a[2]};
-}
-
 }  // namespace
 
 struct SimulatedDriver::State {
@@ -76,7 +72,7 @@ struct SimulatedDriver::State {
         reading.frame = ++frames;
         reading.pedal = static_cast<float>(at.pedal);
         const link::DriverCommand command = servo->exchange(reading);
-        arm.command(mapping.inTooth(vec(command.forceN)), Vec3::Zero());
+        arm.command(mapping.inTooth(core::toVec(command.forceN)), Vec3::Zero());
     }
 
     SimulatedSettings settings;

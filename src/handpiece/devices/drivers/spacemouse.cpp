@@ -322,10 +322,7 @@ void SpaceMouseDriver::run(std::int64_t periodNs) noexcept {
         reading_.timeNs = now;
         ++reading_.frame;
         reading_.trouble = trouble;
-        for (int i = 0; i < 3; ++i)
-            reading_.positionMm[static_cast<std::size_t>(i)] = hand_.positionMm()[i];
-        const core::Quat& q = hand_.orientation();
-        reading_.orientation = {q.w(), q.x(), q.y(), q.z()};
+        hand_.tell(reading_);
         (void)servo_->exchange(reading_);  // it cannot push
     }
 }

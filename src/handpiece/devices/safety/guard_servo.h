@@ -8,6 +8,7 @@
 
 #include "handpiece/base/rt/triple_buffer.h"
 #include "handpiece/devices/safety/gate.h"
+#include "handpiece/devices/safety/guarded_device.h"
 
 namespace handpiece::safety {
 
@@ -20,6 +21,18 @@ struct Frame {
     std::uint64_t count = 0;  ///< exchanges so far; 0: none yet
     double servoHz = 0.0;     ///< over the last second
 };
+/// What the servo's side of a device knows of its health.
+[[nodiscard]] inline Health healthOf(const Frame& frame) noexcept {
+    Health health;
+    health.gate = frame.gate;
+    health.frames = frame.count;
+    health.servoHz = frame.servoHz;
+    health.positionMm = frame.reading.positionMm;
+    health.orientation = frame.reading.orientation;
+    health.buttons = frame.reading.buttons;
+    health.sentN = frame.sentN;
+    return health;
+}
 using FrameBuffer = rt::TripleBuffer<Frame>;
 
 class GuardServo final : public link::Servo {

@@ -25,14 +25,6 @@ constexpr double kFreeS = 0.05;              // without a force wanted: the bur 
 constexpr std::int64_t kLookNs = 1'000'000;  // of the watchdog
 constexpr int kWatchdogPriority = 85;        // above the servo and the tick, which it watches
 
-std::array<double, 3> array(const Vec3& v) noexcept {
-    return {v.x(), v.y(), v.z()};
-}
-
-Vec3 vec(const std::array<double, 3>& a) noexcept {
-    return {a[0], a[1], a[2]};
-}
-
 /// What the tick tells.
 struct TickHealth {
     stability::ShaperStatus shaping;
@@ -60,17 +52,9 @@ class Board final : public HealthBoard {
           leastScale_(placing.scale) {}
 
     Health read() noexcept override {
-        const Frame& frame = frames.read();
+        Health health = healthOf(frames.read());
         const TickHealth& tick = ticks.read();
-        Health health;
-        health.gate = frame.gate;
         health.shaping = tick.shaping;
-        health.frames = frame.count;
-        health.servoHz = frame.servoHz;
-        health.positionMm = frame.reading.positionMm;
-        health.orientation = frame.reading.orientation;
-        health.buttons = frame.reading.buttons;
-        health.sentN = frame.sentN;
         health.clutched = tick.clutched;
         health.relaxed = relaxed.load(std::memory_order_relaxed);
         if (standing.load(std::memory_order_relaxed)) {
@@ -278,7 +262,7 @@ device::Reading GuardedDevice::read(double periodS) noexcept {
         s.lost = !pose.isValid();
         if (!s.lost) {
             s.pose = pose;
-            s.handMm = vec(reading.positionMm);
+            s.handMm = core::toVec(reading.positionMm);
             result.burInTooth = pose;
             result.pedal = pedal;
             result.buttons = reading.buttons;
@@ -300,13 +284,13 @@ void GuardedDevice::command(const Vec3& forceN, const Vec3& torqueNmm) noexcept 
         s.clutchFade = s.clutched ? 0.0 : std::min(1.0, s.clutchFade + s.periodS / std::max(s.gate.fadeInS, s.periodS));
         const Vec3 wanted = s.clutchFade * s.mapping.inDevice(forceN);
         const Vec3 shaped = s.shaper.shape(s.handMm, wanted, s.periodS, s.fresh);
-        command.forceN = s.clutched ? std::array<double, 3>{} : array(shaped);
-        command.torqueNmm = array(s.clutchFade * s.mapping.torqueInDevice(torqueNmm));
+        command.forceN = s.clutched ? std::array<double, 3>{} : core::toArray(shaped);
+        command.torqueNmm = core::toArray(s.clutchFade * s.mapping.torqueInDevice(torqueNmm));
         s.fresh = false;
     } else {
         // The gate sees it and says so; the shaper's memory is not to be spoiled by it.
-        command.forceN = array(forceN);
-        command.torqueNmm = array(torqueNmm);
+        command.forceN = core::toArray(forceN);
+        command.torqueNmm = core::toArray(torqueNmm);
         s.fresh = true;
     }
     command.timeNs = s.nowNs();
@@ -319,7 +303,7 @@ Vec3 GuardedDevice::truePositionMm() const noexcept {
 }
 
 Vec3 GuardedDevice::appliedForceN() const noexcept {
-    return state_->mapping.inTooth(vec(state_->frame.sentN));
+    return state_->mapping.inTooth(core::toVec(state_->frame.sentN));
 }
 
 const link::DriverInfo& GuardedDevice::info() const noexcept {

@@ -40,16 +40,10 @@ class InputBoard final : public HealthBoard {
 
     Health read() noexcept override {
         const Frame& frame = frames.read();
-        Health health;
-        health.gate = frame.gate;
+        Health health = healthOf(frame);
         // A tick that stands is nothing to an input.
         if (frame.count > 0 && (frame.gate.trouble == Trouble::starting || frame.gate.trouble == Trouble::tickStalled))
             health.gate.trouble = Trouble::none;
-        health.frames = frame.count;
-        health.servoHz = frame.servoHz;
-        health.positionMm = frame.reading.positionMm;
-        health.orientation = frame.reading.orientation;
-        health.buttons = frame.reading.buttons;
         health.clutched = clutched.load(std::memory_order_relaxed);
         if (frame.count > 0 && !(static_cast<double>(nowNs_() - frame.nowNs) / kNsPerS <= timeoutS_)) {
             health.gate.trouble = health.gate.last = Trouble::stalled;

@@ -116,13 +116,7 @@ void readShaping(const Table& t, stability::ShaperSettings& s) {
 
 /// Limits come from the device each time, so that no file can raise them.
 void applyLimits(const device::Capability& hand, Profile& profile) {
-    const device::Capability c = withinShares(hand, profile);
-    stability::ShaperSettings& s = profile.shaping;
-    s.maxForceN = c.maxForceN;
-    s.continuousForceN = c.continuousForceN;
-    s.encoderStepMm = c.encoderStepMm;
-    s.stiffnessNPerMm = c.maxStiffnessNPerMm;
-    s.dampingNSPerMm = c.maxDampingNSPerMm;
+    stability::limitTo(withinShares(hand, profile), profile.shaping);
 }
 
 std::string said(const std::string& text) {

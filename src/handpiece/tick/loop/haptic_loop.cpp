@@ -17,10 +17,6 @@ double rounded(double x, double step) noexcept {
     return std::abs(steps) < 2147483647.0 ? std::nearbyint(steps) * step : x;
 }
 
-std::array<double, 3> array(const core::Vec3& v) noexcept {
-    return {v.x(), v.y(), v.z()};
-}
-
 void tellContact(const force::Touch& touch, messages::HapticSample& sample) noexcept {
     if (!touch.touching) return;
     core::Vec3 point = touch.depth.toothPointMm, normal = touch.depth.normal;  // without patches, as in penalty mode
@@ -31,8 +27,8 @@ void tellContact(const force::Touch& touch, messages::HapticSample& sample) noex
         point = patch.centreMm;
         normal = patch.normal;
     }
-    sample.contactPointMm = array(point);
-    sample.contactNormal = array(normal);
+    sample.contactPointMm = core::toArray(point);
+    sample.contactNormal = core::toArray(normal);
 }
 
 }  // namespace
@@ -152,16 +148,16 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     messages::HapticSample sample;
     sample.tick = tick_;
     sample.timeS = periodS_ * static_cast<double>(tick_);
-    sample.positionMm = array(reading.burInTooth.positionMm);
+    sample.positionMm = core::toArray(reading.burInTooth.positionMm);
     sample.orientation = wxyz(reading.burInTooth.orientation);
-    sample.velocityMmS = array(force_.velocityMmS());
-    sample.forceN = array(crisp_.forceN());
-    sample.torqueNmm = array(command.fullTorqueNmm);
+    sample.velocityMmS = core::toArray(force_.velocityMmS());
+    sample.forceN = core::toArray(crisp_.forceN());
+    sample.torqueNmm = core::toArray(command.fullTorqueNmm);
     sample.depthMm = touch.depth.depthMm;
-    sample.truePositionMm = array(device_->truePositionMm());
-    sample.proxyPositionMm = array(touch.proxyInTooth.positionMm);
+    sample.truePositionMm = core::toArray(device_->truePositionMm());
+    sample.proxyPositionMm = core::toArray(touch.proxyInTooth.positionMm);
     sample.proxyOrientation = wxyz(touch.proxyInTooth.orientation);
-    sample.appliedForceN = array(device_->appliedForceN());
+    sample.appliedForceN = core::toArray(device_->appliedForceN());
     sample.contactAreaMm2 = touch.patches.areaMm2;
     tellContact(touch, sample);
     sample.tissue = static_cast<std::uint8_t>(touch.tissue);

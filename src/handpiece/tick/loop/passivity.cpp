@@ -12,6 +12,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/plane_method.h"
 
 namespace handpiece::loop {
 namespace {
@@ -20,20 +21,6 @@ using core::Vec3;
 
 constexpr double kWindowS = 0.5;  // ripple is judged over this
 constexpr double kStartAboveMm = 0.5;
-
-/// The solid below z = 0, touched by the bur's tip.
-class PlaneMethod final : public contact::Method {
-  public:
-    explicit PlaneMethod(tooth::Tissue tissue) : tissue_(tissue) {}
-    [[nodiscard]] const char* name() const noexcept override { return "plane"; }
-    [[nodiscard]] contact::Depth depth(const core::Pose& bur) noexcept override {
-        const Vec3& p = bur.positionMm;
-        return {-p.z(), Vec3::UnitZ(), Vec3(p.x(), p.y(), 0.0), tissue_, contact::Status::ok};
-    }
-
-  private:
-    tooth::Tissue tissue_;
-};
 
 /// Smallest and largest of a force over a time.
 struct Range {

@@ -18,11 +18,7 @@ const stability::ShaperSettings& checked(const stability::ShaperSettings& settin
 
 stability::ShaperSettings shaperSettingsFor(const device::Capability& c) {
     stability::ShaperSettings settings;
-    settings.maxForceN = c.maxForceN;
-    settings.continuousForceN = c.continuousForceN;
-    settings.encoderStepMm = c.encoderStepMm;
-    settings.stiffnessNPerMm = c.maxStiffnessNPerMm;
-    settings.dampingNSPerMm = c.maxDampingNSPerMm;
+    stability::limitTo(c, settings);
     return settings;
 }
 

@@ -19,6 +19,7 @@
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/loop/built_in_motion.h"
 #include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/plane_method.h"
 #include "handpiece/tick/loop/shaped_device.h"
 
 namespace handpiece::loop {
@@ -32,20 +33,6 @@ constexpr double kRestS = 0.4;    // force and ripple are judged over this, at t
 constexpr double kSettleS = 0.3;  // before it
 constexpr double kPullMm = 0.3;   // sideways, in the fissure
 constexpr double kRoundingNmm = 1e-9;
-
-/// The solid below z = 0, touched by the bur's tip.
-class Plane final : public contact::Method {
-  public:
-    explicit Plane(tooth::Tissue tissue) : tissue_(tissue) {}
-    [[nodiscard]] const char* name() const noexcept override { return "plane"; }
-    [[nodiscard]] contact::Depth depth(const core::Pose& bur) noexcept override {
-        const Vec3& p = bur.positionMm;
-        return {-p.z(), Vec3::UnitZ(), Vec3(p.x(), p.y(), 0.0), tissue_, contact::Status::ok};
-    }
-
-  private:
-    tooth::Tissue tissue_;
-};
 
 /// The starter molar in one tissue at a time, a bur, and where it meets cusp and fissure.
 class Molar {
@@ -190,7 +177,7 @@ StabilityRow::Outcome simulate(const StabilitySweep& sweep, const StabilityRow& 
     LoopSettings loopSettings;
     loopSettings.rateHz = row.rateHz;
     loopSettings.queueCapacity = 16;
-    Work work = row.motion == LoopMotion::touch ? Work{std::make_unique<Plane>(row.tissue), nullptr}
+    Work work = row.motion == LoopMotion::touch ? Work{std::make_unique<PlaneMethod>(row.tissue), nullptr}
                                                 : molar->work(row.motion == LoopMotion::cut);
     HapticLoop loop(loopSettings, std::move(shaped), std::move(work), parameters);
 

@@ -39,6 +39,14 @@ void validate(const ShaperSettings& s) {
     require(s.massKg > 0.0 && s.massKg <= 100.0, "the arm's mass [kg]", s.massKg);
 }
 
+void limitTo(const device::Capability& c, ShaperSettings& s) {
+    s.maxForceN = c.maxForceN;
+    s.continuousForceN = c.continuousForceN;
+    s.encoderStepMm = c.encoderStepMm;
+    s.stiffnessNPerMm = c.maxStiffnessNPerMm;
+    s.dampingNSPerMm = c.maxDampingNSPerMm;
+}
+
 Shaper::Shaper(const ShaperSettings& settings) noexcept : settings_(settings) {
     setSettings(settings);
 }

@@ -8,6 +8,7 @@
 
 #include "handpiece/base/core/realtime.h"
 #include "handpiece/base/core/vec.h"
+#include "handpiece/tick/device/device.h"
 #include "handpiece/tick/stability/friction_compensation.h"
 #include "handpiece/tick/stability/passivity_controller.h"
 #include "handpiece/tick/stability/thermal_budget.h"
@@ -31,6 +32,8 @@ struct ShaperSettings {
 };
 /// Throws core::Error naming the value.
 void validate(const ShaperSettings& settings);
+/// Takes what a capability record says; friction, delay and mass stay as they are.
+void limitTo(const device::Capability& atTheHand, ShaperSettings& settings);
 
 struct ShaperStatus {
     double energyNmm = 0.0;      ///< observed: work done on the hand beyond what the bound allows; <= 0 when passive

@@ -83,6 +83,34 @@ INSTANTIATE_TEST_SUITE_P(Burs, OnTheMolar,
                                          Bound{"inverted-cone:1.2x1.2", 0.05, 2.0, 5.0},
                                          Bound{"taper-flat:1.2x4.0", 0.05, 2.0, 5.0}, Bound{"mesh", 0.05, 2.0, 5.0}));
 
+class ApartFromTheMolar : public testing::TestWithParam<const char*> {};
+
+TEST_P(ApartFromTheMolar, theDistanceAgreesWithBruteForce) {
+    constexpr int kPoses = 60;
+    const auto bur = burOf(GetParam());
+    const auto method = makeFieldMethod(molar(), bur);
+    // A bur from a mesh is asked along its medial axis, which is true to that.
+    const bool fromMesh = std::string_view(GetParam()) == "mesh";
+    const double toleranceMm = fromMesh ? 1.5 * instrument::kMedialToleranceMm : 1e-6;
+    std::mt19937_64 generator(test::seed());
+    for (int i = 0; i < kPoses; ++i) {
+        const double wanted = -std::exp(test::uniform(generator, std::log(1e-4), std::log(2.0)));
+        const core::Pose pose = lowered(generator, *method, wanted);
+        const double exact = test::bruteForceDepth(molar()->tree, *bur, pose).depthMm;
+        const Depth found = method->depth(pose);
+        EXPECT_NEAR(found.depthMm, exact, toleranceMm) << "pose " << i;
+        if (found.depthMm > -1e-9) continue;
+        // What is told of the place fits the distance.
+        const auto awayMm = [&](const Vec3& p) { return bur->signedDistance(pose.applyInverse(p)); };
+        EXPECT_NEAR(awayMm(found.toothPointMm), -found.depthMm, toleranceMm);
+        EXPECT_NEAR(awayMm(found.toothPointMm - found.depthMm * found.normal), 0.0, toleranceMm);
+        EXPECT_NEAR(molar()->tree.nearest(found.toothPointMm).distanceMm, 0.0, 1e-9);
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Burs, ApartFromTheMolar,
+                         testing::Values("cylinder-round:1.0x4.0", "cylinder-flat:1.0x4.0", "wheel:2.0x0.8",
+                                         "inverted-cone:1.2x1.2", "taper-flat:1.2x4.0", "6847-016", "34", "mesh"));
+
 TEST(DepthReference, isNeverMoreThanTheMinimalTranslationOfAConvexPair) {
     const geometry::TriangleMesh block = test::boxMesh({-3, -2.5, -3}, {3, 2.5, 0}, 12);
     const auto tooth = test::toothOf(block);

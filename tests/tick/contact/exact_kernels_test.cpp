@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "handpiece/base/core/simd.h"
+#include "handpiece/model/instrument/shapes.h"
 #include "handpiece/tick/contact/exact_depth.h"
 #include "handpiece/tick/contact/field_row.h"
+#include "handpiece/tick/contact/outline_search.h"
 #include "tick/contact/contact_fixture.h"
 
 namespace handpiece::contact {
@@ -31,6 +33,12 @@ std::vector<ExactKernels> allExact() {
     if (core::simdLevel() >= core::SimdLevel::avx2) all.push_back(simd_avx2::exactKernels());
     if (core::simdLevel() >= core::SimdLevel::avx512) all.push_back(simd_avx512::exactKernels());
 #endif
+    return all;
+}
+std::vector<core::SimdLevel> levels() {
+    std::vector<core::SimdLevel> all;
+    for (const core::SimdLevel level : {core::SimdLevel::base, core::SimdLevel::avx2, core::SimdLevel::avx512})
+        if (level <= core::simdLevel()) all.push_back(level);
     return all;
 }
 Vec3 anywhere(std::mt19937_64& g) {
@@ -122,6 +130,39 @@ TEST(ExactKernels, everyInstructionSetGivesTheSameBits) {
             }
         }
     }
+}
+
+TEST(OutlineKernels, everyInstructionSetGivesTheSameBits) {
+    std::vector<OutlineSearch> all;
+    const instrument::Bur bur = instrument::makeBur("inverted-cone:1.2x1.2");
+    for (const core::SimdLevel level : levels())
+        all.emplace_back(bur, level);
+    ASSERT_TRUE(all.front().isFit());
+    if (all.size() == 1) GTEST_SKIP() << "this processor has one level only";
+    const ExactSurface surface(grooved().tree, grooved().field, core::SimdLevel::base);
+    std::mt19937_64 g(test::seed());
+    int apart = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const core::Pose pose{anywhere(g), test::randomRotation(g)};
+        BallDepth first;
+        for (std::size_t level = 0; level < all.size(); ++level) {
+            BallDepth found;
+            const bool isApart = all[level].search(surface, pose, found);
+            if (level == 0) first = found;
+            apart += isApart;
+            EXPECT_EQ(found.depthMm, first.depthMm);
+            EXPECT_EQ(found.surfaceMm, first.surfaceMm);
+            EXPECT_EQ(found.centreMm, first.centreMm);
+        }
+    }
+    EXPECT_GT(apart, 300);
+}
+
+TEST(OutlineKernels, fitBursWithSharpRimsThatAreConvex) {
+    for (const char* name : {"cylinder-flat:1.0x4.0", "wheel:2.0x0.8", "inverted-cone:1.2x1.2", "taper-flat:1.2x4.0"})
+        EXPECT_TRUE(OutlineSearch(instrument::makeBur(name), core::simdLevel()).isFit()) << name;
+    // Nothing to spare where the medial axis is the bur's own axis.
+    EXPECT_FALSE(OutlineSearch(instrument::makeBur("cylinder-round:1.0x4.0"), core::simdLevel()).isFit());
 }
 
 TEST(FieldRow, lookupsAreThoseOfTheFieldAtEveryLevel) {

@@ -145,6 +145,24 @@ TEST(FieldMethod, depthRisesAllTheWayDownAnOpenDrop) {
     }
 }
 
+TEST(FieldMethod, aDepthUpToEnoughPromisesNoMoreThanThereIs) {
+    std::mt19937_64 generator(test::seed());
+    for (const char* name : {"cylinder-round:1.0x4.0", "cylinder-flat:1.0x4.0"}) {
+        const auto method = makeFieldMethod(grooved(), burOf(name));
+        int promised = 0;
+        for (int i = 0; i < 60; ++i) {
+            const double wanted = test::uniform(generator, -0.5, 2.0);
+            const core::Pose pose = test::pressedPose(generator, *method, wanted);
+            const Depth exact = method->depth(pose), enough = method->depthUpTo(0.3, pose);
+            if (enough.depthMm == exact.depthMm) continue;
+            ++promised;
+            EXPECT_GT(enough.depthMm, 0.3);
+            EXPECT_LE(enough.depthMm, exact.depthMm + 0.2 * grooved()->field.settings().voxelMm);  // the field's error
+        }
+        EXPECT_GT(promised, 10) << name;
+    }
+}
+
 TEST(FieldMethod, warmStartDoesNotChangeTheAnswer) {
     for (const char* name : {"cylinder-round:1.0x4.0", "pear:1.2x3.0", "cylinder-flat:1.0x4.0"}) {
         const auto warm = makeFieldMethod(grooved(), burOf(name)), cold = makeFieldMethod(grooved(), burOf(name));

@@ -27,7 +27,7 @@ class Follower {
         : method_(std::move(distance), kRadius, lengthMm), proxy_(ProxySettings{}) {}
     void start(const Pose& pose) { proxy_.start(method_, pose); }
     void go(const Pose& pose) {
-        proxy_.update(method_, pose, method_.depth(pose));
+        proxy_.update(method_, pose, method_.depth(pose), 1e-3);
         worstDepthMm = std::max(worstDepthMm, method_.depth(proxy_.pose()).depthMm);
         mostPasses = std::max(mostPasses, proxy_.passes());
     }

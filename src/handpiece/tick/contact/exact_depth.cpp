@@ -182,6 +182,20 @@ void AxisSearch::search(const ExactSurface& surface, const core::Pose& burInToot
     }
 }
 
+bool AxisSearch::mayEnter(const ExactSurface& surface, const core::Pose& burInTooth) const noexcept {
+    const Vec3 tip = burInTooth.positionMm, axis = burInTooth.orientation * Vec3::UnitZ();
+    const double leastMm = kSureVoxels * surface.voxelMm();
+    return std::any_of(runs_.begin(), runs_.end(), [&](const Run& run) {
+        // A distance clears the axis that far on.
+        for (double z = run.z.front();;) {
+            const double clear = surface.farBound(tip + z * axis);
+            if (clear < leastMm) return true;
+            if (z + clear >= run.z.back()) return false;
+            z += clear;
+        }
+    });
+}
+
 namespace {
 
 /// What the triangles seen so far allow: a point q at distance d bounds the inside depth of every ball by its own

@@ -41,6 +41,7 @@ class ExactSurface {
     [[nodiscard]] core::Vec3 closestOn(std::uint32_t triangle, const core::Vec3& p) const noexcept;
     /// Signed, and at most the distance to the surface in magnitude, away from it.
     [[nodiscard]] double farBound(const core::Vec3& p) const noexcept { return field_.distance(p); }
+    [[nodiscard]] double voxelMm() const noexcept { return field_.settings().voxelMm; }
     [[nodiscard]] const TreeView& view() const noexcept { return view_; }
     [[nodiscard]] const ExactKernels& kernels() const noexcept { return kernels_; }
     [[nodiscard]] const geometry::TriangleTree& tree() const noexcept { return tree_; }
@@ -59,6 +60,8 @@ class AxisSearch {
 
     /// Raises `best` to the deepest ball of the axis; seeds only save time.
     void search(const ExactSurface& surface, const core::Pose& burInTooth, BallDepth& best) noexcept;
+    /// False when all of its balls have their centres outside the tooth.
+    [[nodiscard]] bool mayEnter(const ExactSurface& surface, const core::Pose& burInTooth) const noexcept;
     void reset() noexcept { seeds_.fill(geometry::kNoTriangle); }
 
     static constexpr int kMaxCuts = 16;

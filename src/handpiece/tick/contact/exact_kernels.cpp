@@ -3,12 +3,11 @@
 #include "handpiece/tick/contact/exact_kernels.h"
 
 #include "handpiece/tick/contact/lanes.h"
+#include "handpiece/tick/contact/tree_search.h"
 
 namespace handpiece::contact::HANDPIECE_SIMD_NS {
 namespace {
 
-constexpr int kStack = 7 * 32 + 8;        // geometry::kMaxTreeDepth
-constexpr float kBoundSlackMm = 1.5e-5f;  // covers the rounding of a bound in float, at a decimetre from the origin
 constexpr double kSmall = 1e-300;
 
 struct Vector {
@@ -33,11 +32,10 @@ inline Vector vectorOf(const double (&v)[3]) {
 /// Eight triangles side by side; lanes beyond `count` repeat the first.
 struct Packet {
     Doubles a[3], ab[3], ac[3];
-    std::uint32_t id[8];
 
-    void fill(const KernelTriangle* triangles, int count) {
+    Packet(const KernelTriangle* triangles, const std::uint32_t* ids, int count) {
         for (int lane = 0; lane < 8; ++lane) {
-            const KernelTriangle& t = triangles[id[lane < count ? lane : 0]];
+            const KernelTriangle& t = triangles[ids[lane < count ? lane : 0]];
             for (int k = 0; k < 3; ++k) {
                 a[k][lane] = t.a[k];
                 ab[k][lane] = t.ab[k];
@@ -163,11 +161,12 @@ class RunQuery {
         return bound - kBoundSlackMm;
     }
 
-    void evaluate(Packet& packet, int count) {
+    void evaluate(const std::uint32_t* ids, int count) {
+        const Packet packet(tree_.triangles, ids, count);
         if (run_.constant)
-            evaluateConstant(packet, count);
+            evaluateConstant(packet, ids, count);
         else
-            evaluateAny(packet, count);
+            evaluateAny(packet, ids, count);
     }
 
   private:
@@ -201,8 +200,7 @@ class RunQuery {
         }
     };
 
-    void evaluateConstant(Packet& packet, int count) {
-        packet.fill(tree_.triangles, count);
+    void evaluateConstant(const Packet& packet, const std::uint32_t* ids, int count) {
         const Shape shape(packet);
         const Products p(packet, shape, tip_, axis_);
         const Doubles zero{}, one = splat(1.0), s0 = splat(run_.z[0]), s1 = splat(run_.z[run_.count - 1]);
@@ -239,7 +237,7 @@ class RunQuery {
             if (best[i] < best[lane]) lane = i;
         const double limit = hit_.value + run_.radius[0] + 1e-9;
         if (limit <= 0.0 || best[lane] >= limit * limit) return;
-        take(packet.id[lane], bestS[lane], run_.radius[0]);
+        take(ids[lane], bestS[lane], run_.radius[0]);
     }
 
     /// The products lose digits far from the corner: what is reported is measured once more.
@@ -251,8 +249,7 @@ class RunQuery {
         if (value < hit_.value) hit_ = {value, s, {q.x, q.y, q.z}, triangle, feature};
     }
 
-    void evaluateAny(Packet& packet, int count) {
-        packet.fill(tree_.triangles, count);
+    void evaluateAny(const Packet& packet, const std::uint32_t* ids, int count) {
         const Shape shape(packet);
         const Products p(packet, shape, tip_, axis_);
         const Doubles a0 = p.a0, a1 = p.a1, b0 = p.b0, b1 = p.b1, c0 = p.c0, c1 = p.c1;
@@ -326,7 +323,7 @@ class RunQuery {
         for (int i = 1; i < count; ++i)
             if (best[i] < best[lane]) lane = i;
         if (best[lane] >= hit_.value + 1e-9) return;
-        take(packet.id[lane], bestS[lane], radius0[lane] + slope[lane] * bestS[lane]);
+        take(ids[lane], bestS[lane], radius0[lane] + slope[lane] * bestS[lane]);
     }
 
     const TreeView& tree_;
@@ -350,8 +347,8 @@ class PointQuery {
         return rootF(dx * dx + dy * dy + dz * dz) - kBoundSlackMm;
     }
 
-    void evaluate(Packet& packet, int count) {
-        packet.fill(tree_.triangles, count);
+    void evaluate(const std::uint32_t* ids, int count) {
+        const Packet packet(tree_.triangles, ids, count);
         const Shape shape(packet);
         const Doubles w[3] = {p_.x - packet.a[0], p_.y - packet.a[1], p_.z - packet.a[2]};
         const Doubles zero{};
@@ -364,9 +361,9 @@ class PointQuery {
         const double limit = hit_.value + 1e-9;
         if (d2[lane] >= limit * limit) return;
         std::uint8_t feature = 0;
-        const Vector q = closestPoint(tree_.triangles[packet.id[lane]], p_, feature);
+        const Vector q = closestPoint(tree_.triangles[ids[lane]], p_, feature);
         const double value = __builtin_sqrt(dot(p_ - q, p_ - q));
-        if (value < hit_.value) hit_ = {value, 0.0, {q.x, q.y, q.z}, packet.id[lane], feature};
+        if (value < hit_.value) hit_ = {value, 0.0, {q.x, q.y, q.z}, ids[lane], feature};
     }
 
   private:
@@ -374,58 +371,6 @@ class PointQuery {
     Vector p_;
     SurfaceHit& hit_;
 };
-
-/// Depth first, nearest child first; the triangles of a node's near leaves go through in eights.
-template <class Query>
-void search(const TreeView& tree, std::uint32_t seed, Query& query) {
-    Packet packet;
-    if (seed < tree.triangleCount) {  // neighbours in the tree's order lie close
-        const std::uint32_t first = seed < 4 ? 0 : seed - 3;
-        int count = 0;
-        for (; count < 8 && first + static_cast<std::uint32_t>(count) < tree.triangleCount; ++count)
-            packet.id[count] = first + static_cast<std::uint32_t>(count);
-        query.evaluate(packet, count);
-    }
-    struct Entry {
-        float bound;
-        std::int32_t node;
-    };
-    Entry stack[kStack];
-    int top = 0;
-    stack[top++] = {-1e30f, 0};
-    while (top > 0) {
-        const Entry entry = stack[--top];
-        if (entry.bound >= query.best()) continue;
-        const KernelNode& node = tree.nodes[entry.node];
-        const Floats bound = query.bounds(node);
-        unsigned open = bitsOf(bound < query.best()) & ((1u << node.lanes) - 1u);
-        Entry leaves[8], inner[8];
-        int leafCount = 0, innerCount = 0;
-        while (open != 0) {
-            const int lane = __builtin_ctz(open);
-            open &= open - 1;
-            const Entry child{bound[lane], node.child[lane] >= 0 ? node.child[lane] : lane};
-            Entry* list = node.child[lane] >= 0 ? inner : leaves;
-            int& count = node.child[lane] >= 0 ? innerCount : leafCount;
-            int at = count++;
-            for (; at > 0 && list[at - 1].bound > child.bound; --at)
-                list[at] = list[at - 1];
-            list[at] = child;
-        }
-        for (int i = 0; i < leafCount;) {
-            int count = 0;
-            for (; i < leafCount && leaves[i].bound < query.best() && count + node.count[leaves[i].node] <= 8; ++i) {
-                const std::uint32_t first = static_cast<std::uint32_t>(~node.child[leaves[i].node]);
-                for (std::uint32_t k = 0; k < node.count[leaves[i].node]; ++k)
-                    packet.id[count++] = first + k;
-            }
-            if (count == 0) break;
-            query.evaluate(packet, count);
-        }
-        for (int i = innerCount - 1; i >= 0; --i)
-            stack[top++] = inner[i];
-    }
-}
 
 void nearestToRun(const TreeView& tree, const AxisRun& run, const double tip[3], const double axis[3],
                   SurfaceHit& hit) noexcept {

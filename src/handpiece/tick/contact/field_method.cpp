@@ -9,6 +9,7 @@
 #include "handpiece/tick/contact/exact_depth.h"
 #include "handpiece/tick/contact/field_depth.h"
 #include "handpiece/tick/contact/live_field.h"
+#include "handpiece/tick/contact/outline_search.h"
 #include "handpiece/tick/contact/ring_sensor.h"
 #include "handpiece/tick/contact/sheet_search.h"
 
@@ -26,6 +27,7 @@ constexpr double kFeelerFilletVoxels = 1.0;
 /// and half as much again, or bumps of a micron would wedge it. r is taken as half the bur's radius.
 constexpr double kSlackShare = 1.5 / 8.0;
 constexpr double kLeastSlackMm = 0.0015;  // a proxy rests up to a micron inside
+constexpr std::size_t kSpineBalls = 8;
 
 class FieldMethod final : public Method {
   public:
@@ -37,6 +39,7 @@ class FieldMethod final : public Method {
           settings_(settings),
           live_(cut_ ? LiveField(*cut_) : LiveField(tooth_->field)),
           surface_(tooth_->tree, tooth_->field, core::simdLevel()),
+          outline_(*bur_, core::simdLevel()),
           axis_(*bur_),
           sheets_(*bur_, tooth_->field, core::simdLevel()),
           feeler_(cut_ ? instrument::filleted(*bur_, kFeelerFilletVoxels * live_.field.settings().voxelMm) : *bur_),
@@ -48,7 +51,12 @@ class FieldMethod final : public Method {
           slackMm_(cut_ ? std::max(kLeastSlackMm, kSlackShare * live_.field.settings().voxelMm *
                                                       live_.field.settings().voxelMm / (0.5 * bur_->maxRadiusMm()))
                         : 0.0),
-          farthestMm_(std::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {}
+          farthestMm_(std::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {
+        for (const instrument::MedialCurve& curve : bur_->medialAxis())
+            if (curve.onAxis)
+                for (std::size_t i = 0; i < kSpineBalls; ++i)
+                    spine_.push_back(curve.balls[i * (curve.balls.size() - 1) / (kSpineBalls - 1)]);
+    }
 
     [[nodiscard]] const char* name() const noexcept override { return "field"; }
 
@@ -69,6 +77,23 @@ class FieldMethod final : public Method {
             result.tissue =
                 live_.field.tissueAt(result.toothPointMm - 0.5 * live_.field.settings().voxelMm * result.normal);
         return result;
+    }
+
+    [[nodiscard]] Depth depthUpTo(double enoughMm, const core::Pose& burInTooth) noexcept override {
+        if (!burInTooth.isValid()) return depth(burInTooth);
+        // Each ball of the bur with its centre in the tooth promises a depth: the field tells at most how deep it is.
+        for (const instrument::MedialBall& ball : spine_) {
+            const Vec3 centre = burInTooth.apply(Vec3(0.0, 0.0, ball.zMm));
+            const double inside = -live_.field.distance(centre), promised = ball.radiusMm + inside;
+            if (!(inside > 0.0 && promised > enoughMm)) continue;
+            Depth result;
+            result.depthMm = promised;
+            result.toothPointMm = centre;
+            result.tissue = live_.field.tissueAt(centre);
+            result.status = Status::ok;
+            return result;
+        }
+        return depth(burInTooth);
     }
 
     void patches(const core::Pose& burInTooth, PatchSet& out) noexcept override {
@@ -106,6 +131,7 @@ class FieldMethod final : public Method {
     }
 
     void reset() noexcept override {
+        outline_.reset();
         axis_.reset();
         clearMm_ = 0.0;
     }
@@ -137,8 +163,11 @@ class FieldMethod final : public Method {
     /// bound.
     void depthOfWhole(const core::Pose& burInTooth, Depth& result) noexcept {
         BallDepth best;
-        axis_.search(surface_, burInTooth, best);
-        sheets_.search(surface_, burInTooth, best);
+        const bool outsideKnown = outline_.isFit(), apart = outsideKnown && outline_.search(surface_, burInTooth, best);
+        if (!apart) {
+            if (!outsideKnown || axis_.mayEnter(surface_, burInTooth)) axis_.search(surface_, burInTooth, best);
+            sheets_.search(surface_, burInTooth, outsideKnown, best);
+        }
         if (!(best.depthMm >= -settings_.reachMm)) {
             setFar(burInTooth, std::isfinite(best.depthMm) ? -best.depthMm : 0.0);
             return;
@@ -185,6 +214,7 @@ class FieldMethod final : public Method {
     FieldMethodSettings settings_;
     LiveField live_;
     ExactSurface surface_;
+    OutlineSearch outline_;
     AxisSearch axis_;
     SheetSearch sheets_;
     instrument::Bur feeler_;  ///< the bur as the field is felt with it
@@ -193,7 +223,8 @@ class FieldMethod final : public Method {
     /// feeler does.
     std::unique_ptr<RingSensor> sharpRings_;
     FieldDepth field_;
-    double slackMm_;  ///< of the bur in its own cavity
+    std::vector<instrument::MedialBall> spine_;  ///< some balls of the bur's axis
+    double slackMm_;                             ///< of the bur in its own cavity
     double farthestMm_;
     core::Pose farPose_;
     double clearMm_ = 0.0;  ///< distance at farPose_ when that was beyond reach

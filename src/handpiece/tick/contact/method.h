@@ -94,6 +94,13 @@ class Method {
     /// Signed depth, normal and deciding point.
     [[nodiscard]] virtual Depth depth(const core::Pose& burInTooth) noexcept HANDPIECE_REALTIME = 0;
 
+    /// For a bur that only has to come out of the tooth: depth(), or, where that is surely more than `enoughMm`, no
+    /// more than a depth that is surely reached, without a normal.
+    [[nodiscard]] virtual Depth depthUpTo(double /*enoughMm*/,
+                                          const core::Pose& burInTooth) noexcept HANDPIECE_REALTIME {
+        return depth(burInTooth);
+    }
+
     /// Contact patches with area and tissue at a pose. A method that knows only depth reports one patch without area.
     virtual void patches(const core::Pose& burInTooth, PatchSet& out) noexcept HANDPIECE_REALTIME;
 

@@ -19,6 +19,8 @@ constexpr double kRiseMm = 0.05;
 // A trilinear cell is taken to miss the distance by no more voxels than this. An assumption too.
 constexpr double kFieldErrorVoxels = 0.2;
 constexpr double kOnAxisMm = 1e-9;
+// From any place of a sheet to the nearest ball of its grid, in spacings.
+constexpr double kToGrid = 0.75;
 // A sheet that stands out of a ball kept elsewhere by less than this is not searched: depth is then too small by at
 // most so much. The many blunt corners of a bur from a file are such sheets; rims are not.
 constexpr double kCoveredMm = 4e-4;
@@ -154,6 +156,8 @@ SheetSearch::SheetSearch(const instrument::Bur& bur, const tooth::ToothField& fi
         }
         sheet.centreZ = 0.5 * (low + high);
         sheet.reachMm = reachFrom(sheet.centreZ);
+        for (std::size_t i = 0; i < sheet.u.size(); ++i)
+            sheet.centresMm = std::max(sheet.centresMm, std::hypot(sheet.rho[i], sheet.z[i] - sheet.centreZ));
         addGrid(sheet);
         sheets_.push_back(std::move(sheet));
     }
@@ -196,24 +200,27 @@ void SheetSearch::addGrid(Sheet& sheet) const {
             }
             sheet.rows.push_back(row);
         }
+        sheet.spacingMm = spacing;
         if (total <= kMaxGrid) return;
     }
 }
 
-void SheetSearch::search(const ExactSurface& surface, const core::Pose& burInTooth, BallDepth& best) noexcept {
+void SheetSearch::search(const ExactSurface& surface, const core::Pose& burInTooth, bool outsideKnown,
+                         BallDepth& best) noexcept {
     if (sheets_.empty()) return;
     const core::Mat3 rotation = burInTooth.orientation.toRotationMatrix();
     const Frame frame{burInTooth.positionMm, rotation.col(0), rotation.col(1), rotation.col(2)};
     for (const Sheet& sheet : sheets_) {
         const Vec3 centre = frame.tip + sheet.centreZ * frame.z;
         const double far = surface.farBound(centre);
-        if (far > 0.0 && sheet.reachMm - far <= best.depthMm) continue;
+        if (far > 0.0 && (outsideKnown ? far > sheet.centresMm : sheet.reachMm - far <= best.depthMm)) continue;
         std::uint32_t seed = best.triangle;
-        if (far > 0.0) {
+        if (far > 0.0 && !outsideKnown) {
             const BallDepth around = surface.ball(centre, sheet.reachMm, seed, sheet.reachMm - best.depthMm);
             if (around.triangle == geometry::kNoTriangle) continue;
             seed = around.triangle;
         }
+        mostOutsideMm_ = outsideKnown ? kToGrid * sheet.spacingMm + errorMm_ : std::numeric_limits<double>::infinity();
         searchSheet(surface, sheet, frame, seed, best);
     }
     // Twice: a deeper ball has its own nearest place.
@@ -284,7 +291,7 @@ void SheetSearch::scan(const Sheet& sheet, const Frame& frame, double atLeast) n
                     lookup_(field_, row, static_cast<int>(j / 8), middle);
                 }
                 const double d = distanceOf(middle[j / 8 % 8]);
-                if (d > 0.0 && r.radius + chord - d + errorMm_ < atLeast) {
+                if (d > 0.0 && (r.radius + chord - d + errorMm_ < atLeast || d - chord > mostOutsideMm_)) {
                     std::fill_n(&grid_[r.first + j], 8, kDropped);
                     continue;
                 }
@@ -309,6 +316,7 @@ void SheetSearch::collect(const Sheet& sheet, const Frame& frame, double atLeast
         const bool onAxis = r.rho < kOnAxisMm;  // one ball, many angles
         for (std::uint32_t j = 0; j < (onAxis ? 1 : r.count); ++j) {
             const float d = grid_[r.first + j];
+            if (distanceOf(d) > mostOutsideMm_) continue;
             const double value = r.radius - distanceOf(d), angle = 2.0 * kPi * j / r.count;
             if (!isFine(d)) {
                 // A brick's bound of an inside distance is short by its diagonal at most.

@@ -21,8 +21,9 @@ class SheetSearch {
   public:
     SheetSearch(const instrument::Bur& bur, const tooth::ToothField& field, core::SimdLevel level);
 
-    /// Raises `best` to the deepest ball of all sheets. A sheet that cannot beat `best` costs one or two lookups.
-    void search(const ExactSurface& surface, const core::Pose& burInTooth, BallDepth& best) noexcept;
+    /// Raises `best` to the deepest ball of all sheets; with `outsideKnown` at least to the deepest of those with their
+    /// centres in the tooth. A sheet that cannot beat `best` costs one or two lookups.
+    void search(const ExactSurface& surface, const core::Pose& burInTooth, bool outsideKnown, BallDepth& best) noexcept;
 
   private:
     /// A circle of the grid's balls.
@@ -35,6 +36,8 @@ class SheetSearch {
         std::vector<double> u, rho, z, radius;  ///< by ball; u is the length along the curve
         double maxRho = 0.0;
         double centreZ = 0.0, reachMm = 0.0;  ///< its balls lie in the ball of reach about the axis at centreZ
+        double centresMm = 0.0;               ///< their centres in the ball of this radius
+        double spacingMm = 0.0;               ///< of the grid's balls, at most
         std::vector<Row> rows;
         std::vector<double> cosine, sine;              ///< by ball of the grid
         std::vector<double> middleCosine, middleSine;  ///< by eight of them; each row's padded to eight middles
@@ -86,7 +89,8 @@ class SheetSearch {
     FieldLookup lookup_;
     float bandOutMm_, bandInMm_;
     double errorMm_, brickDiagonalMm_;
-    std::vector<float> grid_;  ///< signed distance by ball of the grid; of fixed size, filled anew by each search
+    double mostOutsideMm_ = 0.0;  ///< balls with their centres farther outside are no concern of this search
+    std::vector<float> grid_;     ///< signed distance by ball of the grid; of fixed size, filled anew by each search
     std::vector<Unknown> unknown_;
     std::size_t unknownCount_ = 0;
     std::array<Candidate, kMaxCandidates> candidates_;

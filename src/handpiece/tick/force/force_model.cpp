@@ -10,6 +10,7 @@ namespace {
 using core::Vec3;
 
 constexpr double kDeepStartMm = 0.1;       // a bur that starts deeper than this gets its force faded in
+constexpr double kSurelyInMm = 0.3;        // of a bur that waits until it is clear
 constexpr double kShareTauS = 0.01;        // with which the feel of a cut surface follows its tissues
 constexpr double kTangentialTauS = 0.003;  // of the turning bur's sideways force: it swings round with the wall
 constexpr double kShallowMm = 1e-9;        // below it a direction cannot be told
@@ -30,7 +31,7 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     guard_.look(read, lost, periodS, parameters_.fadeInS);
     if (guard_.faulted()) return touch_;
     touch_.deviceInTooth = guard_.pose();
-    touch_.depth = method.depth(touch_.deviceInTooth);
+    touch_.depth = waiting_ ? method.depthUpTo(kSurelyInMm, touch_.deviceInTooth) : method.depth(touch_.deviceInTooth);
     if (waiting_ && touch_.depth.depthMm <= 0.0) waiting_ = false;
     const bool released = wasWaiting_ && !waiting_;
     const bool fresh = guard_.startsAnew() || released;
@@ -53,7 +54,7 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
         return touch_;
     }
     if (fresh) proxy_.start(method, touch_.deviceInTooth);
-    proxy_.update(method, touch_.deviceInTooth, touch_.depth);
+    proxy_.update(method, touch_.deviceInTooth, touch_.depth, periodS);
     touch_.proxyInTooth = proxy_.pose();
     touch_.touching = proxy_.touching();
     touch_.passes = proxy_.passes();

@@ -2,6 +2,7 @@
 #include "handpiece/tick/force/proxy.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace handpiece::force {
@@ -134,8 +135,16 @@ Vec3 Proxy::freeStep(const Vec3& wanted, const Projection& allowed) const noexce
     return limited(wanted, std::max(known, clearanceMm_ - settings_.toleranceMm));
 }
 
-void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth,
-                   const contact::Depth& depthAtDevice) noexcept {
+/// Of a tick: enough for a millisecond's way, and never so few that a corner cannot be settled in.
+int Proxy::passesIn(double periodS) const noexcept {
+    constexpr double kFullS = 1e-3;
+    constexpr int kLeast = 4;
+    const double share = settings_.iterations * std::clamp(periodS / kFullS, 0.0, 1.0);
+    return std::max(std::min(kLeast, settings_.iterations), static_cast<int>(std::lround(share)));
+}
+
+void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth, const contact::Depth& depthAtDevice,
+                   double periodS) noexcept {
     const Vec3 target = deviceInTooth.positionMm;
     // A bur that hardly moves need not look far around itself; steps that want more reach farther pass by pass.
     const double moved = (target - lastDevice_.positionMm).norm() +
@@ -167,7 +176,8 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth,
     const double settledMm = isCutNear ? kTrustedStepMm : kSettledMm;
     const double leastMm = isCutNear ? std::max(moved, kSmallestRadiusMm) : kSmallestRadiusMm;
     const double mostMm = isCutNear ? kFollow * moved + kCreepMm : std::numeric_limits<double>::infinity();
-    for (int i = 0; i < settings_.iterations && !settled; ++i) {
+    const int passes = passesIn(periodS);
+    for (int i = 0; i < passes && !settled; ++i) {
         const double gap = evaluate(method);
         if (gap >= std::min(safeGap, -settings_.toleranceMm)) {
             safe = pose_.positionMm;

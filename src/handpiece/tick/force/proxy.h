@@ -14,7 +14,8 @@
 namespace handpiece::force {
 
 struct ProxySettings {
-    int iterations = 8;      ///< constraint passes a tick, at most; two more when the last one ended inside the tooth
+    int iterations = 8;      ///< constraint passes a tick, at most; two more when the last one ended inside the tooth.
+                             ///< Ticks shorter than a millisecond take fewer: what is left is walked in the next
     double maxStepMm = 0.1;  ///< between two passes, unless more clearance is proven: no wall can be stepped over
     double toleranceMm = 0.001;  ///< how deep a pose may be and still count as on the surface
 };
@@ -39,8 +40,8 @@ class Proxy {
 
     /// Moves the proxy after the device. `depthAtDevice` is method.depth() at the device's pose: it spares all passes
     /// when the way there is free.
-    void update(contact::Method& method, const core::Pose& deviceInTooth,
-                const contact::Depth& depthAtDevice) noexcept HANDPIECE_REALTIME;
+    void update(contact::Method& method, const core::Pose& deviceInTooth, const contact::Depth& depthAtDevice,
+                double periodS) noexcept HANDPIECE_REALTIME;
 
     [[nodiscard]] const core::Pose& pose() const noexcept { return pose_; }
     /// True when the tooth holds it away from the device.
@@ -64,6 +65,7 @@ class Proxy {
     void recall() noexcept;
     void remember(const contact::Constraint& exact) noexcept;
     void settleOutside(contact::Method& method) noexcept;
+    [[nodiscard]] int passesIn(double periodS) const noexcept;
     [[nodiscard]] core::Vec3 freeStep(const core::Vec3& wanted, const Projection& allowed) const noexcept;
 
     ProxySettings settings_;

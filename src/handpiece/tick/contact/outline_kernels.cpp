@@ -177,14 +177,12 @@ class OutlineQuery {
         }
     }
 
-    /// Within the triangle: over its place lies the bur's farthest point towards its plane.
+    /// Within the triangle: over its place lies the bur's farthest point into the tooth, against the triangle's normal.
     void touchFace(Vector a, Vector ab, Vector ac, std::uint32_t triangle) {
         const Vector n = cross(ab, ac);
         const double size2 = dot(n, n);
         if (size2 <= 0.0) return;
-        const Vector middle = tip_ + outline_.middleZ * axis_;
-        const double side = dot(n, middle - a) > 0.0 ? -1.0 : 1.0;
-        const Vector down = (side / __builtin_sqrt(size2)) * n;
+        const Vector down = (-1.0 / __builtin_sqrt(size2)) * n;
         const double downZ = dot(down, axis_);
         Vector radial = down - downZ * axis_;
         const double downRho = __builtin_sqrt(dot(radial, radial));

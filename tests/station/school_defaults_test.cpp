@@ -10,6 +10,7 @@
 #include "handpiece/base/core/error.h"
 #include "station/sitting_fixture.h"
 #include "station/station.h"
+#include "support/random.h"
 
 namespace handpiece::station {
 namespace {
@@ -18,18 +19,12 @@ namespace fs = std::filesystem;
 
 class SchoolDefaultsFile : public testing::Test {
   protected:
-    void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "handpiece-school-XXXXXX").string();
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-    }
-    void TearDown() override { fs::remove_all(folder_); }
     SchoolDefaults of(const std::string& text) {
         std::ofstream(file()) << text;
         return readSchoolDefaults(file());
     }
-    [[nodiscard]] fs::path file() const { return folder_ / "settings.toml"; }
-    fs::path folder_;
+    [[nodiscard]] fs::path file() const { return folder_.path() / "settings.toml"; }
+    test::TemporaryFolder folder_;
 };
 
 TEST_F(SchoolDefaultsFile, saysWhatItSaysAndNothingElse) {

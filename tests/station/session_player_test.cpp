@@ -28,11 +28,11 @@ double removed(const tooth::TissueVolumes& mm3) {
 
 /// Recorded once for all tests.
 struct Recorded {
-    Recorded() : state(workThreeSeconds(folder.path / "session.h5", folder.path / "cut-off.h5")) {}
-    Folder folder;
+    Recorded() : state(workThreeSeconds(folder.path() / "session.h5", folder.path() / "cut-off.h5")) {}
+    test::TemporaryFolder folder;
     tooth::CutState state;
-    [[nodiscard]] std::filesystem::path file() const { return folder.path / "session.h5"; }
-    [[nodiscard]] std::filesystem::path cutOff() const { return folder.path / "cut-off.h5"; }
+    [[nodiscard]] std::filesystem::path file() const { return folder.path() / "session.h5"; }
+    [[nodiscard]] std::filesystem::path cutOff() const { return folder.path() / "cut-off.h5"; }
 };
 const Recorded& recorded() {
     static const Recorded it;
@@ -219,26 +219,26 @@ void playsAgain(const std::filesystem::path& file, std::size_t steps) {
 }
 
 TEST(SessionPlayer, strokesCanBeUndoneAfterARecovery) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     const Recovered recovered = recover(recorded().file());
     const Station station = makeStation(recovered.toothCase, recovered.settings, false);
     EXPECT_EQ(recovered.history.undoSteps(), 2u);
-    undoAll(station, recovered.state, recovered.history, 2, folder.path / "next.h5");
-    playsAgain(folder.path / "next.h5", 2);
+    undoAll(station, recovered.state, recovered.history, 2, folder.path() / "next.h5");
+    playsAgain(folder.path() / "next.h5", 2);
 
     const Recovered cutOff = recover(recorded().cutOff());
     EXPECT_GE(cutOff.history.undoSteps(), 1u);
-    undoAll(station, cutOff.state, cutOff.history, cutOff.history.undoSteps(), folder.path / "other.h5");
+    undoAll(station, cutOff.state, cutOff.history, cutOff.history.undoSteps(), folder.path() / "other.h5");
 }
 
 TEST(SessionPlayer, strokesCanBeUndoneInAnotherField) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     tooth::FieldSettings field = blockSettings().field;
     field.voxelMm = 0.05;
     const Recut recut = recutAt(recorded().file(), field, false);
     EXPECT_EQ(recut.history.undoSteps(), 2u);
-    undoAll(recut.station, recut.state, recut.history, 2, folder.path / "next.h5");
-    playsAgain(folder.path / "next.h5", 2);
+    undoAll(recut.station, recut.state, recut.history, 2, folder.path() / "next.h5");
+    playsAgain(folder.path() / "next.h5", 2);
 }
 
 TEST(SessionPlayer, strokesOfADamagedSessionAreOneError) {
@@ -260,7 +260,7 @@ TEST(SessionPlayer, strokesOfADamagedSessionAreOneError) {
 }
 
 TEST(SessionPlayer, whatStandsAroundTheToothIsInTheSession) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     tooth::Case around = blockCase();
     tooth::Part gum;
     gum.tissue = tooth::Tissue::gum;
@@ -268,7 +268,7 @@ TEST(SessionPlayer, whatStandsAroundTheToothIsInTheSession) {
     gum.mesh = test::boxMesh(core::Vec3(-4, -4, -4), core::Vec3(4, 4, -2));
     around.scenery.push_back(gum);
     SittingSettings settings;
-    settings.sessionFile = folder.path / "session.h5";
+    settings.sessionFile = folder.path() / "session.h5";
     {
         Sitting sitting(blockStation(), around, handOf(twoHoles()), settings, nullptr);
         ASSERT_TRUE(waitUntil(sitting, 0.1));
@@ -281,9 +281,9 @@ TEST(SessionPlayer, whatStandsAroundTheToothIsInTheSession) {
 }
 
 TEST(SessionPlayer, hullAndFieldInOneSession) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     SittingSettings settings;
-    settings.sessionFile = folder.path / "session.h5";
+    settings.sessionFile = folder.path() / "session.h5";
     Station station = blockStation();
     // Up at first: the hull is for a whole tooth at rest.
     std::vector<device::TimedPose> poses = twoHoles().poses();
@@ -311,12 +311,12 @@ TEST(SessionPlayer, hullAndFieldInOneSession) {
 }
 
 TEST(SessionPlayer, aSessionWithoutTicksOrToothIsOneError) {
-    const Folder folder;
-    EXPECT_THROW(SessionPlayer(folder.path / "none.h5", kUnseen), core::Error);
+    const test::TemporaryFolder folder;
+    EXPECT_THROW(SessionPlayer(folder.path() / "none.h5", kUnseen), core::Error);
     session::SessionInfo info;
     info.settings = settingsJson(blockSettings());
-    { session::Recorder recorder(folder.path / "empty.h5", info); }
-    EXPECT_THROW(SessionPlayer(folder.path / "empty.h5", kUnseen), core::Error);
+    { session::Recorder recorder(folder.path() / "empty.h5", info); }
+    EXPECT_THROW(SessionPlayer(folder.path() / "empty.h5", kUnseen), core::Error);
 }
 
 }  // namespace

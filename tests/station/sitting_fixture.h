@@ -16,6 +16,7 @@
 #include "station/led_hand.h"
 #include "station/sitting.h"
 #include "support/closed_meshes.h"
+#include "support/random.h"
 
 namespace handpiece::station {
 
@@ -62,21 +63,6 @@ inline device::Motion twoHoles() {
 inline std::unique_ptr<device::Device> handOf(device::Motion motion, std::shared_ptr<Lead> lead = nullptr) {
     return std::make_unique<LedHand>(std::move(motion), std::move(lead));
 }
-
-/// A folder that goes with the test.
-struct Folder {
-    Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "handpiece-station-XXXXXX").string();
-        path = mkdtemp(name.data());
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    std::filesystem::path path;
-};
 
 /// Asks until it is so; false when a minute has passed.
 template <typename Condition>

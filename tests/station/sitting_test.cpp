@@ -12,6 +12,7 @@
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/record/session/session_reader.h"
 #include "handpiece/senses/surface/surface.h"
+#include "handpiece/tick/device/passing_device.h"
 #include "station/held_button.h"
 #include "station/session_player.h"
 #include "station/sitting_fixture.h"
@@ -149,9 +150,9 @@ TEST(Sitting, refusesWhatCannotBeDoneNow) {
 }
 
 TEST(Sitting, aListenerThatFailsEndsItWithAFaultAndKeepsTheCut) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     SittingSettings settings;
-    settings.sessionFile = folder.path / "session.h5";
+    settings.sessionFile = folder.path() / "session.h5";
     const Station station = blockStation();
     Sitting sitting(station, blockCase(), handOf(twoHoles()), settings, nullptr);
     sitting.setListener([](const messages::HapticSample& sample) {
@@ -186,9 +187,9 @@ TEST(Sitting, stopsInAnyStateAndKeepsAnAttempt) {
 }
 
 TEST(Sitting, aFullDiskIsToldAndTheSittingGoesOn) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     SittingSettings settings;
-    settings.sessionFile = folder.path / "session.h5";
+    settings.sessionFile = folder.path() / "session.h5";
     rlimit before{};
     ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
     const auto handler = std::signal(SIGXFSZ, SIG_IGN);
@@ -214,31 +215,24 @@ TEST(Sitting, aSessionFileThatCannotBeBegunIsOneError) {
 }
 
 /// A led hand with a button under its finger.
-class ButtonHand final : public device::Device {
+class ButtonHand final : public device::PassingDevice {
   public:
     ButtonHand(std::unique_ptr<device::Device> hand, std::shared_ptr<std::atomic<std::uint32_t>> buttons)
-        : hand_(std::move(hand)), buttons_(std::move(buttons)) {}
-    [[nodiscard]] const device::Capability& capability() const noexcept override { return hand_->capability(); }
+        : PassingDevice(std::move(hand)), buttons_(std::move(buttons)) {}
     device::Reading read(double periodS) noexcept override {
-        device::Reading reading = hand_->read(periodS);
+        device::Reading reading = PassingDevice::read(periodS);
         reading.buttons = *buttons_;
         return reading;
     }
-    void command(const core::Vec3& forceN, const core::Vec3& torqueNmm) noexcept override {
-        hand_->command(forceN, torqueNmm);
-    }
-    core::Vec3 truePositionMm() const noexcept override { return hand_->truePositionMm(); }
-    core::Vec3 appliedForceN() const noexcept override { return hand_->appliedForceN(); }
 
   private:
-    std::unique_ptr<device::Device> hand_;
     std::shared_ptr<std::atomic<std::uint32_t>> buttons_;
 };
 
 TEST(Sitting, theLowerButtonHeldClearOfTheToothUndoesOnceAndIsRecorded) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     for (const bool allowed : {true, false}) {
-        const std::filesystem::path file = folder.path / (allowed ? "undone.h5" : "kept.h5");
+        const std::filesystem::path file = folder.path() / (allowed ? "undone.h5" : "kept.h5");
         const auto lead = std::make_shared<Lead>();
         const auto buttons = std::make_shared<std::atomic<std::uint32_t>>(0u);
         SittingSettings settings;

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "handpiece/tick/device/passing_device.h"
 #include "shell/job.h"
 #include "shell/problem.h"
 #include "station/device_desk.h"
@@ -149,21 +150,9 @@ class Hands : public QObject {
 };
 
 /// A device of the window's, lent to one loop.
-class LentDevice final : public device::Device {
+class LentDevice final : public device::PassingDevice {
   public:
-    explicit LentDevice(std::shared_ptr<Hand> hand) : hand_(std::move(hand)), device_(hand_->device()) {}
-    [[nodiscard]] const device::Capability& capability() const noexcept override { return device_.capability(); }
-    device::Reading read(double periodS) noexcept HANDPIECE_REALTIME override { return device_.read(periodS); }
-    void command(const core::Vec3& forceN, const core::Vec3& torqueNmm) noexcept HANDPIECE_REALTIME override {
-        device_.command(forceN, torqueNmm);
-    }
-    void vibrate(double amplitudeN) noexcept HANDPIECE_REALTIME override { device_.vibrate(amplitudeN); }
-    core::Vec3 truePositionMm() const noexcept override { return device_.truePositionMm(); }
-    core::Vec3 appliedForceN() const noexcept override { return device_.appliedForceN(); }
-
-  private:
-    std::shared_ptr<Hand> hand_;
-    device::Device& device_;
+    explicit LentDevice(const std::shared_ptr<Hand>& hand) : PassingDevice({hand, &hand->device()}) {}
 };
 
 /// What a trouble is called among the problems: "device-unplugged".

@@ -1844,10 +1844,6 @@
         <translation>デバイスはすでに動いています。</translation>
     </message>
     <message>
-        <source>The device %1 runs already, or was stopped.</source>
-        <translation>デバイス %1 はすでに動いているか、止められています。</translation>
-    </message>
-    <message>
         <source>The firmware of the Falcon %1 is not loaded, and Handpiece may not bring it along.</source>
         <translation>Falcon %1 のファームウェアが読み込まれていません。Handpieceには付属できません。</translation>
     </message>

@@ -11,31 +11,16 @@
 #include "handpiece/devices/drivers/openhaptics.h"
 #include "handpiece/devices/safety/guarded_device.h"
 #include "handpiece/model/instrument/shapes.h"
-#include "handpiece/model/starter/starter.h"
-#include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/loop/haptic_loop.h"
+#include "support/random.h"
+#include "support/small_molar.h"
 
 namespace handpiece::drivers {
 namespace {
 
 using core::Quat;
 using core::Vec3;
-
-std::shared_ptr<const tooth::CuttableTooth> molar() {
-    tooth::Case crown;
-    crown.name = "molar";
-    crown.outer = starter::makeOuter(starter::ToothKind::lowerFirstMolar, 4000);
-    tooth::PrepareSettings settings;
-    settings.useCache = false;
-    settings.field.voxelMm = 0.2;
-    auto whole = tooth::prepareTooth(crown, settings);
-    const double dentineMm = crown.outer.bounds().max.z() - 3.0;
-    const std::vector<tooth::TissueMap::PartFunction> parts{
-        {[dentineMm](const Vec3& p) { return p.z() - dentineMm; }, tooth::Tissue::dentine, 20}};
-    auto tissues = tooth::TissueMap::fromFunctions(whole->field, parts, tooth::Tissue::enamel);
-    return tooth::prepareCutting(std::move(whole), std::move(tissues));
-}
 
 struct Row {
     double t = 0, y = 0;
@@ -57,8 +42,8 @@ std::vector<Row> readLog(const std::filesystem::path& file) {
 }
 
 TEST(OpenHapticsEndToEnd, aHandCutsACavityAndFeelsIt) {
-    const auto folder = std::filesystem::temp_directory_path() / ("handpiece_openhaptics_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder);
+    const test::TemporaryFolder temporary;
+    const std::filesystem::path& folder = temporary.path();
     {
         // Device frame: +y up, the top of the crown at y = 0. First it only touches, then the upper button is down.
         std::ofstream script(folder / "hand.csv");
@@ -71,7 +56,7 @@ TEST(OpenHapticsEndToEnd, aHandCutsACavityAndFeelsIt) {
     setenv("HANDPIECE_HD_DOUBLE_SCRIPT", (folder / "hand.csv").c_str(), 1);
     setenv("HANDPIECE_HD_DOUBLE_LOG", (folder / "motors.csv").c_str(), 1);
 
-    const auto base = molar();
+    const auto base = test::smallMolar(0.2);
     const core::Box box = base->tooth->outer.bounds();
     const auto field = std::make_shared<tooth::CutField>(base);
     const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur("round:1.4x1.4"));
@@ -133,7 +118,6 @@ TEST(OpenHapticsEndToEnd, aHandCutsACavityAndFeelsIt) {
         "troubles %llu\n",
         removedMm3, largest, touched, pushedS, rows.back().t, static_cast<unsigned long long>(troubles));
     hd.reset(1, "Touch");
-    std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -5,16 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "handpiece/devices/drivers/simulated_driver.h"
+#include "handpiece/devices/link/passing_driver.h"
 #include "handpiece/devices/safety/guarded_device.h"
 #include "handpiece/model/instrument/shapes.h"
-#include "handpiece/model/starter/starter.h"
-#include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/record/session/recorder.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/loop/haptic_loop.h"
+#include "support/small_molar.h"
 
 namespace handpiece::safety {
 namespace {
@@ -26,47 +25,20 @@ using core::Vec3;
 constexpr double kZeroWithinS = 0.010;
 
 /// Writes down what reaches the device, between it and everything else.
-class Witness final : public link::Driver, public link::Servo {
+class Witness final : public link::PassingDriver {
   public:
-    Witness(std::unique_ptr<link::Driver> driver, std::vector<Sent>& sent) : driver_(std::move(driver)), sent_(sent) {}
-    ~Witness() override { driver_->stop(); }
-    [[nodiscard]] const link::DriverInfo& info() const noexcept override { return driver_->info(); }
-    void start(link::Servo& servo) override {
-        servo_ = &servo;
-        driver_->start(*this);
-    }
-    void stop() noexcept override { driver_->stop(); }
-    void relax() noexcept override { driver_->relax(); }
+    Witness(std::unique_ptr<link::Driver> driver, std::vector<Sent>& sent)
+        : PassingDriver(std::move(driver)), sent_(sent) {}
+    ~Witness() override { PassingDriver::stop(); }
     [[nodiscard]] link::DriverCommand exchange(const link::DriverReading& reading) noexcept override {
-        const link::DriverCommand command = servo_->exchange(reading);
+        const link::DriverCommand command = PassingDriver::exchange(reading);
         if (sent_.size() < sent_.capacity()) sent_.push_back({reading.timeNs, command.timeNs, command.forceN});
         return command;
     }
 
   private:
-    std::unique_ptr<link::Driver> driver_;
     std::vector<Sent>& sent_;
-    link::Servo* servo_ = nullptr;
 };
-
-std::shared_ptr<const tooth::CuttableTooth> molar() {
-    static const std::shared_ptr<const tooth::CuttableTooth> made = [] {
-        tooth::Case crown;
-        crown.name = "molar";
-        crown.outer = starter::makeOuter(starter::ToothKind::lowerFirstMolar, 4000);
-        tooth::PrepareSettings settings;
-        settings.useCache = false;
-        settings.field.voxelMm = 0.12;
-        auto whole = tooth::prepareTooth(crown, settings);
-        // Enamel above, dentine below: its own tissues would take longer to make than the storm lasts.
-        const double dentineMm = crown.outer.bounds().max.z() - 3.0;
-        const std::vector<tooth::TissueMap::PartFunction> parts{
-            {[dentineMm](const Vec3& p) { return p.z() - dentineMm; }, tooth::Tissue::dentine, 20}};
-        auto tissues = tooth::TissueMap::fromFunctions(whole->field, parts, tooth::Tissue::enamel);
-        return tooth::prepareCutting(std::move(whole), std::move(tissues));
-    }();
-    return made;
-}
 
 /// A hand that works its way over the crown: down, a stroke, up, elsewhere. Every third stroke only touches: a bur that
 /// cuts gives way, so the larger forces are felt there.
@@ -98,7 +70,7 @@ double length(const std::array<double, 3>& v) {
 }  // namespace
 
 Storm cutInAStorm(const StormSettings& settings) {
-    const auto base = molar();
+    static const std::shared_ptr<const tooth::CuttableTooth> base = test::smallMolar(0.12);
     std::vector<Fault> faults = parseFaults(settings.faults);
     const double durationS =
         settings.durationS > 0.0 ? settings.durationS : faults.back().atS + faults.back().lastsS + 1.0;

@@ -8,6 +8,7 @@
 #include "handpiece/tick/device/simulated_device.h"
 #include "handpiece/tick/loop/haptic_loop.h"
 #include "handpiece/tick/loop/passivity.h"
+#include "handpiece/tick/loop/shaped_device.h"
 #include "support/closed_meshes.h"
 #include "support/realtime_trap.h"
 
@@ -102,6 +103,25 @@ TEST(CrispLoop, theTickNeitherAllocatesNorLocksNorWaitsWithIt) {
     }
     EXPECT_EQ(trap.total(), 0u);
     EXPECT_GT(most, 0.1);
+}
+
+class Shaken final : public device::PassingDevice {
+  public:
+    Shaken(std::unique_ptr<device::Device> device, double& amplitudeN)
+        : PassingDevice(std::move(device)), amplitudeN_(amplitudeN) {}
+    void vibrate(double amplitudeN) noexcept override { amplitudeN_ = amplitudeN; }
+
+  private:
+    double& amplitudeN_;
+};
+
+TEST(CrispLoop, theHumReachesADeviceBehindAShaper) {
+    const device::SimulatedDeviceSettings hand;
+    double amplitudeN = 0.0;
+    auto arm = std::make_unique<device::SimulatedDevice>(hand, device::Motion({{0.0, Pose{}, 0.0}}));
+    ShapedDevice shaped(std::make_unique<Shaken>(std::move(arm), amplitudeN), shaperSettingsFor(hand.capability));
+    shaped.vibrate(0.25);
+    EXPECT_EQ(amplitudeN, 0.25);
 }
 
 TEST(CrispLoop, theKnockLeavesTheLoopPassiveAndAtRest) {

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "handpiece/base/core/hash.h"
+#include "handpiece/tick/device/passing_device.h"
 #include "handpiece/tick/device/simulated_device.h"
 #include "handpiece/tick/loop/haptic_loop.h"
 #include "handpiece/tick/loop/shaped_device.h"
@@ -28,22 +29,17 @@ class Plane final : public contact::Method {
 };
 
 /// Loses the pose now and then, as a real arm's driver does.
-class Losing final : public device::Device {
+class Losing final : public device::PassingDevice {
   public:
     Losing(std::unique_ptr<device::Device> inner, int every, int ticks)
-        : inner_(std::move(inner)), every_(every), ticks_(ticks) {}
-    [[nodiscard]] const device::Capability& capability() const noexcept override { return inner_->capability(); }
+        : PassingDevice(std::move(inner)), every_(every), ticks_(ticks) {}
     device::Reading read(double periodS) noexcept override {
-        device::Reading reading = inner_->read(periodS);
+        device::Reading reading = PassingDevice::read(periodS);
         if (++count_ % every_ < ticks_) reading.status = device::ReadStatus::lost;
         return reading;
     }
-    void command(const Vec3& forceN, const Vec3& torqueNmm) noexcept override { inner_->command(forceN, torqueNmm); }
-    Vec3 truePositionMm() const noexcept override { return inner_->truePositionMm(); }
-    Vec3 appliedForceN() const noexcept override { return inner_->appliedForceN(); }
 
   private:
-    std::unique_ptr<device::Device> inner_;
     int every_, ticks_, count_ = 0;
 };
 

@@ -178,13 +178,13 @@ GamepadDriver::GamepadDriver(const OpenOptions& options) {
     if (pad_->controller == nullptr)
         throw core::Error("the gamepad cannot be opened", info_.model,
                           "this person may not read it: log in at the machine itself, or add a udev rule")
-            .as("device-forbidden", {info_.model});
+            .as("device-permission", {info_.model});
 }
 
 void GamepadDriver::start(link::Servo& servo) {
     if (started_ || stopped_)
         throw core::Error(stopped_ ? "the device was stopped" : "the device runs already", info_.model, "open it again")
-            .as("driver-order", {info_.model});
+            .as(stopped_ ? "device-stopped" : "device-started");
     started_ = true;
     pad_->door = std::make_unique<Door>(servo);
     const std::shared_ptr<Pad> pad = pad_;

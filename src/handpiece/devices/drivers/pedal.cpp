@@ -121,7 +121,7 @@ FootPedal::FootPedal(const PedalSettings& settings) : state_(std::make_shared<St
     if (state_->joystick == nullptr)
         throw core::Error("the pedal cannot be opened", name_,
                           "this person may not read it: log in at the machine itself, or add a udev rule")
-            .as("device-forbidden", {name_});
+            .as("device-permission", {name_});
     if (!state_->has())
         throw core::Error(settings.button >= 0 ? fmt::format("'{}' has no button {}", name_, settings.button)
                                                : fmt::format("'{}' has no axis {}", name_, settings.axis),

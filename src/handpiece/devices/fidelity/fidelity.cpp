@@ -14,6 +14,7 @@
 #include "handpiece/base/rt/clock.h"
 #include "handpiece/base/rt/spsc_queue.h"
 #include "handpiece/devices/fidelity/recording.h"
+#include "handpiece/devices/link/passing_driver.h"
 
 namespace handpiece::fidelity {
 namespace {
@@ -27,26 +28,15 @@ constexpr double kPulseN = 0.8;           // under what an Omni-class arm may ho
 constexpr std::size_t kQueue = 1u << 16;  // of frames: 16 s at 4 kHz before the reader must come
 
 /// Between guard and driver: every frame and the gate's answer to it, on their way, untouched.
-class Tap final : public link::Driver, public link::Servo {
+class Tap final : public link::PassingDriver {
   public:
     Tap(std::unique_ptr<link::Driver> driver, std::function<std::int64_t()> nowNs)
-        : driver_(std::move(driver)), nowNs_(std::move(nowNs)), frames(kQueue) {}
-
-    [[nodiscard]] const link::DriverInfo& info() const noexcept override { return driver_->info(); }
-    void start(link::Servo& servo) override {
-        servo_ = &servo;
-        driver_->start(*this);
-    }
-    void stop() noexcept override { driver_->stop(); }
-    void relax() noexcept override { driver_->relax(); }
-    [[nodiscard]] link::CalibrationState calibration() override { return driver_->calibration(); }
-    [[nodiscard]] std::string calibrationStep() override { return driver_->calibrationStep(); }
-    bool calibrate() override { return driver_->calibrate(); }
+        : PassingDriver(std::move(driver)), nowNs_(std::move(nowNs)), frames(kQueue) {}
 
     [[nodiscard]] link::DriverCommand exchange(const link::DriverReading& reading) noexcept override {
         FrameRecord record;
         record.atNs = nowNs_();
-        const link::DriverCommand answer = servo_->exchange(reading);
+        const link::DriverCommand answer = PassingDriver::exchange(reading);
         record.readNs = reading.timeNs;
         record.positionMm = reading.positionMm;
         record.sentN = answer.forceN;
@@ -58,9 +48,7 @@ class Tap final : public link::Driver, public link::Servo {
     }
 
   private:
-    std::unique_ptr<link::Driver> driver_;
     std::function<std::int64_t()> nowNs_;
-    link::Servo* servo_ = nullptr;
 
   public:
     rt::SpscQueue<FrameRecord> frames;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "handpiece/devices/link/passing_driver.h"
 #include "handpiece/devices/safety/guard_servo.h"
 
 namespace handpiece::safety {
@@ -53,20 +54,25 @@ std::vector<FaultOutcome> FaultLog::outcomes() const {
     return {outcomes_.begin(), outcomes_.begin() + static_cast<std::ptrdiff_t>(count())};
 }
 
-/// Between the driver and the gate's servo, in the driver's thread.
-class FaultyServo final : public link::Servo {
+/// Its exchange() is called in the driver's thread.
+class FaultyDriver final : public link::PassingDriver {
   public:
-    FaultyServo(std::vector<Fault> faults, std::shared_ptr<FaultLog> log)
-        : faults_(std::move(faults)), log_(std::move(log)) {
+    FaultyDriver(std::unique_ptr<link::Driver> driver, std::vector<Fault> faults, std::shared_ptr<FaultLog> log)
+        : PassingDriver(std::move(driver)), faults_(std::move(faults)), log_(std::move(log)) {
         std::stable_sort(faults_.begin(), faults_.end(), [](const Fault& a, const Fault& b) { return a.atS < b.atS; });
         log_->outcomes_.assign(faults_.size(), FaultOutcome{});
     }
-    void lead(link::Servo& to) noexcept {
-        to_ = &to;
-        guard_ = dynamic_cast<GuardServo*>(&to);
+    ~FaultyDriver() override { PassingDriver::stop(); }
+
+    void start(link::Servo& servo) override {
+        guard_ = dynamic_cast<GuardServo*>(&servo);
+        PassingDriver::start(servo);
     }
     /// The watchdog's thread.
-    void relax() noexcept { relaxed_.store(true, std::memory_order_release); }
+    void relax() noexcept override {
+        relaxed_.store(true, std::memory_order_release);
+        PassingDriver::relax();
+    }
 
     [[nodiscard]] DriverCommand exchange(const DriverReading& given) noexcept HANDPIECE_REALTIME override {
         if (startNs_ == 0) startNs_ = given.timeNs;
@@ -76,7 +82,7 @@ class FaultyServo final : public link::Servo {
         const bool stalls = spoil(reading, nowS);
         if (!stalls) {
             relaxed_.store(false, std::memory_order_release);
-            last_ = to_->exchange(reading);
+            last_ = PassingDriver::exchange(reading);
         } else if (relaxed_.load(std::memory_order_acquire)) {
             last_.forceN = last_.torqueNmm = {};
             last_.vibration = 0.0f;
@@ -172,7 +178,6 @@ class FaultyServo final : public link::Servo {
 
     std::vector<Fault> faults_;
     std::shared_ptr<FaultLog> log_;
-    link::Servo* to_ = nullptr;
     GuardServo* guard_ = nullptr;  // null: some other servo
     std::size_t begun_ = 0, firstLive_ = 0;
     std::int64_t startNs_ = 0, noted_ = 0;
@@ -180,35 +185,6 @@ class FaultyServo final : public link::Servo {
     std::array<double, 3> before_{};
     std::atomic<bool> relaxed_{false};
 };
-
-namespace {
-
-class FaultyDriver final : public link::Driver {
-  public:
-    FaultyDriver(std::unique_ptr<link::Driver> driver, std::vector<Fault> faults, std::shared_ptr<FaultLog> log)
-        : servo_(std::move(faults), std::move(log)), driver_(std::move(driver)) {}
-    ~FaultyDriver() override { driver_->stop(); }
-
-    [[nodiscard]] const link::DriverInfo& info() const noexcept override { return driver_->info(); }
-    void start(link::Servo& servo) override {
-        servo_.lead(servo);
-        driver_->start(servo_);
-    }
-    void stop() noexcept override { driver_->stop(); }
-    void relax() noexcept override {
-        servo_.relax();
-        driver_->relax();
-    }
-    [[nodiscard]] link::CalibrationState calibration() override { return driver_->calibration(); }
-    [[nodiscard]] std::string calibrationStep() override { return driver_->calibrationStep(); }
-    bool calibrate() override { return driver_->calibrate(); }
-
-  private:
-    FaultyServo servo_;  // outlives the driver
-    std::unique_ptr<link::Driver> driver_;
-};
-
-}  // namespace
 
 std::unique_ptr<link::Driver> withFaults(std::unique_ptr<link::Driver> driver, std::vector<Fault> faults,
                                          std::shared_ptr<FaultLog> log) {

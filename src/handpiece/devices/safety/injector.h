@@ -61,7 +61,7 @@ class FaultLog {
     [[nodiscard]] std::size_t count() const noexcept { return begun_.load(std::memory_order_acquire); }
 
   private:
-    friend class FaultyServo;
+    friend class FaultyDriver;
     std::vector<FaultOutcome> outcomes_;
     std::atomic<std::size_t> begun_{0};
     GateOutput output_;

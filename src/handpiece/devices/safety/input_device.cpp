@@ -12,6 +12,7 @@
 #include "handpiece/base/rt/clock.h"
 #include "handpiece/base/rt/staged.h"
 #include "handpiece/devices/safety/guard_servo.h"
+#include "handpiece/tick/device/passing_device.h"
 
 namespace handpiece::safety {
 namespace {
@@ -66,25 +67,19 @@ class InputBoard final : public HealthBoard {
     double timeoutS_;
 };
 
-class WithPedal final : public device::Device {
+class WithPedal final : public device::PassingDevice {
   public:
     WithPedal(std::unique_ptr<device::Device> device, std::shared_ptr<const link::PedalValue> pedal)
-        : device_(std::move(device)), pedal_(std::move(pedal)) {}
-    [[nodiscard]] const device::Capability& capability() const noexcept override { return device_->capability(); }
+        : PassingDevice(std::move(device)), pedal_(std::move(pedal)) {}
     device::Reading read(double periodS) noexcept override {
-        device::Reading reading = device_->read(periodS);
+        device::Reading reading = PassingDevice::read(periodS);
         // A hand whose pose is in doubt cuts with no pedal at all.
         if (reading.status == device::ReadStatus::ok)
             reading.pedal = std::max(reading.pedal, static_cast<double>(pedal_->read(rt::monotonicNs())));
         return reading;
     }
-    void command(const Vec3& forceN, const Vec3& torqueNmm) noexcept override { device_->command(forceN, torqueNmm); }
-    void vibrate(double amplitudeN) noexcept override { device_->vibrate(amplitudeN); }
-    Vec3 truePositionMm() const noexcept override { return device_->truePositionMm(); }
-    Vec3 appliedForceN() const noexcept override { return device_->appliedForceN(); }
 
   private:
-    std::unique_ptr<device::Device> device_;
     std::shared_ptr<const link::PedalValue> pedal_;
 };
 

@@ -23,10 +23,10 @@ stability::ShaperSettings shaperSettingsFor(const device::Capability& c) {
 }
 
 ShapedDevice::ShapedDevice(std::unique_ptr<device::Device> inner, const stability::ShaperSettings& settings)
-    : inner_(std::move(inner)), shaper_(checked(settings)) {}
+    : PassingDevice(std::move(inner)), shaper_(checked(settings)) {}
 
 device::Reading ShapedDevice::read(double periodS) noexcept {
-    const device::Reading reading = inner_->read(periodS);
+    const device::Reading reading = PassingDevice::read(periodS);
     periodS_ = periodS;
     if (reading.status == device::ReadStatus::ok && reading.burInTooth.positionMm.allFinite()) {
         positionMm_ = reading.burInTooth.positionMm;
@@ -40,7 +40,7 @@ void ShapedDevice::command(const Vec3& forceN, const Vec3& torqueNmm) noexcept {
     // Outside a tick only the end of a run commands: no force.
     if (!(periodS_ > 0.0)) {
         sentN_.setZero();
-        inner_->command(sentN_, Vec3::Zero());
+        PassingDevice::command(sentN_, Vec3::Zero());
         return;
     }
     sentN_ = shaper_.shape(positionMm_, forceN, periodS_, fresh_);
@@ -48,7 +48,7 @@ void ShapedDevice::command(const Vec3& forceN, const Vec3& torqueNmm) noexcept {
     periodS_ = 0.0;
     const double wanted = forceN.norm();
     const double share = wanted > 0.0 ? std::min(1.0, sentN_.norm() / wanted) : 1.0;
-    inner_->command(sentN_, share * torqueNmm);
+    PassingDevice::command(sentN_, share * torqueNmm);
 }
 
 }  // namespace handpiece::loop

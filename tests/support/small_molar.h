@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// A molar of the product to cut in: enamel above, dentine below. Its own tissues would take longer to make than most
+/// tests last. For programs that use starter.
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "handpiece/model/starter/starter.h"
+#include "handpiece/model/tooth/cut_field.h"
+
+namespace handpiece::test {
+
+inline std::shared_ptr<const tooth::CuttableTooth> smallMolar(double voxelMm) {
+    tooth::Case crown;
+    crown.name = "molar";
+    crown.outer = starter::makeOuter(starter::ToothKind::lowerFirstMolar, 4000);
+    tooth::PrepareSettings settings;
+    settings.useCache = false;
+    settings.field.voxelMm = voxelMm;
+    auto whole = tooth::prepareTooth(crown, settings);
+    const double dentineMm = crown.outer.bounds().max.z() - 3.0;
+    const std::vector<tooth::TissueMap::PartFunction> parts{
+        {[dentineMm](const core::Vec3& p) { return p.z() - dentineMm; }, tooth::Tissue::dentine, 20}};
+    auto tissues = tooth::TissueMap::fromFunctions(whole->field, parts, tooth::Tissue::enamel);
+    return tooth::prepareCutting(std::move(whole), std::move(tissues));
+}
+
+}  // namespace handpiece::test

@@ -29,7 +29,7 @@ TEST(Bur, RingsLieOnTheOutlineCloseTogetherAndCoverTheSurface) {
             next += ring.count;
             ASSERT_TRUE(ring.count == 1 || ring.count % 8 == 0);
             ASSERT_EQ(ring.count == 1, ring.rhoMm < 1e-9) << name;
-            ASSERT_LE(2.0 * std::numbers::pi * ring.rhoMm / ring.count, kSurfaceSpacingMm + 1e-9);
+            ASSERT_LE(2.0 * std::numbers::pi * ring.rhoMm / ring.count, bur.surfaceSpacingMm() + 1e-9);
             area += ring.areaMm2 * ring.count;
             // A step along the normal leaves the bur by as much.
             const double off = 1e-6;
@@ -39,11 +39,15 @@ TEST(Bur, RingsLieOnTheOutlineCloseTogetherAndCoverTheSurface) {
             if (i > 0) {
                 const double chord =
                     Vec2(ring.rhoMm - bur.rings()[i - 1].rhoMm, ring.zMm - bur.rings()[i - 1].zMm).norm();
-                ASSERT_LE(chord, kSurfaceSpacingMm + 1e-9) << name;
+                ASSERT_LE(chord, bur.surfaceSpacingMm() + 1e-9) << name;
                 along += chord;
             }
         }
         EXPECT_NEAR(area, surfaceAreaMm2(bur.profile()), 1e-9 * area) << name;
+        EXPECT_LE(next, 1.3 * kMostSurfacePoints) << name;  // rounded up to eights
+        if (area < 16.0) {
+            EXPECT_EQ(bur.surfaceSpacingMm(), kSurfaceSpacingMm) << name;
+        }
         double outline = 0.0;
         for (const ProfilePiece& piece : bur.profile().pieces)
             outline += lengthMm(piece);

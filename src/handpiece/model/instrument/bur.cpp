@@ -29,25 +29,29 @@ Profile joined(Profile profile) {
     return profile;
 }
 
-std::uint32_t pointsAround(double rhoMm) {
+double surfaceSpacing(const Profile& profile) {
+    return std::max(kSurfaceSpacingMm, std::sqrt(surfaceAreaMm2(profile) / kMostSurfacePoints));
+}
+
+std::uint32_t pointsAround(double rhoMm, double spacingMm) {
     if (rhoMm < 1e-9) return 1;
-    const double needed = std::ceil(2.0 * std::numbers::pi * rhoMm / kSurfaceSpacingMm);
+    const double needed = std::ceil(2.0 * std::numbers::pi * rhoMm / spacingMm);
     return 8 * std::max(1u, static_cast<std::uint32_t>(std::ceil(needed / 8.0)));
 }
 
-std::vector<SurfaceRing> surfaceRings(const Profile& profile) {
+std::vector<SurfaceRing> surfaceRings(const Profile& profile, double spacingMm) {
     std::vector<SurfaceRing> rings;
     const auto add = [&](const Vec2& place, Vec2 normal, double bandAreaMm2) {
         if (place.x() < 1e-9) normal = {0.0, normal.y() < 0.0 ? -1.0 : 1.0};
         normal.normalize();
-        const std::uint32_t count = pointsAround(place.x());
+        const std::uint32_t count = pointsAround(place.x(), spacingMm);
         const std::uint32_t first = rings.empty() ? 0 : rings.back().first + rings.back().count;
         rings.push_back({place.y(), place.x(), normal.x(), normal.y(), bandAreaMm2 / count, first, count});
     };
     double pendingArea = 0.0;  // of the last half step before a joint
     Vec2 pendingNormal = Vec2::Zero();
     for (const ProfilePiece& piece : profile.pieces) {
-        const int steps = std::max(1, static_cast<int>(std::ceil(lengthMm(piece) / kSurfaceSpacingMm - 1e-9)));
+        const int steps = std::max(1, static_cast<int>(std::ceil(lengthMm(piece) / spacingMm - 1e-9)));
         const double half = 0.5 / steps;
         add(piece.from, pendingNormal - inwardNormalAt(piece, 0.0), pendingArea + turnedAreaMm2(piece, 0.0, half));
         for (int i = 1; i < steps; ++i) {
@@ -68,8 +72,9 @@ Bur::Bur(std::string name, Profile profile, geometry::TriangleMesh mesh)
       profile_(joined(std::move(profile))),
       lengthMm_(profile_.lengthMm()),
       maxRadiusMm_(profile_.maxRadiusMm()),
+      surfaceSpacingMm_(surfaceSpacing(profile_)),
       medialAxis_(instrument::medialAxis(profile_)),
-      rings_(surfaceRings(profile_)),
+      rings_(surfaceRings(profile_, surfaceSpacingMm_)),
       mesh_(std::move(mesh)) {}
 
 Bur::Bur(std::string name, Profile profile)

@@ -29,17 +29,18 @@ struct MedialCurve {
 };
 inline constexpr double kMedialToleranceMm = 2e-5;
 
-/// Rows of points on the bur's surface, ring by ring from the tip, spacing at most kSurfaceSpacingMm along the outline
-/// and around it. Areas add up to the bur's surface area. Every corner of the outline has a ring on it (its normal
-/// halves the corner, its area is half of each band beside it); on the axis a ring is one point; others have a multiple
-/// of 8 points.
+/// Rows of points on the bur's surface, ring by ring from the tip, at most Bur::surfaceSpacingMm() apart along the
+/// outline and around it. Areas add up to the bur's surface area. Every corner of the outline has a ring on it (its
+/// normal halves the corner, its area is half of each band beside it); on the axis a ring is one point; others have a
+/// multiple of 8 points.
 struct SurfaceRing {
     double zMm, rhoMm;           ///< where on the outline
     double normalRho, normalZ;   ///< unit outward normal of the bur
     double areaMm2;              ///< of one point of this ring
     std::uint32_t first, count;  ///< its points: angles 2 pi (j + 0.5) / count for j in [0, count)
 };
-inline constexpr double kSurfaceSpacingMm = 0.06;
+/// A large bur has its points farther apart, so that a tick knows how many there can be.
+inline constexpr double kSurfaceSpacingMm = 0.06, kMostSurfacePoints = 4500;
 
 /// Immutable once made; safe to share between threads.
 class Bur {
@@ -59,13 +60,15 @@ class Bur {
     }
     [[nodiscard]] const std::vector<MedialCurve>& medialAxis() const noexcept { return medialAxis_; }
     [[nodiscard]] const std::vector<SurfaceRing>& rings() const noexcept { return rings_; }
+    /// Of the rings' points: kSurfaceSpacingMm, or what spreads kMostSurfacePoints over the surface.
+    [[nodiscard]] double surfaceSpacingMm() const noexcept { return surfaceSpacingMm_; }
     /// The polyhedral bur: what the hull method and the eye see. The STL it came from, or the turned outline.
     [[nodiscard]] const geometry::TriangleMesh& mesh() const noexcept { return mesh_; }
 
   private:
     std::string name_;
     Profile profile_;  // its pieces meet exactly
-    double lengthMm_ = 0.0, maxRadiusMm_ = 0.0;
+    double lengthMm_ = 0.0, maxRadiusMm_ = 0.0, surfaceSpacingMm_ = kSurfaceSpacingMm;
     std::vector<MedialCurve> medialAxis_;
     std::vector<SurfaceRing> rings_;
     geometry::TriangleMesh mesh_;

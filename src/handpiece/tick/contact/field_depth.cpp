@@ -18,8 +18,10 @@ namespace {
 constexpr std::size_t kStarts = 4;
 /// Two points of the rings nearer to each other than this lead to the same top.
 constexpr double kApartMm = 0.12;
-/// A point of the rings is at most half a diagonal of their mesh from the deepest place.
-constexpr double kWindowMm = 0.045;
+/// A point of the rings is at most half a diagonal of their mesh from the deepest place, in spacings.
+constexpr double kWindow = 0.75;
+/// The same of the shells inside.
+constexpr double kInnerWindowMm = 0.09;
 constexpr double kFirstLookMm = 0.03, kLastLookMm = 0.004, kAnchorMm = 0.05;
 constexpr int kLooks = 12;
 constexpr double kOnSurfaceMm = 2e-5;
@@ -80,9 +82,10 @@ FieldDepth::FieldDepth(const LiveField& field, const instrument::Bur& bur, core:
       outMm_(kSaturated * field.outMm()),
       inMm_(kSaturated * field.inMm()),
       // Half a diagonal of the rings' mesh, and what a trilinear cell may be off.
-      clearMm_(std::max(0.0, std::sqrt(std::max(0.0, outMm_ * outMm_ - 0.5 * instrument::kSurfaceSpacingMm *
-                                                                           instrument::kSurfaceSpacingMm)) -
-                                 0.1 * view_.voxelMm)),
+      clearMm_(std::max(
+          0.0, std::sqrt(std::max(0.0, outMm_ * outMm_ - 0.5 * bur.surfaceSpacingMm() * bur.surfaceSpacingMm())) -
+                   0.1 * view_.voxelMm)),
+      windowMm_(kWindow * bur.surfaceSpacingMm()),
       inner_({}),
       probe_({}) {
     const auto& rings = bur.rings();
@@ -424,7 +427,7 @@ FieldTouch FieldDepth::search(const core::Pose& burInTooth, RingSensor& rings) n
     }
     // What the rings have sensed here serves again; else every second point of every second ring is near enough to
     // begin to climb.
-    const bool sensed = rings.hasSensed(burInTooth, outMm_, kWindowMm);
+    const bool sensed = rings.hasSensed(burInTooth, outMm_, windowMm_);
     if (!sensed) sense(probe_, frame);
     const double least = sensed ? rings.leastMm() : leastOf(probe_);
     if (!(least <= outMm_)) return best;
@@ -433,7 +436,7 @@ FieldTouch FieldDepth::search(const core::Pose& burInTooth, RingSensor& rings) n
     std::array<RingPoint, kStarts> points;
     const RingPose pose{frame.tip, frame.x, frame.y, frame.z};
     const std::size_t count =
-        pickNearest(arrays, pose, nullptr, sensed ? kWindowMm : 2.0 * kWindowMm, kApartMm, points);
+        pickNearest(arrays, pose, nullptr, sensed ? windowMm_ : 2.0 * windowMm_, kApartMm, points);
     for (std::size_t i = 0; i < count; ++i) {
         const RingPoint& p = points[i];
         if (p.gapMm <= -inMm_) continue;
@@ -465,7 +468,7 @@ void FieldDepth::searchInside(const Frame& frame, FieldTouch& best) noexcept {
     sense(inner_, frame);
     std::array<RingPoint, kStarts> points;
     const RingPose pose{frame.tip, frame.x, frame.y, frame.z};
-    const std::size_t count = pickNearest(inner_, pose, innerDepth_.data(), 2.0 * kWindowMm, kApartMm, points);
+    const std::size_t count = pickNearest(inner_, pose, innerDepth_.data(), kInnerWindowMm, kApartMm, points);
     for (std::size_t i = 0; i < count; ++i) {
         const RingPoint& p = points[i];
         Climb(*this, frame,

@@ -71,6 +71,7 @@ class FieldDepth {
     tooth::FieldView view_;
     RingKernels kernels_;
     double outMm_, inMm_, clearMm_;  ///< values between -inMm_ and outMm_ are distances
+    double windowMm_;                ///< from the deepest place to the nearest point of the rings, at most
     std::vector<Spot> spots_;        ///< by ring of the bur
     RingArrays inner_;               ///< shells inside the bur
     RingArrays probe_;               ///< some of the bur's points, to begin from

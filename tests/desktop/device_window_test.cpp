@@ -186,6 +186,17 @@ TEST_F(DeviceWindowTest, CutsUntilItIsUnpluggedThenTheMouseGoesOnAndNothingIsLos
     EXPECT_EQ(host_->settings().value("work/device").toString(), "mouse");
 }
 
+TEST_F(DeviceWindowTest, OneThatNeverTellsWhereItIsIsToldOfUntilItDoes) {
+    startHere();
+    led_->silent = true;
+    ASSERT_TRUE(chooseLed());
+    ASSERT_TRUE(waitFor([&] { return noticed() == "device-trouble"; }));
+    EXPECT_TRUE(part<QLabel>("noticeText")->text().contains("not told"));
+    EXPECT_TRUE(simulator().usedHand());
+    led_->silent = false;
+    EXPECT_TRUE(waitFor([&] { return noticed().isEmpty(); })) << noticed().toStdString();
+}
+
 TEST_F(DeviceWindowTest, TheLowerButtonHeldInTheAirUndoes) {
     startHere();
     ASSERT_TRUE(chooseLed());

@@ -24,7 +24,7 @@ struct Led {
     std::array<double, 3> toMm{0.0, 60.0, 0.0}, atMm{0.0, 60.0, 0.0};
     std::array<double, 4> orientation{1, 0, 0, 0};
     std::atomic<std::uint32_t> buttons{0};
-    std::atomic<bool> unplugged{false};
+    std::atomic<bool> unplugged{false}, silent{false};
     std::atomic<int> opened{0}, open{0}, calibrations{0};
     std::atomic<bool> wantsCalibration{false};
     std::atomic<double> largestSentN{0.0};
@@ -88,6 +88,10 @@ class LedDriver final : public link::Driver {
                     led_->atMm[i] += std::min(1.0, kStepMm / awayMm) * (led_->toMm[i] - led_->atMm[i]);
                 reading.positionMm = led_->atMm;
                 reading.orientation = led_->orientation;
+            }
+            if (led_->silent) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                continue;
             }
             reading.timeNs = rt::monotonicNs();
             ++reading.frame;

@@ -221,7 +221,7 @@ void Hands::open(const QString& name) {
         current_ = std::move(*hand);
         current_->suit(options_.leftHanded, options_.scale);
         trouble_ = link::Trouble::none;
-        since_ = std::chrono::steady_clock::now();
+        openedAt_ = since_ = std::chrono::steady_clock::now();
         timer_.start();
         emit opened();
         emit changed();
@@ -238,13 +238,16 @@ void Hands::open(const QString& name) {
 void Hands::poll() {
     if (!current_) return;
     health_ = current_->health().read();
-    const link::Trouble now = isOurs(health_.gate.trouble) ? link::Trouble::none : health_.gate.trouble;
+    const auto time = std::chrono::steady_clock::now();
+    // One that never tells where it is waits for something: power, or to be homed.
+    const bool isSilent = health_.frames == 0 && time - openedAt_ >= 2 * options_.patience;
+    const link::Trouble now = isOurs(health_.gate.trouble) && !isSilent ? link::Trouble::none : health_.gate.trouble;
     if (now != trouble_) {
         trouble_ = now;
-        since_ = std::chrono::steady_clock::now();
+        since_ = time;
         emit troubled(now, health_.gate.vendorCode);
     }
-    if (isGone(trouble_) && std::chrono::steady_clock::now() - since_ >= options_.patience) {
+    if (isGone(trouble_) && time - since_ >= options_.patience) {
         const QString name = wanted_;
         const link::Trouble why = trouble_;
         const int code = health_.gate.vendorCode;

@@ -86,7 +86,7 @@ class Hands : public QObject {
         HandDesk desk;
         std::optional<bool> leftHanded;  ///< of a device that was not set up yet
         std::optional<double> scale;
-        /// A device that has gone for so long gives way to the mouse.
+        /// A device that has gone for so long gives way to the mouse; one that tells nothing for twice as long is told of.
         std::chrono::milliseconds patience{1500};
     };
     explicit Hands(Options options, QObject* parent = nullptr);
@@ -140,7 +140,7 @@ class Hands : public QObject {
     std::shared_ptr<Hand> current_;
     safety::Health health_;
     link::Trouble trouble_ = link::Trouble::none;
-    std::chrono::steady_clock::time_point since_;
+    std::chrono::steady_clock::time_point openedAt_, since_;
     std::unique_ptr<Job> looking_, opening_;
     std::vector<std::unique_ptr<Job>> closing_;
     std::weak_ptr<Hand> before_;  ///< a sitting may hold it yet

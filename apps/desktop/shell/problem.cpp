@@ -203,7 +203,7 @@ constexpr std::array kEntries = {
     Entry{"websocket-wrong", QT_TRANSLATE_NOOP("Problem", "Another program answers at %1, not the device's service."),
           QT_TRANSLATE_NOOP("Problem", "Check which port the service uses.")},
     Entry{"device-starting", QT_TRANSLATE_NOOP("Problem", "The device has not told where it is yet."),
-          QT_TRANSLATE_NOOP("Problem", "Wait a moment.")},
+          QT_TRANSLATE_NOOP("Problem", "Check its cable and power; some must be calibrated first.")},
     Entry{"device-unplugged", QT_TRANSLATE_NOOP("Problem", "The device is gone."),
           QT_TRANSLATE_NOOP("Problem", "Check its cable and power.")},
     Entry{"device-vendor-error", QT_TRANSLATE_NOOP("Problem", "The device's own software reports an error (%1)."),

@@ -1728,8 +1728,8 @@
         <translation>デバイスがまだ位置を知らせていません。</translation>
     </message>
     <message>
-        <source>Wait a moment.</source>
-        <translation>しばらくお待ちください。</translation>
+        <source>Check its cable and power; some must be calibrated first.</source>
+        <translation>ケーブルと電源を確認してください。先に校正が必要な機種もあります。</translation>
     </message>
     <message>
         <source>The device is gone.</source>

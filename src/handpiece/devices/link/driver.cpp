@@ -10,7 +10,7 @@ struct Words {
 
 constexpr std::array<Words, 13> kWords{{
     {"none", "The device is well.", ""},
-    {"starting", "The device has not told its pose yet.", "Wait a moment."},
+    {"starting", "The device has not told its pose yet.", "Check its cable and power; some must be calibrated first."},
     {"unplugged", "The device is gone.", "Check its cable and power, then connect it again."},
     {"vendor-error", "The device's own software reports an error.", "See its code; switch the device off and on."},
     {"bad-data", "The device sent something that cannot be read.", "Start its service again, or update it."},

@@ -86,7 +86,8 @@ class Hands : public QObject {
         HandDesk desk;
         std::optional<bool> leftHanded;  ///< of a device that was not set up yet
         std::optional<double> scale;
-        /// A device that has gone for so long gives way to the mouse; one that tells nothing for twice as long is told of.
+        /// A device that has gone for so long gives way to the mouse; one that tells nothing for twice as long is told
+        /// of.
         std::chrono::milliseconds patience{1500};
     };
     explicit Hands(Options options, QObject* parent = nullptr);

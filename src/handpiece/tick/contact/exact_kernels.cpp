@@ -10,21 +10,6 @@ namespace {
 
 constexpr double kSmall = 1e-300;
 
-struct Vector {
-    double x, y, z;
-};
-inline Vector operator-(Vector a, Vector b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-inline Vector operator+(Vector a, Vector b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-inline Vector operator*(double s, Vector a) {
-    return {s * a.x, s * a.y, s * a.z};
-}
-inline double dot(Vector a, Vector b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 inline Vector vectorOf(const double (&v)[3]) {
     return {v[0], v[1], v[2]};
 }

@@ -11,21 +11,6 @@ namespace {
 constexpr double kTiny = 1e-12, kGapMm = 1e-9;
 constexpr int kEdgeSteps = 40;
 
-struct Vector {
-    double x, y, z;
-};
-inline Vector operator-(Vector a, Vector b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-inline Vector operator+(Vector a, Vector b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-inline Vector operator*(double s, Vector a) {
-    return {s * a.x, s * a.y, s * a.z};
-}
-inline double dot(Vector a, Vector b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 inline Vector cross(Vector a, Vector b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

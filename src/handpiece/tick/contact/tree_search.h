@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The walk through the tree of boxes that every exact kernel shares. For sources built by handpiece_simd_sources
-/// alone.
+/// What the exact kernels share: plain vectors, and the walk through the tree of boxes. For sources built by
+/// handpiece_simd_sources alone.
 
 #include "handpiece/tick/contact/exact_kernels.h"
 #include "handpiece/tick/contact/lanes.h"
@@ -12,6 +12,22 @@ namespace {
 
 constexpr int kStack = 7 * 32 + 8;        // geometry::kMaxTreeDepth
 constexpr float kBoundSlackMm = 1.5e-5f;  // covers the rounding of a bound in float, at a decimetre from the origin
+
+struct Vector {
+    double x, y, z;
+};
+inline Vector operator-(Vector a, Vector b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vector operator+(Vector a, Vector b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vector operator*(double s, Vector a) {
+    return {s * a.x, s * a.y, s * a.z};
+}
+inline double dot(Vector a, Vector b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 
 /// Depth first, nearest child first; the triangles of a node's near leaves go through in eights.
 template <class Query>

@@ -10,6 +10,7 @@
 #include "handpiece/tick/device/passing_device.h"
 #include "handpiece/tick/device/simulated_device.h"
 #include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/plane_method.h"
 #include "handpiece/tick/loop/shaped_device.h"
 #include "support/random.h"
 
@@ -17,16 +18,6 @@ namespace handpiece::stability {
 namespace {
 
 using core::Vec3;
-
-/// The solid below z = 0, touched by the bur's tip.
-class Plane final : public contact::Method {
-  public:
-    [[nodiscard]] const char* name() const noexcept override { return "plane"; }
-    [[nodiscard]] contact::Depth depth(const core::Pose& bur) noexcept override {
-        const Vec3& p = bur.positionMm;
-        return {-p.z(), Vec3::UnitZ(), Vec3(p.x(), p.y(), 0.0), tooth::Tissue::enamel, contact::Status::ok};
-    }
-};
 
 /// Loses the pose now and then, as a real arm's driver does.
 class Losing final : public device::PassingDevice {
@@ -84,7 +75,8 @@ Result run(const Case& c) {
     loop::LoopSettings loopSettings;
     loopSettings.rateHz = c.rate;
     loopSettings.queueCapacity = 16;
-    loop::HapticLoop loop(loopSettings, std::move(shaped), std::make_unique<Plane>(), force::defaultParameters());
+    loop::HapticLoop loop(loopSettings, std::move(shaped), std::make_unique<loop::PlaneMethod>(tooth::Tissue::enamel),
+                          force::defaultParameters());
     Result r;
     double low = 1e9, high = -1e9;
     core::Hasher hash;

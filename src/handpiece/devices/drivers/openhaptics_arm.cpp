@@ -76,8 +76,7 @@ const Model& modelOf(std::string_view vendorsName) {
     return models()[1];  // the weakest arm there is: what is safe for it is safe for all
 }
 
-// ---- What it tells of itself
-// -----------------------------------------------------------------------------------------
+// ---- What it tells of itself ------------------------------------------------------------------------------------
 
 /// Inside the library, with the device current: values it may or may not tell.
 std::string text(const Library& hd, unsigned parameter) {
@@ -164,8 +163,7 @@ device::Capability openHapticsCapability(std::string_view vendorsName) {
     return modelOf(vendorsName).capability;
 }
 
-// ---- Its servo
-// --------------------------------------------------------------------------------------------------------
+// ---- Its servo --------------------------------------------------------------------------------------------------
 
 void Arm::silence(std::chrono::milliseconds patience) noexcept {
     closing_.store(true);

@@ -26,8 +26,6 @@ namespace {
 /// Concave up to what rounding does to a straight line.
 constexpr double kSlopeSlack = 1e-9;
 constexpr double kSamePlaceMm = 1e-9;
-/// Nearer than this to the surface the field does not vouch for the side.
-constexpr double kSureVoxels = 1.0;
 
 ExactKernels kernelsFor(core::SimdLevel level) {
 #if defined(__x86_64__)
@@ -52,8 +50,8 @@ ExactSurface::ExactSurface(const geometry::TriangleTree& tree, const tooth::Toot
 }
 
 bool ExactSurface::isInside(const Vec3& p, const SurfaceHit& hit) const noexcept {
-    const double d = field_.distance(p);
-    if (std::abs(d) > kSureVoxels * field_.settings().voxelMm) return d < 0.0;
+    const double d = farBound(p);
+    if (std::abs(d) > sureMm()) return d < 0.0;
     return tree_.side(p, {(p - vectorOf(hit.point)).norm(), vectorOf(hit.point), hit.triangle, hit.feature}) < 0.0;
 }
 
@@ -184,12 +182,11 @@ void AxisSearch::search(const ExactSurface& surface, const core::Pose& burInToot
 
 bool AxisSearch::mayEnter(const ExactSurface& surface, const core::Pose& burInTooth) const noexcept {
     const Vec3 tip = burInTooth.positionMm, axis = burInTooth.orientation * Vec3::UnitZ();
-    const double leastMm = kSureVoxels * surface.voxelMm();
     return std::any_of(runs_.begin(), runs_.end(), [&](const Run& run) {
         // A distance clears the axis that far on.
         for (double z = run.z.front();;) {
             const double clear = surface.farBound(tip + z * axis);
-            if (clear < leastMm) return true;
+            if (clear < surface.sureMm()) return true;
             if (z + clear >= run.z.back()) return false;
             z += clear;
         }

@@ -41,7 +41,8 @@ class ExactSurface {
     [[nodiscard]] core::Vec3 closestOn(std::uint32_t triangle, const core::Vec3& p) const noexcept;
     /// Signed, and at most the distance to the surface in magnitude, away from it.
     [[nodiscard]] double farBound(const core::Vec3& p) const noexcept { return field_.distance(p); }
-    [[nodiscard]] double voxelMm() const noexcept { return field_.settings().voxelMm; }
+    /// Nearer than this to the surface farBound() does not vouch for the side.
+    [[nodiscard]] double sureMm() const noexcept { return field_.settings().voxelMm; }
     [[nodiscard]] const TreeView& view() const noexcept { return view_; }
     [[nodiscard]] const ExactKernels& kernels() const noexcept { return kernels_; }
     [[nodiscard]] const geometry::TriangleTree& tree() const noexcept { return tree_; }

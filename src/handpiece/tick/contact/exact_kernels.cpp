@@ -121,26 +121,16 @@ class RunQuery {
     [[nodiscard]] float best() const { return static_cast<float>(hit_.value); }
 
     [[nodiscard]] Floats bounds(const KernelNode& node) const {
-        const float ax = static_cast<float>(axis_.x), ay = static_cast<float>(axis_.y),
-                    az = static_cast<float>(axis_.z);
-        const Floats minX = loadFloats(node.minX), maxX = loadFloats(node.maxX), minY = loadFloats(node.minY);
-        const Floats maxY = loadFloats(node.maxY), minZ = loadFloats(node.minZ), maxZ = loadFloats(node.maxZ);
-        const Floats cx = 0.5f * (minX + maxX) - static_cast<float>(tip_.x), hx = 0.5f * (maxX - minX);
-        const Floats cy = 0.5f * (minY + maxY) - static_cast<float>(tip_.y), hy = 0.5f * (maxY - minY);
-        const Floats cz = 0.5f * (minZ + maxZ) - static_cast<float>(tip_.z), hz = 0.5f * (maxZ - minZ);
-        const Floats z = cx * ax + cy * ay + cz * az;
-        const Floats half = hx * __builtin_fabsf(ax) + hy * __builtin_fabsf(ay) + hz * __builtin_fabsf(az);
-        const Floats gap = mostF(mostF(low_ - (z + half), (z - half) - high_), Floats{});
-        const Floats rx = cx - z * ax, ry = cy - z * ay, rz = cz - z * az;
-        const Floats rho = rootF(rx * rx + ry * ry + rz * rz);
-        const Floats inverseRho = 1.0f / mostF(rho, splatF(1e-12f));
-        const Floats across = (absolute(rx) * hx + absolute(ry) * hy + absolute(rz) * hz) * inverseRho;
-        const Floats away = mostF(rho - across, Floats{});
+        const AxisBoxes b(node, tip_, axis_);
+        const Floats half = b.hx * __builtin_fabsf(b.ax) + b.hy * __builtin_fabsf(b.ay) + b.hz * __builtin_fabsf(b.az);
+        const Floats gap = mostF(mostF(low_ - (b.z + half), (b.z - half) - high_), Floats{});
+        const Floats across = (absolute(b.rx) * b.hx + absolute(b.ry) * b.hy + absolute(b.rz) * b.hz) * b.inverseRho;
+        const Floats away = mostF(b.rho - across, Floats{});
         Floats bound = rootF(gap * gap + away * away) - run_.maxRadius;
         for (int i = 0; i < run_.lines; ++i) {
             const float slope = run_.lineSlope[i];
             const Floats line =
-                away * run_.lineCosine[i] - run_.lineRadius[i] - slope * z - __builtin_fabsf(slope) * half;
+                away * run_.lineCosine[i] - run_.lineRadius[i] - slope * b.z - __builtin_fabsf(slope) * half;
             bound = mostF(bound, line);
         }
         return bound - kBoundSlackMm;

@@ -37,24 +37,15 @@ class OutlineQuery {
     [[nodiscard]] float best() const { return static_cast<float>(hit_.distance); }
 
     [[nodiscard]] Floats bounds(const KernelNode& node) const {
-        const float ax = static_cast<float>(axis_.x), ay = static_cast<float>(axis_.y),
-                    az = static_cast<float>(axis_.z);
-        const Floats minX = loadFloats(node.minX), maxX = loadFloats(node.maxX), minY = loadFloats(node.minY);
-        const Floats maxY = loadFloats(node.maxY), minZ = loadFloats(node.minZ), maxZ = loadFloats(node.maxZ);
-        const Floats cx = 0.5f * (minX + maxX) - static_cast<float>(tip_.x), hx = 0.5f * (maxX - minX);
-        const Floats cy = 0.5f * (minY + maxY) - static_cast<float>(tip_.y), hy = 0.5f * (maxY - minY);
-        const Floats cz = 0.5f * (minZ + maxZ) - static_cast<float>(tip_.z), hz = 0.5f * (maxZ - minZ);
-        const Floats z = cx * ax + cy * ay + cz * az;
-        const Floats rx = cx - z * ax, ry = cy - z * ay, rz = cz - z * az;
-        const Floats rho = rootF(rx * rx + ry * ry + rz * rz), inverseRho = 1.0f / mostF(rho, splatF(1e-12f));
-        const Floats ux = rx * inverseRho, uy = ry * inverseRho, uz = rz * inverseRho;
+        const AxisBoxes b(node, tip_, axis_);
+        const Floats ux = b.rx * b.inverseRho, uy = b.ry * b.inverseRho, uz = b.rz * b.inverseRho;
         Floats bound = splatF(-1e30f);
         for (int i = 0; i < outline_.tangentCount; ++i) {
             const OutlineTangent& t = outline_.tangents[i];
-            const Floats gx = t.normalRho * ux + t.normalZ * ax, gy = t.normalRho * uy + t.normalZ * ay,
-                         gz = t.normalRho * uz + t.normalZ * az;
-            bound = mostF(bound, t.normalRho * rho + t.normalZ * z - t.offset -
-                                     (absolute(gx) * hx + absolute(gy) * hy + absolute(gz) * hz));
+            const Floats gx = t.normalRho * ux + t.normalZ * b.ax, gy = t.normalRho * uy + t.normalZ * b.ay,
+                         gz = t.normalRho * uz + t.normalZ * b.az;
+            bound = mostF(bound, t.normalRho * b.rho + t.normalZ * b.z - t.offset -
+                                     (absolute(gx) * b.hx + absolute(gy) * b.hy + absolute(gz) * b.hz));
         }
         return bound - kBoundSlackMm;
     }

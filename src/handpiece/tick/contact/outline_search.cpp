@@ -18,8 +18,6 @@ namespace {
 
 constexpr int kTangents = 17;  // from -z over rho to +z, beside those of the pieces' ends
 constexpr double kStraightMm = 1e-9;
-/// Nearer than this to the surface the field does not vouch for the side.
-constexpr double kSureVoxels = 1.0;
 
 NearestToOutline nearestFor(core::SimdLevel level) {
 #if defined(__x86_64__)
@@ -115,7 +113,7 @@ bool OutlineSearch::search(const ExactSurface& surface, const core::Pose& burInT
     best.triangle = hit.triangle;
     best.inside = false;
     // A bur that lies in the tooth without meeting its surface is apart from that only.
-    return hit.distance > 0.0 && surface.farBound(tip + outline_->middleZ * axis) > kSureVoxels * surface.voxelMm();
+    return hit.distance > 0.0 && surface.farBound(tip + outline_->middleZ * axis) > surface.sureMm();
 }
 
 }  // namespace handpiece::contact

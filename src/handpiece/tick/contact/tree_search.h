@@ -29,6 +29,31 @@ inline double dot(Vector a, Vector b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/// A node's eight boxes as seen from a bur's axis: half sizes, and where their middles lie along it (z) and away from
+/// it (r).
+struct AxisBoxes {
+    float ax, ay, az;
+    Floats hx, hy, hz, z, rx, ry, rz, rho, inverseRho;
+
+    AxisBoxes(const KernelNode& node, Vector tip, Vector axis)
+        : ax(static_cast<float>(axis.x)), ay(static_cast<float>(axis.y)), az(static_cast<float>(axis.z)) {
+        const Floats minX = loadFloats(node.minX), maxX = loadFloats(node.maxX), minY = loadFloats(node.minY);
+        const Floats maxY = loadFloats(node.maxY), minZ = loadFloats(node.minZ), maxZ = loadFloats(node.maxZ);
+        const Floats cx = 0.5f * (minX + maxX) - static_cast<float>(tip.x);
+        const Floats cy = 0.5f * (minY + maxY) - static_cast<float>(tip.y);
+        const Floats cz = 0.5f * (minZ + maxZ) - static_cast<float>(tip.z);
+        hx = 0.5f * (maxX - minX);
+        hy = 0.5f * (maxY - minY);
+        hz = 0.5f * (maxZ - minZ);
+        z = cx * ax + cy * ay + cz * az;
+        rx = cx - z * ax;
+        ry = cy - z * ay;
+        rz = cz - z * az;
+        rho = rootF(rx * rx + ry * ry + rz * rz);
+        inverseRho = 1.0f / mostF(rho, splatF(1e-12f));
+    }
+};
+
 /// Depth first, nearest child first; the triangles of a node's near leaves go through in eights.
 template <class Query>
 void search(const TreeView& tree, std::uint32_t seed, Query& query) {

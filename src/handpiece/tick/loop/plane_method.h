@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The simplest tooth there is, for closed loops that are judged by formula. Private to this room.
+/// The simplest tooth there is, for closed loops that are judged by formula. Private to this room and to tests.
 
 #include "handpiece/tick/contact/method.h"
 

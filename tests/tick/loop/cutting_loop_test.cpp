@@ -156,6 +156,28 @@ TEST(CuttingLoop, removalIsTheSameAtEveryRateAndVoxel) {
     }
 }
 
+TEST(CuttingLoop, aboveTwoKilohertzTheCutTakesItsTurn) {
+    const auto base = block({});
+    for (const int every : {1, 2, 4}) {
+        const Bench bench(base, "cylinder-round:1.0x3.0");
+        const auto poses = plungeTo(0.5, 0.1, 1.0);
+        auto loop = bench.loop(poses, true, 2000.0 * every);
+        std::uint64_t last = 0, cuts = 0, apart = 0, told = 0;
+        double before = 0.0;
+        (void)loop->runSimulated(seconds(poses), [&](const HapticSample& s) {
+            told += (s.flags & messages::kCutting) != 0;
+            const double removed = s.removedMm3[static_cast<std::size_t>(Tissue::enamel)];
+            if (removed == before) return;
+            before = removed;
+            apart += cuts++ > 0 && (s.tick - last) % static_cast<std::uint64_t>(every) != 0;
+            last = s.tick;
+        });
+        EXPECT_GT(cuts, 200u) << every;
+        EXPECT_EQ(apart, 0u) << every;
+        EXPECT_GE(told, cuts * static_cast<std::uint64_t>(every)) << "it is cutting in the ticks between as well";
+    }
+}
+
 TEST(CuttingLoop, undoPutsTheToothBackAndNoForceRoundTheBur) {
     const Bench bench(block({}));
     const tooth::CutState whole = bench.field->state();

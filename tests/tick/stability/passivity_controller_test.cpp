@@ -176,6 +176,42 @@ TEST(PassivityController, holdsInRandomHandsAndMotions) {
     EXPECT_LT(bareHeld, kCases);
 }
 
+/// A bur caught in its own cavity: it is pulled back to the middle from all sides. A late pull feeds a whirl around it.
+double whirlMargin(double rateHz, bool controlled) {
+    constexpr double kDelayS = 0.003, kStiffness = 1.0, kMostN = 3.3;
+    device::SimulatedDeviceSettings settings;
+    settings.frictionN = 0.05;
+    settings.delayS = kDelayS;
+    settings.hand = device::handByName("loose");
+    const auto pose = [](double t, double x, double y) {
+        return device::TimedPose{t, {Vec3(x, y, 0), core::Quat::Identity()}, 0.0};
+    };
+    // Once around sets it off; then the hand holds still.
+    device::SimulatedDevice arm(settings, device::Motion({pose(0, 0, 0), pose(0.02, 4, 0), pose(0.04, 0, 4),
+                                                          pose(0.06, -4, 0), pose(0.08, 0, -4), pose(0.1, 0, 0),
+                                                          pose(1.5, 0, 0)}));
+    PassivityController controller;
+    controller.set({settings.capability.encoderStepMm, kDelayS, settings.massKg, 0.5});
+    double margin = 1e9;
+    for (int i = 0; i < static_cast<int>(1.5 * rateHz); ++i) {
+        const Vec3 read = arm.read(1.0 / rateHz).burInTooth.positionMm;
+        margin = std::min(margin, 0.5 * settings.capability.encoderStepMm * arm.forceVariationN() - arm.appliedWorkNmm());
+        Vec3 wanted = -kStiffness * read;
+        if (wanted.norm() > kMostN) wanted *= kMostN / wanted.norm();
+        arm.command(controller.pass(read, wanted, 1.0 / rateHz, i == 0, controlled).forceN, Vec3::Zero());
+    }
+    return margin;
+}
+
+TEST(PassivityController, doesNotFeedAWhirl) {
+    for (const double rate : {500.0, 1000.0, 4000.0, 8000.0}) {
+        const double bare = whirlMargin(rate, false), held = whirlMargin(rate, true);
+        std::printf("  %.0f Hz: margin %.3f N mm without, %.4f with\n", rate, bare, held);
+        EXPECT_LT(bare, -1.0);
+        EXPECT_GE(held, -1e-9);
+    }
+}
+
 TEST(PassivityController, survivesLostPoses) {
     for (const double stiffness : {0.5, 5.0}) {
         Case c;

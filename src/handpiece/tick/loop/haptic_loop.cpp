@@ -9,6 +9,8 @@ namespace {
 
 /// Bricks handed over in a tick, and put in place by an undo.
 constexpr std::size_t kBricksPerTick = 16, kRestoredPerMs = 32, kLeastRestored = 4;
+/// The cut takes its turn no more often than that (less rounding): above 2 kHz the force has the ticks between.
+constexpr double kCutEveryS = 0.5e-3 * (1.0 - 1e-6);
 /// The bur's surface moves at this radius, as a share of the largest, in the mean over its head.
 constexpr double kMeanRadius = 2.0 / 3.0;
 
@@ -91,6 +93,7 @@ void HapticLoop::takeStagedCommands() noexcept {
     if (work_.swap()) {
         force_.waitUntilClear();
         cut_ = cutting::CutResult{};
+        uncutS_ = 0.0;
         turning_ = force::Turning{};
         took(work_.current()->number);
     }
@@ -112,17 +115,19 @@ void HapticLoop::cut(const device::Reading& reading, const force::Touch& touch, 
         restoring_.store(false, std::memory_order_release);
         return;
     }
-    if (isRestoring_) {
+    const bool cuts = pedal > 0.0 && !force_.waiting() && !isRestoring_;
+    uncutS_ = cuts ? uncutS_ + elapsedS : 0.0;
+    if (!cuts) {
         cut_ = cutter->rest();
-        restoreSome();
-    } else if (pedal > 0.0 && !force_.waiting()) {
+    } else if (uncutS_ >= kCutEveryS) {
         cut_ = cutter->cut(*work_.current()->value.method,
-                           {touch.proxyInTooth, touch.deviceInTooth, command.loadN, rotor_.speedRadS(), elapsedS});
-        if (std::any_of(cut_.removedMm3.begin(), cut_.removedMm3.end(), [](double v) { return v > 0.0; }))
-            cutFlags_ |= messages::kCutting;
-    } else {
-        cut_ = cutter->rest();
+                           {touch.proxyInTooth, touch.deviceInTooth, command.loadN, rotor_.speedRadS(), uncutS_});
+        uncutS_ = 0.0;
     }
+    if (isRestoring_) restoreSome();
+    // Until the next cut this one holds.
+    if (std::any_of(cut_.removedMm3.begin(), cut_.removedMm3.end(), [](double v) { return v > 0.0; }))
+        cutFlags_ |= messages::kCutting;
     turning_.tangentialN = cut_.tangentialN;
     turning_.surfaceSpeedMmS = rotor_.speedRadS() * kMeanRadius * cutter->largestRadiusMm();
     if (cutter->field().outOfBricks()) cutFlags_ |= messages::kOutOfBricks;

@@ -145,6 +145,7 @@ class HapticLoop {
     force::CrispForce crisp_;
     instrument::Rotor rotor_;
     cutting::CutResult cut_;
+    double uncutS_ = 0.0;  // since the last cut, while the bur turns
     force::Turning turning_;
     std::uint32_t cutFlags_ = 0;
     rt::SpscQueue<messages::HapticSample> samples_;

@@ -32,6 +32,7 @@ constexpr double kAboveMm = 0.5, kFastMmS = 60.0, kSlowMmS = 15.0;
 constexpr double kRestS = 0.4;    // force and ripple are judged over this, at the end of the rest
 constexpr double kSettleS = 0.3;  // before it
 constexpr double kPullMm = 0.3;   // sideways, in the fissure
+constexpr double kCrownMm = 8.0;  // no deeper into the molar: a softer tissue is met with less load
 constexpr double kRoundingNmm = 1e-9;
 
 /// The starter molar in one tissue at a time, a bur, and where it meets cusp and fissure.
@@ -127,7 +128,8 @@ class PathMaker {
 /// In quickly, rest, what the motion is about, and out quickly: what was taken in is there to be given back.
 Path pathOf(const StabilityRow& row, const device::Hand& hand, const Molar* molar, double loadN) {
     // Hand and tooth are two springs in series: this far in they meet at the load.
-    const double depth = loadN / hand.stiffnessNPerMm + loadN / row.stiffnessNPerMm;
+    const double most = row.motion == LoopMotion::touch ? std::numeric_limits<double>::infinity() : kCrownMm;
+    const double depth = loadN / hand.stiffnessNPerMm + std::min(loadN / row.stiffnessNPerMm, most);
     const Vec3 touch = row.motion == LoopMotion::touch   ? Vec3(Vec3::Zero())
                        : row.motion == LoopMotion::wedge ? molar->fissure()
                                                          : molar->cusp();

@@ -125,9 +125,11 @@ double PassivityController::share(const Vec3& wantedN) const noexcept {
         const Vec3& acting = sent(h);
         for (int k = 0; k < 3; ++k)
             hidden += acting[k] > 0.0 ? acting[k] * ahead_[k] : -acting[k] * behind_[k];
+        // In debt the new force's own change buys nothing: one that flickers would pay for itself, tick by tick.
+        const double perChange = stored_[h] < 0.0 ? 0.0 : budget;
         const auto left = [&](double s) {
             const Vec3 impulse = pending + s * periodS_ * wantedN;
-            return stored_[h] + budget * (variation + (s * wantedN - last).norm()) - velocity_.dot(impulse) -
+            return stored_[h] + budget * variation + perChange * (s * wantedN - last).norm() - velocity_.dot(impulse) -
                    perMass * impulse.squaredNorm() - hidden;
         };
         // In debt, a force is let through that makes it no worse: so the hand can pay by pressing on.

@@ -404,6 +404,31 @@ TEST(Sweeper, aMetreASecondIsTheSameAsASlowHand) {
     }
 }
 
+TEST(Sweeper, alongItsAxisAStraightSideIsCutAtOnce) {
+    const auto base = test::enamelBlock(Vec3(-1.6, -1.6, -2.2), Vec3(1.6, 1.6, 0), kVoxel);
+    struct Way {
+        const char* bur;
+        double fromZ, toZ;
+        std::uint32_t most;
+    };
+    // A wheel as thin as its way still leaves no ring standing.
+    for (const Way& way : {Way{"cylinder-flat:1.0x4.0", -0.2, -1.2, 2}, Way{"cylinder-flat:1.0x4.0", -1.2, -0.7, 1},
+                           Way{"wheel:2.0x0.8", 0.3, -1.3, 8}}) {
+        const instrument::Bur bur = burOf(way.bur);
+        tooth::CutField once(base), slow(base);
+        Sweeper a(once, bur, core::simdLevel()), b(slow, bur, core::simdLevel());
+        const Pose from = poseAt(Vec3(0.01, 0.02, way.fromZ)), to = poseAt(Vec3(0.01, 0.02, way.toZ));
+        a.sweepTo(from);
+        const Sweeper::Outcome outcome = a.sweepTo(to);
+        EXPECT_LE(outcome.poses, way.most) << way.bur;
+        sweepAlong(b, from, to, 0.01);
+        a.settle();
+        b.settle();
+        const double slowMm3 = sumOf(slow.removedMm3());
+        EXPECT_NEAR(sumOf(once.removedMm3()), slowMm3, 1e-3 * slowMm3) << way.bur;
+    }
+}
+
 TEST(Sweeper, hardlyAnyDepthIsLeftWhereTheBurHasBeen) {
     const auto base = test::enamelBlock(Vec3(-2.0, -1.6, -1.8), Vec3(2.0, 1.6, 0), kVoxel);
     for (const char* name : {"round:1.4x1.4", "cylinder-round:1.0x4.0", "pear:0.8x1.5", "cylinder-flat:1.0x4.0",

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "handpiece/model/instrument/piece.h"
 
@@ -44,12 +45,20 @@ double unitFor(const instrument::Bur& bur, double voxelMm) {
     return 2.0 * extent / static_cast<double>(1 << 30);
 }
 
-/// How far apart two poses on a way may be cut for the sake of what is round.
-double stepFor(const instrument::Bur& bur) {
-    double round = bur.maxRadiusMm();
-    for (const instrument::ProfilePiece& piece : bur.profile().pieces)
-        if (piece.isArc && piece.convex) round = std::min(round, piece.radiusMm);
-    return std::sqrt(8.0 * round * kScallopMm);
+/// How far apart two poses may be cut for the sake of what is round with this radius.
+double stepFor(double radiusMm) {
+    return std::sqrt(8.0 * radiusMm * kScallopMm);
+}
+
+/// The same for what moves along the axis: there straight sides slide in their own envelope, as far as they overlap.
+double alongStepFor(const instrument::Bur& bur) {
+    double round = std::numeric_limits<double>::infinity(), side = round;
+    for (const instrument::ProfilePiece& piece : bur.profile().pieces) {
+        if (piece.isArc && piece.convex) round = std::min({round, piece.radiusMm, bur.maxRadiusMm()});
+        const double height = std::abs(piece.to.y() - piece.from.y());
+        if (height > 1e-9) side = std::min(side, height);
+    }
+    return std::min(stepFor(round), std::max(stepFor(bur.maxRadiusMm()), 0.5 * side));
 }
 
 }  // namespace
@@ -79,7 +88,8 @@ Sweeper::Sweeper(tooth::CutField& field, const instrument::Bur& bur, core::SimdL
       lengthMm_(bur.lengthMm()),
       radiusMm_(bur.maxRadiusMm()),
       unitMm_(unitFor(bur, voxelMm_)),
-      stepMm_(stepFor(bur)),
+      sidewaysStepMm_(stepFor(radiusMm_)),
+      alongStepMm_(alongStepFor(bur)),
       outline_(bur.profile(), unitMm_, bandMm_, bandOutMm_, 2.0 * kBrickCells * voxelMm_, 2.0 * voxelMm_),
       simple_(simpleOutline(bur.profile()), unitMm_, bandMm_, bandOutMm_, 0.0, 0.5 * radiusMm_),
       nodes_(std::make_unique<Nodes>()),
@@ -343,7 +353,9 @@ double Sweeper::stepsBetween(const core::Pose& from, const core::Pose& to, doubl
     const Vec3 way = to.positionMm - from.positionMm;
     const double shifted = way.norm(), turned = reach * from.orientation.angularDistance(to.orientation);
     movedMm = shifted + turned;
-    double steps = std::ceil(movedMm / stepMm_);
+    const Vec3 axis = from.orientation * Vec3::UnitZ();
+    const double sideways = (way - way.dot(axis) * axis).norm() + turned;
+    const double steps = std::max(std::ceil(sideways / sidewaysStepMm_), std::ceil(movedMm / alongStepMm_));
     if (corners_.empty()) return std::min(steps, kMostSteps);
     const double notch = (movedMm > kFastMm ? kFastNotchVoxels : kNotchVoxels) * voxelMm_;
     // A turn moves points in all directions: as bad as it gets at a right angle.

@@ -67,7 +67,7 @@ class Sweeper {
 
     tooth::CutField& field_;
     SweepKernels kernels_;
-    double voxelMm_, bandMm_, bandOutMm_, lengthMm_, radiusMm_, unitMm_, stepMm_;
+    double voxelMm_, bandMm_, bandOutMm_, lengthMm_, radiusMm_, unitMm_, sidewaysStepMm_, alongStepMm_;
     /// A convex corner of the outline: the outward normals on both sides, and the sine between them.
     struct Corner {
         core::Vec2 before, after;

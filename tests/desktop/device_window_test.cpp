@@ -14,6 +14,7 @@
 #include <QTreeWidget>
 
 #include "device/fidelity_box.h"
+#include "device/fidelity_words.h"
 #include "device/first_plug_in.h"
 #include "device/install.h"
 #include "device/profile_box.h"
@@ -309,6 +310,12 @@ TEST_F(DeviceWindowTest, ThePageTellsSetsAndChecks) {
     ASSERT_TRUE(waitFor([&] { return box->report().has_value(); }));
     EXPECT_EQ(list->topLevelItemCount(), static_cast<int>(box->report()->findings.size()));
     EXPECT_GT(list->topLevelItemCount(), 4);
+    for (const fidelity::Finding& finding : box->report()->findings) {
+        EXPECT_TRUE(fidelitySentences().contains(QString::fromStdString(finding.name))) << finding.name;
+        // Of troubles the words are those of the messages, which a test of their own holds.
+        if (finding.remedy.empty() || finding.id == "troubles") continue;
+        EXPECT_TRUE(fidelitySentences().contains(QString::fromStdString(finding.remedy))) << finding.remedy;
+    }
     for (const char* name : {"fidelity.html", "fidelity.json"}) {
         file_ = own_.filePath(QLatin1String(name));
         page->findChild<QPushButton*>("fidelitySave")->click();

@@ -12,6 +12,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "device/fidelity_words.h"
 #include "panels/parts.h"
 #include "panels/theme.h"
 
@@ -133,8 +134,8 @@ void FidelityBox::setReport(const fidelity::Report& report) {
     const Tones tones = tonesOf(palette());
     int warnings = 0, failures = 0;
     for (const fidelity::Finding& finding : report.findings) {
-        auto* item = new QTreeWidgetItem(list_, {wordOf(finding.verdict), QString::fromStdString(finding.name),
-                                                 QString::fromStdString(finding.value)});
+        auto* item = new QTreeWidgetItem(
+            list_, {wordOf(finding.verdict), fidelityWords(finding.name), fidelityWords(finding.value)});
         item->setData(0, Qt::UserRole, QString::fromStdString(finding.id));
         const bool warn = finding.verdict == fidelity::Verdict::warn;
         const bool fail = finding.verdict == fidelity::Verdict::fail;
@@ -144,10 +145,9 @@ void FidelityBox::setReport(const fidelity::Report& report) {
                                : warn                                              ? tones.caution
                                : finding.verdict == fidelity::Verdict::notMeasured ? tones.quiet
                                                                                    : tones.good);
-        const QString against = QString::fromStdString(finding.against),
-                      remedy = QString::fromStdString(finding.remedy);
+        const QString against = QString::fromStdString(finding.against), remedy = fidelityWords(finding.remedy);
         for (int column = 0; column < 3; ++column)
-            item->setToolTip(column, QString::fromStdString(finding.value) + QLatin1Char('\n') + against);
+            item->setToolTip(column, fidelityWords(finding.value) + QLatin1Char('\n') + against);
         if ((warn || fail) && !remedy.isEmpty()) {
             auto* below = new QTreeWidgetItem(item, {QString(), QString(), remedy});
             below->setToolTip(2, remedy);

@@ -592,6 +592,245 @@
     </message>
 </context>
 <context>
+    <name>Fidelity</name>
+    <message>
+        <source>Servo period</source>
+        <translation>サーボの周期</translation>
+    </message>
+    <message>
+        <source>Servo jitter</source>
+        <translation>サーボのゆらぎ</translation>
+    </message>
+    <message>
+        <source>Pauses of the servo</source>
+        <translation>サーボの途切れ</translation>
+    </message>
+    <message>
+        <source>Lateness of the tick</source>
+        <translation>計算の遅れ</translation>
+    </message>
+    <message>
+        <source>Age of a pose at the tick</source>
+        <translation>計算時の位置の古さ</translation>
+    </message>
+    <message>
+        <source>Slope of the force</source>
+        <translation>力の立ち上がり</translation>
+    </message>
+    <message>
+        <source>Round-trip delay</source>
+        <translation>往復の遅れ</translation>
+    </message>
+    <message>
+        <source>Step of the encoders</source>
+        <translation>エンコーダーの刻み</translation>
+    </message>
+    <message>
+        <source>Noise at rest</source>
+        <translation>静止時の雑音</translation>
+    </message>
+    <message>
+        <source>What the device can do</source>
+        <translation>デバイスの能力</translation>
+    </message>
+    <message>
+        <source>Motors</source>
+        <translation>モーター</translation>
+    </message>
+    <message>
+        <source>Troubles</source>
+        <translation>異常</translation>
+    </message>
+    <message>
+        <source>Calibration</source>
+        <translation>校正</translation>
+    </message>
+    <message>
+        <source>Scheduling</source>
+        <translation>スケジューリング</translation>
+    </message>
+    <message>
+        <source>Memory</source>
+        <translation>メモリー</translation>
+    </message>
+    <message>
+        <source>CPU frequency</source>
+        <translation>CPU の周波数</translation>
+    </message>
+    <message>
+        <source>Permission</source>
+        <translation>アクセス権</translation>
+    </message>
+    <message>
+        <source>Records lost</source>
+        <translation>失われた記録</translation>
+    </message>
+    <message>
+        <source>too few frames</source>
+        <translation>フレームが少なすぎます</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>なし</translation>
+    </message>
+    <message>
+        <source>not on this clock</source>
+        <translation>この時計では測れません</translation>
+    </message>
+    <message>
+        <source>no ticks</source>
+        <translation>計算がありませんでした</translation>
+    </message>
+    <message>
+        <source>it cannot push</source>
+        <translation>このデバイスは押せません</translation>
+    </message>
+    <message>
+        <source>it was not to push</source>
+        <translation>押さない設定でした</translation>
+    </message>
+    <message>
+        <source>not measured: it cannot push</source>
+        <translation>測れません：このデバイスは押せません</translation>
+    </message>
+    <message>
+        <source>not measured: it was not to push</source>
+        <translation>測れません：押さない設定でした</translation>
+    </message>
+    <message>
+        <source>not measured: too few frames saw it move</source>
+        <translation>測れません：動きが少ないフレームにしか写っていません</translation>
+    </message>
+    <message>
+        <source>not measured: it hardly moved</source>
+        <translation>測れません：ほとんど動きませんでした</translation>
+    </message>
+    <message>
+        <source>not measured: it was moved</source>
+        <translation>測れません：動かされました</translation>
+    </message>
+    <message>
+        <source>it cannot push: input only</source>
+        <translation>このデバイスは押せません：入力専用です</translation>
+    </message>
+    <message>
+        <source>not told by this device</source>
+        <translation>このデバイスは知らせません</translation>
+    </message>
+    <message>
+        <source>none needed</source>
+        <translation>必要ありません</translation>
+    </message>
+    <message>
+        <source>good</source>
+        <translation>良好</translation>
+    </message>
+    <message>
+        <source>wanted</source>
+        <translation>必要です</translation>
+    </message>
+    <message>
+        <source>virtual time</source>
+        <translation>仮想時間</translation>
+    </message>
+    <message>
+        <source>locked</source>
+        <translation>固定済み</translation>
+    </message>
+    <message>
+        <source>not locked</source>
+        <translation>固定されていません</translation>
+    </message>
+    <message>
+        <source>not told by this machine</source>
+        <translation>このコンピューターは知らせません</translation>
+    </message>
+    <message>
+        <source>not asked for: this driver opens no USB device itself</source>
+        <translation>不要です：このドライバーは USB デバイスを直接開きません</translation>
+    </message>
+    <message>
+        <source>switch the device off and on</source>
+        <translation>デバイスの電源を入れ直してください</translation>
+    </message>
+    <message>
+        <source>connect it without a hub, close other programs, and let the machine grant real-time scheduling</source>
+        <translation>ハブを通さずに接続し、ほかのプログラムを閉じ、リアルタイム・スケジューリングを許可してください</translation>
+    </message>
+    <message>
+        <source>close other programs; switch power saving off in the machine&apos;s set-up</source>
+        <translation>ほかのプログラムを閉じ、コンピューターの設定で省電力を切ってください</translation>
+    </message>
+    <message>
+        <source>let the machine grant real-time scheduling (docs/devices.md)</source>
+        <translation>リアルタイム・スケジューリングを許可してください（docs/devices.md）</translation>
+    </message>
+    <message>
+        <source>connect the device without a hub; close other programs</source>
+        <translation>デバイスをハブを通さずに接続し、ほかのプログラムを閉じてください</translation>
+    </message>
+    <message>
+        <source>see the servo&apos;s period and pauses above; they come first</source>
+        <translation>まず上のサーボの周期と途切れを見てください</translation>
+    </message>
+    <message>
+        <source>hold the stylus loosely while it pushes</source>
+        <translation>押している間、スタイラスを軽く持ってください</translation>
+    </message>
+    <message>
+        <source>check again for longer, with nothing else running</source>
+        <translation>ほかに何も動かさずに、もっと長く検査してください</translation>
+    </message>
+    <message>
+        <source>choose a softer stiffness, or the device&apos;s fastest servo</source>
+        <translation>もっと柔らかい剛性か、デバイスの最も速いサーボを選んでください</translation>
+    </message>
+    <message>
+        <source>calibrate the device; hold it still while it is measured</source>
+        <translation>デバイスを校正し、測定中は動かさないでください</translation>
+    </message>
+    <message>
+        <source>leave the device alone for the first seconds</source>
+        <translation>最初の数秒はデバイスに触れないでください</translation>
+    </message>
+    <message>
+        <source>put it on a firm table; lay the stylus down while it is measured</source>
+        <translation>しっかりした机に置き、測定中はスタイラスを置いてください</translation>
+    </message>
+    <message>
+        <source>contact is made crisp by short transients instead: run --crisp on, or Device, Crisp contact</source>
+        <translation>代わりに短い振動で接触をはっきりさせます：run --crisp on、または［デバイス］の［硬い接触］</translation>
+    </message>
+    <message>
+        <source>let the device rest for some minutes</source>
+        <translation>デバイスを数分休ませてください</translation>
+    </message>
+    <message>
+        <source>handpiece device calibrate</source>
+        <translation>handpiece device calibrate</translation>
+    </message>
+    <message>
+        <source>let your group ask for it: rtprio in /etc/security/limits.d (docs/devices.md)</source>
+        <translation>グループに許可してください：/etc/security/limits.d の rtprio（docs/devices.md）</translation>
+    </message>
+    <message>
+        <source>let your group lock it: memlock in /etc/security/limits.d (docs/devices.md)</source>
+        <translation>グループに許可してください：/etc/security/limits.d の memlock（docs/devices.md）</translation>
+    </message>
+    <message>
+        <source>close other programs and check again</source>
+        <translation>ほかのプログラムを閉じて、もう一度検査してください</translation>
+    </message>
+    <message>
+        <source>set it while practising: cpupower frequency-set -g performance</source>
+        <translation>練習中は設定してください：cpupower frequency-set -g performance</translation>
+    </message>
+    <message>
+        <source>install the udev rules (docs/devices.md) and connect the device again</source>
+        <translation>udev の規則を入れて（docs/devices.md）、デバイスを接続し直してください</translation>
+    </message>
+</context>
+<context>
     <name>HelpCard</name>
     <message>
         <source>or</source>

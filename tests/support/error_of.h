@@ -20,4 +20,15 @@ std::string errorOf(const Work& work) {
     return {};
 }
 
+/// Its id; empty when none is thrown or it has none.
+template <class Work>
+std::string errorIdOf(const Work& work) {
+    try {
+        work();
+    } catch (const core::Error& e) {
+        return e.id();
+    }
+    return {};
+}
+
 }  // namespace handpiece::test

@@ -222,7 +222,7 @@ TEST_P(Conformance, wrongOrderIsRefusedOrHarmless) {
         driver->stop();
         driver->stop();
         Probe probe;
-        EXPECT_NE(errorOf([&] { driver->start(probe); }), "") << "stop() has closed it";
+        EXPECT_EQ(test::errorIdOf([&] { driver->start(probe); }), "device-stopped") << "stop() has closed it";
     }
     {
         auto driver = adaptor->open(0);
@@ -233,7 +233,7 @@ TEST_P(Conformance, wrongOrderIsRefusedOrHarmless) {
         }
         Probe probe, other;
         driver->start(probe);
-        EXPECT_NE(errorOf([&] { driver->start(other); }), "");
+        EXPECT_EQ(test::errorIdOf([&] { driver->start(other); }), "device-started");
         EXPECT_TRUE(await([&] { return probe.count() > 2; })) << "the first start goes on";
         EXPECT_EQ(other.count(), 0u);
         if (traits.exclusive) {

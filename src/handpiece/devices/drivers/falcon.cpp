@@ -179,9 +179,7 @@ class FalconDriver final : public link::Driver {
     [[nodiscard]] const link::DriverInfo& info() const noexcept override { return info_; }
 
     void start(link::Servo& servo) override {
-        if (servo_ || stopped_)
-            throw core::Error("the device was started before", info_.model, "Connect it again")
-                .as("device-started", {});
+        link::requireStartable(servo_ != nullptr, stopped_, info_.model);
         grip_->door = std::make_unique<Door>(servo);
         servo_ = std::make_unique<ServoThread>(
             info_.servoHz, [grip = grip_] { grip->frame(); }, [grip = grip_] { grip->last(); });

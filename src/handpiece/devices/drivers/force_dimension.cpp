@@ -350,9 +350,7 @@ class ForceDimensionDriver final : public link::Driver {
     [[nodiscard]] const link::DriverInfo& info() const noexcept override { return info_; }
 
     void start(link::Servo& servo) override {
-        if (servo_ || stopped_)
-            throw core::Error("the device was started before", info_.model, "Connect it again")
-                .as("device-started", {});
+        link::requireStartable(servo_ != nullptr, stopped_, info_.model);
         Arm& arm = *arm_;
         if (arm.library->dhdEnableForce(1, arm.id) < 0)
             throw refusal(*arm.library, errorNumber(*arm.library), info_.model);

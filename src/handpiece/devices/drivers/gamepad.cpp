@@ -182,9 +182,7 @@ GamepadDriver::GamepadDriver(const OpenOptions& options) {
 }
 
 void GamepadDriver::start(link::Servo& servo) {
-    if (started_ || stopped_)
-        throw core::Error(stopped_ ? "the device was stopped" : "the device runs already", info_.model, "open it again")
-            .as(stopped_ ? "device-stopped" : "device-started");
+    link::requireStartable(started_, stopped_, info_.model);
     started_ = true;
     pad_->door = std::make_unique<Door>(servo);
     const std::shared_ptr<Pad> pad = pad_;

@@ -215,9 +215,7 @@ void HaplyDriver::describe() {
 }
 
 void HaplyDriver::start(link::Servo& servo) {
-    if (stopped_ || servo_)
-        throw core::Error(stopped_ ? "the device was stopped" : "the device runs already", info_.model, "open it again")
-            .as(stopped_ ? "device-stopped" : "device-started");
+    link::requireStartable(servo_ != nullptr, stopped_, info_.model);
     const auto periodNs = static_cast<std::int64_t>(1e9 / servoHz_);
     servo_ = &servo;
     thread_ = std::make_unique<rt::RealtimeThread>([this, periodNs] { run(periodNs); });

@@ -140,9 +140,7 @@ class OpenHaptics final : public link::Driver {
     [[nodiscard]] const link::DriverInfo& info() const noexcept override { return info_; }
 
     void start(link::Servo& servo) override {
-        if (stopped_) throw core::Error("this device was closed", info_.model, "open it again").as("device-stopped");
-        if (started_)
-            throw core::Error("this device has started already", info_.model, "stop it first").as("device-started");
+        link::requireStartable(started_, stopped_, info_.model);
         arm_->door = std::make_unique<Door>(servo);
         try {
             ask(milliseconds(5000), [arm = arm_, info = info_, rateHz = rateHz_] { begin(*arm, info, rateHz); });

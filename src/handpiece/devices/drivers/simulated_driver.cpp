@@ -106,8 +106,7 @@ const link::DriverInfo& SimulatedDriver::info() const noexcept {
 
 void SimulatedDriver::start(link::Servo& servo) {
     State* s = state_.get();
-    if (s->servo || s->ends.load())
-        throw core::Error("the device was started before", "simulated device", "open it again");
+    link::requireStartable(s->servo != nullptr, s->ends.load(), "simulated device");
     s->servo = &servo;
     if (s->settings.stepped) return;
     const double periodS = 1.0 / s->settings.servoHz;

@@ -220,9 +220,7 @@ SpaceMouseDriver::SpaceMouseDriver(const OpenOptions& options) : path_(socketPat
 }
 
 void SpaceMouseDriver::start(link::Servo& servo) {
-    if (stopped_ || servo_)
-        throw core::Error(stopped_ ? "the device was stopped" : "the device runs already", info_.model, "open it again")
-            .as(stopped_ ? "device-stopped" : "device-started");
+    link::requireStartable(servo_ != nullptr, stopped_, info_.model);
     servo_ = &servo;
     const auto periodNs = static_cast<std::int64_t>(1e9 / info_.servoHz);
     thread_ = std::make_unique<rt::RealtimeThread>([this, periodNs] { run(periodNs); });

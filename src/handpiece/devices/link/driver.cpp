@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/devices/link/driver.h"
 
+#include "handpiece/base/core/error.h"
+
 namespace handpiece::link {
 namespace {
 
@@ -39,6 +41,11 @@ std::string_view sentenceOf(Trouble trouble) noexcept {
 }
 std::string_view remedyOf(Trouble trouble) noexcept {
     return wordsOf(trouble).remedy;
+}
+
+void requireStartable(bool runs, bool stopped, const std::string& model) {
+    if (stopped) throw core::Error("the device was stopped", model, "open it again").as("device-stopped", {});
+    if (runs) throw core::Error("the device runs already", model, "stop it first").as("device-started", {});
 }
 
 }  // namespace handpiece::link

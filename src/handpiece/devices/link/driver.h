@@ -112,4 +112,7 @@ class Driver {
     virtual bool calibrate() { return true; }
 };
 
+/// A driver is started once. Throws core::Error when it runs already or was stopped.
+void requireStartable(bool runs, bool stopped, const std::string& model);
+
 }  // namespace handpiece::link

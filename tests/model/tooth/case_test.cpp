@@ -11,6 +11,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/tooth/tooth.h"
+#include "support/error_of.h"
 #include "support/random.h"
 
 namespace handpiece::tooth {
@@ -18,6 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using geometry::TriangleMesh;
+using test::errorOf;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -77,15 +79,6 @@ void expectSameParts(const std::vector<Part>& a, const std::vector<Part>& b) {
     }
 }
 
-template <class Work>
-std::string errorOf(const Work& work) {
-    try {
-        work();
-    } catch (const core::Error& e) {
-        return e.what();
-    }
-    return {};
-}
 std::string readError(const fs::path& path) {
     return errorOf([&] { (void)readCase(path); });
 }

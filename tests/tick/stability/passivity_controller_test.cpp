@@ -187,15 +187,16 @@ double whirlMargin(double rateHz, bool controlled) {
         return device::TimedPose{t, {Vec3(x, y, 0), core::Quat::Identity()}, 0.0};
     };
     // Once around sets it off; then the hand holds still.
-    device::SimulatedDevice arm(settings, device::Motion({pose(0, 0, 0), pose(0.02, 4, 0), pose(0.04, 0, 4),
-                                                          pose(0.06, -4, 0), pose(0.08, 0, -4), pose(0.1, 0, 0),
-                                                          pose(1.5, 0, 0)}));
+    device::SimulatedDevice arm(settings,
+                                device::Motion({pose(0, 0, 0), pose(0.02, 4, 0), pose(0.04, 0, 4), pose(0.06, -4, 0),
+                                                pose(0.08, 0, -4), pose(0.1, 0, 0), pose(1.5, 0, 0)}));
     PassivityController controller;
     controller.set({settings.capability.encoderStepMm, kDelayS, settings.massKg, 0.5});
     double margin = 1e9;
     for (int i = 0; i < static_cast<int>(1.5 * rateHz); ++i) {
         const Vec3 read = arm.read(1.0 / rateHz).burInTooth.positionMm;
-        margin = std::min(margin, 0.5 * settings.capability.encoderStepMm * arm.forceVariationN() - arm.appliedWorkNmm());
+        margin =
+            std::min(margin, 0.5 * settings.capability.encoderStepMm * arm.forceVariationN() - arm.appliedWorkNmm());
         Vec3 wanted = -kStiffness * read;
         if (wanted.norm() > kMostN) wanted *= kMostN / wanted.norm();
         arm.command(controller.pass(read, wanted, 1.0 / rateHz, i == 0, controlled).forceN, Vec3::Zero());

@@ -312,9 +312,19 @@ TEST_F(DeviceWindowTest, ThePageTellsSetsAndChecks) {
     EXPECT_GT(list->topLevelItemCount(), 4);
     for (const fidelity::Finding& finding : box->report()->findings) {
         EXPECT_TRUE(fidelitySentences().contains(QString::fromStdString(finding.name))) << finding.name;
-        // Of troubles the words are those of the messages, which a test of their own holds.
+        // A trouble is said as its message says it: below.
         if (finding.remedy.empty() || finding.id == "troubles") continue;
         EXPECT_TRUE(fidelitySentences().contains(QString::fromStdString(finding.remedy))) << finding.remedy;
+    }
+    {
+        fidelity::Report report = *box->report();
+        report.troubles = {link::Trouble::stalled, link::Trouble::vendorError};
+        report.vendorCode = 0x302;
+        box->setReport(report);
+        const auto rows = list->findItems(fidelityWords("Troubles"), Qt::MatchExactly, 1);
+        ASSERT_EQ(rows.size(), 1);
+        EXPECT_TRUE(rows[0]->text(2).contains(problemOf(link::Trouble::stalled, 0).what));
+        EXPECT_TRUE(rows[0]->text(2).contains("0x0302")) << rows[0]->text(2).toStdString();
     }
     for (const char* name : {"fidelity.html", "fidelity.json"}) {
         file_ = own_.filePath(QLatin1String(name));

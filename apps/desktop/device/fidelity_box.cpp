@@ -15,6 +15,7 @@
 #include "device/fidelity_words.h"
 #include "panels/parts.h"
 #include "panels/theme.h"
+#include "shell/hand.h"
 
 namespace handpiece::desktop {
 
@@ -134,8 +135,16 @@ void FidelityBox::setReport(const fidelity::Report& report) {
     const Tones tones = tonesOf(palette());
     int warnings = 0, failures = 0;
     for (const fidelity::Finding& finding : report.findings) {
-        auto* item = new QTreeWidgetItem(
-            list_, {wordOf(finding.verdict), fidelityWords(finding.name), fidelityWords(finding.value)});
+        QString value = fidelityWords(finding.value), remedy = fidelityWords(finding.remedy);
+        if (finding.id == "troubles" && !report.troubles.empty()) {
+            // As the message says it that came with each.
+            QStringList said;
+            for (const link::Trouble trouble : report.troubles)
+                said << problemOf(trouble, report.vendorCode).what;
+            value = said.join(QLatin1Char(' '));
+            remedy = problemOf(report.troubles.front(), report.vendorCode).remedy;
+        }
+        auto* item = new QTreeWidgetItem(list_, {wordOf(finding.verdict), fidelityWords(finding.name), value});
         item->setData(0, Qt::UserRole, QString::fromStdString(finding.id));
         const bool warn = finding.verdict == fidelity::Verdict::warn;
         const bool fail = finding.verdict == fidelity::Verdict::fail;
@@ -145,9 +154,8 @@ void FidelityBox::setReport(const fidelity::Report& report) {
                                : warn                                              ? tones.caution
                                : finding.verdict == fidelity::Verdict::notMeasured ? tones.quiet
                                                                                    : tones.good);
-        const QString against = QString::fromStdString(finding.against), remedy = fidelityWords(finding.remedy);
         for (int column = 0; column < 3; ++column)
-            item->setToolTip(column, fidelityWords(finding.value) + QLatin1Char('\n') + against);
+            item->setToolTip(column, value + QLatin1Char('\n') + QString::fromStdString(finding.against));
         if ((warn || fail) && !remedy.isEmpty()) {
             auto* below = new QTreeWidgetItem(item, {QString(), QString(), remedy});
             below->setToolTip(2, remedy);

@@ -79,8 +79,7 @@ constexpr std::array kSentences = {
 QString fidelityWords(const std::string& english) {
     const bool known =
         std::any_of(kSentences.begin(), kSentences.end(), [&](const char* sentence) { return english == sentence; });
-    // What has gone wrong is said as in a message about it.
-    return QCoreApplication::translate(known ? kContext : "Problem", english.c_str());
+    return known ? QCoreApplication::translate(kContext, english.c_str()) : QString::fromStdString(english);
 }
 
 QStringList fidelitySentences() {

@@ -304,18 +304,22 @@ Finding temperature(const Recording& r) {
     return f;
 }
 
-Finding troubles(const Recording& r) {
-    Finding f = finding("troubles", "Troubles", "none while it was measured");
-    // What it tells before its first pose is no trouble.
+/// What it tells before its first pose is no trouble.
+std::vector<link::Trouble> troublesOf(const Recording& r) {
     std::vector<link::Trouble> kinds;
+    const auto add = [&](link::Trouble trouble) {
+        if (trouble != link::Trouble::none && trouble != link::Trouble::starting &&
+            std::find(kinds.begin(), kinds.end(), trouble) == kinds.end())
+            kinds.push_back(trouble);
+    };
     for (const FrameRecord& frame : r.frames)
-        if (frame.trouble != link::Trouble::none && frame.trouble != link::Trouble::starting &&
-            std::find(kinds.begin(), kinds.end(), frame.trouble) == kinds.end())
-            kinds.push_back(frame.trouble);
-    const link::Trouble last = r.health.gate.last;
-    if (last != link::Trouble::none && last != link::Trouble::starting &&
-        std::find(kinds.begin(), kinds.end(), last) == kinds.end())
-        kinds.push_back(last);
+        add(frame.trouble);
+    add(r.health.gate.last);
+    return kinds;
+}
+
+Finding troubles(const Recording& r, const std::vector<link::Trouble>& kinds) {
+    Finding f = finding("troubles", "Troubles", "none while it was measured");
     f.figures = {{"kinds", static_cast<double>(kinds.size())}};
     f.verdict = kinds.empty() ? Verdict::pass : Verdict::fail;
     if (kinds.empty()) f.value = "none";
@@ -387,6 +391,8 @@ Report judge(const Recording& r) {
         late.push_back(static_cast<double>(t.lateNs) / kNsPerS);
     report.periodHistogramUs = histogramOf(periods);
     if (!r.settings.advance) report.latenessHistogramUs = histogramOf(late);
+    report.troubles = troublesOf(r);
+    report.vendorCode = r.health.gate.vendorCode;
     const Rest rest = restOf(r);
     report.findings = {servoPeriod(r, periods),
                        servoJitter(r, periods),
@@ -399,7 +405,7 @@ Report judge(const Recording& r) {
                        restNoise(r, rest),
                        limits(r),
                        temperature(r),
-                       troubles(r),
+                       troubles(r, report.troubles),
                        calibrated(r),
                        scheduling(r),
                        memory(r),

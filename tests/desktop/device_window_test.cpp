@@ -141,6 +141,9 @@ TEST_F(DeviceWindowTest, CutsUntilItIsUnpluggedThenTheMouseGoesOnAndNothingIsLos
     EXPECT_TRUE(waitFor([&] { return field->text().contains("Led Arm") && field->text().contains("Hz"); }))
         << field->text().toStdString();
 
+    EXPECT_TRUE(waitFor([&] { return part<QLabel>("deviceLimits")->text().contains("Led Arm"); }))
+        << part<QLabel>("deviceLimits")->text().toStdString();
+
     ASSERT_TRUE(cutWithIt());
     EXPECT_GT(led_->largestSentN, 0.05);
     EXPECT_LE(led_->largestSentN, 3.0);

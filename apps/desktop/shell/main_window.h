@@ -130,6 +130,8 @@ class MainWindow : public QMainWindow {
     void chooseDevice(const QString& name);
     void tellDevice(link::Trouble trouble, int vendorCode);
     void showDevice(StatusFigures& figures) const;
+    /// What the person holds, in words.
+    [[nodiscard]] QString deviceInHand() const;
 
     // main_window_wiring.cpp
     void connectWork();

@@ -134,12 +134,17 @@ void MainWindow::listDevices() {
     a["actionDeviceSetUp"]->setEnabled(hands.current() != nullptr);
 }
 
+QString MainWindow::deviceInHand() const {
+    const Hands& hands = simulator_.hands();
+    return hands.current() && simulator_.usedHand() ? hands.textOf(hands.wanted())
+                                                    : deviceText(simulator_.capability());
+}
+
 void MainWindow::showDevice(StatusFigures& figures) const {
     const Hands& hands = simulator_.hands();
-    figures.device = deviceText(simulator_.capability());
+    figures.device = deviceInHand();
     if (hands.isOpening()) figures.deviceTrouble = tr("being opened");
     if (!hands.current() || !simulator_.usedHand()) return;
-    figures.device = hands.textOf(hands.wanted());
     figures.servoHz = hands.health().servoHz;
     if (hands.trouble() != link::Trouble::none)
         figures.deviceTrouble = problemOf(hands.trouble(), hands.health().gate.vendorCode).what;

@@ -392,7 +392,7 @@ void MainWindow::showSettings() {
     parameters_->setMultipliers({p.stiffnessMultiplier, p.dampingMultiplier, p.frictionMultiplier});
     const device::Capability& c = simulator_.capability();
     parameters_->setLimits(
-        {c.maxForceN, c.maxStiffnessNPerMm, c.maxDampingNSPerMm, c.maxForceSlopeNPerS, c.maxTorqueNmm}, deviceText(c));
+        {c.maxForceN, c.maxStiffnessNPerMm, c.maxDampingNSPerMm, c.maxForceSlopeNPerS, c.maxTorqueNmm}, deviceInHand());
     parameters_->setHullMethod(simulator_.isHullMethod());
     parameters_->setVoxelUm(simulator_.voxelUm());
     gauge_->setLimit(c.maxForceN);

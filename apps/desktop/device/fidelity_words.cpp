@@ -2,13 +2,11 @@
 #include "device/fidelity_words.h"
 
 #include <QCoreApplication>
-#include <algorithm>
 #include <array>
 
 namespace handpiece::desktop {
 namespace {
 
-constexpr const char* kContext = "Fidelity";
 /// As handpiece::fidelity says it.
 constexpr std::array kSentences = {
     QT_TRANSLATE_NOOP("Fidelity", "Servo period"),
@@ -77,9 +75,7 @@ constexpr std::array kSentences = {
 }  // namespace
 
 QString fidelityWords(const std::string& english) {
-    const bool known =
-        std::any_of(kSentences.begin(), kSentences.end(), [&](const char* sentence) { return english == sentence; });
-    return known ? QCoreApplication::translate(kContext, english.c_str()) : QString::fromStdString(english);
+    return QCoreApplication::translate("Fidelity", english.c_str());  // what it does not know stays as it is
 }
 
 QStringList fidelitySentences() {

@@ -130,6 +130,7 @@ class MainWindow : public QMainWindow {
     void chooseDevice(const QString& name);
     void tellDevice(link::Trouble trouble, int vendorCode);
     void showDevice(StatusFigures& figures) const;
+    [[nodiscard]] bool holdsDevice() const;
     /// What the person holds, in words.
     [[nodiscard]] QString deviceInHand() const;
 

@@ -134,17 +134,20 @@ void MainWindow::listDevices() {
     a["actionDeviceSetUp"]->setEnabled(hands.current() != nullptr);
 }
 
+bool MainWindow::holdsDevice() const {
+    return simulator_.hands().current() && simulator_.usedHand();
+}
+
 QString MainWindow::deviceInHand() const {
     const Hands& hands = simulator_.hands();
-    return hands.current() && simulator_.usedHand() ? hands.textOf(hands.wanted())
-                                                    : deviceText(simulator_.capability());
+    return holdsDevice() ? hands.textOf(hands.wanted()) : deviceText(simulator_.capability());
 }
 
 void MainWindow::showDevice(StatusFigures& figures) const {
     const Hands& hands = simulator_.hands();
     figures.device = deviceInHand();
     if (hands.isOpening()) figures.deviceTrouble = tr("being opened");
-    if (!hands.current() || !simulator_.usedHand()) return;
+    if (!holdsDevice()) return;
     figures.servoHz = hands.health().servoHz;
     if (hands.trouble() != link::Trouble::none)
         figures.deviceTrouble = problemOf(hands.trouble(), hands.health().gate.vendorCode).what;

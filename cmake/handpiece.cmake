@@ -49,6 +49,11 @@ function(handpiece_simd_sources target)
     endforeach()
 endfunction()
 
+# What waits for people and files, not for the tick: a quarter less to compile at the first level of optimisation.
+function(handpiece_off_tick target)
+    target_compile_options(${target} PRIVATE -O1)
+endfunction()
+
 # handpiece_room(wing/room HEADERS ... SOURCES ... USES room... THIRD_PARTY lib... THIRD_PARTY_PUBLIC lib...)
 function(handpiece_room path)
     cmake_parse_arguments(R "" "" "HEADERS;SOURCES;USES;THIRD_PARTY;THIRD_PARTY_PUBLIC" ${ARGN})

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/inputs.h"
 #include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
@@ -186,11 +187,12 @@ void check(const std::string& place, bool json) {
 struct NewOptions {
     std::string out, outer, name, kind, buccal, tissues;
     std::vector<std::string> parts, scenery;
+    MeshUnit unit;
     int fdi = 0;
 };
 
 /// TISSUE[:PRIORITY]=FILE
-Part partOf(const std::string& text, const tooth::TissueTable& tissues, const char* option) {
+Part partOf(const std::string& text, const tooth::TissueTable& tissues, const MeshUnit& unit, const char* option) {
     const std::size_t equals = text.find('=');
     const std::string head = text.substr(0, equals), file = equals == std::string::npos ? "" : text.substr(equals + 1);
     const std::size_t colon = head.find(':');
@@ -211,7 +213,7 @@ Part partOf(const std::string& text, const tooth::TissueTable& tissues, const ch
             throw core::Error(fmt::format("\"{}\" is no priority", head.substr(colon + 1)), option,
                               "give a whole number, -1000 to 1000");
     }
-    part.mesh = geometry::readMesh(fs::path(file));
+    part.mesh = unit.read(file);
     return part;
 }
 
@@ -230,11 +232,11 @@ void makeNew(const NewOptions& o) {
         c.tissuesToml.assign(reinterpret_cast<const char*>(text.data()), text.size());
         c.tissues = tooth::parseTissues(c.tissuesToml, o.tissues);
     }
-    if (!o.outer.empty()) c.outer = geometry::readMesh(fs::path(o.outer));
+    if (!o.outer.empty()) c.outer = o.unit.read(o.outer);
     for (const std::string& part : o.parts)
-        c.parts.push_back(partOf(part, c.tissues, "--part"));
+        c.parts.push_back(partOf(part, c.tissues, o.unit, "--part"));
     for (const std::string& part : o.scenery)
-        c.scenery.push_back(partOf(part, c.tissues, "--scenery"));
+        c.scenery.push_back(partOf(part, c.tissues, o.unit, "--scenery"));
     // The only part is the tooth.
     if (c.outer.triangles.empty() && c.parts.size() == 1) c.outer = c.parts.front().mesh;
     const std::vector<tooth::CaseFinding> findings = findingsOf(c);
@@ -245,11 +247,52 @@ void makeNew(const NewOptions& o) {
         fmt::print("  note: {}{}\n", f.part.empty() ? "" : f.part + ": ", f.what);
 }
 
-void pack(const std::string& in, const std::string& out) {
-    if (tooth::isAttempt(in)) {
-        const tooth::OpenAttempt open = tooth::openAttempt(in);
+struct PackOptions {
+    std::string in, out, student;
+    bool handIn = false;
+};
+
+/// The recordings of an attempt: those it came with; of one to be handed in those in its folder or beside that, too.
+tooth::PackageFiles recordingsOf(const tooth::Attempt& attempt, const fs::path& place) {
+    tooth::PackageFiles found;
+    for (const tooth::Attempt::Recording& recording : attempt.recordings) {
+        if (recording.packed) {
+            found[recording.name] = tooth::readRecording(place, recording.name);
+            continue;
+        }
+        if (!attempt.handedIn) continue;
+        const fs::path whole = fs::absolute(place).lexically_normal();
+        const fs::path folder = whole.has_filename() ? whole : whole.parent_path();
+        for (const fs::path& in : {folder, folder.parent_path()})
+            if (std::error_code error; fs::is_regular_file(in / recording.name, error)) {
+                found[recording.name] = core::readFile(in / recording.name, tooth::kMostRecordingBytes);
+                break;
+            }
+    }
+    return found;
+}
+
+void pack(const PackOptions& o) {
+    const std::string &in = o.in, &out = o.out;
+    const bool isAttempt = tooth::isAttempt(in);
+    if (!isAttempt && (o.handIn || !o.student.empty()))
+        throw core::Error("a case is nobody's work", in, "give an attempt to --hand-in and --student");
+    if (isAttempt) {
+        tooth::OpenAttempt open = tooth::openAttempt(in);
+        tooth::Attempt& attempt = open.attempt;
+        if (!o.student.empty()) attempt.student = o.student;
+        if (attempt.recordings.empty() && !attempt.session.empty()) attempt.recordings.push_back({attempt.session});
+        attempt.handedIn = attempt.handedIn || o.handIn;
         const bool asFile = fs::path(out).extension() == ".handpiece";
-        tooth::writeAttempt(open.attempt, out, asFile ? &open.toothCase : nullptr);
+        tooth::PackageFiles recordings = recordingsOf(attempt, in);
+        if (attempt.handedIn) {
+            std::size_t bytes = 0;
+            for (const auto& [name, data] : recordings)
+                bytes += data.size();
+            fmt::print("recordings: {} of {}, {:.1f} MB\n", recordings.size(), attempt.recordings.size(),
+                       static_cast<double>(bytes) / (1 << 20));
+        }
+        tooth::writeAttempt(attempt, out, asFile ? &open.toothCase : nullptr, std::move(recordings));
     } else {
         tooth::writeCase(tooth::readCase(in), out);
     }
@@ -286,6 +329,7 @@ void addCaseCommand(CLI::App& app) {
     NewOptions& o = *options;
     CLI::App* make = command->add_subcommand("new", "Make a case of meshes, one closed surface per part");
     make->add_option("--out", o.out, "folder or .handpiece file to write")->required();
+    addUnitOptions(*make, o.unit);
     make->add_option("--outer", o.outer, "mesh of the whole tooth [default: the only part]");
     make->add_option("--part", o.parts, "TISSUE=FILE or TISSUE:PRIORITY=FILE, in mm; as often as there are parts")
         ->take_all();
@@ -301,16 +345,17 @@ void addCaseCommand(CLI::App& app) {
         "Example:\n  handpiece case new --out mine --outer whole.stl --part enamel=e.stl --part caries:70=c.stl");
     make->callback([options] { makeNew(*options); });
 
-    struct Packed {
-        std::string in, out;
-    };
-    const auto packed = std::make_shared<Packed>();
+    const auto packed = std::make_shared<PackOptions>();
     CLI::App* packing =
         command->add_subcommand("pack", "Pack a case, or an attempt with its case, into one file; or unpack a case");
     packing->add_option("IN", packed->in, "case or attempt: folder or .handpiece file")->required();
     packing->add_option("OUT", packed->out, ".handpiece file, or folder to unpack into")->required();
-    packing->footer("Example:\n  handpiece case pack molar molar.handpiece");
-    packing->callback([packed] { pack(packed->in, packed->out); });
+    packing->add_flag("--hand-in", packed->handIn, "of an attempt: for a teacher, with its recordings");
+    packing->add_option("--student", packed->student, "of an attempt: whose it is, a name or code as you type it");
+    packing->footer(
+        "Examples:\n  handpiece case pack molar molar.handpiece\n"
+        "  handpiece case pack out/attempt S-07.handpiece --hand-in --student S-07");
+    packing->callback([packed] { pack(*packed); });
 }
 
 }  // namespace handpiece::cli

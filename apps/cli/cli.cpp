@@ -7,7 +7,7 @@
 #include "cli/commands.h"
 #include "cli/completion.h"
 #include "cli/progress_bar.h"
-#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/any_error.h"
 
 namespace handpiece::cli {
 
@@ -40,11 +40,8 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods) {
         return 0;
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? 0 : 2;
-    } catch (const core::Error& e) {
-        std::fprintf(stderr, "handpiece: %s\n", e.what());
-        return 1;
-    } catch (const std::bad_alloc&) {
-        std::fprintf(stderr, "handpiece: out of memory (give a coarser voxel or a smaller mesh)\n");
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "handpiece: %s\n", core::asError(e).what());
         return 1;
     }
 }

@@ -10,10 +10,12 @@
 
 #include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/tooth/attempt.h"
 #include "handpiece/model/tooth/case_bytes.h"
 #include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/senses/measure/tooth_probe.h"
 #include "handpiece/senses/surface/closed_surface.h"
 
 namespace handpiece::cli {
@@ -35,6 +37,7 @@ void writeCut(const station::Station& station, const tooth::Case& toothCase, con
     const core::Progress progress = bar.listener();
     tooth::CutMirror mirror(station.tooth);
     mirror.apply(state);
+    if (const auto thinnest = measure::ToothProbe(mirror).thinnestOverPulp()) outcome.leftOverPulpMm = thinnest->leftMm;
     const surface::MirrorSource source(mirror);
     tooth::Case cut = toothCase;
     cut.outer = surface::closedSurface(source, core::part(progress, 0.0, 0.4));
@@ -60,7 +63,7 @@ void writeCut(const station::Station& station, const tooth::Case& toothCase, con
 void writeAttempt(const station::Station& station, const tooth::Case& toothCase, const tooth::CutState& state,
                   const CutRunOptions& options, const CutOutcome& outcome, const Outputs& outputs) {
     tooth::Attempt attempt;
-    attempt.caseFile = std::filesystem::absolute(options.casePath);
+    attempt.caseFile = core::wholePath(options.casePath);
     attempt.caseKey = tooth::contentKey(toothCase);
     attempt.caseName = toothCase.name;
     attempt.state = tooth::encodeState(state, station.identity);

@@ -4,6 +4,7 @@
 /// One run that cuts: trace, session, plots, and the tooth that is left.
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,10 @@ struct CutOutcome {
     std::uint64_t stateHash = 0;
     tooth::TissueVolumes leftMm3{};
     session::RecorderStatus recording;
-    std::size_t undoSteps = 0;  ///< strokes that could still be undone
-    std::size_t undone = 0;     ///< steps taken back or forth
-    double cutMeshMm3 = 0.0;    ///< volume of cut.stl
+    std::size_t undoSteps = 0;             ///< strokes that could still be undone
+    std::size_t undone = 0;                ///< steps taken back or forth
+    double cutMeshMm3 = 0.0;               ///< volume of cut.stl
+    std::optional<double> leftOverPulpMm;  ///< at the thinnest place that was cut; none without a pulp or a cut
     std::vector<std::string> files;
 };
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// handpiece export: a session's samples or events as CSV.
+// handpiece export: a session's samples or events as CSV; what is left of each tissue as STL.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <string>
@@ -11,15 +12,19 @@
 #include "cli/csv.h"
 #include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
 #include "handpiece/model/tooth/tissue.h"
 #include "handpiece/record/session/session_reader.h"
+#include "station/tissue_export.h"
 
 namespace handpiece::cli {
 namespace {
 
 struct ExportOptions {
     std::string session, out = "-";
-    bool csv = false, events = false;
+    bool csv = false, events = false, stl = false, noCache = false;
+    double voxelUm = 50.0;
+    std::size_t threads = 0;
 };
 
 void writeRecord(std::string& out, const session::Record& r, double rateHz) {
@@ -76,8 +81,25 @@ void writeEvents(const session::SessionReader& reader, TextWriter& out) {
     }
 }
 
+/// Into a folder: a closed surface of each tissue.
+void exportSurfaces(const ExportOptions& o) {
+    if (o.csv || o.events)
+        throw core::Error("a table and surfaces cannot be written at once", "export", "give --csv or --stl");
+    if (o.out == "-") throw core::Error("surfaces need a folder", "--out", "name one");
+    core::setThreadCount(o.threads);
+    ProgressBar preparing("preparing the tooth");
+    const station::ToothOfFile found = station::toothOf(o.session, 1e-3 * o.voxelUm, !o.noCache, preparing.listener());
+    preparing.finish();
+    ProgressBar bar("surfaces");
+    const auto files = station::exportTissues(found.base, found.state, o.out, bar.listener());
+    bar.finish();
+    for (const std::filesystem::path& file : files)
+        fmt::print("{}\n", file.string());
+}
+
 void exportSession(const ExportOptions& o) {
-    if (!o.csv) throw core::Error("there is no format to export to", "export", "add --csv");
+    if (o.stl) return exportSurfaces(o);
+    if (!o.csv) throw core::Error("there is no format to export to", "export", "add --csv or --stl");
     const session::SessionReader reader(o.session);
     TextWriter out(o.out);
     if (o.events) {
@@ -91,17 +113,33 @@ void exportSession(const ExportOptions& o) {
 }  // namespace
 
 void addExportCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("export", "A session's samples or events as a table");
+    CLI::App* command = app.add_subcommand("export", "A session's samples or events as a table; tissues as surfaces");
     const auto options = std::make_shared<ExportOptions>();
     command
-        ->add_option("session", options->session, "session file (.h5); one that was cut off is read as far as it goes")
+        ->add_option(
+            "session", options->session,
+            "session file (.h5); one that was cut off is read as far as it goes. With --stl also an attempt or "
+            "a case: folder, .handpiece file or mesh")
         ->required();
     command->add_flag("--csv", options->csv, "as comma-separated values");
     command->add_flag("--events", options->events, "what happened at which tick, instead of the samples");
-    command->add_option("--out", options->out, "file to write; - for standard output")->capture_default_str();
+    command->add_flag("--stl", options->stl,
+                      "what is left of each tissue as a closed surface of its own: enamel.stl, dentine.stl, ... (mm)");
+    command->add_option("--out", options->out, "file to write, - for standard output; of --stl the folder")
+        ->capture_default_str();
+    command
+        ->add_option("--voxel", options->voxelUm, "of --stl for a case or a mesh, voxel of the field [um], 10 to 400")
+        ->check(CLI::Range(10.0, 400.0))
+        ->capture_default_str();
+    command->add_flag("--no-cache", options->noCache, "of --stl: build the fields anew");
+    command->add_option("--threads", options->threads, "threads for long work; 0: all cores")
+        ->check(CLI::Range(std::size_t{0}, std::size_t{1024}))
+        ->capture_default_str();
     command->footer(
         "One row a tick: pose of the bur's tip as read from the device, force on the hand, speed, what was removed.\n"
-        "Example:\n  handpiece export session.h5 --csv --out session.csv");
+        "--stl writes the tooth as a session leaves it, as an attempt was saved, or as a case is.\n"
+        "Example:\n  handpiece export session.h5 --csv --out session.csv\n"
+        "  handpiece export session.h5 --stl --out tissues");
     command->callback([options] { exportSession(*options); });
 }
 

@@ -9,6 +9,7 @@
 #include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/geometry/inspect.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/tick/contact/hull_method.h"
 
@@ -18,6 +19,42 @@ namespace fs = std::filesystem;
 
 namespace {
 constexpr std::size_t kMaxThreads = 1024;
+
+geometry::TriangleMesh scaled(geometry::TriangleMesh mesh, double factor) {
+    for (core::Vec3& v : mesh.vertices)
+        v *= factor;
+    return mesh;
+}
+}  // namespace
+
+double MeshUnit::mmPerUnit() const {
+    return scale * geometry::millimetresPer(geometry::unitByName(name));
+}
+
+geometry::TriangleMesh MeshUnit::read(const std::string& file, geometry::ReadNotes* notes) const {
+    return scaled(geometry::readMesh(fs::path(file), notes), mmPerUnit());
+}
+
+void addUnitOptions(CLI::App& command, MeshUnit& unit, bool withScale) {
+    command.add_option("--unit", unit.name, "unit of a mesh file: mm, cm, m, inch or um")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"mm", "cm", "m", "inch", "um"}));
+    if (!withScale) return;
+    command.add_option("--scale", unit.scale, "multiplies the coordinates of a mesh file, besides its unit")
+        ->capture_default_str()
+        ->check(CLI::Range(1e-9, 1e9));
+}
+
+tooth::Case readToothOf(const ContactInputs& inputs) {
+    tooth::Case toothCase = tooth::readCase(inputs.tooth);
+    const double mm = inputs.unit.mmPerUnit();
+    if (mm == 1.0) return toothCase;
+    if (geometry::meshFormatOf(inputs.tooth) == geometry::MeshFormat::unknown)
+        throw core::Error("a case is in millimetres", "--unit", "give a unit only for a mesh file");
+    toothCase.outer = scaled(std::move(toothCase.outer), mm);
+    for (tooth::Part& part : toothCase.parts)
+        part.mesh = scaled(std::move(part.mesh), mm);
+    return toothCase;
 }
 
 void addContactOptions(CLI::App& command, ContactInputs& inputs, const MethodRegistry& methods) {
@@ -27,6 +64,7 @@ void addContactOptions(CLI::App& command, ContactInputs& inputs, const MethodReg
     command
         .add_option("--tooth,--case", inputs.tooth, "case folder, .handpiece file, or mesh file (.stl, .ply, .obj; mm)")
         ->required();
+    addUnitOptions(command, inputs.unit, false);
     command.add_option("--bur", inputs.bur, "bur by name (330, round-4, paper, cylinder-round:1.0x4.0) or mesh file")
         ->capture_default_str();
     command.add_option("--method", inputs.method, "contact method: " + names)->capture_default_str();
@@ -54,7 +92,7 @@ tooth::PrepareSettings prepareSettingsOf(const ContactInputs& inputs) {
 std::shared_ptr<const tooth::Tooth> loadTooth(const ContactInputs& inputs) {
     const tooth::PrepareSettings settings = prepareSettingsOf(inputs);
     ProgressBar bar("preparing the tooth");
-    return tooth::prepareTooth(tooth::readCase(inputs.tooth), settings, bar.listener());
+    return tooth::prepareTooth(readToothOf(inputs), settings, bar.listener());
 }
 
 std::shared_ptr<const instrument::Bur> loadBur(const std::string& nameOrFile) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/cli.h"
+#include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/tick/contact/field_method.h"
 
 namespace CLI {
@@ -15,16 +16,31 @@ class App;
 
 namespace handpiece::cli {
 
+/// The unit of meshes that are given as files.
+struct MeshUnit {
+    std::string name = "mm";
+    double scale = 1.0;  ///< besides
+
+    [[nodiscard]] double mmPerUnit() const;
+    /// A mesh file in millimetres. Throws core::Error.
+    [[nodiscard]] geometry::TriangleMesh read(const std::string& file, geometry::ReadNotes* notes = nullptr) const;
+};
+/// --unit, and --scale where that is not an arm's.
+void addUnitOptions(CLI::App& command, MeshUnit& unit, bool withScale = true);
+
 struct ContactInputs {
+    MeshUnit unit;  ///< of a tooth that is a mesh file
     std::string tooth, bur = "330", method = "field";
     double voxelUm = 50.0;
     bool noCache = false;
     std::size_t threads = 0;
 };
 
-/// --tooth, --bur, --method, --voxel, --no-cache, --threads.
+/// --tooth, --unit, --bur, --method, --voxel, --no-cache, --threads.
 void addContactOptions(CLI::App& command, ContactInputs& inputs, const MethodRegistry& methods);
 
+/// The case; one that is a mesh file in its unit. Throws core::Error.
+[[nodiscard]] tooth::Case readToothOf(const ContactInputs& inputs);
 /// Voxel, bands and cache as asked for; sets the number of threads. Throws core::Error for values out of range.
 [[nodiscard]] tooth::PrepareSettings prepareSettingsOf(const ContactInputs& inputs);
 /// Reads or reopens the tooth, with a progress bar. Throws core::Error.

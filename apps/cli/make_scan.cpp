@@ -83,7 +83,7 @@ Json truthOf(const MakeScanOptions& o, const tooth::Case& imaged, const phantom:
 
 /// "scan" and "scan/" have "scan-truth" beside them.
 fs::path truthBeside(const fs::path& out) {
-    const fs::path place = fs::absolute(out).lexically_normal();
+    const fs::path place = core::wholePath(out).lexically_normal();
     const fs::path folder = place.has_filename() ? place : place.parent_path();
     return folder.parent_path() / (folder.filename().string() + "-truth");
 }
@@ -123,17 +123,11 @@ void writeBoth(const MakeScanOptions& o, const tooth::Case& imaged, const phanto
     }
 }
 
-void requireReplaceable(const fs::path& truth) {
-    if (fs::exists(truth) && !(fs::is_directory(truth) && (fs::is_empty(truth) || fs::exists(truth / kTruthFile))))
-        throw core::Error("this holds something else and is not replaced", truth.string(),
-                          "name another folder with --out");
-}
-
 void makeScan(MakeScanOptions& o) {
     if (o.out.empty()) throw core::Error("a scan needs a folder", "--out", "name one");
     const volume::ScanFormat format = volume::scanFormatByName(o.format);
     o.settings.scanner = phantom::scannerByName(o.scanner);
-    requireReplaceable(truthBeside(o.out));
+    core::requireReplaceable(truthBeside(o.out), kTruthFile);
     const auto about = [&](std::size_t axis, const core::Vec3& direction) {
         return core::Quat(Eigen::AngleAxisd(o.turnDeg[axis] * std::numbers::pi / 180.0, direction));
     };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/inputs.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/mesh_io.h"
@@ -99,13 +100,17 @@ std::string verdict(const MeshReport& r, std::size_t crossings) {
     if (!r.oriented()) return "closed, but not consistently oriented: handpiece mesh repair can mend it";
     if (crossings > 0) return "closed and oriented, but it crosses itself: handpiece mesh repair mends small spots";
     if (r.unit.unit != geometry::LengthUnit::millimetre)
-        return "closed, oriented, not crossing itself, but probably not in millimetres";
+        return fmt::format("closed, oriented, not crossing itself, but probably not in millimetres: {}",
+                           r.unit.unit == geometry::LengthUnit::unknown
+                               ? "give --unit or --scale"
+                               : fmt::format("--unit {} makes it {:.4g} mm", geometry::unitName(r.unit.unit),
+                                             r.unit.millimetresPerUnit * r.boxMm.size().norm()));
     return "closed, oriented, not crossing itself: a solid";
 }
 
-void info(const std::string& file, bool json) {
+void info(const std::string& file, const MeshUnit& unit, bool json) {
     geometry::ReadNotes notes;
-    const geometry::TriangleMesh mesh = geometry::readMesh(file, &notes);
+    const geometry::TriangleMesh mesh = unit.read(file, &notes);
     const MeshReport report = geometry::inspect(mesh);
     const std::vector<geometry::CrossingFaces> crossings = geometry::selfIntersections(mesh);
     if (json) {
@@ -128,6 +133,7 @@ void info(const std::string& file, bool json) {
 
 struct RepairOptions {
     std::string in, out;
+    MeshUnit unit;
     double weldMm = -1.0;
     bool keepDebris = false, json = false;
 };
@@ -144,16 +150,21 @@ Json toJson(const geometry::RepairReport& r) {
             {"removed_degenerate_faces", r.removedDegenerateFaces},
             {"removed_duplicate_faces", r.removedDuplicateFaces},
             {"removed_fin_faces", r.removedFinFaces},
+            {"removed_fin_area_mm2", r.removedFinAreaMm2},
             {"split_edges", r.splitEdges},
             {"split_vertices", r.splitVertices},
             {"dropped_shells", r.droppedShells},
             {"dropped_faces", r.droppedFaces},
+            {"dropped_area_mm2", r.droppedAreaMm2},
+            {"dropped_volume_mm3", r.droppedVolumeMm3},
             {"turned_faces", r.turnedFaces},
             {"closed_holes", r.holes.size()},
             {"added_faces", r.addedFaces},
             {"holes", std::move(holes)},
             {"turned_flat_faces", r.turnedFlatFaces},
             {"removed_crossing_faces", r.removedCrossingFaces},
+            {"removed_crossing_area_mm2", r.removedCrossingAreaMm2},
+            {"lost_area_mm2", r.lostAreaMm2},
             {"crossing_faces", r.crossingFaces},
             {"before", toJson(r.before)},
             {"after", toJson(r.after)}};
@@ -165,7 +176,7 @@ void repair(const RepairOptions& options) {
     if (format != geometry::MeshFormat::stl && format != geometry::MeshFormat::ply)
         throw core::Error("meshes are written as .stl or .ply", options.out, "name the output so");
     geometry::ReadNotes notes;
-    geometry::TriangleMesh mesh = geometry::readMesh(options.in, &notes);
+    geometry::TriangleMesh mesh = options.unit.read(options.in, &notes);
     geometry::RepairSettings settings;
     settings.weldMm = options.weldMm;
     if (options.keepDebris) settings.debrisAreaShare = 0.0;
@@ -187,12 +198,14 @@ void repair(const RepairOptions& options) {
     for (const std::string& note : notes)
         fmt::print("  note: {}\n", note);
     row("welded", fmt::format("{} (within {:.3g} mm)", counted(r.weldedVertices, "vertex", "vertices"), r.weldMm));
-    row("removed", fmt::format("{} degenerate, {} double and {} fin faces", r.removedDegenerateFaces,
-                               r.removedDuplicateFaces, r.removedFinFaces));
+    row("removed",
+        fmt::format("{} degenerate, {} double and {} fin faces ({:.3g} mm2 of fins)", r.removedDegenerateFaces,
+                    r.removedDuplicateFaces, r.removedFinFaces, r.removedFinAreaMm2));
     row("cut apart", fmt::format("{}, {} added", counted(r.splitEdges, "edge", "edges"),
                                  counted(r.splitVertices, "vertex", "vertices")));
-    row("dropped", fmt::format("{} ({})", counted(r.droppedShells, "loose shell", "loose shells"),
-                               counted(r.droppedFaces, "face", "faces")));
+    row("dropped",
+        fmt::format("{} ({}, {:.3g} mm2, {:.3g} mm3)", counted(r.droppedShells, "loose shell", "loose shells"),
+                    counted(r.droppedFaces, "face", "faces"), r.droppedAreaMm2, r.droppedVolumeMm3));
     row("turned", counted(r.turnedFaces, "face", "faces"));
     row("closed",
         fmt::format("{} with {}", counted(r.holes.size(), "hole", "holes"), counted(r.addedFaces, "face", "faces")));
@@ -204,8 +217,11 @@ void repair(const RepairOptions& options) {
     if (r.holes.size() > kShown) row("", fmt::format("and {} smaller ones", r.holes.size() - kShown));
     if (r.turnedFlatFaces > 0) row("turned", counted(r.turnedFlatFaces, "face without height", "faces without height"));
     if (r.removedCrossingFaces > 0)
-        row("replaced", counted(r.removedCrossingFaces, "face that crossed others or lay beside one",
-                                "faces that crossed others or lay beside one"));
+        row("replaced", fmt::format("{}, {:.3g} mm2",
+                                    counted(r.removedCrossingFaces, "face that crossed others or lay beside one",
+                                            "faces that crossed others or lay beside one"),
+                                    r.removedCrossingAreaMm2));
+    row("lost", fmt::format("{:.3g} mm2 of the outer surface's {:.6g} mm2", r.lostAreaMm2, r.after.areaMm2));
     fmt::print("the result:\n");
     printReport(r.after);
     row("crossing faces", std::to_string(r.crossingFaces));
@@ -225,20 +241,23 @@ void addMeshCommand(CLI::App& app) {
 
     struct InfoOptions {
         std::string file;
+        MeshUnit unit;
         bool json = false;
     };
     const auto infoOptions = std::make_shared<InfoOptions>();
     CLI::App* infoCommand = mesh->add_subcommand("info", "Count the faces and the flaws of a mesh, measure it");
     infoCommand->add_option("FILE", infoOptions->file, "STL, PLY or OBJ")->required();
+    addUnitOptions(*infoCommand, infoOptions->unit);
     infoCommand->add_flag("--json", infoOptions->json, "Print JSON instead of a table");
     infoCommand->footer("Example:\n  handpiece mesh info molar.stl");
-    infoCommand->callback([infoOptions] { info(infoOptions->file, infoOptions->json); });
+    infoCommand->callback([infoOptions] { info(infoOptions->file, infoOptions->unit, infoOptions->json); });
 
     const auto options = std::make_shared<RepairOptions>();
     CLI::App* repairCommand =
         mesh->add_subcommand("repair", "Close holes, orient, weld, drop debris; say what was done");
     repairCommand->add_option("IN", options->in, "STL, PLY or OBJ")->required();
     repairCommand->add_option("OUT", options->out, "Where to write the result, .stl or .ply")->required();
+    addUnitOptions(*repairCommand, options->unit);
     repairCommand
         ->add_option("--weld", options->weldMm,
                      "Vertices nearer than this become one [default: 1e-5 of the box's diagonal]")
@@ -250,6 +269,7 @@ void addMeshCommand(CLI::App& app) {
     repairCommand->footer(
         "Examples:\n"
         "  handpiece mesh repair scan.stl molar.stl\n"
+        "  handpiece mesh repair inches.obj molar.stl --unit inch\n"
         "  handpiece mesh repair scan.ply molar.stl --weld 0.01 --keep-debris");
     repairCommand->callback([options] { repair(*options); });
 }

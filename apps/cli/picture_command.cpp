@@ -16,6 +16,7 @@
 #include "cli/inputs.h"
 #include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/model/instrument/turbine.h"
@@ -152,7 +153,7 @@ Asked read(const PictureOptions& o) {
     if (!o.section.empty()) asked.section = sectionOf(o.section);
     const fs::path out(o.out);
     if (out.extension() != ".png") throw core::Error("pictures are written as .png", o.out, "name the output so");
-    if (const fs::path folder = out.parent_path(); !folder.empty() && !fs::is_directory(folder))
+    if (const fs::path folder = out.parent_path(); !folder.empty() && !core::isFolder(folder))
         throw core::Error("there is no such folder", folder.string(), "make it first");
     const bool isSession = fs::path(o.what).extension() == ".h5";
     if (o.atGiven && !isSession)

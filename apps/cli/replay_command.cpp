@@ -33,15 +33,20 @@ void replay(const ReplayOptions& o) {
     if (o.json) {
         nlohmann::ordered_json out{
             {"state_hash", v.hash}, {"recorded_hash", v.recorded},         {"matches", v.matches},
-            {"ticks", v.ticks},     {"differing_ticks", v.differingTicks}, {"complete", v.complete}};
+            {"ticks", v.ticks},     {"differing_ticks", v.differingTicks}, {"complete", v.complete},
+            {"seams", v.seams},     {"broken_seams", v.brokenSeams}};
         fmt::print("{}\n", out.dump(2));
     } else {
         fmt::print("state_hash {}\nmatches {}\n", v.hash, v.matches);
         if (v.differingTicks > 0)
             fmt::print("{} ticks differ, the first is {}\n", v.differingTicks, v.firstDifferingTick);
+        if (v.seams > 0)
+            fmt::print("goes on {} times, {} of them on another tooth than was left\n", v.seams, v.brokenSeams);
     }
     if (v.recorded.empty())
         throw core::Error("the session was cut off before it told a state to compare with", o.session);
+    if (v.brokenSeams > 0)
+        throw core::Error("the session goes on, after a pause, on another tooth than was left", o.session);
     if (!v.matches) throw core::Error("the tooth that was cut again is another", o.session);
 }
 

@@ -4,7 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -24,6 +26,7 @@
 #include "handpiece/tick/device/capability.h"
 #include "handpiece/tick/loop/built_in_motion.h"
 #include "handpiece/tick/loop/cutting_motion.h"
+#include "handpiece/tick/loop/excavation.h"
 
 namespace handpiece::cli {
 namespace {
@@ -41,6 +44,7 @@ struct RunOptions {
     bool realTime = false, json = false;
     // Of a cut.
     double pedal = 0.0, isthmusMm = 1.2, heightMm = 2.5, dwellS = 4.0, tremorUm = 0.0;
+    double pulpGuardMm = loop::kPulpGuardMm;
     std::uint64_t seed = 1;
     bool fullRemoval = false, pedalGiven = false, handGiven = false, speedGiven = false, motionGiven = false;
     std::string drive = "turbine", ability, abilities, tissues, code;
@@ -185,8 +189,17 @@ station::StationSettings stationSettingsOf(const RunOptions& o, const RunSetting
     return s;
 }
 
+/// The bur's lowest point at a distance from its axis.
+double bottomOf(const instrument::Bur& bur, double rhoMm) {
+    double low = 0.0, high = bur.lengthMm();
+    constexpr double kStepMm = 0.01;
+    while (low < high && instrument::signedDistanceMm(bur.profile(), rhoMm, low) > 1e-6)
+        low += kStepMm;
+    return low;
+}
+
 device::Motion cutMotionOf(const RunOptions& o, const RunSettings& settings, const tooth::Case& toothCase,
-                           const station::Station& station) {
+                           const station::Station& station, std::vector<loop::LesionPlan>& lesions) {
     const double pedal = o.pedalGiven ? o.pedal : 1.0;
     const auto& tooth = station.tooth->tooth;
     const auto method = contact::makeFieldMethod(tooth, station.settings.bur);
@@ -197,8 +210,6 @@ device::Motion cutMotionOf(const RunOptions& o, const RunSettings& settings, con
     }
     loop::CuttingScene scene;
     scene.toothBounds = tooth->outer.bounds();
-    for (const tooth::Part& part : toothCase.parts)
-        if (part.tissue == tooth::Tissue::caries) scene.cariesBounds = part.mesh.bounds();
     scene.burRadiusMm = station.settings.bur->maxRadiusMm();
     scene.burLengthMm = station.settings.bur->lengthMm();
     loop::CuttingOptions cut;
@@ -210,7 +221,61 @@ device::Motion cutMotionOf(const RunOptions& o, const RunSettings& settings, con
     cut.dwellS = o.dwellS;
     if (o.speedGiven) cut.feedMmS = o.speedMmS;
     cut.offsetMm = {o.at[0], o.at[1]};
-    return loop::cuttingMotionByName(o.motion, *method, scene, cut);
+    cut.pulpGuardMm = o.pulpGuardMm;
+    if (o.motion != "excavate") return loop::cuttingMotionByName(o.motion, *method, scene, cut);
+    scene.burBottomMm = [&](double rhoMm) { return bottomOf(*station.settings.bur, rhoMm); };
+    scene.outerMm = [&](const core::Vec3& p) { return tooth->tree.signedDistance(p); };
+    std::vector<geometry::TriangleTree> pulp;
+    for (const tooth::Part& part : toothCase.parts) {
+        if (part.tissue == tooth::Tissue::caries) scene.decay.push_back(part.mesh);
+        if (part.tissue == tooth::Tissue::pulp) pulp.emplace_back(part.mesh);
+    }
+    if (!pulp.empty())
+        scene.pulpMm = [&](const core::Vec3& p) {
+            double nearest = std::numeric_limits<double>::infinity();
+            for (const geometry::TriangleTree& tree : pulp)
+                nearest = std::min(nearest, tree.signedDistance(p));
+            return nearest;
+        };
+    loop::Excavation plan = loop::planExcavation(scene, cut);
+    lesions = std::move(plan.lesions);
+    return std::move(plan.motion);
+}
+
+Json lesionsJson(const std::vector<loop::LesionPlan>& lesions) {
+    Json all = Json::array();
+    for (const loop::LesionPlan& l : lesions)
+        all.push_back({{"centre_mm", {l.centreMm.x(), l.centreMm.y(), l.centreMm.z()}},
+                       {"axis", {l.axis.x(), l.axis.y(), l.axis.z()}},
+                       {"decay_mm3", l.decayMm3},
+                       {"planned_decay_mm3", l.reachedMm3},
+                       {"planned_sound_mm3", l.soundMm3},
+                       {"left_for_the_pulp_mm3", l.guardedMm3},
+                       {"planned_over_pulp_mm", std::isfinite(l.nearestPulpMm) ? Json(l.nearestPulpMm) : Json()}});
+    return all;
+}
+
+void printLesions(const std::vector<loop::LesionPlan>& lesions, double guardMm) {
+    for (std::size_t i = 0; i < lesions.size(); ++i) {
+        const loop::LesionPlan& l = lesions[i];
+        std::string text = fmt::format(
+            "{} of {} at ({:.1f}, {:.1f}, {:.1f}), from ({:.2f}, {:.2f}, {:.2f}): {:.2f} of {:.2f} mm3 within reach, "
+            "{:.2f} mm3 of sound tissue on the way",
+            i + 1, lesions.size(), l.centreMm.x(), l.centreMm.y(), l.centreMm.z(), l.axis.x(), l.axis.y(), l.axis.z(),
+            l.reachedMm3, l.decayMm3, l.soundMm3);
+        if (l.guardedMm3 > 0.0)
+            text += fmt::format("; {:.2f} mm3 stay, {:.2g} mm over the pulp", l.guardedMm3, guardMm);
+        printRow("lesion", text);
+    }
+}
+
+/// How much is left over the pulp, and whether that is little: of every cut, not only an excavation.
+void printPulp(const CutOutcome& outcome) {
+    if (outcome.summary.removedMm3[static_cast<std::size_t>(tooth::Tissue::pulp)] > 0.0)
+        printRow("pulp", "OPENED");
+    else if (outcome.leftOverPulpMm)
+        printRow("pulp", fmt::format("{:.2f} mm left over it{}", *outcome.leftOverPulpMm,
+                                     *outcome.leftOverPulpMm < loop::kPulpGuardMm ? ": NEAR" : ""));
 }
 
 /// A motion for whoever moves by hand: it is not looked at.
@@ -229,6 +294,11 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     // A cut is judged by what the hand intends, and an eye leads it there: the simulated hand alone is blind, and would
     // come to rest where its spring and the device's friction let it.
     if (!o.handGiven) settings.device.rigidHand = true;
+    // What is left of it names the file that it was, and no unit.
+    if (o.inputs.unit.mmPerUnit() != 1.0)
+        throw core::Error(
+            "a tooth that is cut is kept in millimetres", "--unit",
+            fmt::format("first: handpiece mesh repair {} OUT.stl --unit {}", o.inputs.tooth, o.inputs.unit.name));
     std::optional<RunDevice> device;
     if (isGuarded(o.device)) device.emplace(o.device);
     const tooth::PrepareSettings prepare = prepareSettingsOf(o.inputs);
@@ -250,7 +320,8 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     if (before)
         station.resume(tooth::decodeState(before->attempt.state, station.identity, *station.tooth, o.inputs.tooth));
     settings.parameters = station.settings.parameters;
-    device::Motion motion = isReal(o.device) ? noMotion() : cutMotionOf(o, settings, toothCase, station);
+    std::vector<loop::LesionPlan> lesions;
+    device::Motion motion = isReal(o.device) ? noMotion() : cutMotionOf(o, settings, toothCase, station, lesions);
     if (o.tremorUm > 0.0 && !isReal(o.device)) motion = withTremor(motion, 1e-3 * o.tremorUm, o.seed);
     if (device) {
         device->open(settings, &motion, placeOf(toothCase, station));
@@ -293,6 +364,8 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     json["drive"] = station.settings.drive.name;
     json["removed_mm3"] = removed;
     json["left_mm3"] = left;
+    if (!lesions.empty()) json["lesions"] = lesionsJson(lesions);
+    json["left_over_pulp_mm"] = outcome.leftOverPulpMm ? Json(*outcome.leftOverPulpMm) : Json();
     json["cut_stl_mm3"] = outcome.cutMeshMm3;
     json["outer_mm3"] = geometry::enclosedVolumeMm3(toothCase.outer);
     json["cutting_ticks"] = outcome.summary.cuttingTicks;
@@ -319,6 +392,25 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
         if (mm3.get<double>() > 0.0)
             volumes += fmt::format("{}{} {:.4f}", volumes.empty() ? "" : ", ", name, mm3.get<double>());
     printRow("removed", volumes.empty() ? "nothing" : volumes + " mm3");
+    if (!lesions.empty()) {
+        constexpr auto kCaries = static_cast<std::size_t>(tooth::Tissue::caries);
+        double soundMm3 = -outcome.summary.removedMm3[kCaries];
+        for (const double mm3 : outcome.summary.removedMm3)
+            soundMm3 += mm3;
+        const double gone = outcome.summary.removedMm3[kCaries], all = gone + outcome.leftMm3[kCaries];
+        printLesions(lesions, o.pulpGuardMm);
+        double plannedMm3 = 0.0;
+        for (const loop::LesionPlan& l : lesions)
+            plannedMm3 += l.reachedMm3;
+        constexpr double kKeptUp = 0.8;
+        printRow("decay",
+                 fmt::format("{:.2f} mm3 taken ({:.0f} %), {:.2f} mm3 left; {:.2f} mm3 of sound tissue taken{}", gone,
+                             all > 0.0 ? 100.0 * gone / all : 0.0, outcome.leftMm3[kCaries], soundMm3,
+                             gone < kKeptUp * plannedMm3
+                                 ? "; the bur did not keep up with the hand: a lower --speed, or a faster drive"
+                                 : ""));
+    }
+    printPulp(outcome);
     if (outcome.summary.cuttingTicks > 0)
         printRow("rotor",
                  fmt::format("{:.0f} to {:.0f} rpm while cutting", outcome.summary.leastRpm, outcome.summary.mostRpm));
@@ -445,10 +537,11 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
     cut("--tissues", o.tissues, "TOML file with tissues of one's own");
     cut("--isthmus", o.isthmusMm, "width of a class I cavity [mm]");
     cut("--height", o.heightMm, "of a shoulder over z = 0 of the tooth [mm]");
+    cut("--pulp-guard", o.pulpGuardMm, "excavate comes no nearer to the pulp [mm]; 0: does not heed it");
     cut("--dwell", o.dwellS, "at the end of a cut [s]");
     cut("--tremor", o.tremorUm, "of the hand, root mean square [um]")->check(CLI::Range(0.0, 1000.0));
     cut("--seed", o.seed, "of the tremor");
-    cut("--code", o.code, "kept in the session: who cut, as letters, digits, - and _; never a name");
+    cut("--code,--student", o.code, "kept in the session: who cut, as letters, digits, - and _; never a name");
     cut("--undo-at", o.undoAtS, "take the last stroke back at this time [s]; may be given several times");
     cut("--redo-at", o.redoAtS, "do it again at this time [s]");
     cut("--reset-at", o.resetAtS, "make the tooth whole at this time [s]");

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -197,7 +198,7 @@ ScanJob jobOf(const ScanOptions& o) {
 
 /// Nobody waits for a scan to hear that its result has no place.
 void requireFolder(const fs::path& out) {
-    if (const fs::path folder = fs::absolute(out).lexically_normal().parent_path(); !fs::is_directory(folder))
+    if (const fs::path folder = core::wholePath(out).lexically_normal().parent_path(); !core::isFolder(folder))
         throw core::Error("there is no such folder", folder.string(), "make it first");
 }
 
@@ -226,13 +227,20 @@ void tellVolumes(const ScanResult& result) {
             row(tooth::properties(static_cast<tooth::Tissue>(t)).name, fmt::format("{:.2f} mm3", result.volumesMm3[t]));
 }
 
-void tellTimes(const ScanResult& result) {
+/// With what was done after the job itself.
+void tellTimes(const ScanResult& result, const std::vector<std::pair<std::string_view, double>>& more = {}) {
     std::string text;
+    double all = 0.0;
+    const auto add = [&](std::string_view what, double seconds) {
+        if (seconds <= 0.0) return;
+        text += fmt::format("{} {:.1f} s, ", what, seconds);
+        all += seconds;
+    };
     for (const ScanStage stage : station::kScanStages)
-        if (result.timings.of(stage) > 0.0)
-            text += fmt::format("{}{} {:.1f} s", text.empty() ? "" : ", ", station::nameOf(stage),
-                                result.timings.of(stage));
-    row("times", text);
+        add(station::nameOf(stage), result.timings.of(stage));
+    for (const auto& [what, seconds] : more)
+        add(what, seconds);
+    row("times", fmt::format("{}in all {:.1f} s", text, all));
 }
 
 // scan info
@@ -269,14 +277,7 @@ std::vector<segmentation::Candidate> teethOf(const ScanOptions& o, const volume:
     const volume::Scan scan = volume::readScan(o.path, settings, core::part(progress, 0.0, 0.3));
     const segmentation::Thresholds thresholds =
         segmentation::findThresholds(scan.volume, core::part(progress, 0.3, 0.5));
-    std::vector<segmentation::Candidate> all =
-        segmentation::findTeeth(scan.volume, thresholds, core::part(progress, 0.5, 1.0));
-    // Specks are no teeth, and a skull is none either.
-    constexpr double kLeastMm3 = 30.0, kMostMm = 45.0;
-    std::erase_if(all, [&](const segmentation::Candidate& c) {
-        return c.volumeMm3 < kLeastMm3 || c.boundsMm.size().maxCoeff() > kMostMm;
-    });
-    return all;
+    return segmentation::findTeeth(scan.volume, thresholds, core::part(progress, 0.5, 1.0));
 }
 
 void info(const ScanOptions& o) {
@@ -285,6 +286,7 @@ void info(const ScanOptions& o) {
     const std::vector<volume::Series> all = volume::findSeries(o.path, bar.listener());
     bar.finish();
     std::vector<segmentation::Candidate> teeth;
+    std::size_t others = 0;
     if (o.teeth) {
         if (all.size() > 1 && o.series.empty())
             throw core::Error(fmt::format("there are {} series", all.size()), "--teeth", "name one with --series");
@@ -293,6 +295,7 @@ void info(const ScanOptions& o) {
         if (one == all.end())
             throw core::Error("there is no series of this name", o.series, "leave --teeth out to see those there are");
         teeth = teethOf(o, *one);
+        others = std::erase_if(teeth, [](const auto& c) { return !segmentation::isToothLike(c); });
     }
     if (!o.pictures.empty()) {
         core::prepareOutputFolder(o.pictures);
@@ -313,7 +316,10 @@ void info(const ScanOptions& o) {
                  {"picture", o.pictures.empty() || s.thumbnail.empty() ? Json(nullptr) : Json(s.id + ".png")},
                  {"notes", s.notes}});
         Json out{{"series", std::move(list)}};
-        if (o.teeth) out["teeth"] = teethJson(teeth);
+        if (o.teeth) {
+            out["teeth"] = teethJson(teeth);
+            out["other_hard_things"] = others;
+        }
         fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
         return;
     }
@@ -334,6 +340,9 @@ void info(const ScanOptions& o) {
         fmt::print("tooth: --at {:.2f},{:.2f},{:.2f}  {:.0f} mm3, {:.1f} x {:.1f} x {:.1f} mm{}\n", c.atMm.x(),
                    c.atMm.y(), c.atMm.z(), c.volumeMm3, c.boundsMm.size().x(), c.boundsMm.size().y(),
                    c.boundsMm.size().z(), c.touchesBorder ? ", cut off by the border" : "");
+    if (others > 0)
+        fmt::print("{} more hard {} left out: by size and shape no {}\n", others,
+                   others == 1 ? "thing was" : "things were", others == 1 ? "tooth" : "teeth");
 }
 
 // scan segment, surface, case
@@ -364,8 +373,11 @@ std::string fileNameOf(const surfacing::Surface& s) {
 
 void surface(const ScanOptions& o) {
     requireFolder(o.out);
-    const bool isNew = !fs::exists(o.out);
-    const ScanResult result = worked(o, jobOf(o), ScanStage::decimate);
+    const bool isNew = !core::isThere(o.out);
+    ScanJob job = jobOf(o);
+    // For other programs as well, which have no field of ours.
+    if (job.percents.empty() && job.faces == 0) job.percents = {100.0};
+    const ScanResult result = worked(o, job, ScanStage::decimate);
     core::prepareOutputFolder(o.out);
     std::vector<fs::path> made;
     try {
@@ -404,16 +416,23 @@ void makeCase(const ScanOptions& o) {
     requireFolder(o.out);
     const ScanJob job = jobOf(o);
     for (const fs::path& place : station::casePlaces(job, o.out))
-        if (fs::is_directory(place) && !fs::is_empty(place) && !fs::exists(place / "case.toml"))
-            throw core::Error("this folder holds something else and is not replaced", place.string(),
-                              "name a new folder, or one with an old case.toml");
-    const ScanResult result = worked(o, job, ScanStage::decimate);
+        if (core::isFolder(place)) core::requireReplaceable(place, "case.toml");
+    const ScanResult result = worked(o, job, ScanStage::check);
+    using Clock = std::chrono::steady_clock;
+    const auto secondsSince = [](Clock::time_point start) {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    };
     std::string page;
+    double drawingS = 0.0;
     if (o.report) {
+        const Clock::time_point start = Clock::now();
         ProgressBar bar("drawing the report");
         page = station::scanReport(result, station::casePlaces(job, o.out), {}, bar.listener());
+        drawingS = secondsSince(start);
     }
+    const Clock::time_point start = Clock::now();
     const std::vector<fs::path> places = station::writeScanCases(result, o.out);
+    const double writingS = secondsSince(start);
     for (std::size_t i = 0; i < places.size(); ++i) {
         const tooth::Case& c = result.cases[i].toothCase;
         fmt::print("{}: {}\n  {:<14} {:>8} faces {:>10.2f} mm3\n", places[i].string(), c.name, "outer",
@@ -427,7 +446,7 @@ void makeCase(const ScanOptions& o) {
     }
     fmt::print("as the scan shows it\n");
     tellVolumes(result);
-    tellTimes(result);
+    tellTimes(result, {{"drawing the report", drawingS}, {"writing", writingS}});
     tellNotes(result.notes());
     if (o.report) {
         const fs::path place = station::scanReportPlace(o.out, places);
@@ -466,7 +485,9 @@ void addJobOptions(CLI::App& command, ScanOptions& o) {
 void addSurfaceOptions(CLI::App& command, ScanOptions& o) {
     command.add_flag("--no-smooth", o.noSmooth, "surfaces as they come out of the voxels");
     command.add_option("--faces", o.faces, "triangles of all surfaces together");
-    command.add_option("--percent", o.percent, "share of the full surfaces' triangles, P or P,P,...: a case each");
+    command.add_option("--percent", o.percent,
+                       "share of the full surfaces' triangles, P or P,P,...: a case each; "
+                       "else a case has as many as its field can use, and scan surface all");
     command.add_flag("--table2", o.tableTwo, "the paper's five: 6, 12, 25, 50 and 100 %");
     command.add_option("--intraoral", o.intraoral,
                        "mesh of an intraoral scan: found on the tooth, then its outer surface");

@@ -17,9 +17,8 @@ SoundTrack::SoundTrack(std::filesystem::path file, const instrument::Bur& bur, c
       edges_(ability.edges) {
     if (durationS > 3600.0)
         throw core::Error(fmt::format("the sound of {:.0f} s", durationS), "--sound", "give at most an hour");
-    if (std::filesystem::is_directory(file_))
-        throw core::Error("this is a folder", file_.string(), "name the WAV file in it");
-    core::prepareOutputFolder(std::filesystem::absolute(file_).parent_path());
+    if (core::isFolder(file_)) throw core::Error("this is a folder", file_.string(), "name the WAV file in it");
+    core::prepareOutputFolder(core::wholePath(file_).parent_path());
 }
 
 void SoundTrack::take(const messages::HapticSample& sample) {

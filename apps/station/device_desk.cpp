@@ -106,6 +106,7 @@ OpenDevice openDevice(std::unique_ptr<link::Driver> driver, const DeviceChoice& 
         driver = safety::withFaults(std::move(driver), open.faults, open.faultLog);
     }
     if (choice.pedal) open.pedal = std::make_shared<drivers::FootPedal>(drivers::PedalSettings{});
+    const std::shared_ptr<const link::PedalValue> foot = open.pedal ? open.pedal->value() : choice.foot;
     if (!open.info.pushes) {
         safety::InputSettings input;
         input.placing = open.placing;
@@ -113,7 +114,7 @@ OpenDevice openDevice(std::unique_ptr<link::Driver> driver, const DeviceChoice& 
         input.clutchButton = open.profile.clutchButton;
         input.nowNs = choice.nowNs;
         auto steered = std::make_unique<safety::InputDevice>(std::move(driver), input);
-        if (open.pedal) steered->usePedal(open.pedal->value());
+        if (foot) steered->usePedal(foot);
         open.health = steered->health();
         open.capability = steered->capability();
         open.calibration = {[] { return link::CalibrationState::notNeeded; }, [] { return std::string(); },
@@ -134,7 +135,7 @@ OpenDevice openDevice(std::unique_ptr<link::Driver> driver, const DeviceChoice& 
     open.calibration = calibrationOf(*guarded);
     open.capability = guarded->capability();
     open.device = std::move(guarded);
-    if (open.pedal) open.device = safety::withPedal(std::move(open.device), open.pedal->value());
+    if (foot) open.device = safety::withPedal(std::move(open.device), foot);
     return open;
 }
 

@@ -54,7 +54,9 @@ struct DeviceChoice {
     std::optional<workspace::Placing> placing;  ///< whole: nothing is fitted to the tooth
     std::string faults;                         ///< safety::parseFaults(); empty: none
     bool pedal = false;                         ///< a foot pedal too, where there is one: throws when there is none
-    device::PointerHandSettings hand;           ///< of devices that do not push
+    /// Instead: what somebody else's pedal says, now or later; the one that is pressed harder counts.
+    std::shared_ptr<const link::PedalValue> foot;
+    device::PointerHandSettings hand;  ///< of devices that do not push
     ToothPlace tooth;
     // Virtual time for drivers::SimulatedDriver, as safety::GuardSettings has it; empty: the clock on the wall.
     std::function<std::int64_t()> nowNs;

@@ -3,14 +3,30 @@
 /// @file
 /// From mouse and keyboard to what the simulated hand shall do. Knows no window: pixels, modifiers and milliseconds in,
 /// targets out.
+///
+/// **Like a brush.** The hand is guided by two things alone: the line of sight through the pointer, and the tooth as it
+/// was before any cut. What has been cut moves nothing sideways.
+///
+/// - The bur, in its orientation, is led along that line until it would touch the uncut tooth. Half a millimetre before
+///   that it hovers.
+/// - Pressed, it goes on along the line, with the load, as far as tissue gives way and the depth stop lets it. On the
+///   screen that does not move it: its tip is under the pointer at every depth.
+/// - Where tissue holds it back across the line (in a groove, with the pointer beyond the wall) it pulls towards the
+///   pointer with the load, and cuts its way there.
+/// - Where the pointer comes over an edge that hides what lies behind, the bur is lifted out and put down again: it
+/// does
+///   not go through.
 
 #include <functional>
 #include <memory>
 #include <optional>
 
 #include "handpiece/base/messages/haptic_sample.h"
+#include "handpiece/model/instrument/bur.h"
+#include "handpiece/model/tooth/tooth.h"
 #include "handpiece/senses/measure/tooth_probe.h"
 #include "handpiece/senses/view/camera.h"
+#include "handpiece/tick/contact/method.h"
 #include "handpiece/tick/device/pointer_device.h"
 
 namespace handpiece::station {
@@ -28,35 +44,27 @@ class PointerHand {
   public:
     /// Meets the tooth along a line of sight, as it is now.
     using Cast = std::function<std::optional<measure::Hit>(const view::Ray&)>;
-    /// `settings` are the device's: they say how far a target must lie in a wall to press on it with a load.
-    PointerHand(std::shared_ptr<device::PointerMailbox> mailbox, const core::Pose& start, Cast cast,
-                const device::PointerHandSettings& settings = {});
+    /// How deep the bur would be, at a pose, in the tooth before any cut.
+    using Feel = std::function<contact::Depth(const core::Pose&)>;
+    PointerHand(std::shared_ptr<device::PointerMailbox> mailbox, const core::Pose& start, Cast cast);
 
-    /// How much of the tooth is gone over a point of the surface, along an axis (unit, away from the tooth) [mm]: depth
-    /// stops count from the surface before any cut. Without it they count from the surface as it is.
-    using GoneOver = std::function<double(const core::Vec3& pointMm, const core::Vec3& axis)>;
-    void setGoneOver(GoneOver goneOver);
+    /// With every tooth and bur. Without it there is no tooth.
+    void setFeel(Feel feel);
 
     /// Before every other call when the eye has moved.
     void setEye(const view::Camera& camera, const view::Viewport& viewport);
     /// Where the bur is by now (the proxy): the press begins there, nudges go from there, and whether there is tooth to
     /// press on is looked up there. With every picture: a bur that has slipped off the tooth is held no sooner.
     void follow(const messages::HapticSample& sample);
-    /// The head's size, for the hover and for which side of the bur meets the tooth.
-    void setBur(double headLengthMm, double headRadiusMm);
-
-    /// Hovers kHoverMm off the surface under the pointer, the whole head clear of it; off the tooth in the view plane
-    /// through the last place. While pressed: in the plane across the bur's axis that was frozen at the press, or the
-    /// view plane when that is seen edge on. `slow`: kSlowFactor, from where it was when that began; what a press has
+    /// Hovers kHoverMm off the uncut tooth on the pointer's line of sight, the whole head clear of it; off the tooth in
+    /// the view plane through the last place. `slow`: kSlowFactor, from where it was when that began; what a press has
     /// lost that way it keeps until it ends.
     void move(const core::Vec2& pixel, bool slow = false);
-    /// Left button: presses with the load; `turning`: pedal down, else the bur stands still and only touches. Where
-    /// there is tooth under the bur's end the load acts along its axis. On a wall beside the bur it acts into the wall.
-    /// Off the tooth there is none, nor where the bur is dragged off it: the bur keeps the height at which the tooth
-    /// held it, and dragging brings its side to the tooth.
+    /// Left button: presses with the load; `turning`: pedal down, else the bur stands still and only touches. A bur
+    /// that was moved by keys is pressed where it is: the pointer leads it on from there.
     void press(const core::Vec2& pixel, bool turning);
-    /// Lifts the bur along its axis to kHoverMm over where the surface was before any cut; out of a cavity it comes
-    /// with the pedal still down, and is not moved sideways before it is out. Then the next move lets it hover again.
+    /// Lifts the bur off the uncut tooth by kHoverMm, along its axis or towards the eye, as is the shorter way; out of
+    /// a cavity it comes with the pedal still down, led by the walls, and goes elsewhere only when it is out.
     void release();
     void latchPedal(bool down);
     /// View steps of the keyboard [mm]: right and up on the screen, and along the bur's axis (tip first positive).
@@ -68,13 +76,26 @@ class PointerHand {
     void alignToNormal();
     void alignToTooth();
     void setLoad(double loadN);  ///< held between kLeastLoadN and kMostLoadN
-    /// Below the uncut surface where the press began, along the axis; none: off.
+    /// How far beyond its first touch of the uncut tooth the bur goes: no place of its end lies deeper, along the bur,
+    /// or, where it works with its side, along the line of sight. None: off.
     void setStop(std::optional<double> depthMm);
     /// The view is being turned: the bur stands still.
     void freeze(bool frozen);
     /// Escape, lost focus: pedal up, no press, the bur lifts. The next move or press brings it back.
     void escape();
 
+    /// Why a bur that is pressed does not cut.
+    enum class Idle {
+        no,        ///< it cuts, or is about to, or is not pressed
+        offTooth,  ///< no tooth on the pointer's line of sight
+        atStop,    ///< as deep as the depth stop allows
+        through,   ///< no deeper here: beyond it comes out of the tooth
+        onItsWay,  ///< through the air: down to the tooth, over an edge, out of a tooth that was put back round it
+        stalled,   ///< the drive stands
+        held,      ///< nothing gives way: what it touches cannot be cut with this bur, or the load is too small
+    };
+    [[nodiscard]] Idle idle() const noexcept;
+    [[nodiscard]] bool isIdleForLong() const noexcept;  ///< longer than it takes to come down
     [[nodiscard]] double loadN() const noexcept;
     [[nodiscard]] std::optional<double> stopMm() const noexcept;
     [[nodiscard]] bool isPressed() const noexcept;
@@ -86,5 +107,9 @@ class PointerHand {
     struct State;
     std::shared_ptr<State> state_;
 };
+
+/// What PointerHand feels of a tooth with a bur. One thread.
+[[nodiscard]] PointerHand::Feel feelUncut(std::shared_ptr<const tooth::Tooth> tooth,
+                                          std::shared_ptr<const instrument::Bur> bur);
 
 }  // namespace handpiece::station

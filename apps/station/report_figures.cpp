@@ -37,21 +37,24 @@ SessionFigures figuresOf(const session::SessionReader& reader) {
             f.missedPeriods += r.elapsedPeriods - 1u;
             f.totalS = period * static_cast<double>(r.tick);
             if (r.pedal > 0) f.pedalS += lasts;
-            f.mostRpm = std::max(f.mostRpm, static_cast<double>(r.speedRpm));
+            // A file may say anything: what is no number counts for nothing.
+            const double rpm = std::isfinite(r.speedRpm) ? static_cast<double>(r.speedRpm) : 0.0;
+            f.mostRpm = std::max(f.mostRpm, rpm);
             f.removedMm3 = r.removedMm3;
             if ((r.flags & messages::kCutting) != 0) {
                 f.cuttingS += lasts;
-                rpmSum += static_cast<double>(r.speedRpm);
+                rpmSum += rpm;
                 ++cutting;
             }
-            const double force = static_cast<double>(std::hypot(r.forceN[0], r.forceN[1], r.forceN[2]));
-            if (!(r.depthMm > 0.0f)) continue;
+            const double force = std::hypot(static_cast<double>(r.forceN[0]), static_cast<double>(r.forceN[1]),
+                                            static_cast<double>(r.forceN[2]));
+            if (!(r.depthMm > 0.0f) || !std::isfinite(force)) continue;
             f.contactS += lasts;
             ++contact;
             forceSum += force;
             f.peakForceN = std::max(f.peakForceN, force);
             limited += (r.flags & messages::kForceLimited) != 0;
-            ++bins[std::min(static_cast<std::size_t>(force / kBinN), kBins - 1)];
+            ++bins[std::min(static_cast<std::size_t>(std::min(force / kBinN, 1.0 * kBins)), kBins - 1)];
         }
     if (contact > 0) {
         f.meanForceN = forceSum / static_cast<double>(contact);

@@ -9,7 +9,9 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/memory.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/model/tooth/case_check.h"
 #include "handpiece/model/tooth/package.h"
 #include "station/scan_scenery.h"
 #include "station/scan_toml.h"
@@ -129,6 +131,13 @@ std::size_t facesOf(const surfacing::Surfaces& s) {
     return faces;
 }
 
+double worstOfTissuesMm(const surfacing::Surfaces& s) {
+    double worst = 0.0;
+    for (const surfacing::Surface& t : s.tissues)
+        worst = std::max(worst, t.errorBoundMm);
+    return worst;
+}
+
 std::string shown(double percent) {
     return fmt::format("{:g}", percent);
 }
@@ -141,6 +150,7 @@ void decimate(ScanResult& result, const core::Progress& progress) {
     text.fdiNumber = job.placing.fdiNumber;
     text.tissuesToml = tissuesOf(job.tissuesFile);
     result.cases.clear();
+    result.caseNotes.clear();
     const auto add = [&](double percent, surfacing::Surfaces surfaces) {
         ScannedCase made;
         made.percent = percent;
@@ -156,16 +166,42 @@ void decimate(ScanResult& result, const core::Progress& progress) {
             100.0 * static_cast<double>(facesOf(surfaces)) / static_cast<double>(facesOf(*result.full));
         add(percent, std::move(surfaces));
     } else {
-        std::vector<surfacing::Surfaces> steps = surfacing::decimatedSteps(*result.full, job.percents, progress);
+        std::vector<double> percents = job.percents;
+        const double fieldVoxelMm = tooth::FieldSettings{}.voxelMm;
+        if (percents.empty()) percents = {surfacing::usefulPercent(*result.full, fieldVoxelMm)};
+        std::vector<surfacing::Surfaces> steps = surfacing::decimatedSteps(*result.full, percents, progress);
+        if (job.percents.empty() && percents[0] < 100.0)
+            result.caseNotes.push_back(fmt::format(
+                "{} of the scan's {} faces are kept ({} %): finer ones do not show in a field of {} mm voxels. By that "
+                "the tooth's surface moved by {:.4f} mm at most, a tissue's in it by {:.3f} mm. Ask for 100 % to keep "
+                "all",
+                facesOf(steps[0]), facesOf(*result.full), shown(percents[0]), fieldVoxelMm, steps[0].outer.errorBoundMm,
+                worstOfTissuesMm(steps[0])));
         for (std::size_t i = 0; i < steps.size(); ++i)
-            add(job.percents[i], std::move(steps[i]));
+            add(percents[i], std::move(steps[i]));
     }
     core::report(progress, 1.0);
 }
 
+/// Nothing is written that could not be opened.
+void check(ScanResult& result, const core::Progress& progress) {
+    const double share = 1.0 / static_cast<double>(result.cases.size());
+    for (std::size_t i = 0; i < result.cases.size(); ++i) {
+        const ScannedCase& made = result.cases[i];
+        const double from = share * static_cast<double>(i);
+        const std::string which =
+            result.cases.size() > 1 ? fmt::format("the case of {} %: ", shown(made.percent)) : std::string();
+        for (const tooth::CaseFinding& f : tooth::checkCase(made.toothCase, core::part(progress, from, from + share))) {
+            const std::string told = which + (f.part.empty() ? "" : f.part + ": ") + f.what;
+            if (f.isError)
+                throw core::Error("the tooth of this scan cannot be cut: " + told, "scan",
+                                  "ask for more faces or another grid of the tissues, or mark what is there by hand");
+            result.caseNotes.push_back(told);
+        }
+    }
+}
+
 void requireJob(const ScanJob& job) {
-    if (job.percents.empty() && job.faces == 0)
-        throw core::Error("no percentage is given", "scan", "give one at least, as 100");
     for (const double p : job.percents)
         if (!(p > 0.0 && p <= 100.0))
             throw core::Error(fmt::format("{} % is no share of a surface", p), "scan", "give above 0 to 100");
@@ -183,7 +219,7 @@ void requireJob(const ScanJob& job) {
 
 std::string_view nameOf(ScanStage stage) {
     constexpr std::array<std::string_view, kScanStages.size()> kNames{"reading", "segmenting", "making surfaces",
-                                                                      "placing", "reducing"};
+                                                                      "placing", "reducing",   "checking"};
     return kNames[static_cast<std::size_t>(stage)];
 }
 
@@ -209,6 +245,7 @@ std::vector<std::string> ScanResult::notes() const {
     take(ownNotes);
     for (const ScannedCase& c : cases)
         take(c.surfaces->notes);
+    take(caseNotes);
     return all;
 }
 
@@ -217,7 +254,7 @@ ScanResult runScanJob(const ScanJob& job, const ScanProgress& progress, const Sc
     placing::requireFdi(job.placing.fdiNumber);
     // Known to be missing now, not after a minute of work.
     (void)tissuesOf(job.tissuesFile);
-    if (!job.intraoral.empty() && !fs::is_regular_file(job.intraoral))
+    if (!job.intraoral.empty() && !fs::is_regular_file(core::statusOf(job.intraoral)))
         throw core::Error("there is no such file", job.intraoral.string(), "check the intraoral scan's name");
     ScanResult result;
     if (before) result = *before;
@@ -225,6 +262,7 @@ ScanResult runScanJob(const ScanJob& job, const ScanProgress& progress, const Sc
     result.job = job;
     result.timings = {};
     result.cases.clear();
+    result.caseNotes.clear();
     bool isStale = before == nullptr;
     struct Step {
         ScanStage stage;
@@ -261,7 +299,8 @@ ScanResult runScanJob(const ScanJob& job, const ScanProgress& progress, const Sc
               r.ownNotes.clear();
               r.isPlaced = false;
           }},
-         {ScanStage::decimate, false, false, &decimate, [](ScanResult& r) { r.cases.clear(); }}}};
+         {ScanStage::decimate, false, false, &decimate, [](ScanResult& r) { r.cases.clear(); }},
+         {ScanStage::check, false, false, &check, [](ScanResult&) {}}}};
     for (const Step& step : steps) {
         isStale = isStale || !step.isSame || !step.isThere;
         if (!isStale) continue;
@@ -271,6 +310,7 @@ ScanResult runScanJob(const ScanJob& job, const ScanProgress& progress, const Sc
         core::report(listener, 0.0);
         const Clock clock;
         step.work(result, listener);
+        core::giveBackFreeMemory();
         if (step.stage == ScanStage::place) result.isPlaced = true;
         result.timings.seconds[static_cast<std::size_t>(step.stage)] = clock.seconds();
         core::report(listener, 1.0);
@@ -281,7 +321,7 @@ ScanResult runScanJob(const ScanJob& job, const ScanProgress& progress, const Sc
 std::vector<fs::path> casePlaces(const ScanJob& job, const fs::path& out) {
     if (out.empty() || !out.has_filename())
         throw core::Error("a case needs a folder or a .handpiece file", "output", "name one");
-    if (job.faces > 0 || job.percents.size() == 1) return {out};
+    if (job.faces > 0 || job.percents.size() <= 1) return {out};
     std::vector<fs::path> places;
     for (const double percent : job.percents) {
         fs::path place = out;
@@ -299,7 +339,7 @@ std::vector<fs::path> writeScanCases(const ScanResult& result, const fs::path& o
     std::vector<fs::path> made;
     try {
         for (std::size_t i = 0; i < places.size(); ++i) {
-            if (!fs::exists(places[i])) made.push_back(places[i]);
+            if (!core::isThere(places[i])) made.push_back(places[i]);
             tooth::writeCase(result.cases[i].toothCase, places[i]);
         }
     } catch (const core::Error&) {

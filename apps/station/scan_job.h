@@ -48,8 +48,8 @@ struct ScanJob {
     std::filesystem::path tissuesFile;  ///< table of tissues of one's own; empty: as shipped
     bool scenery = false;               ///< what stands around the tooth in the scan, as far as kSceneryReachMm
     // How fine.
-    std::vector<double> percents{100.0};  ///< a case each
-    std::size_t faces = 0;                ///< of all surfaces together, instead of percents; 0: by percents
+    std::vector<double> percents;  ///< a case each; empty: one case, with as many faces as the standard field can use
+    std::size_t faces = 0;         ///< of all surfaces together, instead of percents; 0: by percents
 };
 inline constexpr double kSceneryReachMm = 8.0;
 
@@ -61,10 +61,10 @@ inline constexpr double kSceneryReachMm = 8.0;
 [[nodiscard]] ScanJob readScanJob(const std::filesystem::path& file);
 void writeScanJob(const ScanJob& job, const std::filesystem::path& file);
 
-enum class ScanStage { read, segment, surface, place, decimate };
-inline constexpr std::array<ScanStage, 5> kScanStages{ScanStage::read, ScanStage::segment, ScanStage::surface,
-                                                      ScanStage::place, ScanStage::decimate};
-/// "reading", "segmenting", "making surfaces", "placing", "reducing".
+enum class ScanStage { read, segment, surface, place, decimate, check };
+inline constexpr std::array<ScanStage, 6> kScanStages{ScanStage::read,  ScanStage::segment,  ScanStage::surface,
+                                                      ScanStage::place, ScanStage::decimate, ScanStage::check};
+/// "reading", "segmenting", "making surfaces", "placing", "reducing", "checking".
 [[nodiscard]] std::string_view nameOf(ScanStage stage);
 
 /// Called with the stage at work and the fraction of it that is done (0..1); returns false to cancel: then
@@ -104,6 +104,7 @@ struct ScanResult {
     std::vector<std::string> ownNotes;  ///< of the work here; notes() has all
     // decimate
     std::vector<ScannedCase> cases;
+    std::vector<std::string> caseNotes;  ///< how many faces were chosen; with check: what to know of each case
 
     ScanTimings timings;
     /// What a person should know, of all stages: plain sentences without names or paths.
@@ -112,9 +113,10 @@ struct ScanResult {
 
 /// Does the job up to and with stage `last`. Results of `before` are taken over where no decision that they depend on
 /// has changed, so a wizard passes its last result and waits for what it changed only. A scan read elsewhere is handed
-/// in as before->scan with before->job holding the same source, series and spacing. Throws core::Error.
+/// in as before->scan with before->job holding the same source, series and spacing. Throws core::Error, also where a
+/// case would not pass tooth::checkCase().
 [[nodiscard]] ScanResult runScanJob(const ScanJob& job, const ScanProgress& progress = {},
-                                    const ScanResult* before = nullptr, ScanStage last = ScanStage::decimate);
+                                    const ScanResult* before = nullptr, ScanStage last = ScanStage::check);
 
 /// The places that writeScanCases() writes to: `out` for one case; for several CASE-6, CASE-12, ... (mine.handpiece:
 /// mine-6.handpiece, ...).

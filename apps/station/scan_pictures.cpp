@@ -256,14 +256,10 @@ std::vector<NamedPicture> viewsOf(const ScanResult& result, int width, int heigh
 }
 
 std::string dataAddressOf(const view::Image& image) {
-    std::string folder = (std::filesystem::temp_directory_path() / "handpiece-report-XXXXXX").string();
-    if (mkdtemp(folder.data()) == nullptr)
-        throw core::Error("no temporary folder can be made", folder, "make room there, or set TMPDIR");
-    const std::filesystem::path file = std::filesystem::path(folder) / "picture.png";
+    const core::PrivateFolder folder;
+    const std::filesystem::path file = folder.path() / "picture.png";
     view::writePng(image, file);
     const std::vector<std::byte> bytes = core::readFile(file);
-    std::error_code left;  // a file left in the temporary folder harms nobody
-    std::filesystem::remove_all(folder, left);
     std::vector<std::uint8_t> numbers(bytes.size());
     std::transform(bytes.begin(), bytes.end(), numbers.begin(),
                    [](std::byte b) { return std::to_integer<std::uint8_t>(b); });

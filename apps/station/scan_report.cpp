@@ -80,7 +80,7 @@ std::string picturesOf(const ScanResult& result, const ScanReportSettings& setti
         html += "</div>\n";
     } catch (const core::Error& e) {
         if (e.problem() == "cancelled") throw;
-        html = fmt::format("<p class=\"missing\">No pictures of the tooth: {}</p>\n", escapedText(e.what()));
+        html = fmt::format("<p class=\"missing\">No pictures of the tooth: {}</p>\n", escapedText(e.problem()));
     }
     html += "<p class=\"note\">";
     for (const view::LegendEntry& entry : view::legendOf(tissuesOf(m), view::Palette::textbook))

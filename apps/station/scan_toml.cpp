@@ -20,6 +20,7 @@ using core::Vec3;
 
 constexpr std::int64_t kFormat = 1;
 constexpr double kMostMm = 1e4;
+constexpr std::uint64_t kMostJobBytes = 16u << 20;  // marks by hand may be many
 
 std::string quoted(const std::string& text) {
     try {
@@ -265,7 +266,7 @@ std::string toToml(const ScanJob& job) {
 }
 
 ScanJob scanJobFromToml(std::string_view text, const std::string& where) {
-    const Table table = Table::parse(text, where);
+    const Table table = Table::parse(text, where, kMostJobBytes);
     if (const std::int64_t format = table.integer("format").value_or(0); format != kFormat)
         table.fail(fmt::format("the job's format is {}, this program reads format {}", format, kFormat),
                    fmt::format("add the line: format = {}", kFormat), "format");
@@ -291,8 +292,11 @@ ScanJob scanJobFromToml(std::string_view text, const std::string& where) {
         static_cast<int>(checked(table, "fdi", static_cast<double>(table.integer("fdi").value_or(0)), 0.0, 85.0));
     job.tissuesFile = table.text("tissues").value_or("");
     job.scenery = table.flag("scenery").value_or(false);
-    if (table.has("percents")) job.percents = table.numbers("percents");
-    if (job.percents.empty()) table.fail("no percentage is given", "give one at least, as [100]", "percents");
+    if (table.has("percents")) {
+        job.percents = table.numbers("percents");
+        if (job.percents.empty())
+            table.fail("no percentage is given", "give one at least, as [100], or leave the line out", "percents");
+    }
     for (const double p : job.percents)
         if (!(p > 0.0 && p <= 100.0)) table.fail(fmt::format("{} % is no share", p), "give above 0 to 100", "percents");
     job.faces = static_cast<std::size_t>(
@@ -325,13 +329,13 @@ ScanJob scanJobFromToml(std::string_view text, const std::string& where) {
 }
 
 ScanJob readScanJob(const std::filesystem::path& file) {
-    constexpr std::uint64_t kMostBytes = 16u << 20;
-    const std::vector<std::byte> bytes = core::readFile(file, kMostBytes);
+    const std::vector<std::byte> bytes = core::readFile(file, kMostJobBytes);
     return scanJobFromToml({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file.string());
 }
 
 void writeScanJob(const ScanJob& job, const std::filesystem::path& file) {
-    core::writeFile(file, toToml(job));
+    // It names the folder of a patient.
+    core::writeFile(file, toToml(job), {.ownerOnly = true});
 }
 
 }  // namespace handpiece::station

@@ -92,7 +92,7 @@ class Section {
 };
 
 void read(const Table& file, SchoolDefaults& d) {
-    each(d, [&] { file.allowOnly({"window", "hand", "tooth", "folders", "sessions", "sound"}); });
+    each(d, [&] { file.allowOnly({"window", "hand", "tooth", "measure", "folders", "sessions", "sound"}); });
     Section window(file, "window", d);
     window.allowOnly({"language", "layout"});
     window.text("language", {"en", "ja"}, d.language);
@@ -110,6 +110,17 @@ void read(const Table& file, SchoolDefaults& d) {
     Section tooth(file, "tooth", d);
     tooth.allowOnly({"voxel_um"});
     tooth.number("voxel_um", 20.0, 400.0, d.voxelUm);
+    Section measure(file, "measure", d);
+    measure.allowOnly({"pulp_good_mm", "pulp_least_mm"});
+    measure.number("pulp_good_mm", 0.0, 5.0, d.pulpGoodMm);
+    measure.number("pulp_least_mm", 0.0, 5.0, d.pulpLeastMm);
+    if (d.pulpGoodMm && d.pulpLeastMm && *d.pulpLeastMm > *d.pulpGoodMm) {
+        measure.check("pulp_least_mm", false,
+                      fmt::format("pulp_least_mm = {} is more than pulp_good_mm", *d.pulpLeastMm),
+                      "give the smaller thickness here");
+        d.pulpGoodMm.reset();
+        d.pulpLeastMm.reset();
+    }
     Section folders(file, "folders", d);
     folders.allowOnly({"sessions", "cases"});
     folders.folder("sessions", d.sessionsFolder);

@@ -23,6 +23,7 @@ struct SchoolDefaults {
     std::optional<double> scale;                                       ///< hand's motion to bur's: 1, 2 or 3
     std::optional<bool> crisp;                                         ///< knock and hum
     std::optional<double> voxelUm;                                     ///< 20 to 400
+    std::optional<double> pulpGoodMm, pulpLeastMm;                     ///< limits of the lamp over the pulp
     std::optional<std::filesystem::path> sessionsFolder, casesFolder;  ///< absolute
     std::optional<bool> record;                                        ///< keep a session of each sitting
     std::optional<bool> sound;                                         ///< false: muted

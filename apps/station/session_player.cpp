@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/tooth/case_bytes.h"
@@ -77,6 +78,29 @@ std::vector<device::Reading> readingsOf(const std::vector<Record>& records, std:
     return readings;
 }
 
+/// Where the session goes on, on the tooth of the key frame there.
+struct Seam {
+    std::uint64_t tick = 0, record = 0;  ///< the first
+    std::size_t event = 0;
+    Resumption resumption;
+};
+
+std::vector<Seam> seamsOf(const session::SessionReader& reader, const std::vector<Event>& events, double rateHz,
+                          const std::string& where) {
+    std::vector<Seam> seams;
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        if (!isNamed(events[i], EventName::resume)) continue;
+        const std::uint64_t record = reader.indexOfTick(events[i].tick);
+        // Cut off before anything followed, or gone on with where nothing had been done yet.
+        if (record == 0 || record >= reader.size()) continue;
+        if (!seams.empty() && seams.back().record == record) seams.pop_back();
+        seams.push_back({events[i].tick, record, i, resumptionFromJson(events[i].text, where)});
+        if (seams.back().resumption.settings.rateHz != rateHz)
+            throw core::Error("the session goes on at another rate", where, "take another copy");
+    }
+    return seams;
+}
+
 /// A state of the tooth that the session tells: at its end or, when it was cut off, in its last key frame.
 struct Told {
     std::uint64_t tick = 0;
@@ -94,8 +118,9 @@ struct SessionPlayer::State {
         toothCase = tooth::decodeCase(reader.info().tooth, where);
         if (!reader.info().scenery.empty()) toothCase.scenery = tooth::decodeCase(reader.info().scenery, where).parts;
         first = settingsFromJson(reader.info().settings, where);
+        seams = seamsOf(reader, events, first.rateHz, where);
         if (settings.field) {
-            if (first.resumed)
+            if (first.resumed || !seams.empty())
                 throw core::Error("this session went on from a tooth that had been cut before", where,
                                   "keep the voxel size, or begin with a whole tooth")
                     .as("voxel-resumed");
@@ -123,6 +148,7 @@ struct SessionPlayer::State {
     const std::vector<std::uint64_t> frames;
     tooth::Case toothCase;
     StationSettings first;
+    std::vector<Seam> seams;
     bool isOtherField = false;
     tooth::CutState start;
     std::optional<history::History> strokesBefore;  ///< strokes before the session
@@ -133,17 +159,23 @@ struct SessionPlayer::State {
     std::unique_ptr<loop::HapticLoop> loop;
     device::ReplayDevice* hand = nullptr;  // the loop's
     std::unique_ptr<CutSession> cutting;
-    std::uint64_t next = 0;  ///< record to be played
+    std::uint64_t next = 0;   ///< record to be played
+    std::size_t segment = 0;  ///< seams before it
     std::size_t nextEvent = 0, nextFrame = 0;
     std::vector<Record> stretch;
     std::optional<core::Vec3> believed;  // the last pose of the hand that was believed
     std::uint64_t stretchFirst = 0;
     bool isExact = true, isRunningUp = false;
-    std::uint64_t differs = 0, firstDiffering = 0, skippedSteps = 0;
+    std::uint64_t differs = 0, firstDiffering = 0, skippedSteps = 0, brokenSeams = 0;
     messages::HapticSample sample;
 
     [[nodiscard]] double timeOf(std::uint64_t tick) const { return static_cast<double>(tick) / first.rateHz; }
     [[nodiscard]] bool isAtEnd() const { return next >= reader.size(); }
+    /// The first record of a segment, and the one behind its last.
+    [[nodiscard]] std::uint64_t firstOf(std::size_t s) const { return s == 0 ? 0 : seams[s - 1].record; }
+    [[nodiscard]] std::uint64_t endOf(std::size_t s) const {
+        return s < seams.size() ? seams[s].record : reader.size();
+    }
 
     [[nodiscard]] tooth::CutState stateOf(const session::KeyFrame& frame) const {
         return tooth::decodeState(frame.state, station.identity, *station.tooth, where);
@@ -158,11 +190,19 @@ struct SessionPlayer::State {
         if (!state.bricks.empty()) station.resume(state);
         station.settings = first;
         next = index;
+        segment = 0;
+        while (segment < seams.size() && seams[segment].record <= index)
+            ++segment;
+        stretch.clear();
         loadStretch();
         const std::uint64_t tick = stretch.front().tick;
         nextEvent = 0;
-        // Of the first tick they are played: their commands were given while it ran.
-        for (; index > 0 && nextEvent < events.size() && events[nextEvent].tick <= tick; ++nextEvent)
+        if (segment > 0) {
+            station.settings = seams[segment - 1].resumption.settings;
+            nextEvent = seams[segment - 1].event + 1;
+        }
+        // Of a loop's first tick they are played: their commands were given while it ran.
+        for (; index > firstOf(segment) && nextEvent < events.size() && events[nextEvent].tick <= tick; ++nextEvent)
             if (isChange(events[nextEvent])) (void)applyChange(events[nextEvent].text, station.settings, where);
         nextFrame = static_cast<std::size_t>(std::lower_bound(frames.begin(), frames.end(), tick) - frames.begin());
         believed.reset();
@@ -181,12 +221,14 @@ struct SessionPlayer::State {
     void begin() {
         startAt(0, start, strokesBefore ? &*strokesBefore : nullptr);
         isExact = true;
+        brokenSeams = 0;
     }
 
     void loadStretch() {
         const bool follows = !stretch.empty() && stretchFirst + stretch.size() == next;
         const std::uint64_t before = follows ? stretch.back().tick : 0;
-        std::vector<Record> read = reader.records(next, kStretch);
+        std::vector<Record> read =
+            reader.records(next, static_cast<std::size_t>(std::min<std::uint64_t>(kStretch, endOf(segment) - next)));
         for (std::size_t i = follows ? 0 : 1; i < read.size(); ++i) {
             const std::uint64_t last = i > 0 ? read[i - 1].tick : before;
             if (read[i].tick - last == read[i].elapsedPeriods) continue;
@@ -279,7 +321,12 @@ struct SessionPlayer::State {
         const double last = std::min(toS, timeOf(lastTick));
         const double most = std::max((last - sample.timeS) * first.rateHz, 1.0);
         const std::uint64_t lastOfAll = tickAt(last);
-        while (!isAtEnd() && record().tick <= lastOfAll) {
+        while (!isAtEnd()) {
+            if (next == endOf(segment)) {
+                if (seams[segment].tick > lastOfAll) break;
+                crossSeam();
+            }
+            if (record().tick > lastOfAll) break;
             playOne();
             if ((next - from) % kReportEvery == 0)
                 core::report(progress, std::min(1.0, static_cast<double>(next - from) / most));
@@ -300,30 +347,84 @@ struct SessionPlayer::State {
             showWhole();
             return playTo(target, progress);
         }
-        const auto frame = static_cast<std::size_t>(after - frames.begin() - 1);
-        const tooth::CutState state = stateOf(reader.keyFrame(frame));
+        const tooth::CutState state = jumpTo(static_cast<std::size_t>(after - frames.begin() - 1));
+        if (live) live->apply(tooth::changeBetween(live->state({}), state));
+        playTo(target, progress);
+    }
+
+    /// To a key frame, with the run-up before it. Returns its state.
+    tooth::CutState jumpTo(std::size_t frame) {
+        tooth::CutState state = stateOf(reader.keyFrame(frame));
         const auto runUp = static_cast<std::uint64_t>(kRunUpS * first.rateHz);
         const std::uint64_t from = frames[frame] > runUp ? frames[frame] - runUp : 0;
-        std::uint64_t index = std::min(reader.indexOfTick(from), reader.size() - 1);
-        stretch.clear();
-        index = afterGap(index, frames[frame]);
+        std::size_t loopOf = 0;
+        while (loopOf < seams.size() && seams[loopOf].tick <= frames[frame])
+            ++loopOf;
+        std::uint64_t index = std::clamp(reader.indexOfTick(from), firstOf(loopOf), endOf(loopOf) - 1);
+        index = afterGap(index, frames[frame], endOf(loopOf));
         isExact = false;
         startAt(index, state);
         isRunningUp = true;
-        while (!isAtEnd() && record().tick <= frames[frame])
+        while (next < endOf(loopOf) && record().tick <= frames[frame])
             playOne();
         isRunningUp = false;
         put(state);
         discardBricks();
         cutting = std::make_unique<CutSession>(station, nullptr, false);
-        if (live) live->apply(tooth::changeBetween(live->state({}), state));
         differs = firstDiffering = 0;
-        playTo(target, progress);
+        return state;
+    }
+
+    /// As after the pause or the crash: another loop on the tooth as it was brought back. Looks whether it was that of
+    /// before.
+    void crossSeam() {
+        const Seam& seam = seams[segment];
+        const auto frame = std::lower_bound(frames.begin(), frames.end(), seam.tick);
+        if (frame == frames.end() || *frame != seam.tick)
+            throw core::Error("the state that the session went on from is missing", where, "take another copy");
+        const tooth::CutState state = stateOf(reader.keyFrame(static_cast<std::size_t>(frame - frames.begin())));
+        const std::uint64_t hash = tooth::stateHash(state), differed = differs, differedFirst = firstDiffering,
+                            skipped = skippedSteps;
+        const bool wasExact = isExact;
+        KeptHistory strokes;
+        if (wasExact) {
+            const tooth::CutState done = station.field->state();
+            const std::uint64_t before = tooth::stateHash(done);
+            if (!seam.resumption.isRecovered) {
+                cutting->settle(done);
+                strokes = keepHistory(cutting->history(), state, station);
+            } else {
+                strokes = keepHistory(historyByKeyFrames(state, segment), state, station);
+            }
+            const bool isTold = seam.resumption.stateHash == hashText(hash);
+            const bool follows = before == hash || (seam.resumption.isRecovered && hash == foundAfterCrash(segment));
+            if (!isTold || !follows) ++brokenSeams;
+        }
+        startAt(seam.record, state, strokes.steps.get());
+        isExact = wasExact;
+        differs = differed;
+        firstDiffering = differedFirst;
+        skippedSteps = skipped;
+        if (live) live->apply(tooth::changeBetween(live->state({}), state));
+    }
+
+    /// Of the tooth that recover() found when the session ended with this segment. Plays somewhere else afterwards.
+    std::uint64_t foundAfterCrash(std::size_t lastSegment) {
+        const std::uint64_t last = reader.records(endOf(lastSegment) - 1, 1).front().tick;
+        const std::uint64_t begun = reader.records(0, 1).front().tick;
+        const auto after = std::upper_bound(frames.begin(), frames.end(), last);
+        // As seek() decides there: near enough, or without a key frame, it was played from the beginning.
+        if (after == frames.begin() || *(after - 1) <= begun || timeOf(last) - timeOf(begun) <= kPlayedAheadS) return 0;
+        const std::shared_ptr<LiveTooth> seen = std::exchange(live, nullptr);
+        jumpTo(static_cast<std::size_t>(after - frames.begin() - 1));
+        playTo(timeOf(last), {});
+        live = seen;
+        return station.field->stateHash();
     }
 
     /// The first record from which on none is missing up to a tick.
-    [[nodiscard]] std::uint64_t afterGap(std::uint64_t index, std::uint64_t toTick) const {
-        const std::uint64_t to = std::min(reader.indexOfTick(toTick), reader.size() - 1);
+    [[nodiscard]] std::uint64_t afterGap(std::uint64_t index, std::uint64_t toTick, std::uint64_t endOfLoop) const {
+        const std::uint64_t to = std::min(reader.indexOfTick(toTick), endOfLoop - 1);
         const std::vector<Record> all = reader.records(index, static_cast<std::size_t>(to - index + 1));
         std::uint64_t from = index;
         for (std::size_t i = 1; i < all.size(); ++i)
@@ -342,7 +443,9 @@ struct SessionPlayer::State {
         }
     }
 
-    [[nodiscard]] history::History historyByKeyFrames(const tooth::CutState& end) const {
+    /// As the session's first segments leave it, this one the last.
+    [[nodiscard]] history::History historyByKeyFrames(const tooth::CutState& end, std::size_t lastSegment) const {
+        const std::uint64_t last = reader.records(endOf(lastSegment) - 1, 1).front().tick;
         tooth::CutMirror mirror(station.tooth);
         const history::MirrorSource source(mirror);
         history::History history;
@@ -362,16 +465,20 @@ struct SessionPlayer::State {
         bool inStroke = false;
         auto event = events.begin();
         // What came after the last sample that reached the file is not played either.
-        for (std::size_t f = 0; f < frames.size() && frames[f] <= lastTick; ++f) {
+        for (std::size_t f = 0; f < frames.size() && frames[f] <= last; ++f) {
             for (; event != events.end() && event->tick <= frames[f]; ++event) {
                 if (isNamed(*event, EventName::strokeBegin)) inStroke = true;
                 if (isNamed(*event, EventName::strokeEnd)) inStroke = false;
+                if (isNamed(*event, EventName::resume)) {  // a stroke under way had ended
+                    inStroke = false;
+                    if (frames[f] == event->tick) cutTo(stateOf(reader.keyFrame(f)));
+                }
                 if (const auto step = stepOf(*event))
                     if (const auto change = take(history, *step)) mirror.apply(*change);
             }
             if (!inStroke) cutTo(stateOf(reader.keyFrame(f)));
         }
-        for (; event != events.end() && event->tick <= lastTick; ++event)
+        for (; event != events.end() && event->tick <= last; ++event)
             if (const auto step = stepOf(*event))
                 if (const auto change = take(history, *step)) mirror.apply(*change);
         cutTo(end);
@@ -379,14 +486,14 @@ struct SessionPlayer::State {
     }
 
     [[nodiscard]] std::optional<Told> told() const {
+        const auto frame = reader.keyFrameBefore(lastTick);
         for (auto e = events.rbegin(); e != events.rend(); ++e) {
-            if (!isNamed(*e, EventName::end)) continue;
+            if (!isNamed(*e, EventName::end) || (frame && frame->tick > e->tick)) continue;
             const auto end = nlohmann::json::parse(e->text, nullptr, false);
             if (!end.is_object() || !end.contains("state_hash") || !end["state_hash"].is_string())
                 throw core::Error("the event that ends the session is damaged", where);
             return Told{e->tick, end["state_hash"].get<std::string>()};
         }
-        const auto frame = reader.keyFrameBefore(lastTick);
         if (!frame) return std::nullopt;
         return Told{frame->tick, hashText(tooth::stateHash(stateOf(*frame)))};
     }
@@ -463,7 +570,7 @@ const history::History& SessionPlayer::endHistory() {
 }
 
 history::History SessionPlayer::historyByKeyFrames(const tooth::CutState& end) const {
-    return state_->historyByKeyFrames(end);
+    return state_->historyByKeyFrames(end, state_->seams.size());
 }
 
 bool SessionPlayer::isExact() const noexcept {
@@ -501,7 +608,9 @@ Verdict SessionPlayer::compareAll(const core::Progress& progress) {
         verdict.hash = hashNow();
     }
     verdict.recorded = told ? told->hash : "";
-    verdict.matches = told && verdict.hash == told->hash;
+    verdict.seams = s.seams.size();
+    verdict.brokenSeams = s.brokenSeams;
+    verdict.matches = told && verdict.hash == told->hash && verdict.brokenSeams == 0;
     verdict.differingTicks = s.differs;
     verdict.firstDifferingTick = s.firstDiffering;
     return verdict;

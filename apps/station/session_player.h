@@ -23,10 +23,13 @@ struct Verdict {
     std::string recorded;  ///< what the session says; empty when it was cut off before it told a state
     bool matches = false, complete = false;
     std::uint64_t ticks = 0, differingTicks = 0, firstDifferingTick = 0;
+    /// Where the session goes on after a pause or a crash, and how often the tooth there is not what was done before.
+    std::uint64_t seams = 0, brokenSeams = 0;
 };
 /// From the beginning on it cuts the very tooth that was cut, bit for bit. After a jump it goes on from the key frame
 /// before, with half a second of run-up for rotor and proxy; at each further key frame the tooth is the recorded one
-/// again. One thread.
+/// again. Where the session goes on after a pause or a crash it does what was done then: another loop, on the tooth as
+/// it was brought back. One thread.
 class SessionPlayer {
   public:
     struct Settings {

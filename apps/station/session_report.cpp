@@ -85,14 +85,10 @@ Deepest deepestOf(const std::vector<surface::BrickUpdate>& updates) {
 }
 
 std::string dataAddress(const view::Image& image) {
-    std::string folder = (std::filesystem::temp_directory_path() / "handpiece-report-XXXXXX").string();
-    if (mkdtemp(folder.data()) == nullptr)
-        throw core::Error("no temporary folder can be made", folder, "make room there, or set TMPDIR");
-    const std::filesystem::path file = std::filesystem::path(folder) / "picture.png";
+    const core::PrivateFolder folder;
+    const std::filesystem::path file = folder.path() / "picture.png";
     view::writePng(image, file);
     const std::vector<std::byte> bytes = core::readFile(file);
-    std::error_code left;  // a file left in the temporary folder harms nobody
-    std::filesystem::remove_all(folder, left);
     std::vector<std::uint8_t> numbers(bytes.size());
     std::transform(bytes.begin(), bytes.end(), numbers.begin(),
                    [](std::byte b) { return std::to_integer<std::uint8_t>(b); });
@@ -182,7 +178,7 @@ std::string picturesOf(const SessionPlayer& player, const ReportSettings& settin
                                    "section through the deepest place, lines every millimetre");
         return html + "</div>\n" + Artist::legend(player.station().tooth->tissues.tissues());
     } catch (const core::Error& e) {
-        return fmt::format("<p class=\"missing\">No pictures: {}</p>\n", escapedText(e.what()));
+        return fmt::format("<p class=\"missing\">No pictures: {}</p>\n", escapedText(e.problem()));
     }
 }
 
@@ -233,6 +229,11 @@ std::string eventsOf(const SessionPlayer& player) {
                 about = fmt::format("stiffness x {:.3g}, damping x {:.3g}, friction x {:.3g}",
                                     now.parameters.stiffnessMultiplier, now.parameters.dampingMultiplier,
                                     now.parameters.frictionMultiplier);
+        } else if (e.name == session::nameOf(session::EventName::resume)) {
+            const Resumption resumption = resumptionFromJson(e.text, "session");
+            now = resumption.settings;
+            about = fmt::format("{}, {}, tooth {}", resumption.isRecovered ? "its program had ended" : "after a pause",
+                                now.bur->name(), resumption.stateHash);
         } else if (e.text.size() < 80) {
             about = wordsOf(e.text);
         }
@@ -301,6 +302,9 @@ std::string sessionReport(SessionPlayer& player, const ReportSettings& settings,
     record.add("periods left out (the machine was late)", fmt::format("{}", f.missedPeriods));
     record.add("closed properly", verdict.complete ? "yes" : "no: it was cut off");
     record.add("ticks that differ when cut again", fmt::format("{}", verdict.differingTicks));
+    if (verdict.seams > 0)
+        record.add("gone on with, on the tooth of before",
+                   fmt::format("{} of {} times", verdict.seams - verdict.brokenSeams, verdict.seams));
     body += "<h2>Figures</h2>\n<div class=\"two\"><div>" + cavity.html("Cavity") + times.html("Times") + "</div><div>" +
             forces.html("Force and speed") + "</div></div>\n";
 
@@ -322,7 +326,9 @@ std::string sessionReport(SessionPlayer& player, const ReportSettings& settings,
                   verdict.hash)
             : fmt::format("<p class=\"bad\">{} (state {})</p>\n",
                           verdict.recorded.empty() ? "The session was cut off before it told a state to compare with."
-                                                   : "Cut again from the record, the tooth is another.",
+                          : verdict.brokenSeams > 0
+                              ? "Where the session goes on after a pause, it does so on another tooth than was left."
+                              : "Cut again from the record, the tooth is another.",
                           verdict.hash);
     core::report(progress, 1.0);
     return fmt::format(

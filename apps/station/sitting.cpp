@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/base/rt/clock.h"
 #include "handpiece/model/tooth/case_bytes.h"
 #include "handpiece/model/tooth/cut_state_file.h"
@@ -66,6 +67,14 @@ const char* noticeOf(EventName name) {
 std::unique_ptr<session::Recorder> recorderFor(const Station& station, const tooth::Case& toothCase,
                                                const SittingSettings& settings) {
     if (settings.sessionFile.empty()) return nullptr;
+    if (settings.session != SittingSettings::Session::anew) {
+        auto recorder = std::make_unique<session::Recorder>(settings.sessionFile);
+        // The key frame with the tooth as it is comes first of all that follows (CutSession).
+        recorder->event(0, EventName::resume,
+                        resumptionJson({station.settings, hashText(station.field->stateHash()),
+                                        settings.session == SittingSettings::Session::recovered}));
+        return recorder;
+    }
     session::SessionInfo info;
     info.rateHz = station.settings.rateHz;
     info.code = settings.code;
@@ -513,7 +522,7 @@ tooth::Attempt Sitting::attempt(const std::filesystem::path& caseFile) const {
     const SittingStatus status = this->status();
     const StationSettings chosen = settings();
     tooth::Attempt attempt;
-    attempt.caseFile = std::filesystem::absolute(caseFile);
+    attempt.caseFile = core::wholePath(caseFile);
     attempt.caseKey = state_->caseKey;
     attempt.caseName = state_->caseName;
     attempt.state = tooth::encodeState(now, state_->station.identity);

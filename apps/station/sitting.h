@@ -28,10 +28,13 @@ using SampleFeed = rt::TripleBuffer<messages::HapticSample>;
 
 struct SittingSettings {
     std::filesystem::path sessionFile;  ///< empty: nothing is recorded
-    std::string code;                   ///< of the student, may be empty
-    double elapsedS = 0.0;              ///< before, of an attempt that goes on
-    KeptHistory history;                ///< strokes before, that led to the station's tooth as it is
-    bool realTime = true;               ///< asks for real-time scheduling
+    /// A new file, or one that goes on: where this program paused, or with what recover() found in it.
+    enum class Session { anew, continued, recovered };
+    Session session = Session::anew;
+    std::string code;       ///< of the student, may be empty
+    double elapsedS = 0.0;  ///< before, of an attempt that goes on
+    KeptHistory history;    ///< strokes before, that led to the station's tooth as it is
+    bool realTime = true;   ///< asks for real-time scheduling
     double spinUs = 0.0;
     bool lowerButtonUndoes = true;  ///< of a device's stylus: held half a second with the bur clear (HeldButton)
 };

@@ -7,17 +7,22 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <type_traits>
+#include <utility>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/contact/hull_method.h"
+#include "handpiece/tick/device/capability.h"
 
 namespace handpiece::station {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostPieces = 1000;
+constexpr double kMostBandMm = 5.0, kMostReserveBricks = 3e6;
 
 // What a session keeps of each thing, named once: Write puts the members into JSON, Read takes them out.
 
@@ -130,8 +135,35 @@ struct Write {
     }
 };
 
+/// What a file says that nothing here can mean.
+struct Senseless {
+    std::string what;
+};
+
+void requireRange(std::string_view name, double value, double low, double high) {
+    if (!(value >= low && value <= high))
+        throw Senseless{fmt::format("{} is {}, and may be {} to {}", name, value, low, high)};
+}
+
 struct Read {
     const Json& json;
+    template <std::integral T>
+    void operator()(const std::string& key, T& value) const requires(!std::same_as<T, bool>) {
+        const Json& found = json.at(key);
+        // What lies outside a type would come out of it as any number.
+        const bool isBig = found.is_number_unsigned() && !std::in_range<T>(found.get<std::uint64_t>());
+        if (!found.is_number_integer() || isBig ||
+            (!found.is_number_unsigned() && !std::in_range<T>(found.get<std::int64_t>())))
+            throw Senseless{fmt::format("{} is no whole number that can be meant", key)};
+        found.get_to(value);
+    }
+    void operator()(const std::string& key, std::array<std::uint8_t, 3>& colour) const {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double value = json.at(key).at(k).get<double>();
+            requireRange(key, value, 0.0, 255.0);
+            colour[k] = static_cast<std::uint8_t>(value);
+        }
+    }
     template <class T>
     void operator()(const std::string& key, T& value) const {
         if constexpr (requires(const Json& j) { j.get_to(value); }) {
@@ -179,6 +211,7 @@ Json toJson(const instrument::Profile& profile) {
 }
 
 void from(const Json& j, instrument::Profile& profile) {
+    if (j.size() > kMostPieces) throw Senseless{fmt::format("a bur's outline of {} pieces", j.size())};
     for (const Json& row : j) {
         instrument::ProfilePiece p;
         p.from = core::Vec2(row.at(0).get<double>(), row.at(1).get<double>());
@@ -205,12 +238,41 @@ std::string textOf(const Json& json, int indent = -1) {
 /// Calls read(), and says as core::Error what it stumbles over.
 template <class F>
 void reading(const std::string& where, F&& read) {
+    const auto refuse = [&where](std::string_view why) {
+        return core::Error(fmt::format("the settings inside cannot be read: {}", why), where,
+                           "record the session anew, or use the version that wrote it");
+    };
     try {
         read();
     } catch (const Json::exception& e) {
-        throw core::Error(fmt::format("the settings inside cannot be read: {}", e.what()), where,
-                          "record the session anew, or use the version that wrote it");
+        throw refuse(e.what());
+    } catch (const Senseless& e) {
+        throw refuse(e.what);
     }
+}
+
+/// A file may come from anybody: no figure of it is used that would never have been recorded.
+void validate(const StationSettings& s) {
+    requireRange("rate_hz", s.rateHz, 100.0, 10000.0);
+    requireRange("voxel_mm", s.field.voxelMm, 0.005, 1.0);
+    requireRange("band_out_mm", s.field.bandOutMm, 0.0, kMostBandMm);
+    requireRange("band_in_mm", s.field.bandInMm, 0.0, kMostBandMm);
+    requireRange("band_mm", s.cut.bandMm, 0.0, kMostBandMm);
+    requireRange("reserve_bricks", static_cast<double>(s.cut.reserveBricks), 0.0, kMostReserveBricks);
+    const device::Capability& c = s.capability;
+    // A device that is stronger than any: forces are held to what it says.
+    for (const double figure : {c.maxForceN, c.continuousForceN, c.maxStiffnessNPerMm, c.maxDampingNSPerMm,
+                                c.maxTorqueNmm, c.encoderStepMm, c.workspaceMm.minCoeff(), c.workspaceMm.maxCoeff()})
+        requireRange("a figure of the device", figure, 0.0, 1e6);
+    requireRange("max_force_slope_n_per_s", c.maxForceSlopeNPerS, 0.0, 1e9);
+    requireRange("the device's rate_hz", c.rateHz, 0.0, 1e6);
+    requireRange("sensed_axes", c.sensedAxes, 0, 7);
+    requireRange("driven_axes", c.drivenAxes, 0, 7);
+    device::validate(c);
+    tooth::validate(s.tissues);
+    instrument::validate(s.ability);
+    instrument::validate(s.drive);
+    force::validate(s.parameters);
 }
 
 std::shared_ptr<const instrument::Bur> burFrom(const Json& json) {
@@ -219,25 +281,46 @@ std::shared_ptr<const instrument::Bur> burFrom(const Json& json) {
     return std::make_shared<const instrument::Bur>(json.at("bur").get<std::string>(), std::move(outline));
 }
 
+Json settingsOf(const StationSettings& s) {
+    return {{"rate_hz", s.rateHz},
+            {"field",
+             {{"voxel_mm", s.field.voxelMm}, {"band_out_mm", s.field.bandOutMm}, {"band_in_mm", s.field.bandInMm}}},
+            {"cut", {{"band_mm", s.cut.bandMm}, {"reserve_bricks", s.cut.reserveBricks}}},
+            {"bur", plainNameOf(*s.bur)},
+            {"outline_mm", toJson(s.bur->profile())},
+            {"ability", toJson(s.ability)},
+            {"drive", toJson(s.drive)},
+            {"tissues", toJson(s.tissues)},
+            {"device", toJson(s.capability)},
+            {"force", toJson(s.parameters)},
+            {"full_removal", s.fullRemoval},
+            {"hull", s.hull},
+            {"resumed", s.resumed}};
+}
+
 }  // namespace
 
 std::string settingsJson(const StationSettings& s) {
-    const Json json = {
-        {"rate_hz", s.rateHz},
-        {"field",
-         {{"voxel_mm", s.field.voxelMm}, {"band_out_mm", s.field.bandOutMm}, {"band_in_mm", s.field.bandInMm}}},
-        {"cut", {{"band_mm", s.cut.bandMm}, {"reserve_bricks", s.cut.reserveBricks}}},
-        {"bur", plainNameOf(*s.bur)},
-        {"outline_mm", toJson(s.bur->profile())},
-        {"ability", toJson(s.ability)},
-        {"drive", toJson(s.drive)},
-        {"tissues", toJson(s.tissues)},
-        {"device", toJson(s.capability)},
-        {"force", toJson(s.parameters)},
-        {"full_removal", s.fullRemoval},
-        {"hull", s.hull},
-        {"resumed", s.resumed}};
-    return textOf(json, 2);
+    return textOf(settingsOf(s), 2);
+}
+
+std::string resumptionJson(const Resumption& resumption) {
+    return textOf({{"state_hash", resumption.stateHash},
+                   {"recovered", resumption.isRecovered},
+                   {"settings", settingsOf(resumption.settings)}});
+}
+
+Resumption resumptionFromJson(const std::string& text, const std::string& where) {
+    Resumption resumption;
+    std::string settings;
+    reading(where, [&] {
+        const Json json = Json::parse(text);
+        json.at("state_hash").get_to(resumption.stateHash);
+        json.at("recovered").get_to(resumption.isRecovered);
+        settings = json.at("settings").dump();
+    });
+    resumption.settings = settingsFromJson(settings, where);
+    return resumption;
 }
 
 std::string burChangeJson(const StationSettings& s) {
@@ -290,7 +373,7 @@ StationSettings settingsFromJson(const std::string& text, const std::string& whe
         s.field.bandOutMm = json.at("field").at("band_out_mm");
         s.field.bandInMm = json.at("field").at("band_in_mm");
         s.cut.bandMm = json.at("cut").at("band_mm");
-        s.cut.reserveBricks = json.at("cut").at("reserve_bricks");
+        Read{json.at("cut")}("reserve_bricks", s.cut.reserveBricks);
         s.bur = burFrom(json);
         read("ability", s.ability);
         read("drive", s.drive);
@@ -300,10 +383,8 @@ StationSettings settingsFromJson(const std::string& text, const std::string& whe
         s.fullRemoval = json.at("full_removal");
         s.hull = json.value("hull", false);
         s.resumed = json.at("resumed");
+        validate(s);
     });
-    instrument::validate(s.ability);
-    instrument::validate(s.drive);
-    force::validate(s.parameters);
     return s;
 }
 
@@ -332,8 +413,9 @@ Station makeStation(const tooth::Case& toothCase, StationSettings settings, bool
     prepare.field = settings.field;
     prepare.useCache = useCache;
     Station station;
-    const auto tooth = tooth::prepareTooth(toothCase, prepare, core::part(progress, 0.0, 0.6));
-    station.tooth = tooth::prepareCutting(toothCase, tooth, prepare, settings.cut, core::part(progress, 0.6, 1.0));
+    const auto tooth = tooth::prepareTooth(toothCase, prepare, core::part(progress, 0.0, kDistancesShare));
+    station.tooth =
+        tooth::prepareCutting(toothCase, tooth, prepare, settings.cut, core::part(progress, kDistancesShare, 1.0));
     station.identity = tooth::identityOf(*station.tooth);
     station.field = std::make_shared<tooth::CutField>(station.tooth);
     station.settings = std::move(settings);

@@ -43,6 +43,15 @@ struct StationSettings {
 [[nodiscard]] std::string burChangeJson(const StationSettings& settings);  ///< bur, ability, hull or field
 [[nodiscard]] std::string driveChangeJson(const StationSettings& settings);
 [[nodiscard]] std::string parameterChangeJson(const StationSettings& settings);
+/// Where a session goes on: with what, and from which state of the tooth (hashText).
+struct Resumption {
+    StationSettings settings;
+    std::string stateHash;
+    bool isRecovered = false;  ///< its program had ended: state and history are what recover() finds
+};
+[[nodiscard]] std::string resumptionJson(const Resumption& resumption);
+/// Throws core::Error naming `where`.
+[[nodiscard]] Resumption resumptionFromJson(const std::string& json, const std::string& where);
 /// Which of them a text told.
 struct Changed {
     bool work = false, drive = false, parameters = false;
@@ -63,6 +72,8 @@ struct Station {
     /// another may be made for it, on another thread. Throws core::Error for what has no hull.
     [[nodiscard]] loop::Work work() const;
 };
+/// The share of makeStation's progress that is over when the distances are known and the tissues are laid out.
+inline constexpr double kDistancesShare = 0.6;
 /// Reads or reopens the fields. Throws core::Error.
 [[nodiscard]] Station makeStation(const tooth::Case& toothCase, StationSettings settings, bool useCache,
                                   const core::Progress& progress = {});

@@ -4,6 +4,7 @@
 #include <QComboBox>
 #include <QDialog>
 #include <QFile>
+#include <QInputDialog>
 #include <QLabel>
 #include <QMenu>
 #include <QPushButton>
@@ -12,14 +13,18 @@
 #include <QTabWidget>
 #include <QToolButton>
 #include <QTreeWidget>
+#include <atomic>
+#include <thread>
 
 #include "device/fidelity_box.h"
 #include "device/fidelity_words.h"
 #include "device/first_plug_in.h"
 #include "device/install.h"
 #include "device/profile_box.h"
+#include "devices/drivers/gamepad_virtual.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/rt/clock.h"
 #include "led_driver.h"
 #include "panels/notice_bar.h"
 #include "shell_support.h"
@@ -388,6 +393,171 @@ TEST_F(DeviceWindowTest, TheSchoolChoosesBelowThePerson) {
     startHere();
     EXPECT_TRUE(hands().wanted().isEmpty());
     qputenv("HANDPIECE_SCHOOL_SETTINGS", "");
+}
+
+/// A pedal whose foot is the test's.
+struct DoublePedal {
+    std::atomic<double> pressed{0.0};
+    std::atomic<bool> attached{true}, absent{false};
+};
+
+class PedalWindowTest : public DeviceWindowTest {
+  protected:
+    [[nodiscard]] Simulator::Options options() const override {
+        Simulator::Options options = DeviceWindowTest::options();
+        options.pedals.look = [] {
+            return std::vector<drivers::PedalFound>{{"Left Pedal", 1, 0}, {"Foot Pedal", 2, 1}};
+        };
+        options.pedals.open = [pedal = pedal_](const std::string& name, std::shared_ptr<link::PedalValue> value) {
+            if (pedal->absent) throw core::Error("it is not there", name, "plug it in").as("device-missing", {name});
+            // As FootPedal does: 250 times a second, zero when it is lost and when it ends.
+            auto end = std::make_shared<std::atomic<bool>>(false);
+            auto thread = std::make_shared<std::thread>([pedal, value, end] {
+                while (!*end) {
+                    value->write(pedal->attached ? static_cast<float>(pedal->pressed) : 0.0f, rt::monotonicNs());
+                    std::this_thread::sleep_for(std::chrono::milliseconds(4));
+                }
+                value->write(0.0f, rt::monotonicNs());
+            });
+            const std::shared_ptr<void> held(nullptr, [thread, end](void*) {
+                *end = true;
+                thread->join();
+            });
+            return PedalDesk::Open{name, [pedal] { return pedal->attached.load(); }, held};
+        };
+        return options;
+    }
+    [[nodiscard]] bool choosePedal(const char* name) {
+        simulator().foot().look();
+        const auto found = [&]() -> QAction* {
+            for (QAction* action : part<QMenu>("menuPedal")->actions())
+                if (action->text() == QLatin1String(name)) return action;
+            return nullptr;
+        };
+        if (!waitFor([&] { return found() != nullptr; })) return false;
+        found()->trigger();
+        return true;
+    }
+    [[nodiscard]] bool pedalIs(double value) {
+        return waitFor([&] { return std::abs(simulator().sample().pedal - value) < 1e-3; });
+    }
+
+    std::shared_ptr<DoublePedal> pedal_ = std::make_shared<DoublePedal>();
+};
+
+TEST_F(PedalWindowTest, StandsBesideTheMouseTheOnePressedHarderCountsAndIsRemembered) {
+    startHere();
+    ASSERT_TRUE(choosePedal("Foot Pedal"));
+    ASSERT_TRUE(waitFor([&] { return simulator().foot().isThere(); }));
+    EXPECT_EQ(host_->settings().value("work/pedal").toString(), "Foot Pedal");
+    EXPECT_TRUE(pedalIs(0.0));
+    pedal_->pressed = 0.5;
+    EXPECT_TRUE(pedalIs(0.5));
+    EXPECT_TRUE(waitFor([&] { return simulator().sample().speedRpm > 1000.0; })) << "the foot alone turns the bur";
+    // The button beside it: harder.
+    view()->latchPedal(true);
+    EXPECT_TRUE(pedalIs(1.0));
+    view()->latchPedal(false);
+    EXPECT_TRUE(pedalIs(0.5));
+    // Unplugged it is up, and said so; back again, the word goes.
+    pedal_->attached = false;
+    EXPECT_TRUE(pedalIs(0.0));
+    EXPECT_TRUE(waitFor([&] { return noticed() == "pedal-lost"; }));
+    pedal_->attached = true;
+    EXPECT_TRUE(waitFor([&] { return noticed() != "pedal-lost"; }));
+    EXPECT_TRUE(pedalIs(0.5));
+    // Next time it is there by itself; without it a person is told, and works on.
+    startHere();
+    EXPECT_TRUE(pedalIs(0.5));
+    pedal_->absent = true;
+    startHere();
+    EXPECT_TRUE(waitFor([&] { return noticed() == "pedal-absent"; }));
+    EXPECT_TRUE(pedalIs(0.0));
+    part<QAction>("actionFoot_none")->trigger();
+    EXPECT_TRUE(host_->settings().value("work/pedal").toString().isEmpty());
+}
+
+TEST_F(PedalWindowTest, StandsBesideAnArm) {
+    startHere();
+    ASSERT_TRUE(chooseLed());
+    ASSERT_TRUE(burTo(0.0, 1.0));
+    pedal_->pressed = 0.75;
+    ASSERT_TRUE(choosePedal("Left Pedal"));
+    EXPECT_TRUE(pedalIs(0.75)) << "chosen while the arm is in the hand";
+    led_->buttons = 1;
+    EXPECT_TRUE(pedalIs(1.0));
+    led_->buttons = 0;
+    EXPECT_TRUE(pedalIs(0.75));
+    part<QAction>("actionFoot_none")->trigger();
+    EXPECT_TRUE(pedalIs(0.0));
+}
+
+/// SDL's own joystick, through the driver as it is.
+TEST_F(DeviceWindowTest, ARealJoystickIsAPedal) {
+    std::string why;
+    if (!test::hasVirtualJoysticks(why)) GTEST_SKIP() << why;
+    test::VirtualJoystick joystick("Double Foot Pedal", false, 1, 0);
+    joystick.axis(0, -1.0);
+    startHere();
+    simulator().foot().choose(QStringLiteral("Double Foot Pedal"));
+    ASSERT_TRUE(waitFor([&] { return simulator().foot().isThere(); }));
+    ASSERT_TRUE(joystick.settle());
+    joystick.axis(0, 1.0);
+    EXPECT_TRUE(waitFor([&] { return simulator().sample().pedal > 0.99; }));
+    joystick.unplug();
+    EXPECT_TRUE(waitFor([&] { return simulator().sample().pedal == 0.0 && noticed() == "pedal-lost"; }));
+}
+
+/// Two arms that only their serials tell apart.
+class TwoArmsTest : public DeviceWindowTest {
+  protected:
+    [[nodiscard]] Simulator::Options options() const override {
+        Simulator::Options options = DeviceWindowTest::options();
+        options.hands.desk.look = [] {
+            drivers::Found arms;
+            arms.driver = "haply";
+            arms.makes = "Haply Inverse3";
+            arms.available = true;
+            arms.models = {"Inverse3 A1", "Inverse3 B2"};
+            arms.units = {{"A1", "Inverse3 A1"}, {"B2", "Inverse3 B2"}};
+            return std::vector<drivers::Found>{arms};
+        };
+        options.hands.desk.open = [led = led_, opened = opened_](const station::DeviceChoice& choice) {
+            *opened = choice.name + "/" + choice.which;
+            return station::openDevice(std::make_unique<LedDriver>(led), choice);
+        };
+        return options;
+    }
+    [[nodiscard]] bool inHand() {
+        return waitFor([&] { return simulator().usedHand() && !simulator().isBusy(); });
+    }
+    std::shared_ptr<std::string> opened_ = std::make_shared<std::string>();
+};
+
+TEST_F(TwoArmsTest, TheSecondIsChosenByTheMenuOrByNameAndRemembered) {
+    startHere();
+    for (const char* name : {"haply:A1", "haply:B2"})
+        host_->settings().set(QStringLiteral("device/seen_") + QLatin1String(name), true);
+    ASSERT_TRUE(choose("haply:B2"));
+    ASSERT_TRUE(inHand());
+    EXPECT_EQ(*opened_, "haply/B2");
+    EXPECT_TRUE(entry("haply:B2")->isChecked());
+    EXPECT_FALSE(entry("haply:A1")->isChecked());
+    EXPECT_EQ(part<QToolButton>("statusDevice")->text().contains("B2"), true)
+        << part<QToolButton>("statusDevice")->text().toStdString();
+    opened_->clear();
+    startHere();
+    ASSERT_TRUE(inHand());
+    EXPECT_EQ(*opened_, "haply/B2");
+    // One that the list does not know.
+    action("actionDeviceNamed")->trigger();
+    auto* dialog = part<QInputDialog>("deviceNameDialog");
+    ASSERT_TRUE(dialog);
+    host_->settings().set(QStringLiteral("device/seen_haply:C3"), true);
+    dialog->setTextValue(QStringLiteral(" haply:C3 "));
+    dialog->accept();
+    ASSERT_TRUE(waitFor([&] { return *opened_ == "haply/C3"; }));
+    ASSERT_TRUE(inHand());
 }
 
 /// The simulated arm by its name, as a person finds it, and a fault by the command line.

@@ -5,11 +5,13 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QListView>
+#include <QMessageBox>
 #include <QPushButton>
 #include <QRadioButton>
 #include <QSlider>
 #include <QTableWidget>
 #include <QToolButton>
+#include <QToolTip>
 #include <QtTest>
 
 #include "panels/bur_list.h"
@@ -87,6 +89,30 @@ class PanelsWidgetsTest : public QObject {
         QCOMPARE(bar.bur(), QString("331"));
         bar.chooseNext(1);
         QCOMPARE(bar.bur(), QString("330"));
+    }
+    void whatAFileSaysIsShownAsItIs() {
+        const QString said = QStringLiteral("<b>bold</b><img src='/etc/passwd'>");
+        QLabel label(said);
+        QLabel rich(QStringLiteral("<b>ours</b>"));
+        rich.setTextFormat(Qt::RichText);
+        QMessageBox box(QMessageBox::Question, said, said);
+        box.setInformativeText(said);
+        for (QWidget* widget :
+             {static_cast<QWidget*>(&label), static_cast<QWidget*>(&rich), static_cast<QWidget*>(&box)})
+            widget->show();
+        QCOMPARE(label.textFormat(), Qt::PlainText);
+        QCOMPARE(rich.textFormat(), Qt::RichText);
+        for (const QLabel* part : box.findChildren<QLabel*>())
+            QCOMPARE(part->textFormat(), Qt::PlainText);
+        QToolTip::showText({10, 10}, said);
+        bool found = false;
+        for (QWidget* widget : QApplication::topLevelWidgets())
+            if (widget->inherits("QTipLabel") && widget->isVisible()) {
+                found = true;
+                QCOMPARE(qobject_cast<QLabel*>(widget)->textFormat(), Qt::PlainText);
+            }
+        QVERIFY(found);
+        QToolTip::hideText();
     }
     void aBurIsFoundByWhatADentistTypes() {
         DrillBar bar;
@@ -233,14 +259,30 @@ class PanelsWidgetsTest : public QObject {
         ForceGauge gauge;
         gauge.setLimit(3.3);
         gauge.setForce(3.2, 0.0);
-        QCOMPARE(gauge.zone(), ForceGauge::Zone::limit);
+        QCOMPARE(gauge.zone(), ForceGauge::Zone::hard);
+        QCOMPARE(gauge.words(), QString("Hard"));
         gauge.setForce(0.5, 1.0);
         QCOMPARE(gauge.peakN(), 3.2);
-        QCOMPARE(gauge.words(), QString("Gentle"));
+        QCOMPARE(gauge.words(), QString("Light"));
         gauge.setForce(0.5, 2.5);
         QCOMPARE(gauge.peakN(), 0.5);
         gauge.setForce(0.5, 2.6, true);
-        QCOMPARE(gauge.words(), QString("Too hard"));
+        QCOMPARE(gauge.words(), QString("More than the device gives"));
+        gauge.setForce(0.0, 2.7);
+        QCOMPARE(gauge.words(), QString("Not pressed"));
+    }
+    void gaugeAndLoadSpeakTheSameWords() {
+        // Whatever the device can give: the same newtons, the same words.
+        for (const double limitN : {3.3, 9.0}) {
+            ForceGauge gauge;
+            gauge.setLimit(limitN);
+            MeasureBox box;
+            for (const double loadN : {0.2, 0.6, 1.0, 1.5, 2.3, 2.5, 3.0}) {
+                gauge.setForce(loadN, 0.0);
+                box.setLoad(loadN);
+                QCOMPARE(part<QLabel>(box, "loadReadout")->text(), gauge.words());
+            }
+        }
     }
     void aHeadingThatADockSaysIsLeftOut() {
         const auto says = [](QWidget& panel, const QString& text) {
@@ -350,7 +392,15 @@ class PanelsWidgetsTest : public QObject {
         const QString danger = part<QLabel>(box, "pulpWords")->text();
         QVERIFY(enough != careful && careful != danger);
         box.setLeftOverPulp({}, true);
-        QVERIFY(part<QLabel>(box, "pulpWords")->text().contains("open"));
+        QVERIFY(part<QLabel>(box, "pulpWords")->text().contains("exposed"));
+        // As the teacher has it: what was green at 0.87 mm is not where a millimetre is asked for.
+        box.setLeftOverPulp(0.87);
+        QCOMPARE(part<QLabel>(box, "pulpWords")->text(), QString("0.5 mm or more"));
+        box.setPulpLimits({1.0, 0.5});
+        box.setLeftOverPulp(0.87);
+        QCOMPARE(part<QLabel>(box, "pulpWords")->text(), QString("Under 1 mm"));
+        box.setLeftOverPulp(0.4);
+        QCOMPARE(part<QLabel>(box, "pulpWords")->text(), QString("Under 0.5 mm"));
         QSignalSpy load(&box, &MeasureBox::loadChanged), stop(&box, &MeasureBox::depthStopChanged),
             section(&box, &MeasureBox::sectionChanged);
         box.setLoad(50);
@@ -364,9 +414,14 @@ class PanelsWidgetsTest : public QObject {
         QTest::keyClick(part<QCheckBox>(box, "sectionOn"), Qt::Key_Space);
         QTest::keyClick(part<QSlider>(box, "sectionSlider"), Qt::Key_Right);
         QVERIFY(std::abs(section.last()[2].toDouble() - 0.1) < 1e-9);
-        box.setLockedHelps({"cross-section", "depth"});
+        tooth::Exercise exercise;
+        exercise.lockedHelps = {"cross-section", "depth"};
+        box.setPermissions(station::permissionsOf(&exercise, station::WorkMode::work));
         QCOMPARE(section.last()[0].toBool(), false);
         QVERIFY(!part<QLabel>(box, "depthReadout")->isVisible());
+        QVERIFY(!part<QCheckBox>(box, "depthStopOn")->isEnabled());
+        QCOMPARE(stop.last()[0].toDouble(), 0.0);
+        QVERIFY(!part<QToolButton>(box, "calliperButton")->isEnabled());
     }
     void viewBarChangesTheLook() {
         ViewBar bar;
@@ -387,7 +442,10 @@ class PanelsWidgetsTest : public QObject {
         QTest::keyClick(part<QCheckBox>(bar, "showWet"), Qt::Key_Space);
         QVERIFY(bar.look().wet);
         QCOMPARE(bar.look().eyeSeparationMm, 7.0);
-        bar.setLockedHelps({"transparency"});
+        tooth::Exercise exercise;
+        exercise.lockedHelps = {"transparency", "scale-bar"};
+        bar.setPermissions(station::permissionsOf(&exercise, station::WorkMode::work));
+        QVERIFY(!part<QCheckBox>(bar, "showScaleBar")->isEnabled());
         QVERIFY(!part<QCheckBox>(bar, "showTissue_enamel")->isEnabled());
     }
     void noticesWaitTheirTurn() {

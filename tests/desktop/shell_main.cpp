@@ -2,15 +2,16 @@
 // GoogleTest inside a Qt application, with settings and data in a folder that goes away.
 #include <gtest/gtest.h>
 
-#include <QApplication>
 #include <QTemporaryDir>
+
+#include "shell/application.h"
 
 int main(int argc, char** argv) {
     ::testing::InitGoogleTest(&argc, argv);
     const QTemporaryDir home;
     for (const char* name : {"XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_CACHE_HOME"})
         qputenv(name, home.path().toLocal8Bit());
-    QApplication application(argc, argv);
+    handpiece::desktop::Application application(argc, argv);
     QApplication::setApplicationName(QStringLiteral("handpiece-test"));
     QApplication::setQuitOnLastWindowClosed(false);
     return RUN_ALL_TESTS();

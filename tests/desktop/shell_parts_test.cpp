@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the window stands on: settings, recordings kept, errors in words, the command line.
+#include <QDir>
 #include <QDirIterator>
 #include <QFile>
+#include <QFileInfo>
 #include <QRegularExpression>
 #include <QSet>
 #include <cerrno>
@@ -16,6 +18,7 @@
 #include "handpiece/record/session/session_reader.h"
 #include "handpiece/senses/sound/player.h"
 #include "handpiece/tick/device/simulated_device.h"
+#include "shell/application.h"
 #include "shell/command_line.h"
 #include "shell/language.h"
 #include "shell/run_statistics.h"
@@ -30,6 +33,29 @@ namespace fs = std::filesystem;
 void put(const fs::path& file, const std::string& text) {
     fs::create_directories(file.parent_path());
     std::ofstream(file, std::ios::binary) << text;
+}
+
+TEST(Application, TellsWhatASlotThrowsAndGoesOn) {
+    auto* application = dynamic_cast<Application*>(qApp);
+    ASSERT_NE(application, nullptr);
+    std::vector<core::Error> told;
+    application->whenThrown = [&](const core::Error& error) { told.push_back(error); };
+    QObject slot;
+    const auto later = [&](auto throwing) {
+        QMetaObject::invokeMethod(&slot, throwing, Qt::QueuedConnection);
+        QCoreApplication::processEvents();
+    };
+    later([] { throw core::Error("one", "here").as("no-space"); });
+    later([] { (void)fs::exists(fs::path(std::string(5000, 'x'))); });
+    later([] { throw std::bad_alloc(); });
+    bool goesOn = false;
+    later([&] { goesOn = true; });
+    application->whenThrown = nullptr;
+    EXPECT_TRUE(goesOn);
+    ASSERT_EQ(told.size(), 3u);
+    EXPECT_EQ(told[0].id(), "no-space");
+    EXPECT_EQ(told[1].where(), std::string(5000, 'x'));
+    EXPECT_EQ(told[2].problem(), "there is not enough memory");
 }
 
 TEST(Settings, KeepWhatTheyAreTold) {
@@ -51,6 +77,20 @@ TEST(Settings, KeepWhatTheyAreTold) {
     EXPECT_EQ(again.number("a/text", 4, 0, 10), 4.0);
     EXPECT_EQ(again.value("a/text").toString(), QStringLiteral("=[Zähne] \n歯"));
     EXPECT_EQ(again.recentFiles(), QStringList({"7", "11", "10", "9", "8", "6", "5", "4", "3", "2"}));
+}
+
+TEST(Settings, FilesAreLookedForInAFolderThatIsThere) {
+    const QTemporaryDir home;
+    const QByteArray before = qgetenv("HOME"), config = qgetenv("XDG_CONFIG_HOME");
+    qputenv("HOME", home.path().toLocal8Bit());
+    qputenv("XDG_CONFIG_HOME", home.filePath("config").toLocal8Bit());
+    EXPECT_EQ(workFolder(), home.path());
+    QDir(home.path()).mkdir("Documents");
+    EXPECT_EQ(workFolder(), home.filePath("Documents"));
+    qputenv("HOME", home.filePath("not/there").toLocal8Bit());
+    EXPECT_TRUE(QFileInfo(workFolder()).isDir());
+    qputenv("HOME", before);
+    config.isNull() ? qunsetenv("XDG_CONFIG_HOME") : qputenv("XDG_CONFIG_HOME", config);
 }
 
 TEST(Settings, AreSetAsideWhenBroken) {
@@ -112,6 +152,16 @@ TEST(SessionShelf, OffersOnlyUnsavedWorkOfProgramsThatAreGone) {
     SessionShelf(path).settle(session);
     EXPECT_TRUE(SessionShelf(path).crashed().empty());
     EXPECT_TRUE(fs::exists(session));
+}
+
+TEST(SessionShelf, NobodyElseLooksIntoIt) {
+    const QTemporaryDir folder;
+    const fs::path path = toPath(folder.filePath("sessions"));
+    SessionShelf shelf(path);
+    const fs::path session = shelf.begin({"case", "Molar", "", true});
+    EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_all);
+    EXPECT_EQ(fs::status(fs::path(session).replace_extension(".json")).permissions(),
+              fs::perms::owner_read | fs::perms::owner_write);
 }
 
 TEST(SessionShelf, ClearsAwayWhatWasKilledBeforeItBegan) {
@@ -181,7 +231,7 @@ TEST(ReplayDriver, PlaysOnWhereTheMachineLeftPeriodsOut) {
     driver.play(true);
     EXPECT_TRUE(waitFor([&] { return !driver.now().playing; }));
     EXPECT_EQ(driver.now().timeS, driver.durationS());
-    EXPECT_FALSE(driver.now().problem);
+    EXPECT_FALSE(driver.takeProblem());
 }
 
 core::Error errorOf(const std::function<void()>& work) {
@@ -200,6 +250,7 @@ TEST(Problems, OfTheLibraryAreKnownByTheirIds) {
     const auto idOf = [](const std::function<void()>& work) { return problemOf(errorOf(work)).id; };
     EXPECT_EQ(idOf([&] { (void)core::readFile(at("none")); }), "file-not-found");
     EXPECT_EQ(idOf([&] { (void)core::readFile(toPath(folder.path())); }), "is-a-folder");
+    EXPECT_EQ(idOf([&] { (void)core::readFile("/dev/null"); }), "not-a-file");
     EXPECT_EQ(idOf([&] { core::writeFile("/dev/null/none", "x"); }), "not-writable");
     EXPECT_EQ(core::writeErrorId(ENOSPC), "no-space");
     EXPECT_EQ(idOf([&] { (void)tooth::readCase(toPath(folder.path())); }), "not-a-case");

@@ -14,16 +14,27 @@
 #include <QProcess>
 #include <QSet>
 #include <QStatusBar>
+#include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <numeric>
+#include <set>
 
 #include "desktop/view/section_bar.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/record/session/session_reader.h"
 #include "panels/drill_bar.h"
+#include "panels/force_gauge.h"
 #include "panels/measure_box.h"
 #include "panels/notice_bar.h"
 #include "panels/parameter_box.h"
+#include "panels/replay_bar.h"
+#include "panels/timeline.h"
+#include "panels/volume_bars.h"
 #include "shell_support.h"
+#include "station/pointer_hand.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -104,6 +115,11 @@ TEST_F(ShellTest, CutsUndoesSavesAndResumes) {
 
 TEST_F(ShellTest, AsksBeforeUnsavedWorkGoes) {
     startWithTooth();
+    // The mouse's hand begins where an arm's does.
+    const tooth::Case& c = *simulator().toothCase();
+    const core::Pose start = station::startPose(c.outer.bounds(), c.fdiNumber, c.buccalSign);
+    EXPECT_LT((simulator().startPose().positionMm - start.positionMm).norm(), 1e-9);
+    EXPECT_LT(simulator().startPose().orientation.angularDistance(start.orientation), 1e-6);
     ASSERT_TRUE(cut());
     answer_ = MainWindow::Questions::Unsaved::cancel;
     window().close();
@@ -292,6 +308,58 @@ TEST_F(ShellTest, ReplaysWhatWasDoneAndComesBack) {
     EXPECT_EQ(simulator().status().redoSteps, 2u);
 }
 
+TEST_F(ShellTest, PanelsFollowAReplayBackAndForth) {
+    startWithTooth();
+    ASSERT_TRUE(cut());
+    simulator().setDrive(QStringLiteral("low-speed"));
+    simulator().setMultipliers(0.5, 1.0, 1.0);
+    ASSERT_TRUE(cut());
+    action("actionReplay")->trigger();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
+    const session::SessionReader reader(simulator().document().caseFile);
+    const auto& drill = *window().findChild<DrillBar*>();
+    const auto& bars = *window().findChild<VolumeBars*>();
+    const double endS = simulator().replay()->durationS();
+    std::vector<std::uint64_t> changes;
+    for (const session::Event& event : reader.events())
+        if (event.name == "parameter change") changes.push_back(event.tick);
+    ASSERT_EQ(changes.size(), 2u);
+    std::set<QString> volumes;
+    std::set<double> speeds;
+    for (const double share : {1.0, 0.1, 0.7, 0.0, 0.5, 0.95, 0.3}) {
+        simulator().seek(share * endS);
+        const auto tick = static_cast<std::uint64_t>(share * endS * 1000.0 + 1e-6);
+        const std::uint64_t index = reader.indexOfTick(tick + 1);
+        const session::Record record = reader.records(index > 0 ? index - 1 : 0, 1).front();
+        ASSERT_TRUE(waitFor([&] {
+            return simulator().sample().tick == record.tick && !simulator().replay()->now().seeking;
+        })) << share;
+        ASSERT_TRUE(waitFor([&] { return view()->sample().tick == record.tick; })) << share;
+        QTest::qWait(150);
+        // Run up after a jump, it comes as near as a hand can feel.
+        EXPECT_NEAR(removedMm3(), std::accumulate(record.removedMm3.begin(), record.removedMm3.end(), 0.0), 2e-3);
+        EXPECT_NEAR(simulator().sample().speedRpm, static_cast<double>(record.speedRpm), 0.03 * 4e5) << share;
+        EXPECT_NEAR(window().findChild<ForceGauge*>()->forceN(),
+                    static_cast<double>(std::hypot(record.forceN[0], record.forceN[1], record.forceN[2])), 0.15);
+        EXPECT_NEAR(window().findChild<ReplayBar*>()->timeS(), static_cast<double>(record.tick) / 1000, 1e-6);
+        const bool early = record.tick < changes.front();
+        const bool late = record.tick > changes.back();
+        if (early || late) {
+            EXPECT_EQ(simulator().driveName(), early ? "turbine" : "low-speed") << share;
+            EXPECT_EQ(drill.speedRpm(), simulator().setSpeedRpm());
+            EXPECT_EQ(window().findChild<ParameterBox*>()->multipliers().stiffness, early ? 1.0 : 0.5);
+        }
+        volumes.insert(bars.accessibleDescription());
+        speeds.insert(drill.speedRpm());
+    }
+    EXPECT_GT(volumes.size(), 2u);
+    EXPECT_EQ(speeds.size(), 2u);
+    // The person's own choice stands.
+    simulator().closeReplay();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+    EXPECT_EQ(simulator().driveName(), "low-speed");
+}
+
 TEST_F(ShellTest, LayoutsLanguagesAndColoursChangeWhileOneWorks) {
     startWithTooth();
     const auto tooth = simulator().tooth();
@@ -451,8 +519,18 @@ TEST_F(ShellTest, AStarterToothIsMadeAtTheFirstStartAndKept) {
     fs::file_time_type made;
     for (const bool first : {true, false}) {
         host_ = std::make_unique<Host>(*qApp, CommandLine{}, mine);
+        // Something to look at comes long before there is something to feel, and words for what is being done.
+        QStringList steps;
+        QObject::connect(&simulator(), &Simulator::jobStepped, [&](const QString& step) { steps << step; });
         host_->start();
+        ASSERT_TRUE(waitFor([this] { return view()->hasSketch() || simulator().mode() == Simulator::Mode::sitting; }));
+        EXPECT_TRUE(view()->hasSketch());
+        EXPECT_FALSE(view()->hasTooth());
+        EXPECT_TRUE(simulator().isBusy());
+        EXPECT_TRUE(window().findChild<QLabel*>("jobTitle")->text().contains(steps.last()));
         ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+        EXPECT_FALSE(view()->hasSketch());
+        EXPECT_EQ(steps.size(), first ? 5 : 4) << steps.join(", ").toStdString();
         EXPECT_EQ(simulator().toothCase()->kind, "upper-incisor");
         EXPECT_EQ(simulator().toothCase()->outer.triangles.size(), 4000u);
         EXPECT_GT(simulator().toothCase()->scenery.size(), 1u);
@@ -464,6 +542,60 @@ TEST_F(ShellTest, AStarterToothIsMadeAtTheFirstStartAndKept) {
         }
         host_.reset();
     }
+}
+
+TEST_F(ShellTest, TheFirstOpeningCanBeCancelled) {
+    Simulator::Options mine = options();
+    mine.folders.starters = at("fresh");
+    mine.starter = {starter::ToothKind::lowerFirstMolar, 68151};
+    host_ = std::make_unique<Host>(*qApp, CommandLine{}, mine);
+    host_->start();
+    ASSERT_TRUE(waitFor([this] { return view()->hasSketch(); }));
+    QTest::mouseClick(window().findChild<QAbstractButton*>("jobCancel"), Qt::LeftButton);
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(simulator().mode(), Simulator::Mode::empty);
+    EXPECT_FALSE(view()->hasSketch());
+    EXPECT_FALSE(window().errorDialog());
+    EXPECT_FALSE(fs::exists(at("fresh")));
+}
+
+TEST_F(ShellTest, TissuesAreWrittenEachAsAClosedSurface) {
+    startWithTooth();
+    ASSERT_TRUE(cut());
+    file_ = own_.filePath("tissues");
+    action("actionExportTissues")->trigger();
+    ASSERT_TRUE(idle());
+    for (const char* name : {"enamel", "dentine", "pulp"}) {
+        const auto mesh = geometry::readMesh(at("tissues") / (std::string(name) + ".stl"));
+        const geometry::MeshReport report = geometry::inspect(mesh);
+        EXPECT_EQ(report.openEdges, 0u) << name;
+        EXPECT_GT(report.volumeMm3, 1.0) << name;
+    }
+    // A file stands where the folder should: one error, and the work goes on.
+    std::ofstream(at("taken")) << "no folder";
+    file_ = own_.filePath("taken");
+    action("actionExportTissues")->trigger();
+    ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
+}
+
+TEST_F(ShellTest, ThePapersForceAndHullAreChosenInItsLayout) {
+    startWithTooth();
+    auto* box = window().findChild<ParameterBox*>();
+    for (const Detail detail : {Detail::laboratory, Detail::paper}) {
+        window().setDetail(detail);
+        for (const char* name : {"forceMode", "contactMethod", "voxelSize"})
+            EXPECT_TRUE(box->findChild<QComboBox*>(name)->isVisibleTo(box)) << name;
+    }
+    auto* force = box->findChild<QComboBox*>("forceMode");
+    force->setCurrentIndex(1);
+    emit force->activated(1);
+    EXPECT_EQ(simulator().parameters().mode, force::Mode::penalty);
+    ASSERT_TRUE(waitFor([&] { return simulator().sample().lastCommand > 0; }));
+    // Another tooth is felt the same way, and a reset of the multipliers leaves it.
+    simulator().openStarter({starter::ToothKind::upperIncisor, 4000});
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(simulator().parameters().mode, force::Mode::penalty);
+    EXPECT_EQ(force->currentIndex(), 1);
 }
 
 TEST_F(ShellTest, AHintGoesByItselfAndCoversNothing) {
@@ -580,6 +712,34 @@ TEST_F(ShellTest, AfterACrashTheToothComesBack) {
     EXPECT_TRUE(simulator().crashed().empty());
     EXPECT_EQ(simulator().toothCase()->scenery.size(), 1u);
     EXPECT_TRUE(waitFor([this] { return simulator().status().undoSteps == 1; }));
+
+    // What follows is one session with what came before: report, replay and its time line have both.
+    view()->showStandardView(view::StandardView::occlusal);
+    ASSERT_TRUE(cut());
+    ASSERT_TRUE(waitFor([this] { return simulator().status().undoSteps == 2; }));
+    const double bothMm3 = removedMm3();
+    action("actionReplay")->trigger();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
+    const fs::path recording = simulator().document().caseFile;
+    const auto& marks = window().findChild<Timeline*>()->marks();
+    EXPECT_EQ(std::count_if(marks.begin(), marks.end(),
+                            [](const ReplayMark& m) { return m.kind == ReplayMark::Kind::strokeBegin; }),
+              2);
+    simulator().seek(simulator().replay()->durationS());
+    EXPECT_TRUE(waitFor([&] { return std::abs(removedMm3() - bothMm3) < 1e-4; })) << removedMm3() << " " << bothMm3;
+    simulator().seek(marks.front().timeS);
+    EXPECT_TRUE(waitFor([this] { return removedMm3() < 0.02; })) << removedMm3();
+    simulator().writeReport(at("report.html"));
+    ASSERT_TRUE(idle());
+    const std::vector<std::byte> page = core::readFile(at("report.html"));
+    const std::string text(reinterpret_cast<const char*>(page.data()), page.size());
+    EXPECT_NE(text.find("class=\"ok\""), std::string::npos);
+    EXPECT_NE(text.find("1 of 1 times"), std::string::npos);
+    simulator().closeReplay();
+    ASSERT_TRUE(waitFor([&] { return simulator().mode() == Simulator::Mode::sitting && removedMm3() > cutMm3; }));
+    EXPECT_EQ(simulator().recording(), recording);
+
+    ASSERT_TRUE(waitFor([this] { return simulator().status().undoSteps == 2; }));
     ASSERT_TRUE(undoAll());
     EXPECT_TRUE(waitFor([this] { return removedMm3() == 0.0; }));
     EXPECT_FALSE(window().windowTitle().contains("lower-first-molar")) << qPrintable(window().windowTitle());

@@ -50,7 +50,7 @@ TEST(KeyBindings, BrokenSettingsAreRefusedByNameAndChangeNothing) {
     map["fit"] = QStringList{"key:Nonsense key"};  // no such key
     map["zoom"] = QStringList{"Alt+wheel"};        // Alt belongs to the window manager
     map["no-such-action"] = QStringList{"key:A"};
-    map["measure"] = QStringList{"key:A", "key:B", "key:G"};  // more than there is room for
+    map["measure"] = QStringList{"key:A", "key:B", "key:Z"};  // more than there is room for
     QStringList refused = bindings.fromMap(map);
     refused.sort();
     EXPECT_EQ(refused, (QStringList{"cut", "fit", "measure", "no-such-action", "zoom"}));
@@ -58,8 +58,22 @@ TEST(KeyBindings, BrokenSettingsAreRefusedByNameAndChangeNothing) {
 
     EXPECT_FALSE(bindings.fromMap({{"measure", QStringList{"key:P"}}}).isEmpty()) << "P latches the pedal";
     EXPECT_EQ(bindings, KeyBindings());
-    EXPECT_TRUE(bindings.fromMap({{"measure", QStringList{"key:G"}}}).isEmpty());
-    EXPECT_EQ(bindings.of(Action::measure)[0].id(), "key:G");
+    EXPECT_TRUE(bindings.fromMap({{"measure", QStringList{"key:Z"}}}).isEmpty());
+    EXPECT_EQ(bindings.of(Action::measure)[0].id(), "key:Z");
+}
+
+TEST(KeyBindings, SettingsOfAnOlderProgramKeepWhatAPersonChose) {
+    // Written before there was a key for the load, by somebody who measures with W.
+    QVariantMap older = KeyBindings().toMap();
+    for (const char* added : {"more-load", "less-load", "touch-key", "nearer", "farther"})
+        older.remove(added);
+    older["measure"] = QStringList{"key:W"};
+    KeyBindings bindings;
+    bindings.giveWayTo(older);
+    EXPECT_TRUE(bindings.fromMap(older).isEmpty());
+    EXPECT_EQ(bindings.of(Action::measure)[0].id(), "key:W");
+    EXPECT_EQ(bindings.of(Action::moreLoad)[0].kind, Binding::Kind::none);
+    EXPECT_EQ(bindings.of(Action::lessLoad)[0].id(), "key:S");
 }
 
 TEST(KeyBindings, ShiftBesideAStepMakesItFineAndElsewhereIsAnotherKey) {

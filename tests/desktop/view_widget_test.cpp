@@ -96,6 +96,25 @@ TEST_F(ViewTest, TheLeftButtonCutsAndItsReleaseLifts) {
     EXPECT_FALSE(pressed[1][0].toBool());
 }
 
+TEST_F(ViewTest, ThePedalIsShownUpAsSoonAsItIsLetGo) {
+    EXPECT_FALSE(view_.written().pedalDown);
+    view_.setLoad(3.0);
+    press(Qt::LeftButton, centre_);
+    EXPECT_TRUE(view_.written().pedalDown);
+    // Deep in a cavity: the bur comes out of it turning.
+    messages::HapticSample deep;
+    deep.tick = 1;
+    deep.depthMm = 0.1;
+    deep.proxyPositionMm = {0.0, 0.0, kRadius - 2.0};
+    view_.hand()->follow(deep);
+    release(Qt::LeftButton, centre_);
+    EXPECT_FALSE(view_.written().pedalDown);
+    view_.latchPedal(true);
+    EXPECT_TRUE(view_.written().pedalDown);
+    view_.latchPedal(false);
+    EXPECT_FALSE(view_.written().pedalDown);
+}
+
 TEST_F(ViewTest, WithControlItTouchesWithTheBurStill) {
     press(Qt::LeftButton, centre_, Qt::ControlModifier);
     EXPECT_EQ(target().pedal, 0.0);
@@ -292,6 +311,174 @@ TEST_F(ViewTest, TheCalliperMeasuresBetweenTwoClicks) {
     EXPECT_EQ(target().loadN, 0.0) << "a click of a tool does not cut";
 }
 
+TEST_F(ViewTest, TheCalliperMeasuresBetweenTwoPointsPickedByKeys) {
+    QSignalSpy measured(&view_, &ViewWidget::measured);
+    QEvent leave(QEvent::Leave);
+    QApplication::sendEvent(&view_, &leave);
+    QTest::keyClick(&view_, Qt::Key_D);
+    ASSERT_EQ(view_.tool(), Tool::calliper);
+    // The cross begins in the middle: 8 pixels a step, one with Shift.
+    for (int i = 0; i < 6; ++i)
+        QTest::keyClick(&view_, Qt::Key_Left);
+    QTest::keyClick(&view_, Qt::Key_Left, Qt::ShiftModifier);
+    QTest::keyClick(&view_, Qt::Key_Return);
+    for (int i = 0; i < 13; ++i)
+        QTest::keyClick(&view_, Qt::Key_Right);
+    for (int i = 0; i < 4; ++i)
+        QTest::keyClick(&view_, Qt::Key_Down);
+    const QImage crossed = view_.snapshot();
+    QTest::keyClick(&view_, Qt::Key_Return);
+    ASSERT_EQ(measured.count(), 1);
+    const QPoint a = centre_ - QPoint(49, 0), b = a + QPoint(104, 32);
+    EXPECT_NEAR(measured[0][0].value<Measurement>().valueMm, (onBall(view_, a) - onBall(view_, b)).norm(), 0.05);
+    EXPECT_EQ(target().loadN, 0.0) << "the key that cuts only picks";
+    // The cross is seen, and the mouse takes it away.
+    const auto armsOf = [&](const QImage& image) { return std::pair(image.copy(b.x() + 6, b.y() - 3, 6, 6), image); };
+    view_.clearMeasurements();
+    const QImage alone = view_.snapshot();
+    moveTo({20, 500});
+    EXPECT_NE(armsOf(alone).first, armsOf(view_.snapshot()).first);
+    EXPECT_EQ(armsOf(alone).first, armsOf(crossed).first);
+}
+
+TEST_F(ViewTest, DepthAndPulpArePickedByKeys) {
+    QSignalSpy measured(&view_, &ViewWidget::measured);
+    QEvent leave(QEvent::Leave);
+    QApplication::sendEvent(&view_, &leave);
+    for (const Tool tool : {Tool::depth, Tool::pulp}) {
+        view_.setTool(tool);
+        QTest::keyClick(&view_, Qt::Key_Return);
+    }
+    ASSERT_EQ(measured.count(), 2);
+    EXPECT_NEAR(measured[0][0].value<Measurement>().valueMm, 0.0, 0.02);
+    EXPECT_NEAR(measured[1][0].value<Measurement>().valueMm, kRadius - kPulpRadius, 0.15);
+}
+
+/// What each action of a button or the wheel does is done by keys as well.
+TEST_F(ViewTest, TheKeysDoAllThatThePointerDoes) {
+    const auto instead = [](Action action) -> std::vector<Action> {
+        switch (action) {
+            case Action::cut:
+                return {Action::cutKey};
+            case Action::touch:
+                return {Action::touchKey};
+            case Action::orbit:
+                return {Action::orbitHold};
+            case Action::pan:
+                return {Action::panHold};
+            case Action::zoom:
+                return {Action::nearer, Action::farther};
+            case Action::load:
+                return {Action::moreLoad, Action::lessLoad};
+            case Action::stop:
+                return {Action::deeperStop, Action::shallowerStop};
+            default:
+                return {};
+        }
+    };
+    for (const auto set : {KeyBindings::Set::rightHanded, KeyBindings::Set::leftHanded}) {
+        const KeyBindings bindings = KeyBindings::of(set);
+        for (const ActionInfo& info : actionInfos()) {
+            if (info.takes != ActionInfo::Takes::buttons && info.takes != ActionInfo::Takes::wheel) continue;
+            EXPECT_FALSE(instead(info.action).empty()) << info.name << " has no key";
+            for (const Action key : instead(info.action)) {
+                EXPECT_EQ(infoOf(key).takes, ActionInfo::Takes::keys);
+                EXPECT_EQ(bindings.of(key)[0].kind, Binding::Kind::key) << infoOf(key).name;
+            }
+        }
+    }
+
+    // Space and an arrow turn as far as a drag of as many pixels.
+    const view::Camera first = view_.camera();
+    press(Qt::RightButton, centre_);
+    moveTo(centre_ + QPoint(20, 0));
+    release(Qt::RightButton, centre_ + QPoint(20, 0));
+    const view::Camera dragged = view_.camera();
+    view_.setCamera(first);
+    QTest::keyPress(&view_, Qt::Key_Space);
+    QTest::keyClick(&view_, Qt::Key_Right);
+    QTest::keyRelease(&view_, Qt::Key_Space);
+    EXPECT_NEAR((view_.camera().eyeMm - dragged.eyeMm).norm(), 0.0, 1e-9);
+    QTest::keyClick(&view_, Qt::Key_Right);
+    EXPECT_NEAR((view_.camera().eyeMm - dragged.eyeMm).norm(), 0.0, 1e-9) << "without the key the bur moves";
+
+    view_.setCamera(first);
+    press(Qt::MiddleButton, centre_);
+    moveTo(centre_ + QPoint(0, -20));
+    release(Qt::MiddleButton, centre_ + QPoint(0, -20));
+    const view::Camera shifted = view_.camera();
+    view_.setCamera(first);
+    QTest::keyPress(&view_, Qt::Key_Space, Qt::ShiftModifier);
+    QTest::keyClick(&view_, Qt::Key_Up, Qt::ShiftModifier);
+    QTest::keyRelease(&view_, Qt::Key_Space, Qt::ShiftModifier);
+    EXPECT_GT((shifted.eyeMm - first.eyeMm).norm(), 0.1);
+    EXPECT_NEAR((view_.camera().eyeMm - shifted.eyeMm).norm(), 0.0, 1e-9);
+
+    view_.setCamera(first);
+    moveTo(centre_);
+    wheel(1);
+    const double near = view_.camera().distanceMm();
+    view_.setCamera(first);
+    QTest::keyClick(&view_, Qt::Key_Plus, Qt::ControlModifier);
+    EXPECT_NEAR(view_.camera().distanceMm(), near, 1e-9);
+    QTest::keyClick(&view_, Qt::Key_Minus, Qt::ControlModifier);
+    EXPECT_NEAR(view_.camera().distanceMm(), first.distanceMm(), 1e-9);
+
+    // Tilting: the handle's end goes where the arrow points.
+    const auto axis = [&] {
+        const auto& q = target().orientation;
+        return Vec3(core::Quat(q[0], q[1], q[2], q[3]) * Vec3::UnitZ());
+    };
+    const Vec3 upright = axis();
+    QTest::keyPress(&view_, Qt::Key_T);
+    QTest::keyClick(&view_, Qt::Key_Right);
+    QTest::keyRelease(&view_, Qt::Key_T);
+    EXPECT_GT((axis() - upright).dot(view_.camera().right()), 0.02);
+
+    const double loadN = view_.hand()->loadN();
+    QTest::keyClick(&view_, Qt::Key_W);
+    EXPECT_NEAR(view_.hand()->loadN(), loadN + 0.1, 1e-9);
+    QTest::keyClick(&view_, Qt::Key_S);
+    EXPECT_NEAR(view_.hand()->loadN(), loadN, 1e-9);
+    EXPECT_FALSE(view_.hand()->stopMm());
+    QTest::keyClick(&view_, Qt::Key_V);
+    ASSERT_TRUE(view_.hand()->stopMm());
+    const double stopMm = *view_.hand()->stopMm();
+    QTest::keyClick(&view_, Qt::Key_V);
+    EXPECT_NEAR(*view_.hand()->stopMm(), stopMm + 0.1, 1e-9);
+    for (int i = 0; i < 40 && view_.hand()->stopMm(); ++i)
+        QTest::keyClick(&view_, Qt::Key_G);
+    EXPECT_FALSE(view_.hand()->stopMm());
+
+    QTest::keyPress(&view_, Qt::Key_Return, Qt::ControlModifier);
+    EXPECT_TRUE(view_.hand()->isPressed());
+    EXPECT_EQ(target().pedal, 0.0) << "with the bur still";
+    QTest::keyRelease(&view_, Qt::Key_Return, Qt::ControlModifier);
+    EXPECT_FALSE(view_.hand()->isPressed());
+}
+
+TEST_F(ViewTest, AMeasureIsWrittenOnceAndNotThroughTheTooth) {
+    view_.setTool(Tool::depth);
+    press(Qt::LeftButton, centre_);
+    release(Qt::LeftButton, centre_);
+    // Kept, it is no longer read as well while the pointer stays; elsewhere there is a reading again.
+    EXPECT_EQ(view_.written().measurements.size(), 1u);
+    EXPECT_FALSE(view_.written().reading);
+    press(Qt::LeftButton, centre_);
+    release(Qt::LeftButton, centre_);
+    EXPECT_EQ(view_.written().measurements.size(), 1u) << "twice at one place";
+    moveTo(centre_ + QPoint(40, 0));
+    EXPECT_TRUE(view_.written().reading);
+    // From behind the tooth hides it.
+    const view::Camera front = view_.camera();
+    view::Camera behind = front;
+    behind.eyeMm = 2.0 * front.targetMm - front.eyeMm;
+    view_.setCamera(behind);
+    EXPECT_TRUE(view_.written().measurements.empty());
+    view_.setCamera(front);
+    EXPECT_EQ(view_.written().measurements.size(), 1u);
+}
+
 TEST_F(ViewTest, DepthAndPulpAreReadWhereOneClicks) {
     QSignalSpy measured(&view_, &ViewWidget::measured);
     view_.setTool(Tool::depth);
@@ -309,6 +496,9 @@ TEST_F(ViewTest, DepthAndPulpAreReadWhereOneClicks) {
     EXPECT_EQ(pulpLight(pulp.valueMm), Light::good);
     EXPECT_EQ(pulpLight(0.3), Light::near);
     EXPECT_EQ(pulpLight(0.1), Light::harmed);
+    EXPECT_EQ(pulpLight(0.87), Light::good);
+    EXPECT_EQ(pulpLight(0.87, {1.0, 0.5}), Light::near);
+    EXPECT_EQ(pulpLight(0.4, {1.0, 0.5}), Light::harmed);
 }
 
 TEST_F(ViewTest, TheSectionStepsAndIsCutThrough) {
@@ -345,7 +535,9 @@ TEST_F(ViewTest, TheSectionStepsAndIsCutThrough) {
 
 TEST_F(ViewTest, WhatTheExerciseLocksStaysAway) {
     view_.setTool(Tool::depth);
-    view_.setLocked({"depth", "cross-section", "transparency"});
+    tooth::Exercise exercise;
+    exercise.lockedHelps = {"depth", "cross-section", "transparency"};
+    view_.setPermissions(station::permissionsOf(&exercise, station::WorkMode::work));
     EXPECT_EQ(view_.tool(), Tool::drill);
     QTest::keyClick(&view_, Qt::Key_D);
     EXPECT_EQ(view_.tool(), Tool::drill);
@@ -353,7 +545,7 @@ TEST_F(ViewTest, WhatTheExerciseLocksStaysAway) {
     EXPECT_FALSE(view_.section());
     QTest::keyClick(&view_, Qt::Key_C);
     EXPECT_FALSE(view_.isComparing());
-    view_.setLocked({});
+    view_.setPermissions({});
     QTest::keyClick(&view_, Qt::Key_C);
     EXPECT_TRUE(view_.isComparing());
 }

@@ -43,26 +43,29 @@ std::optional<measure::Hit> ball(const view::Ray& ray) {
     if (at <= 0.0) return {};
     return hitAt(ray, at, (ray.originMm + at * ray.direction).normalized());
 }
-/// A pit of radius 1 and depth 2 in a plane.
-std::optional<measure::Hit> pit(const view::Ray& ray) {
-    std::optional<measure::Hit> best;
-    const auto keep = [&](double at, const Vec3& normal) {
-        if (at > 1e-9 && (!best || at < best->distanceMm)) best = hitAt(ray, at, normal);
+/// The bur: balls of half a millimetre, from its round end to 3 mm up.
+template <class Distance>
+PointerHand::Feel feelOf(Distance distance) {
+    return [distance](const core::Pose& pose) {
+        contact::Depth depth;
+        for (double z = 0.5; z <= 2.5; z += 0.125)
+            depth.depthMm = std::max(depth.depthMm, 0.5 - distance(pose.apply(Vec3(0, 0, z))));
+        depth.depthMm = std::max(depth.depthMm, -5.0);
+        return depth;
     };
-    for (const double z : {0.0, -2.0}) {
-        if (std::abs(ray.direction.z()) < 1e-12) continue;
-        const double at = (z - ray.originMm.z()) / ray.direction.z();
-        const Vec3 p = ray.originMm + at * ray.direction;
-        if ((p.head<2>().norm() > 1.0) == (z == 0.0)) keep(at, Vec3::UnitZ());
-    }
-    const Vec2 o = ray.originMm.head<2>(), d = ray.direction.head<2>();
-    const double a = d.squaredNorm(), b = o.dot(d), c = o.squaredNorm() - 1.0, inner = b * b - a * c;
-    if (a > 1e-12 && inner > 0.0)
-        for (const double at : {(-b - std::sqrt(inner)) / a, (-b + std::sqrt(inner)) / a}) {
-            const Vec3 p = ray.originMm + at * ray.direction;
-            if (p.z() < 0.0 && p.z() > -2.0) keep(at, Vec3(-p.x(), -p.y(), 0.0).normalized());
-        }
-    return best;
+}
+double planeMm(const Vec3& p) {
+    return p.z();
+}
+double ballMm(const Vec3& p) {
+    return p.norm() - kRadius;
+}
+/// A step: low for x < 0, 3 mm higher for x > 0.
+double stepMm(const Vec3& p) {
+    const double low = p.z();
+    const Vec3 out(std::max(0.0, -p.x()), 0.0, std::max(0.0, p.z() - 3.0));
+    const double block = out.norm() > 0.0 ? out.norm() : std::max(-p.x(), p.z() - 3.0);
+    return std::min(low, block);
 }
 
 view::Camera from(const Vec3& eye, const Vec3& up = Vec3::UnitZ()) {
@@ -74,13 +77,19 @@ view::Camera from(const Vec3& eye, const Vec3& up = Vec3::UnitZ()) {
 }
 
 struct Scene {
-    explicit Scene(PointerHand::Cast cast, const Vec3& eye = Vec3(0, -40, 30), const Vec3& up = Vec3::UnitZ())
+    explicit Scene(double (&distance)(const Vec3&), const Vec3& eye = Vec3(0, -40, 30), const Vec3& up = Vec3::UnitZ())
         : camera(from(eye, up)),
           mailbox(std::make_shared<device::PointerMailbox>()),
-          hand(mailbox, {Vec3(0, 0, 12), Quat::Identity()}, std::move(cast)) {
+          hand(mailbox, {Vec3(0, 0, 12), Quat::Identity()}, distance == ballMm ? ball : plane) {
         hand.setEye(camera, kViewport);
-        hand.setBur(3.0, 0.5);
+        hand.setFeel(feelOf(distance));
     }
+    [[nodiscard]] Vec3 way() const { return Vec3(hand.target().way); }
+    [[nodiscard]] double clearMm(double (&distance)(const Vec3&)) const {
+        return -feelOf(distance)({tip(), turn()}).depthMm;
+    }
+    /// Of a place from the line of sight through a pixel [px].
+    [[nodiscard]] double besides(const Vec2& at, const Vec3& p) const { return (pixel(p) - at).norm(); }
     [[nodiscard]] Vec2 pixel(const Vec3& p) const { return view::pixelOf(camera, kViewport, p).value(); }
     [[nodiscard]] Vec3 tip() const { return Vec3(hand.target().positionMm); }
     [[nodiscard]] Quat turn() const {
@@ -90,6 +99,7 @@ struct Scene {
     [[nodiscard]] Vec3 axis() const { return turn() * Vec3::UnitZ(); }
     void tell(const Vec3& proxy, double depthMm) {
         messages::HapticSample sample;
+        sample.tick = 1;
         for (std::size_t k = 0; k < 3; ++k)
             sample.proxyPositionMm[k] = proxy[static_cast<int>(k)];
         sample.depthMm = depthMm;
@@ -101,47 +111,23 @@ struct Scene {
 };
 
 TEST(PointerHand, theTipHoversHalfAMillimetreOffUnderThePointer) {
-    Scene s(plane);
-    for (const Vec3& p : {Vec3(0, 0, 0), Vec3(2, 1, 0), Vec3(-3, 2, 0)}) {
-        s.hand.move(s.pixel(p));
-        EXPECT_NEAR((s.tip() - p - Vec3(0, 0, kHoverMm)).norm(), 0.0, 1e-9);
-        EXPECT_EQ(s.hand.target().loadN, 0.0);
-        EXPECT_EQ(s.hand.target().pedal, 0.0);
-        EXPECT_FALSE(s.hand.target().hasStop);
-        // And the device reads just that.
-        EXPECT_EQ(s.mailbox->read().positionMm[0], s.hand.target().positionMm[0]);
-    }
-}
-
-TEST(PointerHand, theWholeHeadIsClearOfAWallOrASlope) {
-    Scene s(ball, Vec3(0, -40, 5));
-    for (double angle = -1.2; angle <= 1.3; angle += 0.1) {
-        const Vec3 p = kRadius * Vec3(0, -std::cos(angle), std::sin(angle));
-        const Vec3 seen = (s.camera.eyeMm - p).normalized();
-        if (seen.dot(p.normalized()) < 0.05) continue;
-        s.hand.move(s.pixel(p));
-        // The head: balls of its radius from the round end up.
-        double least = 1e9;
-        for (double z = 0.5; z <= 2.5; z += 0.1)
-            least = std::min(least, (s.tip() + z * s.axis()).norm() - kRadius - 0.5);
-        EXPECT_GT(least, kHoverMm - 1e-6) << angle;
-        EXPECT_LT((s.tip() - p).norm(), 4.5) << angle;
-        if (angle > 0.0) {
-            EXPECT_LT(least, kHoverMm + 0.15) << angle;
+    for (const auto distance : {planeMm, ballMm}) {
+        Scene s(*distance);
+        for (const Vec3& p : {Vec3(0, 0, 1), Vec3(2, 1, 2), Vec3(-3, 2, 1), Vec3(1, -2, 4)}) {
+            const Vec2 at = s.pixel(p);
+            s.hand.move(at);
+            EXPECT_NEAR(s.besides(at, s.tip()), 0.0, 1e-6);
+            EXPECT_NEAR(s.clearMm(*distance), kHoverMm, 0.002);
+            EXPECT_EQ(s.hand.target().loadN, 0.0);
+            EXPECT_EQ(s.hand.target().pedal, 0.0);
+            // And the device reads just that.
+            EXPECT_EQ(s.mailbox->read().positionMm[0], s.hand.target().positionMm[0]);
         }
     }
 }
 
-TEST(PointerHand, inItsOwnCavityItStandsOverTheFloorBesideTheWall) {
-    Scene s(pit, Vec3(0, -1, 40), Vec3::UnitY());
-    s.hand.move(s.pixel(Vec3(0.9, 0, -2)));
-    EXPECT_NEAR(s.tip().z(), -1.5, 1e-9);
-    EXPECT_LT(s.tip().head<2>().norm() + 0.5, 1.0);
-    EXPECT_GT(s.tip().x(), 0.3);
-}
-
 TEST(PointerHand, offTheToothItMovesInTheViewPlaneThroughTheLastPlace) {
-    Scene s(ball);
+    Scene s(ballMm);
     s.hand.move(s.pixel(Vec3(0, 0, kRadius)));
     const Vec3 last = s.tip();
     s.hand.move(Vec2(20, 300));
@@ -149,47 +135,52 @@ TEST(PointerHand, offTheToothItMovesInTheViewPlaneThroughTheLastPlace) {
     EXPECT_NEAR((s.pixel(s.tip()) - Vec2(20, 300)).norm(), 0.0, 1e-6);
 }
 
-TEST(PointerHand, aPressTurnsAndLoadsWithoutAJump) {
-    Scene s(plane);
+TEST(PointerHand, aPressGoesInAlongTheLineOfSight) {
+    for (const Vec3& eye : {Vec3(0, -1, 40), Vec3(0, -40, 30), Vec3(-30, -30, 12)}) {
+        Scene s(ballMm, eye);
+        const Vec2 at = s.pixel(Vec3(-1, -2, 3));
+        s.hand.move(at);
+        s.hand.press(at, true);
+        EXPECT_TRUE(s.hand.isPressed());
+        EXPECT_EQ(s.hand.target().loadN, kFirstLoadN);
+        EXPECT_EQ(s.hand.target().pedal, 1.0);
+        EXPECT_NEAR(s.clearMm(ballMm), 0.0, 0.002) << "from where the bur touches";
+        EXPECT_NEAR((s.way() - view::rayThrough(s.camera, kViewport, at).direction).norm(), 0.0, 1e-12);
+        for (const double deep : {0.0, 1.0, 3.0})
+            EXPECT_NEAR(s.besides(at, s.tip() + deep * s.way()), 0.0, 1e-6);
+        EXPECT_GT(s.hand.target().farMm, 2.0);
+        s.hand.release();
+        EXPECT_EQ(s.hand.target().pedal, 0.0);
+        EXPECT_FALSE(s.hand.isPressed());
+    }
+}
+
+TEST(PointerHand, withControlItOnlyTouches) {
+    Scene s(planeMm);
     const Vec2 pixel = s.pixel(Vec3(1, 1, 0));
     s.hand.move(pixel);
-    const Vec3 before = s.tip();
-    s.hand.press(pixel, true);
-    EXPECT_TRUE(s.hand.isPressed());
-    EXPECT_EQ(s.tip(), before);
-    EXPECT_EQ(s.hand.target().loadN, kFirstLoadN);
-    EXPECT_EQ(s.hand.target().pedal, 1.0);
-    s.hand.move(pixel);
-    EXPECT_NEAR((s.tip() - before).norm(), 0.0, 1e-9);
-    // By now it is 0.3 mm in; let go, it lifts off the surface.
-    s.tell(Vec3(1, 1, -0.3), 1.9);
-    s.hand.release();
-    EXPECT_NEAR((s.tip() - Vec3(1, 1, kHoverMm)).norm(), 0.0, 1e-9);
-    EXPECT_EQ(s.hand.target().loadN, 0.0);
-    EXPECT_EQ(s.hand.target().pedal, 0.0);
-    EXPECT_FALSE(s.hand.isPressed());
-    // Touching only.
-    s.tell(Vec3(1, 1, 0.5), -0.5);
     s.hand.press(pixel, false);
     EXPECT_EQ(s.hand.target().pedal, 0.0);
     EXPECT_EQ(s.hand.target().loadN, kFirstLoadN);
 }
 
-TEST(PointerHand, aBurIsWithdrawnFromACavityTurning) {
+TEST(PointerHand, aBurIsWithdrawnFromACavityTurningAndLed) {
     for (const bool hangs : {false, true}) {
-        Scene s(plane);
+        Scene s(planeMm);
         const Vec2 pixel = s.pixel(Vec3(1, 1, 0)), elsewhere = s.pixel(Vec3(2, 1, 0));
         s.hand.move(pixel);
         s.hand.press(pixel, true);
         s.tell(Vec3(1, 1, -1.4), 1.9);
         s.hand.release();
+        // Along the bur, which is shorter than back along the line of sight.
         const Vec3 out(1, 1, kHoverMm);
-        EXPECT_NEAR((s.tip() - out).norm(), 0.0, 1e-9);
+        EXPECT_NEAR((s.tip() - out).norm(), 0.0, 0.01);
+        EXPECT_NEAR(s.way().z(), 1.0, 1e-9);
+        EXPECT_TRUE(s.hand.target().isLed);
         EXPECT_EQ(s.hand.target().pedal, 1.0);
-        EXPECT_EQ(s.hand.target().loadN, 0.0);
         // Not sideways through the wall.
         s.hand.move(elsewhere);
-        EXPECT_NEAR((s.tip() - out).norm(), 0.0, 1e-9);
+        EXPECT_NEAR((s.tip() - out).norm(), 0.0, 0.01);
         if (hangs) {
             int pictures = 0;
             for (; s.hand.target().pedal > 0.0 && pictures < 1000; ++pictures)
@@ -201,147 +192,158 @@ TEST(PointerHand, aBurIsWithdrawnFromACavityTurning) {
             EXPECT_EQ(s.hand.target().pedal, 1.0);
             s.tell(Vec3(1, 1, kHoverMm - 0.05), -0.5);
             EXPECT_EQ(s.hand.target().pedal, 0.0);
-            s.hand.move(elsewhere);
-            EXPECT_GT((s.tip() - out).norm(), 0.5);
+            EXPECT_NEAR(s.besides(elsewhere, s.tip()), 0.0, 1e-6) << "where the pointer is by now";
         }
     }
     // A still bur only touched: nothing turns.
-    Scene s(plane);
+    Scene s(planeMm);
     const Vec2 pixel = s.pixel(Vec3(1, 1, 0));
     s.hand.move(pixel);
     s.hand.press(pixel, false);
-    s.tell(Vec3(1, 1, -1.4), 1.9);
+    s.tell(Vec3(1, 1, -0.2), 1.9);
     s.hand.release();
     EXPECT_EQ(s.hand.target().pedal, 0.0);
 }
 
-TEST(PointerHand, draggingStaysInThePlaneOfThePress) {
-    struct Row {
-        const char* what;
-        Vec3 eye;
-        bool edgeOn;
-    };
-    for (const Row& row : {Row{"from above", Vec3(0, -10, 40), false}, Row{"aslant", Vec3(0, -40, 30), false},
-                           Row{"from the side", Vec3(0, -50, 1), true}}) {
-        SCOPED_TRACE(row.what);
-        Scene s(plane, row.eye);
-        const Vec3 p(0.5, 0, 0);
-        s.hand.move(s.pixel(p));
-        const Vec3 start = s.tip();
-        s.hand.press(s.pixel(p), true);
-        Vec3 last = start;
-        for (int i = 1; i <= 20; ++i) {
-            s.hand.move(s.pixel(p) + Vec2(2.0 * i, row.edgeOn ? 0.0 : -1.0 * i));
-            EXPECT_NEAR(s.tip().z(), start.z(), 1e-9);
-            EXPECT_LT((s.tip() - last).norm(), 0.4);
-            EXPECT_GT((s.tip() - last).norm(), 0.01);
-            last = s.tip();
-        }
-        // What was under the pointer goes with it.
-        const Vec2 moved = s.pixel(last) - s.pixel(start);
-        EXPECT_NEAR(moved.x(), 40.0, 1.0);
+TEST(PointerHand, whatWasCutMovesNothing) {
+    // Its hand knows the tooth before any cut alone: told of any place of the tip, its target is the same.
+    Scene s(ballMm);
+    const Vec2 at = s.pixel(Vec3(-1, -2, 3));
+    s.hand.move(at);
+    s.hand.press(at, true);
+    const Vec3 before = s.tip(), way = s.way();
+    for (const double deep : {0.2, 1.0, 2.0}) {
+        s.tell(before + deep * way, deep);
+        s.hand.move(at + Vec2(1, 0));
+        s.hand.move(at);
+        EXPECT_NEAR((s.tip() - before).norm(), 0.0, 1e-9);
     }
 }
 
-TEST(PointerHand, aPressOnAWallPushesIntoIt) {
-    Scene s(ball, Vec3(0, -40, 0));
-    const Vec2 pixel = s.pixel(Vec3(0, -kRadius, 0));
-    s.hand.move(pixel);
-    EXPECT_NEAR(s.tip().y(), -kRadius - kHoverMm - 0.5, 1e-6);
-    s.hand.press(pixel, true);
-    EXPECT_EQ(s.hand.target().loadN, 0.0);
-    EXPECT_EQ(s.hand.target().pedal, 1.0);
-    // The bur's side meets the wall 0.5 mm on; from there 1 N takes 0.25 mm of the hand's spring and 0.5 mm of
-    // enamel's.
-    EXPECT_NEAR(s.tip().y(), -kRadius - 0.5 + 0.75, 1e-6);
-    s.hand.setLoad(2.0);
-    EXPECT_NEAR(s.tip().y(), -kRadius - 0.5 + 1.5, 1e-6);
-    s.tell(Vec3(0, -kRadius - 0.4, 0), 1.0);
-    s.hand.release();
-    EXPECT_NEAR(s.tip().y(), -kRadius - 0.4 - kHoverMm, 1e-6);
+TEST(PointerHand, overAnEdgeItIsLiftedAndPutDownAgain) {
+    // From the low side to the top of the step, which hides part of the low side.
+    Scene s(stepMm, Vec3(30, 0, 25));
+    const Vec2 low = s.pixel(Vec3(-7, 0, 0)), high = s.pixel(Vec3(2, 0, 3));
+    s.hand.move(low);
+    s.hand.press(low, true);
+    ASSERT_EQ(s.hand.target().loadN, kFirstLoadN);
+    Vec3 bur = s.tip() + 0.3 * s.way();
+    bool lifted = false;
+    for (int i = 0; i <= 200; ++i) {
+        s.hand.move(low + (i / 200.0) * (high - low));
+        if (s.hand.target().loadN > 0.0 && !s.hand.target().isLed) {
+            // Pressed on, the way between two places leads through no tooth.
+            for (double share = 0.0; share <= 1.0; share += 0.1) {
+                const Vec3 between = bur + share * (s.tip() - bur);
+                EXPECT_LT(feelOf(stepMm)({between, Quat::Identity()}).depthMm, 0.5) << i;
+            }
+            bur = s.tip();
+        } else {
+            lifted = true;
+            EXPECT_EQ(s.hand.idle(), PointerHand::Idle::onItsWay);
+            bur = s.tip();
+        }
+        s.tell(bur, lifted ? -0.1 : 0.1);
+    }
+    EXPECT_TRUE(lifted);
+    s.tell(bur, -0.1);
+    s.hand.move(high);
+    s.tell(bur, -0.1);
+    EXPECT_EQ(s.hand.target().loadN, kFirstLoadN);
+    EXPECT_NEAR(s.besides(high, s.tip()), 0.0, 1e-6);
 }
 
-TEST(PointerHand, aPressInTheAirDoesNotFall) {
-    Scene s(ball);
+TEST(PointerHand, aPressInTheAirSaysSo) {
+    Scene s(ballMm);
     s.hand.move(Vec2(20, 300));
-    const Vec3 before = s.tip();
     s.hand.press(Vec2(20, 300), true);
     EXPECT_EQ(s.hand.target().loadN, 0.0);
     EXPECT_EQ(s.hand.target().pedal, 1.0);
+    EXPECT_EQ(s.hand.idle(), PointerHand::Idle::offTooth);
+    const Vec3 before = s.tip();
     s.hand.move(Vec2(60, 300));
     EXPECT_GT((s.tip() - before).norm(), 0.5);
-    EXPECT_NEAR((s.tip() - before).dot(s.axis()), 0.0, 1e-9);
+    EXPECT_NEAR((s.tip() - before).dot(s.camera.forward()), 0.0, 1e-9);
 }
 
-TEST(PointerHand, draggedOffTheEdgeItKeepsItsHeight) {
-    // A table that ends at x = 2.
-    Scene s([](const view::Ray& ray) {
-        auto hit = plane(ray);
-        if (hit && hit->pointMm.x() > 2.0) hit.reset();
-        return hit;
-    });
-    s.hand.move(s.pixel(Vec3(1.5, 0, 0)));
-    s.hand.press(s.pixel(Vec3(1.5, 0, 0)), true);
-    s.tell(Vec3(1.5, 0, 0), 2.0);
-    s.hand.move(s.pixel(Vec3(1.7, 0, 0)));
-    EXPECT_EQ(s.hand.target().loadN, kFirstLoadN);
-    s.hand.move(s.pixel(Vec3(2.6, 0, 0)));
-    EXPECT_EQ(s.hand.target().loadN, 0.0);
-    EXPECT_NEAR(s.tip().z(), 0.0, 1e-9);
-    s.hand.move(s.pixel(Vec3(1.6, 0, 0)));
-    EXPECT_EQ(s.hand.target().loadN, kFirstLoadN);
+TEST(PointerHand, aToothPutBackRoundTheBurIsLeftFirst) {
+    Scene s(planeMm);
+    const Vec2 at = s.pixel(Vec3::Zero());
+    s.hand.move(at);
+    s.hand.press(at, true);
+    messages::HapticSample sample;
+    sample.tick = 1;
+    sample.proxyPositionMm = {0, 0, -1};
+    sample.flags = messages::kWaiting;
+    s.hand.follow(sample);
+    EXPECT_EQ(s.hand.idle(), PointerHand::Idle::onItsWay);
+    EXPECT_GT(s.tip().z(), 0.4);
+    s.tell(s.tip(), -0.5);
+    s.tell(s.tip(), -0.5);
+    EXPECT_EQ(s.hand.target().loadN, kFirstLoadN) << "and it presses again";
 }
 
 TEST(PointerHand, slowIsAFifthFromWhereItBegan) {
-    Scene s(plane, Vec3(0, -1, 40), Vec3::UnitY());
+    Scene s(planeMm, Vec3(0, -1, 40), Vec3::UnitY());
     const Vec2 start = s.pixel(Vec3(0, 0, 0));
+    const auto lead = [&] { return Vec2(s.pixel(s.tip()) - start); };
     s.hand.move(start);
     s.hand.press(start, true);
     s.hand.move(start + Vec2(10, 0));
-    const double fast = s.tip().x();
+    EXPECT_NEAR(lead().x(), 10.0, 1e-6);
     s.hand.move(start + Vec2(20, 0), true);
-    EXPECT_NEAR(s.tip().x(), fast * 1.2, 1e-6);
+    EXPECT_NEAR(lead().x(), 12.0, 1e-6);
     s.hand.move(start + Vec2(60, 0), true);
-    EXPECT_NEAR(s.tip().x(), fast * 2.0, 1e-6);
+    EXPECT_NEAR(lead().x(), 20.0, 1e-6);
     // Shift let go: no jump while pressed.
     s.hand.move(start + Vec2(60, 0));
-    EXPECT_NEAR(s.tip().x(), fast * 2.0, 1e-6);
+    EXPECT_NEAR(lead().x(), 20.0, 1e-6);
     s.hand.move(start + Vec2(70, 0));
-    EXPECT_NEAR(s.tip().x(), fast * 3.0, 1e-6);
+    EXPECT_NEAR(lead().x(), 30.0, 1e-6);
     s.hand.release();
+    s.tell(s.tip(), -0.5);
     s.hand.move(start + Vec2(70, 0));
-    EXPECT_NEAR((s.pixel(s.tip() - Vec3(0, 0, kHoverMm)) - start - Vec2(70, 0)).norm(), 0.0, 1e-6);
+    EXPECT_NEAR(lead().x(), 70.0, 1e-6);
 }
 
-TEST(PointerHand, theStopIsBelowTheSurfaceOfThePress) {
-    Scene s(plane);
-    s.hand.move(s.pixel(Vec3::Zero()));
-    s.hand.setStop(1.5);
-    s.hand.press(s.pixel(Vec3::Zero()), true);
-    ASSERT_TRUE(s.hand.target().hasStop);
-    EXPECT_NEAR(s.hand.target().stopMm[2], -1.5, 1e-9);
-    s.hand.setStop(0.7);
-    EXPECT_NEAR(s.hand.target().stopMm[2], -0.7, 1e-9);
-    // Without one, what it may fall is bounded all the same.
-    s.hand.setStop({});
-    EXPECT_FALSE(s.hand.stopMm());
-    EXPECT_TRUE(s.hand.target().hasStop);
-    EXPECT_NEAR(s.hand.target().stopMm[2], -10.0, 1e-9);
-    s.hand.release();
-    EXPECT_FALSE(s.hand.target().hasStop);
+TEST(PointerHand, theStopCountsFromTheFirstTouchOfTheUncutTooth) {
+    for (const Vec3& eye : {Vec3(0, -1, 40), Vec3(0, -40, 30)}) {
+        Scene s(planeMm, eye);
+        s.hand.move(s.pixel(Vec3::Zero()));
+        s.hand.setStop(1.5);
+        s.hand.press(s.pixel(Vec3::Zero()), true);
+        const auto end = [&] { return Vec3(s.tip() + s.hand.target().farMm * s.way()).z(); };
+        EXPECT_NEAR(end(), -1.5, 0.01) << "whichever way one looks";
+        s.hand.setStop(0.7);
+        EXPECT_NEAR(end(), -0.7, 0.01);
+        // It holds on a bur that is deeper by now, and where the bur is held back beside the pointer.
+        s.tell(s.tip() + 1.2 * s.way(), 0.1);
+        EXPECT_NEAR(end(), -0.7, 0.01);
+        // Without one, what it may go is bounded all the same.
+        s.hand.setStop({});
+        EXPECT_FALSE(s.hand.stopMm());
+        EXPECT_GT(end(), -10.1);
+    }
 }
 
-TEST(PointerHand, theStopCountsFromTheUncutSurface) {
-    Scene s(plane);  // the floor of a cavity 0.9 mm deep
-    s.hand.setGoneOver([](const Vec3&, const Vec3& axis) { return 0.9 * axis.z(); });
-    s.hand.move(s.pixel(Vec3::Zero()));
-    s.hand.setStop(1.5);
-    s.hand.press(s.pixel(Vec3::Zero()), true);
-    EXPECT_NEAR(s.hand.target().stopMm[2], 0.9 - 1.5, 1e-9);
+TEST(PointerHand, heldBackBesideThePointerItGoesNoDeeperThanItMayThere) {
+    // Down a slope: under the pointer the stop lies lower than where the bur still is.
+    Scene s(ballMm, Vec3(0, -1, 40), Vec3::UnitY());
+    const Vec2 at = s.pixel(Vec3(0, 0, 5));
+    s.hand.setStop(0.5);
+    s.hand.move(at);
+    s.hand.press(at, true);
+    const Vec3 bur = s.tip() + 0.5 * s.way();
+    s.tell(bur, 0.1);
+    const Vec2 ahead = s.pixel(Vec3(2, 0, 5));
+    for (int i = 1; i <= 20; ++i)
+        s.hand.move(at + (i / 20.0) * (ahead - at));
+    s.tell(bur, 0.1);
+    EXPECT_NEAR(s.tip().z() + s.hand.target().farMm * s.way().z(), bur.z(), 0.15);
 }
 
 TEST(PointerHand, theLoadIsHeldWithinWhatAHandPresses) {
-    Scene s(plane);
+    Scene s(planeMm);
     for (const auto& [asked, held] :
          {std::pair{1.7, 1.7}, {0.01, kLeastLoadN}, {9.0, kMostLoadN}, {-1.0, kLeastLoadN}}) {
         s.hand.setLoad(asked);
@@ -356,7 +358,7 @@ TEST(PointerHand, theLoadIsHeldWithinWhatAHandPresses) {
 }
 
 TEST(PointerHand, pivotTurnsAboutTheTipTowardsThePointer) {
-    Scene s(plane);
+    Scene s(planeMm);
     s.hand.move(s.pixel(Vec3::Zero()));
     const Vec3 tip = s.tip();
     s.hand.pivot(Vec2(40, 0));
@@ -373,17 +375,15 @@ TEST(PointerHand, pivotTurnsAboutTheTipTowardsThePointer) {
 }
 
 TEST(PointerHand, alignsToTheSurfaceUnderTheTip) {
-    Scene s(ball, Vec3(0, -30, 30));
+    Scene s(ballMm, Vec3(0, -30, 30));
     const Vec3 p = kRadius * Vec3(0.3, -0.5, std::sqrt(1 - 0.09 - 0.25));
     s.hand.move(s.pixel(p));
     s.hand.alignToNormal();
     EXPECT_NEAR(s.axis().dot(p.normalized()), 1.0, 1e-9);
-    s.hand.move(s.pixel(p));
-    EXPECT_NEAR(s.tip().norm(), kRadius + kHoverMm, 1e-9);
 }
 
 TEST(PointerHand, nudgesGoAlongTheScreenAndTheAxis) {
-    Scene s(plane);
+    Scene s(planeMm);
     s.hand.move(s.pixel(Vec3::Zero()));
     const Vec3 start = s.tip();
     s.hand.nudge(kNudgeMm, 0, 0);
@@ -398,8 +398,33 @@ TEST(PointerHand, nudgesGoAlongTheScreenAndTheAxis) {
     EXPECT_GT(s.tip().z(), -0.51);
 }
 
+TEST(PointerHand, pressedKeysLeadItAcrossAndTheLoadIn) {
+    Scene s(planeMm);
+    const Vec2 at = s.pixel(Vec3::Zero());
+    s.hand.move(at);
+    s.hand.press(at, true);
+    const Vec3 before = s.tip();
+    s.hand.nudge(kNudgeMm, 0, 0);
+    EXPECT_NEAR((s.tip() - before).norm(), kNudgeMm, 0.01);
+    EXPECT_GT((s.tip() - before).dot(s.camera.right()), 0.09);
+    EXPECT_NEAR(s.tip().z(), before.z(), 0.01);
+}
+
+TEST(PointerHand, aBurThatKeysMovedIsPressedWhereItIs) {
+    Scene s(planeMm);
+    const Vec2 at = s.pixel(Vec3::Zero());
+    s.hand.move(at);
+    for (int i = 0; i < 10; ++i)
+        s.hand.nudge(kNudgeMm, 0, 0);
+    const Vec2 there = s.pixel(s.tip());
+    s.hand.press(at, true);
+    EXPECT_NEAR(s.besides(there, s.tip()), 0.0, 1e-6);
+    s.hand.move(at + Vec2(5, 0));
+    EXPECT_NEAR(s.besides(there + Vec2(5, 0), s.tip()), 0.0, 1e-6);
+}
+
 TEST(PointerHand, frozenStaysAndGoesOnFromThere) {
-    Scene s(plane);
+    Scene s(planeMm);
     const Vec2 pixel = s.pixel(Vec3::Zero());
     s.hand.move(pixel);
     s.hand.press(pixel, true);
@@ -410,16 +435,17 @@ TEST(PointerHand, frozenStaysAndGoesOnFromThere) {
     EXPECT_EQ(s.tip(), before);
     s.camera = from(Vec3(-20, -40, 30));
     s.hand.setEye(s.camera, kViewport);
+    s.tell(before, 0.0);
     s.hand.freeze(false);
     // Pressed, it goes on from where it stands, whatever is under the pointer now.
     s.hand.move(pixel + Vec2(100, 0));
-    EXPECT_NEAR((s.tip() - before).norm(), 0.0, 1e-9);
+    EXPECT_LT((s.tip() - before).norm(), 0.01);
     s.hand.move(pixel + Vec2(101, 0));
     EXPECT_LT((s.tip() - before).norm(), 0.1);
 }
 
 TEST(PointerHand, escapeEndsEverythingAndTheNextMoveBringsItBack) {
-    Scene s(plane);
+    Scene s(planeMm);
     const Vec2 pixel = s.pixel(Vec3::Zero());
     s.hand.move(pixel);
     s.hand.latchPedal(true);
@@ -455,7 +481,7 @@ TEST(PointerHand, theHandleBeginsOutOfTheMouth) {
 TEST(PointerHand, whatMakesNoSenseChangesNothing) {
     EXPECT_THROW(PointerHand(nullptr, {}, plane), core::Error);
     EXPECT_THROW(PointerHand(std::make_shared<device::PointerMailbox>(), {}, {}), core::Error);
-    Scene s(plane);
+    Scene s(planeMm);
     s.hand.move(s.pixel(Vec3::Zero()));
     const Vec3 before = s.tip();
     s.hand.move(Vec2(std::nan(""), 0));

@@ -38,6 +38,9 @@ scale = 2
 crisp = true
 [tooth]
 voxel_um = 60
+[measure]
+pulp_good_mm = 1
+pulp_least_mm = 0.5
 [folders]
 sessions = "/srv/sessions"
 cases = "~/cases"
@@ -56,6 +59,8 @@ volume = 0.25
     EXPECT_EQ(d.scale, 2.0);
     EXPECT_EQ(d.crisp, true);
     EXPECT_EQ(d.voxelUm, 60.0);
+    EXPECT_EQ(d.pulpGoodMm, 1.0);
+    EXPECT_EQ(d.pulpLeastMm, 0.5);
     EXPECT_EQ(d.sessionsFolder, fs::path("/srv/sessions"));
     EXPECT_EQ(d.casesFolder, fs::path(std::getenv("HOME")) / "cases");
     EXPECT_EQ(d.record, false);
@@ -66,6 +71,9 @@ volume = 0.25
     EXPECT_EQ(little.volume, 1.0);
     EXPECT_FALSE(little.language || little.device || little.scale || little.record || little.sound || little.voxelUm);
     EXPECT_TRUE(of("# nothing\n").problems.empty());
+    const SchoolDefaults wrongWayRound = of("[measure]\npulp_good_mm = 0.5\npulp_least_mm = 1\n");
+    EXPECT_EQ(wrongWayRound.problems.size(), 1u);
+    EXPECT_FALSE(wrongWayRound.pulpGoodMm || wrongWayRound.pulpLeastMm);
 }
 
 TEST_F(SchoolDefaultsFile, whatIsWrongIsToldWithItsLineAndTheRestHolds) {

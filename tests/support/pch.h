@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Precompiled once and reused by every test: what nearly every one includes.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,5 +11,10 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>

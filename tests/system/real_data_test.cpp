@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/rotation.h"
 #include "handpiece/base/geometry/decimate.h"
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/isosurface.h"
@@ -248,7 +249,7 @@ core::Pose crownUp(geometry::TriangleMesh& mesh, const Volume<std::uint8_t>& lab
             }
     const Vec3 up = (enamel / enamelCount - all / allCount).normalized();
     core::Pose turn;
-    turn.orientation = core::Quat::FromTwoVectors(up, Vec3::UnitZ());
+    turn.orientation = core::rotationBetween(up, Vec3::UnitZ());
     mesh = geometry::transformed(std::move(mesh), turn);
     turn.positionMm = -mesh.bounds().centre();
     mesh = geometry::transformed(std::move(mesh), {turn.positionMm, core::Quat::Identity()});
@@ -366,7 +367,7 @@ TEST_F(RealData, depthIsThatOfBruteForce) {
         while (errors.size() < 24) {
             const Vec3 size = box.size();
             core::Pose start;
-            start.orientation = core::Quat::FromTwoVectors(
+            start.orientation = core::rotationBetween(
                 Vec3::UnitZ(), (Vec3::UnitZ() + 0.4 * test::randomDirection(generator)).normalized());
             start.positionMm = {0.3 * size.x() * test::uniform(generator, -1, 1),
                                 0.3 * size.y() * test::uniform(generator, -1, 1), box.max.z() + 1.0};

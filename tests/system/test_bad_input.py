@@ -177,6 +177,56 @@ class BadInput(SystemTest):
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("standard output", done.stderr)
 
+    def test_tables_in_tables_without_end(self):
+        case = self.folder / "case"
+        case.mkdir()
+        for text in ("a." * 250_000 + "a = 1\n", "[" + "a." * 250_000 + "a]\n", "x = " + "[" * 100_000 + "\n",
+                     "\"a b\" ." * 70_000 + "c = 1\n"):
+            (case / "case.toml").write_text("format = 1\n" + text)
+            for arguments in (["case", "info", case], ["case", "check", case]):
+                self.refused(*arguments, mentions=["case.toml", "line 2", "in one another"])
+        (case / "case.toml").write_text("format = 1\n" + "# and so on\n" * 100_000)
+        self.refused("case", "info", case, mentions=["case.toml", "bytes"])
+        # Everything that is TOML is read alike.
+        deep = self.file("deep.toml", b"a." * 250_000 + b"a = 1\n")
+        self.run_refused("--motion", "plunge", "--tissues", deep, mentions=["deep.toml", "in one another"])
+        self.run_refused("--motion", "plunge", "--abilities", deep, mentions=["deep.toml", "in one another"])
+        self.refused("scan", "case", "--job", deep, "--out", self.folder / "made", mentions=["deep.toml", "in one another"])
+        attempt = self.folder / "attempt"
+        attempt.mkdir()
+        (attempt / "attempt.toml").write_bytes(deep.read_bytes())
+        self.refused("case", "pack", attempt, self.folder / "packed", mentions=["attempt.toml", "in one another"])
+        (attempt / "attempt.toml").write_text("format = 1\n" + "# and so on\n" * 100_000)
+        self.refused("case", "pack", attempt, self.folder / "packed", mentions=["attempt.toml", "bytes"])
+
+    def test_what_is_no_plain_file(self):
+        pipe = self.folder / "pipe.stl"
+        os.mkfifo(pipe)
+        for path in (pipe, "/dev/zero"):
+            self.refused("mesh", "info", path, mentions=["not a plain file"])
+            self.probe_refused(tooth=path, mentions=["not a plain file"])
+            self.probe_refused(pose_file=path, mentions=["not a plain file"])
+            self.refused("replay", path, mentions=["not a plain file"])
+            self.run_refused("--motion", "plunge", "--tissues", path, mentions=["not a plain file"])
+        case = self.folder / "case"
+        case.mkdir()
+        os.mkfifo(case / "case.toml")
+        self.refused("case", "info", case, mentions=["not a plain file"])
+
+    def test_an_attempt_that_names_a_device(self):
+        case, done = self.folder / "case", self.folder / "done"
+        self.ok("case", "new", "--part", f"enamel={self.tooth}", "--out", case)
+        self.ok("run", "--case", case, "--bur", "330", "--voxel", "200", "--motion", "plunge", "--depth", "0.5", "--dwell", "0.1",
+                "--no-cache", "--out", done)
+        attempt = done / "attempt" / "attempt.toml"
+        good = attempt.read_text()
+        self.assertIn('case = "../../case"', good)
+        up = "../" * 20
+        for path, word in (("/dev/zero", "from where the attempt lies"), (up + "dev/zero", "not a plain file"),
+                           (up + "etc/passwd", "mesh")):
+            attempt.write_text(good.replace('case = "../../case"', f'case = "{path}"'))
+            self.refused("case", "pack", done / "attempt", self.folder / "packed", mentions=[word])
+
     def test_a_case_that_is_broken(self):
         case = self.folder / "case"
         case.mkdir()

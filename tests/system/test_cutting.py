@@ -221,6 +221,24 @@ class Cutting(SystemTest):
                            tooth=self.folder / "cut.handpiece")
         self.assertAlmostEqual(felt["outer_mm3"], summary["cut_stl_mm3"], delta=1e-6)
 
+    def test_each_tissue_is_exported_as_the_session_leaves_it(self):
+        out, summary = self.grooved("layers", tooth=self.case())
+        self.assertGreater(summary["removed_mm3"]["enamel"], 0)
+        left = {}
+        # The attempt that was saved with the session is the same tooth.
+        for source in (out / "session.h5", out / "attempt"):
+            folder = self.folder / f"tissues-{source.name}"
+            self.ok("export", source, "--stl", "--out", folder)
+            for tissue, whole in (("enamel", 6 * 4 * (TOP - 3.4)), ("dentine", 6 * 4 * 3.4 - 0.6 * 0.6 * 0.7)):
+                mesh = json.loads(self.ok("mesh", "info", folder / f"{tissue}.stl", "--json").stdout)
+                self.assertTrue(mesh["closed"] and mesh["oriented"])
+                rest = whole - summary["removed_mm3"].get(tissue, 0)
+                self.assertAlmostEqual(mesh["volume_mm3"], rest, delta=0.03 * whole, msg=tissue)
+            left[source.name] = [(folder / f"{tissue}.stl").read_bytes() for tissue in ("enamel", "dentine")]
+        self.assertEqual(left["session.h5"], left["attempt"])
+        self.refused("export", out / "session.h5", "--stl", mentions=["--out"])
+        self.refused("export", out / "session.h5", "--stl", "--csv", "--out", self.folder / "both", mentions=["--stl"])
+
     def test_bad_input_is_one_message(self):
         def bad(*arguments, tooth=None, motion="plunge", **options):
             return self.refused("run", "--case", tooth or self.block, "--no-cache", "--motion", motion, "--out",

@@ -87,6 +87,25 @@ class MakeAndMesh(SystemTest):
         text = self.ok("mesh", "info", self.folder / "box.stl").stdout
         self.assertIn("336", text)
 
+    def test_a_unit_is_guessed_named_and_taken(self):
+        metres = write_stl(self.folder / "metres.stl", ball(0.00635, 8))
+        self.assertIn("--unit m makes it", self.ok("mesh", "info", metres).stdout)
+        report = json.loads(self.ok("mesh", "info", metres, "--unit", "m", "--json").stdout)
+        self.assertEqual(report["probable_unit"], "mm")
+        self.assertAlmostEqual(report["box_size_mm"][2], 12.7, delta=1e-3)
+        twice = json.loads(self.ok("mesh", "info", metres, "--unit", "m", "--scale", "2", "--json").stdout)
+        self.assertAlmostEqual(twice["box_size_mm"][2], 25.4, delta=1e-3)
+        poses = "0,0,6.85,1,0,0,0\n"
+        felt = self.ok("probe", "--tooth", metres, "--unit", "m", "--bur", "round-4", "--poses", "-", stdin=poses)
+        self.assertAlmostEqual(float(felt.stdout.splitlines()[1].split(",")[0]), -0.5, delta=0.01)
+        mended = self.folder / "mended.stl"
+        self.ok("mesh", "repair", metres, mended, "--unit", "m")
+        self.expect_solid(self.info(mended))
+        self.assertAlmostEqual(self.info(mended)["box_size_mm"][2], 12.7, delta=1e-3)
+        self.ok("case", "new", "--out", self.folder / "case", "--part", f"enamel={metres}", "--unit", "m")
+        self.refused("run", "--tooth", metres, "--unit", "m", "--motion", "plunge", "--out", self.folder / "o",
+                     mentions=["mesh repair"])
+
     def test_repair_mends_a_scan(self):
         # Holes, faces turned over, a speck of debris: as from a scanner.
         facets = ball(6, 12)

@@ -2,8 +2,10 @@
 #include "panels/bur_list.h"
 
 #include <QApplication>
+#include <QFileInfo>
 #include <QPainter>
 
+#include "handpiece/base/geometry/mesh_io.h"
 #include "panels/theme.h"
 
 namespace handpiece::desktop {
@@ -17,6 +19,9 @@ QString diameterText(double mm) {
 }  // namespace
 
 QString burTitle(const QString& name) {
+    // A file's is what it is called, without its place.
+    if (geometry::meshFormatOf(name.toStdString()) != geometry::MeshFormat::unknown)
+        return QFileInfo(name).completeBaseName();
     if (name.isEmpty() || !name.front().isLetter()) return name;
     // The catalogue's own names; burs from files keep theirs.
     for (const auto& [front, text] :
@@ -112,14 +117,13 @@ QVariant BurModel::data(const QModelIndex& index, int role) const {
         case Qt::AccessibleTextRole:
             return tr("%1, %2, diameter %3").arg(burTitle(name), kind, size);
         case Qt::ToolTipRole: {
-            QStringList lines{QStringLiteral("<b>%1</b>").arg(burTitle(name).toHtmlEscaped()),
-                              tr("%1, %2").arg(kind, abilityName(row.entry.ability)).toHtmlEscaped(),
-                              tr("Diameter %1, length %2").arg(size, diameterText(row.face.lengthMm)).toHtmlEscaped()};
-            if (!us.isEmpty()) lines << tr("US number %1").arg(us).toHtmlEscaped();
-            if (!iso.isEmpty()) lines << tr("ISO number %1").arg(iso).toHtmlEscaped();
-            if (!row.face.ringName.isEmpty()) lines << tr("Ring: %1").arg(row.face.ringName).toHtmlEscaped();
-            if (!allowed(index.row())) lines << tr("Not part of this exercise.").toHtmlEscaped();
-            return lines.join(QStringLiteral("<br>"));
+            QStringList lines{burTitle(name), tr("%1, %2").arg(kind, abilityName(row.entry.ability)),
+                              tr("Diameter %1, length %2").arg(size, diameterText(row.face.lengthMm))};
+            if (!us.isEmpty()) lines << tr("US number %1").arg(us);
+            if (!iso.isEmpty()) lines << tr("ISO number %1").arg(iso);
+            if (!row.face.ringName.isEmpty()) lines << tr("Ring: %1").arg(row.face.ringName);
+            if (!allowed(index.row())) lines << tr("Not part of this exercise.");
+            return lines.join(QLatin1Char('\n'));
         }
         default:
             return {};

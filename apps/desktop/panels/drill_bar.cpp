@@ -229,6 +229,14 @@ void DrillBar::addOwnBur(const instrument::CatalogueEntry& entry, const instrume
     showBur();
 }
 
+void DrillBar::addOwnBur(const QString& name, const instrument::Bur& bur, const std::string& ability) {
+    if (name.isEmpty() || model_->rowOf(name) >= 0) return;
+    instrument::CatalogueEntry entry;
+    entry.name = name.toStdString();
+    entry.ability = ability;
+    addOwnBur(entry, bur.profile());
+}
+
 void DrillBar::showBur() {
     const int row = model_->rowOf(bur_);
     static_cast<BurDelegate*>(list_->itemDelegate())->setInHand(bur_);

@@ -7,6 +7,7 @@
 #include <QWidget>
 #include <vector>
 
+#include "handpiece/model/instrument/bur.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/model/instrument/rotor.h"
 #include "panels/detail.h"
@@ -42,6 +43,8 @@ class DrillBar : public QWidget {
     [[nodiscard]] QString bur() const { return bur_; }
     /// A bur of one's own, from a file: added in front of the list (replacing one of that name), not yet in hand.
     void addOwnBur(const instrument::CatalogueEntry& entry, const instrument::Profile& profile);
+    /// Into the list with its outline, unless the catalogue has it.
+    void addOwnBur(const QString& name, const instrument::Bur& bur, const std::string& ability);
     void setDrives(const std::vector<instrument::Drive>& drives);
     void setDrive(const QString& name);
     [[nodiscard]] QString drive() const { return drive_; }

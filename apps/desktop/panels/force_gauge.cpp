@@ -8,14 +8,14 @@
 #include <cmath>
 
 #include "panels/parts.h"
+#include "panels/press_words.h"
 #include "panels/theme.h"
 
 namespace handpiece::desktop {
 
 namespace {
 
-// Of a mouse's limit of 3.3 N firm begins where the measure box, too, calls a load firm.
-constexpr double kHoldS = 2.0, kFirmShare = 0.42, kLimitShare = 0.9;
+constexpr double kHoldS = 2.0;
 
 }  // namespace
 
@@ -53,20 +53,12 @@ void ForceGauge::setHeadingShown(bool shown) {
 }
 
 ForceGauge::Zone ForceGauge::zone() const {
-    const double share = forceN_ / limitN_;
-    return limited_ || share >= kLimitShare ? Zone::limit : share >= kFirmShare ? Zone::firm : Zone::gentle;
+    return limited_ || forceN_ >= kHardN ? Zone::hard : forceN_ >= kFirmN ? Zone::firm : Zone::gentle;
 }
 
 QString ForceGauge::words() const {
-    switch (zone()) {
-        case Zone::gentle:
-            return tr("Gentle");
-        case Zone::firm:
-            return tr("Firm");
-        case Zone::limit:
-            return detail_ == Detail::practice ? tr("Too hard") : tr("At the limit");
-    }
-    return {};
+    if (limited_) return detail_ == Detail::practice ? tr("More than the device gives") : tr("At the limit");
+    return pressWords(forceN_);
 }
 
 QSize ForceGauge::sizeHint() const {
@@ -104,13 +96,11 @@ void ForceGauge::paintEvent(QPaintEvent* event) {
     painter.setClipPath(round);
     painter.fillRect(bar, tones.line);
     // The zones show faintly, so that one sees where it gets hard.
-    const double edges[] = {0.0, kFirmShare, kLimitShare, 1.0};
+    const double edges[] = {0.0, kFirmN, kHardN, std::max(kHardN, limitN_)};
     for (int i = 0; i < 3; ++i) {
         QColor faint = colours[i];
         faint.setAlphaF(0.22f);
-        painter.fillRect(
-            QRectF(QPointF(xOf(edges[i] * limitN_), bar.top()), QPointF(xOf(edges[i + 1] * limitN_), bar.bottom())),
-            faint);
+        painter.fillRect(QRectF(QPointF(xOf(edges[i]), bar.top()), QPointF(xOf(edges[i + 1]), bar.bottom())), faint);
     }
     painter.fillRect(QRectF(bar.topLeft(), QPointF(xOf(forceN_), bar.bottom())), colour);
     painter.restore();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// How hard the bur presses, against what the device can give.
+/// How hard the bur presses, up to what the device can give.
 
 #include <QWidget>
 
@@ -13,7 +13,7 @@ namespace handpiece::desktop {
 class ForceGauge : public QWidget {
     Q_OBJECT
   public:
-    enum class Zone { gentle, firm, limit };
+    enum class Zone { gentle, firm, hard };
 
     explicit ForceGauge(QWidget* parent = nullptr);
 
@@ -23,9 +23,10 @@ class ForceGauge : public QWidget {
     void setDetail(Detail detail);
     /// Off where a dock's title says it already.
     void setHeadingShown(bool shown);
+    [[nodiscard]] double forceN() const { return forceN_; }
     [[nodiscard]] double peakN() const { return peakN_; }
     [[nodiscard]] Zone zone() const;
-    /// "Gentle", "Firm", "Too hard".
+    /// As the load's, by the newton: "Light", "Firm"; at a device's limit that.
     [[nodiscard]] QString words() const;
 
     [[nodiscard]] QSize sizeHint() const override;

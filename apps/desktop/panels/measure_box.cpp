@@ -15,6 +15,7 @@
 #include "desktop/pulp_words.h"
 #include "panels/icon_factory.h"
 #include "panels/parts.h"
+#include "panels/press_words.h"
 #include "panels/theme.h"
 
 namespace handpiece::desktop {
@@ -130,9 +131,9 @@ MeasureBox::MeasureBox(QWidget* parent) : QWidget(parent) {
     sectionOn_ = named(new QCheckBox(tr("Section"), this), "sectionOn", tr("Cut the tooth open"),
                        tr("Cut the tooth open to look inside (X)"));
     orientation_ = named(new QComboBox(this), "sectionOrientation", tr("Direction of the section"));
-    orientation_->addItem(tr("From cheek to tongue"), static_cast<int>(Orientation::buccolingual));
-    orientation_->addItem(tr("From front to back"), static_cast<int>(Orientation::mesiodistal));
-    orientation_->addItem(tr("Level"), static_cast<int>(Orientation::horizontal));
+    orientation_->addItem(tr("Bucco-lingual"), static_cast<int>(Orientation::buccolingual));
+    orientation_->addItem(tr("Mesio-distal"), static_cast<int>(Orientation::mesiodistal));
+    orientation_->addItem(tr("Horizontal"), static_cast<int>(Orientation::horizontal));
     sectionRow->addWidget(sectionOn_);
     sectionRow->addWidget(orientation_, 1);
     column->addLayout(sectionRow);
@@ -194,10 +195,11 @@ void MeasureBox::setLeftOverPulp(const std::optional<double>& leftMm, bool expos
     left_->setText(exposed  ? quantity(0.0, 1, tr("mm"))
                    : leftMm ? quantity(*leftMm, 2, tr("mm"))
                             : QStringLiteral("–"));
-    const measure::PulpLight light = exposed ? measure::PulpLight::harmed : measure::pulpLight(leftMm.value_or(0.0));
+    const measure::PulpLight light =
+        exposed ? measure::PulpLight::harmed : measure::pulpLight(leftMm.value_or(0.0), pulpLimits_);
     const int lit = exposed || leftMm ? static_cast<int>(light) : -1;
     light_->setLit(lit);
-    leftWords_->setText(exposed ? tr("The pulp is open") : lit < 0 ? QString() : pulpWords(light));
+    leftWords_->setText(exposed ? tr("Pulp exposed") : lit < 0 ? QString() : pulpWords(light, pulpLimits_));
     const Tones tones = tonesOf(palette());
     const QColor colours[] = {tones.good, tones.caution, tones.bad};
     QPalette colour = palette();
@@ -213,11 +215,7 @@ void MeasureBox::setLoad(double loadN) {
 }
 
 void MeasureBox::showLoad() {
-    const QString words = loadN_ < 0.5   ? tr("very light")
-                          : loadN_ < 0.9 ? tr("light")
-                          : loadN_ < 1.4 ? tr("as usual")
-                          : loadN_ < 2.4 ? tr("firm")
-                                         : tr("hard");
+    const QString words = pressWords(loadN_);
     loadValue_->setText(detail_ == Detail::practice ? words : quantity(loadN_, 1, tr("N")));
     load_->setAccessibleDescription(words);
 }
@@ -261,15 +259,26 @@ void MeasureBox::setCalliperActive(bool active) {
     calliperButton_->setChecked(active);
 }
 
-void MeasureBox::setLockedHelps(const QStringList& helps) {
-    const bool depth = helps.contains("depth"), section = helps.contains("cross-section");
+void MeasureBox::setPermissions(const station::Permissions& permissions) {
+    using station::Operation;
+    const bool depth = permissions.allows(Operation::depthReadout), calliper = permissions.allows(Operation::calliper);
     for (QWidget* w : std::initializer_list<QWidget*>{depth_, depthCaption_, left_, leftCaption_, leftWords_, light_})
-        w->setVisible(!depth);
-    locked_->setVisible(depth);
-    sectionOn_->setEnabled(!section);
-    sectionOn_->setToolTip(section ? tr("This exercise has no sections.")
-                                   : tr("Cut the tooth open to look inside (X)"));
-    if (section && sectionOn_->isChecked()) sectionOn_->setChecked(false);
+        w->setVisible(depth);
+    for (QWidget* w : std::initializer_list<QWidget*>{calliper_, calliperCaption_})
+        w->setVisible(calliper);
+    locked_->setVisible(permissions.locks(Operation::depthReadout));
+    const auto take = [&permissions](QWidget* widget, Operation operation, const QString& locked, const QString& tip) {
+        widget->setEnabled(permissions.allows(operation));
+        widget->setToolTip(permissions.locks(operation) ? locked : tip);
+    };
+    take(calliperButton_, Operation::calliper, tr("This exercise has no calliper."),
+         tr("Click two points on the tooth to measure between them (D)"));
+    take(stopOn_, Operation::depthStop, tr("This exercise has no depth stop."),
+         tr("The bur goes no deeper than this (Ctrl and the wheel)"));
+    take(sectionOn_, Operation::section, tr("This exercise has no sections."),
+         tr("Cut the tooth open to look inside (X)"));
+    for (QCheckBox* box : {stopOn_, sectionOn_})
+        if (!box->isEnabled() && box->isChecked()) box->setChecked(false);
 }
 
 void MeasureBox::setLoadShown(bool shown) {
@@ -282,7 +291,7 @@ void MeasureBox::setDetail(Detail detail) {
     for (QLabel* label : {depth_, calliper_, left_})
         label->setFont(scaledFont(font(), practice ? 1.7 : 1.25, true));
     loadCaption_->setText(practice ? tr("Press") : tr("Load"));
-    loadValue_->setMinimumWidth(practice ? fontMetrics().horizontalAdvance(tr("very light")) + 4
+    loadValue_->setMinimumWidth(practice ? fontMetrics().horizontalAdvance(pressWords(0.4)) + 4
                                          : fontMetrics().horizontalAdvance("0.0 N") + 4);
     showLoad();
 }

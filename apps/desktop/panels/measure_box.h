@@ -6,7 +6,9 @@
 #include <QWidget>
 #include <optional>
 
+#include "handpiece/senses/measure/pulp_light.h"
 #include "panels/detail.h"
+#include "station/permissions.h"
 
 class QCheckBox;
 class QComboBox;
@@ -35,6 +37,8 @@ class MeasureBox : public QWidget {
     void setCalliper(const std::optional<double>& distanceMm);
     /// Dentine left over the pulp. `exposed`: the pulp is open.
     void setLeftOverPulp(const std::optional<double>& leftMm, bool exposed = false);
+    /// Of its lamps.
+    void setPulpLimits(const measure::PulpLimits& limits) { pulpLimits_ = limits; }
 
     // Controls; setters tell nobody.
     void setLoad(double loadN);
@@ -44,8 +48,7 @@ class MeasureBox : public QWidget {
     /// How far the section may move [mm].
     void setSectionRange(double leastMm, double mostMm);
     void setCalliperActive(bool active);
-    /// Helps that the exercise locks, of tooth::kHelps: "depth", "cross-section".
-    void setLockedHelps(const QStringList& helps);
+    void setPermissions(const station::Permissions& permissions);
     /// A real device presses itself: no load to set.
     void setLoadShown(bool shown);
     void setDetail(Detail detail);
@@ -57,6 +60,7 @@ class MeasureBox : public QWidget {
     void sectionChanged(bool on, MeasureBox::Orientation orientation, double offsetMm);
 
   private:
+    measure::PulpLimits pulpLimits_;
     void showLoad();
     void tellSection();
 

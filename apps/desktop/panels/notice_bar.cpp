@@ -57,8 +57,7 @@ void NoticeBar::add(const Notice& notice) {
 }
 
 void NoticeBar::remove(const QString& id) {
-    std::erase_if(waiting_, [&id](const Notice& notice) { return notice.id == id; });
-    showFirst();
+    if (std::erase_if(waiting_, [&id](const Notice& notice) { return notice.id == id; }) > 0) showFirst();
 }
 
 void NoticeBar::clear() {

@@ -91,7 +91,7 @@ ParameterBox::ParameterBox(QWidget* parent) : QWidget(parent) {
     table_->setAlternatingRowColors(true);
     table_->verticalHeader()->hide();
     table_->setHorizontalHeaderLabels(
-        {tr("Tissue"), tr("Spring\n[N/mm]"), tr("Damper\n[N s/mm]"), tr("Friction"), tr("Cutting\n[mm²/N]")});
+        {tr("Tissue"), tr("Spring\n[N/mm]"), tr("Damper\n[N s/mm]"), tr("Friction"), tr("Cutting\n[µm²/N]")});
     const QStringList tips{tr("Tissue"),
                            tr("Stiffness: the tissue's fraction times the multiplier times the device's limit"),
                            tr("Damping on the approach"), tr("Coulomb friction of the still bur"),
@@ -99,8 +99,10 @@ ParameterBox::ParameterBox(QWidget* parent) : QWidget(parent) {
     for (int i = 0; i < columnCount; ++i)
         table_->horizontalHeaderItem(i)->setToolTip(tips[i]);
     table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-    table_->horizontalHeader()->setSectionResizeMode(tissueColumn, QHeaderView::Stretch);
-    table_->horizontalHeader()->setFont(scaledFont(font(), 0.88));
+    // Every column as wide as what stands in it, in a narrow window too: what does not fit is scrolled to.
+    table_->horizontalHeader()->setMinimumSectionSize(20);
+    table_->horizontalHeader()->setFont(scaledFont(font(), 0.82));
+    table_->setFont(scaledFont(font(), 0.92));
     table_->setVerticalScrollBarPolicy(Qt::ScrollBarAsNeeded);
     table_->setWordWrap(false);
     column->addWidget(table_, 100);
@@ -111,6 +113,13 @@ ParameterBox::ParameterBox(QWidget* parent) : QWidget(parent) {
 
     auto* choices = new QGridLayout;
     choices->setColumnStretch(1, 1);
+    forceName_ = new QLabel(tr("Force by"), this);
+    force_ = named(new QComboBox(this), "forceMode", tr("Force model"));
+    force_->addItem(tr("Proxy on the surface"), static_cast<int>(force::Mode::proxy));
+    force_->addItem(tr("Penalty, as in the paper"), static_cast<int>(force::Mode::penalty));
+    forceNote_ = note({}, this, "forceModeNote");
+    forceName_->setBuddy(force_);
+    force_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     methodName_ = new QLabel(tr("Contact by"), this);
     method_ = named(new QComboBox(this), "contactMethod", tr("Contact method"));
     method_->addItem(tr("Distance field (cuts)"), false);
@@ -124,12 +133,15 @@ ParameterBox::ParameterBox(QWidget* parent) : QWidget(parent) {
     methodName_->setBuddy(method_);
     voxelName_->setBuddy(voxel_);
     method_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    choices->addWidget(methodName_, 0, 0);
-    choices->addWidget(method_, 0, 1);
-    choices->addWidget(methodNote_, 1, 0, 1, 2);
-    choices->addWidget(voxelName_, 2, 0);
-    choices->addWidget(voxel_, 2, 1);
-    choices->addWidget(voxelNote_, 3, 0, 1, 2);
+    choices->addWidget(forceName_, 0, 0);
+    choices->addWidget(force_, 0, 1);
+    choices->addWidget(forceNote_, 1, 0, 1, 2);
+    choices->addWidget(methodName_, 2, 0);
+    choices->addWidget(method_, 2, 1);
+    choices->addWidget(methodNote_, 3, 0, 1, 2);
+    choices->addWidget(voxelName_, 4, 0);
+    choices->addWidget(voxel_, 4, 1);
+    choices->addWidget(voxelNote_, 5, 0, 1, 2);
     column->addLayout(choices);
     column->addStretch(1);  // takes the room when the table is hidden
 
@@ -139,6 +151,11 @@ ParameterBox::ParameterBox(QWidget* parent) : QWidget(parent) {
             emit multipliersChanged(1.0, 1.0, 1.0);
         }
         emit resetRequested();
+    });
+    connect(force_, &QComboBox::activated, this, [this] {
+        const auto mode = static_cast<force::Mode>(force_->currentData().toInt());
+        setForceMode(mode);
+        emit forceModeChosen(mode);
     });
     connect(method_, &QComboBox::activated, this, [this] {
         const bool hull = method_->currentData().toBool();
@@ -154,6 +171,7 @@ ParameterBox::ParameterBox(QWidget* parent) : QWidget(parent) {
         emit voxelChosen(um);
     });
     setLimits({}, {});
+    setForceMode(force::Mode::proxy);
     setVoxelUm(50);
     showMultipliers();
     showCutting();
@@ -266,7 +284,10 @@ void ParameterBox::showTable() {
         put(springColumn, withMark(spring.givenNPerMm, spring.clipped()), spring.clipped(), spring.wantedNPerMm);
         put(damperColumn, withMark(damper.givenNPerMm, damper.clipped()), damper.clipped(), damper.wantedNPerMm);
         put(frictionColumn, QLocale().toString(own.friction * multipliers_.friction, 'g', 3));
-        put(cuttingColumn, own.cuttingMm2PerN > 0 ? QLocale().toString(own.cuttingMm2PerN, 'g', 3) : tr("none"));
+        const double cuttingUm2PerN = 1e6 * own.cuttingMm2PerN;
+        put(cuttingColumn, cuttingUm2PerN > 0 ? QLocale().toString(cuttingUm2PerN, cuttingUm2PerN < 100 ? 'g' : 'f',
+                                                                   cuttingUm2PerN < 100 ? 3 : 0)
+                                              : tr("none"));
     }
     table_->resizeRowsToContents();
     clipNote_->setText(anyClipped ? tr("▲ Held by the device's limit: the hand feels no more than that.")
@@ -278,6 +299,14 @@ void ParameterBox::setHullMethod(bool hull) {
     const QSignalBlocker quiet(method_);
     method_->setCurrentIndex(hull ? 1 : 0);
     showCutting();
+}
+
+void ParameterBox::setForceMode(force::Mode mode) {
+    const QSignalBlocker quiet(force_);
+    force_->setCurrentIndex(force_->findData(static_cast<int>(mode)));
+    forceNote_->setText(mode == force::Mode::penalty
+                            ? tr("Spring and damper by the depth alone, without friction; the bur sinks in.")
+                            : tr("The bur stays on the surface; spring, damper and friction hold the hand to it."));
 }
 
 void ParameterBox::setVoxelUm(int um) {
@@ -318,11 +347,10 @@ void ParameterBox::setHeadingShown(bool shown) {
 
 void ParameterBox::setDetail(Detail detail) {
     detail_ = detail;
-    const bool laboratory = detail == Detail::laboratory, practice = detail == Detail::practice;
+    const bool practice = detail == Detail::practice;
     for (QWidget* w :
-         std::initializer_list<QWidget*>{methodName_, method_, methodNote_, voxelName_, voxel_, voxelNote_})
-        w->setVisible(laboratory);
-    for (QWidget* w : std::initializer_list<QWidget*>{table_, tableCaption_, limitsNote_, clipNote_})
+         std::initializer_list<QWidget*>{table_, tableCaption_, limitsNote_, clipNote_, forceName_, force_, forceNote_,
+                                         methodName_, method_, methodNote_, voxelName_, voxel_, voxelNote_})
         w->setVisible(!practice);
     const QString names[][3] = {
         {tr("Hardness"), tr("How hard the tooth feels"), tr("How hard the tooth feels")},

@@ -47,6 +47,7 @@ class ParameterBox : public QWidget {
     void setMultipliers(const Multipliers& multipliers);
     [[nodiscard]] Multipliers multipliers() const { return multipliers_; }
     void setHullMethod(bool hull);
+    void setForceMode(force::Mode mode);
     void setVoxelUm(int um);
     void setCutting(Cutting cutting);
     void setDetail(Detail detail);
@@ -65,6 +66,7 @@ class ParameterBox : public QWidget {
     void multipliersChanged(double stiffness, double damping, double friction);
     void resetRequested();  ///< after the multipliers have gone back to 1 and told so
     void hullMethodChosen(bool hull);
+    void forceModeChosen(handpiece::force::Mode mode);
     /// Once cut, the window cuts the tooth again at the new size by replay.
     void voxelChosen(int um);
 
@@ -81,9 +83,9 @@ class ParameterBox : public QWidget {
 
     Row rows_[3]{};
     QTableWidget* table_;
-    QLabel *limitsNote_, *clipNote_, *methodNote_, *voxelNote_, *tableCaption_, *heading_;
-    QComboBox *method_, *voxel_;
-    QLabel *methodName_, *voxelName_;
+    QLabel *limitsNote_, *clipNote_, *forceNote_, *methodNote_, *voxelNote_, *tableCaption_, *heading_;
+    QComboBox *force_, *method_, *voxel_;
+    QLabel *forceName_, *methodName_, *voxelName_;
     QPushButton* reset_;
     tooth::TissueTable tissues_ = tooth::builtInTissues();
     std::vector<tooth::Tissue> present_;

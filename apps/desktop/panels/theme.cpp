@@ -3,6 +3,7 @@
 
 #include <QApplication>
 #include <QFontInfo>
+#include <QLabel>
 #include <QPainter>
 #include <QProxyStyle>
 #include <QStyleOption>
@@ -48,10 +49,17 @@ QPalette makePalette(bool dark) {
     return palette;
 }
 
-/// Fusion draws the edges of boxes darker than the window: on a dark one they cannot be seen.
+/// Fusion draws the edges of boxes darker than the window: on a dark one they cannot be seen. And texts are plain but
+/// where it was said that they are not: names out of files are shown as they are, tags and all, in tips as well.
 class EdgedFusion : public QProxyStyle {
   public:
     EdgedFusion() : QProxyStyle(QStringLiteral("Fusion")) {}
+    void polish(QWidget* widget) override {
+        QProxyStyle::polish(widget);
+        auto* label = qobject_cast<QLabel*>(widget);
+        if (label && label->textFormat() == Qt::AutoText) label->setTextFormat(Qt::PlainText);
+    }
+    using QProxyStyle::polish;
     void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
                        const QWidget* widget) const override {
         QProxyStyle::drawPrimitive(element, option, painter, widget);

@@ -20,24 +20,24 @@ struct ViewButton {
     view::StandardView view;
     const char *icon, *object, *text, *tip;
 };
-const ViewButton kViews[] = {
-    {view::StandardView::occlusal, "view-occlusal", "viewOcclusal",
-     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Top"),
-     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Occlusal: onto the chewing surface (1)")},
-    {view::StandardView::buccal, "view-buccal", "viewBuccal", QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Cheek"),
-     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Buccal: from the cheek (2)")},
-    {view::StandardView::lingual, "view-lingual", "viewLingual",
-     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Tongue"),
-     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Lingual: from the tongue (3)")},
-    {view::StandardView::mesial, "view-mesial", "viewMesial",
-     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Mesial"),
-     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Mesial: from the front of the arch (4)")},
-    {view::StandardView::distal, "view-distal", "viewDistal",
-     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Distal"),
-     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Distal: from the back of the arch (5)")},
-    {view::StandardView::oblique, "view-oblique", "viewOblique",
-     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Slanted"),
-     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "From above at a slant (6)")}};
+const ViewButton kViews[] = {{view::StandardView::occlusal, "view-occlusal", "viewOcclusal",
+                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Occlusal"),
+                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Onto the chewing surface (1)")},
+                             {view::StandardView::buccal, "view-buccal", "viewBuccal",
+                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Buccal"),
+                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "From the cheek (2)")},
+                             {view::StandardView::lingual, "view-lingual", "viewLingual",
+                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Lingual"),
+                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "From the tongue (3)")},
+                             {view::StandardView::mesial, "view-mesial", "viewMesial",
+                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Mesial"),
+                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "From the front of the arch (4)")},
+                             {view::StandardView::distal, "view-distal", "viewDistal",
+                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Distal"),
+                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "From the back of the arch (5)")},
+                             {view::StandardView::oblique, "view-oblique", "viewOblique",
+                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Oblique"),
+                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "From above and the cheek (6)")}};
 
 }  // namespace
 
@@ -214,20 +214,22 @@ void ViewBar::makeTissueBoxes() {
         });
         tissueBoxes_.emplace_back(tissue, box);
     }
-    setLockedHelps(locked_);
+    setPermissions(permissions_);
 }
 
-void ViewBar::setLockedHelps(const QStringList& helps) {
-    locked_ = helps;
-    const auto lock = [](QWidget* w, bool locked, const QString& tip) {
-        w->setEnabled(!locked);
-        w->setToolTip(locked ? tr("Locked by this exercise.") : tip);
+void ViewBar::setPermissions(const station::Permissions& permissions) {
+    using station::Operation;
+    permissions_ = permissions;
+    const auto take = [&permissions](QWidget* w, Operation operation, const QString& tip) {
+        w->setEnabled(!permissions.locks(operation));
+        w->setToolTip(permissions.locks(operation) ? tr("Locked by this exercise.") : tip);
     };
-    lock(palette_, helps.contains("tissue-colours"), tr("Colours of the tissues"));
-    lock(shown_, helps.contains("transparency"), tr("The tooth now, before, or both"));
-    lock(removed_, helps.contains("depth"), tr("Colour by how much was cut away"));
+    take(palette_, Operation::tissueColours, tr("Colours of the tissues"));
+    take(shown_, Operation::transparency, tr("The tooth now, before, or both"));
+    take(removed_, Operation::removedDepth, tr("Colour by how much was cut away"));
+    take(scaleBar_, Operation::scaleBar, tr("A scale in millimetres in the picture"));
     for (const auto& [tissue, box] : tissueBoxes_)
-        lock(box, helps.contains("transparency"), tr("Show or hide: %1").arg(tissueName(tissue)));
+        take(box, Operation::transparency, tr("Show or hide: %1").arg(tissueName(tissue)));
 }
 
 void ViewBar::setDetail(Detail detail) {

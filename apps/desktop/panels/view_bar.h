@@ -10,6 +10,7 @@
 #include "handpiece/senses/view/camera.h"
 #include "handpiece/senses/view/look.h"
 #include "panels/detail.h"
+#include "station/permissions.h"
 
 class QCheckBox;
 class QComboBox;
@@ -30,8 +31,7 @@ class ViewBar : public QWidget {
     [[nodiscard]] const view::Look& look() const { return look_; }
     /// The tissues with a box; all others have none.
     void setPresent(const std::vector<tooth::Tissue>& tissues);
-    /// Helps that the exercise locks, of tooth::kHelps: "tissue-colours", "transparency", "depth".
-    void setLockedHelps(const QStringList& helps);
+    void setPermissions(const station::Permissions& permissions);
     void setDetail(Detail detail);
 
   signals:
@@ -46,7 +46,7 @@ class ViewBar : public QWidget {
 
     view::Look look_;
     std::vector<tooth::Tissue> present_;
-    QStringList locked_;
+    station::Permissions permissions_;
     std::array<QToolButton*, 6> views_{};
     QToolButton* fit_;
     QComboBox *palette_, *quality_, *shown_, *stereo_;

@@ -45,6 +45,7 @@ VolumeBars::VolumeBars(QWidget* parent) : QWidget(parent) {
 }
 
 void VolumeBars::setVolumes(const std::array<double, tooth::kTissueCount>& removedMm3) {
+    if (locked_) return;
     const std::size_t before = rows().size();
     bool changed = false;
     for (std::size_t i = 0; i < removedMm3.size(); ++i)
@@ -76,7 +77,17 @@ void VolumeBars::setHeadingShown(bool shown) {
     update();
 }
 
+void VolumeBars::setLocked(bool locked) {
+    if (locked == locked_) return;
+    locked_ = locked;
+    // Nothing of them is kept that a screen reader or a tooltip could tell.
+    removedMm3_ = {};
+    setAccessibleDescription(locked ? tr("This exercise hides the volumes.") : QString());
+    update();
+}
+
 std::vector<view::LegendEntry> VolumeBars::rows() const {
+    if (locked_) return {};
     std::vector<view::LegendEntry> rows;
     for (const auto& entry : entries_)
         if (tooth::properties(entry.tissue).cuttingMm2PerN > 0) rows.push_back(entry);
@@ -117,6 +128,12 @@ void VolumeBars::paintEvent(QPaintEvent* event) {
     nameWidth = std::min(nameWidth + 8, width() * 0.45);
     const double valueWidth = fontMetrics().horizontalAdvance(QStringLiteral("0000.00 mm³")), end = scaleEnd(most);
 
+    if (locked_) {
+        painter.setPen(tones.quiet);
+        painter.drawText(rect().adjusted(2, 0, -2, 0), Qt::AlignLeft | Qt::AlignVCenter | Qt::TextWordWrap,
+                         tr("This exercise hides the volumes."));
+        return;
+    }
     painter.setFont(scaledFont(font(), 1.0, true));
     painter.setPen(textColour);
     painter.drawText(QRectF(2, 0, width() - 4.0, line), Qt::AlignLeft | Qt::AlignVCenter,
@@ -160,7 +177,8 @@ bool VolumeBars::event(QEvent* event) {
                                tr("%1: %2 cut away since the tooth was whole")
                                    .arg(tissueName(tissue), volumeText(removedMm3_[static_cast<std::size_t>(tissue)])));
         } else {
-            QToolTip::showText(help->globalPos(), tr("What was cut away since the tooth was whole"));
+            QToolTip::showText(help->globalPos(), locked_ ? tr("This exercise hides the volumes.")
+                                                          : tr("What was cut away since the tooth was whole"));
         }
         return true;
     }

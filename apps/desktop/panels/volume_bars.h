@@ -25,6 +25,8 @@ class VolumeBars : public QWidget {
     void setDetail(Detail detail);
     /// Off where a dock's title says it already: then the first line says that it is the total.
     void setHeadingShown(bool shown);
+    /// An exercise may hide the figures; it is said so in their place.
+    void setLocked(bool locked);
 
     [[nodiscard]] QSize sizeHint() const override;
     [[nodiscard]] QSize minimumSizeHint() const override;
@@ -39,7 +41,7 @@ class VolumeBars : public QWidget {
     std::array<double, tooth::kTissueCount> removedMm3_{};
     std::vector<view::LegendEntry> entries_;
     Detail detail_ = Detail::practice;
-    bool headingShown_ = true;
+    bool headingShown_ = true, locked_ = false;
 };
 
 }  // namespace handpiece::desktop

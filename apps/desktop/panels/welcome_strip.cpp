@@ -62,6 +62,11 @@ void WelcomeStrip::setPointerIsMouse(bool mouse) {
     showNext();
 }
 
+void WelcomeStrip::setAllowed(bool allowed) {
+    allowed_ = allowed;
+    showNext();
+}
+
 QString WelcomeStrip::text() const {
     for (const Step step : kOrder) {
         if (done_.contains(step)) continue;
@@ -88,7 +93,7 @@ void WelcomeStrip::showNext() {
     text_->setAccessibleDescription(next);
     count_->setText(
         tr("%1 of %2").arg(std::min<std::size_t>(done_.size() + 1, std::size(kOrder))).arg(std::size(kOrder)));
-    setVisible(!next.isEmpty());
+    setVisible(allowed_ && !next.isEmpty());
     update();
 }
 

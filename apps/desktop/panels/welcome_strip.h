@@ -26,6 +26,8 @@ class WelcomeStrip : public QWidget {
     void markDone(Step step);
     /// With a device instead of the mouse the hints differ.
     void setPointerIsMouse(bool mouse);
+    /// An exercise may want none.
+    void setAllowed(bool allowed);
     [[nodiscard]] QString text() const;
 
   signals:
@@ -39,7 +41,7 @@ class WelcomeStrip : public QWidget {
     void showNext();
 
     std::set<Step> done_;
-    bool mouse_ = true;
+    bool mouse_ = true, allowed_ = true;
     QLabel *text_, *count_;
     QToolButton* close_;
 };

@@ -169,6 +169,7 @@ ChoosePage::ChoosePage(ScanModel& model, ScanQuestions& questions, QWidget* pare
                       "program is wrong.</li><li>Say how fine the surfaces shall be.</li><li>Say which way is up, and "
                       "give the case a name.</li><li>Read how good it is, save it, try it.</li></ol>"),
                    this);
+    way_->setTextFormat(Qt::RichText);
     way_->setObjectName(QStringLiteral("scanWay"));
     way_->setWordWrap(true);
     way_->setAlignment(Qt::AlignTop);

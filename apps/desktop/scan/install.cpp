@@ -2,10 +2,10 @@
 #include "scan/install.h"
 
 #include <QPointer>
-#include <QStandardPaths>
 
 #include "scan/scan_wizard.h"
 #include "shell/main_window.h"
+#include "shell/settings.h"
 
 namespace handpiece::desktop {
 
@@ -13,8 +13,7 @@ void installScanWizard(MainWindow& window) {
     auto open = std::make_shared<QPointer<ScanWizard>>();
     window.newCaseFromScan = [&window, open](const QString& path) {
         if (!*open) {
-            *open = new ScanWizard(unfinishedScanFile(),
-                                   QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation), &window);
+            *open = new ScanWizard(unfinishedScanFile(), workFolder(), &window);
             (*open)->setAttribute(Qt::WA_DeleteOnClose);
             QObject::connect(open->data(), &ScanWizard::tryNow, &window, [&window, open](const QString& place) {
                 if (*open) (*open)->close();

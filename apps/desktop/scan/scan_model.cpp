@@ -299,11 +299,11 @@ void ScanModel::next() {
                     const station::ScanProgress told = [&](ScanStage stage, double fraction) {
                         stage_.store(static_cast<int>(stage), std::memory_order_relaxed);
                         // The last share is for what is shown of it.
-                        const double stages = isPreview ? 4.2 : 5.5;
+                        const double stages = isPreview ? 4.2 : 6.5;
                         return !progress || progress(std::min(1.0, (static_cast<double>(stage) + fraction) / stages));
                     };
                     *made = shownResult(
-                        station::runScanJob(asked, told, &from, isPreview ? ScanStage::place : ScanStage::decimate),
+                        station::runScanJob(asked, told, &from, isPreview ? ScanStage::place : ScanStage::check),
                         core::part(progress, isPreview ? 0.95 : 0.91, 1.0));
                 },
                 [this, made, key, isPreview] {
@@ -422,6 +422,7 @@ QString ScanModel::doing() const {
                          : stage == static_cast<int>(ScanStage::surface)  ? tr("Making surfaces")
                          : stage == static_cast<int>(ScanStage::place)    ? tr("Finding which way is up")
                          : stage == static_cast<int>(ScanStage::decimate) ? tr("Reducing the faces")
+                         : stage == static_cast<int>(ScanStage::check)    ? tr("Checking the case")
                                                                           : tr("Reading the slices");
     return work_ == Work::previewing ? tr("Preview: %1").arg(what) : tr("In full: %1").arg(what);
 }

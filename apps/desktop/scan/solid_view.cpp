@@ -13,7 +13,7 @@
 #include <mutex>
 #include <thread>
 
-#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/any_error.h"
 #include "handpiece/senses/view/renderer.h"
 #include "panels/parameter_box.h"
 #include "panels/parts.h"
@@ -117,10 +117,10 @@ void SolidView::Worker::run() {
             ready = QImage(image.rgba.data(), image.width, image.height, 4 * image.width, QImage::Format_RGBX8888)
                         .convertToFormat(QImage::Format_RGB32);
             if (!refining) drawn = now.number;
-        } catch (const core::Error& error) {
+        } catch (const std::exception& error) {
             refining = false;
             const std::lock_guard lock(mutex);
-            missing = QString::fromStdString(error.problem());
+            missing = QString::fromStdString(core::asError(error).problem());
             drawn = now.number;
         }
         tell();

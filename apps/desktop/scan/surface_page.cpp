@@ -21,9 +21,9 @@
 namespace handpiece::desktop {
 namespace {
 
-// In the box of resolutions: the percents, then these.
-enum Choice { hundred, fifty, quarter, twelve, six, allFive, byFaces };
-constexpr double kPercents[] = {100, 50, 25, 12, 6};
+// In the box of resolutions, in its order.
+enum Choice { useful, hundred, fifty, quarter, twelve, six, allFive, byFaces };
+constexpr double kPercents[] = {100, 50, 25, 12, 6};  ///< from `hundred` on
 
 }  // namespace
 
@@ -51,6 +51,7 @@ SurfacePage::SurfacePage(ScanModel& model, ScanQuestions& questions, QWidget* pa
     form->setFieldGrowthPolicy(QFormLayout::AllNonFixedFieldsGrow);
     resolution_ =
         named(new QComboBox(left), "scanResolution", tr("Faces"), tr("A share of the faces of the scan itself"));
+    resolution_->addItem(tr("As many as can be felt"));
     resolution_->addItem(tr("All of the scan's (100 %)"));
     for (const int percent : {50, 25, 12, 6})
         resolution_->addItem(tr("%1 % of them").arg(percent));
@@ -132,8 +133,10 @@ SurfacePage::SurfacePage(ScanModel& model, ScanQuestions& questions, QWidget* pa
             job.faces = at == byFaces ? static_cast<std::size_t>(faces_->value()) : 0;
             if (at == allFive)
                 job.percents.assign(surfacing::kTableTwoPercents.begin(), surfacing::kTableTwoPercents.end());
+            else if (at == useful)
+                job.percents.clear();
             else
-                job.percents = {at < allFive ? kPercents[at] : 100.0};
+                job.percents = {at < allFive ? kPercents[at - hundred] : 100.0};
         });
     });
     connect(faces_, &QSpinBox::valueChanged, this, [this](int faces) {
@@ -174,14 +177,14 @@ QString SurfacePage::missing() const {
 void SurfacePage::showJob() {
     showing_ = true;
     const station::ScanJob& job = model().job();
-    int at = hundred;
+    int at = job.percents.empty() ? useful : hundred;
     if (job.faces > 0)
         at = byFaces;
     else if (job.percents.size() > 1)
         at = allFive;
     else
         for (int i = 0; i < 5; ++i)
-            if (!job.percents.empty() && job.percents.front() == kPercents[i]) at = i;
+            if (!job.percents.empty() && job.percents.front() == kPercents[i]) at = hundred + i;
     resolution_->setCurrentIndex(at);
     faces_->setEnabled(at == byFaces);
     if (job.faces > 0) faces_->setValue(static_cast<int>(job.faces));

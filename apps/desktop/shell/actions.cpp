@@ -37,8 +37,14 @@ const Row kRows[] = {
      "Ctrl+S"},
     {"actionSaveAs", QT_TRANSLATE_NOOP("Actions", "Save as..."),
      QT_TRANSLATE_NOOP("Actions", "Save what was cut under another name"), "save-as", "Ctrl+Shift+S"},
+    {"actionHandIn", QT_TRANSLATE_NOOP("Actions", "Hand in..."),
+     QT_TRANSLATE_NOOP("Actions", "Give the attempt to your teacher: one file with the tooth and what was recorded"),
+     "save-as", "Ctrl+Shift+I"},
     {"actionExportStl", QT_TRANSLATE_NOOP("Actions", "Export STL..."),
      QT_TRANSLATE_NOOP("Actions", "Write what is left of the tooth as one closed STL surface"), "file", "Ctrl+E"},
+    {"actionExportTissues", QT_TRANSLATE_NOOP("Actions", "Export tissues..."),
+     QT_TRANSLATE_NOOP("Actions", "Write what is left of each tissue as a closed STL surface of its own"), "file",
+     "Ctrl+Shift+E"},
     {"actionPicture", QT_TRANSLATE_NOOP("Actions", "Picture..."),
      QT_TRANSLATE_NOOP("Actions", "Keep what is seen as a PNG file"), "picture", "Ctrl+P"},
     {"actionReport", QT_TRANSLATE_NOOP("Actions", "Report..."),
@@ -74,6 +80,8 @@ const Row kRows[] = {
      "layouts", "F6", true},
     {"actionLayoutPaper", QT_TRANSLATE_NOOP("Actions", "As in the paper"),
      QT_TRANSLATE_NOOP("Actions", "The blocks of the paper's Figure 5"), "layouts", "F7", true},
+    {"actionExercise", QT_TRANSLATE_NOOP("Actions", "Exercise"),
+     QT_TRANSLATE_NOOP("Actions", "Show the exercise: its title and what to do"), "info", "F9"},
     {"actionResetLayout", QT_TRANSLATE_NOOP("Actions", "Panels to their places"),
      QT_TRANSLATE_NOOP("Actions", "Undo all moving of panels in this layout"), "layouts", "Shift+F5"},
     {"actionFullScreen", QT_TRANSLATE_NOOP("Actions", "Full screen"),
@@ -128,6 +136,8 @@ const Row kRows[] = {
      "settings", "F8"},
     {"actionDeviceSetUp", QT_TRANSLATE_NOOP("Actions", "Set up..."),
      QT_TRANSLATE_NOOP("Actions", "Connect, calibrate, feel a block"), "check", "Shift+F8"},
+    {"actionDeviceNamed", QT_TRANSLATE_NOOP("Actions", "Device by name or serial..."),
+     QT_TRANSLATE_NOOP("Actions", "Choose one of several equal devices"), "search", "Ctrl+Shift+F8"},
     {"actionDeviceSearch", QT_TRANSLATE_NOOP("Actions", "Look for devices"),
      QT_TRANSLATE_NOOP("Actions", "Look again which devices are connected"), "search", "Ctrl+F8"},
     {"actionHelp", QT_TRANSLATE_NOOP("Actions", "Keys and mouse at a glance"),
@@ -154,6 +164,17 @@ constexpr std::pair<const char*, const char*> kBrief[] = {
 };
 }  // namespace
 
+namespace {
+QString tipOf(const QAction& action) {
+    return QStringLiteral("%1 (%2)").arg(action.statusTip(), action.shortcut().toString(QKeySequence::NativeText));
+}
+}  // namespace
+
+void Actions::setLocked(const char* name, bool locked) const {
+    QAction* action = (*this)[name];
+    action->setToolTip(locked ? QCoreApplication::translate("Actions", "Locked by this exercise.") : tipOf(*action));
+}
+
 Actions::Actions(QWidget* window) : QObject(window) {
     for (const Row& row : kRows) {
         auto* action = new QAction(QCoreApplication::translate("Actions", row.text), window);
@@ -162,9 +183,8 @@ Actions::Actions(QWidget* window) : QObject(window) {
         action->setShortcut(keys);
         action->setIcon(icon(QLatin1String(row.icon)));
         action->setCheckable(row.checkable);
-        const QString tip = QCoreApplication::translate("Actions", row.tip);
-        action->setStatusTip(tip);
-        action->setToolTip(QStringLiteral("%1 (%2)").arg(tip, keys.toString(QKeySequence::NativeText)));
+        action->setStatusTip(QCoreApplication::translate("Actions", row.tip));
+        action->setToolTip(tipOf(*action));
         window->addAction(action);
         byName_.insert(row.name, action);
         ordered_ << action;

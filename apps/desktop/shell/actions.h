@@ -17,6 +17,8 @@ class Actions : public QObject {
     explicit Actions(QWidget* window);
     /// By its object name. There is no other way to one; an unknown name is a mistake of ours and ends the program.
     [[nodiscard]] QAction* operator[](const char* name) const;
+    /// Its tooltip says that the exercise locks it, or again what it does.
+    void setLocked(const char* name, bool locked) const;
     [[nodiscard]] const QList<QAction*>& all() const noexcept { return ordered_; }
 
   private:

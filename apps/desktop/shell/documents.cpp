@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/senses/surface/brick_source.h"
 #include "handpiece/senses/surface/closed_surface.h"
+#include "station/permissions.h"
 #include "station/session_player.h"
 
 namespace handpiece::desktop {
@@ -30,23 +33,28 @@ void takeInstruments(LoadedTooth& loaded, station::StationSettings& settings, co
                      const tooth::Attempt* attempt) {
     loaded.drive = request.drive;
     loaded.speedRpm = request.speedRpm;
-    std::string bur = request.bur, ability;
+    const tooth::Exercise* exercise = loaded.toothCase->exercise ? &*loaded.toothCase->exercise : nullptr;
+    const std::string otherwise = station::firstBur(exercise, request.bur);
+    std::string bur = otherwise, ability;
     if (attempt) {
         const auto& drives = instrument::drives();
         if (std::any_of(drives.begin(), drives.end(), [&](const auto& d) { return d.name == attempt->drive; })) {
             loaded.drive = attempt->drive;
             loaded.speedRpm = 0.0;
         }
-        bur = attempt->bur;
-        ability = attempt->ability;
-    } else if (loaded.toothCase->exercise && !loaded.toothCase->exercise->bur.empty()) {
-        bur = loaded.toothCase->exercise->bur;
+        bur = station::firstBur(exercise, attempt->bur);
+        if (bur == attempt->bur)
+            ability = attempt->ability;
+        else
+            loaded.lockedBur = attempt->bur;
+    } else if (exercise && !exercise->bur.empty()) {
+        bur = exercise->bur;
     }
     try {
         takeBur(loaded, settings, bur, ability);
     } catch (const core::Error&) {
         loaded.missingBur = bur;
-        takeBur(loaded, settings, request.bur, {});
+        takeBur(loaded, settings, otherwise, {});
     }
     settings.drive = driveAt(loaded.drive, loaded.speedRpm);
     loaded.speedRpm = settings.drive.freeSpeedRpm;
@@ -57,12 +65,55 @@ void takeTissues(station::StationSettings& settings, const tooth::Case& toothCas
     settings.tissues = toothCase.tissues;
     const force::Parameters wanted = settings.parameters;
     settings.parameters = force::defaultParameters(toothCase.tissues);
+    settings.parameters.mode = wanted.mode;
     settings.parameters.stiffnessMultiplier = wanted.stiffnessMultiplier;
     settings.parameters.dampingMultiplier = wanted.dampingMultiplier;
     settings.parameters.frictionMultiplier = wanted.frictionMultiplier;
 }
 
+void tell(const LoadListener& listener, LoadStep step) {
+    if (listener.step) listener.step(step);
+}
+
+/// An attempt of before named its last recording only.
+std::vector<RecordingPlace> placesOf(const tooth::Attempt& attempt, const LoadRequest& request) {
+    std::vector<tooth::Attempt::Recording> named = attempt.recordings;
+    if (named.empty() && !attempt.session.empty()) named.push_back({attempt.session, false});
+    std::vector<RecordingPlace> places;
+    for (const tooth::Attempt::Recording& r : named)
+        places.push_back({r.name, r.packed ? request.path : request.sessionFolder / r.name, r.packed});
+    return places;
+}
+
 }  // namespace
+
+tooth::PackageFiles recordingBytes(const std::vector<RecordingPlace>& places, bool packedOnly, std::size_t& leftOut,
+                                   const core::Progress& progress) {
+    tooth::PackageFiles files;
+    std::uint64_t bytes = 0;
+    leftOut = 0;
+    for (std::size_t i = places.size(); i-- > 0;) {
+        const RecordingPlace& place = places[i];
+        core::report(progress, 1.0 - static_cast<double>(i + 1) / static_cast<double>(places.size()));
+        if (packedOnly && !place.packed) continue;
+        const std::uint64_t room = tooth::kMostRecordingBytes - bytes;
+        std::error_code error;
+        const std::uint64_t size = fs::file_size(place.in, error);
+        if (error || (!place.packed && size > room)) {
+            ++leftOut;
+            continue;
+        }
+        std::vector<std::byte> data =
+            place.packed ? tooth::readRecording(place.in, place.name) : core::readFile(place.in, room);
+        if (data.size() > room) {
+            ++leftOut;
+            continue;
+        }
+        bytes += data.size();
+        files[place.name] = std::move(data);
+    }
+    return files;
+}
 
 FileKind fileKindOf(const fs::path& path) {
     std::string extension = path.extension().string();
@@ -78,7 +129,8 @@ FileKind fileKindOf(const fs::path& path) {
     return FileKind::unknown;
 }
 
-tooth::Case starterCase(const Starter& starter, const fs::path& folder, const core::Progress& progress) {
+tooth::Case starterCase(const Starter& starter, const fs::path& folder, const core::Progress& progress,
+                        const LoadListener& listener) {
     const starter::ToothKindInfo& info = starter::infoOf(starter.kind);
     // The version stands in the name: a later one may make another tooth of the same rules.
     const fs::path place = folder / fmt::format("{}-{}-{}", info.name, starter.faces, HANDPIECE_VERSION);
@@ -90,6 +142,8 @@ tooth::Case starterCase(const Starter& starter, const fs::path& folder, const co
             fs::remove_all(place, error);  // damaged: it is made again
         }
     }
+    tell(listener, LoadStep::shaping);
+    if (listener.sketch) listener.sketch(std::make_shared<const tooth::Case>(starter::makeSketch(starter.kind)));
     const tooth::Case made = starter::makeTooth(starter.kind, {starter.faces, 0, true}, progress);
     fs::create_directories(folder, error);
     tooth::writeCase(made, place);
@@ -103,18 +157,22 @@ instrument::Drive driveAt(const std::string& name, double speedRpm) {
     return drive;
 }
 
-LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress) {
+LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress, const LoadListener& listener) {
     LoadedTooth loaded;
+    tell(listener, request.recover ? LoadStep::recovering : LoadStep::reading);
     station::StationSettings settings = request.settings;
     std::optional<tooth::Attempt> attempt;
     std::optional<station::Recovered> recovered;
-    const core::Progress reading = core::part(progress, 0.0, 0.3), preparing = core::part(progress, 0.3, 0.8);
+    const core::Progress reading = core::part(progress, 0.0, 0.5), preparing = core::part(progress, 0.5, 0.8);
     if (request.recover) {
         recovered = station::recover(request.path, reading);
         loaded.document = request.recovered;
+        recovered->toothCase.exercise = request.exercise;
         loaded.toothCase = std::make_shared<const tooth::Case>(std::move(recovered->toothCase));
         loaded.elapsedS = recovered->elapsedS;
         loaded.code = recovered->code;
+        loaded.recording = request.path;
+        loaded.session = station::SittingSettings::Session::recovered;
         settings = recovered->settings;
         settings.capability = request.settings.capability;
         settings.hull = false;
@@ -122,7 +180,7 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
         loaded.drive = settings.drive.name;
         loaded.speedRpm = settings.drive.freeSpeedRpm;
     } else if (request.starter) {
-        tooth::Case made = starterCase(*request.starter, request.starterFolder, reading);
+        tooth::Case made = starterCase(*request.starter, request.starterFolder, reading, listener);
         loaded.document.caseFile = made.source;
         loaded.document.starter = request.starter;
         loaded.document.name = made.name;
@@ -134,39 +192,42 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
         loaded.document.name = request.path.stem().string();
         loaded.toothCase = std::make_shared<const tooth::Case>(std::move(open.toothCase));
         attempt = std::move(open.attempt);
+        loaded.document.student = attempt->student;
+        loaded.document.recordings = placesOf(*attempt, request);
         settings.field.voxelMm = attempt->voxelMm;
         loaded.elapsedS = attempt->elapsedS;
         loaded.code = attempt->student;
     } else {
         const fs::path path = request.path.extension() == ".toml" ? request.path.parent_path() : request.path;
         tooth::Case read = tooth::readCase(path);
-        loaded.document.caseFile = fs::absolute(path);
+        loaded.document.caseFile = core::wholePath(path);
         loaded.document.name = read.name;
         loaded.toothCase = std::make_shared<const tooth::Case>(std::move(read));
     }
     core::report(preparing, 0.0);
+    if (listener.sketch) listener.sketch(loaded.toothCase);
+    tell(listener, LoadStep::distances);
     if (!recovered) {
         takeTissues(settings, *loaded.toothCase);
         takeInstruments(loaded, settings, request, attempt ? &*attempt : nullptr);
     }
     settings.resumed = attempt || recovered;
-    loaded.station = station::makeStation(*loaded.toothCase, std::move(settings), request.useCache, preparing);
+    std::atomic<bool> hasDistances{false};
+    const core::Progress stepwise = [&](double fraction) {
+        if (fraction >= station::kDistancesShare && !hasDistances.exchange(true)) tell(listener, LoadStep::tissues);
+        return !preparing || preparing(fraction);
+    };
+    loaded.station = station::makeStation(*loaded.toothCase, std::move(settings), request.useCache, stepwise);
     if (attempt)
         loaded.state =
             tooth::decodeState(attempt->state, loaded.station.identity, *loaded.station.tooth, request.path.string());
     if (recovered) loaded.state = std::move(recovered->state);
     if (attempt || recovered) loaded.station.resume(loaded.state);
     if (recovered) loaded.history = station::keepHistory(recovered->history, loaded.state, loaded.station);
+    tell(listener, LoadStep::surface);
     loaded.liveTooth =
         std::make_shared<station::LiveTooth>(loaded.station.tooth, loaded.state, core::part(progress, 0.8, 1.0));
     return loaded;
-}
-
-void exportStl(const std::shared_ptr<const tooth::CuttableTooth>& base, const tooth::CutState& state,
-               const fs::path& file, const core::Progress& progress) {
-    tooth::CutMirror mirror(base);
-    mirror.apply(state);
-    geometry::writeStl(file, surface::closedSurface(surface::MirrorSource(mirror), progress));
 }
 
 }  // namespace handpiece::desktop

@@ -5,9 +5,11 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "handpiece/base/core/progress.h"
 #include "handpiece/model/starter/starter.h"
@@ -15,6 +17,7 @@
 #include "handpiece/model/tooth/tooth.h"
 #include "station/history_bytes.h"
 #include "station/live_tooth.h"
+#include "station/sitting.h"
 #include "station/station.h"
 
 namespace handpiece::desktop {
@@ -36,12 +39,31 @@ inline constexpr std::array<Resolution, 5> kResolutions{
 enum class FileKind { unknown, toothCase, attempt, mesh, session };
 [[nodiscard]] FileKind fileKindOf(const std::filesystem::path& path);
 
+/// A recording and where its bytes are: itself on the shelf, or the attempt that it came with.
+struct RecordingPlace {
+    std::string name;  ///< of its file
+    std::filesystem::path in;
+    bool packed = false;  ///< `in` is the attempt
+};
+
 /// What is open.
 struct Document {
     std::filesystem::path caseFile;     ///< of the tooth; of a starter tooth its place in the cache
     std::filesystem::path attemptFile;  ///< where it was saved or read; empty: nowhere yet
     std::optional<Starter> starter;
     std::string name;  ///< for the title: the file's, or the tooth's
+    /// That led to this tooth before the recording under way, in their order.
+    std::vector<RecordingPlace> recordings{};
+    std::string student{};  ///< of an attempt, as typed
+};
+
+/// What is being done for a tooth that opens, for people.
+enum class LoadStep { reading, recovering, shaping, distances, tissues, surface };
+/// Hears of it on the thread that loads.
+struct LoadListener {
+    std::function<void(LoadStep step)> step;
+    /// Something to look at before there is anything to feel: its parts and what stands around them.
+    std::function<void(std::shared_ptr<const tooth::Case> sketch)> sketch;
 };
 
 /// What to open, and with what in hand.
@@ -50,6 +72,8 @@ struct LoadRequest {
     std::optional<Starter> starter;
     bool recover = false;
     Document recovered;  ///< with `recover`: what its marker says
+    std::optional<tooth::Exercise> exercise;
+    std::filesystem::path sessionFolder;  ///< where recordings are that an attempt only names
     std::filesystem::path starterFolder;
     std::string bur = "330", drive = "turbine";
     double speedRpm = 0.0;  ///< 0: the drive's own
@@ -66,20 +90,26 @@ struct LoadedTooth {
     double elapsedS = 0.0;
     std::string bur, drive, code;
     double speedRpm = 0.0;
+    /// The recording that goes on with it, and from where; empty: a new one begins.
+    std::filesystem::path recording;
+    station::SittingSettings::Session session = station::SittingSettings::Session::anew;
     std::string missingBur;  ///< the bur an attempt was cut with, when it cannot be had: another is in hand
+    std::string lockedBur;   ///< and when its exercise does not allow it
 };
 /// Seconds, the first time; a tooth whose cache stands within one. Throws core::Error.
-[[nodiscard]] LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress);
+[[nodiscard]] LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress,
+                                    const LoadListener& listener = {});
+
+/// The recordings' bytes by name, the newest first as far as they go into tooth::kMostRecordingBytes; `packedOnly`: of
+/// those that came with an attempt. `leftOut`: how many did not fit, or are no longer there.
+[[nodiscard]] tooth::PackageFiles recordingBytes(const std::vector<RecordingPlace>& places, bool packedOnly,
+                                                 std::size_t& leftOut, const core::Progress& progress);
 
 /// The case of a starter tooth, out of its folder in the cache; made and put there the first time.
 [[nodiscard]] tooth::Case starterCase(const Starter& starter, const std::filesystem::path& folder,
-                                      const core::Progress& progress);
+                                      const core::Progress& progress, const LoadListener& listener = {});
 
 /// The drive by name, its free speed set to `speedRpm` (0: its own; never more than that).
 [[nodiscard]] instrument::Drive driveAt(const std::string& name, double speedRpm);
-
-/// What is left of the tooth as one closed STL.
-void exportStl(const std::shared_ptr<const tooth::CuttableTooth>& base, const tooth::CutState& state,
-               const std::filesystem::path& file, const core::Progress& progress);
 
 }  // namespace handpiece::desktop

@@ -52,15 +52,23 @@ ErrorDialog::ErrorDialog(const Problem& problem, QWidget* parent) : QDialog(pare
     add("errorWhat", sentence(problem.what), true);
     add("errorWhere", problem.where, false);
     add("errorRemedy", sentence(problem.remedy), false);
-    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
-    buttons->setObjectName(QStringLiteral("errorButtons"));
-    auto* copy = buttons->addButton(tr("Copy text"), QDialogButtonBox::ActionRole);
+    buttons_ = new QDialogButtonBox(QDialogButtonBox::Close);
+    buttons_->setObjectName(QStringLiteral("errorButtons"));
+    auto* copy = buttons_->addButton(tr("Copy text"), QDialogButtonBox::ActionRole);
     copy->setObjectName(QStringLiteral("errorCopy"));
     copy->setToolTip(tr("Copy this message, to send it to somebody"));
-    grid->addWidget(buttons, row, 0, 1, 2);
+    grid->addWidget(buttons_, row, 0, 1, 2);
     grid->setColumnStretch(1, 1);
     connect(copy, &QPushButton::clicked, this, [this] { QGuiApplication::clipboard()->setText(text()); });
-    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+    connect(buttons_, &QDialogButtonBox::rejected, this, &QDialog::reject);
+}
+
+QPushButton* ErrorDialog::addRemedy(const char* objectName, const QString& text, const QString& tip) {
+    QPushButton* button = buttons_->addButton(text, QDialogButtonBox::ActionRole);
+    button->setObjectName(QLatin1String(objectName));
+    button->setToolTip(tip);
+    connect(button, &QPushButton::clicked, this, &QDialog::accept);
+    return button;
 }
 
 QString ErrorDialog::text() const {

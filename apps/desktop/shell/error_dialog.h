@@ -7,6 +7,9 @@
 
 #include "shell/problem.h"
 
+class QDialogButtonBox;
+class QPushButton;
+
 namespace handpiece::desktop {
 
 /// [errorDialog]. Not modal to the tick: work goes on behind it.
@@ -17,9 +20,12 @@ class ErrorDialog : public QDialog {
     [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
     /// All of it as plain text, as the copy button gives it.
     [[nodiscard]] QString text() const;
+    /// Another button beside the two, which closes the dialog.
+    QPushButton* addRemedy(const char* objectName, const QString& text, const QString& tip);
 
   private:
     Problem problem_;
+    QDialogButtonBox* buttons_;
 };
 
 }  // namespace handpiece::desktop

@@ -112,7 +112,16 @@ void Hands::look() {
             for (const std::string& model : f.models)
                 models << QString::fromStdString(model);
             if (!models.isEmpty()) row.text = models.join(QStringLiteral(", "));
-            rows_.push_back(std::move(row));
+            if (f.units.size() < 2) {
+                rows_.push_back(std::move(row));
+                continue;
+            }
+            for (const drivers::Found::Unit& unit : f.units) {
+                DeviceRow one = row;
+                one.name += QLatin1Char(':') + QString::fromStdString(unit.which);
+                one.text = QString::fromStdString(unit.label);
+                rows_.push_back(std::move(one));
+            }
         }
         emit foundChanged();
     });
@@ -126,7 +135,9 @@ void Hands::look() {
 }
 
 QString Hands::textOf(const QString& name) const {
-    if (current_ && QString::fromStdString(current_->name()) == name && !current_->info().model.empty())
+    const bool oneOfSeveral = name.contains(QLatin1Char(':'));
+    if (current_ && !oneOfSeveral && QString::fromStdString(current_->name()) == name &&
+        !current_->info().model.empty())
         return QString::fromStdString(current_->info().model);
     for (const DeviceRow& row : rows_)
         if (row.name == name) return row.text;
@@ -135,7 +146,9 @@ QString Hands::textOf(const QString& name) const {
 
 station::DeviceChoice Hands::choiceOf(const QString& name) const {
     station::DeviceChoice choice;
-    choice.name = name.toStdString();
+    choice.name = name.section(QLatin1Char(':'), 0, 0).toStdString();
+    choice.which = name.section(QLatin1Char(':'), 1).toStdString();
+    choice.foot = options_.foot;
     choice.profileFolder = options_.profiles;
     choice.faults = options_.inject;
     return choice;
@@ -203,10 +216,10 @@ void Hands::open(const QString& name) {
     wanted_ = name;
     isOpening_ = true;
     const auto hand = std::make_shared<std::shared_ptr<Hand>>();
-    opening_ = std::make_unique<Job>(
-        tr("Opening the device"), [hand, choice = choiceOf(name), open = options_.desk.open](const core::Progress&) {
-            *hand = std::make_shared<Hand>(choice.name, open(choice), choice.profileFolder);
-        });
+    opening_ = std::make_unique<Job>(tr("Opening the device"), [hand, key = name.toStdString(), choice = choiceOf(name),
+                                                                open = options_.desk.open](const core::Progress&) {
+        *hand = std::make_shared<Hand>(key, open(choice), choice.profileFolder);
+    });
     const auto end = [this] {
         opening_.release()->deleteLater();
         isOpening_ = false;

@@ -28,7 +28,8 @@ class Hand {
   public:
     Hand(std::string name, station::OpenDevice opened, std::filesystem::path profiles);
 
-    [[nodiscard]] const std::string& name() const noexcept { return name_; }  ///< of the driver
+    /// As it was chosen: "haply", or "haply:0A1B" for one of several.
+    [[nodiscard]] const std::string& name() const noexcept { return name_; }
     [[nodiscard]] const link::DriverInfo& info() const noexcept { return opened_.info; }
     [[nodiscard]] device::Device& device() noexcept { return *opened_.device; }
     [[nodiscard]] safety::HealthBoard& health() noexcept { return *opened_.health; }
@@ -61,7 +62,8 @@ class Hand {
 
 /// One device of the list.
 struct DeviceRow {
-    QString name, text;  ///< "openhaptics"; "3D Systems Touch, ... (OpenHaptics HD)"
+    /// "openhaptics", or "haply:0A1B" where there are several; "3D Systems Touch, ... (OpenHaptics HD)"
+    QString name, text;
     bool available = false, pushes = true;
     QString why, remedy;  ///< when it is not there
 };
@@ -84,7 +86,8 @@ class Hands : public QObject {
         std::filesystem::path profiles;  ///< empty: workspace::profileFolder()
         std::string inject;              ///< faults on purpose, for the next devices that are opened
         HandDesk desk;
-        std::optional<bool> leftHanded;  ///< of a device that was not set up yet
+        std::shared_ptr<const link::PedalValue> foot;  ///< a pedal beside every device
+        std::optional<bool> leftHanded;                ///< of a device that was not set up yet
         std::optional<double> scale;
         /// A device that has gone for so long gives way to the mouse; one that tells nothing for twice as long is told
         /// of.
@@ -111,7 +114,7 @@ class Hands : public QObject {
     /// The trouble it has now that a person should know of.
     [[nodiscard]] link::Trouble trouble() const noexcept { return trouble_; }
     [[nodiscard]] const Options& options() const noexcept { return options_; }
-    /// How the device of this name is opened.
+    /// How the device of this name is opened: a driver's, or with a colon one of its devices by name, serial or number.
     [[nodiscard]] station::DeviceChoice choiceOf(const QString& name) const;
     /// To what a person calls it.
     [[nodiscard]] QString textOf(const QString& name) const;

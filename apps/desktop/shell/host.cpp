@@ -4,6 +4,7 @@
 #include <QApplication>
 #include <QPixmap>
 #include <QTimer>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -21,6 +22,12 @@ Simulator::Options asAsked(Simulator::Options options, const CommandLine& line, 
     if (school.sessionsFolder) options.folders.sessions = *school.sessionsFolder;
     if (school.record) options.record = *school.record;
     if (school.voxelUm) options.voxelUm = static_cast<int>(std::lround(*school.voxelUm));
+    // One of the two alone must not turn them round.
+    measure::PulpLimits& limits = options.pulpLimits;
+    if (school.pulpGoodMm) limits.goodMm = *school.pulpGoodMm;
+    if (school.pulpLeastMm) limits.leastMm = *school.pulpLeastMm;
+    if (!school.pulpLeastMm) limits.leastMm = std::min(limits.leastMm, limits.goodMm);
+    if (!school.pulpGoodMm) limits.goodMm = std::max(limits.leastMm, limits.goodMm);
     return options;
 }
 
@@ -119,6 +126,8 @@ void Host::start() {
     }
     // Last: what is told of a device that is not there stands beside the tooth.
     if (const QString device = firstDevice(); !device.isEmpty()) simulator_.hands().choose(device);
+    if (const QString pedal = settings_.value(QStringLiteral("work/pedal")).toString(); !pedal.isEmpty())
+        simulator_.foot().choose(pedal);
     if (line_.runForS)
         QTimer::singleShot(static_cast<int>(1e3 * *line_.runForS), this, [this] { endWithoutAsking(0); });
     if (!line_.stats.isEmpty()) connect(&application_, &QApplication::aboutToQuit, this, &Host::writeStats);

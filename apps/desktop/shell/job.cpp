@@ -2,7 +2,8 @@
 #include "shell/job.h"
 
 #include <QMetaObject>
-#include <new>
+
+#include "handpiece/base/core/any_error.h"
 
 namespace handpiece::desktop {
 
@@ -32,16 +33,12 @@ void Job::run() {
         core::report(progress, 0.0);
         work_(progress);
         tell([this] { emit done(); });
-    } catch (const core::Error& error) {
+    } catch (const std::exception& error) {
         if (cancelled_.load()) {
             tell([this] { emit cancelled(); });
         } else {
-            tell([this, problem = problemOf(error)] { emit failed(problem); });
+            tell([this, problem = problemOf(core::asError(error))] { emit failed(problem); });
         }
-    } catch (const std::bad_alloc&) {
-        const core::Error error("there is not enough memory", title_.toStdString(),
-                                "close other programs, or choose a coarser tooth or voxel size");
-        tell([this, problem = problemOf(error)] { emit failed(problem); });
     }
 }
 

@@ -11,6 +11,8 @@ namespace handpiece::desktop {
 JobStrip::JobStrip(QWidget* parent) : QFrame(parent) {
     setObjectName(QStringLiteral("jobStrip"));
     setAccessibleName(tr("Progress"));
+    setFrameShape(QFrame::StyledPanel);
+    setAutoFillBackground(true);
     auto* row = new QHBoxLayout(this);
     row->setContentsMargins(12, 6, 12, 6);
     row->setSpacing(12);
@@ -39,15 +41,28 @@ JobStrip::JobStrip(QWidget* parent) : QFrame(parent) {
 }
 
 void JobStrip::begin(const QString& title) {
-    title_->setText(title);
+    job_ = title;
+    step_.clear();
     bar_->setRange(0, 0);
+    showText();
     cancel_->setEnabled(true);
     patience_.start(kPatienceMs);
+}
+
+void JobStrip::setStep(const QString& step) {
+    step_ = step;
+    showText();
 }
 
 void JobStrip::setFraction(double fraction) {
     bar_->setRange(0, 1000);
     bar_->setValue(static_cast<int>(1000.0 * fraction));
+    showText();
+}
+
+void JobStrip::showText() {
+    const QString what = step_.isEmpty() ? job_ : QStringLiteral("%1: %2").arg(job_, step_);
+    title_->setText(bar_->maximum() == 0 ? what : QStringLiteral("%1, %2 %").arg(what).arg(bar_->value() / 10));
 }
 
 void JobStrip::end() {

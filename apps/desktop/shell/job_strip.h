@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Progress of long work, above the picture, with a button that ends it. Blocks nothing.
+/// Progress of long work, over the picture, with a button that ends it. Blocks nothing.
 
 #include <QFrame>
 #include <QTimer>
@@ -19,6 +19,8 @@ class JobStrip : public QFrame {
     static constexpr int kPatienceMs = 400;
     explicit JobStrip(QWidget* parent = nullptr);
     void begin(const QString& title);
+    /// What of it is being done.
+    void setStep(const QString& step);
     void setFraction(double fraction);
     void end();
 
@@ -26,7 +28,10 @@ class JobStrip : public QFrame {
     void cancelRequested();
 
   private:
+    void showText();
+
     QLabel* title_;
+    QString job_, step_;
     QProgressBar* bar_;
     QToolButton* cancel_;
     QTimer patience_;

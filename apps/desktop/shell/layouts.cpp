@@ -16,6 +16,8 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "exercise/exercise_feature.h"
+#include "exercise/exercise_panel.h"
 #include "panels/drill_bar.h"
 #include "panels/force_gauge.h"
 #include "panels/icon_factory.h"
@@ -45,12 +47,12 @@ struct Place {
     const char* tabbedWith;  ///< null: beside the others
 };
 // From top to bottom. What is not named is closed.
-constexpr Place kPractice[] = {{"drillDock", Qt::LeftDockWidgetArea, 700, nullptr},
-                               {"gaugeDock", Qt::RightDockWidgetArea, 84, nullptr},
-                               {"measureDock", Qt::RightDockWidgetArea, 360, nullptr},
-                               {"volumesDock", Qt::RightDockWidgetArea, 160, nullptr},
-                               {"soundDock", Qt::RightDockWidgetArea, 150, nullptr}};
-constexpr Place kLaboratory[] = {{"drillDock", Qt::LeftDockWidgetArea, 700, nullptr},
+constexpr Place kPractice[] = {
+    {"exerciseDock", Qt::LeftDockWidgetArea, 190, nullptr}, {"drillDock", Qt::LeftDockWidgetArea, 510, nullptr},
+    {"gaugeDock", Qt::RightDockWidgetArea, 84, nullptr},    {"measureDock", Qt::RightDockWidgetArea, 360, nullptr},
+    {"volumesDock", Qt::RightDockWidgetArea, 160, nullptr}, {"soundDock", Qt::RightDockWidgetArea, 150, nullptr}};
+constexpr Place kLaboratory[] = {{"exerciseDock", Qt::LeftDockWidgetArea, 190, nullptr},
+                                 {"drillDock", Qt::LeftDockWidgetArea, 510, nullptr},
                                  {"lookDock", Qt::LeftDockWidgetArea, 700, "drillDock"},
                                  {"parameterDock", Qt::RightDockWidgetArea, 480, nullptr},
                                  {"measureDock", Qt::RightDockWidgetArea, 480, "parameterDock"},
@@ -58,7 +60,8 @@ constexpr Place kLaboratory[] = {{"drillDock", Qt::LeftDockWidgetArea, 700, null
                                  {"gaugeDock", Qt::RightDockWidgetArea, 110, nullptr},
                                  {"plotDock", Qt::BottomDockWidgetArea, 290, nullptr},
                                  {"volumesDock", Qt::BottomDockWidgetArea, 290, nullptr}};
-constexpr Place kPaper[] = {{"drillDock", Qt::LeftDockWidgetArea, 700, nullptr},
+constexpr Place kPaper[] = {{"exerciseDock", Qt::LeftDockWidgetArea, 190, nullptr},
+                            {"drillDock", Qt::LeftDockWidgetArea, 510, nullptr},
                             {"soundDock", Qt::RightDockWidgetArea, 240, nullptr},
                             {"parameterDock", Qt::RightDockWidgetArea, 460, nullptr}};
 
@@ -99,14 +102,17 @@ void MainWindow::makePanels() {
     view_ = new ViewWidget;
     if (view_->objectName().isEmpty()) view_->setObjectName(QStringLiteral("view"));
     replay_ = new ReplayBar;
-    for (QWidget* widget :
+    for (QWidget* strip :
          {static_cast<QWidget*>(job_), static_cast<QWidget*>(notices_), static_cast<QWidget*>(welcome_)})
-        column->addWidget(widget);
+        view_->addStrip(strip);
     column->addWidget(view_, 1);
     column->addWidget(replay_);
     replay_->hide();
     setCentralWidget(centre);
 
+    auto* exercise = new ExercisePanel;
+    QDockWidget* exerciseDock = dock("exerciseDock", tr("Exercise"), exercise);
+    exercise_ = new ExerciseFeature(simulator_, settings_, *actions_, exercise, exerciseDock, this);
     dock("drillDock", tr("Drill"), drill_ = new DrillBar);
     dock("lookDock", tr("View"), looks_ = new ViewBar);
     dock("gaugeDock", tr("Pressure"), gauge_ = new ForceGauge);
@@ -250,9 +256,9 @@ void MainWindow::makeMenus() {
     }
     fill(file, {"actionChooseTooth"});
     recent_ = under(file, "menuRecent", tr("Open recent"));
-    fill(file, {"actionResume", "actionRecover", "actionCode", "", "actionSave", "actionSaveAs", "actionExportStl", "",
-                "actionOpenSession", "actionReplay", "actionKeepRecording", "", "actionPicture", "actionReport", "",
-                "actionQuit"});
+    fill(file, {"actionResume", "actionRecover", "actionCode", "", "actionSave", "actionSaveAs", "actionHandIn",
+                "actionExportStl", "actionExportTissues", "", "actionOpenSession", "actionReplay",
+                "actionKeepRecording", "", "actionPicture", "actionReport", "", "actionQuit"});
     fill(menu("menuEdit", tr("Edit")), {"actionUndo", "actionRedo", "", "actionReset"});
 
     QMenu* view = menu("menuView", tr("View"));
@@ -268,7 +274,7 @@ void MainWindow::makeMenus() {
         bar->toggleViewAction()->setToolTip(tr("Show or hide this bar"));
         panelsMenu_->addAction(bar->toggleViewAction());
     }
-    fill(view, {"actionResetLayout", "actionFullScreen", ""});
+    fill(view, {"actionExercise", "actionResetLayout", "actionFullScreen", ""});
     fill(under(view, "menuTheme", tr("Colours of the window")),
          {"actionThemeSystem", "actionThemeLight", "actionThemeDark"});
     QMenu* languages = under(view, "menuLanguage", tr("Language"));
@@ -313,6 +319,7 @@ void MainWindow::setDetail(Detail detail) {
     arranged_ = true;
     const QByteArray state = settings_.value(layoutKey(detail)).toByteArray();
     if (!state.isEmpty()) restoreState(state, kStateVersion);
+    exercise_->placeDock();
     (*actions_)[detail == Detail::practice     ? "actionLayoutPractice"
                 : detail == Detail::laboratory ? "actionLayoutLaboratory"
                                                : "actionLayoutPaper"]
@@ -368,6 +375,7 @@ void MainWindow::arrange(Detail detail) {
         resizeDocks({byName("plotDock"), byName("volumesDock")}, {620, 230}, Qt::Horizontal);
     for (QDockWidget* panel : first)
         panel->raise();
+    exercise_->placeDock();
 
     const bool practice = detail == Detail::practice;
     removeToolBar(fileBar_);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <QApplication>
 #include <cstdio>
 
 #include "device/install.h"
-#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/any_error.h"
 #include "handpiece/senses/sound/player.h"
 #include "scan/install.h"
+#include "shell/application.h"
 #include "shell/host.h"
 #include "shell/widget_map.h"
 
@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
     QApplication::setApplicationVersion(QStringLiteral(HANDPIECE_VERSION));
     QApplication::setApplicationDisplayName(QStringLiteral("Handpiece"));
     QApplication::setDesktopFileName(QStringLiteral("handpiece-desktop"));
-    QApplication application(argc, argv);
+    desktop::Application application(argc, argv);
     try {
         desktop::Simulator::Options options;
         options.sound = line.sound;
@@ -49,12 +49,16 @@ int main(int argc, char** argv) {
         };
         furnish();
         QObject::connect(&host, &desktop::Host::windowMade, &host, furnish);
+        application.whenThrown = [&host](const core::Error& error) {
+            std::fprintf(stderr, "handpiece-desktop: %s\n", error.what());
+            host.window().showProblem(desktop::problemOf(error));
+        };
         host.start();
         if (const QString map = qEnvironmentVariable("HANDPIECE_WIDGET_MAP"); !map.isEmpty())
             desktop::writeWidgetMap(&application, map);
         return QApplication::exec();
-    } catch (const core::Error& error) {
-        std::fprintf(stderr, "handpiece-desktop: %s\n", error.what());
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "handpiece-desktop: %s\n", core::asError(error).what());
         return 1;
     }
 }

@@ -18,6 +18,7 @@
 #include "panels/icon_factory.h"
 #include "panels/notice_bar.h"
 #include "shell/error_dialog.h"
+#include "shell/mend_dialog.h"
 
 namespace handpiece::desktop {
 
@@ -135,7 +136,31 @@ void MainWindow::showProblem(const Problem& problem) {
     // One at a time: the first is the cause of the others more often than not.
     if (errorDialog_) return;
     errorDialog_ = new ErrorDialog(problem, this);
+    if (canMend(problem.id, toPath(lastOpened_)))
+        connect(errorDialog_->addRemedy("errorMend", tr("Mend..."),
+                                        tr("Close holes and turn faces; nothing is written unasked")),
+                &QPushButton::clicked, this, &MainWindow::mend);
     errorDialog_->open();
+}
+
+void MainWindow::mend() {
+    const QString file = lastOpened_;
+    auto* dialog = new MendDialog(toPath(file), this);
+    connect(dialog, &MendDialog::saveRequested, this, [this, dialog, file] {
+        const QFileInfo info(file);
+        const QString start = info.dir().filePath(tr("%1-mended.stl").arg(info.completeBaseName()));
+        const QString to = questions.fileToSave(tr("Save the mended surface"), start, tr("Surfaces (*.stl *.ply)"));
+        if (to.isEmpty()) return;
+        try {
+            dialog->save(toPath(to));
+        } catch (const core::Error& error) {
+            showProblem(problemOf(error));
+            return;
+        }
+        dialog->accept();
+        openFile(to);
+    });
+    dialog->open();
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
@@ -182,7 +207,7 @@ NoticeText Notices::of(const QString& id, const QStringList& arguments) {
     const QString first = arguments.value(0), second = arguments.value(1);
     if (id == QLatin1String("recording-stopped"))
         return {tr("This session is not being recorded: %1").arg(first), true};
-    if (id == QLatin1String("pulp-exposed")) return {tr("The pulp is open."), true};
+    if (id == QLatin1String("pulp-exposed")) return {tr("The pulp is exposed."), true};
     if (id == QLatin1String("force-limited")) return {tr("The device gives all the force it has."), false, true};
     if (id == QLatin1String("stalled")) return {tr("The bur has stalled: press less."), false, true};
     if (id == QLatin1String("device-fault")) return {tr("The device reports a fault."), true};
@@ -191,6 +216,10 @@ NoticeText Notices::of(const QString& id, const QStringList& arguments) {
     if (id == QLatin1String("school-settings"))
         return {tr("The school's settings have a mistake. Technical detail: %1").arg(first)};
     if (id == QLatin1String("device-absent")) return {tr("%1 %2 The mouse holds the handpiece.").arg(first, second)};
+    if (id == QLatin1String("pedal-absent")) return {tr("%1 %2 The button alone is the pedal.").arg(first, second)};
+    if (id == QLatin1String("pedal-lost"))
+        return {tr("The foot pedal %1 was unplugged: it is up. Plugged in again, it counts once it has been up.")
+                    .arg(first)};
     if (id == QLatin1String("device-trouble")) return {tr("The device gives no force. %1 %2").arg(first, second), true};
     if (id == QLatin1String("out-of-bricks")) return {tr("There is no memory left to cut more of this tooth."), true};
     if (id == QLatin1String("recording-incomplete"))
@@ -218,6 +247,15 @@ NoticeText Notices::of(const QString& id, const QStringList& arguments) {
     if (id == QLatin1String("bur-missing"))
         return {tr("The bur it was cut with, %1, is not at hand: %2 is in its place.").arg(first, second)};
     if (id == QLatin1String("bur-locked")) return {tr("This exercise does not allow the bur %1.").arg(first)};
+    if (id == QLatin1String("help-locked")) return {tr("Not in this exercise: %1.").arg(first), false, true};
+    if (id == QLatin1String("handed-in"))
+        return {
+            tr("Handed in: %1, with its tooth. Recordings in it: %2 (%3 MB).").arg(first, second, arguments.value(2)),
+            false, true};
+    if (id == QLatin1String("handed-in-part"))
+        return {tr("Handed in: %1, with its tooth. Recordings in it: %2 (%3 MB). Recordings that are no longer there, "
+                   "or too large together, and not in it: %4.")
+                    .arg(first, second, arguments.value(2), arguments.value(3))};
     if (id == QLatin1String("case-vanished"))
         return {tr("The tooth you opened is no longer at %1. It was saved together with the attempt.").arg(first)};
     if (id == QLatin1String("saved")) return {tr("Saved: %1").arg(first), false, true};

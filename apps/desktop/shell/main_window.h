@@ -29,11 +29,13 @@ class QToolBar;
 namespace handpiece::desktop {
 
 class DrillBar;
+class ExerciseFeature;
 class ForceGauge;
 class JobStrip;
 class MeasureBox;
 class NoticeBar;
 class ParameterBox;
+class PedalMenu;
 class PlotPanel;
 class ReplayBar;
 class StatusLine;
@@ -52,6 +54,7 @@ class MainWindow : public QMainWindow {
     [[nodiscard]] Detail detail() const noexcept { return detail_; }
     [[nodiscard]] ViewWidget* view() const noexcept { return view_; }
     [[nodiscard]] const Actions& actions() const noexcept { return *actions_; }
+    [[nodiscard]] ExerciseFeature& exercise() const noexcept { return *exercise_; }
 
     /// Whatever the file is; asks about unsaved work first.
     void openFile(const QString& file);
@@ -121,6 +124,7 @@ class MainWindow : public QMainWindow {
     void showCode();
     [[nodiscard]] static QString titleOf(const SessionNote& note);
     void showAbout();
+    void mend();
     void savePlot(const QString& format);
     [[nodiscard]] QString startFolder() const;
 
@@ -128,6 +132,7 @@ class MainWindow : public QMainWindow {
     void connectDevice();
     void listDevices();
     void chooseDevice(const QString& name);
+    void nameDevice();
     void tellDevice(link::Trouble trouble, int vendorCode);
     void showDevice(StatusFigures& figures) const;
     [[nodiscard]] bool holdsDevice() const;
@@ -140,8 +145,11 @@ class MainWindow : public QMainWindow {
     void connectPanels();
     void connectSound();
     void showDocument();
+    void takePermissions();
+    void tellLocked(station::Operation operation);
     void showSettings();
     void showTick();
+    void takeBackNotices(const messages::HapticSample& sample);
     void showSound();
     void showReadouts();
     void takeRecording(SoundControl::Channel channel, const QString& file);
@@ -166,12 +174,14 @@ class MainWindow : public QMainWindow {
     Settings& settings_;
     Actions* actions_;
     Detail detail_ = Detail::practice;
+    bool wasOpen_ = false, wasCut_ = false;  ///< pulp and tooth, as last shown
     bool arranged_ = false, closing_ = false, hasPicture_ = false, touching_ = false;
     ViewWidget* view_;
     JobStrip* job_;
     NoticeBar* notices_;
     WelcomeStrip* welcome_;
     ReplayBar* replay_;
+    ExerciseFeature* exercise_;
     DrillBar* drill_;
     SoundControl* sound_;
     ParameterBox* parameters_;
@@ -186,6 +196,7 @@ class MainWindow : public QMainWindow {
     QComboBox* resolution_;
     QSlider* mix_;
     QMenu *recent_, *panelsMenu_, *devices_;
+    PedalMenu* pedals_;
     QList<QDockWidget*> docks_;
     QPointer<ErrorDialog> errorDialog_;
     QTimer readouts_, eyeTimer_, microphoneTimer_;
@@ -201,6 +212,7 @@ class MainWindow : public QMainWindow {
     bool deviceAsked_ = false;      ///< a person is waiting for it: what goes wrong is worth a dialog
     bool risesFromStatus_ = false;  ///< the menu of devices, now
     QString deviceTried_;
+    QString lastOpened_;  ///< or tried to
 };
 
 /// What holds the handpiece, for a person; devices of makers keep the names they have.

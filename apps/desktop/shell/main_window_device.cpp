@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The menu of devices, and what is told of the one that holds the handpiece.
 #include <QActionGroup>
+#include <QInputDialog>
 #include <QMenu>
 
 #include "panels/notice_bar.h"
 #include "panels/status_line.h"
 #include "shell/main_window.h"
+#include "shell/pedal_menu.h"
 
 namespace handpiece::desktop {
 
@@ -25,6 +27,11 @@ void MainWindow::connectDevice() {
     connect(a["actionDeviceSetUp"], &QAction::triggered, this, [this] {
         if (setUpDevice) setUpDevice();
     });
+    connect(a["actionDeviceNamed"], &QAction::triggered, this, &MainWindow::nameDevice);
+    pedals_ = new PedalMenu(simulator_.foot(), settings_, this);
+    connect(pedals_, &PedalMenu::noticed, this, &MainWindow::tell);
+    connect(pedals_, &PedalMenu::settled, notices_, &NoticeBar::remove);
+    connect(pedals_, &PedalMenu::failed, this, &MainWindow::showProblem);
     connect(&hands, &Hands::foundChanged, this, &MainWindow::listDevices);
     connect(&hands, &Hands::changed, this, [this] {
         listDevices();
@@ -82,6 +89,25 @@ void MainWindow::chooseDevice(const QString& name) {
     hands.choose(name);
 }
 
+/// Of several equal ones: a device that the list cannot tell, by its name or serial.
+void MainWindow::nameDevice() {
+    auto* dialog = new QInputDialog(this);
+    dialog->setObjectName(QStringLiteral("deviceNameDialog"));
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->setWindowTitle(tr("Device by name or serial"));
+    QStringList drivers;
+    for (const std::string& driver : station::deviceNames())
+        drivers << QString::fromStdString(driver);
+    dialog->setLabelText(tr("One of %1; a colon; then the device's name, serial or number.\nopenhaptics:Left Arm, or "
+                            "forcedimension:2")
+                             .arg(drivers.join(QStringLiteral(", "))));
+    dialog->setTextValue(simulator_.hands().wanted());
+    connect(dialog, &QInputDialog::textValueSelected, this, [this](const QString& text) {
+        if (const QString name = text.trimmed(); !name.isEmpty()) chooseDevice(name);
+    });
+    dialog->open();
+}
+
 void MainWindow::tellDevice(link::Trouble trouble, int vendorCode) {
     notices_->remove(QStringLiteral("device-trouble"));
     if (trouble == link::Trouble::none) return;
@@ -125,6 +151,9 @@ void MainWindow::listDevices() {
     }
     devices_->addSeparator();
     const Actions& a = *actions_;
+    devices_->addAction(a["actionDeviceNamed"]);
+    devices_->addMenu(pedals_->menu());
+    devices_->addSeparator();
     for (const char* name : {"actionDevicePage", "actionDeviceSetUp", "actionDeviceSearch"})
         devices_->addAction(a[name]);
     // What was found since makes it longer: it stands on the status bar.

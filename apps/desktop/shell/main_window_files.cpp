@@ -20,9 +20,9 @@
 #include <QPushButton>
 #include <QRegularExpressionValidator>
 #include <QSaveFile>
-#include <QStandardPaths>
 #include <QVBoxLayout>
 
+#include "exercise/exercise_feature.h"
 #include "handpiece/base/core/file.h"
 #include "panels/notation.h"
 #include "panels/notice_bar.h"
@@ -87,11 +87,24 @@ void MainWindow::connectFiles() {
     on("actionCode", [this] { editCode(); });
     on("actionSave", [this] { save(false); });
     on("actionSaveAs", [this] { save(true); });
+    exercise_->questions.fileToHandIn = [this](const QString& name) {
+        return withExtension(
+            questions.fileToSave(tr("Hand in"), QDir(startFolder()).filePath(name + QStringLiteral(".handpiece")),
+                                 tr("Attempt with its tooth (*.handpiece)")),
+            QStringLiteral(".handpiece"));
+    };
+    connect(exercise_, &ExerciseFeature::codeChanged, this, &MainWindow::showCode);
     on("actionExportStl", [this] {
         const QString file = withExtension(
-            questions.fileToSave(tr("Export STL"), startFolder() + QStringLiteral("/tooth.stl"), tr("STL (*.stl)")),
+            questions.fileToSave(tr("Export STL"), QDir(startFolder()).filePath(QStringLiteral("tooth.stl")),
+                                 tr("STL (*.stl)")),
             QStringLiteral(".stl"));
         if (!file.isEmpty()) simulator_.exportStl(toPath(file));
+    });
+    on("actionExportTissues", [this] {
+        const QString folder = questions.fileToSave(tr("Folder for the tissues"),
+                                                    QDir(startFolder()).filePath(QStringLiteral("tissues")), QString());
+        if (!folder.isEmpty()) simulator_.exportTissues(toPath(folder));
     });
     on("actionPicture", [this] { writePicture(); });
     on("actionReport", [this] { writeReport(); });
@@ -112,12 +125,18 @@ void MainWindow::connectFiles() {
             [this](const QString& id, const QStringList& arguments) { tell(id, arguments); });
     connect(&simulator_, &Simulator::jobStarted, this, [this](const QString& title) {
         job_->begin(title);
-        showEnabled();
+        view_->setWaiting(title + QStringLiteral(" ..."));
+        showTick();
     });
+    connect(&simulator_, &Simulator::jobStepped, job_, &JobStrip::setStep);
+    connect(&simulator_, &Simulator::sketched, this,
+            [this](const std::shared_ptr<const tooth::Case>& sketch) { view_->showSketch(*sketch); });
     connect(&simulator_, &Simulator::jobProgressed, job_, &JobStrip::setFraction);
     connect(&simulator_, &Simulator::jobEnded, this, [this] {
         job_->end();
-        showEnabled();
+        view_->setWaiting({});
+        if (view_->hasSketch()) view_->clearTooth();  // nothing came of it, or the tooth itself comes now
+        showTick();
     });
     connect(job_, &JobStrip::cancelRequested, &simulator_, &Simulator::cancelJob);
     connect(&simulator_, &Simulator::saved, this, [this](const QString& file) {
@@ -138,8 +157,9 @@ void MainWindow::connectFiles() {
 }
 
 QString MainWindow::startFolder() const {
-    const QString documents = QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation);
-    return settings_.value(QStringLiteral("files/folder"), documents).toString();
+    // The folder of last time may be gone: a stick that was pulled out.
+    const QString last = settings_.value(QStringLiteral("files/folder")).toString();
+    return !last.isEmpty() && QFileInfo(last).isDir() ? last : workFolder();
 }
 
 /// Asks about unsaved work; runs `then` unless that was cancelled.
@@ -185,7 +205,8 @@ void MainWindow::openFile(const QString& file) {
     const QString path = info.suffix() == QLatin1String("toml") ? info.absolutePath() : info.absoluteFilePath();
     ifFree([this, path] {
         settings_.set(QStringLiteral("files/folder"), QFileInfo(path).absolutePath());
-        simulator_.open(toPath(path));
+        lastOpened_ = path;
+        exercise_->open(toPath(path));
     });
 }
 
@@ -199,7 +220,7 @@ void MainWindow::resumeLast() {
         showProblem(problemById(QStringLiteral("no-attempt")));
         return;
     }
-    openFile(file);
+    ifFree([this, file] { simulator_.open(toPath(file)); });
 }
 
 QString MainWindow::titleOf(const SessionNote& note) {
@@ -440,6 +461,8 @@ void MainWindow::showAbout() {
                  view_->rendererDescription().isEmpty() ? tr("nothing yet")
                                                         : view_->rendererDescription().toHtmlEscaped(),
                  QString::fromStdString(simulator_.soundStatus().device).toHtmlEscaped()));
+    if (auto* informative = box.findChild<QLabel*>(QStringLiteral("qt_msgbox_informativelabel")))
+        informative->setTextFormat(Qt::RichText);
     box.exec();
 }
 

@@ -49,7 +49,9 @@ void MainWindow::recallLook() {
 
 void MainWindow::recallBindings() {
     KeyBindings bindings;
-    bindings.fromMap(settings_.value(QStringLiteral("window/bindings")).toMap());
+    const QVariantMap chosen = settings_.value(QStringLiteral("window/bindings")).toMap();
+    bindings.giveWayTo(chosen);
+    bindings.fromMap(chosen);
     view_->setBindings(bindings);
     connect((*actions_)["actionBindings"], &QAction::triggered, this, &MainWindow::editBindings);
 }

@@ -7,9 +7,13 @@
 #include <QStatusBar>
 
 #include <chrono>
+#include <numeric>
 
 #include "desktop/view/section_bar.h"
+#include "exercise/exercise_feature.h"
+#include "exercise/exercise_words.h"
 #include "handpiece/model/instrument/turbine.h"
+#include "handpiece/record/session/event_watch.h"
 #include "panels/drill_bar.h"
 #include "panels/force_gauge.h"
 #include "panels/measure_box.h"
@@ -157,6 +161,8 @@ void MainWindow::connectView() {
             [this](const QString& what, const QString&) { tell(QStringLiteral("opengl-missing"), {what}); });
     connect(view_, &ViewWidget::burStepRequested, drill_, &DrillBar::chooseNext);
     connect(view_, &ViewWidget::speedStepRequested, drill_, &DrillBar::stepSpeed);
+    connect(view_, &ViewWidget::refused, this, &MainWindow::tellLocked);
+    connect(&simulator_, &Simulator::refused, this, &MainWindow::tellLocked);
     connect(view_, &ViewWidget::helpRequested, view_, &ViewWidget::toggleHelpCard);
     connect(a["actionHelp"], &QAction::triggered, view_, &ViewWidget::toggleHelpCard);
     HelpCard::Commands commands;
@@ -257,6 +263,8 @@ void MainWindow::setTouching(bool touching) {
 }
 
 void MainWindow::connectPanels() {
+    measure_->setPulpLimits(simulator_.pulpLimits());
+    view_->setPulpLimits(simulator_.pulpLimits());
     connect(drill_, &DrillBar::burChosen, &simulator_, &Simulator::setBur);
     connect(drill_, &DrillBar::burFileRequested, this, [this] {
         const QString file =
@@ -267,6 +275,7 @@ void MainWindow::connectPanels() {
     connect(drill_, &DrillBar::speedSet, &simulator_, &Simulator::setSpeed);
     connect(parameters_, &ParameterBox::multipliersChanged, &simulator_, &Simulator::setMultipliers);
     connect(parameters_, &ParameterBox::hullMethodChosen, &simulator_, &Simulator::setHullMethod);
+    connect(parameters_, &ParameterBox::forceModeChosen, &simulator_, &Simulator::setForceMode);
     connect(parameters_, &ParameterBox::voxelChosen, this, [this](int um) {
         if (simulator_.status().inStroke) {
             showProblem(problemById(QStringLiteral("voxel-in-stroke")));
@@ -298,8 +307,26 @@ void MainWindow::tellStep(WelcomeStrip::Step step) {
     if (!welcome_->isHidden() && !welcome_->done().contains(step)) welcome_->markDone(step);
 }
 
+/// What is no longer so is no longer told: an undo or a reset heals a pulp.
+void MainWindow::takeBackNotices(const messages::HapticSample& sample) {
+    constexpr double kNoneMm3 = session::EventWatch::kTellMm3;
+    // A notice may be ahead of the sample that is shown: only what was seen open can be seen closed.
+    const bool open = sample.removedMm3[static_cast<std::size_t>(tooth::Tissue::pulp)] > kNoneMm3;
+    if (wasOpen_ && !open) notices_->remove(QStringLiteral("pulp-exposed"));
+    wasOpen_ = open;
+    const bool cut = std::accumulate(sample.removedMm3.begin(), sample.removedMm3.end(), 0.0) > kNoneMm3;
+    if (wasCut_ && !cut)
+        for (const char* id : {"neighbour-touched", "out-of-bricks", "hull-needs-whole-tooth"})
+            notices_->remove(QLatin1String(id));
+    wasCut_ = cut;
+}
+
 void MainWindow::showDocument() {
     hasPicture_ = false;
+    // What was told of the tooth before.
+    for (const char* id : {"pulp-exposed", "neighbour-touched", "out-of-bricks", "samples-lost", "recording-incomplete",
+                           "hull-needs-whole-tooth"})
+        notices_->remove(QLatin1String(id));
     const bool replay = simulator_.mode() == Simulator::Mode::replay;
     replay_->setVisible(replay);
     plots_->clear();
@@ -311,21 +338,16 @@ void MainWindow::showDocument() {
         view_->setTooth(simulator_.tooth(), toothCase, simulator_.pictureFeed());
         view_->setPointer(simulator_.mailbox(), simulator_.startPose());
         if (simulator_.bur()) view_->setBur(simulator_.bur());
-        std::vector<std::string> locked;
-        for (const QString& help : simulator_.lockedHelps())
-            locked.push_back(help.toStdString());
-        view_->setLocked(locked);
-        looks_->setLockedHelps(simulator_.lockedHelps());
-        measure_->setLockedHelps(simulator_.lockedHelps());
-        drill_->setAllowedBurs(simulator_.allowedBurs());
+        takePermissions();
         const std::vector<tooth::Tissue> present = presentOf(toothCase);
         looks_->setPresent(present);
         parameters_->setPresent(present);
         parameters_->setTissues(toothCase.tissues);
-        volumes_->setLegend(view::legendOf(present, view_->look().palette));
+        volumes_->setLegend(view::legendOf(present, view_->shownLook().palette));
         takeSection();
         measure_->setCalliper({});
         recallEye();
+        if (simulator_.mode() == Simulator::Mode::review) view_->setSample(simulator_.sample());
         readouts_.start();
         view_->setFocus();
     }
@@ -344,7 +366,8 @@ void MainWindow::showDocument() {
                 event.name == session::nameOf(session::EventName::reset))
                 kind = Kind::undo;
             if (event.name == session::nameOf(session::EventName::burChange) ||
-                event.name == session::nameOf(session::EventName::parameterChange))
+                event.name == session::nameOf(session::EventName::parameterChange) ||
+                event.name == session::nameOf(session::EventName::resume))
                 kind = Kind::change;
             if (event.name == session::nameOf(session::EventName::pulpExposure) ||
                 event.name == session::nameOf(session::EventName::neighbourTouched) ||
@@ -362,6 +385,23 @@ void MainWindow::showDocument() {
     showEnabled();
 }
 
+void MainWindow::tellLocked(station::Operation operation) {
+    tell(QStringLiteral("help-locked"), {operationWords(operation)});
+}
+
+void MainWindow::takePermissions() {
+    const station::Permissions now = simulator_.permissions();
+    view_->setPermissions(now);
+    looks_->setPermissions(now);
+    measure_->setPermissions(now);
+    welcome_->setAllowed(now.allows(station::Operation::guidance));
+    volumes_->setLocked(now.locks(station::Operation::volumes));
+    QStringList burs;
+    for (const std::string& bur : now.burs())
+        burs << QString::fromStdString(bur);
+    drill_->setAllowedBurs(burs);
+}
+
 QString MainWindow::eventText(const std::string& name) {
     using session::EventName;
     const std::pair<EventName, QString> known[] = {{EventName::strokeBegin, tr("Stroke begins")},
@@ -377,6 +417,7 @@ QString MainWindow::eventText(const std::string& name) {
                                                    {EventName::reset, tr("Reset")},
                                                    {EventName::parameterChange, tr("Settings changed")},
                                                    {EventName::fault, tr("Fault")},
+                                                   {EventName::resume, tr("Gone on with")},
                                                    {EventName::end, tr("End")}};
     for (const auto& [event, text] : known)
         if (name == session::nameOf(event)) return text;
@@ -385,6 +426,7 @@ QString MainWindow::eventText(const std::string& name) {
 
 void MainWindow::showSettings() {
     if (simulator_.bur() && view_->hasTooth()) view_->setBur(simulator_.bur());
+    if (simulator_.bur()) drill_->addOwnBur(simulator_.burName(), *simulator_.bur(), simulator_.burAbility());
     drill_->setBur(simulator_.burName());
     drill_->setDrive(simulator_.driveName());
     drill_->setSpeed(simulator_.setSpeedRpm());
@@ -394,10 +436,13 @@ void MainWindow::showSettings() {
     parameters_->setLimits(
         {c.maxForceN, c.maxStiffnessNPerMm, c.maxDampingNSPerMm, c.maxForceSlopeNPerS, c.maxTorqueNmm}, deviceInHand());
     parameters_->setHullMethod(simulator_.isHullMethod());
+    parameters_->setForceMode(p.mode);
     parameters_->setVoxelUm(simulator_.voxelUm());
     gauge_->setLimit(c.maxForceN);
     plots_->setForceLimit(c.maxForceN);
     plots_->setFreeSpeed(instrument::driveByName(simulator_.driveName().toStdString()).freeSpeedRpm);
+    // What a recording was made with is not what this person has in the hand.
+    if (simulator_.mode() == Simulator::Mode::replay) return;
     settings_.set(QStringLiteral("work/bur"), simulator_.burName());
     settings_.set(QStringLiteral("work/drive"), simulator_.driveName());
     settings_.set(QStringLiteral("work/speedRpm"), simulator_.setSpeedRpm());
@@ -414,7 +459,8 @@ void MainWindow::showTick() {
     const messages::HapticSample& sample = simulator_.sample();
     const station::SittingStatus& status = simulator_.status();
     drill_->setActualSpeed(sample.speedRpm, (sample.flags & messages::kStalled) != 0);
-    gauge_->setForce(core::toVec(sample.forceN).norm(), sample.timeS, (sample.flags & messages::kForceLimited) != 0);
+    gauge_->setForce(core::toVec(sample.forceN).norm(), sample.timeS,
+                     simulator_.givesForce() && (sample.flags & messages::kForceLimited) != 0);
     tooth::TissueVolumes removed{};
     std::copy(sample.removedMm3.begin(), sample.removedMm3.end(), removed.begin());
     volumes_->setVolumes(removed);
@@ -424,11 +470,14 @@ void MainWindow::showTick() {
         replay_->setTime(now.timeS);
         replay_->setPlaying(now.playing);
     }
+    takeBackNotices(sample);
     parameters_->setCutting(status.inStroke ? ParameterBox::Cutting::stroke
                             : status.cut    ? ParameterBox::Cutting::begun
                                             : ParameterBox::Cutting::none);
-    if (sample.tick > 0 && sample.depthMm > -1.0) tellStep(WelcomeStrip::Step::hover);
-    if ((sample.flags & messages::kCutting) != 0) tellStep(WelcomeStrip::Step::cut);
+    if (simulator_.mode() == Simulator::Mode::sitting) {
+        if (sample.tick > 0 && sample.depthMm > -1.0) tellStep(WelcomeStrip::Step::hover);
+        if ((sample.flags & messages::kCutting) != 0) tellStep(WelcomeStrip::Step::cut);
+    }
 
     // The rate over a second of the clock, not of the loop.
     const qint64 nowNs =
@@ -465,7 +514,7 @@ void MainWindow::showTick() {
 void MainWindow::showReadouts() {
     if (!isVisible() || !simulator_.tooth()) return;
     const messages::HapticSample sample = view_->sample();
-    if (sample.tick == 0 || sample.depthMm < -0.05) {
+    if (sample.tick == 0 || sample.depthMm < -0.05 || !view_->permissions().allows(station::Operation::depthReadout)) {
         measure_->setDepth({});
         measure_->setLeftOverPulp({});
         return;
@@ -496,35 +545,33 @@ void MainWindow::showEnabled() {
     const Actions& a = *actions_;
     const station::SittingStatus& status = simulator_.status();
     const bool free = !simulator_.isBusy(), sitting = simulator_.mode() == Simulator::Mode::sitting,
-               open = sitting || simulator_.mode() == Simulator::Mode::replay;
+               open = simulator_.mode() != Simulator::Mode::empty;
     const bool may = sitting && !status.restoring && !status.inStroke;
     for (const char* name :
          {"actionOpenCase", "actionOpenStl", "actionOpenSession", "actionChooseTooth", "actionResume", "actionRecover"})
         a[name]->setEnabled(free);
     resolution_->setEnabled(free);
-    a["actionUndo"]->setEnabled(may && status.undoSteps > 0 && !simulator_.isLocked(QStringLiteral("undo")));
-    a["actionRedo"]->setEnabled(may && status.redoSteps > 0 && !simulator_.isLocked(QStringLiteral("undo")));
-    a["actionReset"]->setEnabled(may && status.cut && !simulator_.isLocked(QStringLiteral("reset")));
+    a["actionUndo"]->setEnabled(may && status.undoSteps > 0);
+    a["actionRedo"]->setEnabled(may && status.redoSteps > 0);
+    a["actionReset"]->setEnabled(may && status.cut);
     for (const char* name : {"actionSave", "actionSaveAs"})
         a[name]->setEnabled(free && sitting);
     for (const char* name : {"actionKeepRecording", "actionReplay"})
         a[name]->setEnabled(free && sitting && !simulator_.recording().empty());
-    a["actionReport"]->setEnabled(free && open);
-    for (const char* name : {"actionExportStl", "actionPicture", "actionMeasure", "actionMirror", "actionCompare",
-                             "actionFit", "actionGoToBur"})
+    if (simulator_.mode() == Simulator::Mode::review) a["actionReplay"]->setEnabled(free);
+    a["actionReport"]->setEnabled(free && open && simulator_.mode() != Simulator::Mode::review);
+    for (const char* name :
+         {"actionExportStl", "actionExportTissues", "actionPicture", "actionMeasure", "actionMirror", "actionCompare",
+          "actionFit", "actionGoToBur", "actionDepth", "actionPulp", "actionSection"})
         a[name]->setEnabled(open);
     a["actionPedal"]->setEnabled(sitting);
-    const bool depth = open && !simulator_.isLocked(QStringLiteral("depth"));
-    a["actionDepth"]->setEnabled(depth);
-    a["actionPulp"]->setEnabled(depth);
-    a["actionMeasure"]->setEnabled(depth);
-    a["actionSection"]->setEnabled(open && !simulator_.isLocked(QStringLiteral("cross-section")));
-    a["actionCompare"]->setEnabled(open && !simulator_.isLocked(QStringLiteral("transparency")));
+    exercise_->showAllowed();
 }
 
 void MainWindow::takeLook(const view::Look& look) {
     view_->setLook(look);
-    if (simulator_.toothCase()) volumes_->setLegend(view::legendOf(presentOf(*simulator_.toothCase()), look.palette));
+    if (simulator_.toothCase())
+        volumes_->setLegend(view::legendOf(presentOf(*simulator_.toothCase()), view_->shownLook().palette));
     const auto set = [this](const char* key, const QVariant& value) {
         settings_.set(QStringLiteral("look/") + QLatin1String(key), value);
     };

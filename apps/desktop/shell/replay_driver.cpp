@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
+
+#include "handpiece/base/core/any_error.h"
 
 namespace handpiece::desktop {
 
@@ -57,11 +60,16 @@ ReplayNow ReplayDriver::now() const {
     return now_;
 }
 
+std::optional<Problem> ReplayDriver::takeProblem() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(problem_, std::nullopt);
+}
+
 void ReplayDriver::publish() {
     const std::lock_guard lock(mutex_);
     now_.timeS = player_->timeS();
     now_.sample = player_->sample();
-    now_.bur = player_->station().settings.bur;
+    now_.settings = player_->station().settings;
     now_.seeking = seek_.has_value();
     if (now_.timeS >= durationS_ - 1e-6 && !seek_) now_.playing = false;
 }
@@ -109,12 +117,12 @@ void ReplayDriver::run() {
                 if (heard_) heard_(player_->sample(), stepS, player_->station());
             }
             publish();
-        } catch (const core::Error& error) {
+        } catch (const std::exception& error) {
             const std::lock_guard lock(mutex_);
             if (end_) return;
             if (seek_) continue;  // a newer wish came in between
             now_.playing = now_.seeking = false;
-            now_.problem = problemOf(error);
+            problem_ = problemOf(core::asError(error));
         }
     }
 }

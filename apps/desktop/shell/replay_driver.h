@@ -22,8 +22,7 @@ struct ReplayNow {
     double timeS = 0.0;
     bool playing = false, seeking = false;
     messages::HapticSample sample;
-    std::shared_ptr<const instrument::Bur> bur;
-    std::optional<Problem> problem;  ///< why it stopped
+    station::StationSettings settings;  ///< in force then
 };
 
 /// Any thread may ask; the player itself is touched by the driver's thread alone.
@@ -43,6 +42,8 @@ class ReplayDriver {
     /// The latest of several wins.
     void seek(double timeS);
     [[nodiscard]] ReplayNow now() const;
+    /// Why it stopped, once.
+    [[nodiscard]] std::optional<Problem> takeProblem();
 
     // What never changes while it plays.
     [[nodiscard]] double durationS() const noexcept { return durationS_; }
@@ -68,6 +69,7 @@ class ReplayDriver {
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     ReplayNow now_;
+    std::optional<Problem> problem_;
     double speed_ = 1.0;
     std::optional<double> seek_;
     bool end_ = false;

@@ -4,6 +4,7 @@
 #include <QCoreApplication>
 #include <QDateTime>
 #include <QFile>
+#include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
 #include <algorithm>
@@ -35,10 +36,14 @@ std::optional<SessionNote> readNote(const fs::path& session) {
     if (!file.open(QIODevice::ReadOnly)) return std::nullopt;
     const QJsonObject o = QJsonDocument::fromJson(file.readAll()).object();
     // A marker cut short by the crash itself still marks.
-    return SessionNote{
+    SessionNote note{
         o[QStringLiteral("case")].toString(),    o[QStringLiteral("title")].toString(),
         o[QStringLiteral("attempt")].toString(), o[QStringLiteral("unsaved")].toBool(true),
         o[QStringLiteral("starter")].toString(), static_cast<std::size_t>(o[QStringLiteral("faces")].toInteger())};
+    note.exercise = o[QStringLiteral("exercise")].toString();
+    for (const QJsonValue& name : o[QStringLiteral("recordings")].toArray())
+        note.recordings << name.toString();
+    return note;
 }
 
 void writeNote(const fs::path& session, const SessionNote& note) {
@@ -51,7 +56,10 @@ void writeNote(const fs::path& session, const SessionNote& note) {
         o[QStringLiteral("starter")] = note.starter;
         o[QStringLiteral("faces")] = static_cast<qint64>(note.faces);
     }
-    core::writeFile(beside(session, ".json"), QJsonDocument(o).toJson().toStdString());
+    if (!note.exercise.isEmpty()) o[QStringLiteral("exercise")] = note.exercise;
+    if (!note.recordings.isEmpty()) o[QStringLiteral("recordings")] = QJsonArray::fromStringList(note.recordings);
+    core::writeFile(beside(session, ".json"), QJsonDocument(o).toJson().toStdString(),
+                    {.ownerOnly = true, .lasting = false});
 }
 
 std::vector<fs::path> sessionsIn(const fs::path& folder) {
@@ -71,14 +79,24 @@ SessionShelf::SessionShelf(fs::path folder, Limits limits) : folder_(std::move(f
 
 fs::path SessionShelf::begin(const SessionNote& note) {
     end();
-    core::prepareOutputFolder(folder_);
+    core::prepareOutputFolder(folder_, true);
     const std::string time = QDateTime::currentDateTime().toString(QStringLiteral("yyyyMMdd-HHmmss-zzz")).toStdString();
-    current_ = folder_ / (time + "-" + std::to_string(QCoreApplication::applicationPid()) + ".h5");
-    lock_ = std::make_unique<QLockFile>(toQString(beside(current_, ".lock")));
-    lock_->setStaleLockTime(0);
-    if (!lock_->tryLock(0)) throw core::Error("the recording's place is taken", current_.string(), "start again");
+    take(folder_ / (time + "-" + std::to_string(QCoreApplication::applicationPid()) + ".h5"));
     writeNote(current_, note);
     return current_;
+}
+
+void SessionShelf::goOn(const fs::path& session) {
+    end();
+    take(session);
+}
+
+void SessionShelf::take(const fs::path& session) {
+    auto lock = std::make_unique<QLockFile>(toQString(beside(session, ".lock")));
+    lock->setStaleLockTime(0);
+    if (!lock->tryLock(0)) throw core::Error("the recording's place is taken", session.string(), "start again");
+    current_ = session;
+    lock_ = std::move(lock);
 }
 
 void SessionShelf::note(const SessionNote& note) {

@@ -5,6 +5,7 @@
 
 #include <QLockFile>
 #include <QString>
+#include <QStringList>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -21,6 +22,8 @@ struct SessionNote {
     bool unsaved = false;  ///< something was cut that no file holds
     QString starter = {};  ///< kind of a starter tooth; empty for others
     std::size_t faces = 0;
+    QString exercise = {};        ///< tooth::exerciseText(): what was locked stays locked
+    QStringList recordings = {};  ///< of the same attempt, before this one
 };
 
 /// A recording whose program ended without a word.
@@ -42,6 +45,9 @@ class SessionShelf {
     /// A name for the next recording, taken for this program until end(). Throws core::Error when the folder cannot be
     /// written.
     [[nodiscard]] std::filesystem::path begin(const SessionNote& note);
+    /// A recording that goes on is the one under way, with its marker as it is. Throws core::Error while another
+    /// program has it.
+    void goOn(const std::filesystem::path& session);
     /// What is known of the recording under way has changed.
     void note(const SessionNote& note);
     /// The recording is closed, and what it holds is saved or given up.
@@ -50,6 +56,7 @@ class SessionShelf {
     void leave();
     /// The recording under way; empty when there is none.
     [[nodiscard]] const std::filesystem::path& current() const noexcept { return current_; }
+    [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
 
     /// Recordings with unsaved work whose program is gone, the newest first. Empty ones count as none.
     [[nodiscard]] std::vector<Crashed> crashed() const;
@@ -59,6 +66,8 @@ class SessionShelf {
     std::size_t tidy();
 
   private:
+    void take(const std::filesystem::path& session);
+
     std::filesystem::path folder_;
     Limits limits_;
     std::filesystem::path current_;

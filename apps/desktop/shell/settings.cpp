@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/settings.h"
 
+#include <QDir>
 #include <QFile>
+#include <QFileInfo>
 #include <QRegularExpression>
 #include <QStandardPaths>
 #include <algorithm>
@@ -34,6 +36,16 @@ Folders Folders::standard() {
     };
     return {at(QStandardPaths::AppConfigLocation) / "handpiece.ini", at(QStandardPaths::AppDataLocation) / "sessions",
             at(QStandardPaths::CacheLocation) / "starter"};
+}
+
+QString workFolder() {
+    QString made;
+    for (const auto location : {QStandardPaths::DocumentsLocation, QStandardPaths::HomeLocation}) {
+        const QString folder = QStandardPaths::writableLocation(location);
+        if (QFileInfo(folder).isDir() && QFileInfo(folder).isWritable()) return folder;
+        if (made.isEmpty() && !folder.isEmpty()) made = folder;
+    }
+    return !made.isEmpty() && QDir().mkpath(made) ? made : QDir::tempPath();
 }
 
 Settings::Settings(const std::filesystem::path& file) {

@@ -19,6 +19,10 @@ struct Folders {
     [[nodiscard]] static Folders standard();
 };
 
+/// Where a person's own files are looked for and put until they choose: Documents where there is such a folder, else
+/// what there is and can be written.
+[[nodiscard]] QString workFolder();
+
 /// An ini file. A broken one is set aside and told of, never fatal. One thread: the window's.
 class Settings {
   public:

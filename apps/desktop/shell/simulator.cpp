@@ -3,25 +3,17 @@
 
 #include <algorithm>
 #include <atomic>
+#include <tuple>
 
 namespace handpiece::desktop {
 namespace {
 
 namespace fs = std::filesystem;
 constexpr int kPollMs = 33, kReplayPollMs = 16;
-constexpr double kStartAboveMm = 8.0;
 
-/// Over the middle of the crown, tip down.
-core::Pose poseAbove(const tooth::Case& toothCase) {
-    core::Box box = toothCase.outer.bounds();
-    if (toothCase.outer.vertices.empty())
-        for (const tooth::Part& part : toothCase.parts)
-            for (const core::Vec3& v : part.mesh.vertices)
-                box.extend(v);
-    core::Pose pose;
-    pose.positionMm = 0.5 * (box.min + box.max);
-    pose.positionMm.z() = box.max.z() + kStartAboveMm;
-    return pose;
+Hands::Options withFoot(Hands::Options options, const Foot& foot) {
+    options.foot = foot.value();
+    return options;
 }
 
 }  // namespace
@@ -46,7 +38,8 @@ struct Simulator::Ear {
 Simulator::Simulator(const Options& options, QObject* parent)
     : QObject(parent),
       options_(options),
-      hands_(options.hands),
+      foot_(options.pedals),
+      hands_(withFoot(options.hands, foot_)),
       shelf_(options.folders.sessions, options.shelf),
       voxelUm_(options.voxelUm) {
     const instrument::Instrument made = instrument::makeInstrument(burName_.toStdString());
@@ -69,25 +62,13 @@ Simulator::~Simulator() {
     stopAll();
 }
 
-QStringList Simulator::lockedHelps() const {
-    QStringList helps;
-    if (mode_ == Mode::sitting && toothCase_ && toothCase_->exercise)
-        for (const std::string& help : toothCase_->exercise->lockedHelps)
-            helps << QString::fromStdString(help);
-    return helps;
-}
-
-QStringList Simulator::allowedBurs() const {
-    QStringList burs;
-    if (mode_ == Mode::sitting && toothCase_ && toothCase_->exercise)
-        for (const std::string& bur : toothCase_->exercise->allowedBurs)
-            burs << QString::fromStdString(bur);
-    return burs;
-}
-
 SessionNote Simulator::noteNow() const {
     SessionNote note{toQString(document_.caseFile), QString::fromStdString(document_.name),
                      toQString(document_.attemptFile), unsaved_};
+    if (toothCase_ && toothCase_->exercise)
+        note.exercise = QString::fromStdString(tooth::exerciseText(*toothCase_->exercise));
+    for (const RecordingPlace& recording : document_.recordings)
+        note.recordings << QString::fromStdString(recording.name);
     if (document_.starter) {
         const std::string_view name = starter::infoOf(document_.starter->kind).name;
         note.starter = QString::fromUtf8(name.data(), static_cast<qsizetype>(name.size()));
@@ -113,7 +94,6 @@ void Simulator::sit(LoadedTooth loaded) {
     status_ = {};
     savedMm3_ = loaded.state.removedMm3;
     unsaved_ = false;
-    startPose_ = poseAbove(*toothCase_);
 
     station::SittingSettings sitting;
     sitting.code = loaded.code.empty() ? code_.toStdString() : loaded.code;
@@ -121,12 +101,18 @@ void Simulator::sit(LoadedTooth loaded) {
     sitting.elapsedS = elapsedS_ = loaded.elapsedS;
     sitting.history = std::move(loaded.history);
     sitting.realTime = options_.realTime;
-    const std::vector<std::string> locked =
-        toothCase_->exercise ? toothCase_->exercise->lockedHelps : std::vector<std::string>();
-    sitting.lowerButtonUndoes = std::find(locked.begin(), locked.end(), "undo") == locked.end();
+    const tooth::Exercise* exercise = toothCase_->exercise ? &*toothCase_->exercise : nullptr;
+    sitting.lowerButtonUndoes =
+        station::permissionsOf(exercise, station::WorkMode::work).allows(station::Operation::undo);
     if (options_.record) {
         try {
-            sitting.sessionFile = shelf_.begin(noteNow());
+            if (loaded.recording.empty()) {
+                sitting.sessionFile = shelf_.begin(noteNow());
+            } else {
+                shelf_.goOn(loaded.recording);
+                sitting.sessionFile = loaded.recording;
+                sitting.session = loaded.session;
+            }
         } catch (const core::Error& error) {
             emit noticed(QStringLiteral("recording-stopped"), {problemOf(error).what});
         }
@@ -144,12 +130,20 @@ void Simulator::sit(LoadedTooth loaded) {
         sitting_ = make();
     } catch (const core::Error& error) {
         if (sitting.sessionFile.empty()) throw;
-        // Better to work without a record than not at all.
+        // Better to work without a record than not at all. What one that was to go on holds stays marked.
         sitting.sessionFile.clear();
-        shelf_.end();
+        if (sitting.session == station::SittingSettings::Session::anew) {
+            shelf_.end();
+        } else {
+            shelf_.leave();
+        }
         emit noticed(QStringLiteral("recording-stopped"), {problemOf(error).what});
         sitting_ = make();
     }
+    // A recording that goes on is the one under way, not one of those before it.
+    std::erase_if(document_.recordings, [current = shelf_.current().filename().string()](const RecordingPlace& place) {
+        return !place.packed && place.name == current;
+    });
     pictureFeed_ = sitting_->subscribe();
     pollFeed_ = sitting_->subscribe();
     if (player_) {
@@ -165,6 +159,8 @@ void Simulator::sit(LoadedTooth loaded) {
     emit unsavedChanged(false);
     if (!loaded.missingBur.empty())
         emit noticed(QStringLiteral("bur-missing"), {QString::fromStdString(loaded.missingBur), burName_});
+    if (!loaded.lockedBur.empty())
+        emit noticed(QStringLiteral("bur-locked"), {QString::fromStdString(loaded.lockedBur)});
 }
 
 ReplayDriver::Heard Simulator::replayEar() {
@@ -183,15 +179,26 @@ void Simulator::watch(std::unique_ptr<ReplayDriver> driver) {
     replay_ = std::move(driver);
     toothCase_ = std::make_shared<const tooth::Case>(replay_->toothCase());
     tooth_ = replay_->tooth();
-    const device::Capability capability = settings_.capability;
-    settings_ = replay_->firstSettings();
-    settings_.capability = capability;
+    takeReplayed(replay_->firstSettings());
     mode_ = Mode::replay;
     sample_ = replay_->now().sample;
     status_ = {};
     timer_.start(kReplayPollMs);
     emit documentChanged();
     emit plotted(replay_->plot());
+}
+
+/// What the recorded hand had, beside the device that is here.
+void Simulator::takeReplayed(const station::StationSettings& settings) {
+    const device::Capability capability = settings_.capability;
+    settings_ = settings;
+    settings_.capability = capability;
+    burName_ = QString::fromStdString(settings_.bur->name());
+    hull_ = settings_.hull;
+    const auto& known = instrument::drives();
+    if (std::none_of(known.begin(), known.end(), [&](const auto& d) { return d.name == settings_.drive.name; })) return;
+    driveName_ = QString::fromStdString(settings_.drive.name);
+    speedRpm_ = settings_.drive.freeSpeedRpm;
 }
 
 void Simulator::stopSitting(bool keepMarker) {
@@ -220,6 +227,7 @@ void Simulator::stopAll() {
     // A tooth that waits behind a replay: what nobody saved of it is offered again at the next start.
     if (leftFor_ && !leftFor_->file.note.unsaved) shelf_.settle(leftFor_->file.session);
     leftFor_.reset();
+    reviewed_.reset();
     stopSitting(false);
 }
 
@@ -240,14 +248,18 @@ void Simulator::poll() {
     if (replay_) {
         ReplayNow now = replay_->now();
         sample_ = now.sample;
-        if (now.bur && now.bur != settings_.bur) {
-            settings_.bur = now.bur;
-            burName_ = QString::fromStdString(now.bur->name());
+        const auto shown = [](const station::StationSettings& s) {
+            const force::Parameters& p = s.parameters;
+            return std::tuple(s.bur, s.hull, s.drive.name, s.drive.freeSpeedRpm, p.mode, p.stiffnessMultiplier,
+                              p.dampingMultiplier, p.frictionMultiplier, p.transients.on, p.vibration.on);
+        };
+        if (shown(now.settings) != shown(settings_)) {
+            takeReplayed(now.settings);
             emit settingsChanged();
         }
-        if (now.problem) {
+        if (const std::optional<Problem> problem = replay_->takeProblem()) {
             replay_->play(false);
-            emit failed(*now.problem);
+            emit failed(*problem);
         }
         emit ticked();
         return;
@@ -263,6 +275,8 @@ void Simulator::poll() {
     for (const station::Notice& notice : sitting_->takeNotices()) {
         // Hands says which, and what to do.
         if (notice.id == "device-fault" && usedHand_) continue;
+        // Nobody holds a mouse's force: that it ends somewhere is no news.
+        if (notice.id == "force-limited" && !givesForce()) continue;
         QStringList arguments;
         for (const std::string& a : notice.arguments)
             arguments << QString::fromStdString(a);
@@ -292,15 +306,15 @@ bool Simulator::mayWork() {
 }
 
 void Simulator::undo() {
-    if (mayWork() && !isLocked(QStringLiteral("undo"))) sitting_->undo();
+    if (mayWork() && may(station::Operation::undo)) sitting_->undo();
 }
 
 void Simulator::redo() {
-    if (mayWork() && !isLocked(QStringLiteral("undo"))) sitting_->redo();
+    if (mayWork() && may(station::Operation::redo)) sitting_->redo();
 }
 
 void Simulator::reset() {
-    if (mayWork() && !isLocked(QStringLiteral("reset"))) sitting_->reset();
+    if (mayWork() && may(station::Operation::reset)) sitting_->reset();
 }
 
 void Simulator::tellDrill() {
@@ -311,9 +325,8 @@ void Simulator::tellDrill() {
 }
 
 void Simulator::setBur(const QString& nameOrFile) {
-    if (mode_ == Mode::replay) return;
-    const QStringList allowed = allowedBurs();
-    if (!allowed.isEmpty() && !allowed.contains(nameOrFile)) {
+    if (mode_ == Mode::replay || mode_ == Mode::review) return;
+    if (!permissions().allowsBur(nameOrFile.toStdString())) {
         emit noticed(QStringLiteral("bur-locked"), {nameOrFile});
         emit settingsChanged();
         return;
@@ -332,7 +345,7 @@ void Simulator::setBur(const QString& nameOrFile) {
 }
 
 void Simulator::setDrive(const QString& name) {
-    if (mode_ == Mode::replay || name == driveName_) return;
+    if (mode_ == Mode::replay || mode_ == Mode::review || name == driveName_) return;
     try {
         settings_.drive = driveAt(name.toStdString(), 0.0);
     } catch (const core::Error& error) {
@@ -347,7 +360,7 @@ void Simulator::setDrive(const QString& name) {
 }
 
 void Simulator::setSpeed(double rpm) {
-    if (mode_ == Mode::replay) return;
+    if (mode_ == Mode::replay || mode_ == Mode::review) return;
     settings_.drive = driveAt(driveName_.toStdString(), rpm);
     speedRpm_ = settings_.drive.freeSpeedRpm;
     if (mayWork()) sitting_->setDrive(settings_.drive);
@@ -355,7 +368,7 @@ void Simulator::setSpeed(double rpm) {
 }
 
 void Simulator::setMultipliers(double stiffness, double damping, double friction) {
-    if (mode_ == Mode::replay) return;
+    if (mode_ == Mode::replay || mode_ == Mode::review) return;
     force::Parameters wanted = settings_.parameters;
     wanted.stiffnessMultiplier = stiffness;
     wanted.dampingMultiplier = damping;
@@ -378,6 +391,13 @@ void Simulator::setHullMethod(bool hull) {
         hull_ = hull;
         sitting_->setHullMethod(hull);
     }
+    emit settingsChanged();
+}
+
+void Simulator::setForceMode(force::Mode mode) {
+    if (mode_ == Mode::replay || mode == settings_.parameters.mode) return;
+    settings_.parameters.mode = mode;
+    if (mayWork()) sitting_->setParameters(settings_.parameters);
     emit settingsChanged();
 }
 

@@ -13,15 +13,18 @@
 #include <optional>
 #include <vector>
 
+#include "handpiece/senses/measure/pulp_light.h"
 #include "handpiece/senses/sound/player.h"
 #include "handpiece/tick/device/pointer_device.h"
 #include "shell/documents.h"
+#include "shell/foot.h"
 #include "shell/hand.h"
 #include "shell/job.h"
 #include "shell/problem.h"
 #include "shell/replay_driver.h"
 #include "shell/session_shelf.h"
 #include "shell/settings.h"
+#include "station/permissions.h"
 #include "station/sitting.h"
 
 namespace handpiece::desktop {
@@ -31,7 +34,8 @@ namespace handpiece::desktop {
 class Simulator : public QObject {
     Q_OBJECT
   public:
-    enum class Mode { empty, sitting, replay };
+    /// Review: a tooth that was handed in is looked at, not worked at.
+    enum class Mode { empty, sitting, replay, review };
     struct Options {
         Folders folders = Folders::standard();
         SessionShelf::Limits shelf;
@@ -39,10 +43,15 @@ class Simulator : public QObject {
         bool sound = true, realTime = true, record = true;
         double rateHz = 1000.0;  ///< of the tick, of teeth that are opened; a session has its own
         int voxelUm = 50;
+        measure::PulpLimits pulpLimits;
         Hands::Options hands;
+        PedalDesk pedals;
     };
     explicit Simulator(const Options& options, QObject* parent = nullptr);
     ~Simulator() override;
+
+    /// Of the lamps that tell what is left over the pulp: the teacher's.
+    [[nodiscard]] const measure::PulpLimits& pulpLimits() const noexcept { return options_.pulpLimits; }
 
     // What is open.
 
@@ -57,6 +66,7 @@ class Simulator : public QObject {
     [[nodiscard]] const std::shared_ptr<device::PointerMailbox>& mailbox() const noexcept { return mailbox_; }
     [[nodiscard]] const core::Pose& startPose() const noexcept { return startPose_; }
     [[nodiscard]] std::shared_ptr<const instrument::Bur> bur() const noexcept { return settings_.bur; }
+    [[nodiscard]] const std::string& burAbility() const noexcept { return settings_.ability.name; }
     [[nodiscard]] const QString& burName() const noexcept { return burName_; }
     [[nodiscard]] const QString& driveName() const noexcept { return driveName_; }
     [[nodiscard]] double setSpeedRpm() const noexcept { return speedRpm_; }
@@ -69,10 +79,10 @@ class Simulator : public QObject {
     [[nodiscard]] const messages::HapticSample& sample() const noexcept { return sample_; }
     /// Of the sitting; of the last one when there is none.
     [[nodiscard]] const station::SittingStatus& status() const noexcept { return status_; }
-    /// Helps the exercise locks; burs it allows (empty: all).
-    [[nodiscard]] QStringList lockedHelps() const;
-    [[nodiscard]] QStringList allowedBurs() const;
-    [[nodiscard]] bool isLocked(const QString& help) const { return lockedHelps().contains(help); }
+    /// Of the tooth that is open, or that a replay covers; null without one.
+    [[nodiscard]] const tooth::Exercise* exercise() const;
+    /// What may be done now: whoever does it asks here.
+    [[nodiscard]] station::Permissions permissions() const;
     /// Something was cut, or put back, that no file holds.
     [[nodiscard]] bool isUnsaved() const noexcept { return unsaved_; }
     [[nodiscard]] bool isBusy() const noexcept { return job_ != nullptr; }
@@ -104,7 +114,18 @@ class Simulator : public QObject {
     [[nodiscard]] const std::filesystem::path& recording() const noexcept { return shelf_.current(); }
     /// To `path` (.handpiece, or a folder); `then` runs once it is saved.
     void saveAs(const std::filesystem::path& path, std::function<void()> then = {});
+    /// Saves it as one file for a teacher, with its tooth and its recordings; the work goes on at the same tooth.
+    void handIn(const std::filesystem::path& path);
+    /// Opens an attempt to be looked at: nothing is locked, nothing changes it.
+    void review(const std::filesystem::path& attempt);
+    [[nodiscard]] bool isReviewing() const noexcept { return reviewed_ != nullptr; }
+    /// What is reviewed, also while one of its recordings is watched. Only while isReviewing().
+    [[nodiscard]] const Document& reviewed() const;
+    /// One of document().recordings of a review, by its place; closeReplay() leads back.
+    void watchRecording(std::size_t which);
     void exportStl(const std::filesystem::path& path);
+    /// What is left of each tissue, a closed STL each, into a folder.
+    void exportTissues(const std::filesystem::path& folder);
     /// A page to print about the recording under way, or the one that is replayed.
     void writeReport(const std::filesystem::path& file);
     /// A copy of the recording under way, as far as it has come.
@@ -116,8 +137,12 @@ class Simulator : public QObject {
 
     [[nodiscard]] Hands& hands() noexcept { return hands_; }
     [[nodiscard]] const Hands& hands() const noexcept { return hands_; }
+    /// The foot pedal, beside the mouse or a device.
+    [[nodiscard]] Foot& foot() noexcept { return foot_; }
     /// The device of the sitting under way; null: the mouse.
     [[nodiscard]] const std::shared_ptr<Hand>& usedHand() const noexcept { return usedHand_; }
+    /// Whether a person's hand feels what the tooth gives back; a mouse, a SpaceMouse or a gamepad lets nobody.
+    [[nodiscard]] bool givesForce() const { return usedHand_ && usedHand_->info().pushes; }
     /// The mouse works on while something else has the device (its set-up, its check), until it is given back.
     void lendHand(bool away);
 
@@ -132,6 +157,8 @@ class Simulator : public QObject {
     void setSpeed(double rpm);
     void setMultipliers(double stiffness, double damping, double friction);
     void setHullMethod(bool hull);
+    /// The paper's penalty force instead of the proxy's.
+    void setForceMode(force::Mode mode);
     /// A knock at each touch; the hum of the bur. Both off where nothing can be felt anyway: the mouse.
     void setCrisp(bool contact, bool vibration);
     /// Cuts the tooth again with other voxels, by replaying what was recorded.
@@ -168,15 +195,22 @@ class Simulator : public QObject {
     void saved(const QString& file);
     void failed(const handpiece::desktop::Problem& problem);
     void jobStarted(const QString& title);
+    /// What of it is being done now.
+    void jobStepped(const QString& step);
+    /// While nothing is open: the tooth that comes, to be looked at.
+    void sketched(const std::shared_ptr<const handpiece::tooth::Case>& sketch);
     void jobProgressed(double fraction);
     void jobEnded();
     /// About 30 times a second: sample() and status() are new.
     void ticked();
     void plotted(const std::vector<handpiece::station::PlotPoint>& points);
     void noticed(const QString& id, const QStringList& arguments);
+    /// The exercise locks it.
+    void refused(handpiece::station::Operation operation);
 
   private:
     struct Ear;
+    struct Reviewed;
     /// A tooth put away, to come back to: all of it but what a worker makes anew.
     struct Left {
         Crashed file;  ///< its recording, should the program end before
@@ -189,9 +223,16 @@ class Simulator : public QObject {
     void start(const QString& title, Job::Work work, std::function<void()> done, std::function<void()> otherwise = {});
     void goOn();
     void load(LoadRequest request, const QString& title, std::function<void()> done = {});
-    void openSession(const std::filesystem::path& path);
+    [[nodiscard]] LoadListener loadListener();
+    [[nodiscard]] static QString stepText(LoadStep step);
+    void loadFor(LoadRequest request, const QString& title, std::function<void(LoadedTooth)> then);
+    void showReviewed();
+    [[nodiscard]] tooth::Attempt attemptNow(bool handedIn);
+    [[nodiscard]] bool may(station::Operation operation);
+    void openSession(const std::filesystem::path& path, bool keepsReview = false);
     void sit(LoadedTooth loaded);
     void watch(std::unique_ptr<ReplayDriver> driver);
+    void takeReplayed(const station::StationSettings& settings);
     void stopAll();
     [[nodiscard]] std::unique_ptr<device::Device> takeHandpiece();
     void passHandpiece();
@@ -205,6 +246,7 @@ class Simulator : public QObject {
     [[nodiscard]] ReplayDriver::Heard replayEar();
 
     Options options_;
+    Foot foot_;
     Hands hands_;
     std::shared_ptr<Hand> usedHand_;
     bool handLentAway_ = false, handChanged_ = false;
@@ -224,7 +266,8 @@ class Simulator : public QObject {
     int voxelUm_ = 50;
     messages::HapticSample sample_;
     station::SittingStatus status_;
-    std::shared_ptr<Left> leftFor_;    ///< what replayThis() left
+    std::shared_ptr<Left> leftFor_;  ///< what replayThis() left
+    std::shared_ptr<Reviewed> reviewed_;
     tooth::TissueVolumes savedMm3_{};  ///< removed when it was last saved or opened
     bool unsaved_ = false;
     sound::Mix mix_;
@@ -233,6 +276,7 @@ class Simulator : public QObject {
     std::unique_ptr<station::Sitting> sitting_;
     std::unique_ptr<ReplayDriver> replay_;
     std::unique_ptr<Job> job_, soundJob_;
+    int loads_ = 0;
     std::function<void()> waiting_;  ///< for job_ to end
     QTimer timer_;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who holds the handpiece: the mouse, or a device that was chosen.
+#include "handpiece/devices/safety/input_device.h"
 #include "shell/simulator.h"
+#include "station/pointer_hand.h"
 
 namespace handpiece::desktop {
 
@@ -20,13 +22,16 @@ core::Box boundsOf(const tooth::Case& toothCase) {
 std::unique_ptr<device::Device> Simulator::takeHandpiece() {
     handChanged_ = false;
     usedHand_ = hands_.current() && !handLentAway_ ? hands_.current() : nullptr;
+    const station::ToothPlace tooth{boundsOf(*toothCase_), toothCase_->fdiNumber, toothCase_->buccalSign};
+    startPose_ = station::startPose(tooth.box, tooth.fdiNumber, tooth.buccalSign);
     if (usedHand_) {
         mailbox_.reset();
-        usedHand_->placeFor({boundsOf(*toothCase_), toothCase_->fdiNumber, toothCase_->buccalSign});
+        usedHand_->placeFor(tooth);
         return std::make_unique<LentDevice>(usedHand_);
     }
     mailbox_ = std::make_shared<device::PointerMailbox>();
-    return std::make_unique<device::PointerDevice>(device::PointerHandSettings{}, mailbox_, startPose_);
+    return safety::withPedal(
+        std::make_unique<device::PointerDevice>(device::PointerHandSettings{}, mailbox_, startPose_), foot_.value());
 }
 
 /// The same tooth, as it is, in another hand: what was cut stays, with what can be undone.
@@ -43,7 +48,7 @@ void Simulator::passHandpiece() {
 }
 
 void Simulator::setCrisp(bool contact, bool vibration) {
-    if (mode_ == Mode::replay) return;
+    if (mode_ == Mode::replay || mode_ == Mode::review) return;
     settings_.parameters.transients.on = contact;
     settings_.parameters.vibration.on = vibration;
     if (mayWork()) sitting_->setParameters(settings_.parameters);

@@ -4,6 +4,7 @@
 #include "handpiece/model/tooth/attempt.h"
 #include "shell/simulator.h"
 #include "station/session_report.h"
+#include "station/tissue_export.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -73,6 +74,7 @@ void Simulator::goOn() {
 LoadRequest Simulator::request() const {
     LoadRequest request;
     request.starterFolder = options_.folders.starters;
+    request.sessionFolder = options_.folders.sessions;
     request.bur = burName_.toStdString();
     request.drive = driveName_.toStdString();
     request.speedRpm = speedRpm_;
@@ -85,14 +87,60 @@ LoadRequest Simulator::request() const {
 }
 
 void Simulator::load(LoadRequest request, const QString& title, std::function<void()> done) {
+    loadFor(std::move(request), title, [this, done = std::move(done)](LoadedTooth loaded) {
+        sit(std::move(loaded));
+        if (done) done();
+    });
+}
+
+void Simulator::loadFor(LoadRequest request, const QString& title, std::function<void(LoadedTooth)> then) {
     if (job_) return;
     const auto loaded = std::make_shared<LoadedTooth>();
     start(
-        title, [loaded, request](const core::Progress& progress) { *loaded = loadTooth(request, progress); },
-        [this, loaded, done = std::move(done)] {
-            sit(std::move(*loaded));
-            if (done) done();
+        title,
+        [loaded, request, listener = loadListener()](const core::Progress& progress) {
+            *loaded = loadTooth(request, progress, listener);
+        },
+        [loaded, then = std::move(then)] { then(std::move(*loaded)); });
+}
+
+/// Called on the job's thread; what it says is told on the window's, while that job still runs.
+LoadListener Simulator::loadListener() {
+    const int job = ++loads_;
+    const auto tell = [this, job](std::function<void()> what) {
+        QMetaObject::invokeMethod(
+            this,
+            [this, job, what = std::move(what)] {
+                if (job_ && job == loads_) what();
+            },
+            Qt::QueuedConnection);
+    };
+    LoadListener listener;
+    listener.step = [this, tell](LoadStep step) { tell([this, step] { emit jobStepped(stepText(step)); }); };
+    listener.sketch = [this, tell](std::shared_ptr<const tooth::Case> sketch) {
+        tell([this, sketch = std::move(sketch)] {
+            if (mode_ == Mode::empty) emit sketched(sketch);
         });
+    };
+    return listener;
+}
+
+QString Simulator::stepText(LoadStep step) {
+    switch (step) {
+        case LoadStep::reading:
+            return tr("reading");
+        case LoadStep::recovering:
+            return tr("cutting again what was recorded");
+        case LoadStep::shaping:
+            return tr("shaping it (the first time only)");
+        case LoadStep::distances:
+            return tr("measuring distances");
+        case LoadStep::tissues:
+            return tr("laying out its tissues");
+        case LoadStep::surface:
+            return tr("drawing its surface");
+    }
+    return {};
 }
 
 void Simulator::openStarter(const Starter& starter) {
@@ -125,7 +173,7 @@ void Simulator::open(const fs::path& path) {
     load(std::move(wanted), tr("Opening %1").arg(toQString(path.filename())));
 }
 
-void Simulator::openSession(const fs::path& path) {
+void Simulator::openSession(const fs::path& path, bool keepsReview) {
     if (job_) return;
     const auto player = std::make_shared<std::unique_ptr<station::SessionPlayer>>();
     start(
@@ -133,10 +181,12 @@ void Simulator::openSession(const fs::path& path) {
         [player, path](const core::Progress& progress) {
             *player = std::make_unique<station::SessionPlayer>(path, true, progress);
         },
-        [this, player, path] {
+        [this, player, path, keepsReview] {
             std::shared_ptr<Left> left = std::move(leftFor_);
+            std::shared_ptr<Reviewed> reviewed = keepsReview ? reviewed_ : nullptr;
             stopAll();
             leftFor_ = std::move(left);
+            reviewed_ = std::move(reviewed);
             unsaved_ = false;
             document_ = {};
             document_.name = path.filename().string();
@@ -153,6 +203,8 @@ Simulator::Left Simulator::leaveSitting() {
     Left left{{shelf_.current(), noteNow()}, {}, history::History()};
     LoadedTooth& tooth = left.tooth;
     tooth.document = document_;
+    if (const fs::path& current = shelf_.current(); !current.empty())
+        tooth.document.recordings.push_back({current.filename().string(), current, false});
     tooth.toothCase = toothCase_;
     tooth.bur = burName_.toStdString();
     tooth.drive = driveName_.toStdString();
@@ -168,6 +220,8 @@ Simulator::Left Simulator::leaveSitting() {
     left.history = sitting_->history();
     // Only a recording that was closed is whole.
     stopSitting(true);
+    tooth.recording = left.file.session;
+    tooth.session = station::SittingSettings::Session::continued;
     return left;
 }
 
@@ -190,16 +244,21 @@ void Simulator::comeBack(const std::shared_ptr<Left>& left, std::function<void()
         });
 }
 
-/// What was brought back is in no file yet: the recording that begins now holds it, and says so.
+/// What was brought back is in no file yet: the recording under way holds it, and says so.
 void Simulator::takeOver(const Crashed& file) {
     if (file.note.unsaved) {
         savedMm3_ = {};
         markUnsaved(true);
     }
-    shelf_.settle(file.session);
+    if (file.session != shelf_.current()) shelf_.settle(file.session);
 }
 
 void Simulator::replayThis() {
+    if (mode_ == Mode::review) {
+        const std::vector<RecordingPlace>& all = reviewed().recordings;
+        for (std::size_t i = all.size(); i-- > 0;)
+            if (all[i].packed) return watchRecording(i);
+    }
     if (job_ || mode_ != Mode::sitting || shelf_.current().empty()) return;
     leftFor_ = std::make_shared<Left>(leaveSitting());
     openSession(leftFor_->file.session);
@@ -209,6 +268,9 @@ void Simulator::closeReplay(std::function<void()> then) {
     if (job_) return;
     if (leftFor_) {
         comeBack(leftFor_, std::move(then));
+    } else if (reviewed_) {
+        showReviewed();
+        if (then) then();
     } else {
         close();
     }
@@ -246,6 +308,15 @@ void Simulator::recover(const Crashed& crashed, std::function<void()> then) {
     wanted.recovered.attemptFile = toPath(crashed.note.attemptFile);
     wanted.recovered.name = crashed.note.title.toStdString();
     wanted.recovered.starter = starterOf(crashed.note);
+    for (const QString& name : crashed.note.recordings)
+        wanted.recovered.recordings.push_back({name.toStdString(), shelf_.folder() / name.toStdString(), false});
+    wanted.recovered.recordings.push_back({crashed.session.filename().string(), crashed.session, false});
+    try {
+        if (!crashed.note.exercise.isEmpty())
+            wanted.exercise = tooth::parseExercise(crashed.note.exercise.toStdString(), crashed.session.string());
+    } catch (const core::Error& error) {
+        emit failed(problemOf(error));  // the tooth comes back all the same
+    }
     load(std::move(wanted), tr("Bringing the tooth back"), [this, crashed, then = std::move(then)] {
         takeOver(crashed);
         if (then) then();
@@ -265,17 +336,21 @@ void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
         emit failed(problemById(QStringLiteral("case-vanished"), {toQString(document_.caseFile)}));
         return;
     }
-    const auto attempt = std::make_shared<tooth::Attempt>(sitting_->attempt(document_.caseFile));
-    if (!code_.isEmpty()) attempt->student = code_.toStdString();
+    const auto attempt = std::make_shared<tooth::Attempt>(attemptNow(false));
     const tooth::TissueVolumes removedMm3 = attempt->removedMm3;
     start(
         tr("Saving"),
-        [attempt, packed, path, toothCase = toothCase_](const core::Progress&) {
-            tooth::writeAttempt(*attempt, path, packed ? toothCase.get() : nullptr);
+        [attempt, packed, path, toothCase = toothCase_, recordings = document_.recordings](const core::Progress& p) {
+            // What came with the attempt goes on with it: it may lie in the very file that is replaced.
+            std::size_t leftOut = 0;
+            tooth::writeAttempt(*attempt, path, packed ? toothCase.get() : nullptr,
+                                recordingBytes(recordings, true, leftOut, p));
         },
         [this, path, removedMm3, vanished, then = std::move(then)] {
             document_.attemptFile = path;
             document_.name = path.stem().string();
+            for (RecordingPlace& recording : document_.recordings)
+                if (recording.packed) recording.in = path;
             savedMm3_ = removedMm3;
             markUnsaved(sample_.removedMm3 != savedMm3_, true);  // its place has changed in any case
             emit saved(toQString(path));
@@ -284,22 +359,53 @@ void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
         });
 }
 
+namespace {
+
+/// The tooth as it is on the way to a file.
+using Export = std::function<void(const std::shared_ptr<const tooth::CuttableTooth>& base, const tooth::CutState& state,
+                                  const core::Progress& progress)>;
+
+Job::Work exporting(const std::shared_ptr<station::LiveTooth>& tooth, const messages::HapticSample& sample, Export to) {
+    return [tooth, removedMm3 = sample.removedMm3, to = std::move(to)](const core::Progress& progress) {
+        const auto base = std::shared_ptr<const tooth::CuttableTooth>(tooth, &tooth->base());
+        to(base, tooth->state(removedMm3), progress);
+    };
+}
+
+}  // namespace
+
 void Simulator::exportStl(const fs::path& path) {
     if (job_) return;
     if (!tooth_) {
         emit failed(problemById(QStringLiteral("nothing-open")));
         return;
     }
-    start(
-        tr("Writing the STL file"),
-        [path, tooth = tooth_, removedMm3 = sample_.removedMm3](const core::Progress& progress) {
-            const auto base = std::shared_ptr<const tooth::CuttableTooth>(tooth, &tooth->base());
-            desktop::exportStl(base, tooth->state(removedMm3), path, progress);
-        },
-        [this, path] { emit saved(toQString(path)); });
+    start(tr("Writing the STL file"),
+          exporting(tooth_, sample_,
+                    [path](const auto& base, const auto& state, const auto& progress) {
+                        station::exportStl(base, state, path, progress);
+                    }),
+          [this, path] { emit saved(toQString(path)); });
+}
+
+void Simulator::exportTissues(const fs::path& folder) {
+    if (job_) return;
+    if (!tooth_) {
+        emit failed(problemById(QStringLiteral("nothing-open")));
+        return;
+    }
+    const auto last = std::make_shared<fs::path>(folder);
+    start(tr("Writing the tissues"),
+          exporting(tooth_, sample_,
+                    [folder, last](const auto& base, const auto& state, const auto& progress) {
+                        const auto files = station::exportTissues(base, state, folder, progress);
+                        if (!files.empty()) *last = files.front();
+                    }),
+          [this, last] { emit saved(toQString(*last)); });
 }
 
 void Simulator::writeReport(const fs::path& file) {
+    if (!may(station::Operation::report)) return;
     const fs::path session = mode_ == Mode::replay ? document_.caseFile : shelf_.current();
     if (job_ || session.empty()) {
         if (!job_) emit failed(problemById(QStringLiteral("no-recording")));
@@ -354,6 +460,8 @@ void Simulator::setVoxel(int um) {
             loaded->station = std::move(recut.station);
             loaded->station.settings.hull = false;
             loaded->station.settings.resumed = true;
+            loaded->recording.clear();  // in another field: it begins anew
+            loaded->session = station::SittingSettings::Session::anew;
             loaded->state = std::move(recut.state);
             loaded->history = station::keepHistory(recut.history, loaded->state, loaded->station);
             loaded->liveTooth = std::make_shared<station::LiveTooth>(loaded->station.tooth, loaded->state,

@@ -491,6 +491,42 @@
         <source>Look again which devices are connected</source>
         <translation>接続されているデバイスをもう一度探します</translation>
     </message>
+    <message>
+        <source>Export tissues...</source>
+        <translation>組織ごとに書き出す...</translation>
+    </message>
+    <message>
+        <source>Write what is left of each tissue as a closed STL surface of its own</source>
+        <translation>残っている組織を、それぞれ 1 つの閉じた STL 曲面として書き出します</translation>
+    </message>
+    <message>
+        <source>Hand in...</source>
+        <translation>提出...</translation>
+    </message>
+    <message>
+        <source>Give the attempt to your teacher: one file with the tooth and what was recorded</source>
+        <translation>課題の結果を先生に渡す: 歯と記録をひとつのファイルにまとめます</translation>
+    </message>
+    <message>
+        <source>Exercise</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>Show the exercise: its title and what to do</source>
+        <translation>課題の題名と指示を表示します</translation>
+    </message>
+    <message>
+        <source>Device by name or serial...</source>
+        <translation>名前またはシリアル番号で装置を選ぶ...</translation>
+    </message>
+    <message>
+        <source>Choose one of several equal devices</source>
+        <translation>同じ種類の装置が複数あるとき、そのひとつを選びます</translation>
+    </message>
+    <message>
+        <source>Locked by this exercise.</source>
+        <translation>この課題ではロックされています。</translation>
+    </message>
 </context>
 <context>
     <name>BurPicture</name>
@@ -589,6 +625,137 @@
     <message>
         <source>Steel</source>
         <translation>スチール</translation>
+    </message>
+</context>
+<context>
+    <name>Exercise</name>
+    <message>
+        <source>Undo, redo, reset</source>
+        <translation>元に戻す、やり直す、初期化</translation>
+    </message>
+    <message>
+        <source>Reset</source>
+        <translation>初期化</translation>
+    </message>
+    <message>
+        <source>Depths, calliper, depth stop</source>
+        <translation>深さ、ノギス、深さ制限</translation>
+    </message>
+    <message>
+        <source>Colours of the tissues, legend</source>
+        <translation>組織の色、凡例</translation>
+    </message>
+    <message>
+        <source>Section</source>
+        <translation>断面</translation>
+    </message>
+    <message>
+        <source>Hidden tissues, the tooth before, before and after</source>
+        <translation>組織の非表示、切削前の歯、前後の比較</translation>
+    </message>
+    <message>
+        <source>First steps, hints, depth stop (there is no other guide yet)</source>
+        <translation>最初の手順、ヒント、深さ制限（ほかのガイドはまだありません）</translation>
+    </message>
+    <message>
+        <source>Removed volumes, report (there is no score yet)</source>
+        <translation>切削量、レポート（採点はまだありません）</translation>
+    </message>
+    <message>
+        <source>Mouth mirror</source>
+        <translation>デンタルミラー</translation>
+    </message>
+    <message>
+        <source>Scale bar</source>
+        <translation>スケールバー</translation>
+    </message>
+    <message>
+        <source>Chart of the mouth</source>
+        <translation>歯列図</translation>
+    </message>
+    <message>
+        <source>Calliper</source>
+        <translation>ノギス</translation>
+    </message>
+    <message>
+        <source>Before and after</source>
+        <translation>前後の比較</translation>
+    </message>
+    <message>
+        <source>undo</source>
+        <translation>元に戻す</translation>
+    </message>
+    <message>
+        <source>redo</source>
+        <translation>やり直す</translation>
+    </message>
+    <message>
+        <source>reset</source>
+        <translation>初期化</translation>
+    </message>
+    <message>
+        <source>depth stop</source>
+        <translation>深さ制限</translation>
+    </message>
+    <message>
+        <source>depths</source>
+        <translation>深さ</translation>
+    </message>
+    <message>
+        <source>measuring a depth</source>
+        <translation>深さの測定</translation>
+    </message>
+    <message>
+        <source>measuring to the pulp</source>
+        <translation>歯髄までの測定</translation>
+    </message>
+    <message>
+        <source>calliper</source>
+        <translation>ノギス</translation>
+    </message>
+    <message>
+        <source>removed depth</source>
+        <translation>除去した深さ</translation>
+    </message>
+    <message>
+        <source>colours of the tissues</source>
+        <translation>組織の色</translation>
+    </message>
+    <message>
+        <source>section</source>
+        <translation>断面</translation>
+    </message>
+    <message>
+        <source>hidden tissues</source>
+        <translation>組織の非表示</translation>
+    </message>
+    <message>
+        <source>before and after</source>
+        <translation>前後の比較</translation>
+    </message>
+    <message>
+        <source>mouth mirror</source>
+        <translation>デンタルミラー</translation>
+    </message>
+    <message>
+        <source>scale bar</source>
+        <translation>スケールバー</translation>
+    </message>
+    <message>
+        <source>chart of the mouth</source>
+        <translation>歯列図</translation>
+    </message>
+    <message>
+        <source>hints</source>
+        <translation>ヒント</translation>
+    </message>
+    <message>
+        <source>removed volumes</source>
+        <translation>切削量</translation>
+    </message>
+    <message>
+        <source>report</source>
+        <translation>レポート</translation>
     </message>
 </context>
 <context>
@@ -900,18 +1067,6 @@
         <translation>5 分の 1 の速さ、細かい動き</translation>
     </message>
     <message>
-        <source>Hold and move: turn the view</source>
-        <translation>押しながら動かす：視点を回す</translation>
-    </message>
-    <message>
-        <source>Hold and move: shift the view</source>
-        <translation>押しながら動かす：視点をずらす</translation>
-    </message>
-    <message>
-        <source>Hold and move: tilt about the tip</source>
-        <translation>押しながら動かす：先端を軸に傾ける</translation>
-    </message>
-    <message>
         <source>Roll to the left</source>
         <translation>左に回す</translation>
     </message>
@@ -952,10 +1107,6 @@
         <translation>バーを軸方向に引く</translation>
     </message>
     <message>
-        <source>Hold: cut where the bur is</source>
-        <translation>押している間：その場で切削</translation>
-    </message>
-    <message>
         <source>Pedal stays down</source>
         <translation>ペダルを踏み続ける</translation>
     </message>
@@ -976,36 +1127,12 @@
         <translation>次のバー</translation>
     </message>
     <message>
-        <source>From above (occlusal)</source>
-        <translation>咬合面から</translation>
-    </message>
-    <message>
-        <source>From the cheek (buccal)</source>
-        <translation>頬側から</translation>
-    </message>
-    <message>
-        <source>From the tongue (lingual)</source>
-        <translation>舌側から</translation>
-    </message>
-    <message>
-        <source>From the front (mesial)</source>
-        <translation>近心から</translation>
-    </message>
-    <message>
-        <source>From the back (distal)</source>
-        <translation>遠心から</translation>
-    </message>
-    <message>
         <source>Oblique</source>
-        <translation>斜めから</translation>
+        <translation>斜め</translation>
     </message>
     <message>
         <source>Whole tooth</source>
         <translation>歯全体</translation>
-    </message>
-    <message>
-        <source>To the bur</source>
-        <translation>バーへ移動</translation>
     </message>
     <message>
         <source>Section</source>
@@ -1050,6 +1177,74 @@
     <message>
         <source>Distance, depth, pulp in turn</source>
         <translation>距離・深さ・歯髄を順に</translation>
+    </message>
+    <message>
+        <source>Hold, move or arrows: turn the view</source>
+        <translation>押しながら動かす・矢印：視点を回す</translation>
+    </message>
+    <message>
+        <source>Hold, move or arrows: shift the view</source>
+        <translation>押しながら動かす・矢印：視点をずらす</translation>
+    </message>
+    <message>
+        <source>Hold, move or arrows: tilt about the tip</source>
+        <translation>押しながら動かす・矢印：先端を軸に傾ける</translation>
+    </message>
+    <message>
+        <source>Nearer</source>
+        <translation>近づく</translation>
+    </message>
+    <message>
+        <source>Farther</source>
+        <translation>遠ざかる</translation>
+    </message>
+    <message>
+        <source>Hold: cut where the bur is; or pick</source>
+        <translation>押している間：その場で切削・点を選ぶ</translation>
+    </message>
+    <message>
+        <source>Hold: touch where the bur is</source>
+        <translation>押している間：その場で触れる</translation>
+    </message>
+    <message>
+        <source>More load</source>
+        <translation>荷重を増やす</translation>
+    </message>
+    <message>
+        <source>Less load</source>
+        <translation>荷重を減らす</translation>
+    </message>
+    <message>
+        <source>Depth stop on, deeper</source>
+        <translation>深さ制限を入れる、深く</translation>
+    </message>
+    <message>
+        <source>Depth stop shallower, off</source>
+        <translation>深さ制限を浅く、切る</translation>
+    </message>
+    <message>
+        <source>Occlusal</source>
+        <translation>咬合面</translation>
+    </message>
+    <message>
+        <source>Buccal</source>
+        <translation>頬側</translation>
+    </message>
+    <message>
+        <source>Lingual</source>
+        <translation>舌側</translation>
+    </message>
+    <message>
+        <source>Mesial</source>
+        <translation>近心</translation>
+    </message>
+    <message>
+        <source>Distal</source>
+        <translation>遠心</translation>
+    </message>
+    <message>
+        <source>Go to the bur</source>
+        <translation>バーへ移動</translation>
     </message>
 </context>
 <context>
@@ -1121,6 +1316,45 @@
     <message>
         <source>Restoration</source>
         <translation>修復物</translation>
+    </message>
+</context>
+<context>
+    <name>MendDialog</name>
+    <message>
+        <source>Holes closed: %1, with %2 mm² of new surface.</source>
+        <translation>閉じた穴：%1、新しい面 %2 mm²。</translation>
+    </message>
+    <message>
+        <source>Faces turned to face outwards: %1.</source>
+        <translation>外向きに直した面：%1。</translation>
+    </message>
+    <message>
+        <source>Edges of more than two faces cut apart: %1.</source>
+        <translation>切り離した、3 面以上が接する辺：%1。</translation>
+    </message>
+    <message>
+        <source>Loose pieces left out: %1, with %2 faces.</source>
+        <translation>除いた離れた部分：%1、面 %2。</translation>
+    </message>
+    <message>
+        <source>Faces left out that were flat, double or hung loose: %1.</source>
+        <translation>除いた面（つぶれた・重複・浮いた）：%1。</translation>
+    </message>
+    <message>
+        <source>Faces replaced where the surface crossed itself: %1.</source>
+        <translation>交差していて置き換えた面：%1。</translation>
+    </message>
+    <message>
+        <source>Nothing had to be changed but where vertices meet.</source>
+        <translation>頂点の結合のほかに変更はありません。</translation>
+    </message>
+    <message>
+        <source>Surface before %1 mm², after %2 mm².</source>
+        <translation>表面積：前 %1 mm²、後 %2 mm²。</translation>
+    </message>
+    <message>
+        <source>Pairs of faces that still cross: %1. It may be refused again.</source>
+        <translation>まだ交差する面の組：%1。再び開けないことがあります。</translation>
     </message>
 </context>
 <context>
@@ -1199,10 +1433,6 @@
     <message>
         <source>This session is not being recorded: %1</source>
         <translation>この実習は記録されていません：%1</translation>
-    </message>
-    <message>
-        <source>The pulp is open.</source>
-        <translation>露髄しました。</translation>
     </message>
     <message>
         <source>The device gives all the force it has.</source>
@@ -1316,6 +1546,30 @@
         <source>The device gives no force. %1 %2</source>
         <translation>デバイスは力を出していません。%1%2</translation>
     </message>
+    <message>
+        <source>The pulp is exposed.</source>
+        <translation>露髄しました。</translation>
+    </message>
+    <message>
+        <source>%1 %2 The button alone is the pedal.</source>
+        <translation>%1 %2 ボタンだけがペダルになります。</translation>
+    </message>
+    <message>
+        <source>The foot pedal %1 was unplugged: it is up. Plugged in again, it counts once it has been up.</source>
+        <translation>フットペダル %1 が抜かれました。ペダルは上がっているものとします。つなぎ直すと、一度上げてから有効になります。</translation>
+    </message>
+    <message>
+        <source>Not in this exercise: %1.</source>
+        <translation>この課題では使えません: %1。</translation>
+    </message>
+    <message>
+        <source>Handed in: %1, with its tooth. Recordings in it: %2 (%3 MB).</source>
+        <translation>提出しました: %1（歯を含む）。含まれる記録: %2（%3 MB）。</translation>
+    </message>
+    <message>
+        <source>Handed in: %1, with its tooth. Recordings in it: %2 (%3 MB). Recordings that are no longer there, or too large together, and not in it: %4.</source>
+        <translation>提出しました: %1（歯を含む）。含まれる記録: %2（%3 MB）。もう存在しないか、合計が大きすぎて含まれない記録: %4。</translation>
+    </message>
 </context>
 <context>
     <name>Overlay</name>
@@ -1381,6 +1635,33 @@
     </message>
 </context>
 <context>
+    <name>Press</name>
+    <message>
+        <source>Not pressed</source>
+        <translation>押していません</translation>
+    </message>
+    <message>
+        <source>Very light</source>
+        <translation>とても軽い</translation>
+    </message>
+    <message>
+        <source>Light</source>
+        <translation>軽い</translation>
+    </message>
+    <message>
+        <source>As usual</source>
+        <translation>普通</translation>
+    </message>
+    <message>
+        <source>Firm</source>
+        <translation>やや強い</translation>
+    </message>
+    <message>
+        <source>Hard</source>
+        <translation>強い</translation>
+    </message>
+</context>
+<context>
     <name>Problem</name>
     <message>
         <source>There is no such file.</source>
@@ -1393,6 +1674,14 @@
     <message>
         <source>This is a folder, not a file.</source>
         <translation>これはファイルではなくフォルダーです。</translation>
+    </message>
+    <message>
+        <source>This is a device or a pipe, not a plain file.</source>
+        <translation>これは通常のファイルではなく、デバイスまたはパイプです。</translation>
+    </message>
+    <message>
+        <source>Choose a file.</source>
+        <translation>ファイルを選んでください。</translation>
     </message>
     <message>
         <source>Choose a file inside it.</source>
@@ -2115,6 +2404,14 @@
         <translation>Haply Hubでbasis、mount、workspaceを元に戻してください。</translation>
     </message>
     <message>
+        <source>Haply&apos;s service at %1 is not on this machine.</source>
+        <translation>%1 のHaplyのサービスは、このコンピューターのものではありません。</translation>
+    </message>
+    <message>
+        <source>Set HANDPIECE_HAPLY_REMOTE=1 if forces may cross the network.</source>
+        <translation>力をネットワーク越しに送ってよい場合は、HANDPIECE_HAPLY_REMOTE=1 を設定してください。</translation>
+    </message>
+    <message>
         <source>A device that pushes was to be used as an input.</source>
         <translation>力を出すデバイスが入力専用として使われようとしました。</translation>
     </message>
@@ -2198,20 +2495,20 @@
         <source>Check which port the service uses.</source>
         <translation>サービスが使うポートを確かめてください。</translation>
     </message>
+    <message>
+        <source>Mend it here, or with: handpiece mesh repair FILE MENDED.stl</source>
+        <translation>ここで修復するか、次を実行してください：handpiece mesh repair FILE MENDED.stl</translation>
+    </message>
 </context>
 <context>
     <name>Pulp</name>
     <message>
-        <source>Enough is left</source>
-        <translation>十分に残っています</translation>
+        <source>%1 mm or more</source>
+        <translation>%1 mm 以上</translation>
     </message>
     <message>
-        <source>Little is left</source>
-        <translation>残りわずかです</translation>
-    </message>
-    <message>
-        <source>Too little is left</source>
-        <translation>残りが少なすぎます</translation>
+        <source>Under %1 mm</source>
+        <translation>%1 mm 未満</translation>
     </message>
 </context>
 <context>
@@ -2734,6 +3031,92 @@
     </message>
 </context>
 <context>
+    <name>handpiece::desktop::ExerciseFeature</name>
+    <message>
+        <source>Handed in</source>
+        <translation>提出済み</translation>
+    </message>
+    <message>
+        <source>This attempt was handed in.</source>
+        <translation>これは提出された課題の結果です。</translation>
+    </message>
+    <message>
+        <source>This attempt was handed in by %1.</source>
+        <translation>これは %1 が提出した課題の結果です。</translation>
+    </message>
+    <message>
+        <source>Look at it with every help: measure, cut it open, watch what was recorded. Or go on cutting where it ended, as the exercise has it.</source>
+        <translation>すべての機能を使って見る: 測定し、断面を開き、記録を再生します。または、課題の条件のまま、終わったところから切削を続けます。</translation>
+    </message>
+    <message>
+        <source>Look at it</source>
+        <translation>見る</translation>
+    </message>
+    <message>
+        <source>Go on with it</source>
+        <translation>続ける</translation>
+    </message>
+    <message>
+        <source>Hand in</source>
+        <translation>提出</translation>
+    </message>
+    <message>
+        <source>Whose work is it? Your code, given by your teacher: no name. It is asked once; change it with File, Your code.</source>
+        <translation>誰の結果ですか。先生から渡されたコードを入力してください（名前は不要です）。尋ねるのは一度だけで、「ファイル」の「受講者コード」で変更できます。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ExercisePanel</name>
+    <message>
+        <source>Exercise</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>Title of the exercise</source>
+        <translation>課題の題名</translation>
+    </message>
+    <message>
+        <source>What to do</source>
+        <translation>指示</translation>
+    </message>
+    <message>
+        <source>Go on with it</source>
+        <translation>続ける</translation>
+    </message>
+    <message>
+        <source>Cut on where it ended; what the exercise locks is locked then</source>
+        <translation>終わったところから切削を続けます。課題のロックが有効になります</translation>
+    </message>
+    <message>
+        <source>Without a title</source>
+        <translation>題名なし</translation>
+    </message>
+    <message>
+        <source>Not in this exercise: %1</source>
+        <translation>この課題では使えないもの: %1</translation>
+    </message>
+    <message>
+        <source>Handed in without a code. You look at it: nothing is locked.</source>
+        <translation>コードなしで提出されました。閲覧中: ロックはありません。</translation>
+    </message>
+    <message>
+        <source>Handed in by %1. You look at it: nothing is locked.</source>
+        <translation>%1 が提出しました。閲覧中: ロックはありません。</translation>
+    </message>
+    <message>
+        <source>Watch recording %1</source>
+        <translation>記録 %1 を再生</translation>
+    </message>
+    <message>
+        <source>Play what was done; closing it leads back here</source>
+        <translation>行ったことを再生します。閉じるとここに戻ります</translation>
+    </message>
+    <message>
+        <source>Recordings that did not come with it: %1</source>
+        <translation>含まれていない記録: %1</translation>
+    </message>
+</context>
+<context>
     <name>handpiece::desktop::FdiPicker</name>
     <message>
         <source>FDI number of the tooth</source>
@@ -3029,18 +3412,6 @@
         <translation>N</translation>
     </message>
     <message>
-        <source>Gentle</source>
-        <translation>軽い</translation>
-    </message>
-    <message>
-        <source>Firm</source>
-        <translation>強い</translation>
-    </message>
-    <message>
-        <source>Too hard</source>
-        <translation>強すぎます</translation>
-    </message>
-    <message>
         <source>At the limit</source>
         <translation>限界です</translation>
     </message>
@@ -3059,6 +3430,10 @@
     <message>
         <source>limit %1</source>
         <translation>限界 %1</translation>
+    </message>
+    <message>
+        <source>More than the device gives</source>
+        <translation>装置の限界</translation>
     </message>
 </context>
 <context>
@@ -3864,6 +4239,52 @@
         <source>being opened</source>
         <translation>開いています</translation>
     </message>
+    <message>
+        <source>Mend...</source>
+        <translation>修復...</translation>
+    </message>
+    <message>
+        <source>Close holes and turn faces; nothing is written unasked</source>
+        <translation>穴を閉じ、面の向きをそろえます。指示なしには何も書き込みません</translation>
+    </message>
+    <message>
+        <source>%1-mended.stl</source>
+        <translation>%1-修復済み.stl</translation>
+    </message>
+    <message>
+        <source>Save the mended surface</source>
+        <translation>修復した表面の保存</translation>
+    </message>
+    <message>
+        <source>Surfaces (*.stl *.ply)</source>
+        <translation>表面 (*.stl *.ply)</translation>
+    </message>
+    <message>
+        <source>Gone on with</source>
+        <translation>作業の再開</translation>
+    </message>
+    <message>
+        <source>Folder for the tissues</source>
+        <translation>組織の書き出し先フォルダー</translation>
+    </message>
+    <message>
+        <source>Exercise</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>Device by name or serial</source>
+        <translation>名前またはシリアル番号で装置を選ぶ</translation>
+    </message>
+    <message>
+        <source>One of %1; a colon; then the device&apos;s name, serial or number.
+openhaptics:Left Arm, or forcedimension:2</source>
+        <translation>%1 のどれか、コロン、続けて装置の名前・シリアル番号・番号を入力します。
+例: openhaptics:Left Arm、forcedimension:2</translation>
+    </message>
+    <message>
+        <source>Hand in</source>
+        <translation>提出</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::MeasureBox</name>
@@ -3956,18 +4377,6 @@
         <translation>断面の方向</translation>
     </message>
     <message>
-        <source>From cheek to tongue</source>
-        <translation>頬舌断</translation>
-    </message>
-    <message>
-        <source>From front to back</source>
-        <translation>近遠心断</translation>
-    </message>
-    <message>
-        <source>Level</source>
-        <translation>水平断</translation>
-    </message>
-    <message>
         <source>Place of the section</source>
         <translation>断面の位置</translation>
     </message>
@@ -3978,30 +4387,6 @@
     <message>
         <source>mm</source>
         <translation>mm</translation>
-    </message>
-    <message>
-        <source>The pulp is open</source>
-        <translation>露髄しています</translation>
-    </message>
-    <message>
-        <source>very light</source>
-        <translation>とても軽い</translation>
-    </message>
-    <message>
-        <source>light</source>
-        <translation>軽い</translation>
-    </message>
-    <message>
-        <source>as usual</source>
-        <translation>普通</translation>
-    </message>
-    <message>
-        <source>firm</source>
-        <translation>やや強い</translation>
-    </message>
-    <message>
-        <source>hard</source>
-        <translation>強い</translation>
     </message>
     <message>
         <source>N</source>
@@ -4022,6 +4407,57 @@
     <message>
         <source>Measure a distance</source>
         <translation>距離を測る</translation>
+    </message>
+    <message>
+        <source>Bucco-lingual</source>
+        <translation>頬舌断</translation>
+    </message>
+    <message>
+        <source>Mesio-distal</source>
+        <translation>近遠心断</translation>
+    </message>
+    <message>
+        <source>Horizontal</source>
+        <translation>水平断</translation>
+    </message>
+    <message>
+        <source>This exercise has no calliper.</source>
+        <translation>この課題ではノギスは使えません。</translation>
+    </message>
+    <message>
+        <source>This exercise has no depth stop.</source>
+        <translation>この課題では深さ制限は使えません。</translation>
+    </message>
+    <message>
+        <source>Pulp exposed</source>
+        <translation>露髄しています</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::MendDialog</name>
+    <message>
+        <source>Mend the surface</source>
+        <translation>表面の修復</translation>
+    </message>
+    <message>
+        <source>Mending %1</source>
+        <translation>%1 を修復しています</translation>
+    </message>
+    <message>
+        <source>Progress</source>
+        <translation>進捗</translation>
+    </message>
+    <message>
+        <source>Save as and open...</source>
+        <translation>別名で保存して開く...</translation>
+    </message>
+    <message>
+        <source>The file that was mended stays as it is</source>
+        <translation>修復前のファイルはそのまま残ります</translation>
+    </message>
+    <message>
+        <source>This cannot be mended here: %1 %2</source>
+        <translation>ここでは修復できません：%1 %2</translation>
     </message>
 </context>
 <context>
@@ -4094,12 +4530,6 @@
     <message>
         <source>Friction</source>
         <translation>摩擦</translation>
-    </message>
-    <message>
-        <source>Cutting
-[mm²/N]</source>
-        <translation>切削
-[mm²/N]</translation>
     </message>
     <message>
         <source>Stiffness: the tissue&apos;s fraction times the multiplier times the device&apos;s limit</source>
@@ -4257,6 +4687,59 @@
         <source>Friction multiplier</source>
         <translation>摩擦の倍率</translation>
     </message>
+    <message>
+        <source>Cutting
+[µm²/N]</source>
+        <translation>切削
+[µm²/N]</translation>
+    </message>
+    <message>
+        <source>Force by</source>
+        <translation>力の計算</translation>
+    </message>
+    <message>
+        <source>Force model</source>
+        <translation>力のモデル</translation>
+    </message>
+    <message>
+        <source>Proxy on the surface</source>
+        <translation>表面上のプロキシ</translation>
+    </message>
+    <message>
+        <source>Penalty, as in the paper</source>
+        <translation>ペナルティ法(論文どおり)</translation>
+    </message>
+    <message>
+        <source>Spring and damper by the depth alone, without friction; the bur sinks in.</source>
+        <translation>ばねとダンパーは深さだけで決まり、摩擦はありません。バーは沈み込みます。</translation>
+    </message>
+    <message>
+        <source>The bur stays on the surface; spring, damper and friction hold the hand to it.</source>
+        <translation>バーは表面にとどまり、ばね・ダンパー・摩擦が手をつなぎとめます。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::PedalMenu</name>
+    <message>
+        <source>Foot pedal</source>
+        <translation>フットペダル</translation>
+    </message>
+    <message>
+        <source>The button alone is the pedal</source>
+        <translation>ボタンだけがペダルになります</translation>
+    </message>
+    <message>
+        <source>Beside the button: the one that is pressed harder counts</source>
+        <translation>ボタンと併用: 強く踏まれた（押された）ほうが有効です</translation>
+    </message>
+    <message>
+        <source>No foot pedal</source>
+        <translation>フットペダルなし</translation>
+    </message>
+    <message>
+        <source>%1: not there</source>
+        <translation>%1: 見つかりません</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::PlacingPage</name>
@@ -4382,7 +4865,7 @@
     </message>
     <message>
         <source>Oblique</source>
-        <translation>斜めから</translation>
+        <translation>斜め</translation>
     </message>
     <message>
         <source>Give the case a name</source>
@@ -4998,6 +5481,10 @@
         <translation>面の数を減らしています</translation>
     </message>
     <message>
+        <source>Checking the case</source>
+        <translation>症例を確認しています</translation>
+    </message>
+    <message>
         <source>Preview: %1</source>
         <translation>プレビュー：%1</translation>
     </message>
@@ -5205,6 +5692,38 @@
     <message>
         <source>Reading the sound</source>
         <translation>音を読み込んでいます</translation>
+    </message>
+    <message>
+        <source>reading</source>
+        <translation>読み込み中</translation>
+    </message>
+    <message>
+        <source>cutting again what was recorded</source>
+        <translation>記録された切削を再現しています</translation>
+    </message>
+    <message>
+        <source>shaping it (the first time only)</source>
+        <translation>形を作っています(初回のみ)</translation>
+    </message>
+    <message>
+        <source>measuring distances</source>
+        <translation>距離を計算しています</translation>
+    </message>
+    <message>
+        <source>laying out its tissues</source>
+        <translation>組織を配置しています</translation>
+    </message>
+    <message>
+        <source>drawing its surface</source>
+        <translation>表面を描いています</translation>
+    </message>
+    <message>
+        <source>Writing the tissues</source>
+        <translation>組織を書き出しています</translation>
+    </message>
+    <message>
+        <source>Handing in</source>
+        <translation>提出しています</translation>
     </message>
 </context>
 <context>
@@ -5567,6 +6086,10 @@
     <message>
         <source>A share of the faces of the scan itself</source>
         <translation>スキャンから作られた面に対する割合</translation>
+    </message>
+    <message>
+        <source>As many as can be felt</source>
+        <translation>触れて分かる細かさまで</translation>
     </message>
     <message>
         <source>All of the scan&apos;s (100 %)</source>
@@ -6103,56 +6626,56 @@
         <translation>この課題では変更できません。</translation>
     </message>
     <message>
-        <source>Top</source>
-        <translation>咬合面</translation>
-    </message>
-    <message>
-        <source>Occlusal: onto the chewing surface (1)</source>
-        <translation>咬合面を見ます（1）</translation>
-    </message>
-    <message>
-        <source>Cheek</source>
-        <translation>頬側</translation>
-    </message>
-    <message>
-        <source>Buccal: from the cheek (2)</source>
-        <translation>頬側から見ます（2）</translation>
-    </message>
-    <message>
-        <source>Tongue</source>
-        <translation>舌側</translation>
-    </message>
-    <message>
-        <source>Lingual: from the tongue (3)</source>
-        <translation>舌側から見ます（3）</translation>
-    </message>
-    <message>
         <source>Mesial</source>
         <translation>近心</translation>
-    </message>
-    <message>
-        <source>Mesial: from the front of the arch (4)</source>
-        <translation>近心側から見ます（4）</translation>
     </message>
     <message>
         <source>Distal</source>
         <translation>遠心</translation>
     </message>
     <message>
-        <source>Distal: from the back of the arch (5)</source>
-        <translation>遠心側から見ます（5）</translation>
+        <source>A scale in millimetres in the picture</source>
+        <translation>画像の中のミリメートル目盛り</translation>
     </message>
     <message>
-        <source>Slanted</source>
+        <source>Occlusal</source>
+        <translation>咬合面</translation>
+    </message>
+    <message>
+        <source>Onto the chewing surface (1)</source>
+        <translation>咬合面を見ます（1）</translation>
+    </message>
+    <message>
+        <source>Buccal</source>
+        <translation>頬側</translation>
+    </message>
+    <message>
+        <source>From the cheek (2)</source>
+        <translation>頬側から見ます（2）</translation>
+    </message>
+    <message>
+        <source>Lingual</source>
+        <translation>舌側</translation>
+    </message>
+    <message>
+        <source>From the tongue (3)</source>
+        <translation>舌側から見ます（3）</translation>
+    </message>
+    <message>
+        <source>From the front of the arch (4)</source>
+        <translation>歯列の前方から見ます（4）</translation>
+    </message>
+    <message>
+        <source>From the back of the arch (5)</source>
+        <translation>歯列の後方から見ます（5）</translation>
+    </message>
+    <message>
+        <source>Oblique</source>
         <translation>斜め</translation>
     </message>
     <message>
-        <source>From above at a slant (6)</source>
-        <translation>斜め上から見ます（6）</translation>
-    </message>
-    <message>
-        <source>A scale in millimetres in the picture</source>
-        <translation>画像の中のミリメートル目盛り</translation>
+        <source>From above and the cheek (6)</source>
+        <translation>頬側の斜め上から見ます（6）</translation>
     </message>
 </context>
 <context>
@@ -6162,20 +6685,28 @@
         <translation>%1：切削   ·   %2：視点を回す   ·   %3：キーの一覧</translation>
     </message>
     <message>
-        <source>Click the second point</source>
-        <translation>2 点目をクリックしてください</translation>
+        <source>No tooth under the pointer</source>
+        <translation>ポインターの下に歯がありません</translation>
     </message>
     <message>
-        <source>Click the first point</source>
-        <translation>1 点目をクリックしてください</translation>
+        <source>At the depth stop</source>
+        <translation>深さ制限に達しています</translation>
     </message>
     <message>
-        <source>Point at the cavity&apos;s floor; a click keeps the reading</source>
-        <translation>窩底を指してください。クリックすると値が残ります</translation>
+        <source>No deeper here: the bur would come out of the tooth</source>
+        <translation>ここではこれ以上深くできません：バーが歯を突き抜けます</translation>
     </message>
     <message>
-        <source>Point at the cavity&apos;s floor; a click keeps what is left over the pulp</source>
-        <translation>窩底を指してください。クリックすると歯髄までの厚さが残ります</translation>
+        <source>The bur is on its way</source>
+        <translation>バーを移動しています</translation>
+    </message>
+    <message>
+        <source>The bur is stalled: press less</source>
+        <translation>バーが止まっています：押す力を弱めてください</translation>
+    </message>
+    <message>
+        <source>The bur does not cut here: press more, or take another bur</source>
+        <translation>ここは切削できません：もっと強く押すか、別のバーを使ってください</translation>
     </message>
     <message>
         <source>Drag, turn the wheel or use the arrow keys to move the section</source>
@@ -6200,6 +6731,22 @@
     <message>
         <source>Mouse and keys move the bur; F1 shows them.</source>
         <translation>マウスとキーでバーを動かします。F1 で一覧を表示します。</translation>
+    </message>
+    <message>
+        <source>Second point: click, or arrows and %1</source>
+        <translation>2 点目：クリック、または矢印と %1</translation>
+    </message>
+    <message>
+        <source>First point: click, or arrows and %1</source>
+        <translation>1 点目：クリック、または矢印と %1</translation>
+    </message>
+    <message>
+        <source>Point at the cavity&apos;s floor; a click or %1 keeps the reading</source>
+        <translation>窩底を指してください。クリックまたは %1 で値を残します</translation>
+    </message>
+    <message>
+        <source>Point at the cavity&apos;s floor; a click or %1 keeps what is left over the pulp</source>
+        <translation>窩底を指してください。クリックまたは %1 で歯髄上の残りの厚さを残します</translation>
     </message>
 </context>
 <context>
@@ -6231,6 +6778,10 @@
     <message>
         <source>Total</source>
         <translation>合計</translation>
+    </message>
+    <message>
+        <source>This exercise hides the volumes.</source>
+        <translation>この課題では切削量を表示しません。</translation>
     </message>
 </context>
 <context>

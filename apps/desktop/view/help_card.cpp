@@ -8,6 +8,7 @@
 #include <QPainterPath>
 #include <algorithm>
 #include <functional>
+#include <span>
 
 namespace handpiece::desktop {
 
@@ -137,6 +138,32 @@ double shortcut(QPainter* p, double x, double y, const QString& keys, const QFon
     return x;
 }
 
+/// Keys that do what a button or the wheel does stand in its line.
+std::span<const Action> keysBeside(Action action) {
+    static constexpr Action kTouch[] = {Action::touchKey}, kZoom[] = {Action::nearer, Action::farther},
+                            kLoad[] = {Action::moreLoad, Action::lessLoad},
+                            kStop[] = {Action::deeperStop, Action::shallowerStop};
+    switch (action) {
+        case Action::touch:
+            return kTouch;
+        case Action::zoom:
+            return kZoom;
+        case Action::load:
+            return kLoad;
+        case Action::stop:
+            return kStop;
+        default:
+            return {};
+    }
+}
+
+bool isBeside(Action key) {
+    for (const Action action : {Action::touch, Action::zoom, Action::load, Action::stop})
+        for (const Action beside : keysBeside(action))
+            if (beside == key) return true;
+    return false;
+}
+
 constexpr double kPad = 20.0, kTextToKeys = 14.0, kHeadRows = 1.9, kGapRows = 0.6, kLeastPt = 6.0;
 constexpr std::size_t kMostColumns = 4;
 
@@ -239,12 +266,16 @@ HelpCard::Plan HelpCard::plan() const {
     for (const Group group : {Group::cutting, Group::hand, Group::eye, Group::tools}) {
         Block block;
         block.title = groupText(group);
-        for (const ActionInfo& info : actionInfos())
-            if (info.group == group)
-                block.lines.push_back({info.titleText(), [this, action = info.action](QPainter* p, double x, double y,
-                                                                                      const QFontMetricsF& metrics) {
-                                           return bindingsOf(p, x, y, bindings_, action, metrics, palette());
-                                       }});
+        for (const ActionInfo& info : actionInfos()) {
+            if (info.group != group || isBeside(info.action)) continue;
+            block.lines.push_back({info.titleText(), [this, action = info.action](QPainter* p, double x, double y,
+                                                                                  const QFontMetricsF& metrics) {
+                                       x = bindingsOf(p, x, y, bindings_, action, metrics, palette());
+                                       for (const Action key : keysBeside(action))
+                                           x = binding(p, x + 4, y, bindings_.of(key)[0], metrics, palette());
+                                       return x;
+                                   }});
+        }
         plan.blocks.push_back(std::move(block));
     }
     if (!commands_.empty()) {

@@ -76,12 +76,14 @@ const std::vector<ActionInfo>& actionInfos() {
         {Action::stop, "stop", QT_TRANSLATE_NOOP("KeyBindings", "Depth stop"), Group::cutting, Takes::wheel},
         {Action::slow, "slow", QT_TRANSLATE_NOOP("KeyBindings", "Five times slower, finer steps"), Group::hand,
          Takes::modifier},
-        {Action::orbitHold, "orbit-hold", QT_TRANSLATE_NOOP("KeyBindings", "Hold and move: turn the view"), Group::eye,
-         Takes::keys},
-        {Action::panHold, "pan-hold", QT_TRANSLATE_NOOP("KeyBindings", "Hold and move: shift the view"), Group::eye,
-         Takes::keys},
-        {Action::pivot, "pivot", QT_TRANSLATE_NOOP("KeyBindings", "Hold and move: tilt about the tip"), Group::hand,
-         Takes::keys},
+        {Action::orbitHold, "orbit-hold", QT_TRANSLATE_NOOP("KeyBindings", "Hold, move or arrows: turn the view"),
+         Group::eye, Takes::keys},
+        {Action::panHold, "pan-hold", QT_TRANSLATE_NOOP("KeyBindings", "Hold, move or arrows: shift the view"),
+         Group::eye, Takes::keys},
+        {Action::pivot, "pivot", QT_TRANSLATE_NOOP("KeyBindings", "Hold, move or arrows: tilt about the tip"),
+         Group::hand, Takes::keys},
+        {Action::nearer, "nearer", QT_TRANSLATE_NOOP("KeyBindings", "Nearer"), Group::eye, Takes::keys, true},
+        {Action::farther, "farther", QT_TRANSLATE_NOOP("KeyBindings", "Farther"), Group::eye, Takes::keys, true},
         {Action::rollLeft, "roll-left", QT_TRANSLATE_NOOP("KeyBindings", "Roll to the left"), Group::hand, Takes::keys,
          true},
         {Action::rollRight, "roll-right", QT_TRANSLATE_NOOP("KeyBindings", "Roll to the right"), Group::hand,
@@ -100,8 +102,16 @@ const std::vector<ActionInfo>& actionInfos() {
          Takes::keys, true},
         {Action::retreat, "retreat", QT_TRANSLATE_NOOP("KeyBindings", "Bur out along its axis"), Group::hand,
          Takes::keys, true},
-        {Action::cutKey, "cut-key", QT_TRANSLATE_NOOP("KeyBindings", "Hold: cut where the bur is"), Group::cutting,
+        {Action::cutKey, "cut-key", QT_TRANSLATE_NOOP("KeyBindings", "Hold: cut where the bur is; or pick"),
+         Group::cutting, Takes::keys},
+        {Action::touchKey, "touch-key", QT_TRANSLATE_NOOP("KeyBindings", "Hold: touch where the bur is"),
+         Group::cutting, Takes::keys},
+        {Action::moreLoad, "more-load", QT_TRANSLATE_NOOP("KeyBindings", "More load"), Group::cutting, Takes::keys},
+        {Action::lessLoad, "less-load", QT_TRANSLATE_NOOP("KeyBindings", "Less load"), Group::cutting, Takes::keys},
+        {Action::deeperStop, "deeper-stop", QT_TRANSLATE_NOOP("KeyBindings", "Depth stop on, deeper"), Group::cutting,
          Takes::keys},
+        {Action::shallowerStop, "shallower-stop", QT_TRANSLATE_NOOP("KeyBindings", "Depth stop shallower, off"),
+         Group::cutting, Takes::keys},
         {Action::latchPedal, "latch-pedal", QT_TRANSLATE_NOOP("KeyBindings", "Pedal stays down"), Group::cutting,
          Takes::keys},
         {Action::faster, "faster", QT_TRANSLATE_NOOP("KeyBindings", "More speed"), Group::cutting, Takes::keys},
@@ -109,19 +119,14 @@ const std::vector<ActionInfo>& actionInfos() {
         {Action::previousBur, "previous-bur", QT_TRANSLATE_NOOP("KeyBindings", "Bur before"), Group::cutting,
          Takes::keys},
         {Action::nextBur, "next-bur", QT_TRANSLATE_NOOP("KeyBindings", "Next bur"), Group::cutting, Takes::keys},
-        {Action::viewOcclusal, "view-occlusal", QT_TRANSLATE_NOOP("KeyBindings", "From above (occlusal)"), Group::eye,
-         Takes::keys},
-        {Action::viewBuccal, "view-buccal", QT_TRANSLATE_NOOP("KeyBindings", "From the cheek (buccal)"), Group::eye,
-         Takes::keys},
-        {Action::viewLingual, "view-lingual", QT_TRANSLATE_NOOP("KeyBindings", "From the tongue (lingual)"), Group::eye,
-         Takes::keys},
-        {Action::viewMesial, "view-mesial", QT_TRANSLATE_NOOP("KeyBindings", "From the front (mesial)"), Group::eye,
-         Takes::keys},
-        {Action::viewDistal, "view-distal", QT_TRANSLATE_NOOP("KeyBindings", "From the back (distal)"), Group::eye,
-         Takes::keys},
+        {Action::viewOcclusal, "view-occlusal", QT_TRANSLATE_NOOP("KeyBindings", "Occlusal"), Group::eye, Takes::keys},
+        {Action::viewBuccal, "view-buccal", QT_TRANSLATE_NOOP("KeyBindings", "Buccal"), Group::eye, Takes::keys},
+        {Action::viewLingual, "view-lingual", QT_TRANSLATE_NOOP("KeyBindings", "Lingual"), Group::eye, Takes::keys},
+        {Action::viewMesial, "view-mesial", QT_TRANSLATE_NOOP("KeyBindings", "Mesial"), Group::eye, Takes::keys},
+        {Action::viewDistal, "view-distal", QT_TRANSLATE_NOOP("KeyBindings", "Distal"), Group::eye, Takes::keys},
         {Action::viewOblique, "view-oblique", QT_TRANSLATE_NOOP("KeyBindings", "Oblique"), Group::eye, Takes::keys},
         {Action::fit, "fit", QT_TRANSLATE_NOOP("KeyBindings", "Whole tooth"), Group::eye, Takes::keys},
-        {Action::goToBur, "go-to-bur", QT_TRANSLATE_NOOP("KeyBindings", "To the bur"), Group::eye, Takes::keys},
+        {Action::goToBur, "go-to-bur", QT_TRANSLATE_NOOP("KeyBindings", "Go to the bur"), Group::eye, Takes::keys},
         {Action::measure, "measure", QT_TRANSLATE_NOOP("KeyBindings", "Distance, depth, pulp in turn"), Group::tools,
          Takes::keys},
         {Action::section, "section", QT_TRANSLATE_NOOP("KeyBindings", "Section"), Group::tools, Takes::keys},
@@ -267,6 +272,8 @@ KeyBindings KeyBindings::of(Set set) {
         {A::orbitHold, {key(Qt::Key_Space)}},
         {A::panHold, {key(Qt::Key_Space, Qt::ShiftModifier)}},
         {A::pivot, {pick(Qt::Key_T, Qt::Key_Y)}},
+        {A::nearer, {key(Qt::Key_Plus, Qt::ControlModifier), key(Qt::Key_Equal, Qt::ControlModifier)}},
+        {A::farther, {key(Qt::Key_Minus, Qt::ControlModifier)}},
         {A::rollLeft, {pick(Qt::Key_Q, Qt::Key_I)}},
         {A::rollRight, {pick(Qt::Key_E, Qt::Key_O)}},
         {A::alignNormal, {pick(Qt::Key_N, Qt::Key_J)}},
@@ -278,6 +285,11 @@ KeyBindings KeyBindings::of(Set set) {
         {A::advance, {key(Qt::Key_PageDown)}},
         {A::retreat, {key(Qt::Key_PageUp)}},
         {A::cutKey, {key(Qt::Key_Return), key(Qt::Key_Enter)}},
+        {A::touchKey, {key(Qt::Key_Return, Qt::ControlModifier), key(Qt::Key_Enter, Qt::ControlModifier)}},
+        {A::moreLoad, {key(Qt::Key_W)}},
+        {A::lessLoad, {key(Qt::Key_S)}},
+        {A::deeperStop, {key(Qt::Key_V)}},
+        {A::shallowerStop, {key(Qt::Key_G)}},
         {A::latchPedal, {key(Qt::Key_P)}},
         {A::faster, {key(Qt::Key_Plus), key(Qt::Key_Equal)}},
         {A::slower, {key(Qt::Key_Minus)}},
@@ -372,6 +384,17 @@ QVariantMap KeyBindings::toMap() const {
         map.insert(info.name, ids);
     }
     return map;
+}
+
+void KeyBindings::giveWayTo(const QVariantMap& map) {
+    QStringList chosen;
+    for (const QVariant& ids : map)
+        chosen << ids.toStringList();
+    for (const ActionInfo& info : actionInfos()) {
+        if (map.contains(info.name)) continue;
+        for (Binding& binding : table_[static_cast<std::size_t>(info.action)])
+            if (chosen.contains(binding.id())) binding = {};
+    }
 }
 
 QStringList KeyBindings::fromMap(const QVariantMap& map) {

@@ -25,7 +25,9 @@ enum class Action {
     slow,  // buttons, wheel, modifier
     orbitHold,
     panHold,
-    pivot,  // keys held while the pointer moves
+    pivot,  // keys held while the pointer moves, or the arrows are pressed
+    nearer,
+    farther,
     rollLeft,
     rollRight,
     alignNormal,
@@ -37,6 +39,11 @@ enum class Action {
     advance,
     retreat,
     cutKey,
+    touchKey,
+    moreLoad,
+    lessLoad,
+    deeperStop,
+    shallowerStop,
     latchPedal,
     faster,
     slower,
@@ -119,6 +126,8 @@ class KeyBindings {
     /// be read, and maps that would leave two actions on one key, are refused: their names come back.
     [[nodiscard]] QVariantMap toMap() const;
     QStringList fromMap(const QVariantMap& map);
+    /// Settings of an older program know nothing of newer actions: their keys give way to what a person has chosen.
+    void giveWayTo(const QVariantMap& map);
 
     friend bool operator==(const KeyBindings&, const KeyBindings&) = default;
 

@@ -17,7 +17,7 @@ namespace {
 // The overlay lies on a picture, not on a window: it brings its own ground with it.
 const QColor kGround(18, 21, 26, 190), kEdge(255, 255, 255, 36), kText(238, 240, 243), kFaint(170, 178, 188),
     kLine(255, 214, 90), kSectionLine(110, 200, 255);
-constexpr double kMargin = 12.0, kPad = 8.0, kRound = 6.0, kLeashPixels = 14.0, kDepthScaleWidth = 90.0;
+constexpr double kMargin = 12.0, kPad = 8.0, kRound = 6.0, kLeashPixels = 6.0, kDepthScaleWidth = 90.0;
 // Of the picture's height at most: else it hides more than it tells. And what a fitted tooth leaves free above it.
 constexpr double kLegendShare = 0.4, kHalfLegendShare = 0.25, kFittedMargin = 0.095, kRowPixels = 54.0;
 
@@ -40,9 +40,9 @@ QColor colourOf(Light light) {
     return kText;
 }
 
-/// "0.31 mm over the pulp · Little is left"
-QString withWords(const Measurement& left, Light light) {
-    return left.text() + QStringLiteral(" \u00b7 ") + pulpWords(light);
+/// "0.31 mm over the pulp · Under 0.5 mm"
+QString withWords(const Measurement& left, Light light, const measure::PulpLimits& limits) {
+    return left.text() + QStringLiteral(" \u00b7 ") + pulpWords(light, limits);
 }
 
 view::Viewport viewportOf(const QRectF& area) {
@@ -127,10 +127,10 @@ void measurement(QPainter& p, const Area& area, const Measurement& one, bool liv
         label(p, area, *from, one.text());
         return;
     }
-    const Light light = pulpLight(one.valueMm);
+    const Light light = pulpLight(one.valueMm, area.state.pulpLimits);
     const QColor lamp = colourOf(light);
     if (!live) dot(p, *from, lamp);
-    label(p, area, *from, withWords(one, light), &lamp);
+    label(p, area, *from, withWords(one, light, area.state.pulpLimits), &lamp);
 }
 
 void legend(QPainter& p, const QRectF& area, const OverlayState& state) {
@@ -370,12 +370,13 @@ void onTooth(QPainter& p, const Area& area) {
         measurement(p, area, one, false);
     if (state.thinnest && state.tool == Tool::pulp) {
         if (const auto at = area.at(state.thinnest->fromMm)) {
-            const Light light = pulpLight(state.thinnest->valueMm);
+            const Light light = pulpLight(state.thinnest->valueMm, state.pulpLimits);
             const QColor lamp = colourOf(light);
             p.setPen(QPen(lamp, 2));
             p.drawEllipse(*at, 9, 9);
             dot(p, *at, lamp, 3);
-            label(p, area, *at, Texts::tr("Thinnest: %1").arg(withWords(*state.thinnest, light)), &lamp);
+            label(p, area, *at, Texts::tr("Thinnest: %1").arg(withWords(*state.thinnest, light, state.pulpLimits)),
+                  &lamp);
         }
     }
     if (state.calliperStartMm) {
@@ -392,7 +393,7 @@ void onTooth(QPainter& p, const Area& area) {
     if (state.reading) measurement(p, area, *state.reading, true);
 }
 
-/// From the pointer to the bur, where it has run ahead: the hand behind the bur is slower than a mouse.
+/// From the bur to the pointer, where it has run ahead: tissue holds the bur back, and there it strains to.
 void leash(QPainter& p, const Area& area) {
     const OverlayState& state = area.state;
     if (!state.pressed || !state.pointer || !state.burTipMm || !area.box.contains(*state.pointer)) return;
@@ -405,6 +406,13 @@ void leash(QPainter& p, const Area& area) {
     p.drawLine(*tip, *state.pointer);
     p.setPen(QPen(QColor(255, 255, 255, 150), 1.0, Qt::DashLine, Qt::RoundCap));
     p.drawLine(*tip, *state.pointer);
+}
+
+/// Open in its middle, where the point is.
+void cross(QPainter& p, const QPointF& at) {
+    constexpr double kInner = 4.0, kOuter = 14.0;
+    for (const QPointF way : {QPointF(1, 0), QPointF(-1, 0), QPointF(0, 1), QPointF(0, -1)})
+        haloLine(p, at + kInner * way, at + kOuter * way, kText);
 }
 
 }  // namespace
@@ -475,6 +483,7 @@ void paintOverlay(QPainter& painter, const QRect& whole, const OverlayState& sta
     onTooth(painter, {right, state, {}});
     leash(painter, {right, state, {}});
     painter.setClipping(false);
+    if (state.cross) cross(painter, *state.cross);
     legend(painter, all, state);
     depthScale(painter, all, state);
     if (state.scaleBar)

@@ -36,8 +36,10 @@ struct OverlayState {
     std::optional<core::Vec3> pointerMm;  ///< the surface under the pointer
     std::optional<Measurement> reading;   ///< there, live
     std::optional<QPointF> pointer;
+    std::optional<QPointF> cross;         ///< that keys move in the pointer's place
     std::optional<core::Vec3> burTipMm;   ///< as drawn
     std::optional<Measurement> thinnest;  ///< over the pulp
+    measure::PulpLimits pulpLimits;
     std::optional<SectionPlace> section;
     core::Box bounds;  ///< of the tooth
     QString hint;      ///< one line, what to do

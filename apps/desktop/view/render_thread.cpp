@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/any_error.h"
 
 namespace handpiece::desktop {
 
@@ -84,12 +84,26 @@ struct RenderThread::Worker {
     view::Image image, beforeImage, bothImage;
 
     void setTooth(view::Renderer& to, bool alsoCuts) const {
-        to.setTooth(tooth ? tooth->base().tooth->outer.bounds() : core::Box{core::Vec3::Zero(), core::Vec3::Zero()});
+        to.setTooth(tooth ? tooth->base().tooth->outer.bounds() : sketchBounds());
         if (parts) to.setParts(*parts);
         if (scenery) to.setScenery(*scenery);
         if (!tooth) return;
         to.updateBricks(tooth->wholeSurface(), true);
         if (alsoCuts) to.updateBricks(tooth->takeNews());
+    }
+
+    /// Without a tooth: of what is shown in its place.
+    [[nodiscard]] core::Box sketchBounds() const {
+        core::Box box{core::Vec3::Zero(), core::Vec3::Zero()};
+        if (scenery)
+            for (const tooth::Part& part : *scenery) {
+                if (part.tissue == tooth::Tissue::gum || part.tissue == tooth::Tissue::bone ||
+                    part.tissue == tooth::Tissue::neighbour)
+                    continue;
+                for (const core::Vec3& v : part.mesh.vertices)
+                    box.extend(v);
+            }
+        return box;
     }
 
     /// Looked at along the bur, the turbine's head would hide the tip and all that it does.
@@ -215,8 +229,8 @@ void RenderThread::run() {
         worker.renderer->setResponsive(true);
         const std::lock_guard lock(shared_->mutex);
         shared_->description = QString::fromStdString(worker.renderer->description());
-    } catch (const core::Error& error) {
-        giveUp(error);
+    } catch (const std::exception& error) {
+        giveUp(core::asError(error));
     }
 
     Clock::time_point lastFrame{};
@@ -326,8 +340,8 @@ void RenderThread::run() {
             }
             callbacks_.frameReady();
             justDrawn = true;
-        } catch (const core::Error& error) {
-            giveUp(error);
+        } catch (const std::exception& error) {
+            giveUp(core::asError(error));
         }
     }
 }

@@ -15,10 +15,29 @@ constexpr double kOrbitRadPerPixel = 0.008, kZoomPerNotch = 1.15, kRollRad = 0.0
 constexpr double kLoadStepN = 0.1, kSectionStepMm = 0.1, kFineSectionStepMm = 0.02, kMirrorStepMm = 0.5;
 constexpr double kLeastStopMm = station::kStopStepMm, kMostStopMm = 10.0;
 constexpr double kHandleReach = 14.0;  // pixels around the section's handle
+// Pixels by which an arrow key moves what a held key has taken, or the cross; and fine ones.
+constexpr double kArrowPixels = 20.0, kFineArrowPixels = 4.0, kPivotArrowPixels = 10.0, kFinePivotArrowPixels = 2.0;
+constexpr double kCrossPixels = 8.0, kFineCrossPixels = 1.0, kFineZoomNotch = 0.2;
 constexpr std::size_t kMostMeasurements = 12;
 
 QPointF difference(const QPointF& to, const QPointF& from) {
     return to - from;
+}
+
+/// The way of an arrow key on the screen; none of another's.
+std::optional<QPointF> wayOf(Action action) {
+    switch (action) {
+        case Action::moveLeft:
+            return QPointF(-1, 0);
+        case Action::moveRight:
+            return QPointF(1, 0);
+        case Action::moveUp:
+            return QPointF(0, -1);
+        case Action::moveDown:
+            return QPointF(0, 1);
+        default:
+            return std::nullopt;
+    }
 }
 
 }  // namespace
@@ -156,28 +175,18 @@ void ViewWidget::State::moveTo(const QPointF& position, Qt::KeyboardModifiers mo
     const QPointF from = std::exchange(last, position);
     pointer = position;
     const QPointF d = difference(position, from);
+    cross.reset();
     switch (drag) {
         case Drag::orbit:
-            camera = view::orbited(camera, d.x() * kOrbitRadPerPixel, -d.y() * kOrbitRadPerPixel);
-            everTurned = true;
-            eyeMoved();
-            return;
         case Drag::pan:
-            camera = view::panned(camera, viewport(), {d.x(), d.y()});
-            eyeMoved();
+        case Drag::pivot:
+            dragBy(d);
             return;
         case Drag::section:
             dragSection(from, position);
             return;
         case Drag::mirror:
             dragMirror(from, position);
-            return;
-        case Drag::pivot:
-            if (hand) {
-                followHand();
-                hand->pivot({d.x(), d.y()});
-                render->pointerMoved();
-            }
             return;
         case Drag::press:
             if (dragKind == Binding::Kind::key) return;  // pressed from the keyboard: the mouse does not push it
@@ -198,10 +207,69 @@ void ViewWidget::State::moveTo(const QPointF& position, Qt::KeyboardModifiers mo
     if (wasAway) widget->update();
 }
 
+/// The eye, or the bur's handle, as far as the pointer went or the arrows say.
+void ViewWidget::State::dragBy(const QPointF& pixels) {
+    if (drag == Drag::orbit) {
+        camera = view::orbited(camera, pixels.x() * kOrbitRadPerPixel, -pixels.y() * kOrbitRadPerPixel);
+        everTurned = true;
+        eyeMoved();
+    } else if (drag == Drag::pan) {
+        camera = view::panned(camera, viewport(), {pixels.x(), pixels.y()});
+        eyeMoved();
+    } else if (drag == Drag::pivot && hand) {
+        followHand();
+        hand->pivot({pixels.x(), pixels.y()});
+        render->pointerMoved();
+    }
+}
+
+/// With a key held that turns, shifts or tilts, the arrows do what the pointer would.
+bool ViewWidget::State::arrowsDrag(Action action, bool slow) {
+    if (dragKind != Binding::Kind::key || (drag != Drag::orbit && drag != Drag::pan && drag != Drag::pivot))
+        return false;
+    const std::optional<QPointF> way = wayOf(action);
+    if (!way) return false;
+    // A held key with Shift in it does not mean fine steps.
+    const Action by = drag == Drag::orbit ? Action::orbitHold : drag == Drag::pan ? Action::panHold : Action::pivot;
+    for (const Binding& one : bindings.of(by))
+        if (one.code == dragCode && bindings.isSlow(one.modifiers)) slow = false;
+    const double step = drag == Drag::pivot ? (slow ? kFinePivotArrowPixels : kPivotArrowPixels)
+                                            : (slow ? kFineArrowPixels : kArrowPixels);
+    // Up on the screen is up of the handle.
+    dragBy(drag == Drag::pivot ? QPointF(way->x(), -way->y()) * step : *way * step);
+    return true;
+}
+
+bool ViewWidget::State::measures() const {
+    return tool == Tool::calliper || tool == Tool::depth || tool == Tool::pulp;
+}
+
+void ViewWidget::State::putCross(const QPointF& at) {
+    cross = QPointF(std::clamp(at.x(), 0.0, widget->width() - 1.0), std::clamp(at.y(), 0.0, widget->height() - 1.0));
+    pointer = cross;
+    read(*cross);
+}
+
+/// Points of the tooth without a mouse: a cross goes with the arrows, the key that cuts picks.
+bool ViewWidget::State::pickByKeys(Action action, bool slow, bool repeated) {
+    if (!measures()) return false;
+    const QPointF from = cross ? *cross : pointer.value_or(QPointF(viewport().width / 2.0, viewport().height / 2.0));
+    if (const std::optional<QPointF> way = wayOf(action)) {
+        putCross(from + *way * (slow ? kFineCrossPixels : kCrossPixels));
+        return true;
+    }
+    if (action != Action::cutKey) return false;
+    if (repeated) return true;
+    putCross(from);
+    pressTool(from);
+    return true;
+}
+
 void ViewWidget::mousePressEvent(QMouseEvent* event) {
     State& s = *state_;
     s.last = event->position();
     s.pointer = event->position();
+    s.cross.reset();
     if (s.drag != Drag::none || !s.tooth) return;
     const Binding binding{Binding::Kind::button, static_cast<int>(event->button()),
                           event->modifiers() & (Qt::ShiftModifier | Qt::ControlModifier)};
@@ -258,6 +326,7 @@ void ViewWidget::enterEvent(QEnterEvent* event) {
 
 void ViewWidget::leaveEvent(QEvent*) {
     State& s = *state_;
+    if (s.cross) return;
     s.pointer.reset();
     s.reading.reset();
     s.pointerMm.reset();
@@ -270,10 +339,7 @@ void ViewWidget::State::turnWheel(const QWheelEvent& event) {
         bindings.actionFor({Binding::Kind::wheel, 0, event.modifiers() & (Qt::ShiftModifier | Qt::ControlModifier)});
     if (!action || !tooth || turned == 0.0) return;
     if (*action == Action::zoom && tool != Tool::section && tool != Tool::mirror) {
-        std::optional<core::Vec3> under;
-        if (const auto hit = hitAt(event.position())) under = hit->pointMm;
-        camera = view::zoomed(camera, viewport(), pixel(event.position()), std::pow(kZoomPerNotch, turned), under);
-        eyeMoved();
+        zoomBy(turned, event.position());
         return;
     }
     wheelRest += turned;
@@ -285,19 +351,32 @@ void ViewWidget::State::turnWheel(const QWheelEvent& event) {
         *mirrorCentreMm -= camera.forward() * (notches * kMirrorStepMm);
         wish();
     }
+    if (*action == Action::load) stepLoad(notches);
+    if (*action == Action::stop) stepStop(notches);
+}
+
+void ViewWidget::State::zoomBy(double notches, const QPointF& at) {
+    std::optional<core::Vec3> under;
+    if (const auto hit = hitAt(at)) under = hit->pointMm;
+    camera = view::zoomed(camera, viewport(), pixel(at), std::pow(kZoomPerNotch, notches), under);
+    eyeMoved();
+}
+
+void ViewWidget::State::stepLoad(double notches) {
+    if (hand) widget->setLoad(hand->loadN() + notches * kLoadStepN);
+}
+
+void ViewWidget::State::stepStop(double notches) {
     if (!hand) return;
-    if (*action == Action::load) widget->setLoad(hand->loadN() + notches * kLoadStepN);
-    if (*action == Action::stop) {
-        if (!hand->stopMm()) {
-            if (notches > 0) widget->setStop(lastStopMm);
-            return;
-        }
-        const double next = std::round((*hand->stopMm() + notches * station::kStopStepMm) * 10.0) / 10.0;
-        if (next < kLeastStopMm - 1e-9)
-            widget->setStop(std::nullopt);
-        else
-            widget->setStop(std::min(next, kMostStopMm));
+    if (!hand->stopMm()) {
+        if (notches > 0) widget->setStop(lastStopMm);
+        return;
     }
+    const double next = std::round((*hand->stopMm() + notches * station::kStopStepMm) * 10.0) / 10.0;
+    if (next < kLeastStopMm - 1e-9)
+        widget->setStop(std::nullopt);
+    else
+        widget->setStop(std::min(next, kMostStopMm));
 }
 
 void ViewWidget::wheelEvent(QWheelEvent* event) {
@@ -327,8 +406,22 @@ bool ViewWidget::State::stepTool(Action action, bool slow) {
     return false;
 }
 
+/// Calliper, depth, pulp and the drill again; what is not allowed is passed over.
+void ViewWidget::State::nextMeasure() {
+    constexpr std::pair<Tool, station::Operation> kOrder[] = {{Tool::calliper, station::Operation::calliper},
+                                                              {Tool::depth, station::Operation::depthTool},
+                                                              {Tool::pulp, station::Operation::pulpTool}};
+    const auto now =
+        std::find_if(std::begin(kOrder), std::end(kOrder), [this](const auto& o) { return o.first == tool; });
+    const auto from = now == std::end(kOrder) ? std::begin(kOrder) : now + 1;
+    const auto next = std::find_if(from, std::end(kOrder), [this](const auto& o) { return allows(o.second); });
+    // None at all: the first one says why.
+    widget->setTool(next != std::end(kOrder) ? next->first : now == std::end(kOrder) ? Tool::calliper : Tool::drill);
+}
+
 bool ViewWidget::State::keyAction(Action action, bool slow, bool repeated, const Binding& by) {
     const auto toggleTool = [&](Tool wanted) { widget->setTool(tool == wanted ? Tool::drill : wanted); };
+    if (arrowsDrag(action, slow) || pickByKeys(action, slow, repeated)) return true;
     switch (action) {
         case Action::viewOcclusal:
         case Action::viewBuccal:
@@ -343,6 +436,20 @@ bool ViewWidget::State::keyAction(Action action, bool slow, bool repeated, const
         case Action::fit:
             widget->fitTooth();
             return true;
+        case Action::nearer:
+        case Action::farther:
+            if (tooth)
+                zoomBy((action == Action::nearer ? 1.0 : -1.0) * (slow ? kFineZoomNotch : 1.0),
+                       cross.value_or(QPointF(viewport().width / 2.0, viewport().height / 2.0)));
+            return true;
+        case Action::moreLoad:
+        case Action::lessLoad:
+            stepLoad(action == Action::moreLoad ? 1.0 : -1.0);
+            return hand != nullptr;
+        case Action::deeperStop:
+        case Action::shallowerStop:
+            stepStop(action == Action::deeperStop ? 1.0 : -1.0);
+            return hand != nullptr;
         case Action::goToBur:
             widget->goToBur();
             return true;
@@ -354,21 +461,7 @@ bool ViewWidget::State::keyAction(Action action, bool slow, bool repeated, const
             if (!repeated && drag == Drag::none && hand && tool == Tool::drill) begin(Drag::pivot, by);
             return true;
         case Action::measure:
-            if (repeated) return true;
-            switch (tool) {
-                case Tool::calliper:
-                    widget->setTool(Tool::depth);
-                    break;
-                case Tool::depth:
-                    widget->setTool(Tool::pulp);
-                    break;
-                case Tool::pulp:
-                    widget->setTool(Tool::drill);
-                    break;
-                default:
-                    widget->setTool(Tool::calliper);
-                    break;
-            }
+            if (!repeated) nextMeasure();
             return true;
         case Action::section:
             if (repeated) return true;
@@ -448,12 +541,14 @@ bool ViewWidget::State::keyAction(Action action, bool slow, bool repeated, const
         case Action::latchPedal:
             if (!repeated) widget->latchPedal(!hand->pedalLatched());
             break;
-        case Action::cutKey: {
+        case Action::cutKey:
+        case Action::touchKey: {
             if (repeated || drag != Drag::none) return true;
             begin(Drag::press, by);
             everPressed = true;
             const auto at = view::pixelOf(camera, viewport(), proxyPose(render->sample()).positionMm);
-            hand->press(at.value_or(core::Vec2(viewport().width / 2.0, viewport().height / 2.0)), true);
+            hand->press(at.value_or(core::Vec2(viewport().width / 2.0, viewport().height / 2.0)),
+                        action == Action::cutKey);
             emit widget->pressedChanged(true);
             break;
         }

@@ -6,13 +6,13 @@
 #include <QElapsedTimer>
 #include <QPointer>
 #include <atomic>
-#include <set>
 
 #include "desktop/view/help_card.h"
 #include "desktop/view/overlay.h"
 #include "desktop/view/probe_thread.h"
 #include "desktop/view/render_thread.h"
 #include "desktop/view/section_bar.h"
+#include "desktop/view/strip_stack.h"
 #include "desktop/view/view_widget.h"
 
 namespace handpiece::desktop {
@@ -35,9 +35,11 @@ struct ViewWidget::State {
     view::Look look;
     view::Camera camera;
     KeyBindings bindings;
-    std::set<std::string, std::less<>> locked;
+    station::Permissions permissions;
     bool legendShown = true, sectionBarShown = true;
     QString problem, remedy;  // why nothing is drawn
+    QString waiting;          // for what, while there is no tooth
+    bool isSketch = false;
     std::optional<Frame> frame;
     bool everPressed = false, everTurned = false;
 
@@ -52,6 +54,7 @@ struct ViewWidget::State {
     std::vector<Measurement> measurements;
     std::optional<core::Vec3> calliperStartMm, pointerMm;
     std::optional<Measurement> reading, thinnest;
+    measure::PulpLimits pulpLimits;
 
     // The pointer.
     Drag drag = Drag::none;
@@ -59,6 +62,7 @@ struct ViewWidget::State {
     Binding::Kind dragKind = Binding::Kind::none;
     QPointF last;                    // where the pointer was
     std::optional<QPointF> pointer;  // over the widget
+    std::optional<QPointF> cross;    // in the pointer's place, moved by keys; the mouse takes it away
     bool byMouse = false;            // the bur is where the pointer put it, not where keys moved it
     double wheelRest = 0.0;          // of a notch
     double lastStopMm = 1.5;
@@ -66,16 +70,22 @@ struct ViewWidget::State {
     QPointer<HelpCard> card;
     HelpCard::Commands commands;  // of the window, for the card
     SectionBar* sectionBar = nullptr;
+    StripStack* strips = nullptr;
     std::atomic<bool> framePosted{false};
 
     // Last: their threads call back into what stands above.
     std::unique_ptr<ProbeThread> probe;
     std::unique_ptr<RenderThread> render;
 
+    void take(const tooth::Case& toothCase, const core::Box& of);
+
     // Where things are.
     [[nodiscard]] view::Viewport viewport() const;  // of one picture
     [[nodiscard]] core::Vec2 pixel(const QPointF& position) const;
     [[nodiscard]] std::optional<measure::Hit> hitAt(const QPointF& position) const;
+    /// Behind tooth that is shown.
+    [[nodiscard]] bool isHidden(const core::Vec3& pointMm) const;
+    [[nodiscard]] std::vector<Measurement> measurementsSeen() const;
     [[nodiscard]] view::Look effectiveLook() const;
     [[nodiscard]] OverlayState overlay() const;
     [[nodiscard]] QString hint() const;
@@ -87,8 +97,12 @@ struct ViewWidget::State {
     void eyeMoved();    // and the hand, and listeners
     void hoverAgain();  // under the pointer that stood still while the eye moved
     void followHand();
+    void feelUncut();  // the hand, of this tooth and bur
     void takeFrame();
     void layOut();
+    [[nodiscard]] bool allows(station::Operation operation) const { return permissions.allows(operation); }
+    /// The same; an exercise that forbids it is told of.
+    [[nodiscard]] bool may(station::Operation operation);
 
     // Input (view_input.cpp).
     void begin(Drag what, const Binding& by);
@@ -97,8 +111,17 @@ struct ViewWidget::State {
     void moveTo(const QPointF& position, Qt::KeyboardModifiers modifiers);
     void read(const QPointF& position);
     void turnWheel(const QWheelEvent& event);
+    void dragBy(const QPointF& pixels);
+    bool arrowsDrag(Action action, bool slow);
+    void zoomBy(double notches, const QPointF& at);
+    void stepLoad(double notches);
+    void stepStop(double notches);
+    void putCross(const QPointF& at);
+    [[nodiscard]] bool measures() const;  // by points on the tooth
+    bool pickByKeys(Action action, bool slow, bool repeated);
     bool keyAction(Action action, bool slow, bool repeated, const Binding& by);
     bool stepTool(Action action, bool slow);
+    void nextMeasure();
     void moveSection(double byMm);
     void dragSection(const QPointF& from, const QPointF& to);
     void dragMirror(const QPointF& from, const QPointF& to);

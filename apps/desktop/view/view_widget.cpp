@@ -15,7 +15,35 @@ namespace {
 
 constexpr double kBurViewMm = 14.0;                       // the eye's distance when it goes to the bur
 constexpr double kMirrorAcross = 0.3, kMirrorDown = 0.2;  // of the picture: where the mirror comes out
-constexpr double kCrownShare = 0.42;                      // of a tooth's height, as far as one sees it over the gum
+constexpr int kUnderWriting = 46;                         // pixels: the row in which the hand's state is written
+// A point of the surface lies within the first of what is met along its line of sight; two in one place.
+constexpr double kHiddenMm = 0.2, kSamePlaceMm = 0.05;
+constexpr double kCrownShare = 0.42;  // of a tooth's height, as far as one sees it over the gum
+
+using station::Operation;
+
+std::optional<Operation> operationOf(Tool tool) {
+    switch (tool) {
+        case Tool::calliper:
+            return Operation::calliper;
+        case Tool::depth:
+            return Operation::depthTool;
+        case Tool::pulp:
+            return Operation::pulpTool;
+        case Tool::section:
+            return Operation::section;
+        case Tool::mirror:
+            return Operation::mirror;
+        default:
+            return std::nullopt;
+    }
+}
+
+Operation operationOf(Measurement::Kind kind) {
+    return kind == Measurement::Kind::distance ? Operation::calliper
+           : kind == Measurement::Kind::depth  ? Operation::depthTool
+                                               : Operation::pulpTool;
+}
 
 std::vector<tooth::Tissue> tissuesOf(const tooth::Case& toothCase) {
     std::array<bool, tooth::kTissueCount> there{};
@@ -108,6 +136,28 @@ std::optional<measure::Hit> ViewWidget::State::hitAt(const QPointF& position) co
     return tooth->withProbe([&](const measure::ToothProbe& p) { return p.cast(from, ray.direction, farMm); });
 }
 
+bool ViewWidget::State::isHidden(const core::Vec3& pointMm) const {
+    const auto at = view::pixelOf(camera, viewport(), pointMm);
+    if (!at) return true;
+    const auto hit = hitAt({at->x(), at->y()});
+    return hit && (hit->pointMm - camera.eyeMm).norm() < (pointMm - camera.eyeMm).norm() - kHiddenMm;
+}
+
+/// Those that the tooth does not hide, and of two that tell the same at one place the one that is kept.
+std::vector<Measurement> ViewWidget::State::measurementsSeen() const {
+    std::vector<Measurement> seen;
+    for (const Measurement& one : measurements) {
+        const auto same = [&](const Measurement& other) {
+            return other.kind == one.kind && (other.fromMm - one.fromMm).norm() < kSamePlaceMm &&
+                   (other.toMm - one.toMm).norm() < kSamePlaceMm;
+        };
+        if (std::any_of(seen.begin(), seen.end(), same)) continue;
+        if (isHidden(one.fromMm) && (one.kind != Measurement::Kind::distance || isHidden(one.toMm))) continue;
+        seen.push_back(one);
+    }
+    return seen;
+}
+
 core::Vec3 ViewWidget::State::burAxis() const {
     const messages::HapticSample now = render->sample();
     return proxyPose(now).orientation * core::Vec3::UnitZ();
@@ -115,13 +165,14 @@ core::Vec3 ViewWidget::State::burAxis() const {
 
 view::Look ViewWidget::State::effectiveLook() const {
     view::Look now = look;
-    if (widget->isLocked("tissue-colours")) now.palette = view::Palette::natural;
-    if (widget->isLocked("transparency")) {
+    if (!allows(Operation::tissueColours)) now.palette = view::Palette::natural;
+    if (!allows(Operation::transparency)) {
         now.tooth = view::ToothShown::now;
         now.visible.fill(true);
     }
-    if (widget->isLocked("depth")) now.removedDepthColours = false;
-    if (widget->isLocked("cross-section")) now.cutAway.reset();
+    if (!allows(Operation::removedDepth)) now.removedDepthColours = false;
+    if (!allows(Operation::section)) now.cutAway.reset();
+    if (!allows(Operation::scaleBar)) now.scaleBar = false;
     if (section) now.sectionGrid = true;
     // Who measures has put the drill aside.
     if (tool != Tool::drill && tool != Tool::mirror) now.bur = now.turbine = false;
@@ -159,6 +210,7 @@ void ViewWidget::State::wish() {
 void ViewWidget::State::eyeMoved() {
     if (hand) hand->setEye(camera, viewport());
     if (drag == Drag::none) hoverAgain();
+    if (cross) read(*cross);
     wish();
     widget->update();
     emit widget->cameraChanged();
@@ -187,6 +239,10 @@ void ViewWidget::State::hoverAgain() {
     hand->move(pixel(*pointer));
 }
 
+void ViewWidget::State::feelUncut() {
+    if (hand) hand->setFeel(tooth ? station::feelUncut(tooth->base().tooth, bur) : station::PointerHand::Feel());
+}
+
 void ViewWidget::State::followHand() {
     if (hand) hand->follow(render->sample());
 }
@@ -201,25 +257,63 @@ void ViewWidget::State::takeFrame() {
     emit widget->frameDrawn(frame->report);
 }
 
+/// Of the tooth that is looked at from now on.
+void ViewWidget::State::take(const tooth::Case& toothCase, const core::Box& of) {
+    bounds = eyeBounds = of;
+    const bool inGum = std::any_of(toothCase.scenery.begin(), toothCase.scenery.end(),
+                                   [](const tooth::Part& part) { return part.tissue == tooth::Tissue::gum; });
+    if (inGum) eyeBounds.min.z() = bounds.max.z() - kCrownShare * bounds.size().z();
+    buccalSign = toothCase.buccalSign;
+}
+
 void ViewWidget::State::layOut() {
     sectionBar->setVisible(section.has_value() && sectionBarShown);
     if (section) sectionBar->setPlace(*section, bounds);
     sectionBar->adjustSize();
-    sectionBar->move((widget->width() - sectionBar->width()) / 2, 44);
+    sectionBar->move((widget->width() - sectionBar->width()) / 2, kUnderWriting);
+    strips->setTop(sectionBar->isHidden() ? kUnderWriting : sectionBar->geometry().bottom() + 6);
+}
+
+/// Why a pressed bur does not cut.
+static QString idleText(station::PointerHand::Idle idle) {
+    using Idle = station::PointerHand::Idle;
+    switch (idle) {
+        case Idle::no:
+            break;
+        case Idle::offTooth:
+            return ViewWidget::tr("No tooth under the pointer");
+        case Idle::atStop:
+            return ViewWidget::tr("At the depth stop");
+        case Idle::through:
+            return ViewWidget::tr("No deeper here: the bur would come out of the tooth");
+        case Idle::onItsWay:
+            return ViewWidget::tr("The bur is on its way");
+        case Idle::stalled:
+            return ViewWidget::tr("The bur is stalled: press less");
+        case Idle::held:
+            return ViewWidget::tr("The bur does not cut here: press more, or take another bur");
+    }
+    return {};
 }
 
 QString ViewWidget::State::hint() const {
+    if (!allows(Operation::guidance)) return {};
     switch (tool) {
         case Tool::drill:
+            if (hand && hand->isIdleForLong()) return idleText(hand->idle());
             if (!hand || everPressed) return {};
             return ViewWidget::tr("%1: cut   \u00b7   %2: turn the view   \u00b7   %3: all keys")
                 .arg(bindings.text(Action::cut), bindings.text(Action::orbit), bindings.text(Action::help));
         case Tool::calliper:
-            return calliperStartMm ? ViewWidget::tr("Click the second point") : ViewWidget::tr("Click the first point");
+            return (calliperStartMm ? ViewWidget::tr("Second point: click, or arrows and %1")
+                                    : ViewWidget::tr("First point: click, or arrows and %1"))
+                .arg(bindings.text(Action::cutKey));
         case Tool::depth:
-            return ViewWidget::tr("Point at the cavity's floor; a click keeps the reading");
+            return ViewWidget::tr("Point at the cavity's floor; a click or %1 keeps the reading")
+                .arg(bindings.text(Action::cutKey));
         case Tool::pulp:
-            return ViewWidget::tr("Point at the cavity's floor; a click keeps what is left over the pulp");
+            return ViewWidget::tr("Point at the cavity's floor; a click or %1 keeps what is left over the pulp")
+                .arg(bindings.text(Action::cutKey));
         case Tool::section:
             return ViewWidget::tr("Drag, turn the wheel or use the arrow keys to move the section");
         case Tool::mirror:
@@ -236,36 +330,43 @@ OverlayState ViewWidget::State::overlay() const {
         return state;
     }
     if (!tooth) {
-        state.message = ViewWidget::tr("No tooth is open");
+        if (!isSketch) state.message = waiting.isEmpty() ? ViewWidget::tr("No tooth is open") : waiting;
         return state;
     }
     state.camera = frame ? frame->camera : camera;
     state.compare = compare;
     state.tool = tool;
-    if (legendShown && !widget->isLocked("tissue-colours")) {
+    if (legendShown && allows(Operation::tissueColours)) {
         std::vector<tooth::Tissue> shown;
         for (const tooth::Tissue tissue : tissues)
             if (look.visible[static_cast<std::size_t>(tissue)]) shown.push_back(tissue);
         state.legend = view::legendOf(shown, effectiveLook().palette);
     }
-    state.scaleBar = look.scaleBar;
+    state.scaleBar = effectiveLook().scaleBar;
     if (effectiveLook().removedDepthColours) state.removedDepthMostMm = look.removedDepthMostMm;
     if (hand) {
         state.hasHand = true;
         state.loadN = hand->loadN();
         state.stopMm = hand->stopMm();
         state.pedalLatched = hand->pedalLatched();
-        state.pedalDown = hand->target().pedal > 0.0;
+        // The foot's, not the bur's: that comes out of its cavity turning after the button is up.
+        state.pedalDown = hand->target().pedal > 0.0 && (hand->isPressed() || hand->pedalLatched());
         state.away = hand->isAway();
         state.pressed = hand->isPressed();
         if (frame) state.burTipMm = proxyPose(frame->sample).positionMm;
     }
-    state.measurements = measurements;
+    if (!state.pressed) state.measurements = measurementsSeen();
     state.calliperStartMm = calliperStartMm;
     state.pointerMm = pointerMm;
-    state.reading = reading;
+    const bool kept =
+        reading && std::any_of(state.measurements.begin(), state.measurements.end(), [&](const auto& one) {
+            return one.kind == reading->kind && (one.fromMm - reading->fromMm).norm() < kSamePlaceMm;
+        });
+    if (!kept) state.reading = reading;
     state.pointer = pointer;
-    state.thinnest = thinnest;
+    state.cross = cross;
+    if (thinnest && !isHidden(thinnest->fromMm)) state.thinnest = thinnest;
+    state.pulpLimits = pulpLimits;
     state.section = section;
     state.bounds = bounds;
     state.hint = hint();
@@ -283,6 +384,8 @@ ViewWidget::ViewWidget(QWidget* parent) : QWidget(parent), state_(std::make_uniq
     setAttribute(Qt::WA_OpaquePaintEvent);
     state_->sectionBar = new SectionBar(this);
     state_->sectionBar->hide();
+    state_->strips = new StripStack(this);
+    state_->layOut();
     connect(state_->sectionBar, &SectionBar::placeChanged, this,
             [this](const SectionPlace& place) { setSection(place); });
     connect(state_->sectionBar, &SectionBar::closed, this, [this] { setSection(std::nullopt); });
@@ -296,12 +399,7 @@ void ViewWidget::setTooth(std::shared_ptr<station::LiveTooth> liveTooth, const t
     clearTooth();
     State& s = *state_;
     s.tooth = std::move(liveTooth);
-    s.bounds = s.tooth->base().tooth->outer.bounds();
-    s.eyeBounds = s.bounds;
-    const bool inGum = std::any_of(toothCase.scenery.begin(), toothCase.scenery.end(),
-                                   [](const tooth::Part& part) { return part.tissue == tooth::Tissue::gum; });
-    if (inGum) s.eyeBounds.min.z() = s.bounds.max.z() - kCrownShare * s.bounds.size().z();
-    s.buccalSign = toothCase.buccalSign;
+    s.take(toothCase, s.tooth->base().tooth->outer.bounds());
     s.tissues = tissuesOf(toothCase);
     s.render->setTooth(s.tooth, toothCase.parts, toothCase.scenery, std::move(feed));
     s.probe->setTooth(s.tooth);
@@ -309,8 +407,42 @@ void ViewWidget::setTooth(std::shared_ptr<station::LiveTooth> liveTooth, const t
     s.layOut();
 }
 
+void ViewWidget::showSketch(const tooth::Case& sketch) {
+    clearTooth();
+    State& s = *state_;
+    core::Box bounds;
+    std::vector<tooth::Part> shown;
+    for (const tooth::Part& part : sketch.parts) {
+        for (const core::Vec3& v : part.mesh.vertices)
+            bounds.extend(v);
+        // What lies within is not seen.
+        if (part.tissue == tooth::Tissue::enamel || part.tissue == tooth::Tissue::dentine ||
+            part.tissue == tooth::Tissue::cementum || part.tissue == tooth::Tissue::restoration)
+            shown.push_back(part);
+    }
+    if (!sketch.outer.triangles.empty()) bounds = sketch.outer.bounds();
+    if (shown.empty()) shown = {{"tooth", tooth::Tissue::enamel, 0, sketch.outer}};
+    if (shown.front().mesh.triangles.empty()) return;
+    shown.insert(shown.end(), sketch.scenery.begin(), sketch.scenery.end());
+    s.isSketch = true;
+    s.take(sketch, bounds);
+    s.render->setTooth(nullptr, {}, std::move(shown), nullptr);
+    showStandardView(view::StandardView::oblique);
+    s.layOut();
+}
+
+bool ViewWidget::hasSketch() const {
+    return state_->isSketch;
+}
+
+void ViewWidget::setWaiting(const QString& forWhat) {
+    state_->waiting = forWhat;
+    update();
+}
+
 void ViewWidget::clearTooth() {
     State& s = *state_;
+    s.isSketch = false;
     setPointer(nullptr, {});
     setSection(std::nullopt);
     setMirrorShown(false);
@@ -345,13 +477,8 @@ void ViewWidget::setPointer(std::shared_ptr<device::PointerMailbox> mailbox, con
             return tooth->withProbe(
                 [&](const measure::ToothProbe& probe) { return probe.cast(ray.originMm, ray.direction); });
         });
-    s.hand->setGoneOver([tooth](const core::Vec3& point, const core::Vec3& axis) {
-        if (!tooth) return 0.0;
-        return tooth->withProbe(
-            [&](const measure::ToothProbe& probe) { return probe.depthAlongMm(point, axis).value_or(0.0); });
-    });
     s.hand->setEye(s.camera, s.viewport());
-    if (s.bur) s.hand->setBur(s.bur->lengthMm(), s.bur->maxRadiusMm());
+    s.feelUncut();
     if (s.tool != Tool::drill) s.hand->freeze(true);
     update();
 }
@@ -370,7 +497,7 @@ messages::HapticSample ViewWidget::sample() const {
 void ViewWidget::setBur(std::shared_ptr<const instrument::Bur> bur) {
     State& s = *state_;
     s.bur = bur;
-    if (s.hand && bur) s.hand->setBur(bur->lengthMm(), bur->maxRadiusMm());
+    s.feelUncut();
     s.render->setBur(std::move(bur));
 }
 
@@ -417,9 +544,7 @@ void ViewWidget::goToBur() {
 
 void ViewWidget::setTool(Tool tool) {
     State& s = *state_;
-    const bool measures = tool == Tool::calliper || tool == Tool::depth || tool == Tool::pulp;
-    if (measures && isLocked("depth")) tool = Tool::drill;
-    if (tool == Tool::section && isLocked("cross-section")) tool = Tool::drill;
+    if (const auto needs = operationOf(tool); needs && s.tooth && !s.may(*needs)) tool = Tool::drill;
     if (tool != Tool::drill && !s.tooth) tool = Tool::drill;
     if (tool == s.tool) return;
     s.end();
@@ -427,6 +552,9 @@ void ViewWidget::setTool(Tool tool) {
     s.calliperStartMm.reset();
     s.pointerMm.reset();
     s.reading.reset();
+    if (s.cross) s.pointer = s.cross = std::nullopt;
+    // Where no mouse points, the keys do.
+    if (s.measures() && !s.pointer) s.putCross({s.viewport().width / 2.0, s.viewport().height / 2.0});
     if (s.hand) s.hand->freeze(tool != Tool::drill);
     s.probe->wantThinnest(tool == Tool::pulp);
     if (tool == Tool::section && !s.section) setSection(s.lastSection);
@@ -442,7 +570,7 @@ Tool ViewWidget::tool() const {
 
 void ViewWidget::setCompare(bool compare) {
     State& s = *state_;
-    if (compare && isLocked("transparency")) compare = false;
+    if (compare && !s.may(Operation::compare)) compare = false;
     if (compare == s.compare) return;
     s.end();
     s.compare = compare;
@@ -456,7 +584,7 @@ bool ViewWidget::isComparing() const {
 
 void ViewWidget::setSection(std::optional<SectionPlace> place) {
     State& s = *state_;
-    if (place && (isLocked("cross-section") || !s.tooth)) place.reset();
+    if (place && (!s.tooth || !s.may(Operation::section))) place.reset();
     if (place) {
         if (!std::exchange(s.sectionPlaced, true)) place->offsetMm = s.bounds.centre()[axisAcross(place->direction)];
         const int axis = axisAcross(place->direction);
@@ -479,6 +607,10 @@ std::optional<SectionPlace> ViewWidget::section() const {
 void ViewWidget::setMirrorShown(bool shown) {
     State& s = *state_;
     if (shown == s.mirrorCentreMm.has_value() || (shown && !s.tooth)) return;
+    if (shown && !s.may(Operation::mirror)) {
+        emit mirrorChanged(false);
+        return;
+    }
     s.mirrorCentreMm.reset();
     if (shown) {
         // Over the tooth's far side in the picture, where the handpiece is not: there it shows what one cannot see.
@@ -505,20 +637,34 @@ void ViewWidget::clearMeasurements() {
     update();
 }
 
-void ViewWidget::setLocked(const std::vector<std::string>& helps) {
+void ViewWidget::setPulpLimits(const measure::PulpLimits& limits) {
+    state_->pulpLimits = limits;
+    update();
+}
+
+OverlayState ViewWidget::written() const {
+    return state_->overlay();
+}
+
+void ViewWidget::setPermissions(const station::Permissions& permissions) {
     State& s = *state_;
-    s.locked = {helps.begin(), helps.end()};
-    if (isLocked("depth")) {
-        clearMeasurements();
-        if (s.tool == Tool::calliper || s.tool == Tool::depth || s.tool == Tool::pulp) setTool(Tool::drill);
-    }
-    if (isLocked("cross-section")) setSection(std::nullopt);
-    if (isLocked("transparency")) setCompare(false);
+    s.permissions = permissions;
+    std::erase_if(s.measurements, [&s](const Measurement& one) { return !s.allows(operationOf(one.kind)); });
+    if (const auto needs = operationOf(s.tool); needs && !s.allows(*needs)) setTool(Tool::drill);
+    if (!s.allows(Operation::section)) setSection(std::nullopt);
+    if (!s.allows(Operation::compare)) setCompare(false);
+    if (!s.allows(Operation::mirror)) setMirrorShown(false);
+    if (!s.allows(Operation::depthStop)) setStop(std::nullopt);
     s.wish();
     update();
 }
-bool ViewWidget::isLocked(std::string_view help) const {
-    return state_->locked.find(help) != state_->locked.end();
+const station::Permissions& ViewWidget::permissions() const {
+    return state_->permissions;
+}
+
+bool ViewWidget::State::may(Operation operation) {
+    if (permissions.locks(operation)) emit widget->refused(operation);
+    return allows(operation);
 }
 
 void ViewWidget::setLegendShown(bool shown) {
@@ -528,6 +674,10 @@ void ViewWidget::setLegendShown(bool shown) {
 void ViewWidget::setSectionBarShown(bool shown) {
     state_->sectionBarShown = shown;
     state_->layOut();
+}
+
+void ViewWidget::addStrip(QWidget* strip) {
+    state_->strips->add(strip);
 }
 
 void ViewWidget::setLoad(double loadN) {
@@ -541,6 +691,7 @@ void ViewWidget::setLoad(double loadN) {
 void ViewWidget::setStop(std::optional<double> depthMm) {
     if (!hand()) return;
     const std::optional<double> before = hand()->stopMm();
+    if (depthMm && !state_->may(Operation::depthStop)) depthMm.reset();
     hand()->setStop(depthMm);
     if (hand()->stopMm()) state_->lastStopMm = *hand()->stopMm();
     update();
@@ -610,6 +761,9 @@ LatencyReport ViewWidget::latency() const {
 void ViewWidget::resetLatency() {
     state_->render->resetLatency();
 }
+view::Look ViewWidget::shownLook() const {
+    return state_->effectiveLook();
+}
 QString ViewWidget::rendererDescription() const {
     return state_->render->description();
 }
@@ -624,7 +778,7 @@ QSize ViewWidget::minimumSizeHint() const {
 void ViewWidget::paintEvent(QPaintEvent*) {
     QPainter painter(this);
     const State& s = *state_;
-    if (s.frame && s.problem.isEmpty() && s.tooth) {
+    if (s.frame && s.problem.isEmpty() && (s.tooth || s.isSketch)) {
         painter.drawImage(rect(), s.frame->image);
     } else {
         const auto& top = s.look.backgroundTop;

@@ -14,6 +14,7 @@
 #include "desktop/view/key_bindings.h"
 #include "desktop/view/latency.h"
 #include "desktop/view/measuring.h"
+#include "desktop/view/overlay.h"
 #include "handpiece/base/messages/haptic_sample.h"
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/model/tooth/tooth.h"
@@ -22,10 +23,13 @@
 #include "handpiece/senses/view/renderer.h"
 #include "handpiece/tick/device/pointer_device.h"
 #include "station/live_tooth.h"
+#include "station/permissions.h"
 #include "station/pointer_hand.h"
 #include "station/sitting.h"
 
 namespace handpiece::desktop {
+
+struct OverlayState;
 
 /// A widget for one tooth at a time. It draws in a thread of its own, only when something has changed, and never waits
 /// for the tick. Without OpenGL it says so in its place, and all the rest goes on.
@@ -41,6 +45,11 @@ class ViewWidget : public QWidget {
     /// in a replay, where setSample() says where the bur is. Takes pointer and measurements away, fits the camera.
     void setTooth(std::shared_ptr<station::LiveTooth> liveTooth, const tooth::Case& toothCase,
                   std::shared_ptr<station::SampleFeed> feed);
+    /// Something to look at until the tooth is there: nothing of it can be touched.
+    void showSketch(const tooth::Case& sketch);
+    [[nodiscard]] bool hasSketch() const;
+    /// What is said where there is no tooth yet; empty: that none is open.
+    void setWaiting(const QString& forWhat);
     void clearTooth();
     [[nodiscard]] bool hasTooth() const;
     /// Mouse and keyboard move the bur from now on. Null: they only turn the view (replay, or a real device).
@@ -77,13 +86,18 @@ class ViewWidget : public QWidget {
     void setMirrorShown(bool shown);
     [[nodiscard]] bool isMirrorShown() const;
     void clearMeasurements();
-    /// Helps locked by the exercise, of tooth::kHelps: "depth" (measuring), "tissue-colours" (legend and the textbook
-    /// palettes), "cross-section", "transparency" (ghost, hidden tissues). What they show goes away and stays away.
-    void setLocked(const std::vector<std::string>& helps);
-    [[nodiscard]] bool isLocked(std::string_view help) const;
+    /// From which thickness over the pulp on a reading is green, and under which it is red.
+    void setPulpLimits(const measure::PulpLimits& limits);
+    /// All that is written and drawn on the picture now.
+    [[nodiscard]] OverlayState written() const;
+    /// What is not allowed goes away and stays away, whoever asks for it.
+    void setPermissions(const station::Permissions& permissions);
+    [[nodiscard]] const station::Permissions& permissions() const;
     void setLegendShown(bool shown);
     /// The bar by which a section is placed; without it somebody else has such controls.
     void setSectionBarShown(bool shown);
+    /// Shown over the picture, which keeps its size: messages, progress.
+    void addStrip(QWidget* strip);
 
     // The pointer's settings.
 
@@ -103,6 +117,8 @@ class ViewWidget : public QWidget {
     [[nodiscard]] QImage snapshot();
     [[nodiscard]] LatencyReport latency() const;
     void resetLatency();
+    /// As it is drawn: look() without what is not allowed.
+    [[nodiscard]] view::Look shownLook() const;
     /// What draws, as Renderer::description(); empty until the first picture, and without OpenGL.
     [[nodiscard]] QString rendererDescription() const;
 
@@ -126,6 +142,7 @@ class ViewWidget : public QWidget {
     void compareChanged(bool compare);
     void sectionChanged(bool shown);  ///< it came, went or was moved
     void mirrorChanged(bool shown);
+    void refused(handpiece::station::Operation operation);  ///< the exercise locks it
 
   protected:
     bool event(QEvent* event) override;

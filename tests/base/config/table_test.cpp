@@ -77,5 +77,43 @@ TEST(Table, TellsFileLineAndKey) {
     EXPECT_THAT(errorOf([] { (void)Table::read("/nowhere/x.toml"); }), HasSubstr("no such file"));
 }
 
+/// `piece` as often as fills a text of half a megabyte.
+std::string manyOf(const std::string& piece, std::size_t bytes = 500'000) {
+    std::string text;
+    while (text.size() < bytes)
+        text += piece;
+    return text;
+}
+
+TEST(Table, TablesInTablesWithoutEndAreRefused) {
+    const auto parse = [](const std::string& text) { return errorOf([&] { (void)Table::parse(text, "f.toml"); }); };
+    const auto isRefused = AllOf(HasSubstr("f.toml"), HasSubstr("in one another"));
+    const std::string deep[] = {manyOf("a.") + "a = 1",
+                                "[" + manyOf("a.") + "a]",
+                                "[[" + manyOf("a . ") + "a]]",
+                                manyOf(R"("a.b#" . 'c d\'.)") + "e = 1",
+                                "x = { " + manyOf("a.") + "b = 1 }",
+                                "x = " + manyOf("["),
+                                "x = " + manyOf("[{a.b.c="),
+                                "x = " + manyOf("{a=")};
+    for (const std::string& text : deep)
+        EXPECT_THAT(parse(text), isRefused) << text.substr(0, 30);
+    // Strings hide nothing.
+    for (const char* before : {R"(s = "\"")", R"(s = '\')", R"(s = "")", "s = ''", "# \"", R"(s = """\"""")",
+                               R"(s = """a""""")", "s = '''\n\\'''", "s = \"\"\"\n'\n#\"\"\"", R"(s = """""")"})
+        EXPECT_THAT(parse(before + ("\n" + manyOf("a.")) + "a = 1"), isRefused) << before;
+    // And are no keys themselves.
+    const std::string prose = manyOf("One. Two [three] {four}. ", 5000);
+    EXPECT_EQ(Table::parse("s = \"" + prose + "\"\nt = '''\n" + prose + "''' # " + prose, "f").text("s"), prose);
+    EXPECT_EQ(parse("a = [\n" + manyOf("[1.5, 2.5],\n") + "]\n"), "");
+    EXPECT_EQ(parse("a." + manyOf("b.", 20) + "c = 1"), "");
+}
+
+TEST(Table, OnlyTextsOfDecentSizeAndPlainFilesAreRead) {
+    EXPECT_THAT(errorOf([] { (void)Table::parse("#" + std::string(Table::kMostBytes, ' '), "f.toml"); }),
+                AllOf(HasSubstr("f.toml"), HasSubstr("more than")));
+    EXPECT_THAT(errorOf([] { (void)Table::read("/dev/zero"); }), HasSubstr("not a plain file"));
+}
+
 }  // namespace
 }  // namespace handpiece::config

@@ -322,6 +322,45 @@ TEST(MeshIo, ObjPolygonsContinuationsAndErrors) {
     EXPECT_THAT(errorOf("v 1 2\n", MeshFormat::obj), HasSubstr("fewer than three"));
 }
 
+TEST(MeshIo, TextCutShortIsRefusedOrTold) {
+    const TriangleMesh mesh = floatSphere();
+    std::string plain, slashed;
+    for (const Vec3& v : mesh.vertices)
+        plain += fmt::format("v {} {} {}\n", v.x(), v.y(), v.z());
+    slashed = plain + "vn 0 0 1\n";
+    for (const Triangle& t : mesh.triangles) {
+        plain += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+        slashed += fmt::format("f {}//1 {}//1 {}//1\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    }
+    const std::string ply = fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face "
+        "1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0.25\n3 0 1 2\n");
+    for (const std::string& text : {plain, slashed, asciiStl(mesh), ply})
+        for (std::size_t cut = 1; cut<text.size(); cut += text.size()> 1000 && cut + 200 < text.size() ? 7 : 1) {
+            if (text[cut - 1] == '\n' && text[0] == 'v') continue;  // between two lines nobody can tell
+            ReadNotes notes;
+            try {
+                const TriangleMesh read = fromText(text.substr(0, cut), MeshFormat::unknown, &notes);
+                // What is whole but for its last end of line, or the name after "endsolid", may pass.
+                if (notes.empty()) {
+                    ASSERT_EQ(read.triangles.size(), mesh.triangles.size()) << text.substr(0, 5) << cut;
+                }
+            } catch (const core::Error&) {
+            }
+        }
+    const std::size_t half = plain.find('\n', plain.find("f ") + 500);
+    EXPECT_THAT(errorOf(plain.substr(0, half - 1)), HasSubstr("the file ends in the middle of line"));
+    EXPECT_THAT(errorOf(plain.substr(0, half - 7)), HasSubstr("the file ends in the middle of line"));
+    ReadNotes notes;
+    EXPECT_NO_THROW((void)fromText(plain.substr(0, half + 1), MeshFormat::obj, &notes));
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_THAT(notes[0], HasSubstr("vertices are in no face"));
+    EXPECT_THAT(errorOf("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n"),
+                HasSubstr("line 5 has fewer than three corners"));
+    const std::string stl = asciiStl(mesh);
+    EXPECT_THAT(errorOf(stl.substr(0, stl.rfind("endsolid"))), HasSubstr("without \"endsolid\""));
+}
+
 TEST(MeshIo, ByteOrderMarksAreSkipped) {
     const std::string mark = "\xef\xbb\xbf", square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
     EXPECT_EQ(fromText(mark + square, MeshFormat::obj).vertices.size(), 3u);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/base/geometry/repair.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/geometry/meshes.h"
@@ -229,6 +230,55 @@ TEST(Repair, RefusesWhatCannotBeMended) {
     before = sheet;
     EXPECT_THROW(repair(sheet), core::Error);
     EXPECT_EQ(sheet.triangles, before.triangles) << "the input stays as it was";
+}
+
+TEST(Repair, RefusesToLoseMoreThanAHundredth) {
+    // A flat wing of a tenth of the ball's area hangs on one of its edges: no small fin, and nothing to close.
+    const TriangleMesh whole = sphereMesh(Vec3::Zero(), 5, 12);
+    TriangleMesh winged = whole;
+    const std::uint32_t a = whole.triangles[0][0], b = whole.triangles[0][1],
+                        c = static_cast<std::uint32_t>(whole.vertices.size()), d = c + 1;
+    const Vec3 along = whole.vertices[b] - whole.vertices[a];
+    const Vec3 out = (0.1 * surfaceAreaMm2(whole) / along.norm()) * whole.vertices[a].normalized();
+    winged.vertices.push_back(whole.vertices[a] + out);
+    winged.vertices.push_back(whole.vertices[b] + out);
+    winged.triangles.push_back({a, b, d});
+    winged.triangles.push_back({a, d, c});
+    const TriangleMesh before = winged;
+    try {
+        repair(winged);
+        FAIL() << "lost more than a hundredth without a word";
+    } catch (const core::Error& e) {
+        EXPECT_THAT(e.what(), testing::HasSubstr("would lose"));
+    }
+    EXPECT_EQ(winged.triangles, before.triangles);
+
+    // A ball in crumbs: each is debris, all together are not.
+    TriangleMesh crumbs = test::soup(whole);
+    std::mt19937_64 generator(test::seed());
+    for (std::size_t v = 0; v < crumbs.vertices.size() / 2; ++v)
+        crumbs.vertices[v] += 0.01 * test::randomDirection(generator);
+    try {
+        repair(crumbs);
+        FAIL() << "half a ball was debris";
+    } catch (const core::Error& e) {
+        EXPECT_THAT(e.what(), testing::HasSubstr("in pieces"));
+    }
+}
+
+TEST(Repair, TellsWhatItTookAway) {
+    const TriangleMesh whole = sphereMesh(Vec3::Zero(), 5, 16), speck = sphereMesh({7, 0, 0}, 0.2, 3);
+    TriangleMesh mesh = joined(whole, speck);
+    const Triangle t = mesh.triangles[10];
+    mesh.vertices.push_back(mesh.vertices[t[0]] * 1.1);
+    mesh.triangles.push_back({t[0], t[1], static_cast<std::uint32_t>(mesh.vertices.size() - 1)});
+    const double finMm2 = surfaceAreaMm2(mesh) - surfaceAreaMm2(whole) - surfaceAreaMm2(speck);
+    const RepairReport r = repair(mesh);
+    EXPECT_NEAR(r.removedFinAreaMm2, finMm2, 1e-9);
+    EXPECT_NEAR(r.lostAreaMm2, finMm2, 1e-9);
+    EXPECT_NEAR(r.droppedAreaMm2, surfaceAreaMm2(speck), 1e-9);
+    EXPECT_NEAR(r.droppedVolumeMm3, enclosedVolumeMm3(speck), 1e-9);
+    EXPECT_EQ(mesh.triangles, whole.triangles);
 }
 
 TEST(Repair, ReplacesSmallSpotsThatCross) {

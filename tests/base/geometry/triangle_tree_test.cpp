@@ -7,6 +7,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/geometry/points_beyond.h"
 #include "support/closed_meshes.h"
 #include "support/random.h"
 
@@ -216,31 +217,6 @@ TEST(TriangleTree, TheSameTreeAtAnyThreadCount) {
     EXPECT_EQ(one.pseudonormals(), four.pseudonormals());
 }
 
-TEST(TriangleTree, StorageGivesTheSameAnswersAndIsChecked) {
-    const TriangleMesh mesh = test::bumpyMesh(3, 4.0);
-    const TriangleTree tree(mesh);
-    const TriangleTree again(mesh, tree.storage());
-    std::mt19937_64 g(test::seed());
-    for (int i = 0; i < 500; ++i) {
-        const Vec3 p = randomPoint(g, 6.0);
-        EXPECT_EQ(again.signedDistance(p), tree.signedDistance(p));
-        EXPECT_EQ(again.windingNumber(p), tree.windingNumber(p));
-    }
-    EXPECT_EQ(again.pseudonormals(), tree.pseudonormals());
-    TriangleTree::Storage bad = tree.storage();
-    bad.nodes[0].child[0] = 0;  // a circle
-    EXPECT_THROW(TriangleTree(mesh, std::move(bad)), core::Error);
-    bad = tree.storage();
-    bad.nodes.back().child[0] = ~static_cast<std::int32_t>(mesh.triangles.size());
-    EXPECT_THROW(TriangleTree(mesh, std::move(bad)), core::Error);
-    bad = tree.storage();
-    bad.order.pop_back();
-    EXPECT_THROW(TriangleTree(mesh, std::move(bad)), core::Error);
-    bad = tree.storage();
-    bad.order[7] = static_cast<std::uint32_t>(mesh.triangles.size());
-    EXPECT_THROW(TriangleTree(mesh, std::move(bad)), core::Error);
-}
-
 TEST(TriangleTree, RefusesWhatIsNoMesh) {
     EXPECT_THROW(TriangleTree(TriangleMesh{}), core::Error);
     TriangleMesh mesh;
@@ -250,6 +226,27 @@ TEST(TriangleTree, RefusesWhatIsNoMesh) {
     mesh.triangles = {{0, 1, 2}};
     mesh.vertices[2].x() = std::nan("");
     EXPECT_THROW(TriangleTree{mesh}, core::Error);
+}
+
+// What is skipped because a neighbour is far from the limit must not matter.
+TEST(PointsBeyond, AreThoseOfEachDistance) {
+    std::mt19937_64 g(test::seed());
+    const TriangleTree tree(test::bumpyMesh(3, 2.0));
+    std::vector<Vec3> points;
+    Vec3 p = Vec3::Zero();  // a walk in steps of very different length, in and out of the surface
+    for (int i = 0; i < 4000; ++i) {
+        p += (i % 5 == 0 ? 0.8 : 0.05) * randomPoint(g, 1.0);
+        if (p.norm() > 4.0) p *= 0.4;
+        points.push_back(p);
+    }
+    for (const double sign : {1.0, -1.0})
+        for (const double mostMm : {0.1, 0.0, -0.3}) {
+            std::vector<std::uint32_t> truth;
+            for (std::uint32_t i = 0; i < points.size(); ++i)
+                if (sign * tree.signedDistance(points[i]) > mostMm) truth.push_back(i);
+            ASSERT_GT(truth.size(), 100u);
+            EXPECT_EQ(pointsBeyond(tree, points, mostMm, sign), truth);
+        }
 }
 
 }  // namespace

@@ -223,11 +223,18 @@ TEST_P(Conformance, wrongOrderIsRefusedOrHarmless) {
         driver->stop();
         Probe probe;
         EXPECT_EQ(test::errorIdOf([&] { driver->start(probe); }), "device-stopped") << "stop() has closed it";
+        if (traits.calibrates) {
+            EXPECT_EQ(test::errorIdOf([&] { (void)driver->calibrate(); }), "not-started") << "stopped";
+        }
     }
     {
         auto driver = adaptor->open(0);
         if (traits.calibrates) {
-            EXPECT_NE(errorOf([&] { (void)driver->calibrate(); }), "") << "not started";
+            const auto said = test::errorFrom([&] { (void)driver->calibrate(); });
+            ASSERT_TRUE(said.has_value()) << "not started";
+            EXPECT_EQ(said->id(), "not-started");
+            EXPECT_EQ(said->problem(), "the device cannot be calibrated before it is connected");
+            EXPECT_EQ(said->where(), driver->info().model);
         } else {
             EXPECT_EQ(driver->calibration(), link::CalibrationState::notNeeded);
         }

@@ -22,6 +22,7 @@ namespace {
 
 using link::Trouble;
 using test::errorOf;
+using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
@@ -108,6 +109,11 @@ TEST(WebSocketClient, whatIsNoServiceIsToldInWords) {
         EXPECT_THAT(errorAt(url), HasSubstr("no address")) << url;
     EXPECT_THAT(errorAt("ws://127.0.0.1:1"), HasSubstr("nothing answers there"));
     EXPECT_THAT(errorAt("ws://127.0.0.1:1"), HasSubstr("HANDPIECE_HAPLY_URL")) << "the remedy";
+    for (const char* url : {"ws://192.0.2.1:1", "ws://[2001:db8::1]:1", "ws://0.0.0.0:1"})
+        EXPECT_THAT(errorAt(url), AllOf(HasSubstr("not on this machine"), HasSubstr("HANDPIECE_HAPLY_REMOTE"))) << url;
+    ::setenv("HANDPIECE_HAPLY_REMOTE", "1", 1);
+    EXPECT_THAT(errorAt("ws://192.0.2.1:1"), HasSubstr("nothing answers there"));
+    ::unsetenv("HANDPIECE_HAPLY_REMOTE");
     EXPECT_THAT(errorAt("ws://there.is.no.such.host.invalid:1"), HasSubstr("not known"));
     EXPECT_THAT(errorAt(Stranger("HTTP/1.1 404 Not Found\r\n\r\n", false).url()), HasSubstr("404"));
     EXPECT_THAT(errorAt(Stranger("\x01\x02\x7f", true).url()), HasSubstr("another program"));

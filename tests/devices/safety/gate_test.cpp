@@ -115,6 +115,26 @@ TEST(Gate, limitsTheSlopeByTheTimeThatHasPassed) {
     EXPECT_NEAR(bench.next().forceN[1], 0.2 - 0.05, 1e-9);
 }
 
+TEST(Gate, limitsTheSlopeOfTorqueAsThatOfForce) {
+    device::Capability capability;
+    capability.maxForceN = 4.0;
+    capability.maxForceSlopeNPerS = 2000.0;
+    capability.maxTorqueNmm = 100.0;
+    const GateSettings settings = gateSettingsFor(capability);
+    EXPECT_NEAR(settings.maxTorqueSlopeNmmPerS, 50'000.0, 1e-9);  // both from none to the largest in 2 ms
+    Bench bench(settings);
+    bench.command.torqueNmm = {0, 100, 0};
+    bench.run(1.0);
+    EXPECT_NEAR(bench.next().torqueNmm[1], 100.0, 1e-9);
+    EXPECT_FALSE(bench.gate.status().slopeLimited);
+    bench.command.torqueNmm = {0, -100, 0};
+    EXPECT_NEAR(bench.next().torqueNmm[1], 50.0, 1e-9);
+    EXPECT_TRUE(bench.gate.status().slopeLimited);
+    bench.periodNs = kMs / 2;
+    EXPECT_NEAR(bench.next().torqueNmm[1], 25.0, 1e-9);
+    EXPECT_EQ(length(bench.next().forceN), 0.0);
+}
+
 TEST(Gate, fadesInFromZeroAtTheFirstForce) {
     Bench bench;
     bench.run(2.0);  // well for long, but nothing was felt yet
@@ -362,6 +382,7 @@ TEST(Gate, whateverComesInTheAnswerIsWithinTheLimits) {
         settings.maxForceN = test::uniform(random, 0.5, 20.0);
         settings.maxTorqueNmm = round % 2 ? test::uniform(random, 0.0, 300.0) : 0.0;
         settings.maxSlopeNPerS = test::uniform(random, 100.0, 5000.0);
+        settings.maxTorqueSlopeNmmPerS = 20.0 * settings.maxSlopeNPerS;
         settings.fadeInS = test::uniform(random, 0.0, 0.05);
         settings.clearAfterS = test::uniform(random, 0.0, 0.02);
         Bench bench(settings, test::uniform(random, 300.0, 8000.0));
@@ -408,6 +429,10 @@ TEST(Gate, whateverComesInTheAnswerIsWithinTheLimits) {
                                              out.forceN[2] - before.forceN[2]);
             if (bench.gate.status().trouble == Trouble::none) {
                 ASSERT_LE(change, settings.maxSlopeNPerS * std::max(0.0, elapsedS) + 1e-9);
+                const double turn =
+                    std::hypot(out.torqueNmm[0] - before.torqueNmm[0], out.torqueNmm[1] - before.torqueNmm[1],
+                               out.torqueNmm[2] - before.torqueNmm[2]);
+                ASSERT_LE(turn, settings.maxTorqueSlopeNmmPerS * std::max(0.0, elapsedS) + 1e-7);
                 pushed += force > 0.0;
             } else {
                 ASSERT_LE(force, length(before.forceN) + 1e-12);  // falls, and in its own direction
@@ -448,6 +473,7 @@ TEST(Gate, refusesSettingsThatGuardNothing) {
     refuses([](GateSettings& s) { s.maxForceN = std::nan(""); });
     refuses([](GateSettings& s) { s.maxSlopeNPerS = std::numeric_limits<double>::infinity(); });
     refuses([](GateSettings& s) { s.maxTorqueNmm = -1.0; });
+    refuses([](GateSettings& s) { s.maxTorqueSlopeNmmPerS = std::nan(""); });
     refuses([](GateSettings& s) { s.releaseS = 1.0; });
     refuses([](GateSettings& s) { s.commandTimeoutS = 0.0; });
     refuses([](GateSettings& s) { s.readingTimeoutS = 2.0; });

@@ -9,6 +9,7 @@
 #include "base/geometry/meshes.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/model/tooth/package.h"
 #include "support/random.h"
 
 namespace handpiece::tooth {
@@ -103,6 +104,61 @@ TEST_F(AttemptTest, ComesBackAsItWasSavedWithItsCase) {
     EXPECT_EQ(readAttempt(folder() / "attempts" / "one").undoDepth, 3);
 }
 
+TEST_F(AttemptTest, HandedInItBringsItsRecordingsAlong) {
+    Attempt a = sample();
+    a.handedIn = true;
+    a.recordings = {{"monday.h5", true}, {"tuesday.h5", false}};
+    const std::vector<std::byte> bytes(70000, std::byte{7});
+    const fs::path place = folder() / "in.handpiece";
+    writeAttempt(a, place, &tooth_, {{"monday.h5", bytes}});
+    const OpenAttempt open = openAttempt(place);
+    expectSame(open.attempt, a);
+    EXPECT_TRUE(open.attempt.handedIn);
+    EXPECT_EQ(open.attempt.recordings, a.recordings);
+    EXPECT_EQ(readAttempt(place).recordings, a.recordings);
+    EXPECT_EQ(readRecording(place, "monday.h5"), bytes);
+    EXPECT_THAT(errorOf([&] { (void)readRecording(place, "tuesday.h5"); }), HasSubstr("no recording"));
+    EXPECT_THAT(errorOf([&] { (void)readRecording(place, "../attempt.toml"); }), HasSubstr("is no recording"));
+    // As a folder, too.
+    writeAttempt(a, folder() / "in", nullptr, {{"monday.h5", bytes}});
+    EXPECT_EQ(readAttempt(folder() / "in").recordings, a.recordings);
+    EXPECT_EQ(readRecording(folder() / "in", "monday.h5"), bytes);
+    // Saved and not handed in: what was recorded is named.
+    a.handedIn = false;
+    writeAttempt(a, place, &tooth_);
+    EXPECT_FALSE(readAttempt(place).handedIn);
+    EXPECT_EQ(readAttempt(place).recordings, (std::vector<Attempt::Recording>{{"monday.h5"}, {"tuesday.h5"}}));
+    // Nothing to say: the files are those of before.
+    writeAttempt(sample(), place, &tooth_);
+    EXPECT_EQ(readPackage(place).count(kRecordingsFile), 0u);
+}
+
+TEST_F(AttemptTest, ARecordingThatIsNotItsOwnOrTooMuchIsRefused) {
+    Attempt a = sample();
+    const fs::path place = folder() / "in.handpiece";
+    EXPECT_THAT(errorOf([&] { writeAttempt(a, place, &tooth_, {{"other.h5", {}}}); }), HasSubstr("no recording of"));
+    a.recordings = {{"big.h5"}};
+    EXPECT_THAT(errorOf([&] {
+                    writeAttempt(a, place, &tooth_, {{"big.h5", std::vector<std::byte>(kMostRecordingBytes + 1)}});
+                }),
+                HasSubstr("256 MB"));
+    EXPECT_FALSE(fs::exists(place));
+    writeAttempt(a, place, &tooth_);
+    PackageFiles files = readPackage(place);
+    const auto with = [&](const std::string& text) {
+        files[kRecordingsFile].resize(text.size());
+        std::transform(text.begin(), text.end(), files[kRecordingsFile].begin(),
+                       [](char c) { return static_cast<std::byte>(c); });
+        writePackage(place, files);
+        return errorOf([&] { (void)readAttempt(place); });
+    };
+    EXPECT_THAT(with("format = 1\nrecordings = [\"../case.h5\"]"), HasSubstr("plain file name"));
+    EXPECT_THAT(with("format = 1\nrecordings = [\"attempt.toml\"]"), HasSubstr("plain file name"));
+    EXPECT_THAT(with("format = 2"), HasSubstr("newer Handpiece"));
+    EXPECT_THAT(with("format = 1\nmarks = 3"), HasSubstr("marks"));
+    EXPECT_THAT(with("format = 1\n#" + std::string(300 << 10, 'x')), HasSubstr("more than"));
+}
+
 TEST_F(AttemptTest, MovesTogetherWithItsCase) {
     writeAttempt(sample(), folder() / "attempts" / "one");
     EXPECT_EQ(errorOf([&] {
@@ -130,6 +186,53 @@ TEST_F(AttemptTest, PackedWithItsCaseItNeedsNothingElse) {
     other.parts[0].priority = 11;
     EXPECT_THAT(errorOf([&] { writeAttempt(sample(), place, &other); }), HasSubstr("not the case"));
     EXPECT_THAT(errorOf([&] { writeAttempt(sample(), folder() / "f", &tooth_); }), HasSubstr("one file"));
+}
+
+TEST_F(AttemptTest, WhatIsPassedOnTellsNothingOfTheMachine) {
+    const fs::path place = folder() / "sent" / "whole.handpiece";
+    fs::create_directory(folder() / "sent");
+    writeAttempt(sample(), place, &tooth_);
+    const PackageFiles content = readPackage(place);
+    const std::vector<std::byte>& bytes = content.at("attempt.toml");
+    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    EXPECT_THAT(text, AllOf(HasSubstr("case = \"whole.handpiece\""), testing::Not(HasSubstr("molar\"\ncase_key"))));
+    EXPECT_THAT(text, testing::Not(HasSubstr("..")));
+    const OpenAttempt open = openAttempt(place);
+    EXPECT_EQ(open.attempt.caseFile, place) << "its case is in itself";
+    // Taken out of its file, it still finds its case there.
+    writeAttempt(open.attempt, folder() / "out");
+    EXPECT_EQ(openAttempt(folder() / "out").toothCase.name, "molar");
+}
+
+TEST_F(AttemptTest, NamesItsCaseFromWhereItLies) {
+    writeAttempt(sample(), folder() / "one");
+    const fs::path file = folder() / "one" / "attempt.toml";
+    const auto bytes = core::readFile(file);
+    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const auto opened = [&](const std::string& place) {
+        std::string changed = text;
+        const std::size_t at = changed.find("case = \"") + 8;
+        changed.replace(at, changed.find('"', at) - at, place);
+        core::writeFile(file, changed);
+        return errorOf([&] { (void)openAttempt(folder() / "one"); });
+    };
+    EXPECT_EQ(opened("../cases/molar"), "");
+    EXPECT_THAT(opened("/dev/zero"), HasSubstr("from where the attempt lies"));
+    std::string up;
+    for (int i = 0; i < 40; ++i)
+        up += "../";
+    EXPECT_THAT(opened(up + "dev/zero"), HasSubstr("not a plain file"));
+    EXPECT_NE(opened(up + "etc/hostname"), "");
+}
+
+TEST_F(AttemptTest, SavedAgainItIsSharedAsBefore) {
+    const fs::path one = folder() / "one";
+    writeAttempt(sample(), one);
+    fs::permissions(one, fs::perms::owner_all);
+    fs::permissions(one / "tooth.state", fs::perms::owner_read | fs::perms::owner_write);
+    writeAttempt(sample(), one);
+    EXPECT_EQ(fs::status(one).permissions(), fs::perms::owner_all);
+    EXPECT_EQ(fs::status(one / "tooth.state").permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
 TEST_F(AttemptTest, ACaseThatChangedOrVanishedIsTold) {
@@ -169,6 +272,8 @@ TEST_F(AttemptTest, WhatIsDamagedIsTold) {
     EXPECT_THAT(with("format = 1", "form = 1"), HasSubstr("format"));
     EXPECT_THAT(with("voxel_mm = 0.025", "voxel_mm = -0.025"), HasSubstr("-0.025"));
     EXPECT_THAT(with("voxel_mm = 0.025", "voxel_mm = 0"), HasSubstr("above zero"));
+    EXPECT_THAT(with("voxel_mm = 0.025", "voxel_mm = 1e-9"), HasSubstr("0.005"));
+    EXPECT_THAT(with("voxel_mm = 0.025", "voxel_mm = 1e9"), HasSubstr("0.005"));
     EXPECT_THAT(with("elapsed_s = 61.25", "elapsed_s = inf"), HasSubstr("inf"));
     EXPECT_THAT(with("undo_depth = 12", "undo_depth = -1"), HasSubstr("-1"));
     EXPECT_THAT(with("enamel = 0", "enamel = -0"), HasSubstr("below zero"));

@@ -65,6 +65,21 @@ TEST(CaseExercise, ComesBackFromAFolderAndFromOneFile) {
     EXPECT_THAT(errorOf([&] { (void)readCase(temporary.path() / "other.handpiece"); }), HasSubstr("no case.toml"));
 }
 
+TEST(CaseExercise, KnowsEveryLockAndGoesIntoATextAndBack) {
+    Exercise e;
+    e.title = {{"en", "Class I"}};
+    e.allowedBurs = {"330"};
+    e.lockedHelps.assign(kHelps.begin(), kHelps.end());
+    for (const char* help : {"mirror", "scale-bar", "chart", "calliper", "compare"})
+        EXPECT_THAT(e.lockedHelps, testing::Contains(help));
+    const Exercise back = parseExercise(exerciseText(e), "here");
+    EXPECT_EQ(back.lockedHelps, e.lockedHelps);
+    EXPECT_EQ(back.title, e.title);
+    EXPECT_EQ(back.allowedBurs, e.allowedBurs);
+    EXPECT_THAT(errorOf([] { (void)parseExercise("[exercise]\nlocked_helps = [\"miror\"]", "here"); }),
+                AllOf(HasSubstr("here: "), HasSubstr("line 2"), HasSubstr("no help \"miror\"")));
+}
+
 TEST(CaseExercise, SpeaksTheStudentsLanguage) {
     const Texts texts{{"en", "tooth"}, {"pt", "dente"}, {"de", "Zahn"}};
     EXPECT_EQ(inLanguage(texts, "de"), "Zahn");

@@ -78,6 +78,32 @@ TEST_F(PrepareTooth, DamagedCacheIsRebuiltAndReplaced) {
     EXPECT_TRUE(prepareTooth(toothCase, settings)->fromCache);
 }
 
+TEST_F(PrepareTooth, AForgedCacheIsBuiltAnew) {
+    const auto built = prepareTooth(toothCase, settings);
+    const fs::path file = fs::directory_iterator(toothCase.source / ".handpiece-cache")->path();
+    const std::vector<std::byte> good = core::readFile(file);
+    // All of the surface a tenth of a millimetre too high, and every sum as it should be.
+    const auto shifted = ToothField::fromFunction(
+        built->tree.bounds().grown(settings.field.bandOutMm + settings.field.voxelMm), settings.field,
+        [&](const core::Vec3& p) { return built->tree.signedDistance(p - core::Vec3(0, 0, 0.1)); });
+    const std::uint64_t key = cacheKey(toothCase, settings.field);
+    core::writeFile(file, encodeField(shifted, key));
+    auto again = prepareTooth(toothCase, settings);
+    EXPECT_FALSE(again->fromCache);
+    EXPECT_EQ(again->field.stateHash(), built->field.stateHash());
+    EXPECT_EQ(core::readFile(file), good) << "and it is mended";
+    // Another's file is let alone: the tooth is kept where this user's own caches lie.
+    const fs::path theirs = folder.path() / "theirs";
+    fs::rename(file, theirs);
+    fs::create_symlink(theirs, file);
+    again = prepareTooth(toothCase, settings);
+    EXPECT_FALSE(again->fromCache);
+    EXPECT_EQ(again->field.stateHash(), built->field.stateHash());
+    EXPECT_EQ(filesIn(folder.path() / "user" / "handpiece"), 1u);
+    EXPECT_TRUE(fs::is_symlink(file));
+    EXPECT_TRUE(prepareTooth(toothCase, settings)->fromCache);
+}
+
 TEST_F(PrepareTooth, WithoutCacheNothingIsWritten) {
     settings.useCache = false;
     EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);

@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "cut_support.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/tooth/field_builder.h"
 #include "handpiece/model/tooth/part_tissues.h"
@@ -188,15 +191,18 @@ TEST(TissueCache, GivesBackTheMapOrNothing) {
     const TissueMap map = TissueMap::fromFunctions(field, std::span(&part, 1), Tissue::enamel);
     const handpiece::test::TemporaryFolder folder;
     const std::filesystem::path file = folder.path() / "x.tissues";
-    EXPECT_FALSE(readTissueFile(file, field, 7));
+    EXPECT_FALSE(readTissueFile(file, field, 7, {Tissue::enamel, Tissue::dentine}));
     const std::vector<std::byte> good = encodeTissues(map, 7);
-    core::writeFile(file, good);
-    const std::optional<TissueMap> back = readTissueFile(file, field, 7);
+    const auto write = [&file](const std::vector<std::byte>& data) {
+        core::writeFile(file, data, {.ownerOnly = true, .lasting = false});
+    };
+    write(good);
+    const std::optional<TissueMap> back = readTissueFile(file, field, 7, {Tissue::enamel, Tissue::dentine});
     ASSERT_TRUE(back);
     expectSame(*back, map, field);
     EXPECT_EQ(back->at({0.59, 0, 0}), Tissue::dentine);
-    EXPECT_FALSE(readTissueFile(file, field, 8));
-    EXPECT_FALSE(readTissueFile(file, ballField(1.8), 7));
+    EXPECT_FALSE(readTissueFile(file, field, 8, {Tissue::enamel, Tissue::dentine}));
+    EXPECT_FALSE(readTissueFile(file, ballField(1.8), 7, {Tissue::enamel, Tissue::dentine}));
     std::mt19937_64 generator(handpiece::test::seed());
     for (int i = 0; i < 200; ++i) {
         std::vector<std::byte> bad = good;
@@ -205,9 +211,80 @@ TEST(TissueCache, GivesBackTheMapOrNothing) {
         } else {
             bad[generator() % (i % 4 == 1 ? bad.size() : std::size_t{64})] ^= std::byte{1} << (generator() % 8);
         }
-        core::writeFile(file, bad);
-        EXPECT_FALSE(readTissueFile(file, field, 7));
+        write(bad);
+        EXPECT_FALSE(readTissueFile(file, field, 7, {Tissue::enamel, Tissue::dentine}));
     }
+}
+
+TEST(TissueCache, SumsThatAreRightProveNothing) {
+    const ToothField field = ballField(1.0);
+    const TissueMap::PartFunction part{[](const Vec3& p) { return p.norm() - 0.6; }, Tissue::dentine, 1};
+    const TissueMap map = TissueMap::fromFunctions(field, std::span(&part, 1), Tissue::enamel);
+    const TissueSet known{Tissue::enamel, Tissue::dentine};
+    const handpiece::test::TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "x.tissues";
+    const std::vector<std::byte> good = encodeTissues(map, 7);
+    // docs/formats/tissue-cache.md
+    constexpr std::size_t kCountsAt = 24, kPayloadHashAt = 48, kHeaderBytes = 64;
+    std::uint64_t counts[3];
+    std::memcpy(counts, &good[kCountsAt], sizeof counts);
+    const std::uint64_t bricks = counts[0], mixed = counts[1], layers = counts[2];
+    const auto readSummed = [&](std::vector<std::byte> data) {
+        const std::uint64_t payload = hashOf(std::span(data).subspan(kHeaderBytes));
+        std::memcpy(&data[kPayloadHashAt], &payload, 8);
+        core::Hasher head;
+        head.add(std::span<const std::byte>(data).first(kHeaderBytes - 8));
+        const std::uint64_t hash = head.value();
+        std::memcpy(&data[kHeaderBytes - 8], &hash, 8);
+        core::writeFile(file, data, {.ownerOnly = true, .lasting = false});
+        return readTissueFile(file, field, 7, known);
+    };
+    ASSERT_TRUE(readSummed(good));
+    const std::size_t ofBrick = kHeaderBytes + 4 * mixed, rest = ofBrick + bricks, count = rest + mixed,
+                      layerTissue = count + mixed, nodes = layerTissue + layers;
+    const auto refused = [&](std::size_t at, auto value, const char* what) {
+        std::vector<std::byte> data = good;
+        std::memcpy(&data[at], &value, sizeof value);
+        EXPECT_FALSE(readSummed(std::move(data))) << what;
+    };
+    std::uint32_t firstMixed = 0;
+    std::memcpy(&firstMixed, &good[kHeaderBytes], 4);
+    std::size_t inside = 0;
+    while (map.ofBrick(static_cast<std::uint32_t>(inside)) == Tissue::none)
+        ++inside;
+    for (const std::uint64_t lie : {std::uint64_t{0}, std::uint64_t{1} << 33, std::uint64_t{1} << 61})
+        for (const std::size_t at : {kCountsAt, kCountsAt + 8, kCountsAt + 16})
+            refused(at, lie, "a count that lies");
+    refused(kHeaderBytes, std::uint32_t{0xffffffffu}, "a brick beyond all");
+    refused(kHeaderBytes + 4, firstMixed, "a brick twice");
+    refused(ofBrick + inside, std::uint8_t{0}, "no tissue inside");
+    refused(ofBrick + inside, std::uint8_t{6}, "a tissue that the tooth has not");
+    refused(ofBrick + firstMixed, std::uint8_t{1}, "a mixed brick of one tissue");
+    refused(rest, std::uint8_t{200}, "a rest that there is not");
+    refused(count, std::uint8_t{0}, "a brick without layers");
+    refused(count, std::uint8_t{255}, "more layers than there are");
+    refused(layerTissue, std::uint8_t{10}, "a layer of what there is not");
+    refused(nodes + 3, std::uint8_t{4}, "a node of another tissue");
+    std::vector<std::byte> swapped = good;
+    for (std::size_t i = 0; i < 729; ++i) {
+        std::byte& node = swapped[nodes + i];
+        node = node == std::byte{1} ? std::byte{2} : std::byte{1};
+    }
+    EXPECT_FALSE(readSummed(swapped)) << "nodes that are not of their layers";
+    // At random: a map that nothing trips over, or none.
+    std::mt19937_64 generator(handpiece::test::seed());
+    for (int i = 0; i < 300; ++i) {
+        std::vector<std::byte> data = good;
+        const std::size_t from = i % 2 == 0 ? kCountsAt : kHeaderBytes, to = i % 2 == 0 ? kPayloadHashAt : data.size();
+        const std::uint64_t anything = generator();
+        std::memcpy(&data[from + generator() % (to - from - 8)], &anything, 1 + generator() % 8);
+        const auto got = readSummed(std::move(data));
+        for (int k = 0; got && k < 30; ++k)
+            EXPECT_TRUE(got->at(randomDirection(generator) * uniform(generator, 0.0, 1.2)) <= Tissue::dentine);
+    }
+    core::writeFile(file, good, {.ownerOnly = true, .lasting = false});
+    std::filesystem::permissions(file, std::filesystem::perms::others_write, std::filesystem::perm_options::add);
+    EXPECT_FALSE(readTissueFile(file, field, 7, known)) << "a file that anybody may have written";
 }
 
 TEST(PrepareCutting, KeepsTheTissuesOfACase) {

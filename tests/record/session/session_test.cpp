@@ -3,8 +3,10 @@
 
 #include <sys/resource.h>
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
+#include <thread>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/record/session/layout.h"
@@ -90,6 +92,90 @@ TEST_F(Session, WhatIsRecordedIsRead) {
         EXPECT_EQ(reader.keyFrameBefore(1000)->tick, 90u);
         EXPECT_FALSE(reader.keyFrameBefore(69));
     }
+}
+
+/// Records i .. i + count, with a key frame and an event, numbered from 0 on.
+void recordPart(session::Recorder& recorder, const std::vector<session::Record>& all, std::size_t from,
+                std::size_t count, std::byte mark) {
+    recorder.event(0, EventName::resume, "on");
+    recorder.keyFrame(0, std::vector<std::byte>(5000, mark));
+    for (std::size_t i = 0; i < count; ++i) {
+        session::Record r = all[from + i];
+        r.tick = i;
+        recorder.pushWaiting(r);
+    }
+}
+
+TEST_F(Session, GoesOnWhereItWasClosed) {
+    // A first part that fills its chunks, and ones that leave the last in pieces.
+    for (const std::size_t parts : {std::size_t{1400}, std::size_t{1001}, std::size_t{1}}) {
+        const auto all = records(9000);
+        {
+            session::Recorder recorder(file(), info());
+            for (std::size_t i = 0; i < parts; ++i)
+                recorder.pushWaiting(all[i]);
+            recorder.event(parts - 1, EventName::end, "{}");
+            recorder.keyFrame(parts - 1, someBytes(70000, 3));
+        }
+        std::uint64_t at = parts;
+        for (const std::size_t more : {std::size_t{2500}, std::size_t{3}, std::size_t{800}}) {
+            session::Recorder recorder(file());
+            EXPECT_EQ(recorder.firstTick(), at);
+            recordPart(recorder, all, at, more, std::byte{9});
+            const session::RecorderStatus status = recorder.close();
+            EXPECT_EQ(status.message, "");
+            EXPECT_EQ(status.lostItems, 0u);
+            at += more;
+        }
+        const session::SessionReader reader(file());
+        EXPECT_TRUE(reader.isComplete());
+        EXPECT_EQ(reader.info().tooth, info().tooth);
+        ASSERT_EQ(reader.size(), at);
+        EXPECT_EQ(reader.records(0, at), std::vector(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(at)));
+        ASSERT_EQ(reader.events().size(), 4u);
+        EXPECT_EQ(reader.events()[1], (session::Event{parts, "resume", "on"}));
+        EXPECT_EQ(reader.keyFrameTicks(), (std::vector<std::uint64_t>{parts - 1, parts, parts + 2500, parts + 2503}));
+        EXPECT_EQ(reader.keyFrame(0).state, someBytes(70000, 3));
+        EXPECT_EQ(reader.keyFrame(3).state, std::vector<std::byte>(5000, std::byte{9}));
+    }
+}
+
+TEST_F(Session, GoesOnWhereItWasCutOffWithoutWhatWasNotDone) {
+    const auto all = records(4000);
+    {
+        session::Recorder recorder(file("whole.h5"), info());
+        for (std::size_t i = 0; i < 1750; ++i)
+            recorder.pushWaiting(all[i]);
+        recorder.event(1300, EventName::strokeBegin);
+        recorder.event(1600, EventName::strokeEnd);
+        recorder.keyFrame(1600, someBytes(900, 3));
+        while (recorder.status().writtenRecords < 1400)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        // As a killed program leaves it: samples up to tick 1399, the rest is told and lost.
+        std::filesystem::copy_file(file("whole.h5"), file());
+    }
+    {
+        const session::SessionReader cut(file());
+        ASSERT_EQ(cut.size(), 1400u);
+        EXPECT_EQ(cut.events().size(), 2u);
+        EXPECT_EQ(cut.endTick(), 1601u);
+    }
+    {
+        session::Recorder recorder(file());
+        EXPECT_EQ(recorder.firstTick(), 1601u);
+        recordPart(recorder, all, 1601, 2000, std::byte{7});
+    }
+    const session::SessionReader reader(file());
+    ASSERT_EQ(reader.size(), 3400u);
+    EXPECT_EQ(reader.records(1399, 2)[0], all[1399]);
+    EXPECT_EQ(reader.records(1399, 2)[1], all[1601]);
+    EXPECT_EQ(reader.records(3399, 1)[0], all[3600]);
+    const std::vector<session::Event> events{{1300, "stroke begin", ""}, {1601, "resume", "on"}};
+    EXPECT_EQ(reader.events(), events);
+    EXPECT_EQ(reader.keyFrameTicks(), std::vector<std::uint64_t>{1601});
+    EXPECT_EQ(reader.keyFrame(0).state.back(), std::byte{7});
+    EXPECT_THROW(session::Recorder(file("none.h5")), core::Error);
 }
 
 TEST_F(Session, TheSameInputGivesTheSameContent) {
@@ -194,6 +280,31 @@ TEST_F(Session, BadPlacesAndCodesAreRefused) {
     }
     EXPECT_THROW(session::Recorder(file("bad.h5"), info(0)), core::Error);
     EXPECT_FALSE(std::filesystem::exists(file("bad.h5")));
+}
+
+TEST_F(Session, NobodyElseMayLookIntoIt) {
+    namespace fs = std::filesystem;
+    constexpr fs::perms kOwn = fs::perms::owner_read | fs::perms::owner_write;
+    const auto record = [&] {
+        session::Recorder recorder(file(), info());
+        EXPECT_EQ(fs::status(file()).permissions(), kOwn) << "while it grows";
+        for (const session::Record& r : records(100))
+            recorder.pushWaiting(r);
+    };
+    record();
+    EXPECT_EQ(fs::status(file()).permissions(), kOwn);
+    // What one shares on purpose stays shared.
+    fs::permissions(file(), fs::perms(0640));
+    { session::Recorder recorder(file(), info()); }
+    EXPECT_EQ(fs::status(file()).permissions(), fs::perms(0640));
+    // A link that lies where the file begins leads nowhere.
+    fs::remove(file());
+    const fs::path other = file().parent_path() / "other", begun = fs::path(file()) += ".begun";
+    std::ofstream(other) << "stays";
+    fs::create_symlink(other, begun);
+    record();
+    EXPECT_EQ(fs::file_size(other), 5u);
+    EXPECT_FALSE(fs::is_symlink(fs::symlink_status(file())));
 }
 
 TEST_F(Session, NothingInTheFileNamesPersonMachineOrPlace) {

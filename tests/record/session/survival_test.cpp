@@ -54,20 +54,30 @@ TEST_P(Survival, EveryMomentOfTheFileIsReadable) {
         all.push_back(session::recordOf(hand.next()));
 
     std::vector<Change> changes;
-    std::size_t begun = 0;
-    {
-        session::SessionWriter writer(folder.path() / "written.h5", {kRateHz, "a", "1", "{}", {}},
-                                      [&](std::uint64_t address, std::span<const unsigned char> data) {
-                                          changes.push_back({address, {data.begin(), data.end()}});
-                                      });
-        begun = changes.size();
-        for (std::size_t i = 0; i < count; ++i) {
+    const auto observe = [&](std::uint64_t address, std::span<const unsigned char> data) {
+        changes.push_back({address, {data.begin(), data.end()}});
+    };
+    const auto write = [&](session::SessionWriter& writer, std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
             writer.append(all[i]);
             if (i % 50 == 7) writer.append(session::Event{i, "stroke begin", std::string(i % 900, 'e')});
             if (i % 200 == 9) writer.append(session::KeyFrame{i, std::vector<std::byte>(3000 + 100 * i, std::byte{7})});
         }
         writer.close();
         EXPECT_EQ(writer.failure(), "");
+    };
+    std::size_t begun = 0;
+    // Closed in the middle of a chunk, and gone on with.
+    const std::size_t first = count / 2 + 3;
+    {
+        session::SessionWriter writer(folder.path() / "written.h5", {kRateHz, "a", "1", "{}", {}}, observe);
+        begun = changes.size();
+        write(writer, 0, first);
+    }
+    {
+        session::SessionWriter writer(folder.path() / "written.h5", observe);
+        EXPECT_EQ(writer.firstTick(), first);
+        write(writer, first, count);
     }
 
     const std::filesystem::path path = folder.path() / "copy.h5";

@@ -129,6 +129,16 @@ volume::Labels simpleTooth() {
     return labels;
 }
 
+TEST(ScanJobFile, IsForItsOwnersEyes) {
+    const test::TemporaryFolder folder;
+    ScanJob job;
+    job.source = "/patients/somebody";
+    writeScanJob(job, folder.path() / "job.toml");
+    EXPECT_EQ(std::filesystem::status(folder.path() / "job.toml").permissions(),
+              std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+    EXPECT_EQ(readScanJob(folder.path() / "job.toml").source, job.source);
+}
+
 TEST(ScanRun, DoesAgainOnlyWhatADecisionTouches) {
     const test::TemporaryFolder folder;
     volume::writeLabels(simpleTooth(), folder.path() / "labels.nrrd");
@@ -154,25 +164,25 @@ TEST(ScanRun, DoesAgainOnlyWhatADecisionTouches) {
         return runScanJob(job, listen, &before);
     };
     const ScanResult whole = next(first);
-    EXPECT_EQ(worked, (std::set{S::surface, S::place, S::decimate}));
+    EXPECT_EQ(worked, (std::set{S::surface, S::place, S::decimate, S::check}));
     EXPECT_EQ(whole.region, first.region);
     ASSERT_EQ(whole.cases.size(), 1u);
     EXPECT_GT(whole.placed.confidence, 0.7);
 
     job.percents = {25, 100};
     const ScanResult finer = next(whole);
-    EXPECT_EQ(worked, (std::set{S::decimate}));
+    EXPECT_EQ(worked, (std::set{S::decimate, S::check}));
     ASSERT_EQ(finer.cases.size(), 2u);
     EXPECT_EQ(finer.cases[0].toothCase.name, "scanned tooth (25 %)");
 
     job.placing.occlusal = -Vec3::UnitZ();
     const ScanResult turned = next(finer);
-    EXPECT_EQ(worked, (std::set{S::place, S::decimate}));
+    EXPECT_EQ(worked, (std::set{S::place, S::decimate, S::check}));
     EXPECT_LT(turned.cases[1].toothCase.outer.vertices[0].z() * finer.cases[1].toothCase.outer.vertices[0].z(), 0.0);
 
     job.segmentation.lesions = {{Vec3(5.5, 5.0, 12.0), Vec3::Constant(0.8)}};
     const ScanResult decayed = next(turned);
-    EXPECT_EQ(worked, (std::set{S::segment, S::surface, S::place, S::decimate}));
+    EXPECT_EQ(worked, (std::set{S::segment, S::surface, S::place, S::decimate, S::check}));
     EXPECT_EQ(decayed.scan, first.scan);
     EXPECT_GT(decayed.volumesMm3[static_cast<std::size_t>(tooth::Tissue::caries)], 0.5);
     EXPECT_EQ(decayed.cases[1].toothCase.parts.back().name, "caries (authored)");
@@ -191,6 +201,66 @@ TEST(ScanRun, DoesAgainOnlyWhatADecisionTouches) {
 
     EXPECT_EQ(errorOf([&] { (void)runScanJob(job, [](S stage, double) { return stage != S::surface; }); }),
               "cancelled");
+}
+
+// Whatever stage was at fault, no case is made that "case check" would refuse.
+TEST(ScanRun, RefusesACaseThatItsOwnCheckRefuses) {
+    const test::TemporaryFolder folder;
+    volume::writeLabels(simpleTooth(), folder.path() / "labels.nrrd");
+    ScanJob job;
+    job.source = folder.path() / "labels.nrrd";
+    job.isLabels = true;
+    ScanResult before = runScanJob(job, {}, nullptr, ScanStage::place);
+    auto bad = std::make_shared<surfacing::Surfaces>(*before.full);
+    for (surfacing::Surface& tissue : bad->tissues)
+        if (tissue.tissue == tooth::Tissue::dentine)
+            for (Vec3& p : tissue.mesh.vertices)
+                p.x() += 0.6;
+    before.full = bad;
+    const std::string told = errorOf([&] { (void)runScanJob(job, {}, &before); });
+    EXPECT_THAT(told, HasSubstr("dentine: it sticks out of the outer surface by 0."));
+    EXPECT_EQ(runScanJob(job, {}, &before, ScanStage::decimate).cases.size(), 1u);  // for the surfaces alone
+}
+
+// A carious molar at 34 um, on a grid that keeps this short; its decay is a comb of voxels.
+TEST(ScanRun, ARealMolarPassesItsOwnCheckAtAnyPercentage) {
+    const std::filesystem::path data = test::realDataFolder();
+    if (data.empty()) GTEST_SKIP() << "no real data beside this checkout (../shared/data)";
+    ScanJob job;
+    job.source = data / "molar-caries/molar_labels_34um_cropped.nrrd";
+    job.isLabels = true;
+    job.segmentation.spacingMm = 0.08;
+    job.percents = {100, 10};
+    const ScanResult made = runScanJob(job);
+    EXPECT_EQ(made.cases.size(), job.percents.size());
+    EXPECT_THAT(made.notes(), ::testing::Contains(HasSubstr("wider than a voxel")));
+}
+
+// Fine voxels: as many faces as the field can use, and the result says so.
+TEST(ScanRun, KeepsTheFacesThatAFieldCanUse) {
+    const test::TemporaryFolder folder;
+    volume::Labels ball;
+    ball.grid.size = {64, 64, 64};
+    ball.grid.spacingMm = Vec3::Constant(0.03);
+    ball.values.assign(ball.grid.count(), 0);
+    for (int k = 0; k < 64; ++k)
+        for (int j = 0; j < 64; ++j)
+            for (int i = 0; i < 64; ++i)
+                if ((Vec3(i, j, k) - Vec3(31.6, 31.4, 31.7)).norm() < 28.0)
+                    ball.values[ball.grid.index(i, j, k)] = k > 40 ? 2 : 3;
+    volume::writeLabels(ball, folder.path() / "labels.nrrd");
+    ScanJob job;
+    job.source = folder.path() / "labels.nrrd";
+    job.isLabels = true;
+    const ScanResult made = runScanJob(job);
+    ASSERT_EQ(made.cases.size(), 1u);
+    EXPECT_GT(made.cases[0].percent, 4.0);
+    EXPECT_LT(made.cases[0].percent, 15.0);
+    EXPECT_THAT(made.notes(), ::testing::Contains(HasSubstr("are kept")));
+    job.percents = {100.0};
+    const ScanResult all = runScanJob(job, {}, &made);
+    EXPECT_EQ(all.cases[0].surfaces->outer.mesh.triangles.size(), made.full->outer.mesh.triangles.size());
+    EXPECT_THAT(all.notes(), ::testing::Not(::testing::Contains(HasSubstr("are kept"))));
 }
 
 }  // namespace

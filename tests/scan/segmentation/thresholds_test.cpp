@@ -72,6 +72,24 @@ TEST(Thresholds, ScansWithoutAToothSaySo) {
     EXPECT_NE(problemOf([&] { (void)segment({}); }).find("no voxels"), std::string::npos);
 }
 
+TEST(Teeth, PlatesSpecksAndSkullsAreNone) {
+    const auto isTooth = [](double x, double y, double z, double mm3) {
+        Candidate c;
+        c.boundsMm.extend(core::Vec3::Zero());
+        c.boundsMm.extend(core::Vec3(x, y, z));
+        c.volumeMm3 = mm3;
+        return isToothLike(c);
+    };
+    EXPECT_TRUE(isTooth(11.7, 10.4, 20.7, 966));  // molar
+    EXPECT_TRUE(isTooth(4.5, 4.0, 14.0, 100));    // milk incisor
+    EXPECT_TRUE(isTooth(14, 14, 14, 560));        // canine across the axes
+    EXPECT_TRUE(isTooth(10, 9, 8, 400));          // crown, cut off by the border
+    EXPECT_FALSE(isTooth(12, 4, 2, 42));          // pieces of skull, out of a head's CT
+    EXPECT_FALSE(isTooth(9, 7, 2, 32));
+    EXPECT_FALSE(isTooth(30, 28, 25, 900));    // a curved plate
+    EXPECT_FALSE(isTooth(90, 60, 40, 40000));  // a jaw
+}
+
 TEST(Teeth, TwoThatTouchArePartedAndEachCanBeChosen) {
     const Greys g;
     // Two that overlap by a tenth of a millimetre; the left one is larger.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "handpiece/model/tooth/case_check.h"
 #include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/model/tooth/tooth.h"
@@ -73,6 +75,40 @@ TEST(SurfacesCase, OfLabelsCanBeCutToo) {
     const double whole = test::ballMm3(truth.radiusMm), dentine = test::lensMm3(truth.radiusMm, truth.enamelMm);
     EXPECT_NEAR(mm3[static_cast<std::size_t>(Tissue::dentine)] / (dentine - test::ballMm3(truth.pulpMm)), 1.0, 0.02);
     EXPECT_GT(mm3[static_cast<std::size_t>(Tissue::enamel)], 0.9 * (whole - dentine) - test::ballMm3(truth.cariesMm));
+}
+
+/// A lesion whose labels are a comb: plates of a voxel with rods across, as noise leaves them at an open surface. Its
+/// many tunnels are evened out, and so is the roughness of the tooth's own surface beside it.
+segmentation::Region combed(double voxelMm) {
+    const BallTooth truth;
+    segmentation::Region region = truth.region(voxelMm, true);
+    const test::Shape lesion = test::ball(truth.middle + core::Vec3(0.2, 0.1, truth.radiusMm), 1.3),
+                      tooth = truth.outer();
+    std::vector<float>&outer = region.outer.insideMm, &caries = region.solids.back().insideMm;
+    const auto set = [&](std::vector<float>& inside, std::size_t at, bool isIn) {
+        inside[at] = static_cast<float>(isIn ? 0.5 * voxelMm : -0.5 * voxelMm);
+    };
+    for (int k = 0; k < region.grid.size[2]; ++k)
+        for (int j = 0; j < region.grid.size[1]; ++j)
+            for (int i = 0; i < region.grid.size[0]; ++i) {
+                const std::size_t at = region.grid.index(i, j, k);
+                const core::Vec3 p = voxelMm * core::Vec3(i, j, k);
+                const bool isComb = i % 2 == 0 || (j % 3 == 0 && k % 3 == 0);
+                // Beside the lesion the tooth is eaten away between the teeth of the comb.
+                if (lesion(p) < 0.0 && tooth(p) > -3.5 * voxelMm && !isComb) set(outer, at, false);
+                set(caries, at, lesion(p) < 0.0 && isComb && outer[at] > 0.0f);
+            }
+    return region;
+}
+
+// Its surface came out of the tooth as long spikes: evening out moved it, and nothing held it to the tooth again.
+TEST(SurfacesCase, CombOfDecayAtTheSurfaceStaysInTheTooth) {
+    const Surfaces full = makeSurfaces(combed(0.1));
+    const std::array<double, 6> percents{100, 50, 20, 10, 5, 2};
+    const std::vector<Surfaces> steps = decimatedSteps(full, percents);
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        for (const tooth::CaseFinding& finding : tooth::checkCase(caseOf(steps[i])))
+            ADD_FAILURE() << percents[i] << " %: " << finding.part << ": " << finding.what;
 }
 
 }  // namespace

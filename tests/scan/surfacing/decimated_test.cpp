@@ -126,6 +126,27 @@ TEST(Decimated, ToATotalOfFaces) {
                 8000.0 * geometry::surfaceAreaMm2(fullTooth().outer.mesh) / all, 2.0);
 }
 
+// Faces of 0.1 mm under a field of 0.2 mm voxels: as coarse as said, at the cost that is said.
+TEST(Decimated, TheUsefulPercentHasEdgesOfTwoVoxels) {
+    const Surfaces& full = fullTooth();
+    const double voxelMm = 0.2, percent = usefulPercent(full, voxelMm);
+    EXPECT_GE(percent, 4.0);
+    EXPECT_LE(percent, 7.0);
+    EXPECT_EQ(usefulPercent(full, 0.04), 100.0);
+    const Surfaces few = decimated(full, percent);
+    EXPECT_LE(few.outer.errorBoundMm, 1.5 * voxelMm * voxelMm / BallTooth{}.radiusMm);
+    std::size_t faces = 0;
+    double areaMm2 = 0.0;
+    for (const Surface* surface : allOf(few)) {
+        faces += surface->mesh.triangles.size();
+        areaMm2 += geometry::surfaceAreaMm2(surface->mesh);
+    }
+    // Equilateral triangles with edges of two voxels, or a whole percentage more.
+    const double edgeMm = std::sqrt(4.0 / std::sqrt(3.0) * areaMm2 / static_cast<double>(faces));
+    EXPECT_LE(edgeMm, 2.0 * voxelMm * 1.01);
+    EXPECT_GE(edgeMm, 1.75 * voxelMm);
+}
+
 TEST(Decimated, SaysWhatIsWrong) {
     for (const double percent : {0.0, -3.0, 100.5, std::nan("")})
         EXPECT_NE(test::errorOf([&] { (void)decimated(fullTooth(), percent); }).find("is not possible"),

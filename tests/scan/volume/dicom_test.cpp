@@ -273,6 +273,31 @@ TEST_F(Dicom, HugeClaimsAreRefusedBeforeMemoryIsTaken) {
     EXPECT_FALSE(findSeries(folder_).empty());
 }
 
+TEST_F(Dicom, FramesThatAreNotThereTakeNoMemory) {
+    auto series = dicomSeries(20);
+    for (auto& s : series) {
+        s.frames = 99999;
+        s.pixels.clear();
+    }
+    writeSeries(series, folder_);
+    std::string text;
+    EXPECT_LT(test::peakGrowth([&] { text = error(); }), 64u << 20);
+    EXPECT_THAT(text, AllOf(HasSubstr("truncated: 0 of"), HasSubstr("IM1")));
+    // The same of packed ones: the pieces are counted.
+    for (auto& s : series) {
+        s.syntax = "1.2.840.10008.1.2.5";
+        std::string bytes = s.bytes();
+        bytes.replace(bytes.size() - 4, 4, "\xff\xff\xff\xff");  // the pixels' length: undefined
+        const auto item = [&](std::uint32_t tag) {
+            return s.number(0xfffe, 2, false) + s.number(tag, 2, false) + s.number(0, 4, false);
+        };
+        bytes += item(0xe000) + item(0xe000) + item(0xe0dd);
+        test::writeBytes(folder_ / ("IM" + s.instance), bytes);
+    }
+    EXPECT_LT(test::peakGrowth([&] { text = error(); }), 64u << 20);
+    EXPECT_THAT(text, AllOf(HasSubstr("1 packed pieces are there for 99999 frames"), HasSubstr("IM1")));
+}
+
 TEST_F(Dicom, WarnsOfBurnedInTextAndScreenPictures) {
     auto series = dicomSeries(3);
     series[1].burnedIn = "YES";

@@ -68,6 +68,15 @@ TEST_F(ScanFiles, NothingFitsSaysWhatIsThere) {
     EXPECT_THAT(error(temporary_.path() / "one.pdf"), HasSubstr("1 PDF file"));
 }
 
+TEST_F(ScanFiles, SlicesNumberedByTheirEndingsAreOneKind) {
+    for (int i = 1; i <= 113; ++i)
+        test::writeBytes(folder_ / ("CThead." + std::to_string(i)), std::string(64, 'x'));
+    EXPECT_THAT(error(), HasSubstr("no scan is in it: 113 files with a number for an ending"));
+    for (char c = 'a'; c <= 'z'; ++c)
+        test::writeBytes(folder_ / (std::string("a.q") + c), "?");
+    EXPECT_THAT(error(), AllOf(HasSubstr("19 other files"), testing::SizeIs(testing::Lt(500u))));
+}
+
 TEST_F(ScanFiles, ZipIsReadAsItsFolder) {
     for (const ScanFormat format : {ScanFormat::dicom, ScanFormat::tiff, ScanFormat::raw, ScanFormat::nrrd}) {
         writeScan(test::sampleVolume(), folder_, format);
@@ -195,6 +204,96 @@ TEST_F(ScanFiles, PicturesThatClaimGigabytesAreRefused) {
     jpeg.replace(frame + 5, 4, "\xff\xdc\xff\xdc");  // 65500 x 65500
     test::writeBytes(folder_ / "slice_0001.jpg", jpeg);
     EXPECT_THAT(error(), HasSubstr("GB of memory"));
+}
+
+TEST_F(ScanFiles, ClaimsThatNoPackingHoldsTakeNoMemory) {
+    writeScan(test::sampleVolume({16, 16, 1}), folder_, ScanFormat::tiff);
+    TIFF* tiff = TIFFOpen((folder_ / "slice_0001.tif").c_str(), "r+");
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 30000);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 30000);
+    TIFFRewriteDirectory(tiff);
+    TIFFClose(tiff);
+    std::string text;
+    EXPECT_LT(test::peakGrowth([&] {
+                  text = error();
+                  EXPECT_EQ(findSeries(folder_).size(), 1u);
+              }),
+              64u << 20);
+    EXPECT_THAT(text, HasSubstr("cannot hold the 900000000 voxels"));
+}
+
+TEST_F(ScanFiles, PaletteOfSignedSamplesCountsFromZero) {
+    std::vector<std::uint16_t> ramp(256);
+    for (std::size_t i = 0; i < ramp.size(); ++i)
+        ramp[i] = static_cast<std::uint16_t>(257 * (255 - i));
+    const fs::path file = folder_ / "a.tif";
+    TIFF* tiff = TIFFOpen(file.c_str(), "w");
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 16);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 16);
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+    TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_INT);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_PALETTE);
+    TIFFSetField(tiff, TIFFTAG_COLORMAP, ramp.data(), ramp.data(), ramp.data());
+    TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+    for (int y = 0; y < 16; ++y) {
+        std::uint8_t line[16];
+        for (int x = 0; x < 16; ++x)
+            line[x] = static_cast<std::uint8_t>(16 * y + x);
+        TIFFWriteScanline(tiff, line, static_cast<std::uint32_t>(y), 0);
+    }
+    TIFFClose(tiff);
+    ReadSettings settings;
+    settings.spacingMm = core::Vec3::Ones();
+    const Volume v = readScan(file, settings).volume;
+    ASSERT_EQ(v.values.size(), 256u);
+    for (std::size_t i = 0; i < 256; ++i)
+        EXPECT_EQ(v.values[i], static_cast<float>(255 - i)) << i;
+}
+
+TEST_F(ScanFiles, ZipThatClaimsMoreThanItHoldsTakesNoMemory) {
+    // A little over a megabyte that does not pack, said to become one of gigabytes.
+    std::string noise(1200000, '\0');
+    std::mt19937 generator(3);
+    for (char& c : noise)
+        c = static_cast<char>(generator());
+    test::writeBytes(folder_ / "a.tif", noise);
+    std::string bytes = test::readBytes(zipped());
+    bytes.replace(bytes.rfind("PK\1\2") + 24, 4, std::string("\0\0\0\x40", 4));
+    test::writeBytes(temporary_.path() / "claims.zip", bytes);
+    std::string text;
+    EXPECT_LT(test::peakGrowth([&] { text = error(temporary_.path() / "claims.zip"); }), 64u << 20);
+    EXPECT_THAT(text, AllOf(HasSubstr("claims.zip"), HasSubstr("\"scan/a.tif\" in this ZIP is damaged")));
+}
+
+TEST_F(ScanFiles, ZipWhoseEntriesShareTheirBytesIsRefused) {
+    test::writeBytes(folder_ / "a.tif", std::string(3000, 'x'));
+    std::string bytes = test::readBytes(zipped(false));
+    // The directory's last record once more, under another name.
+    const std::size_t record = bytes.rfind("PK\1\2"), end = bytes.rfind("PK\5\6");
+    std::string again = bytes.substr(record, end - record);
+    again[again.find("a.tif")] = 'b';
+    bytes.insert(end, again);
+    const std::size_t count = end + again.size();
+    for (const std::size_t at : {count + 8, count + 10})
+        ++bytes[at];
+    const std::size_t size = count - bytes.find("PK\1\2");
+    for (std::size_t i = 0; i < 4; ++i)
+        bytes[count + 12 + i] = static_cast<char>(size >> 8 * i & 0xff);
+    test::writeBytes(temporary_.path() / "shared.zip", bytes);
+    EXPECT_THAT(error(temporary_.path() / "shared.zip"), HasSubstr("its entries lie over each other"));
+}
+
+TEST_F(ScanFiles, ZipHasALimitForOneFileAndForAll) {
+    for (const char* name : {"a.tif", "b.tif", "c.tif"})
+        test::writeBytes(folder_ / name, std::string(3 << 20, 'x'));
+    const fs::path zip = zipped();
+    const auto opened = [&](std::uint64_t file, std::uint64_t all) {
+        return errorOf([&] { (void)FileSet::open(zip, {file, all}); });
+    };
+    EXPECT_EQ(opened(3 << 20, 9 << 20), "");
+    EXPECT_THAT(opened(2 << 20, 9 << 20), AllOf(HasSubstr("one file of this ZIP unpacks to more than 2 MB")));
+    EXPECT_THAT(opened(3 << 20, 8 << 20), AllOf(HasSubstr("the files of this ZIP unpack to more than 8 MB")));
 }
 
 TEST_F(ScanFiles, BmpOf24And32BitsAndFromTheTop) {

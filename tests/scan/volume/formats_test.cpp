@@ -401,6 +401,17 @@ TEST_F(Formats, NonNumbersAreReadAsNothingAndTold) {
     EXPECT_THAT(scan.series.notes, Contains(HasSubstr("2 values are no numbers")));
 }
 
+TEST_F(Formats, ValuesOfNoScannerAreReadAsNothing) {
+    std::vector<float> values = kSmall;
+    values[3] = 3e38f;
+    values[13] = -3e38f;
+    const Scan scan = read("a.nrrd", nrrd("float", kLittle, numbers(values)));
+    EXPECT_EQ(scan.volume.values[3], 0.0f);
+    EXPECT_EQ(scan.volume.values[13], 0.0f);
+    EXPECT_THAT(scan.series.notes, Contains(HasSubstr("2 values are no numbers")));
+    EXPECT_EQ(findSeries(at("a.nrrd"))[0].thumbnail, scan.series.thumbnail);
+}
+
 TEST_F(Formats, GivenSpacingWins) {
     ReadSettings settings;
     settings.spacingMm = core::Vec3(0.034, 0.034, 0.034);

@@ -11,6 +11,7 @@ namespace handpiece::volume {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 
@@ -208,6 +209,19 @@ TEST_F(OtherPrograms, DamagedPackedPixelsAreTold) {
             bytes.replace(at + 20, 2, std::string(way) == "--j2k" ? "70" : "90");
         test::writeBytes(file, bytes);
         EXPECT_THAT(test::errorOf([&] { (void)readScan(theirs_); }), HasSubstr("slice_0002.dcm")) << way;
+    }
+    // JPEG 2000 whose header leaps beyond the end of the data, or tells no coding: GDCM would follow it.
+    for (const auto& [marker, second] : {std::pair("\xff\x5c", '\xff'), {"\xff\x90", '\xff'}, {"\xff\x52", '\x00'}}) {
+        convert("gdcmconv --j2k");
+        const fs::path file = theirs_ / "slice_0002.dcm";
+        std::string bytes = test::readBytes(file);
+        const std::size_t at = bytes.find(marker, bytes.find("\xff\x4f\xff\x51"));
+        ASSERT_NE(at, std::string::npos);
+        bytes[at + 2] = second;
+        bytes[at + 3] = second == '\0' ? '\x02' : '\xf0';
+        test::writeBytes(file, bytes);
+        EXPECT_THAT(test::errorOf([&] { (void)readScan(theirs_); }),
+                    AllOf(HasSubstr("slice_0002.dcm"), HasSubstr("damaged")));
     }
 }
 

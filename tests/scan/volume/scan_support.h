@@ -162,4 +162,20 @@ inline void writeSeries(const std::vector<DicomMaker>& series, const std::filesy
         writeBytes(folder / ("IM" + std::to_string(k + 1)), series[k].bytes());
 }
 
+/// What the process' memory grows by at most while `work` runs [bytes].
+template <class Work>
+std::uint64_t peakGrowth(const Work& work) {
+    const auto field = [](const std::string& name) {
+        std::ifstream status("/proc/self/status");
+        for (std::string line; std::getline(status, line);)
+            if (line.rfind(name, 0) == 0) return 1024 * std::stoull(line.substr(name.size()));
+        return 0ull;
+    };
+    std::ofstream("/proc/self/clear_refs") << "5";  // the peak begins anew
+    const std::uint64_t before = field("VmRSS:");
+    work();
+    const std::uint64_t most = field("VmHWM:");
+    return most > before ? most - before : 0;
+}
+
 }  // namespace handpiece::test

@@ -8,6 +8,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/rotation.h"
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/self_intersection.h"
 #include "handpiece/model/instrument/shapes.h"
@@ -42,7 +43,7 @@ struct Cutting {
     }
     void cutAtRandom(std::mt19937_64& random) {
         const Vec3 out = test::randomDirection(random);
-        const Quat turn = Quat::FromTwoVectors(Vec3::UnitZ(), out);
+        const Quat turn = core::rotationBetween(Vec3::UnitZ(), out);
         const double radius = test::uniform(random, 0.15, 0.4);
         if (test::uniform(random, 0.0, 1.0) < 0.5)
             cut(test::cylinderBur(test::uniform(random, 0.5, 1.1) * out, radius, turn));

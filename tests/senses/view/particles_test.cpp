@@ -183,9 +183,12 @@ TEST(Particles, JetsGoFromTheHeadToTheTipAndOnlyWithWaterOn) {
         const Vec3 streak(s.streakMm[0], s.streakMm[1], s.streakMm[2]);
         if (streak.norm() < 2.0) continue;
         ++jets;
-        EXPECT_LT((head - moment.burInTooth.positionMm).norm(), 1.0) << "they meet at the tip";
-        const Vec3 port = moment.burInTooth.applyInverse(head + streak);
+        const Vec3 port = moment.burInTooth.applyInverse(head), end = moment.burInTooth.applyInverse(head + streak);
         EXPECT_GT(port.z(), 7.0) << "they come from the head, which is towards the shank";
+        EXPECT_LT(end.head<2>().norm(), port.head<2>().norm()) << "and go towards the tip";
+        EXPECT_GT(end.norm(), 1.0) << "at the tip they are mist";
+        EXPECT_LT((port - end).normalized().dot(end.normalized()) - 1.0, 0.0);
+        EXPECT_GT((port - end).normalized().dot(end.normalized()), 0.97) << "the line leads to the tip";
     }
     EXPECT_EQ(jets, kJets);
     moment.timeS += 0.004;

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "handpiece/base/core/rotation.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/tooth/field_builder.h"
 #include "handpiece/model/tooth/tooth.h"
@@ -61,7 +62,7 @@ inline core::Pose pressedPose(std::mt19937_64& generator, contact::Method& metho
     while (d.z() < 0.6);
     const core::Vec3 up = (d + 0.5 * randomDirection(generator)).normalized();
     core::Pose pose;
-    pose.orientation = core::Quat::FromTwoVectors(core::Vec3::UnitZ(), up);
+    pose.orientation = core::rotationBetween(core::Vec3::UnitZ(), up);
     pose.positionMm = d * grooveRadius(d);
     for (int i = 0; i < 8; ++i)
         pose.positionMm -= up * (depthMm - method.depth(pose).depthMm);

@@ -134,7 +134,7 @@ TEST(DepthReference, isNeverMoreThanTheMinimalTranslationOfAConvexPair) {
         for (int i = 0; i < 12; ++i) {
             const Vec3 up = (Vec3::UnitZ() + 0.6 * test::randomDirection(generator)).normalized();
             core::Pose pose;
-            pose.orientation = core::Quat::FromTwoVectors(Vec3::UnitZ(), up);
+            pose.orientation = core::rotationBetween(Vec3::UnitZ(), up);
             pose.positionMm = {test::uniform(generator, -3, 3), test::uniform(generator, -2.5, 2.5),
                                test::uniform(generator, -0.6, 0.1)};
             const Depth epa = hull->depth(pose);

@@ -286,7 +286,7 @@ TEST(Bearing, theSideOfACylinderInAHalfRoundGroove) {
     const instrument::Bur bur("flat", instrument::makeProfile(instrument::Shape::cylinderFlat, 2.0 * kRadius, kLength));
     RingSensor sensor(field, bur, core::simdLevel());
     core::Pose pose;
-    pose.orientation = core::Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitY());
+    pose.orientation = core::rotationBetween(Vec3::UnitZ(), Vec3::UnitY());
     Bearing b;
     sensor.bearing(pose, -Vec3::UnitZ(), 0.0, 0.05, b);
     // c = cos(angle) over the half turn: integrals of r L c and of L c^2; a margin's width of side above the edge.

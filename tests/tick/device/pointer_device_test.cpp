@@ -36,6 +36,10 @@ PointerTarget targetAt(const Vec3& p, double loadN = 0.0, double pedal = 0.0, co
         t.orientation[k + 1] = q.vec()[k];
     t.loadN = loadN;
     t.pedal = pedal;
+    if (loadN > 0.0) {  // down, as far as it goes
+        t.way[2] = -1.0;
+        t.farMm = 10.0;
+    }
     return t;
 }
 
@@ -43,6 +47,14 @@ struct Alone {
     explicit Alone(const Vec3& start = Vec3::Zero(), const PointerHandSettings& settings = {})
         : mailbox(std::make_shared<PointerMailbox>()), hand(settings, mailbox, {start, Quat::Identity()}) {}
     Vec3 read(double periodS = kPeriodS) { return hand.read(periodS).burInTooth.positionMm; }
+    /// What a spring does to it that holds the bur's tip on a plane: its force.
+    double meet(const Vec3& handMm, const Vec3& pointMm, const Vec3& normal, double stiffness) {
+        const double in = std::max(0.0, (pointMm - handMm).dot(normal));
+        const Vec3 forceN = stiffness * in * normal;
+        hand.watch(handMm + in * normal, -forceN);
+        hand.command(forceN, Vec3::Zero());
+        return forceN.norm();
+    }
     std::shared_ptr<PointerMailbox> mailbox;
     PointerDevice hand;
 };
@@ -73,13 +85,13 @@ TEST(PointerDevice, aTargetThatMakesNoSenseCountsAsNone) {
     alone.mailbox->write(bad);
     EXPECT_NEAR((alone.read() - Vec3(1, 0, 0)).norm(), 0.0, 1e-6);
     bad = targetAt(Vec3(2, 0, 0));
-    bad.fallMm = nan;
+    bad.way[0] = 0.5;
     alone.mailbox->write(bad);
     EXPECT_NEAR((alone.read() - Vec3(1, 0, 0)).norm(), 0.0, 1e-6);
-    bad.fallMm = 0.3;
-    bad.hasFloor = true;
-    bad.floorMm[1] = nan;
+    bad.way[0] = 1.0;
+    bad.farMm = nan;
     alone.mailbox->write(bad);
+    alone.hand.watch(Vec3(0, nan, 0), Vec3::Zero());
     const Reading r = alone.hand.read(kPeriodS);
     EXPECT_NEAR((r.burInTooth.positionMm - Vec3(1, 0, 0)).norm(), 0.0, 1e-6);
     EXPECT_TRUE(r.burInTooth.isValid());
@@ -153,35 +165,109 @@ TEST(PointerDevice, pressingBalancesAtItsLoadAgainstASpring) {
         for (const double stiffness : {0.06, 0.3, 0.5, 2.0}) {
             Alone alone(Vec3(0, 0, 0.5));
             alone.mailbox->write(targetAt(Vec3(0, 0, 0.5), load));
-            double touched = -1.0, fastest = 0.0, lastZ = 0.5, most = 0.0;
+            double touched = -1.0, fastest = 0.0, lastZ = 0.5, most = 0.0, force = 0.0;
             for (int i = 0; i < 6000; ++i) {
-                const double z = alone.read().z();
-                if (z < 0 && touched < 0) touched = i * kPeriodS;
-                fastest = std::max(fastest, (lastZ - z) / kPeriodS);
-                lastZ = z;
-                const double force = std::max(0.0, -z * stiffness);
-                most = std::max(most, force);
-                alone.hand.command(Vec3(0, 0, force), Vec3::Zero());
+                const Vec3 at = alone.read();
+                if (at.z() < 0 && touched < 0) touched = i * kPeriodS;
+                fastest = std::max(fastest, (lastZ - at.z()) / kPeriodS);
+                lastZ = at.z();
+                most = std::max(most, force = alone.meet(at, Vec3::Zero(), Vec3::UnitZ(), stiffness));
             }
-            EXPECT_NEAR(-lastZ * stiffness, load, 0.001 * load) << load << " N, " << stiffness << " N/mm";
-            EXPECT_LT(most, 1.01 * load);
+            EXPECT_NEAR(force, load, 0.001 * load) << load << " N, " << stiffness << " N/mm";
+            EXPECT_LT(most, 1.2 * load + 0.01);
             EXPECT_LE(fastest, PointerHandSettings{}.approachMmS * 1.001);
             const PointerHandSettings hand;
             const double speed = std::min(hand.approachMmS, load / hand.dampingNSPerMm);
-            EXPECT_NEAR(touched, 0.5 / speed, 0.01);
+            EXPECT_NEAR(touched, 0.5 / speed, 0.03);
         }
     }
+}
+
+TEST(PointerDevice, onASlopeTheTipStaysOnTheWayAndTheLoadIsTheForce) {
+    for (const double load : {0.3, 1.0, 3.0}) {
+        for (const double degrees : {20.0, 45.0, 70.0}) {
+            const double angle = degrees * 3.14159265358979 / 180.0;
+            const Vec3 normal(std::sin(angle), 0, std::cos(angle));
+            for (const double period : {1e-3, 1.25e-4, 0.02}) {
+                Alone alone(Vec3(0, 0, 0.3));
+                alone.mailbox->write(targetAt(Vec3(0, 0, 0), load));
+                double off = 0.0, force = 0.0;
+                for (double t = 0.0; t < 3.0; t += period) {
+                    const Vec3 at = alone.read(period);
+                    force = alone.meet(at, Vec3::Zero(), normal, 2.0);
+                    off = (at + force / 2.0 * normal).x();
+                    ASSERT_TRUE(at.allFinite());
+                }
+                EXPECT_NEAR(off, 0.0, 0.003) << load << " N, " << degrees << " degrees, " << period << " s";
+                EXPECT_NEAR(force, load, 0.02 * load) << degrees << " degrees, " << period << " s";
+            }
+        }
+    }
+}
+
+TEST(PointerDevice, heldBackBesideThePointerItPullsThereWithTheLoad) {
+    // A floor at z = 0 and a wall at x = 0, the pointer beyond it.
+    for (const double beyond : {0.1, 0.3, 3.0}) {
+        Alone alone(Vec3(-1, 0, 0.1));
+        alone.mailbox->write(targetAt(Vec3(beyond, 0, 0), 0.5));
+        Vec3 force = Vec3::Zero();
+        for (int i = 0; i < 3000; ++i) {
+            const Vec3 at = alone.read(), tip(std::min(at.x(), 0.0), at.y(), std::max(at.z(), 0.0));
+            force = 2.0 * (tip - at);
+            alone.hand.watch(tip, -force);
+            alone.hand.command(force, Vec3::Zero());
+        }
+        EXPECT_NEAR(force.norm(), 0.5, 0.01) << beyond;
+        EXPECT_GT(-force.x(), 0.45) << beyond;
+        EXPECT_GE(force.z(), 0.0);
+    }
+}
+
+TEST(PointerDevice, ledItGivesWayAcross) {
+    // Out of a cavity whose wall leans: no force across stays.
+    Alone alone;
+    PointerTarget t = targetAt(Vec3(0, 0, 2), 1.0);
+    t.way[2] = 1.0;
+    t.farMm = 0.0;
+    t.isLed = true;
+    alone.mailbox->write(t);
+    double sideways = 0.0;
+    Vec3 at;
+    for (int i = 0; i < 1000; ++i) {
+        at = alone.read();
+        const Vec3 tip(std::min(at.x(), -0.2 * at.z()), at.y(), at.z());
+        alone.hand.watch(tip, 2.0 * (at - tip));
+        sideways = std::max(sideways, 2.0 * (at - tip).norm());
+    }
+    EXPECT_NEAR(at.z(), 2.0, 0.02);
+    EXPECT_NEAR(at.x(), -0.4, 0.02);
+    EXPECT_LT(sideways, 0.15);
+}
+
+TEST(PointerDevice, itComesOutBeforeItGoesAcross) {
+    Alone alone;
+    (void)alone.read();
+    PointerTarget t = targetAt(Vec3(4, 0, 3));
+    t.way[2] = -1.0;
+    alone.mailbox->write(t);
+    Vec3 at;
+    for (int i = 0; i < 400; ++i) {
+        at = alone.read();
+        if (at.z() < 2.0) {
+            EXPECT_LT(at.x(), 0.3);
+        }
+    }
+    EXPECT_LT((at - Vec3(4, 0, 3)).norm(), 0.01);
 }
 
 TEST(PointerDevice, theLoadNeverExceedsWhatTheDeviceCanHold) {
     Alone alone;
     alone.mailbox->write(targetAt(Vec3::Zero(), 50.0));
-    double z = 0.0;
-    for (int i = 0; i < 4000; ++i) {
-        z = alone.read().z();
-        alone.hand.command(Vec3(0, 0, std::min(3.3, -0.5 * z)), Vec3::Zero());
-    }
-    EXPECT_LT(-0.5 * z, 3.3);
+    double force = 0.0;
+    for (int i = 0; i < 4000; ++i)
+        force = alone.meet(alone.read(), Vec3::Zero(), Vec3::UnitZ(), 0.5);
+    EXPECT_LT(force, 3.3);
+    EXPECT_GT(force, 3.0);
 }
 
 TEST(PointerDevice, pullsNoHarderThanAHandWhenTheToothIsInItsWay) {
@@ -203,93 +289,22 @@ TEST(PointerDevice, pullsNoHarderThanAHandWhenTheToothIsInItsWay) {
     EXPECT_NEAR(alone.read().x(), 0.5, 0.01);
 }
 
-TEST(PointerDevice, theDepthStopEndsTheLoad) {
+TEST(PointerDevice, theEndOfTheWayEndsTheLoad) {
     for (const double load : {0.3, 1.0, 3.0}) {
-        Alone alone(Vec3(0, 0, 0.5));
-        PointerTarget t = targetAt(Vec3(0, 0, 0.5), load);
-        t.hasStop = true;
-        t.stopMm[2] = -1.0;
-        alone.mailbox->write(t);
-        double lowest = 0.0;
-        for (int i = 0; i < 1000; ++i)
-            lowest = std::min(lowest, alone.read().z());
-        EXPECT_NEAR(alone.read().z(), -1.0, 1e-3);
-        EXPECT_GT(lowest, -1.06);
-    }
-}
-
-TEST(PointerDevice, inFreeAirItFallsSoFarAndNoFarther) {
-    for (const double load : {0.1, 1.0, 3.0}) {
-        for (const double period : {1e-3, 1.25e-4}) {
-            Alone alone;
-            PointerTarget t = targetAt(Vec3::Zero(), load);
-            t.fallMm = 0.3;
+        for (const double period : {1e-3, 1.25e-4, 0.05}) {
+            Alone alone(Vec3(0, 0, 0.5));
+            PointerTarget t = targetAt(Vec3(0, 0, 0.5), load);
+            t.farMm = 1.5;
             alone.mailbox->write(t);
-            double lowest = 0.0;
-            for (double passed = 0.0; passed < 2.0; passed += period)
-                lowest = std::min(lowest, alone.read(period).z());
-            EXPECT_NEAR(alone.read(period).z(), -0.3, 1e-3) << load;
-            EXPECT_GT(lowest, -0.301) << load;
-            // There is tooth farther down: it is let down to that.
-            t.hasFloor = true;
-            t.floorMm[2] = -2.0;
-            alone.mailbox->write(t);
-            for (double passed = 0.0; passed < 2.0; passed += period)
-                lowest = std::min(lowest, alone.read(period).z());
-            EXPECT_NEAR(lowest, -2.0, 1e-3) << load;
-            // And from a plane that it is below of, no farther than it may fall.
-            t.floorMm[2] = 1.0;
-            alone.mailbox->write(t);
-            for (double passed = 0.0; passed < 1.0; passed += period)
-                (void)alone.read(period);
-            EXPECT_NEAR(alone.read(period).z(), -0.3, 1e-3) << load;
-        }
-    }
-}
-
-TEST(PointerDevice, theFallCountsFromWhereTheToothHeldTheTip) {
-    for (const double load : {0.3, 1.0, 3.0}) {
-        // A spring that gives way to -1.5 mm, then is gone.
-        const double stiffness = pointerCapability().maxStiffnessNPerMm;
-        Alone alone(Vec3(0, 0, 0.2));
-        PointerTarget t = targetAt(Vec3(0, 0, 0.2), load);
-        t.fallMm = 0.3;
-        alone.mailbox->write(t);
-        double surface = 0.0, z = 0.2, force = 0.0;
-        for (int i = 0; i < 3000; ++i) {
-            if (i > 1000) surface = std::max(-1.5, surface - 1e-3);
-            z = alone.read().z();
-            force = std::max(0.0, (surface - z) * stiffness);
-            alone.hand.command(Vec3(0, 0, force), Vec3::Zero());
-        }
-        EXPECT_EQ(surface, -1.5);
-        EXPECT_NEAR(force, load, 0.01 * load);  // held, it presses with all its load, however far that goes
-        alone.hand.command(Vec3::Zero(), Vec3::Zero());
-        double lowest = z;
-        for (int i = 0; i < 2000; ++i)
-            lowest = std::min(lowest, z = alone.read().z());
-        EXPECT_NEAR(z, -1.5 - 0.3, 0.005);
-        EXPECT_GT(lowest, -1.5 - std::max(0.31, load / stiffness + 0.05));
-    }
-}
-
-TEST(PointerDevice, aBoundedFallChangesNothingOnTheTooth) {
-    for (const double stiffness : {0.08, 0.5, 2.0}) {
-        Alone free(Vec3(0, 0, 0.1)), bounded(Vec3(0, 0, 0.1));
-        PointerTarget t = targetAt(Vec3(0, 0, 0.1), 1.0);
-        free.mailbox->write(t);
-        t.fallMm = 0.3;
-        bounded.mailbox->write(t);
-        double last[2] = {0, 0};
-        for (int i = 0; i < 8000; ++i) {
-            int k = 0;
-            for (Alone* alone : {&free, &bounded}) {
-                last[k] = std::max(0.0, -stiffness * alone->read().z());
-                alone->hand.command(Vec3(0, 0, last[k++]), Vec3::Zero());
+            double lowest = 0.0, z = 0.0;
+            for (double passed = 0.0; passed < 2.0; passed += period) {
+                const Vec3 at = alone.read(period);
+                alone.hand.watch(at, Vec3::Zero());
+                lowest = std::min(lowest, z = at.z());
             }
+            EXPECT_NEAR(z, -1.0, 1e-3);
+            EXPECT_GT(lowest, -1.01) << period;
         }
-        EXPECT_NEAR(last[1], 1.0, 0.002) << stiffness;
-        EXPECT_NEAR(last[1], last[0], 1e-6) << stiffness;
     }
 }
 
@@ -467,8 +482,7 @@ TEST_F(PointerAtATooth, aHeldButtonCutsAndADragCutsAGroove) {
 TEST_F(PointerAtATooth, theStopHoldsTheFloor) {
     Scene s = scene(1000);
     PointerTarget t = targetAt(Vec3(0, 0, 0.5), 2.0, 1.0);
-    t.hasStop = true;
-    t.stopMm[2] = -0.5;
+    t.farMm = 1.0;  // from 0.5 mm over the surface
     s.mailbox->write(t);
     HapticSample last;
     double deepest = 0.0;
@@ -489,6 +503,7 @@ TEST_F(PointerAtATooth, aReplayOfItsReadingsGivesTheSameTicks) {
         t.positionMm[0] = -1.0 + 0.001 * i;
         t.positionMm[1] = 0.3 * std::sin(0.01 * i);
         t.loadN = i < 1200 ? 1.0 : 0.0;
+        t.farMm = i < 1200 ? 10.0 : 0.0;
         if (i % 7 == 0) s.mailbox->write(t);
         run(s, 1e-3, keep);
     }
@@ -535,7 +550,8 @@ TEST_F(PointerAtATooth, theTickNeitherAllocatesNorLocksNorWaits) {
     for (int i = 0; i < 600; ++i) {
         t.frozen = i > 300 && i < 350;
         t.away = i > 500;
-        t.hasStop = i > 200;
+        t.farMm = i > 200 ? 0.7 : 10.0;
+        t.isLed = i > 400 && i < 450;
         s.mailbox->write(t);
         s.loop->tick({});
     }

@@ -13,7 +13,7 @@
 namespace handpiece::config {
 namespace {
 
-constexpr std::uint64_t kMaxBytes = 1 << 20;
+constexpr int kMostDepth = 32;
 
 const toml::table& tomlOf(const std::shared_ptr<const void>& node) {
     return *static_cast<const toml::table*>(node.get());
@@ -39,9 +39,69 @@ std::vector<T> listOf(const Table& table, const toml::node* node, std::string_vi
     return list;
 }
 
+/// Where a string that begins at `at` ends: behind its last quote, or where the reader will refuse it.
+std::size_t endOfString(std::string_view text, std::size_t at) {
+    const char quote = text[at];
+    const std::string triple(3, quote);
+    const bool isLong = text.substr(at, 3) == triple, hasEscapes = quote == '"';
+    for (at += isLong ? 3 : 1; at < text.size(); ++at) {
+        if (text[at] == '\\' && hasEscapes) {
+            ++at;
+        } else if (isLong ? text.substr(at, 3) == triple : text[at] == quote) {
+            at += isLong ? 3 : 1;
+            // A long one may have two quotes of its own before those that end it.
+            for (int i = 0; isLong && i < 2 && at < text.size() && text[at] == quote; ++i)
+                ++at;
+            return at;
+        } else if (text[at] == '\n' && !isLong) {
+            return at;
+        }
+    }
+    return text.size();
+}
+
+/// toml++ bounds how deep brackets may stand in one another, but not how many names a dotted key has; each is a table
+/// in a table, and freeing a hundred thousand of them overflows the stack.
+void requireShallow(std::string_view text, const std::string& where) {
+    int brackets = 0, dots = 0;
+    for (std::size_t at = 0; at < text.size();) {
+        const char c = text[at];
+        if (c == '"' || c == '\'') {
+            at = endOfString(text, at);
+            continue;
+        }
+        if (c == '#') {
+            at = std::min(text.find('\n', at), text.size());
+            continue;
+        }
+        ++at;
+        if (c == '.') {
+            ++dots;
+        } else if (c == '[' || c == '{') {
+            ++brackets;
+            dots = 0;
+        } else if (c == ']' || c == '}') {
+            brackets = std::max(0, brackets - 1);
+            dots = 0;
+        } else if (c == '\n' || c == '=' || c == ',') {
+            dots = 0;
+        }
+        if (brackets <= kMostDepth && dots <= kMostDepth) continue;
+        const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+        const std::string problem =
+            fmt::format("line {}: more than {} tables or lists in one another", line, kMostDepth);
+        throw core::Error(problem, where, "mend the file").as("bad-text", {problem});
+    }
+}
+
 }  // namespace
 
-Table Table::parse(std::string_view text, std::string where) {
+Table Table::parse(std::string_view text, std::string where, std::uint64_t mostBytes) {
+    if (text.size() > mostBytes)
+        throw core::Error(fmt::format("the file has {} bytes, more than the {} that are read", text.size(), mostBytes),
+                          where)
+            .as("too-large");
+    requireShallow(text, where);
     try {
         auto root = std::make_shared<toml::table>(toml::parse(text, where));
         return {std::shared_ptr<const void>(std::move(root)), std::move(where)};
@@ -52,7 +112,7 @@ Table Table::parse(std::string_view text, std::string where) {
 }
 
 Table Table::read(const std::filesystem::path& file) {
-    const std::vector<std::byte> bytes = core::readFile(file, kMaxBytes);
+    const std::vector<std::byte> bytes = core::readFile(file, kMostBytes);
     return parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()), file.string());
 }
 

@@ -18,9 +18,12 @@ namespace handpiece::config {
 /// as nothing; what has the wrong type throws core::Error with file, line and key.
 class Table {
   public:
-    /// `where` names the text in messages. Throws core::Error with the line when it is no TOML.
-    [[nodiscard]] static Table parse(std::string_view text, std::string where);
-    /// Of a file, at most 1 MB.
+    /// Bytes of the longest text that is read.
+    static constexpr std::uint64_t kMostBytes = 1 << 20;
+    /// `where` names the text in messages. Throws core::Error with the line when it is no TOML, or one of tables in
+    /// tables without end; and when it is too long.
+    [[nodiscard]] static Table parse(std::string_view text, std::string where, std::uint64_t mostBytes = kMostBytes);
+    /// Of a plain file.
     [[nodiscard]] static Table read(const std::filesystem::path& file);
 
     [[nodiscard]] bool has(std::string_view key) const;

@@ -90,6 +90,31 @@ std::string_view unitName(LengthUnit unit) {
     return "unknown";
 }
 
+LengthUnit unitByName(std::string_view name) {
+    for (const LengthUnit unit :
+         {LengthUnit::micrometre, LengthUnit::millimetre, LengthUnit::centimetre, LengthUnit::metre, LengthUnit::inch})
+        if (unitName(unit) == name) return unit;
+    return LengthUnit::unknown;
+}
+
+double millimetresPer(LengthUnit unit) {
+    switch (unit) {
+        case LengthUnit::micrometre:
+            return 1e-3;
+        case LengthUnit::millimetre:
+            return 1.0;
+        case LengthUnit::centimetre:
+            return 10.0;
+        case LengthUnit::metre:
+            return 1000.0;
+        case LengthUnit::inch:
+            return 25.4;
+        case LengthUnit::unknown:
+            break;
+    }
+    return 0.0;
+}
+
 UnitGuess probableUnit(double diagonal) {
     // Teeth are 5 to 40 mm, burs 0.3 to 30, dental arches and handpieces up to 250.
     if (!(diagonal > 0.0) || !std::isfinite(diagonal)) return {LengthUnit::unknown, 0.0, "the box has no size"};
@@ -98,26 +123,19 @@ UnitGuess probableUnit(double diagonal) {
     if (diagonal > 60.0 && diagonal <= 250.0)
         return {LengthUnit::millimetre, 1.0,
                 fmt::format("a diagonal of {:.4g} mm suits a dental arch or a handpiece", diagonal)};
-    struct Candidate {
-        LengthUnit unit;
-        double factor;
-    };
-    constexpr Candidate kCandidates[] = {{LengthUnit::metre, 1000.0},
-                                         {LengthUnit::inch, 25.4},
-                                         {LengthUnit::centimetre, 10.0},
-                                         {LengthUnit::micrometre, 0.001}};
     // Where several units would do, the one whose object is nearest to a tooth, in proportion.
     constexpr double kToothMm = 15.0;
     UnitGuess best{LengthUnit::unknown, 0.0,
                    fmt::format("a diagonal of {:.4g} suits no dental object in um, mm, cm, m or inch", diagonal)};
     double bestOff = std::log(200.0 / kToothMm);
-    for (const Candidate& c : kCandidates) {
-        const double mm = diagonal * c.factor, off = std::abs(std::log(mm / kToothMm));
+    for (const LengthUnit unit :
+         {LengthUnit::metre, LengthUnit::inch, LengthUnit::centimetre, LengthUnit::micrometre}) {
+        const double mm = diagonal * millimetresPer(unit), off = std::abs(std::log(mm / kToothMm));
         if (mm < 0.3 || mm > 60.0 || off >= bestOff) continue;
         bestOff = off;
-        best = {c.unit, c.factor,
+        best = {unit, millimetresPer(unit),
                 fmt::format("a diagonal of {:.4g} is {} for a dental object in mm; in {} it would be {:.4g} mm",
-                            diagonal, diagonal < 1.0 ? "too small" : "too large", unitName(c.unit), mm)};
+                            diagonal, diagonal < 1.0 ? "too small" : "too large", unitName(unit), mm)};
     }
     return best;
 }

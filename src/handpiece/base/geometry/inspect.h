@@ -19,6 +19,11 @@ enum class LengthUnit { unknown, micrometre, millimetre, centimetre, metre, inch
 /// "mm", "um", ...; "unknown".
 [[nodiscard]] std::string_view unitName(LengthUnit unit);
 
+/// Of "mm", "cm", "m", "inch", "um"; unknown for any other.
+[[nodiscard]] LengthUnit unitByName(std::string_view name);
+/// 0 when unknown.
+[[nodiscard]] double millimetresPer(LengthUnit unit);
+
 /// A guess with its reason, never a conversion.
 struct UnitGuess {
     LengthUnit unit = LengthUnit::unknown;

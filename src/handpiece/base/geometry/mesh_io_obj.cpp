@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <limits>
 
 #include "handpiece/base/geometry/mesh_io_formats.h"
@@ -39,6 +40,14 @@ std::string_view nextWord(std::string_view& line) {
     return word;
 }
 
+// Whether a corner names texture and normal: "7", "7/1", "7//3", "7/1/3".
+std::uint32_t formOf(std::string_view corner) {
+    std::uint32_t form = 0;
+    for (std::size_t i = 0; i < corner.size(); ++i)
+        if (corner[i] == '/') form = 4 * form + 1 + (i + 1 < corner.size() && corner[i + 1] != '/');
+    return form;
+}
+
 }  // namespace
 
 TriangleMesh readObj(const Source& source) {
@@ -48,10 +57,20 @@ TriangleMesh readObj(const Source& source) {
     std::string storage;
     std::vector<std::uint32_t> corners;
     std::uint64_t lineNumber = 0, highest = 0, highestLine = 0;
+    // A file that is cut short ends in the middle of a line, seldom where one cannot tell.
+    const bool endsOpen = text.back() != '\n' && text.back() != '\r';
+    std::uint32_t form = 0;
+    bool isAnotherForm = false, endsWithFace = false;
+    const auto failCut = [&] {
+        source.fail(fmt::format("the file ends in the middle of line {}", lineNumber), "export or copy the mesh again");
+    };
     for (std::size_t at = 0; at < text.size();) {
         std::string_view line = nextLine(text, at, lineNumber, storage);
         const std::string_view key = nextWord(line);
+        const bool isCut = endsOpen && at >= text.size();
+        endsWithFace = key == "f";
         if (key == "v") {
+            if (isCut) failCut();  // what would follow it is missing, if not its digits
             core::Vec3 v;
             for (double& x : v) {
                 const std::string_view word = nextWord(line);
@@ -84,7 +103,13 @@ TriangleMesh readObj(const Source& source) {
                     highestLine = lineNumber;
                 }
                 corners.push_back(static_cast<std::uint32_t>(index));
+                isAnotherForm = mesh.triangles.size() > 0 && formOf(word) != form;
+                form = formOf(word);
             }
+            if (isCut && (corners.size() < 3 || isAnotherForm)) failCut();
+            if (corners.size() < 3)
+                source.fail(fmt::format("the face in line {} has fewer than three corners", lineNumber),
+                            "export the mesh again");
             addFan(mesh.triangles, corners);
             if (mesh.triangles.size() > kMaxFaces)
                 source.fail(fmt::format("more than the {} faces that are read", kMaxFaces));
@@ -96,6 +121,16 @@ TriangleMesh readObj(const Source& source) {
             fmt::format("the face in line {} names vertex {} of {}", highestLine, highest, mesh.vertices.size()),
             "export the mesh again");
     bad.check(source, "vertices", "vertex");
+    std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
+    for (const Triangle& t : mesh.triangles)
+        for (const std::uint32_t v : t)
+            used[v] = 1;
+    const auto unused = std::count(used.begin(), used.end(), std::uint8_t{0});
+    if (endsOpen && endsWithFace && unused > 0 && !mesh.triangles.empty()) failCut();
+    if (endsOpen && endsWithFace) source.note("the last line has no end: see that the last face is whole");
+    if (unused > 0 && !mesh.triangles.empty())
+        source.note(fmt::format("{} of {} vertices are in no face: a file that was cut short looks like this", unused,
+                                mesh.vertices.size()));
     return mesh;
 }
 

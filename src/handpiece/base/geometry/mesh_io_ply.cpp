@@ -170,6 +170,8 @@ class Reader {
             source_.fail(
                 fmt::format("face {} names vertex {} of {}", highestFace_ + 1, highest_, mesh_.vertices.size()),
                 "export the mesh again");
+        if (header_.encoding == Encoding::ascii && !Words::isSpace(source_.text().back()))
+            source_.note(fmt::format("the last line has no end: see that face {} is whole", mesh_.triangles.size()));
         return std::move(mesh_);
     }
 

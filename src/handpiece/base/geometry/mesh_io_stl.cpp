@@ -84,8 +84,10 @@ TriangleMesh readAsciiStl(const Source& source) {
     };
     // "solid" may stand several times, each with a name up to the end of its line; a name may hold any word.
     const auto facet = [&] { return static_cast<std::uint64_t>(mesh.triangles.size()) + bad.count + 1; };
+    bool isOpen = false;  // a solid that has not ended
     for (; !word.empty(); word = words.next()) {
         if (is("solid") || is("endsolid")) {
+            isOpen = is("solid");
             words.skipLine();
         } else if (is("facet")) {
             std::uint32_t corner[3] = {0, 0, 0};
@@ -128,6 +130,9 @@ TriangleMesh readAsciiStl(const Source& source) {
             source.fail(fmt::format("more than the {} facets that are read", kMaxFaces));
     }
     bad.check(source, "facets", "facet");
+    if (isOpen && !mesh.triangles.empty())
+        source.fail(fmt::format("the file ends after facet {}, without \"endsolid\"", mesh.triangles.size()),
+                    "export or copy the mesh again");
     mesh.vertices = merger.vertices();
     return mesh;
 }

@@ -23,32 +23,115 @@ using core::Vec3;
 constexpr std::uint32_t kNone = 0xffffffffu;
 /// How far the copies of a vertex move apart, as a share of the box's diagonal.
 constexpr double kApartShare = 4.0 * kAutomaticWeldShare;
+/// A face that repair() made: no part of what came in.
+constexpr std::uint32_t kMade = kNone;
 
 class Mender {
   public:
-    Mender(TriangleMesh mesh, const RepairSettings& settings, double diagonalMm, RepairReport& report)
-        : mesh_(std::move(mesh)), settings_(settings), diagonalMm_(diagonalMm), report_(report) {}
+    Mender(TriangleMesh mesh, const RepairSettings& settings) : mesh_(std::move(mesh)), settings_(settings) {}
 
-    TriangleMesh mend() {
+    /// What comes out is what comes out of it again: every step looks at nothing but the mesh before it, and all of
+    /// them are taken until they change nothing.
+    TriangleMesh mend(RepairReport& report) {
+        report_ = std::move(report);
+        close();
+        const double closedVolumeMm3 = enclosedVolumeMm3(mesh_);
+        mendCrossings();
+        std::stable_sort(report_.holes.begin(), report_.holes.end(),
+                         [](const ClosedHole& a, const ClosedHole& b) { return a.perimeterMm > b.perimeterMm; });
+        requireLittleLost(closedVolumeMm3);
+        report = std::move(report_);
+        return std::move(mesh_);
+    }
+
+  private:
+    void close() {
+        constexpr int kPasses = 12;  // the second changes something only where damage lies on damage
+        for (int pass = 0; pass < kPasses; ++pass) {
+            const TriangleMesh before = mesh_;
+            const RepairReport reportBefore = report_;
+            closeOnce();
+            if (mesh_.triangles != before.triangles || mesh_.vertices != before.vertices) continue;
+            report_ = reportBefore;
+            return;
+        }
+    }
+
+    void closeOnce() {
+        core::Box box;
+        for (const Triangle& t : mesh_.triangles)
+            for (const std::uint32_t v : t)
+                box.extend(mesh_.vertices[v]);
+        diagonalMm_ = box.size().norm();
+        weldMm_ = settings_.weldMm < 0.0 ? kAutomaticWeldShare * diagonalMm_ : settings_.weldMm;
         weld();
         removeDuplicates();
+        if (given_.empty()) noteWhatIsGiven();
         removeFins();
         agree();
         cutApart();
         agree();
         dropDebris();
-        const std::size_t before = mesh_.triangles.size();
-        report_.holes = closeHoles(mesh_);
-        report_.addedFaces = mesh_.triangles.size() - before;
+        closeOpenLoops();
         turnFlatFaces();
-        mendCrossings();
         dropFlatShells();
         faceOutwards();
         removeUnusedVertices();
-        return std::move(mesh_);
     }
 
-  private:
+    // Of each face from which shell it came, so that in the end one can tell what of them was lost.
+    void noteWhatIsGiven() {
+        const Shells shells = shellsOf(mesh_, MeshEdges(mesh_));
+        const std::vector<std::uint32_t> depth = nestingOf(mesh_, shells, std::vector<std::uint8_t>(shells.count, 1));
+        given_.resize(shells.count);
+        source_ = shells.ofFace;
+        for (std::size_t f = 0; f < mesh_.triangles.size(); ++f)
+            given_[source_[f]].areaMm2 += areaOf(f);
+        for (std::size_t s = 0; s < shells.count; ++s)
+            given_[s].outermost = depth[s] == 0;
+    }
+
+    void closeOpenLoops() {
+        const std::size_t before = mesh_.triangles.size();
+        const std::vector<ClosedHole> holes = closeHoles(mesh_);
+        report_.holes.insert(report_.holes.end(), holes.begin(), holes.end());
+        report_.addedFaces += mesh_.triangles.size() - before;
+        source_.resize(mesh_.triangles.size(), kMade);
+    }
+
+    // Debris, sheets around nothing and patches in the place of others are told; of the rest little may be missing.
+    void requireLittleLost(double closedVolumeMm3) {
+        constexpr double kMostDebris = 0.1;  // more is no debris, but the thing itself in pieces
+        std::vector<double> kept(given_.size(), 0.0);
+        for (std::size_t f = 0; f < mesh_.triangles.size(); ++f)
+            if (source_[f] != kMade) kept[source_[f]] += areaOf(f);
+        double outermost = 0.0, all = 0.0;
+        for (std::size_t s = 0; s < given_.size(); ++s) {
+            all += given_[s].areaMm2;
+            if (!given_[s].outermost) continue;
+            outermost += given_[s].areaMm2;
+            report_.lostAreaMm2 += std::max(0.0, given_[s].areaMm2 - kept[s] - given_[s].toldMm2);
+        }
+        if (report_.lostAreaMm2 < 1e-12 * all) report_.lostAreaMm2 = 0.0;  // rounding
+        const double mm3 = std::abs(enclosedVolumeMm3(mesh_) - closedVolumeMm3);
+        constexpr const char* kEditor = "mend it in a mesh editor";
+        if (report_.lostAreaMm2 > kMostLostShare * outermost)
+            throw core::Error(fmt::format("mending would lose {:.4g} mm2 ({:.1f} %) of the surface of {:.4g} mm2",
+                                          report_.lostAreaMm2, 100.0 * report_.lostAreaMm2 / outermost, outermost),
+                              "mesh", kEditor);
+        if (mm3 > kMostLostShare * std::abs(closedVolumeMm3))
+            throw core::Error(fmt::format("mending what crosses would change the volume of {:.4g} mm3 by {:.4g} mm3",
+                                          std::abs(closedVolumeMm3), mm3),
+                              "mesh", kEditor);
+        if (report_.droppedAreaMm2 > kMostDebris * all)
+            throw core::Error(
+                fmt::format("the surface lies in pieces: {} of less than {:.3g} % of the largest have {:.1f} % "
+                            "of its area together",
+                            report_.droppedShells, 100.0 * settings_.debrisAreaShare,
+                            100.0 * report_.droppedAreaMm2 / all),
+                "mesh", "weld it (--weld), keep the pieces (--keep-debris), or mend it in a mesh editor");
+    }
+
     [[nodiscard]] Vec3 centreOf(std::size_t face) const {
         const Triangle& t = mesh_.triangles[face];
         return (mesh_.vertices[t[0]] + mesh_.vertices[t[1]] + mesh_.vertices[t[2]]) / 3.0;
@@ -62,16 +145,20 @@ class Mender {
     // Removes the faces that are marked; returns how many.
     std::size_t removeFaces(const std::vector<std::uint8_t>& marked) {
         std::size_t kept = 0;
-        for (std::size_t f = 0; f < mesh_.triangles.size(); ++f)
-            if (!marked[f]) mesh_.triangles[kept++] = mesh_.triangles[f];
+        for (std::size_t f = 0; f < mesh_.triangles.size(); ++f) {
+            if (marked[f]) continue;
+            if (!source_.empty()) source_[kept] = source_[f];
+            mesh_.triangles[kept++] = mesh_.triangles[f];
+        }
         const std::size_t removed = mesh_.triangles.size() - kept;
         mesh_.triangles.resize(kept);
+        if (!source_.empty()) source_.resize(kept);
         return removed;
     }
 
     // Each vertex goes to the earliest one within the distance; a grid finds it.
     void weld() {
-        const double tolerance = report_.weldMm;
+        const double tolerance = weldMm_;
         // Finer than doubles of this size can tell apart: only equal places are one.
         const double cellMm = std::max({2.0 * tolerance, 1e-12 * diagonalMm_, 1e-300});
         const Vec3 origin = mesh_.bounds().min;
@@ -124,7 +211,7 @@ class Mender {
                 v = becomes[v];
             degenerate[f] = repeatsCorner(mesh_.triangles[f]);
         }
-        report_.removedDegenerateFaces = removeFaces(degenerate);
+        report_.removedDegenerateFaces += removeFaces(degenerate);
     }
 
     // Of faces with the same corners one stays; of two back to back inside a wall that others share, none.
@@ -170,10 +257,11 @@ class Mender {
                 marked[order[i]] = !keep;
             }
         }
-        report_.removedDuplicateFaces = removeFaces(marked);
+        report_.removedDuplicateFaces += removeFaces(marked);
     }
 
-    // A sheet that ends in the open and hangs on an edge of three or more faces is no part of a closed surface.
+    // A small sheet that ends in the open and hangs on an edge of three or more faces is no part of a closed surface. A
+    // large one is that surface, with a hole somewhere and something stuck to it somewhere else.
     void removeFins() {
         for (bool changed = true; changed;) {
             changed = false;
@@ -198,9 +286,11 @@ class Mender {
             std::vector<double> area(mesh_.triangles.size(), 0.0);
             for (std::uint32_t f = 0; f < mesh_.triangles.size(); ++f)
                 area[sets.find(f)] += areaOf(f);
+            double left = kMostLostShare * std::accumulate(area.begin(), area.end(), 0.0) - report_.removedFinAreaMm2;
             std::vector<std::uint32_t> sheets;
             for (const auto& fork : forks)
-                if (isOpen[fork.first] && (sheets.empty() || sheets.back() != fork.first)) sheets.push_back(fork.first);
+                if (isOpen[fork.first] && area[fork.first] <= left && (sheets.empty() || sheets.back() != fork.first))
+                    sheets.push_back(fork.first);
             // The smallest first, and only while its edges still fork: without the others it may be whole.
             std::stable_sort(sheets.begin(), sheets.end(),
                              [&](std::uint32_t a, std::uint32_t b) { return area[a] < area[b]; });
@@ -209,7 +299,11 @@ class Mender {
                 const auto [begin, end] =
                     std::equal_range(forks.begin(), forks.end(), std::pair(sheet, 0u),
                                      [](const auto& a, const auto& b) { return a.first < b.first; });
-                if (std::any_of(begin, end, [&](const auto& fork) { return facesLeft[fork.second] < 3; })) continue;
+                if (area[sheet] > left ||
+                    std::any_of(begin, end, [&](const auto& fork) { return facesLeft[fork.second] < 3; }))
+                    continue;
+                left -= area[sheet];
+                report_.removedFinAreaMm2 += area[sheet];
                 for (auto fork = begin; fork != end; ++fork)
                     --facesLeft[fork->second];
                 drop[sheet] = 1;
@@ -362,11 +456,12 @@ class Mender {
         rest[h % 3] = middle;
         mesh_.triangles[h / 3][nextHalfEdge(h) % 3] = middle;
         mesh_.triangles.push_back(rest);
+        source_.push_back(source_[h / 3]);
     }
 
     void moveTowards(std::size_t vertex, const Vec3& target) {
         const Vec3 way = target - mesh_.vertices[vertex];
-        const double length = way.norm(), step = std::max(kApartShare * diagonalMm_, 4.0 * report_.weldMm);
+        const double length = way.norm(), step = std::max(kApartShare * diagonalMm_, 4.0 * weldMm_);
         if (length > 0.0) mesh_.vertices[vertex] += way * (std::min(step, 0.25 * length) / length);
     }
 
@@ -378,15 +473,39 @@ class Mender {
         report_.droppedFaces += removeFaces(marked);
     }
 
-    void dropDebris() {
-        const Shells shells = shellsOf(mesh_, MeshEdges(mesh_));
+    [[nodiscard]] std::vector<double> areasOf(const Shells& shells) const {
         std::vector<double> area(shells.count, 0.0);
         for (std::size_t f = 0; f < mesh_.triangles.size(); ++f)
             area[shells.ofFace[f]] += areaOf(f);
+        return area;
+    }
+
+    // The faces' area is told in the report, and no loss.
+    void tell(std::size_t face) {
+        if (source_[face] != kMade) given_[source_[face]].toldMm2 += areaOf(face);
+    }
+
+    void dropDebris() {
+        const MeshEdges edges(mesh_);
+        const Shells shells = shellsOf(mesh_, edges);
+        const std::vector<double> area = areasOf(shells), volume = shellVolumesMm3(mesh_, shells);
         const double largest = area.empty() ? 0.0 : *std::max_element(area.begin(), area.end());
-        std::vector<std::uint8_t> drop(shells.count, 0);
-        for (std::size_t s = 0; s < shells.count; ++s)
+        std::vector<std::uint8_t> drop(shells.count, 0), isOpen(shells.count, 0);
+        for (const MeshEdges::Edge& e : edges.edges())
+            if (e.count == 1) isOpen[shells.ofFace[edges.halfEdges(e)[0] / 3]] = 1;
+        for (std::size_t s = 0; s < shells.count; ++s) {
             drop[s] = area[s] < settings_.debrisAreaShare * largest;
+            if (!drop[s]) continue;
+            report_.droppedAreaMm2 += area[s];
+            if (!isOpen[s]) report_.droppedVolumeMm3 += std::abs(volume[s]);
+        }
+        // An open piece of something larger is no debris but a loss.
+        for (std::size_t f = 0; f < mesh_.triangles.size(); ++f) {
+            const std::uint32_t s = shells.ofFace[f];
+            if (drop[s] &&
+                (!isOpen[s] || source_[f] == kMade || given_[source_[f]].areaMm2 < settings_.debrisAreaShare * largest))
+                tell(f);
+        }
         dropShells(shells, drop);
     }
 
@@ -427,6 +546,7 @@ class Mender {
                         continue;
                     flat = one;
                     neighbour = two;
+                    source_[h / 3] = source_[other / 3] = std::min(source_[h / 3], source_[other / 3]);
                     touched[h / 3] = touched[other / 3] = 1;
                     ++turned;
                 }
@@ -447,35 +567,57 @@ class Mender {
     // Where a few faces cross, they and a little around them give way to a new patch; solids that overlap stay as they
     // are.
     void mendCrossings() {
-        constexpr int kRounds = 5;
-        constexpr double kLargestShare = 0.05;  // of the faces; more is no local flaw
-        std::vector<CrossingFaces> crossings = selfIntersections(mesh_);
-        for (int round = 0; round < kRounds && !crossings.empty(); ++round) {
-            std::vector<std::uint8_t> marked(mesh_.triangles.size(), 0);
-            for (const CrossingFaces& c : crossings)
-                marked[c.first] = marked[c.second] = 1;
-            for (int ring = 0; ring < round; ++ring)
-                growByOneRing(marked);
-            const auto taken = static_cast<std::size_t>(std::count(marked.begin(), marked.end(), std::uint8_t{1}));
-            if (static_cast<double>(taken) > kLargestShare * static_cast<double>(mesh_.triangles.size())) break;
-            TriangleMesh saved = mesh_;
-            const RepairReport reportBefore = report_;
-            removeFaces(marked);
-            dropOpenScraps(taken);
-            cutApart();
-            const std::size_t before = mesh_.triangles.size();
-            closeHoles(mesh_);
-            report_.addedFaces += mesh_.triangles.size() - before;
-            report_.removedCrossingFaces += taken;
-            std::vector<CrossingFaces> left = selfIntersections(mesh_);
-            if (left.size() < crossings.size()) {
-                crossings = std::move(left);
-                continue;
+        constexpr int kWidestRing = 4;
+        constexpr int kMostPatches = 64;  // each leaves fewer crossings than there were
+        report_.crossingFaces = selfIntersections(mesh_).size();
+        int ring = 0;
+        for (int patches = 0; patches < kMostPatches && ring <= kWidestRing && report_.crossingFaces > 0;) {
+            Mender patched = *this;
+            if (patched.patch(ring) && patched.report_.crossingFaces < report_.crossingFaces) {
+                *this = std::move(patched);
+                ring = 0;
+                ++patches;
+            } else {
+                ++ring;
             }
-            mesh_ = std::move(saved);
-            report_ = reportBefore;
         }
-        report_.crossingFaces = crossings.size();
+    }
+
+    // Takes the faces that cross, and `rings` of their neighbours, out and closes what is open then. False where that
+    // is no local matter.
+    bool patch(int rings) {
+        constexpr double kLargestShare = 0.05;  // of the faces and of the area
+        std::vector<std::uint8_t> marked(mesh_.triangles.size(), 0);
+        for (const CrossingFaces& c : selfIntersections(mesh_))
+            marked[c.first] = marked[c.second] = 1;
+        for (int ring = 0; ring < rings; ++ring)
+            growByOneRing(marked);
+        std::size_t taken = 0;
+        double areaMm2 = 0.0;
+        for (std::size_t f = 0; f < marked.size(); ++f) {
+            if (!marked[f]) continue;
+            ++taken;
+            areaMm2 += areaOf(f);
+            tell(f);
+        }
+        if (static_cast<double>(taken) > kLargestShare * static_cast<double>(marked.size()) ||
+            areaMm2 > kLargestShare * surfaceAreaMm2(mesh_))
+            return false;
+        const double volumeMm3 = enclosedVolumeMm3(mesh_);
+        report_.removedCrossingFaces += removeFaces(marked);
+        report_.removedCrossingAreaMm2 += areaMm2;
+        dropOpenScraps(taken);
+        try {
+            const std::size_t holes = report_.holes.size();
+            cutApart();
+            closeOpenLoops();
+            report_.holes.resize(holes);  // of our own making
+            close();
+        } catch (const core::Error&) {
+            return false;  // this spot cannot be mended so
+        }
+        report_.crossingFaces = selfIntersections(mesh_).size();
+        return std::abs(enclosedVolumeMm3(mesh_) - volumeMm3) <= kMostLostShare * std::abs(volumeMm3);
     }
 
     void growByOneRing(std::vector<std::uint8_t>& marked) const {
@@ -496,24 +638,33 @@ class Mender {
         std::vector<std::size_t> faces(shells.count, 0);
         for (const std::uint32_t s : shells.ofFace)
             ++faces[s];
-        std::vector<std::uint8_t> drop(shells.count, 0);
+        std::vector<std::uint8_t> drop(shells.count, 0), marked(mesh_.triangles.size(), 0);
         for (const MeshEdges::Edge& e : edges.edges()) {
             const std::uint32_t s = shells.ofFace[edges.halfEdges(e)[0] / 3];
             if (e.count == 1 && faces[s] <= largestFaces) drop[s] = 1;
         }
-        dropShells(shells, drop);
+        for (std::size_t f = 0; f < marked.size(); ++f) {
+            if (!drop[shells.ofFace[f]]) continue;
+            marked[f] = 1;
+            report_.removedCrossingAreaMm2 += areaOf(f);
+            tell(f);
+        }
+        report_.removedCrossingFaces += removeFaces(marked);
     }
 
     // Closed, but around nothing.
     void dropFlatShells() {
         const Shells shells = shellsOf(mesh_, MeshEdges(mesh_));
-        const std::vector<double> volume = shellVolumesMm3(mesh_, shells);
-        std::vector<double> area(shells.count, 0.0);
-        for (std::size_t f = 0; f < mesh_.triangles.size(); ++f)
-            area[shells.ofFace[f]] += areaOf(f);
+        const std::vector<double> volume = shellVolumesMm3(mesh_, shells), area = areasOf(shells);
         std::vector<std::uint8_t> drop(shells.count, 0);
         for (std::size_t s = 0; s < shells.count; ++s)
             drop[s] = std::abs(volume[s]) <= 1e-9 * std::pow(area[s], 1.5);
+        // A sheet that lay there by itself held nothing; one that was part of something larger is a loss.
+        std::vector<double> flatMm2(given_.size(), 0.0);
+        for (std::size_t f = 0; f < mesh_.triangles.size(); ++f)
+            if (drop[shells.ofFace[f]] && source_[f] != kMade) flatMm2[source_[f]] += areaOf(f);
+        for (std::size_t s = 0; s < given_.size(); ++s)
+            if (flatMm2[s] > 0.99 * given_[s].areaMm2) given_[s].toldMm2 += flatMm2[s];
         dropShells(shells, drop);
         if (mesh_.triangles.empty())
             throw core::Error("nothing of the mesh encloses a volume", "mesh",
@@ -549,10 +700,18 @@ class Mender {
                 v = number[v];
     }
 
+    /// A shell of what came in, welded.
+    struct Given {
+        double areaMm2 = 0.0, toldMm2 = 0.0;  ///< all of it; what went of it and is told
+        bool outermost = true;
+    };
+
     TriangleMesh mesh_;
-    const RepairSettings& settings_;
-    double diagonalMm_;
-    RepairReport& report_;
+    RepairSettings settings_;
+    double diagonalMm_ = 0.0, weldMm_ = 0.0;
+    std::vector<Given> given_;
+    std::vector<std::uint32_t> source_;  ///< by face: its shell in given_, or kMade
+    RepairReport report_;
 };
 
 }  // namespace
@@ -569,7 +728,7 @@ RepairReport repair(TriangleMesh& mesh, const RepairSettings& settings) {
     if (!(settings.debrisAreaShare >= 0.0 && settings.debrisAreaShare <= 1.0))
         throw core::Error("the share of the area below which a shell is debris must be 0 to 1", "debris");
     report.weldMm = settings.weldMm < 0.0 ? kAutomaticWeldShare * diagonalMm : settings.weldMm;
-    TriangleMesh mended = Mender(mesh, settings, diagonalMm, report).mend();
+    TriangleMesh mended = Mender(mesh, settings).mend(report);
     report.after = inspect(mended);
     const MeshReport& after = report.after;
     if (!after.closed() || !after.oriented() || after.nonManifoldVertices > 0)

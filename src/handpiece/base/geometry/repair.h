@@ -21,6 +21,9 @@ struct RepairSettings {
         0.01;  ///< shells with less than this share of the largest shell's area are dropped; 0 keeps all
 };
 
+/// The most that may go of the outermost shells' area, debris and patches that are told apart, and of the volume.
+inline constexpr double kMostLostShare = 0.01;
+
 /// A hole that was closed.
 struct ClosedHole {
     std::size_t edges = 0;
@@ -36,25 +39,32 @@ struct RepairReport {
     std::size_t weldedVertices = 0;
     std::size_t removedDegenerateFaces = 0;
     std::size_t removedDuplicateFaces = 0;
-    std::size_t removedFinFaces = 0;       ///< loose sheets that hung on an edge of a better surface
+    std::size_t removedFinFaces = 0;  ///< small loose sheets that hung on an edge of a better surface
+    double removedFinAreaMm2 = 0.0;
     std::size_t splitEdges = 0;            ///< edges of more than two faces, cut apart
     std::size_t splitVertices = 0;         ///< vertices added where sheets were cut apart
     std::size_t droppedShells = 0;         ///< debris
     std::size_t droppedFaces = 0;          ///< their faces
+    double droppedAreaMm2 = 0.0;           ///< their area
+    double droppedVolumeMm3 = 0.0;         ///< what those of them enclosed that were closed
     std::size_t turnedFaces = 0;           ///< to agree with their neighbours or to face outwards
     std::vector<ClosedHole> holes;         ///< the largest perimeter first
     std::size_t addedFaces = 0;            ///< to close them, and in place of faces that crossed
     std::size_t turnedFlatFaces = 0;       ///< faces without height that shared their long side out to a neighbour
     std::size_t removedCrossingFaces = 0;  ///< crossing faces, and what lay around them, that gave way to a patch
-    std::size_t crossingFaces = 0;         ///< pairs of faces that still cross in the result: told, not mended
+    double removedCrossingAreaMm2 = 0.0;
+    double lostAreaMm2 = 0.0;       ///< of the outermost shells, without debris and what gave way to patches
+    std::size_t crossingFaces = 0;  ///< pairs of faces that still cross in the result: told, not mended
 };
 
 /// Mends `mesh` in place: afterwards it is closed, manifold and oriented, outer shells outwards and cavities inwards.
 ///
-/// Welds, removes degenerate and double faces, cuts non-manifold edges and vertices apart (copies move apart by a few
-/// welding distances, so that a file that merges equal vertices keeps them apart), drops debris, closes every hole, and
-/// replaces small patches that cross. Solids that overlap are left as they are and told in crossingFaces.
-/// Throws core::Error (and leaves `mesh` as it was) when nothing is left or a surface cannot be oriented.
+/// Welds, removes degenerate and double faces and small fins, cuts non-manifold edges and vertices apart (copies move
+/// apart by a few welding distances, so that a file that merges equal vertices keeps them apart), drops debris, closes
+/// every hole, and replaces small patches that cross. Solids that overlap are left as they are and told in
+/// crossingFaces. All of it again until nothing changes: what was mended once is left as it is.
+/// Throws core::Error (and leaves `mesh` as it was) when nothing is left, a surface cannot be oriented, more than
+/// kMostLostShare would be lost, or debris is more than a tenth of all.
 RepairReport repair(TriangleMesh& mesh, const RepairSettings& settings = {});
 
 }  // namespace handpiece::geometry

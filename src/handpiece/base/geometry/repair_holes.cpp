@@ -86,10 +86,20 @@ class HoleCloser {
         return std::binary_search(taken_.begin(), taken_.end(), std::pair(std::min(a, b), std::max(a, b)));
     }
 
-    bool triangulate(const Loop& loop) { return loop.size() <= kLargestExact ? leastArea(loop) : cutInTwo(loop); }
+    /// Large loops are cut in two until the exact way can be paid. No recursion: a cut may take off three vertices of
+    /// a hundred thousand.
+    bool triangulate(const Loop& whole) {
+        std::vector<Loop> waiting{whole};
+        while (!waiting.empty()) {
+            const Loop loop = std::move(waiting.back());
+            waiting.pop_back();
+            if (!(loop.size() <= kLargestExact ? leastArea(loop) : cutInTwo(loop, waiting))) return false;
+        }
+        return true;
+    }
 
     // Along the chord that is shortest for the way around it that it saves.
-    bool cutInTwo(const Loop& loop) {
+    bool cutInTwo(const Loop& loop, std::vector<Loop>& parts) {
         const std::size_t n = loop.size(), stride = std::max<std::size_t>(1, n / 1500);
         std::vector<double> along(n + 1, 0.0);
         for (std::size_t i = 0; i < n; ++i)
@@ -107,11 +117,12 @@ class HoleCloser {
                 to = k;
             }
         if (to == 0) return false;
-        const Loop one(loop.begin() + static_cast<std::ptrdiff_t>(from),
-                       loop.begin() + static_cast<std::ptrdiff_t>(to) + 1);
+        Loop one(loop.begin() + static_cast<std::ptrdiff_t>(from), loop.begin() + static_cast<std::ptrdiff_t>(to) + 1);
         Loop other(loop.begin(), loop.begin() + static_cast<std::ptrdiff_t>(from) + 1);
         other.insert(other.end(), loop.begin() + static_cast<std::ptrdiff_t>(to), loop.end());
-        return triangulate(one) && triangulate(other);
+        parts.push_back(std::move(other));
+        parts.push_back(std::move(one));  // the first to be taken
+        return true;
     }
 
     [[nodiscard]] double cost(const Vec3& a, const Vec3& b, const Vec3& c) const {

@@ -62,15 +62,6 @@ class TriangleTree {
     [[nodiscard]] std::span<const TreeTriangle> triangles() const noexcept { return triangles_; }
     [[nodiscard]] const core::Box& bounds() const noexcept { return bounds_; }
 
-    /// What a cache keeps: with the mesh, all of the tree.
-    struct Storage {
-        std::vector<TreeNode> nodes;
-        std::vector<std::uint32_t> order;  ///< triangle of the mesh at each place in tree order
-    };
-    [[nodiscard]] Storage storage() const;
-    /// The tree of `mesh` that gave `storage`, without building it again. Throws core::Error when they do not belong
-    /// together.
-    TriangleTree(const TriangleMesh& mesh, Storage storage);
     /// 7 unit normals of 3 floats a triangle, in tree order: face, edges ab bc ca, vertices a b c.
     [[nodiscard]] const std::vector<float>& pseudonormals() const noexcept { return pseudonormals_; }
 

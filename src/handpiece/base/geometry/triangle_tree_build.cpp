@@ -396,42 +396,6 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) : bounds_(checkedBounds(mes
     computeDipoles();
 }
 
-TriangleTree::TriangleTree(const TriangleMesh& mesh, Storage storage)
-    : nodes_(std::move(storage.nodes)), bounds_(checkedBounds(mesh)) {
-    const std::size_t faces = mesh.triangles.size();
-    bool sound = !nodes_.empty() && storage.order.size() == faces;
-    std::vector<bool> seen(faces, false);
-    for (std::size_t i = 0; sound && i < faces; ++i) {
-        sound = storage.order[i] < faces && !seen[storage.order[i]];
-        if (sound) seen[storage.order[i]] = true;
-    }
-    std::vector<std::uint8_t> depth(nodes_.size(), 0);
-    if (sound) depth[0] = 1;
-    for (std::size_t i = 0; sound && i < nodes_.size(); ++i) {
-        const TreeNode& node = nodes_[i];
-        sound = node.lanes >= 1 && node.lanes <= 8;
-        for (int lane = 0; sound && lane < node.lanes; ++lane) {
-            if (node.child[lane] < 0) {
-                sound = static_cast<std::size_t>(~node.child[lane]) + node.count[lane] <= faces;
-            } else {
-                const auto child = static_cast<std::size_t>(node.child[lane]);
-                sound = child > i && child < nodes_.size() && depth[i] < kMaxTreeDepth;
-                if (sound) depth[child] = std::max(depth[child], static_cast<std::uint8_t>(depth[i] + 1));
-            }
-        }
-    }
-    if (!sound) throw core::Error("the stored arrays do not belong to this mesh", "triangle tree");
-    fillTriangles(mesh, storage.order);
-    computeDipoles();
-}
-
-TriangleTree::Storage TriangleTree::storage() const {
-    Storage storage{nodes_, std::vector<std::uint32_t>(triangles_.size())};
-    for (std::size_t i = 0; i < triangles_.size(); ++i)
-        storage.order[i] = triangles_[i].index;
-    return storage;
-}
-
 void TriangleTree::fillTriangles(const TriangleMesh& mesh, std::span<const std::uint32_t> order) {
     PseudonormalWriter(mesh, order, pseudonormals_).run();
     triangles_.resize(order.size());

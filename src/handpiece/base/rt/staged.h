@@ -20,10 +20,11 @@ namespace handpiece::rt {
 template <class T>
 class Staged {
   public:
-    explicit Staged(std::unique_ptr<T> initial) : current_(initial.release()) {}
+    explicit Staged(std::unique_ptr<T> initial) { current_ = initial.release(); }
     ~Staged() {
         collect();
         delete pending_.load(std::memory_order_acquire);
+        delete unretired_;
         delete current_;
     }
     Staged(const Staged&) = delete;
@@ -59,7 +60,7 @@ class Staged {
 
   private:
     std::atomic<T*> pending_{nullptr};
-    T* current_;
+    T* current_ = nullptr;
     T* unretired_ = nullptr;
     SpscQueue<T*> retired_{16};
 };

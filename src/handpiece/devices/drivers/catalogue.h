@@ -20,9 +20,14 @@ struct Found {
     bool pushes = true;  ///< false: input only
     bool available = false;
     std::vector<std::string> models;  ///< connected, as far as can be told without moving them
-    std::string why;                  ///< when not available: one sentence
-    std::string remedy;               ///< and what to do
-    bool triedOnHardware = false;     ///< by us. Says so in lists and docs
+    /// One that is connected: as OpenOptions::which takes it, and for people.
+    struct Unit {
+        std::string which, label;
+    };
+    std::vector<Unit> units;       ///< as far as one can be told from the other
+    std::string why;               ///< when not available: one sentence
+    std::string remedy;            ///< and what to do
+    bool triedOnHardware = false;  ///< by us. Says so in lists and docs
 };
 
 /// Looks for all of them; loads libraries, opens nothing for longer than a look. Takes up to a second.

@@ -204,8 +204,7 @@ class FalconDriver final : public link::Driver {
         return "Pull the grip all the way out, then push it straight all the way in.";
     }
     bool calibrate() override {
-        if (!servo_ || stopped_)
-            throw core::Error("the device is not running", info_.model, "Connect it first").as("device-stopped", {});
+        link::requireCalibratable(servo_ && !stopped_, info_.model);
         return grip_->homed.load();
     }
 
@@ -238,8 +237,10 @@ Found lookFalcon() {
     try {
         const int count = falcon::countFalcons(*falcon::usb());
         found.available = count > 0;
-        for (int i = 0; i < count; ++i)
+        for (int i = 0; i < count; ++i) {
             found.models.push_back(fmt::format("Falcon {}", i + 1));
+            found.units.push_back({std::to_string(i + 1), found.models.back()});
+        }
         if (!found.available) {
             found.why = "No Falcon is plugged in.";
             found.remedy = "Check its cable and power.";
@@ -251,6 +252,7 @@ Found lookFalcon() {
         if (const Found other = lookForceDimension(); other.available) {
             found.available = true;
             found.models = other.models;
+            found.units = other.units;
         }
     }
     return found;

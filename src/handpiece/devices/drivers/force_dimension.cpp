@@ -405,8 +405,7 @@ class ForceDimensionDriver final : public link::Driver {
 
     bool calibrate() override {
         Arm& arm = *arm_;
-        if (!servo_ || stopped_)
-            throw core::Error("the device is not running", info_.model, "Connect it first").as("device-stopped", {});
+        link::requireCalibratable(servo_ && !stopped_, info_.model);
         if (byHand() || arm.initialised.load() != 0) return arm.initialised.load() != 0;
         // The arm moves by itself now, driven by its maker's routine; no force of ours goes out meanwhile.
         arm.calibrating.store(true);
@@ -493,8 +492,10 @@ Found lookForceDimension() {
         if (count < 0) throw refusal(*library, errorNumber(*library), "Force Dimension");
         if (count == 0) throw noDevice(*library, false);
         // What they are can only be told by opening them, which is not for a look.
-        for (int i = 0; i < std::min(count, 16); ++i)
+        for (int i = 0; i < std::min(count, 16); ++i) {
             found.models.push_back(fmt::format("device {}", i + 1));
+            found.units.push_back({std::to_string(i + 1), fmt::format("Force Dimension, device {}", i + 1)});
+        }
         const int free = library->dhdGetAvailableCount ? library->dhdGetAvailableCount() : count;
         found.available = free != 0;
         if (!found.available) {

@@ -208,8 +208,11 @@ Found lookGamepad() {
     try {
         const Sdl& sdl = Sdl::get();
         sdl.update();
-        for (const int index : controllers(sdl))
+        for (const int index : controllers(sdl)) {
             found.models.push_back(sdl.nameOf(index));
+            const std::string which = fmt::format("#{}", found.models.size());
+            found.units.push_back({which, fmt::format("{} ({})", found.models.back(), which)});
+        }
         found.available = !found.models.empty();
         if (!found.available) {
             found.why = "No gamepad is connected.";

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
+#include <string_view>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/rt/clock.h"
@@ -38,10 +39,17 @@ std::string address() {
     return url != nullptr && *url != '\0' ? url : kUrl;
 }
 
+/// A service on another machine is spoken to where somebody said that this is meant.
+WebSocket::Reach reach() {
+    const char* const said = std::getenv("HANDPIECE_HAPLY_REMOTE");
+    return said != nullptr && std::string_view(said) == "1" ? WebSocket::Reach::anywhere
+                                                            : WebSocket::Reach::thisMachine;
+}
+
 /// Connects and reads the first message: everything there is.
 std::unique_ptr<WebSocket> connect(const std::string& url, std::int64_t timeoutNs, HaplyState& state) {
     const std::int64_t deadline = rt::monotonicNs() + timeoutNs;
-    auto socket = std::make_unique<WebSocket>(url, timeoutNs, kRemedy);
+    auto socket = std::make_unique<WebSocket>(url, timeoutNs, kRemedy, reach());
     std::string_view text;
     const WebSocket::Got got = socket->receive(std::max<std::int64_t>(kMs, deadline - rt::monotonicNs()), text);
     if (got == WebSocket::Got::nothing)
@@ -86,9 +94,7 @@ class HaplyDriver final : public link::Driver {
         return "Set the handle into the inkwell of the arm and wait until its light says that it is ready.";
     }
     bool calibrate() override {
-        if (!servo_)
-            throw core::Error("the device cannot be calibrated before it is connected", info_.model, "connect it first")
-                .as("not-started", {info_.model});
+        link::requireCalibratable(servo_ != nullptr && !stopped_, info_.model);
         return calibrated_.load();  // the service does it by itself, in the inkwell
     }
 
@@ -286,8 +292,8 @@ void HaplyDriver::connectAgain() noexcept {
         zeroSent_ = false;
         command_ = {};
         send();
-    } catch (const core::Error&) {
-        // Still gone: the trouble is told every frame, and the next try comes.
+    } catch (const std::exception&) {
+        // Still gone, or no memory for it: the trouble is told every frame, and the next try comes.
     }
 }
 
@@ -375,8 +381,10 @@ Found lookHaply() {
     try {
         HaplyState state;
         (void)connect(address(), kLookNs, state);
-        for (std::size_t i = 0; i < state.armCount; ++i)
+        for (std::size_t i = 0; i < state.armCount; ++i) {
             found.models.push_back(fmt::format("{} {}", modelOf(state.arms[i]), textOf(state.arms[i].id)));
+            found.units.push_back({std::string(textOf(state.arms[i].id)), found.models.back()});
+        }
         found.available = !found.models.empty();
         if (!found.available) {
             found.why = "Haply's service runs, but no Inverse3 is connected to it.";

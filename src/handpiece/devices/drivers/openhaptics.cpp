@@ -177,7 +177,12 @@ class OpenHaptics final : public link::Driver {
     void relax() noexcept override {
         if (!started_ || stopped_ || arm_->relaxing.exchange(true)) return;
         // Also where no thread is to be had: asked again at the watchdog's next look.
-        const std::shared_ptr<Arm> once(arm_, [](Arm* arm) { arm->relaxing.store(false); });
+        std::shared_ptr<Arm> once;
+        try {
+            once.reset(arm_, [](Arm* arm) { arm->relaxing.store(false); });
+        } catch (const std::bad_alloc&) {
+            return;  // reset() has called that: asked again at the next look
+        }
         (void)withPatience(milliseconds(0), [once] {
             // Whoever opens or closes a device has stopped the servo anyway.
             if (const std::unique_lock guard(desk().mutex, std::try_to_lock); guard.owns_lock()) once->relax();
@@ -204,8 +209,7 @@ class OpenHaptics final : public link::Driver {
     }
 
     bool calibrate() override {
-        if (!started_ || stopped_)
-            throw core::Error("the device cannot be calibrated before it is started", info_.model, "start it first");
+        link::requireCalibratable(started_ && !stopped_, info_.model);
         unsigned error = hd::kSuccess;
         if (!arm_->calibrate(milliseconds(2000), error)) throw deaf();
         if (error != hd::kSuccess && hd::wordsOf(error).weight != hd::Weight::note)

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <system_error>
 #include <vector>
 
 #include "handpiece/base/core/error.h"
@@ -167,7 +168,8 @@ const Library& library() {
     if (loaded == nullptr) {
         loaded = load();
     } else if (const char* asked = std::getenv(kEnvironment); asked && *asked && !sameFile(asked, loaded->path)) {
-        if (!std::filesystem::exists(asked))
+        std::error_code ec;
+        if (!std::filesystem::exists(asked, ec))
             (void)link::SharedLibrary("the HD library of OpenHaptics", kNames, kEnvironment, kRemedy);
         throw twoLibraries(loaded->path, asked);
     }

@@ -99,7 +99,9 @@ struct FootPedal::Thread {
     ServoThread servo;
 };
 
-FootPedal::FootPedal(const PedalSettings& settings) : state_(std::make_shared<State>()) {
+FootPedal::FootPedal(const PedalSettings& settings, std::shared_ptr<link::PedalValue> into)
+    : state_(std::make_shared<State>()) {
+    if (into) state_->value = std::move(into);
     if (settings.axis < 0 || !(settings.deadTravel >= 0.0 && settings.deadTravel <= 0.4))
         throw core::Error(
             fmt::format("a pedal on axis {} with a dead travel of {}", settings.axis, settings.deadTravel), "pedal",
@@ -132,7 +134,11 @@ FootPedal::FootPedal(const PedalSettings& settings) : state_(std::make_shared<St
     state_->attached = true;
     const std::shared_ptr<State> state = state_;
     thread_.reset(new Thread{ServoThread(
-        kRateHz, [state] { state->frame(); }, [state] { state->close(); })});
+        kRateHz, [state] { state->frame(); },
+        [state] {
+            state->close();
+            state->value->write(0.0f, rt::monotonicNs());
+        })});
 }
 
 FootPedal::~FootPedal() {

@@ -32,8 +32,9 @@ struct PedalFound {
 /// pressed when it was opened counts again once it has been up.
 class FootPedal {
   public:
-    /// Throws core::Error: no SDL, no such joystick, no such axis, settings out of range.
-    explicit FootPedal(const PedalSettings& settings);
+    /// Throws core::Error: no SDL, no such joystick, no such axis, settings out of range. `into`: a value that others
+    /// hold already; it has one writer at a time.
+    explicit FootPedal(const PedalSettings& settings, std::shared_ptr<link::PedalValue> into = nullptr);
     ~FootPedal();
     FootPedal(const FootPedal&) = delete;
     FootPedal& operator=(const FootPedal&) = delete;

@@ -16,7 +16,7 @@ void leaveBehind(std::unique_ptr<rt::RealtimeThread> thread) noexcept {
     rt::RealtimeThread* left = thread.release();
     try {
         std::thread([left] { delete left; }).detach();
-    } catch (const std::system_error&) {
+    } catch (const std::exception&) {
         // No thread can be made: then it is never joined, and its memory stays.
     }
 }
@@ -74,18 +74,20 @@ bool ServoThread::stop(std::chrono::milliseconds patience) noexcept {
     return false;
 }
 
-bool withPatience(std::chrono::milliseconds patience, std::function<void()> work) noexcept {
-    try {
-        auto done = std::make_shared<std::promise<void>>();
-        std::future<void> ended = done->get_future();
-        std::thread([done, work = std::move(work)] {
+bool waitedFor(std::chrono::milliseconds patience, std::function<void()> work) {
+    auto done = std::make_shared<std::promise<void>>();
+    std::future<void> ended = done->get_future();
+    std::thread([done, work = std::move(work)] {
+        try {
             work();
             done->set_value();
-        }).detach();
-        return ended.wait_for(patience) == std::future_status::ready;
-    } catch (const std::exception&) {
-        return false;  // no thread can be made: as if it hung
-    }
+        } catch (...) {
+            done->set_exception(std::current_exception());
+        }
+    }).detach();
+    if (ended.wait_for(patience) != std::future_status::ready) return false;
+    ended.get();
+    return true;
 }
 
 }  // namespace handpiece::drivers

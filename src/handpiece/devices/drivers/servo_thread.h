@@ -60,8 +60,19 @@ class ServoThread {
     rt::SchedulingGrant grant_;
 };
 
-/// Runs `work` in a thread of its own and waits for it no longer than `patience`; true when it has ended. A library
-/// that hangs keeps that thread.
-bool withPatience(std::chrono::milliseconds patience, std::function<void()> work) noexcept;
+/// Runs `work` in a thread of its own and waits for it no longer than `patience`; throws what it throws in that time,
+/// and where no thread is to be had.
+bool waitedFor(std::chrono::milliseconds patience, std::function<void()> work);
+
+/// The same for who may not throw: true when it has ended well within `patience`. A library that hangs keeps that
+/// thread.
+template <class Work>
+bool withPatience(std::chrono::milliseconds patience, Work&& work) noexcept {
+    try {
+        return waitedFor(patience, std::function<void()>(std::forward<Work>(work)));
+    } catch (...) {
+        return false;  // no memory, no thread, or the work failed: as if it hung
+    }
+}
 
 }  // namespace handpiece::drivers

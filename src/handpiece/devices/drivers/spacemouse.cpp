@@ -277,8 +277,8 @@ void SpaceMouseDriver::connectAgain() noexcept {
     try {
         daemon_ = std::make_unique<Daemon>(path_, 50 * kMs);
         answeredNs_ = askedNs_ = rt::monotonicNs();
-    } catch (const core::Error&) {
-        // Still gone: the trouble is told every frame, and the next try comes.
+    } catch (const std::exception&) {
+        // Still gone, or no memory for it: the trouble is told every frame, and the next try comes.
     }
 }
 

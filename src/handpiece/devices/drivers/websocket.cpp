@@ -126,6 +126,19 @@ Address parse(const std::string& url) {
     return address;
 }
 
+bool isThisMachine(const sockaddr& address) {
+    if (address.sa_family == AF_INET) {
+        sockaddr_in four;
+        std::memcpy(&four, &address, sizeof four);
+        return ntohl(four.sin_addr.s_addr) >> 24 == 127;
+    }
+    if (address.sa_family != AF_INET6) return false;
+    sockaddr_in6 six;
+    std::memcpy(&six, &address, sizeof six);
+    return IN6_IS_ADDR_LOOPBACK(&six.sin6_addr) ||
+           (IN6_IS_ADDR_V4MAPPED(&six.sin6_addr) && six.sin6_addr.s6_addr[12] == 127);
+}
+
 std::string lower(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -152,7 +165,7 @@ std::string webSocketAccept(std::string_view key) {
     return base64(digest.data(), digest.size());
 }
 
-WebSocket::WebSocket(const std::string& url, std::int64_t timeoutNs, const std::string& remedy)
+WebSocket::WebSocket(const std::string& url, std::int64_t timeoutNs, const std::string& remedy, Reach reach)
     : url_(url), numericUrl_(url), in_(kInput), out_(kMostSent + kMostHeader), message_(kMostMessage) {
     const Address address = parse(url);
     const std::int64_t deadline = rt::monotonicNs() + timeoutNs;
@@ -165,7 +178,11 @@ WebSocket::WebSocket(const std::string& url, std::int64_t timeoutNs, const std::
         throw core::Error(fmt::format("this host is not known ({})", ::gai_strerror(failed)), url, remedy)
             .as("websocket-refused", {url, ::gai_strerror(failed)});
     int reason = ECONNREFUSED;
+    bool anyNear = false;
     for (const addrinfo* a = found; a != nullptr && socket_ < 0; a = a->ai_next) {
+        const bool isNear = isThisMachine(*a->ai_addr);
+        anyNear = anyNear || isNear;
+        if (!isNear && reach == Reach::thisMachine) continue;
         const int s = ::socket(a->ai_family, a->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, a->ai_protocol);
         if (s < 0) continue;
         int result = ::connect(s, a->ai_addr, a->ai_addrlen) == 0 ? 0 : errno;
@@ -190,6 +207,11 @@ WebSocket::WebSocket(const std::string& url, std::int64_t timeoutNs, const std::
         }
     }
     ::freeaddrinfo(found);
+    if (!anyNear && reach == Reach::thisMachine)
+        throw core::Error("this service is not on this machine, and was not said to be elsewhere", url,
+                          "forces would cross a network, unencrypted and late: set HANDPIECE_HAPLY_REMOTE=1 if that is "
+                          "meant")
+            .as("websocket-beyond", {url});
     if (socket_ < 0)
         throw core::Error(fmt::format("nothing answers there ({})", std::strerror(reason)), url, remedy)
             .as("websocket-refused", {url, std::strerror(reason)});

@@ -23,9 +23,12 @@ class WebSocket {
         broken,   ///< what came is no WebSocket, or larger than it may be
     };
 
-    /// "ws://host:port/path". Throws core::Error ("websocket-address", "websocket-refused", "websocket-silent",
-    /// "websocket-wrong"); `remedy` says how the service is started.
-    WebSocket(const std::string& url, std::int64_t timeoutNs, const std::string& remedy);
+    enum class Reach : std::uint8_t { thisMachine, anywhere };
+
+    /// "ws://host:port/path". Throws core::Error ("websocket-address", "websocket-beyond", "websocket-refused",
+    /// "websocket-silent", "websocket-wrong"); `remedy` says how the service is started.
+    WebSocket(const std::string& url, std::int64_t timeoutNs, const std::string& remedy,
+              Reach reach = Reach::thisMachine);
     ~WebSocket();
     WebSocket(const WebSocket&) = delete;
     WebSocket& operator=(const WebSocket&) = delete;

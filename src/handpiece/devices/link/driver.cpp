@@ -48,4 +48,10 @@ void requireStartable(bool runs, bool stopped, const std::string& model) {
     if (runs) throw core::Error("the device runs already", model, "stop it first").as("device-started", {});
 }
 
+void requireCalibratable(bool runs, const std::string& model) {
+    if (!runs)
+        throw core::Error("the device cannot be calibrated before it is connected", model, "connect it first")
+            .as("not-started", {model});
+}
+
 }  // namespace handpiece::link

@@ -114,5 +114,7 @@ class Driver {
 
 /// A driver is started once. Throws core::Error when it runs already or was stopped.
 void requireStartable(bool runs, bool stopped, const std::string& model);
+/// Only a driver that runs can be calibrated. Throws core::Error ("not-started").
+void requireCalibratable(bool runs, const std::string& model);
 
 }  // namespace handpiece::link

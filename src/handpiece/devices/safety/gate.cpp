@@ -50,6 +50,16 @@ Triple clamped(const Triple& v, double most, bool& did) noexcept {
     return most > 0.0 ? scaled(v, most / size) : Triple{};
 }
 
+/// From `from` towards `to`, by no more than `most`.
+Triple stepped(const Triple& from, const Triple& to, double most, bool& did) noexcept {
+    const Triple change{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+    const double size = length(change);
+    if (!(size > most)) return to;
+    did = true;
+    const Triple part = scaled(change, most / size);
+    return {from[0] + part[0], from[1] + part[1], from[2] + part[2]};
+}
+
 bool withinReach(const Triple& v, double most) noexcept {
     return std::abs(v[0]) <= most && std::abs(v[1]) <= most && std::abs(v[2]) <= most;
 }
@@ -77,6 +87,8 @@ void validate(const GateSettings& s) {
     require(s.maxForceN > 0.0 && s.maxForceN <= 100.0, "a largest force [N]", s.maxForceN);
     require(s.maxTorqueNmm >= 0.0 && s.maxTorqueNmm <= 1e5, "a largest torque [N mm]", s.maxTorqueNmm);
     require(s.maxSlopeNPerS > 0.0 && s.maxSlopeNPerS <= 1e6, "a largest slope of force [N/s]", s.maxSlopeNPerS);
+    require(s.maxTorqueSlopeNmmPerS > 0.0 && s.maxTorqueSlopeNmmPerS <= 1e9, "a largest slope of torque [N mm/s]",
+            s.maxTorqueSlopeNmmPerS);
     require(s.fadeInS >= 0.0 && s.fadeInS <= 10.0, "a fade-in [s]", s.fadeInS);
     require(s.commandTimeoutS > 0.0 && s.commandTimeoutS <= 1.0, "a time-out of commands [s]", s.commandTimeoutS);
     require(s.readingTimeoutS > 0.0 && s.readingTimeoutS <= 1.0, "a time-out of readings [s]", s.readingTimeoutS);
@@ -93,6 +105,8 @@ GateSettings gateSettingsFor(const device::Capability& capability) {
     settings.maxForceN = capability.maxForceN;
     settings.maxTorqueNmm = capability.maxTorqueNmm;
     settings.maxSlopeNPerS = capability.maxForceSlopeNPerS;
+    if (capability.maxTorqueNmm > 0.0)
+        settings.maxTorqueSlopeNmmPerS = capability.maxTorqueNmm * capability.maxForceSlopeNPerS / capability.maxForceN;
     if (capability.rateHz > 0.0) settings.readingTimeoutS = std::max(settings.readingTimeoutS, 2.5 / capability.rateHz);
     validate(settings);
     return settings;
@@ -209,15 +223,9 @@ DriverCommand Gate::let(const DriverCommand& latest, float temperature, double e
     out.torqueNmm = scaled(clamped(latest.torqueNmm, settings_.maxTorqueNmm, status_.clamped), status_.gain);
     out.vibration = static_cast<float>(std::clamp(static_cast<double>(latest.vibration), 0.0, 1.0) * status_.gain);
     if (!std::isfinite(out.vibration)) out.vibration = 0.0f;
-    const double most = settings_.maxSlopeNPerS * elapsedS;
-    const Triple change{out.forceN[0] - sent_.forceN[0], out.forceN[1] - sent_.forceN[1],
-                        out.forceN[2] - sent_.forceN[2]};
-    const double size = length(change);
-    if (size > most) {
-        status_.slopeLimited = true;
-        for (std::size_t k = 0; k < 3; ++k)
-            out.forceN[k] = sent_.forceN[k] + change[k] * (most / size);
-    }
+    out.forceN = stepped(sent_.forceN, out.forceN, settings_.maxSlopeNPerS * elapsedS, status_.slopeLimited);
+    out.torqueNmm =
+        stepped(sent_.torqueNmm, out.torqueNmm, settings_.maxTorqueSlopeNmmPerS * elapsedS, status_.slopeLimited);
     return out;
 }
 

@@ -13,12 +13,13 @@ namespace handpiece::safety {
 
 struct GateSettings {
     double maxForceN = 3.3, maxTorqueNmm = 0.0, maxSlopeNPerS = 5000.0;  ///< the device's record
-    double fadeInS = 0.3;            ///< from zero, at the first force after start and after every pause or trouble
-    double commandTimeoutS = 0.004;  ///< a command older than this is none: the simulation stands
-    double readingTimeoutS = 0.004;  ///< two readings farther apart than this: the device stood
-    double releaseS = 0.004;         ///< from any force to zero once in doubt; with the timeouts under 10 ms
-    double maxSpeedMmS = 5000.0;     ///< a pose that moved faster has jumped
-    double clearAfterS = 0.05;       ///< without doubt, before a force is let through again
+    double maxTorqueSlopeNmmPerS = 1e5;  ///< from none to the largest as fast as the force
+    double fadeInS = 0.3;                ///< from zero, at the first force after start and after every pause or trouble
+    double commandTimeoutS = 0.004;      ///< a command older than this is none: the simulation stands
+    double readingTimeoutS = 0.004;      ///< two readings farther apart than this: the device stood
+    double releaseS = 0.004;             ///< from any force to zero once in doubt; with the timeouts under 10 ms
+    double maxSpeedMmS = 5000.0;         ///< a pose that moved faster has jumped
+    double clearAfterS = 0.05;           ///< without doubt, before a force is let through again
     double warmFrom = 0.8, hotFrom = 0.98;  ///< of motorTemperature: force fades from one to the other
 };
 /// From a capability, the rest as above; the reading timeout of a servo slower than 625 Hz is 2.5 of its periods.
@@ -41,7 +42,7 @@ struct GateStatus {
 
 /// One device's gate. One thread (the driver's). Its answer to each reading is within the limits, whatever comes in.
 ///
-/// While all is well: force and torque clamped, faded in and out, and changed no faster than the slope times the time
+/// While all is well: force and torque clamped, faded in and out, and changed no faster than their slope times the time
 /// since the exchange before. In doubt: from the force that was, straight to zero within releaseS (the slope does not
 /// stretch that), and zero until there was no doubt for clearAfterS; then the next force fades in. Of a servo slower
 /// than 1/releaseS the first answer in doubt is zero.

@@ -39,6 +39,7 @@ GateSettings heldTo(const device::Capability& record, const GateSettings& asked)
     s.maxForceN = std::min(asked.maxForceN, own.maxForceN);
     s.maxTorqueNmm = std::min(asked.maxTorqueNmm, own.maxTorqueNmm);
     s.maxSlopeNPerS = std::min(asked.maxSlopeNPerS, own.maxSlopeNPerS);
+    s.maxTorqueSlopeNmmPerS = std::min(asked.maxTorqueSlopeNmmPerS, own.maxTorqueSlopeNmmPerS);
     // The one that is longer for a slow servo: a shorter one would find it standing between any two frames.
     s.readingTimeoutS = std::max(asked.readingTimeoutS, own.readingTimeoutS);
     return s;

@@ -2,8 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <iterator>
+#include <mutex>
+#include <numeric>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/decimate.h"
 #include "handpiece/base/geometry/isosurface.h"
 #include "handpiece/model/starter/scene.h"
@@ -28,29 +33,25 @@ Progress between(const Progress& progress, double from, double to) {
     return [progress, from, to](double fraction) { return progress(from + fraction * (to - from)); };
 }
 
-struct Surface {
-    TriangleMesh mesh;
-    double areaMm2 = 0.0;
-};
-
-/// The surface f = 0 with `faces` triangles, or with `facesPerMm2` where that is given.
-Surface meshOf(const core::Box& box, const geometry::ScalarFunction& f, double lipschitz, std::size_t faces,
-               double facesPerMm2, const Progress& progress) {
+/// The surface f = 0 as far as it takes to know its area.
+TriangleMesh roughOf(const core::Box& box, const geometry::ScalarFunction& f) {
     geometry::IsosurfaceSettings settings;
-    settings.lipschitz = lipschitz;
+    settings.lipschitz = ToothShape::kLipschitz;
     settings.spacingMm = 0.35;
     settings.relaxations = 0;
-    Surface out;
-    out.areaMm2 = geometry::surfaceAreaMm2(geometry::isosurface(box, f, settings));
-    if (facesPerMm2 > 0.0)
-        faces = std::clamp(static_cast<std::size_t>(std::lround(facesPerMm2 * out.areaMm2)), kFewestPartFaces,
-                           kMostPartFaces);
+    return geometry::isosurface(box, f, settings);
+}
+
+/// The surface f = 0, of this area, with `faces` triangles.
+TriangleMesh meshOf(const core::Box& box, const geometry::ScalarFunction& f, double areaMm2, std::size_t faces,
+                    const Progress& progress) {
+    geometry::IsosurfaceSettings settings;
+    settings.lipschitz = ToothShape::kLipschitz;
     settings.relaxations = 2;
-    settings.spacingMm = std::min(
-        kCoarsestSpacingMm, std::sqrt(kFacesPerCell * out.areaMm2 / (kOversampling * static_cast<double>(faces))));
-    TriangleMesh fine = geometry::isosurface(box, f, settings, between(progress, 0.0, 0.5));
-    out.mesh = geometry::decimate(fine, faces, between(progress, 0.5, 1.0)).mesh;
-    return out;
+    settings.spacingMm =
+        std::min(kCoarsestSpacingMm, std::sqrt(kFacesPerCell * areaMm2 / (kOversampling * static_cast<double>(faces))));
+    const TriangleMesh fine = geometry::isosurface(box, f, settings, between(progress, 0.0, 0.5));
+    return geometry::decimate(fine, faces, between(progress, 0.5, 1.0)).mesh;
 }
 
 void checkFaces(std::size_t faces, const char* option) {
@@ -59,11 +60,26 @@ void checkFaces(std::size_t faces, const char* option) {
                           fmt::format("give a number from {} to {}", kMinFaces, kMaxFaces));
 }
 
-Surface outerOf(const ToothShape& shape, std::size_t faces, const Progress& progress) {
-    return meshOf(
-        shape.bounds(), [&](const core::Vec3& p) { return shape.outer(p); }, ToothShape::kLipschitz, faces, 0.0,
-        progress);
-}
+/// How far works are that go on side by side, each with its share of the whole.
+class Shares {
+  public:
+    Shares(const Progress& progress, std::vector<double> shares)
+        : progress_(progress), shares_(std::move(shares)), done_(shares_.size(), 0.0) {}
+    [[nodiscard]] Progress of(std::size_t i) {
+        if (!progress_) return {};
+        return [this, i](double fraction) {
+            const std::lock_guard lock(mutex_);
+            done_[i] = shares_[i] * fraction;
+            return progress_(std::accumulate(done_.begin(), done_.end(), 0.0));
+        };
+    }
+
+  private:
+    const Progress& progress_;
+    const std::vector<double> shares_;
+    std::mutex mutex_;
+    std::vector<double> done_;
+};
 
 tooth::Part partOf(const char* name, tooth::Tissue tissue, TriangleMesh mesh) {
     return {name, tissue, tooth::properties(tissue).priority, std::move(mesh)};
@@ -114,7 +130,29 @@ ToothKind toothKindByName(std::string_view name) {
 
 TriangleMesh makeOuter(ToothKind kind, std::size_t faces, const Progress& progress) {
     checkFaces(faces, "--faces");
-    return outerOf(ToothShape(anatomyOf(kind)), faces, progress).mesh;
+    const ToothShape shape(anatomyOf(kind));
+    const auto f = [&](const core::Vec3& p) { return shape.outer(p); };
+    return meshOf(shape.bounds(), f, geometry::surfaceAreaMm2(roughOf(shape.bounds(), f)), faces, progress);
+}
+
+tooth::Case makeSketch(ToothKind kind) {
+    const ToothShape shape(anatomyOf(kind));
+    tooth::Case made;
+    made.buccalSign = infoOf(kind).buccalSign;
+    made.fdiNumber = infoOf(kind).fdiNumber;
+    made.parts.resize(2);
+    core::parallelFor(3, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i == 0)
+                made.parts[0] = partOf("enamel", tooth::Tissue::enamel,
+                                       roughOf(shape.bounds(), [&](const core::Vec3& p) { return shape.enamel(p); }));
+            if (i == 1)
+                made.parts[1] = partOf("dentine", tooth::Tissue::dentine,
+                                       roughOf(shape.bounds(), [&](const core::Vec3& p) { return shape.dentine(p); }));
+            if (i == 2) made.scenery = makeScene(kind, {}, true);
+        }
+    });
+    return made;
 }
 
 tooth::Case makeTooth(ToothKind kind, const ToothOptions& options, const Progress& progress) {
@@ -127,31 +165,53 @@ tooth::Case makeTooth(ToothKind kind, const ToothOptions& options, const Progres
     made.kind = info.name;
     made.fdiNumber = info.fdiNumber;
     made.buccalSign = info.buccalSign;
-    Surface outer = outerOf(shape, options.faces, between(progress, 0.0, 0.4));
-    made.outer = std::move(outer.mesh);
-    const double density = options.partFaces > 0 ? 0.0 : static_cast<double>(options.faces) / outer.areaMm2;
 
-    struct Tissue {
+    struct Layer {
         const char* name;
         tooth::Tissue tissue;
         double (ToothShape::*function)(const core::Vec3&) const;
+        double share;  ///< of the work
     };
-    static constexpr Tissue kTissues[] = {{"enamel", tooth::Tissue::enamel, &ToothShape::enamel},
-                                          {"dentine", tooth::Tissue::dentine, &ToothShape::dentine},
-                                          {"pulp", tooth::Tissue::pulp, &ToothShape::pulp},
-                                          {"caries", tooth::Tissue::caries, &ToothShape::caries}};
-    double done = 0.4;
-    const double last = options.scene ? 0.8 : 1.0;
-    for (const Tissue& tissue : kTissues) {
-        const double step = (last - 0.4) / 4.0;
-        const auto f = [&](const core::Vec3& p) { return (shape.*tissue.function)(p); };
-        made.parts.push_back(partOf(tissue.name, tissue.tissue,
-                                    meshOf(shape.bounds(), f, ToothShape::kLipschitz, options.partFaces, density,
-                                           between(progress, done, done + step))
-                                        .mesh));
-        done += step;
-    }
-    if (options.scene) made.scenery = makeScene(kind, between(progress, last, 1.0));
+    static constexpr Layer kLayers[] = {{"", tooth::Tissue::none, &ToothShape::outer, 0.3},
+                                        {"enamel", tooth::Tissue::enamel, &ToothShape::enamel, 0.2},
+                                        {"dentine", tooth::Tissue::dentine, &ToothShape::dentine, 0.2},
+                                        {"pulp", tooth::Tissue::pulp, &ToothShape::pulp, 0.05},
+                                        {"caries", tooth::Tissue::caries, &ToothShape::caries, 0.05}};
+    constexpr std::size_t kCount = std::size(kLayers);
+    const auto of = [&](std::size_t i) -> geometry::ScalarFunction {
+        return [&shape, f = kLayers[i].function](const core::Vec3& p) { return (shape.*f)(p); };
+    };
+    std::array<double, kCount> areaMm2{};
+    core::parallelFor(kCount, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            areaMm2[i] = geometry::surfaceAreaMm2(roughOf(shape.bounds(), of(i)));
+    });
+    // As fine as the outer surface, where nothing else was asked for.
+    const auto facesOf = [&](std::size_t i) {
+        if (i == 0) return options.faces;
+        if (options.partFaces > 0) return options.partFaces;
+        const double density = static_cast<double>(options.faces) / areaMm2[0];
+        return std::clamp(static_cast<std::size_t>(std::lround(density * areaMm2[i])), kFewestPartFaces,
+                          kMostPartFaces);
+    };
+    // Surfaces side by side: each is thinned out by one thread.
+    std::array<TriangleMesh, kCount> meshes;
+    std::vector<double> shares;
+    for (const Layer& layer : kLayers)
+        shares.push_back(layer.share);
+    shares.push_back(0.2);
+    Shares told(progress, shares);
+    core::parallelFor(options.scene ? kCount + 1 : kCount, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i == kCount)
+                made.scenery = makeScene(kind, told.of(i));
+            else
+                meshes[i] = meshOf(shape.bounds(), of(i), areaMm2[i], facesOf(i), told.of(i));
+        }
+    });
+    made.outer = std::move(meshes[0]);
+    for (std::size_t i = 1; i < kCount; ++i)
+        made.parts.push_back(partOf(kLayers[i].name, kLayers[i].tissue, std::move(meshes[i])));
     core::report(progress, 1.0);
     return made;
 }

@@ -2,7 +2,10 @@
 #include "handpiece/model/starter/scene.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 
+#include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/decimate.h"
 #include "handpiece/base/geometry/isosurface.h"
 #include "handpiece/model/starter/shape.h"
@@ -14,11 +17,14 @@ using core::Vec3;
 using geometry::TriangleMesh;
 
 constexpr std::size_t kSceneFaces = 24000;
-constexpr double kSceneSpacingMm = 0.16;
+constexpr double kSceneSpacingMm = 0.16, kSketchSpacingMm = 0.5;
 constexpr double kContactGapMm = 0.04;     ///< between neighbouring crowns
 constexpr double kLigamentMm = 0.25;       ///< width of the periodontal ligament space [R: 0.15 to 0.38 mm]
 constexpr double kCrestBelowNeckMm = 1.8;  ///< bone's crest below the cervical line [R: 1 to 2 mm]
 constexpr double kGumAboveNeckMm = 0.5;    ///< the gum's margin over the cervical line
+/// The gum reaches so far into a tooth: the edge of its socket, which is as jagged as its triangles are large, lies
+/// unseen, and its margin is where its own smooth surface meets the tooth.
+constexpr double kGumIntoToothMm = 0.15;
 
 /// A whole tooth, moved along x, scaled and perhaps mirrored in x.
 struct Placed {
@@ -63,18 +69,21 @@ Neighbours neighboursOf(ToothKind kind) {
     return {ToothKind::upperPremolar, ToothKind::lowerFirstMolar, 0.96, 0.95, false};
 }
 
-TriangleMesh meshOf(const core::Box& box, const geometry::ScalarFunction& f, const core::Progress& progress) {
+TriangleMesh meshOf(const core::Box& box, const geometry::ScalarFunction& f, bool isSketch) {
     geometry::IsosurfaceSettings settings;
-    settings.spacingMm = kSceneSpacingMm;
+    settings.spacingMm = isSketch ? kSketchSpacingMm : kSceneSpacingMm;
     settings.lipschitz = ToothShape::kLipschitz;
+    if (isSketch) {
+        settings.relaxations = 0;
+        return geometry::isosurface(box, f, settings);
+    }
     const TriangleMesh fine = geometry::isosurface(box, f, settings);
-    core::report(progress, 0.5);
-    return geometry::decimate(fine, std::min(kSceneFaces, fine.triangles.size()), progress).mesh;
+    return geometry::decimate(fine, std::min(kSceneFaces, fine.triangles.size())).mesh;
 }
 
 }  // namespace
 
-std::vector<tooth::Part> makeScene(ToothKind kind, const core::Progress& progress) {
+std::vector<tooth::Part> makeScene(ToothKind kind, const core::Progress& progress, bool isSketch) {
     const Anatomy own = anatomyOf(kind);
     const Neighbours n = neighboursOf(kind);
     const Anatomy mesialAnatomy = anatomyOf(n.mesial), distalAnatomy = anatomyOf(n.distal);
@@ -83,15 +92,6 @@ std::vector<tooth::Part> makeScene(ToothKind kind, const core::Progress& progres
         {ToothShape(own), 0.0, 1.0, false},
         {ToothShape(mesialAnatomy), reach + n.mesialScale * halfWidth(mesialAnatomy), n.mesialScale, n.mesialMirrored},
         {ToothShape(distalAnatomy), -reach - n.distalScale * halfWidth(distalAnatomy), n.distalScale, false}};
-
-    const auto priority = [](tooth::Tissue t) { return tooth::properties(t).priority; };
-    std::vector<tooth::Part> parts;
-    const char* names[] = {"", "mesial-neighbour", "distal-neighbour"};
-    for (std::size_t i = 1; i < teeth.size(); ++i) {
-        parts.push_back({names[i], tooth::Tissue::neighbour, priority(tooth::Tissue::neighbour),
-                         meshOf(teeth[i].bounds(), [&](const Vec3& p) { return teeth[i].outer(p); }, {})});
-        core::report(progress, 0.2 * static_cast<double>(i));
-    }
 
     const double fromX = teeth[2].bounds().min.x() + 1.0, toX = teeth[1].bounds().max.x() - 1.0;
     const double midX = 0.5 * (fromX + toX), halfX = 0.5 * (toX - fromX);
@@ -119,12 +119,30 @@ std::vector<tooth::Part> makeScene(ToothKind kind, const core::Progress& progres
     };
     const auto gum = [&](const Vec3& p) {
         const double body = smoothMax(ridge(p, gumTop(p), 1.3), -4.0 - kCrestBelowNeckMm - p.z(), 0.5);
-        return smoothMax(smoothMax(body, sockets(p, 0.03), 0.1), 0.05 - ridge(p, -kCrestBelowNeckMm, 0.0), 0.1);
+        return smoothMax(smoothMax(body, sockets(p, -kGumIntoToothMm), 0.1), 0.05 - ridge(p, -kCrestBelowNeckMm, 0.0),
+                         0.1);
     };
-    parts.push_back({"gum", tooth::Tissue::gum, priority(tooth::Tissue::gum), meshOf(box, gum, {})});
-    core::report(progress, 0.7);
-    parts.push_back({"bone", tooth::Tissue::bone, priority(tooth::Tissue::bone), meshOf(box, bone, {})});
-    core::report(progress, 1.0);
+    struct Shape {
+        const char* name;
+        tooth::Tissue tissue;
+        core::Box box;
+        geometry::ScalarFunction function;
+    };
+    const std::array<Shape, 4> shapes{{{"mesial-neighbour", tooth::Tissue::neighbour, teeth[1].bounds(),
+                                        [&](const Vec3& p) { return teeth[1].outer(p); }},
+                                       {"distal-neighbour", tooth::Tissue::neighbour, teeth[2].bounds(),
+                                        [&](const Vec3& p) { return teeth[2].outer(p); }},
+                                       {"gum", tooth::Tissue::gum, box, gum},
+                                       {"bone", tooth::Tissue::bone, box, bone}}};
+    std::vector<tooth::Part> parts(shapes.size());
+    std::atomic<int> done{0};
+    core::parallelFor(shapes.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Shape& s = shapes[i];
+            parts[i] = {s.name, s.tissue, tooth::properties(s.tissue).priority, meshOf(s.box, s.function, isSketch)};
+            core::report(progress, 0.25 * ++done);
+        }
+    });
     return parts;
 }
 

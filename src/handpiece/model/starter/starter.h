@@ -43,6 +43,10 @@ struct ToothOptions {
 [[nodiscard]] tooth::Case makeTooth(ToothKind kind, const ToothOptions& options = {},
                                     const core::Progress& progress = {});
 
+/// Crown, root and what stands around them, roughly: to be looked at while the tooth itself is made. Under half a
+/// second.
+[[nodiscard]] tooth::Case makeSketch(ToothKind kind);
+
 /// The outer surface alone: closed, of genus 0, exactly `faces` triangles (the next even number).
 [[nodiscard]] geometry::TriangleMesh makeOuter(ToothKind kind, std::size_t faces, const core::Progress& progress = {});
 

@@ -25,6 +25,9 @@ using config::Table;
 
 constexpr std::int64_t kFormatVersion = 1;
 constexpr std::uint64_t kMostStateBytes = 2ull << 30;
+constexpr double kLeastVoxelMm = 0.005, kMostVoxelMm = 1.0;  // as a session's
+constexpr std::size_t kMostRecordings = 1000, kMostListBytes = 256 << 10, kLongestName = 120;
+constexpr const char* kRecordingsFolder = "recordings/";
 constexpr const char* kRemedy = "see docs/case-format.md#attempts";
 
 std::uint64_t hashOf(std::span<const std::byte> bytes) {
@@ -74,6 +77,9 @@ Parsed parse(std::string_view text, const std::string& where) {
     a.caseName = root.text("case_name").value_or("");
     a.voxelMm = amountOf(root, "voxel_mm", a.voxelMm);
     if (!(a.voxelMm > 0.0)) root.fail("voxel_mm is 0", "it must be above zero", "voxel_mm");
+    if (!(a.voxelMm >= kLeastVoxelMm && a.voxelMm <= kMostVoxelMm))
+        root.fail(fmt::format("voxel_mm is {}", a.voxelMm), fmt::format("give {} to {}", kLeastVoxelMm, kMostVoxelMm),
+                  "voxel_mm");
     a.bur = root.text("bur").value_or("");
     a.ability = root.text("ability").value_or("");
     a.drive = root.text("drive").value_or("");
@@ -118,6 +124,46 @@ std::string toml(const Attempt& a, const std::string& caseFile) {
     return out;
 }
 
+bool isRecordingName(const std::string& name) {
+    return name.size() > 3 && name.size() <= kLongestName && name.ends_with(".h5") && name.front() != '.' &&
+           std::all_of(name.begin(), name.end(), [](unsigned char c) { return c > 0x1f && c != '/' && c != '\\'; });
+}
+
+std::string recordingsToml(const Attempt& a) {
+    std::vector<std::string> names;
+    for (const Attempt::Recording& recording : a.recordings)
+        names.push_back(recording.name);
+    return fmt::format(
+        "# The recordings of this attempt: docs/case-format.md#recordings.\nformat = 1\nhanded_in = {}\n"
+        "recordings = {}\n",
+        a.handedIn, tomlList(names));
+}
+
+/// What an attempt without this file does not say.
+void readRecordings(const CaseFiles& files, Attempt& a) {
+    if (!files.has(kRecordingsFile)) return;
+    const std::vector<std::byte> text = files.read(kRecordingsFile, kMostListBytes);
+    const Table root =
+        Table::parse({reinterpret_cast<const char*>(text.data()), text.size()}, files.where(kRecordingsFile));
+    const std::int64_t version = root.integer("format").value_or(0);
+    if (version != 1)
+        root.fail(fmt::format("the list's format is {}, this program reads format 1", version),
+                  version > 1 ? "use a newer Handpiece" : kRemedy, "format");
+    root.allowOnly({"format", "handed_in", "recordings"});
+    a.handedIn = root.flag("handed_in").value_or(false);
+    const std::vector<std::string> names = root.texts("recordings");
+    if (names.size() > kMostRecordings) root.fail("too many recordings", kRemedy, "recordings");
+    for (const std::string& name : names) {
+        if (!isRecordingName(name))
+            root.fail(fmt::format("the recording \"{}\" is not a plain file name", name), kRemedy, "recordings");
+        a.recordings.push_back({name, files.has(kRecordingsFolder + name)});
+    }
+}
+
+bool isNoRecording(const std::string& name) {
+    return !name.starts_with(kRecordingsFolder);
+}
+
 std::vector<std::byte> bytesOf(std::string_view text) {
     const auto bytes = std::as_bytes(std::span(text));
     return {bytes.begin(), bytes.end()};
@@ -125,7 +171,7 @@ std::vector<std::byte> bytesOf(std::string_view text) {
 
 /// The folder that the case's place is relative to.
 fs::path baseOf(const fs::path& attempt) {
-    const fs::path whole = fs::absolute(attempt).lexically_normal();
+    const fs::path whole = core::wholePath(attempt).lexically_normal();
     const fs::path place = whole.has_filename() ? whole : whole.parent_path();
     return isPackageName(place) ? place.parent_path() : place;
 }
@@ -135,15 +181,19 @@ Attempt readFrom(const CaseFiles& files, const fs::path& path) {
         throw core::Error(fmt::format("this is no attempt: it has no {}", kAttemptFile), path.string(),
                           "name the folder or .handpiece file that was saved")
             .as("not-an-attempt");
-    const std::vector<std::byte> text = files.read(kAttemptFile);
-    Parsed parsed = parse({reinterpret_cast<const char*>(text.data()), text.size()}, files.where(kAttemptFile));
+    Parsed parsed = parse(tomlIn(files, kAttemptFile), files.where(kAttemptFile));
     Attempt& a = parsed.attempt;
-    a.state = files.read(kAttemptStateFile);
-    if (a.state.size() > kMostStateBytes || hashOf(a.state) != parsed.stateHash)
+    a.state = files.read(kAttemptStateFile, kMostStateBytes);
+    if (hashOf(a.state) != parsed.stateHash)
         throw core::Error("this is not the state that the attempt was saved with, or it is damaged",
                           files.where(kAttemptStateFile), "save the attempt again, or copy both its files")
             .as("attempt-damaged");
+    if (a.caseFile.is_absolute())
+        throw core::Error(fmt::format("the case \"{}\" is not told from where the attempt lies", a.caseFile.string()),
+                          files.where(kAttemptFile), kRemedy)
+            .as("attempt-damaged");
     a.caseFile = (baseOf(path) / a.caseFile).lexically_normal();
+    readRecordings(files, a);
     return std::move(parsed.attempt);
 }
 
@@ -160,10 +210,11 @@ Attempt parseAttempt(std::string_view text, const std::string& where) {
 bool isAttempt(const fs::path& path) {
     std::error_code ec;
     if (fs::is_directory(path, ec)) return fs::exists(path / kAttemptFile, ec);
-    return isPackageName(path) && fs::exists(path, ec) && readPackage(path).count(kAttemptFile) > 0;
+    return isPackageName(path) && fs::exists(path, ec) &&
+           readPackage(path, [](const std::string&) { return false; }).count(kAttemptFile) > 0;
 }
 
-void writeAttempt(const Attempt& attempt, const fs::path& path, const Case* toothCase) {
+void writeAttempt(const Attempt& attempt, const fs::path& path, const Case* toothCase, PackageFiles recordings) {
     if (path.empty()) throw core::Error("an attempt needs a place", "output", "name a folder or a .handpiece file");
     if (attempt.caseFile.empty()) throw core::Error("the attempt has no case", path.string());
     double least = std::min(attempt.elapsedS, attempt.voxelMm);
@@ -177,15 +228,31 @@ void writeAttempt(const Attempt& attempt, const fs::path& path, const Case* toot
     if (toothCase && contentKey(*toothCase) != attempt.caseKey)
         throw core::Error("this is not the case that the attempt was cut from", toothCase->name);
     std::error_code ec;
-    const fs::path target = fs::absolute(attempt.caseFile).lexically_normal();
+    const fs::path target = core::wholePath(attempt.caseFile).lexically_normal();
     fs::path relative = fs::relative(target, baseOf(path), ec);
     if (ec || relative.empty()) relative = target.lexically_relative(baseOf(path));
+    // What is passed on with all that it needs says nothing of the machine it comes from: its case is in itself.
+    if (toothCase) relative = path.filename();
     PackageFiles files;
     files[kAttemptFile] = bytesOf(toml(attempt, relative.generic_string()));
     files[kAttemptStateFile] = attempt.state;
     if (toothCase)
         for (auto& [name, data] : caseFiles(*toothCase))
             files[kCaseInAttempt + name] = std::move(data);
+    std::uint64_t recorded = 0;
+    for (auto& [name, data] : recordings) {
+        const bool known = std::any_of(attempt.recordings.begin(), attempt.recordings.end(),
+                                       [&n = name](const Attempt::Recording& r) { return r.name == n; });
+        if (!known || !isRecordingName(name))
+            throw core::Error(fmt::format("\"{}\" is no recording of this attempt", name), path.string());
+        recorded += data.size();
+        if (recorded > kMostRecordingBytes)
+            throw core::Error(fmt::format("the recordings have more than {} MB", kMostRecordingBytes >> 20),
+                              path.string(), "leave some out");
+        files[kRecordingsFolder + name] = std::move(data);
+    }
+    // Programs before it passed such a file over.
+    if (attempt.handedIn || !attempt.recordings.empty()) files[kRecordingsFile] = bytesOf(recordingsToml(attempt));
     if (packed)
         writePackage(path, files);
     else
@@ -194,17 +261,29 @@ void writeAttempt(const Attempt& attempt, const fs::path& path, const Case* toot
 
 Attempt readAttempt(const fs::path& path) {
     if (!isPackageName(path)) return readFrom(filesInFolder(path), path);
-    const PackageFiles content = readPackage(path);
+    const PackageFiles content = readPackage(path, isNoRecording);
     return readFrom(filesInPackage(path, content), path);
+}
+
+std::vector<std::byte> readRecording(const fs::path& attempt, const std::string& name) {
+    const std::string wanted = kRecordingsFolder + name;
+    if (!isRecordingName(name)) throw core::Error(fmt::format("\"{}\" is no recording", name), attempt.string());
+    if (!isPackageName(attempt)) return filesInFolder(attempt).read(wanted, kMostRecordingBytes);
+    PackageFiles content = readPackage(attempt, [&wanted](const std::string& n) { return n == wanted; });
+    const auto found = content.find(wanted);
+    if (found == content.end())
+        throw core::Error(fmt::format("there is no recording \"{}\" in it", name), attempt.string())
+            .as("file-not-found");
+    return std::move(found->second);
 }
 
 OpenAttempt openAttempt(const fs::path& path) {
     std::optional<PackageFiles> content;
-    if (isPackageName(path)) content = readPackage(path);
-    const Attempt attempt = readFrom(content ? filesInPackage(path, *content) : filesInFolder(path), path);
+    if (isPackageName(path)) content = readPackage(path, isNoRecording);
+    Attempt attempt = readFrom(content ? filesInPackage(path, *content) : filesInFolder(path), path);
     const bool holdsCase = content && content->count(std::string(kCaseInAttempt) + kCaseFile) > 0;
-    std::error_code ec;
-    if (!holdsCase && !fs::exists(attempt.caseFile, ec))
+    if (holdsCase) attempt.caseFile = core::wholePath(path).lexically_normal();
+    if (!holdsCase && !core::isThere(attempt.caseFile))
         throw core::Error(fmt::format("the case that was cut is no longer at {}", attempt.caseFile.string()),
                           path.string(), fmt::format("put \"{}\" back there", attempt.caseName))
             .as("case-moved", {attempt.caseFile.string()});
@@ -215,7 +294,7 @@ OpenAttempt openAttempt(const fs::path& path) {
                                       holdsCase ? path.string() : attempt.caseFile.string()),
                           path.string(), fmt::format("put the old \"{}\" back, or start anew", attempt.caseName))
             .as("case-changed", {holdsCase ? path.string() : attempt.caseFile.string()});
-    return {attempt, std::move(toothCase)};
+    return {std::move(attempt), std::move(toothCase)};
 }
 
 }  // namespace handpiece::tooth

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "handpiece/model/tooth/package.h"
 #include "handpiece/model/tooth/tooth.h"
 
 namespace handpiece::tooth {
@@ -28,10 +29,22 @@ struct Attempt {
     std::string session;  ///< file name of the recording, without a folder; empty when there is none
     std::map<std::string, std::int64_t> counters;
     std::int64_t undoDepth = 0;  ///< strokes that could still be undone when it was saved
+    /// All recordings that led to this tooth, in their order, and whether they come with it. None where nobody kept
+    /// account.
+    struct Recording {
+        std::string name;  ///< of its file, without a folder
+        bool packed = false;
+        friend bool operator==(const Recording&, const Recording&) = default;
+    };
+    std::vector<Recording> recordings;
+    bool handedIn = false;  ///< given to a teacher
 };
 
 inline constexpr const char* kAttemptFile = "attempt.toml";
 inline constexpr const char* kAttemptStateFile = "tooth.state";
+inline constexpr const char* kRecordingsFile = "recordings.toml";
+/// Of the recordings that come along with an attempt, all together: an hour's work is a few dozen megabytes.
+inline constexpr std::uint64_t kMostRecordingBytes = 256ull << 20;
 
 /// True for a folder with attempt.toml and for a .handpiece file that holds one. Throws core::Error for a .handpiece
 /// file that cannot be read.
@@ -39,8 +52,13 @@ inline constexpr const char* kAttemptStateFile = "tooth.state";
 
 /// Into a folder (attempt.toml and tooth.state), or as one .handpiece file; whole or not at all. The case is named
 /// relative to it; with `toothCase` a .handpiece file holds the case as well, and needs nothing beside it.
-/// Throws core::Error, also when the case to be packed is not the attempt's.
-void writeAttempt(const Attempt& attempt, const std::filesystem::path& path, const Case* toothCase = nullptr);
+/// `recordings` by name come along; each must be one of the attempt's. Throws core::Error, also when the case to be
+/// packed is not the attempt's and when the recordings are more than kMostRecordingBytes.
+void writeAttempt(const Attempt& attempt, const std::filesystem::path& path, const Case* toothCase = nullptr,
+                  PackageFiles recordings = {});
+
+/// One that came along. Throws core::Error when there is none of this name.
+[[nodiscard]] std::vector<std::byte> readRecording(const std::filesystem::path& attempt, const std::string& name);
 
 /// The attempt alone, with its case's place made absolute. Throws core::Error for what is missing, damaged, of a newer
 /// format, negative or not finite.

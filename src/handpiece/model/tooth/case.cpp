@@ -21,21 +21,12 @@ namespace fs = std::filesystem;
 using config::Table;
 
 constexpr std::int64_t kOldestFormat = 1, kNewestFormat = 2;
-constexpr std::uint64_t kMaxCaseFileBytes = 1 << 20;
 constexpr int kMostPriority = 1000;
 constexpr const char* kRemedy = "see docs/case-format.md";
 
-std::string textOf(const CaseFiles& files, const std::string& name) {
-    const std::vector<std::byte> bytes = files.read(name);
-    if (bytes.size() > kMaxCaseFileBytes)
-        throw core::Error(
-            fmt::format("the file has {} bytes, more than the {} that are read", bytes.size(), kMaxCaseFileBytes),
-            files.where(name));
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 geometry::TriangleMesh meshOf(const CaseFiles& files, const std::string& name) {
-    return geometry::readMesh(files.read(name), geometry::meshFormatOf(name), files.where(name));
+    return geometry::readMesh(files.read(name, geometry::kMostMeshBytes), geometry::meshFormatOf(name),
+                              files.where(name));
 }
 
 Part readPart(const Table& entry, const CaseFiles& files, const TissueTable& tissues, bool strict) {
@@ -72,7 +63,7 @@ void readTissueTable(const Table& root, const CaseFiles& files, Case& made) {
     const auto name = root.text("tissues");
     if (!name) return;
     requireInside(root, *name, "tissues");
-    made.tissuesToml = textOf(files, *name);
+    made.tissuesToml = tomlIn(files, *name);
     made.tissues = parseTissues(made.tissuesToml, files.where(*name));
 }
 
@@ -95,8 +86,8 @@ int fdiNumberOf(const Table& root) {
 CaseFiles filesInFolder(const fs::path& folder) {
     CaseFiles files;
     files.source = folder;
-    files.has = [folder](const std::string& name) { return fs::exists(folder / name); };
-    files.read = [folder](const std::string& name) { return core::readFile(folder / name); };
+    files.has = [folder](const std::string& name) { return core::isThere(folder / name); };
+    files.read = [folder](const std::string& name, std::uint64_t most) { return core::readFile(folder / name, most); };
     files.where = [folder](const std::string& name) { return (folder / name).string(); };
     return files;
 }
@@ -107,14 +98,24 @@ CaseFiles filesInPackage(const fs::path& package, const PackageFiles& content, c
     const auto where = [package](const std::string& name) { return fmt::format("{} in {}", name, package.string()); };
     files.has = [&content, prefix](const std::string& name) { return content.count(prefix + name) > 0; };
     files.where = where;
-    files.read = [&content, prefix, where](const std::string& name) {
+    files.read = [&content, prefix, where](const std::string& name, std::uint64_t most) {
         // Written as a person may write it: "a/../b.stl" is refused before, "./b.stl" is b.stl.
         const auto found = content.find(prefix + fs::path(name).lexically_normal().generic_string());
         if (found == content.end())
             throw core::Error("there is no such file", where(name), "pack the case again").as("file-not-found");
+        if (found->second.size() > most)
+            throw core::Error(
+                fmt::format("the file has {} bytes, more than the {} that are read", found->second.size(), most),
+                where(name))
+                .as("too-large");
         return found->second;
     };
     return files;
+}
+
+std::string tomlIn(const CaseFiles& files, const std::string& name) {
+    const std::vector<std::byte> bytes = files.read(name, Table::kMostBytes);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 void requireInside(const Table& table, const std::string& name, std::string_view key) {
@@ -128,7 +129,7 @@ void requireInside(const Table& table, const std::string& name, std::string_view
 }
 
 Case readCaseFiles(const CaseFiles& files) {
-    const std::string text = textOf(files, kCaseFile);
+    const std::string text = tomlIn(files, kCaseFile);
     const Table root = Table::parse(text, files.where(kCaseFile));
     const std::int64_t version = root.integer("format").value_or(0);
     if (version < kOldestFormat || version > kNewestFormat)

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <memory>
 #include <span>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
-#include "handpiece/base/geometry/triangle_tree.h"
+#include "handpiece/base/geometry/points_beyond.h"
 
 namespace handpiece::tooth {
 namespace {
@@ -29,7 +29,7 @@ std::string place(const Vec3& p) {
 /// A part with its surface's tree; none when the surface is no solid.
 struct Checked {
     const Part* part;
-    std::optional<TriangleTree> tree;
+    std::shared_ptr<const TriangleTree> tree;
 };
 
 /// The vertex with the greatest value.
@@ -38,24 +38,20 @@ struct Extreme {
     Vec3 at = Vec3::Zero();
 };
 
-/// Over the vertices: `sign` times the distance to the tree's surface.
+/// Of the vertices for which `sign` times the distance to the tree's surface is above what a case allows, the one where
+/// it is most.
 Extreme extremeOf(const std::vector<Vec3>& points, const TriangleTree& tree, double sign) {
-    std::vector<double> values(points.size());
-    core::parallelFor(points.size(), 512, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            values[i] = sign * tree.signedDistance(points[i]);
-    });
     Extreme most;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (values[i] > most.valueMm) most = {values[i], points[i]};
+    for (const std::uint32_t i : geometry::pointsBeyond(tree, points, kCaseToleranceMm, sign))
+        if (const double value = sign * tree.signedDistance(points[i]); value > most.valueMm) most = {value, points[i]};
     return most;
 }
 
-std::optional<TriangleTree> solidTree(const geometry::TriangleMesh& mesh, const std::string& name,
-                                      std::vector<CaseFinding>& findings) {
+std::shared_ptr<const TriangleTree> solidTree(const geometry::TriangleMesh& mesh, const std::string& name,
+                                              std::vector<CaseFinding>& findings) {
     try {
         requireSolid(mesh, name);
-        return TriangleTree(mesh);
+        return std::make_shared<const TriangleTree>(mesh);
     } catch (const core::Error& e) {
         findings.push_back({true, name, e.problem(), 0.0, e.remedy()});
         return {};
@@ -119,12 +115,15 @@ std::vector<CaseFinding> checkCase(const Case& toothCase, const core::Progress& 
              0.0, "export the whole tooth as one closed surface and name it as outer"});
     if (toothCase.parts.empty())
         findings.push_back({false, "", "it has no parts: all of it counts as enamel", 0.0, ""});
-    std::optional<TriangleTree> outer;
+    std::shared_ptr<const TriangleTree> outer;
     if (hasOuter) outer = solidTree(toothCase.outer, "outer", findings);
     std::vector<Checked> parts;
     bool allSolid = true;
     for (const Part& part : toothCase.parts) {
-        parts.push_back({&part, solidTree(part.mesh, part.name, findings)});
+        // The enamel's part may be the whole tooth itself.
+        const bool isOuter =
+            outer && part.mesh.triangles == toothCase.outer.triangles && part.mesh.vertices == toothCase.outer.vertices;
+        parts.push_back({&part, isOuter ? outer : solidTree(part.mesh, part.name, findings)});
         allSolid = allSolid && parts.back().tree;
         core::report(progress, 0.4 * static_cast<double>(parts.size()) / static_cast<double>(toothCase.parts.size()));
     }
@@ -133,7 +132,7 @@ std::vector<CaseFinding> checkCase(const Case& toothCase, const core::Progress& 
             findings.push_back({true, part.name, "it has no faces", 0.0, "give a mesh of triangles"});
     for (std::size_t i = 0; i < parts.size(); ++i) {
         if (!parts[i].tree) continue;
-        if (outer) checkInside(parts[i], *outer, findings);
+        if (outer && parts[i].tree != outer) checkInside(parts[i], *outer, findings);
         for (std::size_t j = i + 1; j < parts.size(); ++j)
             if (parts[j].tree) checkCrossing(parts[i], parts[j], findings);
         core::report(progress, 0.4 + 0.4 * static_cast<double>(i + 1) / static_cast<double>(parts.size()));

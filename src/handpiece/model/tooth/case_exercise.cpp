@@ -106,4 +106,15 @@ std::string exerciseToml(const Exercise& e) {
     return out;
 }
 
+std::string exerciseText(const Exercise& exercise) {
+    return "[exercise]\n" + exerciseToml(exercise);
+}
+
+Exercise parseExercise(std::string_view text, const std::string& where) {
+    const Table root = Table::parse(text, where);
+    root.allowOnly({"exercise"});
+    const auto exercise = root.table("exercise");
+    return exercise ? readExercise(*exercise) : Exercise{};
+}
+
 }  // namespace handpiece::tooth

@@ -23,8 +23,8 @@ inline constexpr const char* kCaseInAttempt = "case/";
 struct CaseFiles {
     std::filesystem::path source;  ///< the folder or the package
     std::function<bool(const std::string& name)> has;
-    /// Throws core::Error when there is none.
-    std::function<std::vector<std::byte>(const std::string& name)> read;
+    /// Throws core::Error when there is none, or one of more bytes.
+    std::function<std::vector<std::byte>(const std::string& name, std::uint64_t mostBytes)> read;
     /// As messages name it.
     std::function<std::string(const std::string& name)> where;
 };
@@ -33,6 +33,8 @@ struct CaseFiles {
 [[nodiscard]] CaseFiles filesInPackage(const std::filesystem::path& package, const PackageFiles& files,
                                        const std::string& prefix = {});
 
+/// One that is TOML, as text.
+[[nodiscard]] std::string tomlIn(const CaseFiles& files, const std::string& name);
 /// The case in these files. Throws core::Error.
 [[nodiscard]] Case readCaseFiles(const CaseFiles& files);
 /// case.toml and all that it names.

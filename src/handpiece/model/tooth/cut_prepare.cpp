@@ -173,7 +173,7 @@ std::shared_ptr<const CuttableTooth> prepareCutting(const Case& toothCase, std::
         places = cachePlaces(toothCase, cache.cacheFolder, key);
         for (std::filesystem::path& place : places) {
             place.replace_extension(".tissues");
-            if (std::optional<TissueMap> map = readTissueFile(place, tooth->field, key))
+            if (std::optional<TissueMap> map = readTissueFile(place, tooth->field, key, TissueSet(toothCase)))
                 return finished(std::move(*map));
         }
     }

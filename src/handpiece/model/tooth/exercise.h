@@ -25,9 +25,10 @@ struct View {
     core::Vec3 up = core::Vec3::UnitZ();
 };
 
-/// Helps that a teacher can lock.
-inline constexpr std::array<std::string_view, 8> kHelps = {"undo",          "reset",        "depth", "tissue-colours",
-                                                           "cross-section", "transparency", "guide", "score"};
+/// Helps that a teacher can lock; what each takes away: docs/case-format.md.
+inline constexpr std::array<std::string_view, 13> kHelps = {
+    "undo",  "reset",  "depth",     "tissue-colours", "cross-section", "transparency", "guide",
+    "score", "mirror", "scale-bar", "chart",          "calliper",      "compare"};
 
 /// `[exercise]` of case.toml.
 struct Exercise {
@@ -37,5 +38,9 @@ struct Exercise {
     std::vector<std::string> lockedHelps;  ///< of kHelps
     std::optional<View> view;              ///< to start with
 };
+
+/// `[exercise]` of case.toml as text, and back. Throws core::Error naming `where`.
+[[nodiscard]] std::string exerciseText(const Exercise& exercise);
+[[nodiscard]] Exercise parseExercise(std::string_view text, const std::string& where);
 
 }  // namespace handpiece::tooth

@@ -73,15 +73,23 @@ std::int32_t FieldBuilder::storedAt(const std::array<std::int32_t, 3>& brick) co
                               nx * (static_cast<std::size_t>(brick[1]) + ny * static_cast<std::size_t>(brick[2]))];
 }
 
-void FieldBuilder::classify(const std::function<double(std::size_t)>& centreDistance) {
+FieldBuilder FieldBuilder::around(const core::Box& surface, const FieldSettings& settings) {
+    // One voxel more than the band, so that the outermost nodes of it have neighbours.
+    return {surface.grown(std::max(0.0, settings.bandOutMm) + std::max(0.0, settings.voxelMm)), settings};
+}
+
+bool FieldBuilder::isStored(float centreDistanceMm) const {
     // A distance changes by no more than the way gone: beyond half the diagonal the band cannot reach into the brick.
     const double above = field_.settings_.bandOutMm + halfDiagonalMm(),
                  below = field_.settings_.bandInMm + halfDiagonalMm();
+    return centreDistanceMm <= above && centreDistanceMm >= -below;
+}
+
+void FieldBuilder::classify(const std::function<double(std::size_t)>& centreDistance) {
     core::parallelFor(denseBricks(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const auto d = static_cast<float>(centreDistance(i));
-            field_.coarse_[i] = d;
-            field_.brickIndex_[i] = d <= above && d >= -below ? 0 : -1;
+            field_.coarse_[i] = static_cast<float>(centreDistance(i));
+            field_.brickIndex_[i] = isStored(field_.coarse_[i]) ? 0 : -1;
         }
     });
 }

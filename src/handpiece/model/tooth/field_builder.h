@@ -30,6 +30,9 @@ class FieldBuilder {
                                                 std::span<const PartSurface> parts, const FieldSettings& settings,
                                                 const core::Progress& progress = {});
 
+    /// The empty grid that fromSurface() fills, for a surface of these bounds. Throws as the constructor.
+    [[nodiscard]] static FieldBuilder around(const core::Box& surface, const FieldSettings& settings);
+
     /// An empty grid of bricks over `box`. Throws core::Error for settings that make no grid, or one too large.
     FieldBuilder(const core::Box& box, const FieldSettings& settings);
 
@@ -44,6 +47,8 @@ class FieldBuilder {
     /// Storage index of the brick at these coordinates; -1 where none is stored or the grid has ended.
     [[nodiscard]] std::int32_t storedAt(const std::array<std::int32_t, 3>& brick) const;
 
+    /// True when the band may pass through a brick whose centre lies this far from the surface.
+    [[nodiscard]] bool isStored(float centreDistanceMm) const;
     /// Calls centreDistance for every brick and notes which of them the band may pass through.
     void classify(const std::function<double(std::size_t dense)>& centreDistance);
     /// Numbers the noted bricks and makes room for their nodes. Throws core::Error when they are too many.

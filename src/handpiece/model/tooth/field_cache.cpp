@@ -3,11 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <bit>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <memory>
+#include <random>
 #include <span>
 #include <system_error>
 
@@ -15,13 +19,14 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/model/tooth/field_builder.h"
 
 namespace handpiece::tooth {
 namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::uint32_t kByteOrder = 0x01020304;
 constexpr char kMagic[8] = {'H', 'P', 'F', 'I', 'E', 'L', 'D', '\n'};
 constexpr std::uint8_t kMixedTissues = 255;
@@ -35,10 +40,10 @@ struct Header {
     double originMm[3];
     std::int32_t bricks[3];
     std::uint32_t reserved;
-    std::uint64_t denseBricks, storedBricks, mixedBricks, treeNodes, triangles;
+    std::uint64_t denseBricks, storedBricks, mixedBricks;
     std::uint64_t payloadHash, headerHash;
 };
-static_assert(sizeof(Header) == 144 && std::is_trivially_copyable_v<Header>);
+static_assert(sizeof(Header) == 128 && std::is_trivially_copyable_v<Header>);
 
 std::uint64_t headerHashOf(const Header& header) {
     core::Hasher hasher;
@@ -46,9 +51,10 @@ std::uint64_t headerHashOf(const Header& header) {
     return hasher.value();
 }
 
-struct CloseFile {
-    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
-};
+/// Some places of a field, other ones each time: whoever makes a false file cannot know which are looked at.
+constexpr std::size_t kLookedAt = 1024;
+/// A stored distance is exact to float.
+constexpr double kRoundingMm = 1e-5;
 
 }  // namespace
 
@@ -60,7 +66,6 @@ class FieldStorage {
         ToothField field;
         std::vector<std::uint8_t> tissueOfBrick,
             mixedTissues;  // one tissue a stored brick, or all nodes of the mixed ones
-        geometry::TriangleTree::Storage tree;
 
         template <class F>
         void visit(F&& f) {
@@ -70,8 +75,6 @@ class FieldStorage {
             f(std::as_writable_bytes(std::span(tissueOfBrick)));
             f(std::as_writable_bytes(std::span(mixedTissues)));
             f(std::as_writable_bytes(std::span(field.values_)));
-            f(std::as_writable_bytes(std::span(tree.nodes)));
-            f(std::as_writable_bytes(std::span(tree.order)));
         }
     };
 
@@ -92,9 +95,16 @@ class FieldStorage {
         return header;
     }
 
-    static void packTissues(Sections& s) {
-        const std::vector<std::uint8_t>& all = s.field.tissue_;
-        for (std::size_t i = 0; i < s.field.brickCount(); ++i) {
+    /// What Sections::visit would visit, of a field that stays where it is.
+    static std::array<std::span<const std::byte>, 6> payloadOf(const ToothField& field, const Sections& s) {
+        return {std::as_bytes(std::span(field.brickIndex_)),   std::as_bytes(std::span(field.coarse_)),
+                std::as_bytes(std::span(field.coarseTissue_)), std::as_bytes(std::span(s.tissueOfBrick)),
+                std::as_bytes(std::span(s.mixedTissues)),      std::as_bytes(std::span(field.values_))};
+    }
+
+    static void packTissues(const ToothField& field, Sections& s) {
+        const std::vector<std::uint8_t>& all = field.tissue_;
+        for (std::size_t i = 0; i < field.brickCount(); ++i) {
             const auto first = all.begin() + static_cast<std::ptrdiff_t>(i * kBrickValues);
             const bool uniform = std::all_of(first, first + kBrickValues, [&](std::uint8_t t) { return t == *first; });
             s.tissueOfBrick.push_back(uniform ? *first : kMixedTissues);
@@ -102,7 +112,7 @@ class FieldStorage {
         }
     }
 
-    static bool unpackTissues(Sections& s) {
+    static bool unpackTissues(Sections& s, const TissueSet& known) {
         s.field.tissue_.resize(s.tissueOfBrick.size() * kBrickValues);
         std::size_t mixed = 0;
         for (std::size_t i = 0; i < s.tissueOfBrick.size(); ++i) {
@@ -114,52 +124,111 @@ class FieldStorage {
                 std::fill_n(out, kBrickValues, s.tissueOfBrick[i]);
             }
         }
-        const auto known = [](const std::vector<std::uint8_t>& tissues) {
-            return std::all_of(tissues.begin(), tissues.end(), [](std::uint8_t t) { return t < kTissueCount; });
-        };
-        return mixed * kBrickValues == s.mixedTissues.size() && known(s.field.tissue_) && known(s.field.coarseTissue_);
+        return mixed * kBrickValues == s.mixedTissues.size() && known.hasAll(s.field.tissue_);
     }
 
-    /// Room for what the header tells; only after its sizes are proven.
-    static Sections room(const Header& header) {
+    /// The empty grid of the asked field with room for what the header tells; only after the file's length agrees.
+    static Sections room(const Header& header, const FieldBuilder& empty) {
         Sections s;
-        s.field.settings_ = {header.voxelMm, header.bandOutMm, header.bandInMm};
-        for (int k = 0; k < 3; ++k) {
-            s.field.originMm_[k] = header.originMm[k];
-            s.field.bricks_[k] = header.bricks[k];
-        }
-        s.field.brickIndex_.resize(header.denseBricks);
-        s.field.coarse_.resize(header.denseBricks);
-        s.field.coarseTissue_.resize(header.denseBricks);
+        s.field = FieldBuilder(empty).finish();
         s.tissueOfBrick.resize(header.storedBricks);
         s.mixedTissues.resize(header.mixedBricks * kBrickValues);
         s.field.values_.resize(header.storedBricks * kBrickValues);
-        s.tree.nodes.resize(header.treeNodes);
-        s.tree.order.resize(header.triangles);
         return s;
     }
 
-    /// Bytes of the payload, or nothing when the counts cannot be right.
-    static std::optional<std::uint64_t> payloadBytes(const Header& h) {
-        constexpr std::uint64_t kMost = std::uint64_t{1} << 32;
-        std::uint64_t dense = 1;
-        for (const std::int32_t n : h.bricks) {
-            if (n < 1 || static_cast<std::uint64_t>(n) > kMost / dense) return std::nullopt;
-            dense *= static_cast<std::uint64_t>(n);
-        }
-        if (dense != h.denseBricks || h.storedBricks > dense || h.mixedBricks > h.storedBricks || h.treeNodes > kMost ||
-            h.triangles > kMost)
+    /// Bytes of the payload, or nothing when the header is not that of the asked grid or the counts cannot be right.
+    static std::optional<std::uint64_t> payloadBytes(const Header& h, const FieldBuilder& empty) {
+        const Header asked = headerOf(FieldBuilder(empty).finish());
+        const bool sameGrid = h.voxelMm == asked.voxelMm && h.bandOutMm == asked.bandOutMm &&
+                              h.bandInMm == asked.bandInMm && std::equal(h.originMm, h.originMm + 3, asked.originMm) &&
+                              std::equal(h.bricks, h.bricks + 3, asked.bricks);
+        if (!sameGrid || h.denseBricks != asked.denseBricks || h.storedBricks > h.denseBricks ||
+            h.mixedBricks > h.storedBricks)
             return std::nullopt;
-        return dense * 9 + h.storedBricks * (1 + 4 * kBrickValues) + h.mixedBricks * kBrickValues +
-               h.treeNodes * sizeof(geometry::TreeNode) + h.triangles * 4;
+        return h.denseBricks * 9 + h.storedBricks * (1 + 4 * kBrickValues) + h.mixedBricks * kBrickValues;
     }
 
-    static bool indicesAreSound(const Sections& s) {
-        const auto stored = static_cast<std::int64_t>(s.tissueOfBrick.size());
-        return std::all_of(s.field.brickIndex_.begin(), s.field.brickIndex_.end(),
-                           [&](std::int32_t i) { return i >= -1 && i < stored; });
+    /// Bricks are stored where and only where the band passes, one after the other; outside there is no tissue.
+    static bool bricksAreSound(const ToothField& field, const FieldBuilder& empty, const TissueSet& known) {
+        const double farthest = field.bounds().size().norm();
+        std::int32_t stored = 0;
+        for (std::size_t i = 0; i < field.coarse_.size(); ++i) {
+            const float centre = field.coarse_[i];
+            if (!(std::abs(centre) <= farthest)) return false;
+            if (field.brickIndex_[i] != (empty.isStored(centre) ? stored++ : -1)) return false;
+            const std::uint8_t tissue = field.coarseTissue_[i];
+            if (centre < 0.0f ? !known.has(tissue) : tissue != static_cast<std::uint8_t>(Tissue::none)) return false;
+        }
+        return static_cast<std::size_t>(stored) == field.brickCount();
+    }
+
+    /// No distance differs from that of its brick's centre by more than the way between them.
+    static bool valuesAreSound(const ToothField& field) {
+        std::array<float, kBrickValues> wayMm;
+        for (int z = 0, at = 0; z < kBrickNodes; ++z)
+            for (int y = 0; y < kBrickNodes; ++y)
+                for (int x = 0; x < kBrickNodes; ++x, ++at) {
+                    constexpr int kHalf = kBrickCells / 2;
+                    const double way = core::Vec3(x - kHalf, y - kHalf, z - kHalf).norm() * field.settings_.voxelMm;
+                    wayMm[static_cast<std::size_t>(at)] = static_cast<float>(way + kRoundingMm);
+                }
+        std::atomic<bool> sound{true};
+        core::parallelFor(field.brickIndex_.size(), 64, [&](std::size_t begin, std::size_t end) {
+            bool good = true;
+            for (std::size_t i = begin; i < end; ++i) {
+                if (field.brickIndex_[i] < 0) continue;
+                const float* values = &field.values_[static_cast<std::size_t>(field.brickIndex_[i]) * kBrickValues];
+                const float centre = std::abs(field.coarse_[i]);
+                for (std::size_t node = 0; node < kBrickValues; ++node)
+                    good &= std::abs(std::abs(values[node]) - centre) <= wayMm[node];
+            }
+            if (!good) sound = false;
+        });
+        return sound;
+    }
+
+    /// As the surface itself has it, at some places: each time other ones.
+    static bool isOf(const geometry::TriangleTree& tree, const ToothField& field, const FieldBuilder& empty) {
+        std::mt19937_64 dice(std::random_device{}());
+        const auto agrees = [&](const core::Vec3& p, float told) {
+            return std::abs(tree.signedDistance(p) - static_cast<double>(told)) <= kRoundingMm;
+        };
+        for (std::size_t i = 0; i < kLookedAt; ++i) {
+            const std::size_t dense = dice() % field.coarse_.size();
+            if (!agrees(empty.centreMm(dense), field.coarse_[dense])) return false;
+        }
+        for (std::size_t i = 0, looked = 0; i < 64 * kLookedAt && looked < kLookedAt; ++i) {
+            const std::size_t dense = dice() % field.coarse_.size();
+            if (field.brickIndex_[dense] < 0) continue;
+            ++looked;
+            const auto node = static_cast<int>(dice() % kBrickValues);
+            const auto [x, y, z] = empty.brickAt(dense);
+            const core::Vec3 p = empty.nodeMm(kBrickCells * std::int64_t{x} + node % kBrickNodes,
+                                              kBrickCells * std::int64_t{y} + node / kBrickNodes % kBrickNodes,
+                                              kBrickCells * std::int64_t{z} + node / (kBrickNodes * kBrickNodes));
+            if (!agrees(p, field.values_[static_cast<std::size_t>(field.brickIndex_[dense]) * kBrickValues +
+                                         static_cast<std::size_t>(node)]))
+                return false;
+        }
+        return true;
     }
 };
+
+TissueSet::TissueSet(std::initializer_list<Tissue> tissues) {
+    for (const Tissue t : tissues)
+        bits_ |= 1u << static_cast<unsigned>(t);
+}
+
+TissueSet::TissueSet(const Case& toothCase) {
+    for (const Part& part : toothCase.parts)
+        bits_ |= 1u << static_cast<unsigned>(part.tissue);
+    if (toothCase.parts.empty()) bits_ = 1u << static_cast<unsigned>(Tissue::enamel);
+}
+
+bool TissueSet::hasAll(std::span<const std::uint8_t> tissues) const {
+    return std::all_of(tissues.begin(), tissues.end(), [this](std::uint8_t t) { return has(t); });
+}
 
 std::uint64_t hashOf(std::span<const std::byte> data) {
     constexpr std::size_t kPiece = 1 << 20;
@@ -199,32 +268,33 @@ std::uint64_t cacheKey(const Case& toothCase, const FieldSettings& settings) {
     return hasher.value();
 }
 
-std::vector<std::byte> encodeField(const ToothField& field, const geometry::TriangleTree& tree, std::uint64_t key) {
-    FieldStorage::Sections sections{field, {}, {}, tree.storage()};
-    FieldStorage::packTissues(sections);
+std::vector<std::byte> encodeField(const ToothField& field, std::uint64_t key) {
+    // A field is most of a tooth's memory: not copied, and the bytes in one piece from the start.
+    FieldStorage::Sections sections;
+    FieldStorage::packTissues(field, sections);
     Header header = FieldStorage::headerOf(field);
     header.key = key;
     header.mixedBricks = sections.mixedTissues.size() / kBrickValues;
-    header.treeNodes = sections.tree.nodes.size();
-    header.triangles = sections.tree.order.size();
+    const auto payload = FieldStorage::payloadOf(field, sections);
+    std::size_t bytes = sizeof header;
+    for (const std::span<const std::byte> section : payload)
+        bytes += section.size();
     std::vector<std::byte> data(sizeof header);
+    data.reserve(bytes);
     core::Hasher hasher;
-    sections.visit([&](std::span<const std::byte> section) {
+    for (const std::span<const std::byte> section : payload) {
         hasher.add(hashOf(section));
         data.insert(data.end(), section.begin(), section.end());
-    });
+    }
     header.payloadHash = hasher.value();
     header.headerHash = headerHashOf(header);
     std::memcpy(data.data(), &header, sizeof header);
     return data;
 }
 
-std::optional<CachedField> readFieldFile(const fs::path& path, std::uint64_t key) {
-    std::error_code ec;
-    if (!fs::is_regular_file(path, ec)) return std::nullopt;
-    const std::uint64_t size = fs::file_size(path, ec);
-    if (ec || size < sizeof(Header)) return std::nullopt;
-    const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.string().c_str(), "rb"));
+std::optional<ToothField> readFieldFile(const fs::path& path, std::uint64_t key, const geometry::TriangleTree& tree,
+                                        const FieldSettings& settings, const TissueSet& tissues) {
+    const core::FileStream file = core::openOwnFile(path);
     if (!file) return std::nullopt;
     std::setvbuf(file.get(), nullptr, _IONBF, 0);  // a few large reads, straight into place
     Header header;
@@ -232,19 +302,23 @@ std::optional<CachedField> readFieldFile(const fs::path& path, std::uint64_t key
     if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion ||
         header.byteOrder != kByteOrder || header.key != key || header.headerHash != headerHashOf(header))
         return std::nullopt;
-    const std::optional<std::uint64_t> payload = FieldStorage::payloadBytes(header);
-    if (!payload || size != sizeof(Header) + *payload) return std::nullopt;
+    const FieldBuilder empty = FieldBuilder::around(tree.bounds(), settings);
+    const std::optional<std::uint64_t> payload = FieldStorage::payloadBytes(header, empty);
+    if (!payload || core::sizeOf(file) != sizeof(Header) + *payload) return std::nullopt;
 
-    FieldStorage::Sections sections = FieldStorage::room(header);
+    FieldStorage::Sections sections = FieldStorage::room(header, empty);
     core::Hasher hasher;
     bool whole = true;
     sections.visit([&](std::span<std::byte> section) {
         whole = whole && std::fread(section.data(), 1, section.size(), file.get()) == section.size();
         if (whole) hasher.add(hashOf(section));
     });
-    if (!whole || hasher.value() != header.payloadHash) return std::nullopt;
-    if (!FieldStorage::unpackTissues(sections) || !FieldStorage::indicesAreSound(sections)) return std::nullopt;
-    return CachedField{std::move(sections.field), std::move(sections.tree)};
+    const ToothField& field = sections.field;
+    const bool believed = whole && hasher.value() == header.payloadHash &&
+                          FieldStorage::bricksAreSound(field, empty, tissues) && FieldStorage::valuesAreSound(field) &&
+                          FieldStorage::unpackTissues(sections, tissues) && FieldStorage::isOf(tree, field, empty);
+    if (!believed) return std::nullopt;
+    return std::move(sections.field);
 }
 
 std::vector<fs::path> cachePlaces(const Case& toothCase, const fs::path& cacheFolder, std::uint64_t key) {
@@ -267,10 +341,15 @@ std::vector<fs::path> cachePlaces(const Case& toothCase, const fs::path& cacheFo
 fs::path writeFieldFile(const std::vector<fs::path>& places, const std::vector<std::byte>& data) {
     for (const fs::path& place : places) {
         std::error_code ec;
-        fs::create_directories(place.parent_path(), ec);
-        if (ec) continue;
+        const fs::path folder = place.parent_path();
+        fs::create_directories(folder, ec);
+        // What another put there stays as it is, and a folder that is a link leads nobody knows where.
+        const bool isTaken = fs::exists(fs::symlink_status(place, ec)) && !core::isOurs(place);
+        if (!fs::is_directory(folder, ec) || fs::is_symlink(fs::symlink_status(folder, ec)) || isTaken) continue;
+        // A file of ours that others could write to would hand its mode on.
+        if (!core::openOwnFile(place)) fs::remove(place, ec);
         try {
-            core::writeFile(place, data);
+            core::writeFile(place, data, {.ownerOnly = true, .lasting = false});
             return place;
         } catch (const core::Error&) {
             // Read-only or full: the next place may do, and without a cache the tooth only opens more slowly.

@@ -138,6 +138,9 @@ std::vector<Listed> listOf(zip_t* archive, std::uint64_t packedBytes, const std:
     return files;
 }
 
+PackageFiles unpack(std::span<const std::byte> zip, const std::string& where, const PackageLimits& limits,
+                    const std::function<bool(const std::string& name)>& wanted);
+
 }  // namespace
 
 bool isPackageName(const fs::path& path) {
@@ -151,7 +154,18 @@ PackageFiles readPackage(const fs::path& file, const PackageLimits& limits) {
     return readPackage(core::readFile(file, kMostPackedBytes), file.string(), limits);
 }
 
+PackageFiles readPackage(const fs::path& file, const std::function<bool(const std::string& name)>& wanted) {
+    return unpack(core::readFile(file, kMostPackedBytes), file.string(), {}, wanted);
+}
+
 PackageFiles readPackage(std::span<const std::byte> zip, const std::string& where, const PackageLimits& limits) {
+    return unpack(zip, where, limits, {});
+}
+
+namespace {
+
+PackageFiles unpack(std::span<const std::byte> zip, const std::string& where, const PackageLimits& limits,
+                    const std::function<bool(const std::string& name)>& wanted) {
     zip_error_t error;
     zip_error_init(&error);
     Source source(zip_source_buffer_create(zip.data(), zip.size(), 0, &error));
@@ -168,13 +182,16 @@ PackageFiles readPackage(std::span<const std::byte> zip, const std::string& wher
         if (!isNew)
             throw core::Error(fmt::format("\"{}\" stands in it twice", shown(listed.name)), where,
                               "get it from where it was made");
-        place->second = readEntry(archive.get(), listed.index, listed.bytes, where, listed.name);
+        if (!wanted || wanted(listed.name))
+            place->second = readEntry(archive.get(), listed.index, listed.bytes, where, listed.name);
     }
     if (files.empty())
         throw core::Error("this .handpiece file is empty", where, "copy the file again")
             .as("not-a-package", {"0 bytes"});
     return files;
 }
+
+}  // namespace
 
 void writePackage(const fs::path& file, const PackageFiles& files) {
     const auto failed = [&file](std::string why) {
@@ -197,6 +214,8 @@ void writePackage(const fs::path& file, const PackageFiles& files) {
         if (!content) throw failed(zip_strerror(archive.get()));
         const zip_int64_t index = zip_file_add(archive.get(), name.c_str(), content.get(), ZIP_FL_ENC_UTF_8);
         if (index < 0) throw failed(zip_strerror(archive.get()));
+        if (name.ends_with(".h5"))
+            zip_set_file_compression(archive.get(), static_cast<zip_uint64_t>(index), ZIP_CM_STORE, 0);
         (void)content.release();
         // 1 January 1980, the earliest there is: the same files, the same bytes.
         zip_file_set_dostime(archive.get(), static_cast<zip_uint64_t>(index), 0, 0x21, 0);
@@ -218,11 +237,9 @@ void writePackage(const fs::path& file, const PackageFiles& files) {
 }
 
 void writeFolder(const fs::path& folder, const PackageFiles& files, const std::string& marker) {
-    const fs::path target = fs::absolute(folder).lexically_normal();
+    const fs::path target = core::wholePath(folder).lexically_normal();
     const fs::path place = target.has_filename() ? target : target.parent_path();
-    if (fs::exists(place) && !(fs::is_directory(place) && (fs::is_empty(place) || fs::exists(place / marker))))
-        throw core::Error("this folder holds something else and is not replaced", folder.string(),
-                          fmt::format("name a new folder, or one with an old {}", marker));
+    core::requireReplaceable(place, marker);
     core::prepareOutputFolder(place.parent_path());
     core::Hasher salt;
     salt.add(place.string());
@@ -238,7 +255,11 @@ void writeFolder(const fs::path& folder, const PackageFiles& files, const std::s
             fs::create_directories((beside / name).parent_path());
             core::writeFile(beside / name, data);
         }
-        const bool replaces = fs::exists(place);
+        const bool replaces = core::isThere(place);
+        // Whoever shares it, or keeps it to oneself, goes on doing so.
+        for (const auto& [name, data] : files)
+            if (core::isThere(place / name)) fs::permissions(beside / name, fs::status(place / name).permissions());
+        if (replaces) fs::permissions(beside, fs::status(place).permissions());
         if (replaces) fs::rename(place, old);
         fs::rename(beside, place);
         if (replaces) fs::remove_all(old, ec);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -30,11 +31,15 @@ struct PackageLimits {
 /// Throws core::Error for what is no zip, is damaged, encrypted or beyond the limits, and for names that are absolute,
 /// lead outside, hold odd characters or stand twice, and for links.
 [[nodiscard]] PackageFiles readPackage(const std::filesystem::path& file, const PackageLimits& limits = {});
+/// The same; a file whose name is not wanted is in the result without its content.
+[[nodiscard]] PackageFiles readPackage(const std::filesystem::path& file,
+                                       const std::function<bool(const std::string& name)>& wanted);
 /// The same from memory; `where` names it in messages.
 [[nodiscard]] PackageFiles readPackage(std::span<const std::byte> zip, const std::string& where,
                                        const PackageLimits& limits = {});
 
-/// Written beside its place and renamed into it. The same files give the same bytes.
+/// Written beside its place and renamed into it. The same files give the same bytes. Recordings (.h5) are packed in
+/// themselves and stored as they are.
 void writePackage(const std::filesystem::path& file, const PackageFiles& files);
 
 /// Writes the files into a folder, which must be new, empty, or hold `marker` (then it is replaced whole). They are

@@ -63,28 +63,22 @@ std::shared_ptr<const Tooth> prepareTooth(const Case& toothCase, const PrepareSe
     const std::uint64_t key = settings.useCache ? cacheKey(toothCase, settings.field) : 0;
     std::vector<std::filesystem::path> places;
     if (settings.useCache) places = cachePlaces(toothCase, settings.cacheFolder, key);
-    for (const std::filesystem::path& place : places) {
-        std::optional<CachedField> cached = readFieldFile(place, key);
-        if (!cached) continue;
+    std::optional<geometry::TriangleTree> tree;
+    if (!places.empty()) tree.emplace(outer);
+    for (const std::filesystem::path& place : places)
         // Only surfaces that passed requireSolid() were ever stored.
-        std::optional<geometry::TriangleTree> tree;
-        try {
-            tree.emplace(outer, std::move(cached->tree));
-        } catch (const core::Error&) {
-            continue;  // arrays of another mesh under the same key: build anew
-        }
-        return finished(std::move(*tree), std::move(cached->field), true);
-    }
+        if (auto field = readFieldFile(place, key, *tree, settings.field, TissueSet(toothCase)))
+            return finished(std::move(*tree), std::move(*field), true);
 
     requireSolid(outer, toothCase.source.empty() ? toothCase.name : toothCase.source.string());
     if (toothCase.parts.size() > 1)
         for (const Part& part : toothCase.parts)
             requireSolid(part.mesh, part.name);
     core::report(progress, 0.1);
-    geometry::TriangleTree tree(outer);
-    ToothField field = buildField(toothCase, outer, tree, settings.field, progress);
-    const auto tooth = finished(std::move(tree), std::move(field), false);
-    if (!places.empty()) (void)writeFieldFile(places, encodeField(tooth->field, tooth->tree, key));
+    if (!tree) tree.emplace(outer);
+    ToothField field = buildField(toothCase, outer, *tree, settings.field, progress);
+    const auto tooth = finished(std::move(*tree), std::move(field), false);
+    if (!places.empty()) (void)writeFieldFile(places, encodeField(tooth->field, key));
     return tooth;
 }
 

@@ -32,7 +32,7 @@ void requireSolid(const geometry::TriangleMesh& mesh, const std::string& where) 
         throw core::Error(
             fmt::format("the surface is {:.4g} mm across, where {} to {} mm make sense; its unit is probably {}: {}",
                         diagonalMm, kSmallestMm, kLargestMm, geometry::unitName(report.unit.unit), report.unit.reason),
-            where, "export it in millimetres")
+            where, "give --unit, or export it in millimetres")
             .as("wrong-size", {fmt::format("{:.4g}", diagonalMm)});
     if (report.openEdges > 0)
         throw core::Error(fmt::format("the surface is open: {} around {}, the first at {}",

@@ -162,9 +162,7 @@ void requireLikeness(const ToothField& field, const geometry::TriangleMesh& mesh
 ToothField FieldBuilder::fromSurface(const geometry::TriangleMesh& mesh, const geometry::TriangleTree& tree,
                                      std::span<const PartSurface> parts, const FieldSettings& settings,
                                      const core::Progress& progress) {
-    // One voxel more than the band, so that the outermost nodes of it have neighbours.
-    FieldBuilder builder(tree.bounds().grown(std::max(0.0, settings.bandOutMm) + std::max(0.0, settings.voxelMm)),
-                         settings);
+    FieldBuilder builder = around(tree.bounds(), settings);
     core::report(progress, 0.0);
     // Row by row, each search starting from the last one's triangle: rows, not pieces of work, so that ties fall alike.
     std::vector<std::uint32_t> centreTriangle(builder.denseBricks());

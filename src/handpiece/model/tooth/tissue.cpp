@@ -123,6 +123,21 @@ TissueTable parseTissues(std::string_view text, const std::string& where) {
     return readOver(builtInTissues(), Table::parse(text, where));
 }
 
+void validate(const TissueTable& table) {
+    for (const TissueProperties& p : table.rows) {
+        const auto require = [&p](double value, double low, double high, std::string_view what) {
+            if (!(value >= low && value <= high))
+                throw core::Error(fmt::format("{} of {} is {}", what, p.name, value), "tissues",
+                                  fmt::format("give {} to {}", low, high));
+        };
+        require(p.stiffnessFraction, 0.0, 1.0, "stiffness");
+        require(p.dampingNSPerMm, 0.0, kMostDampingNSPerMm, "damping");
+        require(p.friction, 0.0, kMostFriction, "friction");
+        require(p.cuttingMm2PerN, 0.0, kMostCuttingMm2PerN, "cutting");
+        require(p.priority, -kMostPriority, kMostPriority, "priority");
+    }
+}
+
 TissueTable readTissues(const std::filesystem::path& file) {
     return readOver(builtInTissues(), Table::read(file));
 }

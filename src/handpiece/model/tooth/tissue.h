@@ -44,6 +44,9 @@ struct TissueTable {
 /// The same from text; `where` names it in messages.
 [[nodiscard]] TissueTable parseTissues(std::string_view text, const std::string& where);
 
+/// Throws core::Error for a row that no such file could have given.
+void validate(const TissueTable& table);
+
 /// Row of the built-in table.
 [[nodiscard]] const TissueProperties& properties(Tissue tissue);
 /// By name ("enamel"); throws core::Error naming the tissues there are.

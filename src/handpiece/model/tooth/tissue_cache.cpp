@@ -2,13 +2,11 @@
 #include "handpiece/model/tooth/tissue_cache.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
-#include <system_error>
 
-#include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
-#include "handpiece/model/tooth/field_cache.h"
 
 namespace handpiece::tooth {
 namespace fs = std::filesystem;
@@ -95,11 +93,8 @@ class TissueStorage {
         return s;
     }
 
-    static std::optional<TissueMap> mapOf(Sections&& s, const ToothField& grid) {
-        const auto known = [](const std::vector<std::uint8_t>& tissues) {
-            return std::all_of(tissues.begin(), tissues.end(), [](std::uint8_t t) { return t < kTissueCount; });
-        };
-        if (!known(s.uniform) || !known(s.rest) || !known(s.nodes) || !known(s.layerTissue)) return std::nullopt;
+    static std::optional<TissueMap> mapOf(Sections&& s, const ToothField& grid, const TissueSet& known) {
+        if (!known.hasAll(s.rest) || !known.hasAll(s.nodes) || !known.hasAll(s.layerTissue)) return std::nullopt;
         TissueMap map(grid);
         if (s.uniform.size() != map.uniform_.size()) return std::nullopt;
         map.uniform_ = std::move(s.uniform);
@@ -115,7 +110,28 @@ class TissueStorage {
                 map.layers_.push_back({static_cast<Tissue>(s.layerTissue[k]), map.values_.data() + k * kBrickValues});
         }
         if (map.layers_.size() != s.layerTissue.size()) return std::nullopt;
-        return map;
+        return isSound(map, grid, known) ? std::optional(std::move(map)) : std::nullopt;
+    }
+
+    /// There is tissue where the field has any, and a node is of the first layer that contains it.
+    static bool isSound(const TissueMap& map, const ToothField& grid, const TissueSet& known) {
+        const FieldView view = grid.view();
+        for (std::uint32_t i = 0; i < map.uniform_.size(); ++i) {
+            const bool matters = view.brickIndex[i] >= 0 || view.coarse[i] < 0.0f;
+            const std::uint8_t* nodes = map.nodes(i);
+            if (nodes == nullptr ? matters != (map.uniform_[i] != 0) || (matters && !known.has(map.uniform_[i]))
+                                 : !matters || map.uniform_[i] != 0)
+                return false;
+            if (nodes == nullptr) continue;
+            const TissueMap::Layers all = map.layers(i);
+            for (std::size_t node = 0; node < kBrickValues; ++node) {
+                const auto inside = std::find_if(all.layers.begin(), all.layers.end(),
+                                                 [&](const TissueMap::Layer& l) { return l.values[node] < 0; });
+                const Tissue tissue = inside == all.layers.end() ? all.rest : inside->tissue;
+                if (nodes[node] != static_cast<std::uint8_t>(tissue)) return false;
+            }
+        }
+        return true;
     }
 };
 
@@ -139,26 +155,23 @@ std::vector<std::byte> encodeTissues(const TissueMap& map, std::uint64_t key) {
     return data;
 }
 
-std::optional<TissueMap> readTissueFile(const fs::path& path, const ToothField& grid, std::uint64_t key) {
-    std::error_code ec;
-    if (!fs::is_regular_file(path, ec)) return std::nullopt;
-    std::vector<std::byte> data;
-    try {
-        data = core::readFile(path);
-    } catch (const core::Error&) {
-        return std::nullopt;  // unreadable: as good as missing
-    }
+std::optional<TissueMap> readTissueFile(const fs::path& path, const ToothField& grid, std::uint64_t key,
+                                        const TissueSet& tissues) {
+    const core::FileStream file = core::openOwnFile(path);
     Header header;
-    if (data.size() < sizeof header) return std::nullopt;
-    std::memcpy(&header, data.data(), sizeof header);
+    if (!file || std::fread(&header, sizeof header, 1, file.get()) != 1) return std::nullopt;
     if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion ||
         header.byteOrder != kByteOrder || header.key != key || header.headerHash != headerHashOf(header))
         return std::nullopt;
-    const std::span<const std::byte> payload = std::span(data).subspan(sizeof header);
-    constexpr std::uint64_t kMost = std::uint64_t{1} << 32;
-    if (header.bricks > kMost || header.mixedBricks > header.bricks || header.layers > kMost ||
-        payload.size() !=
-            header.bricks + header.mixedBricks * (4 + 2 + kBrickValues) + header.layers * (1 + kBrickValues) ||
+    const FieldView view = grid.view();
+    const std::uint64_t dense = static_cast<std::uint64_t>(view.bricks[0]) *
+                                static_cast<std::uint64_t>(view.bricks[1]) * static_cast<std::uint64_t>(view.bricks[2]);
+    if (header.bricks != dense || header.mixedBricks > dense || header.layers > 255 * header.mixedBricks ||
+        core::sizeOf(file) != sizeof header + header.bricks + header.mixedBricks * (4 + 2 + kBrickValues) +
+                                  header.layers * (1 + kBrickValues))
+        return std::nullopt;
+    std::vector<std::byte> payload(core::sizeOf(file) - sizeof header);
+    if (std::fread(payload.data(), 1, payload.size(), file.get()) != payload.size() ||
         hashOf(payload) != header.payloadHash)
         return std::nullopt;
     TissueStorage::Sections sections(header);
@@ -167,7 +180,7 @@ std::optional<TissueMap> readTissueFile(const fs::path& path, const ToothField& 
         std::copy_n(payload.begin() + static_cast<std::ptrdiff_t>(at), section.size(), section.begin());
         at += section.size();
     });
-    return TissueStorage::mapOf(std::move(sections), grid);
+    return TissueStorage::mapOf(std::move(sections), grid, tissues);
 }
 
 }  // namespace handpiece::tooth

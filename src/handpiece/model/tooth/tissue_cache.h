@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "handpiece/model/tooth/field_cache.h"
 #include "handpiece/model/tooth/tissue_map.h"
 
 namespace handpiece::tooth {
@@ -19,10 +20,9 @@ namespace handpiece::tooth {
 /// The bytes of a cache file.
 [[nodiscard]] std::vector<std::byte> encodeTissues(const TissueMap& map, std::uint64_t key);
 
-/// What the file holds, or nothing when it is missing, unreadable, of another key, grid or format, truncated or
-/// damaged: then the caller builds anew. Sizes are believed only after the header's checksum and the file's own length
-/// agree with them.
+/// What the file holds, or nothing when it is missing, not this user's own, of another key, grid or format, truncated
+/// or damaged, or holds what this grid and these tissues cannot give: then the caller builds anew.
 [[nodiscard]] std::optional<TissueMap> readTissueFile(const std::filesystem::path& path, const ToothField& grid,
-                                                      std::uint64_t key);
+                                                      std::uint64_t key, const TissueSet& tissues);
 
 }  // namespace handpiece::tooth

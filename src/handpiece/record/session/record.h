@@ -78,9 +78,10 @@ enum class EventName : std::uint8_t {
     parameterChange,
     fault,
     keyFrame,
-    end
+    end,
+    resume  ///< after a pause or a crash: what follows was done by a new loop on the tooth of the key frame there
 };
-inline constexpr std::size_t kEventNameCount = 15;
+inline constexpr std::size_t kEventNameCount = 16;
 /// "stroke begin", as in the file.
 [[nodiscard]] std::string_view nameOf(EventName name) noexcept;
 

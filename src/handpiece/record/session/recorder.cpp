@@ -10,7 +10,7 @@
 #include <thread>
 #include <variant>
 
-#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/any_error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/rt/spsc_queue.h"
 #include "handpiece/record/session/session_writer.h"
@@ -28,6 +28,7 @@ struct Recorder::State {
     using Item = std::variant<Event, KeyFrame>;
 
     SessionWriter writer;
+    const std::uint64_t firstTick = 0;
     rt::SpscQueue<Record> records;
     std::uint64_t pushed = 0;  // by the caller's thread alone
     std::atomic<std::uint64_t> popped{0};
@@ -42,6 +43,8 @@ struct Recorder::State {
 
     State(const std::filesystem::path& path, const SessionInfo& info)
         : writer(path, info), records(static_cast<std::size_t>(kQueueS * info.rateHz)) {}
+    explicit State(const std::filesystem::path& path)
+        : writer(path), firstTick(writer.firstTick()), records(static_cast<std::size_t>(kQueueS * writer.rateHz())) {}
 
     void add(Item item, std::size_t bytes) {
         const std::lock_guard lock(mutex);
@@ -97,8 +100,8 @@ struct Recorder::State {
             try {
                 writeWhatWaits();
                 if (last) writer.close();
-            } catch (const core::Error& e) {
-                problem = e.what();
+            } catch (const std::exception& e) {
+                problem = core::asError(e).what();
                 broken = true;
             }
             tell(std::move(problem));
@@ -111,12 +114,22 @@ Recorder::Recorder(const std::filesystem::path& path, const SessionInfo& info)
     state_->thread = std::thread([this] { state_->run(); });
 }
 
+Recorder::Recorder(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {
+    state_->thread = std::thread([this] { state_->run(); });
+}
+
 Recorder::~Recorder() {
     close();
 }
 
+std::uint64_t Recorder::firstTick() const noexcept {
+    return state_->firstTick;
+}
+
 bool Recorder::push(const Record& record) noexcept {
-    if (!state_->records.tryPush(record)) return false;
+    Record placed = record;
+    placed.tick += state_->firstTick;
+    if (!state_->records.tryPush(placed)) return false;
     ++state_->pushed;
     return true;
 }
@@ -134,12 +147,12 @@ void Recorder::event(std::uint64_t tick, EventName name, std::string_view text) 
         ++state_->status.lostItems;
         return;
     }
-    state_->add(Event{tick, std::string(nameOf(name)), std::string(text)}, text.size() + 64);
+    state_->add(Event{state_->firstTick + tick, std::string(nameOf(name)), std::string(text)}, text.size() + 64);
 }
 
 void Recorder::keyFrame(std::uint64_t tick, std::vector<std::byte> state) {
     const std::size_t bytes = state.size() + 64;
-    state_->add(KeyFrame{tick, std::move(state)}, bytes);
+    state_->add(KeyFrame{state_->firstTick + tick, std::move(state)}, bytes);
 }
 
 RecorderStatus Recorder::status() const {

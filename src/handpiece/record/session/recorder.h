@@ -32,10 +32,14 @@ class Recorder {
   public:
     /// Makes the file, in place of one that was there. Throws core::Error as SessionWriter.
     Recorder(const std::filesystem::path& path, const SessionInfo& info);
+    /// Goes on in the session that is there, from firstTick() on. Throws core::Error as SessionWriter.
+    explicit Recorder(const std::filesystem::path& path);
     ~Recorder();  ///< close()
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
 
+    /// The file's number for tick 0 of what is handed over; all that follow are counted from there.
+    [[nodiscard]] std::uint64_t firstTick() const noexcept;
     /// Never waits and never throws; false, and counted, when the disk has been too slow for four seconds.
     bool push(const Record& record) noexcept;
     /// Waits for room instead: for runs on simulated time, which outpace the disk.

@@ -9,12 +9,13 @@
 #include <cstring>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/record/session/hdf5_object.h"
 
 namespace handpiece::session {
 namespace {
 
-constexpr hsize_t kMostRows = hsize_t{1} << 31, kMostEvents = hsize_t{1} << 22, kMostKeyFrames = hsize_t{1} << 20,
+constexpr hsize_t kMostRows = hsize_t{1} << 31, kMostEvents = hsize_t{1} << 20, kMostKeyFrames = hsize_t{1} << 20,
                   kMostChunkBytes = hsize_t{1} << 24, kMostKeyFrameBytes = hsize_t{1} << 30;
 constexpr std::size_t kMostTextBytes = std::size_t{1} << 20;
 constexpr const char* kRemedy = "the file is damaged or was not written by Handpiece";
@@ -139,6 +140,8 @@ struct SessionReader::State {
     Hdf5Object eventType = eventRowType(), keyFrameType = keyFrameRowType();
     std::vector<KeyFrameRow> keyFrames;
     std::vector<std::uint64_t> keyFrameTicks;
+    std::vector<Event> told;
+    std::uint64_t endTick = 0;
 
     explicit State(const std::filesystem::path& path) : source(path) {}
 
@@ -146,6 +149,19 @@ struct SessionReader::State {
         std::uint64_t tick = 0;
         columns.back().read(index, 1, H5T_NATIVE_UINT64, &tick);
         return tick;
+    }
+    /// The first record at or after a tick.
+    [[nodiscard]] std::uint64_t indexOf(std::uint64_t tick) const {
+        std::uint64_t low = 0, high = size;
+        while (low < high) {
+            const std::uint64_t middle = low + (high - low) / 2;
+            if (tickAt(middle) < tick) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        return low;
     }
     [[nodiscard]] Hdf5Object plainDataset(const char* name, std::size_t mostBytes) const {
         Hdf5Object set = source.open(file.id(), name, H5I_DATASET);
@@ -166,6 +182,8 @@ struct SessionReader::State {
     }
     void readHead();
     void openTables();
+    void readEvents();
+    void leaveOutWhatWasNotDone();
 };
 
 void SessionReader::State::readHead() {
@@ -224,17 +242,52 @@ void SessionReader::State::openTables() {
                        "key_frames/index", "points outside the data");
         keyFrameTicks.push_back(row.tick);
     }
+    readEvents();
+    endTick = size > 0 ? tickAt(size - 1) + 1 : 0;
+    for (const Event& event : told)
+        endTick = std::max(endTick, event.tick + 1);
+    if (!keyFrameTicks.empty()) endTick = std::max(endTick, keyFrameTicks.back() + 1);
+    leaveOutWhatWasNotDone();
+}
+
+void SessionReader::State::readEvents() {
+    std::vector<EventRow> rows;
+    for (std::uint64_t first = 0; first < events.count(); first += rows.size()) {
+        rows.resize(static_cast<std::size_t>(std::min<std::uint64_t>(1024, events.count() - first)));
+        events.read(first, rows.size(), eventType.id(), rows.data());
+        for (const EventRow& row : rows) {
+            if (row.part == 0) {
+                told.push_back({row.tick, textOf(row.name), textOf(row.text)});
+            } else {
+                source.require(!told.empty() && told.back().tick == row.tick, "events", "begins within an event");
+                told.back().text += textOf(row.text);
+            }
+        }
+    }
+}
+
+/// Events and key frames reach the file before their samples. Where a killed program's session goes on, those behind
+/// its last sample tell of what the tooth does not have.
+void SessionReader::State::leaveOutWhatWasNotDone() {
+    for (std::size_t i = 0; i < told.size(); ++i) {
+        if (told[i].name != nameOf(EventName::resume)) continue;
+        const std::uint64_t on = told[i].tick, index = indexOf(on), done = index > 0 ? tickAt(index - 1) + 1 : 0;
+        const auto undone = [&](std::uint64_t tick) { return tick >= done && tick < on; };
+        const auto here = told.begin() + static_cast<std::ptrdiff_t>(i);
+        const auto kept = std::remove_if(told.begin(), here, [&](const Event& e) { return undone(e.tick); });
+        i -= static_cast<std::size_t>(here - kept);
+        told.erase(kept, here);
+        std::erase_if(keyFrames, [&](const KeyFrameRow& row) { return undone(row.tick); });
+    }
+    keyFrameTicks.clear();
+    for (const KeyFrameRow& row : keyFrames)
+        keyFrameTicks.push_back(row.tick);
 }
 
 SessionReader::SessionReader(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {
     silenceHdf5();
     State& s = *state_;
-    std::error_code ec;
-    const auto status = std::filesystem::status(path, ec);
-    if (!std::filesystem::exists(status))
-        throw core::Error("there is no such file", path.string(), "check the name").as("file-not-found");
-    if (std::filesystem::is_directory(status))
-        throw core::Error("this is a folder, not a session", path.string()).as("is-a-folder");
+    (void)core::openFile(path);  // HDF5 would wait for what a pipe says, and tells less of what it cannot open
     const std::string name = path.string();
     if (H5Fis_hdf5(name.c_str()) <= 0)
         throw core::Error("this is no session: it is not an HDF5 file", name).as("not-a-session");
@@ -278,35 +331,15 @@ std::vector<Record> SessionReader::records(std::uint64_t first, std::size_t coun
 }
 
 std::uint64_t SessionReader::indexOfTick(std::uint64_t tick) const {
-    std::uint64_t low = 0, high = state_->size;
-    while (low < high) {
-        const std::uint64_t middle = low + (high - low) / 2;
-        if (state_->tickAt(middle) < tick) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
+    return state_->indexOf(tick);
+}
+
+std::uint64_t SessionReader::endTick() const noexcept {
+    return state_->endTick;
 }
 
 std::vector<Event> SessionReader::events() const {
-    const State& s = *state_;
-    std::vector<Event> result;
-    std::vector<EventRow> rows;
-    for (std::uint64_t first = 0; first < s.events.count(); first += rows.size()) {
-        rows.resize(static_cast<std::size_t>(std::min<std::uint64_t>(1024, s.events.count() - first)));
-        s.events.read(first, rows.size(), s.eventType.id(), rows.data());
-        for (const EventRow& row : rows) {
-            if (row.part == 0) {
-                result.push_back({row.tick, textOf(row.name), textOf(row.text)});
-            } else {
-                s.source.require(!result.empty() && result.back().tick == row.tick, "events", "begins within an event");
-                result.back().text += textOf(row.text);
-            }
-        }
-    }
-    return result;
+    return state_->told;
 }
 
 const std::vector<std::uint64_t>& SessionReader::keyFrameTicks() const noexcept {

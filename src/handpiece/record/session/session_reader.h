@@ -37,7 +37,10 @@ class SessionReader {
     [[nodiscard]] std::vector<Record> records(std::uint64_t first, std::size_t count) const;
     /// Index of the first record at or after a tick; size() when there is none.
     [[nodiscard]] std::uint64_t indexOfTick(std::uint64_t tick) const;
-    /// In the order they were written.
+    /// The first tick behind all that the file holds, samples, events and key frames: where it may go on.
+    [[nodiscard]] std::uint64_t endTick() const noexcept;
+    /// In the order they were written. What a killed program still told of ticks whose samples it took along is left
+    /// out where the session goes on: it was not done.
     [[nodiscard]] std::vector<Event> events() const;
     /// Ticks of the key frames, in the order they were written.
     [[nodiscard]] const std::vector<std::uint64_t>& keyFrameTicks() const noexcept;

@@ -12,6 +12,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/record/session/hdf5_object.h"
+#include "handpiece/record/session/session_reader.h"
 #include "handpiece/record/session/survivable_file.h"
 
 namespace handpiece::session {
@@ -97,6 +98,14 @@ class Growing {
         dataset_ =
             Hdf5Object(made(H5Dcreate2(group, name, type, space.id(), H5P_DEFAULT, creation.id(), access.id()), name));
     }
+    /// One that is there: rows from `rows` on are written anew.
+    static Growing there(hid_t group, const char* name, std::size_t width, std::uint64_t rows) {
+        Growing g;
+        g.width_ = width;
+        g.rows_ = rows;
+        g.dataset_ = Hdf5Object(made(H5Dopen2(group, name, H5P_DEFAULT), name));
+        return g;
+    }
     void append(hid_t type, const void* data, std::size_t count) {
         const hsize_t start[2] = {rows_, 0}, extent[2] = {count, width_}, size[2] = {rows_ + count, width_};
         const int rank = width_ > 1 ? 2 : 1;
@@ -147,10 +156,11 @@ struct SessionWriter::State {
     std::vector<Growing> columns;
     Growing events, keyFrameIndex, keyFrameData;
     Hdf5Object eventType, keyFrameType;
-    std::size_t rowsPerChunk = 0, pending = 0;
-    std::vector<std::vector<std::byte>> buffers;  // by column: the rows of the chunk that fills up
-    std::uint64_t written = 0, lastTick = 0;
+    std::size_t rowsPerChunk = 0, pending = 0, room = 0;  ///< rows until the chunk is full
+    std::vector<std::vector<std::byte>> buffers;          // by column: the rows of the chunk that fills up
+    std::uint64_t written = 0, lastTick = 0, firstTick = 0;
     bool any = false;
+    double rateHz = 0.0;
 
     void writeChunk() {
         if (pending == 0) return;
@@ -159,6 +169,22 @@ struct SessionWriter::State {
             columns[i].append(memoryType(all[i].type), buffers[i].data(), pending);
         if (fileState.failure.empty()) written += pending;
         pending = 0;
+        room = rowsPerChunk;
+    }
+    void makeBuffers(double rate) {
+        rateHz = rate;
+        rowsPerChunk = room = chunkRows(rate);
+        for (const Column& column : session::columns())
+            buffers.emplace_back(rowsPerChunk * column.width * session::bytesOf(column.type));
+        eventType = eventRowType();
+        keyFrameType = keyFrameRowType();
+    }
+    void startSwmr(const std::filesystem::path& path) {
+        const bool started = H5Fstart_swmr_write(file.id()) >= 0;
+        if (!fileState.failure.empty())
+            throw core::Error(fileState.failure, path.string(), "make room or choose another place")
+                .as(core::writeErrorId(fileState.errorNumber), {std::strerror(fileState.errorNumber)});
+        if (!started) made(-1, "a file that survives");
     }
 };
 
@@ -187,27 +213,57 @@ SessionWriter::SessionWriter(const std::filesystem::path& path, const SessionInf
     if (!info.history.empty()) writeBytes(file, "history", info.history, false);  // it is packed already
     s.closedFlag = makeClosedFlag(file);
 
-    s.rowsPerChunk = chunkRows(info.rateHz);
+    s.makeBuffers(info.rateHz);
     const Hdf5Object samples = group(file, "samples"), keyFrames = group(file, "key_frames");
     for (const Column& column : columns()) {
         Growing dataset(samples.id(), column.name, fileType(column.type), column.width, s.rowsPerChunk, true);
         writeAttribute(dataset.id(), "unit", std::string_view(column.unit));
         writeAttribute(dataset.id(), "description", std::string_view(column.description));
         s.columns.push_back(std::move(dataset));
-        s.buffers.emplace_back(s.rowsPerChunk * column.width * bytesOf(column.type));
     }
-    s.eventType = eventRowType();
-    s.keyFrameType = keyFrameRowType();
     // Not packed: rows are added to a chunk in place.
     s.events = Growing(file, "events", s.eventType.id(), 1, kEventChunk, false);
     s.keyFrameIndex = Growing(keyFrames.id(), "index", s.keyFrameType.id(), 1, kKeyFrameIndexChunk, false);
     s.keyFrameData = Growing(keyFrames.id(), "data", H5T_STD_U8LE, 1, kKeyFrameDataChunk, false);
-    const bool started = H5Fstart_swmr_write(file) >= 0;
-    if (!s.fileState.failure.empty())
-        throw core::Error(s.fileState.failure, path.string(), "make room or choose another place")
-            .as(core::writeErrorId(s.fileState.errorNumber), {std::strerror(s.fileState.errorNumber)});
-    if (!started) made(-1, "a file that survives");
+    s.startSwmr(path);
     putInPlace(s.fileState);
+}
+
+SessionWriter::SessionWriter(const std::filesystem::path& path, Observer observer) : state_(std::make_unique<State>()) {
+    State& s = *state_;
+    double rateHz = 0.0;
+    std::uint64_t rows = 0;
+    {
+        // It looks at all that the file says about itself, and is closed before the file is opened to write.
+        const SessionReader reader(path);
+        rateHz = reader.info().rateHz;
+        rows = reader.size();
+        s.firstTick = reader.endTick();
+    }
+    s.any = s.firstTick > 0;
+    s.lastTick = s.any ? s.firstTick - 1 : 0;
+    s.fileState.observer = std::move(observer);
+    s.file = Hdf5Object(reopenSurvivableFile(path, s.fileState));
+    const hid_t file = s.file.id();
+    s.makeBuffers(rateHz);
+    // Chunks stay as they are laid out: the first rows to come fill up the last one.
+    s.room = s.rowsPerChunk - static_cast<std::size_t>(rows % s.rowsPerChunk);
+    const auto group = [&](const char* name) { return Hdf5Object(made(H5Gopen2(file, name, H5P_DEFAULT), name)); };
+    const Hdf5Object samples = group("samples"), keyFrames = group("key_frames");
+    const auto rowsOf = [](hid_t where, const char* name) {
+        const Hdf5Object set(made(H5Dopen2(where, name, H5P_DEFAULT), name)), space(H5Dget_space(set.id()));
+        return static_cast<std::uint64_t>(H5Sget_simple_extent_npoints(space.id()));
+    };
+    for (const Column& column : columns())
+        s.columns.push_back(Growing::there(samples.id(), column.name, column.width, rows));
+    s.events = Growing::there(file, "events", 1, rowsOf(file, "events"));
+    s.keyFrameIndex = Growing::there(keyFrames.id(), "index", 1, rowsOf(keyFrames.id(), "index"));
+    s.keyFrameData = Growing::there(keyFrames.id(), "data", 1, rowsOf(keyFrames.id(), "data"));
+    s.closedFlag = Hdf5Object(made(H5Dopen2(file, "closed", H5P_DEFAULT), "closed"));
+    s.startSwmr(path);
+    const std::uint8_t no = 0;
+    if (H5Dwrite(s.closedFlag.id(), H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, &no) < 0) made(-1, "the mark");
+    if (H5Dflush(s.closedFlag.id()) < 0) made(-1, "a flush");
 }
 
 SessionWriter::~SessionWriter() {
@@ -230,7 +286,7 @@ void SessionWriter::append(const Record& record) {
         const std::size_t bytes = bytesOf(all[i].type) * all[i].width;
         std::memcpy(&s.buffers[i][s.pending * bytes], source + all[i].offset, bytes);
     }
-    if (++s.pending == s.rowsPerChunk) s.writeChunk();
+    if (++s.pending == s.room) s.writeChunk();
 }
 
 void SessionWriter::append(const Event& event) {
@@ -271,6 +327,14 @@ void SessionWriter::close() {
     s.keyFrameIndex = Growing();
     s.keyFrameData = Growing();
     s.file.close();
+}
+
+std::uint64_t SessionWriter::firstTick() const noexcept {
+    return state_->firstTick;
+}
+
+double SessionWriter::rateHz() const noexcept {
+    return state_->rateHz;
 }
 
 const std::string& SessionWriter::failure() const noexcept {

@@ -24,10 +24,16 @@ class SessionWriter {
     /// Makes the file, in place of one that was there. Throws core::Error for a place that cannot be written and for
     /// information that is out of range.
     SessionWriter(const std::filesystem::path& path, const SessionInfo& info, Observer observer = {});
+    /// Goes on in a session that is there, closed or cut off, whose first part stays as it is: from firstTick() on.
+    /// Throws core::Error as SessionReader, and for a place that cannot be written.
+    explicit SessionWriter(const std::filesystem::path& path, Observer observer = {});
     ~SessionWriter();  ///< close()
     SessionWriter(const SessionWriter&) = delete;
     SessionWriter& operator=(const SessionWriter&) = delete;
 
+    /// The first tick that can follow: 0, or behind all that the session held.
+    [[nodiscard]] std::uint64_t firstTick() const noexcept;
+    [[nodiscard]] double rateHz() const noexcept;
     /// Ticks must rise. Goes to the file when a chunk is full.
     void append(const Record& record);
     /// Goes to the file at once.

@@ -63,6 +63,7 @@ std::uint32_t checksum(const unsigned char* data, std::uint32_t bytes) {
 
 struct DriverInfo {
     FileState* state;
+    bool isThere;  ///< to go on in, not to be made
 };
 
 struct File {
@@ -115,6 +116,18 @@ struct File {
         std::memcpy(&shown[kChecksumAt], &sum, 4);
         return put(0, shown.data(), shown.size());
     }
+    /// A file that is there: what comes is put behind what it holds.
+    bool takeUp() {
+        std::error_code ec;
+        const std::uintmax_t bytes = fs::file_size(state->begun, ec);
+        if (ec || bytes < kSuperblockBytes ||
+            std::fread(superblock.data(), 1, kSuperblockBytes, stream) != kSuperblockBytes)
+            return false;
+        hasSuperblock = true;
+        allocatedEnd = writtenEnd = promisedEnd = bytes;
+        state->sizeBytes = bytes;
+        return true;
+    }
     haddr_t allocate(bool isData, hsize_t bytes) {
         Stretch& stretch = isData ? numbers : metadata;
         const auto place = [&] {
@@ -149,16 +162,21 @@ const File& fileOf(const H5FD_t* f) {
 
 H5FD_t* openFile(const char* name, unsigned flags, hid_t fapl, haddr_t) {
     const auto* info = static_cast<const DriverInfo*>(H5Pget_driver_info(fapl));
-    // HDF5 first asks whether the file is there already, without creating it; what was there is replaced.
-    if (!info || !(flags & H5F_ACC_CREAT)) return nullptr;
+    // Before it makes a file HDF5 asks whether it is there already; what was there is replaced.
+    const bool makes = (flags & H5F_ACC_CREAT) != 0;
+    if (!info || makes == info->isThere) return nullptr;
     auto file = std::make_unique<File>();
     file->state = info->state;
-    file->stream = std::fopen(name, "w+b");
+    file->stream = makes ? core::createOwnFile(name).release() : std::fopen(name, "r+b");
     if (!file->stream) {
         file->fail("opening");
         return nullptr;
     }
     std::setvbuf(file->stream, nullptr, _IONBF, 0);
+    if (!makes && !file->takeUp()) {
+        std::fclose(file->stream);
+        return nullptr;
+    }
     return &file.release()->base;
 }
 
@@ -242,19 +260,24 @@ const H5FD_class_t& driverClass() {
     return driver;
 }
 
+hid_t accessTo(FileState& state, bool isThere) {
+    static const hid_t driver = H5FDregister(&driverClass());
+    const DriverInfo info{&state, isThere};
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_driver(access, driver, &info);
+    H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+    return access;
+}
+
 }  // namespace
 
 std::int64_t createSurvivableFile(const fs::path& path, FileState& state) {
-    static const hid_t driver = H5FDregister(&driverClass());
     state.place = state.begun = path;
     std::error_code ec;
     // A device (/dev/full) is no file to be replaced.
     const fs::file_status there = fs::status(path, ec);
     if (!fs::exists(there) || fs::is_regular_file(there)) state.begun += kBegunSuffix;
-    const DriverInfo info{&state};
-    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_driver(access, driver, &info);
-    H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+    const hid_t access = accessTo(state, false);
     const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_file_space_strategy(creation, H5F_FSPACE_STRATEGY_NONE, false, 1);
     const hid_t file = H5Fcreate(state.begun.string().c_str(), H5F_ACC_TRUNC, creation, access);
@@ -268,14 +291,25 @@ std::int64_t createSurvivableFile(const fs::path& path, FileState& state) {
     return file;
 }
 
+std::int64_t reopenSurvivableFile(const fs::path& path, FileState& state) {
+    state.place = state.begun = path;
+    const hid_t access = accessTo(state, true);
+    const hid_t file = H5Fopen(path.string().c_str(), H5F_ACC_RDWR, access);
+    H5Pclose(access);
+    if (file < 0) {
+        throw core::Error(state.failure.empty() ? "the session cannot be opened to go on in it" : state.failure,
+                          path.string(), "begin a new one")
+            .as(core::writeErrorId(state.errorNumber), {std::strerror(state.errorNumber)});
+    }
+    return file;
+}
+
 void putInPlace(FileState& state) {
     if (state.begun == state.place) return;
-    std::error_code ec;
-    fs::rename(state.begun, state.place, ec);
-    if (ec) {
-        throw core::Error(fmt::format("{}: renaming failed: {}", state.place.string(), ec.message()),
+    if (const int why = core::replaceFile(state.begun, state.place, true); why != 0) {
+        throw core::Error(fmt::format("{}: renaming failed: {}", state.place.string(), std::strerror(why)),
                           state.place.string(), "choose another place")
-            .as(core::writeErrorId(ec.value()), {ec.message()});
+            .as(core::writeErrorId(why), {std::strerror(why)});
     }
     state.begun = state.place;
 }

@@ -32,6 +32,9 @@ struct FileState {
 /// one. Returns the file's identifier (hid_t), to be closed by H5Fclose. Throws core::Error when the place cannot be
 /// written.
 [[nodiscard]] std::int64_t createSurvivableFile(const std::filesystem::path& path, FileState& state);
+/// Opens one that was made so, to go on in it; what it holds stays sound at every moment. Throws core::Error when it
+/// cannot be written or is no HDF5 file.
+[[nodiscard]] std::int64_t reopenSurvivableFile(const std::filesystem::path& path, FileState& state);
 /// From now on it is sound at every moment: puts it in its place, in place of what was there. Throws core::Error.
 void putInPlace(FileState& state);
 }  // namespace handpiece::session

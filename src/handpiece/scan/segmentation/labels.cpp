@@ -53,20 +53,69 @@ Mask labelsOn(const Work& work, const volume::Labels& labels, const core::Progre
 
 /// A distance to the smoothed boundary of what is set, nowhere further than half a voxel from the boundary between the
 /// voxels: a voxel's centre never changes sides.
-Field smoothed(const Shape& shape, const Field& share, Field& scratch, Field& scratch2) {
-    Field inside;
-    // Twice the blurred less the twice blurred: smooth, but a small ball does not shrink.
-    blur(shape, share, scratch2, scratch, kSmoothVoxels);
-    blur(shape, scratch2, inside, scratch, kSmoothVoxels);
-    // Halfway is the surface; a voxel's own side is kept.
-    core::parallelFor(inside.size(), 1 << 16, [&](std::size_t from, std::size_t to) {
-        for (std::size_t n = from; n < to; ++n) {
-            const float f = (2 * scratch2[n] - inside[n] - 0.5f) * 2.5066f * static_cast<float>(kSmoothVoxels);
-            inside[n] = share[n] > 0.5f ? std::max(f, 0.02f) : std::min(f, -0.02f);
-        }
-    });
+Field smoothed(const Shape& shape, Field&& share) {
+    constexpr int kSlices = 48;  // at once, so that blurring takes no more room than it needs
+    const int reach = 2 * blurReach(kSmoothVoxels);
+    Field inside(share.size()), part, once, twice, scratch;
+    const std::size_t slice = shape.sliceStride();
+    for (int from = 0; from < shape.size[2]; from += kSlices) {
+        const int to = std::min(shape.size[2], from + kSlices), low = std::max(0, from - reach),
+                  high = std::min(shape.size[2], to + reach);
+        const Shape slab{{shape.size[0], shape.size[1], high - low}};
+        part.assign(share.begin() + static_cast<std::ptrdiff_t>(slice * static_cast<std::size_t>(low)),
+                    share.begin() + static_cast<std::ptrdiff_t>(slice * static_cast<std::size_t>(high)));
+        // Twice the blurred less the twice blurred: smooth, but a small ball does not shrink.
+        blur(slab, part, once, scratch, kSmoothVoxels);
+        blur(slab, once, twice, scratch, kSmoothVoxels);
+        // Halfway is the surface; a voxel's own side is kept.
+        const std::size_t start = slice * static_cast<std::size_t>(from),
+                          skipped = slice * static_cast<std::size_t>(from - low);
+        core::parallelFor(slice * static_cast<std::size_t>(to - from), 1 << 16, [&](std::size_t b, std::size_t e) {
+            for (std::size_t n = b; n < e; ++n) {
+                const std::size_t at = skipped + n;
+                const float f = (2 * once[at] - twice[at] - 0.5f) * 2.5066f * static_cast<float>(kSmoothVoxels);
+                inside[start + n] = part[at] > 0.5f ? std::max(f, 0.02f) : std::min(f, -0.02f);
+            }
+        });
+    }
+    Field().swap(share);
     redistance(shape, inside, kBand);
     return inside;
+}
+
+/// A box of voxels of a block.
+struct Piece {
+    std::array<int, 3> low{};
+    Shape shape;
+
+    /// body(index in the block, index in the piece) for the first voxel of each row.
+    template <class Body>
+    void rows(const Shape& block, const Body& body) const {
+        for (int k = 0; k < shape.size[2]; ++k)
+            for (int j = 0; j < shape.size[1]; ++j)
+                body(block.index(low[0], low[1] + j, low[2] + k), shape.index(0, j, k));
+    }
+};
+
+/// The box of the voxels with a label that `counts` says, with what spreading and smoothing may add to it.
+Piece pieceOf(const Shape& block, const Mask& label, const std::array<bool, kRestoration + 1>& counts) {
+    constexpr int kMargin = 16;  // 4 by which tissues go on beside the tooth, both blurs, and the band of distances
+    std::array<int, 3> low = block.size, high{-1, -1, -1};
+    for (int k = 0; k < block.size[2]; ++k)
+        for (int j = 0; j < block.size[1]; ++j) {
+            const std::uint8_t* row = &label[block.index(0, j, k)];
+            for (int i = 0; i < block.size[0]; ++i)
+                if (counts[row[i]]) {
+                    low = {std::min(low[0], i), std::min(low[1], j), std::min(low[2], k)};
+                    high = {std::max(high[0], i), std::max(high[1], j), k};
+                }
+        }
+    Piece piece;
+    for (std::size_t a = 0; a < 3; ++a) {
+        piece.low[a] = std::max(0, low[a] - kMargin);
+        piece.shape.size[a] = std::max(0, std::min(block.size[a], high[a] + 1 + kMargin) - piece.low[a]);
+    }
+    return piece;
 }
 }  // namespace
 
@@ -147,12 +196,14 @@ Region segmentLabels(const volume::Labels& labels, const Settings& settings, con
             if (parts.of[n] != chosen) label[n] = solid[n] = 0;
     }
     core::report(progress, 0.25);
-    const Mask cavity = closedCavities(shape, solid, h);
-    for (std::size_t n = 0; n < solid.size(); ++n)
-        if (cavity[n]) {
-            solid[n] = 1;
-            label[n] = kPulp;
-        }
+    {
+        const Mask cavity = closedCavities(shape, solid, h);
+        for (std::size_t n = 0; n < solid.size(); ++n)
+            if (cavity[n]) {
+                solid[n] = 1;
+                label[n] = kPulp;
+            }
+    }
     core::report(progress, 0.4);
 
     // Beside the tooth's surface the tissue that reaches it goes on, so that only one surface is there.
@@ -160,27 +211,36 @@ Region segmentLabels(const volume::Labels& labels, const Settings& settings, con
     for (int round = 0; round < 4; ++round)
         near = dilated(shape, near);
     const auto tissue = [&](std::initializer_list<std::uint8_t> in, std::initializer_list<std::uint8_t> ignored) {
-        Field share(label.size(), 0.0f);
-        Mask unknown(label.size(), 2);
-        for (std::size_t n = 0; n < label.size(); ++n) {
-            const bool isIn = std::find(in.begin(), in.end(), label[n]) != in.end();
-            const bool isHidden = std::find(ignored.begin(), ignored.end(), label[n]) != ignored.end();
-            if (solid[n] && !isHidden)
-                unknown[n] = 0, share[n] = isIn ? 1.0f : 0.0f;
-            else if (near[n])
-                unknown[n] = 1;
+        std::array<bool, kRestoration + 1> isIn{}, isHidden{}, counts{};
+        for (const std::uint8_t l : in)
+            isIn[l] = counts[l] = true;
+        for (const std::uint8_t l : ignored)
+            isHidden[l] = counts[l] = true;
+        const Piece piece = pieceOf(shape, label, counts);
+        Field share(piece.shape.count(), 0.0f);
+        {
+            Mask unknown(share.size(), 2);
+            piece.rows(shape, [&](std::size_t n, std::size_t at) {
+                for (const std::size_t end = n + piece.shape.rowStride(); n < end; ++n, ++at)
+                    if (solid[n] && !isHidden[label[n]])
+                        unknown[at] = 0, share[at] = isIn[label[n]] ? 1.0f : 0.0f;
+                    else if (near[n])
+                        unknown[at] = 1;
+            });
+            spreadInto(piece.shape, share, unknown);
         }
-        spreadInto(shape, share, unknown);
-        Field inside = smoothed(shape, share, work.scratch, work.scratch2);
+        Field inside = smoothed(piece.shape, std::move(share));
         core::report(progress, 0.6);
-        return inside;
+        if (piece.shape.size == shape.size) return inside;
+        Field all(shape.count(), -kBand);
+        piece.rows(shape, [&](std::size_t n, std::size_t at) {
+            std::copy_n(inside.begin() + static_cast<std::ptrdiff_t>(at), piece.shape.rowStride(),
+                        all.begin() + static_cast<std::ptrdiff_t>(n));
+        });
+        return all;
     };
     const auto has = [&](std::uint8_t which) { return std::find(label.begin(), label.end(), which) != label.end(); };
-    Field share(solid.size());
-    for (std::size_t n = 0; n < share.size(); ++n)
-        share[n] = solid[n];
-    work.outer = smoothed(shape, share, work.scratch, work.scratch2);
-    share = {};
+    work.outer = smoothed(shape, Field(solid.begin(), solid.end()));
     core::report(progress, 0.5);
     if (has(kEnamel))
         work.dentine = tissue({kDentine, kPulp}, {kCaries, kRestoration});
@@ -190,6 +250,8 @@ Region segmentLabels(const volume::Labels& labels, const Settings& settings, con
     if (has(kCaries)) work.caries = tissue({kCaries}, {});
     if (has(kRestoration)) work.restoration = tissue({kRestoration}, {});
     work.sigma = 0;
+    for (Mask* mask : {&label, &solid, &near})
+        Mask().swap(*mask);
     return toRegion(std::move(work), settings, core::part(progress, 0.9, 1));
 }
 

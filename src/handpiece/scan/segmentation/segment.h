@@ -83,7 +83,10 @@ struct Candidate {
     double volumeMm3 = 0;
     bool touchesBorder = false;
 };
-/// Separate teeth, the largest first.
+/// Whether something of this size and shape can be a tooth, or what a scan's border left of one: neither a speck, nor a
+/// plate of bone, nor a skull. From a milk incisor (100 mm3, 14 mm long) to a molar (1,300 mm3) with room to spare.
+[[nodiscard]] bool isToothLike(const Candidate& candidate);
+/// Separate hard things, the largest first.
 [[nodiscard]] std::vector<Candidate> findTeeth(const volume::Volume& volume, const Thresholds& thresholds,
                                                const core::Progress& progress = {});
 

@@ -183,6 +183,15 @@ CoarseTeeth partTeeth(const volume::Volume& volume, const Thresholds& thresholds
     return result;
 }
 
+bool isToothLike(const Candidate& candidate) {
+    constexpr double kLeastMm3 = 60.0, kMostMm3 = 2500.0, kMostMm = 35.0, kLeastThickMm = 3.0, kLeastLongMm = 7.0;
+    constexpr double kLeastFilled = 0.15;  // of its box: a tooth that lies across the axes has a fifth
+    const Vec3 size = candidate.boundsMm.size();
+    const double shortest = size.minCoeff(), longest = size.maxCoeff();
+    return candidate.volumeMm3 >= kLeastMm3 && candidate.volumeMm3 <= kMostMm3 && longest <= kMostMm &&
+           shortest >= kLeastThickMm && longest >= kLeastLongMm && candidate.volumeMm3 >= kLeastFilled * size.prod();
+}
+
 std::vector<Candidate> findTeeth(const volume::Volume& volume, const Thresholds& thresholds,
                                  const core::Progress& progress) {
     return partTeeth(volume, thresholds, progress).teeth;

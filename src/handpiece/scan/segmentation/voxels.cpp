@@ -16,8 +16,12 @@ void forRows(const Shape& shape, const std::function<void(int, int)>& body) {
     });
 }
 
+int blurReach(double sigma) {
+    return std::max(1, static_cast<int>(std::ceil(2.8 * sigma)));
+}
+
 void blur(const Shape& shape, const Field& in, Field& out, Field& scratch, double sigma) {
-    const int radius = std::max(1, static_cast<int>(std::ceil(2.8 * sigma)));
+    const int radius = blurReach(sigma);
     std::vector<float> weights(static_cast<std::size_t>(2 * radius + 1));
     double sum = 0;
     for (int n = -radius; n <= radius; ++n)

@@ -36,6 +36,8 @@ using Mask = std::vector<std::uint8_t>;
 /// body(j, k) for every row, in parallel.
 void forRows(const Shape& shape, const std::function<void(int, int)>& body);
 
+/// How many voxels away blur() looks.
+[[nodiscard]] int blurReach(double sigma);
 /// Gaussian of `sigma` voxels, edges repeated. `in` and `out` may be the same; `scratch` is given its size.
 void blur(const Shape& shape, const Field& in, Field& out, Field& scratch, double sigma);
 

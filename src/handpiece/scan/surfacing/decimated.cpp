@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/memory.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/decimate.h"
 #include "handpiece/base/geometry/triangle_tree.h"
@@ -25,7 +26,6 @@ using tooth::Tissue;
 
 constexpr std::size_t kFewestFaces = 4;     ///< a tetrahedron
 constexpr double kCoarseStandOutMm = 0.02;  ///< least, where faces are large: flakes of what is below stay away
-constexpr double kMostStandOutMm = 0.08;    ///< below tooth::kCaseToleranceMm
 constexpr double kMostOffsetMm = 0.02;      ///< a step of putting lost volume back
 constexpr double kMostPulpMm = 0.5;         ///< a pulp of few faces may have to leave a thin wall by this
 constexpr int kInsideRounds = 40, kSideRounds = 8;
@@ -68,26 +68,39 @@ std::vector<const Surface*> allOf(const Surfaces& surfaces) {
 /// Holds the surfaces of fewer faces to the sides that the full ones have of each other.
 class Mender {
   public:
-    explicit Mender(const Surfaces& full) : full_(full) {}
+    /// With `isOnce` no tree is kept for another step.
+    Mender(const Surfaces& full, bool isOnce) : full_(full), isOnce_(isOnce) {}
 
-    void mend(Surfaces& coarse, const core::Progress& progress) {
+    /// Gives back which surfaces (0: outer, then the tissues) no moving of vertices could mend: they need more faces.
+    std::vector<std::size_t> mend(Surfaces& coarse, const core::Progress& progress) {
+        std::vector<std::size_t> bad;
         std::size_t left = 0;
         coarse.outer.errorBoundMm += uncross(coarse.outer.mesh, left);
-        if (left > 0)
-            coarse.notes.push_back(fmt::format("the tooth with {} faces crosses itself: choose more faces",
-                                               coarse.outer.mesh.triangles.size()));
+        if (left > 0) bad.push_back(0);
+        // All that the full tooth is asked for first: its tree is as large as all the rest.
+        std::vector<std::vector<Bounds>> onTissues(coarse.tissues.size());
+        for (std::size_t i = 0; i < coarse.tissues.size(); ++i)
+            if (coarse.tissues[i].tissue != Tissue::pulp) onTissues[i] = sidesOf(coarse, coarse.tissues[i]);
+        drop(0);
+        const TriangleTree tooth(coarse.outer.mesh);
         const Surface* dentine = nullptr;
         for (std::size_t i = 0; i < coarse.tissues.size(); ++i) {
             Surface& tissue = coarse.tissues[i];
+            left = 0;
             if (tissue.tissue == Tissue::pulp) {
                 if (dentine) inside(coarse, tissue, *dentine, "the dentine");
-                inside(coarse, tissue, coarse.outer, "the tooth");
+                left = inside(coarse, tissue, coarse.outer, "the tooth");
             } else {
-                sides(coarse, tissue, i);
+                left = sides(coarse, tissue, i, onTissues[i]);
+                const DrawnBack back = drawBack(tissue.mesh, tooth);
+                tissue.errorBoundMm += back.movedMm;
+                left += back.left;
             }
+            if (left > 0) bad.push_back(i + 1);
             if (tissue.tissue == Tissue::dentine) dentine = &tissue;
             core::report(progress, static_cast<double>(i + 1) / static_cast<double>(coarse.tissues.size()));
         }
+        return bad;
     }
 
   private:
@@ -98,18 +111,24 @@ class Mender {
         return *tree;
     }
 
+    void drop(std::size_t index) {
+        if (isOnce_ && !trees_.empty()) trees_[index].reset();
+    }
+
     /// Farther from each other than this two surfaces cannot have crossed by losing faces.
     [[nodiscard]] double nearOf(const Surface& a, const Surface& b) const {
         return 2.0 * (a.errorBoundMm + b.errorBoundMm) + 4.0 * full_.standOutMm + 4.0 * full_.leastGapMm;
     }
 
-    void inside(Surfaces& coarse, Surface& pulp, const Surface& around, std::string_view name) {
+    /// Gives back how many pairs of faces still cross, as finish() does.
+    std::size_t inside(Surfaces& coarse, Surface& pulp, const Surface& around, std::string_view name) {
         const double gap = 2.0 * full_.leastGapMm;
         const std::vector<Bounds> in(pulp.mesh.vertices.size(), {Bounds{}.low, -gap}),
             out(around.mesh.vertices.size(), {gap, Bounds{}.high});
-        finish(coarse, pulp,
-               holdApart(pulp.mesh, in, around.mesh, out, nearOf(around, pulp), kMostPulpMm, kInsideRounds, true, {}),
-               0.0, name);
+        return finish(
+            coarse, pulp,
+            holdApart(pulp.mesh, in, around.mesh, out, nearOf(around, pulp), kMostPulpMm, kInsideRounds, true, {}), 0.0,
+            name);
     }
 
     /// Vertices on the side of the full surface that they were on; where they were on it they are free.
@@ -120,36 +139,48 @@ class Mender {
         return {Bounds{}.low, kMostStandOutMm};
     }
 
-    void sides(Surfaces& coarse, Surface& tissue, std::size_t index) {
-        const TriangleTree &outer = fullTree(0), &own = fullTree(index + 1);
-        std::vector<Bounds> onTissue(tissue.mesh.vertices.size()), onOuter(coarse.outer.mesh.vertices.size());
+    /// No nearest point within reach: deep inside, and so it stays.
+    static std::optional<double> distance(const TriangleTree& tree, const Vec3& p, double nearMm) {
+        const geometry::NearestPoint n = tree.nearest(p, nearMm);
+        if (n.triangle == geometry::kNoTriangle) return {};
+        return tree.side(p, n) * n.distanceMm;
+    }
+
+    /// Where the vertices of a tissue have to stay, by the full tooth.
+    std::vector<Bounds> sidesOf(const Surfaces& coarse, const Surface& tissue) {
+        const TriangleTree& outer = fullTree(0);
         const double nearMm = nearOf(coarse.outer, tissue);
-        // No nearest point within reach: deep inside, and so it stays.
-        const auto distance = [nearMm](const TriangleTree& tree, const Vec3& p) -> std::optional<double> {
-            const geometry::NearestPoint n = tree.nearest(p, nearMm);
-            if (n.triangle == geometry::kNoTriangle) return {};
-            return tree.side(p, n) * n.distanceMm;
-        };
-        core::parallelFor(onTissue.size(), 512, [&](std::size_t b, std::size_t e) {
+        std::vector<Bounds> bounds(tissue.mesh.vertices.size());
+        core::parallelFor(bounds.size(), 512, [&](std::size_t b, std::size_t e) {
             for (std::size_t v = b; v < e; ++v)
-                if (const std::optional<double> mm = distance(outer, tissue.mesh.vertices[v]))
-                    onTissue[v] = sideOf(*mm, full_.standOutMm, full_.leastGapMm);
+                if (const std::optional<double> mm = distance(outer, tissue.mesh.vertices[v], nearMm))
+                    bounds[v] = sideOf(*mm, full_.standOutMm, full_.leastGapMm);
         });
+        return bounds;
+    }
+
+    std::size_t sides(Surfaces& coarse, Surface& tissue, std::size_t index, const std::vector<Bounds>& onTissue) {
+        const TriangleTree& own = fullTree(index + 1);
+        std::vector<Bounds> onOuter(coarse.outer.mesh.vertices.size());
+        const double nearMm = nearOf(coarse.outer, tissue);
         core::parallelFor(onOuter.size(), 512, [&](std::size_t b, std::size_t e) {
             for (std::size_t v = b; v < e; ++v) {
-                const std::optional<double> mm = distance(own, coarse.outer.mesh.vertices[v]);
+                const std::optional<double> mm = distance(own, coarse.outer.mesh.vertices[v], nearMm);
                 if (!mm) continue;
                 const double over = *mm / full_.standOutMm;
                 if (over > 1.0) onOuter[v].low = std::min(0.5 * *mm, full_.leastGapMm);
                 if (over < -0.25 && over > -2.0) onOuter[v].high = -0.25 * full_.standOutMm;
             }
         });
-        finish(coarse, tissue,
-               holdApart(tissue.mesh, onTissue, coarse.outer.mesh, onOuter, nearMm, nearMm, kSideRounds, false, {}),
-               kRemarkMm, "the tooth");
+        drop(index + 1);
+        return finish(
+            coarse, tissue,
+            holdApart(tissue.mesh, onTissue, coarse.outer.mesh, onOuter, nearMm, nearMm, kSideRounds, false, {}),
+            kRemarkMm, "the tooth");
     }
 
-    static void finish(Surfaces& coarse, Surface& tissue, const Apart& apart, double allowedMm, std::string_view name) {
+    static std::size_t finish(Surfaces& coarse, Surface& tissue, const Apart& apart, double allowedMm,
+                              std::string_view name) {
         tissue.errorBoundMm += apart.movedMm;
         const std::string_view own = tooth::properties(tissue.tissue).name;
         if (apart.failed > 0 && apart.failedByMm > allowedMm)
@@ -160,12 +191,11 @@ class Mender {
                             apart.failedMm.y(), apart.failedMm.z()));
         std::size_t left = 0;
         tissue.errorBoundMm += uncross(tissue.mesh, left);
-        if (left > 0)
-            coarse.notes.push_back(
-                fmt::format("{} with {} faces crosses itself: choose more faces", own, tissue.mesh.triangles.size()));
+        return left;
     }
 
     const Surfaces& full_;
+    const bool isOnce_;
     std::vector<std::optional<TriangleTree>> trees_;
 };
 
@@ -174,6 +204,39 @@ double restoreVolume(TriangleMesh& mesh, const Surface& full) {
     Shells together = shellsOf(mesh);
     std::fill(together.ofFace.begin(), together.ofFace.end(), 0u);
     return setVolumes(mesh, together, {geometry::enclosedVolumeMm3(full.mesh)}, kMostOffsetMm);
+}
+
+/// What cannot be mended by moving vertices keeps twice the faces, and twice again.
+void mendStep(Mender& mender, const std::vector<const Surface*>& full, Surfaces& step, const core::Progress& progress) {
+    const auto nameOf = [](const Surface& s) {
+        return s.tissue == Tissue::none ? std::string_view("the tooth") : tooth::properties(s.tissue).name;
+    };
+    const std::vector<std::string> given = step.notes;
+    std::vector<std::size_t> tried(full.size(), 0);  // faces at first, of those that got more
+    for (;;) {
+        step.notes = given;
+        for (std::size_t i = 0; i < tried.size(); ++i)
+            if (tried[i] > 0)
+                step.notes.push_back(
+                    fmt::format("{} keeps {} faces: with {} it would cross itself or leave the tooth", nameOf(*full[i]),
+                                (i == 0 ? step.outer : step.tissues[i - 1]).mesh.triangles.size(), tried[i]));
+        const std::vector<std::size_t> bad = mender.mend(step, progress);
+        bool isFiner = false;
+        for (const std::size_t i : bad) {
+            Surface& surface = i == 0 ? step.outer : step.tissues[i - 1];
+            const std::size_t faces = surface.mesh.triangles.size(), most = full[i]->mesh.triangles.size();
+            if (faces >= most) {
+                step.notes.push_back(fmt::format("{} crosses itself or leaves the tooth", nameOf(*full[i])));
+                continue;
+            }
+            isFiner = true;
+            if (tried[i] == 0) tried[i] = faces;
+            geometry::Decimated made = geometry::decimate(full[i]->mesh, std::min(2 * faces, most));
+            surface.mesh = std::move(made.mesh);
+            surface.errorBoundMm = full[i]->errorBoundMm + made.errorBoundMm + restoreVolume(surface.mesh, *full[i]);
+        }
+        if (!isFiner) return;
+    }
 }
 
 /// targets[step][surface], each below the surface's own count unless it stays as it is.
@@ -214,13 +277,15 @@ std::vector<Surfaces> toTargets(const Surfaces& full, const std::vector<std::vec
             }
         }
     });
-    Mender mender(full);
+    core::giveBackFreeMemory();
+    Mender mender(full, steps.size() == 1);
     for (std::size_t s = 0; s < steps.size(); ++s) {
         const double from = 0.7 + 0.3 * static_cast<double>(s) / static_cast<double>(steps.size());
         bool isWhole = true;
         for (std::size_t i = 0; i < all.size(); ++i)
             isWhole = isWhole && targets[s][i] >= all[i]->mesh.triangles.size();
-        if (!isWhole) mender.mend(steps[s], core::part(progress, from, from + 0.3 / static_cast<double>(steps.size())));
+        if (!isWhole)
+            mendStep(mender, all, steps[s], core::part(progress, from, from + 0.3 / static_cast<double>(steps.size())));
     }
     core::report(progress, 1.0);
     return steps;
@@ -245,6 +310,17 @@ std::vector<Surfaces> decimatedSteps(const Surfaces& full, std::span<const doubl
             targets.back().push_back(evenNear(0.01 * percent * static_cast<double>(surface->mesh.triangles.size())));
     }
     return toTargets(full, targets, progress);
+}
+
+double usefulPercent(const Surfaces& full, double voxelMm) {
+    double areaMm2 = 0.0, faces = 0.0;
+    for (const Surface* surface : allOf(full)) {
+        areaMm2 += geometry::surfaceAreaMm2(surface->mesh);
+        faces += static_cast<double>(surface->mesh.triangles.size());
+    }
+    // Of equilateral triangles with edges of two voxels.
+    const double useful = areaMm2 / (std::sqrt(3.0) * voxelMm * voxelMm);
+    return std::clamp(std::ceil(100.0 * useful / std::max(faces, 1.0)), 1.0, 100.0);
 }
 
 Surfaces decimated(const Surfaces& full, double percent, const core::Progress& progress) {

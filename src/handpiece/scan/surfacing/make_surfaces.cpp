@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string_view>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/memory.h"
 #include "handpiece/scan/surfacing/nesting.h"
 #include "handpiece/scan/surfacing/smoothing.h"
 #include "handpiece/scan/surfacing/solid_field.h"
@@ -81,39 +83,49 @@ std::int64_t handlesOf(const TriangleMesh& mesh) {
 struct LeftOut {
     std::size_t specks = 0;
     std::int64_t handles = 0;
+    std::int64_t kept = 0;  ///< handles that stay
 };
 
-/// A solid's surface in the grid's own axes.
-TriangleMesh surfaceOf(const Region& region, int index, const Settings& settings, LeftOut& left,
-                       const core::Progress& progress) {
-    const double h = region.grid.spacingMm.x();
-    const bool isWhole = index < 0 || region.solids[static_cast<std::size_t>(index)].tissue == Tissue::dentine;
+/// A solid's surface in the grid's own axes as marched out of its field, and how the field runs there.
+struct Marched {
     TriangleMesh mesh;
-    std::vector<Vec3> normals;
-    bool steps = false;
-    {
-        std::vector<float> field = fieldOf(region, index);
-        for (int evened = 0;; ++evened) {
-            std::size_t specks = 0;
-            mesh = withoutSpecks(fieldSurface(field, region.grid.size, h, core::part(progress, 0.0, 0.4)), isWhole,
-                                 h * h * h, specks);
-            if (evened == 0) left.specks = specks;
-            if (mesh.triangles.empty() || !settings.smooth) return mesh;
-            const std::int64_t handles = handlesOf(mesh);
-            if (evened == 0) left.handles = handles;
-            if (evened == kMostEvenings || handles <= kMostHandles) {
-                left.handles -= handles;
-                break;
-            }
-            evenOut(field, region.grid.size, h);
+    std::vector<Vec3> normals;  ///< empty: a staircase, of which they say nothing
+    LeftOut left;
+};
+/// The field is left as evened out. `outer`: where the tooth's own surface lies, which no tissue leaves; null for that
+/// surface itself and for what is held inside by other means.
+Marched marched(std::vector<float>& field, const std::vector<float>* outer, const volume::Grid& grid, bool isWhole,
+                const Settings& settings, const core::Progress& progress) {
+    const double h = grid.spacingMm.x();
+    Marched made;
+    for (int evened = 0;; ++evened) {
+        std::size_t specks = 0;
+        made.mesh = withoutSpecks(fieldSurface(field, grid.size, h, progress), isWhole, h * h * h, specks);
+        core::giveBackFreeMemory();
+        if (evened == 0) made.left.specks = specks;
+        if (made.mesh.triangles.empty() || !settings.smooth) return made;
+        const std::int64_t handles = handlesOf(made.mesh);
+        if (evened == 0) made.left.handles = handles;
+        if (evened == kMostEvenings || handles <= kMostHandles) {
+            made.left.handles -= handles;
+            made.left.kept = handles;
+            break;
         }
-        steps = isStaircase(mesh, h);
-        if (!steps) normals = fieldNormals(field, region.grid.size, h, mesh);
+        evenOut(field, grid.size, h);
+        // Its level went outwards as far as what is thin had to swell, out of the tooth as well.
+        if (outer) keepInTooth(field, *outer, h);
     }
-    Smoothing smoothing = steps ? kStaircaseSmoothing : kDistanceSmoothing;
-    smoothing.reachMm *= h;
-    smoothKeepingVolume(mesh, normals, smoothing, core::part(progress, 0.4, 1.0));
-    return mesh;
+    if (!isStaircase(made.mesh, h)) made.normals = fieldNormals(field, grid.size, h, made.mesh);
+    return made;
+}
+
+void smooth(Marched& made, const Settings& settings, double voxelMm, const core::Progress& progress) {
+    if (made.mesh.triangles.empty() || !settings.smooth) return;
+    Smoothing smoothing = made.normals.empty() ? kStaircaseSmoothing : kDistanceSmoothing;
+    smoothing.reachMm *= voxelMm;
+    smoothKeepingVolume(made.mesh, made.normals, smoothing, progress);
+    made.normals = {};
+    core::giveBackFreeMemory();
 }
 
 /// Keeps the pulp inside a surface around it; only where a solid's values say that the two come near.
@@ -144,6 +156,36 @@ void keepPulpInside(TriangleMesh& pulp, const TriangleMesh& around, const Region
     }
 }
 
+/// Smoothing moves the tooth's surface and a tissue's apart by a voxel at most: where that is much, what stands out by
+/// more than a case allows is drawn back. Only where the values say that a tissue may is the tooth looked at.
+void holdInTooth(Surfaces& made, std::vector<float>&& outer, const volume::Grid& grid) {
+    const double h = grid.spacingMm.x();
+    const auto mayStandOut = [&](const Vec3& p) {
+        std::array<int, 3> at{};
+        for (std::size_t a = 0; a < 3; ++a)
+            at[a] = std::clamp(static_cast<int>(std::lround(p[static_cast<int>(a)] / h)), 0, grid.size[a] - 1);
+        // Half a diagonal to the node, and what the tooth's own vertices were moved by.
+        return static_cast<double>(outer[grid.index(at[0], at[1], at[2])]) > kMostStandOutMm - 2.0 * h;
+    };
+    std::vector<Surface*> doubtful;
+    for (Surface& tissue : made.tissues)
+        if (tissue.tissue != Tissue::pulp &&
+            std::any_of(tissue.mesh.vertices.begin(), tissue.mesh.vertices.end(), mayStandOut))
+            doubtful.push_back(&tissue);
+    std::vector<float>().swap(outer);  // the tree is as large
+    if (doubtful.empty()) return;
+    const geometry::TriangleTree tree(made.outer.mesh);
+    for (Surface* tissue : doubtful) {
+        const DrawnBack back = drawBack(tissue->mesh, tree);
+        tissue->errorBoundMm += back.movedMm;
+        if (back.moved > 0)
+            made.notes.push_back(
+                fmt::format("{}: drawn back by at most {:.3f} mm at {} {} where it stood out of the tooth",
+                            tooth::properties(tissue->tissue).name, back.movedMm, back.moved,
+                            back.moved == 1 ? "place" : "places"));
+    }
+}
+
 }  // namespace
 
 Surfaces makeSurfaces(const Region& region, const Settings& settings, const core::Progress& progress) {
@@ -161,10 +203,20 @@ Surfaces makeSurfaces(const Region& region, const Settings& settings, const core
         if (left.handles > 0)
             made.notes.push_back(fmt::format("{}: {} {} of about a voxel closed", name, left.handles,
                                              left.handles == 1 ? "tunnel" : "tunnels"));
+        if (left.kept > 0)
+            made.notes.push_back(
+                fmt::format("{}: {} wider than a voxel {} through it and {} kept (where canals join and part, or "
+                            "noise: look at it)",
+                            name, left.kept == 1 ? "a tunnel" : fmt::format("{} tunnels", left.kept),
+                            left.kept == 1 ? "goes" : "go", left.kept == 1 ? "is" : "are"));
     };
-    LeftOut ofOuter;
-    made.outer.mesh = surfaceOf(region, -1, settings, ofOuter, core::part(progress, 0.0, share));
-    tell("the tooth", ofOuter);
+    std::vector<float> outer = outerField(region);
+    {
+        Marched tooth = marched(outer, nullptr, region.grid, true, settings, core::part(progress, 0.0, 0.4 * share));
+        smooth(tooth, settings, h, core::part(progress, 0.4 * share, share));
+        tell("the tooth", tooth.left);
+        made.outer.mesh = std::move(tooth.mesh);
+    }
     made.outer.isAuthored = region.outer.isAuthored;
     const Solid* dentine = nullptr;
     const Surface* dentineSurface = nullptr;
@@ -172,15 +224,20 @@ Surfaces makeSurfaces(const Region& region, const Settings& settings, const core
     for (std::size_t i = 0; i < region.solids.size(); ++i) {
         const Solid& solid = region.solids[i];
         const double from = share * static_cast<double>(i + 1);
-        LeftOut left;
-        TriangleMesh mesh =
-            surfaceOf(region, static_cast<int>(i), settings, left, core::part(progress, from, from + share));
+        Marched tissue;
+        {
+            std::vector<float> field = fieldOf(region, i, outer);
+            tissue = marched(field, solid.tissue == Tissue::pulp ? nullptr : &outer, region.grid,
+                             solid.tissue == Tissue::dentine, settings, core::part(progress, from, from + 0.4 * share));
+        }
+        smooth(tissue, settings, h, core::part(progress, from + 0.4 * share, from + share));
+        TriangleMesh& mesh = tissue.mesh;
         if (mesh.triangles.empty()) {
             made.notes.push_back(fmt::format("{} is left out: nothing of it is as large as {} voxels",
                                              tooth::properties(solid.tissue).name, kLeastShellVoxels));
             continue;
         }
-        tell(tooth::properties(solid.tissue).name, left);
+        tell(tooth::properties(solid.tissue).name, tissue.left);
         if (solid.tissue == Tissue::pulp) {
             if (dentine) keepPulpInside(mesh, dentineSurface->mesh, region, *dentine, "the dentine");
             keepPulpInside(mesh, made.outer.mesh, region, region.outer, "the tooth");
@@ -191,6 +248,7 @@ Surfaces makeSurfaces(const Region& region, const Settings& settings, const core
             dentineSurface = &made.tissues.back();
         }
     }
+    holdInTooth(made, std::move(outer), region.grid);
     const auto place = [&](TriangleMesh& mesh) {
         for (Vec3& v : mesh.vertices)
             v = region.grid.originMm + region.grid.axes * v;

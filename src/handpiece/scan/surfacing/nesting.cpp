@@ -7,8 +7,8 @@
 #include <unordered_set>
 
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/geometry/points_beyond.h"
 #include "handpiece/base/geometry/self_intersection.h"
-#include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/scan/surfacing/smoothing.h"
 
 namespace handpiece::surfacing {
@@ -147,6 +147,30 @@ Apart holdApart(TriangleMesh& moving, std::span<const Bounds> onMoving, const Tr
     result.moved = touched.size();
     for (const auto& [v, was] : touched)
         result.movedMm = std::max(result.movedMm, (moving.vertices[v] - was).norm());
+    return result;
+}
+
+DrawnBack drawBack(TriangleMesh& tissue, const TriangleTree& tooth) {
+    constexpr int kDrawRounds = 6;
+    constexpr double kTo = 0.75;  // of what is allowed: uncrossing may push a little out again
+    DrawnBack result;
+    std::map<std::uint32_t, Vec3> was;
+    for (int round = 0;; ++round) {
+        const std::vector<std::uint32_t> out = geometry::pointsBeyond(tooth, tissue.vertices, kMostStandOutMm);
+        result.left = out.size();
+        if (out.empty() || round == kDrawRounds) break;
+        for (const std::uint32_t v : out) {
+            Vec3& p = tissue.vertices[v];
+            was.try_emplace(v, p);
+            const NearestPoint n = tooth.nearest(p);
+            p = n.pointMm + kTo * kMostStandOutMm / n.distanceMm * (p - n.pointMm);
+        }
+        std::size_t crossing = 0;
+        result.movedMm = std::max(result.movedMm, uncross(tissue, crossing));
+    }
+    result.moved = was.size();
+    for (const auto& [v, before] : was)
+        result.movedMm = std::max(result.movedMm, (tissue.vertices[v] - before).norm());
     return result;
 }
 

@@ -9,6 +9,7 @@
 
 #include "handpiece/base/core/progress.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
+#include "handpiece/base/geometry/triangle_tree.h"
 
 namespace handpiece::surfacing {
 
@@ -31,6 +32,16 @@ struct Apart {
 [[nodiscard]] Apart holdApart(geometry::TriangleMesh& moving, std::span<const Bounds> onMoving,
                               const geometry::TriangleMesh& still, std::span<const Bounds> onStill, double nearMm,
                               double mostMm, int rounds, bool strictly, const core::Progress& progress);
+
+inline constexpr double kMostStandOutMm = 0.08;  ///< below tooth::kCaseToleranceMm
+
+struct DrawnBack {
+    std::size_t moved = 0;  ///< vertices
+    double movedMm = 0;     ///< farthest of them
+    std::size_t left = 0;   ///< vertices that could not be brought back
+};
+/// Draws back what stands out of the tooth by more than kMostStandOutMm.
+DrawnBack drawBack(geometry::TriangleMesh& tissue, const geometry::TriangleTree& tooth);
 
 /// The faces of a surface with a vertex within about `reachMm` of one of the points.
 [[nodiscard]] geometry::TriangleMesh facesNear(const geometry::TriangleMesh& mesh, std::span<const core::Vec3> points,

@@ -41,17 +41,18 @@ double standOutMm(double voxelMm) {
     return std::min(kMostStandOutMm, kStandOutVoxels * voxelMm);
 }
 
-std::vector<float> fieldOf(const segmentation::Region& region, int index) {
-    const std::vector<float>& outer = region.outer.insideMm;
-    std::vector<float> field(outer.size());
-    if (index < 0) {
-        core::parallelFor(field.size(), kGrain, [&](std::size_t b, std::size_t e) {
-            for (std::size_t i = b; i < e; ++i)
-                field[i] = -outer[i];
-        });
-        return field;
-    }
-    const segmentation::Solid& solid = region.solids[static_cast<std::size_t>(index)];
+std::vector<float> outerField(const segmentation::Region& region) {
+    const std::vector<float>& inside = region.outer.insideMm;
+    std::vector<float> field(inside.size());
+    core::parallelFor(field.size(), kGrain, [&](std::size_t b, std::size_t e) {
+        for (std::size_t i = b; i < e; ++i)
+            field[i] = -inside[i];
+    });
+    return field;
+}
+
+std::vector<float> fieldOf(const segmentation::Region& region, std::size_t index, const std::vector<float>& outer) {
+    const segmentation::Solid& solid = region.solids[index];
     const std::vector<float>& inside = solid.insideMm;
     const double voxelMm = region.grid.spacingMm.x();
     const auto standOut = static_cast<float>(standOutMm(voxelMm));
@@ -59,38 +60,66 @@ std::vector<float> fieldOf(const segmentation::Region& region, int index) {
     const std::vector<float>* dentine = nullptr;
     for (const segmentation::Solid& other : region.solids)
         if (other.tissue == Tissue::dentine) dentine = &other.insideMm;
+    std::vector<float> field(outer.size());
     core::parallelFor(field.size(), kGrain, [&](std::size_t b, std::size_t e) {
         for (std::size_t i = b; i < e; ++i) {
             if (solid.tissue == Tissue::pulp) {
-                const float around = dentine ? std::min(outer[i], (*dentine)[i]) : outer[i];
+                const float around = dentine ? std::min(-outer[i], (*dentine)[i]) : -outer[i];
                 field[i] = -std::min(inside[i], around - gap);
             } else {
                 // What covers it here is as thick as the two distances differ: where that is nothing it stands out.
-                const float cover = (outer[i] - inside[i]) / (2.0f * standOut);
-                field[i] = -std::min(inside[i] + standOut * std::clamp(1.0f - cover, 0.0f, 1.0f), outer[i] + standOut);
+                const float cover = (-outer[i] - inside[i]) / (2.0f * standOut);
+                field[i] = -std::min(inside[i] + standOut * std::clamp(1.0f - cover, 0.0f, 1.0f), standOut - outer[i]);
             }
         }
     });
     return field;
 }
 
+void keepInTooth(std::vector<float>& field, const std::vector<float>& outer, double voxelMm) {
+    const auto standOut = static_cast<float>(standOutMm(voxelMm));
+    core::parallelFor(field.size(), kGrain, [&](std::size_t b, std::size_t e) {
+        for (std::size_t i = b; i < e; ++i)
+            field[i] = std::max(field[i], outer[i] - standOut);
+    });
+}
+
 void evenOut(std::vector<float>& field, const std::array<int, 3>& size, double voxelMm) {
     const auto h = static_cast<float>(voxelMm);
     const std::size_t nx = static_cast<std::size_t>(size[0]), ny = static_cast<std::size_t>(size[1]),
                       nz = static_cast<std::size_t>(size[2]), layer = nx * ny;
-    // By layers, and so the same sum at any thread count.
+    // What the level can change: values within a voxel and a half of the surface, by layers, and so the same sum at any
+    // thread count.
+    std::vector<std::vector<float>> near(nz);
+    std::vector<std::size_t> deep(nz);
+    const auto lookFor = [&] {
+        core::parallelFor(nz, 4, [&](std::size_t b, std::size_t e) {
+            for (std::size_t k = b; k < e; ++k) {
+                near[k].clear();
+                deep[k] = 0;
+                for (std::size_t i = k * layer; i < (k + 1) * layer; ++i)
+                    if (std::abs(field[i]) < 1.5f * h)
+                        near[k].push_back(field[i]);
+                    else
+                        deep[k] += field[i] < 0.0f;
+            }
+        });
+    };
     const auto inside = [&](float level) {
         std::vector<double> sums(nz, 0.0);
         core::parallelFor(nz, 4, [&](std::size_t b, std::size_t e) {
-            for (std::size_t k = b; k < e; ++k)
-                for (std::size_t i = k * layer; i < (k + 1) * layer; ++i)
-                    sums[k] += std::clamp(0.5f - (field[i] - level) / h, 0.0f, 1.0f);
+            for (std::size_t k = b; k < e; ++k) {
+                sums[k] = static_cast<double>(deep[k]);
+                for (const float f : near[k])
+                    sums[k] += static_cast<double>(std::clamp(0.5f - (f - level) / h, 0.0f, 1.0f));
+            }
         });
         double sum = 0.0;
         for (const double s : sums)
             sum += s;
         return sum;
     };
+    lookFor();
     const double wanted = inside(0.0f);
     // Deep values say nothing of the surface and would pull at it.
     const float most = 1.5f * h;
@@ -117,6 +146,7 @@ void evenOut(std::vector<float>& field, const std::array<int, 3>& size, double v
     lines(ny * nz, nx, 1, [&](std::size_t l) { return l * nx; });
     lines(nx * nz, ny, nx, [&](std::size_t l) { return l / nx * layer + l % nx; });
     lines(layer, nz, layer, [](std::size_t l) { return l; });
+    lookFor();
     float low = -h, high = h;
     for (int i = 0; i < 12; ++i) {
         const float middle = 0.5f * (low + high);
@@ -125,7 +155,7 @@ void evenOut(std::vector<float>& field, const std::array<int, 3>& size, double v
     const float level = 0.5f * (low + high);
     core::parallelFor(field.size(), kGrain, [&](std::size_t b, std::size_t e) {
         for (std::size_t i = b; i < e; ++i)
-            field[i] -= level;
+            field[i] = std::abs(field[i]) < most ? field[i] - level : 2.0f * field[i];  // deep stays deep
     });
 }
 

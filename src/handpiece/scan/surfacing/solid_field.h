@@ -14,8 +14,14 @@ namespace handpiece::surfacing {
 /// By how much a tissue that reaches the outside stands out of the tooth, for voxels of this size.
 [[nodiscard]] double standOutMm(double voxelMm);
 
-/// The values of solid `index` of the region (-1: outer), turned to negative inside.
-[[nodiscard]] std::vector<float> fieldOf(const segmentation::Region& region, int index);
+/// The whole tooth's values, turned to negative inside.
+[[nodiscard]] std::vector<float> outerField(const segmentation::Region& region);
+/// The values of solid `index` of the region, turned to negative inside, in a tooth whose surface lies where `outer`
+/// (negative inside) is zero.
+[[nodiscard]] std::vector<float> fieldOf(const segmentation::Region& region, std::size_t index,
+                                         const std::vector<float>& outer);
+/// Takes away what stands out of the tooth by more than standOutMm.
+void keepInTooth(std::vector<float>& field, const std::vector<float>& outer, double voxelMm);
 
 /// Evens a field out over about a voxel and moves its level so that as many voxels are inside as before: what joins or
 /// divides by less than that goes.

@@ -26,7 +26,8 @@ struct Surface {
 /// (the lowest priority of all), dentine lies in it, pulp in the dentine, caries and restorations where they are.
 /// Where dentine (at the root), caries or a restoration reach the tooth's outside, their surface does not run along the
 /// outer one, which would leave flakes of enamel between the two, but a little outside it: `standOutMm`, below
-/// tooth::kCaseToleranceMm. Nothing outside the outer surface is felt or counted, so no volume changes by that.
+/// tooth::kCaseToleranceMm, which no vertex of a tissue passes. Nothing outside the outer surface is felt or counted,
+/// so no volume changes by that.
 struct Surfaces {
     Surface outer;
     std::vector<Surface> tissues;
@@ -48,6 +49,11 @@ struct Settings {
 
 /// The paper's Table II.
 inline constexpr std::array<double, 5> kTableTwoPercents{6, 12, 25, 50, 100};
+/// The whole percentage of the faces that a distance field of this voxel can use: as many as equilateral triangles with
+/// edges of two voxels v would be. Between its nodes the field is straight, as a face is; such faces stay within about
+/// v * v / r of a surface of radius r (0.0025 mm for voxels of 0.05 mm and a radius of 1 mm), the field itself within a
+/// quarter of that, and decimated() leaves more of them where the surface bends more.
+[[nodiscard]] double usefulPercent(const Surfaces& full, double voxelMm);
 /// All surfaces at a percentage (0..100] of their faces, to the even number nearest; 100 gives them back. What was
 /// nested stays so: where fewer faces let a tissue come out, its vertices are pushed back.
 [[nodiscard]] Surfaces decimated(const Surfaces& full, double percent, const core::Progress& progress = {});

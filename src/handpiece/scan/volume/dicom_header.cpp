@@ -305,7 +305,7 @@ class Walker {
         header_.pixelAt = e.value;
         header_.isEncapsulated = e.length == kUndefined;
         if (!header_.isEncapsulated) {
-            header_.pixelBytes = e.length;
+            header_.pixelBytes = std::min<std::uint64_t>(e.length, input_.size() - std::min(e.value, input_.size()));
             return;
         }
         std::uint64_t at = e.value;

@@ -50,7 +50,21 @@ std::optional<std::array<unsigned, 3>> packedSize(Packing packing, std::vector<c
         if (data.size() < 48 || two(0) != 0xff4f || two(2) != 0xff51) return {};
         const unsigned count = two(40);
         if (four(16) != 0 || four(20) != 0 || (count == 1 && (byte(43) != 1 || byte(44) != 1))) return {};
-        return std::array{four(8), four(12), count};
+        // Segments within the data up to the first tile's own, how it is coded among them: GDCM looks for that by leaps
+        // of the lengths it reads, without looking where the data end.
+        bool isCodingTold = false, isInTile = false;
+        for (std::size_t at = 2; at + 4 <= data.size();) {
+            const unsigned marker = two(at), length = two(at + 2);
+            if (marker == 0xff93 && isInTile && isCodingTold) return std::array{four(8), four(12), count};
+            const bool isTile = marker == 0xff90;
+            if (marker < 0xff50 || marker > 0xff90 || length < 2 || at + 2 + length > data.size() ||
+                (isTile && (isInTile || length != 10)))
+                return {};
+            isInTile = isInTile || isTile;
+            isCodingTold = isCodingTold || (marker == 0xff52 && length >= 12);
+            at += 2 + length;
+        }
+        return {};
     }
     // Segments one after the other up to the first scan, nothing between them: GDCM's decoder stops the program at
     // what its header reader only warns of (stray bytes, odd application segments), so these are dropped or refused.
@@ -288,6 +302,10 @@ std::optional<std::pair<std::string, std::string>> unreadable(const DicomHeader&
         if (h.pixelBytes < needed)
             return Answer(fmt::format("its pixel data is truncated: {} of {} bytes are there", h.pixelBytes, needed),
                           "copy or export it again");
+    } else if (h.fragments.size() < static_cast<std::size_t>(h.frames)) {
+        return Answer(fmt::format("its pixel data is truncated: {} packed pieces are there for {} frames",
+                                  h.fragments.size(), h.frames),
+                      "copy or export it again");
     }
     return {};
 }

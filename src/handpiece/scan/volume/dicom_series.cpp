@@ -211,7 +211,7 @@ class Assembly {
                                             slices.size(), group_.columns, group_.rows, other.columns, other.rows),
                                 files_->where(s.file), "export the series again with slices of one size");
             if (!failures_.empty()) return failures_.front();
-            const auto missing = static_cast<int>(std::lround(gaps[i] / usual)) - 1;
+            const auto missing = static_cast<int>(std::lround(std::min(gaps[i] / usual, 1e6))) - 1;
             return core::Error(fmt::format("{} slice{} missing: after \"{}\" comes \"{}\"", missing,
                                            missing == 1 ? " is" : "s are", nameOf(slices[i]), nameOf(slices[i + 1])),
                                files_->where(slices[i + 1].file), "copy or export the whole series again");
@@ -317,7 +317,9 @@ std::vector<Candidate> findDicom(const Files& files, const std::vector<std::size
         } else if (h.samplesPerPixel != 1 || h.photometric == "PALETTE COLOR") {
             ++colour;
         } else {
-            for (int frame = 0; frame < std::max(1, h.frames); ++frame)
+            // What cannot be read is told of once: the number of its frames is only a claim.
+            const int frames = unreadable(h) ? 1 : h.frames;
+            for (int frame = 0; frame < frames; ++frame)
                 slices.push_back({which[i], frame, headers[i], h.placeOf(frame), 0.0});
         }
     }

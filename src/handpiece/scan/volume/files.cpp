@@ -11,13 +11,14 @@
 #include <system_error>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 
 namespace handpiece::volume {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kWindowBytes = 16384, kMostFiles = 200000;
+constexpr std::size_t kWindowBytes = 16384, kMostFiles = 200000, kChunkBytes = 1 << 20;
 /// Deflate cannot do better than 1032 to 1: an entry that claims more lies.
 constexpr std::uint64_t kMostRatio = 1100, kSmallBytes = 1 << 20;
 
@@ -68,10 +69,30 @@ std::size_t Input::readAt(std::uint64_t at, void* to, std::size_t count) {
 
 /// An open ZIP; its library knows no threads.
 struct FileSet::Archive {
+    std::vector<std::byte> memory;  ///< where it is no file
     zip_t* zip = nullptr;
+    std::string why;  ///< it cannot be opened
     std::map<std::string, zip_uint64_t> byName;
     std::mutex mutex;
-    Archive() = default;
+    explicit Archive(const fs::path& file) {
+        int code = 0;
+        zip = zip_open(file.string().c_str(), ZIP_RDONLY, &code);
+        zip_error_t error;
+        zip_error_init_with_code(&error, code);
+        if (!zip) why = zip_error_strerror(&error);
+        zip_error_fini(&error);
+    }
+    explicit Archive(std::vector<std::byte> bytes) : memory(std::move(bytes)) {
+        zip_error_t error;
+        zip_error_init(&error);
+        zip_source_t* source = zip_source_buffer_create(memory.data(), memory.size(), 0, &error);
+        zip = source ? zip_open_from_source(source, ZIP_RDONLY, &error) : nullptr;
+        if (!zip) {
+            why = zip_error_strerror(&error);
+            zip_source_free(source);
+        }
+        zip_error_fini(&error);
+    }
     Archive(const Archive&) = delete;
     Archive& operator=(const Archive&) = delete;
     ~Archive() {
@@ -95,11 +116,21 @@ std::shared_ptr<const FileSet> FileSet::inMemory(std::vector<InMemory> files) {
     return set;
 }
 
-std::shared_ptr<const FileSet> FileSet::open(const fs::path& path) {
+std::shared_ptr<const FileSet> FileSet::inArchive(std::vector<std::byte> zip, std::string where,
+                                                  const ArchiveLimits& limits) {
+    const std::shared_ptr<FileSet> set(new FileSet);
+    set->where_ = std::move(where);
+    set->storedBytes_ = zip.size();
+    set->addArchive(std::make_unique<Archive>(std::move(zip)), limits);
+    set->sort();
+    return set;
+}
+
+std::shared_ptr<const FileSet> FileSet::open(const fs::path& path, const ArchiveLimits& limits) {
     const std::shared_ptr<FileSet> set(new FileSet);
     set->where_ = path.string();
     std::error_code ec;
-    const fs::file_status status = fs::status(path, ec);
+    const fs::file_status status = core::statusOf(path);
     if (!fs::exists(status))
         throw core::Error("there is no such file or folder", path.string(), "check the name").as("file-not-found");
     if (fs::is_directory(status)) {
@@ -113,7 +144,8 @@ std::shared_ptr<const FileSet> FileSet::open(const fs::path& path) {
     char magic[4] = {};
     (void)input.readAt(0, magic, sizeof magic);
     if (std::memcmp(magic, "PK\3\4", 4) == 0 || std::memcmp(magic, "PK\5\6", 4) == 0) {
-        set->addArchive(path);
+        set->storedBytes_ = input.size();
+        set->addArchive(std::make_unique<Archive>(path), limits);
         set->sort();
         return set;
     }
@@ -179,24 +211,16 @@ void FileSet::addFolder(const fs::path& folder) {
     }
 }
 
-void FileSet::addArchive(const fs::path& file) {
+void FileSet::addArchive(std::unique_ptr<Archive> archive, const ArchiveLimits& limits) {
     const auto damaged = [&](std::string_view why) {
-        return core::Error(fmt::format("this ZIP is damaged: {}", why), file.string(), "copy or pack it again");
+        return core::Error(fmt::format("this ZIP is damaged: {}", why), where_, "copy or pack it again");
     };
-    archive_ = std::make_unique<Archive>();
-    int code = 0;
-    archive_->zip = zip_open(file.string().c_str(), ZIP_RDONLY, &code);
-    if (!archive_->zip) {
-        zip_error_t error;
-        zip_error_init_with_code(&error, code);
-        const std::string why = zip_error_strerror(&error);
-        zip_error_fini(&error);
-        throw damaged(why);
-    }
+    archive_ = std::move(archive);
+    if (!archive_->zip) throw damaged(archive_->why);
     const zip_int64_t count = zip_get_num_entries(archive_->zip, 0);
     if (count > static_cast<zip_int64_t>(kMostFiles))
-        throw core::Error(fmt::format("this ZIP holds more than {} files", kMostFiles), file.string(),
-                          "pack the scan alone");
+        throw core::Error(fmt::format("this ZIP holds more than {} files", kMostFiles), where_, "pack the scan alone");
+    std::uint64_t packed = 0, unpacked = 0;
     for (zip_int64_t i = 0; i < count; ++i) {
         zip_stat_t stat;
         if (zip_stat_index(archive_->zip, static_cast<zip_uint64_t>(i), 0, &stat) != 0 ||
@@ -212,15 +236,29 @@ void FileSet::addArchive(const fs::path& file) {
         const std::string last = name.substr(folderOf(name).size());
         if (last[0] == '.' || name.rfind("__MACOSX", 0) == 0) continue;
         if ((stat.valid & ZIP_STAT_ENCRYPTION_METHOD) != 0 && stat.encryption_method != ZIP_EM_NONE)
-            throw core::Error("this ZIP is encrypted", file.string(), "unpack it with its password, name the folder");
+            throw core::Error("this ZIP is encrypted", where_, "unpack it with its password, name the folder");
         if (stat.size > kSmallBytes && stat.size / kMostRatio > stat.comp_size)
             throw damaged("an entry claims to unpack to more than is possible");
+        // Entries that share their packed bytes are made to unpack without an end.
+        if (stat.comp_size > storedBytes_ - packed) throw damaged("its entries lie over each other");
+        packed += stat.comp_size;
+        const bool isFileTooLarge = stat.size > limits.fileBytes;
+        if (isFileTooLarge || stat.size > limits.totalBytes - unpacked)
+            throw core::Error(
+                fmt::format("{} of this ZIP unpack{} to more than {} MB", isFileTooLarge ? "one file" : "the files",
+                            isFileTooLarge ? "s" : "", (isFileTooLarge ? limits.fileBytes : limits.totalBytes) >> 20),
+                where_, "unpack it and name the folder of the scan")
+                .as("scan-too-large");
+        unpacked += stat.size;
         if (archive_->byName.try_emplace(name, static_cast<zip_uint64_t>(i)).second)
             entries_.push_back({name, stat.size});
     }
 }
 
 void FileSet::sort() {
+    if (!archive_)
+        for (const Entry& entry : entries_)
+            storedBytes_ += entry.bytes;
     std::sort(entries_.begin(), entries_.end(),
               [](const Entry& a, const Entry& b) { return naturalLess(a.name, b.name); });
 }
@@ -238,12 +276,16 @@ Input FileSet::open(std::size_t index) const {
     const auto damaged = [&] {
         return core::Error(fmt::format("\"{}\" in this ZIP is damaged", entry.name), where_, "copy or pack it again");
     };
-    auto data = std::make_shared<std::vector<std::byte>>(entry.bytes);
+    // The memory grows with what really comes out: the size is only what the archive claims.
+    auto data = std::make_shared<std::vector<std::byte>>();
     const std::lock_guard lock(archive_->mutex);
     const std::unique_ptr<zip_file_t, CloseEntry> open(
         zip_fopen_index(archive_->zip, archive_->byName.at(entry.name), 0));
     if (!open) throw damaged();
-    for (std::size_t have = 0; have < data->size();) {
+    for (std::size_t have = 0; have < entry.bytes;) {
+        if (have == data->size())
+            data->resize(
+                static_cast<std::size_t>(std::min<std::uint64_t>(entry.bytes, std::max(2 * have, kChunkBytes))));
         const zip_int64_t got = zip_fread(open.get(), data->data() + have, data->size() - have);
         if (got <= 0) throw damaged();
         have += static_cast<std::size_t>(got);

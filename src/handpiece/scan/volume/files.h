@@ -40,6 +40,11 @@ class Input {
     std::vector<std::byte> window_;
 };
 
+/// What a ZIP may unpack to: one file is held in memory, all of them are read in the course of time.
+struct ArchiveLimits {
+    std::uint64_t fileBytes = 4ull << 30, totalBytes = 64ull << 30;
+};
+
 /// Files by relative name, in natural order ("slice9" before "slice10").
 class FileSet {
   public:
@@ -48,12 +53,16 @@ class FileSet {
         std::uint64_t bytes = 0;
     };
 
-    /// Throws core::Error (missing, unreadable, a damaged ZIP, too many files).
-    [[nodiscard]] static std::shared_ptr<const FileSet> open(const std::filesystem::path& path);
+    /// Throws core::Error (missing, unreadable, a damaged ZIP, too many files, more in a ZIP than its limits).
+    [[nodiscard]] static std::shared_ptr<const FileSet> open(const std::filesystem::path& path,
+                                                             const ArchiveLimits& limits = {});
     struct InMemory {
         std::string name;
         std::vector<std::byte> data;
     };
+    /// The files of a ZIP that is in memory; `where` names it in messages.
+    [[nodiscard]] static std::shared_ptr<const FileSet> inArchive(std::vector<std::byte> zip, std::string where,
+                                                                  const ArchiveLimits& limits = {});
     /// Files that are in memory; the first is the one that was named.
     [[nodiscard]] static std::shared_ptr<const FileSet> inMemory(std::vector<InMemory> files);
 
@@ -63,6 +72,8 @@ class FileSet {
 
     [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
     [[nodiscard]] int folderCount() const { return folders_; }
+    /// On disk: of a ZIP its own size.
+    [[nodiscard]] std::uint64_t storedBytes() const { return storedBytes_; }
     /// What was opened, for messages.
     [[nodiscard]] const std::string& where() const { return where_; }
     [[nodiscard]] std::string where(std::size_t index) const;
@@ -81,13 +92,14 @@ class FileSet {
     struct Archive;
     FileSet();
     void addFolder(const std::filesystem::path& folder);
-    void addArchive(const std::filesystem::path& file);
+    void addArchive(std::unique_ptr<Archive> archive, const ArchiveLimits& limits);
     void sort();
 
     std::vector<Entry> entries_;
     std::filesystem::path root_;
     std::string where_;
     int folders_ = 0;
+    std::uint64_t storedBytes_ = 0;
     std::unique_ptr<Archive> archive_;
     std::map<std::string, std::shared_ptr<const std::vector<std::byte>>> memory_;
     std::optional<std::size_t> named_;

@@ -15,6 +15,7 @@ namespace handpiece::volume {
 namespace {
 
 constexpr int kMostPages = 100000;
+constexpr std::uint32_t kMostSide = 100000;
 constexpr tmsize_t kMostPiece = 1ll << 30;
 
 /// What libtiff reads from or writes to.
@@ -108,7 +109,7 @@ Page pageOf(TIFF* tiff, const Input& input) {
     TIFFGetFieldDefaulted(tiff, TIFFTAG_PLANARCONFIG, &planar);
     TIFFGetFieldDefaulted(tiff, TIFFTAG_SUBFILETYPE, &kind);
     TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &page.photometric);
-    if (columns < 1 || rows < 1 || columns > 100000 || rows > 100000)
+    if (columns < 1 || rows < 1 || columns > kMostSide || rows > kMostSide)
         throw damagedPicture(input, fmt::format("its size is {} x {}", columns, rows));
     page.columns = static_cast<int>(columns);
     page.rows = static_cast<int>(rows);
@@ -120,8 +121,9 @@ Page pageOf(TIFF* tiff, const Input& input) {
                           "save it as 8-bit or 16-bit grey");
     using enum SampleType;
     const bool isFloat = format == SAMPLEFORMAT_IEEEFP, isSigned = format == SAMPLEFORMAT_INT;
+    const bool isPalette = page.photometric == PHOTOMETRIC_PALETTE;
     if (page.bits == 8 && !isFloat)
-        page.type = isSigned ? i8 : u8;
+        page.type = isSigned && !isPalette ? i8 : u8;  // places in a palette have no sign, whatever the tag says
     else if (page.bits == 16 && !isFloat)
         page.type = isSigned ? i16 : u16;
     else if (page.bits == 32)
@@ -213,7 +215,7 @@ void readPage(TIFF* tiff, Stream& stream, const Page& page, float* to) {
     TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &width);
     TIFFGetField(tiff, TIFFTAG_TILELENGTH, &height);
     const tmsize_t bytes = TIFFTileSize(tiff);
-    if (width < 1 || height < 1 || bytes > kMostPiece ||
+    if (width < 1 || height < 1 || width > kMostSide || height > kMostSide || bytes > kMostPiece ||
         static_cast<std::uint64_t>(width) * height * pixel > static_cast<std::uint64_t>(bytes))
         throw cut();
     std::vector<std::byte> tile(static_cast<std::size_t>(bytes));

@@ -21,6 +21,9 @@ namespace {
 constexpr int kThumbnail = 128;
 /// Slices may lie this far beside their place, all over the scan, before they are straightened.
 constexpr double kTiltVoxels = 0.25;
+constexpr float kLargestValue = 1e12f;
+/// No packing of slices gives more voxels a byte; up to kSmallVoxels nobody asks.
+constexpr std::uint64_t kMostVoxelsPerByte = 4096, kSmallVoxels = 1 << 24;
 
 /// The slice, fitted and stretched to 8 bit between its half-percent ends.
 void makeThumbnail(const float* slice, int columns, int rows, Series& series) {
@@ -38,18 +41,20 @@ void makeThumbnail(const float* slice, int columns, int rows, Series& series) {
                 for (int i = x0; i < x1; ++i)
                     sum += static_cast<double>(slice[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) +
                                                      static_cast<std::size_t>(i)]);
-            if (!std::isfinite(sum)) sum = 0.0;
-            small[static_cast<std::size_t>(y * width + x)] = static_cast<float>(sum / ((x1 - x0) * (y1 - y0)));
+            const double mean = sum / ((x1 - x0) * (y1 - y0));
+            small[static_cast<std::size_t>(y * width + x)] =
+                std::abs(mean) <= kLargestValue ? static_cast<float>(mean) : 0.0f;
         }
     std::vector<float> sorted = small;
     std::sort(sorted.begin(), sorted.end());
     const std::size_t cut = sorted.size() / 200;
     const float low = sorted[cut], high = sorted[sorted.size() - 1 - cut];
-    const float scale = high > low ? 255.0f / (high - low) : 0.0f;
+    const double scale = high > low ? 255.0 / (static_cast<double>(high) - static_cast<double>(low)) : 0.0;
     series.thumbnailSize = {width, height};
     series.thumbnail.resize(small.size());
     std::transform(small.begin(), small.end(), series.thumbnail.begin(), [&](float v) {
-        return static_cast<std::uint8_t>(std::lround(std::clamp((v - low) * scale, 0.0f, 255.0f)));
+        return static_cast<std::uint8_t>(
+            std::lround(std::clamp((static_cast<double>(v) - static_cast<double>(low)) * scale, 0.0, 255.0)));
     });
 }
 
@@ -146,13 +151,13 @@ void straighten(Scan& scan, const core::Vec3& stepMm, std::uint64_t limitBytes, 
         fmt::format("the slices were tilted by {:.1f} degrees and have been straightened", slope));
 }
 
-/// What is no number counts as nothing.
+/// What is no number, or no grey value of any scanner, counts as nothing: all that comes after may add and square.
 std::size_t removeNonNumbers(std::vector<float>& values) {
     std::atomic<std::size_t> count{0};
     core::parallelFor(values.size(), 1 << 20, [&](std::size_t begin, std::size_t end) {
         std::size_t mine = 0;
         for (std::size_t i = begin; i < end; ++i)
-            if (!std::isfinite(values[i])) {
+            if (!(std::abs(values[i]) <= kLargestValue)) {
                 values[i] = 0.0f;
                 ++mine;
             }
@@ -202,14 +207,25 @@ std::string whatIsThere(const FileSet& files) {
                        [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; });
         // A long ending is part of a name, and names are nobody's business.
         const bool isKind = extension.size() > 1 && extension.size() <= 6;
-        ++counts[isKind ? shown(extension.substr(1)) + " file" : "file without an ending"];
+        // Slices may be told apart by their endings alone: CThead.1, CThead.2, ...
+        const bool isNumber = isKind && extension.find_first_not_of("0123456789", 1) == std::string::npos;
+        ++counts[isNumber ? "file with a number for an ending"
+                 : isKind ? shown(extension.substr(1)) + " file"
+                          : "file without an ending"];
     }
+    // The commonest kinds are enough to know what it is.
+    constexpr std::size_t kMostKinds = 8;
+    std::vector<std::pair<std::string, int>> kinds(counts.begin(), counts.end());
+    std::stable_sort(kinds.begin(), kinds.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+    int others = 0;
+    for (; kinds.size() > kMostKinds; kinds.pop_back())
+        others += kinds.back().second;
+    if (others > 0) kinds.emplace_back("other file", others);
     std::string text;
-    for (const auto& [name, count] : counts)
-        text += fmt::format("{}{} {}{}", text.empty() ? "" : ", ", count, name,
-                            count == 1               ? ""
-                            : name.ends_with("file") ? "s"
-                                                     : "");
+    for (auto& [name, count] : kinds) {
+        if (count != 1) name.insert(name.find("file") + 4, "s");
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
+    }
     if (files.folderCount() > 0)
         text += fmt::format("{}{} folder{}", text.empty() ? "" : ", ", files.folderCount(),
                             files.folderCount() == 1 ? "" : "s");
@@ -405,6 +421,13 @@ std::vector<Candidate> findCandidates(const Files& files, const core::Progress& 
     std::stable_sort(found.begin(), found.end(),
                      [](const Candidate& a, const Candidate& b) { return a.grid.count() > b.grid.count(); });
     for (std::size_t i = 0; i < found.size(); ++i) {
+        const std::uint64_t voxels = found[i].grid.count();
+        if (!found[i].problem && voxels > kSmallVoxels && voxels / kMostVoxelsPerByte > files->storedBytes()) {
+            found[i].problem = core::Error(fmt::format("its {} bytes cannot hold the {} voxels that its headers claim",
+                                                       files->storedBytes(), voxels),
+                                           found[i].where, "copy or save the scan again");
+            found[i].slice = nullptr;
+        }
         Series& series = found[i].series;
         series.id = fmt::format("{}", i + 1);
         series.notes.insert(series.notes.end(), notes.begin(), notes.end());

@@ -289,7 +289,7 @@ void writeScan(const Volume& volume, const fs::path& folder, ScanFormat format, 
         throw core::Error("the scan holds values that are no numbers", folder.string(), "mend it first");
     core::prepareOutputFolder(folder);
     core::Hasher salt;
-    salt.add(fs::absolute(folder).string());
+    salt.add(core::wholePath(folder).string());
     salt.add(fs::file_time_type::clock::now().time_since_epoch().count());
     const fs::path part = folder / fmt::format(".scan-{:x}.part", salt.value());
     std::error_code ec;

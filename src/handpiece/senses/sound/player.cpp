@@ -10,7 +10,7 @@
 #include <optional>
 #include <thread>
 
-#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/any_error.h"
 #include "handpiece/base/rt/realtime_thread.h"
 #include "handpiece/base/rt/triple_buffer.h"
 #include "handpiece/senses/sound/stage.h"
@@ -103,8 +103,8 @@ struct Player::State {
                 retry = kFirstRetry;
                 if (play(stage)) return;
                 tellSilent("the sound card was lost");
-            } catch (const core::Error& error) {
-                tellSilent(error.problem());
+            } catch (const std::exception& error) {
+                tellSilent(core::asError(error).problem());
             }
             if (waitUntil(steady_clock::now() + retry)) return;
             retry = std::min<steady_clock::duration>(2 * retry, kLastRetry);

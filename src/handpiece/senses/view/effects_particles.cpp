@@ -9,7 +9,8 @@ namespace handpiece::view {
 
 namespace {
 
-// A capsule from head to tail, turned to the eye; never thinner than a pixel, but paler then.
+// A capsule from head to tail, turned to the eye, that thins out towards its tail; never thinner than a pixel, but
+// paler then.
 const char* const kVertex = R"(
 layout(location = 0) in vec3 place;
 layout(location = 1) in float radius;
@@ -50,7 +51,10 @@ uniform sampler2D toothDepth;
 uniform vec2 unproject;
 out vec4 result;
 void main() {
-    float d = length(vec2(max(abs(at.x) - halfLength, 0.0), at.y));
+    // 0 at the head, 1 at the tail: what the eye smears of a drop ends in nothing.
+    float along = clamp((at.x + halfLength) / max(2.0 * halfLength, 1e-3), 0.0, 1.0);
+    float narrow = mix(1.0, 0.45, along * min(1.0, halfLength));
+    float d = length(vec2(max(abs(at.x) - halfLength, 0.0), at.y)) / narrow;
     if (d >= 1.0) discard;
     float edge = mix(0.0, 0.75, hard);
     float cover = 1.0 - smoothstep(edge, 1.0, d);
@@ -60,6 +64,7 @@ void main() {
         float behind = unproject.y / (2.0 * z - 1.0 + unproject.x) - depthMm;
         cover *= clamp(1.2 * behind + 0.15, 0.0, 1.0);
     }
+    cover *= 1.0 - along * min(1.0, 0.8 * halfLength);
     result = vec4(shade.rgb * mix(1.12 - 0.35 * d, 1.0, 1.0 - hard), shade.a * cover);
 }
 )";

@@ -107,7 +107,7 @@ void main() {
     vec3 root = sqrt(c);
     c = 0.9549 * root + 0.0956 * sqrt(root) - 0.0511 * c;
 #ifdef GLASS
-    // What lies over the place that is worked at is seen through, the more the higher it lies; also what is so near to
+    // What lies over the place that is worked at fades away, the more the higher it lies; also what is so near to
     // the eye that it would fill the picture.
     vec3 w = at - tip;
     float high = dot(w, toEye);
@@ -115,6 +115,8 @@ void main() {
     float site = siteMm * clamp((high - glassFrom) / glassOver, 0.0, 1.0) + 0.01;
     float solid = smoothstep(0.6 * site, site, away);
     float there = smoothstep(goneMm, wholeMm, 1.0 / gl_FragCoord.w);
+#ifdef BUR
+    // Of the bur an outline stays: where it stands is to be seen.
     vec3 glass = mix(vec3(0.80, 0.90, 0.97), c, 0.35);
     float share = 1.0 / (gl_FragCoord.w * eyeMm);  // what is near to the eye is large: its edges are drawn faintly
     float edge = 0.03 + 0.60 * rim2 * sqrt(rim) * min(1.0, share * share);
@@ -122,6 +124,12 @@ void main() {
     float spark = clamp(2.0 * (c.g - 0.82), 0.0, 0.35);
     float veil = mix(max(edge, spark), 1.0, solid);
     colour = there * vec4(mix(glass, c, solid) * veil, veil);
+#else
+    // Of the handpiece nothing: its rims would lie over the work like a bell jar.
+    colour = there * solid * vec4(c, 1.0);
+    // What is not seen hides nothing either: depth is written.
+    if (colour.a < 0.01) discard;
+#endif
 #else
     colour = vec4(c, 1.0);
 #endif

@@ -422,9 +422,10 @@ std::size_t Instruments::draw(Shaders& shaders, const Eye& eye, const Viewport& 
             triangles += pool_.draw(meshes);
         };
         drawGlass(shaders.glassBur, glassBur_, true);
+        // With depth: pieces that are solid in part would show through each other, in the shapes of their triangles.
+        glDepthMask(GL_TRUE);
         drawGlass(shaders.glassTurbine, glassTurbine_, false);
         glDisable(GL_BLEND);
-        glDepthMask(GL_TRUE);
     }
     glDisable(GL_CULL_FACE);
     return triangles;

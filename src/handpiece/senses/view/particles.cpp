@@ -24,6 +24,8 @@ constexpr double kMostChipsPerS = 1500.0;  // what fits in the air at once anywa
 constexpr double kDropletsPerS = 1100.0, kPuffsPerS = 240.0;
 constexpr double kPortRadiusMm = 2.3;  // as instrument::turbineMesh() has them
 constexpr double kStillRpm = 500.0;
+constexpr double kMostStreak = 2.5;  // radii of a drop
+constexpr double kJetShare = 0.6;    // of the way to the tip
 
 /// Random numbers of one step: the same for the same seed and step, however time was cut into pictures.
 class Dice {
@@ -203,14 +205,15 @@ void Particles::show(const Moment& moment, const Look& look, double headRadiusMm
             s.radiusMm = static_cast<float>(p.radiusMm * (1.0 + 1.9 * age));
             s.rgba = {226, 236, 244, byte(40.0 * (1.0 - age) * std::min(1.0, 6.0 * age))};
         } else {
-            // What the eye smears of a fast speck, held short, or chips would look like needles.
+            // What the eye smears of a fast speck, held short: chips would look like needles, drops like sticks.
             Vec3 streak = -0.004 * p.velocityMmS;
-            const double longest = p.kind == Kind::chip ? 0.22 : 0.4;
+            const double longest = p.kind == Kind::chip ? 0.22 : kMostStreak * p.radiusMm;
             if (streak.norm() > longest) streak *= longest / streak.norm();
             s.streakMm = floats(streak);
             s.radiusMm = static_cast<float>(p.radiusMm);
             s.hardness = p.kind == Kind::chip ? 0.85f : 0.5f;
             const double fade = std::min(1.0, 3.0 * (1.0 - age));
+            if (p.kind == Kind::droplet) s.hardness = 0.25f;
             if (p.kind == Kind::chip) {
                 const auto colour = colourOf(p.tissue, look.palette);
                 const double shade = 0.78 + 0.3 * p.shade / 255.0;
@@ -225,14 +228,14 @@ void Particles::show(const Moment& moment, const Look& look, double headRadiusMm
     const bool jets =
         water_ && moment.water && moment.burShown && moment.speedRpm > kStillRpm && moment.burInTooth.isValid();
     for (std::size_t i = 0; jets && i < kJets; ++i) {
-        // Jets are fast enough to look like threads of glass from port to tip.
+        // A jet leaves its port as a thread and is mist before it is at the tip.
         const Vec3 port = portAt(i), aim(0.12 * port.x(), 0.12 * port.y(), 0.6 * headRadiusMm);
         Speck s;
-        s.positionMm = floats(moment.burInTooth.apply(aim));
-        s.streakMm = floats(moment.burInTooth.orientation * (port - aim));
-        s.radiusMm = 0.16f;
-        s.hardness = 0.1f;
-        s.rgba = {222, 236, 248, 92};
+        s.positionMm = floats(moment.burInTooth.apply(port));
+        s.streakMm = floats(moment.burInTooth.orientation * (kJetShare * (aim - port)));
+        s.radiusMm = 0.11f;
+        s.hardness = 0.0f;
+        s.rgba = {222, 236, 248, 64};
         specks_.push_back(s);
     }
 }

@@ -47,6 +47,12 @@ class Device {
     /// Amplitude of the bur's hum [N], which is in the force already: for what has no force but can shake. Each tick,
     /// after command().
     virtual void vibrate(double amplitudeN) noexcept HANDPIECE_REALTIME { (void)amplitudeN; }
+    /// Where the bur rests on the tooth and with what load it presses there [N]: for a simulated hand, which watches
+    /// its tip as a person does. Each tick, before command().
+    virtual void watch(const core::Vec3& tipMm, const core::Vec3& loadN) noexcept HANDPIECE_REALTIME {
+        (void)tipMm;
+        (void)loadN;
+    }
     /// For records: where the device truly is and what force acts on it now. Real devices return what they know.
     virtual core::Vec3 truePositionMm() const noexcept = 0;
     virtual core::Vec3 appliedForceN() const noexcept = 0;

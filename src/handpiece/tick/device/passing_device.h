@@ -18,6 +18,9 @@ class PassingDevice : public Device {
         inner_->command(forceN, torqueNmm);
     }
     void vibrate(double amplitudeN) noexcept HANDPIECE_REALTIME override { inner_->vibrate(amplitudeN); }
+    void watch(const core::Vec3& tipMm, const core::Vec3& loadN) noexcept HANDPIECE_REALTIME override {
+        inner_->watch(tipMm, loadN);
+    }
     core::Vec3 truePositionMm() const noexcept override { return inner_->truePositionMm(); }
     core::Vec3 appliedForceN() const noexcept override { return inner_->appliedForceN(); }
 

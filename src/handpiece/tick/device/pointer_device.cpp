@@ -21,18 +21,22 @@ constexpr double kMostPeriodS = 0.05;    // a machine that slept longer costs no
 constexpr double kMostLoadShare = 0.95;  // of the device's largest force: the tooth must be able to hold the hand
 constexpr double kMostPlaceMm = 1e4;     // farther away nobody points
 constexpr double kTurnS = 0.01;          // with which the hand turns to where it is asked to
-constexpr double kHeldN = 0.01;          // along the axis: from here on the tooth holds the hand,
-constexpr double kHeldShare = 0.35;      // unless most of its force is from the side: friction of a wall holds nothing
-constexpr double kFallS = 0.02;          // with which a falling hand comes to rest
+constexpr double kOutFirstMm = 0.5;      // deeper along the way than where it is to be it does not go across yet
+constexpr double kLeastN = 1e-9;         // a load that has a direction
+// The tip is held under the pointer as by a spring so many times stiffer than what lies between hand and tip, through a
+// low pass; what is then left goes slowly, or a bur that cuts would swing round its place.
+constexpr double kTipGain = 20.0, kTipS = 0.025, kSettleS = 0.4;
+constexpr double kMostShare = 0.8;  // of an error, in one tick
 
 /// What the hand is asked to do, once it has been found to make sense.
 struct Wish {
     Vec3 positionMm = Vec3::Zero();
     Quat orientation = Quat::Identity();
-    double pedal = 0.0, loadN = 0.0;
-    bool hasStop = false, hasFloor = false, frozen = false, away = false;
-    Vec3 stopMm = Vec3::Zero(), floorMm = Vec3::Zero();
-    double fallMm = kFallFreely;
+    double pedal = 0.0, loadN = 0.0, farMm = 0.0;
+    bool isLed = false, frozen = false, away = false;
+    Vec3 way = Vec3::Zero();
+
+    [[nodiscard]] bool presses() const noexcept { return loadN > 0.0 && !way.isZero() && !frozen && !away; }
 };
 
 bool isPlace(const double (&v)[3]) noexcept {
@@ -45,18 +49,17 @@ bool understand(const PointerTarget& target, double mostLoadN, Wish& wish) noexc
     const double size2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
     if (!isPlace(target.positionMm) || !(size2 > 0.25 && size2 < 4.0)) return false;
     if (!std::isfinite(target.pedal) || !std::isfinite(target.loadN)) return false;
-    if (target.hasStop && !isPlace(target.stopMm)) return false;
-    if (target.hasFloor && !isPlace(target.floorMm)) return false;
-    if (!(target.fallMm >= 0.0)) return false;
+    const Vec3 way(target.way[0], target.way[1], target.way[2]);
+    const double way2 = way.squaredNorm();
+    if (way2 != 0.0 && !(std::abs(way2 - 1.0) < 1e-6)) return false;
+    if (!(std::abs(target.farMm) < kMostPlaceMm)) return false;
     wish.positionMm = Vec3(target.positionMm[0], target.positionMm[1], target.positionMm[2]);
     wish.orientation = Quat(q[0], q[1], q[2], q[3]).normalized();
     wish.pedal = std::clamp(target.pedal, 0.0, 1.0);
     wish.loadN = std::clamp(target.loadN, 0.0, mostLoadN);
-    wish.hasStop = target.hasStop;
-    wish.stopMm = Vec3(target.stopMm[0], target.stopMm[1], target.stopMm[2]);
-    wish.fallMm = std::min(target.fallMm, kFallFreely);
-    wish.hasFloor = target.hasFloor;
-    wish.floorMm = Vec3(target.floorMm[0], target.floorMm[1], target.floorMm[2]);
+    wish.way = way;
+    wish.farMm = target.farMm;
+    wish.isLed = target.isLed;
     wish.frozen = target.frozen;
     wish.away = target.away;
     return true;
@@ -86,8 +89,11 @@ struct PointerDevice::State {
     std::shared_ptr<PointerMailbox> mailbox;
     Wish wish;
     bool started = false, wasAway = false, wasPressing = false;
-    double fallenMm = 0.0;         // of the hand, along the axis below where the tip was when the tooth last held it
-    Vec3 liftedMm = Vec3::Zero();  // where an away hand goes
+    bool watches = false;  // has been told of its tip since the last reading
+    Vec3 tipMm = Vec3::Zero(), pressN = Vec3::Zero();
+    double farMm = 0.0;             // along the way, of the place that it wanted without a load
+    Vec3 settledMm = Vec3::Zero();  // by which the hand stays beside a tip that is in its place, on a slope
+    Vec3 liftedMm = Vec3::Zero();   // where an away hand goes
     Vec3 wantedMm = Vec3::Zero(), wantedMmS = Vec3::Zero();      // where the hand wants to be
     Vec3 wantedMmS2 = Vec3::Zero();                              // its acceleration, while nothing holds it
     Vec3 positionMm = Vec3::Zero(), velocityMmS = Vec3::Zero();  // of the mass
@@ -95,12 +101,10 @@ struct PointerDevice::State {
     Vec3 forceN = Vec3::Zero();  // of the tooth
 
     void turn(double periodS) noexcept;
+    void begin(bool pressing) noexcept;
     void follow(const Vec3& place, bool still, double h) noexcept;
-    void move(bool pressing, const Vec3& axis, double h) noexcept;
-    [[nodiscard]] double pressN(const Vec3& tipFirst) const noexcept;
-    [[nodiscard]] bool isHeld(const Vec3& tipFirst) const noexcept {
-        return -forceN.dot(tipFirst) > std::max(kHeldN, kHeldShare * forceN.norm());
-    }
+    void move(double h) noexcept;
+    void press(const Vec3& wasWantedMm, double periodS) noexcept;
 };
 
 PointerDevice::PointerDevice(PointerHandSettings settings, std::shared_ptr<PointerMailbox> mailbox,
@@ -120,8 +124,6 @@ PointerDevice::PointerDevice(PointerHandSettings settings, std::shared_ptr<Point
     require(settings.travelMmS > 0 && settings.travelMmS <= 2000, "a travel [mm/s]", settings.travelMmS);
     require(settings.turnRadS > 0 && settings.turnRadS <= 100, "a turn [rad/s]", settings.turnRadS);
     require(settings.liftMm >= 0 && settings.liftMm <= 100, "a lift [mm]", settings.liftMm);
-    require(settings.stopStiffnessNPerMm > 0 && settings.stopStiffnessNPerMm <= 100, "a stop's stiffness [N/mm]",
-            settings.stopStiffnessNPerMm);
     require(settings.subStepS >= 1e-6 && settings.subStepS <= 1e-3, "a sub-step [s]", settings.subStepS);
     if (mailbox == nullptr) throw core::Error("a pointer device without a mailbox", "pointer device");
     if (!start.isValid() || start.positionMm.cwiseAbs().maxCoeff() >= kMostPlaceMm)
@@ -149,23 +151,23 @@ Reading PointerDevice::read(double periodS) noexcept {
     State& s = *state_;
     // A pointer that never said anything leaves the hand where it began.
     if (s.mailbox->hasNews()) (void)understand(s.mailbox->read(), kMostLoadShare * s.capability.maxForceN, s.wish);
-    const Vec3 axis = s.orientation * Vec3::UnitZ();
-    if (s.wish.away && !s.wasAway) s.liftedMm = s.positionMm + s.settings.liftMm * axis;
+    if (s.wish.away && !s.wasAway) s.liftedMm = s.positionMm + s.settings.liftMm * (s.orientation * Vec3::UnitZ());
     s.wasAway = s.wish.away;
     if (s.started && periodS > 0.0) {
         const double passed = std::min(periodS, kMostPeriodS);
         if (!s.wish.frozen && !s.wish.away) s.turn(passed);
-        const bool pressing = s.wish.loadN > 0.0 && !s.wish.frozen && !s.wish.away;
-        if (pressing && !s.wasPressing) s.fallenMm = 0.0;
-        s.wasPressing = pressing;
+        s.begin(s.wish.presses());
         const int steps = std::max(1, static_cast<int>(std::ceil(passed / s.settings.subStepS - 1e-9)));
         const double h = passed / steps;
-        const Vec3& place = s.wish.away ? s.liftedMm : s.wish.positionMm;
+        const Vec3 way = s.wasPressing ? Vec3(Vec3::Zero()) : Vec3(s.wish.farMm * s.wish.way);
+        const Vec3 place = s.wish.away ? s.liftedMm : Vec3(s.wish.positionMm + way), wasWanted = s.wantedMm;
         for (int i = 0; i < steps; ++i) {
             s.follow(place, s.wish.frozen && !s.wish.away, h);
-            s.move(pressing, axis, h);
+            if (!s.wasPressing) s.move(h);
         }
+        if (s.wasPressing) s.press(wasWanted, passed);
     }
+    s.watches = false;
     s.started = true;
     Reading reading;
     reading.burInTooth = {s.positionMm, s.orientation};
@@ -175,6 +177,29 @@ Reading PointerDevice::read(double periodS) noexcept {
 
 void PointerDevice::command(const Vec3& forceN, const Vec3& /*torqueNmm: no torque axes*/) noexcept {
     state_->forceN = forceN.allFinite() ? forceN : Vec3(Vec3::Zero());
+}
+
+void PointerDevice::watch(const Vec3& tipMm, const Vec3& loadN) noexcept {
+    State& s = *state_;
+    s.watches = tipMm.allFinite() && loadN.allFinite();
+    if (!s.watches) return;
+    s.tipMm = tipMm;
+    s.pressN = loadN;
+}
+
+/// Between the two ways nothing jumps.
+void PointerDevice::State::begin(bool pressing) noexcept {
+    if (pressing && !wasPressing) {
+        wantedMm -= farMm * wish.way;
+        settledMm.setZero();
+    }
+    if (!pressing && wasPressing) {
+        wantedMm = positionMm;
+        wantedMmS.setZero();
+        velocityMmS.setZero();
+    }
+    wasPressing = pressing;
+    farMm = pressing ? 0.0 : wish.farMm;
 }
 
 void PointerDevice::State::turn(double periodS) noexcept {
@@ -188,11 +213,18 @@ void PointerDevice::State::turn(double periodS) noexcept {
 void PointerDevice::State::follow(const Vec3& place, bool still, double h) noexcept {
     // Critically damped; an error that is held to twice the travel's share ends in that speed, without overshoot.
     const double w = 2.0 / settings.followS;
-    const Vec3 error = still ? Vec3(Vec3::Zero()) : heldTo(place - wantedMm, 2.0 * settings.travelMmS / w);
+    Vec3 error = still ? Vec3(Vec3::Zero()) : Vec3(place - wantedMm);
+    const double deeper = -error.dot(wish.way);
+    if (!wasPressing && deeper > 0.0) {
+        const double across = std::clamp(1.0 - deeper / kOutFirstMm, 0.0, 1.0);
+        error = across * error - (1.0 - across) * deeper * wish.way;
+    }
+    error = heldTo(error, 2.0 * settings.travelMmS / w);
     const Vec3 before = wantedMmS;
     wantedMmS = (wantedMmS + h * w * w * error) / (1.0 + h * 2.0 * w + h * h * w * w);
     wantedMm += h * wantedMmS;
     wantedMmS2 = (wantedMmS - before) / h;
+    if (wasPressing) return;
     // It cannot want what the tooth keeps it from by more than it can pull; held like that it does not go on wanting.
     const Vec3 stretch = wantedMm - positionMm;
     const double length = stretch.norm(), most = settings.mostPullN / settings.stiffnessNPerMm;
@@ -203,45 +235,41 @@ void PointerDevice::State::follow(const Vec3& place, bool still, double h) noexc
     wantedMmS2.setZero();
 }
 
-double PointerDevice::State::pressN(const Vec3& tipFirst) const noexcept {
-    const double resistN = -forceN.dot(tipFirst);
-    double load = wish.loadN;
-    if (wish.hasStop) {
-        // The tip stands behind the hand by what the tooth's hardest tissue gives under this force: never less.
-        const double tip =
-            (positionMm - wish.stopMm).dot(tipFirst) - std::max(0.0, resistN) / capability.maxStiffnessNPerMm;
-        load = std::clamp(-settings.stopStiffnessNPerMm * tip, -load, load);
-    }
-    // In the air the hand comes no faster than its approach, and only so far.
-    double speed = settings.approachMmS;
-    if (!isHeld(tipFirst)) {
-        double left = wish.fallMm - fallenMm;
-        if (wish.hasFloor) left = std::max(left, (wish.floorMm - positionMm).dot(tipFirst));
-        speed = std::clamp(left / kFallS, -speed, speed);
-    }
-    return std::min(load - resistN, settings.dampingNSPerMm * speed);
+void PointerDevice::State::move(double h) noexcept {
+    const double mass = settings.massKg / kKgPerUnit, k = settings.stiffnessNPerMm, b = settings.dampingNSPerMm;
+    // The hand's spring and damper act at the end of the step: stable whatever their size. What speeds the mass up with
+    // what the hand wants is the hand's own: in free air it follows without delay.
+    const Vec3 pullN = mass * wantedMmS2 + b * wantedMmS + k * (wantedMm - positionMm);
+    velocityMmS = (h / (mass + h * b + h * h * k)) * (mass / h * velocityMmS + pullN + forceN);
+    positionMm += h * velocityMmS;
 }
 
-void PointerDevice::State::move(bool pressing, const Vec3& axis, double h) noexcept {
-    const double mass = settings.massKg / kKgPerUnit, k = settings.stiffnessNPerMm, b = settings.dampingNSPerMm;
-    // The hand's spring and damper act at the end of the step: stable whatever their size.
-    const auto along = [&](const Vec3& v) { return Vec3(axis * axis.dot(v)); };
-    // What speeds the mass up with what the hand wants is the hand's own: in free air it follows without delay.
-    const Vec3 pullN = mass * wantedMmS2 + b * wantedMmS + k * (wantedMm - positionMm);
-    Vec3 v = (h / (mass + h * b + h * h * k)) * (mass / h * velocityMmS + pullN + forceN);
-    if (pressing) {
-        const double speed = (mass / h * axis.dot(velocityMmS) - pressN(-axis)) * (h / (mass + h * b));
-        v += axis * speed - along(v);
-        // Held, the tip stands behind the hand by what the hardest tissue gives.
-        fallenMm = isHeld(-axis) ? forceN.dot(axis) / capability.maxStiffnessNPerMm : fallenMm - h * speed;
+void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexcept {
+    // Shares of what is left, so that no period is too long: of the way to a place, of a force that is missing.
+    const double k = capability.maxStiffnessNPerMm, b = settings.dampingNSPerMm;
+    const double back = 1.0 - std::exp(-periodS * settings.stiffnessNPerMm / b);
+    const double mmPerN = (1.0 - std::exp(-periodS * k / b)) / k;
+    const Vec3& way = wish.way;
+    const auto across = [&](const Vec3& v) { return Vec3(v - way * way.dot(v)); };
+    if (!watches) {  // before the first tick has told it of its tip
+        tipMm = positionMm;
+        pressN.setZero();
     }
-    velocityMmS = v;
-    positionMm += h * v;
-    if (pressing) {
-        // Let go, it begins where it is.
-        wantedMm += along(positionMm - wantedMm);
-        wantedMmS += along(v - wantedMmS);
-    }
+    const Vec3 left = wantedMm - tipMm, moved = wantedMm - wasWantedMm, beside = across(left);
+    const double most = settings.approachMmS * periodS, ahead = left.dot(way) + wish.farMm, allN = pressN.norm();
+    const double missing = (wish.loadN - allN) * mmPerN;  // millimetres of it
+    const double in = std::min({most, missing, ahead * back - pressN.dot(way) * mmPerN});
+    const double share = 1.0 - std::exp(-periodS / kTipS), gain = std::min(kTipGain, kMostShare / share);
+    settledMm = heldTo(across(settledMm) + gain * (1.0 - std::exp(-periodS / kSettleS)) * beside, wish.loadN / k);
+    // With the pointer, as the uncut tooth rises and falls under it; and on until the tip is under it.
+    const Vec3 over = across(tipMm - positionMm);
+    Vec3 step = (std::min(way.dot(moved), most) + in) * way +
+                (wish.isLed ? Vec3(back * over) : Vec3(across(moved) + share * (over + gain * beside + settledMm)));
+    // Against the tooth no farther than the load goes, whichever way.
+    if (allN > kLeastN) step -= std::max(0.0, step.dot(pressN) / allN - missing) / allN * pressN;
+    step = heldTo(step, settings.travelMmS * periodS);
+    positionMm += step;
+    velocityMmS = step / periodS;
 }
 
 }  // namespace handpiece::device

@@ -12,43 +12,42 @@
 
 namespace handpiece::device {
 
-inline constexpr double kFallFreely = 1e4;
-
 /// What the pointer wants of the hand: the latest value counts.
 struct PointerTarget {
-    /// Where the hand wants the bur. While it presses, this place along the bur's axis counts for nothing: the load
-    /// decides how far in it comes.
+    /// Where the hand wants the bur. Of a hand that presses: where the way in begins, on the uncut tooth.
     double positionMm[3]{0, 0, 40};
     double orientation[4]{1, 0, 0, 0};  ///< w x y z, bur in tooth
     double pedal = 0.0;                 ///< 0..1
-    double loadN = 0.0;                 ///< pressing along the bur's axis, tip first; 0: no pressing, the place counts
-    bool hasStop = false;       ///< depth stop: the tip is pressed no farther along the bur's axis than the stop point
-    double stopMm[3]{0, 0, 0};  ///< the plane through it across the axis; where the load ends, so that cutting does
-    /// A pressing hand that the tooth does not hold goes no farther along the axis than this from where it last did (or
-    /// from where it began to press)...
-    double fallMm = kFallFreely;
-    /// ...or than the plane through this point across the axis, when that is farther: it is let down to what lies
-    /// there.
-    bool hasFloor = false;
-    double floorMm[3]{0, 0, 0};
+    /// The way in, unit: along the line of sight, where one does not see the bur move. Zero: none, the place alone
+    /// counts.
+    double way[3]{0, 0, 0};
+    double farMm = 0.0;   ///< along it from the place: where the tip is to be, or to stop
+    double loadN = 0.0;   ///< with which the bur presses on the tooth, along the way as far as that goes; 0: not at all
+    bool isLed = false;   ///< across the way it gives way to the tooth: out of a cavity, not through its wall
     bool frozen = false;  ///< the hand stands where it is (the view is being turned)
     bool away = false;    ///< Escape, lost focus: pedal up, the bur is lifted along its axis
 };
 using PointerMailbox = rt::TripleBuffer<PointerTarget>;
 
-/// A hand in two parts: where it wants to be, which follows the pointer smoothly and within its speed, and a mass on a
-/// spring and damper about that, on which the tooth's force acts. In free air the mass is where the hand wants it.
+/// A hand in one of two ways.
+///
+/// Without a load it is in two parts: where it wants to be, which follows the pointer smoothly and within its speed,
+/// and a mass on a spring and damper about that, on which the tooth's force acts. In free air the mass is where the
+/// hand wants it. With a way it comes out along that before it goes across: what is in front of the way is air.
+///
+/// With a load it watches its tip, as a person does: across the way it moves until the tip, not the hand, is where the
+/// pointer is, and along the way it presses. Of all its force on the tooth there is never more than the load: what it
+/// needs to keep the tip in its place on a slope, or pulls sideways at a wall, it does not press with.
 struct PointerHandSettings {
     double massKg = 0.05;
-    double stiffnessNPerMm = 4.0;   ///< across the axis, and along it when it does not press
+    double stiffnessNPerMm = 4.0;   ///< of the spring; and how fast the load falls to none where the way ends
     double dampingNSPerMm = 0.028;  ///< critical for that
-    double mostPullN = 2.0;         ///< of that spring: a hand that is held by the tooth pulls no harder
+    double mostPullN = 2.0;         ///< of that spring: a hand that does not press pulls no harder
     double followS = 0.012;         ///< behind a pointer that moves evenly
-    double approachMmS = 20.0;      ///< fastest along the axis while it presses, in the air too
+    double approachMmS = 20.0;      ///< fastest along the way while it presses, in the air too
     double travelMmS = 400.0;       ///< fastest of a hand that follows the pointer
     double turnRadS = 12.0;
-    double liftMm = 5.0;             ///< when away
-    double stopStiffnessNPerMm = 5;  ///< how fast the load falls to none before the depth stop
+    double liftMm = 5.0;  ///< when away
     double subStepS = 50e-6;
 };
 
@@ -68,6 +67,7 @@ class PointerDevice final : public Device {
     [[nodiscard]] const Capability& capability() const noexcept override;
     Reading read(double periodS) noexcept HANDPIECE_REALTIME override;
     void command(const core::Vec3& forceN, const core::Vec3& torqueNmm) noexcept HANDPIECE_REALTIME override;
+    void watch(const core::Vec3& tipMm, const core::Vec3& loadN) noexcept HANDPIECE_REALTIME override;
     core::Vec3 truePositionMm() const noexcept override;
     core::Vec3 appliedForceN() const noexcept override;
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/tick/loop/excavation.h"
 
 namespace handpiece::loop {
 namespace {
@@ -137,33 +138,6 @@ device::Motion crownShoulder(contact::Method& method, const CuttingScene& scene,
     return hand.finish(outside);
 }
 
-/// Layer by layer through the decay, each from its middle outwards.
-device::Motion excavate(const Vec3& touch, const core::Box& decay, const CuttingScene& scene, const CuttingOptions& o) {
-    const double bottom = o.depthMm > 0.0 ? touch.z() - o.depthMm : decay.min.z();
-    const double depth = touch.z() - bottom;
-    if (!(depth > 0.0))
-        throw core::Error("the decay does not lie below the bur", "excavate", "choose another place or depth");
-    const Vec3 above = touch - o.clearanceMm * kDown;
-    const double rx = std::max(0.0, 0.5 * decay.size().x() - scene.burRadiusMm),
-                 ry = std::max(0.0, 0.5 * decay.size().y() - scene.burRadiusMm);
-    Hand hand(above, o.pedal);
-    const int layers = static_cast<int>(std::ceil(depth / kLayerMm));
-    const int rings = std::max(1, static_cast<int>(std::ceil(std::max(rx, ry) / scene.burRadiusMm)));
-    constexpr int kCorners = 24;
-    for (int i = 1; i <= layers; ++i) {
-        const Vec3 floor = touch + depth * i / layers * kDown;
-        hand.go(floor, kPlungeFeed * o.feedMmS);
-        for (int ring = 1; ring <= rings; ++ring)
-            for (int k = 0; k <= kCorners; ++k) {
-                const double angle = 2.0 * std::numbers::pi * k / kCorners, share = static_cast<double>(ring) / rings;
-                hand.go(floor + share * Vec3(rx * std::cos(angle), ry * std::sin(angle), 0.0), o.feedMmS);
-            }
-        hand.go(floor, o.feedMmS);
-    }
-    hand.stay(o.dwellS);
-    return hand.finish(above);
-}
-
 }  // namespace
 
 const std::vector<BuiltInMotion>& cuttingMotions() {
@@ -171,9 +145,21 @@ const std::vector<BuiltInMotion>& cuttingMotions() {
         {"plunge", "straight down into the tooth, stay, and out"},
         {"class-one", "a class I cavity: strokes along the central fissure, deeper each time"},
         {"crown-shoulder", "laps round the crown, farther in each time"},
-        {"excavate", "through the decay, layer by layer from its middle outwards"},
+        {"excavate", "through the decay, lesion by lesion and layer by layer, not into the pulp"},
     };
     return list;
+}
+
+void validate(const CuttingOptions& o) {
+    require(o.pedal, 0, 1, "the pedal");
+    require(o.depthMm, 0, 20, "the depth [mm]");
+    require(o.lengthMm, 0, 30, "the length [mm]");
+    require(o.isthmusMm, 0.1, 20, "the isthmus [mm]");
+    require(o.heightMm, -50, 50, "the height [mm]");
+    require(o.feedMmS, 1e-3, 1000, "the feed [mm/s]");
+    require(o.dwellS, 0, 3600, "the dwell [s]");
+    require(o.clearanceMm, 1e-3, 50, "the clearance [mm]");
+    require(o.pulpGuardMm, 0, 5, "the way to the pulp [mm]");
 }
 
 device::Motion cuttingMotionByName(std::string_view name, contact::Method& method, const CuttingScene& scene,
@@ -184,26 +170,18 @@ device::Motion cuttingMotionByName(std::string_view name, contact::Method& metho
     if (std::none_of(cuttingMotions().begin(), cuttingMotions().end(), [&](const auto& m) { return m.name == name; }))
         throw core::Error(fmt::format("no cut is called \"{}\"", name), "motion", "there are " + names);
     if (scene.toothBounds.isEmpty()) throw core::Error("the tooth has no size", "motion");
-    require(o.pedal, 0, 1, "the pedal");
-    require(o.depthMm, 0, 20, "the depth [mm]");
-    require(o.lengthMm, 0, 30, "the length [mm]");
-    require(o.isthmusMm, 0.1, 20, "the isthmus [mm]");
-    require(o.heightMm, -50, 50, "the height [mm]");
-    require(o.feedMmS, 1e-3, 1000, "the feed [mm/s]");
-    require(o.dwellS, 0, 3600, "the dwell [s]");
-    require(o.clearanceMm, 1e-3, 50, "the clearance [mm]");
+    validate(o);
+
     require(scene.burRadiusMm, 1e-3, 20, "the bur's radius [mm]");
 
     const double depth = o.depthMm > 0.0 ? o.depthMm : name == "crown-shoulder" ? 1.0 : 1.5;
     if (name == "crown-shoulder") return crownShoulder(method, scene, depth, o);
-    if (name == "excavate" && !scene.cariesBounds)
-        throw core::Error("this tooth has no decay", "excavate", "take a case with a caries part, or another motion");
-    const Vec3 aim = name == "excavate" ? scene.cariesBounds->centre() : scene.toothBounds.centre();
+    if (name == "excavate") return planExcavation(scene, o).motion;
+    const Vec3 aim = scene.toothBounds.centre();
     const Vec3 start(aim.x() + o.offsetMm.x(), aim.y() + o.offsetMm.y(), scene.toothBounds.max.z() + 1.0);
     const Vec3 touch = touchFrom(method, start, kDown, scene.toothBounds.size().z() + 2.0);
     if (name == "plunge") return plunge(touch, depth, o);
-    if (name == "class-one") return classOne(touch, scene, depth, o);
-    return excavate(touch, *scene.cariesBounds, scene, o);
+    return classOne(touch, scene, depth, o);
 }
 
 }  // namespace handpiece::loop

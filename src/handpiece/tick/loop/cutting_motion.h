@@ -3,15 +3,20 @@
 /// @file
 /// What a hand intends when it cuts: plunge, class I cavity, crown shoulder, excavation of decay.
 
-#include <optional>
+#include <functional>
 #include <string_view>
 #include <vector>
 
+#include "handpiece/base/geometry/triangle_mesh.h"
 #include "handpiece/tick/contact/method.h"
 #include "handpiece/tick/device/motion.h"
 #include "handpiece/tick/loop/built_in_motion.h"
 
 namespace handpiece::loop {
+
+/// Where excavation holds off the pulp unless asked for otherwise [mm]. A mark for a simulated hand, not clinical
+/// advice.
+inline constexpr double kPulpGuardMm = 0.5;
 
 struct CuttingOptions {
     double pedal = 1.0;
@@ -22,15 +27,23 @@ struct CuttingOptions {
     double feedMmS = 2.0;      ///< of strokes; a third of it going in
     double dwellS = 4.0;       ///< at the end of the cut: the hand is ahead of the bur by load over stiffness
     double clearanceMm = 1.0;  ///< above the surface at the start
-    core::Vec2 offsetMm = core::Vec2::Zero();  ///< of the first touch from the middle of the tooth, (x, y)
+    core::Vec2 offsetMm =
+        core::Vec2::Zero();             ///< of the first touch from the middle of the tooth, (x, y); not excavate
+    double pulpGuardMm = kPulpGuardMm;  ///< excavate comes no nearer to the pulp; 0: does not heed it
 };
 
-/// What the cut is aimed at.
+/// What the cut is aimed at, in the tooth frame. All but excavate need only the bounds and the bur's size.
 struct CuttingScene {
     core::Box toothBounds;
-    std::optional<core::Box> cariesBounds;  ///< of the decay, for excavate
     double burRadiusMm = 0.5, burLengthMm = 4.0;
+    std::function<double(double)> burBottomMm;  ///< the bur's lowest point at a distance from its axis; empty: a ball's
+    std::vector<geometry::TriangleMesh> decay;  ///< closed; each connected part of them is a lesion
+    std::function<double(const core::Vec3&)> outerMm;  ///< signed distance to the uncut surface, negative inside
+    std::function<double(const core::Vec3&)> pulpMm;   ///< the same to the pulp; empty: there is none
 };
+
+/// Throws core::Error for what is out of range.
+void validate(const CuttingOptions& options);
 
 /// "plunge", "class-one", "crown-shoulder", "excavate".
 [[nodiscard]] const std::vector<BuiltInMotion>& cuttingMotions();

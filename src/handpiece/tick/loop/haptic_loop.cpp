@@ -49,6 +49,7 @@ void HapticLoop::tick(const rt::Beat& beat) noexcept {
     const force::Touch& touch = force_.feel(*work_.current()->value.method, reading.burInTooth, lost, elapsedS);
     // Compute the force.
     const force::ForceCommand& command = force_.compute(touch, elapsedS, turning_);
+    device_->watch(touch.proxyInTooth.positionMm, command.loadN);
     // Send it to the hand, with the knock and the hum that make it crisp and that cut nothing.
     device_->command(crisp_.add(force_, touch, command, {rotor_.speedRpm(), cut_.feedMmS}, elapsedS),
                      command.torqueNmm);

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The task: its title, what to do, what is withheld; of an attempt that is looked at, who handed it in and what was
+/// recorded.
+
+#include <QStringList>
+#include <QWidget>
+#include <vector>
+
+class QLabel;
+class QPushButton;
+class QVBoxLayout;
+
+namespace handpiece::desktop {
+
+/// Plain data for the panel, in the words of the case.
+struct ExerciseText {
+    QString title, instructions;
+    QStringList locked;  ///< what is withheld, in words
+    struct Review {
+        bool isOn = false;
+        QString student;  ///< may be empty
+        struct Recording {
+            QString name;
+            bool packed = false;  ///< came along, and can be watched
+        };
+        std::vector<Recording> recordings;
+    } review;
+};
+
+/// [exercisePanel]. Texts of a file are shown as plain text, whatever is in them.
+class ExercisePanel : public QWidget {
+    Q_OBJECT
+  public:
+    explicit ExercisePanel(QWidget* parent = nullptr);
+    void setText(const ExerciseText& text);
+
+  signals:
+    /// By its place in ExerciseText::Review::recordings.
+    void watchRequested(int recording);
+    void goOnRequested();
+
+  private:
+    void showReview(const ExerciseText::Review& review);
+
+    QLabel *title_, *instructions_, *locked_, *student_, *missing_;
+    QWidget* review_;
+    QVBoxLayout* recordings_;
+    std::vector<QPushButton*> watch_;
+};
+
+}  // namespace handpiece::desktop

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Strips with messages over a picture: they come and go, and what they lie on stays where it is.
+
+#include <QList>
+#include <QObject>
+
+class QWidget;
+
+namespace handpiece::desktop {
+
+/// Keeps widgets one below the other over a picture, in its middle, as wide as they need. A picture that gave way to
+/// them would move the tooth under the hand.
+class StripStack : public QObject {
+    Q_OBJECT
+  public:
+    explicit StripStack(QWidget* picture);
+    /// Becomes a child of the picture, under those that are there; while it is hidden the next one takes its place.
+    void add(QWidget* strip);
+    /// Pixels that stay free above them.
+    void setTop(int pixels);
+
+  protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
+
+  private:
+    void place();
+
+    QWidget* picture_;
+    QList<QWidget*> strips_;
+    int top_ = 0;
+};
+
+}  // namespace handpiece::desktop

@@ -16,9 +16,9 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/model/field/field_builder.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/starter/starter.h"
-#include "handpiece/model/tooth/field_builder.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "support/brute_force_depth.h"
 #include "tick/contact/cut_by_hand.h"
@@ -46,7 +46,7 @@ std::shared_ptr<const instrument::Bur> burOf(std::string_view name) {
 std::shared_ptr<const tooth::Tooth> molarOf(std::size_t faces) {
     geometry::TriangleMesh mesh = starter::makeOuter(starter::ToothKind::lowerFirstMolar, faces);
     geometry::TriangleTree tree(mesh);
-    tooth::ToothField field = tooth::FieldBuilder::fromSurface(mesh, tree, {}, {});
+    field::DistanceField field = field::FieldBuilder::fromSurface(mesh, tree, {}, {});
     return std::make_shared<const tooth::Tooth>(
         tooth::Tooth{"molar", std::move(mesh), std::move(tree), std::move(field), false, 0.0});
 }

@@ -48,7 +48,7 @@ std::shared_ptr<const instrument::Bur> burOf(const BurKind& kind) {
 
 /// Shallow: the contact benchmark's way over cusps and fissures, 0.05 to 0.5 mm deep. Deep: 0.8 mm farther in along the
 /// bur. Buried: to and fro through the crown with the whole head inside.
-std::vector<core::Pose> posesOf(Workload& workload, const instrument::Bur& bur, const tooth::ToothField& field,
+std::vector<core::Pose> posesOf(Workload& workload, const instrument::Bur& bur, const field::DistanceField& field,
                                 Depth depth, std::size_t count) {
     std::vector<core::Pose> poses;
     if (depth != Depth::buried) {
@@ -89,8 +89,8 @@ class FieldRun {
         : field_(std::make_shared<tooth::CutField>(base)), bur_(bur), method_(contact::makeFieldMethod(field_, bur)) {
         cutting::Cutter::Settings settings;
         settings.fullRemoval = true;
-        cutter_ =
-            std::make_unique<cutting::Cutter>(field_, bur_, instrument::Ability{}, tooth::builtInTissues(), settings);
+        cutter_ = std::make_unique<cutting::Cutter>(field_, bur_, instrument::CuttingParameters{},
+                                                    cases::builtInTissues(), settings);
     }
     double tick(const core::Pose& pose) {
         const auto from = Clock::now();
@@ -199,7 +199,7 @@ struct Session {
         if (key != wanted) {
             base.reset();
             auto whole = workload.tooth(resolution, voxelMm);
-            auto tissues = tooth::TissueMap::uniform(whole->field, tooth::Tissue::enamel);
+            auto tissues = field::TissueMap::uniform(whole->field, cases::Tissue::enamel);
             tooth::CutSettings settings;
             settings.reserveBricks = kReserveBricks;
             base = tooth::prepareCutting(std::move(whole), std::move(tissues), settings);

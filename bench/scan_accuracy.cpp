@@ -26,8 +26,8 @@
 namespace handpiece::bench {
 namespace {
 
+using cases::Tissue;
 using nlohmann::json;
-using tooth::Tissue;
 
 constexpr const char* kHelp =
     "scan_accuracy [--voxel UM,UM...] [--kind molar,premolar,incisor] [--scanner micro-ct,cbct]\n"
@@ -155,7 +155,7 @@ class Cost {
 };
 
 /// Made once and kept: made again when this program is newer.
-tooth::Case starterTooth(const std::string& kind, std::size_t faces, bool scenery) {
+cases::Case starterTooth(const std::string& kind, std::size_t faces, bool scenery) {
     namespace fs = std::filesystem;
     const fs::path file =
         fs::path(HANDPIECE_BENCH_CACHE) / fmt::format("case-{}-{}{}.handpiece", kind, faces, scenery ? "-scene" : "");
@@ -163,9 +163,9 @@ tooth::Case starterTooth(const std::string& kind, std::size_t faces, bool scener
     if (!fs::exists(file) || fs::last_write_time(file) < fs::last_write_time("/proc/self/exe", none)) {
         fs::create_directories(file.parent_path());
         fmt::print(stderr, "scan_accuracy: making {}\n", file.string());
-        tooth::writeCase(starter::makeTooth(kindByShortName(kind), {faces, 0, scenery}), file);
+        cases::writeCase(starter::makeTooth(kindByShortName(kind), {faces, 0, scenery}), file);
     }
-    return tooth::readCase(file);
+    return cases::readCase(file);
 }
 
 void tellCost(const char* what, const json& cost) {
@@ -201,13 +201,13 @@ json tellErrors(const char* of, const std::array<std::optional<SolidErrors>, kSo
     return all;
 }
 
-json tellVolumes(const char* of, const std::array<double, tooth::kTissueCount>& truth,
-                 const std::array<double, tooth::kTissueCount>& found,
-                 const std::array<double, tooth::kTissueCount>* dice) {
+json tellVolumes(const char* of, const std::array<double, cases::kTissueCount>& truth,
+                 const std::array<double, cases::kTissueCount>& found,
+                 const std::array<double, cases::kTissueCount>* dice) {
     json all = json::object();
     for (std::size_t t = 1; t < truth.size(); ++t) {
         if (truth[t] == 0.0 && found[t] == 0.0) continue;
-        const auto name = tooth::properties(static_cast<Tissue>(t)).name;
+        const auto name = cases::properties(static_cast<Tissue>(t)).name;
         const double percent = truth[t] > 0.0 ? 100.0 * (found[t] / truth[t] - 1.0) : 100.0;
         fmt::print("  {:<9} {:<11} true {:8.2f} mm3  found {:8.2f} mm3  {:+7.2f} %", of, name, truth[t], found[t],
                    percent);
@@ -244,7 +244,7 @@ json measure(const Options& o, const std::string& kind, const std::string& scann
     settings.scanner = phantom::scannerByName(scanner);
     settings.voxelUm = voxelUm;
     if (o.turned) settings.turn = core::Quat(Eigen::AngleAxisd(0.5, core::Vec3(1.0, 2.0, 3.0).normalized()));
-    const tooth::Case made = starterTooth(kind, o.faces, settings.scenery);
+    const cases::Case made = starterTooth(kind, o.faces, settings.scenery);
     const Cost imaging;
     const phantom::Image image = phantom::image(made, settings);
     const auto& size = image.volume.grid.size;

@@ -80,8 +80,8 @@ class Painter {
         };
         paintSolid(region_.outer, {255, 60, 60});
         for (const segmentation::Solid& solid : region_.solids)
-            paintSolid(solid, solid.tissue == tooth::Tissue::dentine ? Colour{255, 150, 30}
-                              : solid.tissue == tooth::Tissue::pulp  ? Colour{255, 60, 255}
+            paintSolid(solid, solid.tissue == cases::Tissue::dentine ? Colour{255, 150, 30}
+                              : solid.tissue == cases::Tissue::pulp  ? Colour{255, 60, 255}
                                                                      : Colour{255, 255, 60});
     }
 

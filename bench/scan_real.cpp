@@ -41,11 +41,11 @@ void tell(const char* name, const volume::Volume& volume, const segmentation::Re
         name, seconds, t.outside, t.pulp, t.dentine, t.enamel, t.toothFrom, t.enamelFrom, region.blurMm, region.noise);
     for (const std::string& note : region.notes)
         fmt::print("  note: {}\n", note);
-    const auto tellVolumes = [](const char* of, const std::array<double, tooth::kTissueCount>& volumes) {
+    const auto tellVolumes = [](const char* of, const std::array<double, cases::kTissueCount>& volumes) {
         for (std::size_t tissue = 1; tissue < volumes.size(); ++tissue)
             if (volumes[tissue] != 0.0)
                 fmt::print("  {:<9} {:<11} {:9.2f} mm3\n", of,
-                           tooth::properties(static_cast<tooth::Tissue>(tissue)).name, volumes[tissue]);
+                           cases::properties(static_cast<cases::Tissue>(tissue)).name, volumes[tissue]);
     };
     tellVolumes("segment", segmentation::volumesMm3(region));
     if (!pictures.empty()) writePictures(pictures, name, volume, nullptr, region);

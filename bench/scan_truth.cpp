@@ -10,8 +10,8 @@
 namespace handpiece::bench {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
-using tooth::Tissue;
 
 constexpr std::size_t kPoints = 20000;
 /// How far on either side of a true surface the tissues are looked up: a face that bounds nothing (a slit of the case's
@@ -177,21 +177,21 @@ std::vector<SurfacePoint> sampled(const geometry::TriangleMesh& mesh, std::size_
     return out;
 }
 
-ToothTruth::ToothTruth(const tooth::Case& toothCase, const phantom::Image& image)
+ToothTruth::ToothTruth(const cases::Case& toothCase, const phantom::Image& image)
     : image_(image), voxelMm_(image.volume.grid.spacingMm.x()) {
-    std::vector<const tooth::Part*> parts;
-    for (const tooth::Part& part : toothCase.parts)
+    std::vector<const cases::Part*> parts;
+    for (const cases::Part& part : toothCase.parts)
         parts.push_back(&part);
     if (image.filling) parts.push_back(&*image.filling);
     const geometry::TriangleMesh outer = geometry::transformed(toothCase.outer, image.toothInScan);
     outer_ = std::make_unique<geometry::TriangleTree>(outer);
     std::vector<geometry::TriangleMesh> meshes;
-    for (const tooth::Part* part : parts) {
+    for (const cases::Part* part : parts) {
         meshes.push_back(geometry::transformed(part->mesh, image.toothInScan));
         trees_.push_back(std::make_unique<geometry::TriangleTree>(meshes.back()));
         parts_.push_back({trees_.back().get(), part->tissue, part->priority});
     }
-    tissues_ = std::make_unique<tooth::PartTissues>(parts_);
+    tissues_ = std::make_unique<field::PartTissues>(parts_);
 
     surfaces_[indexOf(SolidKind::outer)] = compared(outer);
     for (std::size_t n = 0; n < parts.size(); ++n)
@@ -215,7 +215,7 @@ Tissue ToothTruth::tissueAt(const Vec3& p) const {
 }
 
 bool ToothTruth::isHidden(SolidKind kind, const Vec3& p) const {
-    for (const tooth::PartSurface& part : parts_) {
+    for (const field::PartSurface& part : parts_) {
         const bool hides = part.tissue == Tissue::restoration ||
                            (part.tissue == Tissue::caries && kind != SolidKind::caries && kind != SolidKind::outer);
         if (hides && part.tree->signedDistance(p) < 2.0 * voxelMm_) return true;
@@ -236,7 +236,7 @@ std::array<std::optional<SolidErrors>, kSolidKinds.size()> ToothTruth::errors(co
     return all;
 }
 
-std::array<double, tooth::kTissueCount> ToothTruth::dice(const segmentation::Region& region) const {
+std::array<double, cases::kTissueCount> ToothTruth::dice(const segmentation::Region& region) const {
     const volume::Grid &grid = image_.truth.grid, &own = region.grid;
     using Counts = std::array<std::size_t, 256>;
     struct Slice {
@@ -275,7 +275,7 @@ std::array<double, tooth::kTissueCount> ToothTruth::dice(const segmentation::Reg
                     if (truth == found) ++slices[k].both[truth];
                 }
     });
-    std::array<double, tooth::kTissueCount> dice{};
+    std::array<double, cases::kTissueCount> dice{};
     for (std::size_t t = 1; t < dice.size(); ++t) {
         const std::uint8_t label = phantom::labelOf(static_cast<Tissue>(t));
         double truth = 0, found = 0, both = 0;
@@ -334,8 +334,8 @@ ComparedSurfaces surfacesOf(const surfacing::Surfaces& surfaces) {
     return all;
 }
 
-std::array<double, tooth::kTissueCount> volumesOf(const surfacing::Surfaces& surfaces) {
-    tooth::Case nested;
+std::array<double, cases::kTissueCount> volumesOf(const surfacing::Surfaces& surfaces) {
+    cases::Case nested;
     nested.name = "found";
     nested.outer = surfaces.outer.mesh;
     int priority = 0;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "handpiece/base/geometry/triangle_tree.h"
-#include "handpiece/model/tooth/part_tissues.h"
+#include "handpiece/model/field/part_tissues.h"
 #include "handpiece/scan/phantom/phantom.h"
 #include "handpiece/scan/segmentation/segment.h"
 #include "handpiece/scan/surfacing/surfaces.h"
@@ -57,7 +57,7 @@ struct SolidErrors {
 class ToothTruth {
   public:
     /// Both must outlive this.
-    ToothTruth(const tooth::Case& toothCase, const phantom::Image& image);
+    ToothTruth(const cases::Case& toothCase, const phantom::Image& image);
 
     [[nodiscard]] const ComparedSurfaces& surfaces() const { return surfaces_; }
     /// Where another tissue hides what is asked for: in a lesion or a filling, or within two voxels of one.
@@ -66,14 +66,14 @@ class ToothTruth {
     [[nodiscard]] std::array<std::optional<SolidErrors>, kSolidKinds.size()> errors(
         const ComparedSurfaces& found) const;
     /// Of the voxels of the truth, tissue by tissue: twice what both have over what either has.
-    [[nodiscard]] std::array<double, tooth::kTissueCount> dice(const segmentation::Region& region) const;
+    [[nodiscard]] std::array<double, cases::kTissueCount> dice(const segmentation::Region& region) const;
 
   private:
-    [[nodiscard]] tooth::Tissue tissueAt(const core::Vec3& p) const;
+    [[nodiscard]] cases::Tissue tissueAt(const core::Vec3& p) const;
     const phantom::Image& image_;
     std::vector<std::unique_ptr<geometry::TriangleTree>> trees_;
-    std::vector<tooth::PartSurface> parts_;
-    std::unique_ptr<tooth::PartTissues> tissues_;
+    std::vector<field::PartSurface> parts_;
+    std::unique_ptr<field::PartTissues> tissues_;
     std::unique_ptr<geometry::TriangleTree> outer_;
     double voxelMm_;
     ComparedSurfaces surfaces_;
@@ -84,6 +84,6 @@ class ToothTruth {
 /// Surfaces as made for a case; enamel is bounded by what the outer surface and the dentine's bound it by.
 [[nodiscard]] ComparedSurfaces surfacesOf(const surfacing::Surfaces& surfaces);
 /// Exclusive volumes of closed nested surfaces.
-[[nodiscard]] std::array<double, tooth::kTissueCount> volumesOf(const surfacing::Surfaces& surfaces);
+[[nodiscard]] std::array<double, cases::kTissueCount> volumesOf(const surfacing::Surfaces& surfaces);
 
 }  // namespace handpiece::bench

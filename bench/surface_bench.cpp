@@ -51,7 +51,7 @@ std::shared_ptr<const tooth::CuttableTooth> molar(int voxelUm) {
     static std::map<int, std::shared_ptr<const tooth::CuttableTooth>> all;
     auto& made = all[voxelUm];
     if (made == nullptr) {
-        const tooth::Case toothCase = starter::makeTooth(starter::ToothKind::lowerFirstMolar, {68151});
+        const cases::Case toothCase = starter::makeTooth(starter::ToothKind::lowerFirstMolar, {68151});
         tooth::PrepareSettings settings;
         settings.field.voxelMm = 1e-3 * voxelUm;
         settings.cacheFolder = HANDPIECE_BENCH_CACHE;
@@ -62,7 +62,7 @@ std::shared_ptr<const tooth::CuttableTooth> molar(int voxelUm) {
 
 /// Over the crown from mesial to distal and back a little to the side, tilted by 15 degrees; the tip sinks in by
 /// 0.05 to 0.5 mm, or by 1.5 mm where `deep`.
-std::vector<core::Pose> way(const tooth::ToothField& field, bool deep, std::size_t ticks) {
+std::vector<core::Pose> way(const field::DistanceField& field, bool deep, std::size_t ticks) {
     core::Pose pose;
     pose.orientation = core::Quat(Eigen::AngleAxisd(M_PI / 12.0, Vec3::UnitY()));
     const double topMm = field.bounds().max.z();

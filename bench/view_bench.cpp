@@ -46,7 +46,7 @@ std::shared_ptr<const tooth::CuttableTooth> molar(std::size_t faces) {
     static std::map<std::size_t, std::shared_ptr<const tooth::CuttableTooth>> all;
     auto& made = all[faces];
     if (made == nullptr) {
-        const tooth::Case toothCase = starter::makeTooth(starter::ToothKind::lowerFirstMolar, {faces});
+        const cases::Case toothCase = starter::makeTooth(starter::ToothKind::lowerFirstMolar, {faces});
         tooth::PrepareSettings settings;
         settings.field.voxelMm = kVoxelMm;
         settings.cacheFolder = HANDPIECE_BENCH_CACHE;
@@ -106,7 +106,7 @@ struct Bench {
 };
 
 /// Over the crown from mesial to distal; sinks in by 0.3 mm where it cuts, hovers 0.5 mm over it where not.
-core::Pose poseAt(const tooth::ToothField& field, double alongMm, bool cuts) {
+core::Pose poseAt(const field::DistanceField& field, double alongMm, bool cuts) {
     core::Pose pose;
     pose.orientation = core::Quat(Eigen::AngleAxisd(M_PI / 12.0, Vec3::UnitY()));
     pose.positionMm = {3.0 * std::sin(alongMm / 3.0), -1.0 + alongMm / 8.0, field.bounds().max.z()};
@@ -156,7 +156,7 @@ Pass follow(const std::shared_ptr<const tooth::CuttableTooth>& base, Way way, vi
             for (int tick = 0; tick < kPictureTicks; ++tick)
                 (void)sweeper.sweepTo(moment.burInTooth = poseAt(base->tooth->field, alongMm + kStepMm * tick, true));
             moment.removalMm3S = 0.5;
-            moment.tissue = tooth::Tissue::enamel;
+            moment.tissue = cases::Tissue::enamel;
             moment.water = true;
             const double begin = nowMs();
             const std::vector<surface::BrickUpdate> news = bench.news();

@@ -11,7 +11,7 @@
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/starter/starter.h"
-#include "handpiece/tick/contact/hull_method.h"
+#include "handpiece/tick/contact/hull/hull_method.h"
 #include "support/brute_force_depth.h"
 
 namespace handpiece::bench {
@@ -81,7 +81,7 @@ std::shared_ptr<const tooth::Tooth> Workload::tooth(const Resolution& resolution
     tooth::PrepareSettings settings;
     settings.field.voxelMm = voxelMm;
     settings.cacheFolder = cache_;
-    lastTooth_ = {key, tooth::prepareTooth(tooth::readCase(toothFile(resolution)), settings)};
+    lastTooth_ = {key, tooth::prepareTooth(cases::readCase(toothFile(resolution)), settings)};
     return lastTooth_.second;
 }
 

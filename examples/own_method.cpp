@@ -35,7 +35,7 @@ class TableMethod final : public contact::Method {
         result.depthMm = topMm_ - (burInTooth.positionMm.z() + lowest);
         result.normal = core::Vec3::UnitZ();
         result.toothPointMm = {burInTooth.positionMm.x(), burInTooth.positionMm.y(), topMm_};
-        result.tissue = tooth::Tissue::enamel;
+        result.tissue = cases::Tissue::enamel;
         result.status = contact::Status::ok;
         return result;
     }

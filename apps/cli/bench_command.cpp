@@ -8,13 +8,13 @@
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
-#include "cli/progress_bar.h"
-#include "cli/timing.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/starter/starter.h"
 #include "handpiece/tick/contact/field_method.h"
-#include "handpiece/tick/contact/hull_method.h"
+#include "handpiece/tick/contact/hull/hull_method.h"
+#include "studies/progress_bar.h"
+#include "studies/timing.h"
 
 namespace handpiece::cli {
 namespace {
@@ -30,10 +30,10 @@ struct BenchOptions {
 struct Row {
     std::size_t faces;
     std::string method, where;
-    Timing us, constant;
+    studies::Timing us, constant;
 };
 
-Json timingJson(const Timing& t) {
+Json timingJson(const studies::Timing& t) {
     return {{"p50_us", t.p50}, {"p99_us", t.p99}, {"p999_us", t.p999}, {"max_us", t.max}};
 }
 
@@ -43,9 +43,9 @@ void bench(const BenchOptions& o) {
     const auto bur = loadBur(o.bur);
     std::vector<Row> rows;
     for (const std::size_t n : faces) {
-        ProgressBar bar(fmt::format("{} faces", n));
+        studies::ProgressBar bar(fmt::format("{} faces", n));
         const core::Progress progress = bar.listener();
-        tooth::Case made;
+        cases::Case made;
         made.name = fmt::format("starter {}", n);
         made.outer =
             starter::makeOuter(starter::ToothKind::lowerFirstMolar, n, [&](double f) { return progress(0.4 * f); });
@@ -57,9 +57,9 @@ void bench(const BenchOptions& o) {
         for (const double depthMm : {0.1, -1.0}) {
             const std::string where = depthMm > 0.0 ? "touch" : "hover";
             const auto add = [&](contact::Method& method, bool withPatches, std::string name) {
-                const std::vector<core::Pose> poses = sweepAt(method, tooth->outer.bounds(), depthMm, count);
-                const Timing timing = timeQueries(method, poses, withPatches);
-                rows.push_back({n, std::move(name), where, timing, timeConstantLoad(timing.p50, count)});
+                const std::vector<core::Pose> poses = studies::sweepAt(method, tooth->outer.bounds(), depthMm, count);
+                const studies::Timing timing = studies::timeQueries(method, poses, withPatches);
+                rows.push_back({n, std::move(name), where, timing, studies::timeConstantLoad(timing.p50, count)});
                 if (!progress(0.7 + 0.3 * static_cast<double>(rows.size() % 6) / 6.0)) throw core::Error("cancelled");
             };
             add(*field, false, "exact");
@@ -75,11 +75,11 @@ void bench(const BenchOptions& o) {
             row["constant_load"] = timingJson(r.constant);
             out.push_back(std::move(row));
         }
-        fmt::print("{}\n", Json{{"machine", machineDescription()}, {"bur", o.bur}, {"rows", out}}.dump(2));
+        fmt::print("{}\n", Json{{"machine", studies::machineDescription()}, {"bur", o.bur}, {"rows", out}}.dump(2));
         return;
     }
     fmt::print("{}\nbur {}, lower first molar; one query after the other along a sweep over the crown, {} places\n\n",
-               machineDescription(), o.bur, count);
+               studies::machineDescription(), o.bur, count);
     fmt::print("{:>7} {:<5} {:<19}{:>9}{:>9}{:>9}{:>9}   constant load:{:>7}{:>9}\n", "faces", "", "method", "p50 us",
                "p99", "p99.9", "worst", "p50", "p99.9");
     for (const Row& r : rows)

@@ -12,22 +12,22 @@
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
-#include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/model/case/attempt.h"
+#include "handpiece/model/case/case.h"
+#include "handpiece/model/case/case_check.h"
 #include "handpiece/model/instrument/shapes.h"
-#include "handpiece/model/tooth/attempt.h"
-#include "handpiece/model/tooth/case_check.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using tooth::Case;
-using tooth::Part;
+using cases::Case;
+using cases::Part;
 
 void print(const Json& json) {
     fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
@@ -39,13 +39,13 @@ Json toJson(const core::Vec3& v) {
 
 Json toJson(const Part& part) {
     return {{"name", part.name},
-            {"tissue", tooth::properties(part.tissue).name},
+            {"tissue", cases::properties(part.tissue).name},
             {"priority", part.priority},
             {"faces", part.mesh.triangles.size()},
             {"volume_mm3", geometry::enclosedVolumeMm3(part.mesh)}};
 }
 
-Json toJson(const tooth::Exercise& e) {
+Json toJson(const cases::Exercise& e) {
     Json json{{"title", e.title},
               {"instructions", e.instructions},
               {"bur", e.bur},
@@ -80,7 +80,7 @@ Json toJson(const Case& c, const std::string& place) {
     }
     for (const Part& part : c.parts) {
         json["parts"].push_back(toJson(part));
-        const tooth::TissueProperties& t = c.tissues.of(part.tissue);
+        const cases::TissueProperties& t = c.tissues.of(part.tissue);
         json["tissues"][std::string(t.name)] = {
             {"stiffness_fraction", t.stiffnessFraction},
             {"damping_n_s_per_mm", t.dampingNSPerMm},
@@ -99,12 +99,12 @@ void row(std::string_view label, const std::string& value) {
 }
 
 void printPart(const Part& part, std::string_view label) {
-    row(label, fmt::format("{} ({}, priority {}): {} faces, {:.4g} mm3", part.name, tooth::properties(part.tissue).name,
+    row(label, fmt::format("{} ({}, priority {}): {} faces, {:.4g} mm3", part.name, cases::properties(part.tissue).name,
                            part.priority, part.mesh.triangles.size(), geometry::enclosedVolumeMm3(part.mesh)));
 }
 
 void info(const std::string& place, bool json) {
-    const Case c = tooth::readCase(place);
+    const Case c = cases::readCase(place);
     if (json) return print(toJson(c, place));
     fmt::print("{}\n", place);
     row("name", c.name);
@@ -122,8 +122,8 @@ void info(const std::string& place, bool json) {
         printPart(part, "scenery");
     if (!c.tissuesToml.empty()) row("tissues", "a table of its own");
     if (c.exercise) {
-        const tooth::Exercise& e = *c.exercise;
-        row("exercise", e.title.empty() ? "untitled" : std::string(tooth::inLanguage(e.title, "en")));
+        const cases::Exercise& e = *c.exercise;
+        row("exercise", e.title.empty() ? "untitled" : std::string(cases::inLanguage(e.title, "en")));
         if (!e.bur.empty()) row("starts with", e.bur);
         if (!e.allowedBurs.empty()) row("allowed burs", fmt::format("{}", fmt::join(e.allowedBurs, ", ")));
         if (!e.lockedHelps.empty()) row("locked", fmt::format("{}", fmt::join(e.lockedHelps, ", ")));
@@ -132,9 +132,9 @@ void info(const std::string& place, bool json) {
 }
 
 /// Of the tooth, and of what its exercise names.
-std::vector<tooth::CaseFinding> findingsOf(const Case& c) {
-    ProgressBar bar("checking the case");
-    std::vector<tooth::CaseFinding> findings = tooth::checkCase(c, bar.listener());
+std::vector<cases::CaseFinding> findingsOf(const Case& c) {
+    studies::ProgressBar bar("checking the case");
+    std::vector<cases::CaseFinding> findings = cases::checkCase(c, bar.listener());
     bar.finish();
     if (!c.exercise) return findings;
     std::vector<std::string> burs = c.exercise->allowedBurs;
@@ -150,25 +150,25 @@ std::vector<tooth::CaseFinding> findingsOf(const Case& c) {
     return findings;
 }
 
-[[noreturn]] void refuse(const std::vector<tooth::CaseFinding>& findings, const std::string& place) {
+[[noreturn]] void refuse(const std::vector<cases::CaseFinding>& findings, const std::string& place) {
     const auto errors = std::count_if(findings.begin(), findings.end(), [](const auto& f) { return f.isError; });
-    const tooth::CaseFinding& first = findings.front();
+    const cases::CaseFinding& first = findings.front();
     throw core::Error(fmt::format("the case cannot be used: {}{}{}",
                                   first.part.empty() ? "" : fmt::format("part \"{}\": ", first.part), first.what,
                                   errors > 1 ? fmt::format("; and {} more", errors - 1) : ""),
                       place, first.remedy);
 }
 
-bool isWrong(const std::vector<tooth::CaseFinding>& findings) {
+bool isWrong(const std::vector<cases::CaseFinding>& findings) {
     return std::any_of(findings.begin(), findings.end(), [](const auto& f) { return f.isError; });
 }
 
 void check(const std::string& place, bool json) {
-    const std::vector<tooth::CaseFinding> findings = findingsOf(tooth::readCase(place));
+    const std::vector<cases::CaseFinding> findings = findingsOf(cases::readCase(place));
     const bool wrong = isWrong(findings);
     if (json) {
         Json list = Json::array();
-        for (const tooth::CaseFinding& f : findings)
+        for (const cases::CaseFinding& f : findings)
             list.push_back({{"error", f.isError},
                             {"part", f.part.empty() ? Json(nullptr) : Json(f.part)},
                             {"what", f.what},
@@ -176,7 +176,7 @@ void check(const std::string& place, bool json) {
                             {"remedy", f.remedy}});
         print({{"case", place}, {"usable", !wrong}, {"findings", std::move(list)}});
     } else {
-        for (const tooth::CaseFinding& f : findings)
+        for (const cases::CaseFinding& f : findings)
             fmt::print("  {:<7} {}{}{}\n", f.isError ? "error" : "note", f.part.empty() ? "" : f.part + ": ", f.what,
                        f.remedy.empty() ? "" : fmt::format(" ({})", f.remedy));
         if (!wrong) fmt::print("{}: can be felt and cut\n", place);
@@ -192,7 +192,7 @@ struct NewOptions {
 };
 
 /// TISSUE[:PRIORITY]=FILE
-Part partOf(const std::string& text, const tooth::TissueTable& tissues, const MeshUnit& unit, const char* option) {
+Part partOf(const std::string& text, const cases::TissueTable& tissues, const MeshUnit& unit, const char* option) {
     const std::size_t equals = text.find('=');
     const std::string head = text.substr(0, equals), file = equals == std::string::npos ? "" : text.substr(equals + 1);
     const std::size_t colon = head.find(':');
@@ -200,7 +200,7 @@ Part partOf(const std::string& text, const tooth::TissueTable& tissues, const Me
         throw core::Error(fmt::format("\"{}\" is no part", text), option, "give TISSUE=FILE or TISSUE:PRIORITY=FILE");
     Part part;
     try {
-        part.tissue = tooth::tissueByName(head.substr(0, colon));
+        part.tissue = cases::tissueByName(head.substr(0, colon));
     } catch (const core::Error& e) {
         throw core::Error(e.problem(), option, e.remedy());
     }
@@ -230,7 +230,7 @@ void makeNew(const NewOptions& o) {
     if (!o.tissues.empty()) {
         const std::vector<std::byte> text = core::readFile(o.tissues, 1 << 20);
         c.tissuesToml.assign(reinterpret_cast<const char*>(text.data()), text.size());
-        c.tissues = tooth::parseTissues(c.tissuesToml, o.tissues);
+        c.tissues = cases::parseTissues(c.tissuesToml, o.tissues);
     }
     if (!o.outer.empty()) c.outer = o.unit.read(o.outer);
     for (const std::string& part : o.parts)
@@ -239,11 +239,11 @@ void makeNew(const NewOptions& o) {
         c.scenery.push_back(partOf(part, c.tissues, o.unit, "--scenery"));
     // The only part is the tooth.
     if (c.outer.triangles.empty() && c.parts.size() == 1) c.outer = c.parts.front().mesh;
-    const std::vector<tooth::CaseFinding> findings = findingsOf(c);
+    const std::vector<cases::CaseFinding> findings = findingsOf(c);
     if (isWrong(findings)) refuse(findings, o.out);
-    tooth::writeCase(c, out);
+    cases::writeCase(c, out);
     fmt::print("{}: {} parts, {} faces outside\n", o.out, c.parts.size(), c.outer.triangles.size());
-    for (const tooth::CaseFinding& f : findings)
+    for (const cases::CaseFinding& f : findings)
         fmt::print("  note: {}{}\n", f.part.empty() ? "" : f.part + ": ", f.what);
 }
 
@@ -253,11 +253,11 @@ struct PackOptions {
 };
 
 /// The recordings of an attempt: those it came with; of one to be handed in those in its folder or beside that, too.
-tooth::PackageFiles recordingsOf(const tooth::Attempt& attempt, const fs::path& place) {
-    tooth::PackageFiles found;
-    for (const tooth::Attempt::Recording& recording : attempt.recordings) {
+cases::PackageFiles recordingsOf(const cases::Attempt& attempt, const fs::path& place) {
+    cases::PackageFiles found;
+    for (const cases::Attempt::Recording& recording : attempt.recordings) {
         if (recording.packed) {
-            found[recording.name] = tooth::readRecording(place, recording.name);
+            found[recording.name] = cases::readRecording(place, recording.name);
             continue;
         }
         if (!attempt.handedIn) continue;
@@ -265,7 +265,7 @@ tooth::PackageFiles recordingsOf(const tooth::Attempt& attempt, const fs::path& 
         const fs::path folder = whole.has_filename() ? whole : whole.parent_path();
         for (const fs::path& in : {folder, folder.parent_path()})
             if (std::error_code error; fs::is_regular_file(in / recording.name, error)) {
-                found[recording.name] = core::readFile(in / recording.name, tooth::kMostRecordingBytes);
+                found[recording.name] = core::readFile(in / recording.name, cases::kMaxRecordingBytes);
                 break;
             }
     }
@@ -274,17 +274,17 @@ tooth::PackageFiles recordingsOf(const tooth::Attempt& attempt, const fs::path& 
 
 void pack(const PackOptions& o) {
     const std::string &in = o.in, &out = o.out;
-    const bool isAttempt = tooth::isAttempt(in);
+    const bool isAttempt = cases::isAttempt(in);
     if (!isAttempt && (o.handIn || !o.student.empty()))
         throw core::Error("a case is nobody's work", in, "give an attempt to --hand-in and --student");
     if (isAttempt) {
-        tooth::OpenAttempt open = tooth::openAttempt(in);
-        tooth::Attempt& attempt = open.attempt;
+        cases::OpenAttempt open = cases::openAttempt(in);
+        cases::Attempt& attempt = open.attempt;
         if (!o.student.empty()) attempt.student = o.student;
         if (attempt.recordings.empty() && !attempt.session.empty()) attempt.recordings.push_back({attempt.session});
         attempt.handedIn = attempt.handedIn || o.handIn;
         const bool asFile = fs::path(out).extension() == ".handpiece";
-        tooth::PackageFiles recordings = recordingsOf(attempt, in);
+        cases::PackageFiles recordings = recordingsOf(attempt, in);
         if (attempt.handedIn) {
             std::size_t bytes = 0;
             for (const auto& [name, data] : recordings)
@@ -292,9 +292,9 @@ void pack(const PackOptions& o) {
             fmt::print("recordings: {} of {}, {:.1f} MB\n", recordings.size(), attempt.recordings.size(),
                        static_cast<double>(bytes) / (1 << 20));
         }
-        tooth::writeAttempt(attempt, out, asFile ? &open.toothCase : nullptr, std::move(recordings));
+        cases::writeAttempt(attempt, out, asFile ? &open.toothCase : nullptr, std::move(recordings));
     } else {
-        tooth::writeCase(tooth::readCase(in), out);
+        cases::writeCase(cases::readCase(in), out);
     }
     fmt::print("{} -> {}\n", in, out);
 }

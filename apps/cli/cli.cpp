@@ -6,8 +6,8 @@
 
 #include "cli/commands.h"
 #include "cli/completion.h"
-#include "cli/progress_bar.h"
 #include "handpiece/base/core/any_error.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 
@@ -34,7 +34,7 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods) {
     addBenchCommand(app);
     addPassivityCommand(app);
     addCompletionCommand(app);
-    installCancel();
+    studies::installCancel();
     try {
         app.parse(argc, argv);
         return 0;

@@ -14,12 +14,12 @@
 #include <thread>
 
 #include "cli/device_command.h"
-#include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/force/parameters.h"
 #include "handpiece/tick/stability/limits.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 namespace {
@@ -46,7 +46,7 @@ void say(const std::string& text) {
 }
 
 void requireGoOn() {
-    if (cancelled()) throw core::Error("cancelled", "device calibrate", "nothing was written");
+    if (studies::cancelled()) throw core::Error("cancelled", "device calibrate", "nothing was written");
 }
 
 bool entered() {
@@ -57,7 +57,7 @@ bool entered() {
     throw core::Error("nobody answers", "device calibrate", "give --yes, and --at for the place");
 }
 
-void waitForPose(const station::OpenDevice& device) {
+void waitForPose(const input::OpenDevice& device) {
     for (auto waited = 0ms; waited < std::chrono::duration<double>(kFirstPoseS); waited += 20ms) {
         requireGoOn();
         if (device.health->read().frames > 0) return;
@@ -68,7 +68,7 @@ void waitForPose(const station::OpenDevice& device) {
 }
 
 /// The maker's way. Returns a word for what came of it.
-std::string calibrateAsTheMakerWants(const station::OpenDevice& device, bool yes) {
+std::string calibrateAsTheMakerWants(const input::OpenDevice& device, bool yes) {
     link::CalibrationState state = device.calibration.state();
     if (state == link::CalibrationState::notNeeded) return "not needed";
     if (state == link::CalibrationState::good) return "good";
@@ -92,18 +92,18 @@ std::string calibrateAsTheMakerWants(const station::OpenDevice& device, bool yes
 }
 
 /// Where the bur's tip is held now, device frame: with the lever of the instrument.
-Vec3 tipNow(const safety::Health& health, const workspace::Placing& placing) {
-    workspace::Placing inDevice = placing;
+Vec3 tipNow(const safety::Health& health, const workspace::WorkspaceMapping& placing) {
+    workspace::WorkspaceMapping inDevice = placing;
     inDevice.deviceMm = inDevice.toothMm = Vec3::Zero();
     inDevice.toothInDevice = core::Quat::Identity();
     inDevice.scale = 1.0;
     link::DriverReading reading;
     reading.positionMm = health.positionMm;
     reading.orientation = health.orientation;
-    return workspace::Mapping(inDevice).burInTooth(reading).positionMm;
+    return workspace::WorkspaceTransform(inDevice).burInTooth(reading).positionMm;
 }
 
-Vec3 placeOf(const CalibrateOptions& o, const station::OpenDevice& device) {
+Vec3 placeOf(const CalibrateOptions& o, const input::OpenDevice& device) {
     if (!o.at.empty()) return {o.at[0], o.at[1], o.at[2]};
     if (!o.yes) {
         say("  Hold the stylus at the middle of its reach, as if on the tooth, and press its upper button (or Enter).");
@@ -127,12 +127,12 @@ stability::StableLimits stableFor(const link::DriverInfo& info, const workspace:
     figures.rateHz = std::clamp(info.servoHz, 100.0, 10000.0);
     figures.encoderStepMm = info.capability.encoderStepMm;
     figures.maxForceN = info.capability.maxForceN;
-    return stability::limitsFor(figures, [](double) { return !cancelled(); });
+    return stability::limitsFor(figures, [](double) { return !studies::cancelled(); });
 }
 
 /// A block of enamel whose top is at z = 0.
-tooth::Case blockCase() {
-    tooth::Case block;
+cases::Case blockCase() {
+    cases::Case block;
     block.name = "block";
     const double half = 0.5 * kBlockMm;
     for (int i = 0; i < 8; ++i)
@@ -140,38 +140,38 @@ tooth::Case blockCase() {
                                           (i & 4) ? 0.0 : -kBlockHighMm);
     block.outer.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                              {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    tooth::Part enamel;
+    cases::Part enamel;
     enamel.name = "enamel";
-    enamel.tissue = tooth::Tissue::enamel;
+    enamel.tissue = cases::Tissue::enamel;
     enamel.mesh = block.outer;
     block.parts.push_back(std::move(enamel));
     return block;
 }
 
-RunSummary feelBlock(const CalibrateOptions& o, const workspace::Profile& profile) {
-    const tooth::Case block = blockCase();
+studies::RunSummary feelBlock(const CalibrateOptions& o, const workspace::Profile& profile) {
+    const cases::Case block = blockCase();
     tooth::PrepareSettings prepare;
     prepare.field.voxelMm = 0.2;
     prepare.field.bandOutMm = std::max(prepare.field.bandOutMm, 0.4);
     prepare.field.bandInMm = std::max(prepare.field.bandInMm, 0.8);
     prepare.useCache = false;
     const auto tooth = tooth::prepareTooth(block, prepare);
-    station::DeviceChoice choice = choiceOf(o.device);
+    input::DeviceChoice choice = choiceOf(o.device);
     choice.placing = profile.placing;
     choice.placing->toothMm = Vec3::Zero();
-    choice.placing->toothInDevice = profile.placing.toothInDevice *
-                                    station::toothTurnFor({tooth->outer.bounds(), 0, 1}, profile.placing.leftHanded);
-    station::OpenDevice device = station::openDevice(choice);
-    RunSettings settings;
+    choice.placing->toothInDevice =
+        profile.placing.toothInDevice * input::toothTurnFor({tooth->outer.bounds(), 0, 1}, profile.placing.leftHanded);
+    input::OpenDevice device = input::openDevice(choice);
+    studies::RunSettings settings;
     settings.durationS = o.feelS;
     settings.realTime = true;
     settings.device.capability = device.capability;
-    settings.parameters = station::fittedTo(device, force::defaultParameters(block.tissues));
+    settings.parameters = input::fittedTo(device, force::defaultParameters(block.tissues));
     settings.takeDevice = [&] { return std::move(device.device); };
     const core::Pose anywhere;
     const device::Motion none({{0.0, anywhere, 0.0}, {1.0, anywhere, 0.0}});
-    return runLoop(settings, none, contact::makeFieldMethod(tooth, instrument::makeInstrument("round-8").bur),
-                   [](const messages::HapticSample&) {});
+    return studies::runLoop(settings, none, contact::makeFieldMethod(tooth, instrument::makeInstrument("round-8").bur),
+                            [](const messages::HapticSample&) {});
 }
 
 void calibrate(const CalibrateOptions& o) {
@@ -180,14 +180,14 @@ void calibrate(const CalibrateOptions& o) {
         throw core::Error(fmt::format("{:.6g} s at the block", o.feelS), "--feel", "give 0 to 600");
     const bool real = isReal(o.device);
     say("1. Connect");
-    station::DeviceChoice choice = choiceOf(o.device);
+    input::DeviceChoice choice = choiceOf(o.device);
     choice.profileFolder = o.profiles;
     workspace::Profile profile;
     std::string calibrated;
     std::optional<stability::StableLimits> stable;
     std::filesystem::path file;
     {
-        const station::OpenDevice device = station::openDevice(choice);
+        const input::OpenDevice device = input::openDevice(choice);
         waitForPose(device);
         say(fmt::format("  {} is there{}.", device.info.model,
                         device.info.version.empty() ? "" : " (" + device.info.version + ")"));
@@ -217,7 +217,7 @@ void calibrate(const CalibrateOptions& o) {
         const Vec3& p = profile.placing.deviceMm;
         say(fmt::format("  at {:.1f}, {:.1f}, {:.1f} mm of the device: {}", p.x(), p.y(), p.z(), file.string()));
     }  // closed: it is opened again with its new profile
-    std::optional<RunSummary> felt;
+    std::optional<studies::RunSummary> felt;
     if (o.feelS > 0.0) {
         say(fmt::format("Feel a block of enamel for {:.3g} s{}.", o.feelS, real ? ": touch it from above" : ""));
         felt = feelBlock(o, profile);
@@ -225,7 +225,7 @@ void calibrate(const CalibrateOptions& o) {
                           : "  it was not touched");
     }
     if (!o.json) return;
-    const workspace::Placing& at = profile.placing;
+    const workspace::WorkspaceMapping& at = profile.placing;
     Json out = {{"driver", profile.driver},  {"model", profile.model},
                 {"serial", profile.serial},  {"profile", file.string()},
                 {"calibration", calibrated}, {"device_mm", {at.deviceMm.x(), at.deviceMm.y(), at.deviceMm.z()}},

@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/progress_bar.h"
+#include "handpiece/app/exercise/school_defaults.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/devices/fidelity/fidelity.h"
-#include "station/school_defaults.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 void list(bool json) {
-    const std::vector<drivers::Found> found = station::lookForDevices();
+    const std::vector<drivers::Found> found = input::lookForDevices();
     if (json) {
         Json all = Json::array();
         for (const drivers::Found& f : found)
@@ -58,14 +58,15 @@ struct CheckOptions {
 
 void check(const CheckOptions& o) {
     validate(o.device);
-    station::DeviceChoice choice = choiceOf(o.device);
-    std::unique_ptr<link::Driver> driver = station::openDriver(choice);
+    input::DeviceChoice choice = choiceOf(o.device);
+    std::unique_ptr<link::Driver> driver = input::openDriver(choice);
     fidelity::CheckSettings settings;
     settings.durationS = o.durationS;
     settings.rateHz = o.rateHz;
     settings.push = !o.noPush;
     settings.announce = [](const std::string& sentence) { fmt::print(stderr, "handpiece: {}\n", sentence); };
-    const fidelity::Report report = fidelity::check(std::move(driver), settings, [](double) { return !cancelled(); });
+    const fidelity::Report report =
+        fidelity::check(std::move(driver), settings, [](double) { return !studies::cancelled(); });
     if (!o.report.empty()) core::writeFile(o.report, fidelity::asHtml(report));
     if (o.json) {
         fmt::print("{}", fidelity::asJson(report));
@@ -86,9 +87,9 @@ void check(const CheckOptions& o) {
 }  // namespace
 
 std::string deviceMeant() {
-    const station::SchoolDefaults school = station::schoolDefaults();
+    const exercise::SchoolDefaults school = exercise::schoolDefaults();
     if (school.device) return *school.device;
-    for (const drivers::Found& f : station::lookForDevices())
+    for (const drivers::Found& f : input::lookForDevices())
         if (f.available && f.pushes && !f.models.empty()) return f.driver;
     return "simulated";
 }

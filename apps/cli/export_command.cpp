@@ -9,13 +9,13 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/csv.h"
-#include "cli/progress_bar.h"
+#include "handpiece/app/simulation/tissue_export.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 #include "handpiece/record/session/session_reader.h"
-#include "station/tissue_export.h"
+#include "studies/csv.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 namespace {
@@ -39,24 +39,24 @@ void writeRecord(std::string& out, const session::Record& r, double rateHz) {
         for (const float x : *three)
             fmt::format_to(to, ",{:.4f}", x);
     fmt::format_to(to, ",{:.5f},{:.0f},{:.5f},{},{:.4f},{:.4f},{},{},{}", r.depthMm, r.speedRpm, in.pedal, r.buttons,
-                   r.loadTorqueNmm, r.feedMmS, tooth::properties(static_cast<tooth::Tissue>(r.tissue)).name, r.flags,
+                   r.loadTorqueNmm, r.feedMmS, cases::properties(static_cast<cases::Tissue>(r.tissue)).name, r.flags,
                    r.elapsedPeriods);
-    for (std::size_t t = 1; t < tooth::kTissueCount; ++t)
+    for (std::size_t t = 1; t < cases::kTissueCount; ++t)
         fmt::format_to(to, ",{:.6f}", r.removedMm3[t]);
     out += '\n';
 }
 
-void writeSamples(const session::SessionReader& reader, TextWriter& out) {
+void writeSamples(const session::SessionReader& reader, studies::TextWriter& out) {
     std::string text =
         "tick,t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,vx_mm_s,vy_mm_s,vz_mm_s,fx_N,fy_N,fz_N,tx_Nmm,ty_Nmm,tz_Nmm,depth_mm,rpm,"
         "pedal,buttons,load_torque_Nmm,feed_mm_s,tissue,flags,elapsed_periods";
-    for (std::size_t t = 1; t < tooth::kTissueCount; ++t)
+    for (std::size_t t = 1; t < cases::kTissueCount; ++t)
         fmt::format_to(std::back_inserter(text), ",removed_{}_mm3",
-                       tooth::properties(static_cast<tooth::Tissue>(t)).name);
+                       cases::properties(static_cast<cases::Tissue>(t)).name);
     text += '\n';
     constexpr std::size_t kStretch = 10000;
     for (std::uint64_t first = 0; first < reader.size(); first += kStretch) {
-        if (cancelled()) throw core::Error("cancelled");
+        if (studies::cancelled()) throw core::Error("cancelled");
         for (const session::Record& r : reader.records(first, kStretch))
             writeRecord(text, r, reader.info().rateHz);
         out.write(text);
@@ -73,7 +73,7 @@ std::string quoted(const std::string& text) {
     return result + '"';
 }
 
-void writeEvents(const session::SessionReader& reader, TextWriter& out) {
+void writeEvents(const session::SessionReader& reader, studies::TextWriter& out) {
     out.write("tick,t_s,name,text\n");
     for (const session::Event& e : reader.events()) {
         out.write(fmt::format("{},{:.6f},{},{}\n", e.tick, static_cast<double>(e.tick) / reader.info().rateHz,
@@ -87,11 +87,12 @@ void exportSurfaces(const ExportOptions& o) {
         throw core::Error("a table and surfaces cannot be written at once", "export", "give --csv or --stl");
     if (o.out == "-") throw core::Error("surfaces need a folder", "--out", "name one");
     core::setThreadCount(o.threads);
-    ProgressBar preparing("preparing the tooth");
-    const station::ToothOfFile found = station::toothOf(o.session, 1e-3 * o.voxelUm, !o.noCache, preparing.listener());
+    studies::ProgressBar preparing("preparing the tooth");
+    const simulation::ToothOfFile found =
+        simulation::toothOf(o.session, 1e-3 * o.voxelUm, !o.noCache, preparing.listener());
     preparing.finish();
-    ProgressBar bar("surfaces");
-    const auto files = station::exportTissues(found.base, found.state, o.out, bar.listener());
+    studies::ProgressBar bar("surfaces");
+    const auto files = simulation::exportTissues(found.base, found.state, o.out, bar.listener());
     bar.finish();
     for (const std::filesystem::path& file : files)
         fmt::print("{}\n", file.string());
@@ -101,7 +102,7 @@ void exportSession(const ExportOptions& o) {
     if (o.stl) return exportSurfaces(o);
     if (!o.csv) throw core::Error("there is no format to export to", "export", "add --csv or --stl");
     const session::SessionReader reader(o.session);
-    TextWriter out(o.out);
+    studies::TextWriter out(o.out);
     if (o.events) {
         writeEvents(reader, out);
     } else {

@@ -6,12 +6,12 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/model/instrument/catalogue.h"
-#include "handpiece/tick/contact/hull_method.h"
+#include "handpiece/tick/contact/hull/hull_method.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 
@@ -45,14 +45,14 @@ void addUnitOptions(CLI::App& command, MeshUnit& unit, bool withScale) {
         ->check(CLI::Range(1e-9, 1e9));
 }
 
-tooth::Case readToothOf(const ContactInputs& inputs) {
-    tooth::Case toothCase = tooth::readCase(inputs.tooth);
+cases::Case readToothOf(const ContactInputs& inputs) {
+    cases::Case toothCase = cases::readCase(inputs.tooth);
     const double mm = inputs.unit.mmPerUnit();
     if (mm == 1.0) return toothCase;
     if (geometry::meshFormatOf(inputs.tooth) == geometry::MeshFormat::unknown)
         throw core::Error("a case is in millimetres", "--unit", "give a unit only for a mesh file");
     toothCase.outer = scaled(std::move(toothCase.outer), mm);
-    for (tooth::Part& part : toothCase.parts)
+    for (cases::Part& part : toothCase.parts)
         part.mesh = scaled(std::move(part.mesh), mm);
     return toothCase;
 }
@@ -91,7 +91,7 @@ tooth::PrepareSettings prepareSettingsOf(const ContactInputs& inputs) {
 
 std::shared_ptr<const tooth::Tooth> loadTooth(const ContactInputs& inputs) {
     const tooth::PrepareSettings settings = prepareSettingsOf(inputs);
-    ProgressBar bar("preparing the tooth");
+    studies::ProgressBar bar("preparing the tooth");
     return tooth::prepareTooth(readToothOf(inputs), settings, bar.listener());
 }
 

@@ -40,7 +40,7 @@ struct ContactInputs {
 void addContactOptions(CLI::App& command, ContactInputs& inputs, const MethodRegistry& methods);
 
 /// The case; one that is a mesh file in its unit. Throws core::Error.
-[[nodiscard]] tooth::Case readToothOf(const ContactInputs& inputs);
+[[nodiscard]] cases::Case readToothOf(const ContactInputs& inputs);
 /// Voxel, bands and cache as asked for; sets the number of threads. Throws core::Error for values out of range.
 [[nodiscard]] tooth::PrepareSettings prepareSettingsOf(const ContactInputs& inputs);
 /// Reads or reopens the tooth, with a progress bar. Throws core::Error.

@@ -6,14 +6,14 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/model/case/case.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/instrument/turbine.h"
 #include "handpiece/model/starter/paper.h"
 #include "handpiece/model/starter/starter.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 namespace {
@@ -38,15 +38,15 @@ void tellMesh(const std::string& out, const geometry::TriangleMesh& mesh) {
 }
 
 void makeTooth(const MakeOptions& o) {
-    ProgressBar bar("making the tooth");
-    const tooth::Case made =
+    studies::ProgressBar bar("making the tooth");
+    const cases::Case made =
         starter::makeTooth(starter::toothKindByName(o.kind), {o.faces, o.partFaces, o.scene}, bar.listener());
     bar.finish();
-    tooth::writeCase(made, o.out);
+    cases::writeCase(made, o.out);
     fmt::print("{}: {}\n  {:<12} {:>8} faces {:>10.2f} mm3\n", o.out, made.name, "outer", made.outer.triangles.size(),
                geometry::enclosedVolumeMm3(made.outer));
-    for (const std::vector<tooth::Part>* parts : {&made.parts, &made.scenery})
-        for (const tooth::Part& part : *parts)
+    for (const std::vector<cases::Part>* parts : {&made.parts, &made.scenery})
+        for (const cases::Part& part : *parts)
             fmt::print("  {:<12} {:>8} faces {:>10.2f} mm3\n", part.name, part.mesh.triangles.size(),
                        geometry::enclosedVolumeMm3(part.mesh));
 }

@@ -9,15 +9,15 @@
 #include <numbers>
 
 #include "cli/commands.h"
-#include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/model/case/case.h"
 #include "handpiece/model/starter/starter.h"
-#include "handpiece/model/tooth/tooth.h"
 #include "handpiece/scan/phantom/phantom.h"
 #include "handpiece/scan/volume/write_scan.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 namespace {
@@ -43,14 +43,14 @@ Json toJson(const core::Quat& q) {
 }
 
 std::string name(std::size_t tissue) {
-    return std::string(tooth::properties(static_cast<tooth::Tissue>(tissue)).name);
+    return std::string(cases::properties(static_cast<cases::Tissue>(tissue)).name);
 }
 
-Json truthOf(const MakeScanOptions& o, const tooth::Case& imaged, const phantom::Image& image) {
+Json truthOf(const MakeScanOptions& o, const cases::Case& imaged, const phantom::Image& image) {
     const phantom::Settings& s = o.settings;
     Json volumes = Json::object(), greys = Json::object(), labels = Json::object();
-    for (std::size_t t = 0; t < tooth::kTissueCount; ++t) {
-        const auto tissue = static_cast<tooth::Tissue>(t);
+    for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
+        const auto tissue = static_cast<cases::Tissue>(t);
         const std::string called = t == 0 ? "outside" : name(t);
         greys[called] = phantom::greyOf(s.scanner, tissue);
         labels[called] = phantom::labelOf(tissue);
@@ -88,16 +88,16 @@ fs::path truthBeside(const fs::path& out) {
     return folder.parent_path() / (folder.filename().string() + "-truth");
 }
 
-void writeTruth(const MakeScanOptions& o, const tooth::Case& imaged, const phantom::Image& image,
+void writeTruth(const MakeScanOptions& o, const cases::Case& imaged, const phantom::Image& image,
                 const fs::path& folder) {
     core::prepareOutputFolder(folder);
     volume::writeLabels(image.truth, folder / "labels.nrrd");
-    tooth::writeCase(imaged, folder / "case");
+    cases::writeCase(imaged, folder / "case");
     core::writeFile(folder / kTruthFile, truthOf(o, imaged, image).dump(2) + "\n");
 }
 
 /// Scan and truth, both or neither.
-void writeBoth(const MakeScanOptions& o, const tooth::Case& imaged, const phantom::Image& image,
+void writeBoth(const MakeScanOptions& o, const cases::Case& imaged, const phantom::Image& image,
                volume::ScanFormat format, const core::Progress& progress) {
     const fs::path truth = truthBeside(o.out);
     core::Hasher salt;
@@ -135,12 +135,12 @@ void makeScan(MakeScanOptions& o) {
     phantom::check(o.settings);
     core::setThreadCount(o.threads);
 
-    ProgressBar bar("making the scan");
+    studies::ProgressBar bar("making the scan");
     const core::Progress progress = bar.listener();
-    tooth::Case imaged = o.caseFile.empty()
+    cases::Case imaged = o.caseFile.empty()
                              ? starter::makeTooth(starter::toothKindByName(o.kind), {o.faces, 0, o.settings.scenery},
                                                   core::part(progress, 0.0, 0.5))
-                             : tooth::readCase(o.caseFile);
+                             : cases::readCase(o.caseFile);
     const double begun = o.caseFile.empty() ? 0.5 : 0.0;
     const phantom::Image image = phantom::image(imaged, o.settings, core::part(progress, begun, 0.85));
     if (image.filling) imaged.parts.push_back(*image.filling);
@@ -151,7 +151,7 @@ void makeScan(MakeScanOptions& o) {
     fmt::print("{}: {} of {}, {} x {} x {} voxels of {:g} um, {}\n  truth: {}\n", o.out,
                o.settings.scanner == phantom::Scanner::cbct ? "CBCT" : "micro-CT", imaged.name, size[0], size[1],
                size[2], o.settings.voxelUm, o.format, truthBeside(o.out).string());
-    for (std::size_t t = 1; t < tooth::kTissueCount; ++t)
+    for (std::size_t t = 1; t < cases::kTissueCount; ++t)
         if (image.volumesMm3[t] > 0.0) fmt::print("  {:<12} {:>10.2f} mm3\n", name(t), image.volumesMm3[t]);
 }
 

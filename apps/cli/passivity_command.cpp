@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/progress_bar.h"
-#include "cli/stability_picture.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
-#include "handpiece/tick/loop/passivity.h"
+#include "studies/passivity.h"
+#include "studies/progress_bar.h"
+#include "studies/stability_picture.h"
 
 namespace handpiece::cli {
 namespace {
@@ -30,7 +30,7 @@ struct PassivityOptions {
 
 /// One cell a combination: rows are tissues and rates, columns hands, frictions and delays. Blue holds, orange with a
 /// cross does not; a dot marks a ripple at rest that grows.
-std::string mapSvg(const loop::PassivitySweep& sweep, const std::vector<loop::PassivityRow>& rows) {
+std::string mapSvg(const studies::PassivitySweep& sweep, const std::vector<studies::PassivityRow>& rows) {
     constexpr int kCell = 22, kLeft = 190, kTop = 96;
     const std::size_t columns = sweep.hands.size() * sweep.frictionN.size() * sweep.delayS.size();
     const std::size_t lines = sweep.tissues.size() * sweep.rateHz.size();
@@ -59,17 +59,17 @@ std::string mapSvg(const loop::PassivitySweep& sweep, const std::vector<loop::Pa
     std::size_t at = 0;
     for (std::size_t c = 0; c < columns; ++c)
         for (std::size_t l = 0; l < lines; ++l, ++at) {
-            const loop::PassivityRow& row = rows[at];
+            const studies::PassivityRow& row = rows[at];
             const double x = kLeft + static_cast<double>(c) * kCell, y = kTop + static_cast<double>(l) * kCell;
             if (c == 0)
                 text(kLeft - 8, y + 15,
-                     fmt::format("{} {:.0f} kHz", tooth::properties(row.tissue).name, 1e-3 * row.rateHz), "end");
+                     fmt::format("{} {:.0f} kHz", cases::properties(row.tissue).name, 1e-3 * row.rateHz), "end");
             svg += fmt::format(
                 "<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{}\" height=\"{}\" fill=\"{}\" stroke=\"#fff\"><title>{} "
                 "hand, {} N, {} ms, "
                 "{}, {:.0f} Hz: margin {:.4f} N mm</title></rect>\n",
                 x, y, kCell, kCell, row.holds ? "#4a90c2" : "#e08a2e", row.hand, row.frictionN, 1e3 * row.delayS,
-                tooth::properties(row.tissue).name, row.rateHz, row.marginNmm);
+                cases::properties(row.tissue).name, row.rateHz, row.marginNmm);
             if (!row.holds)
                 svg += fmt::format("<path d=\"M{:.0f} {:.0f}l10 10m0 -10l-10 10\" stroke=\"#222\"/>\n", x + 6, y + 6);
             if (row.growing)
@@ -81,16 +81,16 @@ std::string mapSvg(const loop::PassivitySweep& sweep, const std::vector<loop::Pa
 
 /// Every loop twice, the controller off and on.
 void stabilityMap(const PassivityOptions& o) {
-    loop::StabilitySweep sweep = o.quick ? loop::quickStabilitySweep() : loop::StabilitySweep{};
+    studies::StabilitySweep sweep = o.quick ? studies::quickStabilitySweep() : studies::StabilitySweep{};
     if (!std::isfinite(o.assumedDelayMs) || o.assumedDelayMs > 10.0)
         throw core::Error(fmt::format("a delay of {} ms", o.assumedDelayMs), "--assume-delay",
                           "give 0 to 10; leave it out for the true one");
     sweep.assumedDelayS = 1e-3 * o.assumedDelayMs;
     if (!o.motions.empty()) {
-        std::vector<loop::LoopMotion> chosen;
+        std::vector<studies::LoopMotion> chosen;
         for (const std::string& name : o.motions) {
             const auto found = std::find_if(sweep.motions.begin(), sweep.motions.end(),
-                                            [&](loop::LoopMotion m) { return loop::nameOf(m) == name; });
+                                            [&](studies::LoopMotion m) { return studies::nameOf(m) == name; });
             if (found == sweep.motions.end())
                 throw core::Error(fmt::format("no motion is called \"{}\"", name), "--motion",
                                   "there are touch, slide, cut and wedge");
@@ -99,23 +99,23 @@ void stabilityMap(const PassivityOptions& o) {
         sweep.motions = chosen;
     }
     core::prepareOutputFolder(o.out);
-    ProgressBar bar("touching, sliding, cutting, wedged");
-    const std::vector<loop::StabilityRow> rows = loop::stabilityMap(sweep, bar.listener());
+    studies::ProgressBar bar("touching, sliding, cutting, wedged");
+    const std::vector<studies::StabilityRow> rows = studies::stabilityMap(sweep, bar.listener());
     bar.finish();
     const std::filesystem::path out(o.out);
-    core::writeFile(out / "stability.csv", loop::stabilityCsv(rows));
-    for (const loop::LoopMotion motion : sweep.motions) {
-        const std::filesystem::path picture = out / fmt::format("stability-{}.svg", loop::nameOf(motion));
-        core::writeFile(picture, stabilitySvg(sweep, rows, motion));
+    core::writeFile(out / "stability.csv", studies::stabilityCsv(rows));
+    for (const studies::LoopMotion motion : sweep.motions) {
+        const std::filesystem::path picture = out / fmt::format("stability-{}.svg", studies::nameOf(motion));
+        core::writeFile(picture, studies::stabilitySvg(sweep, rows, motion));
         std::size_t all = 0, off = 0, on = 0;
-        for (const loop::StabilityRow& row : rows) {
+        for (const studies::StabilityRow& row : rows) {
             if (row.motion != motion) continue;
             ++all;
             off += row.off.holds;
             on += row.on.holds;
         }
         fmt::print("{}: passive in {} of {} loops with the controller off, in {} with it on; {}\n",
-                   loop::nameOf(motion), off, all, on, picture.string());
+                   studies::nameOf(motion), off, all, on, picture.string());
     }
     fmt::print("{}\n", (out / "stability.csv").string());
 }
@@ -125,20 +125,20 @@ void passivity(const PassivityOptions& o) {
     if (!(o.limit >= 0.0) || !std::isfinite(o.limit))
         throw core::Error(fmt::format("a stiffness limit of {} N/mm", o.limit), "--stiffness-limit",
                           "give a positive number; 0: the device's own");
-    loop::PassivitySweep sweep;
+    studies::PassivitySweep sweep;
     sweep.parameters.stiffnessMultiplier = o.stiffness;
     sweep.parameters.dampingMultiplier = o.damping;
     if (o.limit > 0.0) sweep.capability.maxStiffnessNPerMm = o.limit;
     core::prepareOutputFolder(o.out);
-    ProgressBar bar("tapping every tissue");
-    const std::vector<loop::PassivityRow> rows = loop::passivityMap(sweep, bar.listener());
+    studies::ProgressBar bar("tapping every tissue");
+    const std::vector<studies::PassivityRow> rows = studies::passivityMap(sweep, bar.listener());
     bar.finish();
     const std::filesystem::path out(o.out);
-    core::writeFile(out / "passivity.csv", loop::passivityCsv(rows));
+    core::writeFile(out / "passivity.csv", studies::passivityCsv(rows));
     core::writeFile(out / "passivity.svg", mapSvg(sweep, rows));
     for (const double delayS : sweep.delayS) {
         std::size_t all = 0, holding = 0, growing = 0;
-        for (const loop::PassivityRow& row : rows)
+        for (const studies::PassivityRow& row : rows)
             if (row.delayS == delayS) {
                 ++all;
                 holding += row.holds;

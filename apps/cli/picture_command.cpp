@@ -14,16 +14,16 @@
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
-#include "cli/progress_bar.h"
+#include "handpiece/app/simulation/session_player.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/model/case/attempt.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/model/instrument/turbine.h"
-#include "handpiece/model/tooth/attempt.h"
 #include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/senses/view/renderer.h"
-#include "station/session_player.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 namespace {
@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 using core::Vec3;
 
-constexpr int kLeastSide = 16, kMostSide = 8192;
+constexpr int kMinSide = 16, kMaxSide = 8192;
 constexpr double kSectionPixelMm = 0.03;
 constexpr double kRateOverS = 0.05;  // what is removed in this time says how many chips fly
 
@@ -79,9 +79,9 @@ view::Viewport sizeOf(const std::string& text) {
     if (second != std::errc() || last != end)
         throw core::Error(fmt::format("\"{}\" is no size", text), "--size", "write it as 1280x800");
     for (const int side : {size.width, size.height})
-        if (side < kLeastSide || side > kMostSide)
+        if (side < kMinSide || side > kMaxSide)
             throw core::Error(fmt::format("a picture of {} x {} pixels", size.width, size.height), "--size",
-                              fmt::format("give {} to {} a side", kLeastSide, kMostSide));
+                              fmt::format("give {} to {} a side", kMinSide, kMaxSide));
     return size;
 }
 
@@ -100,7 +100,7 @@ view::Look lookOf(const PictureOptions& o) {
         throw core::Error("there is no look of this name", o.look, "there are: now, before, ghost, removed-depth");
     }
     for (const std::string& name : o.hide)
-        look.visible[static_cast<std::size_t>(tooth::tissueByName(name))] = false;
+        look.visible[static_cast<std::size_t>(cases::tissueByName(name))] = false;
     look.sectionGrid = o.grid;
     look.contactArrow = look.forceArrow = o.arrows;
     look.scaleBar = o.scaleBar;
@@ -168,16 +168,16 @@ Asked read(const PictureOptions& o) {
 struct Subject {
     core::Box bounds;
     int buccalSign = 0;
-    std::shared_ptr<station::LiveTooth> live;    ///< null: a mesh alone
-    std::optional<geometry::TriangleMesh> mesh;  ///< that one
-    std::vector<tooth::Part> scenery, parts;
+    std::shared_ptr<simulation::LiveTooth> live;  ///< null: a mesh alone
+    std::optional<geometry::TriangleMesh> mesh;   ///< that one
+    std::vector<cases::Part> scenery, parts;
     std::shared_ptr<const instrument::Bur> bur;  ///< null: none is shown
     view::BurFinish finish = view::BurFinish::diamond;
     view::Moment moment;
-    std::unique_ptr<station::SessionPlayer> session;  ///< owns `live` where it came from there
+    std::unique_ptr<simulation::SessionPlayer> session;  ///< owns `live` where it came from there
 };
 
-void takeCase(Subject& subject, const tooth::Case& toothCase) {
+void takeCase(Subject& subject, const cases::Case& toothCase) {
     subject.buccalSign = toothCase.buccalSign;
     subject.scenery = toothCase.scenery;
     subject.parts = toothCase.parts;
@@ -185,10 +185,10 @@ void takeCase(Subject& subject, const tooth::Case& toothCase) {
 }
 
 Subject openSession(const PictureOptions& o) {
-    ProgressBar bar("preparing the tooth");
+    studies::ProgressBar bar("preparing the tooth");
     Subject subject;
-    subject.session = std::make_unique<station::SessionPlayer>(o.what, !o.noCache, bar.listener());
-    station::SessionPlayer& player = *subject.session;
+    subject.session = std::make_unique<simulation::SessionPlayer>(o.what, !o.noCache, bar.listener());
+    simulation::SessionPlayer& player = *subject.session;
     const double atS = o.atGiven ? o.atS : player.durationS();
     if (!(atS >= 0.0 && atS <= player.durationS()))
         throw core::Error(fmt::format("the session has no second {:.3f}", atS), "--at",
@@ -206,7 +206,7 @@ Subject openSession(const PictureOptions& o) {
     const messages::HapticSample& s = player.sample();
     subject.live = player.tooth();
     subject.bur = player.station().settings.bur;
-    subject.finish = view::finishOf(*subject.bur, player.station().settings.ability.name);
+    subject.finish = view::finishOf(*subject.bur, player.station().settings.cuttingParameters.name);
     takeCase(subject, player.toothCase());
     view::Moment& m = subject.moment;
     m.timeS = s.timeS;
@@ -215,7 +215,7 @@ Subject openSession(const PictureOptions& o) {
         core::Quat(s.proxyOrientation[0], s.proxyOrientation[1], s.proxyOrientation[2], s.proxyOrientation[3]);
     m.speedRpm = s.speedRpm;
     if (player.timeS() > beforeS) m.removalMm3S = (removed() - before) / (player.timeS() - beforeS);
-    m.tissue = static_cast<tooth::Tissue>(s.tissue);
+    m.tissue = static_cast<cases::Tissue>(s.tissue);
     m.water = s.pedal > 0.0 && s.speedRpm > 0.0;
     m.contactNormal = {s.contactNormal[0], s.contactNormal[1], s.contactNormal[2]};
     m.contact = m.contactNormal.norm() > 0.5;
@@ -226,9 +226,9 @@ Subject openSession(const PictureOptions& o) {
 }
 
 /// The bur as it comes to rest on the tooth, let down along -z over the middle of the crown.
-void restBur(Subject& subject, const station::Station& station, const instrument::Instrument& instrument) {
+void restBur(Subject& subject, const simulation::SimulationSetup& station, const instrument::Instrument& instrument) {
     subject.bur = instrument.bur;
-    subject.finish = view::finishOf(*instrument.bur, instrument.ability.name);
+    subject.finish = view::finishOf(*instrument.bur, instrument.cuttingParameters.name);
     const auto method = contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(station.field), subject.bur);
     core::Pose& pose = subject.moment.burInTooth;
     const Vec3 middle = subject.bounds.centre();
@@ -241,25 +241,25 @@ void restBur(Subject& subject, const station::Station& station, const instrument
 
 Subject openCase(const PictureOptions& o, const Asked& asked) {
     Subject subject;
-    std::optional<tooth::OpenAttempt> attempt;
-    if (tooth::isAttempt(o.what)) attempt = tooth::openAttempt(o.what);
+    std::optional<cases::OpenAttempt> attempt;
+    if (cases::isAttempt(o.what)) attempt = cases::openAttempt(o.what);
     ContactInputs inputs;
     inputs.threads = o.threads;
     inputs.noCache = o.noCache;
     inputs.voxelUm = attempt ? 1e3 * attempt->attempt.voxelMm : o.voxelUm;
     const tooth::PrepareSettings prepare = prepareSettingsOf(inputs);
-    const tooth::Case toothCase = attempt ? attempt->toothCase : tooth::readCase(o.what);
-    station::StationSettings settings;
+    const cases::Case toothCase = attempt ? attempt->toothCase : cases::readCase(o.what);
+    simulation::SimulationSettings settings;
     settings.field = prepare.field;
-    ProgressBar bar("preparing the tooth");
-    const station::Station station =
-        station::makeStation(toothCase, std::move(settings), prepare.useCache, core::part(bar.listener(), 0.0, 0.7));
-    tooth::CutState state;
+    studies::ProgressBar bar("preparing the tooth");
+    const simulation::SimulationSetup station = simulation::makeSimulation(
+        toothCase, std::move(settings), prepare.useCache, core::part(bar.listener(), 0.0, 0.7));
+    tooth::StateDelta state;
     if (attempt) {
         state = tooth::decodeState(attempt->attempt.state, station.identity, *station.tooth, o.what);
         station.resume(state);
     }
-    subject.live = std::make_shared<station::LiveTooth>(station.tooth, state, core::part(bar.listener(), 0.7, 1.0));
+    subject.live = std::make_shared<simulation::LiveTooth>(station.tooth, state, core::part(bar.listener(), 0.7, 1.0));
     bar.finish();
     takeCase(subject, toothCase);
     if (asked.bur) restBur(subject, station, *asked.bur);
@@ -356,7 +356,7 @@ void picture(const PictureOptions& o) {
         renderer.setParts(subject.parts);
         if (!o.noScenery) renderer.setScenery(subject.scenery);
     } else {
-        renderer.setMesh(*subject.mesh, tooth::Tissue::enamel);
+        renderer.setMesh(*subject.mesh, cases::Tissue::enamel);
     }
     if (subject.bur) {
         renderer.setBur(subject.bur->mesh(), subject.bur->lengthMm(), subject.bur->maxRadiusMm(), subject.finish);
@@ -371,8 +371,8 @@ void picture(const PictureOptions& o) {
                                  section.width, section.height, section.tissue});
     }
     view::Image image;
-    constexpr int kMostDrawings = 5;  // until it no longer gets finer
-    for (int i = 0; i < kMostDrawings; ++i)
+    constexpr int kMaxDrawings = 5;  // until it no longer gets finer
+    for (int i = 0; i < kMaxDrawings; ++i)
         if (!renderer.draw(camera, size, look, moment, image).refining) break;
     view::writePng(image, o.out);
     fmt::print("{}: {} x {} pixels, drawn by {}\n", o.out, image.width, image.height, renderer.description());

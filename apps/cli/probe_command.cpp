@@ -7,10 +7,10 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "cli/csv.h"
 #include "cli/inputs.h"
-#include "cli/progress_bar.h"
 #include "handpiece/base/core/error.h"
+#include "studies/csv.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 namespace {
@@ -21,17 +21,17 @@ struct ProbeOptions {
 };
 
 void probe(const ProbeOptions& o, const MethodRegistry& methods) {
-    const CsvTable table = readCsv(o.poses, {"x", "y", "z", "qw", "qx", "qy", "qz"});
+    const studies::CsvTable table = studies::readCsv(o.poses, {"x", "y", "z", "qw", "qx", "qy", "qz"});
     std::vector<core::Pose> poses;
     for (std::size_t i = 0; i < table.rows.size(); ++i)
-        poses.push_back(poseFrom(table.rows[i], 0, table, i));
-    TextWriter out(o.out);  // first: a place that cannot be written is told before the work
+        poses.push_back(studies::poseFrom(table.rows[i], 0, table, i));
+    studies::TextWriter out(o.out);  // first: a place that cannot be written is told before the work
     const auto tooth = loadTooth(o.inputs);
     const auto method = makeMethod(o.inputs.method, methods, tooth, loadBur(o.inputs.bur));
     out.write("depth_mm,nx,ny,nz,area_mm2,tissue,time_ns\n");
     contact::PatchSet patches;
     for (const core::Pose& pose : poses) {
-        if (cancelled()) throw core::Error("cancelled");
+        if (studies::cancelled()) throw core::Error("cancelled");
         const auto start = std::chrono::steady_clock::now();
         const contact::Depth depth = method->depth(pose);
         method->patches(pose, patches);
@@ -39,7 +39,7 @@ void probe(const ProbeOptions& o, const MethodRegistry& methods) {
             std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count();
         const core::Vec3& n = depth.normal;
         out.write(fmt::format("{:.9f},{:.9f},{:.9f},{:.9f},{:.6f},{},{}\n", depth.depthMm, n.x(), n.y(), n.z(),
-                              patches.areaMm2, tooth::properties(depth.tissue).name, ns));
+                              patches.areaMm2, cases::properties(depth.tissue).name, ns));
     }
     out.commit();
 }

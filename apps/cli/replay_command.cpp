@@ -8,10 +8,10 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/progress_bar.h"
+#include "handpiece/app/simulation/session_player.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
-#include "station/session_player.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 namespace {
@@ -24,11 +24,11 @@ struct ReplayOptions {
 
 void replay(const ReplayOptions& o) {
     core::setThreadCount(o.threads);
-    ProgressBar preparing("preparing the tooth");
-    station::SessionPlayer player(o.session, {!o.noCache, false, {}}, preparing.listener());
+    studies::ProgressBar preparing("preparing the tooth");
+    simulation::SessionPlayer player(o.session, {!o.noCache, false, {}}, preparing.listener());
     preparing.finish();
-    ProgressBar bar("cutting again");
-    const station::Verdict v = player.compareAll(bar.listener());
+    studies::ProgressBar bar("cutting again");
+    const simulation::Verdict v = player.compareAll(bar.listener());
     bar.finish();
     if (o.json) {
         nlohmann::ordered_json out{

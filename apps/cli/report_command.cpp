@@ -7,10 +7,10 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/progress_bar.h"
+#include "handpiece/app/report/session_report.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
-#include "station/session_report.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 namespace {
@@ -23,13 +23,13 @@ struct ReportOptions {
 
 void report(const ReportOptions& o) {
     core::setThreadCount(o.threads);
-    ProgressBar preparing("preparing the tooth");
-    station::SessionPlayer player(o.session, {!o.noCache, true, {}}, preparing.listener());
+    studies::ProgressBar preparing("preparing the tooth");
+    simulation::SessionPlayer player(o.session, {!o.noCache, true, {}}, preparing.listener());
     preparing.finish();
-    station::ReportSettings settings;
+    report::ReportSettings settings;
     settings.pictures = !o.noPictures;
-    ProgressBar bar("cutting again");
-    const std::string page = station::sessionReport(player, settings, bar.listener());
+    studies::ProgressBar bar("cutting again");
+    const std::string page = report::sessionReport(player, settings, bar.listener());
     bar.finish();
     core::writeFile(o.out, page);
     fmt::print("{}\n", o.out);

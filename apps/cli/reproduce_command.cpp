@@ -9,8 +9,6 @@
 #include <limits>
 
 #include "cli/commands.h"
-#include "cli/progress_bar.h"
-#include "cli/reproduce.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/decimate.h"
@@ -19,7 +17,9 @@
 #include "handpiece/model/starter/paper.h"
 #include "handpiece/model/starter/starter.h"
 #include "handpiece/tick/contact/field_method.h"
-#include "handpiece/tick/contact/hull_method.h"
+#include "handpiece/tick/contact/hull/hull_method.h"
+#include "studies/progress_bar.h"
+#include "studies/reproduce.h"
 
 namespace handpiece::cli {
 namespace {
@@ -57,15 +57,15 @@ bool isThere(const fs::path& file, std::size_t faces) {
     return faces > 0 && fs::file_size(file, ec) == kHeader + kFacet * faces && !ec;
 }
 
-void feel(Surface& s, const fs::path& felt, const std::shared_ptr<const instrument::Bur>& bur) {
-    s.tooth = tooth::prepareTooth(tooth::readCase(felt));
+void feel(studies::Surface& s, const fs::path& felt, const std::shared_ptr<const instrument::Bur>& bur) {
+    s.tooth = tooth::prepareTooth(cases::readCase(felt));
     s.field = contact::makeFieldMethod(s.tooth, bur);
     s.hull = contact::makeHullMethod(s.tooth->outer, bur->mesh());
 }
 
-void addSurface(Reproduction& r, Surface s, const fs::path& felt) {
+void addSurface(studies::Reproduction& r, studies::Surface s, const fs::path& felt) {
     geometry::TriangleMesh mesh;
-    s.loadMs = loadMsOf(s.file, mesh);
+    s.loadMs = studies::loadMsOf(s.file, mesh);
     s.vertices = mesh.vertices.size();
     s.faces = mesh.triangles.size();
     feel(s, felt, r.bur);
@@ -75,19 +75,19 @@ void addSurface(Reproduction& r, Surface s, const fs::path& felt) {
 /// The surface given with --tooth; empty without.
 geometry::TriangleMesh ownSurface(const ReproduceOptions& o) {
     if (o.tooth.empty()) return {};
-    tooth::Case given = tooth::readCase(o.tooth);
+    cases::Case given = cases::readCase(o.tooth);
     geometry::TriangleMesh own = std::move(!given.outer.triangles.empty() ? given.outer : given.parts.front().mesh);
-    tooth::requireSolid(own, o.tooth);
+    cases::requireSolid(own, o.tooth);
     return own;
 }
 
-void makeSurfaces(Reproduction& r, const ReproduceOptions& o, const geometry::TriangleMesh& own) {
+void makeSurfaces(studies::Reproduction& r, const ReproduceOptions& o, const geometry::TriangleMesh& own) {
     const fs::path folder = fs::path(o.out) / "teeth";
     core::prepareOutputFolder(folder);
     r.step("the plane");
     geometry::writeMesh(folder / "plane.stl", starter::makePlane());
     geometry::writeMesh(folder / "slab.stl", starter::makePlaneSlab());
-    Surface plane;
+    studies::Surface plane;
     plane.name = starter::kPaperPlane.name;
     plane.file = folder / "plane.stl";
     plane.paperVertices = starter::kPaperPlane.vertices;
@@ -98,7 +98,7 @@ void makeSurfaces(Reproduction& r, const ReproduceOptions& o, const geometry::Tr
     const std::size_t count = o.quick ? kQuickTeeth : resolutions.size();
     for (std::size_t i = 0; i < count; ++i) {
         r.step(fmt::format("the tooth of {}", resolutions[i].name));
-        Surface s;
+        studies::Surface s;
         s.name = resolutions[i].name;
         s.paperVertices = resolutions[i].vertices;
         s.paperFaces = resolutions[i].faces;
@@ -116,18 +116,18 @@ void makeSurfaces(Reproduction& r, const ReproduceOptions& o, const geometry::Tr
     }
 }
 
-void introduce(Reproduction& r, const ReproduceOptions& o) {
+void introduce(studies::Reproduction& r, const ReproduceOptions& o) {
     r.report.paragraph(
         "Each experiment of the paper with its numbers as printed and ours measured now, by both contact methods: the "
         "field (ours, the concave tooth) and the hull (the paper's own way: convex hulls, GJK and EPA).");
-    r.report.paragraph(fmt::format("Measured on: {}. Bur: the paper's, {} vertices. Tooth: {}.{}", machineDescription(),
-                                   r.bur->mesh().vertices.size(),
+    r.report.paragraph(fmt::format("Measured on: {}. Bur: the paper's, {} vertices. Tooth: {}.{}",
+                                   studies::machineDescription(), r.bur->mesh().vertices.size(),
                                    o.tooth.empty() ? "the starter molar" : fs::path(o.tooth).filename().string(),
                                    o.quick ? " Quick: the two coarsest teeth, shorter drops." : ""),
                        true);
 }
 
-void conclude(Reproduction& r) {
+void conclude(studies::Reproduction& r) {
     r.report.heading("What did not come out as it should");
     if (r.remarks.empty()) r.report.paragraph("Nothing: every check above holds.");
     for (const std::string& remark : r.remarks)
@@ -138,14 +138,14 @@ void conclude(Reproduction& r) {
 void reproduce(const ReproduceOptions& o) {
     const geometry::TriangleMesh own = ownSurface(o);  // first: a bad one leaves no folder behind
     core::prepareOutputFolder(o.out);
-    ProgressBar bar("reproducing");
+    studies::ProgressBar bar("reproducing");
     const core::Progress progress = bar.listener();
     // Surfaces, timings, steps and drops of both methods on each, cuts on each, sixteen runs that touch, six that cut,
     // four pictures; slices, their surface, five resolutions drawn.
     const double surfaces = 1.0 + static_cast<double>(o.quick ? kQuickTeeth : kPercent.size());
     const double steps = surfaces * (2.0 + 3.0 * 2.0) + 39.0;
     double done = 0.0;
-    Reproduction r;
+    studies::Reproduction r;
     r.quick = o.quick;
     r.out = o.out;
     r.ownTooth = !o.tooth.empty();
@@ -153,13 +153,13 @@ void reproduce(const ReproduceOptions& o) {
     r.step = [&](const std::string&) { core::report(progress, std::min(1.0, done++ / steps)); };
     r.bur = std::make_shared<instrument::Bur>(instrument::makeBur("paper"));
     introduce(r, o);
-    r.results["machine"] = machineDescription();
+    r.results["machine"] = studies::machineDescription();
     makeSurfaces(r, o, own);
-    reproduceTables(r);
-    reproduceFigures(r);
+    studies::reproduceTables(r);
+    studies::reproduceFigures(r);
     conclude(r);
     bar.finish();
-    const std::string json = r.results.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::string json = r.results.dump(1, ' ', false, studies::Json::error_handler_t::replace) + "\n";
     core::writeFile(fs::path(o.out) / "results.json", json);
     core::writeFile(fs::path(o.out) / "report.html", r.report.text());
     if (o.json) {

@@ -12,21 +12,21 @@
 #include <optional>
 
 #include "cli/commands.h"
-#include "cli/cut_run.h"
 #include "cli/inputs.h"
-#include "cli/progress_bar.h"
 #include "cli/run_device.h"
-#include "cli/run_job.h"
 #include "cli/run_output.h"
 #include "cli/sound_track.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/model/case/attempt.h"
 #include "handpiece/model/instrument/catalogue.h"
-#include "handpiece/model/tooth/attempt.h"
 #include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/tick/device/capability.h"
-#include "handpiece/tick/loop/built_in_motion.h"
-#include "handpiece/tick/loop/cutting_motion.h"
-#include "handpiece/tick/loop/excavation.h"
+#include "studies/built_in_motion.h"
+#include "studies/cut_run.h"
+#include "studies/cutting_motion.h"
+#include "studies/excavation.h"
+#include "studies/progress_bar.h"
+#include "studies/run_job.h"
 
 namespace handpiece::cli {
 namespace {
@@ -44,17 +44,17 @@ struct RunOptions {
     bool realTime = false, json = false;
     // Of a cut.
     double pedal = 0.0, isthmusMm = 1.2, heightMm = 2.5, dwellS = 4.0, tremorUm = 0.0;
-    double pulpGuardMm = loop::kPulpGuardMm;
+    double pulpGuardMm = studies::kPulpGuardMm;
     std::uint64_t seed = 1;
     bool fullRemoval = false, pedalGiven = false, handGiven = false, speedGiven = false, motionGiven = false;
-    std::string drive = "turbine", ability, abilities, tissues, code;
+    std::string drive = "turbine", cuttingParameters, abilities, tissues, code;
     std::vector<double> undoAtS, redoAtS, resetAtS;
 };
 
 constexpr std::uint64_t kWatchTicks = 64;
 
 /// Before a person's hand moves the bur.
-void printHint(const RunOptions& o, const RunSettings& settings) {
+void printHint(const RunOptions& o, const studies::RunSettings& settings) {
     if (isReal(o.device) && !o.json)
         fmt::print(stderr, "handpiece: the device is yours for {:.0f} s; Ctrl-C ends it sooner.\n", settings.durationS);
 }
@@ -63,7 +63,8 @@ Json spreadJson(const loop::Spread& s) {
     return {{"p50", s.p50}, {"p99", s.p99}, {"p999", s.p999}, {"max", s.max}};
 }
 
-Json summaryJson(const RunOptions& o, const RunSummary& s, const std::string& method, const std::string& hand) {
+Json summaryJson(const RunOptions& o, const studies::RunSummary& s, const std::string& method,
+                 const std::string& hand) {
     return {{"tooth", o.inputs.tooth},
             {"bur", o.inputs.bur},
             {"method", method},
@@ -97,7 +98,7 @@ void printRow(const char* name, const std::string& value) {
     fmt::print("  {:<14}{}\n", name, value);
 }
 
-void printSummary(const RunOptions& o, const RunSummary& s, const std::string& method) {
+void printSummary(const RunOptions& o, const studies::RunSummary& s, const std::string& method) {
     const auto row = printRow;
     const loop::RunReport& r = s.report;
     fmt::print("{}{}\n", o.out, s.stopped ? " (stopped early; what there was is written)" : "");
@@ -119,7 +120,7 @@ void printSummary(const RunOptions& o, const RunSummary& s, const std::string& m
     if (r.queueOverflow) row("lost", fmt::format("{} samples came too fast to be written", r.queueOverflow));
 }
 
-RunSettings settingsOf(const RunOptions& o) {
+studies::RunSettings settingsOf(const RunOptions& o) {
     validate(o.device);
     if (isReal(o.device) && o.motionGiven)
         throw core::Error("a person moves a real device", "--motion", "leave it out, or take --device simulated");
@@ -129,7 +130,7 @@ RunSettings settingsOf(const RunOptions& o) {
                           "choose 1000, 2000, 4000 or 8000");
     if (!(o.durationS >= 0.0 && o.durationS <= 86400.0))
         throw core::Error(fmt::format("a run of {} s", o.durationS), "--duration", "give up to a day; 0: the motion's");
-    RunSettings s;
+    studies::RunSettings s;
     s.rateHz = o.rateHz;
     s.durationS = o.durationS;
     s.realTime = o.realTime;
@@ -149,8 +150,9 @@ RunSettings settingsOf(const RunOptions& o) {
     return s;
 }
 
-device::Motion motionOf(const RunOptions& o, const RunSettings& s, contact::Method& method, const core::Box& box) {
-    loop::MotionOptions m;
+device::Motion motionOf(const RunOptions& o, const studies::RunSettings& s, contact::Method& method,
+                        const core::Box& box) {
+    studies::MotionOptions m;
     m.speedMmS = o.speedMmS;
     m.lengthMm = o.lengthMm;
     m.offsetMm = {o.at[0], o.at[1]};
@@ -159,28 +161,29 @@ device::Motion motionOf(const RunOptions& o, const RunSettings& s, contact::Meth
     m.depthMm = !(o.depthMm <= 0.0)  ? o.depthMm
                 : s.device.rigidHand ? kRigidDepthMm
                                      : o.loadN / s.device.hand.stiffnessNPerMm;
-    return loop::motionByName(o.motion, method, box, m);
+    return studies::motionByName(o.motion, method, box, m);
 }
 
 bool isCuttingMotion(const std::string& name) {
-    const auto& all = loop::cuttingMotions();
-    return std::any_of(all.begin(), all.end(), [&](const loop::BuiltInMotion& m) { return m.name == name; });
+    const auto& all = studies::cuttingMotions();
+    return std::any_of(all.begin(), all.end(), [&](const studies::BuiltInMotion& m) { return m.name == name; });
 }
 
 bool isMotionFile(const std::string& name) {
     return fs::path(name).has_extension() || name == "-";
 }
 
-station::StationSettings stationSettingsOf(const RunOptions& o, const RunSettings& run, const tooth::Case& toothCase,
-                                           const tooth::PrepareSettings& prepare) {
-    station::StationSettings s;
+simulation::SimulationSettings stationSettingsOf(const RunOptions& o, const studies::RunSettings& run,
+                                                 const cases::Case& toothCase, const tooth::PrepareSettings& prepare) {
+    simulation::SimulationSettings s;
     s.rateHz = run.rateHz;
     s.field = prepare.field;
-    const instrument::Instrument instrument = instrument::makeInstrument(o.inputs.bur, o.abilities, o.ability);
-    s.ability = instrument.ability;
+    const instrument::Instrument instrument =
+        instrument::makeInstrument(o.inputs.bur, o.abilities, o.cuttingParameters);
+    s.cuttingParameters = instrument.cuttingParameters;
     s.bur = instrument.bur;
     s.drive = run.drive;
-    s.tissues = o.tissues.empty() ? toothCase.tissues : tooth::readTissues(o.tissues);
+    s.tissues = o.tissues.empty() ? toothCase.tissues : cases::readTissues(o.tissues);
     s.capability = run.device.capability;
     s.parameters = run.parameters;
     const force::Parameters feel = force::defaultParameters(s.tissues);
@@ -198,21 +201,22 @@ double bottomOf(const instrument::Bur& bur, double rhoMm) {
     return low;
 }
 
-device::Motion cutMotionOf(const RunOptions& o, const RunSettings& settings, const tooth::Case& toothCase,
-                           const station::Station& station, std::vector<loop::LesionPlan>& lesions) {
+device::Motion cutMotionOf(const RunOptions& o, const studies::RunSettings& settings, const cases::Case& toothCase,
+                           const simulation::SimulationSetup& station, std::vector<studies::LesionPlan>& lesions) {
     const double pedal = o.pedalGiven ? o.pedal : 1.0;
     const auto& tooth = station.tooth->tooth;
     const auto method = contact::makeFieldMethod(tooth, station.settings.bur);
     if (!isCuttingMotion(o.motion)) {
-        device::Motion motion = isMotionFile(o.motion) ? readMotion(o.motion, settings.device.capability, o.rateHz)
-                                                       : motionOf(o, settings, *method, tooth->outer.bounds());
-        return withPedal(motion, pedal);
+        device::Motion motion = isMotionFile(o.motion)
+                                    ? studies::readMotion(o.motion, settings.device.capability, o.rateHz)
+                                    : motionOf(o, settings, *method, tooth->outer.bounds());
+        return studies::withPedal(motion, pedal);
     }
-    loop::CuttingScene scene;
+    studies::CuttingScene scene;
     scene.toothBounds = tooth->outer.bounds();
     scene.burRadiusMm = station.settings.bur->maxRadiusMm();
     scene.burLengthMm = station.settings.bur->lengthMm();
-    loop::CuttingOptions cut;
+    studies::CuttingOptions cut;
     cut.pedal = pedal;
     cut.depthMm = o.depthMm;
     cut.lengthMm = o.lengthMm;
@@ -222,13 +226,13 @@ device::Motion cutMotionOf(const RunOptions& o, const RunSettings& settings, con
     if (o.speedGiven) cut.feedMmS = o.speedMmS;
     cut.offsetMm = {o.at[0], o.at[1]};
     cut.pulpGuardMm = o.pulpGuardMm;
-    if (o.motion != "excavate") return loop::cuttingMotionByName(o.motion, *method, scene, cut);
+    if (o.motion != "excavate") return studies::cuttingMotionByName(o.motion, *method, scene, cut);
     scene.burBottomMm = [&](double rhoMm) { return bottomOf(*station.settings.bur, rhoMm); };
     scene.outerMm = [&](const core::Vec3& p) { return tooth->tree.signedDistance(p); };
     std::vector<geometry::TriangleTree> pulp;
-    for (const tooth::Part& part : toothCase.parts) {
-        if (part.tissue == tooth::Tissue::caries) scene.decay.push_back(part.mesh);
-        if (part.tissue == tooth::Tissue::pulp) pulp.emplace_back(part.mesh);
+    for (const cases::Part& part : toothCase.parts) {
+        if (part.tissue == cases::Tissue::caries) scene.decay.push_back(part.mesh);
+        if (part.tissue == cases::Tissue::pulp) pulp.emplace_back(part.mesh);
     }
     if (!pulp.empty())
         scene.pulpMm = [&](const core::Vec3& p) {
@@ -237,14 +241,14 @@ device::Motion cutMotionOf(const RunOptions& o, const RunSettings& settings, con
                 nearest = std::min(nearest, tree.signedDistance(p));
             return nearest;
         };
-    loop::Excavation plan = loop::planExcavation(scene, cut);
+    studies::Excavation plan = studies::planExcavation(scene, cut);
     lesions = std::move(plan.lesions);
     return std::move(plan.motion);
 }
 
-Json lesionsJson(const std::vector<loop::LesionPlan>& lesions) {
+Json lesionsJson(const std::vector<studies::LesionPlan>& lesions) {
     Json all = Json::array();
-    for (const loop::LesionPlan& l : lesions)
+    for (const studies::LesionPlan& l : lesions)
         all.push_back({{"centre_mm", {l.centreMm.x(), l.centreMm.y(), l.centreMm.z()}},
                        {"axis", {l.axis.x(), l.axis.y(), l.axis.z()}},
                        {"decay_mm3", l.decayMm3},
@@ -255,9 +259,9 @@ Json lesionsJson(const std::vector<loop::LesionPlan>& lesions) {
     return all;
 }
 
-void printLesions(const std::vector<loop::LesionPlan>& lesions, double guardMm) {
+void printLesions(const std::vector<studies::LesionPlan>& lesions, double guardMm) {
     for (std::size_t i = 0; i < lesions.size(); ++i) {
-        const loop::LesionPlan& l = lesions[i];
+        const studies::LesionPlan& l = lesions[i];
         std::string text = fmt::format(
             "{} of {} at ({:.1f}, {:.1f}, {:.1f}), from ({:.2f}, {:.2f}, {:.2f}): {:.2f} of {:.2f} mm3 within reach, "
             "{:.2f} mm3 of sound tissue on the way",
@@ -270,12 +274,12 @@ void printLesions(const std::vector<loop::LesionPlan>& lesions, double guardMm) 
 }
 
 /// How much is left over the pulp, and whether that is little: of every cut, not only an excavation.
-void printPulp(const CutOutcome& outcome) {
-    if (outcome.summary.removedMm3[static_cast<std::size_t>(tooth::Tissue::pulp)] > 0.0)
+void printPulp(const studies::CutOutcome& outcome) {
+    if (outcome.summary.removedMm3[static_cast<std::size_t>(cases::Tissue::pulp)] > 0.0)
         printRow("pulp", "OPENED");
     else if (outcome.leftOverPulpMm)
         printRow("pulp", fmt::format("{:.2f} mm left over it{}", *outcome.leftOverPulpMm,
-                                     *outcome.leftOverPulpMm < loop::kPulpGuardMm ? ": NEAR" : ""));
+                                     *outcome.leftOverPulpMm < studies::kPulpGuardMm ? ": NEAR" : ""));
 }
 
 /// A motion for whoever moves by hand: it is not looked at.
@@ -283,11 +287,11 @@ device::Motion noMotion() {
     return device::Motion({{0.0, core::Pose{}, 0.0}, {1.0, core::Pose{}, 0.0}});
 }
 
-station::ToothPlace placeOf(const tooth::Case& toothCase, const station::Station& station) {
+input::ToothPlace placeOf(const cases::Case& toothCase, const simulation::SimulationSetup& station) {
     return {station.tooth->tooth->outer.bounds(), toothCase.fdiNumber, toothCase.buccalSign};
 }
 
-void cutCommand(const RunOptions& o, RunSettings settings) {
+void cutCommand(const RunOptions& o, studies::RunSettings settings) {
     if (o.inputs.method != "field")
         throw core::Error(fmt::format("the method \"{}\" knows no tooth that changes", o.inputs.method), "--method",
                           "cut with field");
@@ -304,25 +308,25 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     const tooth::PrepareSettings prepare = prepareSettingsOf(o.inputs);
     Outputs outputs(o.out);  // before the work: a folder that cannot be written is told at once
     // An attempt goes on where it was.
-    std::optional<tooth::OpenAttempt> before;
-    if (tooth::isAttempt(o.inputs.tooth)) before = tooth::openAttempt(o.inputs.tooth);
-    const tooth::Case toothCase = before ? before->toothCase : tooth::readCase(o.inputs.tooth);
-    station::StationSettings stationSettings = stationSettingsOf(o, settings, toothCase, prepare);
+    std::optional<cases::OpenAttempt> before;
+    if (cases::isAttempt(o.inputs.tooth)) before = cases::openAttempt(o.inputs.tooth);
+    const cases::Case toothCase = before ? before->toothCase : cases::readCase(o.inputs.tooth);
+    simulation::SimulationSettings stationSettings = stationSettingsOf(o, settings, toothCase, prepare);
     if (before && std::abs(before->attempt.voxelMm - prepare.field.voxelMm) > 1e-9)
         throw core::Error(fmt::format("the attempt was cut with voxels of {:.6g} um, not {:.6g}",
                                       1e3 * before->attempt.voxelMm, o.inputs.voxelUm),
                           o.inputs.tooth, fmt::format("give --voxel {:.6g}", 1e3 * before->attempt.voxelMm));
     stationSettings.resumed = before.has_value();
-    ProgressBar preparing("preparing the tooth");
-    station::Station station =
-        station::makeStation(toothCase, std::move(stationSettings), prepare.useCache, preparing.listener());
+    studies::ProgressBar preparing("preparing the tooth");
+    simulation::SimulationSetup station =
+        simulation::makeSimulation(toothCase, std::move(stationSettings), prepare.useCache, preparing.listener());
     preparing.finish();
     if (before)
         station.resume(tooth::decodeState(before->attempt.state, station.identity, *station.tooth, o.inputs.tooth));
     settings.parameters = station.settings.parameters;
-    std::vector<loop::LesionPlan> lesions;
+    std::vector<studies::LesionPlan> lesions;
     device::Motion motion = isReal(o.device) ? noMotion() : cutMotionOf(o, settings, toothCase, station, lesions);
-    if (o.tremorUm > 0.0 && !isReal(o.device)) motion = withTremor(motion, 1e-3 * o.tremorUm, o.seed);
+    if (o.tremorUm > 0.0 && !isReal(o.device)) motion = studies::withTremor(motion, 1e-3 * o.tremorUm, o.seed);
     if (device) {
         device->open(settings, &motion, placeOf(toothCase, station));
         station.settings.capability = settings.device.capability;
@@ -331,17 +335,17 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     }
     std::optional<SoundTrack> sound;
     if (!o.sound.empty())
-        sound.emplace(o.sound, *station.settings.bur, station.settings.ability, station.settings.drive, settings.rateHz,
-                      settings.durationS > 0.0 ? settings.durationS : motion.durationS());
-    const CutOutcome outcome =
-        runCut(station, toothCase, settings, motion,
-               {o.code, before ? before->attempt.elapsedS : 0.0,
-                before ? before->attempt.caseFile : fs::path(o.inputs.tooth), o.undoAtS, o.redoAtS, o.resetAtS,
-                [&](const messages::HapticSample& s) {
-                    if (sound) sound->take(s);
-                    if (device && s.tick % kWatchTicks == 0) device->watch();
-                }},
-               outputs);
+        sound.emplace(o.sound, *station.settings.bur, station.settings.cuttingParameters, station.settings.drive,
+                      settings.rateHz, settings.durationS > 0.0 ? settings.durationS : motion.durationS());
+    const studies::CutOutcome outcome =
+        studies::runCut(station, toothCase, settings, motion,
+                        {o.code, before ? before->attempt.elapsedS : 0.0,
+                         before ? before->attempt.caseFile : fs::path(o.inputs.tooth), o.undoAtS, o.redoAtS, o.resetAtS,
+                         [&](const messages::HapticSample& s) {
+                             if (sound) sound->take(s);
+                             if (device && s.tick % kWatchTicks == 0) device->watch();
+                         }},
+                        outputs);
     if (sound) sound->finish();
 
     Json json = summaryJson(o, outcome.summary, "field",
@@ -350,8 +354,8 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
                                                         : o.hand);
     if (device) device->add(json);
     Json removed, left;
-    for (const tooth::Tissue t : station.tooth->tissues.tissues()) {
-        const std::string name(tooth::properties(t).name);
+    for (const cases::Tissue t : station.tooth->tissues.tissues()) {
+        const std::string name(cases::properties(t).name);
         removed[name] = outcome.summary.removedMm3[static_cast<std::size_t>(t)];
         left[name] = outcome.leftMm3[static_cast<std::size_t>(t)];
     }
@@ -360,7 +364,7 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     json["seed"] = o.seed;
     json["tremor_um"] = o.tremorUm;
     json["voxel_um"] = o.inputs.voxelUm;
-    json["ability"] = station.settings.ability.name;
+    json["ability"] = station.settings.cuttingParameters.name;
     json["drive"] = station.settings.drive.name;
     json["removed_mm3"] = removed;
     json["left_mm3"] = left;
@@ -373,7 +377,7 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     json["stalled_ticks"] = outcome.summary.stalledTicks;
     json["out_of_bricks_ticks"] = outcome.summary.outOfBricksTicks;
     json["undo_steps_taken"] = outcome.undone;
-    json["state_hash"] = station::hashText(outcome.stateHash);
+    json["state_hash"] = simulation::hashText(outcome.stateHash);
     json["session"] = {{"records", outcome.recording.writtenRecords},
                        {"lost_records", outcome.recording.lostRecords},
                        {"bytes", outcome.recording.sizeBytes},
@@ -393,14 +397,14 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
             volumes += fmt::format("{}{} {:.4f}", volumes.empty() ? "" : ", ", name, mm3.get<double>());
     printRow("removed", volumes.empty() ? "nothing" : volumes + " mm3");
     if (!lesions.empty()) {
-        constexpr auto kCaries = static_cast<std::size_t>(tooth::Tissue::caries);
+        constexpr auto kCaries = static_cast<std::size_t>(cases::Tissue::caries);
         double soundMm3 = -outcome.summary.removedMm3[kCaries];
         for (const double mm3 : outcome.summary.removedMm3)
             soundMm3 += mm3;
         const double gone = outcome.summary.removedMm3[kCaries], all = gone + outcome.leftMm3[kCaries];
         printLesions(lesions, o.pulpGuardMm);
         double plannedMm3 = 0.0;
-        for (const loop::LesionPlan& l : lesions)
+        for (const studies::LesionPlan& l : lesions)
             plannedMm3 += l.reachedMm3;
         constexpr double kKeptUp = 0.8;
         printRow("decay",
@@ -417,7 +421,7 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
     if (outcome.summary.stalledTicks > 0) printRow("stalled", fmt::format("{} ticks", outcome.summary.stalledTicks));
     if (outcome.summary.outOfBricksTicks > 0)
         printRow("memory", "the tooth's memory for cuts was used up: cut no deeper (take larger voxels)");
-    printRow("state", station::hashText(outcome.stateHash));
+    printRow("state", simulation::hashText(outcome.stateHash));
     printRow("files",
              "session.h5 attempt/ cut.stl cut/ trace.csv depth.svg speed.svg force.svg rotor.svg feed.svg removed.svg "
              "summary.json");
@@ -425,7 +429,7 @@ void cutCommand(const RunOptions& o, RunSettings settings) {
 }
 
 void runCommand(const RunOptions& o, const MethodRegistry& methods) {
-    RunSettings settings = settingsOf(o);
+    studies::RunSettings settings = settingsOf(o);
     const bool real = isReal(o.device);
     if (o.pedalGiven || o.fullRemoval || isCuttingMotion(o.motion) || (real && o.inputs.method == "field"))
         return cutCommand(o, std::move(settings));
@@ -433,7 +437,8 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
     if (isGuarded(o.device)) device.emplace(o.device);
     const bool isFile = !real && isMotionFile(o.motion);
     std::unique_ptr<device::Motion> motion;
-    if (isFile) motion = std::make_unique<device::Motion>(readMotion(o.motion, settings.device.capability, o.rateHz));
+    if (isFile)
+        motion = std::make_unique<device::Motion>(studies::readMotion(o.motion, settings.device.capability, o.rateHz));
     Outputs outputs(o.out);  // before the work: a folder that cannot be written is told at once
     const auto tooth = loadTooth(o.inputs);
     auto method = makeMethod(o.inputs.method, methods, tooth, loadBur(o.inputs.bur));
@@ -450,16 +455,17 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
     std::optional<SoundTrack> sound;
     if (!o.sound.empty()) {
         const instrument::Instrument held = instrument::makeInstrument(o.inputs.bur);
-        sound.emplace(o.sound, *held.bur, held.ability, settings.drive, settings.rateHz, duration);
+        sound.emplace(o.sound, *held.bur, held.cuttingParameters, settings.drive, settings.rateHz, duration);
     }
-    ProgressBar bar("running");
+    studies::ProgressBar bar("running");
     const core::Progress progress = bar.listener();
-    const RunSummary summary = runLoop(settings, *motion, std::move(method), [&](const messages::HapticSample& s) {
-        trace.take(s);
-        if (sound) sound->take(s);
-        if (device && s.tick % kWatchTicks == 0) device->watch();
-        if (s.tick % 256 == 0) progress(s.timeS / duration);
-    });
+    const studies::RunSummary summary =
+        studies::runLoop(settings, *motion, std::move(method), [&](const messages::HapticSample& s) {
+            trace.take(s);
+            if (sound) sound->take(s);
+            if (device && s.tick % kWatchTicks == 0) device->watch();
+            if (s.tick % 256 == 0) progress(s.timeS / duration);
+        });
     bar.finish();
     trace.finish(outputs, settings.device.capability.maxForceN, false);
     if (sound) sound->finish();
@@ -486,10 +492,10 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
     RunOptions& o = *options;
     addContactOptions(*command, o.inputs, methods);
     std::string motions;
-    for (const loop::BuiltInMotion& m : loop::builtInMotions())
+    for (const studies::BuiltInMotion& m : studies::builtInMotions())
         motions += fmt::format("{}{} ({})", motions.empty() ? "" : ", ", m.name, m.description);
     std::string cutNames;
-    for (const loop::BuiltInMotion& m : loop::cuttingMotions())
+    for (const studies::BuiltInMotion& m : studies::cuttingMotions())
         cutNames += fmt::format("{}{} ({})", cutNames.empty() ? "" : ", ", m.name, m.description);
     std::string models;
     for (const device::Capability& c : device::knownDevices())
@@ -532,7 +538,7 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
         ->add_flag("--full-removal", o.fullRemoval, "take away all that the bur sweeps, whatever the load (rigid hand)")
         ->group("Cutting");
     cut("--drive", o.drive, drives);
-    cut("--ability", o.ability, "of the bur, instead of its own: see docs/burs.md");
+    cut("--ability", o.cuttingParameters, "of the bur, instead of its own: see docs/burs.md");
     cut("--abilities", o.abilities, "TOML file with abilities and burs of one's own");
     cut("--tissues", o.tissues, "TOML file with tissues of one's own");
     cut("--isthmus", o.isthmusMm, "width of a class I cavity [mm]");

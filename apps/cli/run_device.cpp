@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "handpiece/app/exercise/school_defaults.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/devices/drivers/simulated_driver.h"
-#include "station/school_defaults.h"
 
 namespace handpiece::cli {
 namespace {
@@ -36,7 +36,7 @@ bool inTime(const safety::FaultOutcome& o) {
 
 void addDeviceOptions(CLI::App& command, DeviceOptions& o) {
     std::string names;
-    for (const std::string& name : station::deviceNames())
+    for (const std::string& name : input::deviceNames())
         names += (names.empty() ? "" : ", ") + name;
     const auto add = [&](const char* name, auto& value, std::string help) {
         return command.add_option(name, value, std::move(help))->group("Device");
@@ -51,7 +51,7 @@ void addDeviceOptions(CLI::App& command, DeviceOptions& o) {
 }
 
 void applySchoolDefaults(const CLI::App& command, DeviceOptions& o) {
-    const station::SchoolDefaults school = station::schoolDefaults();
+    const exercise::SchoolDefaults school = exercise::schoolDefaults();
     for (const std::string& problem : school.problems)
         fmt::print(stderr, "handpiece: {}\n", problem);
     const auto given = [&](const char* name) {
@@ -66,7 +66,7 @@ void applySchoolDefaults(const CLI::App& command, DeviceOptions& o) {
 }
 
 void validate(const DeviceOptions& o) {
-    const std::vector<std::string>& names = station::deviceNames();
+    const std::vector<std::string>& names = input::deviceNames();
     if (std::find(names.begin(), names.end(), o.name) == names.end())
         throw core::Error(fmt::format("there is no device called \"{}\"", o.name), "--device",
                           fmt::format("there are: {}", fmt::join(names, ", ")));
@@ -77,8 +77,8 @@ void validate(const DeviceOptions& o) {
     if (!o.inject.empty()) (void)safety::parseFaults(o.inject);
 }
 
-station::DeviceChoice choiceOf(const DeviceOptions& o) {
-    station::DeviceChoice c;
+input::DeviceChoice choiceOf(const DeviceOptions& o) {
+    input::DeviceChoice c;
     c.name = o.name;
     c.which = o.which;
     c.profile = o.profile;
@@ -96,23 +96,23 @@ bool isGuarded(const DeviceOptions& o) {
 
 struct RunDevice::State {
     DeviceOptions options;
-    station::DeviceChoice choice;
+    input::DeviceChoice choice;
     std::unique_ptr<link::Driver> driver;  // until it is opened
-    std::shared_ptr<station::OpenDevice> opened;
-    link::Trouble told = link::Trouble::none;
+    std::shared_ptr<input::OpenDevice> opened;
+    link::DeviceFault told = link::DeviceFault::none;
 };
 
 RunDevice::RunDevice(const DeviceOptions& options) : state_(std::make_unique<State>()) {
     state_->options = options;
     state_->choice = choiceOf(options);
     if (!isReal(options)) return;  // made when its motion is known
-    state_->driver = station::openDriver(state_->choice);
-    (void)station::profileOf(state_->choice, state_->driver->info());  // a bad one is told now
+    state_->driver = input::openDriver(state_->choice);
+    (void)input::profileOf(state_->choice, state_->driver->info());  // a bad one is told now
 }
 
 RunDevice::~RunDevice() = default;
 
-void RunDevice::open(RunSettings& settings, const device::Motion* motion, const station::ToothPlace& tooth) {
+void RunDevice::open(studies::RunSettings& settings, const device::Motion* motion, const input::ToothPlace& tooth) {
     State& s = *state_;
     s.choice.tooth = tooth;
     if (!isReal(s.options)) {
@@ -127,7 +127,7 @@ void RunDevice::open(RunSettings& settings, const device::Motion* motion, const 
         info.capability = settings.device.capability;
         // The motion is told in the tooth's frame; whatever the profile says of the hand, it arrives there.
         s.choice.keptProfile = false;  // the same command gives the same run everywhere
-        s.choice.placing = station::profileOf(s.choice, info).placing;
+        s.choice.placing = input::profileOf(s.choice, info).placing;
         arm.placing = *s.choice.placing;
         auto driver = std::make_unique<drivers::SimulatedDriver>(std::move(arm));
         if (!settings.realTime) {
@@ -140,9 +140,9 @@ void RunDevice::open(RunSettings& settings, const device::Motion* motion, const 
         settings.realTime = true;
         if (settings.durationS <= 0.0) settings.durationS = kHandS;
     }
-    s.opened = std::make_shared<station::OpenDevice>(station::openDevice(std::move(s.driver), s.choice));
+    s.opened = std::make_shared<input::OpenDevice>(input::openDevice(std::move(s.driver), s.choice));
     settings.device.capability = s.opened->capability;
-    settings.parameters = station::fittedTo(*s.opened, settings.parameters);
+    settings.parameters = input::fittedTo(*s.opened, settings.parameters);
     settings.takeDevice = [opened = s.opened] { return std::move(opened->device); };
 }
 
@@ -151,18 +151,18 @@ void RunDevice::watch() {
     if (!s.options.inject.empty()) return;  // asked for, and told at the end
     const safety::Health health = s.opened->health->read();
     if (health.gate.trouble == s.told) return;
-    const auto trouble = station::troubleOf(health.gate, s.opened->info);
+    const auto trouble = input::troubleOf(health.gate, s.opened->info);
     if (trouble)
         fmt::print(stderr, "handpiece: {}. No force until it is well again.\n", trouble->what());
-    else if (s.told != link::Trouble::none && s.told != link::Trouble::starting &&
-             health.gate.trouble == link::Trouble::none)
+    else if (s.told != link::DeviceFault::none && s.told != link::DeviceFault::starting &&
+             health.gate.trouble == link::DeviceFault::none)
         fmt::print(stderr, "handpiece: {} is well again.\n", s.opened->info.model);
     s.told = health.gate.trouble;
 }
 
 void RunDevice::add(Json& summary) const {
     const State& s = *state_;
-    const station::OpenDevice& o = *s.opened;
+    const input::OpenDevice& o = *s.opened;
     const safety::Health health = o.health->read();
     summary["driver"] = {{"name", o.info.driver},
                          {"model", o.info.model},
@@ -206,7 +206,7 @@ void RunDevice::add(Json& summary) const {
 
 void RunDevice::print() const {
     const State& s = *state_;
-    const station::OpenDevice& o = *s.opened;
+    const input::OpenDevice& o = *s.opened;
     const safety::Health health = o.health->read();
     fmt::print("  {:<14}{}{}, {:.0f} mm of the hand for one of the bur{}, {} frames\n", "device", o.info.model,
                o.info.version.empty() ? "" : " (" + o.info.version + ")", o.placing.scale,

@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "cli/run_job.h"
-#include "station/device_desk.h"
+#include "handpiece/app/input/device_opening.h"
+#include "studies/run_job.h"
 
 namespace CLI {
 class App;
@@ -31,7 +31,7 @@ void applySchoolDefaults(const CLI::App& command, DeviceOptions& options);
 void validate(const DeviceOptions& options);
 
 /// The same for the desk.
-[[nodiscard]] station::DeviceChoice choiceOf(const DeviceOptions& options);
+[[nodiscard]] input::DeviceChoice choiceOf(const DeviceOptions& options);
 /// True where a person's hand moves it: there is no motion.
 [[nodiscard]] inline bool isReal(const DeviceOptions& options) {
     return options.name != "simulated";
@@ -51,7 +51,7 @@ class RunDevice {
 
     /// Starts it for this tooth and puts it in `settings`' place of the simulated arm; `motion` is what the simulated
     /// arm does. Limits of the force become the device's own.
-    void open(RunSettings& settings, const device::Motion* motion, const station::ToothPlace& tooth);
+    void open(studies::RunSettings& settings, const device::Motion* motion, const input::ToothPlace& tooth);
     /// Tells trouble on stderr as it comes and goes. Listener's thread.
     void watch();
     /// Once the loop is gone: what the gate let through and what each fault came to.

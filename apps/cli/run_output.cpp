@@ -3,16 +3,16 @@
 
 #include <cmath>
 
-#include "cli/run_job.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/tick/contact/method.h"
+#include "studies/run_job.h"
 
 namespace handpiece::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using cases::Tissue;
 using messages::HapticSample;
-using tooth::Tissue;
 
 constexpr std::string_view kHeader =
     "t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,vx_mm_s,vy_mm_s,vz_mm_s,fx_n,fy_n,fz_n,depth_mm,work_us,late_us,"
@@ -26,7 +26,7 @@ double removed(const HapticSample& s, Tissue tissue) {
     return s.removedMm3[static_cast<std::size_t>(tissue)];
 }
 
-void writeLine(TextWriter& out, fmt::memory_buffer& buffer, const HapticSample& s) {
+void writeLine(studies::TextWriter& out, fmt::memory_buffer& buffer, const HapticSample& s) {
     buffer.clear();
     const auto to = std::back_inserter(buffer);
     const auto& p = s.positionMm;
@@ -43,14 +43,15 @@ void writeLine(TextWriter& out, fmt::memory_buffer& buffer, const HapticSample& 
                    s.truePositionMm[1], s.truePositionMm[2], s.proxyPositionMm[0], s.proxyPositionMm[1],
                    s.proxyPositionMm[2], r[0], r[1], r[2], r[3]);
     fmt::format_to(to, "{:.7f},{:.7f},{:.7f},{:.6f},{},{},", a[0], a[1], a[2], s.contactAreaMm2,
-                   tooth::properties(static_cast<Tissue>(s.tissue)).name, s.flags);
+                   cases::properties(static_cast<Tissue>(s.tissue)).name, s.flags);
     fmt::format_to(to, "{:.1f},{:.9f},{:.9f},{:.9f},{:.9f}\n", s.speedRpm, removed(s, Tissue::enamel),
                    removed(s, Tissue::dentine), removed(s, Tissue::caries), removed(s, Tissue::pulp));
     out.write({buffer.data(), buffer.size()});
 }
 
-std::string plot(std::string title, std::string label, std::vector<Series> series, std::vector<Limit> limits) {
-    return toSvg({std::move(title), "time [s]", std::move(label), std::move(series), std::move(limits)}, true);
+std::string plot(std::string title, std::string label, std::vector<report::Series> series,
+                 std::vector<report::Limit> limits) {
+    return report::toSvg({std::move(title), "time [s]", std::move(label), std::move(series), std::move(limits)}, true);
 }
 
 }  // namespace
@@ -90,7 +91,7 @@ void RunTrace::take(const HapticSample& s) {
     writeLine(file_, buffer_, s);
     // A bound, not a distance, where nothing is within reach: a gap in the plot.
     if (s.contactStatus != static_cast<std::uint8_t>(contact::Status::beyondReach)) depth_.take(s.timeS, s.depthMm);
-    force_.take(s.timeS, forceOf(s));
+    force_.take(s.timeS, studies::forceOf(s));
     applied_.take(s.timeS, std::hypot(s.appliedForceN[0], s.appliedForceN[1], s.appliedForceN[2]));
     for (std::size_t axis = 0; axis < 3; ++axis)
         speed_[axis].take(s.timeS, s.velocityMmS[axis]);
@@ -116,9 +117,9 @@ void RunTrace::finish(Outputs& outputs, double deviceLimitN, bool cut) {
     if (!cut) return;
     outputs.write("rotor.svg", plot("Speed of the rotor", "speed [1000 rpm]", {rotor_.series("")}, {}));
     outputs.write("feed.svg", plot("How fast the bur eats into the tooth", "feed [mm/s]", {feed_.series("")}, {}));
-    std::vector<Series> volumes;
+    std::vector<report::Series> volumes;
     for (std::size_t i = 0; i < removed_.size(); ++i)
-        volumes.push_back(removed_[i].series(std::string(tooth::properties(kPlotted[i]).name)));
+        volumes.push_back(removed_[i].series(std::string(cases::properties(kPlotted[i]).name)));
     outputs.write("removed.svg", plot("Removed volume by tissue", "removed [mm3]", std::move(volumes), {}));
 }
 

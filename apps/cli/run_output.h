@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/csv.h"
-#include "cli/plot.h"
+#include "handpiece/app/report/plot.h"
 #include "handpiece/base/messages/haptic_sample.h"
+#include "studies/csv.h"
 
 namespace handpiece::cli {
 
@@ -45,9 +45,9 @@ class Curve {
         if (y < low_.y) low_ = {t, y};
         if (y > high_.y) high_ = {t, y};
     }
-    [[nodiscard]] Series series(std::string name) {
+    [[nodiscard]] report::Series series(std::string name) {
         flush();
-        Series s;
+        report::Series s;
         s.name = std::move(name);
         s.x = x_;
         s.y = y_;
@@ -86,7 +86,7 @@ class RunTrace {
     void finish(Outputs& outputs, double deviceLimitN, bool cut);
 
   private:
-    TextWriter file_;
+    studies::TextWriter file_;
     fmt::memory_buffer buffer_;
     Curve depth_, force_, applied_, speed_[3], rotor_, feed_;
     std::vector<Curve> removed_;

@@ -15,15 +15,15 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/progress_bar.h"
+#include "handpiece/app/scan_case/scan_job.h"
+#include "handpiece/app/scan_case/scan_report.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/scan/volume/write_scan.h"
 #include "handpiece/senses/view/image.h"
-#include "station/scan_job.h"
-#include "station/scan_report.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 namespace {
@@ -31,18 +31,18 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using core::Vec3;
-using station::ScanJob;
-using station::ScanResult;
-using station::ScanStage;
+using scan_case::ScanJob;
+using scan_case::ScanResult;
+using scan_case::ScanStage;
 
 /// One bar a stage.
 class StageBars {
   public:
-    [[nodiscard]] station::ScanProgress listener() {
+    [[nodiscard]] scan_case::ScanProgress listener() {
         return [this](ScanStage stage, double fraction) {
             const std::lock_guard lock(mutex_);
             if (!bar_ || stage != stage_) {
-                bar_ = std::make_unique<ProgressBar>(std::string(station::nameOf(stage)));
+                bar_ = std::make_unique<studies::ProgressBar>(std::string(scan_case::nameOf(stage)));
                 stage_ = stage;
             }
             return bar_->listener()(fraction);
@@ -55,7 +55,7 @@ class StageBars {
 
   private:
     std::mutex mutex_;
-    std::unique_ptr<ProgressBar> bar_;
+    std::unique_ptr<studies::ProgressBar> bar_;
     ScanStage stage_ = ScanStage::read;
 };
 
@@ -123,7 +123,7 @@ void takeThresholds(ScanJob& job, const std::string& text) {
 /// The job's file, if one is given, with what stands on the command line in place of what it says.
 ScanJob jobOf(const ScanOptions& o) {
     ScanJob job;
-    if (!o.job.empty()) job = station::readScanJob(o.job);
+    if (!o.job.empty()) job = scan_case::readScanJob(o.job);
     if (!o.path.empty()) job.source = o.path;
     if (job.source.empty())
         throw core::Error("no scan is named", "scan",
@@ -135,10 +135,10 @@ ScanJob jobOf(const ScanOptions& o) {
             throw core::Error(fmt::format("\"{}\" is no spacing", o.spacing), "--spacing",
                               "give one number of millimetres, or three for columns, rows and slices");
         job.spacingMm = v.size() == 1 ? Vec3::Constant(v[0]) : Vec3(v[0], v[1], v[2]);
-        constexpr double kLeastMm = 1e-3, kMostMm = 10.0;
-        if (!(job.spacingMm->minCoeff() >= kLeastMm && job.spacingMm->maxCoeff() <= kMostMm))
+        constexpr double kMinMm = 1e-3, kMaxMm = 10.0;
+        if (!(job.spacingMm->minCoeff() >= kMinMm && job.spacingMm->maxCoeff() <= kMaxMm))
             throw core::Error(fmt::format("a spacing of {} mm is none of a tooth's scan", o.spacing), "--spacing",
-                              fmt::format("give {} to {}", kLeastMm, kMostMm));
+                              fmt::format("give {} to {}", kMinMm, kMaxMm));
     }
     if (o.labels) job.isLabels = true;
     if (!o.labelOrder.empty()) {
@@ -170,7 +170,7 @@ ScanJob jobOf(const ScanOptions& o) {
         const std::vector<double> v = numbers(text.substr(equals + 1), "--mark", 4);
         if (!(v[3] > 0.0)) throw core::Error("a mark's radius must be above zero", "--mark", "give TISSUE=X,Y,Z,R");
         job.segmentation.marks.push_back(
-            {Vec3(v[0], v[1], v[2]), v[3], tissue == "none" ? tooth::Tissue::none : tooth::tissueByName(tissue)});
+            {Vec3(v[0], v[1], v[2]), v[3], tissue == "none" ? cases::Tissue::none : cases::tissueByName(tissue)});
     }
     if (o.noDamp) job.segmentation.damp = false;
     if (o.noCaries) job.segmentation.findCaries = false;
@@ -205,9 +205,9 @@ void requireFolder(const fs::path& out) {
 ScanResult worked(const ScanOptions& o, const ScanJob& job, ScanStage last) {
     core::setThreadCount(o.threads);
     // Before the work, so that a job that is cancelled can be taken up again.
-    if (!o.saveJob.empty()) station::writeScanJob(job, o.saveJob);
+    if (!o.saveJob.empty()) scan_case::writeScanJob(job, o.saveJob);
     StageBars bars;
-    ScanResult result = station::runScanJob(job, bars.listener(), nullptr, last);
+    ScanResult result = scan_case::runScanJob(job, bars.listener(), nullptr, last);
     bars.finish();
     return result;
 }
@@ -222,9 +222,9 @@ void tellNotes(const std::vector<std::string>& notes) {
 }
 
 void tellVolumes(const ScanResult& result) {
-    for (std::size_t t = 1; t < tooth::kTissueCount; ++t)
+    for (std::size_t t = 1; t < cases::kTissueCount; ++t)
         if (result.volumesMm3[t] > 0.0)
-            row(tooth::properties(static_cast<tooth::Tissue>(t)).name, fmt::format("{:.2f} mm3", result.volumesMm3[t]));
+            row(cases::properties(static_cast<cases::Tissue>(t)).name, fmt::format("{:.2f} mm3", result.volumesMm3[t]));
 }
 
 /// With what was done after the job itself.
@@ -236,8 +236,8 @@ void tellTimes(const ScanResult& result, const std::vector<std::pair<std::string
         text += fmt::format("{} {:.1f} s, ", what, seconds);
         all += seconds;
     };
-    for (const ScanStage stage : station::kScanStages)
-        add(station::nameOf(stage), result.timings.of(stage));
+    for (const ScanStage stage : scan_case::kScanStages)
+        add(scan_case::nameOf(stage), result.timings.of(stage));
     for (const auto& [what, seconds] : more)
         add(what, seconds);
     row("times", fmt::format("{}in all {:.1f} s", text, all));
@@ -272,7 +272,7 @@ std::vector<segmentation::Candidate> teethOf(const ScanOptions& o, const volume:
     volume::ReadSettings settings;
     settings.series = series.id;
     if (!o.spacing.empty()) settings.spacingMm = jobOf(o).spacingMm;
-    ProgressBar bar("looking for teeth");
+    studies::ProgressBar bar("looking for teeth");
     const core::Progress progress = bar.listener();
     const volume::Scan scan = volume::readScan(o.path, settings, core::part(progress, 0.0, 0.3));
     const segmentation::Thresholds thresholds =
@@ -282,7 +282,7 @@ std::vector<segmentation::Candidate> teethOf(const ScanOptions& o, const volume:
 
 void info(const ScanOptions& o) {
     core::setThreadCount(o.threads);
-    ProgressBar bar("looking into the scan");
+    studies::ProgressBar bar("looking into the scan");
     const std::vector<volume::Series> all = volume::findSeries(o.path, bar.listener());
     bar.finish();
     std::vector<segmentation::Candidate> teeth;
@@ -366,9 +366,9 @@ void segment(const ScanOptions& o) {
 }
 
 std::string fileNameOf(const surfacing::Surface& s) {
-    return s.tissue == tooth::Tissue::none
+    return s.tissue == cases::Tissue::none
                ? "outer"
-               : fmt::format("{}{}", tooth::properties(s.tissue).name, s.isAuthored ? "-authored" : "");
+               : fmt::format("{}{}", cases::properties(s.tissue).name, s.isAuthored ? "-authored" : "");
 }
 
 void surface(const ScanOptions& o) {
@@ -381,7 +381,7 @@ void surface(const ScanOptions& o) {
     core::prepareOutputFolder(o.out);
     std::vector<fs::path> made;
     try {
-        for (const station::ScannedCase& c : result.cases) {
+        for (const scan_case::ScannedCase& c : result.cases) {
             const std::string ending = result.cases.size() > 1 ? fmt::format("-{:g}", c.percent) : "";
             std::vector<const surfacing::Surface*> all{&c.surfaces->outer};
             for (const surfacing::Surface& s : c.surfaces->tissues)
@@ -415,7 +415,7 @@ void surface(const ScanOptions& o) {
 void makeCase(const ScanOptions& o) {
     requireFolder(o.out);
     const ScanJob job = jobOf(o);
-    for (const fs::path& place : station::casePlaces(job, o.out))
+    for (const fs::path& place : scan_case::casePlaces(job, o.out))
         if (core::isFolder(place)) core::requireReplaceable(place, "case.toml");
     const ScanResult result = worked(o, job, ScanStage::check);
     using Clock = std::chrono::steady_clock;
@@ -426,22 +426,22 @@ void makeCase(const ScanOptions& o) {
     double drawingS = 0.0;
     if (o.report) {
         const Clock::time_point start = Clock::now();
-        ProgressBar bar("drawing the report");
-        page = station::scanReport(result, station::casePlaces(job, o.out), {}, bar.listener());
+        studies::ProgressBar bar("drawing the report");
+        page = scan_case::scanReport(result, scan_case::casePlaces(job, o.out), {}, bar.listener());
         drawingS = secondsSince(start);
     }
     const Clock::time_point start = Clock::now();
-    const std::vector<fs::path> places = station::writeScanCases(result, o.out);
+    const std::vector<fs::path> places = scan_case::writeScanCases(result, o.out);
     const double writingS = secondsSince(start);
     for (std::size_t i = 0; i < places.size(); ++i) {
-        const tooth::Case& c = result.cases[i].toothCase;
+        const cases::Case& c = result.cases[i].toothCase;
         fmt::print("{}: {}\n  {:<14} {:>8} faces {:>10.2f} mm3\n", places[i].string(), c.name, "outer",
                    c.outer.triangles.size(), geometry::enclosedVolumeMm3(c.outer));
-        for (const tooth::Part& part : c.parts)
-            if (part.tissue != tooth::Tissue::enamel)  // its part is the whole tooth; its volume stands below
+        for (const cases::Part& part : c.parts)
+            if (part.tissue != cases::Tissue::enamel)  // its part is the whole tooth; its volume stands below
                 fmt::print("  {:<14} {:>8} faces {:>10.2f} mm3\n", part.name, part.mesh.triangles.size(),
                            geometry::enclosedVolumeMm3(part.mesh));
-        for (const tooth::Part& part : c.scenery)
+        for (const cases::Part& part : c.scenery)
             fmt::print("  {:<14} {:>8} faces, scenery\n", part.name, part.mesh.triangles.size());
     }
     fmt::print("as the scan shows it\n");
@@ -449,7 +449,7 @@ void makeCase(const ScanOptions& o) {
     tellTimes(result, {{"drawing the report", drawingS}, {"writing", writingS}});
     tellNotes(result.notes());
     if (o.report) {
-        const fs::path place = station::scanReportPlace(o.out, places);
+        const fs::path place = scan_case::scanReportPlace(o.out, places);
         core::writeFile(place, page);
         fmt::print("{}: the case's report\n", place.string());
     }

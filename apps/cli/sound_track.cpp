@@ -8,13 +8,14 @@
 
 namespace handpiece::cli {
 
-SoundTrack::SoundTrack(std::filesystem::path file, const instrument::Bur& bur, const instrument::Ability& ability,
-                       const instrument::Drive& drive, double rateHz, double durationS)
+SoundTrack::SoundTrack(std::filesystem::path file, const instrument::Bur& bur,
+                       const instrument::CuttingParameters& cuttingParameters, const instrument::Drive& drive,
+                       double rateHz, double durationS)
     : file_(std::move(file)),
       burRadiusMm_(bur.maxRadiusMm()),
       freeSpeedRpm_(drive.freeSpeedRpm),
       periodS_(1.0 / rateHz),
-      edges_(ability.edges) {
+      edges_(cuttingParameters.edges) {
     if (durationS > 3600.0)
         throw core::Error(fmt::format("the sound of {:.0f} s", durationS), "--sound", "give at most an hour");
     if (core::isFolder(file_)) throw core::Error("this is a folder", file_.string(), "name the WAV file in it");

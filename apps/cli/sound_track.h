@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "handpiece/base/messages/haptic_sample.h"
-#include "handpiece/model/instrument/ability.h"
 #include "handpiece/model/instrument/bur.h"
+#include "handpiece/model/instrument/cutting_parameters.h"
 #include "handpiece/model/instrument/rotor.h"
 #include "handpiece/senses/sound/player.h"
 
@@ -18,8 +18,9 @@ namespace handpiece::cli {
 class SoundTrack {
   public:
     /// Throws core::Error: a folder that cannot be written, a run of more than an hour.
-    SoundTrack(std::filesystem::path file, const instrument::Bur& bur, const instrument::Ability& ability,
-               const instrument::Drive& drive, double rateHz, double durationS);
+    SoundTrack(std::filesystem::path file, const instrument::Bur& bur,
+               const instrument::CuttingParameters& cuttingParameters, const instrument::Drive& drive, double rateHz,
+               double durationS);
     void take(const messages::HapticSample& sample);
     /// Lets the last sound die away and writes the file. Throws core::Error.
     void finish();

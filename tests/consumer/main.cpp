@@ -12,7 +12,7 @@
 int main() {
     using namespace handpiece;
     try {
-        tooth::Case block;
+        cases::Case block;
         block.name = "block";
         for (int i = 0; i < 8; ++i)
             block.outer.vertices.emplace_back(i & 1 ? 4.0 : -4.0, i & 2 ? 4.0 : -4.0, i & 4 ? 0.0 : -8.0);

@@ -22,14 +22,14 @@
 #include "device/install.h"
 #include "device/profile_box.h"
 #include "devices/drivers/gamepad_virtual.h"
+#include "handpiece/app/simulation/cut_session.h"
+#include "handpiece/app/simulation/session_player.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/rt/clock.h"
 #include "led_driver.h"
 #include "panels/notice_bar.h"
 #include "shell_support.h"
-#include "station/cut_session.h"
-#include "station/session_player.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -52,12 +52,12 @@ class DeviceWindowTest : public ShellTest {
             absent.remedy = "Start Haply Hub.";
             return std::vector<drivers::Found>{there, absent};
         };
-        options.hands.desk.open = [led = led_](const station::DeviceChoice& choice) {
+        options.hands.desk.open = [led = led_](const input::DeviceChoice& choice) {
             if (choice.name != "openhaptics" || led->unplugged)
                 throw core::Error("it is not there", choice.name, "plug it in").as("device-missing", {choice.name});
-            return station::openDevice(std::make_unique<LedDriver>(led), choice);
+            return input::openDevice(std::make_unique<LedDriver>(led), choice);
         };
-        options.hands.desk.driver = [led = led_](const station::DeviceChoice&) {
+        options.hands.desk.driver = [led = led_](const input::DeviceChoice&) {
             return std::make_unique<LedDriver>(led);
         };
         return options;
@@ -67,7 +67,7 @@ class DeviceWindowTest : public ShellTest {
         if (::testing::Test::HasFatalFailure()) return;
         installDeviceDialogs(window(), simulator(), host_->settings(), false);
     }
-    [[nodiscard]] Hands& hands() { return simulator().hands(); }
+    [[nodiscard]] DeviceManager& hands() { return simulator().hands(); }
     [[nodiscard]] QAction* entry(const char* name) {
         return window().findChild<QAction*>(QStringLiteral("actionDevice_") + QLatin1String(name));
     }
@@ -88,9 +88,9 @@ class DeviceWindowTest : public ShellTest {
         return choose("openhaptics") && waitFor([&] { return simulator().usedHand() && !simulator().isBusy(); });
     }
     /// Where the hand must be to have the bur there, tip down.
-    void leadBur(const core::Vec3& toothMm, const station::ToothPlace& place) {
-        const workspace::Placing p = station::placingFor(hands().current()->profile(), place);
-        const core::Quat stylus = p.toothInDevice * workspace::Mapping(p).burInStylus().conjugate();
+    void leadBur(const core::Vec3& toothMm, const input::ToothPlace& place) {
+        const workspace::WorkspaceMapping p = input::placingFor(hands().current()->profile(), place);
+        const core::Quat stylus = p.toothInDevice * workspace::WorkspaceTransform(p).burInStylus().conjugate();
         const core::Vec3 at =
             p.deviceMm + p.scale * (p.toothInDevice * (toothMm - p.toothMm)) - stylus * p.tipFromStylusMm;
         const std::lock_guard lock(led_->mutex);
@@ -98,7 +98,7 @@ class DeviceWindowTest : public ShellTest {
         led_->toMm = {at.x(), at.y(), at.z()};
     }
     [[nodiscard]] bool burTo(double x, double z) {
-        const tooth::Case& c = *simulator().toothCase();
+        const cases::Case& c = *simulator().toothCase();
         const core::Box box = c.outer.bounds();
         const core::Vec3 to(x, 0.0, box.max.z() + z);
         leadBur(to, {box, c.fdiNumber, c.buccalSign});
@@ -160,7 +160,8 @@ TEST_F(DeviceWindowTest, CutsUntilItIsUnpluggedThenTheMouseGoesOnAndNothingIsLos
     led_->unplugged = true;
     EXPECT_TRUE(waitFor([&] { return noticed() == "device-trouble" || noticed() == "device-lost"; }));
     ASSERT_TRUE(waitFor([&] {
-        return noticed() == "device-lost" && !simulator().isBusy() && simulator().mode() == Simulator::Mode::sitting;
+        return noticed() == "device-lost" && !simulator().isBusy() &&
+               simulator().mode() == Simulator::Mode::liveSession;
     }));
     EXPECT_FALSE(simulator().usedHand());
     EXPECT_TRUE(simulator().mailbox());
@@ -168,14 +169,15 @@ TEST_F(DeviceWindowTest, CutsUntilItIsUnpluggedThenTheMouseGoesOnAndNothingIsLos
     EXPECT_TRUE(waitFor([&] { return field->text() == "Mouse"; })) << field->text().toStdString();
     EXPECT_TRUE(waitFor([&] { return led_->open == 0; }));
 
-    // The recording is whole, and what it ends with is the tooth that is open.
-    const station::SessionPlayer player(session, false);
+    // The recording is whole up to there, and what it ended with is the tooth that is open. It goes on with the mouse.
+    const simulation::SessionPlayer player(session, false);
     EXPECT_GT(player.durationS(), 0.1);
-    ASSERT_FALSE(player.events().empty());
-    EXPECT_EQ(player.events().back().name, session::nameOf(session::EventName::end));
-    const tooth::CutState now = simulator().tooth()->state(simulator().sample().removedMm3);
-    EXPECT_NE(player.events().back().text.find(station::hashText(tooth::stateHash(now))), std::string::npos)
-        << player.events().back().text;
+    const auto& events = player.events();
+    const auto end = std::find_if(events.rbegin(), events.rend(),
+                                  [](const auto& e) { return e.name == session::nameOf(session::EventName::end); });
+    ASSERT_TRUE(end != events.rend());
+    const tooth::StateDelta now = simulator().tooth()->state(simulator().sample().removedMm3);
+    EXPECT_NE(end->text.find(simulation::hashText(tooth::stateHash(now))), std::string::npos) << end->text;
     EXPECT_GT(removedMm3(), 0.05);
     EXPECT_TRUE(simulator().isUnsaved());
     ASSERT_TRUE(waitFor([&] { return simulator().status().undoSteps >= 1; }));
@@ -326,12 +328,12 @@ TEST_F(DeviceWindowTest, ThePageTellsSetsAndChecks) {
     }
     {
         fidelity::Report report = *box->report();
-        report.troubles = {link::Trouble::stalled, link::Trouble::vendorError};
+        report.troubles = {link::DeviceFault::stalled, link::DeviceFault::vendorError};
         report.vendorCode = 0x302;
         box->setReport(report);
         const auto rows = list->findItems(fidelityWords("Troubles"), Qt::MatchExactly, 1);
         ASSERT_EQ(rows.size(), 1);
-        EXPECT_TRUE(rows[0]->text(2).contains(problemOf(link::Trouble::stalled, 0).what));
+        EXPECT_TRUE(rows[0]->text(2).contains(problemOf(link::DeviceFault::stalled, 0).what));
         EXPECT_TRUE(rows[0]->text(2).contains("0x0302")) << rows[0]->text(2).toStdString();
     }
     for (const char* name : {"fidelity.html", "fidelity.json"}) {
@@ -522,9 +524,9 @@ class TwoArmsTest : public DeviceWindowTest {
             arms.units = {{"A1", "Inverse3 A1"}, {"B2", "Inverse3 B2"}};
             return std::vector<drivers::Found>{arms};
         };
-        options.hands.desk.open = [led = led_, opened = opened_](const station::DeviceChoice& choice) {
+        options.hands.desk.open = [led = led_, opened = opened_](const input::DeviceChoice& choice) {
             *opened = choice.name + "/" + choice.which;
-            return station::openDevice(std::make_unique<LedDriver>(led), choice);
+            return input::openDevice(std::make_unique<LedDriver>(led), choice);
         };
         return options;
     }

@@ -33,19 +33,19 @@ namespace fs = std::filesystem;
 class ExerciseTest : public ShellTest {
   protected:
     fs::path makeCase(const char* name, const std::vector<std::string>& locked) {
-        tooth::Case made = eggTooth(starter::ToothKind::lowerFirstMolar);
+        cases::Case made = eggTooth(starter::ToothKind::lowerFirstMolar);
         made.name = name;
         made.exercise.emplace();
         made.exercise->title = {{"en", "Class <b>I</b> cavity"}, {"ja", "I級窩洞"}};
         made.exercise->instructions = {{"en", "1.5 mm deep.\nKeep off the pulp."}, {"ja", "深さ1.5 mm。"}};
         made.exercise->lockedHelps = locked;
-        tooth::writeCase(made, at(name));
+        cases::writeCase(made, at(name));
         return at(name);
     }
     void openCase(const fs::path& place) {
         window().openFile(toQString(place));
         ASSERT_TRUE(waitFor([&] {
-            return simulator().document().caseFile == place && simulator().mode() == Simulator::Mode::sitting &&
+            return simulator().document().caseFile == place && simulator().mode() == Simulator::Mode::liveSession &&
                    !simulator().isBusy() && simulator().sample().tick > 10;
         }));
         view()->showStandardView(view::StandardView::occlusal);
@@ -71,7 +71,7 @@ class ExerciseTest : public ShellTest {
         action("actionHandIn")->trigger();
         EXPECT_TRUE(waitFor([&] {
             return fs::exists(toPath(file_)) && !simulator().isBusy() &&
-                   simulator().mode() == Simulator::Mode::sitting && simulator().sample().tick > 10;
+                   simulator().mode() == Simulator::Mode::liveSession && simulator().sample().tick > 10;
         }));
         return toPath(file_);
     }
@@ -258,8 +258,8 @@ class LockTest : public ExerciseTest {
                     if (name == session::EventName::reset) open_.insert("undo");
                 }
     }
-    [[nodiscard]] static std::set<std::string> all() { return {tooth::kHelps.begin(), tooth::kHelps.end()}; }
-    [[nodiscard]] static std::vector<std::string> allInARow() { return {tooth::kHelps.begin(), tooth::kHelps.end()}; }
+    [[nodiscard]] static std::set<std::string> all() { return {cases::kHelps.begin(), cases::kHelps.end()}; }
+    [[nodiscard]] static std::vector<std::string> allInARow() { return {cases::kHelps.begin(), cases::kHelps.end()}; }
 
     std::set<std::string> open_;
     QTimer closer_;
@@ -297,7 +297,8 @@ TEST_F(LockTest, WithAllLocksNothingIsOpenAtWorkNorInAReplayOfIt) {
     tryEverything();
     EXPECT_EQ(open_, std::set<std::string>{}) << "in the replay";
     simulator().closeReplay();
-    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting && !simulator().isBusy(); }));
+    ASSERT_TRUE(
+        waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession && !simulator().isBusy(); }));
     tryEverything();
     lookIntoTheRecording();
     EXPECT_EQ(open_, std::set<std::string>{}) << "afterwards";
@@ -305,7 +306,7 @@ TEST_F(LockTest, WithAllLocksNothingIsOpenAtWorkNorInAReplayOfIt) {
 
 TEST_F(LockTest, EachLockAloneClosesEveryWayToItsHelp) {
     start({});
-    for (const std::string_view help : tooth::kHelps) {
+    for (const std::string_view help : cases::kHelps) {
         openLocked((std::string("only-") + std::string(help)).c_str(), {std::string(help)});
         if (HasFatalFailure()) return;
         if (help == "undo" || help == "reset") {
@@ -344,8 +345,9 @@ TEST_F(LockTest, LocksAreThereAfterACrash) {
     window().greet();
     ASSERT_EQ(simulator().crashed().size(), 1u);
     simulator().recover(simulator().crashed().front());
-    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting && !simulator().isBusy(); }));
-    EXPECT_TRUE(simulator().permissions().locks(station::Operation::section));
+    ASSERT_TRUE(
+        waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession && !simulator().isBusy(); }));
+    EXPECT_TRUE(simulator().permissions().locks(exercise::Operation::section));
     EXPECT_EQ(part<QLabel>("exerciseInstructions")->text(), "1.5 mm deep.\nKeep off the pulp.");
     EXPECT_EQ(simulator().recording(), recording) << "the work goes on in its recording";
     EXPECT_TRUE(simulator().document().recordings.empty());
@@ -359,10 +361,10 @@ TEST_F(ExerciseTest, AResumedAttemptKeepsToTheBursThatAreAllowed) {
     action("actionSaveAs")->trigger();
     ASSERT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !simulator().isBusy(); }));
     // The teacher allows fewer burs since.
-    tooth::OpenAttempt open = tooth::openAttempt(toPath(file_));
+    cases::OpenAttempt open = cases::openAttempt(toPath(file_));
     EXPECT_EQ(open.attempt.bur, "245");
     open.toothCase.exercise->allowedBurs = {"round-4", "330"};
-    tooth::writeAttempt(open.attempt, toPath(file_), &open.toothCase);
+    cases::writeAttempt(open.attempt, toPath(file_), &open.toothCase);
     action("actionResume")->trigger();
     ASSERT_TRUE(waitFor([this] { return simulator().burName() == "round-4" && !simulator().isBusy(); }));
     EXPECT_EQ(window().findChild<DrillBar*>()->bur(), "round-4");
@@ -381,19 +383,20 @@ TEST_F(ExerciseTest, HandsInTheToothItsRecordingsAndWhoseItIs) {
     EXPECT_FALSE(simulator().isUnsaved());
     EXPECT_NEAR(removedMm3(), before, 1e-9) << "the work goes on";
     EXPECT_FALSE(action("actionDepth")->isEnabled());
-    const tooth::Attempt first = tooth::readAttempt(file);
+    const cases::Attempt first = cases::readAttempt(file);
     EXPECT_TRUE(first.handedIn);
     EXPECT_EQ(first.student, "S-07");
     ASSERT_EQ(first.recordings.size(), 1u);
     EXPECT_TRUE(first.recordings[0].packed);
-    EXPECT_FALSE(tooth::readRecording(file, first.recordings[0].name).empty());
+    EXPECT_FALSE(cases::readRecording(file, first.recordings[0].name).empty());
     // Cut on, after a replay, and handed in again: nobody is asked twice, all recordings are in it.
     ASSERT_TRUE(cut());
     action("actionReplay")->trigger();
     ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay && !simulator().isBusy(); }));
     simulator().closeReplay();
-    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting && !simulator().isBusy(); }));
-    const tooth::Attempt second = tooth::readAttempt(handIn("again.handpiece"));
+    ASSERT_TRUE(
+        waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession && !simulator().isBusy(); }));
+    const cases::Attempt second = cases::readAttempt(handIn("again.handpiece"));
     EXPECT_EQ(askedStudent_, 1);
     ASSERT_EQ(second.recordings.size(), 1u) << "all of it is one recording, named once";
     EXPECT_TRUE(second.recordings[0].packed);
@@ -439,13 +442,14 @@ TEST_F(ExerciseTest, WhoLooksAtWhatWasHandedInHasNoLocksAndChangesNothing) {
 
     // Or gone on with: then as the exercise has it.
     part<QPushButton>("exerciseGoOn")->click();
-    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting && !simulator().isBusy(); }));
+    ASSERT_TRUE(
+        waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession && !simulator().isBusy(); }));
     EXPECT_FALSE(action("actionDepth")->isEnabled());
     EXPECT_NEAR(removedMm3(), cutMm3, 1e-9);
     // Saved over itself it keeps what came with it.
     action("actionSave")->trigger();
     ASSERT_TRUE(waitFor([this] { return !simulator().isBusy(); }));
-    const tooth::Attempt saved = tooth::readAttempt(file);
+    const cases::Attempt saved = cases::readAttempt(file);
     EXPECT_FALSE(saved.handedIn);
     ASSERT_EQ(saved.recordings.size(), 2u);
     EXPECT_TRUE(saved.recordings[0].packed);

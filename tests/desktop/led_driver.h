@@ -97,7 +97,7 @@ class LedDriver final : public link::Driver {
             ++reading.frame;
             reading.buttons = led_->buttons;
             reading.motorTemperature = 0.25f;
-            reading.trouble = led_->unplugged ? link::Trouble::unplugged : link::Trouble::none;
+            reading.trouble = led_->unplugged ? link::DeviceFault::unplugged : link::DeviceFault::none;
             const link::DriverCommand command = servo.exchange(reading);
             const double sentN = std::hypot(command.forceN[0], command.forceN[1], command.forceN[2]);
             led_->largestSentN = std::max(led_->largestSentN.load(), sentN);

@@ -47,12 +47,12 @@ void keep(QWidget& widget, const QString& name, const QSize& size = {}) {
     image.save(QDir(folder).filePath(name + suffix + ".png"));
 }
 
-std::vector<station::PlotPoint> aCut() {
-    std::vector<station::PlotPoint> points;
+std::vector<simulation::PlotPoint> aCut() {
+    std::vector<simulation::PlotPoint> points;
     for (int i = 0; i <= 2000; ++i) {
-        station::PlotPoint p;
-        p.timeS = 30 + i * station::kPlotStepS;
-        const double t = i * station::kPlotStepS, on = std::fmod(t, 5.0) > 1.2 && std::fmod(t, 5.0) < 4.4;
+        simulation::PlotPoint p;
+        p.timeS = 30 + i * simulation::kPlotStepS;
+        const double t = i * simulation::kPlotStepS, on = std::fmod(t, 5.0) > 1.2 && std::fmod(t, 5.0) < 4.4;
         p.forceN =
             static_cast<float>(on * (1.1 + 0.35 * std::sin(9 * t) + 0.12 * std::sin(71 * t)) + (i == 1420 ? 3.0 : 0));
         p.depthMm = static_cast<float>(std::min(1.9, 0.11 * t) * (on ? 1 : 0.4));
@@ -150,10 +150,10 @@ void panels() {
             column->addWidget(gauge);
         }
         auto* bars = new VolumeBars(&row);
-        using tooth::Tissue;
+        using cases::Tissue;
         bars->setLegend(
             {{Tissue::enamel, {244, 241, 230}}, {Tissue::dentine, {226, 199, 140}}, {Tissue::caries, {104, 66, 34}}});
-        std::array<double, tooth::kTissueCount> mm3{};
+        std::array<double, cases::kTissueCount> mm3{};
         mm3[1] = 6.42;
         mm3[2] = 3.1;
         mm3[3] = 0.04;

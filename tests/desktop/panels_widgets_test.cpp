@@ -179,11 +179,11 @@ class PanelsWidgetsTest : public QObject {
         box.setMultipliers({2.0, 1.0, 1.0});
         show(box);
         // Enamel asks for twice what the device has, pulp for a tenth.
-        const auto enamel = box.springOf(tooth::Tissue::enamel), pulp = box.springOf(tooth::Tissue::pulp);
+        const auto enamel = box.springOf(cases::Tissue::enamel), pulp = box.springOf(cases::Tissue::pulp);
         QVERIFY(enamel.clipped());
         QCOMPARE(enamel.givenNPerMm, limits.maxStiffnessNPerMm);
         QCOMPARE(enamel.wantedNPerMm,
-                 2 * limits.maxStiffnessNPerMm * tooth::properties(tooth::Tissue::enamel).stiffnessFraction);
+                 2 * limits.maxStiffnessNPerMm * cases::properties(cases::Tissue::enamel).stiffnessFraction);
         QVERIFY(!pulp.clipped());
         auto* table = part<QTableWidget>(box, "tissueTable");
         QVERIFY(table->item(0, 1)->text().contains(QChar(0x25b2)));
@@ -224,9 +224,9 @@ class PanelsWidgetsTest : public QObject {
     void plotsKeepEveryPeak() {
         PlotPanel plot;
         show(plot, {300, 300});  // far fewer columns than points
-        std::vector<station::PlotPoint> points(2000);
+        std::vector<simulation::PlotPoint> points(2000);
         for (std::size_t i = 0; i < points.size(); ++i) {
-            points[i].timeS = double(i) * station::kPlotStepS;
+            points[i].timeS = double(i) * simulation::kPlotStepS;
             points[i].forceN = 0.2f;
         }
         for (const std::size_t peak : {3, 777, 1501, 1999}) {
@@ -246,7 +246,7 @@ class PanelsWidgetsTest : public QObject {
     }
     void plotsAreSaved() {
         PlotPanel plot;
-        std::vector<station::PlotPoint> points(3);
+        std::vector<simulation::PlotPoint> points(3);
         for (int i = 0; i < 3; ++i)
             points[std::size_t(i)].timeS = i;
         plot.append(points);
@@ -414,9 +414,9 @@ class PanelsWidgetsTest : public QObject {
         QTest::keyClick(part<QCheckBox>(box, "sectionOn"), Qt::Key_Space);
         QTest::keyClick(part<QSlider>(box, "sectionSlider"), Qt::Key_Right);
         QVERIFY(std::abs(section.last()[2].toDouble() - 0.1) < 1e-9);
-        tooth::Exercise exercise;
+        cases::Exercise exercise;
         exercise.lockedHelps = {"cross-section", "depth"};
-        box.setPermissions(station::permissionsOf(&exercise, station::WorkMode::work));
+        box.setPermissions(exercise::permissionsOf(&exercise, exercise::WorkMode::work));
         QCOMPARE(section.last()[0].toBool(), false);
         QVERIFY(!part<QLabel>(box, "depthReadout")->isVisible());
         QVERIFY(!part<QCheckBox>(box, "depthStopOn")->isEnabled());
@@ -433,7 +433,7 @@ class PanelsWidgetsTest : public QObject {
         QCOMPARE(chosen[0][0].value<view::StandardView>(), view::StandardView::mesial);
         QTest::keyClick(part<QCheckBox>(bar, "showTissue_enamel"), Qt::Key_Space);
         QCOMPARE(look.size(), 1);
-        QVERIFY(!bar.look().visible[std::size_t(tooth::Tissue::enamel)]);
+        QVERIFY(!bar.look().visible[std::size_t(cases::Tissue::enamel)]);
         view::Look other;
         other.eyeSeparationMm = 7;
         other.wet = false;
@@ -442,9 +442,9 @@ class PanelsWidgetsTest : public QObject {
         QTest::keyClick(part<QCheckBox>(bar, "showWet"), Qt::Key_Space);
         QVERIFY(bar.look().wet);
         QCOMPARE(bar.look().eyeSeparationMm, 7.0);
-        tooth::Exercise exercise;
+        cases::Exercise exercise;
         exercise.lockedHelps = {"transparency", "scale-bar"};
-        bar.setPermissions(station::permissionsOf(&exercise, station::WorkMode::work));
+        bar.setPermissions(exercise::permissionsOf(&exercise, exercise::WorkMode::work));
         QVERIFY(!part<QCheckBox>(bar, "showScaleBar")->isEnabled());
         QVERIFY(!part<QCheckBox>(bar, "showTissue_enamel")->isEnabled());
     }

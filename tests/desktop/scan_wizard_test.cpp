@@ -21,7 +21,7 @@
 #include <memory>
 
 #include "handpiece/base/core/file.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/case/case.h"
 #include "handpiece/scan/volume/write_scan.h"
 #include "scan/histogram_view.h"
 #include "scan/install.h"
@@ -37,8 +37,8 @@ namespace handpiece::desktop {
 namespace {
 
 namespace fs = std::filesystem;
+using cases::Tissue;
 using core::Vec3;
-using tooth::Tissue;
 
 std::string textOf(const fs::path& file) {
     const std::vector<std::byte> bytes = core::readFile(file);
@@ -121,7 +121,7 @@ class ScanWizardTest : public ::testing::Test {
     }
     [[nodiscard]] fs::path unfinished() const { return toPath(own_.filePath(QStringLiteral("unfinished.toml"))); }
     [[nodiscard]] ScanModel& model() { return wizard_->model(); }
-    [[nodiscard]] const station::ScanJob& job() { return model().job(); }
+    [[nodiscard]] const scan_case::ScanJob& job() { return model().job(); }
     template <class W>
     [[nodiscard]] W* find(const char* name) {
         W* found = wizard_->findChild<W*>(QLatin1String(name));
@@ -198,14 +198,14 @@ TEST_F(ScanWizardTest, FromAFileToACaseThatCanBeRead) {
     click("scanTry");
     ASSERT_TRUE(waitFor([&] { return !tried.isEmpty() || model().problem(); })) << this->said();
     ASSERT_FALSE(tried.isEmpty()) << this->said();
-    const tooth::Case read = tooth::readCase(toPath(tried));
+    const cases::Case read = cases::readCase(toPath(tried));
     EXPECT_EQ(read.name, "Egg with a cap");
     EXPECT_EQ(read.fdiNumber, 46);
     EXPECT_EQ(read.buccalSign, -1);
-    tooth::requireSolid(read.outer, "outer");
+    cases::requireSolid(read.outer, "outer");
     EXPECT_NEAR(geometry::enclosedVolumeMm3(read.outer), ball, 0.03 * ball);
     // The crown, where the enamel is, is up.
-    for (const tooth::Part& part : read.parts)
+    for (const cases::Part& part : read.parts)
         if (part.tissue == Tissue::dentine) {
             EXPECT_GT(read.outer.bounds().max.z() - part.mesh.bounds().max.z(), 0.6);
             EXPECT_LT(part.mesh.bounds().min.z() - read.outer.bounds().min.z(), 0.3);
@@ -240,7 +240,7 @@ TEST_F(ScanWizardTest, FromAFileToACaseThatCanBeRead) {
     ASSERT_TRUE(waitFor([this] { return model().problem().has_value(); }));
     EXPECT_EQ(model().problem()->id, QLatin1String("scan-report-missing")) << this->said();
     EXPECT_FALSE(find<QPushButton>("scanOpenReport")->isEnabled());
-    EXPECT_EQ(tooth::readCase(toPath(own_.filePath(QStringLiteral("egg.handpiece")))).name, "Egg with a cap2");
+    EXPECT_EQ(cases::readCase(toPath(own_.filePath(QStringLiteral("egg.handpiece")))).name, "Egg with a cap2");
 }
 
 TEST_F(ScanWizardTest, AThresholdIsDraggedAndTakenBack) {
@@ -284,9 +284,9 @@ TEST_F(ScanWizardTest, EveryDecisionInASliceCanBeTakenBack) {
     openTissues();
     auto* slice = find<SliceView>("sliceCoronal");
     const auto at = [&](const Vec3& mm) { return slice->pixelOf(mm).toPoint(); };
-    std::vector<std::string> states{station::toToml(job())};
+    std::vector<std::string> states{scan_case::toToml(job())};
     const auto changed = [&] {
-        states.push_back(station::toToml(job()));
+        states.push_back(scan_case::toToml(job()));
         EXPECT_NE(states.back(), states[states.size() - 2]);
     };
 
@@ -330,11 +330,11 @@ TEST_F(ScanWizardTest, EveryDecisionInASliceCanBeTakenBack) {
 
     for (std::size_t i = states.size() - 1; i > 0; --i) {
         click("scanUndo");
-        EXPECT_EQ(station::toToml(job()), states[i - 1]);
+        EXPECT_EQ(scan_case::toToml(job()), states[i - 1]);
     }
     for (std::size_t i = 1; i < states.size(); ++i) {
         click("scanRedo");
-        EXPECT_EQ(station::toToml(job()), states[i]);
+        EXPECT_EQ(scan_case::toToml(job()), states[i]);
     }
     // A stroke goes as a whole, out of the list.
     find<QListWidget>("scanDecisions")->setCurrentRow(1);
@@ -345,7 +345,7 @@ TEST_F(ScanWizardTest, EveryDecisionInASliceCanBeTakenBack) {
 
 TEST_F(ScanWizardTest, APlaceWithoutAToothIsToldOfInWordsOfTheWindow) {
     openTissues();
-    station::ScanJob far = job();
+    scan_case::ScanJob far = job();
     far.segmentation.toothAtMm = Vec3(-4.8, -4.2, -7.3);
     model().decide(far);
     ASSERT_TRUE(waitFor([this] { return model().problem().has_value() || model().isPreviewFresh(); }));
@@ -384,7 +384,7 @@ TEST_F(ScanWizardTest, SlicesFollowWheelDragAndKeys) {
 TEST_F(ScanWizardTest, StoppedInTheMiddleLeavesNothingAndGoesOn) {
     openTissues();
     model().decide([&] {
-        station::ScanJob next = job();
+        scan_case::ScanJob next = job();
         next.name = "Egg";
         next.segmentation.spacingMm = 0.05;  // long enough to be stopped
         return next;
@@ -410,16 +410,16 @@ TEST_F(ScanWizardTest, StoppedInTheMiddleLeavesNothingAndGoesOn) {
 
 TEST_F(ScanWizardTest, AClosedWizardIsGoneOnWith) {
     openTissues();
-    station::ScanJob next = job();
+    scan_case::ScanJob next = job();
     next.segmentation.lesions.push_back({Vec3(1, 0, 4), Vec3::Constant(0.8)});
     next.name = "Half an egg";
     model().decide(next);
-    const std::string decided = station::toToml(job());
+    const std::string decided = scan_case::toToml(job());
     open();
     EXPECT_TRUE(find<QFrame>("scanUnfinished")->isVisible());
     EXPECT_TRUE(job().source.empty());
     click("scanGoOn");
-    EXPECT_EQ(station::toToml(job()), decided);
+    EXPECT_EQ(scan_case::toToml(job()), decided);
     ASSERT_TRUE(waitFor([this] { return model().scan() != nullptr; })) << said();
     ASSERT_TRUE(wizard_->goTo(ScanWizard::tissues));
     EXPECT_FALSE(find<QFrame>("scanUnfinished")->isVisible());
@@ -516,14 +516,15 @@ TEST_F(ScanWizardTest, LabelsAreTakenAsTheyAre) {
 
 TEST_F(ScanWizardTest, StepsAreSavedForTheCommandLine) {
     openTissues();
-    station::ScanJob next = job();
+    scan_case::ScanJob next = job();
     next.segmentation.cutPlanes.push_back({Vec3(0, 0, -6), -Vec3::UnitZ()});
     next.percents = {25};
     next.name = "Egg";
     model().decide(next);
     answer_ = own_.filePath(QStringLiteral("steps"));
     click("scanSaveSteps");
-    EXPECT_EQ(station::toToml(station::readScanJob(toPath(answer_ + QStringLiteral(".toml")))), station::toToml(job()));
+    EXPECT_EQ(scan_case::toToml(scan_case::readScanJob(toPath(answer_ + QStringLiteral(".toml")))),
+              scan_case::toToml(job()));
 }
 
 TEST_F(ScanWizardTest, TheToothIsTurnedByHand) {
@@ -591,10 +592,10 @@ TEST_F(ScanInWindowTest, AFolderOfSlicesDroppedOnTheWindowOpensTheWizard) {
     EXPECT_EQ(window().findChildren<ScanWizard*>().size(), 1);
     // "Try it now" is the window's matter.
     const fs::path place = toPath(own_.filePath(QStringLiteral("egg.handpiece")));
-    tooth::writeCase(eggTooth(starter::ToothKind::lowerFirstMolar), place);
+    cases::writeCase(eggTooth(starter::ToothKind::lowerFirstMolar), place);
     emit wizard->tryNow(toQString(place));
     ASSERT_TRUE(waitFor([&] {
-        return !simulator().isBusy() && simulator().mode() == Simulator::Mode::sitting &&
+        return !simulator().isBusy() && simulator().mode() == Simulator::Mode::liveSession &&
                simulator().document().caseFile == place;
     }));
     EXPECT_TRUE(waitFor([this] { return window().findChild<ScanWizard*>() == nullptr; }));
@@ -604,11 +605,11 @@ TEST_F(ScanInWindowTest, CasesAndMeshesAreNoScans) {
     startWithTooth();
     installScanWizard(window());
     const fs::path folder = toPath(own_.filePath(QStringLiteral("case")));
-    tooth::writeCase(eggTooth(starter::ToothKind::lowerFirstMolar), folder);
+    cases::writeCase(eggTooth(starter::ToothKind::lowerFirstMolar), folder);
     drop(toQString(folder));
     EXPECT_FALSE(window().findChild<ScanWizard*>());
     ASSERT_TRUE(waitFor([&] {
-        return !simulator().isBusy() && simulator().mode() == Simulator::Mode::sitting &&
+        return !simulator().isBusy() && simulator().mode() == Simulator::Mode::liveSession &&
                simulator().document().caseFile == folder;
     }));
 }

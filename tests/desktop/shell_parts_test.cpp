@@ -12,8 +12,8 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/model/case/case_bytes.h"
 #include "handpiece/model/instrument/catalogue.h"
-#include "handpiece/model/tooth/case_bytes.h"
 #include "handpiece/record/session/recorder.h"
 #include "handpiece/record/session/session_reader.h"
 #include "handpiece/senses/sound/player.h"
@@ -109,7 +109,7 @@ TEST(Settings, AreSetAsideWhenBroken) {
 
 TEST(Histogram, KnowsSharesToWithinItsCells) {
     std::vector<double> all;
-    station::Histogram histogram;
+    simulation::Histogram histogram;
     for (int i = 0; i < 5000; ++i) {
         all.push_back(3.0 * std::exp(2.0 * std::sin(0.37 * i)));
         histogram.add(all.back());
@@ -121,7 +121,7 @@ TEST(Histogram, KnowsSharesToWithinItsCells) {
         const double truth = all[static_cast<std::size_t>(share * 5000.0) - 1];
         EXPECT_NEAR(histogram.at(share) / truth, 1.0, 0.012) << share;
     }
-    EXPECT_EQ(station::Histogram{}.at(0.5), 0.0);
+    EXPECT_EQ(simulation::Histogram{}.at(0.5), 0.0);
 }
 
 TEST(CommandLine, TakesWhatMeasuringScriptsNeed) {
@@ -197,17 +197,17 @@ TEST(SessionShelf, DeletesTheOldestButNeverUnsavedWork) {
 
 /// A fifth of a second over a block; in its middle the machine slept for half a second.
 void recordWithAGap(const fs::path& file) {
-    tooth::Case block;
+    cases::Case block;
     block.name = "block";
     block.outer = test::boxMesh(core::Vec3(-2, -2, -2), core::Vec3(2, 2, 0));
-    station::StationSettings settings;
+    simulation::SimulationSettings settings;
     settings.field.voxelMm = 0.1;
     settings.bur = instrument::makeInstrument("round-4").bur;
-    const station::Station station = station::makeStation(block, settings, false);
+    const simulation::SimulationSetup station = simulation::makeSimulation(block, settings, false);
     session::SessionInfo info;
     info.rateHz = settings.rateHz;
-    info.settings = station::settingsJson(station.settings);
-    info.tooth = tooth::encodeCase(block);
+    info.settings = simulation::settingsJson(station.settings);
+    info.tooth = cases::encodeCase(block);
     session::Recorder recorder(file, info);
     loop::HapticLoop loop(
         {},
@@ -226,7 +226,7 @@ TEST(ReplayDriver, PlaysOnWhereTheMachineLeftPeriodsOut) {
     const QTemporaryDir folder;
     const fs::path file = toPath(folder.filePath("session.h5"));
     recordWithAGap(file);
-    ReplayDriver driver(std::make_unique<station::SessionPlayer>(file, false));
+    ReplayDriver driver(std::make_unique<simulation::SessionPlayer>(file, false));
     EXPECT_GT(driver.durationS(), 0.6);
     driver.play(true);
     EXPECT_TRUE(waitFor([&] { return !driver.now().playing; }));
@@ -253,13 +253,13 @@ TEST(Problems, OfTheLibraryAreKnownByTheirIds) {
     EXPECT_EQ(idOf([&] { (void)core::readFile("/dev/null"); }), "not-a-file");
     EXPECT_EQ(idOf([&] { core::writeFile("/dev/null/none", "x"); }), "not-writable");
     EXPECT_EQ(core::writeErrorId(ENOSPC), "no-space");
-    EXPECT_EQ(idOf([&] { (void)tooth::readCase(toPath(folder.path())); }), "not-a-case");
+    EXPECT_EQ(idOf([&] { (void)cases::readCase(toPath(folder.path())); }), "not-a-case");
     put(at("bad/case.toml"), "format = [");
-    EXPECT_EQ(idOf([&] { (void)tooth::readCase(at("bad")); }), "bad-text");
+    EXPECT_EQ(idOf([&] { (void)cases::readCase(at("bad")); }), "bad-text");
     put(at("no.stl"), "rubbish");
-    EXPECT_EQ(idOf([&] { (void)tooth::readCase(at("no.stl")); }), "bad-mesh");
+    EXPECT_EQ(idOf([&] { (void)cases::readCase(at("no.stl")); }), "bad-mesh");
     put(at("no.handpiece"), "rubbish");
-    EXPECT_EQ(idOf([&] { (void)tooth::readCase(at("no.handpiece")); }), "not-a-package");
+    EXPECT_EQ(idOf([&] { (void)cases::readCase(at("no.handpiece")); }), "not-a-package");
     put(at("no.h5"), "rubbish");
     EXPECT_EQ(idOf([&] { (void)session::SessionReader(at("no.h5")); }), "not-a-session");
     put(at("no.wav"), "rubbish");
@@ -268,7 +268,7 @@ TEST(Problems, OfTheLibraryAreKnownByTheirIds) {
     geometry::TriangleMesh open;
     open.vertices = {{0, 0, 0}, {5, 0, 0}, {0, 5, 0}};
     open.triangles = {{0, 1, 2}};
-    const Problem hole = problemOf(errorOf([&] { tooth::requireSolid(open, "open.stl"); }));
+    const Problem hole = problemOf(errorOf([&] { cases::requireSolid(open, "open.stl"); }));
     EXPECT_EQ(hole.id, "not-closed");
     EXPECT_EQ(hole.where, "open.stl");
     EXPECT_EQ(hole.arguments.value(0), "3");

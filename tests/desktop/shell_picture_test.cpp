@@ -11,6 +11,7 @@
 #include <QTableWidget>
 #include <fstream>
 
+#include "handpiece/app/input/pointer_controller.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "panels/bur_list.h"
 #include "panels/drill_bar.h"
@@ -20,7 +21,6 @@
 #include "panels/welcome_strip.h"
 #include "shell/job_strip.h"
 #include "shell_support.h"
-#include "station/pointer_hand.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -48,7 +48,7 @@ class PictureTest : public ShellTest {
         return ids;
     }
     [[nodiscard]] double pulpMm3() {
-        return simulator().sample().removedMm3[static_cast<std::size_t>(tooth::Tissue::pulp)];
+        return simulator().sample().removedMm3[static_cast<std::size_t>(cases::Tissue::pulp)];
     }
 };
 
@@ -120,7 +120,7 @@ TEST_F(PictureTest, AMessageLiesOverThePictureAndAPressOnItCutsNothing) {
 
 TEST_F(PictureTest, AToothThatWasResetHasNoOpenPulp) {
     startWithTooth();
-    view()->setLoad(station::kMostLoadN);
+    view()->setLoad(input::kMaxLoadN);
     view()->showStandardView(view::StandardView::occlusal);
     const QPoint middle = view()->rect().center();
     ASSERT_TRUE(cut());
@@ -243,7 +243,7 @@ TEST_F(PictureTest, NoTissueIsElidedInASmallWindow) {
 TEST_F(PictureTest, TheForceOfAMouseIsNoDevicesLimit) {
     startWithTooth();
     EXPECT_FALSE(simulator().givesForce());
-    view()->setLoad(station::kMostLoadN);
+    view()->setLoad(input::kMaxLoadN);
     QSet<QString> told;
     QObject::connect(&simulator(), &Simulator::noticed, view(), [&](const QString& id) { told << id; });
     ASSERT_TRUE(cut());

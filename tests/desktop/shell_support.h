@@ -31,27 +31,27 @@ inline bool waitFor(const std::function<bool()>& what) {
     return QTest::qWaitFor(what, 300000);
 }
 
-inline tooth::Case eggTooth(starter::ToothKind kind) {
+inline cases::Case eggTooth(starter::ToothKind kind) {
     const starter::ToothKindInfo& info = starter::infoOf(kind);
     const auto egg = [](int level, double scale) {
         return test::icosphere(level, [scale](const core::Vec3& v) {
             return core::Vec3(scale * 4.5 * v.x(), scale * 4.0 * v.y(), scale * 6.0 * v.z());
         });
     };
-    tooth::Case made;
+    cases::Case made;
     made.name = std::string(info.name) + " (egg)";
     made.kind = info.name;
     made.fdiNumber = info.fdiNumber;
     made.buccalSign = info.buccalSign;
     made.outer = egg(4, 1.0);
-    const auto part = [](const char* name, tooth::Tissue tissue, int priority, geometry::TriangleMesh mesh) {
-        return tooth::Part{name, tissue, priority, std::move(mesh)};
+    const auto part = [](const char* name, cases::Tissue tissue, int priority, geometry::TriangleMesh mesh) {
+        return cases::Part{name, tissue, priority, std::move(mesh)};
     };
-    made.parts = {part("enamel", tooth::Tissue::enamel, 0, egg(4, 1.0)),
-                  part("dentine", tooth::Tissue::dentine, 1, egg(3, 0.8)),
-                  part("pulp", tooth::Tissue::pulp, 2, egg(2, 0.3))};
+    made.parts = {part("enamel", cases::Tissue::enamel, 0, egg(4, 1.0)),
+                  part("dentine", cases::Tissue::dentine, 1, egg(3, 0.8)),
+                  part("pulp", cases::Tissue::pulp, 2, egg(2, 0.3))};
     made.scenery = {
-        part("gum", tooth::Tissue::gum, 0, test::boxMesh(core::Vec3(-9.0, -7.0, -9.0), core::Vec3(9.0, 7.0, -4.0)))};
+        part("gum", cases::Tissue::gum, 0, test::boxMesh(core::Vec3(-9.0, -7.0, -9.0), core::Vec3(9.0, 7.0, -4.0)))};
     return made;
 }
 
@@ -63,7 +63,7 @@ class ShellTest : public ::testing::Test {
         static const bool made = [] {
             for (const starter::ToothKind kind :
                  {starter::ToothKind::lowerFirstMolar, starter::ToothKind::upperIncisor})
-                tooth::writeCase(eggTooth(kind),
+                cases::writeCase(eggTooth(kind),
                                  toPath(folder.filePath("starter")) /
                                      (std::string(starter::infoOf(kind).name) + "-4000-" HANDPIECE_VERSION));
             return true;
@@ -98,7 +98,7 @@ class ShellTest : public ::testing::Test {
     }
     void startWithTooth(const CommandLine& line = {}) {
         start(line);
-        ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+        ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
         view()->showStandardView(view::StandardView::occlusal);
     }
     [[nodiscard]] MainWindow& window() { return host_->window(); }

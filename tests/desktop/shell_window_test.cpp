@@ -21,6 +21,7 @@
 #include <set>
 
 #include "desktop/view/section_bar.h"
+#include "handpiece/app/input/pointer_controller.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/mesh_io.h"
@@ -34,7 +35,6 @@
 #include "panels/timeline.h"
 #include "panels/volume_bars.h"
 #include "shell_support.h"
-#include "station/pointer_hand.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -50,7 +50,7 @@ void collect(const QMenu* menu, QSet<QAction*>& into) {
 
 TEST_F(ShellTest, OpensOnTheStarterToothWithBur330AndNoDialog) {
     start();
-    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
     EXPECT_EQ(simulator().toothCase()->kind, "lower-first-molar");
     EXPECT_EQ(window().findChild<DrillBar*>()->bur(), "330");
     EXPECT_EQ(window().detail(), Detail::practice);
@@ -116,8 +116,8 @@ TEST_F(ShellTest, CutsUndoesSavesAndResumes) {
 TEST_F(ShellTest, AsksBeforeUnsavedWorkGoes) {
     startWithTooth();
     // The mouse's hand begins where an arm's does.
-    const tooth::Case& c = *simulator().toothCase();
-    const core::Pose start = station::startPose(c.outer.bounds(), c.fdiNumber, c.buccalSign);
+    const cases::Case& c = *simulator().toothCase();
+    const core::Pose start = input::startPose(c.outer.bounds(), c.fdiNumber, c.buccalSign);
     EXPECT_LT((simulator().startPose().positionMm - start.positionMm).norm(), 1e-9);
     EXPECT_LT(simulator().startPose().orientation.angularDistance(start.orientation), 1e-6);
     ASSERT_TRUE(cut());
@@ -135,9 +135,9 @@ TEST_F(ShellTest, AsksBeforeUnsavedWorkGoes) {
 TEST_F(ShellTest, WhatIsOpenedWhileAnotherToothIsOpeningIsNotLost) {
     const fs::path first = at("first"), last = at("last");
     for (const fs::path& place : {first, last}) {
-        tooth::Case made = eggTooth(starter::ToothKind::lowerFirstMolar);
+        cases::Case made = eggTooth(starter::ToothKind::lowerFirstMolar);
         made.name = place.filename().string();
-        tooth::writeCase(made, place);
+        cases::writeCase(made, place);
     }
     startWithTooth();
     window().openStarter({starter::ToothKind::upperIncisor, 4000});
@@ -196,8 +196,8 @@ TEST_F(ShellTest, AFullDiskLosesNothing) {
 }
 
 TEST_F(ShellTest, ACaseThatVanishesIsSavedWithTheAttempt) {
-    const tooth::Case made = eggTooth(starter::ToothKind::lowerFirstMolar);
-    tooth::writeCase(made, at("case"));
+    const cases::Case made = eggTooth(starter::ToothKind::lowerFirstMolar);
+    cases::writeCase(made, at("case"));
     CommandLine line;
     line.file = own_.filePath("case");
     startWithTooth(line);
@@ -237,7 +237,7 @@ TEST_F(ShellTest, BadFilesAreToldAndTheToothStays) {
         ASSERT_TRUE(idle());
     }
     EXPECT_EQ(simulator().tooth(), before);
-    EXPECT_EQ(simulator().mode(), Simulator::Mode::sitting);
+    EXPECT_EQ(simulator().mode(), Simulator::Mode::liveSession);
 }
 
 TEST_F(ShellTest, ParametersReachTheLoopAndTheRecording) {
@@ -290,7 +290,7 @@ TEST_F(ShellTest, ReplaysWhatWasDoneAndComesBack) {
     ASSERT_TRUE(waitFor([&] { return std::abs(removedMm3() - cutMm3) < 1e-9; }));
     EXPECT_EQ(simulator().toothCase()->scenery.size(), 1u);
     simulator().closeReplay();
-    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
     ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 10; }));
     EXPECT_NEAR(removedMm3(), cutMm3, 1e-9);
     EXPECT_TRUE(simulator().isUnsaved());
@@ -301,7 +301,7 @@ TEST_F(ShellTest, ReplaysWhatWasDoneAndComesBack) {
     action("actionReplay")->trigger();
     ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
     simulator().closeReplay();
-    ASSERT_TRUE(waitFor([&] { return simulator().mode() == Simulator::Mode::sitting && removedMm3() > cutMm3; }));
+    ASSERT_TRUE(waitFor([&] { return simulator().mode() == Simulator::Mode::liveSession && removedMm3() > cutMm3; }));
     ASSERT_TRUE(waitFor([this] { return simulator().status().undoSteps == 2; }));
     ASSERT_TRUE(undoAll());
     EXPECT_TRUE(waitFor([this] { return removedMm3() == 0.0 && !simulator().isUnsaved(); }));
@@ -356,7 +356,7 @@ TEST_F(ShellTest, PanelsFollowAReplayBackAndForth) {
     EXPECT_EQ(speeds.size(), 2u);
     // The person's own choice stands.
     simulator().closeReplay();
-    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
     EXPECT_EQ(simulator().driveName(), "low-speed");
 }
 
@@ -378,7 +378,7 @@ TEST_F(ShellTest, LayoutsLanguagesAndColoursChangeWhileOneWorks) {
         EXPECT_TRUE(view()->hasTooth());
     }
     EXPECT_EQ(simulator().tooth(), tooth);
-    EXPECT_EQ(simulator().mode(), Simulator::Mode::sitting);
+    EXPECT_EQ(simulator().mode(), Simulator::Mode::liveSession);
     // And it is so at the next start.
     window().rememberAll();
     start();
@@ -392,14 +392,14 @@ TEST_F(ShellTest, AFileThatCannotBeOpenedIsToldOfAndThereIsAToothAllTheSame) {
     start(line);
     ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
     window().errorDialog()->reject();
-    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
     EXPECT_EQ(simulator().toothCase()->kind, "lower-first-molar");
 }
 
 TEST_F(ShellTest, ACaseASurfaceAndARecordingAreOpenedByDroppingThem) {
     startWithTooth();
-    const tooth::Case made = eggTooth(starter::ToothKind::upperIncisor);
-    tooth::writeCase(made, at("incisor"));
+    const cases::Case made = eggTooth(starter::ToothKind::upperIncisor);
+    cases::writeCase(made, at("incisor"));
     drop(own_.filePath("incisor"));
     ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "upper-incisor"; }));
     geometry::writeMesh(at("outer.stl"), made.outer);
@@ -445,7 +445,7 @@ TEST_F(ShellTest, TheCodeGoesIntoRecordingsAndAttempts) {
     file_ = own_.filePath("coded.handpiece");
     action("actionSaveAs")->trigger();
     ASSERT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !simulator().isUnsaved(); }));
-    EXPECT_EQ(tooth::openAttempt(toPath(file_)).attempt.student, "B-4");
+    EXPECT_EQ(cases::openAttempt(toPath(file_)).attempt.student, "B-4");
     simulator().close();
     EXPECT_EQ(session::SessionReader(recording).info().code, "A-17");
 }
@@ -523,12 +523,13 @@ TEST_F(ShellTest, AStarterToothIsMadeAtTheFirstStartAndKept) {
         QStringList steps;
         QObject::connect(&simulator(), &Simulator::jobStepped, [&](const QString& step) { steps << step; });
         host_->start();
-        ASSERT_TRUE(waitFor([this] { return view()->hasSketch() || simulator().mode() == Simulator::Mode::sitting; }));
+        ASSERT_TRUE(
+            waitFor([this] { return view()->hasSketch() || simulator().mode() == Simulator::Mode::liveSession; }));
         EXPECT_TRUE(view()->hasSketch());
         EXPECT_FALSE(view()->hasTooth());
         EXPECT_TRUE(simulator().isBusy());
         EXPECT_TRUE(window().findChild<QLabel*>("jobTitle")->text().contains(steps.last()));
-        ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+        ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
         EXPECT_FALSE(view()->hasSketch());
         EXPECT_EQ(steps.size(), first ? 5 : 4) << steps.join(", ").toStdString();
         EXPECT_EQ(simulator().toothCase()->kind, "upper-incisor");
@@ -664,7 +665,7 @@ TEST_F(ShellTest, DISABLED_CutsUntilItIsKilled) {
     host_ = std::make_unique<Host>(*qApp, CommandLine{}, mine);
     window().resize(1000, 700);
     host_->start();
-    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting; }));
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
     view()->showStandardView(view::StandardView::occlusal);
     ASSERT_TRUE(cut());
     const std::uint64_t soFar = simulator().sample().tick;
@@ -704,7 +705,8 @@ TEST_F(ShellTest, AfterACrashTheToothComesBack) {
     EXPECT_EQ(notices->current(), QString());
     EXPECT_EQ(simulator().crashed().size(), 1u);
     window().greet();
-    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::sitting && !simulator().isBusy(); }));
+    ASSERT_TRUE(
+        waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession && !simulator().isBusy(); }));
     emit notices->remedyChosen("crashed");
     ASSERT_TRUE(waitFor([&] { return std::abs(removedMm3() - cutMm3) < 1e-6 && simulator().sample().tick > 10; }))
         << removedMm3() << " not " << cutMm3;
@@ -736,7 +738,7 @@ TEST_F(ShellTest, AfterACrashTheToothComesBack) {
     EXPECT_NE(text.find("class=\"ok\""), std::string::npos);
     EXPECT_NE(text.find("1 of 1 times"), std::string::npos);
     simulator().closeReplay();
-    ASSERT_TRUE(waitFor([&] { return simulator().mode() == Simulator::Mode::sitting && removedMm3() > cutMm3; }));
+    ASSERT_TRUE(waitFor([&] { return simulator().mode() == Simulator::Mode::liveSession && removedMm3() > cutMm3; }));
     EXPECT_EQ(simulator().recording(), recording);
 
     ASSERT_TRUE(waitFor([this] { return simulator().status().undoSteps == 2; }));

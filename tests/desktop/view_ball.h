@@ -14,13 +14,13 @@ namespace handpiece::desktop {
 inline constexpr double kRadius = 5.0, kPulpRadius = 2.0;
 
 /// A ball of enamel with a ball of pulp in it: what is measured on it is known.
-inline tooth::Case ballCase() {
-    tooth::Case ball;
+inline cases::Case ballCase() {
+    cases::Case ball;
     ball.name = "ball";
     ball.buccalSign = 1;
     ball.outer = test::sphereMesh(5, kRadius);
-    ball.parts.push_back({"enamel", tooth::Tissue::enamel, 1, ball.outer});
-    ball.parts.push_back({"pulp", tooth::Tissue::pulp, 5, test::sphereMesh(4, kPulpRadius)});
+    ball.parts.push_back({"enamel", cases::Tissue::enamel, 1, ball.outer});
+    ball.parts.push_back({"pulp", cases::Tissue::pulp, 5, test::sphereMesh(4, kPulpRadius)});
     return ball;
 }
 
@@ -29,7 +29,7 @@ inline const std::shared_ptr<const tooth::CuttableTooth>& cuttableBall() {
         tooth::PrepareSettings settings;
         settings.useCache = false;
         settings.field.voxelMm = 0.2;
-        const tooth::Case toothCase = ballCase();
+        const cases::Case toothCase = ballCase();
         return tooth::prepareCutting(toothCase, tooth::prepareTooth(toothCase, settings), settings);
     }();
     return ball;

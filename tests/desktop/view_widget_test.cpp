@@ -34,7 +34,8 @@ class ViewTest : public ::testing::Test {
     void SetUp() override {
         view_.resize(800, 600);
         view_.show();
-        view_.setTooth(std::make_shared<station::LiveTooth>(cuttableBall(), tooth::CutState{}), ballCase(), nullptr);
+        view_.setTooth(std::make_shared<simulation::LiveTooth>(cuttableBall(), tooth::StateDelta{}), ballCase(),
+                       nullptr);
         view_.setBur(instrument::makeInstrument("round-4").bur);
         core::Pose start;
         start.positionMm = {0, 0, 12};
@@ -75,7 +76,7 @@ class ViewTest : public ::testing::Test {
 TEST_F(ViewTest, TheBurHoversOffTheSurfaceUnderThePointer) {
     for (const QPoint at : {QPoint(400, 300), QPoint(470, 260), QPoint(340, 350)}) {
         moveTo(at);
-        EXPECT_GE(targetMm().norm(), kRadius + 0.9 * station::kHoverMm);
+        EXPECT_GE(targetMm().norm(), kRadius + 0.9 * input::kHoverMm);
         EXPECT_LE((targetMm() - onBall(view_, at)).norm(), 2.5);
         EXPECT_EQ(target().pedal, 0.0);
     }
@@ -85,7 +86,7 @@ TEST_F(ViewTest, TheLeftButtonCutsAndItsReleaseLifts) {
     QSignalSpy pressed(&view_, &ViewWidget::pressedChanged);
     press(Qt::LeftButton, centre_);
     EXPECT_EQ(target().pedal, 1.0);
-    EXPECT_DOUBLE_EQ(target().loadN, station::kFirstLoadN);
+    EXPECT_DOUBLE_EQ(target().loadN, input::kFirstLoadN);
     moveTo(centre_ + QPoint(30, 0));
     EXPECT_EQ(target().pedal, 1.0);
     release(Qt::LeftButton, centre_ + QPoint(30, 0));
@@ -132,7 +133,7 @@ TEST_F(ViewTest, ShiftMakesTheHandSlower) {
     moveTo(centre_);
     moveTo(centre_, Qt::ShiftModifier);
     moveTo(centre_ + QPoint(20, 0), Qt::ShiftModifier);
-    EXPECT_NEAR((targetMm() - from).norm(), station::kSlowFactor * quick, 0.1 * quick);
+    EXPECT_NEAR((targetMm() - from).norm(), input::kSlowFactor * quick, 0.1 * quick);
 }
 
 TEST_F(ViewTest, TheWheelSetsLoadAndStop) {
@@ -140,7 +141,7 @@ TEST_F(ViewTest, TheWheelSetsLoadAndStop) {
     wheel(3, Qt::ShiftModifier);
     EXPECT_NEAR(view_.hand()->loadN(), 1.3, 1e-9);
     wheel(-100, Qt::ShiftModifier);
-    EXPECT_NEAR(view_.hand()->loadN(), station::kLeastLoadN, 1e-9);
+    EXPECT_NEAR(view_.hand()->loadN(), input::kMinLoadN, 1e-9);
     EXPECT_EQ(load.count(), 2);
     EXPECT_FALSE(view_.hand()->stopMm());
     wheel(-1, Qt::ControlModifier);
@@ -205,10 +206,10 @@ TEST_F(ViewTest, TheKeyboardAloneMovesAndCuts) {
     const Vec3 before = targetMm();
     QTest::keyClick(&view_, Qt::Key_Right);
     const Vec3 after = targetMm();
-    EXPECT_NEAR((after - before).norm(), station::kNudgeMm, 0.02);
+    EXPECT_NEAR((after - before).norm(), input::kNudgeMm, 0.02);
     EXPECT_GT((after - before).dot(view_.camera().right()), 0.08);
     QTest::keyClick(&view_, Qt::Key_PageUp, Qt::ShiftModifier);
-    EXPECT_NEAR((targetMm() - after).norm(), station::kFineNudgeMm, 0.005);
+    EXPECT_NEAR((targetMm() - after).norm(), input::kFineNudgeMm, 0.005);
     QTest::keyPress(&view_, Qt::Key_Return);
     EXPECT_EQ(target().pedal, 1.0);
     EXPECT_GT(target().loadN, 0.0);
@@ -535,9 +536,9 @@ TEST_F(ViewTest, TheSectionStepsAndIsCutThrough) {
 
 TEST_F(ViewTest, WhatTheExerciseLocksStaysAway) {
     view_.setTool(Tool::depth);
-    tooth::Exercise exercise;
+    cases::Exercise exercise;
     exercise.lockedHelps = {"depth", "cross-section", "transparency"};
-    view_.setPermissions(station::permissionsOf(&exercise, station::WorkMode::work));
+    view_.setPermissions(exercise::permissionsOf(&exercise, exercise::WorkMode::work));
     EXPECT_EQ(view_.tool(), Tool::drill);
     QTest::keyClick(&view_, Qt::Key_D);
     EXPECT_EQ(view_.tool(), Tool::drill);
@@ -743,8 +744,8 @@ TEST(Overlay, WritesNothingOverTheToothInASmallWindow) {
     state.loadN = 1.0;
     state.stopMm = 1.5;
     state.legend =
-        view::legendOf({tooth::Tissue::enamel, tooth::Tissue::dentine, tooth::Tissue::pulp, tooth::Tissue::caries,
-                        tooth::Tissue::gum, tooth::Tissue::bone, tooth::Tissue::neighbour},
+        view::legendOf({cases::Tissue::enamel, cases::Tissue::dentine, cases::Tissue::pulp, cases::Tissue::caries,
+                        cases::Tissue::gum, cases::Tissue::bone, cases::Tissue::neighbour},
                        view::Palette::natural);
     // The picture's sizes at 1366 x 768 and at 1280 x 720, in the three layouts.
     for (const QSize size : {QSize(788, 674), QSize(788, 631), QSize(788, 352), QSize(702, 583)})

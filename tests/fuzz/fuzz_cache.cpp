@@ -11,9 +11,9 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/parallel.h"
-#include "handpiece/model/tooth/field_builder.h"
-#include "handpiece/model/tooth/field_cache.h"
-#include "handpiece/model/tooth/tissue_cache.h"
+#include "handpiece/model/field/field_builder.h"
+#include "handpiece/model/field/field_cache.h"
+#include "handpiece/model/field/tissue_cache.h"
 #include "support/closed_meshes.h"
 
 namespace {
@@ -26,18 +26,18 @@ constexpr std::size_t kFieldHeader = 128, kFieldCounts = 88, kTissueHeader = 64;
 struct Made {
     geometry::TriangleMesh outer = test::bumpyMesh(2, 0.8), inner = test::sphereMesh(2, 0.5);
     geometry::TriangleTree tree{outer}, core{inner};
-    tooth::FieldSettings settings{0.1, 0.1, 0.2};
-    tooth::TissueSet tissues{tooth::Tissue::enamel, tooth::Tissue::dentine};
-    tooth::ToothField field;
+    field::FieldSettings settings{0.1, 0.1, 0.2};
+    field::TissueSet tissues{cases::Tissue::enamel, cases::Tissue::dentine};
+    field::DistanceField field;
     std::vector<std::byte> fieldFile, tissueFile;
     std::filesystem::path place;
 
     Made() {
         core::setThreadCount(1);
-        const tooth::PartSurface parts[] = {{&tree, tooth::Tissue::enamel, 10}, {&core, tooth::Tissue::dentine, 20}};
-        field = tooth::FieldBuilder::fromSurface(outer, tree, parts, settings);
-        fieldFile = tooth::encodeField(field, kKey);
-        tissueFile = tooth::encodeTissues(tooth::TissueMap::fromParts(field, parts), kKey);
+        const field::PartSurface parts[] = {{&tree, cases::Tissue::enamel, 10}, {&core, cases::Tissue::dentine, 20}};
+        field = field::FieldBuilder::fromSurface(outer, tree, parts, settings);
+        fieldFile = field::encodeField(field, kKey);
+        tissueFile = field::encodeTissues(field::TissueMap::fromParts(field, parts), kKey);
         const std::filesystem::path memory = "/dev/shm";
         place = (std::filesystem::exists(memory) ? memory : std::filesystem::temp_directory_path()) /
                 ("handpiece-fuzz-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + "-" +
@@ -66,12 +66,12 @@ void sumUp(std::vector<std::byte>& file, bool isField) {
         std::size_t at = kFieldHeader;
         for (const std::uint64_t bytes : {4 * dense, 4 * dense, dense, stored, 729 * mixed, 4 * 729 * stored}) {
             if (bytes > file.size() - at) break;
-            payload.add(tooth::hashOf(std::span(file).subspan(at, bytes)));
+            payload.add(field::hashOf(std::span(file).subspan(at, bytes)));
             at += bytes;
         }
         put(file, kFieldHeader - 16, payload.value());
     } else {
-        put(file, kTissueHeader - 16, tooth::hashOf(std::span(file).subspan(kTissueHeader)));
+        put(file, kTissueHeader - 16, field::hashOf(std::span(file).subspan(kTissueHeader)));
     }
     const std::size_t header = isField ? kFieldHeader : kTissueHeader;
     core::Hasher hasher;
@@ -97,15 +97,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     sumUp(file, isField);
     core::writeFile(made.place, file, {.ownerOnly = true, .lasting = false});
     if (isField) {
-        const auto field = tooth::readFieldFile(made.place, kKey, made.tree, made.settings, made.tissues);
+        const auto field = field::readFieldFile(made.place, kKey, made.tree, made.settings, made.tissues);
         if (!field) return 0;
         for (double x = -1.0; x <= 1.0; x += 0.0625) {
             const core::Vec3 p(x, 0.3 * x, 0.5 - x);
-            if (!std::isfinite(field->distance(p)) || field->tissueAt(p) > tooth::Tissue::dentine) __builtin_trap();
+            if (!std::isfinite(field->distance(p)) || field->tissueAt(p) > cases::Tissue::dentine) __builtin_trap();
         }
-    } else if (const auto map = tooth::readTissueFile(made.place, made.field, kKey, made.tissues)) {
+    } else if (const auto map = field::readTissueFile(made.place, made.field, kKey, made.tissues)) {
         for (double x = -1.0; x <= 1.0; x += 0.0625)
-            if (map->at({x, 0.3 * x, 0.5 - x}) > tooth::Tissue::dentine) __builtin_trap();
+            if (map->at({x, 0.3 * x, 0.5 - x}) > cases::Tissue::dentine) __builtin_trap();
     }
     return 0;
 }

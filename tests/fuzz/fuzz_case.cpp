@@ -2,8 +2,8 @@
 // Any case.toml, and any attempt.toml, must give a value or one core::Error; what is read can be written and read
 // again.
 #include "fuzz_model.h"
-#include "handpiece/model/tooth/attempt.h"
-#include "handpiece/model/tooth/case_files.h"
+#include "handpiece/model/case/attempt.h"
+#include "handpiece/model/case/case_files.h"
 
 namespace tooth = handpiece::tooth;
 
@@ -23,11 +23,11 @@ std::vector<std::byte> bytesOf(std::string_view text) {
 }
 
 /// A throw from here is one the fuzzer must see.
-void mustComeBack(const tooth::Case& read) {
+void mustComeBack(const cases::Case& read) {
     try {
-        const tooth::PackageFiles files = tooth::caseFiles(read);
-        const tooth::Case again = tooth::readCaseFiles(tooth::filesInPackage("again", files));
-        if (tooth::contentKey(again) != tooth::contentKey(read) ||
+        const cases::PackageFiles files = cases::caseFiles(read);
+        const cases::Case again = cases::readCaseFiles(cases::filesInPackage("again", files));
+        if (cases::contentKey(again) != cases::contentKey(read) ||
             again.exercise.has_value() != read.exercise.has_value())
             __builtin_trap();
     } catch (const handpiece::core::Error&) {
@@ -39,17 +39,17 @@ void mustComeBack(const tooth::Case& read) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     (void)handpiece::fuzz::readText(data, size, [](std::string_view text) {
-        const tooth::Attempt attempt = tooth::parseAttempt(text, "fuzz");
+        const cases::Attempt attempt = cases::parseAttempt(text, "fuzz");
         try {
-            (void)tooth::parseAttempt(tooth::attemptToml(attempt), "again");
+            (void)cases::parseAttempt(cases::attemptToml(attempt), "again");
         } catch (const handpiece::core::Error&) {
             __builtin_trap();
         }
     });
     return handpiece::fuzz::readText(data, size, [](std::string_view text) {
-        const tooth::PackageFiles files{{"case.toml", bytesOf(text)},
+        const cases::PackageFiles files{{"case.toml", bytesOf(text)},
                                         {"a.stl", bytesOf(kMesh)},
                                         {"t.toml", bytesOf("format = 1\n[enamel]\ncutting = 1e-5\n")}};
-        mustComeBack(tooth::readCaseFiles(tooth::filesInPackage("fuzz", files)));
+        mustComeBack(cases::readCaseFiles(cases::filesInPackage("fuzz", files)));
     });
 }

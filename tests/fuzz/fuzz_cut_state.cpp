@@ -9,8 +9,8 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/model/field/field_cache.h"
 #include "handpiece/model/tooth/cut_state_file.h"
-#include "handpiece/model/tooth/field_cache.h"
 
 namespace {
 
@@ -22,16 +22,16 @@ constexpr std::size_t kHeader = 136, kPayloadBytes = 32, kPayloadHash = 120, kHe
 /// A ball of enamel of 0.7 mm at 0.1 mm voxels.
 std::shared_ptr<const tooth::CuttableTooth> smallTooth() {
     core::setThreadCount(1);
-    tooth::FieldSettings settings;
+    field::FieldSettings settings;
     settings.voxelMm = 0.1;
     geometry::TriangleMesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     mesh.triangles = {{0, 1, 2}};
     geometry::TriangleTree tree(mesh);
-    tooth::ToothField field =
-        tooth::ToothField::fromFunction({core::Vec3::Constant(-0.9), core::Vec3::Constant(0.9)}, settings,
-                                        [](const core::Vec3& p) { return p.norm() - 0.7; });
-    tooth::TissueMap map = tooth::TissueMap::uniform(field, tooth::Tissue::enamel);
+    field::DistanceField field =
+        field::DistanceField::fromFunction({core::Vec3::Constant(-0.9), core::Vec3::Constant(0.9)}, settings,
+                                           [](const core::Vec3& p) { return p.norm() - 0.7; });
+    field::TissueMap map = field::TissueMap::uniform(field, cases::Tissue::enamel);
     return tooth::prepareCutting(
         std::make_shared<tooth::Tooth>(tooth::Tooth{"ball", mesh, std::move(tree), std::move(field), false, 0.0}),
         std::move(map));
@@ -41,7 +41,7 @@ std::vector<std::byte> sealed(std::span<const std::byte> data) {
     std::vector<std::byte> out(data.begin(), data.end());
     const auto put = [&](std::size_t at, std::uint64_t number) { std::memcpy(&out[at], &number, sizeof number); };
     put(kPayloadBytes, out.size() - kHeader);
-    put(kPayloadHash, tooth::hashOf(std::span(out).subspan(kHeader)));
+    put(kPayloadHash, field::hashOf(std::span(out).subspan(kHeader)));
     core::Hasher hasher;
     hasher.add(std::span(out).first(kHeaderHash));
     put(kHeaderHash, hasher.value());
@@ -49,13 +49,13 @@ std::vector<std::byte> sealed(std::span<const std::byte> data) {
 }
 
 void tryOut(std::span<const std::byte> data, const std::shared_ptr<const tooth::CuttableTooth>& base) {
-    tooth::CutState state;
+    tooth::StateDelta state;
     try {
         state = tooth::decodeState(data, kKey, *base);
     } catch (const core::Error&) {
         return;
     }
-    const tooth::CutState again = tooth::decodeState(tooth::encodeState(state, kKey), kKey, *base);
+    const tooth::StateDelta again = tooth::decodeState(tooth::encodeState(state, kKey), kKey, *base);
     if (tooth::stateHash(again) != tooth::stateHash(state)) std::abort();
     tooth::CutField field(base);
     if (field.restore(state, 0, state.bricks.size()) != state.bricks.size()) std::abort();

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <cstring>
 
+#include "handpiece/app/simulation/history_bytes.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/model/field/field_cache.h"
 #include "handpiece/model/tooth/cut_state_file.h"
-#include "handpiece/model/tooth/field_cache.h"
-#include "station/history_bytes.h"
 
 namespace {
 
@@ -19,19 +19,19 @@ using namespace handpiece;
 // A history: magic, three numbers, then each stroke's size and cut state.
 constexpr std::size_t kHead = 28, kState = 136, kPayloadBytes = 32, kPayloadHash = 120, kHeaderHash = 128;
 
-station::Station smallStation() {
+simulation::SimulationSetup smallStation() {
     core::setThreadCount(1);
-    tooth::FieldSettings settings;
+    field::FieldSettings settings;
     settings.voxelMm = 0.1;
     geometry::TriangleMesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     mesh.triangles = {{0, 1, 2}};
     geometry::TriangleTree tree(mesh);
-    tooth::ToothField field =
-        tooth::ToothField::fromFunction({core::Vec3::Constant(-0.9), core::Vec3::Constant(0.9)}, settings,
-                                        [](const core::Vec3& p) { return p.norm() - 0.7; });
-    tooth::TissueMap map = tooth::TissueMap::uniform(field, tooth::Tissue::enamel);
-    station::Station made;
+    field::DistanceField field =
+        field::DistanceField::fromFunction({core::Vec3::Constant(-0.9), core::Vec3::Constant(0.9)}, settings,
+                                           [](const core::Vec3& p) { return p.norm() - 0.7; });
+    field::TissueMap map = field::TissueMap::uniform(field, cases::Tissue::enamel);
+    simulation::SimulationSetup made;
     made.tooth = tooth::prepareCutting(
         std::make_shared<tooth::Tooth>(tooth::Tooth{"ball", mesh, std::move(tree), std::move(field), false, 0.0}),
         std::move(map));
@@ -50,7 +50,7 @@ std::vector<std::byte> sealed(std::span<const std::byte> data) {
         put(at - 8, size);
         if (size < kState) break;
         put(at + kPayloadBytes, size - kState);
-        put(at + kPayloadHash, tooth::hashOf(std::span(out).subspan(at + kState, size - kState)));
+        put(at + kPayloadHash, field::hashOf(std::span(out).subspan(at + kState, size - kState)));
         core::Hasher hasher;
         hasher.add(std::span<const std::byte>(out).subspan(at, kHeaderHash));
         put(at + kHeaderHash, hasher.value());
@@ -59,9 +59,9 @@ std::vector<std::byte> sealed(std::span<const std::byte> data) {
     return out;
 }
 
-void tryOut(std::span<const std::byte> data, const station::Station& station) {
+void tryOut(std::span<const std::byte> data, const simulation::SimulationSetup& station) {
     try {
-        history::History history = station::decodeHistory(data, tooth::CutState{}, station, "fuzz");
+        history::History history = simulation::decodeHistory(data, tooth::StateDelta{}, station, "fuzz");
         while (history.undo()) {
         }
         while (history.redo()) {
@@ -75,7 +75,7 @@ void tryOut(std::span<const std::byte> data, const station::Station& station) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const station::Station station = smallStation();
+    static const simulation::SimulationSetup station = smallStation();
     const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size));
     tryOut(bytes, station);
     if (size > kHead) tryOut(sealed(bytes), station);

@@ -3,16 +3,16 @@
 #include <string>
 
 #include "fuzz_model.h"
-#include "handpiece/model/tooth/package.h"
+#include "handpiece/model/case/package.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    handpiece::tooth::PackageLimits limits;
+    handpiece::cases::PackageLimits limits;
     limits.bytes = 1 << 20;
     limits.files = 64;
     try {
         std::size_t total = 0;
         for (const auto& [name, content] :
-             handpiece::tooth::readPackage(std::as_bytes(std::span(data, size)), "fuzz", limits)) {
+             handpiece::cases::readPackage(std::as_bytes(std::span(data, size)), "fuzz", limits)) {
             total += content.size();
             const std::string path = "/" + name + "/";
             if (name.empty() || path.find("//") != std::string::npos || path.find("/../") != std::string::npos)

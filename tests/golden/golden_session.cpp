@@ -12,9 +12,9 @@
 #include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
-#include "handpiece/tick/loop/built_in_motion.h"
-#include "handpiece/tick/loop/cutting_motion.h"
 #include "handpiece/tick/loop/haptic_loop.h"
+#include "studies/built_in_motion.h"
+#include "studies/cutting_motion.h"
 
 namespace handpiece {
 namespace {
@@ -52,25 +52,25 @@ void addSample(core::Hasher& hash, const messages::HapticSample& s) {
 }
 
 /// A plunge of a turning bur: the tooth that is left, the parts that it is of, and every sample on the way.
-void cut(const tooth::Case& molar, const std::shared_ptr<const tooth::Tooth>& whole,
+void cut(const cases::Case& molar, const std::shared_ptr<const tooth::Tooth>& whole,
          const tooth::PrepareSettings& prepare) {
     const auto base = tooth::prepareCutting(molar, whole, prepare);
     const auto field = std::make_shared<tooth::CutField>(base);
     const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur("330"));
     const auto feeler = contact::makeFieldMethod(whole, bur);
-    loop::CuttingScene scene;
+    studies::CuttingScene scene;
     scene.toothBounds = whole->outer.bounds();
     scene.burRadiusMm = bur->maxRadiusMm();
-    loop::CuttingOptions options;
+    studies::CuttingOptions options;
     options.depthMm = 0.6;
     options.dwellS = 0.5;
-    device::Motion motion = loop::cuttingMotionByName("plunge", *feeler, scene, options);
+    device::Motion motion = studies::cuttingMotionByName("plunge", *feeler, scene, options);
     device::SimulatedDeviceSettings arm;
     arm.rigidHand = true;
     const double duration = motion.durationS();
     loop::Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
-                    std::make_unique<cutting::Cutter>(field, bur, instrument::Ability{}, tooth::builtInTissues(),
-                                                      cutting::Cutter::Settings{})};
+                    std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{},
+                                                      cases::builtInTissues(), cutting::Cutter::Settings{})};
     loop::HapticLoop haptic({}, std::make_unique<device::SimulatedDevice>(arm, std::move(motion)), std::move(work),
                             force::defaultParameters());
     core::Hasher samples;
@@ -86,10 +86,10 @@ void cut(const tooth::Case& molar, const std::shared_ptr<const tooth::Tooth>& wh
 }
 
 void run() {
-    const tooth::Case molar = starter::makeTooth(starter::ToothKind::lowerFirstMolar, {10000, 2000, false});
+    const cases::Case molar = starter::makeTooth(starter::ToothKind::lowerFirstMolar, {10000, 2000, false});
     core::Hasher surfaces;
     addMesh(surfaces, molar.outer);
-    for (const tooth::Part& part : molar.parts)
+    for (const cases::Part& part : molar.parts)
         addMesh(surfaces, part.mesh);
     print("surfaces", surfaces.value());
 
@@ -99,7 +99,7 @@ void run() {
     print("field", tooth->field.stateHash());
 
     auto method = contact::makeFieldMethod(tooth, std::make_shared<const instrument::Bur>(instrument::makeBur("330")));
-    device::Motion drag = loop::motionByName("drag", *method, tooth->outer.bounds());
+    device::Motion drag = studies::motionByName("drag", *method, tooth->outer.bounds());
     method->reset();
     device::SimulatedDeviceSettings arm;
     arm.frictionN = 0.05;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of a starter tooth against the ones kept beside this test. They are drawn by whatever OpenGL there is, and
 // two releases of Mesa do not round alike, so they are held to a tolerance, not to the bit: root mean square of at most
-// kMostRms of 255, and at most kMostShare of the pixels off by more than 24 in a channel (edges may fall on the next
+// kMaxRms of 255, and at most kMaxShare of the pixels off by more than 24 in a channel (edges may fall on the next
 // pixel). HANDPIECE_RENEW_PICTURES=1 writes them anew; look at them before they are kept.
 #include <gtest/gtest.h>
 
@@ -17,11 +17,11 @@
 namespace handpiece::view {
 namespace {
 
-constexpr double kMostRms = 4.0, kMostShare = 0.01;
+constexpr double kMaxRms = 4.0, kMaxShare = 0.01;
 constexpr Viewport kSize{480, 300};
 
 struct Scene {
-    tooth::Case toothCase;
+    cases::Case toothCase;
     std::unique_ptr<Renderer> renderer;
     core::Box bounds;
 
@@ -33,7 +33,7 @@ struct Scene {
         bounds = toothCase.outer.bounds();
         renderer = std::make_unique<Renderer>();
         renderer->setTooth(bounds);
-        renderer->setMesh(toothCase.outer, tooth::Tissue::enamel);
+        renderer->setMesh(toothCase.outer, cases::Tissue::enamel);
         renderer->setScenery(toothCase.scenery);
         renderer->setParts(toothCase.parts);
         setBur("330");
@@ -67,9 +67,9 @@ void expectAsKept(const Image& image, const std::string& name) {
         return;
     }
     const ImageDifference d = compareImages(image, readPng(kept), 24);
-    if (d.rms > kMostRms || d.differingShare > kMostShare) writePng(image, name + "-drawn.png");
-    EXPECT_LE(d.rms, kMostRms) << name << "-drawn.png beside the test program shows it";
-    EXPECT_LE(d.differingShare, kMostShare);
+    if (d.rms > kMaxRms || d.differingShare > kMaxShare) writePng(image, name + "-drawn.png");
+    EXPECT_LE(d.rms, kMaxRms) << name << "-drawn.png beside the test program shows it";
+    EXPECT_LE(d.differingShare, kMaxShare);
 }
 
 Moment burAbove(const core::Box& bounds) {
@@ -156,10 +156,10 @@ TEST(Picture, buccalTextbookRich) {
 
 TEST(Picture, withoutEnamel) {
     Look look;
-    look.visible[static_cast<std::size_t>(tooth::Tissue::enamel)] = false;
-    look.visible[static_cast<std::size_t>(tooth::Tissue::neighbour)] = false;
-    look.visible[static_cast<std::size_t>(tooth::Tissue::gum)] = false;
-    look.visible[static_cast<std::size_t>(tooth::Tissue::bone)] = false;
+    look.visible[static_cast<std::size_t>(cases::Tissue::enamel)] = false;
+    look.visible[static_cast<std::size_t>(cases::Tissue::neighbour)] = false;
+    look.visible[static_cast<std::size_t>(cases::Tissue::gum)] = false;
+    look.visible[static_cast<std::size_t>(cases::Tissue::bone)] = false;
     Moment moment;
     moment.burShown = false;
     expectAsKept(scene().draw(standardView(StandardView::oblique, scene().bounds, 1, kSize), look, moment),
@@ -175,7 +175,7 @@ TEST(Picture, aMissingBurIsNoticed) {
     const Image image = scene().draw(crown(StandardView::oblique), look, burAbove(scene().bounds));
     const Image kept = readPng(std::filesystem::path(HANDPIECE_SOURCE_DIR) / "tests/golden/pictures/oblique-fine.png");
     const ImageDifference d = compareImages(image, kept, 24);
-    EXPECT_TRUE(d.rms > kMostRms && d.differingShare > kMostShare) << d.rms << ' ' << d.differingShare;
+    EXPECT_TRUE(d.rms > kMaxRms && d.differingShare > kMaxShare) << d.rms << ' ' << d.differingShare;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace handpiece::test {
 
 inline std::shared_ptr<const tooth::CuttableTooth> smallMolar(double voxelMm) {
-    tooth::Case crown;
+    cases::Case crown;
     crown.name = "molar";
     crown.outer = starter::makeOuter(starter::ToothKind::lowerFirstMolar, 4000);
     tooth::PrepareSettings settings;
@@ -22,9 +22,9 @@ inline std::shared_ptr<const tooth::CuttableTooth> smallMolar(double voxelMm) {
     settings.field.voxelMm = voxelMm;
     auto whole = tooth::prepareTooth(crown, settings);
     const double dentineMm = crown.outer.bounds().max.z() - 3.0;
-    const std::vector<tooth::TissueMap::PartFunction> parts{
-        {[dentineMm](const core::Vec3& p) { return p.z() - dentineMm; }, tooth::Tissue::dentine, 20}};
-    auto tissues = tooth::TissueMap::fromFunctions(whole->field, parts, tooth::Tissue::enamel);
+    const std::vector<field::TissueMap::PartFunction> parts{
+        {[dentineMm](const core::Vec3& p) { return p.z() - dentineMm; }, cases::Tissue::dentine, 20}};
+    auto tissues = field::TissueMap::fromFunctions(whole->field, parts, cases::Tissue::enamel);
     return tooth::prepareCutting(std::move(whole), std::move(tissues));
 }
 

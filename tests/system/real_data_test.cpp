@@ -25,9 +25,9 @@
 #include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
-#include "handpiece/tick/loop/built_in_motion.h"
-#include "handpiece/tick/loop/cutting_motion.h"
 #include "handpiece/tick/loop/haptic_loop.h"
+#include "studies/built_in_motion.h"
+#include "studies/cutting_motion.h"
 #include "support/brute_force_depth.h"
 #include "support/random.h"
 
@@ -292,14 +292,14 @@ class RealData : public testing::Test {
         surface = geometry::decimate(surface, 70000).mesh;
         const core::Pose up = crownUp(surface, labels);
         for (const auto& [label, tissue] :
-             {std::pair{std::uint8_t{1}, tooth::Tissue::caries}, std::pair{std::uint8_t{2}, tooth::Tissue::enamel},
-              std::pair{std::uint8_t{3}, tooth::Tissue::dentine}}) {
+             {std::pair{std::uint8_t{1}, cases::Tissue::caries}, std::pair{std::uint8_t{2}, cases::Tissue::enamel},
+              std::pair{std::uint8_t{3}, cases::Tissue::dentine}}) {
             Volume<float> one = halved(labels, static_cast<int>(kGap) + 4, label);
             blur(one);
-            tooth::Part part;
+            cases::Part part;
             part.tissue = tissue;
-            part.name = tooth::properties(tissue).name;
-            part.priority = tooth::properties(tissue).priority;
+            part.name = cases::properties(tissue).name;
+            part.priority = cases::properties(tissue).priority;
             part.mesh = geometry::transformed(drawn(std::move(one)), up);
             (void)geometry::repair(part.mesh);
             molar_.parts.push_back(std::move(part));
@@ -310,7 +310,7 @@ class RealData : public testing::Test {
         std::printf("  drawn with %zu faces, %zu pieces of debris dropped, thinned to %zu\n", faces,
                     repaired.droppedShells, molar_.outer.triangles.size());
         if (const char* keep = std::getenv("HANDPIECE_KEEP_REAL")) {
-            tooth::writeCase(molar_, std::filesystem::path(keep) / "molar");
+            cases::writeCase(molar_, std::filesystem::path(keep) / "molar");
         }
         tooth::PrepareSettings settings;
         settings.useCache = false;
@@ -335,13 +335,13 @@ class RealData : public testing::Test {
 
     static inline std::filesystem::path folder_;
     static inline double labelledMm3_ = 0.0, filledMm3_ = 0.0;
-    static inline tooth::Case molar_;
+    static inline cases::Case molar_;
     static inline std::shared_ptr<const tooth::Tooth> tooth_;
 };
 
 TEST_F(RealData, theMolarIsOneClosedSurfaceOfItsLabelsVolumeAndItsPulp) {
     const geometry::MeshReport report = geometry::inspect(molar_.outer);
-    tooth::requireSolid(molar_.outer, "the carious molar");
+    cases::requireSolid(molar_.outer, "the carious molar");
     std::printf(
         "  labels %.1f mm3, with the pulp %.1f; surface %.1f mm3, %.1f mm2, genus %lld, "
         "%.1f x %.1f x %.1f mm\n",
@@ -352,7 +352,7 @@ TEST_F(RealData, theMolarIsOneClosedSurfaceOfItsLabelsVolumeAndItsPulp) {
     EXPECT_GT(filledMm3_, 1.005 * labelledMm3_);
     EXPECT_LT(filledMm3_, 1.12 * labelledMm3_);
     EXPECT_NEAR(report.volumeMm3, filledMm3_, 0.005 * filledMm3_);
-    const tooth::ToothField::Extent extent = tooth_->field.extent();
+    const field::DistanceField::Extent extent = tooth_->field.extent();
     EXPECT_NEAR(extent.volumeMm3, report.volumeMm3, 1e-3 * report.volumeMm3);
     EXPECT_NEAR(extent.areaMm2, report.areaMm2, 2e-3 * report.areaMm2);
 }
@@ -371,7 +371,7 @@ TEST_F(RealData, depthIsThatOfBruteForce) {
                 Vec3::UnitZ(), (Vec3::UnitZ() + 0.4 * test::randomDirection(generator)).normalized());
             start.positionMm = {0.3 * size.x() * test::uniform(generator, -1, 1),
                                 0.3 * size.y() * test::uniform(generator, -1, 1), box.max.z() + 1.0};
-            const auto touch = loop::firstTouch(*method, start, -Vec3::UnitZ(), size.z());
+            const auto touch = studies::firstTouch(*method, start, -Vec3::UnitZ(), size.z());
             if (!touch) continue;
             core::Pose pose = *touch;
             pose.positionMm.z() -= test::uniform(generator, -0.1, 0.5);
@@ -391,9 +391,9 @@ TEST_F(RealData, aDroppedBurIsHeldAtTheSurface) {
     for (const auto& bur : burs()) {
         auto method = contact::makeFieldMethod(tooth_, bur);
         const auto probe = contact::makeFieldMethod(tooth_, bur);
-        loop::MotionOptions options;
+        studies::MotionOptions options;
         options.speedMmS = 20.0;
-        device::Motion drop = loop::motionByName("drop", *method, tooth_->outer.bounds(), options);
+        device::Motion drop = studies::motionByName("drop", *method, tooth_->outer.bounds(), options);
         method->reset();
         const double durationS = drop.durationS();
         loop::HapticLoop haptic(
@@ -421,19 +421,19 @@ TEST_F(RealData, aClassOneCavityIsCut) {
     const auto base = tooth::prepareCutting(molar_, tooth_, {});
     const auto field = std::make_shared<tooth::CutField>(base);
     const auto bur = burs().front();
-    loop::CuttingScene scene;
+    studies::CuttingScene scene;
     scene.toothBounds = tooth_->outer.bounds();
     scene.burRadiusMm = bur->maxRadiusMm();
-    loop::CuttingOptions options;
+    studies::CuttingOptions options;
     options.lengthMm = 3.0;
     const auto feeler = contact::makeFieldMethod(tooth_, bur);
-    device::Motion motion = loop::cuttingMotionByName("class-one", *feeler, scene, options);
+    device::Motion motion = studies::cuttingMotionByName("class-one", *feeler, scene, options);
     const double durationS = motion.durationS();
     device::SimulatedDeviceSettings rigid;
     rigid.rigidHand = true;
     loop::Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
-                    std::make_unique<cutting::Cutter>(field, bur, instrument::Ability{}, tooth::builtInTissues(),
-                                                      cutting::Cutter::Settings{})};
+                    std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{},
+                                                      cases::builtInTissues(), cutting::Cutter::Settings{})};
     loop::HapticLoop haptic({}, std::make_unique<device::SimulatedDevice>(rigid, std::move(motion)), std::move(work),
                             force::defaultParameters());
     double peakN = 0.0;
@@ -444,7 +444,7 @@ TEST_F(RealData, aClassOneCavityIsCut) {
     });
     double total = 0.0;
     const tooth::TissueVolumes left = field->volumesMm3();
-    for (std::size_t t = 0; t < tooth::kTissueCount; ++t) {
+    for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
         total += removed[t];
         EXPECT_NEAR(removed[t], base->volumesMm3[t] - left[t], 1e-6);
     }

@@ -43,16 +43,16 @@ DevicePage::DevicePage(Simulator& simulator, Settings& settings, AskFile ask, QW
     column->addWidget(buttons);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
 
-    Hands& hands = simulator_.hands();
-    connect(&hands, &Hands::polled, this, &DevicePage::showState);
-    connect(&hands, &Hands::changed, this, &DevicePage::showDevice);
+    DeviceManager& hands = simulator_.hands();
+    connect(&hands, &DeviceManager::polled, this, &DevicePage::showState);
+    connect(&hands, &DeviceManager::changed, this, &DevicePage::showDevice);
     connect(&simulator_, &Simulator::settingsChanged, this, [this] {
         const force::Parameters& p = simulator_.parameters();
-        profile_->setCrisp(p.transients.on, p.vibration.on);
+        profile_->setEventBasedForce(p.transients.on, p.vibration.on);
     });
     connect(profile_, &ProfileBox::changed, this, &DevicePage::takeProfile);
     connect(profile_, &ProfileBox::crispChanged, this,
-            [this] { simulator_.setCrisp(profile_->crispContact(), profile_->cuttingVibration()); });
+            [this] { simulator_.setEventBasedForce(profile_->crispContact(), profile_->cuttingVibration()); });
     connect(profile_, &ProfileBox::placeHereRequested, this, [this, &hands] {
         if (!hands.current()) return;
         const auto& at = hands.health().positionMm;
@@ -80,7 +80,7 @@ DevicePage::~DevicePage() {
 }
 
 void DevicePage::showDevice() {
-    const Hands& hands = simulator_.hands();
+    const DeviceManager& hands = simulator_.hands();
     const std::shared_ptr<Hand>& hand = hands.current();
     fidelity_->setAvailable(hand != nullptr);
     profile_->setEnabled(hand != nullptr);
@@ -95,13 +95,13 @@ void DevicePage::showDevice() {
         live_->clear();
     }
     const force::Parameters& p = simulator_.parameters();
-    profile_->setCrisp(p.transients.on, p.vibration.on);
+    profile_->setEventBasedForce(p.transients.on, p.vibration.on);
 }
 
 void DevicePage::showState() {
-    const Hands& hands = simulator_.hands();
+    const DeviceManager& hands = simulator_.hands();
     QString trouble;
-    if (hands.trouble() != link::Trouble::none) {
+    if (hands.trouble() != link::DeviceFault::none) {
         const Problem problem = problemOf(hands.trouble(), hands.health().gate.vendorCode);
         trouble = problem.what + QLatin1Char(' ') + problem.remedy;
     }
@@ -110,7 +110,7 @@ void DevicePage::showState() {
 }
 
 void DevicePage::takeProfile() {
-    Hands& hands = simulator_.hands();
+    DeviceManager& hands = simulator_.hands();
     if (!hands.current()) return;
     try {
         if (!hands.current()->setProfile(profile_->profile())) hands.choose(hands.wanted());
@@ -121,7 +121,7 @@ void DevicePage::takeProfile() {
 }
 
 void DevicePage::startCheck(fidelity::CheckSettings settings) {
-    Hands& hands = simulator_.hands();
+    DeviceManager& hands = simulator_.hands();
     if (checking_ || !hands.current()) return;
     checked_ = hands.wanted();
     const auto report = std::make_shared<fidelity::Report>();

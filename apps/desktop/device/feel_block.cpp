@@ -8,8 +8,8 @@ namespace {
 
 constexpr int kPollMs = 33;
 
-tooth::Case blockCase() {
-    tooth::Case block;
+cases::Case blockCase() {
+    cases::Case block;
     block.name = "block";
     const double h = FeelBlock::kHalfMm, d = FeelBlock::kDepthMm;
     geometry::TriangleMesh& mesh = block.outer;
@@ -24,16 +24,16 @@ tooth::Case blockCase() {
 
 }  // namespace
 
-station::ToothPlace FeelBlock::place() {
+input::ToothPlace FeelBlock::place() {
     return {core::Box{core::Vec3(-kHalfMm, -kHalfMm, -kDepthMm), core::Vec3(kHalfMm, kHalfMm, 0.0)}, 0, 1};
 }
 
 FeelBlock::FeelBlock(bool realTime, QObject* parent) : QObject(parent), realTime_(realTime) {
     timer_.setInterval(kPollMs);
     connect(&timer_, &QTimer::timeout, this, [this] {
-        if (!sitting_) return;
+        if (!liveSession_) return;
         sample_ = feed_->read();
-        status_ = sitting_->status();
+        status_ = liveSession_->status();
         emit ticked();
     });
 }
@@ -45,7 +45,7 @@ FeelBlock::~FeelBlock() {
 void FeelBlock::stop() {
     timer_.stop();
     making_.reset();
-    sitting_.reset();
+    liveSession_.reset();
     feed_.reset();
     sample_ = {};
 }
@@ -53,14 +53,14 @@ void FeelBlock::stop() {
 void FeelBlock::start(std::shared_ptr<Hand> hand) {
     stop();
     struct Made {
-        tooth::Case block;
-        station::Station station;
+        cases::Case block;
+        simulation::SimulationSetup station;
     };
     const auto made = std::make_shared<Made>();
     const instrument::Instrument bur = instrument::makeInstrument("330");
-    station::StationSettings settings;
+    simulation::SimulationSettings settings;
     settings.bur = bur.bur;
-    settings.ability = bur.ability;
+    settings.cuttingParameters = bur.cuttingParameters;
     settings.field.voxelMm = 0.2;
     settings.capability = hand->device().capability();
     settings.parameters = hand->fitted(settings.parameters);
@@ -68,22 +68,22 @@ void FeelBlock::start(std::shared_ptr<Hand> hand) {
     settings.hull = true;
     making_ = std::make_unique<Job>(QString(), [made, settings](const core::Progress& progress) {
         made->block = blockCase();
-        made->station = station::makeStation(made->block, settings, false, progress);
+        made->station = simulation::makeSimulation(made->block, settings, false, progress);
     });
     connect(making_.get(), &Job::done, this, [this, made, hand = std::move(hand)] {
         making_.release()->deleteLater();
         hand->placeFor(place());
-        station::SittingSettings sitting;
-        sitting.realTime = realTime_;
-        sitting.lowerButtonUndoes = false;
+        simulation::LiveSessionSettings liveSession;
+        liveSession.realTime = realTime_;
+        liveSession.lowerButtonUndoes = false;
         try {
-            sitting_ = std::make_unique<station::Sitting>(made->station, made->block,
-                                                          std::make_unique<LentDevice>(hand), sitting, nullptr);
+            liveSession_ = std::make_unique<simulation::LiveSession>(
+                made->station, made->block, std::make_unique<LentDevice>(hand), liveSession, nullptr);
         } catch (const core::Error& error) {
             emit failed(problemOf(error));
             return;
         }
-        feed_ = sitting_->subscribe();
+        feed_ = liveSession_->subscribe();
         timer_.start();
     });
     connect(making_.get(), &Job::failed, this, [this](const Problem& problem) {

@@ -7,8 +7,8 @@
 #include <QTimer>
 #include <memory>
 
-#include "shell/hand.h"
-#include "station/sitting.h"
+#include "handpiece/app/simulation/live_session.h"
+#include "shell/device_manager.h"
 
 namespace handpiece::desktop {
 
@@ -21,12 +21,12 @@ class FeelBlock : public QObject {
 
     void start(std::shared_ptr<Hand> hand);
     void stop();
-    [[nodiscard]] bool isRunning() const noexcept { return sitting_ != nullptr; }
+    [[nodiscard]] bool isRunning() const noexcept { return liveSession_ != nullptr; }
     [[nodiscard]] const messages::HapticSample& sample() const noexcept { return sample_; }
-    [[nodiscard]] const station::SittingStatus& status() const noexcept { return status_; }
+    [[nodiscard]] const simulation::LiveSessionStatus& status() const noexcept { return status_; }
     /// Of the block: its top lies at z = 0.
     static constexpr double kHalfMm = 5.0, kDepthMm = 5.0;
-    [[nodiscard]] static station::ToothPlace place();
+    [[nodiscard]] static input::ToothPlace place();
 
   signals:
     void ticked();
@@ -35,10 +35,10 @@ class FeelBlock : public QObject {
   private:
     bool realTime_;
     std::unique_ptr<Job> making_;
-    std::unique_ptr<station::Sitting> sitting_;
-    std::shared_ptr<station::SampleFeed> feed_;
+    std::unique_ptr<simulation::LiveSession> liveSession_;
+    std::shared_ptr<simulation::SampleFeed> feed_;
     messages::HapticSample sample_;
-    station::SittingStatus status_;
+    simulation::LiveSessionStatus status_;
     QTimer timer_;
 };
 

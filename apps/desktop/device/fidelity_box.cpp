@@ -15,7 +15,7 @@
 #include "device/fidelity_words.h"
 #include "panels/parts.h"
 #include "panels/theme.h"
-#include "shell/hand.h"
+#include "shell/device_manager.h"
 
 namespace handpiece::desktop {
 
@@ -139,7 +139,7 @@ void FidelityBox::setReport(const fidelity::Report& report) {
         if (finding.id == "troubles" && !report.troubles.empty()) {
             // As the message says it that came with each.
             QStringList said;
-            for (const link::Trouble trouble : report.troubles)
+            for (const link::DeviceFault trouble : report.troubles)
                 said << problemOf(trouble, report.vendorCode).what;
             value = said.join(QLatin1Char(' '));
             remedy = problemOf(report.troubles.front(), report.vendorCode).remedy;

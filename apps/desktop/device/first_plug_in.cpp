@@ -26,9 +26,10 @@ QLabel* text(const char* name, const QString& accessible, QWidget* parent) {
 }
 
 QString words(const safety::Health& health) {
-    const link::Trouble trouble = health.gate.trouble;
+    const link::DeviceFault trouble = health.gate.trouble;
     // Before the first step that pushes there is no tick, and so nothing that it could be late with.
-    if (trouble == link::Trouble::none || trouble == link::Trouble::tickStalled || trouble == link::Trouble::starting)
+    if (trouble == link::DeviceFault::none || trouble == link::DeviceFault::tickStalled ||
+        trouble == link::DeviceFault::starting)
         return {};
     return problemOf(trouble, health.gate.vendorCode).what;
 }
@@ -73,12 +74,12 @@ FirstPlugIn::FirstPlugIn(Simulator& simulator, bool realTime, QWidget* parent)
         }
     });
 
-    Hands& hands = simulator_.hands();
+    DeviceManager& hands = simulator_.hands();
     if (hands.current()) profile_ = hands.current()->profile();
     choices_->setProfile(profile_);
     simulator_.lendHand(true);
-    connect(&hands, &Hands::polled, this, &FirstPlugIn::showState);
-    connect(&hands, &Hands::changed, this, [this, &hands] {
+    connect(&hands, &DeviceManager::polled, this, &FirstPlugIn::showState);
+    connect(&hands, &DeviceManager::changed, this, [this, &hands] {
         if (hands.current() && reopening_) {
             reopening_ = false;
             if (step_ == Step::feel) startBlock();
@@ -130,7 +131,7 @@ QWidget* FirstPlugIn::calibratePage() {
     auto* reach = new ReachPicture(page);
     reach->setObjectName(QStringLiteral("firstReach"));
     column->addWidget(reach, 1);
-    connect(&simulator_.hands(), &Hands::polled, reach, [this, reach] {
+    connect(&simulator_.hands(), &DeviceManager::polled, reach, [this, reach] {
         const safety::Health& health = simulator_.hands().health();
         reach->setStylus(health.positionMm, health.orientation);
         if (simulator_.hands().current()) reach->setReach(simulator_.hands().current()->info().capability.workspaceMm);
@@ -193,7 +194,7 @@ void FirstPlugIn::startBlock() {
 }
 
 void FirstPlugIn::showState() {
-    const Hands& hands = simulator_.hands();
+    const DeviceManager& hands = simulator_.hands();
     if (!hands.current()) {
         connected_->setText(hands.isOpening() ? tr("The device is being opened...")
                                               : tr("The device is not there. Connect it and choose it again in the "
@@ -253,7 +254,7 @@ void FirstPlugIn::tryCalibration() {
 
 void FirstPlugIn::takeProfile() {
     profile_ = choices_->profile();
-    Hands& hands = simulator_.hands();
+    DeviceManager& hands = simulator_.hands();
     if (!hands.current()) return;
     try {
         if (hands.current()->setProfile(profile_)) return;

@@ -159,7 +159,7 @@ void LiveBox::setHealth(const safety::Health& health, const QString& trouble) {
     trouble_->setPalette(tinted);
 }
 
-void LiveBox::setTick(const station::SittingStatus& status) {
+void LiveBox::setTick(const simulation::LiveSessionStatus& status) {
     const QLocale locale;
     late_->setText(tr("p99 %1 µs; late ticks: %2, missed: %3")
                        .arg(locale.toString(status.latenessUs.p99, 'f', 0),

@@ -6,8 +6,8 @@
 #include <QGridLayout>
 #include <QWidget>
 
+#include "handpiece/app/simulation/live_session.h"
 #include "handpiece/devices/safety/guarded_device.h"
-#include "station/sitting.h"
 
 class QLabel;
 
@@ -41,7 +41,7 @@ class LiveBox : public QWidget {
     /// `trouble`: in the person's words; empty while it is well.
     void setHealth(const safety::Health& health, const QString& trouble);
     /// How punctual the tick is that computes the force.
-    void setTick(const station::SittingStatus& status);
+    void setTick(const simulation::LiveSessionStatus& status);
     void clear();
 
   private:

@@ -63,11 +63,12 @@ ProfileBox::ProfileBox(Extent extent, QWidget* parent) : QWidget(parent) {
                      tr("Gives back part of what the arm's own joints rub away, so that light touches are felt"));
     thermal_ = tick(form, "profileThermal", tr("Thermal budget"),
                     tr("Lowers the force slowly when one presses hard for long, before the motors get too warm"));
-    crisp_ = named(new QCheckBox(tr("Crisp contact"), this), "deviceCrisp", tr("Crisp contact"),
-                   tr("A short knock at each touch, at the tissue's own pitch: makes a soft arm's enamel feel hard"));
+    eventForce_ =
+        named(new QCheckBox(tr("Crisp contact"), this), "deviceCrisp", tr("Crisp contact"),
+              tr("A short knock at each touch, at the tissue's own pitch: makes a soft arm's enamel feel hard"));
     vibration_ = named(new QCheckBox(tr("Cutting vibration"), this), "deviceVibration", tr("Cutting vibration"),
                        tr("The hum of the bur in the hand while it cuts, 100 to 400 Hz"));
-    for (QCheckBox* box : {crisp_, vibration_}) {
+    for (QCheckBox* box : {eventForce_, vibration_}) {
         form->addRow(box);
         connect(box, &QCheckBox::clicked, this, &ProfileBox::crispChanged);
     }
@@ -111,14 +112,14 @@ void ProfileBox::take() {
     emit changed();
 }
 
-void ProfileBox::setCrisp(bool contact, bool vibration) {
-    if (!crisp_) return;
-    crisp_->setChecked(contact);
+void ProfileBox::setEventBasedForce(bool contact, bool vibration) {
+    if (!eventForce_) return;
+    eventForce_->setChecked(contact);
     vibration_->setChecked(vibration);
 }
 
 bool ProfileBox::crispContact() const {
-    return crisp_ && crisp_->isChecked();
+    return eventForce_ && eventForce_->isChecked();
 }
 bool ProfileBox::cuttingVibration() const {
     return vibration_ && vibration_->isChecked();

@@ -24,7 +24,7 @@ class ProfileBox : public QWidget {
 
     void setProfile(const workspace::Profile& profile);
     [[nodiscard]] const workspace::Profile& profile() const noexcept { return profile_; }
-    void setCrisp(bool contact, bool vibration);
+    void setEventBasedForce(bool contact, bool vibration);
     [[nodiscard]] bool crispContact() const;
     [[nodiscard]] bool cuttingVibration() const;
 
@@ -41,7 +41,7 @@ class ProfileBox : public QWidget {
     workspace::Profile profile_;
     QComboBox *hand_, *scale_, *bur_, *clutch_ = nullptr;
     QDoubleSpinBox* force_ = nullptr;
-    QCheckBox *passivity_ = nullptr, *friction_ = nullptr, *thermal_ = nullptr, *crisp_ = nullptr,
+    QCheckBox *passivity_ = nullptr, *friction_ = nullptr, *thermal_ = nullptr, *eventForce_ = nullptr,
               *vibration_ = nullptr;
 };
 

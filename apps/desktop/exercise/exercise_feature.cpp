@@ -18,7 +18,7 @@ namespace handpiece::desktop {
 namespace {
 
 namespace fs = std::filesystem;
-using station::Operation;
+using exercise::Operation;
 
 // The commands that an exercise may lock; those of the panels and of the picture ask for themselves.
 constexpr std::pair<const char*, Operation> kGoverned[] = {
@@ -28,8 +28,8 @@ constexpr std::pair<const char*, Operation> kGoverned[] = {
     {"actionChooseTooth", Operation::chart}, {"actionReport", Operation::report},
 };
 
-QString inLanguage(const tooth::Texts& texts) {
-    const std::string_view text = tooth::inLanguage(texts, QLocale().bcp47Name().toStdString());
+QString inLanguage(const cases::Texts& texts) {
+    const std::string_view text = cases::inLanguage(texts, QLocale().bcp47Name().toStdString());
     return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
 }
 
@@ -100,7 +100,7 @@ bool ExerciseFeature::eventFilter(QObject* watched, QEvent* event) {
 }
 
 void ExerciseFeature::showDocument() {
-    const tooth::Exercise* exercise = simulator_.exercise();
+    const cases::Exercise* exercise = simulator_.exercise();
     ExerciseText text;
     if (exercise) {
         text.title = inLanguage(exercise->title);
@@ -126,13 +126,13 @@ void ExerciseFeature::placeDock() {
 }
 
 void ExerciseFeature::showAllowed() {
-    const station::Permissions now = simulator_.permissions();
+    const exercise::Permissions now = simulator_.permissions();
     for (const auto& [name, operation] : kGoverned) {
         if (!now.allows(operation)) actions_[name]->setEnabled(false);
         actions_.setLocked(name, now.locks(operation));
     }
     actions_["actionExercise"]->setEnabled(simulator_.exercise() != nullptr || simulator_.isReviewing());
-    actions_["actionHandIn"]->setEnabled(!simulator_.isBusy() && simulator_.mode() == Simulator::Mode::sitting);
+    actions_["actionHandIn"]->setEnabled(!simulator_.isBusy() && simulator_.mode() == Simulator::Mode::liveSession);
 }
 
 void ExerciseFeature::handIn() {
@@ -151,9 +151,9 @@ void ExerciseFeature::handIn() {
 }
 
 void ExerciseFeature::open(const std::filesystem::path& path) {
-    tooth::Attempt attempt;
+    cases::Attempt attempt;
     try {
-        if (fileKindOf(path) == FileKind::attempt) attempt = tooth::readAttempt(path);
+        if (fileKindOf(path) == FileKind::attempt) attempt = cases::readAttempt(path);
     } catch (const core::Error& error) {
         emit simulator_.failed(problemOf(error));
         return;

@@ -7,8 +7,8 @@
 namespace handpiece::desktop {
 namespace {
 
-// In the order of tooth::kHelps.
-constexpr std::array<const char*, tooth::kHelps.size()> kLockWords{
+// In the order of cases::kHelps.
+constexpr std::array<const char*, cases::kHelps.size()> kLockWords{
     QT_TRANSLATE_NOOP("Exercise", "Undo, redo, reset"),
     QT_TRANSLATE_NOOP("Exercise", "Reset"),
     QT_TRANSLATE_NOOP("Exercise", "Depths, calliper, depth stop"),
@@ -24,8 +24,8 @@ constexpr std::array<const char*, tooth::kHelps.size()> kLockWords{
     QT_TRANSLATE_NOOP("Exercise", "Before and after"),
 };
 
-// In the order of station::Operation.
-constexpr std::array<const char*, station::kOperationCount> kOperationWords{
+// In the order of exercise::Operation.
+constexpr std::array<const char*, exercise::kOperationCount> kOperationWords{
     QT_TRANSLATE_NOOP("Exercise", "undo"),
     QT_TRANSLATE_NOOP("Exercise", "redo"),
     QT_TRANSLATE_NOOP("Exercise", "reset"),
@@ -50,12 +50,12 @@ constexpr std::array<const char*, station::kOperationCount> kOperationWords{
 }  // namespace
 
 QString lockWords(std::string_view help) {
-    for (std::size_t i = 0; i < tooth::kHelps.size(); ++i)
-        if (tooth::kHelps[i] == help) return QCoreApplication::translate("Exercise", kLockWords[i]);
+    for (std::size_t i = 0; i < cases::kHelps.size(); ++i)
+        if (cases::kHelps[i] == help) return QCoreApplication::translate("Exercise", kLockWords[i]);
     return {};
 }
 
-QString operationWords(station::Operation operation) {
+QString operationWords(exercise::Operation operation) {
     return QCoreApplication::translate("Exercise", kOperationWords[static_cast<std::size_t>(operation)]);
 }
 

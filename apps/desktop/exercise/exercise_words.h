@@ -6,13 +6,13 @@
 #include <QString>
 #include <string_view>
 
-#include "station/permissions.h"
+#include "handpiece/app/exercise/permissions.h"
 
 namespace handpiece::desktop {
 
-/// What a lock of tooth::kHelps takes away, for a list.
+/// What a lock of cases::kHelps takes away, for a list.
 [[nodiscard]] QString lockWords(std::string_view help);
 /// What was asked for and is locked, for one sentence.
-[[nodiscard]] QString operationWords(station::Operation operation);
+[[nodiscard]] QString operationWords(exercise::Operation operation);
 
 }  // namespace handpiece::desktop

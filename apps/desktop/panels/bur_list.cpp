@@ -110,14 +110,14 @@ QVariant BurModel::data(const QModelIndex& index, int role) const {
                                QString::fromStdString(row.entry.isoNumber),
                                size,
                                kind,
-                               abilityName(row.entry.ability),
+                               abilityName(row.entry.cuttingParameters),
                                row.face.ringName}
                 .join(QLatin1Char('\n'));
         case Qt::DisplayRole:
         case Qt::AccessibleTextRole:
             return tr("%1, %2, diameter %3").arg(burTitle(name), kind, size);
         case Qt::ToolTipRole: {
-            QStringList lines{burTitle(name), tr("%1, %2").arg(kind, abilityName(row.entry.ability)),
+            QStringList lines{burTitle(name), tr("%1, %2").arg(kind, abilityName(row.entry.cuttingParameters)),
                               tr("Diameter %1, length %2").arg(size, diameterText(row.face.lengthMm))};
             if (!us.isEmpty()) lines << tr("US number %1").arg(us);
             if (!iso.isEmpty()) lines << tr("ISO number %1").arg(iso);

@@ -54,8 +54,8 @@ std::vector<QPointF> rightHalf(const instrument::Profile& profile) {
     return points;
 }
 
-void setAbility(BurFace& face, std::string_view ability) {
-    const auto name = QString::fromUtf8(ability.data(), static_cast<qsizetype>(ability.size()));
+void setCuttingParameters(BurFace& face, std::string_view cuttingParameters) {
+    const auto name = QString::fromUtf8(cuttingParameters.data(), static_cast<qsizetype>(cuttingParameters.size()));
     face.metal = name.startsWith("diamond")   ? BurFace::Metal::diamond
                  : name.contains("finishing") ? BurFace::Metal::gold
                                               : BurFace::Metal::carbide;
@@ -63,7 +63,7 @@ void setAbility(BurFace& face, std::string_view ability) {
     face.finishing = name.contains("finishing");
     // The ring stands in the words of the abilities' file.
     for (const auto& row : instrument::builtInBurs().abilities) {
-        if (row.ability.name != ability) continue;
+        if (row.cuttingParameters.name != cuttingParameters) continue;
         static const QRegularExpression pattern(QStringLiteral("(\\w+) ring"));
         const auto match = pattern.match(QString::fromStdString(row.description));
         for (const Ring& ring : kRings)
@@ -103,9 +103,9 @@ constexpr double kShankMm = 0.8, kNeckMm = 2.2, kShankShownMm = 3.6;
 
 }  // namespace
 
-BurFace burFace(const instrument::Profile& profile, std::string_view ability) {
+BurFace burFace(const instrument::Profile& profile, std::string_view cuttingParameters) {
     BurFace face;
-    setAbility(face, ability);
+    setCuttingParameters(face, cuttingParameters);
     const auto points = rightHalf(profile);
     if (points.size() < 2) return face;
     face.outline.moveTo(points.front());
@@ -122,13 +122,14 @@ BurFace burFace(const instrument::Profile& profile, std::string_view ability) {
 BurFace burFace(const instrument::CatalogueEntry& entry) {
     if (entry.stl.empty()) {
         try {
-            return burFace(instrument::makeProfile(entry.shape, entry.diameterMm, entry.lengthMm), entry.ability);
+            return burFace(instrument::makeProfile(entry.shape, entry.diameterMm, entry.lengthMm),
+                           entry.cuttingParameters);
         } catch (const core::Error&) {
             // A size that the shape cannot have was told where the file was read; here it is only a picture.
         }
     }
     BurFace face;
-    setAbility(face, entry.ability);
+    setCuttingParameters(face, entry.cuttingParameters);
     face.diameterMm = entry.diameterMm > 0 ? entry.diameterMm : 1.2;
     face.lengthMm = entry.lengthMm > 0 ? entry.lengthMm : 4.0;
     face.outline.addRoundedRect(QRectF(-face.diameterMm / 2, 0, face.diameterMm, face.lengthMm), face.diameterMm / 3,
@@ -241,7 +242,7 @@ QString shapeName(instrument::Shape shape) {
     return {};
 }
 
-QString abilityName(std::string_view ability) {
+QString abilityName(std::string_view cuttingParameters) {
     struct Word {
         const char *name, *text;
     };
@@ -254,8 +255,8 @@ QString abilityName(std::string_view ability) {
                                       {"carbide-finishing", QT_TRANSLATE_NOOP("BurPicture", "Carbide, finishing")},
                                       {"steel", QT_TRANSLATE_NOOP("BurPicture", "Steel")}};
     for (const Word& word : kWords)
-        if (ability == word.name) return text(word.text);
-    return QString::fromUtf8(ability.data(), static_cast<qsizetype>(ability.size()));
+        if (cuttingParameters == word.name) return text(word.text);
+    return QString::fromUtf8(cuttingParameters.data(), static_cast<qsizetype>(cuttingParameters.size()));
 }
 
 QString groupedIso(std::string_view isoNumber) {

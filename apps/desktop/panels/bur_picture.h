@@ -30,7 +30,7 @@ struct BurFace {
 /// Of a catalogue's bur. One made of a mesh gets a plain outline of its own size.
 [[nodiscard]] BurFace burFace(const instrument::CatalogueEntry& entry);
 /// Of an outline.
-[[nodiscard]] BurFace burFace(const instrument::Profile& profile, std::string_view ability);
+[[nodiscard]] BurFace burFace(const instrument::Profile& profile, std::string_view cuttingParameters);
 
 /// Upright, tip down, centred in `rect`, `pixelsPerMm` large (0: as large as fits). Head, neck, shank and ring.
 void paintBur(QPainter& painter, const QRectF& rect, const BurFace& face, const QPalette& palette,
@@ -38,7 +38,7 @@ void paintBur(QPainter& painter, const QRectF& rect, const BurFace& face, const 
 
 /// "Round diamond, medium": shape and ability in words, translated.
 [[nodiscard]] QString shapeName(instrument::Shape shape);
-[[nodiscard]] QString abilityName(std::string_view ability);
+[[nodiscard]] QString abilityName(std::string_view cuttingParameters);
 /// "500 314 001 001 014": groups of the ISO 6360 number.
 [[nodiscard]] QString groupedIso(std::string_view isoNumber);
 

@@ -225,15 +225,15 @@ void DrillBar::setBur(const QString& name) {
 }
 
 void DrillBar::addOwnBur(const instrument::CatalogueEntry& entry, const instrument::Profile& profile) {
-    model_->addOwn(entry, burFace(profile, entry.ability));
+    model_->addOwn(entry, burFace(profile, entry.cuttingParameters));
     showBur();
 }
 
-void DrillBar::addOwnBur(const QString& name, const instrument::Bur& bur, const std::string& ability) {
+void DrillBar::addOwnBur(const QString& name, const instrument::Bur& bur, const std::string& cuttingParameters) {
     if (name.isEmpty() || model_->rowOf(name) >= 0) return;
     instrument::CatalogueEntry entry;
     entry.name = name.toStdString();
-    entry.ability = ability;
+    entry.cuttingParameters = cuttingParameters;
     addOwnBur(entry, bur.profile());
 }
 
@@ -248,7 +248,7 @@ void DrillBar::showBur() {
         QStringList lines{
             QStringLiteral("%1 · %2").arg(model_->shapeOf(row) < 0 ? tr("Own bur") : shapeName(entry.shape),
                                           quantity(face.diameterMm, 2, tr("mm"))),
-            abilityName(entry.ability)};
+            abilityName(entry.cuttingParameters)};
         QStringList numbers;
         if (!entry.usName.empty() && entry.usName != entry.name)
             numbers << tr("US %1").arg(QString::fromStdString(entry.usName));

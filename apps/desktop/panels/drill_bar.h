@@ -44,7 +44,7 @@ class DrillBar : public QWidget {
     /// A bur of one's own, from a file: added in front of the list (replacing one of that name), not yet in hand.
     void addOwnBur(const instrument::CatalogueEntry& entry, const instrument::Profile& profile);
     /// Into the list with its outline, unless the catalogue has it.
-    void addOwnBur(const QString& name, const instrument::Bur& bur, const std::string& ability);
+    void addOwnBur(const QString& name, const instrument::Bur& bur, const std::string& cuttingParameters);
     void setDrives(const std::vector<instrument::Drive>& drives);
     void setDrive(const QString& name);
     [[nodiscard]] QString drive() const { return drive_; }

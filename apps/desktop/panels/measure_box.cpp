@@ -102,7 +102,7 @@ MeasureBox::MeasureBox(QWidget* parent) : QWidget(parent) {
     loadCaption_ = new QLabel(loadRow_);
     load_ = named(new QSlider(Qt::Horizontal, loadRow_), "loadSlider", tr("How hard to press"),
                   tr("How hard the left button presses (Shift and the wheel)"));
-    load_->setRange(qRound(kLeastLoadN / kLoadStepN), qRound(kMostLoadN / kLoadStepN));
+    load_->setRange(qRound(kMinLoadN / kLoadStepN), qRound(kMaxLoadN / kLoadStepN));
     load_->setPageStep(5);
     loadValue_ = new QLabel(loadRow_);
     loadValue_->setObjectName("loadReadout");
@@ -117,7 +117,7 @@ MeasureBox::MeasureBox(QWidget* parent) : QWidget(parent) {
     stopOn_ = named(new QCheckBox(tr("Stop at a depth of"), this), "depthStopOn", tr("Depth stop"),
                     tr("The bur goes no deeper than this (Ctrl and the wheel)"));
     stop_ = named(new QDoubleSpinBox(this), "depthStop", tr("Depth of the stop"));
-    stop_->setRange(0.1, kMostStopMm);
+    stop_->setRange(0.1, kMaxStopMm);
     stop_->setSingleStep(0.1);
     stop_->setDecimals(1);
     stop_->setValue(1.5);
@@ -209,7 +209,7 @@ void MeasureBox::setLeftOverPulp(const std::optional<double>& leftMm, bool expos
 
 void MeasureBox::setLoad(double loadN) {
     const QSignalBlocker quiet(load_);
-    loadN_ = std::clamp(std::isfinite(loadN) ? loadN : 1.0, kLeastLoadN, kMostLoadN);
+    loadN_ = std::clamp(std::isfinite(loadN) ? loadN : 1.0, kMinLoadN, kMaxLoadN);
     load_->setValue(qRound(loadN_ / kLoadStepN));
     showLoad();
 }
@@ -259,8 +259,8 @@ void MeasureBox::setCalliperActive(bool active) {
     calliperButton_->setChecked(active);
 }
 
-void MeasureBox::setPermissions(const station::Permissions& permissions) {
-    using station::Operation;
+void MeasureBox::setPermissions(const exercise::Permissions& permissions) {
+    using exercise::Operation;
     const bool depth = permissions.allows(Operation::depthReadout), calliper = permissions.allows(Operation::calliper);
     for (QWidget* w : std::initializer_list<QWidget*>{depth_, depthCaption_, left_, leftCaption_, leftWords_, light_})
         w->setVisible(depth);

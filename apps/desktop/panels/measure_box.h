@@ -6,9 +6,9 @@
 #include <QWidget>
 #include <optional>
 
+#include "handpiece/app/exercise/permissions.h"
 #include "handpiece/senses/measure/pulp_light.h"
 #include "panels/detail.h"
-#include "station/permissions.h"
 
 class QCheckBox;
 class QComboBox;
@@ -28,7 +28,7 @@ class MeasureBox : public QWidget {
   public:
     enum class Orientation { buccolingual, mesiodistal, horizontal };
     Q_ENUM(Orientation)
-    static constexpr double kLeastLoadN = 0.1, kMostLoadN = 3.0, kMostStopMm = 9.9;
+    static constexpr double kMinLoadN = 0.1, kMaxLoadN = 3.0, kMaxStopMm = 9.9;
 
     explicit MeasureBox(QWidget* parent = nullptr);
 
@@ -48,7 +48,7 @@ class MeasureBox : public QWidget {
     /// How far the section may move [mm].
     void setSectionRange(double leastMm, double mostMm);
     void setCalliperActive(bool active);
-    void setPermissions(const station::Permissions& permissions);
+    void setPermissions(const exercise::Permissions& permissions);
     /// A real device presses itself: no load to set.
     void setLoadShown(bool shown);
     void setDetail(Detail detail);

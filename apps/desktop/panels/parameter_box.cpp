@@ -33,9 +33,9 @@ QString withMark(double given, bool clipped) {
 
 }  // namespace
 
-QString tissueName(tooth::Tissue tissue) {
+QString tissueName(cases::Tissue tissue) {
     const auto text = [](const char* word) { return QCoreApplication::translate("Tissue", word); };
-    using tooth::Tissue;
+    using cases::Tissue;
     switch (tissue) {
         case Tissue::none:
             return text(QT_TRANSLATE_NOOP("Tissue", "None"));
@@ -210,12 +210,12 @@ ParameterBox::Row ParameterBox::addRow(QGridLayout* grid, int row, const QString
     return r;
 }
 
-void ParameterBox::setTissues(const tooth::TissueTable& tissues) {
+void ParameterBox::setTissues(const cases::TissueTable& tissues) {
     tissues_ = tissues;
     showTable();
 }
 
-void ParameterBox::setPresent(const std::vector<tooth::Tissue>& tissues) {
+void ParameterBox::setPresent(const std::vector<cases::Tissue>& tissues) {
     present_ = tissues;
     showTable();
 }
@@ -247,26 +247,26 @@ void ParameterBox::showMultipliers() {
     showTable();
 }
 
-ParameterBox::Spring ParameterBox::springOf(tooth::Tissue tissue) const {
+ParameterBox::Spring ParameterBox::springOf(cases::Tissue tissue) const {
     const double wanted = tissues_.of(tissue).stiffnessFraction * multipliers_.stiffness * limits_.maxStiffnessNPerMm;
     return {wanted, std::min(wanted, limits_.maxStiffnessNPerMm)};
 }
 
-ParameterBox::Spring ParameterBox::damperOf(tooth::Tissue tissue) const {
+ParameterBox::Spring ParameterBox::damperOf(cases::Tissue tissue) const {
     const double wanted = tissues_.of(tissue).dampingNSPerMm * multipliers_.damping;
     return {wanted, std::min(wanted, limits_.maxDampingNSPerMm)};
 }
 
 void ParameterBox::showTable() {
-    std::vector<tooth::Tissue> shown = present_;
+    std::vector<cases::Tissue> shown = present_;
     if (shown.empty())
-        for (std::size_t i = 1; i < tooth::kTissueCount; ++i)
-            shown.push_back(static_cast<tooth::Tissue>(i));
+        for (std::size_t i = 1; i < cases::kTissueCount; ++i)
+            shown.push_back(static_cast<cases::Tissue>(i));
     table_->setRowCount(static_cast<int>(shown.size()));
     const QColor bad = tonesOf(palette()).bad;
     bool anyClipped = false;
     for (int row = 0; row < table_->rowCount(); ++row) {
-        const tooth::Tissue tissue = shown[static_cast<std::size_t>(row)];
+        const cases::Tissue tissue = shown[static_cast<std::size_t>(row)];
         const auto& own = tissues_.of(tissue);
         const auto put = [&](int column, const QString& text, bool clipped = false, double wanted = 0) {
             auto* item = table_->item(row, column);

@@ -6,7 +6,7 @@
 #include <QWidget>
 #include <vector>
 
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 #include "handpiece/tick/force/parameters.h"
 #include "panels/detail.h"
 
@@ -40,9 +40,9 @@ class ParameterBox : public QWidget {
     explicit ParameterBox(QWidget* parent = nullptr);
 
     // Setters tell nobody.
-    void setTissues(const tooth::TissueTable& tissues);
+    void setTissues(const cases::TissueTable& tissues);
     /// The rows shown; empty: all but `none`.
-    void setPresent(const std::vector<tooth::Tissue>& tissues);
+    void setPresent(const std::vector<cases::Tissue>& tissues);
     void setLimits(const force::Limits& limits, const QString& device);
     void setMultipliers(const Multipliers& multipliers);
     [[nodiscard]] Multipliers multipliers() const { return multipliers_; }
@@ -59,8 +59,8 @@ class ParameterBox : public QWidget {
         double wantedNPerMm, givenNPerMm;
         [[nodiscard]] bool clipped() const { return givenNPerMm < wantedNPerMm; }
     };
-    [[nodiscard]] Spring springOf(tooth::Tissue tissue) const;
-    [[nodiscard]] Spring damperOf(tooth::Tissue tissue) const;  ///< the same of the damper [N s/mm]
+    [[nodiscard]] Spring springOf(cases::Tissue tissue) const;
+    [[nodiscard]] Spring damperOf(cases::Tissue tissue) const;  ///< the same of the damper [N s/mm]
 
   signals:
     void multipliersChanged(double stiffness, double damping, double friction);
@@ -87,8 +87,8 @@ class ParameterBox : public QWidget {
     QComboBox *force_, *method_, *voxel_;
     QLabel *forceName_, *methodName_, *voxelName_;
     QPushButton* reset_;
-    tooth::TissueTable tissues_ = tooth::builtInTissues();
-    std::vector<tooth::Tissue> present_;
+    cases::TissueTable tissues_ = cases::builtInTissues();
+    std::vector<cases::Tissue> present_;
     force::Limits limits_;
     QString device_;
     Multipliers multipliers_;
@@ -99,6 +99,6 @@ class ParameterBox : public QWidget {
 };
 
 /// "Enamel", translated.
-[[nodiscard]] QString tissueName(tooth::Tissue tissue);
+[[nodiscard]] QString tissueName(cases::Tissue tissue);
 
 }  // namespace handpiece::desktop

@@ -52,7 +52,7 @@ PlotPanel::PlotPanel(QWidget* parent) : QWidget(parent) {
     });
 }
 
-void PlotPanel::append(const std::vector<station::PlotPoint>& points) {
+void PlotPanel::append(const std::vector<simulation::PlotPoint>& points) {
     view_->append(points);
 }
 void PlotPanel::addEvent(double timeS, const QString& label) {
@@ -112,13 +112,13 @@ QByteArray PlotPanel::csv() const {
     // The same words and figures in every language, so that programs can read them.
     fmt::memory_buffer out;
     fmt::format_to(std::back_inserter(out), "time [s],force [N],depth [mm],speed [rpm],least speed [rpm]");
-    for (std::size_t i = 1; i < tooth::kTissueCount; ++i)
+    for (std::size_t i = 1; i < cases::kTissueCount; ++i)
         fmt::format_to(std::back_inserter(out), ",removed {} [mm3]",
-                       tooth::properties(static_cast<tooth::Tissue>(i)).name);
+                       cases::properties(static_cast<cases::Tissue>(i)).name);
     fmt::format_to(std::back_inserter(out), ",flags\n");
     for (const auto& p : view_->points()) {
         fmt::format_to(std::back_inserter(out), "{},{},{},{},{}", p.timeS, p.forceN, p.depthMm, p.speedRpm, p.leastRpm);
-        for (std::size_t i = 1; i < tooth::kTissueCount; ++i)
+        for (std::size_t i = 1; i < cases::kTissueCount; ++i)
             fmt::format_to(std::back_inserter(out), ",{}", p.removedMm3[i]);
         fmt::format_to(std::back_inserter(out), ",{}\n", p.flags);
     }

@@ -8,8 +8,8 @@
 #include <QWidget>
 #include <vector>
 
+#include "handpiece/app/simulation/live_session.h"
 #include "panels/detail.h"
-#include "station/sitting.h"
 
 class QLabel;
 class QToolButton;
@@ -27,7 +27,7 @@ class PlotPanel : public QWidget {
     explicit PlotPanel(QWidget* parent = nullptr);
 
     /// Points in the order of time; a time before the last one begins anew.
-    void append(const std::vector<station::PlotPoint>& points);
+    void append(const std::vector<simulation::PlotPoint>& points);
     /// A mark over all plots.
     void addEvent(double timeS, const QString& label);
     void clear();

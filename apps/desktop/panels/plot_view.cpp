@@ -29,7 +29,7 @@ PlotView::PlotView(QWidget* parent) : QWidget(parent) {
     fitAxes();
 }
 
-void PlotView::append(const std::vector<station::PlotPoint>& points) {
+void PlotView::append(const std::vector<simulation::PlotPoint>& points) {
     if (points.empty()) return;
     for (const auto& point : points) {
         if (!points_.empty() && point.timeS < points_.back().timeS) {
@@ -88,7 +88,7 @@ void PlotView::setPractice(bool practice) {
     update();
 }
 
-double PlotView::valueOf(const station::PlotPoint& point, int plot) {
+double PlotView::valueOf(const simulation::PlotPoint& point, int plot) {
     const float value = plot == 0 ? point.forceN : plot == 1 ? point.depthMm : point.speedRpm;
     return std::isfinite(value) ? value : 0.0;
 }
@@ -327,7 +327,7 @@ void PlotView::setHover(double timeS) {
         return;
     }
     auto at = std::lower_bound(shown.begin(), shown.end(), timeS,
-                               [](const station::PlotPoint& point, double t) { return point.timeS < t; });
+                               [](const simulation::PlotPoint& point, double t) { return point.timeS < t; });
     if (at == shown.end()) --at;
     QString text = practice_ ? tr("%1 s: depth %2 mm, %3 turns a minute")
                                    .arg(QLocale().toString(at->timeS, 'f', 2), QLocale().toString(at->depthMm, 'f', 2),

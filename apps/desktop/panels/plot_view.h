@@ -25,7 +25,7 @@ class PlotView : public QWidget {
 
     explicit PlotView(QWidget* parent = nullptr);
 
-    void append(const std::vector<station::PlotPoint>& points);
+    void append(const std::vector<simulation::PlotPoint>& points);
     void addMark(double timeS, const QString& label);
     void clear();
     void setForceLimit(double limitN);
@@ -33,7 +33,7 @@ class PlotView : public QWidget {
     void setPaused(bool paused);
     void setPractice(bool practice);
     [[nodiscard]] bool paused() const { return paused_; }
-    [[nodiscard]] const std::deque<station::PlotPoint>& points() const { return paused_ ? frozen_ : points_; }
+    [[nodiscard]] const std::deque<simulation::PlotPoint>& points() const { return paused_ ? frozen_ : points_; }
     /// Everything, for a device of any kind.
     void draw(QPainter& painter, const QSize& size) const;
     [[nodiscard]] double largestDrawn(int plot) const;
@@ -60,14 +60,14 @@ class PlotView : public QWidget {
     [[nodiscard]] double endS() const;
     /// Curve in pixels: the extremes of each column, in the order they came.
     [[nodiscard]] QPolygonF curve(int plot, const QRectF& frame) const;
-    [[nodiscard]] static double valueOf(const station::PlotPoint& point, int plot);
+    [[nodiscard]] static double valueOf(const simulation::PlotPoint& point, int plot);
     void fitAxes();
     void drawAxes(QPainter& painter, const QSize& size) const;
     /// `live`: as fast as a screen needs, else as fine as a file should be.
     void drawCurves(QPainter& painter, const QSize& size, bool live) const;
     void setHover(double timeS);
 
-    std::deque<station::PlotPoint> points_, frozen_;
+    std::deque<simulation::PlotPoint> points_, frozen_;
     std::vector<Mark> marks_;
     Axis axes_[kPlots];
     double limitN_ = 3.3, freeRpm_ = 400000, hoverS_ = -1;

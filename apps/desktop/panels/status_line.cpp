@@ -112,17 +112,17 @@ void StatusLine::refresh() {
                                                          : figures_.recordingNote);
     const QLocale locale;
     QString device = figures_.device.isEmpty() ? tr("No device") : figures_.device;
-    if (!figures_.deviceTrouble.isEmpty()) {
-        device = tr("%1: %2").arg(device, figures_.deviceTrouble);
+    if (!figures_.deviceFault.isEmpty()) {
+        device = tr("%1: %2").arg(device, figures_.deviceFault);
     } else if (figures_.servoHz > 0.0) {
         device = tr("%1, %2 Hz").arg(device, locale.toString(figures_.servoHz, 'f', 0));
     }
     device_->setText(device);
-    device_->setToolTip(figures_.deviceTrouble.isEmpty()
+    device_->setToolTip(figures_.deviceFault.isEmpty()
                             ? tr("What holds the handpiece, and how often its own servo answers. Press to choose.")
-                            : tr("The device gives no force: %1").arg(figures_.deviceTrouble));
+                            : tr("The device gives no force: %1").arg(figures_.deviceFault));
     QPalette tinted = palette();
-    if (!figures_.deviceTrouble.isEmpty()) tinted.setColor(QPalette::ButtonText, tonesOf(tinted).bad);
+    if (!figures_.deviceFault.isEmpty()) tinted.setColor(QPalette::ButtonText, tonesOf(tinted).bad);
     device_->setPalette(tinted);
     rate_->setText(tr("%1 Hz").arg(locale.toString(figures_.rateHz, 'f', 0)));
     late_->setText(figures_.missedPeriods > 0 ? tr("%1 late, %2 missed")

@@ -20,9 +20,9 @@ class Lamp;
 struct StatusFigures {
     enum class Recording { off, on, stopped };
     QString device;
-    double servoHz = 0.0;   ///< of the device's own loop, measured; 0: it has none
-    QString deviceTrouble;  ///< a word or two; empty: it is well
-    double rateHz = 0.0;    ///< measured
+    double servoHz = 0.0;  ///< of the device's own loop, measured; 0: it has none
+    QString deviceFault;   ///< a word or two; empty: it is well
+    double rateHz = 0.0;   ///< measured
     std::uint64_t lateTicks = 0, missedPeriods = 0;
     double load = 0.0;  ///< 0..1
     Recording recording = Recording::off;

@@ -148,7 +148,7 @@ ViewBar::ViewBar(QWidget* parent) : QWidget(parent) {
         look_.stereo = static_cast<view::Stereo>(i);
         tell();
     });
-    using tooth::Tissue;
+    using cases::Tissue;
     setPresent({Tissue::enamel, Tissue::dentine, Tissue::pulp});
     showLook();
     setDetail(Detail::practice);
@@ -189,7 +189,7 @@ void ViewBar::showLook() {
         check(box, look_.visible[static_cast<std::size_t>(tissue)]);
 }
 
-void ViewBar::setPresent(const std::vector<tooth::Tissue>& tissues) {
+void ViewBar::setPresent(const std::vector<cases::Tissue>& tissues) {
     present_ = tissues;
     makeTissueBoxes();
 }
@@ -199,12 +199,12 @@ void ViewBar::makeTissueBoxes() {
         delete entry.second;
     tissueBoxes_.clear();
     int cell = 0;
-    for (const tooth::Tissue tissue : present_) {
+    for (const cases::Tissue tissue : present_) {
         auto* box = named(new QCheckBox(tissueName(tissue), this), "showTissue", tissueName(tissue),
                           tr("Show or hide: %1").arg(tissueName(tissue)));
         box->setObjectName(QStringLiteral("showTissue_%1")
-                               .arg(QString::fromUtf8(tooth::properties(tissue).name.data(),
-                                                      static_cast<qsizetype>(tooth::properties(tissue).name.size()))));
+                               .arg(QString::fromUtf8(cases::properties(tissue).name.data(),
+                                                      static_cast<qsizetype>(cases::properties(tissue).name.size()))));
         box->setChecked(look_.visible[static_cast<std::size_t>(tissue)]);
         tissueGrid_->addWidget(box, cell / 2, cell % 2);
         ++cell;
@@ -217,8 +217,8 @@ void ViewBar::makeTissueBoxes() {
     setPermissions(permissions_);
 }
 
-void ViewBar::setPermissions(const station::Permissions& permissions) {
-    using station::Operation;
+void ViewBar::setPermissions(const exercise::Permissions& permissions) {
+    using exercise::Operation;
     permissions_ = permissions;
     const auto take = [&permissions](QWidget* w, Operation operation, const QString& tip) {
         w->setEnabled(!permissions.locks(operation));

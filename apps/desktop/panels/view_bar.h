@@ -7,10 +7,10 @@
 #include <array>
 #include <vector>
 
+#include "handpiece/app/exercise/permissions.h"
 #include "handpiece/senses/view/camera.h"
 #include "handpiece/senses/view/look.h"
 #include "panels/detail.h"
-#include "station/permissions.h"
 
 class QCheckBox;
 class QComboBox;
@@ -30,8 +30,8 @@ class ViewBar : public QWidget {
     void setLook(const view::Look& look);
     [[nodiscard]] const view::Look& look() const { return look_; }
     /// The tissues with a box; all others have none.
-    void setPresent(const std::vector<tooth::Tissue>& tissues);
-    void setPermissions(const station::Permissions& permissions);
+    void setPresent(const std::vector<cases::Tissue>& tissues);
+    void setPermissions(const exercise::Permissions& permissions);
     void setDetail(Detail detail);
 
   signals:
@@ -45,15 +45,15 @@ class ViewBar : public QWidget {
     void makeTissueBoxes();
 
     view::Look look_;
-    std::vector<tooth::Tissue> present_;
-    station::Permissions permissions_;
+    std::vector<cases::Tissue> present_;
+    exercise::Permissions permissions_;
     std::array<QToolButton*, 6> views_{};
     QToolButton* fit_;
     QComboBox *palette_, *quality_, *shown_, *stereo_;
     QCheckBox *removed_, *wet_, *debris_, *spray_, *shadows_, *scaleBar_, *contact_, *force_, *turbine_;
     QLabel *stereoName_, *qualityName_, *tissuesName_;
     QGridLayout* tissueGrid_;
-    std::vector<std::pair<tooth::Tissue, QCheckBox*>> tissueBoxes_;
+    std::vector<std::pair<cases::Tissue, QCheckBox*>> tissueBoxes_;
     Detail detail_ = Detail::practice;
 };
 

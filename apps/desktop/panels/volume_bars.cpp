@@ -44,7 +44,7 @@ VolumeBars::VolumeBars(QWidget* parent) : QWidget(parent) {
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }
 
-void VolumeBars::setVolumes(const std::array<double, tooth::kTissueCount>& removedMm3) {
+void VolumeBars::setVolumes(const std::array<double, cases::kTissueCount>& removedMm3) {
     if (locked_) return;
     const std::size_t before = rows().size();
     bool changed = false;
@@ -90,13 +90,13 @@ std::vector<view::LegendEntry> VolumeBars::rows() const {
     if (locked_) return {};
     std::vector<view::LegendEntry> rows;
     for (const auto& entry : entries_)
-        if (tooth::properties(entry.tissue).cuttingMm2PerN > 0) rows.push_back(entry);
-    for (std::size_t i = 1; i < tooth::kTissueCount; ++i) {
-        const auto tissue = static_cast<tooth::Tissue>(i);
+        if (cases::properties(entry.tissue).cuttingMm2PerN > 0) rows.push_back(entry);
+    for (std::size_t i = 1; i < cases::kTissueCount; ++i) {
+        const auto tissue = static_cast<cases::Tissue>(i);
         if (removedMm3_[i] <= 0 ||
             std::any_of(rows.begin(), rows.end(), [tissue](const auto& row) { return row.tissue == tissue; }))
             continue;
-        rows.push_back({tissue, tooth::properties(tissue).colour});
+        rows.push_back({tissue, cases::properties(tissue).colour});
     }
     return rows;
 }

@@ -18,8 +18,8 @@ class VolumeBars : public QWidget {
   public:
     explicit VolumeBars(QWidget* parent = nullptr);
 
-    /// By tooth::Tissue [mm3].
-    void setVolumes(const std::array<double, tooth::kTissueCount>& removedMm3);
+    /// By cases::Tissue [mm3].
+    void setVolumes(const std::array<double, cases::kTissueCount>& removedMm3);
     /// The tissues shown and their colours; a tissue without an entry appears once something of it is gone.
     void setLegend(const std::vector<view::LegendEntry>& entries);
     void setDetail(Detail detail);
@@ -38,7 +38,7 @@ class VolumeBars : public QWidget {
   private:
     [[nodiscard]] std::vector<view::LegendEntry> rows() const;
 
-    std::array<double, tooth::kTissueCount> removedMm3_{};
+    std::array<double, cases::kTissueCount> removedMm3_{};
     std::vector<view::LegendEntry> entries_;
     Detail detail_ = Detail::practice;
     bool headingShown_ = true, locked_ = false;

@@ -183,17 +183,18 @@ ChoosePage::ChoosePage(ScanModel& model, ScanQuestions& questions, QWidget* pare
     });
     connect(list_, &QListWidget::currentRowChanged, this, [this](int at) {
         if (showing_ || at < 0 || static_cast<std::size_t>(at) >= this->model().series().size()) return;
-        decide([&](station::ScanJob& job) {
+        decide([&](scan_case::ScanJob& job) {
             job.series = this->model().series()[static_cast<std::size_t>(at)].id;
             job.spacingMm.reset();
         });
     });
     connect(labels_, &QCheckBox::toggled, this, [this](bool on) {
-        if (!showing_) decide([on](station::ScanJob& job) { job.isLabels = on; });
+        if (!showing_) decide([on](scan_case::ScanJob& job) { job.isLabels = on; });
     });
     connect(estimate_, &QPushButton::clicked, this, [this] { this->model().estimateSpacing(); });
     connect(&model, &ScanModel::spacingEstimated, this, [this] {
-        if (const auto mm = this->model().molarSpacingMm()) decide([&](station::ScanJob& job) { job.spacingMm = *mm; });
+        if (const auto mm = this->model().molarSpacingMm())
+            decide([&](scan_case::ScanJob& job) { job.spacingMm = *mm; });
         showDetails();
     });
     connect(&model, &ScanModel::seriesFound, this, &ChoosePage::showSeries);
@@ -220,7 +221,7 @@ void ChoosePage::take(const QString& path) {
         model().tryAgain();
         return;
     }
-    station::ScanJob job;
+    scan_case::ScanJob job;
     job.name.clear();
     job.source = source;
     model().decide(job);
@@ -348,7 +349,7 @@ void ChoosePage::takeSpacing() {
         between_->setValue(within);
     }
     const double between = between_->value();
-    decide([&](station::ScanJob& job) {
+    decide([&](scan_case::ScanJob& job) {
         if (within > 0 && between > 0)
             job.spacingMm = core::Vec3(within, within, between);
         else

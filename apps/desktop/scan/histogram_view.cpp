@@ -135,8 +135,8 @@ void HistogramView::paintEvent(QPaintEvent* event) {
     if (thresholds_) {
         const double x[5] = {area.left(), pixelOf(thresholds_->toothFrom), pixelOf(thresholds_->enamelFrom),
                              pixelOf(thresholds_->restorationFrom), area.right()};
-        const QColor colours[4] = {Qt::transparent, tissueColour(tooth::Tissue::dentine),
-                                   tissueColour(tooth::Tissue::enamel), tissueColour(tooth::Tissue::restoration)};
+        const QColor colours[4] = {Qt::transparent, tissueColour(cases::Tissue::dentine),
+                                   tissueColour(cases::Tissue::enamel), tissueColour(cases::Tissue::restoration)};
         for (int zone = 1; zone < 4; ++zone) {
             QColor colour = colours[zone];
             colour.setAlphaF(isDark(palette()) ? 0.28f : 0.45f);

@@ -24,7 +24,7 @@ class ScanPage : public QWidget {
     /// A decision: the job as it is now, changed.
     template <class Change>
     void decide(Change change, const QString& merge = {}) {
-        station::ScanJob job = model_.job();
+        scan_case::ScanJob job = model_.job();
         change(job);
         model_.decide(job, merge);
     }

@@ -130,12 +130,12 @@ PlacingPage::PlacingPage(ScanModel& model, QWidget* parent) : ScanPage(model, pa
     row->addLayout(right, 1);
 
     connect(name_, &QLineEdit::textEdited, this, [this](const QString& text) {
-        decide([&](station::ScanJob& job) { job.name = text.toStdString(); }, QStringLiteral("name"));
+        decide([&](scan_case::ScanJob& job) { job.name = text.toStdString(); }, QStringLiteral("name"));
     });
     connect(tooth_, &FdiPicker::toothChosen, this,
-            [this](int fdi) { decide([&](station::ScanJob& job) { job.placing.fdiNumber = fdi; }); });
+            [this](int fdi) { decide([&](scan_case::ScanJob& job) { job.placing.fdiNumber = fdi; }); });
     connect(again_, &QPushButton::clicked, this, [this] {
-        decide([](station::ScanJob& job) {
+        decide([](scan_case::ScanJob& job) {
             job.placing.occlusal.reset();
             job.placing.mesial.reset();
         });
@@ -158,14 +158,14 @@ void PlacingPage::turn(const core::Vec3& axis, double rad) {
     const core::Quat inScan = best->result.placed.scanInTooth.orientation.conjugate();
     const core::Mat3 back = Eigen::AngleAxisd(-rad, axis).toRotationMatrix();
     const core::Vec3 occlusal = inScan * (back * core::Vec3::UnitZ()), mesial = inScan * (back * core::Vec3::UnitX());
-    decide([&](station::ScanJob& job) {
+    decide([&](scan_case::ScanJob& job) {
         job.placing.occlusal = occlusal;
         job.placing.mesial = mesial;
     });
 }
 
 void PlacingPage::showJob() {
-    const station::ScanJob& job = model().job();
+    const scan_case::ScanJob& job = model().job();
     const QString name = QString::fromStdString(job.name);
     if (name_->text() != name) name_->setText(name);
     tooth_->setTooth(job.placing.fdiNumber);
@@ -176,7 +176,7 @@ void PlacingPage::showJob() {
 void PlacingPage::showResult() {
     const auto best = model().best();
     const int sign = buccalSignOf(model().job().placing.fdiNumber);
-    solid_->setParts(best ? std::shared_ptr<const std::vector<tooth::Part>>(best, &best->parts) : nullptr,
+    solid_->setParts(best ? std::shared_ptr<const std::vector<cases::Part>>(best, &best->parts) : nullptr,
                      best ? best->bounds : core::Box());
     solid_->setAxesShown(true, sign);
     const bool fresh = model().isPreviewFresh() || model().isFullFresh();
@@ -190,7 +190,7 @@ void PlacingPage::showResult() {
         confidence_->clear();
         return;
     }
-    const placing::Placed& placed = best->result.placed;
+    const registration::Placed& placed = best->result.placed;
     QStringList lines;
     if (model().job().placing.occlusal)
         lines << tr("Turned by hand.");

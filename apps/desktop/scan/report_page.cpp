@@ -174,7 +174,7 @@ void ReportPage::showResult() {
     const auto best = model().best();
     const bool fresh = model().isFullFresh();
     const int sign = buccalSignOf(model().job().placing.fdiNumber);
-    solid_->setParts(best ? std::shared_ptr<const std::vector<tooth::Part>>(best, &best->parts) : nullptr,
+    solid_->setParts(best ? std::shared_ptr<const std::vector<cases::Part>>(best, &best->parts) : nullptr,
                      best ? best->bounds : core::Box());
     solid_->setAxesShown(true, sign);
     solid_->setCaption(fresh ? QString() : tr("Preview"), !fresh);
@@ -188,9 +188,9 @@ void ReportPage::showResult() {
 
 QString ReportPage::reportHtml() const {
     const auto full = model().full();
-    const station::ScanResult& r = full->result;
+    const scan_case::ScanResult& r = full->result;
     const ScanFigures& f = full->figures;
-    const station::ScanJob& job = model().job();
+    const scan_case::ScanJob& job = model().job();
     const auto number = [](double value, int decimals) { return QLocale().toString(value, 'f', decimals); };
     const auto mm = [&](double value, int decimals = 2) { return quantity(value, decimals, tr("mm")); };
     QString html;
@@ -213,8 +213,8 @@ QString ReportPage::reportHtml() const {
     double sum = 0;
     for (const double volume : r.volumesMm3)
         sum += volume;
-    for (const tooth::Tissue tissue : {tooth::Tissue::enamel, tooth::Tissue::dentine, tooth::Tissue::pulp,
-                                       tooth::Tissue::caries, tooth::Tissue::restoration}) {
+    for (const cases::Tissue tissue : {cases::Tissue::enamel, cases::Tissue::dentine, cases::Tissue::pulp,
+                                       cases::Tissue::caries, cases::Tissue::restoration}) {
         const double volume = r.volumesMm3[static_cast<std::size_t>(tissue)];
         if (volume <= 0) continue;
         bool isAuthored = false;
@@ -260,7 +260,7 @@ QString ReportPage::reportHtml() const {
     line(tr("Faces"), QLocale().toString(static_cast<qulonglong>(f.faces)),
          f.errorBoundMm > 0 ? tr("reduced by at most %1").arg(mm(f.errorBoundMm, 3)) : tr("as made from the scan"));
     std::size_t errors = 0;
-    for (const tooth::CaseFinding& finding : f.findings)
+    for (const cases::CaseFinding& finding : f.findings)
         errors += finding.isError ? 1 : 0;
     const Tones tones = tonesOf(palette());
     line(tr("Surfaces closed and nested"),
@@ -272,7 +272,7 @@ QString ReportPage::reportHtml() const {
     QStringList notes;
     for (const std::string& text : r.notes())
         notes << plain(text);
-    for (const tooth::CaseFinding& finding : f.findings)
+    for (const cases::CaseFinding& finding : f.findings)
         notes << plain((finding.part.empty() ? "" : finding.part + ": ") + finding.what);
     if (!notes.isEmpty()) {
         head(tr("To know"));

@@ -10,13 +10,13 @@
 namespace handpiece::desktop {
 namespace {
 
-constexpr std::size_t kMostPoints = 20000;  // a percentile needs no more
+constexpr std::size_t kMaxPoints = 20000;  // a percentile needs no more
 
 Thickness thicknessOf(const std::vector<core::Vec3>& all, const geometry::TriangleMesh& to) {
     Thickness thickness;
     if (all.empty() || to.triangles.empty()) return thickness;
     const geometry::TriangleTree tree(to);
-    const std::size_t step = std::max<std::size_t>(1, all.size() / kMostPoints);
+    const std::size_t step = std::max<std::size_t>(1, all.size() / kMaxPoints);
     std::vector<double> away((all.size() + step - 1) / step);
     core::parallelFor(away.size(), 256, [&](std::size_t from, std::size_t end) {
         for (std::size_t i = from; i < end; ++i)
@@ -32,7 +32,7 @@ Thickness thicknessOf(const std::vector<core::Vec3>& all, const geometry::Triang
 
 }  // namespace
 
-ScanFigures figuresOf(const station::ScanResult& result, const std::vector<tooth::Part>& shownParts,
+ScanFigures figuresOf(const scan_case::ScanResult& result, const std::vector<cases::Part>& shownParts,
                       const core::Progress& progress) {
     ScanFigures figures;
     const surfacing::Surfaces* surfaces =
@@ -50,13 +50,13 @@ ScanFigures figuresOf(const station::ScanResult& result, const std::vector<tooth
         figures.vertices += surface.mesh.vertices.size();
         figures.faces += surface.mesh.triangles.size();
         figures.errorBoundMm = std::max(figures.errorBoundMm, surface.errorBoundMm);
-        if (surface.tissue == tooth::Tissue::dentine) dentine = &surface.mesh;
-        if (surface.tissue == tooth::Tissue::pulp) pulp = &surface.mesh;
+        if (surface.tissue == cases::Tissue::dentine) dentine = &surface.mesh;
+        if (surface.tissue == cases::Tissue::pulp) pulp = &surface.mesh;
     }
     core::report(progress, 0.2);
     if (dentine)
-        for (const tooth::Part& part : shownParts)
-            if (part.name == "outside" && part.tissue == tooth::Tissue::enamel)
+        for (const cases::Part& part : shownParts)
+            if (part.name == "outside" && part.tissue == cases::Tissue::enamel)
                 figures.enamel = thicknessOf(part.mesh.vertices, geometry::transformed(*dentine, pose));
     core::report(progress, 0.5);
     if (pulp) {
@@ -67,7 +67,7 @@ ScanFigures figuresOf(const station::ScanResult& result, const std::vector<tooth
     }
     core::report(progress, 0.7);
     if (!result.cases.empty())
-        figures.findings = tooth::checkCase(result.cases.back().toothCase, core::part(progress, 0.7, 1.0));
+        figures.findings = cases::checkCase(result.cases.back().toothCase, core::part(progress, 0.7, 1.0));
     return figures;
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "handpiece/model/tooth/case_check.h"
-#include "station/scan_job.h"
+#include "handpiece/app/scan_case/scan_job.h"
+#include "handpiece/model/case/case_check.h"
 
 namespace handpiece::desktop {
 
@@ -22,9 +22,9 @@ struct ScanFigures {
     Thickness overPulp;                      ///< from the pulp's surface in the crown to the outside
     std::size_t vertices = 0, faces = 0;     ///< of all surfaces together
     double errorBoundMm = 0;                 ///< of the reduction, the worst surface
-    std::vector<tooth::CaseFinding> findings;
+    std::vector<cases::CaseFinding> findings;
 };
-[[nodiscard]] ScanFigures figuresOf(const station::ScanResult& result, const std::vector<tooth::Part>& shownParts,
+[[nodiscard]] ScanFigures figuresOf(const scan_case::ScanResult& result, const std::vector<cases::Part>& shownParts,
                                     const core::Progress& progress = {});
 
 }  // namespace handpiece::desktop

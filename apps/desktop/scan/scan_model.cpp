@@ -3,21 +3,21 @@
 
 #include <algorithm>
 
+#include "handpiece/app/scan_case/scan_report.h"
 #include "handpiece/base/core/file.h"
 #include "shell/settings.h"
-#include "station/scan_report.h"
 
 namespace handpiece::desktop {
 
-using station::ScanJob;
-using station::ScanResult;
-using station::ScanStage;
+using scan_case::ScanJob;
+using scan_case::ScanResult;
+using scan_case::ScanStage;
 
 namespace {
 
 constexpr int kPatienceMs = 150, kRememberMs = 700;
-constexpr std::size_t kMostSteps = 500;
-constexpr int kDrawing = 100;  ///< behind the stages of station::ScanStage: the report is drawn
+constexpr std::size_t kMaxSteps = 500;
+constexpr int kDrawing = 100;  ///< behind the stages of scan_case::ScanStage: the report is drawn
 
 /// What reading depends on.
 ScanJob readPart(const ScanJob& job) {
@@ -74,13 +74,13 @@ ScanModel::~ScanModel() {
 // ---- decisions
 
 void ScanModel::decide(const ScanJob& job, const QString& merge) {
-    if (station::toToml(job) == station::toToml(this->job())) return;
+    if (scan_case::toToml(job) == scan_case::toToml(this->job())) return;
     history_.resize(at_ + 1);
     if (!merge.isEmpty() && merge == merge_ && at_ > 0) {
         history_[at_] = job;
     } else {
         history_.push_back(job);
-        if (history_.size() > kMostSteps) history_.erase(history_.begin());
+        if (history_.size() > kMaxSteps) history_.erase(history_.begin());
         at_ = history_.size() - 1;
     }
     merge_ = merge;
@@ -142,7 +142,7 @@ bool ScanModel::hasUnfinished() const {
 
 void ScanModel::goOn() {
     try {
-        restart(station::readScanJob(unfinished_));
+        restart(scan_case::readScanJob(unfinished_));
     } catch (const core::Error& error) {
         setProblem(problemOf(error));
     }
@@ -159,7 +159,7 @@ void ScanModel::rememberNow() {
     if (unfinished_.empty() || job().source.empty() || finished_) return;
     try {
         std::filesystem::create_directories(unfinished_.parent_path());
-        station::writeScanJob(job(), unfinished_);
+        scan_case::writeScanJob(job(), unfinished_);
     } catch (const std::exception&) {
         // Not worth a message: the work itself goes on, and only a closed wizard would begin anew.
         return;
@@ -173,16 +173,16 @@ std::string ScanModel::keyOf(Work work) const {
         case Work::looking:
             return job().source.string();
         case Work::reading:
-            return station::toToml(readPart(job()));
+            return scan_case::toToml(readPart(job()));
         case Work::estimating:
             return "estimate " + job().source.string() + ' ' + job().series;
         case Work::previewing:
-            return "preview " + station::toToml(previewPart(job()));
+            return "preview " + scan_case::toToml(previewPart(job()));
         case Work::finishing: {
-            return "full " + station::toToml(job());
+            return "full " + scan_case::toToml(job());
         }
         case Work::writing:
-            return out_.string() + station::toToml(job());
+            return out_.string() + scan_case::toToml(job());
         case Work::none:
             break;
     }
@@ -296,14 +296,14 @@ void ScanModel::next() {
                     ScanResult from = before ? before->result : first;
                     if (isPreview && (!before || from.job.segmentation.toothAtMm != asked.segmentation.toothAtMm))
                         from.scan = previewScan(*shown, asked.segmentation);
-                    const station::ScanProgress told = [&](ScanStage stage, double fraction) {
+                    const scan_case::ScanProgress told = [&](ScanStage stage, double fraction) {
                         stage_.store(static_cast<int>(stage), std::memory_order_relaxed);
                         // The last share is for what is shown of it.
                         const double stages = isPreview ? 4.2 : 6.5;
                         return !progress || progress(std::min(1.0, (static_cast<double>(stage) + fraction) / stages));
                     };
                     *made = shownResult(
-                        station::runScanJob(asked, told, &from, isPreview ? ScanStage::place : ScanStage::check),
+                        scan_case::runScanJob(asked, told, &from, isPreview ? ScanStage::place : ScanStage::check),
                         core::part(progress, isPreview ? 0.95 : 0.91, 1.0));
                 },
                 [this, made, key, isPreview] {
@@ -326,12 +326,12 @@ void ScanModel::next() {
             begin(
                 work, key,
                 [this, made, result = full_, out = out_](const core::Progress& progress) {
-                    made->places = station::writeScanCases(result->result, out);
+                    made->places = scan_case::writeScanCases(result->result, out);
                     stage_.store(kDrawing, std::memory_order_relaxed);
-                    const std::filesystem::path place = station::scanReportPlace(out, made->places);
+                    const std::filesystem::path place = scan_case::scanReportPlace(out, made->places);
                     try {
-                        core::writeFile(place, station::scanReport(result->result, made->places, {},
-                                                                   core::part(progress, 0.1, 1.0)));
+                        core::writeFile(place, scan_case::scanReport(result->result, made->places, {},
+                                                                     core::part(progress, 0.1, 1.0)));
                         made->report = place;
                     } catch (const core::Error& error) {
                         // The case is there. Whoever stopped the drawing knows that there is none.

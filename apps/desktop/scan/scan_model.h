@@ -11,9 +11,9 @@
 #include <optional>
 #include <vector>
 
+#include "handpiece/app/scan_case/scan_job.h"
 #include "scan/shown_scan.h"
 #include "shell/job.h"
-#include "station/scan_job.h"
 
 namespace handpiece::desktop {
 
@@ -33,9 +33,9 @@ class ScanModel : public QObject {
     ~ScanModel() override;
 
     // Decisions.
-    [[nodiscard]] const station::ScanJob& job() const noexcept { return history_[at_]; }
+    [[nodiscard]] const scan_case::ScanJob& job() const noexcept { return history_[at_]; }
     /// Decisions with the same `merge` in a row are one step of undo (a handle that is dragged); empty: never merged.
-    void decide(const station::ScanJob& job, const QString& merge = {});
+    void decide(const scan_case::ScanJob& job, const QString& merge = {});
     /// The next decision is a step of its own, whatever its `merge`.
     void endMerge() { merge_.clear(); }
     [[nodiscard]] bool canUndo() const noexcept { return at_ > 0; }
@@ -43,7 +43,7 @@ class ScanModel : public QObject {
     void undo();
     void redo();
     /// All decisions at once, as out of a file; without history.
-    void restart(const station::ScanJob& job);
+    void restart(const scan_case::ScanJob& job);
 
     // Unfinished work of another time.
     [[nodiscard]] bool hasUnfinished() const;
@@ -112,7 +112,7 @@ class ScanModel : public QObject {
     void forgetScan();
 
     std::filesystem::path unfinished_;
-    std::vector<station::ScanJob> history_{1};
+    std::vector<scan_case::ScanJob> history_{1};
     std::size_t at_ = 0;
     QString merge_;
 

@@ -321,7 +321,7 @@ void ScanWizard::saveSteps() {
     if (file.isEmpty()) return;
     if (QFileInfo(file).suffix().isEmpty()) file += QStringLiteral(".toml");
     try {
-        station::writeScanJob(model_.job(), toPath(file));
+        scan_case::writeScanJob(model_.job(), toPath(file));
     } catch (const core::Error& error) {
         model_.setProblem(problemOf(error));
     }

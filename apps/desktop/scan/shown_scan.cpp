@@ -39,9 +39,9 @@ float sampled(const Solid& solid, const volume::Grid& grid, const core::Vec3& ij
 }
 
 /// What lies under a face of the tooth's outside, a little below it.
-tooth::Tissue tissueUnder(const Region& region, const core::Vec3& pointMm) {
+cases::Tissue tissueUnder(const Region& region, const core::Vec3& pointMm) {
     const core::Vec3 ijk = region.grid.toVoxels(pointMm);
-    tooth::Tissue under = tooth::Tissue::enamel;
+    cases::Tissue under = cases::Tissue::enamel;
     for (const Solid& solid : region.solids)
         if (sampled(solid, region.grid, ijk) > 0) under = solid.tissue;
     return under;
@@ -49,11 +49,11 @@ tooth::Tissue tissueUnder(const Region& region, const core::Vec3& pointMm) {
 
 /// The outside in pieces by tissue, as open meshes to be looked at.
 void addOutside(const geometry::TriangleMesh& outer, const Region& region, const core::Pose& scanInTooth,
-                std::vector<tooth::Part>& parts) {
-    std::array<geometry::TriangleMesh, tooth::kTissueCount> pieces;
-    std::array<std::unordered_map<std::uint32_t, std::uint32_t>, tooth::kTissueCount> taken;
+                std::vector<cases::Part>& parts) {
+    std::array<geometry::TriangleMesh, cases::kTissueCount> pieces;
+    std::array<std::unordered_map<std::uint32_t, std::uint32_t>, cases::kTissueCount> taken;
     const double below = 0.7 * region.grid.spacingMm.minCoeff();
-    std::vector<tooth::Tissue> tissues(outer.triangles.size());
+    std::vector<cases::Tissue> tissues(outer.triangles.size());
     core::parallelFor(tissues.size(), 4096, [&](std::size_t from, std::size_t to) {
         for (std::size_t t = from; t < to; ++t) {
             const geometry::Triangle& f = outer.triangles[t];
@@ -76,7 +76,7 @@ void addOutside(const geometry::TriangleMesh& outer, const Region& region, const
     }
     for (std::size_t n = 0; n < pieces.size(); ++n)
         if (!pieces[n].triangles.empty())
-            parts.push_back({"outside", static_cast<tooth::Tissue>(n), 0, std::move(pieces[n])});
+            parts.push_back({"outside", static_cast<cases::Tissue>(n), 0, std::move(pieces[n])});
 }
 
 }  // namespace
@@ -101,10 +101,10 @@ GreyHistogram histogramOf(const volume::Volume& volume) {
     histogram.low = low + width * static_cast<float>(first) / kFine;
     histogram.high = low + width * static_cast<float>(last + 1) / kFine;
     // Bins between whole numbers would stay empty.
-    constexpr float kMostBins = 256.0f;
+    constexpr float kMaxBins = 256.0f;
     const bool isWhole = std::all_of(volume.values.begin(), volume.values.end(),
                                      [](float v) { return v == std::floor(v) && std::abs(v) < 1e7f; });
-    float each = (histogram.high - histogram.low) / kMostBins;
+    float each = (histogram.high - histogram.low) / kMaxBins;
     if (isWhole) {
         each = std::max(1.0f, std::ceil(each));
         histogram.low = std::floor(histogram.low) - 0.5f;
@@ -168,7 +168,7 @@ volume::Volume coarsened(const volume::Volume& volume, bool isLabels) {
     return coarse;
 }
 
-ShownScan shownScan(volume::Scan scan, const station::ScanJob& job, const core::Progress& progress) {
+ShownScan shownScan(volume::Scan scan, const scan_case::ScanJob& job, const core::Progress& progress) {
     ShownScan shown;
     const auto labelsOf = [&](const volume::Volume& of) {
         volume::Labels labels = volume::toLabels(of, job.source.filename().string());
@@ -219,7 +219,7 @@ std::shared_ptr<const volume::Scan> previewScan(const ShownScan& shown, const se
     return std::make_shared<const volume::Scan>(std::move(part));
 }
 
-ShownResult shownResult(station::ScanResult result, const core::Progress& progress) {
+ShownResult shownResult(scan_case::ScanResult result, const core::Progress& progress) {
     ShownResult shown;
     // The finest there is; a case's surfaces where there is one.
     const surfacing::Surfaces* surfaces =

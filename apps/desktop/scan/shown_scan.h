@@ -7,9 +7,9 @@
 #include <memory>
 #include <vector>
 
+#include "handpiece/app/scan_case/scan_job.h"
 #include "handpiece/base/core/progress.h"
 #include "scan/scan_figures.h"
-#include "station/scan_job.h"
 
 namespace handpiece::desktop {
 
@@ -36,17 +36,17 @@ inline constexpr std::size_t kPreviewVoxels = 12'000'000;  ///< more would not b
 /// What a preview is made of: the coarse scan, or of a jaw the surroundings of the tooth that was picked, less coarse.
 [[nodiscard]] std::shared_ptr<const volume::Scan> previewScan(const ShownScan& shown,
                                                               const segmentation::Settings& settings);
-[[nodiscard]] ShownScan shownScan(volume::Scan scan, const station::ScanJob& job, const core::Progress& progress);
+[[nodiscard]] ShownScan shownScan(volume::Scan scan, const scan_case::ScanJob& job, const core::Progress& progress);
 
 /// A result, and its surfaces as one sees them: in the tooth's frame, the outside in pieces by tissue.
 struct ShownResult {
-    station::ScanResult result;
-    std::vector<tooth::Part> parts;
+    scan_case::ScanResult result;
+    std::vector<cases::Part> parts;
     core::Box bounds;     ///< tooth frame
     ScanFigures figures;  ///< of a finished one
 };
 /// With figures when the result holds cases.
-[[nodiscard]] ShownResult shownResult(station::ScanResult result, const core::Progress& progress = {});
+[[nodiscard]] ShownResult shownResult(scan_case::ScanResult result, const core::Progress& progress = {});
 
 /// Teeth are about this long, crown to apex [mm]: the mean of lower and upper first molars.
 inline constexpr double kMeanMolarMm = 21.0;

@@ -20,9 +20,9 @@ using segmentation::Solid;
 
 namespace {
 
-constexpr double kMostZoom = 40.0, kZoomStep = 1.2;
+constexpr double kMaxZoom = 40.0, kZoomStep = 1.2;
 // A wish, not a law: a window narrower than this share of what there is shows noise only.
-constexpr float kLeastWindow = 1e-4f;
+constexpr float kMinWindow = 1e-4f;
 
 const QColor kCrossColours[3] = {QColor(0x5db8f5), QColor(0x7ddc8f), QColor(0xffa65c)};  // axial, coronal, sagittal
 
@@ -107,12 +107,12 @@ void SliceView::setCross(const core::Vec3& mm) {
 
 void SliceView::setWindow(float black, float white) {
     black_ = black;
-    white_ = std::max(white, black + kLeastWindow);
+    white_ = std::max(white, black + kMinWindow);
     greyStale_ = true;
     update();
 }
 
-void SliceView::setTool(SliceTool tool, double radiusMm, tooth::Tissue tissue) {
+void SliceView::setTool(SliceTool tool, double radiusMm, cases::Tissue tissue) {
     tool_ = tool;
     radiusMm_ = radiusMm;
     tissue_ = tissue;
@@ -234,7 +234,7 @@ void SliceView::makeOverlay() {
         return plane;
     };
     const QPointF origin = inSlice(r.originMm);
-    const auto addLines = [&](const std::vector<float>& plane, tooth::Tissue tissue, bool isAuthored) {
+    const auto addLines = [&](const std::vector<float>& plane, cases::Tissue tissue, bool isAuthored) {
         Contour contour{tissue, isAuthored, zeroLines(plane, width, height)};
         for (QLineF& line : contour.lines)
             line = {origin.x() + line.x1() * r.spacingMm[u_], origin.y() + line.y1() * r.spacingMm[v_],
@@ -244,7 +244,7 @@ void SliceView::makeOverlay() {
     fill_ = QImage(width, height, QImage::Format_ARGB32_Premultiplied);
     fill_.fill(Qt::transparent);
     const std::vector<float> outer = planeOf(region_->outer);
-    const auto paint = [&](const std::vector<float>& plane, tooth::Tissue tissue) {
+    const auto paint = [&](const std::vector<float>& plane, cases::Tissue tissue) {
         QColor colour = tissueColour(tissue);
         colour.setAlphaF(0.32f);
         const QRgb pixel = qPremultiply(colour.rgba());
@@ -257,8 +257,8 @@ void SliceView::makeOverlay() {
             }
         }
     };
-    paint(outer, tooth::Tissue::enamel);
-    addLines(outer, tooth::Tissue::enamel, false);
+    paint(outer, cases::Tissue::enamel);
+    addLines(outer, cases::Tissue::enamel, false);
     for (const Solid& solid : region_->solids) {
         const std::vector<float> plane = planeOf(solid);
         paint(plane, solid.tissue);
@@ -286,7 +286,7 @@ void SliceView::drawDecisions(QPainter& painter) const {
         const double away = (lesion.centreMm - inPlane).dot(normal) / std::max(1e-6, half[w_]);
         const double share = 1.0 - away * away;
         if (share <= 0) continue;
-        painter.setPen(QPen(tissueColour(tooth::Tissue::caries), 1.6, Qt::DashLine));
+        painter.setPen(QPen(tissueColour(cases::Tissue::caries), 1.6, Qt::DashLine));
         painter.drawEllipse(pixelOf(lesion.centreMm), scale * half[u_] * std::sqrt(share),
                             scale * half[v_] * std::sqrt(share));
     }
@@ -358,7 +358,7 @@ void SliceView::paintEvent(QPaintEvent* event) {
 
     if (hovering_ && (tool_ == SliceTool::brush || tool_ == SliceTool::lesion)) {
         painter.setPen(
-            QPen(tool_ == SliceTool::lesion ? tissueColour(tooth::Tissue::caries) : tissueColour(tissue_), 1.5));
+            QPen(tool_ == SliceTool::lesion ? tissueColour(cases::Tissue::caries) : tissueColour(tissue_), 1.5));
         painter.setBrush(Qt::NoBrush);
         painter.drawEllipse(hover_, radiusMm_ * pixelsPerMm(), radiusMm_ * pixelsPerMm());
     }
@@ -434,9 +434,9 @@ void SliceView::mouseMoveEvent(QMouseEvent* event) {
         if (tool_ == SliceTool::look) emit crossMoved(pointAt(at));
         if (tool_ == SliceTool::brush) {
             // A stroke is a row of balls, half a radius apart: close enough to be even, far enough to be few.
-            constexpr int kMostBalls = 100;
+            constexpr int kMaxBalls = 100;
             const double apart = std::max(2.0, 0.5 * radiusMm_ * pixelsPerMm()), far = std::hypot(by.x(), by.y());
-            const int balls = std::min(kMostBalls, static_cast<int>(far / apart));
+            const int balls = std::min(kMaxBalls, static_cast<int>(far / apart));
             if (balls == 0) return update();
             std::vector<core::Vec3> points;
             for (int i = 1; i <= balls; ++i)
@@ -446,7 +446,7 @@ void SliceView::mouseMoveEvent(QMouseEvent* event) {
     } else if (held_ == Qt::RightButton) {
         const float unit = (white_ - black_) / 200.0f;
         const float middle = 0.5f * (black_ + white_) + static_cast<float>(by.y()) * unit;
-        const float half = std::max(kLeastWindow, 0.5f * (white_ - black_) + static_cast<float>(by.x()) * unit);
+        const float half = std::max(kMinWindow, 0.5f * (white_ - black_) + static_cast<float>(by.x()) * unit);
         emit windowDragged(middle - half, middle + half);
     } else if (held_ == Qt::MiddleButton) {
         const double scale = pixelsPerMm();
@@ -475,7 +475,7 @@ void SliceView::wheelEvent(QWheelEvent* event) {
     const double steps = event->angleDelta().y() / 120.0;
     if (event->modifiers() & Qt::ControlModifier) {
         const core::Vec3 under = pointAt(event->position());
-        zoom_ = std::clamp(zoom_ * std::pow(kZoomStep, steps), 1.0, kMostZoom);
+        zoom_ = std::clamp(zoom_ * std::pow(kZoomStep, steps), 1.0, kMaxZoom);
         const QPointF off = event->position() - pixelOf(under);
         const double up = v_ == 2 && scan_->grid.axes(2, 2) >= 0 ? -1.0 : 1.0;
         shiftMm_ -= QPointF(off.x() / pixelsPerMm(), up * off.y() / pixelsPerMm());
@@ -508,7 +508,7 @@ void SliceView::keyPressEvent(QKeyEvent* event) {
             return step(-static_cast<int>(far));
         case Qt::Key_Plus:
         case Qt::Key_Minus:
-            zoom_ = std::clamp(zoom_ * (event->key() == Qt::Key_Plus ? kZoomStep : 1.0 / kZoomStep), 1.0, kMostZoom);
+            zoom_ = std::clamp(zoom_ * (event->key() == Qt::Key_Plus ? kZoomStep : 1.0 / kZoomStep), 1.0, kMaxZoom);
             if (zoom_ <= 1.0) shiftMm_ = {};
             return update();
         case Qt::Key_Home:

@@ -35,7 +35,7 @@ class SliceView : public QWidget {
     void setCross(const core::Vec3& mm);
     /// Grey values that are black and white.
     void setWindow(float black, float white);
-    void setTool(SliceTool tool, double radiusMm, tooth::Tissue tissue);
+    void setTool(SliceTool tool, double radiusMm, cases::Tissue tissue);
     void setFillShown(bool shown);
     void fit();
 
@@ -70,7 +70,7 @@ class SliceView : public QWidget {
 
   private:
     struct Contour {
-        tooth::Tissue tissue;
+        cases::Tissue tissue;
         bool isAuthored;
         std::vector<QLineF> lines;  ///< [mm] along the slice's axes from the scan's first voxel
     };
@@ -93,7 +93,7 @@ class SliceView : public QWidget {
     float black_ = 0, white_ = 1;
     SliceTool tool_ = SliceTool::look;
     double radiusMm_ = 0.5;
-    tooth::Tissue tissue_ = tooth::Tissue::none;
+    cases::Tissue tissue_ = cases::Tissue::none;
     bool fillShown_ = true;
     double zoom_ = 1.0;  ///< 1: all of the slice
     QPointF shiftMm_;    ///< of the middle

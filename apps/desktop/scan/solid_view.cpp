@@ -23,7 +23,7 @@ namespace handpiece::desktop {
 namespace {
 
 constexpr double kRadPerPixel = 0.01, kKeyRad = 0.15, kWheelFactor = 1.12;
-constexpr double kMostSoftwarePixels = 0.9e6;  // more would follow the hand too late
+constexpr double kMaxSoftwarePixels = 0.9e6;  // more would follow the hand too late
 
 std::array<std::uint8_t, 3> rgb(const QColor& colour) {
     return {static_cast<std::uint8_t>(colour.red()), static_cast<std::uint8_t>(colour.green()),
@@ -35,7 +35,7 @@ std::array<std::uint8_t, 3> rgb(const QColor& colour) {
 /// All that belongs to the drawing thread, and the latest wish.
 struct SolidView::Worker {
     struct Wish {
-        std::shared_ptr<const std::vector<tooth::Part>> parts;
+        std::shared_ptr<const std::vector<cases::Part>> parts;
         core::Box bounds;
         view::Camera camera;
         view::Look look;
@@ -80,7 +80,7 @@ struct SolidView::Worker {
 
 void SolidView::Worker::run() {
     std::unique_ptr<view::Renderer> renderer;
-    std::shared_ptr<const std::vector<tooth::Part>> shown;
+    std::shared_ptr<const std::vector<cases::Part>> shown;
     view::Image image;
     bool refining = false;
     std::uint64_t done = 0;
@@ -102,12 +102,12 @@ void SolidView::Worker::run() {
                 shown = now.parts;
                 renderer->setTooth(now.bounds);
                 // As scenery: it takes open pieces and any tissue.
-                static const std::vector<tooth::Part> kNone;
+                static const std::vector<cases::Part> kNone;
                 renderer->setScenery(shown ? *shown : kNone);
             }
             double scale = renderer->isSoftware() ? 1.0 : now.ratio;
             const double area = scale * scale * now.size.width() * now.size.height();
-            if (renderer->isSoftware() && area > kMostSoftwarePixels) scale *= std::sqrt(kMostSoftwarePixels / area);
+            if (renderer->isSoftware() && area > kMaxSoftwarePixels) scale *= std::sqrt(kMaxSoftwarePixels / area);
             view::Moment moment;
             moment.burShown = false;
             const view::Viewport viewport{std::max(1, static_cast<int>(std::lround(scale * now.size.width()))),
@@ -157,7 +157,7 @@ bool SolidView::isDrawn() const noexcept {
     return worker_->drawn == worker_->wish.number && worker_->wish.number > 0;
 }
 
-void SolidView::setParts(std::shared_ptr<const std::vector<tooth::Part>> parts, const core::Box& bounds) {
+void SolidView::setParts(std::shared_ptr<const std::vector<cases::Part>> parts, const core::Box& bounds) {
     const bool another =
         !parts_ || bounds_.isEmpty() ||
         (!bounds.isEmpty() && ((bounds.size() - bounds_.size()).norm() > 0.3 * bounds_.size().norm() ||
@@ -170,9 +170,9 @@ void SolidView::setParts(std::shared_ptr<const std::vector<tooth::Part>> parts, 
 }
 
 void SolidView::makeTissueButtons() {
-    std::vector<tooth::Tissue> there;
-    for (const tooth::Tissue tissue : {tooth::Tissue::enamel, tooth::Tissue::dentine, tooth::Tissue::pulp,
-                                       tooth::Tissue::caries, tooth::Tissue::restoration})
+    std::vector<cases::Tissue> there;
+    for (const cases::Tissue tissue : {cases::Tissue::enamel, cases::Tissue::dentine, cases::Tissue::pulp,
+                                       cases::Tissue::caries, cases::Tissue::restoration})
         if (parts_ && std::any_of(parts_->begin(), parts_->end(), [&](const auto& p) { return p.tissue == tissue; }))
             there.push_back(tissue);
     if (there == there_) return;
@@ -183,11 +183,11 @@ void SolidView::makeTissueButtons() {
             delete item;
         }
     int at = 0;
-    for (const tooth::Tissue tissue : there_) {
+    for (const cases::Tissue tissue : there_) {
         auto* button = named(new QToolButton(this), "", tissueName(tissue), tr("Show or hide this tissue"));
         button->setObjectName(objectName() + QLatin1Char('_') +
-                              QString::fromUtf8(tooth::properties(tissue).name.data(),
-                                                static_cast<qsizetype>(tooth::properties(tissue).name.size())));
+                              QString::fromUtf8(cases::properties(tissue).name.data(),
+                                                static_cast<qsizetype>(cases::properties(tissue).name.size())));
         button->setText(tissueName(tissue));
         QPixmap swatch(12, 12);
         const auto colour = view::colourOf(tissue, look_.palette);  // as in the picture above it
@@ -216,7 +216,7 @@ void SolidView::setAxesShown(bool shown, int buccalSign) {
     update();
 }
 
-void SolidView::setTissueShown(tooth::Tissue tissue, bool shown) {
+void SolidView::setTissueShown(cases::Tissue tissue, bool shown) {
     look_.visible[static_cast<std::size_t>(tissue)] = shown;
     wish();
 }

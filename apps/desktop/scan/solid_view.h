@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/case/case.h"
 #include "handpiece/senses/view/camera.h"
 #include "handpiece/senses/view/look.h"
 
@@ -25,13 +25,13 @@ class SolidView : public QWidget {
     ~SolidView() override;
 
     /// Nothing to be seen: no parts. The eye stays where it is unless the size is quite another.
-    void setParts(std::shared_ptr<const std::vector<tooth::Part>> parts, const core::Box& bounds);
+    void setParts(std::shared_ptr<const std::vector<cases::Part>> parts, const core::Box& bounds);
     /// A line about what is shown, above the picture ("Preview"); dimmed when it is no longer true.
     void setCaption(const QString& caption, bool isStale);
     /// Occlusal, mesial and the sides as arrows; `buccalSign` 0: the sides without names.
     void setAxesShown(bool shown, int buccalSign);
     /// As the buttons below the picture do, one a tissue that there is [NAME_enamel, ...].
-    void setTissueShown(tooth::Tissue tissue, bool shown);
+    void setTissueShown(cases::Tissue tissue, bool shown);
     void lookFrom(view::StandardView from, int buccalSign = 0);
     /// The latest picture is of the latest wish.
     [[nodiscard]] bool isDrawn() const noexcept;
@@ -62,7 +62,7 @@ class SolidView : public QWidget {
     void drawAxes(QPainter& painter) const;
 
     std::unique_ptr<Worker> worker_;
-    std::shared_ptr<const std::vector<tooth::Part>> parts_;
+    std::shared_ptr<const std::vector<cases::Part>> parts_;
     core::Box bounds_;
     view::Camera camera_;
     view::Look look_;
@@ -73,7 +73,7 @@ class SolidView : public QWidget {
     Qt::MouseButton held_ = Qt::NoButton;
     QPointF last_;
     QHBoxLayout* tissues_;
-    std::vector<tooth::Tissue> there_;
+    std::vector<cases::Tissue> there_;
 };
 
 }  // namespace handpiece::desktop

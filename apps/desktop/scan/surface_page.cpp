@@ -129,7 +129,7 @@ SurfacePage::SurfacePage(ScanModel& model, ScanQuestions& questions, QWidget* pa
     row->addLayout(right, 1);
 
     connect(resolution_, &QComboBox::activated, this, [this](int at) {
-        decide([&](station::ScanJob& job) {
+        decide([&](scan_case::ScanJob& job) {
             job.faces = at == byFaces ? static_cast<std::size_t>(faces_->value()) : 0;
             if (at == allFive)
                 job.percents.assign(surfacing::kTableTwoPercents.begin(), surfacing::kTableTwoPercents.end());
@@ -141,28 +141,29 @@ SurfacePage::SurfacePage(ScanModel& model, ScanQuestions& questions, QWidget* pa
     });
     connect(faces_, &QSpinBox::valueChanged, this, [this](int faces) {
         if (!showing_)
-            decide([&](station::ScanJob& job) { job.faces = static_cast<std::size_t>(faces); },
+            decide([&](scan_case::ScanJob& job) { job.faces = static_cast<std::size_t>(faces); },
                    QStringLiteral("faces"));
     });
     connect(smooth_, &QCheckBox::toggled, this, [this](bool on) {
-        if (!showing_) decide([on](station::ScanJob& job) { job.smooth = on; });
+        if (!showing_) decide([on](scan_case::ScanJob& job) { job.smooth = on; });
     });
     connect(scenery_, &QCheckBox::toggled, this, [this](bool on) {
-        if (!showing_) decide([on](station::ScanJob& job) { job.scenery = on; });
+        if (!showing_) decide([on](scan_case::ScanJob& job) { job.scenery = on; });
     });
     connect(spacing_, &QDoubleSpinBox::valueChanged, this, [this](double mm) {
-        if (!showing_) decide([mm](station::ScanJob& job) { job.segmentation.spacingMm = mm; }, QStringLiteral("grid"));
+        if (!showing_)
+            decide([mm](scan_case::ScanJob& job) { job.segmentation.spacingMm = mm; }, QStringLiteral("grid"));
     });
     connect(reach_, &QDoubleSpinBox::valueChanged, this, [this](double mm) {
-        if (!showing_) decide([mm](station::ScanJob& job) { job.intraoralReachMm = mm; }, QStringLiteral("reach"));
+        if (!showing_) decide([mm](scan_case::ScanJob& job) { job.intraoralReachMm = mm; }, QStringLiteral("reach"));
     });
     connect(browse, &QPushButton::clicked, this, [this] {
         const QString file =
             questions_.fileToOpen(tr("An intraoral scan"), tr("Surfaces (*.stl *.ply *.obj);;All files (*)"));
-        if (!file.isEmpty()) decide([&](station::ScanJob& job) { job.intraoral = toPath(file); });
+        if (!file.isEmpty()) decide([&](scan_case::ScanJob& job) { job.intraoral = toPath(file); });
     });
     connect(mouthRemove_, &QPushButton::clicked, this,
-            [this] { decide([](station::ScanJob& job) { job.intraoral.clear(); }); });
+            [this] { decide([](scan_case::ScanJob& job) { job.intraoral.clear(); }); });
     connect(&model, &ScanModel::decided, this, &SurfacePage::showJob);
     for (const auto signal : {&ScanModel::previewReady, &ScanModel::fullReady, &ScanModel::workChanged})
         connect(&model, signal, this, &SurfacePage::showResult);
@@ -176,7 +177,7 @@ QString SurfacePage::missing() const {
 
 void SurfacePage::showJob() {
     showing_ = true;
-    const station::ScanJob& job = model().job();
+    const scan_case::ScanJob& job = model().job();
     int at = job.percents.empty() ? useful : hundred;
     if (job.faces > 0)
         at = byFaces;
@@ -204,7 +205,7 @@ void SurfacePage::showJob() {
 void SurfacePage::showResult() {
     const auto best = model().best();
     const bool fresh = model().isFullFresh();
-    solid_->setParts(best ? std::shared_ptr<const std::vector<tooth::Part>>(best, &best->parts) : nullptr,
+    solid_->setParts(best ? std::shared_ptr<const std::vector<cases::Part>>(best, &best->parts) : nullptr,
                      best ? best->bounds : core::Box());
     solid_->setCaption(fresh ? tr("As it will be") : tr("Preview; the fine surfaces are being made"), !fresh);
     if (model().isPaused() && !fresh) solid_->setCaption(tr("Preview; the fine surfaces were not made"), true);
@@ -214,7 +215,7 @@ void SurfacePage::showResult() {
         return;
     }
     if (fresh && best->result.registered) {
-        const placing::Registered& r = *best->result.registered;
+        const registration::Registered& r = *best->result.registered;
         registered_->setText(tr("It lies on the tooth to %1 mm (rms; 95 % within %2 mm), %3 % of it has a counterpart.")
                                  .arg(QLocale().toString(r.rmsMm, 'f', 3), QLocale().toString(r.worstMm, 'f', 2),
                                       QLocale().toString(100.0 * r.overlap, 'f', 0)));
@@ -228,7 +229,7 @@ void SurfacePage::showResult() {
         table += QStringLiteral("</tr>");
     };
     if (fresh && best->result.cases.size() > 1) {
-        for (const station::ScannedCase& made : best->result.cases) {
+        for (const scan_case::ScannedCase& made : best->result.cases) {
             std::size_t faces = made.surfaces->outer.mesh.triangles.size();
             double bound = made.surfaces->outer.errorBoundMm;
             for (const auto& t : made.surfaces->tissues) {

@@ -12,15 +12,15 @@
 
 namespace handpiece::desktop {
 
-[[nodiscard]] inline QColor tissueColour(tooth::Tissue tissue) {
-    if (tissue == tooth::Tissue::none) return {0xc0, 0xc6, 0xce};
+[[nodiscard]] inline QColor tissueColour(cases::Tissue tissue) {
+    if (tissue == cases::Tissue::none) return {0xc0, 0xc6, 0xce};
     const auto colour = view::colourOf(tissue, view::Palette::textbook);
     const QColor plain(colour[0], colour[1], colour[2]);
-    return tissue == tooth::Tissue::caries ? plain.lighter(220) : plain;
+    return tissue == cases::Tissue::caries ? plain.lighter(220) : plain;
 }
 
 /// A square of it for rich text, with an edge: enamel is as white as paper.
-[[nodiscard]] inline QString swatchHtml(tooth::Tissue tissue) {
+[[nodiscard]] inline QString swatchHtml(cases::Tissue tissue) {
     QImage square(12, 12, QImage::Format_RGB32);
     square.fill(QColor(0x80, 0x86, 0x8e));
     for (int y = 1; y < 11; ++y)

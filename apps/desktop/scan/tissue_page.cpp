@@ -61,7 +61,7 @@ QString mm(double value, int decimals = 1) {
     return quantity(value, decimals, TissuePage::tr("mm"));
 }
 
-QIcon swatch(tooth::Tissue tissue) {
+QIcon swatch(cases::Tissue tissue) {
     QPixmap pixmap(14, 14);
     pixmap.fill(tissueColour(tissue));
     return pixmap;
@@ -80,7 +80,7 @@ std::vector<DecisionRow> decisionRows(const Settings& settings) {
                marks[end].radiusMm == marks[first].radiusMm &&
                (marks[end].centreMm - marks[end - 1].centreMm).norm() < 1.1 * marks[first].radiusMm)
             ++end;
-        const QString what = marks[first].tissue == tooth::Tissue::none ? TissuePage::tr("Nothing here")
+        const QString what = marks[first].tissue == cases::Tissue::none ? TissuePage::tr("Nothing here")
                                                                         : tissueName(marks[first].tissue);
         rows.push_back({DecisionRow::Kind::marks, first, end - first,
                         TissuePage::tr("Brush: %1, %2").arg(what, mm(marks[first].radiusMm))});
@@ -137,28 +137,29 @@ TissuePage::TissuePage(ScanModel& model, QWidget* parent) : ScanPage(model, pare
                 each->setWindow(black_, white_);
         });
         connect(view, &SliceView::picked, this, [this](const core::Vec3& at) {
-            decide([&](station::ScanJob& job) { job.segmentation.toothAtMm = at; });
+            decide([&](scan_case::ScanJob& job) { job.segmentation.toothAtMm = at; });
         });
         connect(view, &SliceView::painted, this, [this](const std::vector<core::Vec3>& points) {
             decide(
-                [&](station::ScanJob& job) {
+                [&](scan_case::ScanJob& job) {
                     for (const core::Vec3& at : points)
                         job.segmentation.marks.push_back(
                             {at, brushRadius_->value(),
-                             static_cast<tooth::Tissue>(brushTissue_->currentData().toInt())});
+                             static_cast<cases::Tissue>(brushTissue_->currentData().toInt())});
                 },
                 QStringLiteral("stroke"));
         });
         connect(view, &SliceView::strokeEnded, this, [this] { this->model().endMerge(); });
         connect(view, &SliceView::cutDrawn, this, &TissuePage::addCut);
         connect(view, &SliceView::lesionPlaced, this, [this](const core::Vec3& at) {
-            decide([&](station::ScanJob& job) {
+            decide([&](scan_case::ScanJob& job) {
                 job.segmentation.lesions.push_back({at, core::Vec3::Constant(lesionRadius_->value())});
             });
         });
     }
     connect(histogram_, &HistogramView::thresholdsMoved, this, [this](const segmentation::Thresholds& thresholds) {
-        decide([&](station::ScanJob& job) { job.segmentation.thresholds = thresholds; }, QStringLiteral("thresholds"));
+        decide([&](scan_case::ScanJob& job) { job.segmentation.thresholds = thresholds; },
+               QStringLiteral("thresholds"));
     });
     connect(histogram_, &HistogramView::dragEnded, this, [this] {
         this->model().endMerge();
@@ -226,10 +227,10 @@ QWidget* TissuePage::makeTools() {
         form->addRow(note(translated(t.tip), page));
         if (t.tool == SliceTool::brush) {
             brushTissue_ = named(new QComboBox(page), "scanBrushTissue", tr("This is"));
-            for (const tooth::Tissue tissue : {tooth::Tissue::none, tooth::Tissue::enamel, tooth::Tissue::dentine,
-                                               tooth::Tissue::pulp, tooth::Tissue::caries, tooth::Tissue::restoration})
+            for (const cases::Tissue tissue : {cases::Tissue::none, cases::Tissue::enamel, cases::Tissue::dentine,
+                                               cases::Tissue::pulp, cases::Tissue::caries, cases::Tissue::restoration})
                 brushTissue_->addItem(swatch(tissue),
-                                      tissue == tooth::Tissue::none ? tr("Nothing here") : tissueName(tissue),
+                                      tissue == cases::Tissue::none ? tr("Nothing here") : tissueName(tissue),
                                       static_cast<int>(tissue));
             form->addRow(tr("This is"), brushTissue_);
             brushRadius_ = named(new QDoubleSpinBox(page), "scanBrushRadius", tr("Radius of the brush"));
@@ -282,19 +283,19 @@ QWidget* TissuePage::makeTools() {
                        "scanAutomatic", tr("Forget the thresholds that were dragged"));
     column->addWidget(automatic_);
     connect(automatic_, &QPushButton::clicked, this,
-            [this] { decide([](station::ScanJob& job) { job.segmentation.thresholds.reset(); }); });
+            [this] { decide([](scan_case::ScanJob& job) { job.segmentation.thresholds.reset(); }); });
     const auto check = [&](const char* name, const QString& text, const QString& tip, auto set) {
         auto* box = named(new QCheckBox(text, tools), name, text, tip);
         connect(box, &QCheckBox::toggled, this, [this, set](bool on) {
-            if (!showing_) decide([&](station::ScanJob& job) { set(job, on); });
+            if (!showing_) decide([&](scan_case::ScanJob& job) { set(job, on); });
         });
         column->addWidget(box);
         return box;
     };
     damp_ = check("scanDamp", tr("Damp noise and streaks"), tr("Edges are kept"),
-                  [](station::ScanJob& job, bool on) { job.segmentation.damp = on; });
+                  [](scan_case::ScanJob& job, bool on) { job.segmentation.damp = on; });
     caries_ = check("scanCaries", tr("Look for caries"), tr("Dark places in enamel and dentine"),
-                    [](station::ScanJob& job, bool on) { job.segmentation.findCaries = on; });
+                    [](scan_case::ScanJob& job, bool on) { job.segmentation.findCaries = on; });
     fill_ = named(new QCheckBox(tr("Colour the tissues in the slices"), tools), "scanFill",
                   tr("Colour the tissues in the slices"), tr("Off: their outlines only"));
     fill_->setChecked(true);
@@ -308,7 +309,7 @@ QWidget* TissuePage::makeTools() {
     tooth_ = new FdiPicker(QStringLiteral("scanTissueFdi"), tools);
     column->addWidget(tooth_);
     connect(tooth_, &FdiPicker::toothChosen, this,
-            [this](int fdi) { decide([&](station::ScanJob& job) { job.placing.fdiNumber = fdi; }); });
+            [this](int fdi) { decide([&](scan_case::ScanJob& job) { job.placing.fdiNumber = fdi; }); });
     scroll->setWidget(tools);
     scroll->setMinimumWidth(tools->minimumSizeHint().width() + 18);
     scroll->setMaximumWidth(380);
@@ -331,7 +332,7 @@ void TissuePage::takeTool() {
     const auto tool = static_cast<SliceTool>(std::max(0, tools_->checkedId()));
     for (SliceView* view : {axial_, coronal_, sagittal_})
         view->setTool(tool, tool == SliceTool::lesion ? lesionRadius_->value() : brushRadius_->value(),
-                      static_cast<tooth::Tissue>(brushTissue_->currentData().toInt()));
+                      static_cast<cases::Tissue>(brushTissue_->currentData().toInt()));
 }
 
 void TissuePage::setCross(const core::Vec3& mm) {
@@ -392,7 +393,7 @@ void TissuePage::showPreview() {
     const auto region = preview ? preview->result.region : nullptr;
     for (SliceView* view : {axial_, coronal_, sagittal_})
         view->setRegion(region);
-    solid_->setParts(preview ? std::shared_ptr<const std::vector<tooth::Part>>(preview, &preview->parts) : nullptr,
+    solid_->setParts(preview ? std::shared_ptr<const std::vector<cases::Part>>(preview, &preview->parts) : nullptr,
                      preview ? preview->bounds : core::Box());
     showJob();
     if (!region) {
@@ -402,8 +403,8 @@ void TissuePage::showPreview() {
     }
     QString table = QStringLiteral("<table cellspacing='2'>");
     double sum = 0.0;
-    for (const tooth::Tissue tissue : {tooth::Tissue::enamel, tooth::Tissue::dentine, tooth::Tissue::pulp,
-                                       tooth::Tissue::caries, tooth::Tissue::restoration}) {
+    for (const cases::Tissue tissue : {cases::Tissue::enamel, cases::Tissue::dentine, cases::Tissue::pulp,
+                                       cases::Tissue::caries, cases::Tissue::restoration}) {
         const double volume = preview->result.volumesMm3[static_cast<std::size_t>(tissue)];
         sum += volume;
         if (volume <= 0) continue;
@@ -429,7 +430,7 @@ void TissuePage::addCut(const core::Vec3& from, const core::Vec3& to, const core
     else if (const auto preview = model().preview(); preview && !preview->bounds.isEmpty())
         kept = preview->result.placed.scanInTooth.applyInverse(preview->bounds.centre());
     if ((kept - from).dot(normal) > 0) normal = -normal;
-    decide([&](station::ScanJob& job) { job.segmentation.cutPlanes.push_back({0.5 * (from + to), normal}); });
+    decide([&](scan_case::ScanJob& job) { job.segmentation.cutPlanes.push_back({0.5 * (from + to), normal}); });
 }
 
 void TissuePage::removeChosen() {
@@ -437,7 +438,7 @@ void TissuePage::removeChosen() {
     const int at = decisions_->currentRow();
     if (at < 0 || static_cast<std::size_t>(at) >= rows.size()) return;
     const DecisionRow& row = rows[static_cast<std::size_t>(at)];
-    decide([&](station::ScanJob& job) {
+    decide([&](scan_case::ScanJob& job) {
         Settings& s = job.segmentation;
         const auto first = static_cast<std::ptrdiff_t>(row.first), count = static_cast<std::ptrdiff_t>(row.count);
         switch (row.kind) {
@@ -463,7 +464,7 @@ void TissuePage::flipChosen() {
     if (at < 0 || static_cast<std::size_t>(at) >= rows.size()) return;
     const DecisionRow& row = rows[static_cast<std::size_t>(at)];
     if (row.kind != DecisionRow::Kind::cut) return;
-    decide([&](station::ScanJob& job) {
+    decide([&](scan_case::ScanJob& job) {
         core::Vec3& normal = job.segmentation.cutPlanes[row.first].normal;
         normal = -normal;
     });

@@ -6,52 +6,52 @@
 #include <algorithm>
 #include <atomic>
 
+#include "handpiece/app/exercise/permissions.h"
+#include "handpiece/app/simulation/session_player.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/senses/surface/brick_source.h"
 #include "handpiece/senses/surface/closed_surface.h"
-#include "station/permissions.h"
-#include "station/session_player.h"
 
 namespace handpiece::desktop {
 namespace {
 
 namespace fs = std::filesystem;
 
-void takeBur(LoadedTooth& loaded, station::StationSettings& settings, const std::string& bur,
-             const std::string& ability) {
-    instrument::Instrument made = instrument::makeInstrument(bur, {}, ability);
+void takeBur(LoadedTooth& loaded, simulation::SimulationSettings& settings, const std::string& bur,
+             const std::string& cuttingParameters) {
+    instrument::Instrument made = instrument::makeInstrument(bur, {}, cuttingParameters);
     settings.bur = std::move(made.bur);
-    settings.ability = std::move(made.ability);
+    settings.cuttingParameters = std::move(made.cuttingParameters);
     loaded.bur = bur;
 }
 
 /// What an attempt was cut with. A bur out of a file that is gone by now is no reason not to open it.
-void takeInstruments(LoadedTooth& loaded, station::StationSettings& settings, const LoadRequest& request,
-                     const tooth::Attempt* attempt) {
+void takeInstruments(LoadedTooth& loaded, simulation::SimulationSettings& settings, const LoadRequest& request,
+                     const cases::Attempt* attempt) {
     loaded.drive = request.drive;
     loaded.speedRpm = request.speedRpm;
-    const tooth::Exercise* exercise = loaded.toothCase->exercise ? &*loaded.toothCase->exercise : nullptr;
-    const std::string otherwise = station::firstBur(exercise, request.bur);
-    std::string bur = otherwise, ability;
+    const cases::Exercise* exercise = loaded.toothCase->exercise ? &*loaded.toothCase->exercise : nullptr;
+    const std::string otherwise = exercise::firstBur(exercise, request.bur);
+    std::string bur = otherwise, cuttingParameters;
     if (attempt) {
         const auto& drives = instrument::drives();
         if (std::any_of(drives.begin(), drives.end(), [&](const auto& d) { return d.name == attempt->drive; })) {
             loaded.drive = attempt->drive;
             loaded.speedRpm = 0.0;
         }
-        bur = station::firstBur(exercise, attempt->bur);
+        bur = exercise::firstBur(exercise, attempt->bur);
         if (bur == attempt->bur)
-            ability = attempt->ability;
+            cuttingParameters = attempt->cuttingParameters;
         else
             loaded.lockedBur = attempt->bur;
     } else if (exercise && !exercise->bur.empty()) {
         bur = exercise->bur;
     }
     try {
-        takeBur(loaded, settings, bur, ability);
+        takeBur(loaded, settings, bur, cuttingParameters);
     } catch (const core::Error&) {
         loaded.missingBur = bur;
         takeBur(loaded, settings, otherwise, {});
@@ -61,7 +61,7 @@ void takeInstruments(LoadedTooth& loaded, station::StationSettings& settings, co
 }
 
 /// The tissues' feel from the case's own table; the person's multipliers stay.
-void takeTissues(station::StationSettings& settings, const tooth::Case& toothCase) {
+void takeTissues(simulation::SimulationSettings& settings, const cases::Case& toothCase) {
     settings.tissues = toothCase.tissues;
     const force::Parameters wanted = settings.parameters;
     settings.parameters = force::defaultParameters(toothCase.tissues);
@@ -76,27 +76,27 @@ void tell(const LoadListener& listener, LoadStep step) {
 }
 
 /// An attempt of before named its last recording only.
-std::vector<RecordingPlace> placesOf(const tooth::Attempt& attempt, const LoadRequest& request) {
-    std::vector<tooth::Attempt::Recording> named = attempt.recordings;
+std::vector<RecordingPlace> placesOf(const cases::Attempt& attempt, const LoadRequest& request) {
+    std::vector<cases::Attempt::Recording> named = attempt.recordings;
     if (named.empty() && !attempt.session.empty()) named.push_back({attempt.session, false});
     std::vector<RecordingPlace> places;
-    for (const tooth::Attempt::Recording& r : named)
+    for (const cases::Attempt::Recording& r : named)
         places.push_back({r.name, r.packed ? request.path : request.sessionFolder / r.name, r.packed});
     return places;
 }
 
 }  // namespace
 
-tooth::PackageFiles recordingBytes(const std::vector<RecordingPlace>& places, bool packedOnly, std::size_t& leftOut,
+cases::PackageFiles recordingBytes(const std::vector<RecordingPlace>& places, bool packedOnly, std::size_t& leftOut,
                                    const core::Progress& progress) {
-    tooth::PackageFiles files;
+    cases::PackageFiles files;
     std::uint64_t bytes = 0;
     leftOut = 0;
     for (std::size_t i = places.size(); i-- > 0;) {
         const RecordingPlace& place = places[i];
         core::report(progress, 1.0 - static_cast<double>(i + 1) / static_cast<double>(places.size()));
         if (packedOnly && !place.packed) continue;
-        const std::uint64_t room = tooth::kMostRecordingBytes - bytes;
+        const std::uint64_t room = cases::kMaxRecordingBytes - bytes;
         std::error_code error;
         const std::uint64_t size = fs::file_size(place.in, error);
         if (error || (!place.packed && size > room)) {
@@ -104,7 +104,7 @@ tooth::PackageFiles recordingBytes(const std::vector<RecordingPlace>& places, bo
             continue;
         }
         std::vector<std::byte> data =
-            place.packed ? tooth::readRecording(place.in, place.name) : core::readFile(place.in, room);
+            place.packed ? cases::readRecording(place.in, place.name) : core::readFile(place.in, room);
         if (data.size() > room) {
             ++leftOut;
             continue;
@@ -120,16 +120,16 @@ FileKind fileKindOf(const fs::path& path) {
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     std::error_code error;
-    if (fs::is_directory(path, error)) return tooth::isAttempt(path) ? FileKind::attempt : FileKind::toothCase;
+    if (fs::is_directory(path, error)) return cases::isAttempt(path) ? FileKind::attempt : FileKind::toothCase;
     if (extension == ".h5") return FileKind::session;
     if (extension == ".toml") return FileKind::toothCase;
     if (extension == ".handpiece")
-        return fs::exists(path, error) && tooth::isAttempt(path) ? FileKind::attempt : FileKind::toothCase;
+        return fs::exists(path, error) && cases::isAttempt(path) ? FileKind::attempt : FileKind::toothCase;
     if (geometry::meshFormatOf(path) != geometry::MeshFormat::unknown) return FileKind::mesh;
     return FileKind::unknown;
 }
 
-tooth::Case starterCase(const Starter& starter, const fs::path& folder, const core::Progress& progress,
+cases::Case starterCase(const Starter& starter, const fs::path& folder, const core::Progress& progress,
                         const LoadListener& listener) {
     const starter::ToothKindInfo& info = starter::infoOf(starter.kind);
     // The version stands in the name: a later one may make another tooth of the same rules.
@@ -137,18 +137,18 @@ tooth::Case starterCase(const Starter& starter, const fs::path& folder, const co
     std::error_code error;
     if (fs::exists(place / "case.toml", error)) {
         try {
-            return tooth::readCase(place);
+            return cases::readCase(place);
         } catch (const core::Error&) {
             fs::remove_all(place, error);  // damaged: it is made again
         }
     }
     tell(listener, LoadStep::shaping);
-    if (listener.sketch) listener.sketch(std::make_shared<const tooth::Case>(starter::makeSketch(starter.kind)));
-    const tooth::Case made = starter::makeTooth(starter.kind, {starter.faces, 0, true}, progress);
+    if (listener.sketch) listener.sketch(std::make_shared<const cases::Case>(starter::makeSketch(starter.kind)));
+    const cases::Case made = starter::makeTooth(starter.kind, {starter.faces, 0, true}, progress);
     fs::create_directories(folder, error);
-    tooth::writeCase(made, place);
+    cases::writeCase(made, place);
     // As read back: an STL holds less than a double, and the cache beside it belongs to what it holds.
-    return tooth::readCase(place);
+    return cases::readCase(place);
 }
 
 instrument::Drive driveAt(const std::string& name, double speedRpm) {
@@ -160,19 +160,19 @@ instrument::Drive driveAt(const std::string& name, double speedRpm) {
 LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress, const LoadListener& listener) {
     LoadedTooth loaded;
     tell(listener, request.recover ? LoadStep::recovering : LoadStep::reading);
-    station::StationSettings settings = request.settings;
-    std::optional<tooth::Attempt> attempt;
-    std::optional<station::Recovered> recovered;
+    simulation::SimulationSettings settings = request.settings;
+    std::optional<cases::Attempt> attempt;
+    std::optional<simulation::Recovered> recovered;
     const core::Progress reading = core::part(progress, 0.0, 0.5), preparing = core::part(progress, 0.5, 0.8);
     if (request.recover) {
-        recovered = station::recover(request.path, reading);
+        recovered = simulation::recover(request.path, reading);
         loaded.document = request.recovered;
         recovered->toothCase.exercise = request.exercise;
-        loaded.toothCase = std::make_shared<const tooth::Case>(std::move(recovered->toothCase));
+        loaded.toothCase = std::make_shared<const cases::Case>(std::move(recovered->toothCase));
         loaded.elapsedS = recovered->elapsedS;
         loaded.code = recovered->code;
         loaded.recording = request.path;
-        loaded.session = station::SittingSettings::Session::recovered;
+        loaded.session = simulation::LiveSessionSettings::Session::recovered;
         settings = recovered->settings;
         settings.capability = request.settings.capability;
         settings.hull = false;
@@ -180,17 +180,17 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
         loaded.drive = settings.drive.name;
         loaded.speedRpm = settings.drive.freeSpeedRpm;
     } else if (request.starter) {
-        tooth::Case made = starterCase(*request.starter, request.starterFolder, reading, listener);
+        cases::Case made = starterCase(*request.starter, request.starterFolder, reading, listener);
         loaded.document.caseFile = made.source;
         loaded.document.starter = request.starter;
         loaded.document.name = made.name;
-        loaded.toothCase = std::make_shared<const tooth::Case>(std::move(made));
+        loaded.toothCase = std::make_shared<const cases::Case>(std::move(made));
     } else if (fileKindOf(request.path) == FileKind::attempt) {
-        tooth::OpenAttempt open = tooth::openAttempt(request.path);
+        cases::OpenAttempt open = cases::openAttempt(request.path);
         loaded.document.attemptFile = request.path;
         loaded.document.caseFile = open.attempt.caseFile;
         loaded.document.name = request.path.stem().string();
-        loaded.toothCase = std::make_shared<const tooth::Case>(std::move(open.toothCase));
+        loaded.toothCase = std::make_shared<const cases::Case>(std::move(open.toothCase));
         attempt = std::move(open.attempt);
         loaded.document.student = attempt->student;
         loaded.document.recordings = placesOf(*attempt, request);
@@ -199,10 +199,10 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
         loaded.code = attempt->student;
     } else {
         const fs::path path = request.path.extension() == ".toml" ? request.path.parent_path() : request.path;
-        tooth::Case read = tooth::readCase(path);
+        cases::Case read = cases::readCase(path);
         loaded.document.caseFile = core::wholePath(path);
         loaded.document.name = read.name;
-        loaded.toothCase = std::make_shared<const tooth::Case>(std::move(read));
+        loaded.toothCase = std::make_shared<const cases::Case>(std::move(read));
     }
     core::report(preparing, 0.0);
     if (listener.sketch) listener.sketch(loaded.toothCase);
@@ -214,19 +214,19 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
     settings.resumed = attempt || recovered;
     std::atomic<bool> hasDistances{false};
     const core::Progress stepwise = [&](double fraction) {
-        if (fraction >= station::kDistancesShare && !hasDistances.exchange(true)) tell(listener, LoadStep::tissues);
+        if (fraction >= simulation::kDistancesShare && !hasDistances.exchange(true)) tell(listener, LoadStep::tissues);
         return !preparing || preparing(fraction);
     };
-    loaded.station = station::makeStation(*loaded.toothCase, std::move(settings), request.useCache, stepwise);
+    loaded.station = simulation::makeSimulation(*loaded.toothCase, std::move(settings), request.useCache, stepwise);
     if (attempt)
         loaded.state =
             tooth::decodeState(attempt->state, loaded.station.identity, *loaded.station.tooth, request.path.string());
     if (recovered) loaded.state = std::move(recovered->state);
     if (attempt || recovered) loaded.station.resume(loaded.state);
-    if (recovered) loaded.history = station::keepHistory(recovered->history, loaded.state, loaded.station);
+    if (recovered) loaded.history = simulation::keepHistory(recovered->history, loaded.state, loaded.station);
     tell(listener, LoadStep::surface);
     loaded.liveTooth =
-        std::make_shared<station::LiveTooth>(loaded.station.tooth, loaded.state, core::part(progress, 0.8, 1.0));
+        std::make_shared<simulation::LiveTooth>(loaded.station.tooth, loaded.state, core::part(progress, 0.8, 1.0));
     return loaded;
 }
 

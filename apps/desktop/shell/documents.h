@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
+#include "handpiece/app/simulation/history_bytes.h"
+#include "handpiece/app/simulation/live_session.h"
+#include "handpiece/app/simulation/live_tooth.h"
+#include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/progress.h"
+#include "handpiece/model/case/attempt.h"
+#include "handpiece/model/case/case.h"
 #include "handpiece/model/starter/starter.h"
-#include "handpiece/model/tooth/attempt.h"
-#include "handpiece/model/tooth/tooth.h"
-#include "station/history_bytes.h"
-#include "station/live_tooth.h"
-#include "station/sitting.h"
-#include "station/station.h"
 
 namespace handpiece::desktop {
 
@@ -63,7 +63,7 @@ enum class LoadStep { reading, recovering, shaping, distances, tissues, surface 
 struct LoadListener {
     std::function<void(LoadStep step)> step;
     /// Something to look at before there is anything to feel: its parts and what stands around them.
-    std::function<void(std::shared_ptr<const tooth::Case> sketch)> sketch;
+    std::function<void(std::shared_ptr<const cases::Case> sketch)> sketch;
 };
 
 /// What to open, and with what in hand.
@@ -72,27 +72,27 @@ struct LoadRequest {
     std::optional<Starter> starter;
     bool recover = false;
     Document recovered;  ///< with `recover`: what its marker says
-    std::optional<tooth::Exercise> exercise;
+    std::optional<cases::Exercise> exercise;
     std::filesystem::path sessionFolder;  ///< where recordings are that an attempt only names
     std::filesystem::path starterFolder;
     std::string bur = "330", drive = "turbine";
     double speedRpm = 0.0;  ///< 0: the drive's own
-    station::StationSettings settings;
+    simulation::SimulationSettings settings;
     bool useCache = true;
 };
 struct LoadedTooth {
     Document document;
-    std::shared_ptr<const tooth::Case> toothCase;
-    station::Station station;
-    std::shared_ptr<station::LiveTooth> liveTooth;
-    tooth::CutState state;  ///< that it was resumed with
-    station::KeptHistory history;
+    std::shared_ptr<const cases::Case> toothCase;
+    simulation::SimulationSetup station;
+    std::shared_ptr<simulation::LiveTooth> liveTooth;
+    tooth::StateDelta state;  ///< that it was resumed with
+    simulation::KeptHistory history;
     double elapsedS = 0.0;
     std::string bur, drive, code;
     double speedRpm = 0.0;
     /// The recording that goes on with it, and from where; empty: a new one begins.
     std::filesystem::path recording;
-    station::SittingSettings::Session session = station::SittingSettings::Session::anew;
+    simulation::LiveSessionSettings::Session session = simulation::LiveSessionSettings::Session::anew;
     std::string missingBur;  ///< the bur an attempt was cut with, when it cannot be had: another is in hand
     std::string lockedBur;   ///< and when its exercise does not allow it
 };
@@ -100,13 +100,13 @@ struct LoadedTooth {
 [[nodiscard]] LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress,
                                     const LoadListener& listener = {});
 
-/// The recordings' bytes by name, the newest first as far as they go into tooth::kMostRecordingBytes; `packedOnly`: of
+/// The recordings' bytes by name, the newest first as far as they go into tooth::kMaxRecordingBytes; `packedOnly`: of
 /// those that came with an attempt. `leftOut`: how many did not fit, or are no longer there.
-[[nodiscard]] tooth::PackageFiles recordingBytes(const std::vector<RecordingPlace>& places, bool packedOnly,
+[[nodiscard]] cases::PackageFiles recordingBytes(const std::vector<RecordingPlace>& places, bool packedOnly,
                                                  std::size_t& leftOut, const core::Progress& progress);
 
 /// The case of a starter tooth, out of its folder in the cache; made and put there the first time.
-[[nodiscard]] tooth::Case starterCase(const Starter& starter, const std::filesystem::path& folder,
+[[nodiscard]] cases::Case starterCase(const Starter& starter, const std::filesystem::path& folder,
                                       const core::Progress& progress, const LoadListener& listener = {});
 
 /// The drive by name, its free speed set to `speedRpm` (0: its own; never more than that).

@@ -15,7 +15,8 @@ namespace handpiece::desktop {
 namespace {
 
 /// Below what the person has chosen: the school's defaults; above it: the command line.
-Simulator::Options asAsked(Simulator::Options options, const CommandLine& line, const station::SchoolDefaults& school) {
+Simulator::Options asAsked(Simulator::Options options, const CommandLine& line,
+                           const exercise::SchoolDefaults& school) {
     if (!line.inject.isEmpty()) options.hands.inject = line.inject.toStdString();
     options.hands.leftHanded = school.leftHanded;
     options.hands.scale = school.scale;
@@ -32,7 +33,7 @@ Simulator::Options asAsked(Simulator::Options options, const CommandLine& line, 
 }
 
 /// What a person has not set yet is as the school has it.
-void fillIn(Settings& settings, const station::SchoolDefaults& school) {
+void fillIn(Settings& settings, const exercise::SchoolDefaults& school) {
     const auto fill = [&settings](const char* key, const QVariant& value) {
         if (!settings.value(QLatin1String(key)).isValid()) settings.set(QLatin1String(key), value);
     };
@@ -55,7 +56,7 @@ void fillIn(Settings& settings, const station::SchoolDefaults& school) {
 Host::Host(QApplication& application, const CommandLine& line, const Simulator::Options& options)
     : application_(application),
       line_(line),
-      school_(station::schoolDefaults()),
+      school_(exercise::schoolDefaults()),
       settings_(options.folders.settingsFile),
       simulator_(asAsked(options, line, school_)) {
     fillIn(settings_, school_);
@@ -79,8 +80,8 @@ Host::Host(QApplication& application, const CommandLine& line, const Simulator::
         static_cast<int>(settings_.number(QStringLiteral("work/voxelUm"), options.voxelUm, 20.0, 400.0)));
     simulator_.setCode(settings_.value(QStringLiteral("work/code")).toString());
     simulator_.setMultipliers(kept("stiffness", 1.0, 3.0), kept("damping", 1.0, 3.0), kept("friction", 1.0, 3.0));
-    simulator_.setCrisp(settings_.value(QStringLiteral("work/crispContact")).toBool(),
-                        settings_.value(QStringLiteral("work/cuttingVibration")).toBool());
+    simulator_.setEventBasedForce(settings_.value(QStringLiteral("work/crispContact")).toBool(),
+                                  settings_.value(QStringLiteral("work/cuttingVibration")).toBool());
     makeWindow();
     if (!speaks) window_->tell(QStringLiteral("translation-missing"));
 }

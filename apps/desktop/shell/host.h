@@ -6,13 +6,13 @@
 #include <QObject>
 #include <memory>
 
+#include "handpiece/app/exercise/school_defaults.h"
 #include "shell/command_line.h"
 #include "shell/language.h"
 #include "shell/main_window.h"
 #include "shell/run_statistics.h"
 #include "shell/settings.h"
 #include "shell/simulator.h"
-#include "station/school_defaults.h"
 
 class QApplication;
 
@@ -51,7 +51,7 @@ class Host : public QObject {
     CommandLine line_;
     PictureStatistics picture_;
     double firstPictureMs_ = 0.0;
-    station::SchoolDefaults school_;
+    exercise::SchoolDefaults school_;
     Settings settings_;
     Language language_;
     Simulator simulator_;

@@ -133,7 +133,7 @@ class MainWindow : public QMainWindow {
     void listDevices();
     void chooseDevice(const QString& name);
     void nameDevice();
-    void tellDevice(link::Trouble trouble, int vendorCode);
+    void tellDevice(link::DeviceFault trouble, int vendorCode);
     void showDevice(StatusFigures& figures) const;
     [[nodiscard]] bool holdsDevice() const;
     /// What the person holds, in words.
@@ -146,7 +146,7 @@ class MainWindow : public QMainWindow {
     void connectSound();
     void showDocument();
     void takePermissions();
-    void tellLocked(station::Operation operation);
+    void tellLocked(exercise::Operation operation);
     void showSettings();
     void showTick();
     void takeBackNotices(const messages::HapticSample& sample);

@@ -12,7 +12,7 @@
 namespace handpiece::desktop {
 
 void MainWindow::connectDevice() {
-    Hands& hands = simulator_.hands();
+    DeviceManager& hands = simulator_.hands();
     const Actions& a = *actions_;
     connect(devices_, &QMenu::aboutToShow, this, [this, &hands] {
         if (hands.rows().empty()) hands.look();
@@ -20,7 +20,7 @@ void MainWindow::connectDevice() {
     });
     connect(status_, &StatusLine::deviceClicked, this,
             [this] { devices_->popup(status_->mapToGlobal(QPoint(0, -devices_->sizeHint().height()))); });
-    connect(a["actionDeviceSearch"], &QAction::triggered, &hands, &Hands::look);
+    connect(a["actionDeviceSearch"], &QAction::triggered, &hands, &DeviceManager::look);
     connect(a["actionDevicePage"], &QAction::triggered, this, [this] {
         if (openDevicePage) openDevicePage();
     });
@@ -32,12 +32,12 @@ void MainWindow::connectDevice() {
     connect(pedals_, &PedalMenu::noticed, this, &MainWindow::tell);
     connect(pedals_, &PedalMenu::settled, notices_, &NoticeBar::remove);
     connect(pedals_, &PedalMenu::failed, this, &MainWindow::showProblem);
-    connect(&hands, &Hands::foundChanged, this, &MainWindow::listDevices);
-    connect(&hands, &Hands::changed, this, [this] {
+    connect(&hands, &DeviceManager::foundChanged, this, &MainWindow::listDevices);
+    connect(&hands, &DeviceManager::changed, this, [this] {
         listDevices();
         showSettings();
     });
-    connect(&hands, &Hands::opened, this, [this, &hands] {
+    connect(&hands, &DeviceManager::opened, this, [this, &hands] {
         notices_->remove(QStringLiteral("device-lost"));
         notices_->remove(QStringLiteral("device-absent"));
         deviceAsked_ = false;
@@ -49,7 +49,7 @@ void MainWindow::connectDevice() {
         settings_.set(seen, true);
         setUpDevice();
     });
-    connect(&hands, &Hands::refused, this, [this](const QString& name, const Problem& problem) {
+    connect(&hands, &DeviceManager::refused, this, [this](const QString& name, const Problem& problem) {
         deviceTried_ = name;
         if (std::exchange(deviceAsked_, false)) {
             showProblem(problem);
@@ -57,8 +57,8 @@ void MainWindow::connectDevice() {
             tell(QStringLiteral("device-absent"), {problem.what, problem.remedy});
         }
     });
-    connect(&hands, &Hands::troubled, this, &MainWindow::tellDevice);
-    connect(&hands, &Hands::lost, this, [this](const QString& name, link::Trouble trouble, int vendorCode) {
+    connect(&hands, &DeviceManager::troubled, this, &MainWindow::tellDevice);
+    connect(&hands, &DeviceManager::lost, this, [this](const QString& name, link::DeviceFault trouble, int vendorCode) {
         deviceTried_ = name;
         notices_->remove(QStringLiteral("device-trouble"));
         const Problem problem = problemOf(trouble, vendorCode);
@@ -73,7 +73,7 @@ void MainWindow::connectDevice() {
 }
 
 void MainWindow::chooseDevice(const QString& name) {
-    Hands& hands = simulator_.hands();
+    DeviceManager& hands = simulator_.hands();
     if (name.isEmpty()) {
         settings_.set(QStringLiteral("work/device"), QStringLiteral("mouse"));
         for (const char* id : {"device-lost", "device-absent", "device-trouble"})
@@ -96,7 +96,7 @@ void MainWindow::nameDevice() {
     dialog->setAttribute(Qt::WA_DeleteOnClose);
     dialog->setWindowTitle(tr("Device by name or serial"));
     QStringList drivers;
-    for (const std::string& driver : station::deviceNames())
+    for (const std::string& driver : input::deviceNames())
         drivers << QString::fromStdString(driver);
     dialog->setLabelText(tr("One of %1; a colon; then the device's name, serial or number.\nopenhaptics:Left Arm, or "
                             "forcedimension:2")
@@ -108,16 +108,16 @@ void MainWindow::nameDevice() {
     dialog->open();
 }
 
-void MainWindow::tellDevice(link::Trouble trouble, int vendorCode) {
+void MainWindow::tellDevice(link::DeviceFault trouble, int vendorCode) {
     notices_->remove(QStringLiteral("device-trouble"));
-    if (trouble == link::Trouble::none) return;
+    if (trouble == link::DeviceFault::none) return;
     const Problem problem = problemOf(trouble, vendorCode);
     tell(QStringLiteral("device-trouble"), {problem.what, problem.remedy});
 }
 
 /// Made anew: what is connected changes.
 void MainWindow::listDevices() {
-    const Hands& hands = simulator_.hands();
+    const DeviceManager& hands = simulator_.hands();
     // The actions of the list belong to the group and go with it.
     delete devices_->findChild<QActionGroup*>(QStringLiteral("deviceGroup"));
     devices_->clear();
@@ -168,18 +168,18 @@ bool MainWindow::holdsDevice() const {
 }
 
 QString MainWindow::deviceInHand() const {
-    const Hands& hands = simulator_.hands();
+    const DeviceManager& hands = simulator_.hands();
     return holdsDevice() ? hands.textOf(hands.wanted()) : deviceText(simulator_.capability());
 }
 
 void MainWindow::showDevice(StatusFigures& figures) const {
-    const Hands& hands = simulator_.hands();
+    const DeviceManager& hands = simulator_.hands();
     figures.device = deviceInHand();
-    if (hands.isOpening()) figures.deviceTrouble = tr("being opened");
+    if (hands.isOpening()) figures.deviceFault = tr("being opened");
     if (!holdsDevice()) return;
     figures.servoHz = hands.health().servoHz;
-    if (hands.trouble() != link::Trouble::none)
-        figures.deviceTrouble = problemOf(hands.trouble(), hands.health().gate.vendorCode).what;
+    if (hands.trouble() != link::DeviceFault::none)
+        figures.deviceFault = problemOf(hands.trouble(), hands.health().gate.vendorCode).what;
 }
 
 }  // namespace handpiece::desktop

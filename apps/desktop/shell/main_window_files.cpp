@@ -130,7 +130,7 @@ void MainWindow::connectFiles() {
     });
     connect(&simulator_, &Simulator::jobStepped, job_, &JobStrip::setStep);
     connect(&simulator_, &Simulator::sketched, this,
-            [this](const std::shared_ptr<const tooth::Case>& sketch) { view_->showSketch(*sketch); });
+            [this](const std::shared_ptr<const cases::Case>& sketch) { view_->showSketch(*sketch); });
     connect(&simulator_, &Simulator::jobProgressed, job_, &JobStrip::setFraction);
     connect(&simulator_, &Simulator::jobEnded, this, [this] {
         job_->end();

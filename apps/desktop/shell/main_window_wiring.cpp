@@ -56,11 +56,11 @@ MeasureBox::Orientation orientationOf(SectionPlace::Direction direction) {
 }
 
 /// Which tissues there are.
-std::vector<tooth::Tissue> presentOf(const tooth::Case& toothCase) {
-    std::vector<tooth::Tissue> present;
-    for (const tooth::Part& part : toothCase.parts)
+std::vector<cases::Tissue> presentOf(const cases::Case& toothCase) {
+    std::vector<cases::Tissue> present;
+    for (const cases::Part& part : toothCase.parts)
         if (std::find(present.begin(), present.end(), part.tissue) == present.end()) present.push_back(part.tissue);
-    if (present.empty()) present.push_back(tooth::Tissue::enamel);
+    if (present.empty()) present.push_back(cases::Tissue::enamel);
     std::sort(present.begin(), present.end());
     return present;
 }
@@ -311,7 +311,7 @@ void MainWindow::tellStep(WelcomeStrip::Step step) {
 void MainWindow::takeBackNotices(const messages::HapticSample& sample) {
     constexpr double kNoneMm3 = session::EventWatch::kTellMm3;
     // A notice may be ahead of the sample that is shown: only what was seen open can be seen closed.
-    const bool open = sample.removedMm3[static_cast<std::size_t>(tooth::Tissue::pulp)] > kNoneMm3;
+    const bool open = sample.removedMm3[static_cast<std::size_t>(cases::Tissue::pulp)] > kNoneMm3;
     if (wasOpen_ && !open) notices_->remove(QStringLiteral("pulp-exposed"));
     wasOpen_ = open;
     const bool cut = std::accumulate(sample.removedMm3.begin(), sample.removedMm3.end(), 0.0) > kNoneMm3;
@@ -334,12 +334,12 @@ void MainWindow::showDocument() {
     if (!simulator_.tooth() || !simulator_.toothCase()) {
         view_->clearTooth();
     } else {
-        const tooth::Case& toothCase = *simulator_.toothCase();
+        const cases::Case& toothCase = *simulator_.toothCase();
         view_->setTooth(simulator_.tooth(), toothCase, simulator_.pictureFeed());
         view_->setPointer(simulator_.mailbox(), simulator_.startPose());
         if (simulator_.bur()) view_->setBur(simulator_.bur());
         takePermissions();
-        const std::vector<tooth::Tissue> present = presentOf(toothCase);
+        const std::vector<cases::Tissue> present = presentOf(toothCase);
         looks_->setPresent(present);
         parameters_->setPresent(present);
         parameters_->setTissues(toothCase.tissues);
@@ -385,17 +385,17 @@ void MainWindow::showDocument() {
     showEnabled();
 }
 
-void MainWindow::tellLocked(station::Operation operation) {
+void MainWindow::tellLocked(exercise::Operation operation) {
     tell(QStringLiteral("help-locked"), {operationWords(operation)});
 }
 
 void MainWindow::takePermissions() {
-    const station::Permissions now = simulator_.permissions();
+    const exercise::Permissions now = simulator_.permissions();
     view_->setPermissions(now);
     looks_->setPermissions(now);
     measure_->setPermissions(now);
-    welcome_->setAllowed(now.allows(station::Operation::guidance));
-    volumes_->setLocked(now.locks(station::Operation::volumes));
+    welcome_->setAllowed(now.allows(exercise::Operation::guidance));
+    volumes_->setLocked(now.locks(exercise::Operation::volumes));
     QStringList burs;
     for (const std::string& bur : now.burs())
         burs << QString::fromStdString(bur);
@@ -426,7 +426,7 @@ QString MainWindow::eventText(const std::string& name) {
 
 void MainWindow::showSettings() {
     if (simulator_.bur() && view_->hasTooth()) view_->setBur(simulator_.bur());
-    if (simulator_.bur()) drill_->addOwnBur(simulator_.burName(), *simulator_.bur(), simulator_.burAbility());
+    if (simulator_.bur()) drill_->addOwnBur(simulator_.burName(), *simulator_.bur(), simulator_.burCuttingParameters());
     drill_->setBur(simulator_.burName());
     drill_->setDrive(simulator_.driveName());
     drill_->setSpeed(simulator_.setSpeedRpm());
@@ -446,7 +446,7 @@ void MainWindow::showSettings() {
     settings_.set(QStringLiteral("work/bur"), simulator_.burName());
     settings_.set(QStringLiteral("work/drive"), simulator_.driveName());
     settings_.set(QStringLiteral("work/speedRpm"), simulator_.setSpeedRpm());
-    if (simulator_.mode() == Simulator::Mode::sitting)
+    if (simulator_.mode() == Simulator::Mode::liveSession)
         settings_.set(QStringLiteral("work/voxelUm"), simulator_.startVoxelUm());
     settings_.set(QStringLiteral("work/stiffness"), p.stiffnessMultiplier);
     settings_.set(QStringLiteral("work/damping"), p.dampingMultiplier);
@@ -457,7 +457,7 @@ void MainWindow::showSettings() {
 
 void MainWindow::showTick() {
     const messages::HapticSample& sample = simulator_.sample();
-    const station::SittingStatus& status = simulator_.status();
+    const simulation::LiveSessionStatus& status = simulator_.status();
     drill_->setActualSpeed(sample.speedRpm, (sample.flags & messages::kStalled) != 0);
     gauge_->setForce(core::toVec(sample.forceN).norm(), sample.timeS,
                      simulator_.givesForce() && (sample.flags & messages::kForceLimited) != 0);
@@ -474,7 +474,7 @@ void MainWindow::showTick() {
     parameters_->setCutting(status.inStroke ? ParameterBox::Cutting::stroke
                             : status.cut    ? ParameterBox::Cutting::begun
                                             : ParameterBox::Cutting::none);
-    if (simulator_.mode() == Simulator::Mode::sitting) {
+    if (simulator_.mode() == Simulator::Mode::liveSession) {
         if (sample.tick > 0 && sample.depthMm > -1.0) tellStep(WelcomeStrip::Step::hover);
         if ((sample.flags & messages::kCutting) != 0) tellStep(WelcomeStrip::Step::cut);
     }
@@ -500,7 +500,7 @@ void MainWindow::showTick() {
     figures.load = status.load;
     figures.late = late_;
     figures.busy = status.restoring || simulator_.isBusy();
-    if (simulator_.mode() == Simulator::Mode::sitting) {
+    if (simulator_.mode() == Simulator::Mode::liveSession) {
         figures.recording = status.recording.recording && !simulator_.recording().empty()
                                 ? StatusFigures::Recording::on
                                 : StatusFigures::Recording::stopped;
@@ -514,7 +514,7 @@ void MainWindow::showTick() {
 void MainWindow::showReadouts() {
     if (!isVisible() || !simulator_.tooth()) return;
     const messages::HapticSample sample = view_->sample();
-    if (sample.tick == 0 || sample.depthMm < -0.05 || !view_->permissions().allows(station::Operation::depthReadout)) {
+    if (sample.tick == 0 || sample.depthMm < -0.05 || !view_->permissions().allows(exercise::Operation::depthReadout)) {
         measure_->setDepth({});
         measure_->setLeftOverPulp({});
         return;
@@ -543,10 +543,10 @@ void MainWindow::showTitle() {
 
 void MainWindow::showEnabled() {
     const Actions& a = *actions_;
-    const station::SittingStatus& status = simulator_.status();
-    const bool free = !simulator_.isBusy(), sitting = simulator_.mode() == Simulator::Mode::sitting,
+    const simulation::LiveSessionStatus& status = simulator_.status();
+    const bool free = !simulator_.isBusy(), liveSession = simulator_.mode() == Simulator::Mode::liveSession,
                open = simulator_.mode() != Simulator::Mode::empty;
-    const bool may = sitting && !status.restoring && !status.inStroke;
+    const bool may = liveSession && !status.restoring && !status.inStroke;
     for (const char* name :
          {"actionOpenCase", "actionOpenStl", "actionOpenSession", "actionChooseTooth", "actionResume", "actionRecover"})
         a[name]->setEnabled(free);
@@ -555,16 +555,16 @@ void MainWindow::showEnabled() {
     a["actionRedo"]->setEnabled(may && status.redoSteps > 0);
     a["actionReset"]->setEnabled(may && status.cut);
     for (const char* name : {"actionSave", "actionSaveAs"})
-        a[name]->setEnabled(free && sitting);
+        a[name]->setEnabled(free && liveSession);
     for (const char* name : {"actionKeepRecording", "actionReplay"})
-        a[name]->setEnabled(free && sitting && !simulator_.recording().empty());
+        a[name]->setEnabled(free && liveSession && !simulator_.recording().empty());
     if (simulator_.mode() == Simulator::Mode::review) a["actionReplay"]->setEnabled(free);
     a["actionReport"]->setEnabled(free && open && simulator_.mode() != Simulator::Mode::review);
     for (const char* name :
          {"actionExportStl", "actionExportTissues", "actionPicture", "actionMeasure", "actionMirror", "actionCompare",
           "actionFit", "actionGoToBur", "actionDepth", "actionPulp", "actionSection"})
         a[name]->setEnabled(open);
-    a["actionPedal"]->setEnabled(sitting);
+    a["actionPedal"]->setEnabled(liveSession);
     exercise_->showAllowed();
 }
 

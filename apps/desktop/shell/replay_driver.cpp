@@ -9,7 +9,7 @@
 
 namespace handpiece::desktop {
 
-ReplayDriver::ReplayDriver(std::unique_ptr<station::SessionPlayer> player, Heard heard)
+ReplayDriver::ReplayDriver(std::unique_ptr<simulation::SessionPlayer> player, Heard heard)
     : player_(std::move(player)),
       heard_(std::move(heard)),
       durationS_(player_->durationS()),

@@ -10,10 +10,10 @@
 #include <optional>
 #include <thread>
 
+#include "handpiece/app/simulation/session_player.h"
 #include "handpiece/base/messages/haptic_sample.h"
 #include "handpiece/model/instrument/bur.h"
 #include "shell/problem.h"
-#include "station/session_player.h"
 
 namespace handpiece::desktop {
 
@@ -22,16 +22,16 @@ struct ReplayNow {
     double timeS = 0.0;
     bool playing = false, seeking = false;
     messages::HapticSample sample;
-    station::StationSettings settings;  ///< in force then
+    simulation::SimulationSettings settings;  ///< in force then
 };
 
 /// Any thread may ask; the player itself is touched by the driver's thread alone.
 class ReplayDriver {
   public:
     /// Called on the driver's thread after each step, with its length [s].
-    using Heard =
-        std::function<void(const messages::HapticSample& sample, double stepS, const station::Station& station)>;
-    explicit ReplayDriver(std::unique_ptr<station::SessionPlayer> player, Heard heard = {});
+    using Heard = std::function<void(const messages::HapticSample& sample, double stepS,
+                                     const simulation::SimulationSetup& station)>;
+    explicit ReplayDriver(std::unique_ptr<simulation::SessionPlayer> player, Heard heard = {});
     ~ReplayDriver();
     ReplayDriver(const ReplayDriver&) = delete;
     ReplayDriver& operator=(const ReplayDriver&) = delete;
@@ -47,25 +47,25 @@ class ReplayDriver {
 
     // What never changes while it plays.
     [[nodiscard]] double durationS() const noexcept { return durationS_; }
-    [[nodiscard]] const std::shared_ptr<station::LiveTooth>& tooth() const noexcept { return tooth_; }
-    [[nodiscard]] const tooth::Case& toothCase() const noexcept { return toothCase_; }
+    [[nodiscard]] const std::shared_ptr<simulation::LiveTooth>& tooth() const noexcept { return tooth_; }
+    [[nodiscard]] const cases::Case& toothCase() const noexcept { return toothCase_; }
     [[nodiscard]] const std::vector<session::Event>& events() const noexcept { return events_; }
     [[nodiscard]] double rateHz() const noexcept { return rateHz_; }
-    [[nodiscard]] const std::vector<station::PlotPoint>& plot() const noexcept { return plot_; }
-    [[nodiscard]] const station::StationSettings& firstSettings() const noexcept { return settings_; }
+    [[nodiscard]] const std::vector<simulation::PlotPoint>& plot() const noexcept { return plot_; }
+    [[nodiscard]] const simulation::SimulationSettings& firstSettings() const noexcept { return settings_; }
 
   private:
     void run();
     void publish();
 
-    std::unique_ptr<station::SessionPlayer> player_;
+    std::unique_ptr<simulation::SessionPlayer> player_;
     Heard heard_;
     double durationS_, rateHz_;
-    std::shared_ptr<station::LiveTooth> tooth_;
-    tooth::Case toothCase_;
+    std::shared_ptr<simulation::LiveTooth> tooth_;
+    cases::Case toothCase_;
     std::vector<session::Event> events_;
-    std::vector<station::PlotPoint> plot_;
-    station::StationSettings settings_;
+    std::vector<simulation::PlotPoint> plot_;
+    simulation::SimulationSettings settings_;
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     ReplayNow now_;

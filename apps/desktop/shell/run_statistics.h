@@ -6,25 +6,26 @@
 #include <string>
 
 #include "desktop/view/latency.h"
+#include "handpiece/app/simulation/histogram.h"
+#include "handpiece/app/simulation/live_session.h"
 #include "handpiece/senses/sound/player.h"
 #include "handpiece/senses/view/renderer.h"
-#include "station/histogram.h"
-#include "station/sitting.h"
 
 namespace handpiece::desktop {
 
 /// The pictures of a run. One thread.
 struct PictureStatistics {
-    station::Histogram drawMs;  ///< drawing and reading back
-    LatencyReport latency;      ///< from the hand to the picture
+    simulation::Histogram drawMs;  ///< drawing and reading back
+    LatencyReport latency;         ///< from the hand to the picture
 
     void take(const view::FrameReport& report) { drawMs.add(report.drawMs + report.readMs); }
 };
 
 /// JSON: tick (ticks, lateTicks, missedPeriods, workUs and latenessUs with p50, p99, p999, max, samplesLost), picture,
 /// firstPictureMs, sound. `sitting`: of a sitting that has ended.
-[[nodiscard]] std::string runStatistics(const station::SittingStatus& sitting, const sound::PlayerStatus& sound,
-                                        const PictureStatistics& picture, double firstPictureMs);
+[[nodiscard]] std::string runStatistics(const simulation::LiveSessionStatus& liveSession,
+                                        const sound::PlayerStatus& sound, const PictureStatistics& picture,
+                                        double firstPictureMs);
 
 /// Since the system started this program [ms], to within 10 ms; 0 where the system does not tell.
 [[nodiscard]] double sinceProgramStartMs();

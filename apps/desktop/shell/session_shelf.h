@@ -22,7 +22,7 @@ struct SessionNote {
     bool unsaved = false;  ///< something was cut that no file holds
     QString starter = {};  ///< kind of a starter tooth; empty for others
     std::size_t faces = 0;
-    QString exercise = {};        ///< tooth::exerciseText(): what was locked stays locked
+    QString exercise = {};        ///< cases::exerciseText(): what was locked stays locked
     QStringList recordings = {};  ///< of the same attempt, before this one
 };
 

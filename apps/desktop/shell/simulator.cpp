@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr int kPollMs = 33, kReplayPollMs = 16;
 
-Hands::Options withFoot(Hands::Options options, const Foot& foot) {
+DeviceManager::Options withFoot(DeviceManager::Options options, const Foot& foot) {
     options.foot = foot.value();
     return options;
 }
@@ -44,12 +44,12 @@ Simulator::Simulator(const Options& options, QObject* parent)
       voxelUm_(options.voxelUm) {
     const instrument::Instrument made = instrument::makeInstrument(burName_.toStdString());
     settings_.bur = made.bur;
-    settings_.ability = made.ability;
+    settings_.cuttingParameters = made.cuttingParameters;
     settings_.drive = driveAt(driveName_.toStdString(), 0.0);
     speedRpm_ = settings_.drive.freeSpeedRpm;
     settings_.field.voxelMm = 1e-3 * voxelUm_;
     settings_.capability = device::pointerCapability();
-    connect(&hands_, &Hands::changed, this, &Simulator::passHandpiece);
+    connect(&hands_, &DeviceManager::changed, this, &Simulator::passHandpiece);
     if (options.sound) player_ = std::make_unique<sound::Player>();
     connect(&timer_, &QTimer::timeout, this, &Simulator::poll);
     timer_.setTimerType(Qt::PreciseTimer);
@@ -66,7 +66,7 @@ SessionNote Simulator::noteNow() const {
     SessionNote note{toQString(document_.caseFile), QString::fromStdString(document_.name),
                      toQString(document_.attemptFile), unsaved_};
     if (toothCase_ && toothCase_->exercise)
-        note.exercise = QString::fromStdString(tooth::exerciseText(*toothCase_->exercise));
+        note.exercise = QString::fromStdString(cases::exerciseText(*toothCase_->exercise));
     for (const RecordingPlace& recording : document_.recordings)
         note.recordings << QString::fromStdString(recording.name);
     if (document_.starter) {
@@ -95,23 +95,23 @@ void Simulator::sit(LoadedTooth loaded) {
     savedMm3_ = loaded.state.removedMm3;
     unsaved_ = false;
 
-    station::SittingSettings sitting;
-    sitting.code = loaded.code.empty() ? code_.toStdString() : loaded.code;
-    sessionCode_ = sitting.code;
-    sitting.elapsedS = elapsedS_ = loaded.elapsedS;
-    sitting.history = std::move(loaded.history);
-    sitting.realTime = options_.realTime;
-    const tooth::Exercise* exercise = toothCase_->exercise ? &*toothCase_->exercise : nullptr;
-    sitting.lowerButtonUndoes =
-        station::permissionsOf(exercise, station::WorkMode::work).allows(station::Operation::undo);
+    simulation::LiveSessionSettings liveSession;
+    liveSession.code = loaded.code.empty() ? code_.toStdString() : loaded.code;
+    sessionCode_ = liveSession.code;
+    liveSession.elapsedS = elapsedS_ = loaded.elapsedS;
+    liveSession.history = std::move(loaded.history);
+    liveSession.realTime = options_.realTime;
+    const cases::Exercise* exercise = toothCase_->exercise ? &*toothCase_->exercise : nullptr;
+    liveSession.lowerButtonUndoes =
+        exercise::permissionsOf(exercise, exercise::WorkMode::work).allows(exercise::Operation::undo);
     if (options_.record) {
         try {
             if (loaded.recording.empty()) {
-                sitting.sessionFile = shelf_.begin(noteNow());
+                liveSession.sessionFile = shelf_.begin(noteNow());
             } else {
                 shelf_.goOn(loaded.recording);
-                sitting.sessionFile = loaded.recording;
-                sitting.session = loaded.session;
+                liveSession.sessionFile = loaded.recording;
+                liveSession.session = loaded.session;
             }
         } catch (const core::Error& error) {
             emit noticed(QStringLiteral("recording-stopped"), {problemOf(error).what});
@@ -124,35 +124,36 @@ void Simulator::sit(LoadedTooth loaded) {
         if (usedHand_) settings_.parameters = usedHand_->fitted(settings_.parameters);
         loaded.station.settings.capability = settings_.capability;
         loaded.station.settings.parameters = settings_.parameters;
-        return std::make_unique<station::Sitting>(loaded.station, *toothCase_, std::move(device), sitting, tooth_);
+        return std::make_unique<simulation::LiveSession>(loaded.station, *toothCase_, std::move(device), liveSession,
+                                                         tooth_);
     };
     try {
-        sitting_ = make();
+        liveSession_ = make();
     } catch (const core::Error& error) {
-        if (sitting.sessionFile.empty()) throw;
+        if (liveSession.sessionFile.empty()) throw;
         // Better to work without a record than not at all. What one that was to go on holds stays marked.
-        sitting.sessionFile.clear();
-        if (sitting.session == station::SittingSettings::Session::anew) {
+        liveSession.sessionFile.clear();
+        if (liveSession.session == simulation::LiveSessionSettings::Session::anew) {
             shelf_.end();
         } else {
             shelf_.leave();
         }
         emit noticed(QStringLiteral("recording-stopped"), {problemOf(error).what});
-        sitting_ = make();
+        liveSession_ = make();
     }
     // A recording that goes on is the one under way, not one of those before it.
     std::erase_if(document_.recordings, [current = shelf_.current().filename().string()](const RecordingPlace& place) {
         return !place.packed && place.name == current;
     });
-    pictureFeed_ = sitting_->subscribe();
-    pollFeed_ = sitting_->subscribe();
+    pictureFeed_ = liveSession_->subscribe();
+    pollFeed_ = liveSession_->subscribe();
     if (player_) {
         ear_ = std::make_shared<Ear>();
         tellDrill();
-        sitting_->setListener([player = player_.get(), ear = ear_, periodS = 1.0 / settings_.rateHz](
-                                  const messages::HapticSample& sample) { ear->hear(*player, sample, periodS); });
+        liveSession_->setListener([player = player_.get(), ear = ear_, periodS = 1.0 / settings_.rateHz](
+                                      const messages::HapticSample& sample) { ear->hear(*player, sample, periodS); });
     }
-    mode_ = Mode::sitting;
+    mode_ = Mode::liveSession;
     timer_.start(kPollMs);
     emit documentChanged();
     emit settingsChanged();
@@ -167,9 +168,9 @@ ReplayDriver::Heard Simulator::replayEar() {
     if (!player_) return {};
     ear_ = std::make_shared<Ear>();
     return [player = player_.get(), ear = ear_](const messages::HapticSample& sample, double stepS,
-                                                const station::Station& station) {
+                                                const simulation::SimulationSetup& station) {
         ear->radiusMm = station.settings.bur->maxRadiusMm();
-        ear->edges = station.settings.ability.edges;
+        ear->edges = station.settings.cuttingParameters.edges;
         ear->freeSpeedRpm = station.settings.drive.freeSpeedRpm;
         ear->hear(*player, sample, stepS);
     };
@@ -177,7 +178,7 @@ ReplayDriver::Heard Simulator::replayEar() {
 
 void Simulator::watch(std::unique_ptr<ReplayDriver> driver) {
     replay_ = std::move(driver);
-    toothCase_ = std::make_shared<const tooth::Case>(replay_->toothCase());
+    toothCase_ = std::make_shared<const cases::Case>(replay_->toothCase());
     tooth_ = replay_->tooth();
     takeReplayed(replay_->firstSettings());
     mode_ = Mode::replay;
@@ -189,7 +190,7 @@ void Simulator::watch(std::unique_ptr<ReplayDriver> driver) {
 }
 
 /// What the recorded hand had, beside the device that is here.
-void Simulator::takeReplayed(const station::StationSettings& settings) {
+void Simulator::takeReplayed(const simulation::SimulationSettings& settings) {
     const device::Capability capability = settings_.capability;
     settings_ = settings;
     settings_.capability = capability;
@@ -201,13 +202,13 @@ void Simulator::takeReplayed(const station::StationSettings& settings) {
     speedRpm_ = settings_.drive.freeSpeedRpm;
 }
 
-void Simulator::stopSitting(bool keepMarker) {
+void Simulator::stopLiveSession(bool keepMarker) {
     timer_.stop();
-    if (sitting_) {
-        sitting_->stop();
-        status_ = sitting_->status();
+    if (liveSession_) {
+        liveSession_->stop();
+        status_ = liveSession_->status();
     }
-    sitting_.reset();
+    liveSession_.reset();
     if (player_) player_->setDrill({});
     pictureFeed_.reset();
     pollFeed_.reset();
@@ -228,7 +229,7 @@ void Simulator::stopAll() {
     if (leftFor_ && !leftFor_->file.note.unsaved) shelf_.settle(leftFor_->file.session);
     leftFor_.reset();
     reviewed_.reset();
-    stopSitting(false);
+    stopLiveSession(false);
 }
 
 void Simulator::close() {
@@ -248,7 +249,7 @@ void Simulator::poll() {
     if (replay_) {
         ReplayNow now = replay_->now();
         sample_ = now.sample;
-        const auto shown = [](const station::StationSettings& s) {
+        const auto shown = [](const simulation::SimulationSettings& s) {
             const force::Parameters& p = s.parameters;
             return std::tuple(s.bur, s.hull, s.drive.name, s.drive.freeSpeedRpm, p.mode, p.stiffnessMultiplier,
                               p.dampingMultiplier, p.frictionMultiplier, p.transients.on, p.vibration.on);
@@ -264,15 +265,15 @@ void Simulator::poll() {
         emit ticked();
         return;
     }
-    if (!sitting_) return;
+    if (!liveSession_) return;
     const bool fine = status_.fault.empty();
     sample_ = pollFeed_->read();
-    status_ = sitting_->status();
+    status_ = liveSession_->status();
     if (sample_.tick > 0 && (sample_.flags & messages::kRestoring) == 0) markUnsaved(sample_.removedMm3 != savedMm3_);
     if (fine && !status_.fault.empty())
         emit failed(problemById(QStringLiteral("sitting-ended"), {QString::fromStdString(status_.fault)}));
-    emit plotted(sitting_->takePlot());
-    for (const station::Notice& notice : sitting_->takeNotices()) {
+    emit plotted(liveSession_->takePlot());
+    for (const simulation::Notice& notice : liveSession_->takeNotices()) {
         // Hands says which, and what to do.
         if (notice.id == "device-fault" && usedHand_) continue;
         // Nobody holds a mouse's force: that it ends somewhere is no news.
@@ -302,25 +303,25 @@ void Simulator::markUnsaved(bool unsaved, bool inAnyCase) {
 }
 
 bool Simulator::mayWork() {
-    return mode_ == Mode::sitting && sitting_ && status_.fault.empty();
+    return mode_ == Mode::liveSession && liveSession_ && status_.fault.empty();
 }
 
 void Simulator::undo() {
-    if (mayWork() && may(station::Operation::undo)) sitting_->undo();
+    if (mayWork() && may(exercise::Operation::undo)) liveSession_->undo();
 }
 
 void Simulator::redo() {
-    if (mayWork() && may(station::Operation::redo)) sitting_->redo();
+    if (mayWork() && may(exercise::Operation::redo)) liveSession_->redo();
 }
 
 void Simulator::reset() {
-    if (mayWork() && may(station::Operation::reset)) sitting_->reset();
+    if (mayWork() && may(exercise::Operation::reset)) liveSession_->reset();
 }
 
 void Simulator::tellDrill() {
     if (!ear_) return;
     ear_->radiusMm = settings_.bur->maxRadiusMm();
-    ear_->edges = settings_.ability.edges;
+    ear_->edges = settings_.cuttingParameters.edges;
     ear_->freeSpeedRpm = instrument::driveByName(driveName_.toStdString()).freeSpeedRpm;
 }
 
@@ -334,9 +335,9 @@ void Simulator::setBur(const QString& nameOrFile) {
     try {
         instrument::Instrument made = instrument::makeInstrument(nameOrFile.toStdString());
         settings_.bur = std::move(made.bur);
-        settings_.ability = std::move(made.ability);
+        settings_.cuttingParameters = std::move(made.cuttingParameters);
         burName_ = nameOrFile;
-        if (mayWork()) sitting_->setBur(settings_.bur, settings_.ability);
+        if (mayWork()) liveSession_->setBur(settings_.bur, settings_.cuttingParameters);
         tellDrill();
     } catch (const core::Error& error) {
         emit failed(problemOf(error));
@@ -354,7 +355,7 @@ void Simulator::setDrive(const QString& name) {
     }
     driveName_ = name;
     speedRpm_ = settings_.drive.freeSpeedRpm;
-    if (mayWork()) sitting_->setDrive(settings_.drive);
+    if (mayWork()) liveSession_->setDrive(settings_.drive);
     tellDrill();
     emit settingsChanged();
 }
@@ -363,7 +364,7 @@ void Simulator::setSpeed(double rpm) {
     if (mode_ == Mode::replay || mode_ == Mode::review) return;
     settings_.drive = driveAt(driveName_.toStdString(), rpm);
     speedRpm_ = settings_.drive.freeSpeedRpm;
-    if (mayWork()) sitting_->setDrive(settings_.drive);
+    if (mayWork()) liveSession_->setDrive(settings_.drive);
     emit settingsChanged();
 }
 
@@ -376,7 +377,7 @@ void Simulator::setMultipliers(double stiffness, double damping, double friction
     try {
         force::validate(wanted);
         settings_.parameters = wanted;
-        if (mayWork()) sitting_->setParameters(wanted);
+        if (mayWork()) liveSession_->setParameters(wanted);
     } catch (const core::Error& error) {
         emit failed(problemOf(error));
     }
@@ -389,7 +390,7 @@ void Simulator::setHullMethod(bool hull) {
         emit failed(problemById(QStringLiteral("hull-cannot-cut")));
     } else {
         hull_ = hull;
-        sitting_->setHullMethod(hull);
+        liveSession_->setHullMethod(hull);
     }
     emit settingsChanged();
 }
@@ -397,7 +398,7 @@ void Simulator::setHullMethod(bool hull) {
 void Simulator::setForceMode(force::Mode mode) {
     if (mode_ == Mode::replay || mode == settings_.parameters.mode) return;
     settings_.parameters.mode = mode;
-    if (mayWork()) sitting_->setParameters(settings_.parameters);
+    if (mayWork()) liveSession_->setParameters(settings_.parameters);
     emit settingsChanged();
 }
 

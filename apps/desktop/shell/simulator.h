@@ -13,19 +13,19 @@
 #include <optional>
 #include <vector>
 
+#include "handpiece/app/exercise/permissions.h"
+#include "handpiece/app/simulation/live_session.h"
 #include "handpiece/senses/measure/pulp_light.h"
 #include "handpiece/senses/sound/player.h"
 #include "handpiece/tick/device/pointer_device.h"
+#include "shell/device_manager.h"
 #include "shell/documents.h"
 #include "shell/foot.h"
-#include "shell/hand.h"
 #include "shell/job.h"
 #include "shell/problem.h"
 #include "shell/replay_driver.h"
 #include "shell/session_shelf.h"
 #include "shell/settings.h"
-#include "station/permissions.h"
-#include "station/sitting.h"
 
 namespace handpiece::desktop {
 
@@ -35,7 +35,7 @@ class Simulator : public QObject {
     Q_OBJECT
   public:
     /// Review: a tooth that was handed in is looked at, not worked at.
-    enum class Mode { empty, sitting, replay, review };
+    enum class Mode { empty, liveSession, replay, review };
     struct Options {
         Folders folders = Folders::standard();
         SessionShelf::Limits shelf;
@@ -44,7 +44,7 @@ class Simulator : public QObject {
         double rateHz = 1000.0;  ///< of the tick, of teeth that are opened; a session has its own
         int voxelUm = 50;
         measure::PulpLimits pulpLimits;
-        Hands::Options hands;
+        DeviceManager::Options hands;
         PedalDesk pedals;
     };
     explicit Simulator(const Options& options, QObject* parent = nullptr);
@@ -58,15 +58,15 @@ class Simulator : public QObject {
     [[nodiscard]] Mode mode() const noexcept { return mode_; }
     [[nodiscard]] const Document& document() const noexcept { return document_; }
     /// Null while nothing is open.
-    [[nodiscard]] const std::shared_ptr<const tooth::Case>& toothCase() const noexcept { return toothCase_; }
-    [[nodiscard]] const std::shared_ptr<station::LiveTooth>& tooth() const noexcept { return tooth_; }
+    [[nodiscard]] const std::shared_ptr<const cases::Case>& toothCase() const noexcept { return toothCase_; }
+    [[nodiscard]] const std::shared_ptr<simulation::LiveTooth>& tooth() const noexcept { return tooth_; }
     /// For the picture, made with each sitting; null in a replay.
-    [[nodiscard]] const std::shared_ptr<station::SampleFeed>& pictureFeed() const noexcept { return pictureFeed_; }
+    [[nodiscard]] const std::shared_ptr<simulation::SampleFeed>& pictureFeed() const noexcept { return pictureFeed_; }
     /// Null in a replay, and while a device holds the handpiece: the mouse looks and measures then.
     [[nodiscard]] const std::shared_ptr<device::PointerMailbox>& mailbox() const noexcept { return mailbox_; }
     [[nodiscard]] const core::Pose& startPose() const noexcept { return startPose_; }
     [[nodiscard]] std::shared_ptr<const instrument::Bur> bur() const noexcept { return settings_.bur; }
-    [[nodiscard]] const std::string& burAbility() const noexcept { return settings_.ability.name; }
+    [[nodiscard]] const std::string& burCuttingParameters() const noexcept { return settings_.cuttingParameters.name; }
     [[nodiscard]] const QString& burName() const noexcept { return burName_; }
     [[nodiscard]] const QString& driveName() const noexcept { return driveName_; }
     [[nodiscard]] double setSpeedRpm() const noexcept { return speedRpm_; }
@@ -78,11 +78,11 @@ class Simulator : public QObject {
     [[nodiscard]] int startVoxelUm() const noexcept { return options_.voxelUm; }
     [[nodiscard]] const messages::HapticSample& sample() const noexcept { return sample_; }
     /// Of the sitting; of the last one when there is none.
-    [[nodiscard]] const station::SittingStatus& status() const noexcept { return status_; }
+    [[nodiscard]] const simulation::LiveSessionStatus& status() const noexcept { return status_; }
     /// Of the tooth that is open, or that a replay covers; null without one.
-    [[nodiscard]] const tooth::Exercise* exercise() const;
+    [[nodiscard]] const cases::Exercise* exercise() const;
     /// What may be done now: whoever does it asks here.
-    [[nodiscard]] station::Permissions permissions() const;
+    [[nodiscard]] exercise::Permissions permissions() const;
     /// Something was cut, or put back, that no file holds.
     [[nodiscard]] bool isUnsaved() const noexcept { return unsaved_; }
     [[nodiscard]] bool isBusy() const noexcept { return job_ != nullptr; }
@@ -135,8 +135,8 @@ class Simulator : public QObject {
 
     // Who holds the handpiece. Another device, or none, takes over the tooth as it is.
 
-    [[nodiscard]] Hands& hands() noexcept { return hands_; }
-    [[nodiscard]] const Hands& hands() const noexcept { return hands_; }
+    [[nodiscard]] DeviceManager& hands() noexcept { return hands_; }
+    [[nodiscard]] const DeviceManager& hands() const noexcept { return hands_; }
     /// The foot pedal, beside the mouse or a device.
     [[nodiscard]] Foot& foot() noexcept { return foot_; }
     /// The device of the sitting under way; null: the mouse.
@@ -160,7 +160,7 @@ class Simulator : public QObject {
     /// The paper's penalty force instead of the proxy's.
     void setForceMode(force::Mode mode);
     /// A knock at each touch; the hum of the bur. Both off where nothing can be felt anyway: the mouse.
-    void setCrisp(bool contact, bool vibration);
+    void setEventBasedForce(bool contact, bool vibration);
     /// Cuts the tooth again with other voxels, by replaying what was recorded.
     void setVoxel(int um);
     /// Of the student: goes into recordings that begin from now on, and into attempts. An untouched tooth is opened
@@ -198,15 +198,15 @@ class Simulator : public QObject {
     /// What of it is being done now.
     void jobStepped(const QString& step);
     /// While nothing is open: the tooth that comes, to be looked at.
-    void sketched(const std::shared_ptr<const handpiece::tooth::Case>& sketch);
+    void sketched(const std::shared_ptr<const handpiece::cases::Case>& sketch);
     void jobProgressed(double fraction);
     void jobEnded();
     /// About 30 times a second: sample() and status() are new.
     void ticked();
-    void plotted(const std::vector<handpiece::station::PlotPoint>& points);
+    void plotted(const std::vector<handpiece::simulation::PlotPoint>& points);
     void noticed(const QString& id, const QStringList& arguments);
     /// The exercise locks it.
-    void refused(handpiece::station::Operation operation);
+    void refused(handpiece::exercise::Operation operation);
 
   private:
     struct Ear;
@@ -217,7 +217,7 @@ class Simulator : public QObject {
         LoadedTooth tooth;
         history::History history;
     };
-    [[nodiscard]] Left leaveSitting();
+    [[nodiscard]] Left leaveLiveSession();
     void takeOver(const Crashed& file);
     void comeBack(const std::shared_ptr<Left>& left, std::function<void()> then = {});
     void start(const QString& title, Job::Work work, std::function<void()> done, std::function<void()> otherwise = {});
@@ -227,16 +227,16 @@ class Simulator : public QObject {
     [[nodiscard]] static QString stepText(LoadStep step);
     void loadFor(LoadRequest request, const QString& title, std::function<void(LoadedTooth)> then);
     void showReviewed();
-    [[nodiscard]] tooth::Attempt attemptNow(bool handedIn);
-    [[nodiscard]] bool may(station::Operation operation);
+    [[nodiscard]] cases::Attempt attemptNow(bool handedIn);
+    [[nodiscard]] bool may(exercise::Operation operation);
     void openSession(const std::filesystem::path& path, bool keepsReview = false);
     void sit(LoadedTooth loaded);
     void watch(std::unique_ptr<ReplayDriver> driver);
-    void takeReplayed(const station::StationSettings& settings);
+    void takeReplayed(const simulation::SimulationSettings& settings);
     void stopAll();
     [[nodiscard]] std::unique_ptr<device::Device> takeHandpiece();
     void passHandpiece();
-    void stopSitting(bool keepMarker);
+    void stopLiveSession(bool keepMarker);
     void poll();
     void markUnsaved(bool unsaved, bool inAnyCase = false);
     [[nodiscard]] SessionNote noteNow() const;
@@ -247,25 +247,25 @@ class Simulator : public QObject {
 
     Options options_;
     Foot foot_;
-    Hands hands_;
+    DeviceManager hands_;
     std::shared_ptr<Hand> usedHand_;
     bool handLentAway_ = false, handChanged_ = false;
     SessionShelf shelf_;
     Mode mode_ = Mode::empty;
     Document document_;
-    std::shared_ptr<const tooth::Case> toothCase_;
-    std::shared_ptr<station::LiveTooth> tooth_;
-    std::shared_ptr<station::SampleFeed> pictureFeed_, pollFeed_;
+    std::shared_ptr<const cases::Case> toothCase_;
+    std::shared_ptr<simulation::LiveTooth> tooth_;
+    std::shared_ptr<simulation::SampleFeed> pictureFeed_, pollFeed_;
     std::shared_ptr<device::PointerMailbox> mailbox_;
     core::Pose startPose_;
-    station::StationSettings settings_;
+    simulation::SimulationSettings settings_;
     QString burName_ = QStringLiteral("330"), driveName_ = QStringLiteral("turbine"), code_;
     std::string sessionCode_;  ///< that the recording carries, or the next one will
     double speedRpm_ = 0.0, elapsedS_ = 0.0;
     bool hull_ = false;
     int voxelUm_ = 50;
     messages::HapticSample sample_;
-    station::SittingStatus status_;
+    simulation::LiveSessionStatus status_;
     std::shared_ptr<Left> leftFor_;  ///< what replayThis() left
     std::shared_ptr<Reviewed> reviewed_;
     tooth::TissueVolumes savedMm3_{};  ///< removed when it was last saved or opened
@@ -273,7 +273,7 @@ class Simulator : public QObject {
     sound::Mix mix_;
     std::unique_ptr<sound::Player> player_;
     std::shared_ptr<Ear> ear_;
-    std::unique_ptr<station::Sitting> sitting_;
+    std::unique_ptr<simulation::LiveSession> liveSession_;
     std::unique_ptr<ReplayDriver> replay_;
     std::unique_ptr<Job> job_, soundJob_;
     int loads_ = 0;

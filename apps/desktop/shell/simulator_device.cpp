@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who holds the handpiece: the mouse, or a device that was chosen.
+#include "handpiece/app/input/pointer_controller.h"
 #include "handpiece/devices/safety/input_device.h"
 #include "shell/simulator.h"
-#include "station/pointer_hand.h"
 
 namespace handpiece::desktop {
 
 namespace {
 
-core::Box boundsOf(const tooth::Case& toothCase) {
+core::Box boundsOf(const cases::Case& toothCase) {
     core::Box box = toothCase.outer.bounds();
     if (toothCase.outer.vertices.empty())
-        for (const tooth::Part& part : toothCase.parts)
+        for (const cases::Part& part : toothCase.parts)
             for (const core::Vec3& v : part.mesh.vertices)
                 box.extend(v);
     return box;
@@ -22,8 +22,8 @@ core::Box boundsOf(const tooth::Case& toothCase) {
 std::unique_ptr<device::Device> Simulator::takeHandpiece() {
     handChanged_ = false;
     usedHand_ = hands_.current() && !handLentAway_ ? hands_.current() : nullptr;
-    const station::ToothPlace tooth{boundsOf(*toothCase_), toothCase_->fdiNumber, toothCase_->buccalSign};
-    startPose_ = station::startPose(tooth.box, tooth.fdiNumber, tooth.buccalSign);
+    const input::ToothPlace tooth{boundsOf(*toothCase_), toothCase_->fdiNumber, toothCase_->buccalSign};
+    startPose_ = input::startPose(tooth.box, tooth.fdiNumber, tooth.buccalSign);
     if (usedHand_) {
         mailbox_.reset();
         usedHand_->placeFor(tooth);
@@ -38,20 +38,20 @@ std::unique_ptr<device::Device> Simulator::takeHandpiece() {
 void Simulator::passHandpiece() {
     const std::shared_ptr<Hand> now = handLentAway_ ? nullptr : hands_.current();
     settings_.capability = now ? now->device().capability() : device::pointerCapability();
-    handChanged_ = mode_ == Mode::sitting && now != usedHand_;
+    handChanged_ = mode_ == Mode::liveSession && now != usedHand_;
     // A job that is under way ends first.
     if (handChanged_ && !job_) {
-        const auto left = std::make_shared<Left>(leaveSitting());
+        const auto left = std::make_shared<Left>(leaveLiveSession());
         comeBack(left);
     }
     emit settingsChanged();
 }
 
-void Simulator::setCrisp(bool contact, bool vibration) {
+void Simulator::setEventBasedForce(bool contact, bool vibration) {
     if (mode_ == Mode::replay || mode_ == Mode::review) return;
     settings_.parameters.transients.on = contact;
     settings_.parameters.vibration.on = vibration;
-    if (mayWork()) sitting_->setParameters(settings_.parameters);
+    if (mayWork()) liveSession_->setParameters(settings_.parameters);
     emit settingsChanged();
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The simulator's long work: opening, saving, cutting again.
+#include "handpiece/app/report/session_report.h"
+#include "handpiece/app/simulation/tissue_export.h"
 #include "handpiece/base/core/file.h"
-#include "handpiece/model/tooth/attempt.h"
+#include "handpiece/model/case/attempt.h"
 #include "shell/simulator.h"
-#include "station/session_report.h"
-#include "station/tissue_export.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -117,7 +117,7 @@ LoadListener Simulator::loadListener() {
     };
     LoadListener listener;
     listener.step = [this, tell](LoadStep step) { tell([this, step] { emit jobStepped(stepText(step)); }); };
-    listener.sketch = [this, tell](std::shared_ptr<const tooth::Case> sketch) {
+    listener.sketch = [this, tell](std::shared_ptr<const cases::Case> sketch) {
         tell([this, sketch = std::move(sketch)] {
             if (mode_ == Mode::empty) emit sketched(sketch);
         });
@@ -175,11 +175,11 @@ void Simulator::open(const fs::path& path) {
 
 void Simulator::openSession(const fs::path& path, bool keepsReview) {
     if (job_) return;
-    const auto player = std::make_shared<std::unique_ptr<station::SessionPlayer>>();
+    const auto player = std::make_shared<std::unique_ptr<simulation::SessionPlayer>>();
     start(
         tr("Opening %1").arg(toQString(path.filename())),
         [player, path](const core::Progress& progress) {
-            *player = std::make_unique<station::SessionPlayer>(path, true, progress);
+            *player = std::make_unique<simulation::SessionPlayer>(path, true, progress);
         },
         [this, player, path, keepsReview] {
             std::shared_ptr<Left> left = std::move(leftFor_);
@@ -199,7 +199,7 @@ void Simulator::openSession(const fs::path& path, bool keepsReview) {
         });
 }
 
-Simulator::Left Simulator::leaveSitting() {
+Simulator::Left Simulator::leaveLiveSession() {
     Left left{{shelf_.current(), noteNow()}, {}, history::History()};
     LoadedTooth& tooth = left.tooth;
     tooth.document = document_;
@@ -210,18 +210,18 @@ Simulator::Left Simulator::leaveSitting() {
     tooth.drive = driveName_.toStdString();
     tooth.speedRpm = speedRpm_;
     tooth.code = sessionCode_;
-    sitting_->stop();
-    tooth.station = sitting_->station();
-    tooth.station.settings = sitting_->settings();
+    liveSession_->stop();
+    tooth.station = liveSession_->station();
+    tooth.station.settings = liveSession_->settings();
     tooth.station.settings.hull = false;
     tooth.station.settings.resumed = true;
-    tooth.state = sitting_->state();
-    tooth.elapsedS = elapsedS_ + sitting_->status().timeS;
-    left.history = sitting_->history();
+    tooth.state = liveSession_->state();
+    tooth.elapsedS = elapsedS_ + liveSession_->status().timeS;
+    left.history = liveSession_->history();
     // Only a recording that was closed is whole.
-    stopSitting(true);
+    stopLiveSession(true);
     tooth.recording = left.file.session;
-    tooth.session = station::SittingSettings::Session::continued;
+    tooth.session = simulation::LiveSessionSettings::Session::continued;
     return left;
 }
 
@@ -233,8 +233,8 @@ void Simulator::comeBack(const std::shared_ptr<Left>& left, std::function<void()
             // A field of its own: what the old loop had yet to hand over is in the state.
             loaded->station.field = std::make_shared<tooth::CutField>(loaded->station.tooth);
             loaded->station.resume(loaded->state);
-            loaded->history = station::keepHistory(left->history, loaded->state, loaded->station);
-            loaded->liveTooth = std::make_shared<station::LiveTooth>(loaded->station.tooth, loaded->state, progress);
+            loaded->history = simulation::keepHistory(left->history, loaded->state, loaded->station);
+            loaded->liveTooth = std::make_shared<simulation::LiveTooth>(loaded->station.tooth, loaded->state, progress);
         },
         [this, left, loaded, then = std::move(then)] {
             leftFor_.reset();
@@ -259,8 +259,8 @@ void Simulator::replayThis() {
         for (std::size_t i = all.size(); i-- > 0;)
             if (all[i].packed) return watchRecording(i);
     }
-    if (job_ || mode_ != Mode::sitting || shelf_.current().empty()) return;
-    leftFor_ = std::make_shared<Left>(leaveSitting());
+    if (job_ || mode_ != Mode::liveSession || shelf_.current().empty()) return;
+    leftFor_ = std::make_shared<Left>(leaveLiveSession());
     openSession(leftFor_->file.session);
 }
 
@@ -289,7 +289,7 @@ void Simulator::setCode(const QString& asked) {
     if (code == code_) return;
     code_ = code;
     sessionCode_ = code.toStdString();
-    if (job_ || mode_ != Mode::sitting) return;
+    if (job_ || mode_ != Mode::liveSession) return;
     if (!status_.cut && status_.strokes == 0 && document_.attemptFile.empty()) {
         LoadRequest wanted = request();
         wanted.starter = document_.starter;
@@ -313,7 +313,7 @@ void Simulator::recover(const Crashed& crashed, std::function<void()> then) {
     wanted.recovered.recordings.push_back({crashed.session.filename().string(), crashed.session, false});
     try {
         if (!crashed.note.exercise.isEmpty())
-            wanted.exercise = tooth::parseExercise(crashed.note.exercise.toStdString(), crashed.session.string());
+            wanted.exercise = cases::parseExercise(crashed.note.exercise.toStdString(), crashed.session.string());
     } catch (const core::Error& error) {
         emit failed(problemOf(error));  // the tooth comes back all the same
     }
@@ -325,7 +325,7 @@ void Simulator::recover(const Crashed& crashed, std::function<void()> then) {
 
 void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
     if (job_) return;
-    if (mode_ != Mode::sitting) {
+    if (mode_ != Mode::liveSession) {
         emit failed(problemById(QStringLiteral("nothing-open")));
         return;
     }
@@ -336,14 +336,14 @@ void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
         emit failed(problemById(QStringLiteral("case-vanished"), {toQString(document_.caseFile)}));
         return;
     }
-    const auto attempt = std::make_shared<tooth::Attempt>(attemptNow(false));
+    const auto attempt = std::make_shared<cases::Attempt>(attemptNow(false));
     const tooth::TissueVolumes removedMm3 = attempt->removedMm3;
     start(
         tr("Saving"),
         [attempt, packed, path, toothCase = toothCase_, recordings = document_.recordings](const core::Progress& p) {
             // What came with the attempt goes on with it: it may lie in the very file that is replaced.
             std::size_t leftOut = 0;
-            tooth::writeAttempt(*attempt, path, packed ? toothCase.get() : nullptr,
+            cases::writeAttempt(*attempt, path, packed ? toothCase.get() : nullptr,
                                 recordingBytes(recordings, true, leftOut, p));
         },
         [this, path, removedMm3, vanished, then = std::move(then)] {
@@ -362,10 +362,11 @@ void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
 namespace {
 
 /// The tooth as it is on the way to a file.
-using Export = std::function<void(const std::shared_ptr<const tooth::CuttableTooth>& base, const tooth::CutState& state,
-                                  const core::Progress& progress)>;
+using Export = std::function<void(const std::shared_ptr<const tooth::CuttableTooth>& base,
+                                  const tooth::StateDelta& state, const core::Progress& progress)>;
 
-Job::Work exporting(const std::shared_ptr<station::LiveTooth>& tooth, const messages::HapticSample& sample, Export to) {
+Job::Work exporting(const std::shared_ptr<simulation::LiveTooth>& tooth, const messages::HapticSample& sample,
+                    Export to) {
     return [tooth, removedMm3 = sample.removedMm3, to = std::move(to)](const core::Progress& progress) {
         const auto base = std::shared_ptr<const tooth::CuttableTooth>(tooth, &tooth->base());
         to(base, tooth->state(removedMm3), progress);
@@ -383,7 +384,7 @@ void Simulator::exportStl(const fs::path& path) {
     start(tr("Writing the STL file"),
           exporting(tooth_, sample_,
                     [path](const auto& base, const auto& state, const auto& progress) {
-                        station::exportStl(base, state, path, progress);
+                        simulation::exportStl(base, state, path, progress);
                     }),
           [this, path] { emit saved(toQString(path)); });
 }
@@ -398,14 +399,14 @@ void Simulator::exportTissues(const fs::path& folder) {
     start(tr("Writing the tissues"),
           exporting(tooth_, sample_,
                     [folder, last](const auto& base, const auto& state, const auto& progress) {
-                        const auto files = station::exportTissues(base, state, folder, progress);
+                        const auto files = simulation::exportTissues(base, state, folder, progress);
                         if (!files.empty()) *last = files.front();
                     }),
           [this, last] { emit saved(toQString(*last)); });
 }
 
 void Simulator::writeReport(const fs::path& file) {
-    if (!may(station::Operation::report)) return;
+    if (!may(exercise::Operation::report)) return;
     const fs::path session = mode_ == Mode::replay ? document_.caseFile : shelf_.current();
     if (job_ || session.empty()) {
         if (!job_) emit failed(problemById(QStringLiteral("no-recording")));
@@ -414,8 +415,8 @@ void Simulator::writeReport(const fs::path& file) {
     start(
         tr("Writing the report"),
         [session, file](const core::Progress& progress) {
-            station::SessionPlayer player(session, true, core::part(progress, 0.0, 0.2));
-            core::writeFile(file, station::sessionReport(player, {}, core::part(progress, 0.2, 1.0)));
+            simulation::SessionPlayer player(session, true, core::part(progress, 0.0, 0.2));
+            core::writeFile(file, report::sessionReport(player, {}, core::part(progress, 0.2, 1.0)));
         },
         [this, file] { emit saved(toQString(file)); });
 }
@@ -430,7 +431,7 @@ void Simulator::copyRecording(const fs::path& file) {
 
 void Simulator::setVoxel(int um) {
     if (mode_ == Mode::empty && !job_) options_.voxelUm = voxelUm_ = um;
-    if (job_ || mode_ != Mode::sitting || um == voxelUm_) return;
+    if (job_ || mode_ != Mode::liveSession || um == voxelUm_) return;
     if (status_.inStroke) {
         emit failed(problemById(QStringLiteral("voxel-in-stroke")));
         emit settingsChanged();
@@ -449,23 +450,23 @@ void Simulator::setVoxel(int um) {
         emit settingsChanged();
         return;
     }
-    tooth::FieldSettings field;
+    field::FieldSettings field;
     field.voxelMm = 1e-3 * um;
-    const auto left = std::make_shared<Left>(leaveSitting());
+    const auto left = std::make_shared<Left>(leaveLiveSession());
     const auto loaded = std::make_shared<LoadedTooth>(left->tooth);
     start(
         tr("Cutting the tooth again"),
         [loaded, field, session = left->file.session](const core::Progress& progress) {
-            station::Recut recut = station::recutAt(session, field, true, core::part(progress, 0.0, 0.8));
+            simulation::Recut recut = simulation::recutAt(session, field, true, core::part(progress, 0.0, 0.8));
             loaded->station = std::move(recut.station);
             loaded->station.settings.hull = false;
             loaded->station.settings.resumed = true;
             loaded->recording.clear();  // in another field: it begins anew
-            loaded->session = station::SittingSettings::Session::anew;
+            loaded->session = simulation::LiveSessionSettings::Session::anew;
             loaded->state = std::move(recut.state);
-            loaded->history = station::keepHistory(recut.history, loaded->state, loaded->station);
-            loaded->liveTooth = std::make_shared<station::LiveTooth>(loaded->station.tooth, loaded->state,
-                                                                     core::part(progress, 0.8, 1.0));
+            loaded->history = simulation::keepHistory(recut.history, loaded->state, loaded->station);
+            loaded->liveTooth = std::make_shared<simulation::LiveTooth>(loaded->station.tooth, loaded->state,
+                                                                        core::part(progress, 0.8, 1.0));
         },
         [this, loaded, left] {
             sit(std::move(*loaded));

@@ -19,30 +19,30 @@ struct Simulator::Reviewed {
     QTemporaryDir recordings;
 };
 
-const tooth::Exercise* Simulator::exercise() const {
-    const tooth::Case* of = leftFor_    ? leftFor_->tooth.toothCase.get()
+const cases::Exercise* Simulator::exercise() const {
+    const cases::Case* of = leftFor_    ? leftFor_->tooth.toothCase.get()
                             : reviewed_ ? reviewed_->tooth.toothCase.get()
                                         : toothCase_.get();
     return of && of->exercise ? &*of->exercise : nullptr;
 }
 
-station::Permissions Simulator::permissions() const {
-    using station::WorkMode;
-    const WorkMode mode = reviewed_                ? WorkMode::review
-                          : mode_ == Mode::sitting ? WorkMode::work
-                          : mode_ == Mode::replay  ? WorkMode::replay
-                                                   : WorkMode::nothing;
-    return station::permissionsOf(exercise(), mode);
+exercise::Permissions Simulator::permissions() const {
+    using exercise::WorkMode;
+    const WorkMode mode = reviewed_                    ? WorkMode::review
+                          : mode_ == Mode::liveSession ? WorkMode::work
+                          : mode_ == Mode::replay      ? WorkMode::replay
+                                                       : WorkMode::nothing;
+    return exercise::permissionsOf(exercise(), mode);
 }
 
-bool Simulator::may(station::Operation operation) {
-    const station::Permissions now = permissions();
+bool Simulator::may(exercise::Operation operation) {
+    const exercise::Permissions now = permissions();
     if (now.locks(operation)) emit refused(operation);
     return now.allows(operation);
 }
 
-tooth::Attempt Simulator::attemptNow(bool handedIn) {
-    tooth::Attempt attempt = sitting_->attempt(document_.caseFile);
+cases::Attempt Simulator::attemptNow(bool handedIn) {
+    cases::Attempt attempt = liveSession_->attempt(document_.caseFile);
     if (!code_.isEmpty()) attempt.student = code_.toStdString();
     for (const RecordingPlace& recording : document_.recordings)
         attempt.recordings.push_back({recording.name, recording.packed});
@@ -53,14 +53,14 @@ tooth::Attempt Simulator::attemptNow(bool handedIn) {
 
 void Simulator::handIn(const fs::path& path) {
     if (job_) return;
-    if (mode_ != Mode::sitting) {
+    if (mode_ != Mode::liveSession) {
         emit failed(problemById(QStringLiteral("nothing-open")));
         return;
     }
     // Only a recording that was closed is whole: the tooth is left, and taken up again.
-    sitting_->stop();
-    const auto attempt = std::make_shared<tooth::Attempt>(attemptNow(true));
-    const auto left = std::make_shared<Left>(leaveSitting());
+    liveSession_->stop();
+    const auto attempt = std::make_shared<cases::Attempt>(attemptNow(true));
+    const auto left = std::make_shared<Left>(leaveLiveSession());
     struct Packed {
         std::size_t count = 0, leftOut = 0;
         std::uint64_t bytes = 0;
@@ -70,11 +70,11 @@ void Simulator::handIn(const fs::path& path) {
         tr("Handing in"),
         [attempt, path, packed, recordings = left->tooth.document.recordings,
          toothCase = left->tooth.toothCase](const core::Progress& progress) {
-            tooth::PackageFiles files = recordingBytes(recordings, false, packed->leftOut, progress);
+            cases::PackageFiles files = recordingBytes(recordings, false, packed->leftOut, progress);
             packed->count = files.size();
             for (const auto& [name, bytes] : files)
                 packed->bytes += bytes.size();
-            tooth::writeAttempt(*attempt, path, toothCase.get(), std::move(files));
+            cases::writeAttempt(*attempt, path, toothCase.get(), std::move(files));
         },
         [this, left, path, packed] {
             left->tooth.document.attemptFile = path;
@@ -150,7 +150,7 @@ void Simulator::watchRecording(std::size_t which) {
     }
     start(
         tr("Opening %1").arg(QString::fromStdString(place.name)),
-        [place, file](const core::Progress&) { core::writeFile(file, tooth::readRecording(place.in, place.name)); },
+        [place, file](const core::Progress&) { core::writeFile(file, cases::readRecording(place.in, place.name)); },
         [this, file] { openSession(file, true); });
 }
 

@@ -3437,7 +3437,7 @@
     </message>
 </context>
 <context>
-    <name>handpiece::desktop::Hands</name>
+    <name>handpiece::desktop::DeviceManager</name>
     <message>
         <source>Looking for devices</source>
         <translation>デバイスを探しています</translation>

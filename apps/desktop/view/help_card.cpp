@@ -164,8 +164,8 @@ bool isBeside(Action key) {
     return false;
 }
 
-constexpr double kPad = 20.0, kTextToKeys = 14.0, kHeadRows = 1.9, kGapRows = 0.6, kLeastPt = 6.0;
-constexpr std::size_t kMostColumns = 4;
+constexpr double kPad = 20.0, kTextToKeys = 14.0, kHeadRows = 1.9, kGapRows = 0.6, kMinPt = 6.0;
+constexpr std::size_t kMaxColumns = 4;
 
 /// A heading and what belongs under it: what, and how (drawn, or only measured without a painter; gives its end).
 struct Line {
@@ -296,9 +296,9 @@ HelpCard::Plan HelpCard::plan() const {
         const QFontMetricsF metrics(plan.font);
         for (Block& block : plan.blocks)
             block.measure(metrics);
-        const bool last = plan.font.pointSizeF() - 0.5 < kLeastPt;
+        const bool last = plan.font.pointSizeF() - 0.5 < kMinPt;
         double best = 0.0;
-        for (std::size_t columns = 1; columns <= kMostColumns && !fits; ++columns) {
+        for (std::size_t columns = 1; columns <= kMaxColumns && !fits; ++columns) {
             std::size_t ways = 1;
             for (std::size_t i = 0; i < plan.blocks.size(); ++i)
                 ways *= columns;

@@ -8,7 +8,7 @@ namespace handpiece::desktop {
 namespace {
 
 constexpr auto kWindow = std::chrono::seconds(2);
-constexpr std::size_t kMostWaiting = 1024;
+constexpr std::size_t kMaxWaiting = 1024;
 
 double seconds(LatencyMeter::Clock::time_point at) {
     return std::chrono::duration<double>(at.time_since_epoch()).count();
@@ -17,7 +17,7 @@ double seconds(LatencyMeter::Clock::time_point at) {
 }  // namespace
 
 void LatencyMeter::target(Clock::time_point at) {
-    if (waiting_.size() < kMostWaiting) waiting_.push_back(at);
+    if (waiting_.size() < kMaxWaiting) waiting_.push_back(at);
 }
 
 void LatencyMeter::sampleSeen(double timeS, Clock::time_point at) {
@@ -39,10 +39,10 @@ void LatencyMeter::presented(double timeS, Clock::time_point at) {
     while (!waiting_.empty() && timeS + offset >= seconds(waiting_.front()) + kMarginS) {
         const double tookMs = std::chrono::duration<double, std::milli>(at - waiting_.front()).count();
         waiting_.pop_front();
-        if (ms_.size() < kMostKept)
+        if (ms_.size() < kMaxKept)
             ms_.push_back(tookMs);
         else
-            ms_[next_++ % kMostKept] = tookMs;
+            ms_[next_++ % kMaxKept] = tookMs;
     }
 }
 

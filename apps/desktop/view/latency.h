@@ -23,7 +23,7 @@ class LatencyMeter {
   public:
     using Clock = std::chrono::steady_clock;
     static constexpr double kMarginS = 0.002;
-    static constexpr std::size_t kMostKept = 4096;
+    static constexpr std::size_t kMaxKept = 4096;
 
     /// A pointer event gave the hand a target.
     void target(Clock::time_point at);

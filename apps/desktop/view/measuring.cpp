@@ -64,27 +64,27 @@ QString directionName(SectionPlace::Direction direction) {
     return {};
 }
 
-QString tissueText(tooth::Tissue tissue) {
+QString tissueText(cases::Tissue tissue) {
     switch (tissue) {
-        case tooth::Tissue::none:
+        case cases::Tissue::none:
             return Texts::tr("none");
-        case tooth::Tissue::enamel:
+        case cases::Tissue::enamel:
             return Texts::tr("Enamel");
-        case tooth::Tissue::dentine:
+        case cases::Tissue::dentine:
             return Texts::tr("Dentine");
-        case tooth::Tissue::pulp:
+        case cases::Tissue::pulp:
             return Texts::tr("Pulp");
-        case tooth::Tissue::caries:
+        case cases::Tissue::caries:
             return Texts::tr("Caries");
-        case tooth::Tissue::cementum:
+        case cases::Tissue::cementum:
             return Texts::tr("Cementum");
-        case tooth::Tissue::gum:
+        case cases::Tissue::gum:
             return Texts::tr("Gum");
-        case tooth::Tissue::bone:
+        case cases::Tissue::bone:
             return Texts::tr("Bone");
-        case tooth::Tissue::neighbour:
+        case cases::Tissue::neighbour:
             return Texts::tr("Neighbour");
-        case tooth::Tissue::restoration:
+        case cases::Tissue::restoration:
             return Texts::tr("Restoration");
     }
     return {};

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "handpiece/base/core/vec.h"
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 #include "handpiece/senses/measure/pulp_light.h"
 #include "handpiece/senses/view/look.h"
 
@@ -48,6 +48,6 @@ struct SectionPlace {
 [[nodiscard]] QString directionName(SectionPlace::Direction direction);
 
 /// A tissue's name for a legend, translated.
-[[nodiscard]] QString tissueText(tooth::Tissue tissue);
+[[nodiscard]] QString tissueText(cases::Tissue tissue);
 
 }  // namespace handpiece::desktop

@@ -43,7 +43,7 @@ void ProbeThread::tell(F&& change) {
     wake_.notify_all();
 }
 
-void ProbeThread::setTooth(std::shared_ptr<station::LiveTooth> tooth) {
+void ProbeThread::setTooth(std::shared_ptr<simulation::LiveTooth> tooth) {
     tell([&] {
         tooth_ = std::move(tooth);
         planeNews_ = thinnestNews_ = true;
@@ -76,7 +76,7 @@ void ProbeThread::run() {
         const bool byCut = std::exchange(toothNews_, false);
         const bool doSection = std::exchange(planeNews_, false) || (byCut && plane_);
         const bool doThinnest = std::exchange(thinnestNews_, false) || (byCut && wantsThinnest_);
-        const std::shared_ptr<station::LiveTooth> tooth = tooth_;
+        const std::shared_ptr<simulation::LiveTooth> tooth = tooth_;
         const std::optional<view::Plane> plane = plane_;
         const bool wantsThinnest = wantsThinnest_;
         lock.unlock();

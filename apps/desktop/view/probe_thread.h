@@ -10,9 +10,9 @@
 #include <optional>
 #include <thread>
 
+#include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/senses/measure/tooth_probe.h"
 #include "handpiece/senses/view/renderer.h"
-#include "station/live_tooth.h"
 
 namespace handpiece::desktop {
 
@@ -29,7 +29,7 @@ class ProbeThread {
     ProbeThread(const ProbeThread&) = delete;
     ProbeThread& operator=(const ProbeThread&) = delete;
 
-    void setTooth(std::shared_ptr<station::LiveTooth> tooth);
+    void setTooth(std::shared_ptr<simulation::LiveTooth> tooth);
     void setPlane(std::optional<view::Plane> plane);
     void wantThinnest(bool wanted);
     /// Something was cut or came back.
@@ -43,7 +43,7 @@ class ProbeThread {
     Callbacks callbacks_;
     std::mutex mutex_;
     std::condition_variable wake_;
-    std::shared_ptr<station::LiveTooth> tooth_;
+    std::shared_ptr<simulation::LiveTooth> tooth_;
     std::optional<view::Plane> plane_;
     bool stop_ = false, wantsThinnest_ = false;
     bool planeNews_ = false, thinnestNews_ = false, toothNews_ = false;

@@ -19,7 +19,7 @@ constexpr auto kPollSoon = std::chrono::milliseconds(3), kPollLater = std::chron
 constexpr auto kLately = std::chrono::seconds(2);
 constexpr double kDebrisS = 1.5;                        // particles fly on for about this long
 constexpr double kHeadHides = 0.82, kHeadClear = 0.78;  // cosines of bur's axis and line of sight, either way round
-constexpr double kMostSoftwarePixels = 1.6e6;           // more would be seen later than they are seen sharper
+constexpr double kMaxSoftwarePixels = 1.6e6;            // more would be seen later than they are seen sharper
 
 bool moved(const messages::HapticSample& a, const messages::HapticSample& b) {
     double most = 0.0;
@@ -53,15 +53,15 @@ struct RenderThread::Shared {
     std::condition_variable wake;
     bool stop = false, poked = false;
 
-    Wishes wishes;
-    std::shared_ptr<station::LiveTooth> tooth;
-    std::shared_ptr<station::SampleFeed> feed;
-    std::shared_ptr<const std::vector<tooth::Part>> parts, scenery;
+    RenderRequest renderRequest;
+    std::shared_ptr<simulation::LiveTooth> tooth;
+    std::shared_ptr<simulation::SampleFeed> feed;
+    std::shared_ptr<const std::vector<cases::Part>> parts, scenery;
     std::shared_ptr<const instrument::Bur> bur;
     std::shared_ptr<const geometry::TriangleMesh> turbine;
     std::optional<view::SectionFace> face;
     std::optional<messages::HapticSample> given;  ///< by setSample()
-    bool newTooth = false, newBur = false, newTurbine = false, newFace = false, newWishes = false;
+    bool newTooth = false, newBur = false, newTurbine = false, newFace = false, newRequest = false;
 
     messages::HapticSample sample;  ///< the newest seen
     std::optional<Frame> ready;
@@ -71,11 +71,11 @@ struct RenderThread::Shared {
 /// All that belongs to the drawing thread.
 struct RenderThread::Worker {
     std::unique_ptr<view::Renderer> renderer, before;  // `before` is made when it is first asked for
-    std::shared_ptr<station::LiveTooth> tooth;
-    std::shared_ptr<station::SampleFeed> feed;
-    std::shared_ptr<const std::vector<tooth::Part>> parts, scenery;
+    std::shared_ptr<simulation::LiveTooth> tooth;
+    std::shared_ptr<simulation::SampleFeed> feed;
+    std::shared_ptr<const std::vector<cases::Part>> parts, scenery;
     std::shared_ptr<const instrument::Bur> bur;
-    Wishes wishes;
+    RenderRequest renderRequest;
     std::optional<view::Plane> cutPlane;
     messages::HapticSample sample, drawn;
     bool headInTheWay = false, missing = false, dirty = true, beforeDirty = true, wantsDepths = false;
@@ -96,9 +96,9 @@ struct RenderThread::Worker {
     [[nodiscard]] core::Box sketchBounds() const {
         core::Box box{core::Vec3::Zero(), core::Vec3::Zero()};
         if (scenery)
-            for (const tooth::Part& part : *scenery) {
-                if (part.tissue == tooth::Tissue::gum || part.tissue == tooth::Tissue::bone ||
-                    part.tissue == tooth::Tissue::neighbour)
+            for (const cases::Part& part : *scenery) {
+                if (part.tissue == cases::Tissue::gum || part.tissue == cases::Tissue::bone ||
+                    part.tissue == cases::Tissue::neighbour)
                     continue;
                 for (const core::Vec3& v : part.mesh.vertices)
                     box.extend(v);
@@ -109,17 +109,17 @@ struct RenderThread::Worker {
     /// Looked at along the bur, the turbine's head would hide the tip and all that it does.
     void seeTip() {
         const core::Vec3 axis = proxyPose(sample).orientation * core::Vec3::UnitZ();
-        const double towardsEye = axis.dot((wishes.camera.eyeMm - proxyPose(sample).positionMm).normalized());
+        const double towardsEye = axis.dot((renderRequest.camera.eyeMm - proxyPose(sample).positionMm).normalized());
         headInTheWay = towardsEye > (headInTheWay ? kHeadClear : kHeadHides);
     }
 
     [[nodiscard]] view::Look lookNow() const {
-        view::Look look = wishes.look;
+        view::Look look = renderRequest.look;
         look.scaleBar = false;  // the window writes its own, with its label
         if (cutPlane) look.cutAway = cutPlane;
         if (headInTheWay) look.turbine = false;
         if (!tooth || !bur) look.bur = look.turbine = false;
-        if (wishes.compare) look.stereo = view::Stereo::none;
+        if (renderRequest.compare) look.stereo = view::Stereo::none;
         return look;
     }
 
@@ -130,21 +130,21 @@ struct RenderThread::Worker {
         moment.burShown = bur != nullptr;
         moment.speedRpm = sample.speedRpm;
         moment.removalMm3S = removalMm3S;
-        moment.tissue = static_cast<tooth::Tissue>(sample.tissue);
+        moment.tissue = static_cast<cases::Tissue>(sample.tissue);
         moment.water = sample.pedal > 0.0 && sample.speedRpm > 0.0;
         moment.contactNormal = core::toVec(sample.contactNormal);
         moment.contact = moment.contactNormal.norm() > 0.5;
         moment.contactPointMm = moment.contact ? core::toVec(sample.contactPointMm) : moment.burInTooth.positionMm;
         moment.forceN = core::toVec(sample.forceN);
-        moment.mirror = wishes.mirror;
+        moment.mirror = renderRequest.mirror;
         return moment;
     }
 
-    /// Pixels to draw: those of the screen on a GPU, at most kMostSoftwarePixels without one.
+    /// Pixels to draw: those of the screen on a GPU, at most kMaxSoftwarePixels without one.
     [[nodiscard]] view::Viewport pixels(QSize size) const {
-        double scale = renderer->isSoftware() ? 1.0 : wishes.pixelRatio;
-        const double area = scale * scale * wishes.size.width() * wishes.size.height();
-        if (renderer->isSoftware() && area > kMostSoftwarePixels) scale *= std::sqrt(kMostSoftwarePixels / area);
+        double scale = renderer->isSoftware() ? 1.0 : renderRequest.pixelRatio;
+        const double area = scale * scale * renderRequest.size.width() * renderRequest.size.height();
+        if (renderer->isSoftware() && area > kMaxSoftwarePixels) scale *= std::sqrt(kMaxSoftwarePixels / area);
         return {std::max(1, static_cast<int>(std::lround(size.width() * scale))),
                 std::max(1, static_cast<int>(std::lround(size.height() * scale)))};
     }
@@ -155,21 +155,21 @@ struct RenderThread::Worker {
 Frame RenderThread::Worker::draw() {
     seeTip();
     Frame frame;
-    frame.camera = wishes.camera;
+    frame.camera = renderRequest.camera;
     frame.sample = sample;
-    if (!wishes.compare) {
-        frame.report = renderer->draw(wishes.camera, pixels(wishes.size), lookNow(), momentNow(), image);
+    if (!renderRequest.compare) {
+        frame.report = renderer->draw(renderRequest.camera, pixels(renderRequest.size), lookNow(), momentNow(), image);
         frame.image = toQt(image);
         return frame;
     }
-    const view::Viewport half = pixels({wishes.size.width() / 2, wishes.size.height()});
+    const view::Viewport half = pixels({renderRequest.size.width() / 2, renderRequest.size.height()});
     if (!before) {
         before = std::make_unique<view::Renderer>();
         before->setResponsive(true);
         setTooth(*before, false);
         beforeDirty = true;
     }
-    frame.report = renderer->draw(wishes.camera, half, lookNow(), momentNow(), image);
+    frame.report = renderer->draw(renderRequest.camera, half, lookNow(), momentNow(), image);
     if (beforeDirty) {
         view::Look look = lookNow();
         look.bur = look.turbine = look.removedDepthColours = false;
@@ -177,7 +177,7 @@ Frame RenderThread::Worker::draw() {
         look.cutAway.reset();
         view::Moment still;
         still.burShown = false;
-        const view::FrameReport report = before->draw(wishes.camera, half, look, still, beforeImage);
+        const view::FrameReport report = before->draw(renderRequest.camera, half, look, still, beforeImage);
         beforeDirty = report.refining;
         frame.report.drawMs += report.drawMs;
         frame.report.readMs += report.readMs;
@@ -247,14 +247,14 @@ void RenderThread::run() {
             // Straight after a picture the next sample is there already.
             if (std::exchange(justDrawn, false))
                 ;
-            else if (worker.dirty && !worker.missing && worker.wishes.visible)
+            else if (worker.dirty && !worker.missing && worker.renderRequest.visible)
                 shared_->wake.wait_until(lock, lastFrame + kFramePeriod, [&] { return shared_->stop; });
             else
                 shared_->wake.wait_for(lock, poll, [&] { return shared_->poked; });
             if (shared_->stop) return;
             shared_->poked = false;
-            if (std::exchange(shared_->newWishes, false)) {
-                worker.wishes = shared_->wishes;
+            if (std::exchange(shared_->newRequest, false)) {
+                worker.renderRequest = shared_->renderRequest;
                 worker.dirty = worker.beforeDirty = true;
                 worker.lastEvent = now;
             }
@@ -300,8 +300,8 @@ void RenderThread::run() {
             worker.lastEvent = now;
         }
         try {
-            if (worker.tooth && worker.wantsDepths != worker.wishes.look.removedDepthColours) {
-                worker.wantsDepths = worker.wishes.look.removedDepthColours;
+            if (worker.tooth && worker.wantsDepths != worker.renderRequest.look.removedDepthColours) {
+                worker.wantsDepths = worker.renderRequest.look.removedDepthColours;
                 worker.tooth->wantRemovedDepths(worker.wantsDepths);
             }
             const bool news = worker.tooth && worker.tooth->hasNews();
@@ -329,7 +329,7 @@ void RenderThread::run() {
                 if (*face) worker.renderer->setSectionFace(std::move(**face));
             }
             if (newTooth || news || newBur || turbine || face) worker.dirty = true;
-            if (!worker.dirty || !worker.wishes.visible || now < lastFrame + kFramePeriod) continue;
+            if (!worker.dirty || !worker.renderRequest.visible || now < lastFrame + kFramePeriod) continue;
             lastFrame = now;
             Frame frame = worker.draw();
             worker.drawn = worker.sample;
@@ -360,10 +360,10 @@ void tell(Shared& shared, F&& change) {
 
 }  // namespace
 
-void RenderThread::setTooth(std::shared_ptr<station::LiveTooth> tooth, std::vector<tooth::Part> parts,
-                            std::vector<tooth::Part> scenery, std::shared_ptr<station::SampleFeed> feed) {
-    auto keptParts = std::make_shared<const std::vector<tooth::Part>>(std::move(parts));
-    auto keptScenery = std::make_shared<const std::vector<tooth::Part>>(std::move(scenery));
+void RenderThread::setTooth(std::shared_ptr<simulation::LiveTooth> tooth, std::vector<cases::Part> parts,
+                            std::vector<cases::Part> scenery, std::shared_ptr<simulation::SampleFeed> feed) {
+    auto keptParts = std::make_shared<const std::vector<cases::Part>>(std::move(parts));
+    auto keptScenery = std::make_shared<const std::vector<cases::Part>>(std::move(scenery));
     tell(*shared_, [&](Shared& s) {
         s.tooth = std::move(tooth);
         s.parts = std::move(keptParts);
@@ -400,10 +400,10 @@ void RenderThread::setSample(const messages::HapticSample& sample) {
     });
 }
 
-void RenderThread::setWishes(const Wishes& wishes) {
+void RenderThread::setRequest(const RenderRequest& renderRequest) {
     tell(*shared_, [&](Shared& s) {
-        s.wishes = wishes;
-        s.newWishes = true;
+        s.renderRequest = renderRequest;
+        s.newRequest = true;
     });
 }
 

@@ -16,12 +16,12 @@
 #include <vector>
 
 #include "desktop/view/latency.h"
+#include "handpiece/app/simulation/live_session.h"
+#include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/base/messages/haptic_sample.h"
 #include "handpiece/senses/view/camera.h"
 #include "handpiece/senses/view/look.h"
 #include "handpiece/senses/view/renderer.h"
-#include "station/live_tooth.h"
-#include "station/sitting.h"
 
 namespace handpiece::desktop {
 
@@ -34,7 +34,7 @@ struct Frame {
 };
 
 /// What is to be seen, by value: the latest counts.
-struct Wishes {
+struct RenderRequest {
     view::Camera camera;
     QSize size{1, 1};  ///< of the widget, in its own pixels
     double pixelRatio = 1.0;
@@ -60,12 +60,12 @@ class RenderThread {
     RenderThread& operator=(const RenderThread&) = delete;
 
     /// Null: an empty scene. `parts`: the tooth's tissues, `scenery`: what stands around it.
-    void setTooth(std::shared_ptr<station::LiveTooth> tooth, std::vector<tooth::Part> parts,
-                  std::vector<tooth::Part> scenery, std::shared_ptr<station::SampleFeed> feed);
+    void setTooth(std::shared_ptr<simulation::LiveTooth> tooth, std::vector<cases::Part> parts,
+                  std::vector<cases::Part> scenery, std::shared_ptr<simulation::SampleFeed> feed);
     void setBur(std::shared_ptr<const instrument::Bur> bur);
     void setTurbine(geometry::TriangleMesh mesh);
     void setSample(const messages::HapticSample& sample);
-    void setWishes(const Wishes& wishes);
+    void setRequest(const RenderRequest& renderRequest);
     /// The section that is shown; its plane is the cut-away's. Any thread.
     void setSectionFace(std::optional<view::SectionFace> face);
 

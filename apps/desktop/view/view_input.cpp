@@ -13,12 +13,12 @@ namespace {
 
 constexpr double kOrbitRadPerPixel = 0.008, kZoomPerNotch = 1.15, kRollRad = 0.0524, kFineRollRad = 0.0105;
 constexpr double kLoadStepN = 0.1, kSectionStepMm = 0.1, kFineSectionStepMm = 0.02, kMirrorStepMm = 0.5;
-constexpr double kLeastStopMm = station::kStopStepMm, kMostStopMm = 10.0;
+constexpr double kMinStopMm = input::kStopStepMm, kMaxStopMm = 10.0;
 constexpr double kHandleReach = 14.0;  // pixels around the section's handle
 // Pixels by which an arrow key moves what a held key has taken, or the cross; and fine ones.
 constexpr double kArrowPixels = 20.0, kFineArrowPixels = 4.0, kPivotArrowPixels = 10.0, kFinePivotArrowPixels = 2.0;
 constexpr double kCrossPixels = 8.0, kFineCrossPixels = 1.0, kFineZoomNotch = 0.2;
-constexpr std::size_t kMostMeasurements = 12;
+constexpr std::size_t kMaxMeasurements = 12;
 
 QPointF difference(const QPointF& to, const QPointF& from) {
     return to - from;
@@ -151,7 +151,7 @@ void ViewWidget::State::pressTool(const QPointF& position) {
     read(position);
     const auto keep = [&](const Measurement& one) {
         measurements.push_back(one);
-        if (measurements.size() > kMostMeasurements) measurements.erase(measurements.begin());
+        if (measurements.size() > kMaxMeasurements) measurements.erase(measurements.begin());
         widget->update();
         emit widget->measured(one);
     };
@@ -372,11 +372,11 @@ void ViewWidget::State::stepStop(double notches) {
         if (notches > 0) widget->setStop(lastStopMm);
         return;
     }
-    const double next = std::round((*hand->stopMm() + notches * station::kStopStepMm) * 10.0) / 10.0;
-    if (next < kLeastStopMm - 1e-9)
+    const double next = std::round((*hand->stopMm() + notches * input::kStopStepMm) * 10.0) / 10.0;
+    if (next < kMinStopMm - 1e-9)
         widget->setStop(std::nullopt);
     else
-        widget->setStop(std::min(next, kMostStopMm));
+        widget->setStop(std::min(next, kMaxStopMm));
 }
 
 void ViewWidget::wheelEvent(QWheelEvent* event) {
@@ -408,9 +408,9 @@ bool ViewWidget::State::stepTool(Action action, bool slow) {
 
 /// Calliper, depth, pulp and the drill again; what is not allowed is passed over.
 void ViewWidget::State::nextMeasure() {
-    constexpr std::pair<Tool, station::Operation> kOrder[] = {{Tool::calliper, station::Operation::calliper},
-                                                              {Tool::depth, station::Operation::depthTool},
-                                                              {Tool::pulp, station::Operation::pulpTool}};
+    constexpr std::pair<Tool, exercise::Operation> kOrder[] = {{Tool::calliper, exercise::Operation::calliper},
+                                                               {Tool::depth, exercise::Operation::depthTool},
+                                                               {Tool::pulp, exercise::Operation::pulpTool}};
     const auto now =
         std::find_if(std::begin(kOrder), std::end(kOrder), [this](const auto& o) { return o.first == tool; });
     const auto from = now == std::end(kOrder) ? std::begin(kOrder) : now + 1;
@@ -505,7 +505,7 @@ bool ViewWidget::State::keyAction(Action action, bool slow, bool repeated, const
     if (stepTool(action, slow)) return true;
     if (!hand || tool != Tool::drill) return false;
     byMouse = byMouse && !(action >= Action::moveLeft && action <= Action::retreat);
-    const double step = slow ? station::kFineNudgeMm : station::kNudgeMm, roll = slow ? kFineRollRad : kRollRad;
+    const double step = slow ? input::kFineNudgeMm : input::kNudgeMm, roll = slow ? kFineRollRad : kRollRad;
     followHand();
     switch (action) {
         case Action::moveLeft:

@@ -25,17 +25,17 @@ struct ViewWidget::State {
     ~State();
 
     ViewWidget* widget;
-    std::shared_ptr<station::LiveTooth> tooth;
+    std::shared_ptr<simulation::LiveTooth> tooth;
     core::Box bounds{core::Vec3::Zero(), core::Vec3::Zero()};     // of the tooth
     core::Box eyeBounds{core::Vec3::Zero(), core::Vec3::Zero()};  // of what of it is to be looked at
     int buccalSign = 1;
-    std::vector<tooth::Tissue> tissues;
+    std::vector<cases::Tissue> tissues;
     std::shared_ptr<const instrument::Bur> bur;
-    std::unique_ptr<station::PointerHand> hand;
+    std::unique_ptr<input::PointerController> hand;
     view::Look look;
     view::Camera camera;
     KeyBindings bindings;
-    station::Permissions permissions;
+    exercise::Permissions permissions;
     bool legendShown = true, sectionBarShown = true;
     QString problem, remedy;  // why nothing is drawn
     QString waiting;          // for what, while there is no tooth
@@ -77,7 +77,7 @@ struct ViewWidget::State {
     std::unique_ptr<ProbeThread> probe;
     std::unique_ptr<RenderThread> render;
 
-    void take(const tooth::Case& toothCase, const core::Box& of);
+    void take(const cases::Case& toothCase, const core::Box& of);
 
     // Where things are.
     [[nodiscard]] view::Viewport viewport() const;  // of one picture
@@ -100,9 +100,9 @@ struct ViewWidget::State {
     void feelUncut();  // the hand, of this tooth and bur
     void takeFrame();
     void layOut();
-    [[nodiscard]] bool allows(station::Operation operation) const { return permissions.allows(operation); }
+    [[nodiscard]] bool allows(exercise::Operation operation) const { return permissions.allows(operation); }
     /// The same; an exercise that forbids it is told of.
-    [[nodiscard]] bool may(station::Operation operation);
+    [[nodiscard]] bool may(exercise::Operation operation);
 
     // Input (view_input.cpp).
     void begin(Drag what, const Binding& by);

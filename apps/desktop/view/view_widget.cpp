@@ -20,7 +20,7 @@ constexpr int kUnderWriting = 46;                         // pixels: the row in 
 constexpr double kHiddenMm = 0.2, kSamePlaceMm = 0.05;
 constexpr double kCrownShare = 0.42;  // of a tooth's height, as far as one sees it over the gum
 
-using station::Operation;
+using exercise::Operation;
 
 std::optional<Operation> operationOf(Tool tool) {
     switch (tool) {
@@ -45,16 +45,16 @@ Operation operationOf(Measurement::Kind kind) {
                                                : Operation::pulpTool;
 }
 
-std::vector<tooth::Tissue> tissuesOf(const tooth::Case& toothCase) {
-    std::array<bool, tooth::kTissueCount> there{};
-    for (const tooth::Part& part : toothCase.parts)
+std::vector<cases::Tissue> tissuesOf(const cases::Case& toothCase) {
+    std::array<bool, cases::kTissueCount> there{};
+    for (const cases::Part& part : toothCase.parts)
         there[static_cast<std::size_t>(part.tissue)] = true;
-    for (const tooth::Part& part : toothCase.scenery)
+    for (const cases::Part& part : toothCase.scenery)
         there[static_cast<std::size_t>(part.tissue)] = true;
-    if (toothCase.parts.empty()) there[static_cast<std::size_t>(tooth::Tissue::enamel)] = true;
-    std::vector<tooth::Tissue> tissues;
-    for (std::size_t i = 1; i < tooth::kTissueCount; ++i)
-        if (there[i]) tissues.push_back(static_cast<tooth::Tissue>(i));
+    if (toothCase.parts.empty()) there[static_cast<std::size_t>(cases::Tissue::enamel)] = true;
+    std::vector<cases::Tissue> tissues;
+    for (std::size_t i = 1; i < cases::kTissueCount; ++i)
+        if (there[i]) tissues.push_back(static_cast<cases::Tissue>(i));
     return tissues;
 }
 
@@ -196,15 +196,15 @@ std::optional<view::MirrorPose> ViewWidget::State::mirrorPose() const {
 }
 
 void ViewWidget::State::wish() {
-    Wishes wishes;
-    wishes.camera = camera;
-    wishes.size = widget->size().expandedTo({1, 1});
-    wishes.pixelRatio = widget->devicePixelRatioF();
-    wishes.look = effectiveLook();
-    wishes.compare = compare;
-    wishes.visible = widget->isVisible();
-    wishes.mirror = mirrorPose();
-    render->setWishes(wishes);
+    RenderRequest renderRequest;
+    renderRequest.camera = camera;
+    renderRequest.size = widget->size().expandedTo({1, 1});
+    renderRequest.pixelRatio = widget->devicePixelRatioF();
+    renderRequest.look = effectiveLook();
+    renderRequest.compare = compare;
+    renderRequest.visible = widget->isVisible();
+    renderRequest.mirror = mirrorPose();
+    render->setRequest(renderRequest);
 }
 
 void ViewWidget::State::eyeMoved() {
@@ -240,7 +240,7 @@ void ViewWidget::State::hoverAgain() {
 }
 
 void ViewWidget::State::feelUncut() {
-    if (hand) hand->setFeel(tooth ? station::feelUncut(tooth->base().tooth, bur) : station::PointerHand::Feel());
+    if (hand) hand->setFeel(tooth ? input::feelUncut(tooth->base().tooth, bur) : input::PointerController::Feel());
 }
 
 void ViewWidget::State::followHand() {
@@ -258,10 +258,10 @@ void ViewWidget::State::takeFrame() {
 }
 
 /// Of the tooth that is looked at from now on.
-void ViewWidget::State::take(const tooth::Case& toothCase, const core::Box& of) {
+void ViewWidget::State::take(const cases::Case& toothCase, const core::Box& of) {
     bounds = eyeBounds = of;
     const bool inGum = std::any_of(toothCase.scenery.begin(), toothCase.scenery.end(),
-                                   [](const tooth::Part& part) { return part.tissue == tooth::Tissue::gum; });
+                                   [](const cases::Part& part) { return part.tissue == cases::Tissue::gum; });
     if (inGum) eyeBounds.min.z() = bounds.max.z() - kCrownShare * bounds.size().z();
     buccalSign = toothCase.buccalSign;
 }
@@ -275,8 +275,8 @@ void ViewWidget::State::layOut() {
 }
 
 /// Why a pressed bur does not cut.
-static QString idleText(station::PointerHand::Idle idle) {
-    using Idle = station::PointerHand::Idle;
+static QString idleText(input::PointerController::Idle idle) {
+    using Idle = input::PointerController::Idle;
     switch (idle) {
         case Idle::no:
             break;
@@ -337,8 +337,8 @@ OverlayState ViewWidget::State::overlay() const {
     state.compare = compare;
     state.tool = tool;
     if (legendShown && allows(Operation::tissueColours)) {
-        std::vector<tooth::Tissue> shown;
-        for (const tooth::Tissue tissue : tissues)
+        std::vector<cases::Tissue> shown;
+        for (const cases::Tissue tissue : tissues)
             if (look.visible[static_cast<std::size_t>(tissue)]) shown.push_back(tissue);
         state.legend = view::legendOf(shown, effectiveLook().palette);
     }
@@ -394,8 +394,8 @@ ViewWidget::ViewWidget(QWidget* parent) : QWidget(parent), state_(std::make_uniq
 
 ViewWidget::~ViewWidget() = default;
 
-void ViewWidget::setTooth(std::shared_ptr<station::LiveTooth> liveTooth, const tooth::Case& toothCase,
-                          std::shared_ptr<station::SampleFeed> feed) {
+void ViewWidget::setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth, const cases::Case& toothCase,
+                          std::shared_ptr<simulation::SampleFeed> feed) {
     clearTooth();
     State& s = *state_;
     s.tooth = std::move(liveTooth);
@@ -407,21 +407,21 @@ void ViewWidget::setTooth(std::shared_ptr<station::LiveTooth> liveTooth, const t
     s.layOut();
 }
 
-void ViewWidget::showSketch(const tooth::Case& sketch) {
+void ViewWidget::showSketch(const cases::Case& sketch) {
     clearTooth();
     State& s = *state_;
     core::Box bounds;
-    std::vector<tooth::Part> shown;
-    for (const tooth::Part& part : sketch.parts) {
+    std::vector<cases::Part> shown;
+    for (const cases::Part& part : sketch.parts) {
         for (const core::Vec3& v : part.mesh.vertices)
             bounds.extend(v);
         // What lies within is not seen.
-        if (part.tissue == tooth::Tissue::enamel || part.tissue == tooth::Tissue::dentine ||
-            part.tissue == tooth::Tissue::cementum || part.tissue == tooth::Tissue::restoration)
+        if (part.tissue == cases::Tissue::enamel || part.tissue == cases::Tissue::dentine ||
+            part.tissue == cases::Tissue::cementum || part.tissue == cases::Tissue::restoration)
             shown.push_back(part);
     }
     if (!sketch.outer.triangles.empty()) bounds = sketch.outer.bounds();
-    if (shown.empty()) shown = {{"tooth", tooth::Tissue::enamel, 0, sketch.outer}};
+    if (shown.empty()) shown = {{"tooth", cases::Tissue::enamel, 0, sketch.outer}};
     if (shown.front().mesh.triangles.empty()) return;
     shown.insert(shown.end(), sketch.scenery.begin(), sketch.scenery.end());
     s.isSketch = true;
@@ -470,8 +470,8 @@ void ViewWidget::setPointer(std::shared_ptr<device::PointerMailbox> mailbox, con
         update();
         return;
     }
-    const std::shared_ptr<station::LiveTooth> tooth = s.tooth;
-    s.hand = std::make_unique<station::PointerHand>(
+    const std::shared_ptr<simulation::LiveTooth> tooth = s.tooth;
+    s.hand = std::make_unique<input::PointerController>(
         std::move(mailbox), start, [tooth](const view::Ray& ray) -> std::optional<measure::Hit> {
             if (!tooth) return std::nullopt;
             return tooth->withProbe(
@@ -483,7 +483,7 @@ void ViewWidget::setPointer(std::shared_ptr<device::PointerMailbox> mailbox, con
     update();
 }
 
-station::PointerHand* ViewWidget::hand() const {
+input::PointerController* ViewWidget::hand() const {
     return state_->hand.get();
 }
 
@@ -646,7 +646,7 @@ OverlayState ViewWidget::written() const {
     return state_->overlay();
 }
 
-void ViewWidget::setPermissions(const station::Permissions& permissions) {
+void ViewWidget::setPermissions(const exercise::Permissions& permissions) {
     State& s = *state_;
     s.permissions = permissions;
     std::erase_if(s.measurements, [&s](const Measurement& one) { return !s.allows(operationOf(one.kind)); });
@@ -658,7 +658,7 @@ void ViewWidget::setPermissions(const station::Permissions& permissions) {
     s.wish();
     update();
 }
-const station::Permissions& ViewWidget::permissions() const {
+const exercise::Permissions& ViewWidget::permissions() const {
     return state_->permissions;
 }
 

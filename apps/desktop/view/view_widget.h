@@ -15,17 +15,17 @@
 #include "desktop/view/latency.h"
 #include "desktop/view/measuring.h"
 #include "desktop/view/overlay.h"
+#include "handpiece/app/exercise/permissions.h"
+#include "handpiece/app/input/pointer_controller.h"
+#include "handpiece/app/simulation/live_session.h"
+#include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/base/messages/haptic_sample.h"
+#include "handpiece/model/case/case.h"
 #include "handpiece/model/instrument/bur.h"
-#include "handpiece/model/tooth/tooth.h"
 #include "handpiece/senses/view/camera.h"
 #include "handpiece/senses/view/look.h"
 #include "handpiece/senses/view/renderer.h"
 #include "handpiece/tick/device/pointer_device.h"
-#include "station/live_tooth.h"
-#include "station/permissions.h"
-#include "station/pointer_hand.h"
-#include "station/sitting.h"
 
 namespace handpiece::desktop {
 
@@ -43,10 +43,10 @@ class ViewWidget : public QWidget {
 
     /// Another tooth, with the neighbours of its case. `feed`: a sitting's samples, this widget is its one reader; null
     /// in a replay, where setSample() says where the bur is. Takes pointer and measurements away, fits the camera.
-    void setTooth(std::shared_ptr<station::LiveTooth> liveTooth, const tooth::Case& toothCase,
-                  std::shared_ptr<station::SampleFeed> feed);
+    void setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth, const cases::Case& toothCase,
+                  std::shared_ptr<simulation::SampleFeed> feed);
     /// Something to look at until the tooth is there: nothing of it can be touched.
-    void showSketch(const tooth::Case& sketch);
+    void showSketch(const cases::Case& sketch);
     [[nodiscard]] bool hasSketch() const;
     /// What is said where there is no tooth yet; empty: that none is open.
     void setWaiting(const QString& forWhat);
@@ -55,7 +55,7 @@ class ViewWidget : public QWidget {
     /// Mouse and keyboard move the bur from now on. Null: they only turn the view (replay, or a real device).
     void setPointer(std::shared_ptr<device::PointerMailbox> mailbox, const core::Pose& start);
     /// For load, stop and pedal; null without a pointer. Prefer setLoad() and setStop(), which tell listeners.
-    [[nodiscard]] station::PointerHand* hand() const;
+    [[nodiscard]] input::PointerController* hand() const;
     void setSample(const messages::HapticSample& sample);
     /// The newest sample this widget has seen.
     [[nodiscard]] messages::HapticSample sample() const;
@@ -91,8 +91,8 @@ class ViewWidget : public QWidget {
     /// All that is written and drawn on the picture now.
     [[nodiscard]] OverlayState written() const;
     /// What is not allowed goes away and stays away, whoever asks for it.
-    void setPermissions(const station::Permissions& permissions);
-    [[nodiscard]] const station::Permissions& permissions() const;
+    void setPermissions(const exercise::Permissions& permissions);
+    [[nodiscard]] const exercise::Permissions& permissions() const;
     void setLegendShown(bool shown);
     /// The bar by which a section is placed; without it somebody else has such controls.
     void setSectionBarShown(bool shown);
@@ -142,7 +142,7 @@ class ViewWidget : public QWidget {
     void compareChanged(bool compare);
     void sectionChanged(bool shown);  ///< it came, went or was moved
     void mirrorChanged(bool shown);
-    void refused(handpiece::station::Operation operation);  ///< the exercise locks it
+    void refused(handpiece::exercise::Operation operation);  ///< the exercise locks it
 
   protected:
     bool event(QEvent* event) override;

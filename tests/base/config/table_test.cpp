@@ -110,7 +110,7 @@ TEST(Table, TablesInTablesWithoutEndAreRefused) {
 }
 
 TEST(Table, OnlyTextsOfDecentSizeAndPlainFilesAreRead) {
-    EXPECT_THAT(errorOf([] { (void)Table::parse("#" + std::string(Table::kMostBytes, ' '), "f.toml"); }),
+    EXPECT_THAT(errorOf([] { (void)Table::parse("#" + std::string(Table::kMaxBytes, ' '), "f.toml"); }),
                 AllOf(HasSubstr("f.toml"), HasSubstr("more than")));
     EXPECT_THAT(errorOf([] { (void)Table::read("/dev/zero"); }), HasSubstr("not a plain file"));
 }

@@ -11,7 +11,7 @@ namespace {
 using core::Pose;
 using core::Quat;
 using core::Vec3;
-using link::Trouble;
+using link::DeviceFault;
 using test::errorOf;
 
 Vec3 positionOf(const link::DriverReading& r) {
@@ -40,7 +40,7 @@ TEST_P(Conformance, tellsWhatItIsAndStreams) {
     }
     EXPECT_EQ(probe.count(), 0u) << "nothing is exchanged before start()";
     driver->start(probe);
-    ASSERT_TRUE(await([&] { return probe.count() > 20 && probe.last().trouble == Trouble::none; }))
+    ASSERT_TRUE(await([&] { return probe.count() > 20 && probe.last().trouble == DeviceFault::none; }))
         << link::idOf(probe.last().trouble);
     EXPECT_EQ(probe.faultsOfOrder(), 0u);
     EXPECT_GT(probe.last().timeNs, 0);
@@ -58,7 +58,7 @@ TEST_P(Conformance, posesAreExactInTheDeviceFrame) {
         adaptor->move(0, {at, Quat::Identity()});
         EXPECT_TRUE(await([&] { return (positionOf(probe.last()) - at).norm() <= 2.0 * traits.stepMm; }))
             << "asked for " << at.transpose() << ", told " << positionOf(probe.last()).transpose();
-        EXPECT_EQ(probe.last().trouble, Trouble::none);
+        EXPECT_EQ(probe.last().trouble, DeviceFault::none);
     }
     driver->stop();
     EXPECT_EQ(adaptor->breaches(), 0u) << adaptor->lastBreach();
@@ -185,7 +185,7 @@ TEST_P(Conformance, unpluggingIsTroubleAndNoForce) {
         EXPECT_TRUE(await([&] { return adaptor->arrived(0).forceN.norm() > 0.5; }));
     }
     adaptor->unplug(0);
-    ASSERT_TRUE(await([&] { return probe.last().trouble == Trouble::unplugged; }))
+    ASSERT_TRUE(await([&] { return probe.last().trouble == DeviceFault::unplugged; }))
         << "told " << link::idOf(probe.last().trouble);
     if (felt()) {
         EXPECT_TRUE(await([&] { return adaptor->arrived(0).forceN.isZero(); }));
@@ -209,8 +209,8 @@ TEST_P(Conformance, lateFramesAreSeenAndOutlived) {
     const std::uint64_t before = probe.count();
     adaptor->stall(0, 0.15);
     // Either the driver says so itself or the gap stands in the times of its readings, where the gate sees it.
-    EXPECT_TRUE(await([&] { return probe.longestNs() >= 100'000'000 || probe.trouble() == Trouble::stalled; }));
-    EXPECT_TRUE(await([&] { return probe.count() > before + 5 && probe.last().trouble == Trouble::none; }))
+    EXPECT_TRUE(await([&] { return probe.longestNs() >= 100'000'000 || probe.trouble() == DeviceFault::stalled; }));
+    EXPECT_TRUE(await([&] { return probe.count() > before + 5 && probe.last().trouble == DeviceFault::none; }))
         << "told " << link::idOf(probe.last().trouble);
     EXPECT_EQ(probe.faultsOfOrder(), 0u);
     driver->stop();
@@ -284,7 +284,7 @@ TEST_P(Conformance, everyErrorIsToldWithItsCode) {
             }
         } else {
             const std::uint64_t count = probe.count();
-            EXPECT_TRUE(await([&] { return probe.count() > count + 5 && probe.last().trouble == Trouble::none; }));
+            EXPECT_TRUE(await([&] { return probe.count() > count + 5 && probe.last().trouble == DeviceFault::none; }));
             if (felt()) {
                 EXPECT_TRUE(await([&] { return adaptor->arrived(0).forceN.norm() > 0.4; }));
             }
@@ -300,7 +300,7 @@ TEST_P(Conformance, calibrationIsAskedForAndDone) {
     Probe probe;
     auto driver = adaptor->open(0);
     driver->start(probe);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::notCalibrated; }))
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::notCalibrated; }))
         << link::idOf(probe.last().trouble);
     const link::CalibrationState state = driver->calibration();
     EXPECT_TRUE(state == link::CalibrationState::wanted || state == link::CalibrationState::wantedByHand);
@@ -308,7 +308,7 @@ TEST_P(Conformance, calibrationIsAskedForAndDone) {
     adaptor->finishCalibration(0);
     EXPECT_TRUE(await([&] { return driver->calibrate(); }));
     EXPECT_EQ(driver->calibration(), link::CalibrationState::good);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none; })) << link::idOf(probe.last().trouble);
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none; })) << link::idOf(probe.last().trouble);
     driver->stop();
     EXPECT_EQ(adaptor->breaches(), 0u) << adaptor->lastBreach();
 }
@@ -339,7 +339,7 @@ TEST_P(Conformance, twoDevicesDoNotMix) {
     a->stop();
     const std::uint64_t count = second.count();
     EXPECT_TRUE(await([&] { return second.count() > count + 5; })) << "stopping one stopped the other";
-    EXPECT_EQ(second.last().trouble, Trouble::none);
+    EXPECT_EQ(second.last().trouble, DeviceFault::none);
     if (felt()) {
         EXPECT_TRUE(adaptor->arrived(0).forceN.isZero());
         EXPECT_GT(adaptor->arrived(1).forceN.norm(), 0.3);

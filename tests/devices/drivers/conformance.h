@@ -35,7 +35,7 @@ struct VendorError {
     std::string name;
     int code = 0;       ///< expected in DriverReading::vendorCode; 0: this interface has no codes
     bool fatal = true;  ///< false: noted in vendorCode, frames go on
-    link::Trouble told = link::Trouble::vendorError;  ///< expected when fatal
+    link::DeviceFault told = link::DeviceFault::vendorError;  ///< expected when fatal
 };
 
 /// What a driver's double can do: what it cannot is skipped, and said so.
@@ -98,14 +98,14 @@ class Probe final : public link::Servo {
         if (reading.frame != last_.frame + 1) ++frameGaps_;
         if (reading.timeNs < last_.timeNs) ++timesBack_;
         if (count_ > 0) longestNs_ = std::max(longestNs_, reading.timeNs - last_.timeNs);
-        if (reading.trouble != link::Trouble::none) trouble_ = reading.trouble;
+        if (reading.trouble != link::DeviceFault::none) trouble_ = reading.trouble;
         if (reading.vendorCode != 0) code_ = reading.vendorCode;
         last_ = reading;
         ++count_;
         command_.timeNs = reading.timeNs;
         ++command_.number;
         // As the gate: no force into a device that is in trouble.
-        return reading.trouble == link::Trouble::none ? command_ : link::DriverCommand{};
+        return reading.trouble == link::DeviceFault::none ? command_ : link::DriverCommand{};
     }
     void push(const core::Vec3& forceN, const core::Vec3& torqueNmm = core::Vec3::Zero()) {
         const std::lock_guard guard(mutex_);
@@ -116,7 +116,7 @@ class Probe final : public link::Servo {
     }
     void forget() {
         const std::lock_guard guard(mutex_);
-        trouble_ = link::Trouble::none;
+        trouble_ = link::DeviceFault::none;
         code_ = 0;
         longestNs_ = 0;
     }
@@ -129,7 +129,7 @@ class Probe final : public link::Servo {
         return count_;
     }
     /// Since the last forget().
-    [[nodiscard]] link::Trouble trouble() const {
+    [[nodiscard]] link::DeviceFault trouble() const {
         const std::lock_guard guard(mutex_);
         return trouble_;
     }
@@ -151,7 +151,7 @@ class Probe final : public link::Servo {
     mutable std::mutex mutex_;
     link::DriverReading last_;
     link::DriverCommand command_;
-    link::Trouble trouble_ = link::Trouble::none;
+    link::DeviceFault trouble_ = link::DeviceFault::none;
     int code_ = 0;
     std::int64_t longestNs_ = 0;
     std::uint64_t count_ = 0, frameGaps_ = 0, timesBack_ = 0;
@@ -179,7 +179,7 @@ class Conformance : public testing::TestWithParam<MakeAdaptor> {
     [[nodiscard]] std::unique_ptr<link::Driver> started(int device, Probe& probe) {
         auto driver = adaptor->open(device);
         driver->start(probe);
-        EXPECT_TRUE(await([&] { return probe.count() > 2 && probe.last().trouble == link::Trouble::none; }))
+        EXPECT_TRUE(await([&] { return probe.count() > 2 && probe.last().trouble == link::DeviceFault::none; }))
             << "trouble: " << link::idOf(probe.last().trouble);
         return driver;
     }

@@ -73,10 +73,13 @@ class FalconAdaptor final : public Adaptor {
     void unplug(int device) override { double_->unplug(device); }
     void stall(int device, double seconds) override { double_->stall(device, seconds); }
     std::vector<VendorError> errors() const override {
-        using link::Trouble;
-        return {{"input/output", -1, true, Trouble::unplugged}, {"no device", -4, true, Trouble::unplugged},
-                {"time out", -7, true, Trouble::stalled},       {"pipe", -9, true, Trouble::vendorError},
-                {"overflow", -8, true, Trouble::vendorError},   {"letters that are none", 0, true, Trouble::badData}};
+        using link::DeviceFault;
+        return {{"input/output", -1, true, DeviceFault::unplugged},
+                {"no device", -4, true, DeviceFault::unplugged},
+                {"time out", -7, true, DeviceFault::stalled},
+                {"pipe", -9, true, DeviceFault::vendorError},
+                {"overflow", -8, true, DeviceFault::vendorError},
+                {"letters that are none", 0, true, DeviceFault::badData}};
     }
     void raise(int device, const VendorError& error) override {
         if (error.code == 0)

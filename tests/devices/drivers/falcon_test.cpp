@@ -24,7 +24,7 @@ using core::Vec3;
 using doubles::FalconMade;
 using doubles::UsbDouble;
 using link::CalibrationState;
-using link::Trouble;
+using link::DeviceFault;
 using test::errorOf;
 
 std::string textOf(const falcon::Frame& frame) {
@@ -132,7 +132,7 @@ TEST(FalconKinematics, motorsDoTheWorkOfTheForce) {
         most = std::max(most, torque.cwiseAbs().maxCoeff() / force.norm());
     }
     // What the record promises can be had in every direction: ten units a newton millimetre, 4096 at most.
-    EXPECT_LT(10.0 * most * 4.8, falcon::kMostMotor);
+    EXPECT_LT(10.0 * most * 4.8, falcon::kMaxMotor);
 }
 
 class FalconUsb : public testing::Test {
@@ -179,7 +179,7 @@ TEST_F(FalconUsb, itsFirmwareIsTheUsers) {
     Probe probe;
     auto driver = openFalcon({});  // it refuses twice, as real ones do
     driver->start(probe);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none && probe.count() > 5; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none && probe.count() > 5; }));
     driver->stop();
     const std::vector<std::uint8_t> got = usb->uploaded(0);
     EXPECT_TRUE(std::equal(got.begin(), got.end(), bytes.begin(), bytes.end(),
@@ -229,7 +229,7 @@ TEST_F(FalconUsb, itIsHomedByHandAndShowsIt) {
     probe.push({0, 0, 1});
     EXPECT_TRUE(await([&] { return usb->sent(0).count > 5 && usb->sent(0).homing; }));
     EXPECT_EQ(usb->sent(0).lights, falcon::kRed);
-    EXPECT_EQ(probe.last().trouble, Trouble::notCalibrated);
+    EXPECT_EQ(probe.last().trouble, DeviceFault::notCalibrated);
     EXPECT_EQ(driver->calibration(), CalibrationState::wantedByHand);
     EXPECT_FALSE(driver->calibrate());
     EXPECT_EQ(usb->sent(0).motors, (std::array<int, 3>{}));
@@ -239,7 +239,7 @@ TEST_F(FalconUsb, itIsHomedByHandAndShowsIt) {
     usb->home(0, 0);  // told only while it homes
     const std::uint64_t count = probe.count();
     EXPECT_TRUE(await([&] { return probe.count() > count + 5; }));
-    EXPECT_EQ(probe.last().trouble, Trouble::none);
+    EXPECT_EQ(probe.last().trouble, DeviceFault::none);
     EXPECT_TRUE(await([&] { return usb->sent(0).motors != std::array<int, 3>{}; }));
 }
 
@@ -262,7 +262,7 @@ TEST_F(FalconUsb, aForceBeyondTheMotorsKeepsItsDirection) {
             most = std::max(most, std::abs(motor));
         return most;
     };
-    EXPECT_TRUE(await([&] { return largest() == falcon::kMostMotor; }));
+    EXPECT_TRUE(await([&] { return largest() == falcon::kMaxMotor; }));
     Vec3 felt = Vec3::Zero();
     for (int axis = 0; axis < 3; ++axis)
         for (int arm = 0; arm < 3; ++arm)

@@ -66,13 +66,17 @@ class ForceDimensionAdaptor : public Adaptor {
     void unplug(int device) override { double_->unplug(device); }
     void stall(int device, double seconds) override { double_->stall(device, seconds); }
     std::vector<VendorError> errors() const override {
-        using link::Trouble;
-        return {
-            {"unnamed", 1, true, Trouble::vendorError},         {"communication", 2, true, Trouble::unplugged},
-            {"controller busy", 3, true, Trouble::vendorError}, {"no device", 5, true, Trouble::unplugged},
-            {"time out", 7, true, Trouble::unplugged},          {"geometry", 8, true, Trouble::vendorError},
-            {"not ready", 12, true, Trouble::vendorError},      {"encoders disagree", 18, true, Trouble::vendorError},
-            {"not enabled", 19, true, Trouble::vendorError},    {"in use", 20, true, Trouble::vendorError}};
+        using link::DeviceFault;
+        return {{"unnamed", 1, true, DeviceFault::vendorError},
+                {"communication", 2, true, DeviceFault::unplugged},
+                {"controller busy", 3, true, DeviceFault::vendorError},
+                {"no device", 5, true, DeviceFault::unplugged},
+                {"time out", 7, true, DeviceFault::unplugged},
+                {"geometry", 8, true, DeviceFault::vendorError},
+                {"not ready", 12, true, DeviceFault::vendorError},
+                {"encoders disagree", 18, true, DeviceFault::vendorError},
+                {"not enabled", 19, true, DeviceFault::vendorError},
+                {"in use", 20, true, DeviceFault::vendorError}};
     }
     void raise(int device, const VendorError& error) override { double_->raise(device, error.code); }
     void uncalibrate(int device) override { double_->initialise(device, false); }

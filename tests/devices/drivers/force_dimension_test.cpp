@@ -24,7 +24,7 @@ using core::Vec3;
 using doubles::DhdArm;
 using doubles::DhdDouble;
 using link::CalibrationState;
-using link::Trouble;
+using link::DeviceFault;
 using test::errorOf;
 
 std::string idOf(const std::function<void()>& work) {
@@ -205,7 +205,7 @@ TEST_F(ForceDimension, theArmCalibratesItselfWithoutAForceOfOurs) {
     arm->initialise(0, false);
     Probe probe;
     auto driver = started(probe);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::notCalibrated; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::notCalibrated; }));
     EXPECT_EQ(driver->calibration(), CalibrationState::wanted);
     EXPECT_NE(driver->calibrationStep().find("hands off"), std::string::npos);
     arm->failNext("drdAutoInit", 8);
@@ -227,28 +227,30 @@ TEST_F(ForceDimension, withoutTheAutomaticOneThePersonCalibrates) {
     EXPECT_EQ(driver->calibration(), CalibrationState::wantedByHand);
     EXPECT_NE(driver->calibrationStep().find("calibration pole"), std::string::npos);
     EXPECT_FALSE(driver->calibrate());
-    EXPECT_EQ(probe.last().trouble, Trouble::notCalibrated);
+    EXPECT_EQ(probe.last().trouble, DeviceFault::notCalibrated);
     arm->initialise(0, true);
-    EXPECT_TRUE(await([&] { return driver->calibrate() && probe.last().trouble == Trouble::none; }));
+    EXPECT_TRUE(await([&] { return driver->calibrate() && probe.last().trouble == DeviceFault::none; }));
 }
 
 TEST_F(ForceDimension, whyTheControllerLetGoIsTold) {
     Probe probe;
     auto driver = started(probe);
     arm->forceOff(0, 6);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::inputLost && probe.last().vendorCode == 106; }));
+    EXPECT_TRUE(
+        await([&] { return probe.last().trouble == DeviceFault::inputLost && probe.last().vendorCode == 106; }));
     arm->forceOff(0, 1);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::vendorError && probe.last().vendorCode == 101; }));
+    EXPECT_TRUE(
+        await([&] { return probe.last().trouble == DeviceFault::vendorError && probe.last().vendorCode == 101; }));
     EXPECT_FALSE(arm->sent(0).motorsOn) << "the button is the person's";
     // It moved too fast: it comes back by itself, and the gate fades the force in.
     arm->forceOff(0, 2);
     EXPECT_TRUE(await([&] { return probe.last().vendorCode == 102; }));
-    EXPECT_TRUE(await([&] { return arm->sent(0).motorsOn && probe.last().trouble == Trouble::none; }));
+    EXPECT_TRUE(await([&] { return arm->sent(0).motorsOn && probe.last().trouble == DeviceFault::none; }));
     arm->failNext("dhdSetForce", 7);
     arm->failNext("dhdSetForceAndTorqueAndGripperForce", 7);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::vendorError && probe.last().vendorCode == 7; }))
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::vendorError && probe.last().vendorCode == 7; }))
         << "a force that could not be sent";
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none; }));
 }
 
 TEST_F(ForceDimension, theHandInsideGivesWayToTheForce) {
@@ -328,7 +330,7 @@ TEST(ServoThread, keepsToItsRangeAndShutsItsDoor) {
               }),
               "");
     Probe probe;
-    Door door(probe);
+    ServoPort door(probe);
     link::DriverReading reading;
     (void)door.exchange(reading);
     door.shut();

@@ -11,7 +11,7 @@
 namespace handpiece::drivers {
 namespace {
 
-using link::Trouble;
+using link::DeviceFault;
 using test::errorOf;
 using testing::HasSubstr;
 using Sdl = SdlLibrary;
@@ -114,13 +114,13 @@ TEST_F(Gamepad, onePluggedInAgainGoesOn) {
     pad.axis(Sdl::kRightTrigger, 1.0);
     EXPECT_TRUE(await([&] { return probe.last().pedal == 1.0f; }));
     pad.unplug();
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::unplugged; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::unplugged; }));
     EXPECT_EQ(probe.last().pedal, 0.0f);
     test::VirtualJoystick other("Other Pad", true);
     EXPECT_TRUE(other.settle());
-    EXPECT_EQ(probe.last().trouble, Trouble::unplugged) << "another pad is not this one";
+    EXPECT_EQ(probe.last().trouble, DeviceFault::unplugged) << "another pad is not this one";
     pad.plug();
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none; }));
     EXPECT_EQ(probe.faultsOfOrder(), 0u);
 }
 

@@ -56,11 +56,11 @@ class HaplyAdaptor final : public Adaptor {
     }
     void stall(int, double seconds) override { service_->stall(seconds); }
     [[nodiscard]] std::vector<VendorError> errors() const override {
-        return {{"no power", kHaplyNoPower, true, link::Trouble::vendorError},
-                {"not ready", kHaplyNotReady, true, link::Trouble::vendorError},
-                {"garbage", 0, true, link::Trouble::badData},
-                {"grip asleep", 0, true, link::Trouble::inputLost},
-                {"killed", 0, true, link::Trouble::unplugged}};
+        return {{"no power", kHaplyNoPower, true, link::DeviceFault::vendorError},
+                {"not ready", kHaplyNotReady, true, link::DeviceFault::vendorError},
+                {"garbage", 0, true, link::DeviceFault::badData},
+                {"grip asleep", 0, true, link::DeviceFault::inputLost},
+                {"killed", 0, true, link::DeviceFault::unplugged}};
     }
     void raise(int device, const VendorError& error) override {
         if (error.name == "garbage") return service_->say(R"({"inverse3":[{"device_id":)");

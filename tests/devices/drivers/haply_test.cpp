@@ -20,7 +20,7 @@
 namespace handpiece::drivers {
 namespace {
 
-using link::Trouble;
+using link::DeviceFault;
 using test::errorOf;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -35,7 +35,7 @@ class Haply : public testing::Test {
     [[nodiscard]] std::unique_ptr<link::Driver> streaming(Probe& probe, const OpenOptions& options = {}) {
         auto driver = openHaply(options);
         driver->start(probe);
-        EXPECT_TRUE(await([&] { return probe.count() > 2 && probe.last().trouble == Trouble::none; }))
+        EXPECT_TRUE(await([&] { return probe.count() > 2 && probe.last().trouble == DeviceFault::none; }))
             << link::idOf(probe.last().trouble);
         return driver;
     }
@@ -230,10 +230,11 @@ TEST_F(Haply, aServiceThatIsKilledAndStartedAgainIsTakenUpAgain) {
     for (int round = 0; round < 2; ++round) {
         probe.push({0.5, 0, 0});
         service.kill();
-        EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::unplugged; }));
+        EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::unplugged; }));
         probe.push(core::Vec3::Zero());
         service.revive();
-        EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none; })) << link::idOf(probe.last().trouble);
+        EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none; }))
+            << link::idOf(probe.last().trouble);
         EXPECT_EQ(service.arm(0).forceN, (std::array<double, 3>{})) << "no force of before";
     }
     EXPECT_EQ(probe.faultsOfOrder(), 0u);
@@ -259,9 +260,9 @@ TEST_F(Haply, garbageOfAllKindsIsTroubleAndPasses) {
         if (text.empty()) continue;  // stands for "as it should be"
         probe.forget();
         service.say(text);
-        EXPECT_TRUE(await([&] { return probe.trouble() == Trouble::badData; })) << text.substr(0, 80);
+        EXPECT_TRUE(await([&] { return probe.trouble() == DeviceFault::badData; })) << text.substr(0, 80);
         service.say("");
-        EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none; })) << text.substr(0, 80);
+        EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none; })) << text.substr(0, 80);
     }
     // Not even a WebSocket's frames: masked, with bits that mean nothing, a length beyond everything, a cut control.
     for (const std::string& bytes :
@@ -272,8 +273,8 @@ TEST_F(Haply, garbageOfAllKindsIsTroubleAndPasses) {
           std::string("\x08\x7e\x01\x00", 4), std::string("\x83\x00", 2)}) {
         probe.forget();
         service.breakFrame(bytes);
-        EXPECT_TRUE(await([&] { return probe.trouble() != Trouble::none; }));
-        EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none; })) << "connected anew";
+        EXPECT_TRUE(await([&] { return probe.trouble() != DeviceFault::none; }));
+        EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none; })) << "connected anew";
     }
     EXPECT_EQ(probe.faultsOfOrder(), 0u);
 }
@@ -284,14 +285,14 @@ TEST_F(Haply, aStandingServiceFindsZeroForceWhenItGoesOn) {
     probe.push({0, 0, 1.5});
     EXPECT_TRUE(await([&] { return service.arm(0).forceN[1] == -1.5; }));
     service.stall(0.3);
-    EXPECT_TRUE(await([&] { return probe.trouble() == Trouble::stalled; }));
+    EXPECT_TRUE(await([&] { return probe.trouble() == DeviceFault::stalled; }));
     probe.push(core::Vec3::Zero());
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none; }));
     EXPECT_TRUE(await([&] { return service.arm(0).forceN == std::array<double, 3>{}; }));
     // It stands for so long that it is given up; meanwhile the driver goes on telling so.
     service.stall(1.6);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::unplugged; }));
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::unplugged; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none; }));
     driver->stop();
     EXPECT_EQ(service.breaches(), 0u) << service.lastBreach();
 }
@@ -300,7 +301,7 @@ TEST_F(Haply, aStandingServiceFindsZeroForceWhenItGoesOn) {
 class TrappedServo final : public link::Servo {
   public:
     link::DriverCommand exchange(const link::DriverReading& reading) noexcept override {
-        if (reading.trouble == Trouble::none && ++well == 50) trap.emplace();
+        if (reading.trouble == DeviceFault::none && ++well == 50) trap.emplace();
         if (trap && well == 450) {
             allocations = static_cast<int>(trap->allocations());
             trap.reset();
@@ -333,7 +334,7 @@ TEST_F(Haply, theGateIsFadedOutWhenTheServiceDies) {
             return settings;
         }()};
         std::atomic<double> sentN{0.0};
-        std::atomic<Trouble> trouble{Trouble::starting};
+        std::atomic<DeviceFault> trouble{DeviceFault::starting};
         std::uint64_t number = 0;
         link::DriverCommand exchange(const link::DriverReading& reading) noexcept override {
             link::DriverCommand wanted;
@@ -350,7 +351,7 @@ TEST_F(Haply, theGateIsFadedOutWhenTheServiceDies) {
     driver->start(guarded);
     EXPECT_TRUE(await([&] { return service.arm(0).forceN[2] > 0.5; })) << "up is its z";
     service.kill();
-    EXPECT_TRUE(await([&] { return guarded.trouble == Trouble::unplugged && guarded.sentN == 0.0; }));
+    EXPECT_TRUE(await([&] { return guarded.trouble == DeviceFault::unplugged && guarded.sentN == 0.0; }));
     service.revive();
     EXPECT_TRUE(await([&] { return guarded.sentN > 0.5; })) << "it fades in again by itself";
     driver->stop();

@@ -35,7 +35,7 @@ const HdDouble& hdDouble() {
 
 namespace {
 
-using link::Trouble;
+using link::DeviceFault;
 
 class OpenHapticsAdaptor : public Adaptor {
   public:
@@ -69,7 +69,7 @@ class OpenHapticsAdaptor : public Adaptor {
     void unplug(int device) override { hd_.unplug(device); }
     void stall(int device, double seconds) override { hd_.stall(device, seconds); }
     [[nodiscard]] std::vector<VendorError> errors() const override {
-        const Trouble vendor = Trouble::vendorError, none = Trouble::none;
+        const DeviceFault vendor = DeviceFault::vendorError, none = DeviceFault::none;
         return {
             {"INVALID_ENUM", 0x0100, false, none},
             {"INVALID_VALUE", 0x0101, false, none},
@@ -83,7 +83,7 @@ class OpenHapticsAdaptor : public Adaptor {
             {"FORCE_ERROR", 0x0204, false, none},
             {"DEVICE_FAULT", 0x0300, true, vendor},
             {"ALREADY_INITIATED", 0x0301, true, vendor},
-            {"COMM_ERROR", 0x0302, true, Trouble::unplugged},
+            {"COMM_ERROR", 0x0302, true, DeviceFault::unplugged},
             {"COMM_CONFIG_ERROR", 0x0303, true, vendor},
             {"TIMER_ERROR", 0x0304, true, vendor},
             {"ILLEGAL_BEGIN", 0x0400, true, vendor},

@@ -74,7 +74,7 @@ TEST(OpenHapticsEndToEnd, aHandCutsACavityAndFeelsIt) {
         loop::HapticLoop haptic(
             {}, std::move(device),
             {contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
-             std::make_unique<cutting::Cutter>(field, bur, instrument::Ability{}, tooth::builtInTissues(),
+             std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{}, cases::builtInTissues(),
                                                cutting::Cutter::Settings{})},
             force::defaultParameters());
         const auto then = std::chrono::steady_clock::now();

@@ -18,7 +18,7 @@ namespace {
 
 using core::Vec3;
 using link::CalibrationState;
-using link::Trouble;
+using link::DeviceFault;
 using test::errorOf;
 
 class OpenHaptics : public testing::Test {
@@ -129,15 +129,15 @@ TEST_F(OpenHaptics, encoderResetIsByHandAndAutomaticByItself) {
     EXPECT_TRUE(await([&] { return driver->calibration() == CalibrationState::wantedByHand; }));
     EXPECT_NE(driver->calibrationStep().find("right angles"), std::string::npos);
     EXPECT_TRUE(driver->calibrate());
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none; }));
     driver->stop();
 
     hd.reset(1, "Touch X");
     hd.calibration(0, 2, 0x5001);
     Probe second;
     driver = started(second);
-    EXPECT_TRUE(await([&] { return second.last().trouble == Trouble::none; }));
-    EXPECT_EQ(second.trouble(), Trouble::notCalibrated) << "the frame in which the pose may jump pushes nothing";
+    EXPECT_TRUE(await([&] { return second.last().trouble == DeviceFault::none; }));
+    EXPECT_EQ(second.trouble(), DeviceFault::notCalibrated) << "the frame in which the pose may jump pushes nothing";
     EXPECT_EQ(driver->calibration(), CalibrationState::good);
     driver->stop();
     EXPECT_EQ(hd.breaches(), 0u) << hd.lastBreach();
@@ -148,7 +148,7 @@ TEST_F(OpenHaptics, aCalibrationNotDoneIsNotBelieved) {
     Probe probe;
     auto driver = started(probe);
     EXPECT_FALSE(driver->calibrate()) << "the stylus is not in its inkwell";
-    EXPECT_EQ(probe.last().trouble, Trouble::notCalibrated);
+    EXPECT_EQ(probe.last().trouble, DeviceFault::notCalibrated);
     driver->stop();
     EXPECT_EQ(hd.breaches(), 0u) << hd.lastBreach();
 }
@@ -157,24 +157,24 @@ TEST_F(OpenHaptics, nobodyHoldsItInItsInkwell) {
     hd.switches(0, 1, 0);
     Probe probe;
     auto driver = started(probe);
-    EXPECT_EQ(probe.last().trouble, Trouble::none) << "switches that never said otherwise may not be there";
+    EXPECT_EQ(probe.last().trouble, DeviceFault::none) << "switches that never said otherwise may not be there";
     hd.switches(0, 0, 0);
     const std::uint64_t count = probe.count();
     EXPECT_TRUE(await([&] { return probe.count() > count + 2; }));
-    EXPECT_EQ(probe.last().trouble, Trouble::none);
+    EXPECT_EQ(probe.last().trouble, DeviceFault::none);
     hd.switches(0, 1, 0);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::inputLost; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::inputLost; }));
     hd.switches(0, 0, 1);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none; }));
     hd.switches(0, 0, 0);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::inputLost; })) << "its safety switch";
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::inputLost; })) << "its safety switch";
     driver->stop();
     hd.reset(1, "Touch");
     hd.switches(0, -1, -1);
     hd.temperature(0, -1.0);
     Probe bare;
     driver = started(bare);
-    EXPECT_EQ(bare.last().trouble, Trouble::none);
+    EXPECT_EQ(bare.last().trouble, DeviceFault::none);
     EXPECT_EQ(bare.code(), 0) << "what a model has not is no error";
     EXPECT_LT(bare.last().motorTemperature, 0.0f);
     driver->stop();
@@ -193,15 +193,15 @@ TEST_F(OpenHaptics, fatalErrorsLastAndOthersPass) {
     Probe probe;
     auto driver = started(probe);
     hd.error(0, 0x0402, 0, 1);
-    EXPECT_TRUE(await([&] { return probe.trouble() == Trouble::vendorError; }));
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none; })) << "one lost frame";
+    EXPECT_TRUE(await([&] { return probe.trouble() == DeviceFault::vendorError; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none; })) << "one lost frame";
     probe.push({0, 1, 0});
     EXPECT_TRUE(await([&] { return hd.newton(0).norm() > 0.9; }));
     hd.error(0, 0x0300, 1, 1);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::vendorError; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::vendorError; }));
     const std::uint64_t count = probe.count();
     EXPECT_TRUE(await([&] { return probe.count() > count + 20; }));
-    EXPECT_EQ(probe.last().trouble, Trouble::vendorError) << "until it is opened anew";
+    EXPECT_EQ(probe.last().trouble, DeviceFault::vendorError) << "until it is opened anew";
     EXPECT_EQ(probe.last().vendorCode, 0x0300);
     EXPECT_EQ(hd.newton(0), Vec3::Zero());
     driver->stop();

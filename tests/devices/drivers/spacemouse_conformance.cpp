@@ -47,7 +47,7 @@ class SpaceMouseAdaptor final : public Adaptor {
     void unplug(int) override { daemon_->plug(false); }
     void stall(int, double seconds) override { daemon_->stall(seconds); }
     [[nodiscard]] std::vector<VendorError> errors() const override {
-        return {{"killed", 0, true, link::Trouble::unplugged}};
+        return {{"killed", 0, true, link::DeviceFault::unplugged}};
     }
     void raise(int, const VendorError&) override { daemon_.reset(); }
     [[nodiscard]] unsigned breaches() override { return daemon_ ? daemon_->breaches() : 0; }

@@ -14,7 +14,7 @@ namespace {
 
 using core::Quat;
 using core::Vec3;
-using link::Trouble;
+using link::DeviceFault;
 using test::errorOf;
 using testing::HasSubstr;
 
@@ -71,7 +71,7 @@ class SpaceMouse : public testing::Test {
     [[nodiscard]] static std::unique_ptr<link::Driver> streaming(Probe& probe) {
         auto driver = openSpaceMouse({});
         driver->start(probe);
-        EXPECT_TRUE(await([&] { return probe.count() > 2 && probe.last().trouble == Trouble::none; }));
+        EXPECT_TRUE(await([&] { return probe.count() > 2 && probe.last().trouble == DeviceFault::none; }));
         return driver;
     }
 
@@ -103,7 +103,7 @@ TEST_F(SpaceMouse, anOldDaemonThatAnswersNothingWillDo) {
     EXPECT_THAT(driver->info().version, HasSubstr("protocol 0"));
     daemon.motion({350, 0, 0, 0, 0, 0});
     EXPECT_TRUE(await([&] { return probe.last().positionMm[0] > 1.0; }));
-    EXPECT_EQ(probe.trouble(), Trouble::none);
+    EXPECT_EQ(probe.trouble(), DeviceFault::none);
     driver->stop();
 }
 
@@ -155,7 +155,7 @@ TEST_F(SpaceMouse, whatIsNoPacketHarmsNothing) {
     }
     ASSERT_TRUE(daemon.settle());
     const link::DriverReading last = probe.last();
-    EXPECT_EQ(last.trouble, Trouble::none);
+    EXPECT_EQ(last.trouble, DeviceFault::none);
     for (const double p : last.positionMm)
         EXPECT_LE(std::abs(p), 60.0);
     EXPECT_EQ(probe.faultsOfOrder(), 0u);
@@ -170,16 +170,16 @@ TEST_F(SpaceMouse, aDaemonThatIsStartedAgainIsTakenUpAgainWithNothingPressed) {
     daemon->button(0, true);
     EXPECT_TRUE(await([&] { return probe.last().buttons == 1; }));
     daemon.reset();
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::unplugged; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::unplugged; }));
     EXPECT_EQ(probe.last().buttons, 0u);
     daemon = std::make_unique<test::SpaceMouseDaemon>(path());
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none; }));
     EXPECT_EQ(probe.last().buttons, 0u);
     // Unplugged at the daemon and plugged in again.
     daemon->plug(false);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::unplugged; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::unplugged; }));
     daemon->plug(true);
-    EXPECT_TRUE(await([&] { return probe.last().trouble == Trouble::none; }));
+    EXPECT_TRUE(await([&] { return probe.last().trouble == DeviceFault::none; }));
 }
 
 }  // namespace

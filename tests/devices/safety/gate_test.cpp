@@ -17,9 +17,9 @@
 namespace handpiece::safety {
 namespace {
 
+using link::DeviceFault;
 using link::DriverCommand;
 using link::DriverReading;
-using link::Trouble;
 
 constexpr std::int64_t kMs = 1'000'000;
 
@@ -69,7 +69,7 @@ struct Bench {
 TEST(Gate, letsAGoodForceThrough) {
     Bench bench;
     bench.warmUp(2.0);
-    EXPECT_EQ(bench.gate.status().trouble, Trouble::none);
+    EXPECT_EQ(bench.gate.status().trouble, DeviceFault::none);
     EXPECT_EQ(bench.gate.status().gain, 1.0);
     const DriverCommand out = bench.next();
     EXPECT_NEAR(out.forceN[1], 2.0, 1e-12);
@@ -138,7 +138,7 @@ TEST(Gate, limitsTheSlopeOfTorqueAsThatOfForce) {
 TEST(Gate, fadesInFromZeroAtTheFirstForce) {
     Bench bench;
     bench.run(2.0);  // well for long, but nothing was felt yet
-    EXPECT_EQ(bench.gate.status().trouble, Trouble::none);
+    EXPECT_EQ(bench.gate.status().trouble, DeviceFault::none);
     bench.command.forceN = {3, 0, 0};
     double last = 0.0;
     EXPECT_EQ(length(bench.next().forceN), 0.0);
@@ -152,34 +152,34 @@ TEST(Gate, fadesInFromZeroAtTheFirstForce) {
 
 struct Case {
     const char* name;
-    Trouble told;
+    DeviceFault told;
     void (*spoil)(Bench&);
 };
 const Case kCases[] = {
-    {"unplugged", Trouble::unplugged, [](Bench& b) { b.reading.trouble = Trouble::unplugged; }},
-    {"vendor error", Trouble::vendorError, [](Bench& b) { b.reading.trouble = Trouble::vendorError; }},
-    {"no trouble there is", Trouble::badData, [](Bench& b) { b.reading.trouble = static_cast<Trouble>(99); }},
-    {"input lost", Trouble::inputLost, [](Bench& b) { b.reading.trouble = Trouble::inputLost; }},
-    {"position not finite", Trouble::notFinite, [](Bench& b) { b.reading.positionMm[1] = std::nan(""); }},
-    {"orientation not finite", Trouble::notFinite,
+    {"unplugged", DeviceFault::unplugged, [](Bench& b) { b.reading.trouble = DeviceFault::unplugged; }},
+    {"vendor error", DeviceFault::vendorError, [](Bench& b) { b.reading.trouble = DeviceFault::vendorError; }},
+    {"no trouble there is", DeviceFault::badData, [](Bench& b) { b.reading.trouble = static_cast<DeviceFault>(99); }},
+    {"input lost", DeviceFault::inputLost, [](Bench& b) { b.reading.trouble = DeviceFault::inputLost; }},
+    {"position not finite", DeviceFault::notFinite, [](Bench& b) { b.reading.positionMm[1] = std::nan(""); }},
+    {"orientation not finite", DeviceFault::notFinite,
      [](Bench& b) { b.reading.orientation[3] = std::numeric_limits<double>::infinity(); }},
-    {"no rotation", Trouble::badData,
+    {"no rotation", DeviceFault::badData,
      [](Bench& b) {
          b.reading.orientation = {0.5, 0, 0, 0};
      }},
-    {"out of the world", Trouble::badData, [](Bench& b) { b.reading.positionMm[0] = -1e30; }},
-    {"jump", Trouble::jumped, [](Bench& b) { b.reading.positionMm[2] += 100.0; }},
-    {"turned at once", Trouble::jumped,
+    {"out of the world", DeviceFault::badData, [](Bench& b) { b.reading.positionMm[0] = -1e30; }},
+    {"jump", DeviceFault::jumped, [](Bench& b) { b.reading.positionMm[2] += 100.0; }},
+    {"turned at once", DeviceFault::jumped,
      [](Bench& b) {
          b.reading.orientation = {0, 1, 0, 0};
      }},
-    {"hot", Trouble::hot, [](Bench& b) { b.reading.motorTemperature = 1.0f; }},
-    {"temperature not finite", Trouble::notFinite, [](Bench& b) { b.reading.motorTemperature = std::nanf(""); }},
-    {"force not finite", Trouble::notFinite, [](Bench& b) { b.command.forceN[0] = std::nan(""); }},
-    {"torque not finite", Trouble::notFinite, [](Bench& b) { b.command.torqueNmm[0] = -std::nan(""); }},
-    {"force out of the world", Trouble::notFinite, [](Bench& b) { b.command.forceN[2] = 1e300; }},
-    {"the tick stands", Trouble::tickStalled, [](Bench& b) { b.tickRuns = false; }},
-    {"the device repeats itself", Trouble::stalled, [](Bench& b) { b.deviceRuns = false; }},
+    {"hot", DeviceFault::hot, [](Bench& b) { b.reading.motorTemperature = 1.0f; }},
+    {"temperature not finite", DeviceFault::notFinite, [](Bench& b) { b.reading.motorTemperature = std::nanf(""); }},
+    {"force not finite", DeviceFault::notFinite, [](Bench& b) { b.command.forceN[0] = std::nan(""); }},
+    {"torque not finite", DeviceFault::notFinite, [](Bench& b) { b.command.torqueNmm[0] = -std::nan(""); }},
+    {"force out of the world", DeviceFault::notFinite, [](Bench& b) { b.command.forceN[2] = 1e300; }},
+    {"the tick stands", DeviceFault::tickStalled, [](Bench& b) { b.tickRuns = false; }},
+    {"the device repeats itself", DeviceFault::stalled, [](Bench& b) { b.deviceRuns = false; }},
 };
 
 TEST(Gate, everyDoubtEndsInZeroWithinTenMilliseconds) {
@@ -203,7 +203,7 @@ TEST(Gate, everyDoubtEndsInZeroWithinTenMilliseconds) {
             }
             const double tookMs = static_cast<double>(bench.nowNs - began) / kMs;
             // A slow device is only known to repeat itself after 2.5 of its periods.
-            const bool late = c.told == Trouble::stalled && servoHz < 625.0;
+            const bool late = c.told == DeviceFault::stalled && servoHz < 625.0;
             EXPECT_LE(tookMs, late ? 3.0 * 1e3 / servoHz + 4.0 + 1e-6 : 10.0);
             EXPECT_EQ(bench.gate.status().last, c.told);
             EXPECT_EQ(bench.gate.status().troubles, before + 1);
@@ -215,30 +215,30 @@ TEST(Gate, everyDoubtEndsInZeroWithinTenMilliseconds) {
 TEST(Gate, afterDoubtItStaysAtZeroAndThenFadesIn) {
     Bench bench;
     bench.warmUp();
-    bench.reading.trouble = Trouble::unplugged;
+    bench.reading.trouble = DeviceFault::unplugged;
     bench.run(0.2);
-    bench.reading.trouble = Trouble::none;
+    bench.reading.trouble = DeviceFault::none;
     for (int ms = 0; ms < 49; ++ms) {
         EXPECT_EQ(length(bench.next().forceN), 0.0);
-        EXPECT_EQ(bench.gate.status().trouble, Trouble::unplugged);
+        EXPECT_EQ(bench.gate.status().trouble, DeviceFault::unplugged);
     }
     bench.run(0.003);
-    EXPECT_EQ(bench.gate.status().trouble, Trouble::none);
-    EXPECT_EQ(bench.gate.status().last, Trouble::unplugged);
+    EXPECT_EQ(bench.gate.status().trouble, DeviceFault::none);
+    EXPECT_EQ(bench.gate.status().last, DeviceFault::unplugged);
     const double early = length(bench.next().forceN);
     EXPECT_LT(early, 0.05);
     EXPECT_NEAR(length(bench.run(0.150).forceN), 1.5, 0.1);
     EXPECT_NEAR(length(bench.run(0.200).forceN), 3.0, 1e-9);
     // A doubt during the wait begins it anew.
-    bench.reading.trouble = Trouble::unplugged;
+    bench.reading.trouble = DeviceFault::unplugged;
     bench.run(0.02);
-    bench.reading.trouble = Trouble::none;
+    bench.reading.trouble = DeviceFault::none;
     bench.run(0.04);
     bench.reading.positionMm[0] = std::nan("");
     bench.next();
     bench.reading.positionMm[0] = 0.0;
     EXPECT_EQ(length(bench.run(0.045).forceN), 0.0);
-    EXPECT_EQ(bench.gate.status().trouble, Trouble::notFinite);
+    EXPECT_EQ(bench.gate.status().trouble, DeviceFault::notFinite);
 }
 
 TEST(Gate, aDeviceThatStoodIsAnsweredWithZero) {
@@ -247,7 +247,7 @@ TEST(Gate, aDeviceThatStoodIsAnsweredWithZero) {
         bench.warmUp();
         bench.nowNs += (gapMs - 1) * kMs;
         EXPECT_EQ(length(bench.next().forceN), 0.0) << gapMs;
-        EXPECT_EQ(bench.gate.status().trouble, Trouble::stalled);
+        EXPECT_EQ(bench.gate.status().trouble, DeviceFault::stalled);
     }
     Bench bench;
     bench.warmUp();
@@ -260,7 +260,7 @@ TEST(Gate, aPauseOfTheTickFadesInAgain) {
     bench.warmUp();
     bench.tickRuns = false;
     bench.run(3.0);
-    EXPECT_EQ(bench.gate.status().trouble, Trouble::tickStalled);
+    EXPECT_EQ(bench.gate.status().trouble, DeviceFault::tickStalled);
     bench.tickRuns = true;
     EXPECT_EQ(length(bench.run(0.05).forceN), 0.0);
     EXPECT_LT(length(bench.run(0.01).forceN), 0.2);
@@ -275,7 +275,7 @@ TEST(Gate, aStampOfTheFutureKeepsNoCommandYoung) {
         bench.command.timeNs = bench.nowNs + aheadMs * kMs;
         bench.command.number++;
         EXPECT_EQ(length(bench.run(0.012).forceN), 0.0) << aheadMs;
-        EXPECT_EQ(bench.gate.status().trouble, Trouble::tickStalled);
+        EXPECT_EQ(bench.gate.status().trouble, DeviceFault::tickStalled);
     }
 }
 
@@ -288,7 +288,7 @@ TEST(Gate, aTickWhoseClockStandsIsNotBelieved) {
         bench.next();
     }
     EXPECT_EQ(bench.gate.status().gain, 0.0);
-    EXPECT_EQ(bench.gate.status().trouble, Trouble::tickStalled);
+    EXPECT_EQ(bench.gate.status().trouble, DeviceFault::tickStalled);
 }
 
 TEST(Gate, oneCommandStampedAnewIsStillOne) {
@@ -300,7 +300,7 @@ TEST(Gate, oneCommandStampedAnewIsStillOne) {
         bench.next();
     }
     EXPECT_EQ(bench.gate.status().gain, 0.0);
-    EXPECT_EQ(bench.gate.status().trouble, Trouble::tickStalled);
+    EXPECT_EQ(bench.gate.status().trouble, DeviceFault::tickStalled);
 }
 
 TEST(Gate, oneFrameStampedAnewIsStillOne) {
@@ -312,7 +312,7 @@ TEST(Gate, oneFrameStampedAnewIsStillOne) {
         bench.next();
     }
     EXPECT_EQ(bench.gate.status().gain, 0.0);
-    EXPECT_EQ(bench.gate.status().trouble, Trouble::stalled);
+    EXPECT_EQ(bench.gate.status().trouble, DeviceFault::stalled);
 }
 
 TEST(Gate, aQuickHandIsNoJump) {
@@ -323,13 +323,13 @@ TEST(Gate, aQuickHandIsNoJump) {
         const double angle = 0.03 * ms;
         bench.reading.orientation = {std::cos(angle / 2), 0, std::sin(angle / 2), 0};
         bench.next();
-        ASSERT_EQ(bench.gate.status().trouble, Trouble::none) << ms;
+        ASSERT_EQ(bench.gate.status().trouble, DeviceFault::none) << ms;
     }
     // The same turn told by the other quaternion.
     for (double& c : bench.reading.orientation)
         c = -c;
     bench.next();
-    EXPECT_EQ(bench.gate.status().trouble, Trouble::none);
+    EXPECT_EQ(bench.gate.status().trouble, DeviceFault::none);
 }
 
 TEST(Gate, warmMotorsGetLessAndHotOnesNothing) {
@@ -338,11 +338,11 @@ TEST(Gate, warmMotorsGetLessAndHotOnesNothing) {
     for (const auto& [temperature, share] : std::map<float, double>{{0.8f, 1.0}, {0.89f, 0.5}, {0.97f, 0.0556}}) {
         bench.reading.motorTemperature = temperature;
         EXPECT_NEAR(length(bench.run(0.1).forceN), 3.0 * share, 0.01) << temperature;
-        EXPECT_EQ(bench.gate.status().trouble, Trouble::none);
+        EXPECT_EQ(bench.gate.status().trouble, DeviceFault::none);
     }
     bench.reading.motorTemperature = 0.985f;
     EXPECT_EQ(length(bench.run(0.01).forceN), 0.0);
-    EXPECT_EQ(bench.gate.status().trouble, Trouble::hot);
+    EXPECT_EQ(bench.gate.status().trouble, DeviceFault::hot);
     bench.reading.motorTemperature = -1.0f;  // not told
     EXPECT_NEAR(length(bench.run(1.0).forceN), 3.0, 1e-9);
 }
@@ -352,9 +352,9 @@ TEST(Gate, tellsTheVendorsCode) {
     bench.warmUp();
     bench.reading.vendorCode = 0x0200;  // a warning
     bench.next();
-    EXPECT_EQ(bench.gate.status().trouble, Trouble::none);
+    EXPECT_EQ(bench.gate.status().trouble, DeviceFault::none);
     EXPECT_EQ(bench.gate.status().vendorCode, 0x0200);
-    bench.reading.trouble = Trouble::vendorError;
+    bench.reading.trouble = DeviceFault::vendorError;
     bench.reading.vendorCode = 0x0301;
     bench.next();
     EXPECT_EQ(bench.gate.status().vendorCode, 0x0301);
@@ -411,7 +411,7 @@ TEST(Gate, whateverComesInTheAnswerIsWithinTheLimits) {
             if (bad()) r.orientation[random() % 4] = anything();
             if (bad()) r.motorTemperature = static_cast<float>(anything());
             if (bad()) r.pedal = static_cast<float>(anything());
-            if (bad()) r.trouble = static_cast<Trouble>(random() & 0xff);
+            if (bad()) r.trouble = static_cast<DeviceFault>(random() & 0xff);
             if (bad()) r.timeNs = static_cast<std::int64_t>(random());
             if (bad()) r.frame = random();
             if (bad()) c.forceN[random() % 3] = anything();
@@ -427,7 +427,7 @@ TEST(Gate, whateverComesInTheAnswerIsWithinTheLimits) {
             const double elapsedS = (static_cast<double>(now) - static_cast<double>(beforeNs)) * 1e-9;
             const double change = std::hypot(out.forceN[0] - before.forceN[0], out.forceN[1] - before.forceN[1],
                                              out.forceN[2] - before.forceN[2]);
-            if (bench.gate.status().trouble == Trouble::none) {
+            if (bench.gate.status().trouble == DeviceFault::none) {
                 ASSERT_LE(change, settings.maxSlopeNPerS * std::max(0.0, elapsedS) + 1e-9);
                 const double turn =
                     std::hypot(out.torqueNmm[0] - before.torqueNmm[0], out.torqueNmm[1] - before.torqueNmm[1],

@@ -21,9 +21,9 @@ namespace {
 
 using core::Quat;
 using core::Vec3;
+using link::DeviceFault;
 using link::DriverCommand;
 using link::DriverReading;
-using link::Trouble;
 
 constexpr std::int64_t kMs = 1'000'000;
 
@@ -101,7 +101,7 @@ struct Bench {
 };
 
 TEST(GuardedDevice, placesThePoseAndTurnsTheForce) {
-    workspace::Placing placing;
+    workspace::WorkspaceMapping placing;
     placing.deviceMm = Vec3(100, 0, -50);
     placing.toothMm = Vec3(0, 0, 8);
     placing.toothInDevice = Quat(Eigen::AngleAxisd(-M_PI / 2, Vec3::UnitX()));  // occlusal is up
@@ -118,12 +118,12 @@ TEST(GuardedDevice, placesThePoseAndTurnsTheForce) {
     EXPECT_LT((bench.device->truePositionMm() - Vec3(0, 0, 10)).norm(), 1e-9);
     EXPECT_LT((bench.got() - Vec3(0, 1.5, 0)).norm(), 1e-9);
     EXPECT_LT((bench.device->appliedForceN() - Vec3(0, 0, 1.5)).norm(), 1e-9);
-    const workspace::Mapping mapping(placing);
+    const workspace::WorkspaceTransform mapping(placing);
     EXPECT_LT((Vec3(bench.strings.got.torqueNmm.data()) - mapping.torqueInDevice(Vec3(0, 30, 0))).norm(), 1e-9);
     EXPECT_EQ(bench.device->capability().maxStiffnessNPerMm, 1.0);  // twice, seen at the bur
     const Health health = bench.health->read();
     EXPECT_EQ(health.frames, 800u);
-    EXPECT_EQ(health.gate.trouble, Trouble::none);
+    EXPECT_EQ(health.gate.trouble, DeviceFault::none);
     EXPECT_EQ(health.positionMm[1], 4.0);
     EXPECT_LT((Vec3(health.sentN.data()) - Vec3(0, 1.5, 0)).norm(), 1e-9);
 }
@@ -188,7 +188,7 @@ TEST(GuardedDevice, inDoubtThePoseIsLostAndNobodyPressesAnything) {
     EXPECT_EQ(bad.burInTooth.positionMm, good.burInTooth.positionMm);
     bench.run(8, Vec3(0, 1, 0));
     EXPECT_EQ(bench.got().norm(), 0.0);
-    EXPECT_EQ(bench.health->read().gate.trouble, Trouble::notFinite);
+    EXPECT_EQ(bench.health->read().gate.trouble, DeviceFault::notFinite);
     bench.strings.reading.positionMm[0] = 0.0;
     EXPECT_EQ(bench.run(49).status, device::ReadStatus::lost);
     EXPECT_EQ(bench.run(5).status, device::ReadStatus::ok);
@@ -200,7 +200,7 @@ TEST(GuardedDevice, aForceThatIsNoNumberIsToldAndForgotten) {
     bench.tick(Vec3(0, std::nan(""), 0));
     bench.run(10, Vec3(0, 1, 0));
     EXPECT_EQ(bench.got().norm(), 0.0);
-    EXPECT_EQ(bench.health->read().gate.last, Trouble::notFinite);
+    EXPECT_EQ(bench.health->read().gate.last, DeviceFault::notFinite);
     bench.run(600, Vec3(0, 1, 0));
     EXPECT_NEAR(bench.got().y(), 1.0, 1e-9);
 }
@@ -211,7 +211,7 @@ TEST(GuardedDevice, aDeviceThatSaysNothingIsLostAndRelaxed) {
     bench.strings.silent = true;
     bench.run(10, Vec3(0, 1, 0));
     EXPECT_EQ(bench.health->read().relaxed, 1u);
-    EXPECT_EQ(bench.health->read().gate.trouble, Trouble::stalled);
+    EXPECT_EQ(bench.health->read().gate.trouble, DeviceFault::stalled);
     EXPECT_EQ(bench.tick().status, device::ReadStatus::ok);  // as old as a slow device's
     EXPECT_EQ(bench.run(15).status, device::ReadStatus::lost);
     bench.strings.silent = false;
@@ -228,7 +228,7 @@ TEST(GuardedDevice, betweenTwoLoopsNothingIsCommandedForLong) {
     for (int ms = 0; ms < 3000; ++ms)
         bench.strings.frame();
     EXPECT_EQ(bench.got().norm(), 0.0);
-    EXPECT_EQ(bench.health->read().gate.trouble, Trouble::tickStalled);
+    EXPECT_EQ(bench.health->read().gate.trouble, DeviceFault::tickStalled);
     bench.run(20, Vec3(0, 1, 0));
     EXPECT_EQ(bench.got().norm(), 0.0);
     bench.run(60, Vec3(0, 1, 0));
@@ -284,7 +284,7 @@ TEST(GuardedDevice, theClutchIsHonouredOnlyWhereTheBurIsFree) {
 TEST(GuardedDevice, anotherPlacingBeginsAnew) {
     Bench bench;
     bench.run(500, Vec3(0, 1, 0));
-    workspace::Placing placing;
+    workspace::WorkspaceMapping placing;
     placing.toothMm = Vec3(5, 0, 0);  // less than what ForceModel's own guard takes for a jump
     bench.health->place(placing);
     EXPECT_EQ(bench.tick(Vec3(0, 1, 0)).status, device::ReadStatus::lost);
@@ -394,7 +394,7 @@ TEST(GuardedDevice, theWatchdogsThreadSeesAServoThatHangs) {
     shared.hangs = true;
     const int before = shared.relaxed;
     ASSERT_TRUE(await([&] { return shared.relaxed > before || device.health()->read().relaxed > 0; }));
-    ASSERT_TRUE(await([&] { return device.health()->read().gate.trouble == Trouble::stalled; }));
+    ASSERT_TRUE(await([&] { return device.health()->read().gate.trouble == DeviceFault::stalled; }));
     const int frames = shared.frames;
     shared.hangs = false;
     ASSERT_TRUE(await([&] { return shared.frames > frames + 5; }));
@@ -404,7 +404,7 @@ TEST(GuardedDevice, theWatchdogsThreadSeesAServoThatHangs) {
 TEST(SimulatedDriver, itsHandMeetsTheToothAsTheMotionSays) {
     std::mt19937_64 random(test::seed());
     for (const double scale : {1.0, 2.0, 3.0}) {
-        workspace::Placing placing;
+        workspace::WorkspaceMapping placing;
         placing.scale = scale;
         placing.leftHanded = scale == 2.0;
         placing.deviceMm = 50.0 * test::randomDirection(random);

@@ -15,9 +15,9 @@
 namespace handpiece::safety {
 namespace {
 
+using link::DeviceFault;
 using link::DriverCommand;
 using link::DriverReading;
-using link::Trouble;
 
 TEST(Faults, areReadAsTyped) {
     const auto faults = parseFaults("unplug@2.5, stall@3:0.2, jump@4=-0.5,error@5:0.1=0x0301 ,tick@1:0.02");
@@ -142,25 +142,25 @@ TEST(Faults, reachTheGateAndEnd) {
         faulty->start(ear);
         for (int ms = 0; ms < 10; ++ms)
             (void)puppet->step();
-        EXPECT_EQ(ear.heard.trouble, Trouble::none);
+        EXPECT_EQ(ear.heard.trouble, DeviceFault::none);
         EXPECT_EQ(ear.heard.positionMm[0], 1.0);
         (void)puppet->step();  // the first one at 10 ms
         look(*puppet, ear, *faulty);
         for (int ms = 0; ms < 20; ++ms)
             (void)puppet->step();
-        EXPECT_EQ(ear.heard.trouble, Trouble::none);
+        EXPECT_EQ(ear.heard.trouble, DeviceFault::none);
         EXPECT_EQ(ear.heard.positionMm, (std::array<double, 3>{1, 2, 3}));
         EXPECT_EQ(ear.heard.motorTemperature, 0.2f);
         EXPECT_EQ(ear.heard.timeNs, puppet->reading.timeNs);
         faulty->stop();
     };
-    with("unplug@0.01:0.02", [](Puppet&, Ear& e, auto&) { EXPECT_EQ(e.heard.trouble, Trouble::unplugged); });
-    with("drop@0.01:0.02", [](Puppet&, Ear& e, auto&) { EXPECT_EQ(e.heard.trouble, Trouble::inputLost); });
+    with("unplug@0.01:0.02", [](Puppet&, Ear& e, auto&) { EXPECT_EQ(e.heard.trouble, DeviceFault::unplugged); });
+    with("drop@0.01:0.02", [](Puppet&, Ear& e, auto&) { EXPECT_EQ(e.heard.trouble, DeviceFault::inputLost); });
     with("nan@0.01:0.02", [](Puppet&, Ear& e, auto&) { EXPECT_TRUE(std::isnan(e.heard.positionMm[0])); });
     with("jump@0.01:0.02=2", [](Puppet&, Ear& e, auto&) { EXPECT_EQ(e.heard.positionMm[0], 201.0); });
     with("hot@0.01:0.02=1.2", [](Puppet&, Ear& e, auto&) { EXPECT_EQ(e.heard.motorTemperature, 1.2f); });
     with("error@0.01:0.02=0x0303", [](Puppet&, Ear& e, auto&) {
-        EXPECT_EQ(e.heard.trouble, Trouble::vendorError);
+        EXPECT_EQ(e.heard.trouble, DeviceFault::vendorError);
         EXPECT_EQ(e.heard.vendorCode, 0x0303);
     });
     with("garbage@0.01:0.02", [](Puppet& p, Ear& e, auto&) { EXPECT_NE(e.heard.positionMm, p.reading.positionMm); });

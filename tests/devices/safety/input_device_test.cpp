@@ -15,7 +15,7 @@ namespace {
 
 using core::Quat;
 using core::Vec3;
-using link::Trouble;
+using link::DeviceFault;
 using test::errorOf;
 using testing::HasSubstr;
 
@@ -123,7 +123,7 @@ TEST_F(InputDeviceTest, theHandGoesWhereTheInputIs) {
     EXPECT_NEAR(turned.burInTooth.orientation.angularDistance(there.burInTooth.orientation), 0.5, 1e-3);
     EXPECT_EQ(turned.status, device::ReadStatus::ok);
     const Health health = board->read();
-    EXPECT_EQ(health.gate.trouble, Trouble::none);
+    EXPECT_EQ(health.gate.trouble, DeviceFault::none);
     EXPECT_EQ(health.positionMm, bench.reading.positionMm);
     EXPECT_GT(health.frames, 100u);
 }
@@ -161,7 +161,7 @@ TEST_F(InputDeviceTest, alostInputIsADeadMan) {
         const link::DriverReading good = bench.reading;
         switch (kind) {
             case 0:
-                bench.reading.trouble = Trouble::unplugged;
+                bench.reading.trouble = DeviceFault::unplugged;
                 break;
             case 1:
                 bench.frames = false;
@@ -184,7 +184,7 @@ TEST_F(InputDeviceTest, alostInputIsADeadMan) {
         if (kind != 3) {  // there it has come to rest far away, which is a place like any other
             const Vec3 axis = cutting.burInTooth.orientation * Vec3::UnitZ();
             EXPECT_NEAR((away.burInTooth.positionMm - cutting.burInTooth.positionMm).dot(axis), 5.0, 0.1) << "lifted";
-            EXPECT_NE(board->read().gate.trouble, Trouble::none);
+            EXPECT_NE(board->read().gate.trouble, DeviceFault::none);
         }
         // It comes back with the pedal still pressed, which counts once it has been let go.
         const std::uint64_t frames = bench.reading.frame;
@@ -196,7 +196,7 @@ TEST_F(InputDeviceTest, alostInputIsADeadMan) {
         (void)run(0.02);
         bench.reading.pedal = 1.0f;
         EXPECT_EQ(run(0.02).pedal, 1.0);
-        EXPECT_EQ(board->read().gate.trouble, Trouble::none);
+        EXPECT_EQ(board->read().gate.trouble, DeviceFault::none);
     }
 }
 
@@ -214,7 +214,7 @@ TEST_F(InputDeviceTest, aTickThatStoodIsNoTroubleOfTheInput) {
         frame();
     }
     EXPECT_EQ(bench.answered.vibration, 0.0f);
-    EXPECT_EQ(board->read().gate.trouble, Trouble::none);
+    EXPECT_EQ(board->read().gate.trouble, DeviceFault::none);
     bench.reading.pedal = 1.0f;
     EXPECT_EQ(run(0.1).pedal, 1.0);
 }
@@ -267,7 +267,7 @@ TEST_F(InputDeviceTest, anotherPlacingTakesEffectWithThePedalUp) {
     (void)run(0.02);
     bench.reading.pedal = 1.0f;
     const Vec3 at = run(0.1).burInTooth.positionMm;
-    workspace::Placing placing;
+    workspace::WorkspaceMapping placing;
     placing.toothMm = {7, 0, 0};
     board->place(placing);
     EXPECT_EQ(run(kPeriodS).pedal, 0.0);
@@ -292,10 +292,10 @@ TEST_F(InputDeviceTest, aFootPedalCountsBesideAnyDevice) {
     EXPECT_NEAR(run(0.02).pedal, 0.7, 1e-6);
     bench.reading.pedal = 0.9f;
     EXPECT_NEAR(run(0.02).pedal, 0.9, 1e-6) << "the larger of both";
-    bench.reading.trouble = Trouble::unplugged;
+    bench.reading.trouble = DeviceFault::unplugged;
     press(1.0f);
     EXPECT_EQ(run(0.02).pedal, 0.0) << "no hand, no cutting";
-    bench.reading.trouble = Trouble::none;
+    bench.reading.trouble = DeviceFault::none;
     press(1.0f);
     EXPECT_EQ(run(0.2).pedal, 0.0) << "still held down";
 
@@ -320,7 +320,7 @@ TEST_F(InputDeviceTest, neitherTickNorServoTakesMemoryLocksOrWaits) {
     if (!test::RealtimeTrap::isActive()) GTEST_SKIP() << "the sanitizers own malloc";
     open();
     (void)run(0.05);
-    workspace::Placing placing;
+    workspace::WorkspaceMapping placing;
     placing.toothMm = {1, 0, 0};
     board->place(placing);
     std::mt19937_64 random(test::seed());
@@ -328,7 +328,7 @@ TEST_F(InputDeviceTest, neitherTickNorServoTakesMemoryLocksOrWaits) {
     for (int i = 0; i < 400; ++i) {
         bench.reading.buttons = static_cast<std::uint32_t>(random() % 8);
         bench.reading.pedal = static_cast<float>(i % 3) * 0.5f;
-        bench.reading.trouble = i % 50 == 49 ? Trouble::badData : Trouble::none;
+        bench.reading.trouble = i % 50 == 49 ? DeviceFault::badData : DeviceFault::none;
         bench.reading.positionMm[0] = i % 70 == 69 ? kNan : 0.01 * i;
         bench.frames = i % 90 < 60;
         (void)run(0.003, {0.1 * (i % 9), i % 40 == 0 ? kNan : 0.0, 0});

@@ -119,7 +119,7 @@ Storm cutInAStorm(const StormSettings& settings) {
         loop::HapticLoop haptic(
             loopSettings, std::move(device),
             {contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
-             std::make_unique<cutting::Cutter>(field, bur, instrument::Ability{}, tooth::builtInTissues(),
+             std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{}, cases::builtInTissues(),
                                                cutting::Cutter::Settings{})},
             force::defaultParameters());
         const loop::Listener listen = [&](const messages::HapticSample& s) {

@@ -124,7 +124,7 @@ TEST_F(ProfileTest, whatIsWrongIsToldWithItsLine) {
     EXPECT_NE(problem("format = [").find("line 1"), std::string::npos);
     // Nothing but whose it is: the rest as by default.
     write(head);
-    EXPECT_EQ(readProfile(file(), info_).placing.headAngleDeg, Placing{}.headAngleDeg);
+    EXPECT_EQ(readProfile(file(), info_).placing.headAngleDeg, WorkspaceMapping{}.headAngleDeg);
 }
 
 TEST_F(ProfileTest, namesOfFilesAreTame) {

@@ -44,7 +44,7 @@ TEST(Bur, RingsLieOnTheOutlineCloseTogetherAndCoverTheSurface) {
             }
         }
         EXPECT_NEAR(area, surfaceAreaMm2(bur.profile()), 1e-9 * area) << name;
-        EXPECT_LE(next, 1.3 * kMostSurfacePoints) << name;  // rounded up to eights
+        EXPECT_LE(next, 1.3 * kMaxSurfacePoints) << name;  // rounded up to eights
         if (area < 16.0) {
             EXPECT_EQ(bur.surfaceSpacingMm(), kSurfaceSpacingMm) << name;
         }

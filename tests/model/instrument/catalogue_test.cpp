@@ -33,7 +33,7 @@ TEST(Catalogue, HasEachBurOnceUnderEachOfItsNames) {
         EXPECT_NEAR(2.0 * bur.maxRadiusMm(), e.diameterMm, 1e-9) << e.name;
         EXPECT_NEAR(bur.lengthMm(), e.lengthMm, 1e-9) << e.name;
         EXPECT_EQ(std::stod(e.isoNumber.substr(12)), std::round(10.0 * e.diameterMm)) << e.name;
-        EXPECT_EQ(abilityByName(e.ability).name, e.ability);
+        EXPECT_EQ(abilityByName(e.cuttingParameters).name, e.cuttingParameters);
         EXPECT_FALSE(e.description.empty()) << e.name;
         shapesSeen.insert(e.shape);
         isoNumbers.insert(e.isoNumber);
@@ -57,19 +57,19 @@ TEST(Catalogue, BuildsTheIsoNumberFromItsGroups) {
 }
 
 TEST(Catalogue, CoarserGritCutsFaster) {
-    const auto cutting = [](const char* name) { return makeInstrument(name).ability.cutting; };
+    const auto cutting = [](const char* name) { return makeInstrument(name).cuttingParameters.cutting; };
     EXPECT_LT(cutting("8856-016"), cutting("856-016"));
     EXPECT_LT(cutting("856-016"), cutting("6856-016"));
     EXPECT_EQ(cutting("paper"), 1.0);
-    EXPECT_EQ(makeInstrument("round:1.0x1.0").ability.name, "diamond-medium");
-    EXPECT_EQ(makeInstrument("330").ability.name, "carbide");
-    EXPECT_EQ(makeInstrument("330", {}, "steel").ability.name, "steel");
-    EXPECT_EQ(makeInstrument("557").ability.name, "carbide-cross-cut");
+    EXPECT_EQ(makeInstrument("round:1.0x1.0").cuttingParameters.name, "diamond-medium");
+    EXPECT_EQ(makeInstrument("330").cuttingParameters.name, "carbide");
+    EXPECT_EQ(makeInstrument("330", {}, "steel").cuttingParameters.name, "steel");
+    EXPECT_EQ(makeInstrument("557").cuttingParameters.name, "carbide-cross-cut");
     EXPECT_EQ(abilityByName("diamond-medium").loadCapN, 1.5);
     EXPECT_EQ(abilityByName("diamond-coarse").loadCapN, 3.0);
-    for (const BurFile::NamedAbility& a : builtInBurs().abilities) {
-        validate(a.ability);
-        EXPECT_FALSE(a.source.empty()) << a.ability.name;
+    for (const BurFile::NamedCuttingParameters& a : builtInBurs().abilities) {
+        validate(a.cuttingParameters);
+        EXPECT_FALSE(a.source.empty()) << a.cuttingParameters.name;
     }
 }
 
@@ -110,18 +110,18 @@ diameter_mm = 3
 length_mm = 3
 )");
     const Instrument cone = makeInstrument("my-cone", mine);
-    EXPECT_EQ(cone.ability.name, "blunt");
-    EXPECT_EQ(cone.ability.cutting, 0.1);
-    EXPECT_EQ(cone.ability.edges, 8);
-    EXPECT_EQ(cone.ability.loadCapN, 1.5) << "what is left out is as the reference";
+    EXPECT_EQ(cone.cuttingParameters.name, "blunt");
+    EXPECT_EQ(cone.cuttingParameters.cutting, 0.1);
+    EXPECT_EQ(cone.cuttingParameters.edges, 8);
+    EXPECT_EQ(cone.cuttingParameters.loadCapN, 1.5) << "what is left out is as the reference";
     EXPECT_NEAR(cone.bur->maxRadiusMm(), 0.6, 1e-12);
     const Instrument scan = makeInstrument("scan", mine);
-    EXPECT_EQ(scan.ability.name, "steel");
+    EXPECT_EQ(scan.cuttingParameters.name, "steel");
     EXPECT_NEAR(scan.bur->maxRadiusMm(), 0.7, 0.02);
     EXPECT_NEAR(makeInstrument("330", mine).bur->maxRadiusMm(), 1.5, 1e-12) << "one's own goes first";
-    EXPECT_EQ(makeInstrument("round-4", mine).ability.cutting, 2.0) << "abilities too";
-    EXPECT_EQ(makeInstrument((folder() / "scanned.stl").string(), mine, "blunt").ability.name, "blunt");
-    EXPECT_EQ(makeInstrument((folder() / "scanned.stl").string()).ability.name, "diamond-medium");
+    EXPECT_EQ(makeInstrument("round-4", mine).cuttingParameters.cutting, 2.0) << "abilities too";
+    EXPECT_EQ(makeInstrument((folder() / "scanned.stl").string(), mine, "blunt").cuttingParameters.name, "blunt");
+    EXPECT_EQ(makeInstrument((folder() / "scanned.stl").string()).cuttingParameters.name, "diamond-medium");
 }
 
 TEST_F(OwnBurs, AWrongFileIsToldWithItsLine) {
@@ -165,7 +165,7 @@ TEST_F(OwnBurs, WhatThereIsNotIsToldInOneLine) {
                 AllOf(HasSubstr("magic"), HasSubstr("carbide")));
     EXPECT_THAT(errorOf([] { (void)makeInstrument("round:1x0"); }), HasSubstr("0 mm"));
     EXPECT_THAT(errorOf([] { (void)makeInstrument("cylinder-flat:1.0x0.0"); }), HasSubstr("0 mm"));
-    Ability a;
+    CuttingParameters a;
     a.chipMm = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THAT(errorOf([&] { validate(a); }), HasSubstr("chip_mm"));
 }

@@ -23,8 +23,8 @@ using geometry::TriangleMesh;
 using geometry::TriangleTree;
 
 /// Teeth take seconds to make: each once, for all tests.
-const tooth::Case& molar() {
-    static const tooth::Case made = makeTooth(ToothKind::lowerFirstMolar, {9760, 0, false});
+const cases::Case& molar() {
+    static const cases::Case made = makeTooth(ToothKind::lowerFirstMolar, {9760, 0, false});
     return made;
 }
 const TriangleMesh& fineOuter() {
@@ -32,7 +32,7 @@ const TriangleMesh& fineOuter() {
     return made;
 }
 
-std::string asMade(const tooth::Case& c) {
+std::string asMade(const cases::Case& c) {
     core::Hasher hash;
     const auto add = [&](const TriangleMesh& mesh) {
         for (const Vec3& v : mesh.vertices)
@@ -44,7 +44,7 @@ std::string asMade(const tooth::Case& c) {
     };
     add(c.outer);
     for (const auto* parts : {&c.parts, &c.scenery})
-        for (const tooth::Part& part : *parts)
+        for (const cases::Part& part : *parts)
             add(part.mesh);
     return std::to_string(hash.value());
 }
@@ -183,15 +183,15 @@ TEST(Starter, ShapeDoesNotDependOnTheFaceCount) {
 }
 
 TEST(Starter, TissuesAreSolidsInsideOneAnother) {
-    const tooth::Case& c = molar();
+    const cases::Case& c = molar();
     ASSERT_EQ(c.parts.size(), 4u);
     std::map<std::string, const TriangleMesh*> part;
-    for (const tooth::Part& p : c.parts) {
+    for (const cases::Part& p : c.parts) {
         SCOPED_TRACE(p.name);
         part[p.name] = &p.mesh;
         expectSolid(p.mesh, 0);
-        EXPECT_EQ(p.name, tooth::properties(p.tissue).name);
-        EXPECT_EQ(p.priority, tooth::properties(p.tissue).priority);
+        EXPECT_EQ(p.name, cases::properties(p.tissue).name);
+        EXPECT_EQ(p.priority, cases::properties(p.tissue).priority);
     }
     const auto farthestOut = [&](const TriangleMesh& inner, const TriangleMesh& outer) {
         const TriangleTree tree(outer);
@@ -252,19 +252,19 @@ TEST(Starter, IsTheSameAtAnyThreadCount) {
 }
 
 TEST(Starter, SceneHasNeighboursGumAndBone) {
-    const tooth::Case c = makeTooth(ToothKind::upperIncisor, {2000, 2000, true});
-    std::map<std::string, const tooth::Part*> scenery;
-    for (const tooth::Part& p : c.scenery) {
+    const cases::Case c = makeTooth(ToothKind::upperIncisor, {2000, 2000, true});
+    std::map<std::string, const cases::Part*> scenery;
+    for (const cases::Part& p : c.scenery) {
         SCOPED_TRACE(p.name);
         scenery[p.name] = &p;
         EXPECT_TRUE(geometry::inspect(p.mesh).closed());
     }
     ASSERT_EQ(scenery.size(), 4u);
-    EXPECT_EQ(scenery.at("gum")->tissue, tooth::Tissue::gum);
-    EXPECT_EQ(scenery.at("bone")->tissue, tooth::Tissue::bone);
+    EXPECT_EQ(scenery.at("gum")->tissue, cases::Tissue::gum);
+    EXPECT_EQ(scenery.at("bone")->tissue, cases::Tissue::bone);
     EXPECT_GT(scenery.at("mesial-neighbour")->mesh.bounds().centre().x(), 5.0);
     EXPECT_LT(scenery.at("distal-neighbour")->mesh.bounds().centre().x(), -5.0);
-    for (const tooth::Part& p : c.parts)
+    for (const cases::Part& p : c.parts)
         EXPECT_EQ(p.mesh.triangles.size(), 2000u) << p.name;
 }
 

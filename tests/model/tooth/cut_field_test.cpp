@@ -7,9 +7,9 @@
 #include <bit>
 #include <numbers>
 
-#include "cut_support.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
+#include "support/cut_support.h"
 #include "support/realtime_trap.h"
 
 namespace handpiece::tooth {
@@ -22,30 +22,31 @@ using test::cutAway;
 double ballMm3(double radius) {
     return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
 }
-double of(const TissueVolumes& v, Tissue tissue) {
+double of(const TissueVolumes& v, cases::Tissue tissue) {
     return v[static_cast<std::size_t>(tissue)];
 }
 
 TEST(CutField, VolumesByTissueAreThoseOfTheShapes) {
     const auto base = ballTooth(2.0, 1.2, 0.05);
     // Inner boundaries count by whole nodes, and this ball lies evenly on them.
-    EXPECT_NEAR(of(base->volumesMm3, Tissue::dentine), ballMm3(1.2), 4e-3 * ballMm3(1.2));
-    EXPECT_NEAR(of(base->volumesMm3, Tissue::dentine) + of(base->volumesMm3, Tissue::enamel), ballMm3(2.0),
-                3e-4 * ballMm3(2.0));
-    EXPECT_NEAR(of(base->volumesMm3, Tissue::enamel), ballMm3(2.0) - ballMm3(1.2), 1e-3 * ballMm3(2.0));
+    EXPECT_NEAR(of(base->volumesMm3, cases::Tissue::dentine), ballMm3(1.2), 4e-3 * ballMm3(1.2));
+    EXPECT_NEAR(of(base->volumesMm3, cases::Tissue::dentine) + of(base->volumesMm3, cases::Tissue::enamel),
+                ballMm3(2.0), 3e-4 * ballMm3(2.0));
+    EXPECT_NEAR(of(base->volumesMm3, cases::Tissue::enamel), ballMm3(2.0) - ballMm3(1.2), 1e-3 * ballMm3(2.0));
     CutField field(base);
     EXPECT_EQ(field.volumesMm3(), base->volumesMm3);
 
     // A ball of 0.5 mm out of the dentine, and one out of enamel and dentine along x.
     cutAway(field, [](const Vec3& p) { return test::ball(p, 0.5); });
     const TissueVolumes once = field.volumesMm3();
-    EXPECT_NEAR(of(base->volumesMm3, Tissue::dentine) - of(once, Tissue::dentine), ballMm3(0.5), 4e-3 * ballMm3(0.5));
-    EXPECT_EQ(of(once, Tissue::enamel), of(base->volumesMm3, Tissue::enamel));
+    EXPECT_NEAR(of(base->volumesMm3, cases::Tissue::dentine) - of(once, cases::Tissue::dentine), ballMm3(0.5),
+                4e-3 * ballMm3(0.5));
+    EXPECT_EQ(of(once, cases::Tissue::enamel), of(base->volumesMm3, cases::Tissue::enamel));
     const Vec3 there(1.2, 0.0, 0.0);
     cutAway(field, [&](const Vec3& p) { return test::ball(p - there, 0.3); });
     const TissueVolumes twice = field.volumesMm3();
-    const double enamel = of(once, Tissue::enamel) - of(twice, Tissue::enamel),
-                 dentine = of(once, Tissue::dentine) - of(twice, Tissue::dentine);
+    const double enamel = of(once, cases::Tissue::enamel) - of(twice, cases::Tissue::enamel),
+                 dentine = of(once, cases::Tissue::dentine) - of(twice, cases::Tissue::dentine);
     EXPECT_NEAR(enamel + dentine, ballMm3(0.3), 5e-3 * ballMm3(0.3));
     // The lens of two balls at distance d, R 1.2 and r 0.3.
     const double r = 0.3, big = 1.2, d = 1.2;
@@ -61,7 +62,7 @@ TEST(CutField, WholeBricksAgreeOnTheNodesTheyShare) {
         settings.bandMm = band;
         const auto base = ballTooth(2.0, 1.0, 0.05, settings, bandIn);
         CutField field(base);
-        const FieldView view = field.field().view();
+        const field::FieldView view = field.field().view();
         std::size_t fresh = 0;
         for (std::uint32_t dense = 0; dense < test::denseCount(field.field()); ++dense) {
             const bool had = view.brickIndex[dense] >= 0;
@@ -77,8 +78,8 @@ TEST(CutField, WholeBricksAgreeOnTheNodesTheyShare) {
         // The bounds never claim to be deeper than it is.
         for (std::uint32_t dense = 0; dense < test::denseCount(field.field()); ++dense) {
             if (view.brickIndex[dense] < 0) continue;
-            const auto brick = brickAt(view.bricks, dense);
-            for (int i = 0; i < kBrickValues; i += 7) {
+            const auto brick = field::brickAt(view.bricks, dense);
+            for (int i = 0; i < field::kBrickValues; i += 7) {
                 const int node[3] = {i % 9, i / 9 % 9, i / 81};
                 Vec3 p;
                 for (int k = 0; k < 3; ++k)
@@ -118,7 +119,7 @@ TEST(CutField, RestoresInPiecesWithoutATear) {
     const auto base = ballTooth(1.5, 0.8, 0.05);
     std::mt19937_64 generator(handpiece::test::seed());
     CutField field(base);
-    std::vector<CutState> states{field.state()};
+    std::vector<StateDelta> states{field.state()};
     for (int step = 0; step < 4; ++step) {
         const Vec3 centre = handpiece::test::randomDirection(generator) * handpiece::test::uniform(generator, 0.0, 1.6);
         const double radius = handpiece::test::uniform(generator, 0.2, 0.6);
@@ -130,8 +131,8 @@ TEST(CutField, RestoresInPiecesWithoutATear) {
         states.push_back(field.state());
     }
     for (int step = 0; step < 12; ++step) {
-        const CutState& target = states[generator() % states.size()];
-        const CutState change = changeBetween(field.state(), target);
+        const StateDelta& target = states[generator() % states.size()];
+        const StateDelta change = changeBetween(field.state(), target);
         const std::size_t most = 1 + generator() % 7;
         std::size_t from = 0;
         for (int calls = 0; from < change.bricks.size(); ++calls) {
@@ -154,13 +155,13 @@ TEST(CutField, BoundsInTheCoreHoldAfterARestore) {
     const auto shape = [&](const Vec3& p) { return test::ball(p - at, 0.9); };
     CutField cut(base), field(base);
     cutAway(cut, shape);
-    const CutState state = cut.state();
+    const StateDelta state = cut.state();
     (void)field.restore(state, 0, state.bricks.size());
-    const FieldView view = field.field().view(), before = base->tooth->field.view();
+    const field::FieldView view = field.field().view(), before = base->tooth->field.view();
     std::size_t raised = 0, core = 0;
     for (std::uint32_t dense = 0; dense < test::denseCount(field.field()); ++dense) {
         if (view.brickIndex[dense] >= 0 || before.coarse[dense] >= 0.0f) continue;
-        const auto brick = brickAt(view.bricks, dense);
+        const auto brick = field::brickAt(view.bricks, dense);
         Vec3 centre;
         for (int k = 0; k < 3; ++k)
             centre[k] = view.originMm[k] + view.voxelMm * (8 * brick[static_cast<std::size_t>(k)] + 4);
@@ -172,7 +173,7 @@ TEST(CutField, BoundsInTheCoreHoldAfterARestore) {
     EXPECT_GT(raised, 50u);
     EXPECT_GT(core, raised);
     // And all is as it was when nothing is cut any more.
-    const CutState undo = changeBetween(state, CutState{});
+    const StateDelta undo = changeBetween(state, StateDelta{});
     (void)field.restore(undo, 0, undo.bricks.size());
     for (std::uint32_t dense = 0; dense < test::denseCount(field.field()); ++dense)
         ASSERT_EQ(view.coarse[dense], std::max(before.coarse[dense], -2.0f));
@@ -185,7 +186,7 @@ TEST(CutField, SaysWhereItIsCut) {
         return field.isCutNear({centre - Vec3::Constant(half), centre + Vec3::Constant(half)});
     };
     EXPECT_FALSE(near(Vec3::Zero(), 10.0));
-    const CutState whole = field.state();
+    const StateDelta whole = field.state();
     const Vec3 at(1.5, 0.0, 0.0);
     cutAway(field, [&](const Vec3& p) { return test::ball(p - at, 0.3); });
     EXPECT_TRUE(near(at, 0.1));
@@ -196,14 +197,14 @@ TEST(CutField, SaysWhereItIsCut) {
     EXPECT_FALSE(near(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), 1.0));
     // Against the plain way, for many boxes.
     std::mt19937_64 generator(handpiece::test::seed());
-    const FieldView view = field.field().view();
-    const CutState state = field.state();
+    const field::FieldView view = field.field().view();
+    const StateDelta state = field.state();
     for (int i = 0; i < 2000; ++i) {
         const Vec3 centre = handpiece::test::randomDirection(generator) * handpiece::test::uniform(generator, 0.0, 2.5);
         const double half = handpiece::test::uniform(generator, 0.0, 0.7);
         bool wanted = false;
-        for (const CutState::Brick& brick : state.bricks) {
-            const auto index = brickAt(view.bricks, brick.dense);
+        for (const StateDelta::Brick& brick : state.bricks) {
+            const auto index = field::brickAt(view.bricks, brick.dense);
             bool overlaps = true;
             for (int k = 0; k < 3; ++k) {
                 const double low = view.originMm[k] + 8 * view.voxelMm * index[static_cast<std::size_t>(k)];
@@ -214,7 +215,7 @@ TEST(CutField, SaysWhereItIsCut) {
         EXPECT_EQ(near(centre, half), wanted);
     }
     // Once put back it is whole.
-    const CutState change = changeBetween(field.state(), whole);
+    const StateDelta change = changeBetween(field.state(), whole);
     EXPECT_EQ(field.restore(change, 0, change.bricks.size() + 100000), change.bricks.size());
     EXPECT_FALSE(near(Vec3::Zero(), 10.0));
 }
@@ -259,8 +260,8 @@ TEST(CutField, KeepsTheTicksLaw) {
     const auto base = ballTooth(1.5, 0.8, 0.05);
     CutField field(base);
     cutAway(field, [](const Vec3& p) { return test::ball(p - Vec3(1.5, 0, 0), 0.4); });
-    const CutState cut = field.state();
-    const CutState change = changeBetween(cut, CutState{});
+    const StateDelta cut = field.state();
+    const StateDelta change = changeBetween(cut, StateDelta{});
     std::uint64_t calls = 0;
     {
         const handpiece::test::RealtimeTrap trap;
@@ -281,13 +282,14 @@ TEST(PrepareCutting, RefusesWhatCannotBe) {
     for (const double band : {-1.0, 0.01, 50.0, std::numeric_limits<double>::quiet_NaN()}) {
         CutSettings settings;
         settings.bandMm = band;
-        EXPECT_THROW(
-            (void)prepareCutting(base->tooth, TissueMap::uniform(base->tooth->field, Tissue::enamel), settings),
-            core::Error);
+        EXPECT_THROW((void)prepareCutting(
+                         base->tooth, field::TissueMap::uniform(base->tooth->field, cases::Tissue::enamel), settings),
+                     core::Error);
     }
     const auto other = ballTooth(1.5, 0.5, 0.05);
-    EXPECT_THROW((void)prepareCutting(base->tooth, TissueMap::uniform(other->tooth->field, Tissue::enamel)),
-                 core::Error);
+    EXPECT_THROW(
+        (void)prepareCutting(base->tooth, field::TissueMap::uniform(other->tooth->field, cases::Tissue::enamel)),
+        core::Error);
     EXPECT_DOUBLE_EQ(base->settings.bandMm, 0.2);
     EXPECT_DOUBLE_EQ(ballTooth(1.0, 0.5, 0.1)->settings.bandMm, 0.3);
 }

@@ -6,7 +6,7 @@
 
 #include <bit>
 
-#include "cut_support.h"
+#include "support/cut_support.h"
 
 namespace handpiece::tooth {
 namespace {
@@ -20,7 +20,7 @@ TEST(CutMirror, FollowsTheField) {
     CutField field(base);
     CutMirror mirror(base);
     std::mt19937_64 generator(handpiece::test::seed());
-    const CutState whole = field.state();
+    const StateDelta whole = field.state();
     std::vector<std::uint32_t> touched;
     for (int step = 0; step < 5; ++step) {
         const Vec3 centre = handpiece::test::randomDirection(generator) * 1.4;
@@ -44,8 +44,8 @@ TEST(CutMirror, FollowsTheField) {
     EXPECT_TRUE(mirror.takeTouched().empty());
 
     // An undo comes through snapshots like any cut, or at once as a change.
-    const CutState cut = field.state();
-    const CutState undo = changeBetween(cut, whole);
+    const StateDelta cut = field.state();
+    const StateDelta undo = changeBetween(cut, whole);
     (void)field.restore(undo, 0, undo.bricks.size());
     (void)field.handOver(100000, [&](const BrickSnapshot& s) {
         mirror.apply(s);
@@ -57,19 +57,19 @@ TEST(CutMirror, FollowsTheField) {
     mirror.apply(undo);
     EXPECT_TRUE(mirror.state({}).bricks.empty());
     EXPECT_FALSE(mirror.isChanged(cut.bricks[0].dense));
-    std::array<float, kBrickValues> scratch, wanted;
+    std::array<float, field::kBrickValues> scratch, wanted;
     base->wholeBrick(cut.bricks[0].dense, wanted.data());
     const float* values = mirror.values(cut.bricks[0].dense, scratch.data());
     EXPECT_TRUE(std::equal(wanted.begin(), wanted.end(), values));
 }
 
-TEST(CutState, ChangesLeadFromAnyStateToAnyOther) {
+TEST(StateDelta, ChangesLeadFromAnyStateToAnyOther) {
     const auto base = ballTooth(1.2, 0.6, 0.05);
     CutField one(base), two(base);
     cutAway(one, [](const Vec3& p) { return test::ball(p - Vec3(1.2, 0, 0), 0.4); });
     cutAway(two, [](const Vec3& p) { return test::ball(p - Vec3(0.9, 0.6, 0), 0.4); });
-    const CutState a = one.state(), b = two.state();
-    const CutState change = changeBetween(a, b);
+    const StateDelta a = one.state(), b = two.state();
+    const StateDelta change = changeBetween(a, b);
     std::size_t whole = 0;
     for (std::size_t i = 0; i < change.bricks.size(); ++i) {
         whole += change.bricks[i].whole;
@@ -82,7 +82,7 @@ TEST(CutState, ChangesLeadFromAnyStateToAnyOther) {
     mirror.apply(change);
     EXPECT_EQ(stateHash(mirror.state({})), stateHash(b));
     EXPECT_TRUE(changeBetween(a, a).bricks.empty());
-    EXPECT_TRUE(changeBetween(CutState{}, CutState{}).bricks.empty());
+    EXPECT_TRUE(changeBetween(StateDelta{}, StateDelta{}).bricks.empty());
 }
 
 }  // namespace

@@ -8,10 +8,10 @@
 #include <bit>
 #include <cstring>
 
-#include "cut_support.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/tooth/cut_state_file.h"
+#include "support/cut_support.h"
 
 namespace handpiece::tooth {
 namespace {
@@ -31,7 +31,7 @@ class CutStateFile : public ::testing::Test {
         field.addRemoved(removed);
         state = field.state();
     }
-    static void expectSame(const CutState& a, const CutState& b) {
+    static void expectSame(const StateDelta& a, const StateDelta& b) {
         ASSERT_EQ(a.bricks.size(), b.bricks.size());
         EXPECT_EQ(a.removedMm3, b.removedMm3);
         for (std::size_t i = 0; i < a.bricks.size(); ++i) {
@@ -54,7 +54,7 @@ class CutStateFile : public ::testing::Test {
 
     std::shared_ptr<const CuttableTooth> base;
     std::uint64_t key;
-    CutState state;
+    StateDelta state;
 };
 
 TEST_F(CutStateFile, ComesBackBitForBit) {
@@ -65,20 +65,20 @@ TEST_F(CutStateFile, ComesBackBitForBit) {
     EXPECT_EQ(encodeState(state, key), data);
     core::setThreadCount(0);
     // Well below the plain floats.
-    EXPECT_LT(data.size(), state.bricks.size() * sizeof(float) * kBrickValues / 2);
-    expectSame(decodeState(encodeState(CutState{}, key), key, *base), CutState{});
+    EXPECT_LT(data.size(), state.bricks.size() * sizeof(float) * field::kBrickValues / 2);
+    expectSame(decodeState(encodeState(StateDelta{}, key), key, *base), StateDelta{});
 }
 
 TEST_F(CutStateFile, ChangesToo) {
     CutField field(base);
     cutAway(field, [](const Vec3& p) { return test::ball(p - Vec3(0.0, 1.4, 0.1), 0.5); });
-    const CutState change = changeBetween(state, field.state());
+    const StateDelta change = changeBetween(state, field.state());
     expectSame(decodeState(encodeState(change, key), key, *base), change);
 }
 
 TEST_F(CutStateFile, AnyValuesComeBack) {
     std::mt19937_64 generator(handpiece::test::seed());
-    for (CutState::Brick& brick : state.bricks)
+    for (StateDelta::Brick& brick : state.bricks)
         for (float& value : brick.values)
             value = generator() % 8 == 0 ? -0.0f
                                          : static_cast<float>(handpiece::test::uniform(generator, -0.2, 0.1)) *
@@ -87,7 +87,7 @@ TEST_F(CutStateFile, AnyValuesComeBack) {
 }
 
 TEST_F(CutStateFile, ResumesInAFieldOfItsOwn) {
-    const CutState back = decodeState(encodeState(state, key), key, *base);
+    const StateDelta back = decodeState(encodeState(state, key), key, *base);
     CutField field(base);
     (void)field.restore(back, 0, back.bricks.size());
     EXPECT_EQ(field.stateHash(), stateHash(state));
@@ -115,7 +115,7 @@ TEST_F(CutStateFile, RefusesEverythingElse) {
         EXPECT_NE(refusal(bad), "taken");
     }
     // Rightly sealed, and yet nothing that this tooth could hold.
-    CutState wrong = state;
+    StateDelta wrong = state;
     std::swap(wrong.bricks[3].dense, wrong.bricks[4].dense);
     EXPECT_THAT(refusal(encodeState(wrong, key)), HasSubstr("damaged"));
     for (const float value : {-5.0f, 5.0f, std::numeric_limits<float>::quiet_NaN()}) {

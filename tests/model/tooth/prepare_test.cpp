@@ -9,7 +9,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
-#include "handpiece/model/tooth/field_cache.h"
+#include "handpiece/model/field/field_cache.h"
 #include "handpiece/model/tooth/tooth.h"
 #include "support/closed_meshes.h"
 #include "support/random.h"
@@ -27,8 +27,8 @@ class PrepareTooth : public ::testing::Test {
         toothCase.source = folder.path() / "case";
         fs::create_directories(toothCase.source);
         toothCase.outer = test::bumpyMesh(3, 2.0);
-        toothCase.parts = {{"enamel", Tissue::enamel, 10, toothCase.outer},
-                           {"dentine", Tissue::dentine, 20, test::sphereMesh(3, 1.2)}};
+        toothCase.parts = {{"enamel", cases::Tissue::enamel, 10, toothCase.outer},
+                           {"dentine", cases::Tissue::dentine, 20, test::sphereMesh(3, 1.2)}};
         settings.field.voxelMm = 0.1;
         ::setenv("XDG_CACHE_HOME", (folder.path() / "user").c_str(), 1);
     }
@@ -40,8 +40,8 @@ class PrepareTooth : public ::testing::Test {
     }
 
     test::TemporaryFolder folder;
-    Case toothCase;
-    PrepareSettings settings;
+    cases::Case toothCase;
+    tooth::PrepareSettings settings;
 };
 
 TEST_F(PrepareTooth, BuildsThenReopensTheSame) {
@@ -56,7 +56,7 @@ TEST_F(PrepareTooth, BuildsThenReopensTheSame) {
     EXPECT_EQ(again->outer.triangles, built->outer.triangles);
     const core::Vec3 p(0.3, -1.2, 1.1);
     EXPECT_EQ(again->tree.signedDistance(p), built->tree.signedDistance(p));
-    EXPECT_EQ(again->field.tissueAt({0, 0, 0}), Tissue::dentine);
+    EXPECT_EQ(again->field.tissueAt({0, 0, 0}), cases::Tissue::dentine);
 }
 
 TEST_F(PrepareTooth, OtherSettingsOrSurfacesAreBuiltAnew) {
@@ -83,11 +83,11 @@ TEST_F(PrepareTooth, AForgedCacheIsBuiltAnew) {
     const fs::path file = fs::directory_iterator(toothCase.source / ".handpiece-cache")->path();
     const std::vector<std::byte> good = core::readFile(file);
     // All of the surface a tenth of a millimetre too high, and every sum as it should be.
-    const auto shifted = ToothField::fromFunction(
+    const auto shifted = field::DistanceField::fromFunction(
         built->tree.bounds().grown(settings.field.bandOutMm + settings.field.voxelMm), settings.field,
         [&](const core::Vec3& p) { return built->tree.signedDistance(p - core::Vec3(0, 0, 0.1)); });
-    const std::uint64_t key = cacheKey(toothCase, settings.field);
-    core::writeFile(file, encodeField(shifted, key));
+    const std::uint64_t key = field::cacheKey(toothCase, settings.field);
+    core::writeFile(file, field::encodeField(shifted, key));
     auto again = prepareTooth(toothCase, settings);
     EXPECT_FALSE(again->fromCache);
     EXPECT_EQ(again->field.stateHash(), built->field.stateHash());
@@ -144,7 +144,7 @@ TEST_F(PrepareTooth, AReadOnlyCaseUsesTheUsersCache) {
 }
 
 TEST_F(PrepareTooth, SaysWhyACaseCannotBeFelt) {
-    const auto complaint = [&](const Case& c) -> std::string {
+    const auto complaint = [&](const cases::Case& c) -> std::string {
         try {
             (void)prepareTooth(c, settings);
         } catch (const core::Error& error) {
@@ -152,7 +152,7 @@ TEST_F(PrepareTooth, SaysWhyACaseCannotBeFelt) {
         }
         return "";
     };
-    Case bad = toothCase;
+    cases::Case bad = toothCase;
     bad.outer = {};
     EXPECT_NE(complaint(bad).find("a case of several parts needs outer.stl"), std::string::npos);
     bad.parts.clear();

@@ -11,14 +11,14 @@
 namespace handpiece {
 namespace {
 
-using Values = std::array<float, tooth::kBrickValues>;
+using Values = std::array<float, field::kBrickValues>;
 
 /// A mirror that is a map: what is not in it is whole.
 class FakeMirror final : public history::BrickSource {
   public:
     bool isChanged(std::uint32_t dense) const override { return bricks.contains(dense); }
     const float* values(std::uint32_t dense, float*) const override { return bricks.at(dense).data(); }
-    void apply(const tooth::CutState& change) {
+    void apply(const tooth::StateDelta& change) {
         for (const auto& brick : change.bricks) {
             if (brick.whole) {
                 bricks.erase(brick.dense);
@@ -93,7 +93,7 @@ TEST_F(HistoryTest, ManyStepsAtOnceNeedNoMirrorInBetween) {
         ASSERT_TRUE(stroke(history, 10));
     const FakeMirror last = mirror;
     // The mirror hears of nothing until all is asked for.
-    std::vector<tooth::CutState> changes;
+    std::vector<tooth::StateDelta> changes;
     while (auto change = history.undo())
         changes.push_back(std::move(*change));
     for (const auto& change : changes)
@@ -156,7 +156,7 @@ TEST_F(HistoryTest, ResetMakesItWholeAndCanBeUndone) {
 
 TEST_F(HistoryTest, AResumedToothCannotBeUndoneButResetIsWhole) {
     history::History history;
-    tooth::CutState resumed;
+    tooth::StateDelta resumed;
     resumed.removedMm3[1] = 2;
     resumed.bricks.push_back({17, false, whole(3)});
     mirror.apply(resumed);
@@ -199,7 +199,7 @@ TEST_F(HistoryTest, PutTogetherAgainItTakesTheSameSteps) {
         ASSERT_TRUE(stroke(history, 5));
     for (int i = 0; i < 2; ++i)
         mirror.apply(*history.undo());
-    tooth::CutState now;
+    tooth::StateDelta now;
     now.removedMm3 = mirror.removed;
     for (const auto& [dense, values] : mirror.bricks)
         now.bricks.push_back({dense, false, values});
@@ -210,7 +210,7 @@ TEST_F(HistoryTest, PutTogetherAgainItTakesTheSameSteps) {
     EXPECT_EQ(again.undoSteps(), 4u);
     EXPECT_EQ(again.redoSteps(), 2u);
     FakeMirror other = mirror;
-    const auto both = [&](std::optional<tooth::CutState> a, std::optional<tooth::CutState> b) {
+    const auto both = [&](std::optional<tooth::StateDelta> a, std::optional<tooth::StateDelta> b) {
         ASSERT_EQ(a.has_value(), b.has_value());
         if (!a) return;
         mirror.apply(*a);

@@ -9,8 +9,8 @@
 namespace handpiece::session {
 namespace {
 
+using cases::Tissue;
 using messages::HapticSample;
-using tooth::Tissue;
 
 struct Watched {
     std::vector<std::string> told;

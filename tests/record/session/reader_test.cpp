@@ -64,6 +64,25 @@ TEST_F(Reader, SaysWhatIsWrong) {
     std::filesystem::remove(path());
 }
 
+// A session that goes on while somebody reads it: its last chunk, begun before, is written anew far behind.
+TEST_F(Reader, ReadsOnWhileTheFileGrows) {
+    const std::filesystem::path growing = path().parent_path() / "growing.h5";
+    test::MadeUpHand hand(1, 100);
+    constexpr std::uint64_t kBefore = 5550, kAfter = 60000;
+    {
+        session::SessionWriter writer(growing, {100, "a", "1", "{}", std::vector<std::byte>(10)});
+        for (std::uint64_t i = 0; i < kBefore; ++i)
+            writer.append(session::recordOf(hand.next()));
+    }
+    const session::SessionReader reader(growing);
+    ASSERT_EQ(reader.size(), kBefore);
+    session::SessionWriter writer(growing);
+    for (std::uint64_t i = 0; i < kAfter; ++i)
+        writer.append(session::recordOf(hand.next()));
+    EXPECT_EQ(reader.records(0, kBefore).size(), kBefore);
+    EXPECT_EQ(reader.records(kBefore - 1, 1).size(), 1u);
+}
+
 // Metadata carries checksums, packed chunks mostly betray themselves, key frames have a hash: what is read and does not
 // throw has the right shape.
 TEST_F(Reader, BytesThatChangedAreToldOrHarmless) {

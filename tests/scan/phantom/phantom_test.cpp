@@ -11,14 +11,14 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/isosurface.h"
+#include "handpiece/model/field/part_tissues.h"
 #include "handpiece/model/starter/starter.h"
-#include "handpiece/model/tooth/part_tissues.h"
 
 namespace handpiece::phantom {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
-using tooth::Tissue;
 
 constexpr unsigned kSeed = 611;
 
@@ -30,17 +30,17 @@ geometry::TriangleMesh ball(const Vec3& centre, double radiusMm) {
         settings);
 }
 
-tooth::Part partOf(Tissue tissue, geometry::TriangleMesh mesh) {
-    return {std::string(tooth::properties(tissue).name), tissue, tooth::properties(tissue).priority, std::move(mesh)};
+cases::Part partOf(Tissue tissue, geometry::TriangleMesh mesh) {
+    return {std::string(cases::properties(tissue).name), tissue, cases::properties(tissue).priority, std::move(mesh)};
 }
 
 const Vec3 kCentre(0.13, -0.21, 0.37);
 constexpr double kEnamelMm = 3.0, kDentineMm = 2.2, kPulpMm = 1.1;
 
 /// Balls in balls: everything about them is known.
-const tooth::Case& onion() {
-    static const tooth::Case made = [] {
-        tooth::Case c;
+const cases::Case& onion() {
+    static const cases::Case made = [] {
+        cases::Case c;
         c.name = "onion";
         c.outer = ball(kCentre, kEnamelMm);
         c.parts = {partOf(Tissue::enamel, c.outer), partOf(Tissue::dentine, ball(kCentre, kDentineMm)),
@@ -50,8 +50,8 @@ const tooth::Case& onion() {
     return made;
 }
 
-const tooth::Case& premolar() {
-    static const tooth::Case made = starter::makeTooth(starter::ToothKind::upperPremolar, {12000, 8000, false});
+const cases::Case& premolar() {
+    static const cases::Case made = starter::makeTooth(starter::ToothKind::upperPremolar, {12000, 8000, false});
     return made;
 }
 
@@ -80,7 +80,7 @@ double sumOverOutside(const Image& image, Scanner scanner) {
 }
 
 TEST(Phantom, AVoxelIsTheMeanOfWhatLiesInIt) {
-    tooth::Case one;
+    cases::Case one;
     one.outer = onion().outer;
     const Image image = phantom::image(one, sharp(250.0));
     const volume::Grid& grid = image.volume.grid;
@@ -164,7 +164,7 @@ TEST(Phantom, PartialVolumesAddUpToTheTissuesBeforeAndAfterBlur) {
             s.blurVoxels = blur;
             const Image image = phantom::image(premolar(), s);
             double known = 0.0;
-            for (std::size_t t = 1; t < tooth::kTissueCount; ++t)
+            for (std::size_t t = 1; t < cases::kTissueCount; ++t)
                 known +=
                     image.volumesMm3[t] * (greyOf(scanner, static_cast<Tissue>(t)) - greyOf(scanner, Tissue::none));
             EXPECT_NEAR(sumOverOutside(image, scanner) / known, 1.0, 0.002) << nameOf(scanner) << " blur " << blur;
@@ -172,19 +172,19 @@ TEST(Phantom, PartialVolumesAddUpToTheTissuesBeforeAndAfterBlur) {
 }
 
 TEST(Phantom, TruthIsTheTissueAtTheVoxelsMiddle) {
-    const tooth::Case& c = premolar();
+    const cases::Case& c = premolar();
     for (const double degrees : {0.0, 37.0}) {
         Settings s = sharp(150.0);
         s.turn = core::Quat(Eigen::AngleAxisd(degrees * std::numbers::pi / 180.0, Vec3(1, 2, -1).normalized()));
         const Image image = phantom::image(c, s);
         const geometry::TriangleTree outer(c.outer);
         std::vector<std::unique_ptr<geometry::TriangleTree>> trees;
-        std::vector<tooth::PartSurface> parts;
-        for (const tooth::Part& part : c.parts) {
+        std::vector<field::PartSurface> parts;
+        for (const cases::Part& part : c.parts) {
             trees.push_back(std::make_unique<geometry::TriangleTree>(part.mesh));
             parts.push_back({trees.back().get(), part.tissue, part.priority});
         }
-        const tooth::PartTissues tissues(parts);
+        const field::PartTissues tissues(parts);
         std::mt19937 random(kSeed);
         SCOPED_TRACE(testing::Message() << "seed " << kSeed << ", turned by " << degrees);
         int differing = 0, inTooth = 0;
@@ -372,7 +372,7 @@ TEST(Phantom, TheSameBytesAtAnyThreadCountAndOthersForAnotherSeed) {
 }
 
 TEST(Phantom, SceneryStandsAroundAndNotInTheTooth) {
-    tooth::Case c = onion();
+    cases::Case c = onion();
     c.scenery = {partOf(Tissue::neighbour, ball(kCentre + Vec3(6.5, 0, 0), 2.8)),
                  partOf(Tissue::gum, ball(kCentre - Vec3(0, 0, 4.0), 3.0))};
     Settings s = sharp(250.0);
@@ -391,7 +391,7 @@ TEST(Phantom, SceneryStandsAroundAndNotInTheTooth) {
 }
 
 TEST(Phantom, RefusesWhatItCannotImage) {
-    const auto problem = [](const tooth::Case& c, const Settings& s) -> std::string {
+    const auto problem = [](const cases::Case& c, const Settings& s) -> std::string {
         try {
             (void)phantom::image(c, s);
         } catch (const core::Error& e) {
@@ -402,7 +402,7 @@ TEST(Phantom, RefusesWhatItCannotImage) {
     };
     using testing::HasSubstr;
     EXPECT_THAT(problem({}, {}), HasSubstr("no surface"));
-    tooth::Case open = onion();
+    cases::Case open = onion();
     open.parts[1].mesh.triangles.resize(open.parts[1].mesh.triangles.size() / 2);
     EXPECT_THAT(problem(open, sharp(200.0)), testing::AllOf(HasSubstr("dentine"), HasSubstr("not closed")));
     Settings s;

@@ -117,13 +117,13 @@ inline double share(const std::vector<double>& sorted, double part) {
     return sorted.empty() ? 1e9 : sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1))];
 }
 
-inline const segmentation::Solid* solidOf(const segmentation::Region& region, tooth::Tissue tissue,
+inline const segmentation::Solid* solidOf(const segmentation::Region& region, cases::Tissue tissue,
                                           bool authored = false) {
     for (const segmentation::Solid& solid : region.solids)
         if (solid.tissue == tissue && solid.isAuthored == authored) return &solid;
     return nullptr;
 }
-inline double volumeOf(const segmentation::Region& region, tooth::Tissue tissue) {
+inline double volumeOf(const segmentation::Region& region, cases::Tissue tissue) {
     return segmentation::volumesMm3(region)[static_cast<std::size_t>(tissue)];
 }
 

@@ -9,10 +9,10 @@
 namespace handpiece::segmentation {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
 using test::solidOf;
 using test::volumeOf;
-using tooth::Tissue;
 
 const volume::Volume& scan() {
     static const volume::Volume v = test::scanOf(test::ballsGrey, {}, 1);

@@ -7,10 +7,10 @@
 namespace handpiece::segmentation {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
 using test::solidOf;
 using test::volumeOf;
-using tooth::Tissue;
 
 /// Balls with a carious cone and a canal that is open below; pulp is 0, as files have it.
 volume::Labels ballLabels(double spacingMm) {

@@ -11,11 +11,11 @@
 namespace handpiece::segmentation {
 namespace {
 
+using cases::Tissue;
 using test::errorsFromBall;
 using test::share;
 using test::solidOf;
 using test::volumeOf;
-using tooth::Tissue;
 
 struct Imaging {
     double blurVoxels, noise, volumeShare;  ///< off by this share at most

@@ -16,10 +16,10 @@
 namespace handpiece::segmentation {
 namespace {
 
+using cases::Tissue;
 using test::volumeOf;
-using tooth::Tissue;
 
-tooth::Case incisor() {
+cases::Case incisor() {
     starter::ToothOptions options;
     options.faces = 20000;
     return starter::makeTooth(starter::ToothKind::upperIncisor, options);
@@ -54,7 +54,7 @@ std::array<double, 5> diceOf(const Region& region, const phantom::Image& image) 
 }
 
 TEST(PhantomTooth, AnIncisorAt200MicrometresMeetsItsTruth) {
-    const tooth::Case toothCase = incisor();
+    const cases::Case toothCase = incisor();
     phantom::Settings s;
     s.voxelUm = 200;
     s.noise = 0.04;
@@ -72,7 +72,7 @@ TEST(PhantomTooth, AnIncisorAt200MicrometresMeetsItsTruth) {
 }
 
 TEST(PhantomTooth, AnIncisorInItsNoisyJawIsPartedFromNeighboursAndBone) {
-    const tooth::Case toothCase = incisor();
+    const cases::Case toothCase = incisor();
     phantom::Settings s;
     s.scanner = phantom::Scanner::cbct;
     s.voxelUm = 200;

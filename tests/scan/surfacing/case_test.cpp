@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "handpiece/model/tooth/case_check.h"
+#include "handpiece/model/case/case_check.h"
 #include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/model/tooth/tooth.h"
 #include "handpiece/scan/surfacing/surfaces.h"
@@ -12,21 +12,21 @@
 namespace handpiece::surfacing {
 namespace {
 
+using cases::Tissue;
 using test::BallTooth;
-using tooth::Tissue;
 
 /// As Surfaces says: the enamel's part is the whole tooth.
-tooth::Case caseOf(const Surfaces& surfaces) {
-    tooth::Case made;
+cases::Case caseOf(const Surfaces& surfaces) {
+    cases::Case made;
     made.outer = surfaces.outer.mesh;
-    made.parts.push_back({"enamel", Tissue::enamel, tooth::properties(Tissue::enamel).priority, surfaces.outer.mesh});
+    made.parts.push_back({"enamel", Tissue::enamel, cases::properties(Tissue::enamel).priority, surfaces.outer.mesh});
     for (const Surface& tissue : surfaces.tissues)
-        made.parts.push_back({std::string(tooth::properties(tissue.tissue).name), tissue.tissue,
-                              tooth::properties(tissue.tissue).priority, tissue.mesh});
+        made.parts.push_back({std::string(cases::properties(tissue.tissue).name), tissue.tissue,
+                              cases::properties(tissue.tissue).priority, tissue.mesh});
     return made;
 }
 
-tooth::TissueVolumes fieldVolumes(const tooth::Case& made, double voxelMm) {
+tooth::TissueVolumes fieldVolumes(const cases::Case& made, double voxelMm) {
     tooth::PrepareSettings settings;
     settings.useCache = false;
     settings.field.voxelMm = voxelMm;
@@ -53,8 +53,8 @@ TEST(SurfacesCase, CanBeCutAndHasTheRegionsVolumes) {
     const Surfaces full = makeSurfaces(region);
     for (const double percent : {100.0, 12.0}) {
         SCOPED_TRACE(percent);
-        const tooth::Case made = caseOf(decimated(full, percent));
-        for (const tooth::CaseFinding& finding : tooth::checkCase(made))
+        const cases::Case made = caseOf(decimated(full, percent));
+        for (const cases::CaseFinding& finding : cases::checkCase(made))
             ADD_FAILURE() << finding.part << ": " << finding.what;
         const tooth::TissueVolumes mm3 = fieldVolumes(made, 0.08);
         const auto of = [&](Tissue tissue) { return mm3[static_cast<std::size_t>(tissue)]; };
@@ -68,8 +68,8 @@ TEST(SurfacesCase, CanBeCutAndHasTheRegionsVolumes) {
 TEST(SurfacesCase, OfLabelsCanBeCutToo) {
     const BallTooth truth;
     const Surfaces full = makeSurfaces(truth.region(0.1, true));
-    const tooth::Case made = caseOf(decimated(full, 25));
-    for (const tooth::CaseFinding& finding : tooth::checkCase(made))
+    const cases::Case made = caseOf(decimated(full, 25));
+    for (const cases::CaseFinding& finding : cases::checkCase(made))
         ADD_FAILURE() << finding.part << ": " << finding.what;
     const tooth::TissueVolumes mm3 = fieldVolumes(made, 0.08);
     const double whole = test::ballMm3(truth.radiusMm), dentine = test::lensMm3(truth.radiusMm, truth.enamelMm);
@@ -107,7 +107,7 @@ TEST(SurfacesCase, CombOfDecayAtTheSurfaceStaysInTheTooth) {
     const std::array<double, 6> percents{100, 50, 20, 10, 5, 2};
     const std::vector<Surfaces> steps = decimatedSteps(full, percents);
     for (std::size_t i = 0; i < steps.size(); ++i)
-        for (const tooth::CaseFinding& finding : tooth::checkCase(caseOf(steps[i])))
+        for (const cases::CaseFinding& finding : cases::checkCase(caseOf(steps[i])))
             ADD_FAILURE() << percents[i] << " %: " << finding.part << ": " << finding.what;
 }
 

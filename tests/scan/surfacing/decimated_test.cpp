@@ -12,11 +12,11 @@
 namespace handpiece::surfacing {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
 using geometry::TriangleMesh;
 using test::BallTooth;
 using test::tissueOf;
-using tooth::Tissue;
 
 const Surfaces& fullTooth() {
     static const Surfaces full = makeSurfaces(BallTooth{}.region(0.1));

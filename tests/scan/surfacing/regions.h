@@ -25,7 +25,7 @@ inline Shape below(const Shape& shape, double z) {
     return [=](const core::Vec3& p) { return std::max(shape(p), p.z() - z); };
 }
 
-inline segmentation::Solid solidOf(const volume::Grid& grid, tooth::Tissue tissue, const Shape& shape,
+inline segmentation::Solid solidOf(const volume::Grid& grid, cases::Tissue tissue, const Shape& shape,
                                    bool isBinary = false) {
     segmentation::Solid solid;
     solid.tissue = tissue;
@@ -70,10 +70,10 @@ struct BallTooth {
     [[nodiscard]] segmentation::Region region(double voxelMm, bool isBinary = false) const {
         segmentation::Region region;
         region.grid = cubeGrid(8.0, voxelMm);
-        region.outer = solidOf(region.grid, tooth::Tissue::none, outer(), isBinary);
-        region.solids.push_back(solidOf(region.grid, tooth::Tissue::dentine, dentine(), isBinary));
-        region.solids.push_back(solidOf(region.grid, tooth::Tissue::pulp, pulp(), isBinary));
-        region.solids.push_back(solidOf(region.grid, tooth::Tissue::caries, caries(), isBinary));
+        region.outer = solidOf(region.grid, cases::Tissue::none, outer(), isBinary);
+        region.solids.push_back(solidOf(region.grid, cases::Tissue::dentine, dentine(), isBinary));
+        region.solids.push_back(solidOf(region.grid, cases::Tissue::pulp, pulp(), isBinary));
+        region.solids.push_back(solidOf(region.grid, cases::Tissue::caries, caries(), isBinary));
         return region;
     }
 };
@@ -83,7 +83,7 @@ inline double lensMm3(double radiusMm, double apartMm) {
     return M_PI / 12.0 * (4.0 * radiusMm + apartMm) * (2.0 * radiusMm - apartMm) * (2.0 * radiusMm - apartMm);
 }
 
-inline const surfacing::Surface* tissueOf(const surfacing::Surfaces& surfaces, tooth::Tissue tissue) {
+inline const surfacing::Surface* tissueOf(const surfacing::Surfaces& surfaces, cases::Tissue tissue) {
     for (const surfacing::Surface& surface : surfaces.tissues)
         if (surface.tissue == tissue) return &surface;
     return nullptr;

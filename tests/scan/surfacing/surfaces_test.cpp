@@ -16,6 +16,7 @@
 namespace handpiece::surfacing {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
 using geometry::TriangleMesh;
 using segmentation::Region;
@@ -24,7 +25,6 @@ using test::ballMm3;
 using test::BallTooth;
 using test::Shape;
 using test::tissueOf;
-using tooth::Tissue;
 
 void expectSolid(const TriangleMesh& mesh, std::size_t shells = 1, std::int64_t genus = 0) {
     const geometry::MeshReport report = geometry::inspect(mesh);

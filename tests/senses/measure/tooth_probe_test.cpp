@@ -7,32 +7,32 @@
 #include <cstdio>
 
 #include "handpiece/base/core/error.h"
-#include "model/tooth/cut_support.h"
 #include "support/closed_meshes.h"
+#include "support/cut_support.h"
 #include "support/random.h"
 
 namespace handpiece::measure {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
-using tooth::Tissue;
 
 constexpr double kVoxel = 0.05;
 constexpr double kOuter = 2.0, kDentine = 1.5, kPulp = 0.6;  // balls in one another
 
 /// A tooth of a mesh, with a ball of dentine and one of pulp in it.
 std::shared_ptr<const tooth::CuttableTooth> toothOf(const geometry::TriangleMesh& mesh, bool withPulp = true) {
-    tooth::Case made;
+    cases::Case made;
     made.name = "closed form";
     made.outer = mesh;
     tooth::PrepareSettings settings;
     settings.useCache = false;
     settings.field.voxelMm = kVoxel;
     auto whole = tooth::prepareTooth(made, settings);
-    std::vector<tooth::TissueMap::PartFunction> parts{
+    std::vector<field::TissueMap::PartFunction> parts{
         {[](const Vec3& p) { return p.norm() - kDentine; }, Tissue::dentine, 1}};
     if (withPulp) parts.push_back({[](const Vec3& p) { return p.norm() - kPulp; }, Tissue::pulp, 2});
-    tooth::TissueMap tissues = tooth::TissueMap::fromFunctions(whole->field, parts, Tissue::enamel);
+    field::TissueMap tissues = field::TissueMap::fromFunctions(whole->field, parts, Tissue::enamel);
     return tooth::prepareCutting(std::move(whole), std::move(tissues));
 }
 
@@ -296,7 +296,7 @@ TEST_F(Bored, aSectionShowsTheTissuesInTheirPlaces) {
         EXPECT_NEAR((s.uAxis.cross(s.vAxis) - n).norm(), 0.0, 1e-12);
         EXPECT_NEAR(s.originMm.dot(n), offset, 1e-12);
         ASSERT_EQ(s.tissue.size(), static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height));
-        std::array<double, tooth::kTissueCount> area{}, expected{};
+        std::array<double, cases::kTissueCount> area{}, expected{};
         for (int j = 0; j < s.height; ++j)
             for (int i = 0; i < s.width; ++i) {
                 const Vec3 p = s.originMm + mm * (i * s.uAxis + j * s.vAxis);

@@ -28,7 +28,7 @@ DrillState turning(double rpm, double pedal = 1.0) {
 }
 
 /// At 1 N of the reference friction.
-DrillState cuttingState(tooth::Tissue tissue, double rpm = 380000.0) {
+DrillState cuttingState(cases::Tissue tissue, double rpm = 380000.0) {
     DrillState drill = turning(rpm);
     drill.tissue = tissue;
     drill.loadTorqueNmm = 0.15;
@@ -144,17 +144,17 @@ TEST(Motor, NoClickAtStartStopAndChange) {
 }
 
 TEST(Cutting, TissuesDifferAsStated) {
-    const double enamel = rms(settled<CuttingVoice>(cuttingState(tooth::Tissue::enamel), 2.0));
+    const double enamel = rms(settled<CuttingVoice>(cuttingState(cases::Tissue::enamel), 2.0));
     for (const auto tissue :
-         {tooth::Tissue::dentine, tooth::Tissue::caries, tooth::Tissue::pulp, tooth::Tissue::restoration})
+         {cases::Tissue::dentine, cases::Tissue::caries, cases::Tissue::pulp, cases::Tissue::restoration})
         EXPECT_NEAR(db(rms(settled<CuttingVoice>(cuttingState(tissue), 2.0)) / enamel), tissueVoice(tissue).levelDb,
                     1.0);
-    EXPECT_NEAR(rms(settled<CuttingVoice>(cuttingState(tooth::Tissue::enamel, 400000.0), 2.0)) / kNominalRms, 1.0,
+    EXPECT_NEAR(rms(settled<CuttingVoice>(cuttingState(cases::Tissue::enamel, 400000.0), 2.0)) / kNominalRms, 1.0,
                 0.12);
 }
 
 TEST(Cutting, BrighterInHarderTissue) {
-    const auto centre = [](tooth::Tissue tissue) {
+    const auto centre = [](cases::Tissue tissue) {
         const auto x = settled<CuttingVoice>(cuttingState(tissue), 0.25);
         double weighed = 0.0, all = 0.0;
         for (double hz = 100.0; hz < 20000.0; hz += 100.0) {
@@ -164,14 +164,14 @@ TEST(Cutting, BrighterInHarderTissue) {
         }
         return weighed / all;
     };
-    const double enamel = centre(tooth::Tissue::enamel), dentine = centre(tooth::Tissue::dentine),
-                 caries = centre(tooth::Tissue::caries);
+    const double enamel = centre(cases::Tissue::enamel), dentine = centre(cases::Tissue::dentine),
+                 caries = centre(cases::Tissue::caries);
     EXPECT_GT(enamel, 1.3 * dentine);
     EXPECT_GT(dentine, 1.3 * caries);
 }
 
 TEST(Cutting, FollowsLoadAndNeedsIt) {
-    DrillState drill = cuttingState(tooth::Tissue::enamel);
+    DrillState drill = cuttingState(cases::Tissue::enamel);
     const double one = rms(settled<CuttingVoice>(drill, 1.0));
     drill.loadTorqueNmm *= 0.25;
     EXPECT_NEAR(db(rms(settled<CuttingVoice>(drill, 1.0)) / one), db(std::pow(0.25, 0.6)), 1.0);
@@ -184,7 +184,7 @@ TEST(Cutting, FollowsLoadAndNeedsIt) {
 
 TEST(Cutting, NoClickAtContactAndLifting) {
     // Caries is low: its spectrum leaves room over it for a click to show. Against the same without any change.
-    DrillState in = cuttingState(tooth::Tissue::caries), out = turning(380000.0);
+    DrillState in = cuttingState(cases::Tissue::caries), out = turning(380000.0);
     in.speedRpm = out.speedRpm = 20000.0;
     const auto steady = settled<CuttingVoice>(in, 1.0);
     CuttingVoice voice;
@@ -259,7 +259,7 @@ TEST(Offline, SameInputsSameSound) {
     for (auto* out : {&a, &b}) {
         OfflinePlayer player;
         for (int i = 1; i <= 200; ++i)
-            player.advance(i * 1e-3, i < 100 ? turning(300000.0) : cuttingState(tooth::Tissue::enamel), *out);
+            player.advance(i * 1e-3, i < 100 ? turning(300000.0) : cuttingState(cases::Tissue::enamel), *out);
     }
     EXPECT_EQ(a, b);
     EXPECT_EQ(a.size(), 2u * 9600u);
@@ -271,7 +271,7 @@ TEST(Offline, ContactIsHeardWithinItsDelay) {
     std::vector<float> heard;
     player.advance(0.1, turning(380000.0), heard);
     const std::size_t contact = heard.size() / 2;
-    player.advance(0.3, cuttingState(tooth::Tissue::enamel), heard);
+    player.advance(0.3, cuttingState(cases::Tissue::enamel), heard);
     const auto x = channel(heard, 0);
     const double full = rms(x, contact + 4800, x.size());
     std::size_t first = contact;
@@ -398,7 +398,7 @@ TEST(State, OfTwoSamples) {
     const DrillState drill = drillStateOf(before, now, 1e-3, 0.4, 6, 400000.0);
     EXPECT_NEAR(drill.removalMm3S, 2.0, 1e-9);
     EXPECT_TRUE(drill.cutting && drill.water && !drill.stalled);
-    EXPECT_EQ(drill.tissue, tooth::Tissue::enamel);
+    EXPECT_EQ(drill.tissue, cases::Tissue::enamel);
     EXPECT_EQ(drillStateOf(now, before, 1e-3, 0.4, 6, 400000.0).removalMm3S, 0.0);
 }
 

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "handpiece/base/geometry/triangle_mesh.h"
-#include "handpiece/model/tooth/tooth_field.h"
+#include "handpiece/model/field/distance_field.h"
 
 namespace handpiece::test {
 
@@ -38,10 +38,10 @@ inline Distance cut(const Distance& solid, const Distance& bur) {
     return [=](const core::Vec3& p) { return std::max(solid(p), -bur(p)); };
 }
 
-inline tooth::ToothField sampled(const Distance& solid, const core::Box& around, double voxelMm = 0.05) {
-    tooth::FieldSettings settings;
+inline field::DistanceField sampled(const Distance& solid, const core::Box& around, double voxelMm = 0.05) {
+    field::FieldSettings settings;
     settings.voxelMm = voxelMm;
-    return tooth::ToothField::fromFunction(around.grown(6.0 * voxelMm), settings, solid);
+    return field::DistanceField::fromFunction(around.grown(6.0 * voxelMm), settings, solid);
 }
 
 /// Directed edges that no triangle runs the other way: 0 when closed, whether or not more than two meet at an edge.

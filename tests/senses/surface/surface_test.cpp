@@ -16,7 +16,7 @@ namespace {
 using core::Quat;
 using core::Vec3;
 
-geometry::TriangleMesh meshOf(const tooth::ToothField& field) {
+geometry::TriangleMesh meshOf(const field::DistanceField& field) {
     const FieldSource source(field);
     Surface surface(source);
     surface.build();

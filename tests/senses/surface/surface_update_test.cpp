@@ -15,15 +15,15 @@
 #include "handpiece/senses/surface/closed_surface.h"
 #include "handpiece/senses/surface/surface.h"
 #include "handpiece/tick/cutting/sweeper.h"
-#include "model/tooth/cut_support.h"
 #include "senses/surface/solids.h"
+#include "support/cut_support.h"
 
 namespace handpiece::surface {
 namespace {
 
+using cases::Tissue;
 using core::Quat;
 using core::Vec3;
-using tooth::Tissue;
 
 /// A ball of dentine in one of enamel, its cutting, and its mirror.
 struct Cutting {
@@ -255,8 +255,8 @@ TEST(SurfaceTissues, MeetInALineOnTheirBoundary) {
         auto tooth = tooth::test::toothOf(
             test::sampled(test::sphere(Vec3::Zero(), 1.0), {Vec3::Constant(-1.1), Vec3::Constant(1.1)}));
         const auto plane = [=](const Vec3& p) { return normal.dot(p) - offset; };
-        const tooth::TissueMap::PartFunction dentine{plane, Tissue::dentine, 1};
-        auto map = tooth::TissueMap::fromFunctions(tooth->field, std::span(&dentine, 1), Tissue::enamel);
+        const field::TissueMap::PartFunction dentine{plane, Tissue::dentine, 1};
+        auto map = field::TissueMap::fromFunctions(tooth->field, std::span(&dentine, 1), Tissue::enamel);
         Cutting cutting(tooth::prepareCutting(tooth, std::move(map)));
         cutting.cut(test::sphere(normal.unitOrthogonal(), 0.5));
         const MirrorSource source(cutting.mirror);

@@ -116,7 +116,7 @@ TEST(Effects, TheMirrorShowsABallWhereItsReflectionIs) {
         const Vec3 sight = (apparent - camera.eyeMm).normalized();
         const double reach = (mirror.centreMm - camera.eyeMm).dot(mirror.normal) / sight.dot(mirror.normal);
         if ((camera.eyeMm + reach * sight - mirror.centreMm).norm() > 7.0) continue;
-        renderer.setMesh(ballAt(ball, 0.7), tooth::Tissue::pulp);
+        renderer.setMesh(ballAt(ball, 0.7), cases::Tissue::pulp);
         Moment moment;
         moment.burShown = false;
         moment.mirror = mirror;
@@ -132,7 +132,7 @@ TEST(Effects, TheMirrorShowsABallWhereItsReflectionIs) {
 
 TEST(Effects, WhatLiesBehindTheMirrorIsNotInIt) {
     Renderer renderer;
-    renderer.setMesh(ballAt({0, 14, 0}, 2.0), tooth::Tissue::pulp);
+    renderer.setMesh(ballAt({0, 14, 0}, 2.0), cases::Tissue::pulp);
     Moment moment;
     moment.burShown = false;
     const auto red = [&] {
@@ -148,7 +148,7 @@ TEST(Effects, WhatLiesBehindTheMirrorIsNotInIt) {
 
 TEST(Effects, TheForceArrowIsTwoMillimetresANewton) {
     Renderer renderer;
-    renderer.setMesh(ballAt({0, 8, 0}, 0.5), tooth::Tissue::enamel);
+    renderer.setMesh(ballAt({0, 8, 0}, 0.5), cases::Tissue::enamel);
     Look look = plain();
     Moment moment;
     moment.contactPointMm = {-1.0, 0.0, 0.5};
@@ -172,7 +172,7 @@ TEST(Effects, TheForceArrowIsTwoMillimetresANewton) {
 
 TEST(Effects, TheScaleBarIsFiveMillimetresAtTheTarget) {
     Renderer renderer;
-    renderer.setMesh(ballAt({0, 0, 9}, 0.5), tooth::Tissue::enamel);
+    renderer.setMesh(ballAt({0, 0, 9}, 0.5), cases::Tissue::enamel);
     Moment moment;
     Look look = plain();
     for (const double distance : {45.0, 60.0, 110.0}) {
@@ -192,14 +192,14 @@ TEST(Effects, TheScaleBarIsFiveMillimetresAtTheTarget) {
 
 TEST(Effects, SprayAndChipsAreSeenWhereTheBurIsAndGoWhenNotWanted) {
     Renderer renderer;
-    renderer.setMesh(ballAt({0, 0, -6}, 2.0), tooth::Tissue::enamel);
+    renderer.setMesh(ballAt({0, 0, -6}, 2.0), cases::Tissue::enamel);
     Look look = plain();
     Moment moment;
     moment.timeS = 2.0;
     moment.burInTooth.positionMm = {0, 0, -4};
     moment.speedRpm = 250000;
     moment.removalMm3S = 2.0;
-    moment.tissue = tooth::Tissue::enamel;
+    moment.tissue = cases::Tissue::enamel;
     moment.contact = true;
     moment.contactPointMm = {0.4, 0, -4};
     moment.water = true;

@@ -11,9 +11,9 @@
 namespace handpiece::view {
 namespace {
 
+using cases::Tissue;
 using core::Mat3;
 using core::Vec3;
-using tooth::Tissue;
 using Colour = std::array<std::uint8_t, 3>;
 
 // sRGB, IEC 61966-2-1, to linear light.

@@ -20,7 +20,7 @@ Moment cutting(double timeS) {
     moment.timeS = timeS;
     moment.speedRpm = 300000;
     moment.removalMm3S = 1.5;
-    moment.tissue = tooth::Tissue::dentine;
+    moment.tissue = cases::Tissue::dentine;
     moment.contact = true;
     moment.contactPointMm = {0.4, 0.0, 0.2};
     moment.contactNormal = Vec3(0.3, 0.0, 1.0).normalized();
@@ -81,9 +81,9 @@ TEST(Particles, NeverMoreThanThereIsRoomFor) {
         moment.removalMm3S = 1e9;
         moment.water = true;
         particles.advance(moment, Look{}, 0.4);
-        ASSERT_LE(particles.specks().size(), kMostSpecks);
+        ASSERT_LE(particles.specks().size(), kMaxSpecks);
     }
-    EXPECT_GT(particles.specks().size(), kMostChips / 2);
+    EXPECT_GT(particles.specks().size(), kMaxChips / 2);
 }
 
 TEST(Particles, MoreIsSeenWhereMoreIsCutAndNothingWithoutCutting) {
@@ -108,7 +108,7 @@ TEST(Particles, ChipsAreOfTheTissuesColourAndEndWithTheCutting) {
     for (int i = 0; i < 50; ++i)
         particles.advance(cutting(0.01 * i), dry(), 0.4);
     ASSERT_FALSE(particles.specks().empty());
-    const auto dentine = colourOf(tooth::Tissue::dentine, Palette::natural);
+    const auto dentine = colourOf(cases::Tissue::dentine, Palette::natural);
     for (const Speck& s : particles.specks()) {
         const double shade = static_cast<double>(s.rgba[0]) / dentine[0];
         EXPECT_NEAR(s.rgba[1], shade * dentine[1], 1.5);

@@ -16,10 +16,10 @@
 namespace handpiece::view {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
 using surface::BrickMesh;
 using surface::BrickUpdate;
-using tooth::Tissue;
 
 constexpr Viewport kSize{320, 200};
 
@@ -302,15 +302,15 @@ TEST(Renderer, TheHandpieceTurnsToGlassSmoothly) {
 TEST(Renderer, ABurOfOnesOwnIsPlainSteelUnlessItsAbilitySaysMore) {
     const instrument::Bur own("mine.STL", instrument::makeBur("330").profile());
     EXPECT_EQ(finishOf(own), BurFinish::plain);
-    EXPECT_EQ(finishOf(own, instrument::Ability{}.name), BurFinish::plain);
+    EXPECT_EQ(finishOf(own, instrument::CuttingParameters{}.name), BurFinish::plain);
     EXPECT_EQ(finishOf(own, "carbide-cross-cut"), BurFinish::carbide);
     EXPECT_EQ(finishOf(own, "diamond-coarse"), BurFinish::diamond);
     EXPECT_EQ(finishOf(instrument::makeBur("pear:0.8x1.6")), BurFinish::diamond) << "a shape of no catalogue";
     for (const auto& entry : instrument::catalogue()) {
         const instrument::Bur bur = *instrument::makeInstrument(entry.name).bur;
-        const BurFinish expected = entry.ability.starts_with("carbide") ? BurFinish::carbide
-                                   : entry.ability == "steel"           ? BurFinish::steel
-                                                                        : BurFinish::diamond;
+        const BurFinish expected = entry.cuttingParameters.starts_with("carbide") ? BurFinish::carbide
+                                   : entry.cuttingParameters == "steel"           ? BurFinish::steel
+                                                                                  : BurFinish::diamond;
         EXPECT_EQ(finishOf(bur), expected) << entry.name;
     }
 }

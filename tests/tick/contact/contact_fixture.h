@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "handpiece/base/core/rotation.h"
+#include "handpiece/model/field/field_builder.h"
 #include "handpiece/model/instrument/shapes.h"
-#include "handpiece/model/tooth/field_builder.h"
 #include "handpiece/model/tooth/tooth.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "support/random.h"
@@ -17,7 +17,7 @@ namespace handpiece::test {
 
 inline std::shared_ptr<const tooth::Tooth> toothOf(geometry::TriangleMesh mesh) {
     geometry::TriangleTree tree(mesh);
-    tooth::ToothField field = tooth::FieldBuilder::fromSurface(mesh, tree, {}, {});
+    field::DistanceField field = field::FieldBuilder::fromSurface(mesh, tree, {}, {});
     return std::make_shared<const tooth::Tooth>(
         tooth::Tooth{"test", std::move(mesh), std::move(tree), std::move(field), false, 0.0});
 }

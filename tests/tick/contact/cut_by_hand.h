@@ -15,16 +15,16 @@ namespace handpiece::test {
 inline std::shared_ptr<tooth::CutField> slabToCut(bool twoTissues = false, double voxelMm = 0.05) {
     geometry::TriangleMesh mesh = boxMesh({-4, -4, -3}, {4, 4, 0}, 24);
     geometry::TriangleTree tree(mesh);
-    tooth::FieldSettings settings;
+    field::FieldSettings settings;
     settings.voxelMm = voxelMm;
-    tooth::ToothField field = tooth::FieldBuilder::fromSurface(mesh, tree, {}, settings);
-    auto tissues = tooth::TissueMap::uniform(field, tooth::Tissue::enamel);
+    field::DistanceField field = field::FieldBuilder::fromSurface(mesh, tree, {}, settings);
+    auto tissues = field::TissueMap::uniform(field, cases::Tissue::enamel);
     if (twoTissues)
-        tissues = tooth::TissueMap::fromFunctions(
+        tissues = field::TissueMap::fromFunctions(
             field,
-            std::vector<tooth::TissueMap::PartFunction>{
-                {[](const core::Vec3& p) { return -p.x(); }, tooth::Tissue::dentine, 1}},
-            tooth::Tissue::enamel);
+            std::vector<field::TissueMap::PartFunction>{
+                {[](const core::Vec3& p) { return -p.x(); }, cases::Tissue::dentine, 1}},
+            cases::Tissue::enamel);
     auto whole = std::make_shared<const tooth::Tooth>(
         tooth::Tooth{"slab", std::move(mesh), std::move(tree), std::move(field), false, 0.0});
     return std::make_shared<tooth::CutField>(tooth::prepareCutting(std::move(whole), std::move(tissues)));
@@ -33,8 +33,8 @@ inline std::shared_ptr<tooth::CutField> slabToCut(bool twoTissues = false, doubl
 /// Takes away where `signedDistance` is negative: every node within `box` that may change.
 inline void carve(tooth::CutField& cut, const core::Box& box,
                   const std::function<double(const core::Vec3&)>& signedDistance) {
-    const tooth::FieldView view = cut.field().view();
-    const double brickMm = tooth::kBrickCells * view.voxelMm;
+    const field::FieldView view = cut.field().view();
+    const double brickMm = field::kBrickCells * view.voxelMm;
     const auto low = static_cast<float>(-cut.base().settings.bandMm), high = static_cast<float>(cut.base().bandOutMm);
     std::int32_t first[3], last[3];
     for (int k = 0; k < 3; ++k) {
@@ -57,7 +57,7 @@ inline void carve(tooth::CutField& cut, const core::Box& box,
                 const std::int32_t stored = cut.storeBrick(dense);
                 if (stored < 0) continue;
                 bool changed = false;
-                for (int i = 0; i < tooth::kBrickValues; ++i) {
+                for (int i = 0; i < field::kBrickValues; ++i) {
                     const core::Vec3 node(i % 9, i / 9 % 9, i / 81);
                     const auto value =
                         std::clamp(static_cast<float>(-signedDistance(corner + view.voxelMm * node)), low, high);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "handpiece/model/starter/starter.h"
-#include "handpiece/tick/contact/hull_method.h"
+#include "handpiece/tick/contact/hull/hull_method.h"
 #include "support/brute_force_depth.h"
 #include "tick/contact/contact_fixture.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "handpiece/tick/contact/exact_kernels.h"
+#include "handpiece/tick/contact/exact/exact_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 
 #include "handpiece/base/core/simd.h"
 #include "handpiece/model/instrument/shapes.h"
-#include "handpiece/tick/contact/exact_depth.h"
-#include "handpiece/tick/contact/field_row.h"
-#include "handpiece/tick/contact/outline_search.h"
+#include "handpiece/tick/contact/exact/exact_depth.h"
+#include "handpiece/tick/contact/exact/outline_search.h"
+#include "handpiece/tick/contact/sampled/field_row.h"
 #include "tick/contact/contact_fixture.h"
 
 namespace handpiece::contact {
@@ -172,8 +172,8 @@ TEST(FieldRow, lookupsAreThoseOfTheFieldAtEveryLevel) {
     if (core::simdLevel() >= core::SimdLevel::avx512) all.push_back(simd_avx512::fieldLookup());
 #endif
     std::mt19937_64 g(test::seed());
-    const tooth::ToothField& field = grooved().field;
-    const tooth::FieldView view = field.view();
+    const field::DistanceField& field = grooved().field;
+    const field::FieldView view = field.view();
     double cosines[8], sines[8];
     for (int j = 0; j < 8; ++j) {
         cosines[j] = std::cos(0.4 * j);

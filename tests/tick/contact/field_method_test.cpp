@@ -101,7 +101,7 @@ TEST(FieldMethod, capsuleOnASlabFollowsTheClosedForm) {
         EXPECT_NEAR(d.depthMm, depth, 1e-9);
         EXPECT_NEAR(d.normal.z(), 1.0, 1e-9);
         EXPECT_NEAR(d.toothPointMm.z(), 0.0, 1e-9);
-        EXPECT_EQ(d.tissue, tooth::Tissue::enamel);
+        EXPECT_EQ(d.tissue, cases::Tissue::enamel);
     }
 }
 
@@ -235,8 +235,8 @@ TEST(FieldMethod, aRoundEndPressedIntoASlabTouchesACap) {
         EXPECT_NEAR(patch.centreMm.y(), -0.3, 1e-3);
         EXPECT_NEAR(patch.normal.z(), 1.0, 1e-3);
         EXPECT_DOUBLE_EQ(patch.pressureShare, 1.0);
-        EXPECT_EQ(patch.tissue, tooth::Tissue::enamel);
-        EXPECT_NEAR(patches.tissueShare[static_cast<std::size_t>(tooth::Tissue::enamel)], 1.0, 1e-12);
+        EXPECT_EQ(patch.tissue, cases::Tissue::enamel);
+        EXPECT_NEAR(patches.tissueShare[static_cast<std::size_t>(cases::Tissue::enamel)], 1.0, 1e-12);
     }
     PatchSet none;
     method->patches(upright(0.0, 0.0, 0.5), none);
@@ -359,7 +359,7 @@ TEST_F(OwnCavity, theDepthIsTheWayTheBurIsPushed) {
         EXPECT_GT(-d.normal.dot(way.normalized()), 0.97) << way.transpose();
         EXPECT_NEAR(test::shaftDistance(d.toothPointMm, tip_, kRadius), 0.0, 0.003);
         if (std::abs(d.toothPointMm.x()) > 0.1) {
-            EXPECT_EQ(d.tissue, d.toothPointMm.x() > 0.0 ? tooth::Tissue::dentine : tooth::Tissue::enamel);
+            EXPECT_EQ(d.tissue, d.toothPointMm.x() > 0.0 ? cases::Tissue::dentine : cases::Tissue::enamel);
         }
     }
 }

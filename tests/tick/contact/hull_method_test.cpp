@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "handpiece/tick/contact/hull_method.h"
+#include "handpiece/tick/contact/hull/hull_method.h"
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ TEST(HullMethod, onAPlaneDepthIsHowFarTheLowestVertexIsBelowIt) {
         EXPECT_NEAR(d.depthMm, -z, 1e-10);
         EXPECT_NEAR((d.normal - Vec3::UnitZ()).norm(), 0.0, 1e-9);
         EXPECT_NEAR(d.toothPointMm.z(), 0.0, 1e-9);
-        EXPECT_EQ(d.tissue, tooth::Tissue::enamel);
+        EXPECT_EQ(d.tissue, cases::Tissue::enamel);
     }
 }
 
@@ -117,7 +117,7 @@ TEST(HullMethod, aFullPolytopeStillGivesALowerBound) {
 }
 
 TEST(HullMethod, refusesPosesAndMeshesWithoutSense) {
-    const auto method = makeHullMethod(slab(), roundBur(), tooth::Tissue::dentine);
+    const auto method = makeHullMethod(slab(), roundBur(), cases::Tissue::dentine);
     const Depth d = method->depth({Vec3(0, 0, std::nan("")), core::Quat::Identity()});
     EXPECT_EQ(d.status, Status::invalidPose);
     EXPECT_EQ(d.depthMm, -std::numeric_limits<double>::infinity());
@@ -129,11 +129,11 @@ TEST(HullMethod, refusesPosesAndMeshesWithoutSense) {
 }
 
 TEST(HullMethod, reportsOnePatchAndOneConstraint) {
-    const auto method = makeHullMethod(slab(), roundBur(), tooth::Tissue::dentine);
+    const auto method = makeHullMethod(slab(), roundBur(), cases::Tissue::dentine);
     PatchSet patches;
     method->patches({Vec3(0, 0, -0.1), core::Quat::Identity()}, patches);
     ASSERT_EQ(patches.patches.size(), 1u);
-    EXPECT_EQ(patches.patches[0].tissue, tooth::Tissue::dentine);
+    EXPECT_EQ(patches.patches[0].tissue, cases::Tissue::dentine);
     ConstraintSet constraints;
     EXPECT_EQ(method->constraints({Vec3(0, 0, 0.1), core::Quat::Identity()}, 0.2, constraints), Status::ok);
     ASSERT_EQ(constraints.size(), 1u);

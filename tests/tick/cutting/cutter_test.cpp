@@ -14,10 +14,10 @@
 namespace handpiece::cutting {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
 using test::poseAt;
 using test::sumOf;
-using tooth::Tissue;
 
 constexpr double kPi = std::numbers::pi, kRadius = 0.5, kSpeed = 40000.0;
 
@@ -25,7 +25,7 @@ constexpr double kPi = std::numbers::pi, kRadius = 0.5, kSpeed = 40000.0;
 /// field says it does under the middle of the end, so that the proxy can be put on it.
 class FlatOnPlane final : public contact::Method {
   public:
-    explicit FlatOnPlane(std::array<double, tooth::kTissueCount> shares) : shares_(shares) {}
+    explicit FlatOnPlane(std::array<double, cases::kTissueCount> shares) : shares_(shares) {}
     [[nodiscard]] const char* name() const noexcept override { return "flat on plane"; }
     [[nodiscard]] contact::Depth depth(const core::Pose&) noexcept override { return {}; }
     void bearing(const core::Pose&, const Vec3&, double, double leastRadiusMm,
@@ -34,7 +34,7 @@ class FlatOnPlane final : public contact::Method {
         // Sum of a / rho over a disc with a least radius: 2 pi (R - c) + pi c.
         const double area = kPi * kRadius * kRadius,
                      resistance = 2.0 * kPi * (kRadius - leastRadiusMm) + kPi * leastRadiusMm;
-        for (std::size_t t = 0; t < tooth::kTissueCount; ++t) {
+        for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
             out.areaMm2[t] = shares_[t] * area;
             out.resistanceMm[t] = shares_[t] * resistance;
             out.tangentMm[t] = shares_[t] * Vec3(0.1, 0.0, 0.0);
@@ -43,41 +43,44 @@ class FlatOnPlane final : public contact::Method {
     }
 
   private:
-    std::array<double, tooth::kTissueCount> shares_;
+    std::array<double, cases::kTissueCount> shares_;
 };
 FlatOnPlane allOf(Tissue tissue) {
-    std::array<double, tooth::kTissueCount> shares{};
+    std::array<double, cases::kTissueCount> shares{};
     shares[static_cast<std::size_t>(tissue)] = 1.0;
     return FlatOnPlane(shares);
 }
 
-instrument::Ability plain() {
-    instrument::Ability ability;
-    ability.cutting = 1.0;
-    ability.loadCapN = 1.5;
-    ability.chipMm = 1.0;  // no cap unless a test wants one
-    return ability;
+instrument::CuttingParameters plain() {
+    instrument::CuttingParameters cuttingParameters;
+    cuttingParameters.cutting = 1.0;
+    cuttingParameters.loadCapN = 1.5;
+    cuttingParameters.chipMm = 1.0;  // no cap unless a test wants one
+    return cuttingParameters;
 }
 /// What V' = K F omega r gives for the end of a flat cylinder: p = v / (K omega rho) summed up is the load.
-double expectedFeed(const instrument::Ability& ability, double cutting, double loadN, double speed) {
-    const double least = ability.centreRadius * kRadius, resistance = 2.0 * kPi * (kRadius - least) + kPi * least;
-    return std::min(loadN, ability.loadCapN) * speed * cutting * ability.cutting / resistance;
+double expectedFeed(const instrument::CuttingParameters& cuttingParameters, double cutting, double loadN,
+                    double speed) {
+    const double least = cuttingParameters.centreRadius * kRadius,
+                 resistance = 2.0 * kPi * (kRadius - least) + kPi * least;
+    return std::min(loadN, cuttingParameters.loadCapN) * speed * cutting * cuttingParameters.cutting / resistance;
 }
 
 struct Bench {
     std::shared_ptr<tooth::CutField> field;
     std::shared_ptr<const instrument::Bur> bur =
         std::make_shared<const instrument::Bur>(instrument::makeBur("cylinder-flat:1.0x4.0"));
-    tooth::TissueTable table = tooth::builtInTissues();
+    cases::TissueTable table = cases::builtInTissues();
     std::unique_ptr<Cutter> cutter;
     double proxyZ = 0.0;
 
-    Bench(Tissue tissue, double voxelMm, const instrument::Ability& ability, const Cutter::Settings& settings = {}) {
+    Bench(Tissue tissue, double voxelMm, const instrument::CuttingParameters& cuttingParameters,
+          const Cutter::Settings& settings = {}) {
         const core::Box box{Vec3(-1.2, -1.2, -1.6), Vec3(1.2, 1.2, 0)};
         const auto whole = test::phantom(box, voxelMm, test::boxDistance(box));
         field = std::make_shared<tooth::CutField>(
-            tooth::prepareCutting(whole, tooth::TissueMap::uniform(whole->field, tissue)));
-        cutter = std::make_unique<Cutter>(field, bur, ability, table, settings);
+            tooth::prepareCutting(whole, field::TissueMap::uniform(whole->field, tissue)));
+        cutter = std::make_unique<Cutter>(field, bur, cuttingParameters, table, settings);
     }
     double cuttingOf(Tissue tissue) const { return table.of(tissue).cuttingMm2PerN; }
     /// One tick: the proxy rests on what the field has under it.
@@ -120,7 +123,7 @@ TEST(Cutter, tissuesGiveWayAsTheirValuesSay) {
         bench.plunge(tissue, 0.3, kSpeed, 0.001, 0.05);
         return bench.plunge(tissue, 0.3, kSpeed, 0.001, 0.2);
     };
-    const tooth::TissueTable& table = tooth::builtInTissues();
+    const cases::TissueTable& table = cases::builtInTissues();
     const double enamel = removedOf(Tissue::enamel), dentine = removedOf(Tissue::dentine),
                  caries = removedOf(Tissue::caries);
     const double toDentine = table.of(Tissue::dentine).cuttingMm2PerN / table.of(Tissue::enamel).cuttingMm2PerN,
@@ -130,7 +133,7 @@ TEST(Cutter, tissuesGiveWayAsTheirValuesSay) {
 }
 
 TEST(Cutter, resistancesOfSeveralTissuesAddUp) {
-    std::array<double, tooth::kTissueCount> shares{};
+    std::array<double, cases::kTissueCount> shares{};
     shares[static_cast<std::size_t>(Tissue::enamel)] = 0.4;
     shares[static_cast<std::size_t>(Tissue::dentine)] = 0.6;
     FlatOnPlane method(shares);
@@ -147,7 +150,7 @@ TEST(Cutter, loadAndChipAreCapped) {
     const double atCap = bench.tick(method, 1.5, kSpeed, 1e-4).feedMmS;
     EXPECT_NEAR(bench.tick(method, 3.0, kSpeed, 1e-4).feedMmS, atCap, 1e-12);
     EXPECT_LT(bench.tick(method, 1.0, kSpeed, 1e-4).feedMmS, 0.7 * atCap);
-    instrument::Ability fine = plain();
+    instrument::CuttingParameters fine = plain();
     fine.chipMm = 1e-6;
     fine.edges = 6;
     Bench slow(Tissue::enamel, 0.05, fine);
@@ -156,7 +159,7 @@ TEST(Cutter, loadAndChipAreCapped) {
 
 TEST(Cutter, theAbilityIsAFactor) {
     FlatOnPlane method = allOf(Tissue::enamel);
-    instrument::Ability coarse = plain();
+    instrument::CuttingParameters coarse = plain();
     coarse.cutting = 1.7;
     Bench a(Tissue::enamel, 0.05, plain()), b(Tissue::enamel, 0.05, coarse);
     EXPECT_NEAR(b.tick(method, 1.0, kSpeed, 0.001).feedMmS, 1.7 * a.tick(method, 1.0, kSpeed, 0.001).feedMmS, 1e-9);
@@ -188,7 +191,7 @@ TEST(Cutter, withoutLoadNothingIsCut) {
 
 TEST(Cutter, whatCannotBeCutHoldsTheBur) {
     FlatOnPlane whole = allOf(Tissue::enamel);
-    std::array<double, tooth::kTissueCount> shares{};
+    std::array<double, cases::kTissueCount> shares{};
     shares[static_cast<std::size_t>(Tissue::enamel)] = 0.9;
     shares[static_cast<std::size_t>(Tissue::none)] = 0.1;
     FlatOnPlane mixed(shares);
@@ -199,16 +202,17 @@ TEST(Cutter, whatCannotBeCutHoldsTheBur) {
 }
 
 TEST(Cutter, torqueAndTangentialForceFollowTheLoad) {
-    const instrument::Ability ability = plain();
+    const instrument::CuttingParameters cuttingParameters = plain();
     FlatOnPlane method = allOf(Tissue::dentine);
-    Bench bench(Tissue::dentine, 0.05, ability);
+    Bench bench(Tissue::dentine, 0.05, cuttingParameters);
     const CutResult& result = bench.tick(method, 0.9, kSpeed, 0.001);
-    const double least = ability.centreRadius * kRadius, resistance = 2.0 * kPi * (kRadius - least) + kPi * least;
+    const double least = cuttingParameters.centreRadius * kRadius,
+                 resistance = 2.0 * kPi * (kRadius - least) + kPi * least;
     const double meanRadius = kPi * kRadius * kRadius / resistance;
-    EXPECT_NEAR(result.loadTorqueNmm, ability.frictionCutting * 0.9 * meanRadius, 1e-12);
+    EXPECT_NEAR(result.loadTorqueNmm, cuttingParameters.frictionCutting * 0.9 * meanRadius, 1e-12);
     EXPECT_GT(meanRadius, 0.4 * kRadius);
     EXPECT_LT(meanRadius, kRadius);
-    EXPECT_NEAR(result.tangentialN.x(), -ability.frictionCutting * 0.9 * 0.1 / resistance, 1e-12);
+    EXPECT_NEAR(result.tangentialN.x(), -cuttingParameters.frictionCutting * 0.9 * 0.1 / resistance, 1e-12);
 }
 
 TEST(Cutter, fullRemovalTakesAllThatTheDeviceSweeps) {
@@ -260,7 +264,7 @@ TEST(Cutter, takesNoMemoryInTheTick) {
 }
 
 TEST(Cutter, refusesAnAbilityThatIsNone) {
-    instrument::Ability bad = plain();
+    instrument::CuttingParameters bad = plain();
     bad.cutting = -1.0;
     EXPECT_THROW(Bench(Tissue::enamel, 0.1, bad), core::Error);
     bad = plain();

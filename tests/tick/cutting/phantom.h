@@ -28,8 +28,8 @@ inline Distance boxDistance(const core::Box& box) {
 /// A tooth without a mesh: the field alone.
 inline std::shared_ptr<const tooth::Tooth> phantom(const core::Box& box, double voxelMm, const Distance& distance,
                                                    double bandInMm = 0.3) {
-    const tooth::FieldSettings settings{voxelMm, 0.1, bandInMm};
-    auto field = tooth::ToothField::fromFunction(box.grown(0.3), settings, distance);
+    const field::FieldSettings settings{voxelMm, 0.1, bandInMm};
+    auto field = field::DistanceField::fromFunction(box.grown(0.3), settings, distance);
     // No surface is asked for; a tree wants one.
     geometry::TriangleMesh mesh;
     mesh.vertices = {core::Vec3(0, 0, 0), core::Vec3(1, 0, 0), core::Vec3(0, 1, 0)};
@@ -44,7 +44,7 @@ inline std::shared_ptr<const tooth::CuttableTooth> enamelBlock(const core::Vec3&
                                                                double voxelMm) {
     const core::Box box{low, high};
     const auto whole = phantom(box, voxelMm, boxDistance(box));
-    return tooth::prepareCutting(whole, tooth::TissueMap::uniform(whole->field, tooth::Tissue::enamel));
+    return tooth::prepareCutting(whole, field::TissueMap::uniform(whole->field, cases::Tissue::enamel));
 }
 
 inline core::Pose poseAt(const core::Vec3& p, const core::Quat& q = core::Quat::Identity()) {
@@ -60,7 +60,8 @@ inline double sumOf(const tooth::TissueVolumes& volumes) {
 
 /// How far along `normal` (unit, out of the solid) the field's zero lies from `p`, looked for within `reachMm`; NaN
 /// when there is none.
-inline double zeroAlong(const tooth::ToothField& field, const core::Vec3& p, const core::Vec3& normal, double reachMm) {
+inline double zeroAlong(const field::DistanceField& field, const core::Vec3& p, const core::Vec3& normal,
+                        double reachMm) {
     double low = -reachMm, high = reachMm;
     if (!(field.distance(p + low * normal) < 0.0 && field.distance(p + high * normal) > 0.0))
         return std::numeric_limits<double>::quiet_NaN();

@@ -17,15 +17,15 @@
 namespace handpiece::cutting {
 namespace {
 
+using cases::Tissue;
 using core::Pose;
 using core::Vec2;
 using core::Vec3;
+using field::kBrickCells;
+using field::kBrickNodes;
+using field::kBrickValues;
 using test::poseAt;
 using test::sumOf;
-using tooth::kBrickCells;
-using tooth::kBrickNodes;
-using tooth::kBrickValues;
-using tooth::Tissue;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -102,7 +102,7 @@ double holeVolume(const instrument::Bur& bur, double depthMm, double lengthMm) {
 
 struct Errors {
     std::vector<double> clear, rim;  // [mm]
-    void add(const tooth::ToothField& field, const Vec3& p, const Vec3& normal, double toRimMm) {
+    void add(const field::DistanceField& field, const Vec3& p, const Vec3& normal, double toRimMm) {
         const double voxel = field.settings().voxelMm, e = test::zeroAlong(field, p, normal, 2.0 * voxel);
         // Along the normal of one side of an edge there may be nothing of it left.
         if (std::isnan(e) && toRimMm <= voxel) return;
@@ -225,7 +225,7 @@ constexpr const char* kManyBurs[] = {
 
 /// Calls f(dense, brick's first node) for every stored brick.
 template <class F>
-void forStored(const tooth::FieldView& view, F&& f) {
+void forStored(const field::FieldView& view, F&& f) {
     for (std::int32_t bz = 0, dense = 0; bz < view.bricks[2]; ++bz)
         for (std::int32_t by = 0; by < view.bricks[1]; ++by)
             for (std::int32_t bx = 0; bx < view.bricks[0]; ++bx, ++dense)
@@ -246,7 +246,7 @@ TEST(Sweeper, everyNodeIsWhatItIsAlone) {
             if (sweeper.hasPose() && (pose.positionMm - sweeper.pose().positionMm).norm() > 0.005) sweeper.settle();
             ASSERT_EQ(sweeper.sweepTo(pose).poses, 1u) << name;
         }
-        const tooth::FieldView view = field.field().view(), before = base->tooth->field.view();
+        const field::FieldView view = field.field().view(), before = base->tooth->field.view();
         const double band = base->settings.bandMm, bandOut = base->bandOutMm;
         std::array<float, kBrickValues> whole;
         double worst = 0.0;
@@ -300,7 +300,7 @@ TEST(Sweeper, nodesThatBricksShareAreEqualToTheBitAtEveryInstructionSet) {
             if (level == core::SimdLevel::base) {
                 hash = field.stateHash();
                 removed = field.removedMm3();
-                const tooth::FieldView view = field.field().view();
+                const field::FieldView view = field.field().view();
                 std::size_t shared = 0, torn = 0;
                 forStored(view, [&](std::int32_t dense, std::int32_t bx, std::int32_t by, std::int32_t bz) {
                     const float* mine = view.values + static_cast<std::size_t>(view.brickIndex[dense]) * kBrickValues;
@@ -342,11 +342,11 @@ TEST(Sweeper, whatIsCountedIsWhatTheFieldLostTissueByTissue) {
     std::mt19937_64 g(test::seed());
     const core::Box box{Vec3(-1.5, -1.5, -1.6), Vec3(1.5, 1.5, 0)};
     const auto whole = test::phantom(box, 0.05, test::boxDistance(box));
-    const tooth::TissueMap::PartFunction parts[] = {
+    const field::TissueMap::PartFunction parts[] = {
         {[](const Vec3& p) { return (p - Vec3(0.2, 0.1, -0.3)).norm() - 0.6; }, Tissue::caries, 2},
         {[](const Vec3& p) { return p.z() + 0.5 + 0.2 * p.x(); }, Tissue::dentine, 1}};
     const auto base =
-        tooth::prepareCutting(whole, tooth::TissueMap::fromFunctions(whole->field, parts, Tissue::enamel));
+        tooth::prepareCutting(whole, field::TissueMap::fromFunctions(whole->field, parts, Tissue::enamel));
     for (const char* name : {"cylinder-round:1.0x4.0", "inverted-cone:1.2x1.0"}) {
         tooth::CutField field(base);
         Sweeper sweeper(field, burOf(name), core::simdLevel());
@@ -356,7 +356,7 @@ TEST(Sweeper, whatIsCountedIsWhatTheFieldLostTissueByTissue) {
             poses.push_back(poseAt(Vec3(0.02 * i - 0.6, 0.05, -0.8)));
         for (const Pose& pose : poses) {
             const auto outcome = sweeper.sweepTo(pose);
-            for (std::size_t t = 0; t < tooth::kTissueCount; ++t)
+            for (std::size_t t = 0; t < cases::kTissueCount; ++t)
                 told[t] += outcome.removedMm3[t];
         }
         const tooth::TissueVolumes left = field.volumesMm3();
@@ -383,7 +383,7 @@ TEST(Sweeper, aMetreASecondIsTheSameAsASlowHand) {
         const double fastMm3 = sumOf(fast.removedMm3()), slowMm3 = sumOf(slow.removedMm3());
         EXPECT_NEAR(fastMm3, slowMm3, 0.003 * slowMm3) << name;
         // Compared where the slow surface is.
-        const tooth::FieldView view = slow.field().view();
+        const field::FieldView view = slow.field().view();
         std::vector<double> errors;
         forStored(view, [&](std::int32_t dense, std::int32_t bx, std::int32_t by, std::int32_t bz) {
             const float* values = view.values + static_cast<std::size_t>(view.brickIndex[dense]) * kBrickValues;

@@ -19,11 +19,11 @@
 namespace handpiece::device {
 namespace {
 
+using cases::Tissue;
 using core::Pose;
 using core::Quat;
 using core::Vec3;
 using messages::HapticSample;
-using tooth::Tissue;
 
 constexpr double kPeriodS = 1e-3;
 
@@ -355,15 +355,15 @@ TEST(PointerDevice, refusesWhatCannotBeSimulated) {
 class PointerAtATooth : public testing::Test {
   protected:
     static void SetUpTestSuite() {
-        tooth::Case made;
+        cases::Case made;
         made.name = "block";
         made.outer = test::boxMesh(Vec3(-3, -3, -3), Vec3(3, 3, 0));
         tooth::PrepareSettings settings;
         settings.useCache = false;
         auto whole = tooth::prepareTooth(made, settings);
-        const tooth::TissueMap::PartFunction dentine{[](const Vec3& p) { return p.z() + 1.2; }, Tissue::dentine, 20};
-        tooth::TissueMap tissues =
-            tooth::TissueMap::fromFunctions(whole->field, std::span(&dentine, 1), Tissue::enamel);
+        const field::TissueMap::PartFunction dentine{[](const Vec3& p) { return p.z() + 1.2; }, Tissue::dentine, 20};
+        field::TissueMap tissues =
+            field::TissueMap::fromFunctions(whole->field, std::span(&dentine, 1), Tissue::enamel);
         base_ = tooth::prepareCutting(std::move(whole), std::move(tissues));
     }
     static void TearDownTestSuite() { base_.reset(); }
@@ -376,7 +376,7 @@ class PointerAtATooth : public testing::Test {
     static loop::Work work(const std::shared_ptr<tooth::CutField>& field) {
         const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur("cylinder-round:1.0x4.0"));
         return {contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
-                std::make_unique<cutting::Cutter>(field, bur, instrument::Ability{}, tooth::builtInTissues(),
+                std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{}, cases::builtInTissues(),
                                                   cutting::Cutter::Settings{})};
     }
     static Scene scene(double rateHz, const Vec3& start = Vec3(0, 0, 0.5)) {

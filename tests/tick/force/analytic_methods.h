@@ -71,7 +71,7 @@ inline Distance ball(double radius) {
 /// points of the surface 60 um apart and from the ball that decides the depth.
 class AnalyticMethod final : public contact::Method {
   public:
-    AnalyticMethod(Distance distance, double radiusMm, double lengthMm, tooth::Tissue tissue = tooth::Tissue::enamel)
+    AnalyticMethod(Distance distance, double radiusMm, double lengthMm, cases::Tissue tissue = cases::Tissue::enamel)
         : distance_(std::move(distance)), radius_(radiusMm), length_(lengthMm), tissue_(tissue) {
         const auto ring = [&](double z, double rho) {
             const int count = std::max(1, static_cast<int>(std::ceil(2 * std::numbers::pi * rho / kSpacingMm)));
@@ -194,7 +194,7 @@ class AnalyticMethod final : public contact::Method {
 
     Distance distance_;
     double radius_, length_;
-    tooth::Tissue tissue_;
+    cases::Tissue tissue_;
     std::vector<core::Vec3> points_;
 };
 

@@ -60,7 +60,7 @@ TEST(ForceModel, isASpringOfTheTissueOnAPlane) {
     const ForceCommand f = s.line({0, 0, 1}, {0, 0, -0.8}, 0.05);
     EXPECT_NEAR(f.forceN.z(), 0.5 * 0.8, 1e-5);
     EXPECT_NEAR(f.forceN.head<2>().norm(), 0.0, 1e-9);
-    EXPECT_EQ(s.touch.tissue, tooth::Tissue::enamel);
+    EXPECT_EQ(s.touch.tissue, cases::Tissue::enamel);
     EXPECT_EQ(s.touch.patches.patches.size(), 1u);
 }
 
@@ -68,13 +68,13 @@ TEST(ForceModel, takesStiffnessFromTheTissueAndTheMultiplierUpToTheDevicesLimit)
     for (const double multiplier : {0.5, 1.0, 3.0}) {
         Parameters p = still();
         p.stiffnessMultiplier = multiplier;
-        AnalyticMethod dentine(test::plane(), kRadius, 4.0, tooth::Tissue::dentine);
+        AnalyticMethod dentine(test::plane(), kRadius, 4.0, cases::Tissue::dentine);
         ForceModel model(unlimited(), p);
         ForceCommand f;
         for (double z = 0.5; z > -0.4 - 1e-9; z -= 0.05) {
             f = model.compute(model.feel(dentine, at({0, 0, z}), false, kPeriodS), kPeriodS);
         }
-        const double fraction = tooth::properties(tooth::Tissue::dentine).stiffnessFraction;
+        const double fraction = cases::properties(cases::Tissue::dentine).stiffnessFraction;
         EXPECT_NEAR(f.forceN.z(), 0.4 * std::min(0.5, 0.5 * fraction * multiplier), 1e-5);
     }
 }
@@ -194,7 +194,7 @@ TEST(ForceModel, doesNoWorkAroundAClosedLoop) {
 TEST(ForceModel, frictionSticksThenSlipsAtCoulombsLimitAndOpposesTheSlide) {
     Parameters p = still();
     p.frictionMultiplier = 1.0;
-    const double mu = tooth::properties(tooth::Tissue::enamel).friction, depth = 0.8, press = kStiffness * depth;
+    const double mu = cases::properties(cases::Tissue::enamel).friction, depth = 0.8, press = kStiffness * depth;
     ASSERT_GT(mu, 0.0);
     Scene s(test::plane(), unlimited(), p);
     EXPECT_NEAR(s.line({0, 0, 1}, {0, 0, -depth}, 0.05).forceN.head<2>().norm(), 0.0, 1e-9);

@@ -59,10 +59,10 @@ std::shared_ptr<const tooth::Tooth> prismTooth(const std::vector<Vec2>& corners,
         mesh.triangles.push_back({j, i + n, j + n});
     }
     const geometry::TriangleTree tree(mesh);
-    tooth::FieldSettings settings;
+    field::FieldSettings settings;
     settings.voxelMm = voxelMm;
-    tooth::ToothField field = tooth::ToothField::fromFunction(mesh.bounds().grown(0.5), settings,
-                                                              [&](const Vec3& p) { return tree.signedDistance(p); });
+    field::DistanceField field = field::DistanceField::fromFunction(
+        mesh.bounds().grown(0.5), settings, [&](const Vec3& p) { return tree.signedDistance(p); });
     return std::make_shared<const tooth::Tooth>(
         tooth::Tooth{"prism", std::move(mesh), tree, std::move(field), false, 0.0});
 }

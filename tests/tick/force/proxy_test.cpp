@@ -64,7 +64,7 @@ TEST(Proxy, staysOnAPlaneAboveTheDevice) {
     EXPECT_LT((f.proxy().pose().positionMm - Vec3(2, 1, 0)).norm(), 1e-4);
     EXPECT_LE(f.worstDepthMm, kAllowedMm);
     EXPECT_LE(f.mostPasses, ProxySettings{}.iterations + 3);
-    EXPECT_EQ(f.proxy().strongestTissue(), tooth::Tissue::enamel);
+    EXPECT_EQ(f.proxy().strongestTissue(), cases::Tissue::enamel);
 }
 
 TEST(Proxy, leavesTheSurfaceWithTheDevice) {

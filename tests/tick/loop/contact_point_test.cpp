@@ -20,10 +20,10 @@ using messages::HapticSample;
 constexpr double kBallMm = 5.0, kBurMm = 0.5;
 
 std::unique_ptr<contact::Method> methodOf(const geometry::TriangleMesh& mesh, const char* bur) {
-    tooth::Case made;
+    cases::Case made;
     made.name = "made";
     made.outer = mesh;
-    made.parts.push_back({"enamel", tooth::Tissue::enamel, 0, mesh});
+    made.parts.push_back({"enamel", cases::Tissue::enamel, 0, mesh});
     tooth::PrepareSettings settings;
     settings.useCache = false;
     return contact::makeFieldMethod(tooth::prepareTooth(made, settings),
@@ -91,7 +91,7 @@ TEST(ContactPoint, withoutPatchesItIsTheDeepestPoint) {
     penalty.mode = force::Mode::penalty;
     int held = 0;
     goTo(
-        std::make_unique<test::AnalyticMethod>(test::plane(), kBurMm, 4.0, tooth::Tissue::enamel), Vec3(1, 2, 0.5),
+        std::make_unique<test::AnalyticMethod>(test::plane(), kBurMm, 4.0, cases::Tissue::enamel), Vec3(1, 2, 0.5),
         Vec3(1, 2, -0.2),
         [&](const HapticSample& s) {
             EXPECT_EQ(normalOf(s).norm() > 0.5, s.depthMm > 0.0);

@@ -17,24 +17,24 @@
 namespace handpiece::loop {
 namespace {
 
+using cases::Tissue;
 using core::Pose;
 using core::Quat;
 using core::Vec3;
 using messages::HapticSample;
-using tooth::Tissue;
 
 constexpr double kEdge = 4.0;  // of the block; its top is at z = 0
 
-std::shared_ptr<const tooth::CuttableTooth> block(const std::vector<tooth::TissueMap::PartFunction>& parts,
+std::shared_ptr<const tooth::CuttableTooth> block(const std::vector<field::TissueMap::PartFunction>& parts,
                                                   double voxelMm = 0.05) {
-    tooth::Case made;
+    cases::Case made;
     made.name = "block";
     made.outer = test::boxMesh(Vec3(-kEdge / 2, -kEdge / 2, -kEdge / 2), Vec3(kEdge / 2, kEdge / 2, 0.0));
     tooth::PrepareSettings settings;
     settings.useCache = false;
     settings.field.voxelMm = voxelMm;
     auto whole = tooth::prepareTooth(made, settings);
-    tooth::TissueMap tissues = tooth::TissueMap::fromFunctions(whole->field, parts, Tissue::enamel);
+    field::TissueMap tissues = field::TissueMap::fromFunctions(whole->field, parts, Tissue::enamel);
     return tooth::prepareCutting(std::move(whole), std::move(tissues));
 }
 
@@ -50,7 +50,7 @@ struct Bench {
     }
     [[nodiscard]] Work work() const {
         return {contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
-                std::make_unique<cutting::Cutter>(field, bur, instrument::Ability{}, tooth::builtInTissues(),
+                std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{}, cases::builtInTissues(),
                                                   cutting::Cutter::Settings{full})};
     }
     [[nodiscard]] std::unique_ptr<HapticLoop> loop(std::vector<device::TimedPose> poses, bool rigid = true,
@@ -180,7 +180,7 @@ TEST(CuttingLoop, aboveTwoKilohertzTheCutTakesItsTurn) {
 
 TEST(CuttingLoop, undoPutsTheToothBackAndNoForceRoundTheBur) {
     const Bench bench(block({}));
-    const tooth::CutState whole = bench.field->state();
+    const tooth::StateDelta whole = bench.field->state();
     const std::uint64_t wholeHash = bench.field->stateHash();
     // In, cut, and stay in the hole with the pedal up while the hole is filled again.
     const std::vector<device::TimedPose> poses{{0.0, at(0, 0, 0.2), 1.0},    {0.8, at(0, 0, 0.2), 1.0},
@@ -190,16 +190,16 @@ TEST(CuttingLoop, undoPutsTheToothBackAndNoForceRoundTheBur) {
                                                {8.5, at(0, 0, -0.6), 0.0},   {9.5, at(0, 0, -0.6), 0.0}};
     auto loop = bench.loop(poses);
     (void)loop->runSimulated(6.5);
-    const tooth::CutState cut = bench.field->state();
+    const tooth::StateDelta cut = bench.field->state();
     ASSERT_FALSE(cut.bricks.empty());
     EXPECT_NE(bench.field->stateHash(), wholeHash);
-    tooth::CutState change;
-    for (tooth::CutState::Brick brick : cut.bricks) {
+    tooth::StateDelta change;
+    for (tooth::StateDelta::Brick brick : cut.bricks) {
         brick.whole = true;
         change.bricks.push_back(brick);
     }
     const std::uint64_t number = loop->restore(std::move(change));
-    EXPECT_THROW((void)loop->restore(tooth::CutState{}), core::Error);
+    EXPECT_THROW((void)loop->restore(tooth::StateDelta{}), core::Error);
     bool waited = false, felt = false;
     double worstWaiting = 0.0, last = 0.0;
     int restoring = 0;

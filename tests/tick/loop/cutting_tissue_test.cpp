@@ -14,9 +14,9 @@
 namespace handpiece::loop {
 namespace {
 
+using cases::Tissue;
 using core::Quat;
 using core::Vec3;
-using tooth::Tissue;
 
 struct Plunge {
     double meanForceN = 0, removedMm3 = 0, feedMmS = 0;
@@ -27,11 +27,11 @@ Plunge plunge(const std::shared_ptr<const tooth::CuttableTooth>& base, double sp
               double loadCapN) {
     const auto field = std::make_shared<tooth::CutField>(base);
     const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur(burName));
-    instrument::Ability ability;
-    ability.loadCapN = loadCapN;
-    Work work{
-        contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
-        std::make_unique<cutting::Cutter>(field, bur, ability, tooth::builtInTissues(), cutting::Cutter::Settings{})};
+    instrument::CuttingParameters cuttingParameters;
+    cuttingParameters.loadCapN = loadCapN;
+    Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
+              std::make_unique<cutting::Cutter>(field, bur, cuttingParameters, cases::builtInTissues(),
+                                                cutting::Cutter::Settings{})};
     device::SimulatedDeviceSettings rigid;
     rigid.rigidHand = true;
     const double way = 7.0, spin = 1.5;
@@ -57,7 +57,7 @@ Plunge plunge(const std::shared_ptr<const tooth::CuttableTooth>& base, double sp
 }
 
 TEST(CuttingTissue, enamelResistsDentineLessAndDecayGivesWay) {
-    tooth::Case made;
+    cases::Case made;
     made.name = "block";
     made.outer = test::boxMesh(Vec3(-1.2, -1.2, -8.0), Vec3(1.2, 1.2, 0.0));
     tooth::PrepareSettings settings;
@@ -66,7 +66,7 @@ TEST(CuttingTissue, enamelResistsDentineLessAndDecayGivesWay) {
     constexpr std::array tissues{Tissue::enamel, Tissue::dentine, Tissue::caries};
     std::array<std::shared_ptr<const tooth::CuttableTooth>, 3> blocks;
     for (std::size_t i = 0; i < tissues.size(); ++i)
-        blocks[i] = tooth::prepareCutting(whole, tooth::TissueMap::uniform(whole->field, tissues[i]));
+        blocks[i] = tooth::prepareCutting(whole, field::TissueMap::uniform(whole->field, tissues[i]));
     for (const char* bur : {"round:1.0x1.0", "cylinder-round:1.0x4.0"})
         for (const double cap : {1.5, 3.0}) {
             std::array<Plunge, 3> fast;

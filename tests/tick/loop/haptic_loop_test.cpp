@@ -26,7 +26,7 @@ using messages::HapticSample;
 
 constexpr double kRadius = 0.5, kLength = 4.0;
 
-std::unique_ptr<contact::Method> planeMethod(tooth::Tissue tissue = tooth::Tissue::enamel) {
+std::unique_ptr<contact::Method> planeMethod(cases::Tissue tissue = cases::Tissue::enamel) {
     return std::make_unique<test::AnalyticMethod>(test::plane(), kRadius, kLength, tissue);
 }
 std::unique_ptr<device::Device> handThatPresses(double depthMm = 4.0,
@@ -78,7 +78,7 @@ TEST(HapticLoop, aHandPressesOnAPlaneAndFeelsIt) {
     EXPECT_NEAR(samples[500].forceN[2], 0.75, 0.3);
     EXPECT_GT(peak, 0.5);
     EXPECT_GT(deepestProxy, -0.002);
-    EXPECT_EQ(samples[500].tissue, static_cast<std::uint8_t>(tooth::Tissue::enamel));
+    EXPECT_EQ(samples[500].tissue, static_cast<std::uint8_t>(cases::Tissue::enamel));
     EXPECT_GT(samples[500].contactAreaMm2, 0.0);
     EXPECT_EQ(samples[500].patchCount, 1);
     EXPECT_GT(report.workUs.p50, 0.0);
@@ -134,7 +134,7 @@ TEST(HapticLoop, takesAnotherToothAndOtherParametersBetweenTwoTicks) {
     loop.setParameters(softer);
     (void)loop.runSimulated(0.1, keep);
     EXPECT_NEAR(last.forceN[2], 0.25 * 0.8, 1e-3);
-    loop.setMethod(planeMethod(tooth::Tissue::dentine));
+    loop.setMethod(planeMethod(cases::Tissue::dentine));
     double before = last.forceN[2], worstRise = 0.0, whileWaiting = 0.0;
     int waited = 0, clear = 0;
     (void)loop.runSimulated(1.0, [&](const HapticSample& s) {
@@ -150,8 +150,8 @@ TEST(HapticLoop, takesAnotherToothAndOtherParametersBetweenTwoTicks) {
     EXPECT_GT(clear, 0);
     EXPECT_EQ(whileWaiting, 0.0);
     EXPECT_LE(worstRise, 0.005);  // and is faded in
-    EXPECT_EQ(last.tissue, static_cast<std::uint8_t>(tooth::Tissue::dentine));
-    EXPECT_NEAR(last.forceN[2], 0.25 * tooth::properties(tooth::Tissue::dentine).stiffnessFraction * 0.8, 1e-3);
+    EXPECT_EQ(last.tissue, static_cast<std::uint8_t>(cases::Tissue::dentine));
+    EXPECT_NEAR(last.forceN[2], 0.25 * cases::properties(cases::Tissue::dentine).stiffnessFraction * 0.8, 1e-3);
 }
 
 /// A device that reports a jump and then is lost.

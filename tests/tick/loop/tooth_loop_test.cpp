@@ -10,8 +10,8 @@
 #include "handpiece/model/starter/starter.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
-#include "handpiece/tick/loop/built_in_motion.h"
 #include "handpiece/tick/loop/haptic_loop.h"
+#include "studies/built_in_motion.h"
 #include "support/realtime_trap.h"
 
 namespace handpiece::loop {
@@ -23,10 +23,10 @@ using messages::HapticSample;
 class ToothLoop : public testing::Test {
   protected:
     static void SetUpTestSuite() {
-        tooth::Case molar;
+        cases::Case molar;
         molar.name = "molar";
         molar.outer = starter::makeOuter(starter::ToothKind::lowerFirstMolar, 10000);
-        molar.parts.push_back({"enamel", tooth::Tissue::enamel, 0, molar.outer});
+        molar.parts.push_back({"enamel", cases::Tissue::enamel, 0, molar.outer});
         tooth::PrepareSettings settings;
         settings.useCache = false;
         tooth_ = tooth::prepareTooth(molar, settings);
@@ -38,7 +38,7 @@ class ToothLoop : public testing::Test {
     }
     static std::unique_ptr<HapticLoop> loopOf(const char* motion, const char* bur, double rateHz = 1000) {
         auto contact = method(bur);
-        device::Motion path = motionByName(motion, *contact, tooth_->outer.bounds());
+        device::Motion path = studies::motionByName(motion, *contact, tooth_->outer.bounds());
         durationS_ = path.durationS();
         LoopSettings settings;
         settings.rateHz = rateHz;

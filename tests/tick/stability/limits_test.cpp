@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "handpiece/base/core/error.h"
-#include "handpiece/tick/loop/passivity.h"
+#include "studies/passivity.h"
 
 namespace handpiece::stability {
 namespace {
@@ -31,23 +31,23 @@ TEST(Limits, whatTheyAllowIsPassiveInTheFullLoopAndFarBeyondIsNot) {
     DeviceFigures figures;
     figures.delayS = 0.003;
     const StableLimits limits = limitsFor(figures);
-    loop::PassivitySweep sweep;
+    studies::PassivitySweep sweep;
     sweep.frictionN = {figures.frictionN};
     sweep.delayS = {figures.delayS};
     sweep.rateHz = {figures.rateHz};
-    sweep.tissues = {tooth::Tissue::enamel};
+    sweep.tissues = {cases::Tissue::enamel};
     sweep.capability.maxStiffnessNPerMm = limits.stiffnessNPerMm;
     sweep.capability.maxDampingNSPerMm = 1.0;
     sweep.parameters.dampingMultiplier =
         limits.dampingNSPerMm /
-        sweep.parameters.tissues[static_cast<std::size_t>(tooth::Tissue::enamel)].dampingNSPerMm;
-    for (const loop::PassivityRow& row : loop::passivityMap(sweep)) {
+        sweep.parameters.tissues[static_cast<std::size_t>(cases::Tissue::enamel)].dampingNSPerMm;
+    for (const studies::PassivityRow& row : studies::passivityMap(sweep)) {
         EXPECT_TRUE(row.holds) << row.hand << ": " << row.marginNmm;
         EXPECT_FALSE(row.growing) << row.hand;
     }
     sweep.capability.maxStiffnessNPerMm = 4.0 * limits.foundNPerMm;
     int bad = 0;
-    for (const loop::PassivityRow& row : loop::passivityMap(sweep))
+    for (const studies::PassivityRow& row : studies::passivityMap(sweep))
         bad += !row.holds || row.growing || row.rippleN > row.rippleBoundN;
     EXPECT_GT(bad, 0);
 }

@@ -10,8 +10,8 @@
 #include "handpiece/tick/device/passing_device.h"
 #include "handpiece/tick/device/simulated_device.h"
 #include "handpiece/tick/loop/haptic_loop.h"
-#include "handpiece/tick/loop/plane_method.h"
-#include "handpiece/tick/loop/shaped_device.h"
+#include "studies/plane_method.h"
+#include "studies/shaped_device.h"
 #include "support/random.h"
 
 namespace handpiece::stability {
@@ -66,17 +66,17 @@ Result run(const Case& c) {
     const device::SimulatedDevice& arm = *owned;
     std::unique_ptr<device::Device> inner = std::move(owned);
     if (c.loseEvery > 0) inner = std::make_unique<Losing>(std::move(inner), c.loseEvery, c.loseTicks);
-    ShaperSettings shaping = loop::shaperSettingsFor(settings.capability);
+    ShaperSettings shaping = studies::shaperSettingsFor(settings.capability);
     shaping.passivityController = c.controlled;
     shaping.thermalBudget = false;
     shaping.delayS = c.assumedDelay;
-    auto shaped = std::make_unique<loop::ShapedDevice>(std::move(inner), shaping);
-    const loop::ShapedDevice& sent = *shaped;
+    auto shaped = std::make_unique<studies::ShapedDevice>(std::move(inner), shaping);
+    const studies::ShapedDevice& sent = *shaped;
     loop::LoopSettings loopSettings;
     loopSettings.rateHz = c.rate;
     loopSettings.queueCapacity = 16;
-    loop::HapticLoop loop(loopSettings, std::move(shaped), std::make_unique<loop::PlaneMethod>(tooth::Tissue::enamel),
-                          force::defaultParameters());
+    loop::HapticLoop loop(loopSettings, std::move(shaped),
+                          std::make_unique<studies::PlaneMethod>(cases::Tissue::enamel), force::defaultParameters());
     Result r;
     double low = 1e9, high = -1e9;
     core::Hasher hash;
@@ -178,7 +178,7 @@ TEST(PassivityController, holdsInRandomHandsAndMotions) {
 
 /// A bur caught in its own cavity: it is pulled back to the middle from all sides. A late pull feeds a whirl around it.
 double whirlMargin(double rateHz, bool controlled) {
-    constexpr double kDelayS = 0.003, kStiffness = 1.0, kMostN = 3.3;
+    constexpr double kDelayS = 0.003, kStiffness = 1.0, kMaxN = 3.3;
     device::SimulatedDeviceSettings settings;
     settings.frictionN = 0.05;
     settings.delayS = kDelayS;
@@ -198,7 +198,7 @@ double whirlMargin(double rateHz, bool controlled) {
         margin =
             std::min(margin, 0.5 * settings.capability.encoderStepMm * arm.forceVariationN() - arm.appliedWorkNmm());
         Vec3 wanted = -kStiffness * read;
-        if (wanted.norm() > kMostN) wanted *= kMostN / wanted.norm();
+        if (wanted.norm() > kMaxN) wanted *= kMaxN / wanted.norm();
         arm.command(controller.pass(read, wanted, 1.0 / rateHz, i == 0, controlled).forceN, Vec3::Zero());
     }
     return margin;

@@ -13,7 +13,7 @@
 namespace handpiece::config {
 namespace {
 
-constexpr int kMostDepth = 32;
+constexpr int kMaxDepth = 32;
 
 const toml::table& tomlOf(const std::shared_ptr<const void>& node) {
     return *static_cast<const toml::table*>(node.get());
@@ -86,10 +86,10 @@ void requireShallow(std::string_view text, const std::string& where) {
         } else if (c == '\n' || c == '=' || c == ',') {
             dots = 0;
         }
-        if (brackets <= kMostDepth && dots <= kMostDepth) continue;
+        if (brackets <= kMaxDepth && dots <= kMaxDepth) continue;
         const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
         const std::string problem =
-            fmt::format("line {}: more than {} tables or lists in one another", line, kMostDepth);
+            fmt::format("line {}: more than {} tables or lists in one another", line, kMaxDepth);
         throw core::Error(problem, where, "mend the file").as("bad-text", {problem});
     }
 }
@@ -112,7 +112,7 @@ Table Table::parse(std::string_view text, std::string where, std::uint64_t mostB
 }
 
 Table Table::read(const std::filesystem::path& file) {
-    const std::vector<std::byte> bytes = core::readFile(file, kMostBytes);
+    const std::vector<std::byte> bytes = core::readFile(file, kMaxBytes);
     return parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()), file.string());
 }
 

@@ -19,10 +19,10 @@ namespace handpiece::config {
 class Table {
   public:
     /// Bytes of the longest text that is read.
-    static constexpr std::uint64_t kMostBytes = 1 << 20;
+    static constexpr std::uint64_t kMaxBytes = 1 << 20;
     /// `where` names the text in messages. Throws core::Error with the line when it is no TOML, or one of tables in
     /// tables without end; and when it is too long.
-    [[nodiscard]] static Table parse(std::string_view text, std::string where, std::uint64_t mostBytes = kMostBytes);
+    [[nodiscard]] static Table parse(std::string_view text, std::string where, std::uint64_t mostBytes = kMaxBytes);
     /// Of a plain file.
     [[nodiscard]] static Table read(const std::filesystem::path& file);
 

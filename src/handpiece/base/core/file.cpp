@@ -33,7 +33,7 @@ struct Descriptor {
     const int value;
 };
 
-constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // write() takes no more than 2 GB
+constexpr std::size_t kMaxAtOnce = std::size_t{1} << 30;  // write() takes no more than 2 GB
 
 // Unique within this process and between processes: two writers never share a temporary.
 fs::path temporaryBeside(const fs::path& path) {
@@ -214,7 +214,7 @@ void writeFile(const fs::path& path, std::span<const std::byte> data, Writing ho
         const Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode));
         if (file.value < 0) why = errno;
         for (std::size_t done = 0; why == 0 && done < data.size();) {
-            const ssize_t now = ::write(file.value, data.data() + done, std::min(data.size() - done, kMostAtOnce));
+            const ssize_t now = ::write(file.value, data.data() + done, std::min(data.size() - done, kMaxAtOnce));
             if (now > 0)
                 done += static_cast<std::size_t>(now);
             else if (errno != EINTR)

@@ -22,9 +22,9 @@ constexpr double kMiddlePull = 1e-3;
 /// Cost of an edge's squared length, relative to the weight of its planes: keeps flat places evenly meshed.
 constexpr double kLengthCost = 1e-5;
 /// A new triangle may turn by at most acos of this against the one it replaces.
-constexpr double kLeastTurn = 0.25;
+constexpr double kMinTurn = 0.25;
 /// Shape of a triangle, 4 sqrt(3) area / sum of squared edges (1 equilateral): below this only if it was worse before.
-constexpr double kLeastShape = 0.12;
+constexpr double kMinShape = 0.12;
 
 /// Sum of weighted squared distances to planes: x'Ax + 2 b'x + c.
 struct Quadric {
@@ -394,14 +394,14 @@ class Collapser {
             const Vec3 &pv = position_[v], &pw = position_[w], &pa = position_[a];
             const Vec3 edge = pw - pv, was = (pv - pa).cross(edge), is = (pv - p).cross(edge);
             const double wasLength = was.norm(), isLength = is.norm();
-            if (!(is.dot(was) > kLeastTurn * isLength * wasLength)) {
+            if (!(is.dot(was) > kMinTurn * isLength * wasLength)) {
                 good = false;
                 return;
             }
             const double sides = edge.squaredNorm();
             const double isShape =
                 2.0 * std::sqrt(3.0) * isLength / (sides + (pv - p).squaredNorm() + (pw - p).squaredNorm());
-            if (isShape >= kLeastShape) return;
+            if (isShape >= kMinShape) return;
             const double wasShape =
                 2.0 * std::sqrt(3.0) * wasLength / (sides + (pv - pa).squaredNorm() + (pw - pa).squaredNorm());
             good = isShape > wasShape;

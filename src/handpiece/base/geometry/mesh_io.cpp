@@ -96,7 +96,7 @@ MeshFormat meshFormatOf(const std::filesystem::path& path) {
 }
 
 TriangleMesh readMesh(const std::filesystem::path& path, ReadNotes* notes) {
-    return readMesh(core::readFile(path, kMostMeshBytes), meshFormatOf(path), path.string(), notes);
+    return readMesh(core::readFile(path, kMaxMeshBytes), meshFormatOf(path), path.string(), notes);
 }
 
 TriangleMesh readMesh(std::span<const std::byte> data, MeshFormat hint, const std::string& where, ReadNotes* notes) {

@@ -16,7 +16,7 @@
 namespace handpiece::geometry {
 
 /// Bytes of the largest file that is read: some twenty million faces as text.
-inline constexpr std::uint64_t kMostMeshBytes = 4ull << 30;
+inline constexpr std::uint64_t kMaxMeshBytes = 4ull << 30;
 
 enum class MeshFormat { unknown, stl, ply, obj };
 
@@ -31,7 +31,7 @@ using ReadNotes = std::vector<std::string>;
 /// STL (binary, also with "solid" in its header or a wrong count; ASCII) has its equal vertices merged (same bits, -0 =
 /// +0), numbered by first appearance. PLY (ASCII, binary of both ends) and OBJ keep their vertices; polygons become
 /// fans. Throws core::Error on empty, truncated or senseless files, coordinates that are not finite, more than 2^31
-/// corners, more bytes than kMostMeshBytes.
+/// corners, more bytes than kMaxMeshBytes.
 [[nodiscard]] TriangleMesh readMesh(const std::filesystem::path& path, ReadNotes* notes = nullptr);
 /// The same from memory. `hint` decides only where the content is silent; `where` names the source in errors.
 [[nodiscard]] TriangleMesh readMesh(std::span<const std::byte> data, MeshFormat hint, const std::string& where,

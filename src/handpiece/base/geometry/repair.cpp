@@ -101,7 +101,7 @@ class Mender {
 
     // Debris, sheets around nothing and patches in the place of others are told; of the rest little may be missing.
     void requireLittleLost(double closedVolumeMm3) {
-        constexpr double kMostDebris = 0.1;  // more is no debris, but the thing itself in pieces
+        constexpr double kMaxDebris = 0.1;  // more is no debris, but the thing itself in pieces
         std::vector<double> kept(given_.size(), 0.0);
         for (std::size_t f = 0; f < mesh_.triangles.size(); ++f)
             if (source_[f] != kMade) kept[source_[f]] += areaOf(f);
@@ -115,15 +115,15 @@ class Mender {
         if (report_.lostAreaMm2 < 1e-12 * all) report_.lostAreaMm2 = 0.0;  // rounding
         const double mm3 = std::abs(enclosedVolumeMm3(mesh_) - closedVolumeMm3);
         constexpr const char* kEditor = "mend it in a mesh editor";
-        if (report_.lostAreaMm2 > kMostLostShare * outermost)
+        if (report_.lostAreaMm2 > kMaxLostShare * outermost)
             throw core::Error(fmt::format("mending would lose {:.4g} mm2 ({:.1f} %) of the surface of {:.4g} mm2",
                                           report_.lostAreaMm2, 100.0 * report_.lostAreaMm2 / outermost, outermost),
                               "mesh", kEditor);
-        if (mm3 > kMostLostShare * std::abs(closedVolumeMm3))
+        if (mm3 > kMaxLostShare * std::abs(closedVolumeMm3))
             throw core::Error(fmt::format("mending what crosses would change the volume of {:.4g} mm3 by {:.4g} mm3",
                                           std::abs(closedVolumeMm3), mm3),
                               "mesh", kEditor);
-        if (report_.droppedAreaMm2 > kMostDebris * all)
+        if (report_.droppedAreaMm2 > kMaxDebris * all)
             throw core::Error(
                 fmt::format("the surface lies in pieces: {} of less than {:.3g} % of the largest have {:.1f} % "
                             "of its area together",
@@ -286,7 +286,7 @@ class Mender {
             std::vector<double> area(mesh_.triangles.size(), 0.0);
             for (std::uint32_t f = 0; f < mesh_.triangles.size(); ++f)
                 area[sets.find(f)] += areaOf(f);
-            double left = kMostLostShare * std::accumulate(area.begin(), area.end(), 0.0) - report_.removedFinAreaMm2;
+            double left = kMaxLostShare * std::accumulate(area.begin(), area.end(), 0.0) - report_.removedFinAreaMm2;
             std::vector<std::uint32_t> sheets;
             for (const auto& fork : forks)
                 if (isOpen[fork.first] && area[fork.first] <= left && (sheets.empty() || sheets.back() != fork.first))
@@ -568,10 +568,10 @@ class Mender {
     // are.
     void mendCrossings() {
         constexpr int kWidestRing = 4;
-        constexpr int kMostPatches = 64;  // each leaves fewer crossings than there were
+        constexpr int kMaxPatches = 64;  // each leaves fewer crossings than there were
         report_.crossingFaces = selfIntersections(mesh_).size();
         int ring = 0;
-        for (int patches = 0; patches < kMostPatches && ring <= kWidestRing && report_.crossingFaces > 0;) {
+        for (int patches = 0; patches < kMaxPatches && ring <= kWidestRing && report_.crossingFaces > 0;) {
             Mender patched = *this;
             if (patched.patch(ring) && patched.report_.crossingFaces < report_.crossingFaces) {
                 *this = std::move(patched);
@@ -617,7 +617,7 @@ class Mender {
             return false;  // this spot cannot be mended so
         }
         report_.crossingFaces = selfIntersections(mesh_).size();
-        return std::abs(enclosedVolumeMm3(mesh_) - volumeMm3) <= kMostLostShare * std::abs(volumeMm3);
+        return std::abs(enclosedVolumeMm3(mesh_) - volumeMm3) <= kMaxLostShare * std::abs(volumeMm3);
     }
 
     void growByOneRing(std::vector<std::uint8_t>& marked) const {

@@ -22,7 +22,7 @@ struct RepairSettings {
 };
 
 /// The most that may go of the outermost shells' area, debris and patches that are told apart, and of the volume.
-inline constexpr double kMostLostShare = 0.01;
+inline constexpr double kMaxLostShare = 0.01;
 
 /// A hole that was closed.
 struct ClosedHole {
@@ -64,7 +64,7 @@ struct RepairReport {
 /// every hole, and replaces small patches that cross. Solids that overlap are left as they are and told in
 /// crossingFaces. All of it again until nothing changes: what was mended once is left as it is.
 /// Throws core::Error (and leaves `mesh` as it was) when nothing is left, a surface cannot be oriented, more than
-/// kMostLostShare would be lost, or debris is more than a tenth of all.
+/// kMaxLostShare would be lost, or debris is more than a tenth of all.
 RepairReport repair(TriangleMesh& mesh, const RepairSettings& settings = {});
 
 }  // namespace handpiece::geometry

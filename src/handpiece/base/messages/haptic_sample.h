@@ -31,7 +31,7 @@ struct HapticSample {
     /// Where the proxy bears on the tooth: the middle of the patch that carries most of the pressure, its normal out of
     /// the tooth, unit. Without contact the normal is zero.
     std::array<double, 3> contactPointMm{}, contactNormal{};
-    std::uint8_t tissue = 0;         ///< tooth::Tissue that carries most of the pressure
+    std::uint8_t tissue = 0;         ///< cases::Tissue that carries most of the pressure
     std::uint8_t contactStatus = 0;  ///< contact::Status
     std::uint16_t patchCount = 0;
     std::uint32_t flags = 0;              ///< SampleFlag bits
@@ -47,7 +47,7 @@ struct HapticSample {
     double pedal = 0.0;                   ///< 0..1
     double speedRpm = 0.0;                ///< of the bur
     double loadTorqueNmm = 0.0;           ///< with which the tooth held the bur back in the tick before
-    std::array<double, 10> removedMm3{};  ///< by tooth::Tissue, since the tooth was whole
+    std::array<double, 10> removedMm3{};  ///< by cases::Tissue, since the tooth was whole
 };
 
 enum SampleFlag : std::uint32_t {

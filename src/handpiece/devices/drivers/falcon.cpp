@@ -22,9 +22,9 @@ namespace {
 using falcon::Connection;
 using falcon::Report;
 using link::CalibrationState;
+using link::DeviceFault;
 using link::DriverCommand;
 using link::DriverReading;
-using link::Trouble;
 
 constexpr std::chrono::milliseconds kPatience{600};
 constexpr std::int64_t kAnswerNs = 3'000'000;        // a frame's answer comes within one or two
@@ -33,12 +33,12 @@ constexpr std::int64_t kRetryEveryNs = 100'000'000;  // once it is gone
 // Open-source drivers send 10,000 of the motors' units for a newton metre about the crank, against its turn.
 constexpr double kUnitsPerNmm = -10.0;
 /// The largest force that the motors' units hold out for in every direction within 40 mm of the middle.
-constexpr double kMostForceN = 4.8;
+constexpr double kMaxForceN = 4.8;
 
 /// What the servo thread works with. Outlives the driver when the thread is left behind.
 struct Grip {
     std::unique_ptr<Connection> connection;
-    std::unique_ptr<Door> door;
+    std::unique_ptr<ServoPort> door;
     std::atomic<bool> homed{false};
 
     DriverReading reading;
@@ -63,7 +63,7 @@ void Grip::hear(const Report& report) noexcept {
     gone = false;
     if (report.homed == falcon::kAllHomed) homed.store(true);
     if (!homed.load()) {
-        reading.trouble = Trouble::notCalibrated;
+        reading.trouble = DeviceFault::notCalibrated;
         placed = false;
         return;
     }
@@ -75,7 +75,7 @@ void Grip::hear(const Report& report) noexcept {
         place = falcon::middleMm();
         placed = falcon::forward(cranks, place);
     }
-    reading.trouble = placed ? Trouble::none : Trouble::badData;
+    reading.trouble = placed ? DeviceFault::none : DeviceFault::badData;
     if (!placed) return;
     const core::Vec3 from = place - falcon::middleMm();
     reading.positionMm = {from.x(), from.y(), from.z()};
@@ -86,14 +86,14 @@ void Grip::failed(int code, std::int64_t nowNs) noexcept {
         if (nowNs - heardNs < kStalledNs) return;
         // Something comes, but no frame can be made of it.
         const std::uint64_t now = connection->spoilt();
-        reading.trouble = now != spoilt ? Trouble::badData : Trouble::stalled;
+        reading.trouble = now != spoilt ? DeviceFault::badData : DeviceFault::stalled;
         reading.vendorCode = now != spoilt ? 0 : code;
         spoilt = now;
         return;
     }
     gone = code == falcon::kGone || code == falcon::kIo;
     if (gone) nextTryNs = nowNs + kRetryEveryNs;
-    reading.trouble = gone ? Trouble::unplugged : Trouble::vendorError;
+    reading.trouble = gone ? DeviceFault::unplugged : DeviceFault::vendorError;
     reading.vendorCode = code;
 }
 
@@ -101,14 +101,14 @@ void Grip::turnInto(const DriverCommand& command) noexcept {
     motors = {};
     core::Vec3 torqueNmm;
     const core::Vec3 force(command.forceN[0], command.forceN[1], command.forceN[2]);
-    if (!placed || reading.trouble != Trouble::none || force.isZero(0) ||
+    if (!placed || reading.trouble != DeviceFault::none || force.isZero(0) ||
         !falcon::torquesFor(place, cranks, force, torqueNmm))
         return;
     core::Vec3 units = kUnitsPerNmm * torqueNmm;
     // A force keeps its direction when a motor is at its end.
     const double most = units.cwiseAbs().maxCoeff();
     if (!(most < 1e9)) return;
-    if (most > falcon::kMostMotor) units *= falcon::kMostMotor / most;
+    if (most > falcon::kMaxMotor) units *= falcon::kMaxMotor / most;
     for (int i = 0; i < 3; ++i)
         motors[static_cast<std::size_t>(i)] = static_cast<int>(std::lround(units[i]));
 }
@@ -133,7 +133,7 @@ void Grip::frame() noexcept {
     }
     if (reading.frame == 0 && reading.timeNs == 0) {
         reading.timeNs = nowNs;
-        reading.trouble = reading.trouble == Trouble::none ? Trouble::starting : reading.trouble;
+        reading.trouble = reading.trouble == DeviceFault::none ? DeviceFault::starting : reading.trouble;
     }
     ++reading.frame;
     const DriverCommand command = door->exchange(reading);
@@ -167,7 +167,7 @@ class FalconDriver final : public link::Driver {
         info_.hasOrientation = false;
         info_.capability = dhd::capabilityOf(*dhd::modelOf(dhd::kTypeFalcon));
         info_.capability.name = info_.model;
-        info_.capability.maxForceN = kMostForceN;
+        info_.capability.maxForceN = kMaxForceN;
         info_.sources =
             "stiffness and damping: device table of CHAI3D 3.3; geometry and motor units: open-source drivers; "
             "continuous force ours; all unchecked";
@@ -180,7 +180,7 @@ class FalconDriver final : public link::Driver {
 
     void start(link::Servo& servo) override {
         link::requireStartable(servo_ != nullptr, stopped_, info_.model);
-        grip_->door = std::make_unique<Door>(servo);
+        grip_->door = std::make_unique<ServoPort>(servo);
         servo_ = std::make_unique<ServoThread>(
             info_.servoHz, [grip = grip_] { grip->frame(); }, [grip = grip_] { grip->last(); });
     }

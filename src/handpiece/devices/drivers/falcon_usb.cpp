@@ -96,7 +96,7 @@ Frame encode(const std::array<int, 3>& motors, unsigned lights, bool homing) noe
     frame.front() = kOpens;
     frame.back() = kCloses;
     for (std::size_t motor = 0; motor < 3; ++motor) {
-        const auto bits = static_cast<std::uint16_t>(std::clamp(motors[motor], -kMostMotor, kMostMotor));
+        const auto bits = static_cast<std::uint16_t>(std::clamp(motors[motor], -kMaxMotor, kMaxMotor));
         for (std::size_t nibble = 0; nibble < 4; ++nibble)
             frame[1 + 4 * motor + nibble] = static_cast<std::uint8_t>(kFirst + ((bits >> (4 * nibble)) & 0xf));
     }

@@ -25,7 +25,7 @@ struct Report {
 };
 enum Light : unsigned { kGreen = 2, kBlue = 4, kRed = 8 };
 inline constexpr unsigned kAllHomed = 7;
-inline constexpr int kMostMotor = 4096;  ///< of the numbers sent to the motors; recalled, unchecked
+inline constexpr int kMaxMotor = 4096;  ///< of the numbers sent to the motors; recalled, unchecked
 
 using Frame = std::array<std::uint8_t, 16>;
 /// '<', four letters a motor, lights and homing, one letter that means nothing, '>'. A letter is 'A' plus a number.

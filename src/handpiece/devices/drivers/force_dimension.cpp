@@ -22,9 +22,9 @@ namespace {
 
 using dhd::Library;
 using link::CalibrationState;
+using link::DeviceFault;
 using link::DriverCommand;
 using link::DriverReading;
-using link::Trouble;
 
 constexpr std::chrono::milliseconds kPatience{500}, kLastAttempt{200};
 constexpr std::int64_t kStatusEveryNs = 50'000'000;  // the status is a call of its own
@@ -39,7 +39,7 @@ struct Arm {
     char id = -1;
     bool openedByDrd = false;
     bool wrist = false, torque = false;
-    std::unique_ptr<Door> door;
+    std::unique_ptr<ServoPort> door;
 
     // Between the driver's owner and the thread.
     std::atomic<bool> calibrating{false}, idle{false};  // the thread keeps off the library while it calibrates
@@ -50,7 +50,7 @@ struct Arm {
 
     // The servo thread's.
     DriverReading reading;
-    Trouble statusTrouble = Trouble::none;
+    DeviceFault statusFault = DeviceFault::none;
     int statusCode = 0;
     std::int64_t nextStatusNs = 0, failingSinceNs = 0, nextTryNs = 0, forceOffSinceNs = 0;
     bool gone = false;
@@ -76,7 +76,7 @@ void Arm::failed(std::int64_t nowNs) noexcept {
     gone = code == dhd::kNoDevice || code == dhd::kNotAvailable || code == dhd::kInvalidIndex ||
            (silent && nowNs - failingSinceNs > kGoneAfterNs);
     if (gone) nextTryNs = nowNs + kRetryEveryNs;
-    reading.trouble = gone ? Trouble::unplugged : Trouble::vendorError;
+    reading.trouble = gone ? DeviceFault::unplugged : DeviceFault::vendorError;
     reading.vendorCode = code;
 }
 
@@ -89,10 +89,10 @@ void Arm::readPose(std::int64_t nowNs) noexcept {
     if (said < 0) return failed(nowNs);
     failingSinceNs = 0;
     gone = false;
-    reading.trouble = Trouble::none;
+    reading.trouble = DeviceFault::none;
     reading.vendorCode = 0;
     reading.positionMm = positionFromDhd(metres);
-    if (wrist && !orientationFromDhd(rotation, reading.orientation)) reading.trouble = Trouble::badData;
+    if (wrist && !orientationFromDhd(rotation, reading.orientation)) reading.trouble = DeviceFault::badData;
     reading.buttons = 0;
     if (library->dhdGetButtonMask) {
         reading.buttons = library->dhdGetButtonMask(id);
@@ -104,7 +104,7 @@ void Arm::readPose(std::int64_t nowNs) noexcept {
 
 void Arm::readStatus(std::int64_t nowNs) noexcept {
     nextStatusNs = nowNs + kStatusEveryNs;
-    statusTrouble = Trouble::none;
+    statusFault = DeviceFault::none;
     statusCode = 0;
     if (library->drdIsInitialized) initialised.store(library->drdIsInitialized(id) ? 1 : 0);
     int status[dhd::kStatusCount] = {};
@@ -113,9 +113,9 @@ void Arm::readStatus(std::int64_t nowNs) noexcept {
         const int cause = status[dhd::kStatusForceOffCause];
         if (status[dhd::kStatusForce] == 0 && cause > 0) {
             statusCode = dhd::kForceOff + cause;
-            statusTrouble = cause == dhd::kCauseDeadMan     ? Trouble::inputLost
-                            : cause == dhd::kCauseUnplugged ? Trouble::unplugged
-                                                            : Trouble::vendorError;
+            statusFault = cause == dhd::kCauseDeadMan     ? DeviceFault::inputLost
+                          : cause == dhd::kCauseUnplugged ? DeviceFault::unplugged
+                                                          : DeviceFault::vendorError;
             if (forceOffSinceNs == 0) forceOffSinceNs = nowNs;
             // The controller's own guards let go by themselves; its button is the person's to press.
             if ((cause == dhd::kCauseVelocity || cause == dhd::kCauseWatchdog) &&
@@ -127,7 +127,7 @@ void Arm::readStatus(std::int64_t nowNs) noexcept {
             forceOffSinceNs = 0;
         }
     }
-    if (initialised.load() == 0 && statusTrouble == Trouble::none) statusTrouble = Trouble::notCalibrated;
+    if (initialised.load() == 0 && statusFault == DeviceFault::none) statusFault = DeviceFault::notCalibrated;
 }
 
 void Arm::send(const DriverCommand& command) noexcept {
@@ -141,9 +141,9 @@ void Arm::send(const DriverCommand& command) noexcept {
     } else {
         said = library->dhdSetForce(force[0], force[1], force[2], id);
     }
-    if (said < 0 && reading.trouble == Trouble::none) {
+    if (said < 0 && reading.trouble == DeviceFault::none) {
         // The next reading tells it: this one has passed the gate.
-        statusTrouble = Trouble::vendorError;
+        statusFault = DeviceFault::vendorError;
         statusCode = errorNumber(*library);
         nextStatusNs = std::max(nextStatusNs, rt::monotonicNs() + kStatusEveryNs / 5);
     }
@@ -162,9 +162,9 @@ void Arm::frame() noexcept {
     told.timeNs = rt::monotonicNs();
     told.frame = ++reading.frame;
     if (calibratingNow) {
-        told.trouble = Trouble::notCalibrated;
-    } else if (told.trouble == Trouble::none && statusTrouble != Trouble::none) {
-        told.trouble = statusTrouble;
+        told.trouble = DeviceFault::notCalibrated;
+    } else if (told.trouble == DeviceFault::none && statusFault != DeviceFault::none) {
+        told.trouble = statusFault;
         told.vendorCode = statusCode;
     }
     const DriverCommand command = door->exchange(told);
@@ -355,7 +355,7 @@ class ForceDimensionDriver final : public link::Driver {
         if (arm.library->dhdEnableForce(1, arm.id) < 0)
             throw refusal(*arm.library, errorNumber(*arm.library), info_.model);
         arm.readStatus(rt::monotonicNs());
-        arm.door = std::make_unique<Door>(servo);
+        arm.door = std::make_unique<ServoPort>(servo);
         servo_ = std::make_unique<ServoThread>(
             info_.servoHz, [arm = arm_] { arm->frame(); }, [arm = arm_] { arm->last(); });
     }

@@ -18,7 +18,7 @@ namespace handpiece::drivers {
 namespace {
 
 using core::Vec3;
-using link::Trouble;
+using link::DeviceFault;
 using Sdl = SdlLibrary;
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -62,7 +62,7 @@ struct Pad {
     const Sdl* sdl = nullptr;
     std::string which;
     Sdl::Controller* controller = nullptr;
-    std::unique_ptr<Door> door;
+    std::unique_ptr<ServoPort> door;
     RateHand hand{RateHandSettings{}};
     link::DriverReading reading;
     std::int64_t lastNs = 0, triedNs = 0, rumbledNs = 0;
@@ -103,7 +103,7 @@ void Pad::frame() noexcept {
     lastNs = now;
     reading.timeNs = now;
     ++reading.frame;
-    reading.trouble = controller != nullptr ? Trouble::none : Trouble::unplugged;
+    reading.trouble = controller != nullptr ? DeviceFault::none : DeviceFault::unplugged;
     shake(door->exchange(reading));
 }
 
@@ -184,7 +184,7 @@ GamepadDriver::GamepadDriver(const OpenOptions& options) {
 void GamepadDriver::start(link::Servo& servo) {
     link::requireStartable(started_, stopped_, info_.model);
     started_ = true;
-    pad_->door = std::make_unique<Door>(servo);
+    pad_->door = std::make_unique<ServoPort>(servo);
     const std::shared_ptr<Pad> pad = pad_;
     thread_ = std::make_unique<ServoThread>(
         info_.servoHz, [pad] { pad->frame(); }, [pad] { pad->last(); });

@@ -19,7 +19,7 @@
 namespace handpiece::drivers {
 namespace {
 
-using link::Trouble;
+using link::DeviceFault;
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kLookNs = 90 * kMs;      // a service on this machine answers in less than one
@@ -28,7 +28,7 @@ constexpr std::int64_t kLateNs = 3 * kMs;       // no answer for so long: it sta
 constexpr std::int64_t kGoneNs = 1'000 * kMs;   // and for so long: it is given up and connected to anew
 constexpr std::int64_t kAgainNs = 250 * kMs;    // between two tries
 constexpr std::int64_t kGoodbyeNs = 200 * kMs;  // for the last zero force
-constexpr int kMostUnanswered = 8;
+constexpr int kMaxUnanswered = 8;
 constexpr const char* kUrl = "ws://localhost:10001";
 constexpr const char* kRemedy =
     "start Haply Hub or the service (systemctl start haply-inverse-service), or name its address in "
@@ -104,9 +104,9 @@ class HaplyDriver final : public link::Driver {
     void run(std::int64_t periodNs) noexcept;
     void connectAgain() noexcept;
     void understand(std::string_view text) noexcept;
-    void tell(Trouble trouble, int code = 0) noexcept;
+    void tell(DeviceFault trouble, int code = 0) noexcept;
     void send() noexcept;
-    void lose(Trouble trouble) noexcept;
+    void lose(DeviceFault trouble) noexcept;
     void sayGoodbye() noexcept;
 
     link::DriverInfo info_;
@@ -243,7 +243,7 @@ void HaplyDriver::run(std::int64_t periodNs) noexcept {
     while (!stopping_.load(std::memory_order_acquire)) {
         if (!socket_) {
             if (rt::monotonicNs() - triedNs_ > kAgainNs) connectAgain();
-            if (!socket_) tell(Trouble::unplugged);
+            if (!socket_) tell(DeviceFault::unplugged);
             clock.wait();
             continue;
         }
@@ -262,18 +262,18 @@ void HaplyDriver::run(std::int64_t periodNs) noexcept {
                 break;
             case WebSocket::Got::nothing:
                 if (rt::monotonicNs() - askedNs_ > kGoneNs) {
-                    lose(Trouble::unplugged);
+                    lose(DeviceFault::unplugged);
                     break;
                 }
-                tell(Trouble::stalled);
+                tell(DeviceFault::stalled);
                 // The gate fades out: that is said once, for when the service goes on. No heap of messages.
-                if (!zeroSent_ && unanswered_ < kMostUnanswered) send();
+                if (!zeroSent_ && unanswered_ < kMaxUnanswered) send();
                 break;
             case WebSocket::Got::closed:
-                lose(Trouble::unplugged);
+                lose(DeviceFault::unplugged);
                 break;
             case WebSocket::Got::broken:
-                lose(Trouble::badData);
+                lose(DeviceFault::badData);
                 break;
         }
     }
@@ -297,7 +297,7 @@ void HaplyDriver::connectAgain() noexcept {
     }
 }
 
-void HaplyDriver::lose(Trouble trouble) noexcept {
+void HaplyDriver::lose(DeviceFault trouble) noexcept {
     socket_.reset();
     unanswered_ = 0;
     zeroSent_ = false;
@@ -305,7 +305,7 @@ void HaplyDriver::lose(Trouble trouble) noexcept {
     tell(trouble);
 }
 
-void HaplyDriver::tell(Trouble trouble, int code) noexcept {
+void HaplyDriver::tell(DeviceFault trouble, int code) noexcept {
     reading_.timeNs = rt::monotonicNs();
     ++reading_.frame;
     reading_.trouble = trouble;
@@ -314,10 +314,10 @@ void HaplyDriver::tell(Trouble trouble, int code) noexcept {
 }
 
 void HaplyDriver::understand(std::string_view text) noexcept {
-    if (!readHaplyState(text, state_)) return tell(Trouble::badData);
+    if (!readHaplyState(text, state_)) return tell(DeviceFault::badData);
     const HaplyArm* const arm = state_.arm(id_);
-    if (arm == nullptr) return tell(Trouble::unplugged);
-    if (!arm->hasPosition) return tell(Trouble::badData);
+    if (arm == nullptr) return tell(DeviceFault::unplugged);
+    if (!arm->hasPosition) return tell(DeviceFault::badData);
     const std::array<double, 3> at = ours(arm->positionM);
     for (std::size_t i = 0; i < 3; ++i)
         reading_.positionMm[i] = 1e3 * at[i];
@@ -327,23 +327,23 @@ void HaplyDriver::understand(std::string_view text) noexcept {
         if (grip->hasOrientation) {
             const auto& [w, x, y, z] = grip->orientation;
             const double size = std::sqrt(w * w + x * x + y * y + z * z);
-            if (!(size > 0.5 && size < 2.0)) return tell(Trouble::badData);
+            if (!(size > 0.5 && size < 2.0)) return tell(DeviceFault::badData);
             const std::array<double, 3> v = ours({x / size, y / size, z / size});
             reading_.orientation = {w / size, v[0], v[1], v[2]};
         }
     }
     if (arm->calibrated != Said::nothing) calibrated_.store(arm->calibrated == Said::yes, std::memory_order_relaxed);
-    if (arm->powered == Said::no) return tell(Trouble::vendorError, kHaplyNoPower);
-    if (arm->ready == Said::no) return tell(Trouble::vendorError, kHaplyNotReady);
-    if (arm->calibrated == Said::no) return tell(Trouble::notCalibrated);
-    if (!gripId_.empty() && (grip == nullptr || !grip->hasOrientation)) return tell(Trouble::inputLost);
-    tell(Trouble::none);
+    if (arm->powered == Said::no) return tell(DeviceFault::vendorError, kHaplyNoPower);
+    if (arm->ready == Said::no) return tell(DeviceFault::vendorError, kHaplyNotReady);
+    if (arm->calibrated == Said::no) return tell(DeviceFault::notCalibrated);
+    if (!gripId_.empty() && (grip == nullptr || !grip->hasOrientation)) return tell(DeviceFault::inputLost);
+    tell(DeviceFault::none);
 }
 
 /// What the gate answered last; nothing else is ever sent.
 void HaplyDriver::send() noexcept {
     const std::size_t size = writeHaplyForce(id_, theirs(command_.forceN), newer_, message_.data(), message_.size());
-    if (size == 0 || !socket_->send({message_.data(), size}, kLateNs)) return lose(Trouble::unplugged);
+    if (size == 0 || !socket_->send({message_.data(), size}, kLateNs)) return lose(DeviceFault::unplugged);
     if (unanswered_++ == 0) askedNs_ = rt::monotonicNs();
     zeroSent_ = command_.forceN == std::array<double, 3>{} && unanswered_ > 1;
 }

@@ -141,7 +141,7 @@ class OpenHaptics final : public link::Driver {
 
     void start(link::Servo& servo) override {
         link::requireStartable(started_, stopped_, info_.model);
-        arm_->door = std::make_unique<Door>(servo);
+        arm_->door = std::make_unique<ServoPort>(servo);
         try {
             ask(milliseconds(5000), [arm = arm_, info = info_, rateHz = rateHz_] { begin(*arm, info, rateHz); });
         } catch (const core::Error&) {

@@ -21,7 +21,7 @@ namespace handpiece::drivers {
 namespace {
 
 using hd::Library;
-using link::Trouble;
+using link::DeviceFault;
 
 // ---- Records ---------------------------------------------------------------------------------------------------
 
@@ -208,7 +208,7 @@ unsigned Arm::tick() noexcept {
         (void)door->exchange(reading_);
         return hd::kContinue;
     }
-    reading_.trouble = Trouble::none;
+    reading_.trouble = DeviceFault::none;
     reading_.vendorCode = 0;
     library.makeCurrent(handle);
     library.beginFrame(handle);
@@ -224,7 +224,7 @@ unsigned Arm::tick() noexcept {
     note(library.drain());
     const link::DriverCommand command = door->exchange(reading_);
     if (relaxed_.exchange(false)) library.enable(hd::kForceOutput);
-    send(reading_.trouble == Trouble::none ? command : link::DriverCommand{});
+    send(reading_.trouble == DeviceFault::none ? command : link::DriverCommand{});
     library.endFrame(handle);
     // What the end of the frame tells belongs to the next one; what is fatal stops this device now.
     pending_ = library.drain();
@@ -266,14 +266,14 @@ void Arm::readPose() noexcept {
     library.getDouble(hd::kTransform, m);
     for (const double v : m) {
         if (!std::isfinite(v)) {
-            reading_.trouble = Trouble::notFinite;
+            reading_.trouble = DeviceFault::notFinite;
             return;
         }
     }
     core::Mat3 turn;
     turn << m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10];
     if ((turn.transpose() * turn - core::Mat3::Identity()).cwiseAbs().maxCoeff() > 1e-3 || turn.determinant() <= 0) {
-        reading_.trouble = Trouble::badData;
+        reading_.trouble = DeviceFault::badData;
         return;
     }
     const core::Quat q = core::Quat(turn).normalized();
@@ -297,20 +297,20 @@ void Arm::readRest() noexcept {
     if (hasSafetySwitch_) {
         library.getBoolean(hd::kSafetySwitch, &on);
         seenHeld_ = seenHeld_ || on != 0;
-        if (seenHeld_ && on == 0) mistrust(Trouble::inputLost);
+        if (seenHeld_ && on == 0) mistrust(DeviceFault::inputLost);
     }
     if (hasInkwellSwitch_) {
         on = 0;
         library.getBoolean(hd::kInkwellSwitch, &on);
         seenOut_ = seenOut_ || on == 0;
-        if (seenOut_ && on != 0) mistrust(Trouble::inputLost);
+        if (seenOut_ && on != 0) mistrust(DeviceFault::inputLost);
     }
 }
 
 void Arm::calibration() noexcept {
     const bool asked = wanted_.exchange(false);
     if (!asked && reading_.frame % 50 != 1) {
-        if (answer_.load() != hd::kCalibrated) mistrust(Trouble::notCalibrated);
+        if (answer_.load() != hd::kCalibrated) mistrust(DeviceFault::notCalibrated);
         return;
     }
     note(library.drain());
@@ -320,7 +320,7 @@ void Arm::calibration() noexcept {
                                   (answer == hd::kNeedsHand && (style_ & (hd::kInkwell | hd::kAuto)) == 0));
     if (error == hd::kSuccess && (byItself || byHand)) {
         // The pose jumps when its origin is found: this frame pushes nothing.
-        mistrust(Trouble::notCalibrated);
+        mistrust(DeviceFault::notCalibrated);
         library.updateCalibration(static_cast<unsigned>((style_ & hd::kInkwell) != 0 ? hd::kInkwell
                                                         : (style_ & hd::kAuto) != 0  ? hd::kAuto
                                                                                      : hd::kEncoderReset));
@@ -330,15 +330,15 @@ void Arm::calibration() noexcept {
     }
     note(error);
     answer_.store(answer);
-    if (answer != hd::kCalibrated) mistrust(Trouble::notCalibrated);
+    if (answer != hd::kCalibrated) mistrust(DeviceFault::notCalibrated);
     if (asked) {
         calibrationError_.store(error);
         calibrated_.fetch_add(1);
     }
 }
 
-void Arm::mistrust(Trouble trouble) noexcept {
-    if (reading_.trouble == Trouble::none) reading_.trouble = trouble;
+void Arm::mistrust(DeviceFault trouble) noexcept {
+    if (reading_.trouble == DeviceFault::none) reading_.trouble = trouble;
 }
 
 void Arm::send(const link::DriverCommand& command) noexcept {

@@ -43,7 +43,7 @@ class Arm {
     const hd::Library& library;
     const hd::Handle handle;
     const std::string key;  ///< its name among those that are open
-    std::unique_ptr<Door> door;
+    std::unique_ptr<ServoPort> door;
     hd::Job job = 0;
     bool scheduled = false;
 
@@ -57,7 +57,7 @@ class Arm {
     void readPose() noexcept;
     void readRest() noexcept;
     void calibration() noexcept;
-    void mistrust(link::Trouble trouble) noexcept;
+    void mistrust(link::DeviceFault trouble) noexcept;
     void send(const link::DriverCommand& command) noexcept;
 
     int style_ = 0;

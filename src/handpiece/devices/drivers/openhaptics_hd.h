@@ -95,7 +95,7 @@ enum class Weight : std::uint8_t {
 struct ErrorWords {
     unsigned code;
     Weight weight;
-    link::Trouble trouble;  ///< of a frame that tells it
+    link::DeviceFault trouble;  ///< of a frame that tells it
     const char* sentence;
     const char* remedy;
 };

@@ -10,7 +10,7 @@ namespace {
 using core::Quat;
 using core::Vec3;
 
-constexpr double kMostStepS = 0.05;
+constexpr double kMaxStepS = 0.05;
 
 /// Nothing within the dead zone, then slowly at first: fine work is done near the middle.
 Vec3 shaped(const Vec3& deflection, double deadZone) noexcept {
@@ -27,7 +27,7 @@ Vec3 shaped(const Vec3& deflection, double deadZone) noexcept {
 }  // namespace
 
 void RateHand::step(const Vec3& move, const Vec3& turn, bool goHome, double dtS) noexcept {
-    const double dt = dtS > 0.0 ? std::min(dtS, kMostStepS) : 0.0;
+    const double dt = dtS > 0.0 ? std::min(dtS, kMaxStepS) : 0.0;
     if (goHome) {
         const double far = positionMm_.norm(), angle = orientation_.angularDistance(Quat::Identity());
         const double step = settings_.returnMmS * dt, bit = settings_.returnRadS * dt;

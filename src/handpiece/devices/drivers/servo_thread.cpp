@@ -30,7 +30,7 @@ std::int64_t periodOf(double rateHz) {
 
 }  // namespace
 
-void Door::shut() noexcept {
+void ServoPort::shut() noexcept {
     for (;;) {
         State expected = State::open;
         if (state_.compare_exchange_strong(expected, State::shut, std::memory_order_acq_rel)) return;

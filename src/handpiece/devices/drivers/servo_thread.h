@@ -17,9 +17,9 @@ namespace handpiece::drivers {
 
 /// The way to the gate that can be shut for good: once shut() has returned the gate is not called again, whatever the
 /// thread on the other side still does. exchange() belongs to one thread, shut() to one other.
-class Door {
+class ServoPort {
   public:
-    explicit Door(link::Servo& servo) noexcept : servo_(&servo) {}
+    explicit ServoPort(link::Servo& servo) noexcept : servo_(&servo) {}
     /// What the gate answers; no force when it is shut.
     [[nodiscard]] link::DriverCommand exchange(const link::DriverReading& reading) noexcept HANDPIECE_REALTIME {
         State expected = State::open;

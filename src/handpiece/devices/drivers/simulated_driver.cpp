@@ -77,7 +77,7 @@ struct SimulatedDriver::State {
 
     SimulatedSettings settings;
     device::SimulatedDevice arm;
-    workspace::Mapping mapping;
+    workspace::WorkspaceTransform mapping;
     link::DriverInfo info;
     link::Servo* servo = nullptr;
     std::uint64_t frames = 0;

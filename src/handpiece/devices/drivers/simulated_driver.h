@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "handpiece/devices/drivers/catalogue.h"
-#include "handpiece/devices/workspace/placing.h"
+#include "handpiece/devices/workspace/workspace_mapping.h"
 #include "handpiece/tick/device/simulated_device.h"
 
 namespace handpiece::drivers {
@@ -19,7 +19,7 @@ struct SimulatedSettings {
     std::optional<device::Motion> motion;
     /// With which the tooth frame is left for the device frame; the one of the GuardedDevice, or the motion does not
     /// arrive at the tooth as given.
-    workspace::Placing placing;
+    workspace::WorkspaceMapping placing;
     double servoHz = 1000.0;
     bool stepped = false;  ///< no thread and no wall clock: step() is the servo
     std::string model = "simulated arm";

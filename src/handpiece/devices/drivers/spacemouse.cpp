@@ -23,7 +23,7 @@ namespace handpiece::drivers {
 namespace {
 
 using core::Vec3;
-using link::Trouble;
+using link::DeviceFault;
 
 // The daemon's protocol, from the declarations that its library publishes: packets of eight 32-bit integers in the
 // machine's order, first the kind. Version 1 answers requests; version 0 only tells motion and buttons.
@@ -287,7 +287,7 @@ void SpaceMouseDriver::run(std::int64_t periodNs) noexcept {
     answeredNs_ = askedNs_ = lastNs;
     while (!stopping_.load(std::memory_order_acquire)) {
         nextNs = std::max(nextNs + periodNs, rt::monotonicNs());
-        Trouble trouble = Trouble::none;
+        DeviceFault trouble = DeviceFault::none;
         if (daemon_ && !listen(nextNs)) {
             daemon_.reset();
             triedNs_ = rt::monotonicNs();
@@ -300,16 +300,16 @@ void SpaceMouseDriver::run(std::int64_t periodNs) noexcept {
         }
         const std::int64_t now = rt::monotonicNs();
         if (!daemon_) {
-            trouble = Trouble::unplugged;
+            trouble = DeviceFault::unplugged;
         } else if (daemon_->answers()) {
             if (now - askedNs_ > kAskNs) {
                 (void)daemon_->ask(kAxes);  // a daemon that takes no more questions gives no more answers
                 askedNs_ = now;
             }
-            if (now - answeredNs_ > kSilentNs) trouble = Trouble::stalled;
-            if (!hasDevice_) trouble = Trouble::unplugged;
+            if (now - answeredNs_ > kSilentNs) trouble = DeviceFault::stalled;
+            if (!hasDevice_) trouble = DeviceFault::unplugged;
         }
-        if (trouble != Trouble::none) letGo();
+        if (trouble != DeviceFault::none) letGo();
         if (now - movedNs_ > kHoldNs) {
             move_.setZero();
             turn_.setZero();

@@ -23,10 +23,10 @@
 namespace handpiece::drivers {
 namespace {
 
-constexpr std::size_t kMostMessage = 256 * 1024;  // a service with every device there is sends a tenth of it
-constexpr std::size_t kInput = 80 * 1024;         // more than a frame with a short head, see take()
-constexpr std::size_t kMostSent = 4 * 1024;
-constexpr std::size_t kMostHeader = 14;
+constexpr std::size_t kMaxMessage = 256 * 1024;  // a service with every device there is sends a tenth of it
+constexpr std::size_t kInput = 80 * 1024;        // more than a frame with a short head, see take()
+constexpr std::size_t kMaxSent = 4 * 1024;
+constexpr std::size_t kMaxHeader = 14;
 constexpr std::uint8_t kContinued = 0x0, kText = 0x1, kBinary = 0x2, kClose = 0x8, kPing = 0x9, kPong = 0xA;
 
 std::string base64(const std::uint8_t* bytes, std::size_t size) {
@@ -166,7 +166,7 @@ std::string webSocketAccept(std::string_view key) {
 }
 
 WebSocket::WebSocket(const std::string& url, std::int64_t timeoutNs, const std::string& remedy, Reach reach)
-    : url_(url), numericUrl_(url), in_(kInput), out_(kMostSent + kMostHeader), message_(kMostMessage) {
+    : url_(url), numericUrl_(url), in_(kInput), out_(kMaxSent + kMaxHeader), message_(kMaxMessage) {
     const Address address = parse(url);
     const std::int64_t deadline = rt::monotonicNs() + timeoutNs;
     addrinfo hints{};
@@ -287,7 +287,7 @@ bool WebSocket::sendAll(const char* bytes, std::size_t size, std::int64_t deadli
 }
 
 bool WebSocket::sendFrame(std::uint8_t opcode, std::string_view payload, std::int64_t deadlineNs) noexcept {
-    if (socket_ < 0 || payload.size() > kMostSent) return false;
+    if (socket_ < 0 || payload.size() > kMaxSent) return false;
     char* const p = out_.data();
     std::size_t n = 0;
     p[n++] = static_cast<char>(0x80 | opcode);

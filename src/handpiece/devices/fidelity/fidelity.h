@@ -35,7 +35,7 @@ struct Report {
     std::string machine;  ///< kernel, cores, scheduling granted: one line, nothing personal
     std::vector<Finding> findings;
     std::vector<double> periodHistogramUs, latenessHistogramUs;  ///< counts by microsecond bin, for the plot
-    std::vector<link::Trouble> troubles;                         ///< told of while it was measured, each once
+    std::vector<link::DeviceFault> troubles;                     ///< told of while it was measured, each once
     std::int32_t vendorCode = 0;                                 ///< with the last of them; 0: none
     double durationS = 0.0;
     bool passed = false;  ///< nothing failed

@@ -12,16 +12,16 @@ namespace {
 
 constexpr double kNsPerS = 1e9;
 // OpenHaptics Programmer's Guide: at least 1000 Hz for stability, as low as 500 on some devices, not recommended.
-constexpr double kGoodHz = 1000.0, kLeastHz = 500.0;
-constexpr double kGoodLateShare = 0.001, kMostLateShare = 0.01;
+constexpr double kGoodHz = 1000.0, kMinHz = 500.0;
+constexpr double kGoodLateShare = 0.001, kMaxLateShare = 0.01;
 // The stability map (docs/physics.md) goes to 3 ms; what one sees and feels apart is noticed from 25 ms on [R].
-constexpr double kGoodDelayS = 0.003, kMostDelayS = 0.025;
+constexpr double kGoodDelayS = 0.003, kMaxDelayS = 0.025;
 // Force is told apart from 7 % on (Pang, Tan and Durlach 1991, for 2.5 to 10 N), here of the 1 N one presses with.
 constexpr double kFeltN = 0.07;
 // A surface is taken for hard from 0.8 to 1.0 N/mm on (Choi and Tan 2004).
 constexpr double kHardNPerMm = 0.8;
 constexpr double kWarm = 0.8, kHot = 0.98;  // as the gate has it
-constexpr std::size_t kMostBins = 10'000;   // of a microsecond
+constexpr std::size_t kMaxBins = 10'000;    // of a microsecond
 
 std::string ms(double seconds) {
     return fmt::format("{:.3f} ms", 1e3 * seconds);
@@ -42,7 +42,7 @@ Verdict graded(double value, double good, double most) {
 std::vector<double> histogramOf(const std::vector<double>& valuesS) {
     std::vector<double> bins;
     for (const double v : valuesS) {
-        const auto bin = static_cast<std::size_t>(std::clamp(1e6 * v, 0.0, static_cast<double>(kMostBins - 1)));
+        const auto bin = static_cast<std::size_t>(std::clamp(1e6 * v, 0.0, static_cast<double>(kMaxBins - 1)));
         if (bin >= bins.size()) bins.resize(bin + 1, 0.0);
         ++bins[bin];
     }
@@ -83,7 +83,7 @@ Finding servoPeriod(const Recording& r, const std::vector<double>& periods) {
         fmt::format("{:.0f} Hz ({}), p99 {}, p99.9 {}, worst {}", hz, ms(q.p50), ms(q.p99), ms(q.p999), ms(q.worst));
     addSpread(f, q);
     f.figures.insert(f.figures.begin(), {{"rate_hz", hz}, {"nominal_hz", asked}});
-    const double floorHz = r.info.pushes ? kLeastHz : 0.0, goodHz = r.info.pushes ? kGoodHz : 0.0;
+    const double floorHz = r.info.pushes ? kMinHz : 0.0, goodHz = r.info.pushes ? kGoodHz : 0.0;
     f.verdict = hz < 0.99 * floorHz                   ? Verdict::fail
                 : hz < 0.95 * std::max(goodHz, asked) ? Verdict::warn
                                                       : Verdict::pass;
@@ -142,7 +142,7 @@ Finding tickLateness(const Recording& r, std::vector<double> late) {
                           r.settings.rateHz, ms(q.p50), ms(q.p99), ms(q.p999), ms(q.worst));
     addSpread(f, q);
     f.figures.insert(f.figures.begin(), {"late_share", share});
-    f.verdict = graded(share, kGoodLateShare, kMostLateShare);
+    f.verdict = graded(share, kGoodLateShare, kMaxLateShare);
     if (f.verdict != Verdict::pass) f.remedy = steadier(r);
     return f;
 }
@@ -224,7 +224,7 @@ Finding roundTrip(const Recording& r) {
         f.remedy = "check again for longer, with nothing else running";
         return f;
     }
-    f.verdict = graded(d.seconds, kGoodDelayS, kMostDelayS);
+    f.verdict = graded(d.seconds, kGoodDelayS, kMaxDelayS);
     if (f.verdict != Verdict::pass) f.remedy = "choose a softer stiffness, or the device's fastest servo";
     return f;
 }
@@ -305,10 +305,10 @@ Finding temperature(const Recording& r) {
 }
 
 /// What it tells before its first pose is no trouble.
-std::vector<link::Trouble> troublesOf(const Recording& r) {
-    std::vector<link::Trouble> kinds;
-    const auto add = [&](link::Trouble trouble) {
-        if (trouble != link::Trouble::none && trouble != link::Trouble::starting &&
+std::vector<link::DeviceFault> troublesOf(const Recording& r) {
+    std::vector<link::DeviceFault> kinds;
+    const auto add = [&](link::DeviceFault trouble) {
+        if (trouble != link::DeviceFault::none && trouble != link::DeviceFault::starting &&
             std::find(kinds.begin(), kinds.end(), trouble) == kinds.end())
             kinds.push_back(trouble);
     };
@@ -318,17 +318,17 @@ std::vector<link::Trouble> troublesOf(const Recording& r) {
     return kinds;
 }
 
-Finding troubles(const Recording& r, const std::vector<link::Trouble>& kinds) {
+Finding troubles(const Recording& r, const std::vector<link::DeviceFault>& kinds) {
     Finding f = finding("troubles", "Troubles", "none while it was measured");
     f.figures = {{"kinds", static_cast<double>(kinds.size())}};
     f.verdict = kinds.empty() ? Verdict::pass : Verdict::fail;
     if (kinds.empty()) f.value = "none";
-    for (const link::Trouble kind : kinds) {
+    for (const link::DeviceFault kind : kinds) {
         f.value += fmt::format("{}{}", f.value.empty() ? "" : " ", link::sentenceOf(kind));
         if (f.remedy.empty()) f.remedy = std::string(link::remedyOf(kind));
     }
     // A tick that stood is the machine's, and told above with figures.
-    if (kinds.size() == 1 && (kinds[0] == link::Trouble::tickStalled || kinds[0] == link::Trouble::stalled))
+    if (kinds.size() == 1 && (kinds[0] == link::DeviceFault::tickStalled || kinds[0] == link::DeviceFault::stalled))
         f.verdict = Verdict::warn;
     if (r.health.gate.vendorCode != 0)
         f.value += fmt::format(" (code 0x{:04x})", static_cast<std::uint32_t>(r.health.gate.vendorCode));

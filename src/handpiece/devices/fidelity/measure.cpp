@@ -14,11 +14,11 @@ namespace {
 
 constexpr double kNsPerS = 1e9;
 constexpr double kBeforeS = 0.010, kAfterS = 0.030;  // of a pulse, that are looked at
-constexpr double kLeastSteps = 1.5, kMostSteps = 60.0;
-constexpr double kLeastPathSteps = 5.0;                         // a pulse that moves the arm less says nothing of time
+constexpr double kMinSteps = 1.5, kMaxSteps = 60.0;
+constexpr double kMinPathSteps = 5.0;                           // a pulse that moves the arm less says nothing of time
 constexpr double kGoodErrorS = 0.001, kStraightErrorS = 0.001;  // the latter: what bending takes off a straight line
 constexpr double kMovedMm = 1.0, kWindowS = 0.05;
-constexpr std::size_t kLeastPoints = 4, kLeastChanges = 20;
+constexpr std::size_t kMinPoints = 4, kMinChanges = 20;
 
 double seconds(std::int64_t from, std::int64_t to) {
     return static_cast<double>(to - from) / kNsPerS;
@@ -60,7 +60,7 @@ std::optional<Response> responseOf(const Recording& recording, const Pulse& puls
         // Only on the way up, and before the force ends.
         if (way < furthest) continue;
         furthest = way;
-        if (way >= kLeastSteps * stepMm && way <= kMostSteps * stepMm)
+        if (way >= kMinSteps * stepMm && way <= kMaxSteps * stepMm)
             response.points.push_back({seconds(sent->atNs, f->readNs), std::sqrt(way)});
     }
     return response;
@@ -72,7 +72,7 @@ std::optional<double> onsetOf(const std::vector<Response>& responses, std::size_
     std::size_t n = 0;
     for (std::size_t i = 0; i < responses.size(); ++i)
         if (i != without) n += responses[i].points.size();
-    if (n < kLeastPoints) return std::nullopt;
+    if (n < kMinPoints) return std::nullopt;
     Eigen::MatrixXd a(static_cast<Eigen::Index>(n), bent ? 3 : 2);
     Eigen::VectorXd b(static_cast<Eigen::Index>(n));
     Eigen::Index row = 0;
@@ -152,7 +152,7 @@ Rest restOf(const Recording& recording) {
         rest.moved = rest.moved || most - least > kMovedMm;
     }
     rest.noiseMm = std::sqrt(noise2);
-    if (changes.size() >= kLeastChanges) {
+    if (changes.size() >= kMinChanges) {
         std::sort(changes.begin(), changes.end());
         rest.stepMm = changes[changes.size() / 50];
     }
@@ -178,9 +178,9 @@ Delay roundTripOf(const Recording& recording) {
     for (const Response& r : responses)
         paths.push_back(r.pathMm);
     delay.pathMm = quantilesOf(paths).p50;
-    if (responses.size() < 3 || delay.pathMm < kLeastPathSteps * stepMm) {
-        delay.why = fmt::format("the pulses moved it by {:.3f} mm, less than {:.0f} of its steps", delay.pathMm,
-                                kLeastPathSteps);
+    if (responses.size() < 3 || delay.pathMm < kMinPathSteps * stepMm) {
+        delay.why =
+            fmt::format("the pulses moved it by {:.3f} mm, less than {:.0f} of its steps", delay.pathMm, kMinPathSteps);
         return delay;
     }
     const Fitted bent = fitted(responses, true), straight = fitted(responses, false);

@@ -19,7 +19,7 @@ struct FrameRecord {
     std::int64_t readNs = 0, atNs = 0;  ///< when its pose was read; when it asked for a force
     std::array<double, 3> positionMm{}, sentN{};
     float motorTemperature = -1.0f;
-    link::Trouble trouble = link::Trouble::none;
+    link::DeviceFault trouble = link::DeviceFault::none;
 };
 
 struct TickRecord {

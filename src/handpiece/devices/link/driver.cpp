@@ -26,20 +26,20 @@ constexpr std::array<Words, 13> kWords{{
     {"stopped", "The device was stopped.", "Connect it again."},
 }};
 
-const Words& wordsOf(Trouble trouble) noexcept {
+const Words& wordsOf(DeviceFault trouble) noexcept {
     const auto at = static_cast<std::size_t>(trouble);
-    return kWords[at < kWords.size() ? at : static_cast<std::size_t>(Trouble::vendorError)];
+    return kWords[at < kWords.size() ? at : static_cast<std::size_t>(DeviceFault::vendorError)];
 }
 
 }  // namespace
 
-std::string_view idOf(Trouble trouble) noexcept {
+std::string_view idOf(DeviceFault trouble) noexcept {
     return wordsOf(trouble).id;
 }
-std::string_view sentenceOf(Trouble trouble) noexcept {
+std::string_view sentenceOf(DeviceFault trouble) noexcept {
     return wordsOf(trouble).sentence;
 }
-std::string_view remedyOf(Trouble trouble) noexcept {
+std::string_view remedyOf(DeviceFault trouble) noexcept {
     return wordsOf(trouble).remedy;
 }
 

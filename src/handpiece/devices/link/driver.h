@@ -21,7 +21,7 @@
 namespace handpiece::link {
 
 /// Why a device's pose is not to be trusted, or why it may not push. Anything but `none` ends in zero force.
-enum class Trouble : std::uint8_t {
+enum class DeviceFault : std::uint8_t {
     none,
     starting,       ///< no reading yet
     unplugged,      ///< the device or its service went away
@@ -37,9 +37,9 @@ enum class Trouble : std::uint8_t {
     stopped,        ///< it was stopped
 };
 /// An id for messages and files ("unplugged"), and one sentence for people with what to do.
-[[nodiscard]] std::string_view idOf(Trouble trouble) noexcept;
-[[nodiscard]] std::string_view sentenceOf(Trouble trouble) noexcept;
-[[nodiscard]] std::string_view remedyOf(Trouble trouble) noexcept;
+[[nodiscard]] std::string_view idOf(DeviceFault trouble) noexcept;
+[[nodiscard]] std::string_view sentenceOf(DeviceFault trouble) noexcept;
+[[nodiscard]] std::string_view remedyOf(DeviceFault trouble) noexcept;
 
 /// One frame of the device's own servo. Plain: crosses threads by value.
 struct DriverReading {
@@ -50,7 +50,7 @@ struct DriverReading {
     std::uint32_t buttons = 0;  ///< bit 0: the upper one (cuts), bit 1: the lower one (undoes), others as they come
     float pedal = -1.0f;        ///< 0..1; below 0: the device has none
     float motorTemperature = -1.0f;  ///< 0..1 of what the vendor allows, the hottest motor; below 0: not told
-    Trouble trouble = Trouble::none;
+    DeviceFault trouble = DeviceFault::none;
     std::int32_t vendorCode = 0;  ///< of the error told by the vendor's library; 0: none
 };
 

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::array<std::string_view, kFaultKinds> kNames{"unplug",  "nan", "jump", "stall", "error",
                                                            "garbage", "hot", "drop", "tick"};
-constexpr double kMostS = 86400.0, kMostSize = 2147483647.0;
-constexpr int kMostFaults = 100000;
+constexpr double kMaxS = 86400.0, kMaxSize = 2147483647.0;
+constexpr int kMaxFaults = 100000;
 constexpr std::array<double, 5> kErrorCodes{0x0200, 0x0203, 0x0301, 0x0303, 0x0600};
 
 /// One specification and where in it the reading stands.
@@ -106,16 +106,16 @@ Fault one(Text& text, FaultKind kind) {
     if (!text.take('@')) text.fail(text.at(), "\"@\" and the time in seconds is wanted");
     Fault fault;
     fault.kind = kind;
-    fault.atS = text.number("a time [s]", 0.0, kMostS);
-    if (text.take(':')) fault.lastsS = text.number("a duration [s]", 1e-4, kMostS);
+    fault.atS = text.number("a time [s]", 0.0, kMaxS);
+    if (text.take(':')) fault.lastsS = text.number("a duration [s]", 1e-4, kMaxS);
     if (kind == FaultKind::error) fault.size = 1.0;
-    if (text.take('=')) fault.size = text.number("a size", -kMostSize, kMostSize);
+    if (text.take('=')) fault.size = text.number("a size", -kMaxSize, kMaxSize);
     return fault;
 }
 
 void random(Text& text, std::vector<Fault>& faults) {
     if (!text.take(':')) text.fail(text.at(), "\":\" and a number of faults is wanted");
-    const double count = text.number("a number of faults", 1, kMostFaults);
+    const double count = text.number("a number of faults", 1, kMaxFaults);
     double seed = 1, every = 0.5, from = 1.0;
     std::vector<FaultKind> kinds;
     while (text.take(':')) {
@@ -125,9 +125,9 @@ void random(Text& text, std::vector<Fault>& faults) {
         if (word == "seed") {
             seed = text.number("a seed", 0, 9e15);
         } else if (word == "every") {
-            every = text.number("a pause [s]", 1e-3, kMostS);
+            every = text.number("a pause [s]", 1e-3, kMaxS);
         } else if (word == "from") {
-            from = text.number("a time [s]", 0.0, kMostS);
+            from = text.number("a time [s]", 0.0, kMaxS);
         } else if (word == "kinds") {
             do {
                 kinds.push_back(kindOf(text, text.word()));

@@ -13,17 +13,17 @@
 namespace handpiece::safety {
 namespace {
 
+using link::DeviceFault;
 using link::DriverCommand;
 using link::DriverReading;
-using link::Trouble;
 using Triple = std::array<double, 3>;
 
 constexpr double kNsPerS = 1e9;
-constexpr double kMostMm = 1e4, kMostN = 1e6;  // beyond these a number is no place and no force
-constexpr double kUnitWithin = 0.01;           // of a quaternion's length
-constexpr double kJitterMm = 1.0;              // two readings close in time may differ by this all the same
-constexpr double kMostTurnRad = 0.6, kMostTurnRadS = 100.0;
-constexpr double kLeastStepS = 1e-4;  // a release goes on by this at least, also when time does not
+constexpr double kMaxMm = 1e4, kMaxN = 1e6;  // beyond these a number is no place and no force
+constexpr double kUnitWithin = 0.01;         // of a quaternion's length
+constexpr double kJitterMm = 1.0;            // two readings close in time may differ by this all the same
+constexpr double kMaxTurnRad = 0.6, kMaxTurnRadS = 100.0;
+constexpr double kMinStepS = 1e-4;  // a release goes on by this at least, also when time does not
 
 double secondsBetween(std::int64_t earlierNs, std::int64_t laterNs) noexcept {
     // In double: the difference of two times that are garbage does not overflow.
@@ -114,64 +114,65 @@ GateSettings gateSettingsFor(const device::Capability& capability) {
 
 Gate::Gate(const GateSettings& settings) noexcept : settings_(settings) {}
 
-Trouble Gate::judgePose(const DriverReading& reading, double elapsedS) noexcept {
+DeviceFault Gate::judgePose(const DriverReading& reading, double elapsedS) noexcept {
     const auto& q = reading.orientation;
     const bool numbers = finite(reading.positionMm) && std::isfinite(q[0]) && std::isfinite(q[1]) &&
                          std::isfinite(q[2]) && std::isfinite(q[3]) && std::isfinite(reading.motorTemperature) &&
                          std::isfinite(reading.pedal);
-    if (!numbers) return Trouble::notFinite;
-    if (!withinReach(reading.positionMm, kMostMm) || !isUnit(q)) return Trouble::badData;
+    if (!numbers) return DeviceFault::notFinite;
+    if (!withinReach(reading.positionMm, kMaxMm) || !isUnit(q)) return DeviceFault::badData;
     const bool seen = posed_;
     const DriverReading before = lastReading_;
     lastReading_ = reading;
     posed_ = true;
-    if (!seen) return Trouble::none;
+    if (!seen) return DeviceFault::none;
     const Triple moved{reading.positionMm[0] - before.positionMm[0], reading.positionMm[1] - before.positionMm[1],
                        reading.positionMm[2] - before.positionMm[2]};
     const bool jumped = length(moved) > kJitterMm + settings_.maxSpeedMmS * elapsedS ||
-                        turnRad(q, before.orientation) > kMostTurnRad + kMostTurnRadS * elapsedS;
-    return jumped ? Trouble::jumped : Trouble::none;
+                        turnRad(q, before.orientation) > kMaxTurnRad + kMaxTurnRadS * elapsedS;
+    return jumped ? DeviceFault::jumped : DeviceFault::none;
 }
 
-Trouble Gate::judgeCommand(const DriverCommand& latest, std::int64_t nowNs) noexcept {
-    if (latest.number == 0) return Trouble::starting;
+DeviceFault Gate::judgeCommand(const DriverCommand& latest, std::int64_t nowNs) noexcept {
+    if (latest.number == 0) return DeviceFault::starting;
     // By its own stamp, and by when it was first seen here: a stamp of the future does not keep it young.
     if (latest.number != number_) {
         number_ = latest.number;
         commandSinceNs_ = nowNs;
     }
     const double ageS = secondsBetween(latest.timeNs, nowNs);
-    if (!(std::abs(ageS) <= settings_.commandTimeoutS)) return Trouble::tickStalled;
-    if (!(secondsBetween(commandSinceNs_, nowNs) <= settings_.commandTimeoutS)) return Trouble::tickStalled;
-    if (!finite(latest.forceN) || !finite(latest.torqueNmm)) return Trouble::notFinite;
-    if (!withinReach(latest.forceN, kMostN) || !withinReach(latest.torqueNmm, kMostN * 1e3)) return Trouble::notFinite;
-    return Trouble::none;
+    if (!(std::abs(ageS) <= settings_.commandTimeoutS)) return DeviceFault::tickStalled;
+    if (!(secondsBetween(commandSinceNs_, nowNs) <= settings_.commandTimeoutS)) return DeviceFault::tickStalled;
+    if (!finite(latest.forceN) || !finite(latest.torqueNmm)) return DeviceFault::notFinite;
+    if (!withinReach(latest.forceN, kMaxN) || !withinReach(latest.torqueNmm, kMaxN * 1e3))
+        return DeviceFault::notFinite;
+    return DeviceFault::none;
 }
 
-Trouble Gate::judge(const DriverReading& reading, const DriverCommand& latest, std::int64_t nowNs) noexcept {
+DeviceFault Gate::judge(const DriverReading& reading, const DriverCommand& latest, std::int64_t nowNs) noexcept {
     const double elapsedS = any_ ? secondsBetween(lastNs_, nowNs) : 0.0;
     if (reading.frame != frame_ || !any_) {
         frame_ = reading.frame;
         frameSinceNs_ = nowNs;
     }
     // Looked at whatever else is wrong: what comes next is compared with it.
-    const Trouble pose = judgePose(reading, std::max(0.0, elapsedS));
-    const Trouble command = judgeCommand(latest, nowNs);
-    if (reading.trouble != Trouble::none)
-        return reading.trouble <= Trouble::stopped ? reading.trouble : Trouble::badData;
-    if (!(elapsedS >= 0.0 && elapsedS <= settings_.readingTimeoutS)) return Trouble::stalled;
+    const DeviceFault pose = judgePose(reading, std::max(0.0, elapsedS));
+    const DeviceFault command = judgeCommand(latest, nowNs);
+    if (reading.trouble != DeviceFault::none)
+        return reading.trouble <= DeviceFault::stopped ? reading.trouble : DeviceFault::badData;
+    if (!(elapsedS >= 0.0 && elapsedS <= settings_.readingTimeoutS)) return DeviceFault::stalled;
     const double ageS = secondsBetween(reading.timeNs, nowNs);
-    if (!(ageS >= -settings_.readingTimeoutS)) return Trouble::badData;
-    if (!(ageS <= settings_.readingTimeoutS)) return Trouble::stalled;
-    if (!(secondsBetween(frameSinceNs_, nowNs) <= settings_.readingTimeoutS)) return Trouble::stalled;
-    if (pose != Trouble::none) return pose;
-    if (reading.motorTemperature >= static_cast<float>(settings_.hotFrom)) return Trouble::hot;
+    if (!(ageS >= -settings_.readingTimeoutS)) return DeviceFault::badData;
+    if (!(ageS <= settings_.readingTimeoutS)) return DeviceFault::stalled;
+    if (!(secondsBetween(frameSinceNs_, nowNs) <= settings_.readingTimeoutS)) return DeviceFault::stalled;
+    if (pose != DeviceFault::none) return pose;
+    if (reading.motorTemperature >= static_cast<float>(settings_.hotFrom)) return DeviceFault::hot;
     return command;
 }
 
-void Gate::believe(Trouble found, const DriverReading& reading, std::int64_t nowNs) noexcept {
-    if (found == Trouble::none) {
-        if (status_.trouble == Trouble::none) {
+void Gate::believe(DeviceFault found, const DriverReading& reading, std::int64_t nowNs) noexcept {
+    if (found == DeviceFault::none) {
+        if (status_.trouble == DeviceFault::none) {
             status_.vendorCode = reading.vendorCode;  // a warning
             return;
         }
@@ -180,7 +181,7 @@ void Gate::believe(Trouble found, const DriverReading& reading, std::int64_t now
             wellSinceNs_ = nowNs;
         }
         if (secondsBetween(wellSinceNs_, nowNs) < settings_.clearAfterS) return;
-        status_.trouble = Trouble::none;
+        status_.trouble = DeviceFault::none;
         status_.vendorCode = 0;
         fade_ = 0.0;
         fading_ = false;
@@ -189,7 +190,7 @@ void Gate::believe(Trouble found, const DriverReading& reading, std::int64_t now
     well_ = false;
     status_.vendorCode = reading.vendorCode;
     if (found == status_.trouble) return;
-    if (status_.trouble == Trouble::none) {
+    if (status_.trouble == DeviceFault::none) {
         held_ = sent_;
         release_ = 1.0;
     }
@@ -230,15 +231,15 @@ DriverCommand Gate::let(const DriverCommand& latest, float temperature, double e
 }
 
 DriverCommand Gate::pass(const DriverReading& reading, const DriverCommand& latest, std::int64_t nowNs) noexcept {
-    const Trouble found = judge(reading, latest, nowNs);
+    const DeviceFault found = judge(reading, latest, nowNs);
     const double elapsedS = any_ ? std::max(0.0, secondsBetween(lastNs_, nowNs)) : 0.0;
     lastNs_ = nowNs;
     any_ = true;
     believe(found, reading, nowNs);
     status_.clamped = status_.slopeLimited = false;
     status_.motorTemperature = reading.motorTemperature;
-    DriverCommand out = status_.trouble == Trouble::none ? let(latest, reading.motorTemperature, elapsedS)
-                                                         : released(std::max(elapsedS, kLeastStepS));
+    DriverCommand out = status_.trouble == DeviceFault::none ? let(latest, reading.motorTemperature, elapsedS)
+                                                             : released(std::max(elapsedS, kMinStepS));
     // Whatever was overlooked above: nothing but numbers within the limits leaves here.
     bool beyond = false;
     out.forceN = finite(out.forceN) ? clamped(out.forceN, settings_.maxForceN, beyond) : Triple{};

@@ -30,8 +30,8 @@ void validate(const GateSettings& settings);
 
 /// What the gate did, for everybody else; plain.
 struct GateStatus {
-    link::Trouble trouble = link::Trouble::starting;  ///< now
-    link::Trouble last = link::Trouble::none;         ///< the newest one there was
+    link::DeviceFault trouble = link::DeviceFault::starting;  ///< now
+    link::DeviceFault last = link::DeviceFault::none;         ///< the newest one there was
     std::int32_t vendorCode = 0;
     std::uint64_t troubles = 0;  ///< how many there have been since the start
     std::int64_t troubleSinceNs = 0;
@@ -55,11 +55,11 @@ class Gate {
     [[nodiscard]] const GateStatus& status() const noexcept { return status_; }
 
   private:
-    [[nodiscard]] link::Trouble judge(const link::DriverReading& reading, const link::DriverCommand& latest,
-                                      std::int64_t nowNs) noexcept;
-    [[nodiscard]] link::Trouble judgePose(const link::DriverReading& reading, double elapsedS) noexcept;
-    [[nodiscard]] link::Trouble judgeCommand(const link::DriverCommand& latest, std::int64_t nowNs) noexcept;
-    void believe(link::Trouble found, const link::DriverReading& reading, std::int64_t nowNs) noexcept;
+    [[nodiscard]] link::DeviceFault judge(const link::DriverReading& reading, const link::DriverCommand& latest,
+                                          std::int64_t nowNs) noexcept;
+    [[nodiscard]] link::DeviceFault judgePose(const link::DriverReading& reading, double elapsedS) noexcept;
+    [[nodiscard]] link::DeviceFault judgeCommand(const link::DriverCommand& latest, std::int64_t nowNs) noexcept;
+    void believe(link::DeviceFault found, const link::DriverReading& reading, std::int64_t nowNs) noexcept;
     [[nodiscard]] link::DriverCommand released(double elapsedS) noexcept;
     [[nodiscard]] link::DriverCommand let(const link::DriverCommand& latest, float temperature,
                                           double elapsedS) noexcept;

@@ -18,7 +18,7 @@ namespace handpiece::safety {
 namespace {
 
 using core::Vec3;
-using link::Trouble;
+using link::DeviceFault;
 
 constexpr double kNsPerS = 1e9;
 constexpr double kFreeS = 0.05;              // without a force wanted: the bur is free, the clutch is honoured
@@ -47,8 +47,8 @@ GateSettings heldTo(const device::Capability& record, const GateSettings& asked)
 
 class Board final : public HealthBoard {
   public:
-    Board(const workspace::Placing& placing, const stability::ShaperSettings& shaping)
-        : placings(std::make_unique<workspace::Placing>(placing)),
+    Board(const workspace::WorkspaceMapping& placing, const stability::ShaperSettings& shaping)
+        : placings(std::make_unique<workspace::WorkspaceMapping>(placing)),
           shapings(std::make_unique<stability::ShaperSettings>(shaping)),
           leastScale_(placing.scale) {}
 
@@ -59,13 +59,13 @@ class Board final : public HealthBoard {
         health.clutched = tick.clutched;
         health.relaxed = relaxed.load(std::memory_order_relaxed);
         if (standing.load(std::memory_order_relaxed)) {
-            health.gate.trouble = health.gate.last = Trouble::stalled;
+            health.gate.trouble = health.gate.last = DeviceFault::stalled;
             health.gate.gain = health.servoHz = 0.0;
             health.sentN = {};
         }
         return health;
     }
-    void place(const workspace::Placing& placing) override {
+    void place(const workspace::WorkspaceMapping& placing) override {
         workspace::validate(placing);
         if (placing.scale < leastScale_) {
             throw core::Error(fmt::format("a scale of {} is finer than the one the device was opened with, {}",
@@ -73,7 +73,7 @@ class Board final : public HealthBoard {
                               "scale", "connect the device again with that scale")
                 .as("scale-at-start", {fmt::format("{}", placing.scale), fmt::format("{}", leastScale_)});
         }
-        placings.stage(std::make_unique<workspace::Placing>(placing));
+        placings.stage(std::make_unique<workspace::WorkspaceMapping>(placing));
     }
     void shape(const stability::ShaperSettings& settings) override {
         stability::validate(settings);
@@ -82,7 +82,7 @@ class Board final : public HealthBoard {
 
     FrameBuffer frames;
     rt::TripleBuffer<TickHealth> ticks;
-    rt::Staged<workspace::Placing> placings;
+    rt::Staged<workspace::WorkspaceMapping> placings;
     rt::Staged<stability::ShaperSettings> shapings;
     std::atomic<std::uint64_t> relaxed{0};
     std::atomic<bool> standing{false};
@@ -143,7 +143,7 @@ struct GuardedDevice::State {
     GuardServo servo;
 
     // The tick's.
-    workspace::Mapping mapping;
+    workspace::WorkspaceTransform mapping;
     stability::Shaper shaper;
     Frame frame;
     core::Pose pose;
@@ -204,7 +204,7 @@ void GuardedDevice::State::watch() noexcept {
 
 void GuardedDevice::State::takeStaged() noexcept {
     if (board->placings.swap()) {
-        mapping = workspace::Mapping(*board->placings.current());
+        mapping = workspace::WorkspaceTransform(*board->placings.current());
         moved = true;
     }
     if (board->shapings.swap()) shaper.setSettings(*board->shapings.current());
@@ -247,8 +247,8 @@ device::Reading GuardedDevice::read(double periodS) noexcept {
     const bool wasLost = s.lost;
     const double ageS = static_cast<double>(s.nowNs() - s.frame.nowNs) / kNsPerS;
     // Another placing: for one tick the pose is none, so that the force begins anew, as after any doubt.
-    s.lost = std::exchange(s.moved, false) || s.frame.count == 0 || s.frame.gate.trouble != Trouble::none ||
-             s.frame.reading.trouble != Trouble::none || !(ageS <= s.settings.readingTimeoutS);
+    s.lost = std::exchange(s.moved, false) || s.frame.count == 0 || s.frame.gate.trouble != DeviceFault::none ||
+             s.frame.reading.trouble != DeviceFault::none || !(ageS <= s.settings.readingTimeoutS);
     if (!s.lost) {
         // Unit to the last bit: the gate lets one per cent pass.
         link::DriverReading reading = s.frame.reading;

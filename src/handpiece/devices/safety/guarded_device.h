@@ -10,7 +10,7 @@
 
 #include "handpiece/devices/link/driver.h"
 #include "handpiece/devices/safety/gate.h"
-#include "handpiece/devices/workspace/placing.h"
+#include "handpiece/devices/workspace/workspace_mapping.h"
 #include "handpiece/tick/device/device.h"
 #include "handpiece/tick/stability/shaper.h"
 
@@ -18,7 +18,7 @@ namespace handpiece::safety {
 
 struct GuardSettings {
     GateSettings gate;  ///< held to the driver's own record and servo: it can be stricter, never wider
-    workspace::Placing placing;
+    workspace::WorkspaceMapping placing;
     stability::ShaperSettings shaping;
     /// What the arm may be used for, where that is less than its driver's record says (a profile's shares).
     std::optional<device::Capability> atTheHand;
@@ -93,7 +93,7 @@ class HealthBoard {
     /// Takes effect at the tick's next read; from one thread that is not the tick's. The bur keeps still until it is
     /// clear of the tooth, as after any doubt. Throws core::Error for values out of range, and ("scale-at-start") for a
     /// scale below that at the start: the loop's limits are those of the start.
-    virtual void place(const workspace::Placing& placing) = 0;
+    virtual void place(const workspace::WorkspaceMapping& placing) = 0;
     /// Throws core::Error for values out of range.
     virtual void shape(const stability::ShaperSettings& settings) = 0;
 };

@@ -12,9 +12,9 @@
 
 namespace handpiece::safety {
 
+using link::DeviceFault;
 using link::DriverCommand;
 using link::DriverReading;
-using link::Trouble;
 
 namespace {
 
@@ -43,7 +43,7 @@ void fillWithGarbage(DriverReading& reading, std::uint64_t seed) noexcept {
     reading.buttons = static_cast<std::uint32_t>(mix(state));
     reading.pedal = std::bit_cast<float>(static_cast<std::uint32_t>(mix(state)));
     reading.motorTemperature = std::bit_cast<float>(static_cast<std::uint32_t>(mix(state)));
-    reading.trouble = static_cast<Trouble>(mix(state) & 0xff);
+    reading.trouble = static_cast<DeviceFault>(mix(state) & 0xff);
     reading.vendorCode = static_cast<std::int32_t>(mix(state));
     reading.timeNs = static_cast<std::int64_t>(mix(state));
 }
@@ -113,7 +113,7 @@ class FaultyDriver final : public link::PassingDriver {
             if (fault.atS + fault.lastsS <= nowS) continue;
             switch (fault.kind) {
                 case FaultKind::unplug:
-                    reading.trouble = Trouble::unplugged;
+                    reading.trouble = DeviceFault::unplugged;
                     break;
                 case FaultKind::notANumber:
                     if (i % 2 == 0)
@@ -128,7 +128,7 @@ class FaultyDriver final : public link::PassingDriver {
                     stalls = true;
                     break;
                 case FaultKind::error:
-                    reading.trouble = Trouble::vendorError;
+                    reading.trouble = DeviceFault::vendorError;
                     reading.vendorCode = static_cast<std::int32_t>(fault.size);
                     break;
                 case FaultKind::badData:
@@ -138,7 +138,7 @@ class FaultyDriver final : public link::PassingDriver {
                     reading.motorTemperature = static_cast<float>(fault.size);
                     break;
                 case FaultKind::dropInput:
-                    reading.trouble = Trouble::inputLost;
+                    reading.trouble = DeviceFault::inputLost;
                     break;
                 case FaultKind::tickStall:
                     holds = true;
@@ -153,7 +153,7 @@ class FaultyDriver final : public link::PassingDriver {
         const double force = length(last_.forceN);
         GateOutput& output = log_->output_;
         output.largestN = std::max(output.largestN, force);
-        const bool doubtful = guard_ && guard_->gateStatus().trouble != Trouble::none;
+        const bool doubtful = guard_ && guard_->gateStatus().trouble != DeviceFault::none;
         if (answered) {
             if (output.samples > 0 && !doubtful && timeNs > noted_) {
                 const auto &a = last_.forceN, &b = before_;

@@ -37,10 +37,10 @@ struct Fault {
 struct FaultOutcome {
     Fault fault;
     std::int64_t beganNs = 0;
-    double forceBeforeN = 0.0, largestN = 0.0;    ///< largest: from its beginning to the next one's
-    double toZeroS = -1.0;                        ///< from its beginning until the force was zero; below 0: never
-    bool told = false;                            ///< the gate named a trouble
-    link::Trouble trouble = link::Trouble::none;  ///< the first one it named
+    double forceBeforeN = 0.0, largestN = 0.0;  ///< largest: from its beginning to the next one's
+    double toZeroS = -1.0;                      ///< from its beginning until the force was zero; below 0: never
+    bool told = false;                          ///< the gate named a trouble
+    link::DeviceFault trouble = link::DeviceFault::none;  ///< the first one it named
 };
 
 /// All that left the gate.

@@ -18,7 +18,7 @@ namespace handpiece::safety {
 namespace {
 
 using core::Vec3;
-using link::Trouble;
+using link::DeviceFault;
 
 constexpr double kNsPerS = 1e9;
 constexpr double kPedalUp = 0.05;  // nobody stands on it
@@ -35,7 +35,7 @@ GateSettings gateFor(const InputSettings& settings) {
 class InputBoard final : public HealthBoard {
   public:
     InputBoard(const InputSettings& settings, std::function<std::int64_t()> nowNs)
-        : placings(std::make_unique<workspace::Placing>(settings.placing)),
+        : placings(std::make_unique<workspace::WorkspaceMapping>(settings.placing)),
           nowNs_(std::move(nowNs)),
           timeoutS_(settings.readingTimeoutS) {}
 
@@ -43,23 +43,24 @@ class InputBoard final : public HealthBoard {
         const Frame& frame = frames.read();
         Health health = healthOf(frame);
         // A tick that stands is nothing to an input.
-        if (frame.count > 0 && (frame.gate.trouble == Trouble::starting || frame.gate.trouble == Trouble::tickStalled))
-            health.gate.trouble = Trouble::none;
+        if (frame.count > 0 &&
+            (frame.gate.trouble == DeviceFault::starting || frame.gate.trouble == DeviceFault::tickStalled))
+            health.gate.trouble = DeviceFault::none;
         health.clutched = clutched.load(std::memory_order_relaxed);
         if (frame.count > 0 && !(static_cast<double>(nowNs_() - frame.nowNs) / kNsPerS <= timeoutS_)) {
-            health.gate.trouble = health.gate.last = Trouble::stalled;
+            health.gate.trouble = health.gate.last = DeviceFault::stalled;
             health.servoHz = 0.0;
         }
         return health;
     }
-    void place(const workspace::Placing& placing) override {
+    void place(const workspace::WorkspaceMapping& placing) override {
         workspace::validate(placing);
-        placings.stage(std::make_unique<workspace::Placing>(placing));
+        placings.stage(std::make_unique<workspace::WorkspaceMapping>(placing));
     }
     void shape(const stability::ShaperSettings& settings) override { stability::validate(settings); }
 
     FrameBuffer frames;
-    rt::Staged<workspace::Placing> placings;
+    rt::Staged<workspace::WorkspaceMapping> placings;
     std::atomic<bool> clutched{false};
 
   private:
@@ -108,7 +109,7 @@ struct InputDevice::State {
     std::shared_ptr<const link::PedalValue> foot;
 
     // The tick's; the mailbox too is written and read by it alone.
-    workspace::Mapping mapping;
+    workspace::WorkspaceTransform mapping;
     std::shared_ptr<device::PointerMailbox> mailbox = std::make_shared<device::PointerMailbox>();
     device::PointerDevice hand;
     device::PointerTarget target;
@@ -120,9 +121,9 @@ struct InputDevice::State {
 };
 
 bool InputDevice::State::doubtful(const Frame& frame) const noexcept {
-    if (frame.count == 0 || frame.reading.trouble != Trouble::none) return true;
-    const Trouble found = frame.gate.trouble;
-    if (found != Trouble::none && found != Trouble::starting && found != Trouble::tickStalled) return true;
+    if (frame.count == 0 || frame.reading.trouble != DeviceFault::none) return true;
+    const DeviceFault found = frame.gate.trouble;
+    if (found != DeviceFault::none && found != DeviceFault::starting && found != DeviceFault::tickStalled) return true;
     const double ageS = static_cast<double>(nowNs() - frame.nowNs) / kNsPerS;
     return !(ageS <= settings.readingTimeoutS);
 }
@@ -181,7 +182,7 @@ device::Reading InputDevice::read(double periodS) noexcept {
     State& s = *state_;
     if (s.board->placings.swap()) {
         // Another placing: the hand goes there at its own speed, and with the pedal up.
-        s.mapping = workspace::Mapping(*s.board->placings.current());
+        s.mapping = workspace::WorkspaceTransform(*s.board->placings.current());
         s.letGoFirst = true;
         s.clutched = false;
     }

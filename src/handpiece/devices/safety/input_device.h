@@ -10,14 +10,14 @@
 #include "handpiece/devices/link/driver.h"
 #include "handpiece/devices/link/pedal_value.h"
 #include "handpiece/devices/safety/guarded_device.h"
-#include "handpiece/devices/workspace/placing.h"
+#include "handpiece/devices/workspace/workspace_mapping.h"
 #include "handpiece/tick/device/device.h"
 #include "handpiece/tick/device/pointer_device.h"
 
 namespace handpiece::safety {
 
 struct InputSettings {
-    workspace::Placing placing;
+    workspace::WorkspaceMapping placing;
     device::PointerHandSettings hand;     ///< its dead man's lift, too
     double readingTimeoutS = 0.1;         ///< an older reading is none; inputs come 250 times a second
     int clutchButton = 2;                 ///< bit of the button that is the clutch; below 0: none

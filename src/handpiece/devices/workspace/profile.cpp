@@ -69,7 +69,7 @@ void take(const Table& t, const char* key, core::Vec3& value) {
     value = {n[0], n[1], n[2]};
 }
 
-void readPlacing(const Table& t, Placing& p) {
+void readPlacing(const Table& t, WorkspaceMapping& p) {
     t.allowOnly({"device_mm", "tooth_in_device", "scale", "hand", "bur_along_stylus", "head_angle_deg", "head_roll_deg",
                  "tip_from_stylus_mm"});
     take(t, "device_mm", p.deviceMm);
@@ -219,7 +219,7 @@ void writeProfile(const fs::path& folder, const Profile& p) {
     if (p.clutchButton < -1 || p.clutchButton > 31)
         throw core::Error(fmt::format("no button {}", p.clutchButton), "clutch", "give 0 to 31, or -1 for none");
     const auto yes = [](bool b) { return b ? "true" : "false"; };
-    const Placing& at = p.placing;
+    const WorkspaceMapping& at = p.placing;
     const stability::ShaperSettings& s = p.shaping;
     // Numbers in full: read again they are the same bits.
     const auto point = [](const core::Vec3& v) { return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]); };

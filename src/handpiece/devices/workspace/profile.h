@@ -7,14 +7,14 @@
 #include <optional>
 #include <string>
 
-#include "handpiece/devices/workspace/placing.h"
+#include "handpiece/devices/workspace/workspace_mapping.h"
 #include "handpiece/tick/stability/shaper.h"
 
 namespace handpiece::workspace {
 
 struct Profile {
     std::string driver, model, serial;  ///< the device it is of
-    Placing placing;
+    WorkspaceMapping placing;
     stability::ShaperSettings shaping;
     /// At most this share of the device's own limits; what was found stable for this unit.
     double forceShare = 1.0, stiffnessShare = 1.0;

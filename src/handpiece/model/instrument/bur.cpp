@@ -30,7 +30,7 @@ Profile joined(Profile profile) {
 }
 
 double surfaceSpacing(const Profile& profile) {
-    return std::max(kSurfaceSpacingMm, std::sqrt(surfaceAreaMm2(profile) / kMostSurfacePoints));
+    return std::max(kSurfaceSpacingMm, std::sqrt(surfaceAreaMm2(profile) / kMaxSurfacePoints));
 }
 
 std::uint32_t pointsAround(double rhoMm, double spacingMm) {

@@ -40,7 +40,7 @@ struct SurfaceRing {
     std::uint32_t first, count;  ///< its points: angles 2 pi (j + 0.5) / count for j in [0, count)
 };
 /// A large bur has its points farther apart, so that a tick knows how many there can be.
-inline constexpr double kSurfaceSpacingMm = 0.06, kMostSurfacePoints = 4500;
+inline constexpr double kSurfaceSpacingMm = 0.06, kMaxSurfacePoints = 4500;
 
 /// Immutable once made; safe to share between threads.
 class Bur {
@@ -60,7 +60,7 @@ class Bur {
     }
     [[nodiscard]] const std::vector<MedialCurve>& medialAxis() const noexcept { return medialAxis_; }
     [[nodiscard]] const std::vector<SurfaceRing>& rings() const noexcept { return rings_; }
-    /// Of the rings' points: kSurfaceSpacingMm, or what spreads kMostSurfacePoints over the surface.
+    /// Of the rings' points: kSurfaceSpacingMm, or what spreads kMaxSurfacePoints over the surface.
     [[nodiscard]] double surfaceSpacingMm() const noexcept { return surfaceSpacingMm_; }
     /// The polyhedral bur: what the hull method and the eye see. The STL it came from, or the turned outline.
     [[nodiscard]] const geometry::TriangleMesh& mesh() const noexcept { return mesh_; }

@@ -19,13 +19,13 @@ using core::Vec3;
 namespace {
 
 // What a bur may be: the head of the smallest round bur to a whole bur with its long shank.
-constexpr double kLeastExtentMm = 0.35, kLargestExtentMm = 75.0;
-constexpr double kMostTiltRad = std::numbers::pi / 180.0;
-constexpr double kMostUnroundness = 1.15;
-constexpr double kLargestOpening = 0.2;     // of the surface: a missing top is closed, a missing side is not
-constexpr double kLeastVolumeShare = 1e-2;  // of the envelope's volume
-constexpr double kClearAxis = 0.25;         // spread along the axis differs this much from that across it
-constexpr double kPointedShare = 0.5;       // an end this much narrower than the other is the tip
+constexpr double kMinExtentMm = 0.35, kLargestExtentMm = 75.0;
+constexpr double kMaxTiltRad = std::numbers::pi / 180.0;
+constexpr double kMaxUnroundness = 1.15;
+constexpr double kLargestOpening = 0.2;   // of the surface: a missing top is closed, a missing side is not
+constexpr double kMinVolumeShare = 1e-2;  // of the envelope's volume
+constexpr double kClearAxis = 0.25;       // spread along the axis differs this much from that across it
+constexpr double kPointedShare = 0.5;     // an end this much narrower than the other is the tip
 
 /// Area, centre, spread and openness of a surface.
 struct SurfaceMoments {
@@ -57,7 +57,7 @@ SurfaceMoments momentsOf(const geometry::TriangleMesh& mesh) {
 
 void requireSize(const std::string& name, const geometry::TriangleMesh& mesh) {
     const double extent = mesh.bounds().size().maxCoeff();
-    if (extent >= kLeastExtentMm && extent <= kLargestExtentMm) return;
+    if (extent >= kMinExtentMm && extent <= kLargestExtentMm) return;
     struct Unit {
         const char* name;
         double inMm;
@@ -70,7 +70,7 @@ void requireSize(const std::string& name, const geometry::TriangleMesh& mesh) {
             break;
         }
     throw core::Error(
-        fmt::format("a bur is {} to {} mm long, this one is {:.4g} mm", kLeastExtentMm, kLargestExtentMm, extent), name,
+        fmt::format("a bur is {} to {} mm long, this one is {:.4g} mm", kMinExtentMm, kLargestExtentMm, extent), name,
         guess)
         .as("bur-size", {fmt::format("{:.4g}", extent)});
 }
@@ -85,7 +85,7 @@ void requireUpright(const std::string& name, const Mat3& covariance) {
     if (std::abs(along - across) < kClearAxis * std::max(along, across)) return;  // as round as a ball
     const Vec3 direction = solver.eigenvectors().col(axis);
     const double tilt = std::acos(std::min(1.0, std::abs(direction.z())));
-    if (tilt > kMostTiltRad)
+    if (tilt > kMaxTiltRad)
         throw core::Error(fmt::format("the bur's axis is {:.1f} degrees off z (it runs along {:.3f}, {:.3f}, {:.3f})",
                                       tilt * 180.0 / std::numbers::pi, direction.x(), direction.y(), direction.z()),
                           name, "turn the mesh so that its axis is z, tip down")
@@ -96,7 +96,7 @@ void requireRound(const std::string& name, const Mat3& covariance) {
     const Eigen::Matrix2d across = covariance.topLeftCorner<2, 2>();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(across);
     const double ratio = std::sqrt(solver.eigenvalues()[1] / std::max(solver.eigenvalues()[0], 1e-300));
-    if (!(ratio <= kMostUnroundness))
+    if (!(ratio <= kMaxUnroundness))
         throw core::Error(
             fmt::format("the mesh is not round about z: {:.3g} times as wide one way as across it", ratio), name,
             "a bur is a solid of revolution about z")
@@ -145,7 +145,7 @@ Bur burFromMesh(std::string name, geometry::TriangleMesh mesh) {
         profile = envelopeOfRevolution(mesh);
     }
     const double enclosed = std::abs(geometry::enclosedVolumeMm3(mesh));
-    if (!(enclosed > kLeastVolumeShare * volumeMm3(profile)))
+    if (!(enclosed > kMinVolumeShare * volumeMm3(profile)))
         throw core::Error(fmt::format("the bur's mesh encloses no volume ({:.3g} mm3)", enclosed), name,
                           "close its holes and orient it first: handpiece mesh repair")
             .as("bur-not-solid");

@@ -23,20 +23,22 @@ using config::Table;
 
 constexpr std::int64_t kFormatVersion = 1;
 constexpr const char* kRemedy = "see docs/burs.md";
-constexpr std::string_view kDefaultAbility = "diamond-medium";
+constexpr std::string_view kDefaultCuttingParameters = "diamond-medium";
 
 struct Range {
     std::string_view key;
-    double Ability::*value;
+    double CuttingParameters::*value;
     double above, most;  ///< the value is greater than `above` and at most `most`
 };
 // More than these is a slip of the unit, not a bur.
 constexpr Range kRanges[] = {
-    {"cutting", &Ability::cutting, 0.0, 100.0},          {"load_cap_n", &Ability::loadCapN, 0.0, 100.0},
-    {"friction", &Ability::frictionCutting, 0.0, 5.0},   {"chip_mm", &Ability::chipMm, 0.0, 0.1},
-    {"centre_radius", &Ability::centreRadius, 0.0, 1.0},
+    {"cutting", &CuttingParameters::cutting, 0.0, 100.0},
+    {"load_cap_n", &CuttingParameters::loadCapN, 0.0, 100.0},
+    {"friction", &CuttingParameters::frictionCutting, 0.0, 5.0},
+    {"chip_mm", &CuttingParameters::chipMm, 0.0, 0.1},
+    {"centre_radius", &CuttingParameters::centreRadius, 0.0, 1.0},
 };
-constexpr int kMostEdges = 200;
+constexpr int kMaxEdges = 200;
 
 std::string withoutSpaces(std::string_view text) {
     std::string out(text);
@@ -44,27 +46,27 @@ std::string withoutSpaces(std::string_view text) {
     return out;
 }
 
-std::string problemOf(const Ability& a) {
+std::string problemOf(const CuttingParameters& a) {
     for (const Range& r : kRanges)
         if (const double v = a.*r.value; !(v > r.above && v <= r.most))
             return fmt::format("{} of \"{}\" is {}: it must be above {} and at most {}", r.key, a.name, v, r.above,
                                r.most);
-    if (a.edges < 1 || a.edges > kMostEdges)
-        return fmt::format("edges of \"{}\" are {}: they must be 1 to {}", a.name, a.edges, kMostEdges);
+    if (a.edges < 1 || a.edges > kMaxEdges)
+        return fmt::format("edges of \"{}\" are {}: they must be 1 to {}", a.name, a.edges, kMaxEdges);
     return {};
 }
 
-BurFile::NamedAbility readAbility(const std::string& name, const Table& row) {
+BurFile::NamedCuttingParameters readCuttingParameters(const std::string& name, const Table& row) {
     row.allowOnly({"description", "source", "cutting", "load_cap_n", "friction", "chip_mm", "edges", "centre_radius"});
-    BurFile::NamedAbility made;
-    made.ability.name = name;
+    BurFile::NamedCuttingParameters made;
+    made.cuttingParameters.name = name;
     made.description = row.text("description").value_or("");
     made.source = row.text("source").value_or("");
     for (const Range& r : kRanges)
-        if (const auto v = row.number(r.key)) made.ability.*r.value = *v;
+        if (const auto v = row.number(r.key)) made.cuttingParameters.*r.value = *v;
     if (const auto edges = row.integer("edges"))
-        made.ability.edges = static_cast<int>(std::clamp<std::int64_t>(*edges, 0, kMostEdges + 1));
-    if (const std::string problem = problemOf(made.ability); !problem.empty()) row.fail(problem, kRemedy);
+        made.cuttingParameters.edges = static_cast<int>(std::clamp<std::int64_t>(*edges, 0, kMaxEdges + 1));
+    if (const std::string problem = problemOf(made.cuttingParameters); !problem.empty()) row.fail(problem, kRemedy);
     return made;
 }
 
@@ -96,7 +98,7 @@ CatalogueEntry readBur(const Table& row, const fs::path& folder) {
     e.name = row.text("name").value_or("");
     if (e.name.empty()) row.fail("a bur without a name", kRemedy);
     e.usName = row.text("us").value_or("");
-    e.ability = row.text("ability").value_or(std::string(kDefaultAbility));
+    e.cuttingParameters = row.text("ability").value_or(std::string(kDefaultCuttingParameters));
     e.description = row.text("description").value_or("");
     e.unchecked = row.text("unchecked").value_or("");
     if (const auto stl = row.text("stl")) {
@@ -123,9 +125,9 @@ CatalogueEntry readBur(const Table& row, const fs::path& folder) {
     return e;
 }
 
-const Ability* findAbility(const BurFile& file, std::string_view name) {
-    for (const BurFile::NamedAbility& a : file.abilities)
-        if (a.ability.name == name) return &a.ability;
+const CuttingParameters* findCuttingParameters(const BurFile& file, std::string_view name) {
+    for (const BurFile::NamedCuttingParameters& a : file.abilities)
+        if (a.cuttingParameters.name == name) return &a.cuttingParameters;
     return nullptr;
 }
 
@@ -141,8 +143,8 @@ const CatalogueEntry* findIn(const BurFile& file, std::string_view name) {
 std::string listOfAbilities(const BurFile* own) {
     std::string list;
     const auto add = [&list](const BurFile& file) {
-        for (const BurFile::NamedAbility& a : file.abilities)
-            list += (list.empty() ? "" : ", ") + a.ability.name;
+        for (const BurFile::NamedCuttingParameters& a : file.abilities)
+            list += (list.empty() ? "" : ", ") + a.cuttingParameters.name;
     };
     if (own) add(*own);
     add(builtInBurs());
@@ -150,9 +152,9 @@ std::string listOfAbilities(const BurFile* own) {
 }
 
 /// In the file of one's own first, then among those shipped.
-const Ability& findAbility(const BurFile* own, std::string_view name) {
-    const Ability* found = own ? findAbility(*own, name) : nullptr;
-    if (!found) found = findAbility(builtInBurs(), name);
+const CuttingParameters& findCuttingParameters(const BurFile* own, std::string_view name) {
+    const CuttingParameters* found = own ? findCuttingParameters(*own, name) : nullptr;
+    if (!found) found = findCuttingParameters(builtInBurs(), name);
     if (found) return *found;
     throw core::Error("there is no ability of this name", std::string(name), "choose one of " + listOfAbilities(own));
 }
@@ -167,13 +169,14 @@ BurFile readFile(const Table& root, const fs::path& folder, const BurFile* shipp
     BurFile file;
     if (const auto list = root.table("ability"))
         for (const std::string& name : list->keys())
-            file.abilities.push_back(readAbility(name, *list->table(name)));
+            file.abilities.push_back(readCuttingParameters(name, *list->table(name)));
     std::set<std::string> names;
     for (const Table& row : root.tables("bur")) {
         CatalogueEntry e = readBur(row, folder);
         if (!names.insert(e.name).second) row.fail(fmt::format("there are two burs called \"{}\"", e.name), kRemedy);
-        if (!findAbility(file, e.ability) && !(shipped && findAbility(*shipped, e.ability)))
-            row.fail(fmt::format("\"{}\": there is no ability \"{}\"", e.name, e.ability),
+        if (!findCuttingParameters(file, e.cuttingParameters) &&
+            !(shipped && findCuttingParameters(*shipped, e.cuttingParameters)))
+            row.fail(fmt::format("\"{}\": there is no ability \"{}\"", e.name, e.cuttingParameters),
                      shipped ? "choose one of " + listOfAbilities(&file) : "add it", "ability");
         file.burs.push_back(std::move(e));
     }
@@ -203,12 +206,12 @@ const CatalogueEntry* findBur(std::string_view name) {
     return findIn(builtInBurs(), name);
 }
 
-const Ability& abilityByName(std::string_view name) {
-    return findAbility(nullptr, name);
+const CuttingParameters& abilityByName(std::string_view name) {
+    return findCuttingParameters(nullptr, name);
 }
 
-void validate(const Ability& ability) {
-    if (const std::string problem = problemOf(ability); !problem.empty())
+void validate(const CuttingParameters& cuttingParameters) {
+    if (const std::string problem = problemOf(cuttingParameters); !problem.empty())
         throw core::Error(problem, "ability", kRemedy);
 }
 
@@ -220,15 +223,18 @@ BurFile readAbilities(const fs::path& file) {
     return readFile(Table::read(file), file.parent_path(), &builtInBurs());
 }
 
-Instrument makeInstrument(std::string_view nameOrFile, const fs::path& abilitiesFile, std::string_view ability) {
+Instrument makeInstrument(std::string_view nameOrFile, const fs::path& abilitiesFile,
+                          std::string_view cuttingParameters) {
     std::optional<BurFile> own;
     if (!abilitiesFile.empty()) own = readAbilities(abilitiesFile);
     const BurFile* ownFile = own ? &*own : nullptr;
     const CatalogueEntry* entry = ownFile ? findIn(*ownFile, nameOrFile) : nullptr;
     if (!entry) entry = findBur(nameOrFile);
-    const std::string_view abilityName = !ability.empty() ? ability : entry ? entry->ability : kDefaultAbility;
+    const std::string_view abilityName = !cuttingParameters.empty() ? cuttingParameters
+                                         : entry                    ? entry->cuttingParameters
+                                                                    : kDefaultCuttingParameters;
     Instrument made;
-    made.ability = findAbility(ownFile, abilityName);
+    made.cuttingParameters = findCuttingParameters(ownFile, abilityName);
     if (entry) {
         made.bur = std::make_shared<const Bur>(burOf(*entry));
     } else if (const fs::path file(nameOrFile); geometry::meshFormatOf(file) != geometry::MeshFormat::unknown) {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "handpiece/model/instrument/ability.h"
 #include "handpiece/model/instrument/bur.h"
+#include "handpiece/model/instrument/cutting_parameters.h"
 #include "handpiece/model/instrument/shapes.h"
 
 namespace handpiece::instrument {
@@ -22,19 +22,19 @@ struct CatalogueEntry {
     std::string isoNumber;  ///< 15 digits, "500314001001014"; empty when a group is unknown
     Shape shape = Shape::round;
     double diameterMm = 0.0, lengthMm = 0.0;
-    std::filesystem::path stl;  ///< empty for a shape
-    std::string ability;        ///< its name
+    std::filesystem::path stl;      ///< empty for a shape
+    std::string cuttingParameters;  ///< its name
     std::string description;
     std::string unchecked;  ///< what of it is recalled and not yet held against a standard
 };
 
 /// Abilities and burs of one file.
 struct BurFile {
-    struct NamedAbility {
-        Ability ability;
+    struct NamedCuttingParameters {
+        CuttingParameters cuttingParameters;
         std::string description, source;
     };
-    std::vector<NamedAbility> abilities;
+    std::vector<NamedCuttingParameters> abilities;
     std::vector<CatalogueEntry> burs;
 };
 
@@ -45,9 +45,9 @@ struct BurFile {
 /// By its name, its US name ("33 1/2") or its ISO number (spaces count for nothing); null when there is none.
 [[nodiscard]] const CatalogueEntry* findBur(std::string_view name);
 /// Throws core::Error naming the abilities there are.
-[[nodiscard]] const Ability& abilityByName(std::string_view name);
+[[nodiscard]] const CuttingParameters& abilityByName(std::string_view name);
 /// Throws core::Error naming the value that is not finite or out of range.
-void validate(const Ability& ability);
+void validate(const CuttingParameters& cuttingParameters);
 
 /// Abilities and burs of one's own; `stl` is relative to the file. Throws core::Error with file and line for what is
 /// unknown, negative or infinite, for a name given twice, a shape that its size cannot make, an ability that is
@@ -60,12 +60,12 @@ void validate(const Ability& ability);
 /// A bur and how well it cuts.
 struct Instrument {
     std::shared_ptr<const Bur> bur;
-    Ability ability;
+    CuttingParameters cuttingParameters;
 };
 /// By a name of the file of one's own (first) or of the catalogue, "paper", SHAPE:DIAMETERxLENGTH, or a mesh file. What
 /// names no ability has `ability`, and that wins where it is given; without either it is a medium diamond.
 /// Throws core::Error.
 [[nodiscard]] Instrument makeInstrument(std::string_view nameOrFile, const std::filesystem::path& abilitiesFile = {},
-                                        std::string_view ability = {});
+                                        std::string_view cuttingParameters = {});
 
 }  // namespace handpiece::instrument

@@ -14,8 +14,8 @@ using core::Vec2;
 
 constexpr double kSamePlaceMm = 1e-9;
 constexpr double kOnAxisMm = 1e-6;
-constexpr double kLeastRadiusMm = 1e-3;  // smaller ones are not worth an arc
-constexpr double kKeptShare = 0.45;      // of a piece at most is taken away by the fillet at one of its ends
+constexpr double kMinRadiusMm = 1e-3;  // smaller ones are not worth an arc
+constexpr double kKeptShare = 0.45;    // of a piece at most is taken away by the fillet at one of its ends
 
 /// Nearest point of a piece to `p`, and how far along the piece it is (0..1).
 struct Foot {
@@ -112,7 +112,7 @@ Bur filleted(const Bur& bur, double radiusMm) {
             }
             if (!fits) break;
         }
-        if (best.radius < kLeastRadiusMm) continue;
+        if (best.radius < kMinRadiusMm) continue;
         cuts[i] = best;
         any = true;
     }

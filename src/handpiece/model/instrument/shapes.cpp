@@ -21,13 +21,13 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 // Proportions of the heads [R]: ISO 6360 gives diameter and length, makers choose these. docs/burs.md lists them.
 constexpr double kInvertedConeHalfAngleRad = 12.0 * kRadPerDeg;
 constexpr double kTaperHalfAngleRad = 3.0 * kRadPerDeg;
-constexpr double kLeastEndRadius = 0.2;     // thinner end of a taper or inverted cone, of the radius
+constexpr double kMinEndRadius = 0.2;       // thinner end of a taper or inverted cone, of the radius
 constexpr double kPearTopRadius = 0.7;      // of the radius
 constexpr double kFlameTopRadius = 0.6;     // of the radius
 constexpr double kFlameBellyHeight = 0.6;   // of the length
 constexpr double kNoseRadius = 0.15;        // flame and torpedo, of the radius
 constexpr double kTorpedoNoseLength = 1.0;  // of the diameter
-constexpr double kLeastMm = 0.1, kLargestDiameterMm = 20.0, kLargestLengthMm = 40.0;
+constexpr double kMinMm = 0.1, kLargestDiameterMm = 20.0, kLargestLengthMm = 40.0;
 
 ProfilePiece line(const Vec2& from, const Vec2& to) {
     return {from, to, false, Vec2::Zero(), 0.0, true};
@@ -66,17 +66,17 @@ Profile round(double d, double length) {
 
 Profile invertedCone(double d, double length) {
     const double r = 0.5 * d, slope = std::tan(kInvertedConeHalfAngleRad);
-    needLength("inverted-cone", d, length, kLeastMm, r * (1.0 - kLeastEndRadius) / slope);
+    needLength("inverted-cone", d, length, kMinMm, r * (1.0 - kMinEndRadius) / slope);
     return polygon({{r, 0}, {r - length * slope, length}});
 }
 
 Profile cylinderFlat(double d, double length) {
-    needLength("cylinder-flat", d, length, kLeastMm, kLargestLengthMm);
+    needLength("cylinder-flat", d, length, kMinMm, kLargestLengthMm);
     return polygon({{0.5 * d, 0}, {0.5 * d, length}});
 }
 
 Profile wheel(double d, double length) {
-    needLength("wheel", d, length, kLeastMm, 0.75 * d);
+    needLength("wheel", d, length, kMinMm, 0.75 * d);
     return polygon({{0.5 * d, 0}, {0.5 * d, length}});
 }
 
@@ -88,7 +88,7 @@ Profile cylinderRound(double d, double length) {
 
 Profile taperFlat(double d, double length) {
     const double r = 0.5 * d, slope = std::tan(kTaperHalfAngleRad);
-    needLength("taper-flat", d, length, kLeastMm, r * (1.0 - kLeastEndRadius) / slope);
+    needLength("taper-flat", d, length, kMinMm, r * (1.0 - kMinEndRadius) / slope);
     return polygon({{r - length * slope, 0}, {r, length}});
 }
 
@@ -96,7 +96,7 @@ Profile taperRound(double d, double length) {
     const double r = 0.5 * d, c = std::cos(kTaperHalfAngleRad), s = std::sin(kTaperHalfAngleRad);
     // Tip ball of radius t tangent to the wall that reaches r at the top: t (1 - s) = r c - length s.
     const double tip = (r * c - length * s) / (1.0 - s);
-    needLength("taper-round", d, length, r + 0.01, (r * c - kLeastEndRadius * r * (1.0 - s)) / s);
+    needLength("taper-round", d, length, r + 0.01, (r * c - kMinEndRadius * r * (1.0 - s)) / s);
     const Vec2 joint(tip * c, tip * (1.0 - s));
     return {{arc({0, 0}, joint, {0, tip}, tip), line(joint, {r, length}), line({r, length}, {0, length})}};
 }
@@ -189,12 +189,12 @@ Shape shapeByName(std::string_view name) {
 }
 
 Profile makeProfile(Shape shape, double diameterMm, double lengthMm) {
-    if (!(diameterMm >= kLeastMm && diameterMm <= kLargestDiameterMm))
+    if (!(diameterMm >= kMinMm && diameterMm <= kLargestDiameterMm))
         throw core::Error("no bur has this diameter", fmt::format("{} mm", diameterMm),
-                          fmt::format("choose {} to {} mm", kLeastMm, kLargestDiameterMm));
+                          fmt::format("choose {} to {} mm", kMinMm, kLargestDiameterMm));
     if (!(lengthMm >= 0.05 && lengthMm <= kLargestLengthMm))
         throw core::Error("no bur has a head of this length", fmt::format("{} mm", lengthMm),
-                          fmt::format("choose {} to {} mm", kLeastMm, kLargestLengthMm));
+                          fmt::format("choose {} to {} mm", kMinMm, kLargestLengthMm));
     switch (shape) {
         case Shape::round:
             return round(diameterMm, lengthMm);

@@ -46,16 +46,16 @@ Frame handleAt(const Vec3& start, double s) {
 }
 
 /// A ring of a tube: where along its axis, how wide.
-struct Station {
+struct SimulationSetup {
     double along, radius;
 };
 
 /// A closed tube through stations, ends closed by a fan on the axis.
 template <class FrameAt>
-void addTube(TriangleMesh& mesh, const std::vector<Station>& stations, int around, const FrameAt& frameAt) {
+void addTube(TriangleMesh& mesh, const std::vector<SimulationSetup>& stations, int around, const FrameAt& frameAt) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size()), n = static_cast<std::uint32_t>(around);
     const auto rings = static_cast<std::uint32_t>(stations.size());
-    for (const Station& station : stations) {
+    for (const SimulationSetup& station : stations) {
         const Frame f = frameAt(station.along);
         for (std::uint32_t j = 0; j < n; ++j) {
             const double angle = 2.0 * std::numbers::pi * j / n;
@@ -77,7 +77,7 @@ void addTube(TriangleMesh& mesh, const std::vector<Station>& stations, int aroun
 }
 
 /// Stations along a quarter of an ellipse, from (a, ra) upright to (b, rb) level: a rounded edge.
-void addRounding(std::vector<Station>& stations, double a, double ra, double b, double rb, int steps) {
+void addRounding(std::vector<SimulationSetup>& stations, double a, double ra, double b, double rb, int steps) {
     for (int i = 0; i <= steps; ++i) {
         const double angle = 0.5 * std::numbers::pi * i / steps;
         stations.push_back({a + (b - a) * std::sin(angle), rb + (ra - rb) * std::cos(angle)});
@@ -95,14 +95,14 @@ double handleRadius(double s) {
 }
 
 /// A groove turned into the handle: down, along its floor, up again.
-void addGroove(std::vector<Station>& stations, double at) {
+void addGroove(std::vector<SimulationSetup>& stations, double at) {
     constexpr double kWidth = 0.5, kDepth = 0.25, kFlank = 0.08;
     for (const auto& [along, depth] : {std::pair{0.0, 0.0}, {kFlank, kDepth}, {kWidth - kFlank, kDepth}, {kWidth, 0.0}})
         stations.push_back({at + along, handleRadius(at + along) - depth});
 }
 
-std::vector<Station> handleStations() {
-    std::vector<Station> stations;
+std::vector<SimulationSetup> handleStations() {
+    std::vector<SimulationSetup> stations;
     for (int i = 0; i < 30; ++i)
         stations.push_back({2.0 + 1.2 * i, handleRadius(2.0 + 1.2 * i)});  // to 36.8
     for (int i = 0; i < 5; ++i)
@@ -142,7 +142,7 @@ TriangleMesh turbineMesh(double burReachMm) {
         return [=](double along) { return upright({0.0, 0.0, burReachMm + bottom + along}); };
     };
 
-    std::vector<Station> head;
+    std::vector<SimulationSetup> head;
     addRounding(head, 2.2, 3.0, 0.0, 2.4, 4);
     std::reverse(head.begin(), head.end());
     for (int i = 0; i <= 8; ++i)
@@ -150,7 +150,7 @@ TriangleMesh turbineMesh(double burReachMm) {
     addRounding(head, 10.4, kHeadRadius, kHeadHeight, 4.2, 11);
     addTube(mesh, head, kAround, above(0.0));
 
-    std::vector<Station> button{{-0.4, 3.6}, {0.6, 3.6}, {0.8, 3.5}};
+    std::vector<SimulationSetup> button{{-0.4, 3.6}, {0.6, 3.6}, {0.8, 3.5}};
     addRounding(button, 0.9, 3.3, 1.5, 0.6, 8);
     addTube(mesh, button, kAround, above(kHeadHeight));
 
@@ -160,12 +160,12 @@ TriangleMesh turbineMesh(double burReachMm) {
     const auto onHandle = [&](double s) { return handleAt(neck, s); };
     addTube(mesh, handleStations(), kAround, onHandle);
 
-    std::vector<Station> coupling{{kHandleEnd - 0.8, 5.2}, {kHandleEnd - 0.6, 5.5}};
+    std::vector<SimulationSetup> coupling{{kHandleEnd - 0.8, 5.2}, {kHandleEnd - 0.6, 5.5}};
     for (int i = 0; i < 3; ++i)
-        for (const Station& s : {Station{0.0, 5.5}, {0.1, 5.2}, {0.5, 5.2}, {0.6, 5.5}})
+        for (const SimulationSetup& s : {SimulationSetup{0.0, 5.5}, {0.1, 5.2}, {0.5, 5.2}, {0.6, 5.5}})
             coupling.push_back({kHandleEnd + 1.0 * i + s.along, s.radius});
     addTube(mesh, coupling, kAround, onHandle);
-    std::vector<Station> connector;
+    std::vector<SimulationSetup> connector;
     for (int i = 0; i < 9; ++i)
         connector.push_back({kHandleEnd + 2.2 + i, i % 2 == 0 ? 4.2 : 4.5});
     connector.push_back({kHandleEnd + 11.0, 3.9});

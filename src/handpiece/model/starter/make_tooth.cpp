@@ -26,7 +26,7 @@ constexpr double kCoarsestSpacingMm = 0.085;
 constexpr double kOversampling = 1.5;
 /// Triangles that marching cubes puts on a square of one spacing, on average over directions.
 constexpr double kFacesPerCell = 3.0;
-constexpr std::size_t kMostPartFaces = 120000, kFewestPartFaces = 2000;
+constexpr std::size_t kMaxPartFaces = 120000, kFewestPartFaces = 2000;
 
 Progress between(const Progress& progress, double from, double to) {
     if (!progress) return {};
@@ -81,8 +81,8 @@ class Shares {
     std::vector<double> done_;
 };
 
-tooth::Part partOf(const char* name, tooth::Tissue tissue, TriangleMesh mesh) {
-    return {name, tissue, tooth::properties(tissue).priority, std::move(mesh)};
+cases::Part partOf(const char* name, cases::Tissue tissue, TriangleMesh mesh) {
+    return {name, tissue, cases::properties(tissue).priority, std::move(mesh)};
 }
 
 }  // namespace
@@ -135,19 +135,19 @@ TriangleMesh makeOuter(ToothKind kind, std::size_t faces, const Progress& progre
     return meshOf(shape.bounds(), f, geometry::surfaceAreaMm2(roughOf(shape.bounds(), f)), faces, progress);
 }
 
-tooth::Case makeSketch(ToothKind kind) {
+cases::Case makeSketch(ToothKind kind) {
     const ToothShape shape(anatomyOf(kind));
-    tooth::Case made;
+    cases::Case made;
     made.buccalSign = infoOf(kind).buccalSign;
     made.fdiNumber = infoOf(kind).fdiNumber;
     made.parts.resize(2);
     core::parallelFor(3, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (i == 0)
-                made.parts[0] = partOf("enamel", tooth::Tissue::enamel,
+                made.parts[0] = partOf("enamel", cases::Tissue::enamel,
                                        roughOf(shape.bounds(), [&](const core::Vec3& p) { return shape.enamel(p); }));
             if (i == 1)
-                made.parts[1] = partOf("dentine", tooth::Tissue::dentine,
+                made.parts[1] = partOf("dentine", cases::Tissue::dentine,
                                        roughOf(shape.bounds(), [&](const core::Vec3& p) { return shape.dentine(p); }));
             if (i == 2) made.scenery = makeScene(kind, {}, true);
         }
@@ -155,12 +155,12 @@ tooth::Case makeSketch(ToothKind kind) {
     return made;
 }
 
-tooth::Case makeTooth(ToothKind kind, const ToothOptions& options, const Progress& progress) {
+cases::Case makeTooth(ToothKind kind, const ToothOptions& options, const Progress& progress) {
     checkFaces(options.faces, "--faces");
     if (options.partFaces != 0) checkFaces(options.partFaces, "--part-faces");
     const ToothKindInfo& info = infoOf(kind);
     const ToothShape shape(anatomyOf(kind));
-    tooth::Case made;
+    cases::Case made;
     made.name = fmt::format("{} ({})", info.name, info.fdiNumber);
     made.kind = info.name;
     made.fdiNumber = info.fdiNumber;
@@ -168,15 +168,15 @@ tooth::Case makeTooth(ToothKind kind, const ToothOptions& options, const Progres
 
     struct Layer {
         const char* name;
-        tooth::Tissue tissue;
+        cases::Tissue tissue;
         double (ToothShape::*function)(const core::Vec3&) const;
         double share;  ///< of the work
     };
-    static constexpr Layer kLayers[] = {{"", tooth::Tissue::none, &ToothShape::outer, 0.3},
-                                        {"enamel", tooth::Tissue::enamel, &ToothShape::enamel, 0.2},
-                                        {"dentine", tooth::Tissue::dentine, &ToothShape::dentine, 0.2},
-                                        {"pulp", tooth::Tissue::pulp, &ToothShape::pulp, 0.05},
-                                        {"caries", tooth::Tissue::caries, &ToothShape::caries, 0.05}};
+    static constexpr Layer kLayers[] = {{"", cases::Tissue::none, &ToothShape::outer, 0.3},
+                                        {"enamel", cases::Tissue::enamel, &ToothShape::enamel, 0.2},
+                                        {"dentine", cases::Tissue::dentine, &ToothShape::dentine, 0.2},
+                                        {"pulp", cases::Tissue::pulp, &ToothShape::pulp, 0.05},
+                                        {"caries", cases::Tissue::caries, &ToothShape::caries, 0.05}};
     constexpr std::size_t kCount = std::size(kLayers);
     const auto of = [&](std::size_t i) -> geometry::ScalarFunction {
         return [&shape, f = kLayers[i].function](const core::Vec3& p) { return (shape.*f)(p); };
@@ -191,8 +191,7 @@ tooth::Case makeTooth(ToothKind kind, const ToothOptions& options, const Progres
         if (i == 0) return options.faces;
         if (options.partFaces > 0) return options.partFaces;
         const double density = static_cast<double>(options.faces) / areaMm2[0];
-        return std::clamp(static_cast<std::size_t>(std::lround(density * areaMm2[i])), kFewestPartFaces,
-                          kMostPartFaces);
+        return std::clamp(static_cast<std::size_t>(std::lround(density * areaMm2[i])), kFewestPartFaces, kMaxPartFaces);
     };
     // Surfaces side by side: each is thinned out by one thread.
     std::array<TriangleMesh, kCount> meshes;

@@ -83,7 +83,7 @@ TriangleMesh meshOf(const core::Box& box, const geometry::ScalarFunction& f, boo
 
 }  // namespace
 
-std::vector<tooth::Part> makeScene(ToothKind kind, const core::Progress& progress, bool isSketch) {
+std::vector<cases::Part> makeScene(ToothKind kind, const core::Progress& progress, bool isSketch) {
     const Anatomy own = anatomyOf(kind);
     const Neighbours n = neighboursOf(kind);
     const Anatomy mesialAnatomy = anatomyOf(n.mesial), distalAnatomy = anatomyOf(n.distal);
@@ -124,22 +124,22 @@ std::vector<tooth::Part> makeScene(ToothKind kind, const core::Progress& progres
     };
     struct Shape {
         const char* name;
-        tooth::Tissue tissue;
+        cases::Tissue tissue;
         core::Box box;
         geometry::ScalarFunction function;
     };
-    const std::array<Shape, 4> shapes{{{"mesial-neighbour", tooth::Tissue::neighbour, teeth[1].bounds(),
+    const std::array<Shape, 4> shapes{{{"mesial-neighbour", cases::Tissue::neighbour, teeth[1].bounds(),
                                         [&](const Vec3& p) { return teeth[1].outer(p); }},
-                                       {"distal-neighbour", tooth::Tissue::neighbour, teeth[2].bounds(),
+                                       {"distal-neighbour", cases::Tissue::neighbour, teeth[2].bounds(),
                                         [&](const Vec3& p) { return teeth[2].outer(p); }},
-                                       {"gum", tooth::Tissue::gum, box, gum},
-                                       {"bone", tooth::Tissue::bone, box, bone}}};
-    std::vector<tooth::Part> parts(shapes.size());
+                                       {"gum", cases::Tissue::gum, box, gum},
+                                       {"bone", cases::Tissue::bone, box, bone}}};
+    std::vector<cases::Part> parts(shapes.size());
     std::atomic<int> done{0};
     core::parallelFor(shapes.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Shape& s = shapes[i];
-            parts[i] = {s.name, s.tissue, tooth::properties(s.tissue).priority, meshOf(s.box, s.function, isSketch)};
+            parts[i] = {s.name, s.tissue, cases::properties(s.tissue).priority, meshOf(s.box, s.function, isSketch)};
             core::report(progress, 0.25 * ++done);
         }
     });

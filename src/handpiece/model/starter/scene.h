@@ -13,7 +13,7 @@ namespace handpiece::starter {
 
 /// Two neighbours (mesial, distal), gum and bone with their sockets, tooth frame. Simplified: to be seen, not cut.
 /// `isSketch`: coarser, for the first moment.
-[[nodiscard]] std::vector<tooth::Part> makeScene(ToothKind kind, const core::Progress& progress, bool isSketch = false);
+[[nodiscard]] std::vector<cases::Part> makeScene(ToothKind kind, const core::Progress& progress, bool isSketch = false);
 
 /// The anatomy of a kind.
 [[nodiscard]] Anatomy anatomyOf(ToothKind kind);

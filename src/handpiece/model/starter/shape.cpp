@@ -36,7 +36,7 @@ constexpr double kHeightToDistance = 0.75;
 constexpr double kNeckStepMm = 0.1, kNeckStepHeightMm = 0.3;
 /// Thickness that the enamel ends with at the neck, so that its edge is no razor.
 constexpr double kNeckEnamelMm = 0.06;
-constexpr double kLeastDentineOverPulpMm = 0.7;
+constexpr double kMinDentineOverPulpMm = 0.7;
 
 /// Distance to a chain of balls whose radius runs evenly from one to the next.
 double chainValue(const Canal& canal, const Vec3& p) {
@@ -232,7 +232,7 @@ double ToothShape::pulp(const Vec3& p) const {
     double value = chamber_.value(p);
     for (const Canal& canal : anatomy_.canals)
         value = smoothMin(value, chainValue(canal, p), 0.5);
-    return smoothMax(value, core(p, body(p)) + kLeastDentineOverPulpMm, 0.2);
+    return smoothMax(value, core(p, body(p)) + kMinDentineOverPulpMm, 0.2);
 }
 
 double ToothShape::caries(const Vec3& p) const {

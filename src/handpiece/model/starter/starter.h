@@ -9,7 +9,7 @@
 
 #include "handpiece/base/core/progress.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/case/case.h"
 
 namespace handpiece::starter {
 
@@ -40,12 +40,12 @@ struct ToothOptions {
 ///
 /// In parallel; the same bytes for the same options at any thread count. Throws core::Error for face counts outside
 /// kMinFaces..kMaxFaces.
-[[nodiscard]] tooth::Case makeTooth(ToothKind kind, const ToothOptions& options = {},
+[[nodiscard]] cases::Case makeTooth(ToothKind kind, const ToothOptions& options = {},
                                     const core::Progress& progress = {});
 
 /// Crown, root and what stands around them, roughly: to be looked at while the tooth itself is made. Under half a
 /// second.
-[[nodiscard]] tooth::Case makeSketch(ToothKind kind);
+[[nodiscard]] cases::Case makeSketch(ToothKind kind);
 
 /// The outer surface alone: closed, of genus 0, exactly `faces` triangles (the next even number).
 [[nodiscard]] geometry::TriangleMesh makeOuter(ToothKind kind, std::size_t faces, const core::Progress& progress = {});

@@ -11,7 +11,7 @@ namespace handpiece::tooth {
 namespace {
 
 constexpr std::uint8_t kChanged = 1, kWaiting = 2, kShows = 4;
-constexpr std::size_t kBrickBytes = sizeof(float) * kBrickValues;
+constexpr std::size_t kBrickBytes = sizeof(float) * field::kBrickValues;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ CutField::CutField(std::shared_ptr<const CuttableTooth> base) : base_(std::move(
     field_.settings_.bandInMm = std::min(field_.settings_.bandInMm, base_->settings.bandMm);
     // Writing all of it brings the pages in now rather than in the tick.
     field_.values_.resize(valueIndex(storedRoom_), static_cast<float>(-base_->settings.bandMm));
-    field_.tissue_.resize(valueIndex(storedRoom_), static_cast<std::uint8_t>(Tissue::none));
+    field_.tissue_.resize(valueIndex(storedRoom_), static_cast<std::uint8_t>(cases::Tissue::none));
     for (std::size_t i = 0; i < dense; ++i) {
         const auto brick = static_cast<std::uint32_t>(i);
         field_.coarse_[i] = std::max(field_.coarse_[i], -kCoarseDepthMm);
@@ -30,7 +30,7 @@ CutField::CutField(std::shared_ptr<const CuttableTooth> base) : base_(std::move(
         if (stored < 0) {
             const std::uint8_t* nodes = base_->tissues.nodes(brick);
             if (field_.coarse_[i] < 0.0f)
-                field_.coarseTissue_[i] = nodes != nullptr ? nodes[kBrickValues / 2]
+                field_.coarseTissue_[i] = nodes != nullptr ? nodes[field::kBrickValues / 2]
                                                            : static_cast<std::uint8_t>(base_->tissues.ofBrick(brick));
             continue;
         }
@@ -44,7 +44,7 @@ CutField::CutField(std::shared_ptr<const CuttableTooth> base) : base_(std::move(
 
 bool CutField::isCutNear(const core::Box& box) const noexcept {
     if (changedCount_ == 0) return false;
-    const double perMm = 1.0 / (kBrickCells * field_.settings_.voxelMm);
+    const double perMm = 1.0 / (field::kBrickCells * field_.settings_.voxelMm);
     std::int32_t low[3], high[3];
     for (int k = 0; k < 3; ++k) {
         const auto axis = static_cast<std::size_t>(k);
@@ -109,7 +109,7 @@ void CutField::noteChanged(std::uint32_t dense, bool shows) noexcept {
     std::uint8_t& flags = flags_[dense];
     if ((flags & kChanged) != 0) return;
     flags |= kChanged;
-    const std::array<std::int32_t, 3> brick = brickAt(field_.bricks_, dense);
+    const std::array<std::int32_t, 3> brick = field::brickAt(field_.bricks_, dense);
     for (std::size_t k = 0; k < 3; ++k) {
         changedLow_[k] = changedCount_ == 0 ? brick[k] : std::min(changedLow_[k], brick[k]);
         changedHigh_[k] = changedCount_ == 0 ? brick[k] : std::max(changedHigh_[k], brick[k]);
@@ -126,7 +126,7 @@ void CutField::noteWhole(std::uint32_t dense) noexcept {
 }
 
 void CutField::addRemoved(const TissueVolumes& mm3) noexcept {
-    for (std::size_t i = 0; i < kTissueCount; ++i)
+    for (std::size_t i = 0; i < cases::kTissueCount; ++i)
         removedMm3_[i] += mm3[i];
 }
 
@@ -144,7 +144,7 @@ void CutField::dropFirstDirty() noexcept {
 }
 
 void CutField::shareFaces(std::uint32_t dense, std::int32_t stored) noexcept {
-    const std::array<std::int32_t, 3> brick = brickAt(field_.bricks_, dense);
+    const std::array<std::int32_t, 3> brick = field::brickAt(field_.bricks_, dense);
     const float* mine = values(stored);
     for (int neighbour = 0; neighbour < 27; ++neighbour) {
         const int step[3] = {neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1};
@@ -152,16 +152,16 @@ void CutField::shareFaces(std::uint32_t dense, std::int32_t stored) noexcept {
         std::array<std::int32_t, 3> other = brick;
         int low[3], high[3], shift = 0;
         bool inGrid = true, differs = false;
-        constexpr int kStride[3] = {1, kBrickNodes, kBrickNodes * kBrickNodes};
+        constexpr int kStride[3] = {1, field::kBrickNodes, field::kBrickNodes * field::kBrickNodes};
         for (std::size_t k = 0; k < 3; ++k) {
             other[k] += step[k];
             inGrid = inGrid && other[k] >= 0 && other[k] < field_.bricks_[k];
-            low[k] = step[k] > 0 ? kBrickCells : 0;
-            high[k] = step[k] < 0 ? 0 : kBrickCells;
-            shift -= step[k] * kBrickCells * kStride[k];
+            low[k] = step[k] > 0 ? field::kBrickCells : 0;
+            high[k] = step[k] < 0 ? 0 : field::kBrickCells;
+            shift -= step[k] * field::kBrickCells * kStride[k];
         }
         if (!inGrid) continue;
-        const std::uint32_t there = denseOf(field_.bricks_, other);
+        const std::uint32_t there = field::denseOf(field_.bricks_, other);
         const std::int32_t otherStored = field_.brickIndex_[there];
         if (otherStored < 0) continue;
         float* theirs = values(otherStored);
@@ -177,10 +177,10 @@ void CutField::shareFaces(std::uint32_t dense, std::int32_t stored) noexcept {
     }
 }
 
-std::size_t CutField::restore(const CutState& change, std::size_t from, std::size_t most) noexcept {
+std::size_t CutField::restore(const StateDelta& change, std::size_t from, std::size_t most) noexcept {
     const std::size_t count = change.bricks.size();
     for (; from < count && most > 0; ++from, --most) {
-        const CutState::Brick& brick = change.bricks[from];
+        const StateDelta::Brick& brick = change.bricks[from];
         if (brick.whole && field_.brickIndex_[brick.dense] < 0) continue;
         const std::int32_t stored = storeBrick(brick.dense);
         if (stored < 0) continue;
@@ -210,15 +210,15 @@ void CutField::resetCoarse() noexcept {
 
 void CutField::raiseAround(std::uint32_t dense, const float* values) noexcept {
     bool anyInside = false, anyOutside = false;
-    for (int i = 0; i < kBrickValues; ++i) {
+    for (int i = 0; i < field::kBrickValues; ++i) {
         anyInside |= values[i] < 0.0f;
         anyOutside |= values[i] >= 0.0f;
     }
     if (!anyInside || !anyOutside) return;
     // The surface lies somewhere in this brick: a centre is as far from it as from the brick's box, or farther.
-    const auto edge = static_cast<float>(kBrickCells * field_.settings_.voxelMm);
+    const auto edge = static_cast<float>(field::kBrickCells * field_.settings_.voxelMm);
     const auto reach = static_cast<std::int32_t>(std::ceil(kCoarseDepthMm / edge + 0.5f));
-    const std::array<std::int32_t, 3> brick = brickAt(field_.bricks_, dense);
+    const std::array<std::int32_t, 3> brick = field::brickAt(field_.bricks_, dense);
     std::array<std::int32_t, 3> low, high;
     for (std::size_t k = 0; k < 3; ++k) {
         low[k] = std::max(brick[k] - reach, 0);
@@ -233,7 +233,7 @@ void CutField::raiseAround(std::uint32_t dense, const float* values) noexcept {
         for (std::int32_t y = low[1]; y <= high[1]; ++y) {
             const float across = gap(z - brick[2]) * gap(z - brick[2]) + gap(y - brick[1]) * gap(y - brick[1]);
             if (across >= kCoarseDepthMm * kCoarseDepthMm) continue;
-            const std::uint32_t row = denseOf(field_.bricks_, {0, y, z});
+            const std::uint32_t row = field::denseOf(field_.bricks_, {0, y, z});
             for (std::int32_t x = low[0]; x <= high[0]; ++x) {
                 const std::size_t at = row + static_cast<std::uint32_t>(x);
                 const float along = gap(x - brick[0]), bound = -std::sqrt(across + along * along);
@@ -242,24 +242,24 @@ void CutField::raiseAround(std::uint32_t dense, const float* values) noexcept {
         }
 }
 
-CutState CutField::state() const {
-    CutState state;
+StateDelta CutField::state() const {
+    StateDelta state;
     state.removedMm3 = removedMm3_;
-    std::array<float, kBrickValues> whole;
+    std::array<float, field::kBrickValues> whole;
     for (std::uint32_t dense = 0; dense < dirty_.size(); ++dense) {
         if ((flags_[dense] & kChanged) == 0) continue;
         const float* now = &field_.values_[valueIndex(field_.brickIndex_[dense])];
         base_->wholeBrick(dense, whole.data());
         if (std::memcmp(now, whole.data(), kBrickBytes) == 0) continue;
-        CutState::Brick& brick = state.bricks.emplace_back(CutState::Brick{dense, false, {}});
+        StateDelta::Brick& brick = state.bricks.emplace_back(StateDelta::Brick{dense, false, {}});
         std::memcpy(brick.values.data(), now, kBrickBytes);
     }
     return state;
 }
 
-std::uint64_t stateHash(const CutState& state) {
+std::uint64_t stateHash(const StateDelta& state) {
     core::Hasher hasher;
-    for (const CutState::Brick& brick : state.bricks) {
+    for (const StateDelta::Brick& brick : state.bricks) {
         if (brick.whole) continue;
         hasher.add(brick.dense);
         hasher.add(std::as_bytes(std::span(brick.values)));
@@ -267,15 +267,15 @@ std::uint64_t stateHash(const CutState& state) {
     return hasher.value();
 }
 
-CutState changeBetween(const CutState& from, const CutState& to) {
-    CutState change;
+StateDelta changeBetween(const StateDelta& from, const StateDelta& to) {
+    StateDelta change;
     change.removedMm3 = to.removedMm3;
     auto before = from.bricks.begin();
     const auto toWhole = [&](std::uint32_t limit) {
         for (; before != from.bricks.end() && before->dense < limit; ++before)
             if (!before->whole) change.bricks.push_back({before->dense, true, {}});
     };
-    for (const CutState::Brick& after : to.bricks) {
+    for (const StateDelta::Brick& after : to.bricks) {
         toWhole(after.dense);
         const bool known = before != from.bricks.end() && before->dense == after.dense;
         const bool wasWhole = !known || before->whole;

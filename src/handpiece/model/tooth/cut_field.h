@@ -12,13 +12,13 @@
 
 #include "handpiece/base/core/progress.h"
 #include "handpiece/base/core/realtime.h"
-#include "handpiece/model/tooth/tissue_map.h"
+#include "handpiece/model/field/tissue_map.h"
 #include "handpiece/model/tooth/tooth.h"
 
 namespace handpiece::tooth {
 
 /// Volume by tissue [mm3].
-using TissueVolumes = std::array<double, kTissueCount>;
+using TissueVolumes = std::array<double, cases::kTissueCount>;
 
 /// Half width of the slope over which a node's voxel counts from full to empty, in voxels.
 inline constexpr float kOccupancyHalfWidth = 0.5f;
@@ -41,7 +41,7 @@ struct CutSettings {
 /// they only say "at least".
 struct CuttableTooth {
     std::shared_ptr<const Tooth> tooth;
-    TissueMap tissues;
+    field::TissueMap tissues;
     CutSettings settings;    ///< with what 0 stands for filled in
     double bandOutMm = 0.0;  ///< the field's, at least two voxels: nearer the clamp would bend the surface
     TissueVolumes volumesMm3{};
@@ -50,12 +50,13 @@ struct CuttableTooth {
     void wholeBrick(std::uint32_t dense, float* out) const noexcept HANDPIECE_REALTIME;
 };
 /// In parallel; the same bits at any thread count. Throws core::Error for settings out of range.
-[[nodiscard]] std::shared_ptr<const CuttableTooth> prepareCutting(std::shared_ptr<const Tooth> tooth, TissueMap tissues,
+[[nodiscard]] std::shared_ptr<const CuttableTooth> prepareCutting(std::shared_ptr<const Tooth> tooth,
+                                                                  field::TissueMap tissues,
                                                                   const CutSettings& settings = {});
 
 /// The same from a case, the tissues from its parts; kept in a cache file beside the field's, as `cache` says, and
 /// reopened from there. `tooth` is that case's. Throws core::Error as prepareTooth does.
-[[nodiscard]] std::shared_ptr<const CuttableTooth> prepareCutting(const Case& toothCase,
+[[nodiscard]] std::shared_ptr<const CuttableTooth> prepareCutting(const cases::Case& toothCase,
                                                                   std::shared_ptr<const Tooth> tooth,
                                                                   const PrepareSettings& cache,
                                                                   const CutSettings& settings = {},
@@ -65,23 +66,23 @@ struct CuttableTooth {
 struct BrickSnapshot {
     std::uint32_t dense = 0;  ///< which brick: index x + bricks_x (y + bricks_y z)
     bool shows = true;        ///< the surface may have moved in it since it was handed over last
-    float values[kBrickValues];
+    float values[field::kBrickValues];
 };
 
 /// Bricks that differ from the whole tooth (a state), or that differ between two states (a change).
-struct CutState {
+struct StateDelta {
     struct Brick {
         std::uint32_t dense;
         bool whole;  ///< as before any cut; then `values` counts for nothing
-        std::array<float, kBrickValues> values;
+        std::array<float, field::kBrickValues> values;
     };
     std::vector<Brick> bricks;   ///< at rising `dense`
     TissueVolumes removedMm3{};  ///< since the tooth was whole
 };
 /// The same number for the same tooth, bit for bit; whole bricks count for nothing.
-[[nodiscard]] std::uint64_t stateHash(const CutState& state);
+[[nodiscard]] std::uint64_t stateHash(const StateDelta& state);
 /// What turns a tooth in state `from` into one in state `to`: bricks that differ, whole where `to` leaves them so.
-[[nodiscard]] CutState changeBetween(const CutState& from, const CutState& to);
+[[nodiscard]] StateDelta changeBetween(const StateDelta& from, const StateDelta& to);
 
 /// The field that the tick cuts and feels. All memory is taken at construction. One thread: the tick's.
 class CutField {
@@ -90,7 +91,7 @@ class CutField {
 
     [[nodiscard]] const CuttableTooth& base() const noexcept { return *base_; }
     /// As it is now, for lookups and for contact; its arrays never move.
-    [[nodiscard]] const ToothField& field() const noexcept { return field_; }
+    [[nodiscard]] const field::DistanceField& field() const noexcept { return field_; }
     /// True when a brick that overlaps the box (tooth frame, mm) may differ from the whole tooth.
     [[nodiscard]] bool isCutNear(const core::Box& box) const noexcept HANDPIECE_REALTIME;
     [[nodiscard]] const TissueVolumes& removedMm3() const noexcept { return removedMm3_; }
@@ -131,18 +132,18 @@ class CutField {
     /// Puts bricks `from` .. of a change in place, at most `most` of them; returns the next `from`. With the last one
     /// the removed volumes become those of the change. After every call bricks agree on the nodes they share, and the
     /// bounds elsewhere hold; they are as tight as at first again only when nothing is cut any more.
-    std::size_t restore(const CutState& change, std::size_t from, std::size_t most) noexcept HANDPIECE_REALTIME;
+    std::size_t restore(const StateDelta& change, std::size_t from, std::size_t most) noexcept HANDPIECE_REALTIME;
 
     // Off the tick, while it rests.
 
-    [[nodiscard]] CutState state() const;
+    [[nodiscard]] StateDelta state() const;
     [[nodiscard]] std::uint64_t stateHash() const;
     /// What is left by tissue, integrated as the cutting counts.
     [[nodiscard]] TissueVolumes volumesMm3() const;
 
   private:
     [[nodiscard]] static std::size_t valueIndex(std::int32_t stored) noexcept {
-        return static_cast<std::size_t>(stored) * kBrickValues;
+        return static_cast<std::size_t>(stored) * field::kBrickValues;
     }
     const BrickSnapshot& snapshotOfFirstDirty() noexcept;
     void dropFirstDirty() noexcept;
@@ -153,7 +154,7 @@ class CutField {
     void resetCoarse() noexcept;
 
     std::shared_ptr<const CuttableTooth> base_;
-    ToothField field_;  ///< index, values and tissues have room for the reserve
+    field::DistanceField field_;  ///< index, values and tissues have room for the reserve
     std::int32_t storedCount_ = 0, storedRoom_ = 0;
     TissueVolumes removedMm3_{};
     bool outOfBricks_ = false;
@@ -173,19 +174,19 @@ class CutMirror {
 
     [[nodiscard]] const CuttableTooth& base() const noexcept { return *base_; }
     void apply(const BrickSnapshot& snapshot);
-    void apply(const CutState& change);
+    void apply(const StateDelta& change);
     /// Values of a brick now; `scratch` (kBrickValues) is used when it is still whole.
     [[nodiscard]] const float* values(std::uint32_t dense, float* scratch) const;
     [[nodiscard]] bool isChanged(std::uint32_t dense) const;
     /// Bricks given to apply() since the last call, each once, rising.
     [[nodiscard]] std::vector<std::uint32_t> takeTouched();
-    [[nodiscard]] CutState state(const TissueVolumes& removedMm3) const;
+    [[nodiscard]] StateDelta state(const TissueVolumes& removedMm3) const;
 
   private:
     void put(std::uint32_t dense, const float* values);
 
     std::shared_ptr<const CuttableTooth> base_;
-    std::vector<std::unique_ptr<std::array<float, kBrickValues>>> bricks_;  ///< by dense brick; null: whole
+    std::vector<std::unique_ptr<std::array<float, field::kBrickValues>>> bricks_;  ///< by dense brick; null: whole
     std::vector<std::uint32_t> touched_;
     std::vector<bool> isTouched_;
 };

@@ -6,11 +6,11 @@
 
 namespace handpiece::tooth {
 namespace {
-constexpr std::size_t kBrickBytes = sizeof(float) * kBrickValues;
+constexpr std::size_t kBrickBytes = sizeof(float) * field::kBrickValues;
 }  // namespace
 
 CutMirror::CutMirror(std::shared_ptr<const CuttableTooth> base) : base_(std::move(base)) {
-    const FieldView view = base_->tooth->field.view();
+    const field::FieldView view = base_->tooth->field.view();
     const std::size_t dense = static_cast<std::size_t>(view.bricks[0]) * static_cast<std::size_t>(view.bricks[1]) *
                               static_cast<std::size_t>(view.bricks[2]);
     bricks_.resize(dense);
@@ -22,7 +22,7 @@ void CutMirror::put(std::uint32_t dense, const float* values) {
     if (values == nullptr) {
         brick.reset();
     } else {
-        if (!brick) brick = std::make_unique<std::array<float, kBrickValues>>();
+        if (!brick) brick = std::make_unique<std::array<float, field::kBrickValues>>();
         std::memcpy(brick->data(), values, kBrickBytes);
     }
     if (isTouched_[dense]) return;
@@ -34,8 +34,8 @@ void CutMirror::apply(const BrickSnapshot& snapshot) {
     put(snapshot.dense, snapshot.values);
 }
 
-void CutMirror::apply(const CutState& change) {
-    for (const CutState::Brick& brick : change.bricks)
+void CutMirror::apply(const StateDelta& change) {
+    for (const StateDelta::Brick& brick : change.bricks)
         put(brick.dense, brick.whole ? nullptr : brick.values.data());
 }
 
@@ -58,10 +58,10 @@ std::vector<std::uint32_t> CutMirror::takeTouched() {
     return taken;
 }
 
-CutState CutMirror::state(const TissueVolumes& removedMm3) const {
-    CutState state;
+StateDelta CutMirror::state(const TissueVolumes& removedMm3) const {
+    StateDelta state;
     state.removedMm3 = removedMm3;
-    std::array<float, kBrickValues> whole;
+    std::array<float, field::kBrickValues> whole;
     for (std::uint32_t dense = 0; dense < bricks_.size(); ++dense) {
         if (!bricks_[dense]) continue;
         // A brick that was restored comes as a snapshot like any other.

@@ -5,21 +5,22 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/model/field/field_builder.h"
+#include "handpiece/model/field/field_cache.h"
+#include "handpiece/model/field/tissue_cache.h"
 #include "handpiece/model/tooth/cut_volumes.h"
-#include "handpiece/model/tooth/field_builder.h"
-#include "handpiece/model/tooth/field_cache.h"
-#include "handpiece/model/tooth/tissue_cache.h"
 
 namespace handpiece::tooth {
 namespace {
 
-constexpr int kStride[3] = {1, kBrickNodes, kBrickNodes* kBrickNodes};
-constexpr double kMostBandMm = 1.0;
+constexpr int kStride[3] = {1, field::kBrickNodes, field::kBrickNodes* field::kBrickNodes};
+constexpr double kMaxBandMm = 1.0;
 constexpr std::size_t kReserveBytes = std::size_t{256} << 20;
 
 /// How far a centre's value reaches: a bound of the signed distance at node (x, y, z) of a brick.
 float boundAt(float centre, const int (&node)[3], double voxelMm) noexcept {
-    const double dx = node[0] - kBrickCells / 2, dy = node[1] - kBrickCells / 2, dz = node[2] - kBrickCells / 2;
+    const double dx = node[0] - field::kBrickCells / 2, dy = node[1] - field::kBrickCells / 2,
+                 dz = node[2] - field::kBrickCells / 2;
     const double away = voxelMm * std::sqrt(dx * dx + dy * dy + dz * dz);
     // A hair less than the triangle inequality gives, for the rounding of the centre's value to float.
     const auto magnitude = static_cast<float>(std::max(0.0, std::abs(double{centre}) * (1.0 - 1e-6) - away));
@@ -27,7 +28,8 @@ float boundAt(float centre, const int (&node)[3], double voxelMm) noexcept {
 }
 
 /// The value of a node that several bricks hold: that of a stored one, else the tightest of their bounds.
-float sharedValue(const FieldView& field, const std::array<std::int32_t, 3>& brick, const int (&node)[3]) noexcept {
+float sharedValue(const field::FieldView& field, const std::array<std::int32_t, 3>& brick,
+                  const int (&node)[3]) noexcept {
     float best = 0.0f;
     bool any = false;
     for (int corner = 0; corner < 8; ++corner) {
@@ -36,15 +38,15 @@ float sharedValue(const FieldView& field, const std::array<std::int32_t, 3>& bri
         bool holds = true;
         for (std::size_t k = 0; k < 3; ++k) {
             if ((corner >> k & 1) == 0) continue;
-            holds = holds && (node[k] == 0 || node[k] == kBrickCells);
+            holds = holds && (node[k] == 0 || node[k] == field::kBrickCells);
             other[k] += node[k] == 0 ? -1 : 1;
-            there[k] = kBrickCells - node[k];
+            there[k] = field::kBrickCells - node[k];
             holds = holds && other[k] >= 0 && other[k] < field.bricks[k];
         }
         if (!holds) continue;
-        const std::uint32_t dense = denseOf(field.bricks, other);
+        const std::uint32_t dense = field::denseOf(field.bricks, other);
         if (const std::int32_t stored = field.brickIndex[dense]; stored >= 0)
-            return field.values[static_cast<std::size_t>(stored) * kBrickValues +
+            return field.values[static_cast<std::size_t>(stored) * field::kBrickValues +
                                 static_cast<std::size_t>(there[0] + kStride[1] * there[1] + kStride[2] * there[2])];
         const float bound = boundAt(field.coarse[dense], there, field.voxelMm);
         if (!any || std::abs(bound) > std::abs(best)) best = bound;
@@ -56,12 +58,12 @@ float sharedValue(const FieldView& field, const std::array<std::int32_t, 3>& bri
 }  // namespace
 
 void CuttableTooth::wholeBrick(std::uint32_t dense, float* out) const noexcept {
-    const ToothField& whole = tooth->field;
-    const FieldView field = whole.view();
+    const field::DistanceField& whole = tooth->field;
+    const field::FieldView field = whole.view();
     const auto low = static_cast<float>(-settings.bandMm), high = static_cast<float>(bandOutMm);
     if (const std::int32_t stored = field.brickIndex[dense]; stored >= 0) {
-        const float* values = field.values + static_cast<std::size_t>(stored) * kBrickValues;
-        for (int i = 0; i < kBrickValues; ++i) {
+        const float* values = field.values + static_cast<std::size_t>(stored) * field::kBrickValues;
+        for (int i = 0; i < field::kBrickValues; ++i) {
             const float up = values[i] < low ? low : values[i];
             out[i] = up > high ? high : up;
         }
@@ -69,27 +71,27 @@ void CuttableTooth::wholeBrick(std::uint32_t dense, float* out) const noexcept {
     }
     // A brick that is not stored lies deeper than the field's own band, all of it.
     if (field.coarse[dense] < 0.0f && settings.bandMm <= whole.settings().bandInMm * (1.0 - 1e-4)) {
-        std::fill_n(out, kBrickValues, low);
+        std::fill_n(out, field::kBrickValues, low);
         return;
     }
-    const std::array<std::int32_t, 3> brick = brickAt(field.bricks, dense);
+    const std::array<std::int32_t, 3> brick = field::brickAt(field.bricks, dense);
     int node[3];
-    for (node[2] = 0; node[2] < kBrickNodes; ++node[2])
-        for (node[1] = 0; node[1] < kBrickNodes; ++node[1])
-            for (node[0] = 0; node[0] < kBrickNodes; ++node[0])
+    for (node[2] = 0; node[2] < field::kBrickNodes; ++node[2])
+        for (node[1] = 0; node[1] < field::kBrickNodes; ++node[1])
+            for (node[0] = 0; node[0] < field::kBrickNodes; ++node[0])
                 *out++ = std::clamp(sharedValue(field, brick, node), low, high);
 }
 
 TissueVolumes integrateVolumes(const CuttableTooth& base,
                                const std::function<const float*(std::uint32_t dense)>& valuesOf) {
-    const FieldView field = base.tooth->field.view();
+    const field::FieldView field = base.tooth->field.view();
     const auto inverseVoxel = static_cast<float>(field.inverseVoxelMm);
     const double voxelMm3 = field.voxelMm * field.voxelMm * field.voxelMm;
     const std::uint32_t perLayer =
         static_cast<std::uint32_t>(field.bricks[0]) * static_cast<std::uint32_t>(field.bricks[1]);
     std::vector<TissueVolumes> layers(static_cast<std::size_t>(field.bricks[2]), TissueVolumes{});
     core::parallelFor(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
-        std::array<float, kBrickValues> whole;
+        std::array<float, field::kBrickValues> whole;
         for (std::size_t layer = begin; layer < end; ++layer)
             for (std::uint32_t i = 0; i < perLayer; ++i) {
                 const std::uint32_t dense = static_cast<std::uint32_t>(layer) * perLayer + i;
@@ -103,26 +105,26 @@ TissueVolumes integrateVolumes(const CuttableTooth& base,
                 const auto all = static_cast<std::size_t>(base.tissues.ofBrick(dense));
                 // Nodes 0..7 along each axis: the others are the next brick's.
                 TissueVolumes sum{};
-                for (int z = 0; z < kBrickCells; ++z)
-                    for (int y = 0; y < kBrickCells; ++y)
-                        for (int x = 0; x < kBrickCells; ++x) {
+                for (int z = 0; z < field::kBrickCells; ++z)
+                    for (int y = 0; y < field::kBrickCells; ++y)
+                        for (int x = 0; x < field::kBrickCells; ++x) {
                             const int at = x + kStride[1] * y + kStride[2] * z;
                             sum[nodes != nullptr ? nodes[at] : all] += occupancy(values[at], inverseVoxel);
                         }
-                for (std::size_t k = 0; k < kTissueCount; ++k)
+                for (std::size_t k = 0; k < cases::kTissueCount; ++k)
                     layers[layer][k] += sum[k] * voxelMm3;
             }
     });
     TissueVolumes total{};
     for (const TissueVolumes& layer : layers)
-        for (std::size_t k = 0; k < kTissueCount; ++k)
+        for (std::size_t k = 0; k < cases::kTissueCount; ++k)
             total[k] += layer[k];
     return total;
 }
 
-std::shared_ptr<const CuttableTooth> prepareCutting(std::shared_ptr<const Tooth> tooth, TissueMap tissues,
+std::shared_ptr<const CuttableTooth> prepareCutting(std::shared_ptr<const Tooth> tooth, field::TissueMap tissues,
                                                     const CutSettings& settings) {
-    const FieldSettings& field = tooth->field.settings();
+    const field::FieldSettings& field = tooth->field.settings();
     const auto refuse = [](const std::string& what, const std::string& remedy) {
         throw core::Error(what, "cutting", remedy);
     };
@@ -131,20 +133,20 @@ std::shared_ptr<const CuttableTooth> prepareCutting(std::shared_ptr<const Tooth>
     base->bandOutMm = std::max(field.bandOutMm, 2.0 * field.voxelMm);
     double& band = base->settings.bandMm;
     if (band == 0.0) band = std::max(0.2, 3.0 * field.voxelMm);
-    const double least = 2.0 * field.voxelMm, most = std::max(kMostBandMm, 4.0 * field.voxelMm);
+    const double least = 2.0 * field.voxelMm, most = std::max(kMaxBandMm, 4.0 * field.voxelMm);
     if (!(band >= least && band <= most))
         refuse(fmt::format("a band of {} mm cannot follow a cut at a voxel of {} mm", band, field.voxelMm),
                fmt::format("give {} to {} mm", least, most));
     if (!tissues.isOn(tooth->field))
         refuse("the tissues were laid out on another grid than the tooth's", "make them from this tooth's field");
 
-    const FieldView view = tooth->field.view();
+    const field::FieldView view = tooth->field.view();
     std::size_t inside = 0;
     const std::size_t dense = static_cast<std::size_t>(view.bricks[0]) * static_cast<std::size_t>(view.bricks[1]) *
                               static_cast<std::size_t>(view.bricks[2]);
     for (std::size_t i = 0; i < dense; ++i)
         if (view.brickIndex[i] < 0 && view.coarse[i] < 0.0f) ++inside;
-    constexpr std::size_t kBytesABrick = kBrickValues * (sizeof(float) + 1);
+    constexpr std::size_t kBytesABrick = field::kBrickValues * (sizeof(float) + 1);
     std::size_t& reserve = base->settings.reserveBricks;
     reserve = std::min(inside, reserve == 0 ? kReserveBytes / kBytesABrick : reserve);
 
@@ -154,38 +156,39 @@ std::shared_ptr<const CuttableTooth> prepareCutting(std::shared_ptr<const Tooth>
     return base;
 }
 
-std::shared_ptr<const CuttableTooth> prepareCutting(const Case& toothCase, std::shared_ptr<const Tooth> tooth,
+std::shared_ptr<const CuttableTooth> prepareCutting(const cases::Case& toothCase, std::shared_ptr<const Tooth> tooth,
                                                     const PrepareSettings& cache, const CutSettings& settings,
                                                     const core::Progress& progress) {
     core::report(progress, 0.0);
-    const auto finished = [&](TissueMap map) {
+    const auto finished = [&](field::TissueMap map) {
         auto base = prepareCutting(std::move(tooth), std::move(map), settings);
         core::report(progress, 1.0);
         return base;
     };
     if (toothCase.parts.size() <= 1)
-        return finished(
-            TissueMap::uniform(tooth->field, toothCase.parts.empty() ? Tissue::enamel : toothCase.parts[0].tissue));
+        return finished(field::TissueMap::uniform(
+            tooth->field, toothCase.parts.empty() ? cases::Tissue::enamel : toothCase.parts[0].tissue));
     std::vector<std::filesystem::path> places;
     std::uint64_t key = 0;
     if (cache.useCache) {
-        key = tissueKey(cacheKey(toothCase, tooth->field.settings()));
-        places = cachePlaces(toothCase, cache.cacheFolder, key);
+        key = field::tissueKey(field::cacheKey(toothCase, tooth->field.settings()));
+        places = field::cachePlaces(toothCase, cache.cacheFolder, key);
         for (std::filesystem::path& place : places) {
             place.replace_extension(".tissues");
-            if (std::optional<TissueMap> map = readTissueFile(place, tooth->field, key, TissueSet(toothCase)))
+            if (std::optional<field::TissueMap> map =
+                    field::readTissueFile(place, tooth->field, key, field::TissueSet(toothCase)))
                 return finished(std::move(*map));
         }
     }
     std::vector<geometry::TriangleTree> trees;
     trees.reserve(toothCase.parts.size());
-    std::vector<PartSurface> parts;
-    for (const Part& part : toothCase.parts) {
+    std::vector<field::PartSurface> parts;
+    for (const cases::Part& part : toothCase.parts) {
         parts.push_back({&trees.emplace_back(part.mesh), part.tissue, part.priority});
         core::report(progress, 0.1);
     }
-    TissueMap map = TissueMap::fromParts(tooth->field, parts, core::part(progress, 0.1, 0.9));
-    if (!places.empty()) (void)writeFieldFile(places, encodeTissues(map, key));
+    field::TissueMap map = field::TissueMap::fromParts(tooth->field, parts, core::part(progress, 0.1, 0.9));
+    if (!places.empty()) (void)field::writeFieldFile(places, field::encodeTissues(map, key));
     return finished(std::move(map));
 }
 

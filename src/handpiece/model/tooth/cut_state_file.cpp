@@ -10,7 +10,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/parallel.h"
-#include "handpiece/model/tooth/field_cache.h"
+#include "handpiece/model/field/field_cache.h"
 
 namespace handpiece::tooth {
 namespace {
@@ -25,7 +25,7 @@ struct Header {
     std::uint32_t version, byteOrder;
     std::uint64_t key;
     std::uint64_t bricks, payloadBytes;
-    double removedMm3[kTissueCount];
+    double removedMm3[cases::kTissueCount];
     std::uint64_t payloadHash, headerHash;
 };
 static_assert(sizeof(Header) == 136 && std::is_trivially_copyable_v<Header>);
@@ -58,7 +58,7 @@ std::uint32_t unfolded(std::uint32_t number) {
 /// What a node's value would be if the field had no third mixed difference. In differences first: where all is held to
 /// the band it is exact.
 float predicted(const float* v, int x, int y, int z) {
-    constexpr int kX = 1, kY = kBrickNodes, kZ = kBrickNodes * kBrickNodes;
+    constexpr int kX = 1, kY = field::kBrickNodes, kZ = field::kBrickNodes * field::kBrickNodes;
     if (x > 0 && y > 0 && z > 0)
         return ((v[-kX] - v[-kX - kY]) + (v[-kY] - v[-kY - kZ]) + (v[-kZ] - v[-kX - kZ])) + v[-kX - kY - kZ];
     if (x > 0 && y > 0) return (v[-kX] - v[-kX - kY]) + v[-kY];
@@ -72,26 +72,26 @@ float predicted(const float* v, int x, int y, int z) {
 template <class F>
 void forEachNode(F&& visit) {
     int at = 0;
-    for (int z = 0; z < kBrickNodes; ++z)
-        for (int y = 0; y < kBrickNodes; ++y)
-            for (int x = 0; x < kBrickNodes; ++x)
+    for (int z = 0; z < field::kBrickNodes; ++z)
+        for (int y = 0; y < field::kBrickNodes; ++y)
+            for (int x = 0; x < field::kBrickNodes; ++x)
                 visit(at++, x, y, z);
 }
 
 /// A piece before compression: indices, flags, then the numbers of the bricks that are not whole, byte by byte: all
 /// lowest bytes first, all highest last.
-std::vector<std::uint8_t> packed(std::span<const CutState::Brick> bricks) {
+std::vector<std::uint8_t> packed(std::span<const StateDelta::Brick> bricks) {
     std::size_t cut = 0;
-    for (const CutState::Brick& brick : bricks)
+    for (const StateDelta::Brick& brick : bricks)
         cut += !brick.whole;
-    const std::size_t plane = cut * kBrickValues;
+    const std::size_t plane = cut * field::kBrickValues;
     std::vector<std::uint8_t> raw(bricks.size() * 5 + plane * 4);
     for (std::size_t i = 0; i < bricks.size(); ++i) {
         std::memcpy(&raw[4 * i], &bricks[i].dense, 4);
         raw[4 * bricks.size() + i] = bricks[i].whole;
     }
     std::uint8_t* out = raw.data() + bricks.size() * 5;
-    for (const CutState::Brick& brick : bricks) {
+    for (const StateDelta::Brick& brick : bricks) {
         if (brick.whole) continue;
         const float* values = brick.values.data();
         forEachNode([&](int at, int x, int y, int z) {
@@ -99,13 +99,13 @@ std::vector<std::uint8_t> packed(std::span<const CutState::Brick> bricks) {
             for (std::size_t byte = 0; byte < 4; ++byte)
                 out[byte * plane + static_cast<std::size_t>(at)] = static_cast<std::uint8_t>(number >> (8 * byte));
         });
-        out += kBrickValues;
+        out += field::kBrickValues;
     }
     return raw;
 }
 
 /// False when `raw` cannot be what packed() gives for so many bricks.
-bool unpack(std::span<const std::uint8_t> raw, std::span<CutState::Brick> bricks) {
+bool unpack(std::span<const std::uint8_t> raw, std::span<StateDelta::Brick> bricks) {
     std::size_t cut = 0;
     if (raw.size() < bricks.size() * 5) return false;
     for (std::size_t i = 0; i < bricks.size(); ++i) {
@@ -115,10 +115,10 @@ bool unpack(std::span<const std::uint8_t> raw, std::span<CutState::Brick> bricks
         bricks[i].whole = whole != 0;
         cut += !bricks[i].whole;
     }
-    const std::size_t plane = cut * kBrickValues;
+    const std::size_t plane = cut * field::kBrickValues;
     if (raw.size() != bricks.size() * 5 + plane * 4) return false;
     const std::uint8_t* in = raw.data() + bricks.size() * 5;
-    for (CutState::Brick& brick : bricks) {
+    for (StateDelta::Brick& brick : bricks) {
         brick.values.fill(0.0f);
         if (brick.whole) continue;
         float* values = brick.values.data();
@@ -128,7 +128,7 @@ bool unpack(std::span<const std::uint8_t> raw, std::span<CutState::Brick> bricks
                 number |= std::uint32_t{in[byte * plane + static_cast<std::size_t>(at)]} << (8 * byte);
             values[at] = unordered(unfolded(number) + ordered(predicted(values + at, x, y, z)));
         });
-        in += kBrickValues;
+        in += field::kBrickValues;
     }
     return true;
 }
@@ -143,14 +143,14 @@ std::vector<std::uint8_t> compressed(const std::vector<std::uint8_t>& raw) {
 }
 
 /// Everything that a field could not hold. True when all is well.
-bool fits(const CutState& state, const CuttableTooth& base) {
-    const FieldView field = base.tooth->field.view();
+bool fits(const StateDelta& state, const CuttableTooth& base) {
+    const field::FieldView field = base.tooth->field.view();
     const std::uint64_t dense = static_cast<std::uint64_t>(field.bricks[0]) *
                                 static_cast<std::uint64_t>(field.bricks[1]) *
                                 static_cast<std::uint64_t>(field.bricks[2]);
     const auto low = static_cast<float>(-base.settings.bandMm), high = static_cast<float>(base.bandOutMm);
     for (std::size_t i = 0; i < state.bricks.size(); ++i) {
-        const CutState::Brick& brick = state.bricks[i];
+        const StateDelta::Brick& brick = state.bricks[i];
         if (brick.dense >= dense || (i > 0 && brick.dense <= state.bricks[i - 1].dense)) return false;
         if (field.brickIndex[brick.dense] < 0 && field.coarse[brick.dense] >= 0.0f) return false;
         if (brick.whole) continue;
@@ -175,7 +175,7 @@ std::uint64_t identityOf(const CuttableTooth& base) {
     return hasher.value();
 }
 
-std::vector<std::byte> encodeState(const CutState& state, std::uint64_t baseKey) {
+std::vector<std::byte> encodeState(const StateDelta& state, std::uint64_t baseKey) {
     const std::size_t count = state.bricks.size();
     std::vector<std::vector<std::uint8_t>> pieces(piecesOf(count));
     core::parallelFor(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -204,14 +204,14 @@ std::vector<std::byte> encodeState(const CutState& state, std::uint64_t baseKey)
     header.bricks = count;
     header.payloadBytes = data.size() - sizeof header;
     std::copy(state.removedMm3.begin(), state.removedMm3.end(), header.removedMm3);
-    header.payloadHash = hashOf(std::span(data).subspan(sizeof header));
+    header.payloadHash = field::hashOf(std::span(data).subspan(sizeof header));
     header.headerHash = headerHashOf(header);
     std::memcpy(data.data(), &header, sizeof header);
     return data;
 }
 
-CutState decodeState(std::span<const std::byte> data, std::uint64_t baseKey, const CuttableTooth& base,
-                     const std::string& where) {
+StateDelta decodeState(std::span<const std::byte> data, std::uint64_t baseKey, const CuttableTooth& base,
+                       const std::string& where) {
     Header header;
     const auto cutShort = [&] { return core::Error("the cut state is cut short", where, "take an older copy"); };
     const auto damaged = [&] { return core::Error("the cut state is damaged", where, "take an older copy"); };
@@ -231,9 +231,9 @@ CutState decodeState(std::span<const std::byte> data, std::uint64_t baseKey, con
                           "open it with the case and the settings that it was saved with");
     const std::span<const std::byte> payload = data.subspan(sizeof header);
     if (payload.size() < header.payloadBytes) throw cutShort();
-    if (payload.size() > header.payloadBytes || hashOf(payload) != header.payloadHash) throw damaged();
+    if (payload.size() > header.payloadBytes || field::hashOf(payload) != header.payloadHash) throw damaged();
 
-    const FieldView field = base.tooth->field.view();
+    const field::FieldView field = base.tooth->field.view();
     const std::uint64_t dense = static_cast<std::uint64_t>(field.bricks[0]) *
                                 static_cast<std::uint64_t>(field.bricks[1]) *
                                 static_cast<std::uint64_t>(field.bricks[2]);
@@ -248,12 +248,12 @@ CutState decodeState(std::span<const std::byte> data, std::uint64_t baseKey, con
     }
     if (start[pieces] != payload.size()) throw damaged();
 
-    CutState state;
+    StateDelta state;
     std::copy(std::begin(header.removedMm3), std::end(header.removedMm3), state.removedMm3.begin());
     state.bricks.resize(count);
     core::parallelFor(pieces, 1, [&](std::size_t begin, std::size_t end) {
         // No piece is larger than this, whatever it says: nothing swells beyond it.
-        std::vector<std::uint8_t> raw(kPieceBricks * (5 + 4 * kBrickValues));
+        std::vector<std::uint8_t> raw(kPieceBricks * (5 + 4 * field::kBrickValues));
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t first = i * kPieceBricks;
             uLongf size = static_cast<uLongf>(raw.size());

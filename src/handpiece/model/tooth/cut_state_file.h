@@ -20,12 +20,12 @@ namespace handpiece::tooth {
 
 /// The state, or a change, bit for bit, compressed; the same bytes at any thread count. `baseKey` says of which tooth
 /// it is, as identityOf() gives it. In parallel, off the tick.
-[[nodiscard]] std::vector<std::byte> encodeState(const CutState& state, std::uint64_t baseKey);
+[[nodiscard]] std::vector<std::byte> encodeState(const StateDelta& state, std::uint64_t baseKey);
 
 /// What encodeState() was given. Throws core::Error for bytes that are no state, cut short, damaged, of a newer version
 /// or of another tooth, naming `where`. Sizes are believed only after the checksums, and what comes back fits `base`:
 /// bricks in the grid, rising, stored or inside; values within the band.
-[[nodiscard]] CutState decodeState(std::span<const std::byte> data, std::uint64_t baseKey, const CuttableTooth& base,
-                                   const std::string& where = "cut state");
+[[nodiscard]] StateDelta decodeState(std::span<const std::byte> data, std::uint64_t baseKey, const CuttableTooth& base,
+                                     const std::string& where = "cut state");
 
 }  // namespace handpiece::tooth

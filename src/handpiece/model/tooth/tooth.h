@@ -5,75 +5,35 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "handpiece/base/core/progress.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
 #include "handpiece/base/geometry/triangle_tree.h"
-#include "handpiece/model/tooth/exercise.h"
-#include "handpiece/model/tooth/tissue.h"
-#include "handpiece/model/tooth/tooth_field.h"
+#include "handpiece/model/case/case.h"
+#include "handpiece/model/field/distance_field.h"
 
 namespace handpiece::tooth {
-
-/// One closed surface of a case and what it is made of.
-struct Part {
-    std::string name;
-    Tissue tissue = Tissue::enamel;
-    int priority = 0;  ///< where parts overlap the higher wins
-    geometry::TriangleMesh mesh;
-};
-
-/// A case as read: a folder with case.toml and STL parts, or one STL (then a single enamel part).
-/// Tooth frame: millimetres, +z occlusal, +x mesial, +y completes the right hand.
-struct Case {
-    std::string name;
-    std::string kind;                        ///< "lower-first-molar"; may be empty
-    int fdiNumber = 0;                       ///< 0 when unknown
-    int buccalSign = 0;                      ///< +1: buccal is +y, -1: -y, 0 unknown
-    std::filesystem::path source;            ///< folder or file, for messages and for the cache beside it
-    geometry::TriangleMesh outer;            ///< the whole tooth as one closed surface; empty when the case has none
-    std::vector<Part> parts;                 ///< tissues of the tooth itself
-    std::vector<Part> scenery;               ///< neighbours, gum, bone: seen, not felt in this version
-    TissueTable tissues = builtInTissues();  ///< with what the case changes
-    std::string tissuesToml;                 ///< the text of what it changes; empty when it changes nothing
-    std::optional<Exercise> exercise;
-};
-
-/// Reads a case folder, a .handpiece file, or a single mesh file. Throws core::Error (what, where, remedy).
-[[nodiscard]] Case readCase(const std::filesystem::path& path);
-/// Writes case.toml and one STL per part (and outer.stl) into a folder, or all of it as one .handpiece file; whole or
-/// not at all.
-void writeCase(const Case& toothCase, const std::filesystem::path& path);
-
-/// A number that differs when the tooth does: its surfaces (as an STL holds them), tissues or priorities. Texts,
-/// scenery and the tissue table count for nothing. An attempt keeps it.
-[[nodiscard]] std::uint64_t contentKey(const Case& toothCase);
-
-/// Why a surface cannot be felt, or that it can: closed, oriented, sane in size, not crossing itself.
-/// Throws core::Error with counts, the first place, and the command that mends it.
-void requireSolid(const geometry::TriangleMesh& mesh, const std::string& where);
 
 /// Everything the tick reads of a tooth. Immutable; shared by pointer.
 struct Tooth {
     std::string name;
     geometry::TriangleMesh outer;  ///< as felt
     geometry::TriangleTree tree;   ///< exact distances to `outer`
-    ToothField field;
+    field::DistanceField field;
     bool fromCache = false;
     double buildSeconds = 0.0;  ///< that prepareTooth took, built or reopened
 };
 
 struct PrepareSettings {
-    FieldSettings field;
+    field::FieldSettings field;
     bool useCache = true;
     std::filesystem::path cacheFolder;  ///< empty: beside the case, or the user's cache folder where that is read-only
 };
 
 /// Builds (in parallel) or reopens the field of a case. Throws core::Error for surfaces that cannot be felt.
-[[nodiscard]] std::shared_ptr<const Tooth> prepareTooth(const Case& toothCase, const PrepareSettings& settings = {},
+[[nodiscard]] std::shared_ptr<const Tooth> prepareTooth(const cases::Case& toothCase,
+                                                        const PrepareSettings& settings = {},
                                                         const core::Progress& progress = {});
 
 }  // namespace handpiece::tooth

@@ -12,7 +12,7 @@
 namespace handpiece::history {
 namespace {
 
-constexpr std::size_t kBrickBytes = tooth::kBrickValues * sizeof(float);
+constexpr std::size_t kBrickBytes = field::kBrickValues * sizeof(float);
 // What a brick costs beside its packed bytes: a node of the map and the vector's own memory, about.
 constexpr std::size_t kNodeBytes = 96;
 
@@ -22,9 +22,9 @@ using Planes = std::array<unsigned char, kBrickBytes>;
 std::vector<std::byte> pack(const float* values) {
     Planes planes;
     const auto* bytes = reinterpret_cast<const unsigned char*>(values);
-    for (std::size_t i = 0; i < tooth::kBrickValues; ++i)
+    for (std::size_t i = 0; i < field::kBrickValues; ++i)
         for (std::size_t b = 0; b < sizeof(float); ++b)
-            planes[b * tooth::kBrickValues + i] = bytes[i * sizeof(float) + b];
+            planes[b * field::kBrickValues + i] = bytes[i * sizeof(float) + b];
     std::array<unsigned char, kBrickBytes + kBrickBytes / 100 + 64> out;
     uLongf size = out.size();
     if (compress2(out.data(), &size, planes.data(), planes.size(), 1) != Z_OK)
@@ -42,9 +42,9 @@ void unpack(const std::vector<std::byte>& packed, float* values) {
         throw core::Error("a step of the history cannot be unpacked", "history");
     }
     auto* bytes = reinterpret_cast<unsigned char*>(values);
-    for (std::size_t i = 0; i < tooth::kBrickValues; ++i)
+    for (std::size_t i = 0; i < field::kBrickValues; ++i)
         for (std::size_t b = 0; b < sizeof(float); ++b)
-            bytes[i * sizeof(float) + b] = planes[b * tooth::kBrickValues + i];
+            bytes[i * sizeof(float) + b] = planes[b * field::kBrickValues + i];
 }
 
 }  // namespace
@@ -56,13 +56,13 @@ std::size_t History::bytesOf(const Step& step) {
     return bytes;
 }
 
-void History::start(const tooth::CutState& state) {
+void History::start(const tooth::StateDelta& state) {
     now_.clear();
     steps_.clear();
     touched_.clear();
     done_ = memoryBytes_ = 0;
     removedMm3_ = state.removedMm3;
-    for (const tooth::CutState::Brick& brick : state.bricks) {
+    for (const tooth::StateDelta::Brick& brick : state.bricks) {
         if (brick.whole) continue;
         const auto& packed = now_[brick.dense] = pack(brick.values.data());
         memoryBytes_ += packed.capacity() + kNodeBytes;
@@ -71,7 +71,7 @@ void History::start(const tooth::CutState& state) {
 
 bool History::endStroke(const BrickSource& source, const tooth::TissueVolumes& removedMm3) {
     Step step;
-    std::array<float, tooth::kBrickValues> scratch;
+    std::array<float, field::kBrickValues> scratch;
     for (const std::uint32_t dense : touched_) {
         Packed after;
         if (source.isChanged(dense)) after = pack(source.values(dense, scratch.data()));
@@ -103,12 +103,12 @@ void History::add(Step&& step) {
     }
 }
 
-tooth::CutState History::unpacked(const Step& step) {
-    tooth::CutState change;
+tooth::StateDelta History::unpacked(const Step& step) {
+    tooth::StateDelta change;
     change.bricks.resize(step.bricks.size());
     std::size_t i = 0;
     for (const auto& [dense, packed] : step.bricks) {
-        tooth::CutState::Brick& brick = change.bricks[i++];
+        tooth::StateDelta::Brick& brick = change.bricks[i++];
         brick.dense = dense;
         brick.whole = packed.empty();
         if (brick.whole) {
@@ -121,13 +121,13 @@ tooth::CutState History::unpacked(const Step& step) {
     return change;
 }
 
-tooth::CutState History::step(std::size_t index) const {
+tooth::StateDelta History::step(std::size_t index) const {
     return unpacked(steps_.at(index));
 }
 
-void History::append(const tooth::CutState& otherSide, bool isDone) {
+void History::append(const tooth::StateDelta& otherSide, bool isDone) {
     Step step;
-    for (const tooth::CutState::Brick& brick : otherSide.bricks)
+    for (const tooth::StateDelta::Brick& brick : otherSide.bricks)
         step.bricks[brick.dense] = brick.whole ? Packed{} : pack(brick.values.data());
     step.removedMm3 = otherSide.removedMm3;
     memoryBytes_ += bytesOf(step);
@@ -136,30 +136,30 @@ void History::append(const tooth::CutState& otherSide, bool isDone) {
 }
 
 /// Goes to the other side of a step, which then leads back.
-tooth::CutState History::exchange(Step& step) {
-    tooth::CutState change = unpacked(step);
+tooth::StateDelta History::exchange(Step& step) {
+    tooth::StateDelta change = unpacked(step);
     for (auto& [dense, packed] : step.bricks)
         std::swap(packed, now_[dense]);
     std::swap(step.removedMm3, removedMm3_);
     return change;
 }
 
-std::optional<tooth::CutState> History::undo() {
+std::optional<tooth::StateDelta> History::undo() {
     if (done_ == 0) return std::nullopt;
     return exchange(steps_[--done_]);
 }
 
-std::optional<tooth::CutState> History::redo() {
+std::optional<tooth::StateDelta> History::redo() {
     if (done_ == steps_.size()) return std::nullopt;
     return exchange(steps_[done_++]);
 }
 
-std::optional<tooth::CutState> History::reset() {
+std::optional<tooth::StateDelta> History::reset() {
     Step step;
     for (const auto& [dense, packed] : now_)
         if (!packed.empty()) step.bricks[dense];  // the other side: whole
     if (step.bricks.empty()) return std::nullopt;
-    tooth::CutState change = exchange(step);
+    tooth::StateDelta change = exchange(step);
     for (const auto& [dense, packed] : step.bricks)
         memoryBytes_ -= packed.capacity();  // moved from now_ into the step, where add() counts it
     add(std::move(step));

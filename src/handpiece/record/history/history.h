@@ -54,7 +54,7 @@ class History {
     explicit History(const HistorySettings& settings = {}) : settings_(settings) {}
 
     /// Begins anew on a tooth in this state; nothing to undo.
-    void start(const tooth::CutState& state);
+    void start(const tooth::StateDelta& state);
     /// A brick was handed over: it may have changed in the stroke under way.
     void noteTouched(std::uint32_t dense) { touched_.insert(dense); }
     /// Ends a stroke. True when it removed something: then there is one more step to undo and none to redo.
@@ -64,17 +64,17 @@ class History {
     [[nodiscard]] std::size_t redoSteps() const noexcept { return steps_.size() - done_; }
     /// What takes the tooth one stroke back: bricks at rising number and the volumes removed by then. None when there
     /// is nothing to undo. To be put into the field (in the tick, in chunks) and into the mirror.
-    [[nodiscard]] std::optional<tooth::CutState> undo();
-    [[nodiscard]] std::optional<tooth::CutState> redo();
+    [[nodiscard]] std::optional<tooth::StateDelta> undo();
+    [[nodiscard]] std::optional<tooth::StateDelta> redo();
     /// What makes the tooth whole; a step that can be undone. None when it is whole.
-    [[nodiscard]] std::optional<tooth::CutState> reset();
+    [[nodiscard]] std::optional<tooth::StateDelta> reset();
 
     // To be kept and put together again, on a tooth in the same state.
 
     /// Of undoSteps() + redoSteps(), the oldest first: to where the step leads, back when done and on when not.
-    [[nodiscard]] tooth::CutState step(std::size_t index) const;
+    [[nodiscard]] tooth::StateDelta step(std::size_t index) const;
     /// One more at the end, as step() gave it. After start(), those done first.
-    void append(const tooth::CutState& otherSide, bool isDone);
+    void append(const tooth::StateDelta& otherSide, bool isDone);
 
     /// Of the tooth where the steps have led.
     [[nodiscard]] const tooth::TissueVolumes& removedMm3() const noexcept { return removedMm3_; }
@@ -89,8 +89,8 @@ class History {
         tooth::TissueVolumes removedMm3{};
     };
     void add(Step&& step);
-    static tooth::CutState unpacked(const Step& step);
-    tooth::CutState exchange(Step& step);
+    static tooth::StateDelta unpacked(const Step& step);
+    tooth::StateDelta exchange(Step& step);
     static std::size_t bytesOf(const Step& step);
 
     HistorySettings settings_;

@@ -5,8 +5,8 @@
 
 namespace handpiece::session {
 
+using cases::Tissue;
 using messages::HapticSample;
-using tooth::Tissue;
 
 void EventWatch::tellOnce(const HapticSample& s, std::uint32_t flag, EventName name) {
     if ((s.flags & flag) == 0 || (lastFlags_ & flag) != 0) return;
@@ -27,7 +27,7 @@ void EventWatch::look(const HapticSample& s) {
         inStroke_ = false;
         ++strokes_;
         double removed = 0.0;
-        for (std::size_t t = 0; t < tooth::kTissueCount; ++t)
+        for (std::size_t t = 0; t < cases::kTissueCount; ++t)
             removed += s.removedMm3[t] - strokeStartMm3_[t];
         tell_(s.tick, EventName::strokeEnd, fmt::format("{{\"removed_mm3\": {:.6g}}}", removed));
     }

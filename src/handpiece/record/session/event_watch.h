@@ -36,8 +36,8 @@ class EventWatch {
     std::uint64_t strokes_ = 0;
     std::uint32_t lastFlags_ = 0;
     std::uint8_t lastTissue_ = 0;
-    std::array<bool, tooth::kTissueCount> reached_{};
-    std::array<double, tooth::kTissueCount> strokeStartMm3_{};
+    std::array<bool, cases::kTissueCount> reached_{};
+    std::array<double, cases::kTissueCount> strokeStartMm3_{};
     std::array<double, kEventNameCount> toldAtS_{};
 };
 

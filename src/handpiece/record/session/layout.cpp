@@ -53,7 +53,7 @@ std::span<const Column> columns() noexcept {
         {"tissue", u8, 1, offsetof(Record, tissue), "tissue",
          "that carries most of the pressure: 0 none, 1 enamel, 2 dentine, 3 pulp, 4 caries, 5 cementum, 6 gum, 7 bone, "
          "8 neighbour, 9 restoration"},
-        {"removed", f64, tooth::kTissueCount, offsetof(Record, removedMm3), "mm3",
+        {"removed", f64, cases::kTissueCount, offsetof(Record, removedMm3), "mm3",
          "by tissue (see tissue) since the tooth was whole"},
         {"flags", u32, 1, offsetof(Record, flags), "bits",
          "1 force limited, 2 slope limited, 4 invalid pose, 8 fault, 16 waiting for the bur to be clear, 32 cutting, "

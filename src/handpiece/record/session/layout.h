@@ -54,6 +54,6 @@ struct KeyFrameRow {
 [[nodiscard]] std::size_t chunkRows(double rateHz) noexcept;
 inline constexpr std::size_t kEventChunk = 8, kKeyFrameIndexChunk = 64, kKeyFrameDataChunk = 1u << 16,
                              kBytesChunk = 1u << 16;
-inline constexpr std::size_t kMostToothBytes = std::size_t{1} << 30, kMostHistoryBytes = std::size_t{1} << 26;
+inline constexpr std::size_t kMaxToothBytes = std::size_t{1} << 30, kMaxHistoryBytes = std::size_t{1} << 26;
 
 }  // namespace handpiece::session

@@ -63,7 +63,7 @@ Record recordOf(const messages::HapticSample& s) noexcept {
     Record r;
     r.tick = s.tick;
     r.lastCommand = s.lastCommand;
-    static_assert(std::tuple_size_v<decltype(s.removedMm3)> == tooth::kTissueCount);
+    static_assert(std::tuple_size_v<decltype(s.removedMm3)> == cases::kTissueCount);
     for (std::size_t i = 0; i < r.removedMm3.size(); ++i)
         r.removedMm3[i] = std::nearbyint(s.removedMm3[i] / kVolumeStep) * kVolumeStep;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "handpiece/base/messages/haptic_sample.h"
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 
 namespace handpiece::session {
 
@@ -27,7 +27,7 @@ inline constexpr std::int32_t kNoNumber = std::numeric_limits<std::int32_t>::min
 struct Record {
     std::uint64_t tick = 0;
     std::uint64_t lastCommand = 0;  ///< newest staged command that has taken effect
-    std::array<double, tooth::kTissueCount> removedMm3{};
+    std::array<double, cases::kTissueCount> removedMm3{};
     std::array<std::int32_t, 3> position{};     ///< of the bur's tip, in kPositionStepMm
     std::array<std::int32_t, 3> orientation{};  ///< x y z of the quaternion, bur in tooth, in kOrientationStep
     std::int32_t orientationW = 0;  ///< its w, by what it differs from sqrt(1 - x2 - y2 - z2): see wCodeOf()
@@ -38,7 +38,7 @@ struct Record {
     float depthMm = 0, speedRpm = 0, loadTorqueNmm = 0, feedMmS = 0;
     std::uint32_t buttons = 0, flags = 0;  ///< flags: messages::SampleFlag
     std::uint16_t elapsedPeriods = 1;
-    std::uint8_t tissue = 0;  ///< tooth::Tissue that carries most of the pressure
+    std::uint8_t tissue = 0;  ///< cases::Tissue that carries most of the pressure
 
     bool operator==(const Record&) const = default;
 };
@@ -107,8 +107,8 @@ struct SessionInfo {
     std::string code;  ///< typed by the student; never a user's or a machine's name. Up to 32 letters, digits, - and _
     std::string version;               ///< of the program
     std::string settings;              ///< JSON: bur, parameters, all that a replay needs beside the tooth
-    std::vector<std::byte> tooth;      ///< the tooth it is cut from (tooth::encodeCase), or nothing
-    std::vector<std::byte> scenery{};  ///< what stands around it (the parts of a tooth::encodeCase), or nothing
+    std::vector<std::byte> tooth;      ///< the tooth it is cut from (cases::encodeCase), or nothing
+    std::vector<std::byte> scenery{};  ///< what stands around it (the parts of a cases::encodeCase), or nothing
     std::vector<std::byte> history{};  ///< strokes before it that can be undone, of a tooth that was cut before
 };
 

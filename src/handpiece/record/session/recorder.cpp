@@ -19,7 +19,7 @@ namespace handpiece::session {
 namespace {
 
 constexpr double kQueueS = 4.0;
-constexpr std::size_t kMostTextBytes = std::size_t{1} << 20, kMostWaitingBytes = std::size_t{256} << 20;
+constexpr std::size_t kMaxTextBytes = std::size_t{1} << 20, kMaxWaitingBytes = std::size_t{256} << 20;
 constexpr auto kPause = std::chrono::milliseconds(20);
 
 }  // namespace
@@ -48,7 +48,7 @@ struct Recorder::State {
 
     void add(Item item, std::size_t bytes) {
         const std::lock_guard lock(mutex);
-        if (itemBytes + bytes > kMostWaitingBytes) {
+        if (itemBytes + bytes > kMaxWaitingBytes) {
             ++status.lostItems;
             return;
         }
@@ -142,7 +142,7 @@ void Recorder::pushWaiting(const Record& record) {
 }
 
 void Recorder::event(std::uint64_t tick, EventName name, std::string_view text) {
-    if (text.size() > kMostTextBytes) {
+    if (text.size() > kMaxTextBytes) {
         const std::lock_guard lock(state_->mutex);
         ++state_->status.lostItems;
         return;

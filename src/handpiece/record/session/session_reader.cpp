@@ -15,9 +15,9 @@
 namespace handpiece::session {
 namespace {
 
-constexpr hsize_t kMostRows = hsize_t{1} << 31, kMostEvents = hsize_t{1} << 20, kMostKeyFrames = hsize_t{1} << 20,
-                  kMostChunkBytes = hsize_t{1} << 24, kMostKeyFrameBytes = hsize_t{1} << 30;
-constexpr std::size_t kMostTextBytes = std::size_t{1} << 20;
+constexpr hsize_t kMaxRows = hsize_t{1} << 31, kMaxEvents = hsize_t{1} << 20, kMaxKeyFrames = hsize_t{1} << 20,
+                  kMaxChunkBytes = hsize_t{1} << 24, kMaxKeyFrameBytes = hsize_t{1} << 30;
+constexpr std::size_t kMaxTextBytes = std::size_t{1} << 20;
 constexpr const char* kRemedy = "the file is damaged or was not written by Handpiece";
 
 class Source {
@@ -91,7 +91,7 @@ class Rows {
                            H5Pget_layout(creation.id()) == H5D_CHUNKED &&
                            H5Pget_chunk(creation.id(), rank, chunk) == rank,
                        name, "is stored in another way");
-        source.require(chunk[0] > 0 && chunk[1] == width && chunk[0] <= kMostChunkBytes / (width * H5Tget_size(type)),
+        source.require(chunk[0] > 0 && chunk[1] == width && chunk[0] <= kMaxChunkBytes / (width * H5Tget_size(type)),
                        name, "has chunks of another size");
         for (int i = 0; i < H5Pget_nfilters(creation.id()); ++i) {
             unsigned flags = 0, values[8];
@@ -203,7 +203,7 @@ void SessionReader::State::readHead() {
     info.rateHz = source.number<double>(f, "rate_hz", H5T_FLOAT, H5T_NATIVE_DOUBLE);
     source.require(info.rateHz >= 100 && info.rateHz <= 10000, "rate_hz", "is out of range");
 
-    const Hdf5Object set = plainDataset("settings", kMostTextBytes), type(H5Dget_type(set.id()));
+    const Hdf5Object set = plainDataset("settings", kMaxTextBytes), type(H5Dget_type(set.id()));
     source.require(H5Tget_class(type.id()) == H5T_STRING && H5Tis_variable_str(type.id()) == 0, "settings",
                    "is no text");
     info.settings.resize(H5Tget_size(type.id()));
@@ -221,22 +221,22 @@ void SessionReader::State::readHead() {
 void SessionReader::State::openTables() {
     const Hdf5Object samples = source.open(file.id(), "samples", H5I_GROUP),
                      frames = source.open(file.id(), "key_frames", H5I_GROUP);
-    size = kMostRows;
+    size = kMaxRows;
     for (const Column& column : session::columns()) {
-        columns.emplace_back(source, samples.id(), column.name, fileType(column.type), column.width, kMostRows);
+        columns.emplace_back(source, samples.id(), column.name, fileType(column.type), column.width, kMaxRows);
         size = std::min(size, columns.back().count());
     }
-    info.tooth = bytesOf("tooth", kMostToothBytes);
+    info.tooth = bytesOf("tooth", kMaxToothBytes);
     const auto has = [&](const char* name) { return H5Lexists(file.id(), name, H5P_DEFAULT) > 0; };
-    if (has("scenery")) info.scenery = bytesOf("scenery", kMostToothBytes);
-    if (has("history")) info.history = bytesOf("history", kMostHistoryBytes);
-    events = Rows(source, file.id(), "events", eventType.id(), 1, kMostEvents);
-    keyFrameIndex = Rows(source, frames.id(), "index", keyFrameType.id(), 1, kMostKeyFrames);
+    if (has("scenery")) info.scenery = bytesOf("scenery", kMaxToothBytes);
+    if (has("history")) info.history = bytesOf("history", kMaxHistoryBytes);
+    events = Rows(source, file.id(), "events", eventType.id(), 1, kMaxEvents);
+    keyFrameIndex = Rows(source, frames.id(), "index", keyFrameType.id(), 1, kMaxKeyFrames);
     keyFrameData = Rows(source, frames.id(), "data", H5T_STD_U8LE, 1, hsize_t{1} << 40);
     keyFrames.resize(keyFrameIndex.count());
     keyFrameIndex.read(0, keyFrames.size(), keyFrameType.id(), keyFrames.data());
     for (const KeyFrameRow& row : keyFrames) {
-        source.require(row.bytes <= kMostKeyFrameBytes && row.offset <= keyFrameData.count() &&
+        source.require(row.bytes <= kMaxKeyFrameBytes && row.offset <= keyFrameData.count() &&
                            row.bytes <= keyFrameData.count() - row.offset &&
                            (keyFrameTicks.empty() || keyFrameTicks.back() <= row.tick),
                        "key_frames/index", "points outside the data");
@@ -293,7 +293,10 @@ SessionReader::SessionReader(const std::filesystem::path& path) : state_(std::ma
         throw core::Error("this is no session: it is not an HDF5 file", name).as("not-a-session");
     const Hdf5Object access(H5Pcreate(H5P_FILE_ACCESS));
     H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
-    s.file = Hdf5Object(H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()));
+    // As a recording that may be under way: what is read later may lie behind where the file ended when it was opened.
+    H5Pset_metadata_read_attempts(access.id(), 10);
+    s.file = Hdf5Object(H5Fopen(name.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.id()));
+    if (!s.file) s.file = Hdf5Object(H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()));
     if (!s.file) s.source.damaged("the session cannot be opened: its end or its beginning is missing");
     s.readHead();
     s.openTables();

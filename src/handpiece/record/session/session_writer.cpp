@@ -19,7 +19,7 @@ namespace handpiece::session {
 namespace {
 
 constexpr unsigned kDeflateLevel = 5;
-constexpr std::size_t kMostTextBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxTextBytes = std::size_t{1} << 20;
 
 /// Throws on what cannot happen but by a lack of memory or an error of ours: the driver keeps the disk's errors away.
 hid_t made(hid_t id, std::string_view what) {
@@ -133,10 +133,10 @@ void check(const SessionInfo& info) {
     });
     if (!plain || info.code.size() > 32)
         throw core::Error("this cannot be a session's code", "code", "use up to 32 letters a to z, digits, - and _");
-    if (info.settings.size() > kMostTextBytes) throw core::Error("the settings are too long", "session");
-    if (info.history.size() > kMostHistoryBytes) throw core::Error("the history is too long", "session");
-    if (info.scenery.size() > kMostToothBytes) throw core::Error("the scenery is too large", "session");
-    if (info.tooth.size() > kMostToothBytes) throw core::Error("the tooth is too large", "session");
+    if (info.settings.size() > kMaxTextBytes) throw core::Error("the settings are too long", "session");
+    if (info.history.size() > kMaxHistoryBytes) throw core::Error("the history is too long", "session");
+    if (info.scenery.size() > kMaxToothBytes) throw core::Error("the scenery is too large", "session");
+    if (info.tooth.size() > kMaxToothBytes) throw core::Error("the tooth is too large", "session");
 }
 
 /// Where to cut a text that is longer than `room`: not inside a character.
@@ -291,7 +291,7 @@ void SessionWriter::append(const Record& record) {
 
 void SessionWriter::append(const Event& event) {
     State& s = *state_;
-    if (event.name.empty() || event.name.size() >= sizeof(EventRow::name) || event.text.size() > kMostTextBytes)
+    if (event.name.empty() || event.name.size() >= sizeof(EventRow::name) || event.text.size() > kMaxTextBytes)
         throw core::Error("the event's name or text is too long", event.name);
     std::vector<EventRow> rows;
     std::string_view rest = event.text;

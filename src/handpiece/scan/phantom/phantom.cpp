@@ -16,22 +16,22 @@
 namespace handpiece::phantom {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
-using tooth::Tissue;
 
 /// Grey values by Tissue: outside, enamel, dentine, pulp, caries, cementum, gum, bone, neighbour, restoration. CBCT in
 /// Hounsfield units, as clinical scans show them; micro-CT as 16 bits of one that is set so that metal just fits.
-constexpr std::array<double, tooth::kTissueCount> kCbct = {-1000, 2800, 1500, 80, 900, 1350, 50, 850, 2200, 6000};
-constexpr std::array<double, tooth::kTissueCount> kMicroCt = {6000,  48000, 27000, 9500,  19000,
+constexpr std::array<double, cases::kTissueCount> kCbct = {-1000, 2800, 1500, 80, 900, 1350, 50, 850, 2200, 6000};
+constexpr std::array<double, cases::kTissueCount> kMicroCt = {6000,  48000, 27000, 9500,  19000,
                                                               24500, 9000,  20000, 38000, 63000};
 
 /// 16 GB of grey values would be asked for by accident.
-constexpr double kMostVoxels = 2e9;
+constexpr double kMaxVoxels = 2e9;
 
-geometry::TriangleMesh wholeTooth(const tooth::Case& toothCase) {
+geometry::TriangleMesh wholeTooth(const cases::Case& toothCase) {
     if (!toothCase.outer.triangles.empty()) return toothCase.outer;
     geometry::TriangleMesh all;
-    for (const tooth::Part& part : toothCase.parts) {
+    for (const cases::Part& part : toothCase.parts) {
         const auto first = static_cast<std::uint32_t>(all.vertices.size());
         all.vertices.insert(all.vertices.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
         for (const geometry::Triangle& t : part.mesh.triangles)
@@ -55,7 +55,7 @@ volume::Grid gridOver(const core::Box& box, double voxelMm) {
     for (int axis = 0; axis < 3; ++axis) {
         const double size = std::ceil(box.size()[axis] / voxelMm);
         voxels *= size;
-        if (!(voxels < kMostVoxels))
+        if (!(voxels < kMaxVoxels))
             throw core::Error(fmt::format("a scan of {:.1f} x {:.1f} x {:.1f} mm in voxels of {:g} um is too large",
                                           box.size().x(), box.size().y(), box.size().z(), voxelMm * 1000.0),
                               "make scan", "give larger voxels");
@@ -73,15 +73,15 @@ void require(double value, double least, double most, const char* what, const ch
 
 /// A neighbour is one surface in a case; a scanner sees enamel, dentine and pulp of it. Enamel: from nothing at the
 /// neck (z = 0) to its full thickness; pulp: what lies deep. In the truth all of it is the neighbour.
-std::vector<tooth::Part> insideOf(const tooth::Part& neighbour) {
+std::vector<cases::Part> insideOf(const cases::Part& neighbour) {
     constexpr double kEnamelMm = 1.0, kFullFromMm = 3.0, kDeepMm = 2.6;
     const geometry::TriangleTree tree(neighbour.mesh);
     geometry::IsosurfaceSettings settings;
     settings.spacingMm = 0.25;
     settings.lipschitz = 1.0 + kEnamelMm / kFullFromMm;
     const core::Box box = neighbour.mesh.bounds().grown(0.5);
-    const int priority = tooth::properties(Tissue::restoration).priority;
-    std::vector<tooth::Part> parts{{neighbour.name, Tissue::enamel, priority, neighbour.mesh}};
+    const int priority = cases::properties(Tissue::restoration).priority;
+    std::vector<cases::Part> parts{{neighbour.name, Tissue::enamel, priority, neighbour.mesh}};
     const auto add = [&](Tissue tissue, const geometry::ScalarFunction& f) {
         geometry::TriangleMesh mesh = geometry::isosurface(box, f, settings);
         if (!mesh.triangles.empty())
@@ -134,7 +134,7 @@ void imageSlice(const Rays& rays, int k, Scanner scanner, Image& image) {
     }
 }
 
-Streaks streaksOf(const tooth::Part& filling, const Image& image, double amplitude) {
+Streaks streaksOf(const cases::Part& filling, const Image& image, double amplitude) {
     const volume::Grid& grid = image.volume.grid;
     core::Box box;
     for (const Vec3& v : filling.mesh.vertices)
@@ -177,11 +177,11 @@ double greyOf(Scanner scanner, Tissue tissue) {
 
 std::uint8_t labelOf(Tissue tissue) {
     // In the order of Tissue; cementum counts as dentine.
-    constexpr std::array<std::uint8_t, tooth::kTissueCount> kLabels = {0, 2, 3, 4, 1, 3, 7, 6, kNeighbourLabel, 5};
+    constexpr std::array<std::uint8_t, cases::kTissueCount> kLabels = {0, 2, 3, 4, 1, 3, 7, 6, kNeighbourLabel, 5};
     return kLabels.at(static_cast<std::size_t>(tissue));
 }
 
-tooth::Part makeFilling(const tooth::Case& toothCase) {
+cases::Part makeFilling(const cases::Case& toothCase) {
     const geometry::TriangleMesh whole = wholeTooth(toothCase);
     const core::Box box = whole.bounds();
     const geometry::TriangleTree tree(whole);
@@ -204,10 +204,10 @@ tooth::Part makeFilling(const tooth::Case& toothCase) {
     geometry::IsosurfaceSettings settings;
     settings.spacingMm = half / 20.0;
     geometry::TriangleMesh mesh = geometry::isosurface(core::Box{centre, centre}.grown(1.2 * half), f, settings);
-    return {"filling", Tissue::restoration, tooth::properties(Tissue::restoration).priority, std::move(mesh)};
+    return {"filling", Tissue::restoration, cases::properties(Tissue::restoration).priority, std::move(mesh)};
 }
 
-std::array<double, tooth::kTissueCount> volumesMm3(const tooth::Case& toothCase, const core::Progress& progress) {
+std::array<double, cases::kTissueCount> volumesMm3(const cases::Case& toothCase, const core::Progress& progress) {
     constexpr double kSteps = 160.0;  // along the longest side: some hundred thousand rays
     const core::Box box = wholeTooth(toothCase).bounds();
     if (box.isEmpty())
@@ -216,7 +216,7 @@ std::array<double, tooth::kTissueCount> volumesMm3(const tooth::Case& toothCase,
     const volume::Grid grid = gridOver(box.grown(2.0 * stepMm), stepMm);
     const Rays rays(toothCase, {}, grid, false);
     const auto slices = static_cast<std::size_t>(grid.size[2]);
-    std::vector<std::array<double, tooth::kTissueCount>> sums(slices);
+    std::vector<std::array<double, cases::kTissueCount>> sums(slices);
     std::atomic<std::size_t> done{0};
     core::parallelFor(slices, 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
@@ -228,17 +228,17 @@ std::array<double, tooth::kTissueCount> volumesMm3(const tooth::Case& toothCase,
             core::report(progress, static_cast<double>(++done) / static_cast<double>(slices));
         }
     });
-    std::array<double, tooth::kTissueCount> volumes{};
+    std::array<double, cases::kTissueCount> volumes{};
     for (const auto& sum : sums)
         for (std::size_t t = 0; t < volumes.size(); ++t)
             volumes[t] += sum[t] * grid.voxelMm3() / kRays;
     return volumes;
 }
 
-Image image(const tooth::Case& toothCase, const Settings& settings, const core::Progress& progress) {
+Image image(const cases::Case& toothCase, const Settings& settings, const core::Progress& progress) {
     check(settings);
     Image image;
-    tooth::Case imaged = toothCase;
+    cases::Case imaged = toothCase;
     if (settings.metal > 0.0) {
         image.filling = makeFilling(toothCase);
         imaged.parts.push_back(*image.filling);
@@ -250,7 +250,7 @@ Image image(const tooth::Case& toothCase, const Settings& settings, const core::
     image.toothInScan.orientation = settings.turn;
     core::Box box = turnedBounds(whole, image.toothInScan);
     if (settings.scenery)
-        for (const tooth::Part& part : imaged.scenery)
+        for (const cases::Part& part : imaged.scenery)
             if (part.tissue == Tissue::neighbour) {
                 const core::Box other = turnedBounds(part.mesh, image.toothInScan);
                 box.extend(other.min);
@@ -269,13 +269,13 @@ Image image(const tooth::Case& toothCase, const Settings& settings, const core::
     const std::vector<double> weights = normalWeights(settings.blurVoxels);
     {
         if (settings.scenery) {
-            std::vector<tooth::Part> scenery;
-            for (tooth::Part& part : imaged.scenery) {
+            std::vector<cases::Part> scenery;
+            for (cases::Part& part : imaged.scenery) {
                 if (part.tissue != Tissue::neighbour) {
                     scenery.push_back(std::move(part));
                     continue;
                 }
-                for (tooth::Part& piece : insideOf(part))
+                for (cases::Part& piece : insideOf(part))
                     scenery.push_back(std::move(piece));
             }
             imaged.scenery = std::move(scenery);

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "handpiece/base/core/progress.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/case/case.h"
 #include "handpiece/scan/volume/volume.h"
 
 namespace handpiece::phantom {
@@ -40,17 +40,17 @@ inline constexpr double kNoiseSpreadVoxels = 0.5;
 inline constexpr std::uint8_t kNeighbourLabel = 8;
 
 /// Grey value of the pure tissue; Tissue::none is what surrounds the tooth.
-[[nodiscard]] double greyOf(Scanner scanner, tooth::Tissue tissue);
+[[nodiscard]] double greyOf(Scanner scanner, cases::Tissue tissue);
 /// As volume::Labels numbers it.
-[[nodiscard]] std::uint8_t labelOf(tooth::Tissue tissue);
+[[nodiscard]] std::uint8_t labelOf(cases::Tissue tissue);
 
 /// What the scanner saw, and what was there.
 struct Image {
     volume::Volume volume;                                 ///< CBCT: Hounsfield-like; micro-CT: 0..65535; whole numbers
     volume::Labels truth;                                  ///< volume::Labels' numbers by voxel centre, same grid
     core::Pose toothInScan;                                ///< where the case's frame lies in the scanner's
-    std::array<double, tooth::kTissueCount> volumesMm3{};  ///< of the tooth, each tissue where no other lies on it
-    std::optional<tooth::Part> filling;                    ///< that was put in, in the tooth's frame
+    std::array<double, cases::kTissueCount> volumesMm3{};  ///< of the tooth, each tissue where no other lies on it
+    std::optional<cases::Part> filling;                    ///< that was put in, in the tooth's frame
 };
 /// Throws core::Error for settings out of range, naming the option of `handpiece make scan`.
 void check(const Settings& settings);
@@ -58,13 +58,13 @@ void check(const Settings& settings);
 ///
 /// A point of the tooth is of the part of highest priority that holds it; slits between parts are shared by those
 /// beside them. Throws core::Error for settings out of range, a scan that is too large, and surfaces that are open.
-[[nodiscard]] Image image(const tooth::Case& toothCase, const Settings& settings = {},
+[[nodiscard]] Image image(const cases::Case& toothCase, const Settings& settings = {},
                           const core::Progress& progress = {});
 
 /// Image::volumesMm3 of a case, independent of any scan: lengths of some hundred thousand rays through its surfaces.
-[[nodiscard]] std::array<double, tooth::kTissueCount> volumesMm3(const tooth::Case& toothCase,
+[[nodiscard]] std::array<double, cases::kTissueCount> volumesMm3(const cases::Case& toothCase,
                                                                  const core::Progress& progress = {});
 /// The filling that Settings::metal puts in: in the middle of the biting surface, sunk into it.
-[[nodiscard]] tooth::Part makeFilling(const tooth::Case& toothCase);
+[[nodiscard]] cases::Part makeFilling(const cases::Case& toothCase);
 
 }  // namespace handpiece::phantom

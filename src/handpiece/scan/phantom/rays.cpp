@@ -36,20 +36,20 @@ std::int64_t ceilDivide(std::int64_t a, std::int64_t b) {
 
 }  // namespace
 
-Rays::Rays(const tooth::Case& toothCase, const core::Pose& toothInScan, const volume::Grid& grid, bool scenery)
+Rays::Rays(const cases::Case& toothCase, const core::Pose& toothInScan, const volume::Grid& grid, bool scenery)
     : grid_(grid) {
     if (!toothCase.outer.triangles.empty()) {
         hasOuter_ = true;
-        add(toothCase.outer, "outer", tooth::Tissue::enamel, 0, Surface::Role::outer, toothInScan);
+        add(toothCase.outer, "outer", cases::Tissue::enamel, 0, Surface::Role::outer, toothInScan);
     }
-    for (const tooth::Part& part : toothCase.parts)
+    for (const cases::Part& part : toothCase.parts)
         if (!part.mesh.triangles.empty())
             add(part.mesh, part.name, part.tissue, part.priority, Surface::Role::part, toothInScan);
     if (surfaces_.empty())
         throw core::Error("the case has no surface that could be imaged", toothCase.name, "give one with an outer.stl");
     hasParts_ = surfaces_.size() > (hasOuter_ ? 1u : 0u);
     if (scenery)
-        for (const tooth::Part& part : toothCase.scenery)
+        for (const cases::Part& part : toothCase.scenery)
             if (!part.mesh.triangles.empty())
                 add(part.mesh, part.name, part.tissue, part.priority, Surface::Role::scenery, toothInScan);
     // Of equal priorities the later one wins.
@@ -70,7 +70,7 @@ Rays::Rays(const tooth::Case& toothCase, const core::Pose& toothInScan, const vo
     }
 }
 
-void Rays::add(const geometry::TriangleMesh& mesh, std::string name, tooth::Tissue tissue, int priority,
+void Rays::add(const geometry::TriangleMesh& mesh, std::string name, cases::Tissue tissue, int priority,
                Surface::Role role, const core::Pose& toothInScan) {
     constexpr double kFar = 1e6;  // Voxels; beyond it products of whole coordinates would not fit.
     Surface surface{std::move(name), tissue, priority, role, nullptr};
@@ -147,7 +147,7 @@ void Rays::fillGap(int k, std::uint32_t row, double from, double to, const Stret
     for (int piece = 0; piece < pieces; ++piece) {
         const double low = from + (to - from) * piece / pieces, high = from + (to - from) * (piece + 1) / pieces;
         double nearest = std::numeric_limits<double>::infinity();
-        tooth::Tissue tissue = tooth::Tissue::enamel;
+        cases::Tissue tissue = cases::Tissue::enamel;
         for (const Surface& surface : surfaces_) {
             if (surface.tree == nullptr) continue;
             const double distance = surface.tree->nearest({0.5 * (low + high), j, kAt}, nearest).distanceMm;
@@ -192,7 +192,7 @@ void Rays::follow(int k, std::span<const Crossing> crossings, std::vector<int>& 
             continue;
         }
         if (owner == nullptr && !inOuter) continue;
-        const tooth::Tissue tissue = owner != nullptr ? owner->tissue : tooth::Tissue::enamel;
+        const cases::Tissue tissue = owner != nullptr ? owner->tissue : cases::Tissue::enamel;
         const bool isScenery = owner != nullptr && owner->role == Surface::Role::scenery;
         if (!out.empty() && out.back().to == from && out.back().tissue == tissue && out.back().isScenery == isScenery &&
             (gaps.empty() || gaps.back().before < out.size()))

@@ -12,7 +12,7 @@
 
 #include "handpiece/base/geometry/triangle_mesh.h"
 #include "handpiece/base/geometry/triangle_tree.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/case/case.h"
 #include "handpiece/scan/volume/volume.h"
 
 namespace handpiece::phantom {
@@ -20,7 +20,7 @@ namespace handpiece::phantom {
 /// A stretch of a ray in one tissue; places are voxel coordinates along i.
 struct Stretch {
     double from, to;
-    tooth::Tissue tissue;  ///< Tissue::none: nothing, left out
+    cases::Tissue tissue;  ///< Tissue::none: nothing, left out
     bool isScenery;
 };
 
@@ -33,7 +33,7 @@ inline constexpr int kRays = 34;
 class Rays {
   public:
     /// `poseInGrid` maps the case's frame to the scanner's. Throws core::Error when there is nothing, or too much.
-    Rays(const tooth::Case& toothCase, const core::Pose& toothInScan, const volume::Grid& grid, bool scenery);
+    Rays(const cases::Case& toothCase, const core::Pose& toothInScan, const volume::Grid& grid, bool scenery);
 
     /// Calls visit for every ray of slice k that meets anything: row j, ray 0..kRays, stretches at rising places that
     /// do not overlap. Throws core::Error when a surface proves open.
@@ -43,7 +43,7 @@ class Rays {
   private:
     struct Surface {
         std::string name;
-        tooth::Tissue tissue;
+        cases::Tissue tissue;
         int priority;
         enum class Role { outer, part, scenery } role;
         std::unique_ptr<geometry::TriangleTree> tree;  ///< of parts, in voxel coordinates
@@ -63,7 +63,7 @@ class Rays {
         std::uint16_t surface;
         std::int16_t step;  ///< +1 into the surface, -1 out of it
     };
-    void add(const geometry::TriangleMesh& mesh, std::string name, tooth::Tissue tissue, int priority,
+    void add(const geometry::TriangleMesh& mesh, std::string name, cases::Tissue tissue, int priority,
              Surface::Role role, const core::Pose& toothInScan);
     void cross(const Facet& facet, int k, int ray, std::vector<Crossing>& out) const;
     void follow(int k, std::span<const Crossing> crossings, std::vector<int>& winding, std::vector<Stretch>& out) const;

@@ -12,7 +12,7 @@ using core::Vec3;
 namespace {
 constexpr double kCloseMm = 0.5;      ///< mouths up to this radius are closed
 constexpr double kMouthShare = 0.12;  ///< of a closed-off place's surface that may be mouth: else it is a groove
-constexpr double kLeastCavityMm3 = 0.02;
+constexpr double kMinCavityMm3 = 0.02;
 constexpr float kSlope = 2.5066f;  ///< sqrt(2 pi): steepness of a blurred step at its middle
 
 bool isOnFace(const Shape& shape, std::size_t at) {
@@ -160,7 +160,7 @@ Mask closedCavities(const Shape& shape, const Mask& solid, double spacingMm) {
                 if (cavity[o]) return;
                 (mask[o] ? wall : mouth)[parts.of[n]] += 1;
             });
-    const double least = kLeastCavityMm3 / std::pow(spacingMm * f, 3);
+    const double least = kMinCavityMm3 / std::pow(spacingMm * f, 3);
     std::vector<std::uint8_t> keep(parts.counts.size(), 0);
     for (std::size_t p = 1; p < keep.size(); ++p)
         keep[p] = mouth[p] == 0 ||

@@ -8,11 +8,11 @@
 namespace handpiece::segmentation {
 
 namespace {
-constexpr int kRounds = 7, kMostRounds = 14, kVariedRounds = 10;
-constexpr double kWideBlur = 1.2;        ///< voxels: above it surfaces start further off and need more rounds
-constexpr float kLeastContrast = 0.12f;  ///< of the step from outside to dentine: below it grey values say nothing
-constexpr float kReach = 1.6f;           ///< voxels beside a surface that are moved
-constexpr float kAside = 0.7f;           ///< voxels: further out than this nothing of the tooth fills a voxel
+constexpr int kRounds = 7, kMaxRounds = 14, kVariedRounds = 10;
+constexpr double kWideBlur = 1.2;      ///< voxels: above it surfaces start further off and need more rounds
+constexpr float kMinContrast = 0.12f;  ///< of the step from outside to dentine: below it grey values say nothing
+constexpr float kReach = 1.6f;         ///< voxels beside a surface that are moved
+constexpr float kAside = 0.7f;         ///< voxels: further out than this nothing of the tooth fills a voxel
 constexpr double kSqrtPi = 1.7724538509055159;
 
 /// One inner tissue as the model of the scan sees it.
@@ -134,7 +134,7 @@ bool isGroundVaried(const Work& work) {
 /// Moves every surface by what the blurred difference says, each by its own contrast.
 void move(Work& work, const std::vector<Layer>& layers, const Field& pull, float gain) {
     const Thresholds& t = work.levels;
-    const float least = kLeastContrast * (t.dentine - t.outside);
+    const float least = kMinContrast * (t.dentine - t.outside);
     core::parallelFor(pull.size(), 1 << 14, [&](std::size_t from, std::size_t to) {
         for (std::size_t n = from; n < to; ++n) {
             if (work.outer[n] <= -kReach) continue;
@@ -194,7 +194,7 @@ void refine(Work& work, const core::Progress& progress) {
     }
     int rounds = isVaried ? kVariedRounds : kRounds;
     for (int round = 0; round < rounds; ++round) {
-        if (round == 3 && work.sigma > kWideBlur) rounds = kMostRounds;
+        if (round == 3 && work.sigma > kWideBlur) rounds = kMaxRounds;
         core::report(progress, static_cast<double>(round) / rounds);
         if (round < 4) work.sigma = blurOf(work, seen);
         compose(work, layers, difference);

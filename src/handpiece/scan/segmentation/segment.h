@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "handpiece/base/core/progress.h"
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 #include "handpiece/scan/volume/volume.h"
 
 namespace handpiece::segmentation {
@@ -33,7 +33,7 @@ struct CutPlane {
 struct Mark {
     core::Vec3 centreMm;
     double radiusMm = 0;
-    tooth::Tissue tissue = tooth::Tissue::none;
+    cases::Tissue tissue = cases::Tissue::none;
 };
 /// A lesion that a teacher placed: an ellipsoid about a centre, only where tooth is. Marked as authored.
 struct AuthoredLesion {
@@ -55,7 +55,7 @@ struct Settings {
 
 /// One tissue's solid: positive inside, zero on its surface, a distance near it.
 struct Solid {
-    tooth::Tissue tissue = tooth::Tissue::none;
+    cases::Tissue tissue = cases::Tissue::none;
     std::vector<float> insideMm;  ///< on Region::grid, i fastest; clamped to +-3 voxels
     bool isAuthored = false;
 };
@@ -101,7 +101,7 @@ struct Candidate {
 
 /// What a region says a voxel is, as volume::Labels' numbers on the region's grid.
 [[nodiscard]] volume::Labels labelsOf(const Region& region);
-/// Volume of each tissue [mm3], sub-voxel; by tooth::Tissue.
-[[nodiscard]] std::array<double, tooth::kTissueCount> volumesMm3(const Region& region);
+/// Volume of each tissue [mm3], sub-voxel; by cases::Tissue.
+[[nodiscard]] std::array<double, cases::kTissueCount> volumesMm3(const Region& region);
 
 }  // namespace handpiece::segmentation

@@ -7,11 +7,11 @@
 
 namespace handpiece::segmentation {
 
+using cases::Tissue;
 using core::Vec3;
-using tooth::Tissue;
 
 namespace {
-constexpr double kLeastPieceMm3 = 0.01;
+constexpr double kMinPieceMm3 = 0.01;
 
 void keepInside(Field& inside, const Field& other) {
     core::parallelFor(inside.size(), 1 << 16, [&](std::size_t from, std::size_t to) {
@@ -82,7 +82,7 @@ void tidy(const Work& work, Field& inside, bool isOnePiece) {
         mask[n] = inside[n] > 0;
     const Parts parts = connectedParts(work.shape, mask);
     const std::uint32_t main = parts.largest();
-    const double least = std::max(6.0, kLeastPieceMm3 / work.grid.voxelMm3());
+    const double least = std::max(6.0, kMinPieceMm3 / work.grid.voxelMm3());
     bool any = false;
     for (std::size_t n = 0; n < mask.size(); ++n) {
         const std::uint32_t p = parts.of[n];
@@ -199,12 +199,12 @@ volume::Labels labelsOf(const Region& region) {
     return labels;
 }
 
-std::array<double, tooth::kTissueCount> volumesMm3(const Region& region) {
+std::array<double, cases::kTissueCount> volumesMm3(const Region& region) {
     const auto h = static_cast<float>(region.grid.spacingMm.x());
     const std::size_t slice =
         static_cast<std::size_t>(region.grid.size[0]) * static_cast<std::size_t>(region.grid.size[1]);
     const auto slices = static_cast<std::size_t>(region.grid.size[2]);
-    std::vector<std::array<double, tooth::kTissueCount>> sums(slices);
+    std::vector<std::array<double, cases::kTissueCount>> sums(slices);
     core::parallelFor(slices, 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t k = from; k < to; ++k)
             for (std::size_t n = k * slice; n < (k + 1) * slice; ++n) {
@@ -220,7 +220,7 @@ std::array<double, tooth::kTissueCount> volumesMm3(const Region& region) {
                 sums[k][static_cast<std::size_t>(Tissue::enamel)] += static_cast<double>(whole - taken);
             }
     });
-    std::array<double, tooth::kTissueCount> result{};
+    std::array<double, cases::kTissueCount> result{};
     for (const auto& s : sums)
         for (std::size_t t = 0; t < result.size(); ++t)
             result[t] += s[t] * region.grid.voxelMm3();

@@ -13,11 +13,11 @@ using core::Vec3;
 
 namespace {
 constexpr double kBlockMm = 0.25;
-constexpr double kLeastToothMm3 = 2.0;  ///< smaller things are calculus, bone, noise
-constexpr double kNeckShare = 0.55;     ///< a neck narrower than this share of the thinner side parts two teeth
-constexpr double kLeastRadiusMm = 0.9;  ///< a part thinner than this is no tooth of its own
-constexpr double kApexRadiusMm = 0.6;   ///< openings up to this radius are closed before cavities are looked for
-constexpr float kSpeckShare = 0.36f;    ///< of the step from what surrounds a tooth: more noise than this is averaged
+constexpr double kMinToothMm3 = 2.0;   ///< smaller things are calculus, bone, noise
+constexpr double kNeckShare = 0.55;    ///< a neck narrower than this share of the thinner side parts two teeth
+constexpr double kMinRadiusMm = 0.9;   ///< a part thinner than this is no tooth of its own
+constexpr double kApexRadiusMm = 0.6;  ///< openings up to this radius are closed before cavities are looked for
+constexpr float kSpeckShare = 0.36f;   ///< of the step from what surrounds a tooth: more noise than this is averaged
 
 /// The mask with its cavities filled, those with narrow mouths too.
 Mask filled(const Shape& shape, const Mask& mask, double spacingMm) {
@@ -78,7 +78,7 @@ std::vector<std::uint32_t> floodFromThickest(const Shape& shape, const Mask& mas
             own = root(own);
             if (own == other) return;
             const float lower = std::min(top[own], top[other]);
-            const bool isOne = here >= static_cast<float>(kNeckShare) * lower || lower * spacingMm < kLeastRadiusMm;
+            const bool isOne = here >= static_cast<float>(kNeckShare) * lower || lower * spacingMm < kMinRadiusMm;
             const std::uint32_t high = top[own] >= top[other] ? own : other, low = high == own ? other : own;
             if (isOne) parent[low] = high;
             own = high;
@@ -142,7 +142,7 @@ CoarseTeeth partTeeth(const volume::Volume& volume, const Thresholds& thresholds
     }
     std::vector<std::uint32_t> order;
     for (std::uint32_t p = 1; p <= last; ++p)
-        if (static_cast<double>(sums[p].count) * result.coarse.spacingMm.prod() >= kLeastToothMm3) order.push_back(p);
+        if (static_cast<double>(sums[p].count) * result.coarse.spacingMm.prod() >= kMinToothMm3) order.push_back(p);
     std::stable_sort(order.begin(), order.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return sums[a].count > sums[b].count; });
     std::vector<std::uint32_t> rank(last + 1, 0);
@@ -184,12 +184,12 @@ CoarseTeeth partTeeth(const volume::Volume& volume, const Thresholds& thresholds
 }
 
 bool isToothLike(const Candidate& candidate) {
-    constexpr double kLeastMm3 = 60.0, kMostMm3 = 2500.0, kMostMm = 35.0, kLeastThickMm = 3.0, kLeastLongMm = 7.0;
-    constexpr double kLeastFilled = 0.15;  // of its box: a tooth that lies across the axes has a fifth
+    constexpr double kMinMm3 = 60.0, kMaxMm3 = 2500.0, kMaxMm = 35.0, kMinThickMm = 3.0, kMinLongMm = 7.0;
+    constexpr double kMinFilled = 0.15;  // of its box: a tooth that lies across the axes has a fifth
     const Vec3 size = candidate.boundsMm.size();
     const double shortest = size.minCoeff(), longest = size.maxCoeff();
-    return candidate.volumeMm3 >= kLeastMm3 && candidate.volumeMm3 <= kMostMm3 && longest <= kMostMm &&
-           shortest >= kLeastThickMm && longest >= kLeastLongMm && candidate.volumeMm3 >= kLeastFilled * size.prod();
+    return candidate.volumeMm3 >= kMinMm3 && candidate.volumeMm3 <= kMaxMm3 && longest <= kMaxMm &&
+           shortest >= kMinThickMm && longest >= kMinLongMm && candidate.volumeMm3 >= kMinFilled * size.prod();
 }
 
 std::vector<Candidate> findTeeth(const volume::Volume& volume, const Thresholds& thresholds,

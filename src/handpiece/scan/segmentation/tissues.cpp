@@ -11,11 +11,11 @@ using core::Vec3;
 
 namespace {
 constexpr float kSlope = 2.5066f;  ///< sqrt(2 pi)
-constexpr double kLeastPulpMm3 = 0.02;
-constexpr double kLeastCariesMm3 = 0.12;
+constexpr double kMinPulpMm3 = 0.02;
+constexpr double kMinCariesMm3 = 0.12;
 constexpr double kCariesReachMm = 0.8;  ///< a lesion lies this near to enamel or to the outside
 constexpr double kChannelMm = 0.5;      ///< half the width of a channel through the enamel, at most
-constexpr double kLeastEnamelMm3 = 0.3;
+constexpr double kMinEnamelMm3 = 0.3;
 constexpr float kFaintEnamel = 0.18f;  ///< of the step from dentine: so bright is an edge thinner than the blur
 
 float median(std::vector<float>& values) {
@@ -56,7 +56,7 @@ void findPulp(Work& work, const Mask& nearEnamel, bool isLevelOpen, const core::
     const Shape& shape = work.shape;
     Thresholds& t = work.levels;
     const double voxelMm3 = work.grid.voxelMm3();
-    const double least = std::max(8.0, kLeastPulpMm3 / voxelMm3);
+    const double least = std::max(8.0, kMinPulpMm3 / voxelMm3);
     const auto darker = [&](float level) {
         Mask dark(shape.count());
         for (std::size_t n = 0; n < dark.size(); ++n)
@@ -190,7 +190,7 @@ void findCaries(Work& work, const Mask& nearEnamel, const core::Progress& progre
     for (std::size_t n = 0; n < candidate.size(); ++n) {
         const std::uint32_t p = parts.of[n];
         lesion[n] = p != 0 && isNear[p] && hasCore[p] &&
-                    static_cast<double>(parts.counts[p]) * work.grid.voxelMm3() >= kLeastCariesMm3;
+                    static_cast<double>(parts.counts[p]) * work.grid.voxelMm3() >= kMinCariesMm3;
         any = any || lesion[n];
     }
     if (!any) return;
@@ -333,7 +333,7 @@ void findDentine(Work& work, const core::Progress& progress) {
     bool any = false;
     for (std::size_t n = 0; n < enamel.size(); ++n) {
         const bool isCap =
-            enamel[n] && static_cast<double>(caps.counts[caps.of[n]]) * work.grid.voxelMm3() >= kLeastEnamelMm3;
+            enamel[n] && static_cast<double>(caps.counts[caps.of[n]]) * work.grid.voxelMm3() >= kMinEnamelMm3;
         if (enamel[n] && !isCap) work.dentine[n] = 0.5f;
         any = any || isCap;
         enamel[n] = !isCap && work.outer[n] > 0;

@@ -19,15 +19,15 @@
 namespace handpiece::surfacing {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
 using geometry::TriangleMesh;
 using geometry::TriangleTree;
-using tooth::Tissue;
 
 constexpr std::size_t kFewestFaces = 4;     ///< a tetrahedron
 constexpr double kCoarseStandOutMm = 0.02;  ///< least, where faces are large: flakes of what is below stay away
-constexpr double kMostOffsetMm = 0.02;      ///< a step of putting lost volume back
-constexpr double kMostPulpMm = 0.5;         ///< a pulp of few faces may have to leave a thin wall by this
+constexpr double kMaxOffsetMm = 0.02;       ///< a step of putting lost volume back
+constexpr double kMaxPulpMm = 0.5;          ///< a pulp of few faces may have to leave a thin wall by this
 constexpr int kInsideRounds = 40, kSideRounds = 8;
 constexpr double kRemarkMm = 0.01;  ///< a side kept worse than this is worth a remark
 
@@ -127,16 +127,16 @@ class Mender {
             out(around.mesh.vertices.size(), {gap, Bounds{}.high});
         return finish(
             coarse, pulp,
-            holdApart(pulp.mesh, in, around.mesh, out, nearOf(around, pulp), kMostPulpMm, kInsideRounds, true, {}), 0.0,
+            holdApart(pulp.mesh, in, around.mesh, out, nearOf(around, pulp), kMaxPulpMm, kInsideRounds, true, {}), 0.0,
             name);
     }
 
     /// Vertices on the side of the full surface that they were on; where they were on it they are free.
     static Bounds sideOf(double fullMm, double standOutMm, double gapMm) {
         // Outside: out of the way of flat faces. Inside: no thinner than half of what was there.
-        if (fullMm > 0.25 * standOutMm) return {std::min(fullMm, kCoarseStandOutMm), kMostStandOutMm};
+        if (fullMm > 0.25 * standOutMm) return {std::min(fullMm, kCoarseStandOutMm), kMaxStandOutMm};
         if (fullMm < -standOutMm) return {Bounds{}.low, -std::min(-0.5 * fullMm, gapMm)};
-        return {Bounds{}.low, kMostStandOutMm};
+        return {Bounds{}.low, kMaxStandOutMm};
     }
 
     /// No nearest point within reach: deep inside, and so it stays.
@@ -182,7 +182,7 @@ class Mender {
     static std::size_t finish(Surfaces& coarse, Surface& tissue, const Apart& apart, double allowedMm,
                               std::string_view name) {
         tissue.errorBoundMm += apart.movedMm;
-        const std::string_view own = tooth::properties(tissue.tissue).name;
+        const std::string_view own = cases::properties(tissue.tissue).name;
         if (apart.failed > 0 && apart.failedByMm > allowedMm)
             coarse.notes.push_back(
                 fmt::format("{} with {} faces does not keep its distance to {} at {} places, one at ({:.2f}, {:.2f}, "
@@ -203,13 +203,13 @@ class Mender {
 double restoreVolume(TriangleMesh& mesh, const Surface& full) {
     Shells together = shellsOf(mesh);
     std::fill(together.ofFace.begin(), together.ofFace.end(), 0u);
-    return setVolumes(mesh, together, {geometry::enclosedVolumeMm3(full.mesh)}, kMostOffsetMm);
+    return setVolumes(mesh, together, {geometry::enclosedVolumeMm3(full.mesh)}, kMaxOffsetMm);
 }
 
 /// What cannot be mended by moving vertices keeps twice the faces, and twice again.
 void mendStep(Mender& mender, const std::vector<const Surface*>& full, Surfaces& step, const core::Progress& progress) {
     const auto nameOf = [](const Surface& s) {
-        return s.tissue == Tissue::none ? std::string_view("the tooth") : tooth::properties(s.tissue).name;
+        return s.tissue == Tissue::none ? std::string_view("the tooth") : cases::properties(s.tissue).name;
     };
     const std::vector<std::string> given = step.notes;
     std::vector<std::size_t> tried(full.size(), 0);  // faces at first, of those that got more

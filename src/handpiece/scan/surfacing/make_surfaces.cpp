@@ -17,17 +17,17 @@
 namespace handpiece::surfacing {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
 using geometry::TriangleMesh;
 using segmentation::Region;
 using segmentation::Solid;
-using tooth::Tissue;
 
-constexpr double kLeastGapMm = 0.005;
+constexpr double kMinGapMm = 0.005;
 constexpr int kRounds = 40;
-constexpr std::int64_t kMostHandles = 6;  ///< of canals that join and part; more are noise
-constexpr int kMostEvenings = 3;
-constexpr double kLeastShellVoxels = 20.0;
+constexpr std::int64_t kMaxHandles = 6;  ///< of canals that join and part; more are noise
+constexpr int kMaxEvenings = 3;
+constexpr double kMinShellVoxels = 20.0;
 constexpr Smoothing kDistanceSmoothing{10, 0.5};    ///< reach in voxels
 constexpr Smoothing kStaircaseSmoothing{40, 0.75};  ///< half a voxel is the step itself
 
@@ -52,7 +52,7 @@ void check(const Region& region) {
     };
     fits(region.outer, "the tooth");
     for (const Solid& solid : region.solids)
-        fits(solid, tooth::properties(solid.tissue).name);
+        fits(solid, cases::properties(solid.tissue).name);
     if (std::none_of(region.outer.insideMm.begin(), region.outer.insideMm.end(), [](float v) { return v > 0.0f; }))
         throw core::Error("there is no tooth in the region", "surfaces",
                           "lower the tooth's threshold, or point at the tooth");
@@ -65,7 +65,7 @@ TriangleMesh withoutSpecks(const TriangleMesh& mesh, bool isWhole, double voxelM
     const auto largest = std::max_element(shells.volumeMm3.begin(), shells.volumeMm3.end());
     for (std::size_t s = 0; s < keep.size(); ++s) {
         keep[s] = isWhole ? s == static_cast<std::size_t>(largest - shells.volumeMm3.begin()) && *largest > 0.0
-                          : std::abs(shells.volumeMm3[s]) >= kLeastShellVoxels * voxelMm3;
+                          : std::abs(shells.volumeMm3[s]) >= kMinShellVoxels * voxelMm3;
         left += keep[s] ? 0 : 1;
     }
     if (std::all_of(keep.begin(), keep.end(), [](bool k) { return k; })) return mesh;
@@ -106,7 +106,7 @@ Marched marched(std::vector<float>& field, const std::vector<float>* outer, cons
         if (made.mesh.triangles.empty() || !settings.smooth) return made;
         const std::int64_t handles = handlesOf(made.mesh);
         if (evened == 0) made.left.handles = handles;
-        if (evened == kMostEvenings || handles <= kMostHandles) {
+        if (evened == kMaxEvenings || handles <= kMaxHandles) {
             made.left.handles -= handles;
             made.left.kept = handles;
             break;
@@ -144,10 +144,10 @@ void keepPulpInside(TriangleMesh& pulp, const TriangleMesh& around, const Region
     if (close.empty()) return;
     const TriangleMesh piece = facesNear(around, close, 3.0 * h);
     // Twice the gap at the vertices leaves it between the faces too.
-    const std::vector<Bounds> inside(pulp.vertices.size(), {Bounds{}.low, -2.0 * kLeastGapMm}),
-        outside(piece.vertices.size(), {2.0 * kLeastGapMm, Bounds{}.high});
+    const std::vector<Bounds> inside(pulp.vertices.size(), {Bounds{}.low, -2.0 * kMinGapMm}),
+        outside(piece.vertices.size(), {2.0 * kMinGapMm, Bounds{}.high});
     const Apart apart =
-        holdApart(pulp, inside, piece, outside, std::max(h, 4.0 * kLeastGapMm), 4.0 * h, kRounds, true, {});
+        holdApart(pulp, inside, piece, outside, std::max(h, 4.0 * kMinGapMm), 4.0 * h, kRounds, true, {});
     if (apart.failed > 0) {
         const Vec3 at = grid.originMm + grid.axes * apart.failedMm;
         throw core::Error(
@@ -165,7 +165,7 @@ void holdInTooth(Surfaces& made, std::vector<float>&& outer, const volume::Grid&
         for (std::size_t a = 0; a < 3; ++a)
             at[a] = std::clamp(static_cast<int>(std::lround(p[static_cast<int>(a)] / h)), 0, grid.size[a] - 1);
         // Half a diagonal to the node, and what the tooth's own vertices were moved by.
-        return static_cast<double>(outer[grid.index(at[0], at[1], at[2])]) > kMostStandOutMm - 2.0 * h;
+        return static_cast<double>(outer[grid.index(at[0], at[1], at[2])]) > kMaxStandOutMm - 2.0 * h;
     };
     std::vector<Surface*> doubtful;
     for (Surface& tissue : made.tissues)
@@ -181,7 +181,7 @@ void holdInTooth(Surfaces& made, std::vector<float>&& outer, const volume::Grid&
         if (back.moved > 0)
             made.notes.push_back(
                 fmt::format("{}: drawn back by at most {:.3f} mm at {} {} where it stood out of the tooth",
-                            tooth::properties(tissue->tissue).name, back.movedMm, back.moved,
+                            cases::properties(tissue->tissue).name, back.movedMm, back.moved,
                             back.moved == 1 ? "place" : "places"));
     }
 }
@@ -193,7 +193,7 @@ Surfaces makeSurfaces(const Region& region, const Settings& settings, const core
     core::report(progress, 0.0);
     Surfaces made;
     const double h = region.grid.spacingMm.x();
-    made.leastGapMm = kLeastGapMm;
+    made.leastGapMm = kMinGapMm;
     made.standOutMm = standOutMm(h);
     const double share = 0.95 / static_cast<double>(region.solids.size() + 1);
     const auto tell = [&](std::string_view name, const LeftOut& left) {
@@ -234,10 +234,10 @@ Surfaces makeSurfaces(const Region& region, const Settings& settings, const core
         TriangleMesh& mesh = tissue.mesh;
         if (mesh.triangles.empty()) {
             made.notes.push_back(fmt::format("{} is left out: nothing of it is as large as {} voxels",
-                                             tooth::properties(solid.tissue).name, kLeastShellVoxels));
+                                             cases::properties(solid.tissue).name, kMinShellVoxels));
             continue;
         }
-        tell(tooth::properties(solid.tissue).name, tissue.left);
+        tell(cases::properties(solid.tissue).name, tissue.left);
         if (solid.tissue == Tissue::pulp) {
             if (dentine) keepPulpInside(mesh, dentineSurface->mesh, region, *dentine, "the dentine");
             keepPulpInside(mesh, made.outer.mesh, region, region.outer, "the tooth");

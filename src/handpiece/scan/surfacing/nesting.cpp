@@ -156,14 +156,14 @@ DrawnBack drawBack(TriangleMesh& tissue, const TriangleTree& tooth) {
     DrawnBack result;
     std::map<std::uint32_t, Vec3> was;
     for (int round = 0;; ++round) {
-        const std::vector<std::uint32_t> out = geometry::pointsBeyond(tooth, tissue.vertices, kMostStandOutMm);
+        const std::vector<std::uint32_t> out = geometry::pointsBeyond(tooth, tissue.vertices, kMaxStandOutMm);
         result.left = out.size();
         if (out.empty() || round == kDrawRounds) break;
         for (const std::uint32_t v : out) {
             Vec3& p = tissue.vertices[v];
             was.try_emplace(v, p);
             const NearestPoint n = tooth.nearest(p);
-            p = n.pointMm + kTo * kMostStandOutMm / n.distanceMm * (p - n.pointMm);
+            p = n.pointMm + kTo * kMaxStandOutMm / n.distanceMm * (p - n.pointMm);
         }
         std::size_t crossing = 0;
         result.movedMm = std::max(result.movedMm, uncross(tissue, crossing));

@@ -33,14 +33,14 @@ struct Apart {
                               const geometry::TriangleMesh& still, std::span<const Bounds> onStill, double nearMm,
                               double mostMm, int rounds, bool strictly, const core::Progress& progress);
 
-inline constexpr double kMostStandOutMm = 0.08;  ///< below tooth::kCaseToleranceMm
+inline constexpr double kMaxStandOutMm = 0.08;  ///< below cases::kCaseToleranceMm
 
 struct DrawnBack {
     std::size_t moved = 0;  ///< vertices
     double movedMm = 0;     ///< farthest of them
     std::size_t left = 0;   ///< vertices that could not be brought back
 };
-/// Draws back what stands out of the tooth by more than kMostStandOutMm.
+/// Draws back what stands out of the tooth by more than kMaxStandOutMm.
 DrawnBack drawBack(geometry::TriangleMesh& tissue, const geometry::TriangleTree& tooth);
 
 /// The faces of a surface with a vertex within about `reachMm` of one of the points.

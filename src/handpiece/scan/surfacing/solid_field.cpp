@@ -10,10 +10,10 @@
 namespace handpiece::surfacing {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
-using tooth::Tissue;
 
-constexpr double kMostStandOutMm = 0.04;
+constexpr double kMaxStandOutMm = 0.04;
 constexpr double kStandOutVoxels = 0.35;  // less than half a voxel, so that enamel of one voxel is not swallowed
 constexpr double kPulpGapVoxels = 0.25;   // in the field; the mesh is held to the least gap afterwards
 constexpr std::size_t kGrain = std::size_t{1} << 16;
@@ -38,7 +38,7 @@ double cubicCrossing(const double (&v)[4]) {
 }  // namespace
 
 double standOutMm(double voxelMm) {
-    return std::min(kMostStandOutMm, kStandOutVoxels * voxelMm);
+    return std::min(kMaxStandOutMm, kStandOutVoxels * voxelMm);
 }
 
 std::vector<float> outerField(const segmentation::Region& region) {

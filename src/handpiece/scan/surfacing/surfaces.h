@@ -15,18 +15,18 @@
 namespace handpiece::surfacing {
 
 struct Surface {
-    tooth::Tissue tissue = tooth::Tissue::none;  ///< none: the whole tooth
+    cases::Tissue tissue = cases::Tissue::none;  ///< none: the whole tooth
     geometry::TriangleMesh mesh;                 ///< scanner's frame [mm]; closed, manifold, outward
     double errorBoundMm = 0;                     ///< of the decimation
     bool isAuthored = false;
 };
 /// The whole tooth first, then its tissues in the region's order.
 ///
-/// As parts of a tooth::Case they overlap, and the higher priority wins: the enamel's part is the whole tooth itself
+/// As parts of a cases::Case they overlap, and the higher priority wins: the enamel's part is the whole tooth itself
 /// (the lowest priority of all), dentine lies in it, pulp in the dentine, caries and restorations where they are.
 /// Where dentine (at the root), caries or a restoration reach the tooth's outside, their surface does not run along the
 /// outer one, which would leave flakes of enamel between the two, but a little outside it: `standOutMm`, below
-/// tooth::kCaseToleranceMm, which no vertex of a tissue passes. Nothing outside the outer surface is felt or counted,
+/// cases::kCaseToleranceMm, which no vertex of a tissue passes. Nothing outside the outer surface is felt or counted,
 /// so no volume changes by that.
 struct Surfaces {
     Surface outer;

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::uint32_t kUndefined = 0xffffffffu;
 constexpr int kDeepest = 16;
-constexpr std::size_t kMostFragments = 1u << 20, kLongestValue = 4096;
-constexpr int kMostFrames = 100000;
+constexpr std::size_t kMaxFragments = 1u << 20, kLongestValue = 4096;
+constexpr int kMaxFrames = 100000;
 
 constexpr std::uint32_t tag(std::uint32_t group, std::uint32_t element) {
     return group << 16 | element;
@@ -169,7 +169,7 @@ class Walker {
             if (context == Context::top) topElement(e);
             if (context == Context::shared) placeElement(e, header_.place);
             if (context == Context::perFrame && !header_.frame.empty()) placeElement(e, header_.frame.back());
-            if (e.tag == tag(0x0004, 0x1500) && context == Context::shared && header_.files.size() < kMostFragments)
+            if (e.tag == tag(0x0004, 0x1500) && context == Context::shared && header_.files.size() < kMaxFragments)
                 header_.files.push_back(text(e));
             at = next;
         }
@@ -190,7 +190,7 @@ class Walker {
             if (item.tag == kSequenceEnd) return item.value;
             if (item.tag != kItem) throw wrong("a sequence of its header is damaged", "copy or export it again");
             if (s.tag == tag(0x5200, 0x9230)) {
-                if (header_.frame.size() >= kMostFrames)
+                if (header_.frame.size() >= kMaxFrames)
                     throw wrong("it claims too many frames", "copy or export it again");
                 header_.frame.emplace_back();
             }
@@ -234,7 +234,7 @@ class Walker {
                 break;
             case tag(0x0028, 0x0008):
                 if (const auto v = decimal(e))
-                    header_.frames = *v >= 1.0 && *v <= kMostFrames ? static_cast<int>(*v) : 0;
+                    header_.frames = *v >= 1.0 && *v <= kMaxFrames ? static_cast<int>(*v) : 0;
                 break;
             case tag(0x0028, 0x0010):
                 header_.rows = shortOf(e);
@@ -318,10 +318,10 @@ class Walker {
             at += 8;
             const std::uint64_t has = std::min<std::uint64_t>(length, input_.size() - std::min(at, input_.size()));
             if (isFirst) {
-                for (std::uint64_t i = 0; i + 4 <= has && i / 4 < kMostFragments; i += 4)
+                for (std::uint64_t i = 0; i + 4 <= has && i / 4 < kMaxFragments; i += 4)
                     header_.frameOffsets.push_back(number<4>(at + i, false));
             } else {
-                if (header_.fragments.size() >= kMostFragments)
+                if (header_.fragments.size() >= kMaxFragments)
                     throw wrong("its packed pixel data is damaged", "copy or export it again");
                 header_.fragments.push_back({at, length});
             }

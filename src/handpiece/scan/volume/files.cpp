@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kWindowBytes = 16384, kMostFiles = 200000, kChunkBytes = 1 << 20;
+constexpr std::size_t kWindowBytes = 16384, kMaxFiles = 200000, kChunkBytes = 1 << 20;
 /// Deflate cannot do better than 1032 to 1: an entry that claims more lies.
-constexpr std::uint64_t kMostRatio = 1100, kSmallBytes = 1 << 20;
+constexpr std::uint64_t kMaxRatio = 1100, kSmallBytes = 1 << 20;
 
 bool isDigit(char c) {
     return c >= '0' && c <= '9';
@@ -169,7 +169,7 @@ std::shared_ptr<const FileSet> FileSet::open(const fs::path& path, const Archive
             std::size_t count = 0;
             for (const fs::directory_entry& e : fs::directory_iterator(set->root_, ec)) {
                 const std::string other = e.path().filename().string();
-                if (++count > kMostFiles) break;
+                if (++count > kMaxFiles) break;
                 const bool isThere = std::any_of(set->entries_.begin(), set->entries_.end(),
                                                  [&](const Entry& entry) { return entry.name == other; });
                 if (!isThere && e.is_regular_file(ec)) set->entries_.push_back({other, e.file_size(ec)});
@@ -205,8 +205,8 @@ void FileSet::addFolder(const fs::path& folder) {
         }
         if (!it->is_regular_file(ec)) continue;
         entries_.push_back({it->path().lexically_relative(folder).generic_string(), it->file_size(ec)});
-        if (entries_.size() > kMostFiles)
-            throw core::Error(fmt::format("this folder holds more than {} files", kMostFiles), folder.string(),
+        if (entries_.size() > kMaxFiles)
+            throw core::Error(fmt::format("this folder holds more than {} files", kMaxFiles), folder.string(),
                               "name the folder of the scan itself");
     }
 }
@@ -218,8 +218,8 @@ void FileSet::addArchive(std::unique_ptr<Archive> archive, const ArchiveLimits& 
     archive_ = std::move(archive);
     if (!archive_->zip) throw damaged(archive_->why);
     const zip_int64_t count = zip_get_num_entries(archive_->zip, 0);
-    if (count > static_cast<zip_int64_t>(kMostFiles))
-        throw core::Error(fmt::format("this ZIP holds more than {} files", kMostFiles), where_, "pack the scan alone");
+    if (count > static_cast<zip_int64_t>(kMaxFiles))
+        throw core::Error(fmt::format("this ZIP holds more than {} files", kMaxFiles), where_, "pack the scan alone");
     std::uint64_t packed = 0, unpacked = 0;
     for (zip_int64_t i = 0; i < count; ++i) {
         zip_stat_t stat;
@@ -237,7 +237,7 @@ void FileSet::addArchive(std::unique_ptr<Archive> archive, const ArchiveLimits& 
         if (last[0] == '.' || name.rfind("__MACOSX", 0) == 0) continue;
         if ((stat.valid & ZIP_STAT_ENCRYPTION_METHOD) != 0 && stat.encryption_method != ZIP_EM_NONE)
             throw core::Error("this ZIP is encrypted", where_, "unpack it with its password, name the folder");
-        if (stat.size > kSmallBytes && stat.size / kMostRatio > stat.comp_size)
+        if (stat.size > kSmallBytes && stat.size / kMaxRatio > stat.comp_size)
             throw damaged("an entry claims to unpack to more than is possible");
         // Entries that share their packed bytes are made to unpack without an end.
         if (stat.comp_size > storedBytes_ - packed) throw damaged("its entries lie over each other");

@@ -10,7 +10,7 @@
 namespace handpiece::volume {
 namespace {
 
-constexpr std::size_t kMostHeader = 1 << 16;
+constexpr std::size_t kMaxHeader = 1 << 16;
 
 std::optional<SampleType> typeOf(const std::string& name) {
     using enum SampleType;
@@ -32,7 +32,7 @@ Candidate openMetaImage(const Files& files, std::size_t index) {
         return core::Error(what, out.where, remedy);
     };
     Input input = files->open(index);
-    std::string text(std::min<std::uint64_t>(kMostHeader, input.size()), '\0');
+    std::string text(std::min<std::uint64_t>(kMaxHeader, input.size()), '\0');
     text.resize(input.readAt(0, text.data(), text.size()));
 
     std::map<std::string, std::string> fields;

@@ -12,7 +12,7 @@
 namespace handpiece::volume {
 namespace {
 
-constexpr std::size_t kMostHeader = 1 << 18;
+constexpr std::size_t kMaxHeader = 1 << 18;
 
 const std::map<std::string, SampleType>& typeNames() {
     using enum SampleType;
@@ -110,7 +110,7 @@ Candidate openNrrd(const Files& files, std::size_t index) {
     out.where = files->where(index);
     out.series.format = "NRRD";
     Input input = files->open(index);
-    std::string text(std::min<std::uint64_t>(kMostHeader, input.size()), '\0');
+    std::string text(std::min<std::uint64_t>(kMaxHeader, input.size()), '\0');
     text.resize(input.readAt(0, text.data(), text.size()));
     const auto wrong = [&](const std::string& what, const std::string& remedy = "save the file again") {
         return core::Error(what, out.where, remedy);

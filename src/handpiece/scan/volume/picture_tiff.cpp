@@ -14,9 +14,9 @@
 namespace handpiece::volume {
 namespace {
 
-constexpr int kMostPages = 100000;
-constexpr std::uint32_t kMostSide = 100000;
-constexpr tmsize_t kMostPiece = 1ll << 30;
+constexpr int kMaxPages = 100000;
+constexpr std::uint32_t kMaxSide = 100000;
+constexpr tmsize_t kMaxPiece = 1ll << 30;
 
 /// What libtiff reads from or writes to.
 struct Stream {
@@ -83,7 +83,7 @@ Tiff open(Stream& stream, const char* mode) {
     TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
     TIFFOpenOptionsSetErrorHandlerExtR(options, onError, &stream);
     TIFFOpenOptionsSetWarningHandlerExtR(options, onWarning, &stream);
-    TIFFOpenOptionsSetMaxSingleMemAlloc(options, kMostPiece);
+    TIFFOpenOptionsSetMaxSingleMemAlloc(options, kMaxPiece);
     Tiff tiff(TIFFClientOpenExt("slice", mode, &stream, readSome, writeSome, seek, closeNothing, sizeOf, nullptr,
                                 nullptr, options));
     TIFFOpenOptionsFree(options);
@@ -109,7 +109,7 @@ Page pageOf(TIFF* tiff, const Input& input) {
     TIFFGetFieldDefaulted(tiff, TIFFTAG_PLANARCONFIG, &planar);
     TIFFGetFieldDefaulted(tiff, TIFFTAG_SUBFILETYPE, &kind);
     TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &page.photometric);
-    if (columns < 1 || rows < 1 || columns > kMostSide || rows > kMostSide)
+    if (columns < 1 || rows < 1 || columns > kMaxSide || rows > kMaxSide)
         throw damagedPicture(input, fmt::format("its size is {} x {}", columns, rows));
     page.columns = static_cast<int>(columns);
     page.rows = static_cast<int>(rows);
@@ -203,7 +203,7 @@ void readPage(TIFF* tiff, Stream& stream, const Page& page, float* to) {
     const std::size_t pixel = bytesOf(page.type) * page.samples;
     if (TIFFIsTiled(tiff) == 0) {
         const tmsize_t bytes = TIFFScanlineSize(tiff);
-        if (bytes < static_cast<tmsize_t>(columns * pixel) || bytes > kMostPiece) throw cut();
+        if (bytes < static_cast<tmsize_t>(columns * pixel) || bytes > kMaxPiece) throw cut();
         std::vector<std::byte> row(static_cast<std::size_t>(bytes));
         for (std::size_t y = 0; y < rows; ++y) {
             if (TIFFReadScanline(tiff, row.data(), static_cast<std::uint32_t>(y), 0) != 1) throw cut();
@@ -215,7 +215,7 @@ void readPage(TIFF* tiff, Stream& stream, const Page& page, float* to) {
     TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &width);
     TIFFGetField(tiff, TIFFTAG_TILELENGTH, &height);
     const tmsize_t bytes = TIFFTileSize(tiff);
-    if (width < 1 || height < 1 || width > kMostSide || height > kMostSide || bytes > kMostPiece ||
+    if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide || bytes > kMaxPiece ||
         static_cast<std::uint64_t>(width) * height * pixel > static_cast<std::uint64_t>(bytes))
         throw cut();
     std::vector<std::byte> tile(static_cast<std::size_t>(bytes));
@@ -251,7 +251,7 @@ PictureInfo tiffInfo(Input& input) {
             throw core::Error(fmt::format("its pages have different sizes: {} x {} and, page {}, {} x {}",
                                           first.columns, first.rows, info.pages + 1, page.columns, page.rows),
                               input.where(), "save pages of one size");
-        if (++info.pages > kMostPages) throw damagedPicture(input, "it claims too many pages");
+        if (++info.pages > kMaxPages) throw damagedPicture(input, "it claims too many pages");
     }
     if (!stream.text.empty()) throw damagedPicture(input, stream.text);
     return info;

@@ -12,7 +12,7 @@
 namespace handpiece::volume {
 namespace {
 
-constexpr std::uint64_t kMostDescription = 1 << 16;
+constexpr std::uint64_t kMaxDescription = 1 << 16;
 
 std::optional<SampleType> typeOf(const std::string& name) {
     using enum SampleType;
@@ -41,7 +41,7 @@ std::optional<core::Vec3> threeNumbers(const config::Table& table, const char* k
 }  // namespace
 
 Description readDescription(const FileSet& files, std::size_t index) {
-    const std::vector<std::byte> bytes = files.bytes(index, kMostDescription);
+    const std::vector<std::byte> bytes = files.bytes(index, kMaxDescription);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (std::any_of(text.begin(), text.end(),
                     [](char c) { return c >= 0 && c < 0x20 && c != '\n' && c != '\r' && c != '\t'; }))

@@ -23,7 +23,7 @@ constexpr int kThumbnail = 128;
 constexpr double kTiltVoxels = 0.25;
 constexpr float kLargestValue = 1e12f;
 /// No packing of slices gives more voxels a byte; up to kSmallVoxels nobody asks.
-constexpr std::uint64_t kMostVoxelsPerByte = 4096, kSmallVoxels = 1 << 24;
+constexpr std::uint64_t kMaxVoxelsPerByte = 4096, kSmallVoxels = 1 << 24;
 
 /// The slice, fitted and stretched to 8 bit between its half-percent ends.
 void makeThumbnail(const float* slice, int columns, int rows, Series& series) {
@@ -214,11 +214,11 @@ std::string whatIsThere(const FileSet& files) {
                           : "file without an ending"];
     }
     // The commonest kinds are enough to know what it is.
-    constexpr std::size_t kMostKinds = 8;
+    constexpr std::size_t kMaxKinds = 8;
     std::vector<std::pair<std::string, int>> kinds(counts.begin(), counts.end());
     std::stable_sort(kinds.begin(), kinds.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
     int others = 0;
-    for (; kinds.size() > kMostKinds; kinds.pop_back())
+    for (; kinds.size() > kMaxKinds; kinds.pop_back())
         others += kinds.back().second;
     if (others > 0) kinds.emplace_back("other file", others);
     std::string text;
@@ -422,7 +422,7 @@ std::vector<Candidate> findCandidates(const Files& files, const core::Progress& 
                      [](const Candidate& a, const Candidate& b) { return a.grid.count() > b.grid.count(); });
     for (std::size_t i = 0; i < found.size(); ++i) {
         const std::uint64_t voxels = found[i].grid.count();
-        if (!found[i].problem && voxels > kSmallVoxels && voxels / kMostVoxelsPerByte > files->storedBytes()) {
+        if (!found[i].problem && voxels > kSmallVoxels && voxels / kMaxVoxelsPerByte > files->storedBytes()) {
             found[i].problem = core::Error(fmt::format("its {} bytes cannot hold the {} voxels that its headers claim",
                                                        files->storedBytes(), voxels),
                                            found[i].where, "copy or save the scan again");

@@ -11,7 +11,7 @@
 namespace handpiece::volume {
 namespace {
 
-constexpr std::uint64_t kMostPicture = 1ull << 30;
+constexpr std::uint64_t kMaxPicture = 1ull << 30;
 
 struct Slice {
     std::size_t file = 0;
@@ -142,7 +142,7 @@ core::Error damagedPicture(const Input& input, const std::string& why) {
 }
 
 std::vector<std::byte> wholeOf(Input& input) {
-    if (input.size() > kMostPicture)
+    if (input.size() > kMaxPicture)
         throw core::Error(fmt::format("a picture of {} MB is no slice", input.size() >> 20), input.where(),
                           "name the right file")
             .as("scan-too-large");

@@ -8,8 +8,8 @@ namespace handpiece::measure {
 namespace {
 
 using core::Vec3;
-using tooth::kBrickCells;
-using tooth::kBrickNodes;
+using field::kBrickCells;
+using field::kBrickNodes;
 
 constexpr int kY = kBrickNodes, kZ = kBrickNodes * kBrickNodes;
 
@@ -91,7 +91,7 @@ FieldRay::FieldRay(const tooth::CutMirror& mirror)
 const float* FieldRay::nodes(std::uint32_t dense) const {
     if (mirror_.isChanged(dense)) return mirror_.values(dense, nullptr);
     const std::int32_t stored = view_.brickIndex[dense];
-    return stored >= 0 ? view_.values + static_cast<std::size_t>(stored) * tooth::kBrickValues : nullptr;
+    return stored >= 0 ? view_.values + static_cast<std::size_t>(stored) * field::kBrickValues : nullptr;
 }
 
 bool FieldRay::isInGrid(const Vec3& u) const {

@@ -27,7 +27,7 @@ class FieldRay {
     /// Where the trilinear field first changes its sign along a ray [mm].
     [[nodiscard]] std::optional<double> firstZeroMm(const core::Vec3& originMm, const core::Vec3& direction,
                                                     double farMm) const;
-    [[nodiscard]] const tooth::FieldView& view() const { return view_; }
+    [[nodiscard]] const field::FieldView& view() const { return view_; }
 
   private:
     struct Place {
@@ -40,8 +40,8 @@ class FieldRay {
     [[nodiscard]] std::optional<double> valueAt(const core::Vec3& u) const;
 
     const tooth::CutMirror& mirror_;
-    const tooth::ToothField& whole_;
-    tooth::FieldView view_;
+    const field::DistanceField& whole_;
+    field::FieldView view_;
     core::Vec3 originMm_;
     double bandMm_;  ///< how deep under the surface values are distances
 };

@@ -9,10 +9,10 @@
 namespace handpiece::measure {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
-using tooth::kBrickCells;
-using tooth::kBrickNodes;
-using tooth::Tissue;
+using field::kBrickCells;
+using field::kBrickNodes;
 
 constexpr int kBisections = 5;  // of a voxel: to a thirtieth
 
@@ -23,9 +23,9 @@ double distance2(const core::Box& box, const Vec3& p) {
 void addPoints(const tooth::CuttableTooth& base, std::uint32_t dense, std::vector<Vec3>& points) {
     constexpr auto kPulp = static_cast<std::uint8_t>(Tissue::pulp);
     constexpr int kWays[6][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}};
-    const tooth::FieldView view = base.tooth->field.view();
+    const field::FieldView view = base.tooth->field.view();
     const std::uint8_t* nodes = base.tissues.nodes(dense);
-    if (nodes == nullptr || std::find(nodes, nodes + tooth::kBrickValues, kPulp) == nodes + tooth::kBrickValues) return;
+    if (nodes == nullptr || std::find(nodes, nodes + field::kBrickValues, kPulp) == nodes + field::kBrickValues) return;
     for (int z = 0; z < kBrickCells; ++z)
         for (int y = 0; y < kBrickCells; ++y)
             for (int x = 0; x < kBrickCells; ++x)
@@ -46,7 +46,7 @@ void addPoints(const tooth::CuttableTooth& base, std::uint32_t dense, std::vecto
 
 }  // namespace
 
-Vec3 nodeMm(const tooth::FieldView& view, std::uint32_t dense, int x, int y, int z) {
+Vec3 nodeMm(const field::FieldView& view, std::uint32_t dense, int x, int y, int z) {
     const auto bx = static_cast<std::uint32_t>(view.bricks[0]), by = static_cast<std::uint32_t>(view.bricks[1]);
     const std::uint32_t brick[3] = {dense % bx, dense / bx % by, dense / (bx * by)};
     const int node[3] = {x, y, z};
@@ -57,7 +57,7 @@ Vec3 nodeMm(const tooth::FieldView& view, std::uint32_t dense, int x, int y, int
 }
 
 PulpSurface::PulpSurface(const tooth::CuttableTooth& base) {
-    const tooth::FieldView view = base.tooth->field.view();
+    const field::FieldView view = base.tooth->field.view();
     const std::uint32_t perLayer =
         static_cast<std::uint32_t>(view.bricks[0]) * static_cast<std::uint32_t>(view.bricks[1]);
     std::vector<std::vector<std::vector<Vec3>>> layers(static_cast<std::size_t>(view.bricks[2]));

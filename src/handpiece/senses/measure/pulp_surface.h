@@ -34,6 +34,6 @@ class PulpSurface {
 };
 
 /// Node (x, y, z) of a brick, or a place beyond it [mm].
-[[nodiscard]] core::Vec3 nodeMm(const tooth::FieldView& view, std::uint32_t dense, int x, int y, int z);
+[[nodiscard]] core::Vec3 nodeMm(const field::FieldView& view, std::uint32_t dense, int x, int y, int z);
 
 }  // namespace handpiece::measure

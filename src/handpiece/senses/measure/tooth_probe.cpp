@@ -13,14 +13,14 @@
 namespace handpiece::measure {
 namespace {
 
+using cases::Tissue;
 using core::Vec3;
-using tooth::kBrickCells;
-using tooth::kBrickNodes;
-using tooth::Tissue;
+using field::kBrickCells;
+using field::kBrickNodes;
 
-constexpr double kMostPixels = 64e6;
+constexpr double kMaxPixels = 64e6;
 
-std::size_t brickCount(const tooth::FieldView& view) {
+std::size_t brickCount(const field::FieldView& view) {
     return static_cast<std::size_t>(view.bricks[0]) * static_cast<std::size_t>(view.bricks[1]) *
            static_cast<std::size_t>(view.bricks[2]);
 }
@@ -54,7 +54,7 @@ struct ToothProbe::State {
     }
     /// Farther than a voxel inside the surface before any cut.
     [[nodiscard]] bool wasDeep(const Vec3& p) const {
-        const tooth::ToothField& whole = base.tooth->field;
+        const field::DistanceField& whole = base.tooth->field;
         return whole.distance(p) < (whole.isFine(p) ? -whole.settings().voxelMm : 0.0);
     }
     /// What a ray along `inward` meets at a point of the surface.
@@ -135,7 +135,7 @@ std::optional<ToothProbe::Thinnest> ToothProbe::thinnestOverPulp() const {
     State& s = *state_;
     const PulpSurface* pulp = s.pulp();
     if (pulp == nullptr) return {};
-    const tooth::FieldView& view = s.field.view();
+    const field::FieldView& view = s.field.view();
     std::vector<std::uint32_t> changed;
     for (std::uint32_t dense = 0; dense < brickCount(view); ++dense)
         if (s.mirror.isChanged(dense)) changed.push_back(dense);
@@ -191,7 +191,7 @@ Section ToothProbe::section(const Vec3& normal, double offsetMm, double mmPerPix
         }
     }
     const double wide = std::ceil((high[0] - low[0]) / mmPerPixel), tall = std::ceil((high[1] - low[1]) / mmPerPixel);
-    if (wide * tall > kMostPixels)
+    if (wide * tall > kMaxPixels)
         throw core::Error("a section of so many pixels is not worth its memory", "section", "take larger pixels");
     section.width = std::max(1, static_cast<int>(wide));
     section.height = std::max(1, static_cast<int>(tall));
@@ -212,7 +212,7 @@ Section ToothProbe::section(const Vec3& normal, double offsetMm, double mmPerPix
 
 std::vector<float> ToothProbe::removedDepths(const std::vector<std::array<float, 3>>& verticesMm) const {
     std::vector<float> depths(verticesMm.size(), 0.0f);
-    const tooth::ToothField& whole = state_->base.tooth->field;
+    const field::DistanceField& whole = state_->base.tooth->field;
     const geometry::TriangleTree& tree = state_->base.tooth->tree;
     const double nearby = 0.25 * whole.settings().voxelMm;
     core::parallelFor(verticesMm.size(), 256, [&](std::size_t begin, std::size_t end) {

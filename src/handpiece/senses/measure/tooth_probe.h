@@ -19,7 +19,7 @@ namespace handpiece::measure {
 struct Hit {
     core::Vec3 pointMm = core::Vec3::Zero();
     core::Vec3 normal = core::Vec3::UnitZ();  ///< unit, out of the tooth
-    tooth::Tissue tissue = tooth::Tissue::none;
+    cases::Tissue tissue = cases::Tissue::none;
     double distanceMm = 0.0;  ///< along the ray
     bool cut = false;         ///< farther than a voxel inside the uncut surface
 };
@@ -29,7 +29,7 @@ struct Section {
     core::Vec3 originMm, uAxis, vAxis;  ///< middle of pixel (0, 0); unit axes; uAxis x vAxis is the plane's normal
     double mmPerPixel = 0.05;
     int width = 0, height = 0;
-    std::vector<std::uint8_t> tissue;  ///< tooth::Tissue by pixel, row by row along u; none where there is no tooth
+    std::vector<std::uint8_t> tissue;  ///< cases::Tissue by pixel, row by row along u; none where there is no tooth
 };
 
 /// The tooth as `mirror` has it. One thread, the one that feeds the mirror.
@@ -44,7 +44,7 @@ class ToothProbe {
     /// sign. Trilinear in the nodes.
     [[nodiscard]] double signedDistanceMm(const core::Vec3& pointMm) const;
     /// Of the tooth at a point, none outside it or where it was cut away.
-    [[nodiscard]] tooth::Tissue tissueAt(const core::Vec3& pointMm) const;
+    [[nodiscard]] cases::Tissue tissueAt(const core::Vec3& pointMm) const;
     /// First meeting of a ray with the surface as it is now, from either side, to within a hundredth of a voxel of the
     /// field. `direction` unit.
     [[nodiscard]] std::optional<Hit> cast(const core::Vec3& originMm, const core::Vec3& direction,

@@ -14,7 +14,7 @@ namespace handpiece::sound {
 namespace {
 
 constexpr int kRateHz = 48000;
-constexpr std::size_t kMostSamples = 60 * kRateHz;  // as long as a recording may be
+constexpr std::size_t kMaxSamples = 60 * kRateHz;  // as long as a recording may be
 
 }  // namespace
 
@@ -54,7 +54,7 @@ double Microphone::poll() {
         alcCaptureSamples(state_->device, piece.data(), static_cast<ALCsizei>(n));
         for (std::size_t i = 0; i < n; ++i) {
             peak = std::max(peak, std::abs(static_cast<int>(piece[i])));
-            if (state_->wav.samples.size() < kMostSamples)
+            if (state_->wav.samples.size() < kMaxSamples)
                 state_->wav.samples.push_back(static_cast<float>(piece[i]) / 32768.0f);
         }
     }

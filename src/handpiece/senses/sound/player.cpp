@@ -21,9 +21,9 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr int kBlock = 64;              // frames made at a time
-constexpr int kSpareFrames = 192;       // queued beyond one period of the device
-constexpr int kMostSpareFrames = 4800;  // a machine that stutters with this much is left to
+constexpr int kBlock = 64;             // frames made at a time
+constexpr int kSpareFrames = 192;      // queued beyond one period of the device
+constexpr int kMaxSpareFrames = 4800;  // a machine that stutters with this much is left to
 constexpr auto kWake = std::chrono::milliseconds(1);
 constexpr auto kFirstRetry = std::chrono::seconds(10), kLastRetry = std::chrono::seconds(160);
 constexpr auto kLook = std::chrono::milliseconds(500);  // whether the device is still there
@@ -43,7 +43,7 @@ struct DrillMail {
     double speedRpm, freeSpeedRpm, pedal, loadTorqueNmm, removalMm3S, burRadiusMm;
     Three positionMm, axis;
     int edges;
-    tooth::Tissue tissue;
+    cases::Tissue tissue;
     bool cutting, stalled, water;
 };
 struct EarMail {
@@ -136,7 +136,7 @@ struct Player::State {
         for (auto wake = look; !waitUntil(wake);) {
             if (playing && stage.ranDry()) {
                 playing = false;
-                spare = std::min(spare + spare / 2, kMostSpareFrames);
+                spare = std::min(spare + spare / 2, kMaxSpareFrames);
                 const std::lock_guard lock(mutex);
                 ++status.underruns;
             }

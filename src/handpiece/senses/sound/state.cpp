@@ -19,7 +19,7 @@ DrillState drillStateOf(const messages::HapticSample& before, const messages::Ha
     const double passedS = now.tick > before.tick ? std::max(now.timeS - before.timeS, periodS)
                                                   : periodS * std::max(1, now.elapsedPeriods);
     drill.removalMm3S = passedS > 0.0 ? std::max(0.0, removed / passedS) : 0.0;
-    drill.tissue = static_cast<tooth::Tissue>(now.tissue < tooth::kTissueCount ? now.tissue : 0);
+    drill.tissue = static_cast<cases::Tissue>(now.tissue < cases::kTissueCount ? now.tissue : 0);
     drill.burRadiusMm = burRadiusMm;
     drill.edges = edges;
     drill.cutting = (now.flags & messages::kCutting) != 0;

@@ -8,7 +8,7 @@
 
 #include "handpiece/base/core/vec.h"
 #include "handpiece/base/messages/haptic_sample.h"
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 
 namespace handpiece::sound {
 
@@ -19,7 +19,7 @@ struct DrillState {
     double pedal = 0.0;                          ///< air and water
     double loadTorqueNmm = 0.0;                  ///< on the bur
     double removalMm3S = 0.0;                    ///< all tissues
-    tooth::Tissue tissue = tooth::Tissue::none;  ///< under the bur
+    cases::Tissue tissue = cases::Tissue::none;  ///< under the bur
     double burRadiusMm = 0.5;
     int edges = 6;
     bool cutting = false, stalled = false;

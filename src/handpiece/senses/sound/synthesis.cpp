@@ -44,8 +44,8 @@ void step(double& phase, double hz) noexcept {
     phase -= std::floor(phase);
 }
 
-// level, main band and width, bright band and width, its share; in the order of tooth::Tissue.
-constexpr std::array<TissueVoice, tooth::kTissueCount> kTissues{{
+// level, main band and width, bright band and width, its share; in the order of cases::Tissue.
+constexpr std::array<TissueVoice, cases::kTissueCount> kTissues{{
     {-20.0, 3000.0, 1.2, 6500.0, 2.0, 0.25},  // none: what was cut last rings on, see CuttingVoice
     {0.0, 6200.0, 2.0, 11000.0, 3.0, 0.60},   // enamel
     {-6.0, 3000.0, 1.2, 6500.0, 2.0, 0.25},   // dentine
@@ -64,7 +64,7 @@ double driveLevelDb(double freeSpeedRpm) noexcept {
     return 22.0 * std::log10(finite(freeSpeedRpm, 20000.0, 400000.0) / 400000.0);
 }
 
-const TissueVoice& tissueVoice(tooth::Tissue tissue) noexcept {
+const TissueVoice& tissueVoice(cases::Tissue tissue) noexcept {
     const auto index = static_cast<std::size_t>(tissue);
     return kTissues[index < kTissues.size() ? index : 0];
 }
@@ -211,7 +211,7 @@ void CuttingVoice::render(const DrillState& drill, std::span<float> out) noexcep
     chatter_.setTarget(drill.stalled ? pedal : torque > 0.0 && drill.cutting ? pedal * slow : 0.0);
     speedHz_.setTarget(hz);
     edges_.setTarget(std::clamp(drill.edges, 1, 64));
-    if (drill.tissue != tooth::Tissue::none) tissue_ = drill.tissue;
+    if (drill.tissue != cases::Tissue::none) tissue_ = drill.tissue;
     const TissueVoice& voice = tissueVoice(tissue_);
     // A larger bur cuts in a lower voice.
     const double lower = std::pow(0.5 / finite(drill.burRadiusMm, 0.05, 15.0), 0.3);

@@ -28,7 +28,7 @@ struct TissueVoice {
     double highHz, highQ;  ///< of the bright band over it
     double brightness;     ///< amplitude of the bright band over the main one's
 };
-[[nodiscard]] const TissueVoice& tissueVoice(tooth::Tissue tissue) noexcept;
+[[nodiscard]] const TissueVoice& tissueVoice(cases::Tissue tissue) noexcept;
 /// 0 without load or turning; 1 for the cut that kNominalRms names, whatever the tissue.
 [[nodiscard]] double cuttingLevel(const DrillState& drill) noexcept;
 
@@ -65,7 +65,7 @@ class CuttingVoice {
 
     Glide level_, chatter_, speedHz_, edges_, lowHz_, lowQ_, highHz_, highQ_, tissueDb_, brightness_;
 
-    tooth::Tissue tissue_ = tooth::Tissue::enamel;
+    cases::Tissue tissue_ = cases::Tissue::enamel;
     double turn_ = 0.0, toothTurn_ = 0.0, grunt_ = 0.0;
     Ramp low_, high_, turnTone_, toothTone_, toothSwell_, stick_;
     Filter lowBand_, highBand_, gruntBand_;

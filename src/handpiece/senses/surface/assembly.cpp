@@ -68,7 +68,7 @@ geometry::TriangleMesh closedSurface(const BrickSource& source, const core::Prog
     return withoutSpecks(mesh, voxelMm * voxelMm * voxelMm);
 }
 
-geometry::TriangleMesh closedPart(const BrickSource& source, const tooth::TissueMap& tissues, tooth::Tissue tissue,
+geometry::TriangleMesh closedPart(const BrickSource& source, const field::TissueMap& tissues, cases::Tissue tissue,
                                   const core::Progress& progress) {
     return closedSurface(PartSource(source, tissues, tissue), progress);
 }
@@ -125,7 +125,7 @@ geometry::TriangleMesh Surface::closedMesh() const {
     return mesh;
 }
 
-geometry::TriangleMesh Surface::tissueMesh(tooth::Tissue tissue) const {
+geometry::TriangleMesh Surface::tissueMesh(cases::Tissue tissue) const {
     geometry::TriangleMesh mesh;
     std::map<std::array<float, 3>, std::uint32_t> numberOf;
     for (const auto& brick : bricks_) {

@@ -11,7 +11,7 @@
 namespace handpiece::surface {
 namespace {
 
-using tooth::kBrickNodes;
+using field::kBrickNodes;
 using Float3 = std::array<float, 3>;
 
 constexpr int kApron = 2;  ///< layers of nodes taken from the six neighbours
@@ -55,7 +55,7 @@ class Sampler {
                 for (int x = 0; x < kBrickNodes; ++x)
                     to[x] = scale * from[x];
             }
-        alignas(32) float scratch[tooth::kBrickValues];
+        alignas(32) float scratch[field::kBrickValues];
         for (int side = 0; side < 6; ++side) {
             if ((sides >> side & 1) == 0) continue;
             const int axis = side / 2, up = side & 1;
@@ -149,8 +149,8 @@ class Sampler {
     }
 
     std::array<float, kSide * kSide * kSide> value_;
-    std::array<Float3, tooth::kBrickValues> gradient_;
-    std::array<std::uint64_t, (tooth::kBrickValues + 63) / 64> gradientReady_;
+    std::array<Float3, field::kBrickValues> gradient_;
+    std::array<std::uint64_t, (field::kBrickValues + 63) / 64> gradientReady_;
 };
 
 /// A plane through a crossing, in voxels from the brick's node 0.
@@ -269,7 +269,7 @@ class Contourer {
   public:
     bool contour(const BrickSource& source, std::uint32_t dense, BrickContour& out, const BrickContour* before,
                  const CellMask* dirty) {
-        alignas(32) float scratch[tooth::kBrickValues];
+        alignas(32) float scratch[field::kBrickValues];
         const float* own = source.values(dense, scratch);
         unsigned any = 0, all = 0x1ff;
         for (std::size_t row = 0; row < 81; ++row) {
@@ -310,7 +310,7 @@ class Contourer {
         const BrickGrid& grid = source.grid();
         const std::array<std::int32_t, 3> brick = grid.at(dense);
         for (std::size_t k = 0; k < 3; ++k)
-            cornerMm_[k] = grid.originMm[static_cast<int>(k)] + grid.voxelMm * (tooth::kBrickCells * brick[k]);
+            cornerMm_[k] = grid.originMm[static_cast<int>(k)] + grid.voxelMm * (field::kBrickCells * brick[k]);
         voxelMm_ = grid.voxelMm;
         for (int z = 0; z < 8; ++z)
             for (int y = 0; y < 8; ++y) {
@@ -515,8 +515,8 @@ class Contourer {
     const std::array<CellCase, kCellCases>& cases_ = cellCases();
     const std::array<std::uint8_t, 256>& ambiguous_ = ambiguousFaces();
     Sampler sampler_;
-    std::array<std::array<std::uint16_t, tooth::kBrickValues>, 3> planeOf_;
-    std::array<Plane, 3 * tooth::kBrickValues> planes_;
+    std::array<std::array<std::uint16_t, field::kBrickValues>, 3> planeOf_;
+    std::array<Plane, 3 * field::kBrickValues> planes_;
     std::uint16_t planeCount_ = 0;
     std::array<double, 3> cornerMm_{};
     double voxelMm_ = 0.0;

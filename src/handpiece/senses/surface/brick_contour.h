@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 #include "handpiece/senses/surface/brick_source.h"
 
 namespace handpiece::surface {
@@ -17,7 +17,7 @@ struct SheetVertex {
     std::array<float, 3> positionMm, normal;
     std::uint16_t cell = 0;  ///< x + 8 y + 64 z in its brick
     bool isSharp = false;    ///< on an edge or a corner: it has no one normal
-    tooth::Tissue tissue = tooth::Tissue::none;
+    cases::Tissue tissue = cases::Tissue::none;
 
     friend bool operator==(const SheetVertex&, const SheetVertex&) = default;
 };

@@ -7,14 +7,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 
 namespace handpiece::surface {
 
 struct SurfaceVertex {
     std::array<float, 3> positionMm;  ///< tooth frame
     std::array<float, 3> normal;      ///< unit, out of the tooth; the triangle's own on an edge of the solid
-    tooth::Tissue tissue;             ///< the same for all three corners of a triangle
+    cases::Tissue tissue;             ///< the same for all three corners of a triangle
 
     friend bool operator==(const SurfaceVertex&, const SurfaceVertex&) = default;
 };

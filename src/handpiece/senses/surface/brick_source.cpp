@@ -5,7 +5,7 @@
 
 namespace handpiece::surface {
 
-BrickGrid gridOf(const tooth::FieldView& field) {
+BrickGrid gridOf(const field::FieldView& field) {
     BrickGrid grid;
     grid.originMm = {field.originMm[0], field.originMm[1], field.originMm[2]};
     grid.voxelMm = field.voxelMm;
@@ -15,9 +15,9 @@ BrickGrid gridOf(const tooth::FieldView& field) {
 
 const float* FieldSource::values(std::uint32_t dense, float* scratch) const {
     const std::int32_t stored = view_.brickIndex[dense];
-    if (stored >= 0) return view_.values + static_cast<std::size_t>(stored) * tooth::kBrickValues;
+    if (stored >= 0) return view_.values + static_cast<std::size_t>(stored) * field::kBrickValues;
     // Far from the surface: only the sign is asked for.
-    std::fill(scratch, scratch + tooth::kBrickValues, view_.coarse[dense]);
+    std::fill(scratch, scratch + field::kBrickValues, view_.coarse[dense]);
     return scratch;
 }
 

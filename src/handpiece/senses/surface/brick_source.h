@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "handpiece/base/core/vec.h"
+#include "handpiece/model/field/distance_field.h"
 #include "handpiece/model/tooth/cut_field.h"
-#include "handpiece/model/tooth/tooth_field.h"
 
 namespace handpiece::surface {
 
@@ -35,7 +35,7 @@ struct BrickGrid {
         return x + std::int64_t{bricks[0]} * (y + std::int64_t{bricks[1]} * z);
     }
 };
-[[nodiscard]] BrickGrid gridOf(const tooth::FieldView& field);
+[[nodiscard]] BrickGrid gridOf(const field::FieldView& field);
 
 /// Values of bricks, whoever holds them. Reading is const and may happen on several threads at once.
 class BrickSource {
@@ -44,7 +44,7 @@ class BrickSource {
     [[nodiscard]] virtual const BrickGrid& grid() const = 0;
     /// False when the surface certainly does not pass through the brick.
     [[nodiscard]] virtual bool mayHoldSurface(std::uint32_t dense) const = 0;
-    /// tooth::kBrickValues signed distances [mm], negative inside; nodes on a brick's faces are the same bits in every
+    /// field::kBrickValues signed distances [mm], negative inside; nodes on a brick's faces are the same bits in every
     /// brick that has them. `scratch` (as many) may be used to hold them.
     [[nodiscard]] virtual const float* values(std::uint32_t dense, float* scratch) const = 0;
 };
@@ -52,13 +52,13 @@ class BrickSource {
 /// A field that does not change while it is read.
 class FieldSource final : public BrickSource {
   public:
-    explicit FieldSource(const tooth::ToothField& field) : view_(field.view()), grid_(gridOf(view_)) {}
+    explicit FieldSource(const field::DistanceField& field) : view_(field.view()), grid_(gridOf(view_)) {}
     [[nodiscard]] const BrickGrid& grid() const override { return grid_; }
     [[nodiscard]] bool mayHoldSurface(std::uint32_t dense) const override { return view_.brickIndex[dense] >= 0; }
     [[nodiscard]] const float* values(std::uint32_t dense, float* scratch) const override;
 
   private:
-    tooth::FieldView view_;
+    field::FieldView view_;
     BrickGrid grid_;
 };
 
@@ -77,7 +77,7 @@ class MirrorSource final : public BrickSource {
 
   private:
     const tooth::CutMirror& mirror_;
-    tooth::FieldView view_;
+    field::FieldView view_;
     BrickGrid grid_;
 };
 

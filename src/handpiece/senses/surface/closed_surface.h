@@ -5,7 +5,7 @@
 
 #include "handpiece/base/core/progress.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
-#include "handpiece/model/tooth/tissue_map.h"
+#include "handpiece/model/field/tissue_map.h"
 #include "handpiece/senses/surface/brick_source.h"
 
 namespace handpiece::surface {
@@ -18,7 +18,7 @@ namespace handpiece::surface {
 
 /// What is left of one tissue: the part of the tooth that `tissues` says is of it. As closedSurface(); where two
 /// tissues meet, their surfaces run along each other within rounding of the map.
-[[nodiscard]] geometry::TriangleMesh closedPart(const BrickSource& source, const tooth::TissueMap& tissues,
-                                                tooth::Tissue tissue, const core::Progress& progress = {});
+[[nodiscard]] geometry::TriangleMesh closedPart(const BrickSource& source, const field::TissueMap& tissues,
+                                                cases::Tissue tissue, const core::Progress& progress = {});
 
 }  // namespace handpiece::surface

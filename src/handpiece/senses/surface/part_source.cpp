@@ -7,10 +7,10 @@
 
 namespace handpiece::surface {
 
-using tooth::kBrickNodes;
-using tooth::Tissue;
+using cases::Tissue;
+using field::kBrickNodes;
 
-PartSource::PartSource(const BrickSource& tooth, const tooth::TissueMap& tissues, Tissue tissue)
+PartSource::PartSource(const BrickSource& tooth, const field::TissueMap& tissues, Tissue tissue)
     : tooth_(tooth),
       tissues_(tissues),
       tissue_(tissue),
@@ -34,7 +34,7 @@ PartSource::PartSource(const BrickSource& tooth, const tooth::TissueMap& tissues
 PartSource::Kind PartSource::kindOf(std::uint32_t dense) const {
     const Tissue whole = tissues_.ofBrick(dense);
     if (whole != Tissue::none) return whole == tissue_ ? Kind::all : Kind::other;
-    const tooth::TissueMap::Layers layers = tissues_.layers(dense);
+    const field::TissueMap::Layers layers = tissues_.layers(dense);
     const bool occurs = layers.rest == tissue_ || std::any_of(layers.layers.begin(), layers.layers.end(),
                                                               [&](const auto& l) { return l.tissue == tissue_; });
     return occurs ? Kind::mixed : Kind::other;
@@ -74,10 +74,10 @@ float PartSource::tissueDistance(const Place& place) const {
     const auto node =
         static_cast<std::size_t>(place.node[0] + kBrickNodes * (place.node[1] + kBrickNodes * place.node[2]));
     if (kinds_[dense] != Kind::mixed) return kinds_[dense] == Kind::all ? -farMm_ : farMm_;
-    const tooth::TissueMap::Layers layers = tissues_.layers(dense);
+    const field::TissueMap::Layers layers = tissues_.layers(dense);
     // Inside a layer of this tissue and in none that wins over it; the rest is what lies in none.
     int distance = 127, outside = -127;
-    for (const tooth::TissueMap::Layer& layer : layers.layers) {
+    for (const field::TissueMap::Layer& layer : layers.layers) {
         const int d = layer.values[node];
         if (layer.tissue == tissue_) distance = std::min(distance, std::max(d, outside));
         outside = std::max(outside, -d);

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "handpiece/model/tooth/tissue_map.h"
+#include "handpiece/model/field/tissue_map.h"
 #include "handpiece/senses/surface/brick_source.h"
 
 namespace handpiece::surface {
@@ -14,7 +14,7 @@ namespace handpiece::surface {
 /// max(distance to the tooth, distance to the tissue). Keeps references to both.
 class PartSource final : public BrickSource {
   public:
-    PartSource(const BrickSource& tooth, const tooth::TissueMap& tissues, tooth::Tissue tissue);
+    PartSource(const BrickSource& tooth, const field::TissueMap& tissues, cases::Tissue tissue);
     [[nodiscard]] const BrickGrid& grid() const override { return tooth_.grid(); }
     [[nodiscard]] bool mayHoldSurface(std::uint32_t dense) const override;
     [[nodiscard]] const float* values(std::uint32_t dense, float* scratch) const override;
@@ -30,8 +30,8 @@ class PartSource final : public BrickSource {
     [[nodiscard]] float tissueDistance(const Place& place) const;
 
     const BrickSource& tooth_;
-    const tooth::TissueMap& tissues_;
-    tooth::Tissue tissue_;
+    const field::TissueMap& tissues_;
+    cases::Tissue tissue_;
     float farMm_;                     ///< what is told where no boundary is near
     std::vector<Kind> kinds_;         ///< by dense brick
     std::vector<std::uint8_t> same_;  ///< by dense brick: all neighbours are of its kind, and it is not mixed

@@ -38,7 +38,7 @@ void forEach(std::size_t count, const Body& body) {
 
 }  // namespace
 
-Surface::Surface(const BrickSource& source, const tooth::TissueMap* tissues)
+Surface::Surface(const BrickSource& source, const field::TissueMap* tissues)
     : source_(source),
       tissues_(tissues),
       bricks_(source.grid().count()),
@@ -51,10 +51,10 @@ Surface::~Surface() = default;
 
 void Surface::label(std::uint32_t dense, std::span<SheetVertex> vertices) const {
     if (tissues_ == nullptr) return;
-    const tooth::Tissue whole = tissues_->ofBrick(dense);
+    const cases::Tissue whole = tissues_->ofBrick(dense);
     for (SheetVertex& v : vertices)
-        if (v.tissue == tooth::Tissue::none)
-            v.tissue = whole != tooth::Tissue::none ? whole
+        if (v.tissue == cases::Tissue::none)
+            v.tissue = whole != cases::Tissue::none ? whole
                                                     : tissues_->at({v.positionMm[0], v.positionMm[1], v.positionMm[2]});
 }
 
@@ -66,15 +66,15 @@ struct Surface::Change {
 
 Surface::Change Surface::changeOf(std::uint32_t dense) {
     Change change;
-    std::array<float, tooth::kBrickValues> scratch;
+    std::array<float, field::kBrickValues> scratch;
     const float* now = source_.values(dense, scratch.data());
     auto& seen = seen_[dense];
     if (seen == nullptr) {
-        seen = std::make_unique<std::array<float, tooth::kBrickValues>>();
+        seen = std::make_unique<std::array<float, field::kBrickValues>>();
         change.nodes.fill(0x1ff);
         change.isAny = change.hasTurned = true;
     } else {
-        constexpr std::size_t kRow = tooth::kBrickNodes;
+        constexpr std::size_t kRow = field::kBrickNodes;
         for (std::size_t row = 0; row < change.nodes.size(); ++row) {
             const float *from = seen->data() + kRow * row, *to = now + kRow * row;
             if (std::memcmp(from, to, sizeof(float) * kRow) == 0) continue;
@@ -90,7 +90,7 @@ Surface::Change Surface::changeOf(std::uint32_t dense) {
         }
         if (!change.isAny) return change;
     }
-    std::copy(now, now + tooth::kBrickValues, seen->begin());
+    std::copy(now, now + field::kBrickValues, seen->begin());
     return change;
 }
 

@@ -11,7 +11,7 @@
 
 #include "handpiece/base/core/progress.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
-#include "handpiece/model/tooth/tissue_map.h"
+#include "handpiece/model/field/tissue_map.h"
 #include "handpiece/senses/surface/brick_mesh.h"
 #include "handpiece/senses/surface/brick_source.h"
 
@@ -34,7 +34,7 @@ inline constexpr int kMaxLevel = 2;
 class Surface {
   public:
     /// Keeps references to both. Without tissues all is Tissue::none.
-    explicit Surface(const BrickSource& source, const tooth::TissueMap* tissues = nullptr);
+    explicit Surface(const BrickSource& source, const field::TissueMap* tissues = nullptr);
     ~Surface();
     Surface(const Surface&) = delete;
     Surface& operator=(const Surface&) = delete;
@@ -58,7 +58,7 @@ class Surface {
     /// does not leave the grid.
     [[nodiscard]] geometry::TriangleMesh closedMesh() const;
     /// The triangles of one tissue as shown now, vertices at the same place joined: open where tissues meet.
-    [[nodiscard]] geometry::TriangleMesh tissueMesh(tooth::Tissue tissue) const;
+    [[nodiscard]] geometry::TriangleMesh tissueMesh(cases::Tissue tissue) const;
 
   private:
     friend geometry::TriangleMesh closedSurface(const BrickSource& source, const core::Progress& progress);
@@ -72,14 +72,14 @@ class Surface {
     [[nodiscard]] std::shared_ptr<const BrickMesh> makeMesh(std::uint32_t dense);
 
     const BrickSource& source_;
-    const tooth::TissueMap* tissues_;
+    const field::TissueMap* tissues_;
     std::vector<std::unique_ptr<BrickState>> bricks_;  ///< by dense brick; null: no surface
     std::vector<std::uint8_t> levels_;                 ///< by dense brick, as set
     std::vector<std::uint32_t> levelsSet_;             ///< since the last update
     std::vector<std::uint8_t> marks_;                  ///< by dense brick: scratch of update()
     std::vector<std::uint32_t> changeAt_;              ///< by dense brick: scratch of update()
     /// By dense brick: values as they were when it was touched last; null: as never.
-    std::vector<std::unique_ptr<std::array<float, tooth::kBrickValues>>> seen_;
+    std::vector<std::unique_ptr<std::array<float, field::kBrickValues>>> seen_;
 };
 
 }  // namespace handpiece::surface

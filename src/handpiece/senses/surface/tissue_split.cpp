@@ -7,7 +7,7 @@ namespace handpiece::surface {
 namespace {
 
 using Float3 = std::array<float, 3>;
-using tooth::Tissue;
+using cases::Tissue;
 
 constexpr std::uint16_t kNotPlaced = 0xffff;
 /// Halvings that find where an edge leaves a tissue: a voxel's edge to below half a hundredth of its length.
@@ -34,7 +34,7 @@ core::Vec3 asVec3(const Float3& v) {
 }  // namespace
 
 std::shared_ptr<const BrickMesh> TissueSplitter::mesh(const TriangleList& list, const LowNeighbours& bricks,
-                                                      const tooth::TissueMap* tissues) {
+                                                      const field::TissueMap* tissues) {
     if (list.triangles().empty()) return nullptr;
     for (std::size_t slot = 0; slot < 8; ++slot)
         first_[slot + 1] = first_[slot] + (bricks[slot] != nullptr ? bricks[slot]->shown(false).size() : 0);
@@ -76,7 +76,7 @@ std::uint16_t TissueSplitter::corner(const TriangleList& list, Ref ref, const Fl
 }
 
 TissueSplitter::Point TissueSplitter::cut(const SheetVertex& a, const SheetVertex& b,
-                                          const tooth::TissueMap& tissues) const {
+                                          const field::TissueMap& tissues) const {
     const bool inOrder = a.positionMm < b.positionMm;
     const SheetVertex &from = inOrder ? a : b, &to = inOrder ? b : a;
     const core::Vec3 p = asVec3(from.positionMm), q = asVec3(to.positionMm);
@@ -91,7 +91,7 @@ TissueSplitter::Point TissueSplitter::cut(const SheetVertex& a, const SheetVerte
 
 /// One corner differs from the other two: a triangle and a quad.
 void TissueSplitter::splitInTwo(const TriangleList& list, const std::array<Ref, 3>& t,
-                                const tooth::TissueMap& tissues) {
+                                const field::TissueMap& tissues) {
     std::size_t odd = 0;
     while (list.vertex(t[(odd + 1) % 3]).tissue != list.vertex(t[(odd + 2) % 3]).tissue)
         ++odd;
@@ -111,7 +111,7 @@ void TissueSplitter::splitInTwo(const TriangleList& list, const std::array<Ref, 
 
 /// All corners differ: three quads about the middle of the points where the edges are cut.
 void TissueSplitter::splitInThree(const TriangleList& list, const std::array<Ref, 3>& t,
-                                  const tooth::TissueMap& tissues) {
+                                  const field::TissueMap& tissues) {
     const SheetVertex* v[3] = {&list.vertex(t[0]), &list.vertex(t[1]), &list.vertex(t[2])};
     const Float3 flat = faceNormal(v[0]->positionMm, v[1]->positionMm, v[2]->positionMm);
     Point cuts[3];  // of the edge that begins at each corner

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "handpiece/model/tooth/tissue_map.h"
+#include "handpiece/model/field/tissue_map.h"
 #include "handpiece/senses/surface/triangle_list.h"
 
 namespace handpiece::surface {
@@ -16,7 +16,7 @@ class TissueSplitter {
   public:
     /// The mesh of `list`; null when it is empty. An edge is cut at the same point whoever asks.
     std::shared_ptr<const BrickMesh> mesh(const TriangleList& list, const LowNeighbours& bricks,
-                                          const tooth::TissueMap* tissues);
+                                          const field::TissueMap* tissues);
 
   private:
     using Ref = TriangleList::Ref;
@@ -24,10 +24,10 @@ class TissueSplitter {
         std::array<float, 3> positionMm, normal;
     };
     std::uint16_t corner(const TriangleList& list, Ref ref, const std::array<float, 3>& flat);
-    std::uint16_t add(const Point& point, tooth::Tissue tissue);
-    [[nodiscard]] Point cut(const SheetVertex& a, const SheetVertex& b, const tooth::TissueMap& tissues) const;
-    void splitInTwo(const TriangleList& list, const std::array<Ref, 3>& t, const tooth::TissueMap& tissues);
-    void splitInThree(const TriangleList& list, const std::array<Ref, 3>& t, const tooth::TissueMap& tissues);
+    std::uint16_t add(const Point& point, cases::Tissue tissue);
+    [[nodiscard]] Point cut(const SheetVertex& a, const SheetVertex& b, const field::TissueMap& tissues) const;
+    void splitInTwo(const TriangleList& list, const std::array<Ref, 3>& t, const field::TissueMap& tissues);
+    void splitInThree(const TriangleList& list, const std::array<Ref, 3>& t, const field::TissueMap& tissues);
 
     std::vector<std::uint16_t> placed_;  ///< by vertex of the bricks: its number in the mesh
     std::array<std::size_t, 9> first_{};

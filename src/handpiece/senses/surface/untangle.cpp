@@ -89,7 +89,7 @@ class Untangler {
         const std::uint32_t index = v - first_[at];
         const std::uint16_t cell = contour.vertices[index].cell;
         const int x = cell & 7, y = cell >> 3 & 7, z = cell >> 6;
-        std::array<float, tooth::kBrickValues> scratch;
+        std::array<float, field::kBrickValues> scratch;
         const float* values = source_.values(held_[at], scratch.data());
         const CellCase& sheets = cellCases()[contour.cases[cell]];
         const std::uint32_t sheet = index - contour.first[cell];

@@ -56,7 +56,7 @@ enum class StandardView { occlusal, buccal, lingual, mesial, distal, oblique };
 [[nodiscard]] const std::vector<std::pair<StandardView, std::string_view>>& standardViews();
 /// By name; throws core::Error naming those there are.
 [[nodiscard]] StandardView viewByName(std::string_view name);
-/// Such that `bounds` fills the picture. `buccalSign` as in tooth::Case; 0 counts as +1.
+/// Such that `bounds` fills the picture. `buccalSign` as in cases::Case; 0 counts as +1.
 [[nodiscard]] Camera standardView(StandardView view, const core::Box& bounds, int buccalSign, const Viewport& viewport);
 /// The same direction, moved so that all of `bounds` is seen and fills the picture but for a small margin. The target
 /// comes to lie at the depth of the box's middle.

@@ -62,7 +62,7 @@ void Instruments::set(Solid& solid, const geometry::TriangleMesh& mesh, double c
     if (box.isEmpty()) return;
     solid.minMm = box.min.cast<float>();
     solid.maxMm = box.max.cast<float>();
-    for (const MeshPiece& piece : piecesOf(mesh, tooth::Tissue::none, creaseRad, cellMm))
+    for (const MeshPiece& piece : piecesOf(mesh, cases::Tissue::none, creaseRad, cellMm))
         solid.meshes.push_back(pool_.add(piece));
 }
 
@@ -135,15 +135,16 @@ void Instruments::setBur(const geometry::TriangleMesh& head, double headLengthMm
     if (shankRadiusMm_ == 0.0) shankRadiusMm_ = 0.6 * headRadiusMm;
 }
 
-BurFinish finishOf(const instrument::Bur& bur, std::string_view ability) {
+BurFinish finishOf(const instrument::Bur& bur, std::string_view cuttingParameters) {
     const instrument::CatalogueEntry* entry = instrument::findBur(bur.name());
-    if (ability.empty() && entry != nullptr) ability = entry->ability;
+    if (cuttingParameters.empty() && entry != nullptr) cuttingParameters = entry->cuttingParameters;
     const bool isFile = geometry::meshFormatOf(bur.name()) != geometry::MeshFormat::unknown;
-    const auto says = [&](std::string_view word) { return ability.find(word) != std::string_view::npos; };
+    const auto says = [&](std::string_view word) { return cuttingParameters.find(word) != std::string_view::npos; };
     if (says("carbide")) return BurFinish::carbide;
     if (says("steel")) return BurFinish::steel;
     // What cuts like a medium diamond because nobody said how it cuts need not look like one.
-    if (isFile && (ability == instrument::Ability{}.name || !says("diamond"))) return BurFinish::plain;
+    if (isFile && (cuttingParameters == instrument::CuttingParameters{}.name || !says("diamond")))
+        return BurFinish::plain;
     return BurFinish::diamond;
 }
 

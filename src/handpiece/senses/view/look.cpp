@@ -12,9 +12,9 @@ namespace handpiece::view {
 namespace {
 
 using Colour = std::array<std::uint8_t, 3>;
-using Colours = std::array<Colour, tooth::kTissueCount>;
+using Colours = std::array<Colour, cases::kTissueCount>;
 
-// In the order of tooth::Tissue: none, enamel, dentine, pulp, caries, cementum, gum, bone, neighbour, restoration.
+// In the order of cases::Tissue: none, enamel, dentine, pulp, caries, cementum, gum, bone, neighbour, restoration.
 constexpr Colours kNatural{{{128, 128, 128},
                             {233, 227, 211},
                             {214, 181, 122},
@@ -72,7 +72,7 @@ E byName(std::string_view name, const std::array<std::pair<E, std::string_view>,
 
 }  // namespace
 
-std::array<std::uint8_t, 3> colourOf(tooth::Tissue tissue, Palette palette) {
+std::array<std::uint8_t, 3> colourOf(cases::Tissue tissue, Palette palette) {
     const auto i = static_cast<std::size_t>(tissue);
     const Colours& colours =
         palette == Palette::natural ? kNatural : (palette == Palette::textbook ? kTextbook : kColourSafe);
@@ -97,12 +97,12 @@ Stereo stereoByName(std::string_view name) {
     return byName(name, kNames, "stereo");
 }
 
-std::vector<LegendEntry> legendOf(const std::vector<tooth::Tissue>& tissues, Palette palette) {
+std::vector<LegendEntry> legendOf(const std::vector<cases::Tissue>& tissues, Palette palette) {
     std::vector<LegendEntry> legend;
-    for (const tooth::Tissue tissue : tissues) {
+    for (const cases::Tissue tissue : tissues) {
         const bool known =
             std::any_of(legend.begin(), legend.end(), [&](const LegendEntry& entry) { return entry.tissue == tissue; });
-        if (tissue != tooth::Tissue::none && !known) legend.push_back({tissue, colourOf(tissue, palette)});
+        if (tissue != cases::Tissue::none && !known) legend.push_back({tissue, colourOf(tissue, palette)});
     }
     return legend;
 }

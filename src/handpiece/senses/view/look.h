@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "handpiece/base/core/vec.h"
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 
 namespace handpiece::view {
 
@@ -25,7 +25,7 @@ enum class Stereo { none, sideBySide, anaglyph };
 enum class ToothShown { now, before, ghost /**< now, with what was cut away as glass */ };
 
 /// sRGB of a tissue.
-[[nodiscard]] std::array<std::uint8_t, 3> colourOf(tooth::Tissue tissue, Palette palette);
+[[nodiscard]] std::array<std::uint8_t, 3> colourOf(cases::Tissue tissue, Palette palette);
 /// By name ("fast"; "natural", "textbook", "colour-safe"; "side-by-side"); throw core::Error naming those there are.
 [[nodiscard]] Quality qualityByName(std::string_view name);
 [[nodiscard]] Palette paletteByName(std::string_view name);
@@ -40,11 +40,11 @@ struct Plane {
 
 /// One entry of a legend.
 struct LegendEntry {
-    tooth::Tissue tissue;
+    cases::Tissue tissue;
     std::array<std::uint8_t, 3> colour;
 };
 /// In the order given, each tissue once, without none.
-[[nodiscard]] std::vector<LegendEntry> legendOf(const std::vector<tooth::Tissue>& tissues, Palette palette);
+[[nodiscard]] std::vector<LegendEntry> legendOf(const std::vector<cases::Tissue>& tissues, Palette palette);
 /// Colour for a removed depth on the scale from 0 to `mostMm`, that of the renderer's removed-depth colours: from pale
 /// to dark, so that the order is seen in grey too.
 [[nodiscard]] std::array<std::uint8_t, 3> removedDepthColour(double depthMm, double mostMm);
@@ -55,7 +55,7 @@ struct Look {
     Stereo stereo = Stereo::none;
     double eyeSeparationMm = 3.0;  ///< at tooth scale: about a twentieth of the distance
     ToothShown tooth = ToothShown::now;
-    std::array<bool, tooth::kTissueCount> visible{true, true, true, true, true, true, true, true, true, true};
+    std::array<bool, cases::kTissueCount> visible{true, true, true, true, true, true, true, true, true, true};
     bool removedDepthColours = false;
     double removedDepthMostMm = 3.0;  ///< the end of that scale
     std::optional<Plane> cutAway;     ///< applies to tooth and scenery, not to bur and turbine

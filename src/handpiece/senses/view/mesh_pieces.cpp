@@ -50,7 +50,7 @@ MeshPiece pieceOf(const surface::BrickMesh& mesh, const std::vector<float>* remo
     return piece;
 }
 
-std::vector<MeshPiece> piecesOf(const geometry::TriangleMesh& mesh, tooth::Tissue tissue, double creaseRad,
+std::vector<MeshPiece> piecesOf(const geometry::TriangleMesh& mesh, cases::Tissue tissue, double creaseRad,
                                 double cellMm) {
     const Fans fans = fansOf(mesh);
     std::vector<Vec3> faceNormals;  // as long as twice the area: large faces count for more

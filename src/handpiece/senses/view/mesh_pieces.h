@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "handpiece/base/geometry/triangle_mesh.h"
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 #include "handpiece/senses/surface/brick_update.h"
 #include "handpiece/senses/view/mesh_pool.h"
 
@@ -16,7 +16,7 @@ namespace handpiece::view {
 [[nodiscard]] MeshPiece pieceOf(const surface::BrickMesh& mesh, const std::vector<float>* removedDepthMm);
 
 /// Smooth but across edges sharper than `creaseRad`. Cut by a grid of `cellMm` (0: by number of vertices alone).
-[[nodiscard]] std::vector<MeshPiece> piecesOf(const geometry::TriangleMesh& mesh, tooth::Tissue tissue,
+[[nodiscard]] std::vector<MeshPiece> piecesOf(const geometry::TriangleMesh& mesh, cases::Tissue tissue,
                                               double creaseRad, double cellMm);
 
 }  // namespace handpiece::view

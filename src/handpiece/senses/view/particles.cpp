@@ -19,13 +19,13 @@ namespace {
 // speeds, are chosen for the eye; chips are drawn larger than they are.
 constexpr double kGravityMmS2 = 9810.0;
 constexpr double kChipSpeedMmS = 1000.0, kDropletSpeedMmS = 700.0;
-constexpr double kChipsPerMm3 = 1200.0;    // drawn; a cubic millimetre is thousands, so each stands for many
-constexpr double kMostChipsPerS = 1500.0;  // what fits in the air at once anyway
+constexpr double kChipsPerMm3 = 1200.0;   // drawn; a cubic millimetre is thousands, so each stands for many
+constexpr double kMaxChipsPerS = 1500.0;  // what fits in the air at once anyway
 constexpr double kDropletsPerS = 1100.0, kPuffsPerS = 240.0;
 constexpr double kPortRadiusMm = 2.3;  // as instrument::turbineMesh() has them
 constexpr double kStillRpm = 500.0;
-constexpr double kMostStreak = 2.5;  // radii of a drop
-constexpr double kJetShare = 0.6;    // of the way to the tip
+constexpr double kMaxStreak = 2.5;  // radii of a drop
+constexpr double kJetShare = 0.6;   // of the way to the tip
 
 /// Random numbers of one step: the same for the same seed and step, however time was cut into pictures.
 class Dice {
@@ -77,7 +77,7 @@ void Particles::clear() {
 }
 
 bool Particles::room(Kind kind) const noexcept {
-    static constexpr std::array<std::size_t, 3> kMost{kMostChips, kMostDroplets, kMostPuffs};
+    static constexpr std::array<std::size_t, 3> kMost{kMaxChips, kMaxDroplets, kMaxPuffs};
     const auto k = static_cast<std::size_t>(kind);
     return counts_[k] < kMost[k];
 }
@@ -131,8 +131,8 @@ void Particles::emit(std::int64_t index, const Moment& moment, double headRadius
     const bool turning = moment.speedRpm > kStillRpm;
     const bool wet = water_ && moment.water && turning;
 
-    if (chips_ && turning && moment.removalMm3S > 0.0 && moment.tissue != tooth::Tissue::none)
-        chipDebt_ += std::min(moment.removalMm3S * kChipsPerMm3, kMostChipsPerS) * kParticleStepS;
+    if (chips_ && turning && moment.removalMm3S > 0.0 && moment.tissue != cases::Tissue::none)
+        chipDebt_ += std::min(moment.removalMm3S * kChipsPerMm3, kMaxChipsPerS) * kParticleStepS;
     for (; chipDebt_ >= 1.0; chipDebt_ -= 1.0) {
         if (!room(Kind::chip)) continue;
         const Vec3 place = moment.contact ? moment.contactPointMm : tip;
@@ -207,7 +207,7 @@ void Particles::show(const Moment& moment, const Look& look, double headRadiusMm
         } else {
             // What the eye smears of a fast speck, held short: chips would look like needles, drops like sticks.
             Vec3 streak = -0.004 * p.velocityMmS;
-            const double longest = p.kind == Kind::chip ? 0.22 : kMostStreak * p.radiusMm;
+            const double longest = p.kind == Kind::chip ? 0.22 : kMaxStreak * p.radiusMm;
             if (streak.norm() > longest) streak *= longest / streak.norm();
             s.streakMm = floats(streak);
             s.radiusMm = static_cast<float>(p.radiusMm);

@@ -25,8 +25,8 @@ struct Speck {
     std::array<std::uint8_t, 4> rgba{};  ///< sRGB, not premultiplied
 };
 
-inline constexpr std::size_t kMostChips = 220, kMostDroplets = 90, kMostPuffs = 60, kJets = 3;
-inline constexpr std::size_t kMostSpecks = kMostChips + kMostDroplets + kMostPuffs + kJets;
+inline constexpr std::size_t kMaxChips = 220, kMaxDroplets = 90, kMaxPuffs = 60, kJets = 3;
+inline constexpr std::size_t kMaxSpecks = kMaxChips + kMaxDroplets + kMaxPuffs + kJets;
 
 /// Moves in steps of kParticleStepS of the simulation's time, so that what is seen does not depend on how often it is
 /// looked at; the same moments give the same specks. Time that stands still changes nothing; when it goes back, or on
@@ -40,7 +40,7 @@ class Particles {
 
     /// On to the moment. `headRadiusMm` of the bur. Chips and water that the look does not want end at once.
     void advance(const Moment& moment, const Look& look, double headRadiusMm);
-    /// Those in the air now, farthest last step first; at most kMostSpecks. Valid until the next call.
+    /// Those in the air now, farthest last step first; at most kMaxSpecks. Valid until the next call.
     [[nodiscard]] std::span<const Speck> specks() const noexcept { return specks_; }
     void clear();
 
@@ -50,7 +50,7 @@ class Particles {
         core::Vec3 positionMm, velocityMmS;
         double bornS = 0.0, lifeS = 0.0, radiusMm = 0.0, relaxationS = 0.01;
         Kind kind = Kind::chip;
-        tooth::Tissue tissue = tooth::Tissue::none;
+        cases::Tissue tissue = cases::Tissue::none;
         std::uint8_t shade = 0;
     };
     void step(std::int64_t index, const Moment& moment, double headRadiusMm);

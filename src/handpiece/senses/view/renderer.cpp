@@ -19,7 +19,7 @@
 namespace handpiece::view {
 namespace {
 
-constexpr int kMostSize = 8192;
+constexpr int kMaxSize = 8192;
 constexpr int kSmoothMargin = 8;  // pixels that smoothing looks away
 /// Pictures for which the eye must have stood still before full detail comes back.
 constexpr int kRestPictures = 2;
@@ -411,17 +411,17 @@ void Renderer::updateBricks(std::span<const surface::BrickUpdate> bricks, bool b
     state_->scene.updateBricks(bricks, before);
 }
 
-void Renderer::setMesh(const geometry::TriangleMesh& mesh, tooth::Tissue tissue) {
+void Renderer::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue) {
     state_->context.makeCurrent();
     state_->scene.setMesh(mesh, tissue);
 }
 
-void Renderer::setScenery(std::span<const tooth::Part> parts) {
+void Renderer::setScenery(std::span<const cases::Part> parts) {
     state_->context.makeCurrent();
     state_->scene.setScenery(parts);
 }
 
-void Renderer::setParts(std::span<const tooth::Part> parts) {
+void Renderer::setParts(std::span<const cases::Part> parts) {
     state_->context.makeCurrent();
     state_->scene.setParts(parts);
 }
@@ -455,7 +455,7 @@ void Renderer::setSectionFace(SectionFace face) {
 
 FrameReport Renderer::draw(const Camera& camera, const Viewport& viewport, const Look& look, const Moment& moment,
                            Image& out) {
-    if (viewport.width < 1 || viewport.height < 1 || viewport.width > kMostSize || viewport.height > kMostSize)
+    if (viewport.width < 1 || viewport.height < 1 || viewport.width > kMaxSize || viewport.height > kMaxSize)
         throw core::Error("a picture cannot have this size", "viewport", "choose 1 to 8192 pixels a side");
     State& s = *state_;
     s.context.makeCurrent();

@@ -14,7 +14,7 @@
 
 #include "handpiece/base/core/vec.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/case/case.h"
 #include "handpiece/senses/surface/brick_update.h"
 #include "handpiece/senses/view/camera.h"
 #include "handpiece/senses/view/image.h"
@@ -33,7 +33,7 @@ struct SectionFace {
         vAxis;  ///< middle of pixel (0, 0); unit axes in the plane, v x u... right-handed with the normal
     double mmPerPixel = 0.05;
     int width = 0, height = 0;
-    std::vector<std::uint8_t> tissue;  ///< tooth::Tissue by pixel, none outside the tooth
+    std::vector<std::uint8_t> tissue;  ///< cases::Tissue by pixel, none outside the tooth
 };
 
 struct MirrorPose {
@@ -46,7 +46,7 @@ struct MirrorPose {
 enum class BurFinish { diamond, carbide, steel, plain };
 /// By an ability's name; empty: the one that the catalogue gives this bur. A bur from a mesh file is plain unless its
 /// ability is another than that of one of which nothing is known.
-[[nodiscard]] BurFinish finishOf(const instrument::Bur& bur, std::string_view ability = {});
+[[nodiscard]] BurFinish finishOf(const instrument::Bur& bur, std::string_view cuttingParameters = {});
 
 /// All that moves from picture to picture. Poses as in messages::HapticSample: the proxy's, never sunk in.
 struct Moment {
@@ -55,7 +55,7 @@ struct Moment {
     bool burShown = true;
     double speedRpm = 0.0;
     double removalMm3S = 0.0;  ///< what is being cut away: debris
-    tooth::Tissue tissue = tooth::Tissue::none;
+    cases::Tissue tissue = cases::Tissue::none;
     bool water = false;  ///< spray is on
     bool contact = false;
     core::Vec3 contactPointMm = core::Vec3::Zero(), contactNormal = core::Vec3::UnitZ();
@@ -93,11 +93,11 @@ class Renderer {
     /// that, as after setTooth().
     void updateBricks(std::span<const surface::BrickUpdate> bricks, bool before = false);
     /// A tooth that is one mesh and is not cut (an STL to look at); `tissue` colours it.
-    void setMesh(const geometry::TriangleMesh& mesh, tooth::Tissue tissue);
-    void setScenery(std::span<const tooth::Part> parts);
+    void setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue);
+    void setScenery(std::span<const cases::Part> parts);
     /// The tissues of the tooth under its surface, uncut: seen where Look::visible leaves out one of them. Forgotten by
     /// setTooth() and setMesh().
-    void setParts(std::span<const tooth::Part> parts);
+    void setParts(std::span<const cases::Part> parts);
     /// Meshes in the bur frame.
     void setBur(const geometry::TriangleMesh& mesh, double headLengthMm, double headRadiusMm,
                 BurFinish finish = BurFinish::diamond);

@@ -10,7 +10,7 @@ namespace handpiece::view {
 namespace {
 
 /// More than this, and drawing all is as quick as finding what changed.
-constexpr std::size_t kMostChanges = 20000;
+constexpr std::size_t kMaxChanges = 20000;
 constexpr double kCreaseRad = 0.9;
 constexpr double kCrownCentreMm = 3.0;  // under a crown's top
 
@@ -23,7 +23,7 @@ void Scene::changeAll() {
 
 void Scene::note(const PooledMesh& mesh) {
     if (mesh.indexCount == 0) return;
-    if (changes_.size() >= kMostChanges) changeAll();
+    if (changes_.size() >= kMaxChanges) changeAll();
     changes_.push_back({mesh.minMm, mesh.maxMm});
 }
 
@@ -113,7 +113,7 @@ void Scene::drop(std::vector<Static>& meshes) {
     meshes.clear();
 }
 
-void Scene::add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, tooth::Tissue tissue) {
+void Scene::add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cases::Tissue tissue) {
     const core::Box box = mesh.bounds();
     if (box.isEmpty()) return;
     // Pieces of about a thousand triangles.
@@ -122,23 +122,23 @@ void Scene::add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, too
         to.push_back({tissue, pool_.add(piece), box});
 }
 
-void Scene::setMesh(const geometry::TriangleMesh& mesh, tooth::Tissue tissue) {
+void Scene::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue) {
     setTooth(mesh.bounds());
     add(mesh_, mesh, tissue);
     measure();
 }
 
-void Scene::setScenery(std::span<const tooth::Part> parts) {
+void Scene::setScenery(std::span<const cases::Part> parts) {
     drop(scenery_);
-    for (const tooth::Part& part : parts)
+    for (const cases::Part& part : parts)
         add(scenery_, part.mesh, part.tissue);
     measure();
     changeAll();
 }
 
-void Scene::setParts(std::span<const tooth::Part> parts) {
+void Scene::setParts(std::span<const cases::Part> parts) {
     drop(parts_);
-    for (const tooth::Part& part : parts)
+    for (const cases::Part& part : parts)
         add(parts_, part.mesh, part.tissue);
     changeAll();
 }
@@ -182,7 +182,7 @@ const std::vector<const PooledMesh*>& Scene::visible(const Look& look, Detail de
         else
             offer(coarse && brick.hasCoarse ? brick.coarse : brick.now);
     }
-    const auto isVisible = [&](tooth::Tissue tissue) { return look.visible[static_cast<std::size_t>(tissue)]; };
+    const auto isVisible = [&](cases::Tissue tissue) { return look.visible[static_cast<std::size_t>(tissue)]; };
     const auto offerAll = [&](const std::vector<Static>& meshes) {
         for (const Static& s : meshes)
             if (isVisible(s.tissue)) offer(s.mesh);
@@ -197,7 +197,7 @@ const std::vector<const PooledMesh*>& Scene::visible(const Look& look, Detail de
             : core::Vec3(toothBounds_.centre().x(), toothBounds_.centre().y(),
                          toothBounds_.max.z() - std::min(kCrownCentreMm, 0.5 * toothBounds_.size().z()));
     for (const Static& s : scenery_) {
-        const bool inTheWay = eyeMm && !toothBounds_.isEmpty() && s.tissue == tooth::Tissue::neighbour &&
+        const bool inTheWay = eyeMm && !toothBounds_.isEmpty() && s.tissue == cases::Tissue::neighbour &&
                               leadsThrough(s.wholeMm, eyeMm->cast<double>(), crown);
         if (isVisible(s.tissue) && !inTheWay) offer(s.mesh);
     }

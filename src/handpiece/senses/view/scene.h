@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "handpiece/base/geometry/triangle_mesh.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/case/case.h"
 #include "handpiece/senses/surface/brick_update.h"
 #include "handpiece/senses/view/mesh_pool.h"
 
@@ -23,9 +23,9 @@ class Scene {
   public:
     void setTooth(const core::Box& bounds);
     void updateBricks(std::span<const surface::BrickUpdate> bricks, bool before);
-    void setMesh(const geometry::TriangleMesh& mesh, tooth::Tissue tissue);
-    void setScenery(std::span<const tooth::Part> parts);
-    void setParts(std::span<const tooth::Part> parts);
+    void setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue);
+    void setScenery(std::span<const cases::Part> parts);
+    void setParts(std::span<const cases::Part> parts);
 
     [[nodiscard]] const core::Box& toothBounds() const noexcept { return toothBounds_; }
     /// All that may be seen, scenery too.
@@ -59,13 +59,13 @@ class Scene {
         bool isCut = false;  ///< `now` is not `before`, which then owns its own range
     };
     struct Static {
-        tooth::Tissue tissue;
+        cases::Tissue tissue;
         PooledMesh mesh;
         core::Box wholeMm;  ///< of the part that it is a piece of
     };
     void put(const surface::BrickUpdate& update, bool before);
     void drop(std::vector<Static>& meshes);
-    void add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, tooth::Tissue tissue);
+    void add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cases::Tissue tissue);
     void note(const PooledMesh& mesh);
     void changeAll();
     void measure();

@@ -15,7 +15,7 @@ using gl::Vec4f;
 constexpr float kOcclusionMm = 1.5f;
 constexpr int kShadowMapSize = 2048;
 // A strip is higher than occlusion reaches: its neighbours are put right by the one after it.
-constexpr int kStrips = 8, kLeastRows = 112;
+constexpr int kStrips = 8, kMinRows = 112;
 constexpr double kCrownMm = 7.0;  // from the neck to the tips: a first molar's is 7.5 mm high [R]
 
 bool sameLook(Look a, Look b) {
@@ -48,7 +48,7 @@ Vec3f plain(const std::array<std::uint8_t, 3>& c) {
 
 int visibleBits(const Look& look) {
     int bits = 1;  // a surface without tissues is always seen
-    for (std::size_t i = 1; i < tooth::kTissueCount; ++i)
+    for (std::size_t i = 1; i < cases::kTissueCount; ++i)
         bits |= look.visible[i] ? 1 << i : 0;
     return bits;
 }
@@ -61,17 +61,17 @@ void setScissor(const PixelRect& r) {
 std::array<Vec4f, kKinds> materials() {
     std::array<Vec4f, kKinds> m;
     m.fill(Vec4f(0.15f, 0.25f, 0.8f, 0.2f));
-    const auto set = [&](tooth::Tissue tissue, const Vec4f& value) { m[static_cast<std::size_t>(tissue)] = value; };
-    set(tooth::Tissue::none, {0.22f, 0.6f, 1.3f, 0.5f});
-    set(tooth::Tissue::enamel, {0.22f, 0.85f, 1.6f, 1.0f});
-    set(tooth::Tissue::neighbour, {0.22f, 0.80f, 1.5f, 1.0f});
-    set(tooth::Tissue::dentine, {0.12f, 0.38f, 0.8f, 0.4f});
-    set(tooth::Tissue::cementum, {0.12f, 0.35f, 0.7f, 0.3f});
-    set(tooth::Tissue::pulp, {0.30f, 0.75f, 1.2f, 0.8f});
-    set(tooth::Tissue::caries, {0.05f, 0.28f, 0.6f, 0.1f});
-    set(tooth::Tissue::gum, {0.35f, 0.50f, 1.1f, 0.9f});
-    set(tooth::Tissue::bone, {0.15f, 0.20f, 0.5f, 0.3f});
-    set(tooth::Tissue::restoration, {0.05f, 0.8f, 1.5f, 0.0f});
+    const auto set = [&](cases::Tissue tissue, const Vec4f& value) { m[static_cast<std::size_t>(tissue)] = value; };
+    set(cases::Tissue::none, {0.22f, 0.6f, 1.3f, 0.5f});
+    set(cases::Tissue::enamel, {0.22f, 0.85f, 1.6f, 1.0f});
+    set(cases::Tissue::neighbour, {0.22f, 0.80f, 1.5f, 1.0f});
+    set(cases::Tissue::dentine, {0.12f, 0.38f, 0.8f, 0.4f});
+    set(cases::Tissue::cementum, {0.12f, 0.35f, 0.7f, 0.3f});
+    set(cases::Tissue::pulp, {0.30f, 0.75f, 1.2f, 0.8f});
+    set(cases::Tissue::caries, {0.05f, 0.28f, 0.6f, 0.1f});
+    set(cases::Tissue::gum, {0.35f, 0.50f, 1.1f, 0.9f});
+    set(cases::Tissue::bone, {0.15f, 0.20f, 0.5f, 0.3f});
+    set(cases::Tissue::restoration, {0.05f, 0.8f, 1.5f, 0.0f});
     m[kInsideKind] = {0.3f, 0.0f, 0.5f, 0.0f};
     return m;
 }
@@ -79,8 +79,8 @@ std::array<Vec4f, kKinds> materials() {
 std::array<Vec3f, kKinds> palette(Palette which) {
     std::array<Vec3f, kKinds> colours;
     colours.fill(Vec3f(0.5f, 0.0f, 0.5f));
-    for (std::size_t i = 0; i < tooth::kTissueCount; ++i)
-        colours[i] = linear(colourOf(static_cast<tooth::Tissue>(i), which));
+    for (std::size_t i = 0; i < cases::kTissueCount; ++i)
+        colours[i] = linear(colourOf(static_cast<cases::Tissue>(i), which));
     // A surface that is of no tissue is shown as plaster is.
     colours[0] = Vec3f(0.66f, 0.62f, 0.54f);
     colours[kInsideKind] = Vec3f(0.16f, 0.115f, 0.075f);
@@ -157,7 +157,7 @@ ToothLayer::Drawn ToothLayer::update(Shaders& shaders, Scene& scene, const Secti
     epoch_ = scene.epoch();
     changesSeen_ = changes.size();
 
-    const int begin = nextRow_, rows = std::max(whole.y1 / kStrips, kLeastRows);
+    const int begin = nextRow_, rows = std::max(whole.y1 / kStrips, kMinRows);
     nextRow_ = inStrips ? std::min(whole.y1, begin + rows) : whole.y1;
     Drawn result;
     result.all = nextRow_ - begin == whole.y1;
@@ -225,7 +225,7 @@ std::size_t ToothLayer::drawSurface(Shaders& shaders, Scene& scene, const Sectio
         glEnable(GL_CLIP_DISTANCE1);
     }
     // The inside can be seen where something is cut away or left out.
-    const bool open = look.cutAway.has_value() || visibleBits(look) != (1 << tooth::kTissueCount) - 1;
+    const bool open = look.cutAway.has_value() || visibleBits(look) != (1 << cases::kTissueCount) - 1;
     if (open) {
         glDisable(GL_CULL_FACE);
     } else {

@@ -6,12 +6,12 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/instrument/fillet.h"
-#include "handpiece/tick/contact/exact_depth.h"
-#include "handpiece/tick/contact/field_depth.h"
-#include "handpiece/tick/contact/live_field.h"
-#include "handpiece/tick/contact/outline_search.h"
-#include "handpiece/tick/contact/ring_sensor.h"
-#include "handpiece/tick/contact/sheet_search.h"
+#include "handpiece/tick/contact/exact/exact_depth.h"
+#include "handpiece/tick/contact/exact/off_axis_medial_search.h"
+#include "handpiece/tick/contact/exact/outline_search.h"
+#include "handpiece/tick/contact/sampled/field_depth.h"
+#include "handpiece/tick/contact/sampled/live_field.h"
+#include "handpiece/tick/contact/sampled/surface_sampler.h"
 
 namespace handpiece::contact {
 
@@ -26,7 +26,7 @@ constexpr double kFeelerFilletVoxels = 1.0;
 /// Between its nodes the field of a round wall stands in by h^2 / 8 r at most: a bur in its own cavity is given that
 /// and half as much again, or bumps of a micron would wedge it. r is taken as half the bur's radius.
 constexpr double kSlackShare = 1.5 / 8.0;
-constexpr double kLeastSlackMm = 0.0015;  // a proxy rests up to a micron inside
+constexpr double kMinSlackMm = 0.0015;  // a proxy rests up to a micron inside
 constexpr std::size_t kSpineBalls = 8;
 
 class FieldMethod final : public Method {
@@ -45,11 +45,11 @@ class FieldMethod final : public Method {
           feeler_(cut_ ? instrument::filleted(*bur_, kFeelerFilletVoxels * live_.field.settings().voxelMm) : *bur_),
           rings_(live_, feeler_, core::simdLevel()),
           sharpRings_(feeler_.profile().pieces.size() != bur_->profile().pieces.size()
-                          ? std::make_unique<RingSensor>(live_, *bur_, core::simdLevel())
+                          ? std::make_unique<SurfaceSampler>(live_, *bur_, core::simdLevel())
                           : nullptr),
           field_(live_, feeler_, core::simdLevel()),
-          slackMm_(cut_ ? std::max(kLeastSlackMm, kSlackShare * live_.field.settings().voxelMm *
-                                                      live_.field.settings().voxelMm / (0.5 * bur_->maxRadiusMm()))
+          slackMm_(cut_ ? std::max(kMinSlackMm, kSlackShare * live_.field.settings().voxelMm *
+                                                    live_.field.settings().voxelMm / (0.5 * bur_->maxRadiusMm()))
                         : 0.0),
           farthestMm_(std::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {
         for (const instrument::MedialCurve& curve : bur_->medialAxis())
@@ -112,12 +112,12 @@ class FieldMethod final : public Method {
         Bearing sharp;
         sharpRings_->bearing(burInTooth, direction, leadMm, leastRadiusMm, sharp);
         double rounded = 0.0, own = 0.0;
-        for (std::size_t t = 0; t < tooth::kTissueCount; ++t) {
+        for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
             rounded += out.resistanceMm[t];
             own += sharp.resistanceMm[t];
         }
         const double share = own > 0.0 ? std::clamp((rounded / own - 0.2) / 0.3, 0.0, 1.0) : 1.0;
-        for (std::size_t t = 0; t < tooth::kTissueCount; ++t) {
+        for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
             out.areaMm2[t] += (1.0 - share) * (sharp.areaMm2[t] - out.areaMm2[t]);
             out.resistanceMm[t] += (1.0 - share) * (sharp.resistanceMm[t] - out.resistanceMm[t]);
             out.tangentMm[t] += (1.0 - share) * (sharp.tangentMm[t] - out.tangentMm[t]);
@@ -216,12 +216,12 @@ class FieldMethod final : public Method {
     ExactSurface surface_;
     OutlineSearch outline_;
     AxisSearch axis_;
-    SheetSearch sheets_;
+    OffAxisMedialSearch sheets_;
     instrument::Bur feeler_;  ///< the bur as the field is felt with it
-    RingSensor rings_;
+    SurfaceSampler rings_;
     /// With the bur's edges as they are, where the feeler's are not: a sharp rim on a slope bears, and cuts, before the
     /// feeler does.
-    std::unique_ptr<RingSensor> sharpRings_;
+    std::unique_ptr<SurfaceSampler> sharpRings_;
     FieldDepth field_;
     std::vector<instrument::MedialBall> spine_;  ///< some balls of the bur's axis
     double slackMm_;                             ///< of the bur in its own cavity

@@ -12,7 +12,7 @@
 #include "handpiece/base/core/fixed_vector.h"
 #include "handpiece/base/core/realtime.h"
 #include "handpiece/base/core/vec.h"
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 
 namespace handpiece::contact {
 
@@ -32,7 +32,7 @@ struct Depth {
     double depthMm = -std::numeric_limits<double>::infinity();
     core::Vec3 normal = core::Vec3::Zero();        ///< unit, out of the tooth; zero beyond reach
     core::Vec3 toothPointMm = core::Vec3::Zero();  ///< the surface point of the tooth that decides
-    tooth::Tissue tissue = tooth::Tissue::none;    ///< at that point
+    cases::Tissue tissue = cases::Tissue::none;    ///< at that point
     Status status = Status::beyondReach;
     /// By how much the surface here may seem nearer than it is, in constraints() as well: zero where it is exact. A
     /// bur that is held off by more would hang in its own cavity.
@@ -46,7 +46,7 @@ struct Patch {
     double areaMm2 = 0.0;
     double maxDepthMm = 0.0;     ///< of its points, inside the tooth
     double pressureShare = 0.0;  ///< of all patches, sums to 1: sum of area x s, s = max(0, margin - phiT)
-    tooth::Tissue tissue = tooth::Tissue::none;  ///< that carries most of its pressure
+    cases::Tissue tissue = cases::Tissue::none;  ///< that carries most of its pressure
 };
 inline constexpr double kContactMarginMm = 0.02;
 inline constexpr std::size_t kMaxPatches = 16;
@@ -54,7 +54,7 @@ inline constexpr std::size_t kMaxPatches = 16;
 struct PatchSet {
     core::FixedVector<Patch, kMaxPatches> patches;
     double areaMm2 = 0.0;                                   ///< of all
-    std::array<double, tooth::kTissueCount> tissueShare{};  ///< pressure share by tissue, sums to 1 in contact
+    std::array<double, cases::kTissueCount> tissueShare{};  ///< pressure share by tissue, sums to 1 in contact
     Status status = Status::ok;
 };
 
@@ -64,7 +64,7 @@ struct Constraint {
     core::Vec3 normal = core::Vec3::Zero();   ///< unit, out of the tooth
     double gapMm = 0.0;                       ///< signed distance of the bur's point there; negative inside
     core::Vec3 pointMm = core::Vec3::Zero();  ///< where on the bur, tooth frame
-    tooth::Tissue tissue = tooth::Tissue::none;
+    cases::Tissue tissue = cases::Tissue::none;
 };
 inline constexpr std::size_t kMaxConstraints = 96;
 using ConstraintSet = core::FixedVector<Constraint, kMaxConstraints>;
@@ -74,10 +74,10 @@ using ConstraintSet = core::FixedVector<Constraint, kMaxConstraints>;
 /// cosine between the bur's outward normal and the direction, rho: distance from the bur's axis, at least
 /// `leastRadiusMm`.
 struct Bearing {
-    std::array<double, tooth::kTissueCount> areaMm2{};  ///< sum of a w c
-    std::array<double, tooth::kTissueCount>
+    std::array<double, cases::kTissueCount> areaMm2{};  ///< sum of a w c
+    std::array<double, cases::kTissueCount>
         resistanceMm{};  ///< sum of a w c^2 / rho: load over feed is this / (K omega)
-    std::array<core::Vec3, tooth::kTissueCount>
+    std::array<core::Vec3, cases::kTissueCount>
         tangentMm{};  ///< sum of a w c t / rho, t the unit direction in which the turning point moves
     Status status = Status::ok;
 };

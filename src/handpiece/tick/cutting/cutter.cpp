@@ -15,9 +15,9 @@ using core::Vec3;
 namespace {
 
 /// The cutter's lead over the proxy that is carried to the next tick; a sharp rim needs most of it.
-constexpr double kMostLeadVoxels = 1.0;
+constexpr double kMaxLeadVoxels = 1.0;
 /// The proxy may rest this far inside what the cutter has left: its own tolerance and the clearance that it is given.
-constexpr double kSlackVoxels = 0.12, kLeastSlackMm = 0.004;
+constexpr double kSlackVoxels = 0.12, kMinSlackMm = 0.004;
 
 /// What the bearing's tissues say together, each with the weight 1 / K.
 struct Resistance {
@@ -30,24 +30,25 @@ struct Resistance {
 
 struct Cutter::State {
     State(std::shared_ptr<tooth::CutField> cutField, std::shared_ptr<const instrument::Bur> theBur,
-          const instrument::Ability& theAbility, const tooth::TissueTable& tissues, const Settings& theSettings)
+          const instrument::CuttingParameters& theCuttingParameters, const cases::TissueTable& tissues,
+          const Settings& theSettings)
         : field(std::move(cutField)),
           bur(std::move(theBur)),
-          ability(theAbility),
+          cuttingParameters(theCuttingParameters),
           settings(theSettings),
           sweeper(*field, *bur, core::simdLevel()),
-          leastRadiusMm(ability.centreRadius * bur->maxRadiusMm()),
-          mostLeadMm(kMostLeadVoxels * field->field().settings().voxelMm),
-          slackMm(std::max(kLeastSlackMm, kSlackVoxels * field->field().settings().voxelMm)) {
-        for (std::size_t t = 0; t < tooth::kTissueCount; ++t)
-            cuttingMm2PerN[t] = ability.cutting * tissues.rows[t].cuttingMm2PerN;
+          leastRadiusMm(cuttingParameters.centreRadius * bur->maxRadiusMm()),
+          mostLeadMm(kMaxLeadVoxels * field->field().settings().voxelMm),
+          slackMm(std::max(kMinSlackMm, kSlackVoxels * field->field().settings().voxelMm)) {
+        for (std::size_t t = 0; t < cases::kTissueCount; ++t)
+            cuttingMm2PerN[t] = cuttingParameters.cutting * tissues.rows[t].cuttingMm2PerN;
     }
 
     [[nodiscard]] Resistance resistanceOf(const contact::Bearing& told) const noexcept {
         Resistance sum;
-        for (std::size_t t = 0; t < tooth::kTissueCount; ++t)
+        for (std::size_t t = 0; t < cases::kTissueCount; ++t)
             sum.held = sum.held || (cuttingMm2PerN[t] <= 0.0 && told.resistanceMm[t] > 0.0);
-        for (std::size_t t = 0; t < tooth::kTissueCount; ++t) {
+        for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
             const bool canBeCut = cuttingMm2PerN[t] > 0.0;
             if (sum.held == canBeCut) continue;
             const double weight = canBeCut ? 1.0 / cuttingMm2PerN[t] : 1.0;
@@ -83,7 +84,7 @@ struct Cutter::State {
         method.bearing(input.proxyInTooth, direction, lead, leastRadiusMm, bearing);
         const Resistance against = resistanceOf(bearing);
         if (against.resistancePerK > 0.0) {
-            const double grip = ability.frictionCutting * loadN / against.resistancePerK;
+            const double grip = cuttingParameters.frictionCutting * loadN / against.resistancePerK;
             result.loadTorqueNmm = grip * against.areaPerK;
             if (input.speedRadS > 0.0) result.tangentialN = -grip * against.tangentPerK;
         }
@@ -93,8 +94,10 @@ struct Cutter::State {
         }
         double feed = 0.0;
         if (against.resistancePerK > 0.0 && !against.held) {
-            const double most = ability.chipMm * ability.edges * input.speedRadS / (2.0 * std::numbers::pi);
-            feed = std::min(std::min(loadN, ability.loadCapN) * input.speedRadS / against.resistancePerK, most);
+            const double most =
+                cuttingParameters.chipMm * cuttingParameters.edges * input.speedRadS / (2.0 * std::numbers::pi);
+            feed =
+                std::min(std::min(loadN, cuttingParameters.loadCapN) * input.speedRadS / against.resistancePerK, most);
         }
         result.feedMmS = feed;
         if (!(feed > 0.0)) {
@@ -109,31 +112,32 @@ struct Cutter::State {
 
     std::shared_ptr<tooth::CutField> field;
     std::shared_ptr<const instrument::Bur> bur;
-    instrument::Ability ability;
+    instrument::CuttingParameters cuttingParameters;
     Settings settings;
     Sweeper sweeper;
     double leastRadiusMm, mostLeadMm, slackMm;
     Vec3 cutterMm = Vec3::Zero();  // where the cutter was when it last cut
     bool hasCutter = false;
-    std::array<double, tooth::kTissueCount> cuttingMm2PerN{};
+    std::array<double, cases::kTissueCount> cuttingMm2PerN{};
     contact::Bearing bearing;
     CutResult result;
 };
 
 Cutter::Cutter(std::shared_ptr<tooth::CutField> field, std::shared_ptr<const instrument::Bur> bur,
-               const instrument::Ability& ability, const tooth::TissueTable& tissues, const Settings& settings)
-    : state_(std::make_unique<State>(std::move(field), std::move(bur), ability, tissues, settings)) {
+               const instrument::CuttingParameters& cuttingParameters, const cases::TissueTable& tissues,
+               const Settings& settings)
+    : state_(std::make_unique<State>(std::move(field), std::move(bur), cuttingParameters, tissues, settings)) {
     const auto notBelowZero = [&](double value, const char* what) {
         if (std::isfinite(value) && value >= 0.0) return;
-        throw core::Error(std::string(what) + " is not a number of zero or more", "cutting ability " + ability.name,
-                          "correct the ability");
+        throw core::Error(std::string(what) + " is not a number of zero or more",
+                          "cutting ability " + cuttingParameters.name, "correct the ability");
     };
-    notBelowZero(ability.cutting, "cutting");
-    notBelowZero(ability.loadCapN, "load cap");
-    notBelowZero(ability.frictionCutting, "friction");
-    notBelowZero(ability.chipMm, "chip");
-    notBelowZero(ability.edges, "number of edges");
-    notBelowZero(ability.centreRadius, "centre radius");
+    notBelowZero(cuttingParameters.cutting, "cutting");
+    notBelowZero(cuttingParameters.loadCapN, "load cap");
+    notBelowZero(cuttingParameters.frictionCutting, "friction");
+    notBelowZero(cuttingParameters.chipMm, "chip");
+    notBelowZero(cuttingParameters.edges, "number of edges");
+    notBelowZero(cuttingParameters.centreRadius, "centre radius");
 }
 
 Cutter::~Cutter() = default;

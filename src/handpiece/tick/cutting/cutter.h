@@ -7,8 +7,8 @@
 
 #include "handpiece/base/core/realtime.h"
 #include "handpiece/base/core/vec.h"
-#include "handpiece/model/instrument/ability.h"
 #include "handpiece/model/instrument/bur.h"
+#include "handpiece/model/instrument/cutting_parameters.h"
 #include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/tick/contact/method.h"
 
@@ -43,7 +43,8 @@ class Cutter {
         bool fullRemoval = false;  ///< take away all that the device's bur sweeps, whatever the load
     };
     Cutter(std::shared_ptr<tooth::CutField> field, std::shared_ptr<const instrument::Bur> bur,
-           const instrument::Ability& ability, const tooth::TissueTable& tissues, const Settings& settings);
+           const instrument::CuttingParameters& cuttingParameters, const cases::TissueTable& tissues,
+           const Settings& settings);
     ~Cutter();
     Cutter(const Cutter&) = delete;
     Cutter& operator=(const Cutter&) = delete;

@@ -331,14 +331,14 @@ float highest(const SweepPass& pass, const SweepBrick& brick) {
 
 void makeOffsets(const std::int32_t (&axes)[3][3], std::int32_t* const (&offset)[3]) {
     // Rows of nine are written as whole vectors; what is too much the next row overwrites.
-    constexpr int kRowParts = (tooth::kBrickNodes + kLanes - 1) / kLanes;
+    constexpr int kRowParts = (field::kBrickNodes + kLanes - 1) / kLanes;
     for (int k = 0; k < 3; ++k) {
         alignas(64) std::int32_t along[kRowParts * kLanes];
         for (int x = 0; x < kRowParts * kLanes; ++x)
             along[x] = x * axes[0][k];
         std::int32_t* out = offset[k];
-        for (int z = 0; z < tooth::kBrickNodes; ++z)
-            for (int y = 0; y < tooth::kBrickNodes; ++y, out += tooth::kBrickNodes) {
+        for (int z = 0; z < field::kBrickNodes; ++z)
+            for (int y = 0; y < field::kBrickNodes; ++y, out += field::kBrickNodes) {
                 const Ints start = splat(y * axes[1][k] + z * axes[2][k]);
                 for (int part = 0; part < kRowParts; ++part) {
                     const Ints places = load(along + part * kLanes) + start;

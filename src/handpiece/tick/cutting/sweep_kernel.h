@@ -9,8 +9,8 @@
 
 #include <cstdint>
 
-#include "handpiece/model/tooth/field_view.h"
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
+#include "handpiece/model/field/field_view.h"
 
 namespace handpiece::cutting {
 
@@ -38,7 +38,7 @@ struct SweepPass {
     float perMm, half;  ///< a value v counts for half - perMm v quanta, rounded, at least 0, at most kSweepQuanta
     float showsMm;      ///< a rise shows when it comes from below this to above minus this
 };
-inline constexpr int kSweepNodes = tooth::kBrickValues;
+inline constexpr int kSweepNodes = field::kBrickValues;
 /// Nodes are looked at in steps of sixteen; the last step reaches back.
 inline constexpr int kSweepSteps = (kSweepNodes + 15) / 16;
 inline constexpr int kSweepDues = 48;   ///< with room to read whole vectors; beyond the steps kSweepMostWay

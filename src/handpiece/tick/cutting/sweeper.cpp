@@ -10,9 +10,9 @@
 namespace handpiece::cutting {
 
 using core::Vec3;
-using tooth::kBrickCells;
-using tooth::kBrickNodes;
-using tooth::kBrickValues;
+using field::kBrickCells;
+using field::kBrickNodes;
+using field::kBrickValues;
 
 namespace {
 
@@ -24,7 +24,7 @@ constexpr double kPiecesVoxels = 1.0;
 /// outline leaves in voxels; more on a way longer than kFastMm.
 constexpr double kScallopMm = 1e-3, kNotchVoxels = 0.04, kFastNotchVoxels = 0.2, kFastMm = 0.1;
 /// A way of metres is no way of a hand: it is cut at so many poses.
-constexpr double kMostSteps = 512.0;
+constexpr double kMaxSteps = 512.0;
 /// Of angles round the bur, where a corner's way is looked at.
 constexpr double kCosines[] = {1.0, 0.9238795325112867,  0.7071067811865476,  0.3826834323650898,
                                0.0, -0.3826834323650898, -0.7071067811865476, -0.9238795325112867,
@@ -101,7 +101,7 @@ Sweeper::Sweeper(tooth::CutField& field, const instrument::Bur& bur, core::SimdL
         nodes_->owned[i] = own ? -1 : 0;
     }
     simple_.list(~std::uint64_t{0} >> (64 - std::min<std::size_t>(64, simpleList_.size())), simpleList_.data());
-    const tooth::FieldView view = field.field().view();
+    const field::FieldView view = field.field().view();
     const auto bricks = static_cast<std::size_t>(view.bricks[0]) * static_cast<std::size_t>(view.bricks[1]) *
                         static_cast<std::size_t>(view.bricks[2]);
     const auto& pieces = bur.profile().pieces;
@@ -133,7 +133,7 @@ Sweeper::Sweeper(tooth::CutField& field, const instrument::Bur& bur, core::SimdL
 }
 
 Sweeper::Frame Sweeper::frameOf(const core::Pose& pose) noexcept {
-    const tooth::FieldView view = field_.field().view();
+    const field::FieldView view = field_.field().view();
     const core::Mat3 rotation = pose.orientation.toRotationMatrix();
     Frame frame;
     Vec3 away;
@@ -165,7 +165,7 @@ Sweeper::Frame Sweeper::frameOf(const core::Pose& pose) noexcept {
 
 bool Sweeper::rangeNear(const core::Pose& pose, double reachMm, std::int32_t (&low)[3],
                         std::int32_t (&high)[3]) const noexcept {
-    const tooth::FieldView view = field_.field().view();
+    const field::FieldView view = field_.field().view();
     const Vec3 axis = pose.orientation * Vec3::UnitZ();
     for (int k = 0; k < 3; ++k) {
         const double side = radiusMm_ * std::sqrt(std::max(0.0, 1.0 - axis[k] * axis[k])) + reachMm;
@@ -280,7 +280,7 @@ void Sweeper::cutAt(const core::Pose& pose, Outcome& outcome) noexcept {
     const Frame frame = frameOf(pose);
     std::int32_t* const offsets[3] = {nodes_->offset[0], nodes_->offset[1], nodes_->offset[2]};
     kernels_.makeOffsets(frame.axes, offsets);
-    const tooth::FieldView view = field_.field().view();
+    const field::FieldView view = field_.field().view();
     for (std::int32_t bz = low[2]; bz <= high[2]; ++bz)
         for (std::int32_t by = low[1]; by <= high[1]; ++by) {
             const std::int64_t node[3] = {std::int64_t{kBrickCells} * low[0], std::int64_t{kBrickCells} * by,
@@ -312,7 +312,7 @@ void Sweeper::raiseCoarse(const core::Pose& pose, bool all) noexcept {
     std::int32_t low[3], high[3];
     if (!rangeNear(pose, kCoarseReachMm, low, high)) return;
     const Frame frame = frameOf(pose);
-    const tooth::FieldView view = field_.field().view();
+    const field::FieldView view = field_.field().view();
     for (; coarseRow_ < until; ++coarseRow_) {
         const std::int64_t height = std::int64_t{coarseHigh_[1]} - coarseLow_[1] + 1;
         const std::int64_t by = coarseLow_[1] + coarseRow_ % height, bz = coarseLow_[2] + coarseRow_ / height;
@@ -356,13 +356,13 @@ double Sweeper::stepsBetween(const core::Pose& from, const core::Pose& to, doubl
     const Vec3 axis = from.orientation * Vec3::UnitZ();
     const double sideways = (way - way.dot(axis) * axis).norm() + turned;
     const double steps = std::max(std::ceil(sideways / sidewaysStepMm_), std::ceil(movedMm / alongStepMm_));
-    if (corners_.empty()) return std::min(steps, kMostSteps);
+    if (corners_.empty()) return std::min(steps, kMaxSteps);
     const double notch = (movedMm > kFastMm ? kFastNotchVoxels : kNotchVoxels) * voxelMm_;
     // A turn moves points in all directions: as bad as it gets at a right angle.
     const bool onlyTop = corners_.size() == 1 && corners_[0].atTop;
     double left = 0.5 * turned * (onlyTop ? kNotchVoxels / kFastNotchVoxels : 1.0);
     if (shifted > 0.0) left += shifted * notchOf(from.orientation.conjugate() * (way / shifted));
-    return std::min(std::max(steps, std::ceil(left / notch)), kMostSteps);
+    return std::min(std::max(steps, std::ceil(left / notch)), kMaxSteps);
 }
 
 void Sweeper::setTravel(double mm) noexcept {
@@ -379,8 +379,8 @@ void Sweeper::forget() noexcept {
 Sweeper::Outcome Sweeper::sweepTo(const core::Pose& to) noexcept {
     Outcome outcome;
     quanta_.fill(0);
-    constexpr double kMostMm = 0.5 * static_cast<double>(kSweepMostWay) * static_cast<double>(kSweepWayMm);
-    if (travelMm_ > kMostMm) forget();
+    constexpr double kMaxMm = 0.5 * static_cast<double>(kSweepMostWay) * static_cast<double>(kSweepWayMm);
+    if (travelMm_ > kMaxMm) forget();
     const double before = travelMm_;
     double moved = 0.0;
     const double steps = hasPose_ ? stepsBetween(pose_, to, moved) : 1.0;
@@ -398,7 +398,7 @@ Sweeper::Outcome Sweeper::sweepTo(const core::Pose& to) noexcept {
     pose_ = to;
     hasPose_ = true;
     const double quantumMm3 = voxelMm_ * voxelMm_ * voxelMm_ / kSweepQuanta;
-    for (std::size_t t = 0; t < tooth::kTissueCount; ++t)
+    for (std::size_t t = 0; t < cases::kTissueCount; ++t)
         outcome.removedMm3[t] = static_cast<double>(quanta_[t]) * quantumMm3;
     field_.addRemoved(outcome.removedMm3);
     return outcome;

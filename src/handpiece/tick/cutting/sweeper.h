@@ -85,7 +85,7 @@ class Sweeper {
     std::vector<Dues> dues_;             ///< by stored brick
     std::vector<std::uint8_t> uniform_;  ///< by dense brick: its tissue, kMixed, or kUnknown
     SweepPass pass_{}, simplePass_{};
-    std::array<std::int64_t, tooth::kTissueCount> quanta_{};
+    std::array<std::int64_t, cases::kTissueCount> quanta_{};
     core::Pose pose_;
     bool hasPose_ = false;
     double travelMm_ = 0.0;

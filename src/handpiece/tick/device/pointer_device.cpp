@@ -16,17 +16,17 @@ namespace {
 using core::Quat;
 using core::Vec3;
 
-constexpr double kKgPerUnit = 1e3;       // 1 N s2/mm is 1000 kg
-constexpr double kMostPeriodS = 0.05;    // a machine that slept longer costs no more steps than this
-constexpr double kMostLoadShare = 0.95;  // of the device's largest force: the tooth must be able to hold the hand
-constexpr double kMostPlaceMm = 1e4;     // farther away nobody points
-constexpr double kTurnS = 0.01;          // with which the hand turns to where it is asked to
-constexpr double kOutFirstMm = 0.5;      // deeper along the way than where it is to be it does not go across yet
-constexpr double kLeastN = 1e-9;         // a load that has a direction
+constexpr double kKgPerUnit = 1e3;      // 1 N s2/mm is 1000 kg
+constexpr double kMaxPeriodS = 0.05;    // a machine that slept longer costs no more steps than this
+constexpr double kMaxLoadShare = 0.95;  // of the device's largest force: the tooth must be able to hold the hand
+constexpr double kMaxPlaceMm = 1e4;     // farther away nobody points
+constexpr double kTurnS = 0.01;         // with which the hand turns to where it is asked to
+constexpr double kOutFirstMm = 0.5;     // deeper along the way than where it is to be it does not go across yet
+constexpr double kMinN = 1e-9;          // a load that has a direction
 // The tip is held under the pointer as by a spring so many times stiffer than what lies between hand and tip, through a
 // low pass; what is then left goes slowly, or a bur that cuts would swing round its place.
 constexpr double kTipGain = 20.0, kTipS = 0.025, kSettleS = 0.4;
-constexpr double kMostShare = 0.8;  // of an error, in one tick
+constexpr double kMaxShare = 0.8;  // of an error, in one tick
 
 /// What the hand is asked to do, once it has been found to make sense.
 struct Wish {
@@ -40,7 +40,7 @@ struct Wish {
 };
 
 bool isPlace(const double (&v)[3]) noexcept {
-    return std::abs(v[0]) < kMostPlaceMm && std::abs(v[1]) < kMostPlaceMm && std::abs(v[2]) < kMostPlaceMm;
+    return std::abs(v[0]) < kMaxPlaceMm && std::abs(v[1]) < kMaxPlaceMm && std::abs(v[2]) < kMaxPlaceMm;
 }
 
 /// False for what is not finite or no rotation; `wish` then stays as it is.
@@ -52,7 +52,7 @@ bool understand(const PointerTarget& target, double mostLoadN, Wish& wish) noexc
     const Vec3 way(target.way[0], target.way[1], target.way[2]);
     const double way2 = way.squaredNorm();
     if (way2 != 0.0 && !(std::abs(way2 - 1.0) < 1e-6)) return false;
-    if (!(std::abs(target.farMm) < kMostPlaceMm)) return false;
+    if (!(std::abs(target.farMm) < kMaxPlaceMm)) return false;
     wish.positionMm = Vec3(target.positionMm[0], target.positionMm[1], target.positionMm[2]);
     wish.orientation = Quat(q[0], q[1], q[2], q[3]).normalized();
     wish.pedal = std::clamp(target.pedal, 0.0, 1.0);
@@ -126,7 +126,7 @@ PointerDevice::PointerDevice(PointerHandSettings settings, std::shared_ptr<Point
     require(settings.liftMm >= 0 && settings.liftMm <= 100, "a lift [mm]", settings.liftMm);
     require(settings.subStepS >= 1e-6 && settings.subStepS <= 1e-3, "a sub-step [s]", settings.subStepS);
     if (mailbox == nullptr) throw core::Error("a pointer device without a mailbox", "pointer device");
-    if (!start.isValid() || start.positionMm.cwiseAbs().maxCoeff() >= kMostPlaceMm)
+    if (!start.isValid() || start.positionMm.cwiseAbs().maxCoeff() >= kMaxPlaceMm)
         throw core::Error("a start that is no pose", "pointer device");
     state_->settings = settings;
     state_->capability = pointerCapability();
@@ -150,11 +150,11 @@ core::Vec3 PointerDevice::appliedForceN() const noexcept {
 Reading PointerDevice::read(double periodS) noexcept {
     State& s = *state_;
     // A pointer that never said anything leaves the hand where it began.
-    if (s.mailbox->hasNews()) (void)understand(s.mailbox->read(), kMostLoadShare * s.capability.maxForceN, s.wish);
+    if (s.mailbox->hasNews()) (void)understand(s.mailbox->read(), kMaxLoadShare * s.capability.maxForceN, s.wish);
     if (s.wish.away && !s.wasAway) s.liftedMm = s.positionMm + s.settings.liftMm * (s.orientation * Vec3::UnitZ());
     s.wasAway = s.wish.away;
     if (s.started && periodS > 0.0) {
-        const double passed = std::min(periodS, kMostPeriodS);
+        const double passed = std::min(periodS, kMaxPeriodS);
         if (!s.wish.frozen && !s.wish.away) s.turn(passed);
         s.begin(s.wish.presses());
         const int steps = std::max(1, static_cast<int>(std::ceil(passed / s.settings.subStepS - 1e-9)));
@@ -259,14 +259,14 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
     const double most = settings.approachMmS * periodS, ahead = left.dot(way) + wish.farMm, allN = pressN.norm();
     const double missing = (wish.loadN - allN) * mmPerN;  // millimetres of it
     const double in = std::min({most, missing, ahead * back - pressN.dot(way) * mmPerN});
-    const double share = 1.0 - std::exp(-periodS / kTipS), gain = std::min(kTipGain, kMostShare / share);
+    const double share = 1.0 - std::exp(-periodS / kTipS), gain = std::min(kTipGain, kMaxShare / share);
     settledMm = heldTo(across(settledMm) + gain * (1.0 - std::exp(-periodS / kSettleS)) * beside, wish.loadN / k);
     // With the pointer, as the uncut tooth rises and falls under it; and on until the tip is under it.
     const Vec3 over = across(tipMm - positionMm);
     Vec3 step = (std::min(way.dot(moved), most) + in) * way +
                 (wish.isLed ? Vec3(back * over) : Vec3(across(moved) + share * (over + gain * beside + settledMm)));
     // Against the tooth no farther than the load goes, whichever way.
-    if (allN > kLeastN) step -= std::max(0.0, step.dot(pressN) / allN - missing) / allN * pressN;
+    if (allN > kMinN) step -= std::max(0.0, step.dot(pressN) / allN - missing) / allN * pressN;
     step = heldTo(step, settings.travelMmS * periodS);
     positionMm += step;
     velocityMmS = step / periodS;

@@ -10,10 +10,10 @@ namespace handpiece::force {
 namespace {
 
 constexpr double kApartS = 0.02;    // a bur that chatters on the surface does not strike it anew each time
-constexpr double kLeastMmS = 3.0;   // slower than this it is laid down, not struck
+constexpr double kMinMmS = 3.0;     // slower than this it is laid down, not struck
 constexpr double kNothingN = 1e-3;  // below it the sinusoid has ended
-// In the order of tooth::Tissue.
-constexpr std::array<Knock, tooth::kTissueCount> kKnocks{{
+// In the order of cases::Tissue.
+constexpr std::array<Knock, cases::kTissueCount> kKnocks{{
     {0.0, 0.0, 0.0},         // none
     {0.010, 300.0, 90.0},    // enamel
     {0.006, 180.0, 120.0},   // dentine
@@ -28,7 +28,7 @@ constexpr std::array<Knock, tooth::kTissueCount> kKnocks{{
 
 }  // namespace
 
-const Knock& knockOf(tooth::Tissue tissue) noexcept {
+const Knock& knockOf(cases::Tissue tissue) noexcept {
     const auto index = static_cast<std::size_t>(tissue);
     return kKnocks[index < kKnocks.size() ? index : 0];
 }
@@ -42,7 +42,7 @@ core::Vec3 ContactTransient::step(const Strike& strike, const ContactTransients&
     const bool struck = apartS_ >= kApartS;
     apartS_ = 0.0;
     const double approachMmS = -strike.velocityMmS.dot(strike.normal);
-    if (struck && settings.on && approachMmS > kLeastMmS) {
+    if (struck && settings.on && approachMmS > kMinMmS) {
         Knock mean;
         double total = 0.0;
         for (std::size_t i = 0; i < kKnocks.size(); ++i) {

@@ -7,7 +7,7 @@
 
 #include "handpiece/base/core/realtime.h"
 #include "handpiece/base/core/vec.h"
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 #include "handpiece/tick/force/parameters.h"
 
 namespace handpiece::force {
@@ -18,7 +18,7 @@ struct Knock {
     double hz = 0.0;
     double decayPerS = 0.0;
 };
-[[nodiscard]] const Knock& knockOf(tooth::Tissue tissue) noexcept;
+[[nodiscard]] const Knock& knockOf(cases::Tissue tissue) noexcept;
 
 /// A strike starts it, then it runs open loop: f(t) = a v exp(-d t) sin(2 pi f t) along the normal of the strike.
 /// One thread.
@@ -31,8 +31,8 @@ class ContactTransient {
         bool touching = false;
         core::Vec3 normal = core::Vec3::Zero();            ///< out of the tooth, unit
         core::Vec3 velocityMmS = core::Vec3::Zero();       ///< of the bur
-        std::array<double, tooth::kTissueCount> shares{};  ///< of the tissues in the contact; they need not add up
-        tooth::Tissue tissue = tooth::Tissue::none;        ///< for when no share is known
+        std::array<double, cases::kTissueCount> shares{};  ///< of the tissues in the contact; they need not add up
+        cases::Tissue tissue = cases::Tissue::none;        ///< for when no share is known
     };
     /// What to add in this tick. Only a surface that was left for some milliseconds and is met at some speed knocks.
     [[nodiscard]] core::Vec3 step(const Strike& strike, const ContactTransients& settings,

@@ -16,10 +16,10 @@ constexpr double kSlowRpm = 20000.0;                                    // below
 constexpr double kCapN = 1.5;                                           // more load does not shake more
 constexpr double kRubbing = 0.4, kHalfFeedMmS = 0.5;                    // share of a bur that turns without cutting
 constexpr double kTauS = 0.01;                                          // of each of the three low passes
-constexpr double kMostOfRate = 0.45;
+constexpr double kMaxOfRate = 0.45;
 constexpr double kNothingN = 1e-6;
-// In the order of tooth::Tissue.
-constexpr std::array<Hum, tooth::kTissueCount> kHums{{
+// In the order of cases::Tissue.
+constexpr std::array<Hum, cases::kTissueCount> kHums{{
     {0.0, 0.0},   // none
     {0.20, 0.5},  // enamel
     {0.12, 0.3},  // dentine
@@ -34,7 +34,7 @@ constexpr std::array<Hum, tooth::kTissueCount> kHums{{
 
 }  // namespace
 
-const Hum& humOf(tooth::Tissue tissue) noexcept {
+const Hum& humOf(cases::Tissue tissue) noexcept {
     const auto index = static_cast<std::size_t>(tissue);
     return kHums[index < kHums.size() ? index : 0];
 }
@@ -83,8 +83,8 @@ double BurHum::step(const Work& work, const CuttingVibration& settings, double p
     }
     follow(pitch_, std::min(1.0, work.speedRpm / kFullRpm), periodS);
     const double lowHz = lowerHz(), highHz = kUpperTone * lowHz;
-    follow(low_, lowHz < kMostOfRate * rateHz_ ? low : 0.0, periodS);
-    follow(high_, highHz < kMostOfRate * rateHz_ ? high : 0.0, periodS);
+    follow(low_, lowHz < kMaxOfRate * rateHz_ ? low : 0.0, periodS);
+    follow(high_, highHz < kMaxOfRate * rateHz_ ? high : 0.0, periodS);
     if (!(amplitudeN() > kNothingN) && low + high <= 0.0) {
         stop();
         lowTurns_ = highTurns_ = 0.0;

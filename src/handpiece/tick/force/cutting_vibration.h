@@ -7,7 +7,7 @@
 
 #include "handpiece/base/core/realtime.h"
 #include "handpiece/base/core/vec.h"
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 #include "handpiece/tick/force/parameters.h"
 
 namespace handpiece::force {
@@ -17,7 +17,7 @@ struct Hum {
     double nPerN = 0.0;  ///< amplitude for each newton of load, while it is cut
     double grain = 0.0;  ///< 0..1: share of the upper tone; a brittle tissue is coarse
 };
-[[nodiscard]] const Hum& humOf(tooth::Tissue tissue) noexcept;
+[[nodiscard]] const Hum& humOf(cases::Tissue tissue) noexcept;
 
 /// Two tones, 120 to 220 Hz and 1.6 times that, across the bur's shank. Their pitch follows the rotor, whose own
 /// frequency (6.7 kHz) no loop could carry; their amplitudes follow load, tissue and feed, so slowly that starting and
@@ -31,8 +31,8 @@ class BurHum {
         double loadN = 0.0;                                ///< with which the bur presses
         double speedRpm = 0.0;                             ///< of the rotor
         double feedMmS = 0.0;                              ///< speed at which the bur eats into the tooth
-        std::array<double, tooth::kTissueCount> shares{};  ///< of the tissues in the contact
-        tooth::Tissue tissue = tooth::Tissue::none;        ///< for when no share is known
+        std::array<double, cases::kTissueCount> shares{};  ///< of the tissues in the contact
+        cases::Tissue tissue = cases::Tissue::none;        ///< for when no share is known
         double headroomN = 0.0;                            ///< that the device has left
     };
     /// What to add in this tick, along the bur's x axis.

@@ -3,10 +3,10 @@
 
 namespace handpiece::force {
 
-Parameters defaultParameters(const tooth::TissueTable& tissues) {
+Parameters defaultParameters(const cases::TissueTable& tissues) {
     Parameters parameters;
-    for (std::size_t i = 0; i < tooth::kTissueCount; ++i) {
-        const tooth::TissueProperties& t = tissues.rows[i];
+    for (std::size_t i = 0; i < cases::kTissueCount; ++i) {
+        const cases::TissueProperties& t = tissues.rows[i];
         parameters.tissues[i] = {t.stiffnessFraction, t.dampingNSPerMm, t.friction};
     }
     return parameters;

@@ -38,7 +38,7 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     wasWaiting_ = waiting_;
     touch_.proxyInTooth = touch_.deviceInTooth;
     touch_.touching = touch_.depth.depthMm > 0.0;
-    touch_.tissue = touch_.touching ? touch_.depth.tissue : tooth::Tissue::none;
+    touch_.tissue = touch_.touching ? touch_.depth.tissue : cases::Tissue::none;
     touch_.passes = 0;
     touch_.patches = contact::PatchSet{};
     if (fresh && (released || touch_.depth.depthMm > kDeepStartMm)) guard_.fadeIn();
@@ -46,7 +46,7 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     if (waiting_) {
         proxy_.follow(touch_.deviceInTooth);
         touch_.touching = false;
-        touch_.tissue = tooth::Tissue::none;
+        touch_.tissue = cases::Tissue::none;
         return touch_;
     }
     if (parameters_.mode == Mode::penalty) {
@@ -63,10 +63,10 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
         method.patches(touch_.proxyInTooth, touch_.patches);
         smoothShares(method.isCutNear(touch_.proxyInTooth), periodS);
         double most = 0.0;
-        for (std::size_t i = 0; i < tooth::kTissueCount; ++i) {
+        for (std::size_t i = 0; i < cases::kTissueCount; ++i) {
             if (touch_.patches.tissueShare[i] > most) {
                 most = touch_.patches.tissueShare[i];
-                touch_.tissue = static_cast<tooth::Tissue>(i);
+                touch_.tissue = static_cast<cases::Tissue>(i);
             }
         }
     }
@@ -75,10 +75,10 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
 
 void ForceModel::smoothShares(bool isCutNear, double periodS) noexcept {
     // In its own cavity a whole ring of the bur comes from one tissue into another at once.
-    std::array<double, tooth::kTissueCount>& shares = touch_.patches.tissueShare;
+    std::array<double, cases::kTissueCount>& shares = touch_.patches.tissueShare;
     if (isCutNear && wasTouching_) {
         const double news = periodS / (kShareTauS + periodS);
-        for (std::size_t i = 0; i < tooth::kTissueCount; ++i)
+        for (std::size_t i = 0; i < cases::kTissueCount; ++i)
             shares[i] = lastShares_[i] + news * (shares[i] - lastShares_[i]);
     }
     lastShares_ = shares;
@@ -96,7 +96,7 @@ void ForceModel::updateVelocity(const Vec3& positionMm, bool fresh, double perio
 
 ForceModel::KelvinVoigt ForceModel::coupling(const Touch& touch) const noexcept {
     double stiffness = 0.0, damping = 0.0, friction = 0.0, total = 0.0;
-    for (std::size_t i = 0; i < tooth::kTissueCount; ++i) {
+    for (std::size_t i = 0; i < cases::kTissueCount; ++i) {
         const double share = touch.patches.tissueShare[i];
         total += share;
         stiffness += share * parameters_.tissues[i].stiffnessFraction;

@@ -18,7 +18,7 @@ struct Touch {
     core::Pose proxyInTooth;                     ///< the device's pose in penalty mode
     contact::PatchSet patches;                   ///< at the proxy; empty when it does not touch, and in penalty mode
     bool touching = false;                       ///< the proxy is held by the tooth
-    tooth::Tissue tissue = tooth::Tissue::none;  ///< that carries most of the pressure
+    cases::Tissue tissue = cases::Tissue::none;  ///< that carries most of the pressure
     int passes = 0;                              ///< constraint passes of the proxy
 };
 
@@ -87,7 +87,7 @@ class ForceModel {
     core::Vec3 heldForceN_ = core::Vec3::Zero();                                    // when the fault began
     core::Vec3 bristleMm_ = core::Vec3::Zero(), lastProxyMm_ = core::Vec3::Zero();  // of friction
     core::Vec3 tangentialN_ = core::Vec3::Zero();                                   // of the turning bur, smoothed
-    std::array<double, tooth::kTissueCount> lastShares_{};                          // of the tissues in the contact
+    std::array<double, cases::kTissueCount> lastShares_{};                          // of the tissues in the contact
     bool waiting_ = false, wasWaiting_ = false, wasFaulted_ = false, wasTouching_ = false;
 };
 

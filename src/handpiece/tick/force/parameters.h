@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "handpiece/base/core/vec.h"
-#include "handpiece/model/tooth/tissue.h"
+#include "handpiece/model/case/tissue.h"
 #include "handpiece/tick/force/proxy.h"
 
 namespace handpiece::force {
@@ -55,7 +55,7 @@ struct Parameters {
     double dampingMultiplier = 1.0;
     double frictionMultiplier = 1.0;      ///< 0: a wall without friction
     double cuttingForceMultiplier = 1.0;  ///< on the sideways force of the turning bur
-    std::array<TissueFeel, tooth::kTissueCount> tissues{};
+    std::array<TissueFeel, cases::kTissueCount> tissues{};
     double penaltyStiffnessNPerMm = 0.5;  ///< penalty mode, times the multiplier
     double penaltyDampingNSPerMm = 0.002;
     double velocityTauS = 0.005;        ///< low pass of the velocity
@@ -67,7 +67,7 @@ struct Parameters {
     CuttingVibration vibration;    ///< likewise
 };
 /// docs/physics.md#force and #tissues.
-[[nodiscard]] Parameters defaultParameters(const tooth::TissueTable& tissues = tooth::builtInTissues());
+[[nodiscard]] Parameters defaultParameters(const cases::TissueTable& tissues = cases::builtInTissues());
 /// Throws core::Error naming the value that is not finite or out of range.
 void validate(const Parameters& parameters);
 

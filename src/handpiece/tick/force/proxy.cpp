@@ -18,7 +18,7 @@ constexpr double kTrustedStepMm = 0.01;
 // So there the proxy slides little farther in a tick than the device moved, and mends no micron by a hop.
 constexpr double kFollow = 1.25, kCreepMm = 0.001;
 constexpr double kYieldingSlack = 0.2, kFirmSlack = 1e-3;
-constexpr double kLeastReachMm = 0.04;
+constexpr double kMinReachMm = 0.04;
 constexpr double kLeverMm = 5.0;  // a turn moves points of the head by at most this times the angle
 constexpr double kSmallestRadiusMm = 1e-6;
 constexpr double kMaxRestoreMm = 0.5;  // of one pass: gaps farther inside are rough
@@ -149,7 +149,7 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth, con
     // A bur that hardly moves need not look far around itself; steps that want more reach farther pass by pass.
     const double moved = (target - lastDevice_.positionMm).norm() +
                          kLeverMm * deviceInTooth.orientation.angularDistance(lastDevice_.orientation);
-    reachMm_ = std::clamp(4.0 * moved, kLeastReachMm, 2.0 * settings_.maxStepMm);
+    reachMm_ = std::clamp(4.0 * moved, kMinReachMm, 2.0 * settings_.maxStepMm);
     lastDevice_ = deviceInTooth;
     pose_.orientation = deviceInTooth.orientation;
     passes_ = 0;
@@ -157,7 +157,7 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth, con
     const std::uint64_t version = method.toothVersion();
     if (version != toothVersion_) memory_.clear();
     toothVersion_ = version;
-    strongestTissue_ = tooth::Tissue::none;
+    strongestTissue_ = cases::Tissue::none;
     // A ball of that radius about the device is free, and the proxy lies in it.
     if (-depthAtDevice.depthMm > (target - pose_.positionMm).norm()) {
         pose_.positionMm = target;

@@ -47,7 +47,7 @@ class Proxy {
     /// True when the tooth holds it away from the device.
     [[nodiscard]] bool touching() const noexcept { return touching_; }
     /// Tissue of the constraint that pushes most; none when not touching.
-    [[nodiscard]] tooth::Tissue strongestTissue() const noexcept { return strongestTissue_; }
+    [[nodiscard]] cases::Tissue strongestTissue() const noexcept { return strongestTissue_; }
     /// Smallest signed gap at the last pass [mm]: not below -tolerance, unless the bur is wedged.
     [[nodiscard]] double gapMm() const noexcept { return gapMm_; }
     /// Constraint passes of the last update.
@@ -78,7 +78,7 @@ class Proxy {
     double gapMm_ = 0.0, clearanceMm_ = 0.0;
     core::Vec3 lastRest_ = core::Vec3::Zero();
     bool touching_ = false;
-    tooth::Tissue strongestTissue_ = tooth::Tissue::none;
+    cases::Tissue strongestTissue_ = cases::Tissue::none;
     int passes_ = 0;
 };
 

@@ -8,7 +8,7 @@ namespace handpiece::loop {
 namespace {
 
 /// Bricks handed over in a tick, and put in place by an undo.
-constexpr std::size_t kBricksPerTick = 16, kRestoredPerMs = 32, kLeastRestored = 4;
+constexpr std::size_t kBricksPerTick = 16, kRestoredPerMs = 32, kMinRestored = 4;
 /// The cut takes its turn no more often than that (less rounding): above 2 kHz the force has the ticks between.
 constexpr double kCutEveryS = 0.5e-3 * (1.0 - 1e-6);
 /// The bur's surface moves at this radius, as a share of the largest, in the mean over its head.
@@ -51,9 +51,9 @@ void HapticLoop::tick(const rt::Beat& beat) noexcept {
     const force::ForceCommand& command = force_.compute(touch, elapsedS, turning_);
     device_->watch(touch.proxyInTooth.positionMm, command.loadN);
     // Send it to the hand, with the knock and the hum that make it crisp and that cut nothing.
-    device_->command(crisp_.add(force_, touch, command, {rotor_.speedRpm(), cut_.feedMmS}, elapsedS),
+    device_->command(eventForce_.add(force_, touch, command, {rotor_.speedRpm(), cut_.feedMmS}, elapsedS),
                      command.torqueNmm);
-    device_->vibrate(crisp_.vibrationN());
+    device_->vibrate(eventForce_.vibrationN());
     const std::int64_t sentNs = rt::monotonicNs();
     // Then cut: that never delays the hand.
     cut(reading, touch, command, elapsedS);
@@ -143,7 +143,7 @@ void HapticLoop::restoreSome() noexcept {
     // The same share of a period at every rate.
     const auto most = static_cast<std::size_t>(1e3 * periodS_ * static_cast<double>(kRestoredPerMs));
     restore.next =
-        work_.current()->value.cutter->field().restore(restore.change, restore.next, std::max(most, kLeastRestored));
+        work_.current()->value.cutter->field().restore(restore.change, restore.next, std::max(most, kMinRestored));
     isRestoring_ = restore.next < restore.change.bricks.size();
     if (!isRestoring_) restoring_.store(false, std::memory_order_release);
 }
@@ -157,7 +157,7 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     sample.positionMm = core::toArray(reading.burInTooth.positionMm);
     sample.orientation = wxyz(reading.burInTooth.orientation);
     sample.velocityMmS = core::toArray(force_.velocityMmS());
-    sample.forceN = core::toArray(crisp_.forceN());
+    sample.forceN = core::toArray(eventForce_.forceN());
     sample.torqueNmm = core::toArray(command.fullTorqueNmm);
     sample.depthMm = touch.depth.depthMm;
     sample.truePositionMm = core::toArray(device_->truePositionMm());
@@ -169,8 +169,8 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     sample.tissue = static_cast<std::uint8_t>(touch.tissue);
     sample.contactStatus = static_cast<std::uint8_t>(touch.depth.status);
     sample.patchCount = static_cast<std::uint16_t>(touch.patches.patches.size());
-    sample.flags = cutFlags_ | (command.forceLimited || crisp_.forceLimited() ? messages::kForceLimited : 0u) |
-                   (command.slopeLimited || crisp_.slopeLimited() ? messages::kSlopeLimited : 0u) |
+    sample.flags = cutFlags_ | (command.forceLimited || eventForce_.forceLimited() ? messages::kForceLimited : 0u) |
+                   (command.slopeLimited || eventForce_.slopeLimited() ? messages::kSlopeLimited : 0u) |
                    (force_.guard().invalidNow() ? messages::kInvalidPose : 0u) |
                    (force_.guard().faulted() ? messages::kFault : 0u) | (force_.waiting() ? messages::kWaiting : 0u);
     sample.workUs = static_cast<float>(static_cast<double>(workNs) * 1e-3);

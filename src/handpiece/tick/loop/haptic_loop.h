@@ -19,7 +19,7 @@
 #include "handpiece/tick/contact/method.h"
 #include "handpiece/tick/cutting/cutter.h"
 #include "handpiece/tick/device/device.h"
-#include "handpiece/tick/force/crisp_force.h"
+#include "handpiece/tick/force/event_based_force.h"
 #include "handpiece/tick/force/force_model.h"
 
 namespace handpiece::loop {
@@ -95,7 +95,7 @@ class HapticLoop {
     std::uint64_t setMethod(std::unique_ptr<contact::Method> method);
     /// Undo, redo, reset: puts bricks of the tooth in place, some a tick; no force until that is done and the bur is
     /// clear. Throws core::Error while an earlier change is still being put in place, and when no tooth can be cut.
-    std::uint64_t restore(tooth::CutState change);
+    std::uint64_t restore(tooth::StateDelta change);
     [[nodiscard]] bool restoring() const noexcept { return restoring_.load(std::memory_order_acquire); }
 
     /// One tick. For run...() and for tests.
@@ -114,7 +114,7 @@ class HapticLoop {
         std::uint64_t number = 0;
     };
     struct Restore {
-        tooth::CutState change;
+        tooth::StateDelta change;
         std::size_t next = 0;
     };
     class Statistics;
@@ -142,7 +142,7 @@ class HapticLoop {
     std::atomic<bool> restoring_{false};  // from restore() to the last brick in place
     bool isRestoring_ = false;            // the tick's own: the change has been taken
     force::ForceModel force_;
-    force::CrispForce crisp_;
+    force::EventBasedForce eventForce_;
     instrument::Rotor rotor_;
     cutting::CutResult cut_;
     double uncutS_ = 0.0;  // since the last cut, while the bur turns

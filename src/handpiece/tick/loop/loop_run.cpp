@@ -85,7 +85,7 @@ HapticLoop::HapticLoop(const LoopSettings& settings, std::unique_ptr<device::Dev
       drive_(std::make_unique<Command<instrument::Drive>>(Command<instrument::Drive>{drive})),
       restore_(nullptr),
       force_(limitsOf(device_->capability()), parameters),
-      crisp_(limitsOf(device_->capability()), settings.rateHz),
+      eventForce_(limitsOf(device_->capability()), settings.rateHz),
       rotor_(drive),
       samples_(settings.queueCapacity),
       bricks_(settings.brickCapacity) {
@@ -117,7 +117,7 @@ std::uint64_t HapticLoop::setMethod(std::unique_ptr<contact::Method> method) {
     return setWork({std::move(method), nullptr});
 }
 
-std::uint64_t HapticLoop::restore(tooth::CutState change) {
+std::uint64_t HapticLoop::restore(tooth::StateDelta change) {
     if (restoring())
         throw core::Error("an earlier undo is still being put in place", "haptic loop", "wait until it is done");
     restoring_.store(true, std::memory_order_release);

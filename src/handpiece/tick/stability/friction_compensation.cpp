@@ -10,13 +10,13 @@ using core::Vec3;
 
 constexpr double kVelocityTauS = 0.01;
 /// One encoder step a filter time is the smallest motion that can be told from rest: the force saturates at thrice it.
-constexpr double kSteps = 3.0, kLeastMmS = 2.0;
+constexpr double kSteps = 3.0, kMinMmS = 2.0;
 
 }  // namespace
 
 void FrictionCompensation::set(double frictionN, double share, double encoderStepMm) noexcept {
     forceN_ = share * frictionN;
-    saturationMmS_ = std::fmax(kLeastMmS, kSteps * encoderStepMm / kVelocityTauS);
+    saturationMmS_ = std::fmax(kMinMmS, kSteps * encoderStepMm / kVelocityTauS);
 }
 
 Vec3 FrictionCompensation::force(const Vec3& positionMm, double periodS, bool fresh) noexcept {

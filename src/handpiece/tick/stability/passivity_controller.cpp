@@ -23,7 +23,7 @@ constexpr double kHandKg = 0.01;
 constexpr double kRiseS = 0.005;
 /// Of the largest stiffness: softer than any tissue that is rendered. No spring of that stiffness holds more energy.
 constexpr double kSoftest = 0.02;
-constexpr double kUsualPeriodS = 1e-3, kLeastPeriodS = 1e-5;
+constexpr double kUsualPeriodS = 1e-3, kMinPeriodS = 1e-5;
 constexpr int kHalvings = 14;
 constexpr std::size_t kMaxCatchUp = 16;
 
@@ -148,7 +148,7 @@ double PassivityController::share(const Vec3& wantedN) const noexcept {
 
 PassivityController::Outcome PassivityController::pass(const Vec3& positionMm, const Vec3& wantedN, double periodS,
                                                        bool fresh, bool active) noexcept {
-    if (!(periodS >= kLeastPeriodS)) periodS = periodS_ > 0.0 ? periodS_ : kUsualPeriodS;
+    if (!(periodS >= kMinPeriodS)) periodS = periodS_ > 0.0 ? periodS_ : kUsualPeriodS;
     takePeriod(periodS);
     Outcome outcome;
     const double late = periodS / periodS_;

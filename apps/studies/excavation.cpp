@@ -1,0 +1,508 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/excavation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/geometry/mesh_edges.h"
+#include "handpiece/base/geometry/triangle_tree.h"
+
+namespace handpiece::studies {
+namespace {
+
+using core::Quat;
+using core::Vec3;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSpinUpS = 0.8;  // above the tooth, before each cut
+constexpr double kLayerMm = 0.3;
+constexpr double kPlungeFeed = 1.0 / 3.0;
+constexpr double kAirMmS = 10.0;
+constexpr double kEnough = 0.97;     // of the decay that can be reached at all: the rest would cost much sound tissue
+constexpr double kDecayWorth = 3.0;  // decay left counts so many times sound tissue lost, between two directions
+constexpr double kRowShare = 0.6;    // of the radius between two strokes: ridges of a twentieth of it stay
+constexpr double kSpeckCells = 4;    // smaller lesions are artefacts of the surface
+
+/// The connected parts of closed surfaces.
+std::vector<geometry::TriangleMesh> lesionsOf(const std::vector<geometry::TriangleMesh>& decay) {
+    std::vector<geometry::TriangleMesh> lesions;
+    for (const geometry::TriangleMesh& mesh : decay) {
+        const geometry::Shells shells = geometry::shellsOf(mesh, geometry::MeshEdges(mesh));
+        std::vector<geometry::TriangleMesh> parts(shells.count);
+        std::vector<std::uint32_t> number(mesh.vertices.size(), 0xffffffffu);
+        for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+            geometry::TriangleMesh& part = parts[shells.ofFace[f]];
+            geometry::Triangle t = mesh.triangles[f];
+            for (std::uint32_t& v : t) {
+                if (number[v] == 0xffffffffu) {  // a vertex belongs to one shell of a manifold surface
+                    number[v] = static_cast<std::uint32_t>(part.vertices.size());
+                    part.vertices.push_back(mesh.vertices[v]);
+                }
+                v = number[v];
+            }
+            part.triangles.push_back(t);
+        }
+        for (geometry::TriangleMesh& part : parts)
+            if (geometry::enclosedVolumeMm3(part) > 0.0) lesions.push_back(std::move(part));
+    }
+    return lesions;
+}
+
+/// One lesion seen along one axis: columns of cells, and how low the bur's tip may go in each.
+class Approach {
+  public:
+    Approach(const CuttingScene& scene, const CuttingOptions& options, const geometry::TriangleTree& lesion,
+             const Vec3& axis, double cellMm)
+        : scene_(scene), options_(options), cellMm_(cellMm), axis_(axis) {
+        turn_ = Quat::FromTwoVectors(Vec3::UnitZ(), axis);
+        core::Box box;
+        const core::Box& b = lesion.bounds();
+        for (int i = 0; i < 8; ++i)
+            box.extend(turn_.inverse() * Vec3(i & 1 ? b.max.x() : b.min.x(), i & 2 ? b.max.y() : b.min.y(),
+                                              i & 4 ? b.max.z() : b.min.z()));
+        double top = -kInfinity;
+        for (int i = 0; i < 8; ++i) {
+            const core::Box& t = scene.toothBounds;
+            top = std::max(top, axis.dot(Vec3(i & 1 ? t.max.x() : t.min.x(), i & 2 ? t.max.y() : t.min.y(),
+                                              i & 4 ? t.max.z() : t.min.z())));
+        }
+        const double side = 2.0 * scene.burRadiusMm + 2.0 * cellMm;
+        low_ = box.min - Vec3(side, side, scene.burRadiusMm + options.pulpGuardMm + cellMm);
+        columns_ = {countOf(box.max.x() + side - low_.x()), countOf(box.max.y() + side - low_.y())};
+        layers_ = countOf(top - low_.z()) + 1;
+        sample(lesion);
+        bottoms_ = bottomsOf();
+    }
+
+    /// The path with the least loss of sound tissue that takes nearly all that can be taken.
+    void plan() {
+        const int widest = static_cast<int>(std::ceil(scene_.burRadiusMm / cellMm_)) + 1;
+        setFloor(widest);
+        const double best = reached_;
+        for (int margin = 0; margin <= widest; ++margin) {
+            setFloor(margin);
+            if (reached_ >= kEnough * best) break;
+        }
+        chooseRows();
+    }
+
+    [[nodiscard]] double cost() const { return soundMm3() + kDecayWorth * (decayMm3() - reachedMm3()); }
+    [[nodiscard]] double decayMm3() const { return volume(decay_); }
+    [[nodiscard]] double reachedMm3() const { return volume(reached_); }
+    [[nodiscard]] double soundMm3() const { return volume(sound_); }
+    [[nodiscard]] double guardedMm3() const { return volume(guarded_); }
+    [[nodiscard]] double nearestPulpMm() const { return nearestPulpMm_; }
+    [[nodiscard]] const Vec3& axis() const { return axis_; }
+    [[nodiscard]] const Quat& turn() const { return turn_; }
+
+    /// A stroke at one depth: places of the tip, in the tooth frame.
+    struct Stroke {
+        std::vector<Vec3> tipsMm;
+    };
+    [[nodiscard]] std::vector<Stroke> strokes() const {
+        std::vector<Stroke> strokes;
+        double top = -kInfinity, bottom = kInfinity;
+        forEachColumn([&](int i, int j) {
+            if (!isOnPath(i, j)) return;
+            bottom = std::min(bottom, floor_[at(i, j)]);
+            for (const Bottom& b : bottoms_)
+                top = std::max(top, surface_[at(i + b.di, j + b.dj)] - b.heightMm);
+        });
+        if (!(bottom < top)) return strokes;
+        const int layers = static_cast<int>(std::ceil((top - bottom) / kLayerMm));
+        bool back = false;
+        for (int layer = 1; layer <= layers; ++layer) {
+            const double above = top - (top - bottom) * (layer - 1) / layers, z = top - (top - bottom) * layer / layers;
+            for (int j = 0; j < columns_[1]; ++j) {
+                std::vector<Stroke> row;
+                bool open = false;
+                for (int i = 0; i < columns_[0]; ++i) {
+                    const bool goes = isOnPath(i, j) && floor_[at(i, j)] < above;
+                    if (goes && !open) row.emplace_back();
+                    if (goes) row.back().tipsMm.push_back(place(i, j, std::max(z, floor_[at(i, j)])));
+                    open = goes;
+                }
+                if (row.empty()) continue;
+                if (back) {
+                    std::reverse(row.begin(), row.end());
+                    for (Stroke& s : row)
+                        std::reverse(s.tipsMm.begin(), s.tipsMm.end());
+                }
+                back = !back;
+                for (Stroke& s : row)
+                    strokes.push_back(std::move(s));
+            }
+        }
+        return strokes;
+    }
+    /// True when the tip may go straight from one place to another without cutting what is to stay.
+    [[nodiscard]] bool mayGo(const Vec3& from, const Vec3& to) const {
+        const Vec3 a = turn_.inverse() * from, b = turn_.inverse() * to;
+        const int steps = static_cast<int>(std::ceil((b - a).norm() / (0.5 * cellMm_)));
+        for (int s = 0; s <= steps; ++s) {
+            const Vec3 p = (a + (b - a) * (steps > 0 ? static_cast<double>(s) / steps : 0.0) - low_) / cellMm_;
+            const int i = static_cast<int>(p.x()), j = static_cast<int>(p.y());
+            if (!(p.x() >= 0.0 && p.y() >= 0.0) || i >= columns_[0] || j >= columns_[1]) return false;
+            // Floors are those of middles of columns: between two of them the line may pass a little under one.
+            if (!(floor_[at(i, j)] <= low_.z() + p.z() * cellMm_ + 0.5 * cellMm_)) return false;
+        }
+        return true;
+    }
+    /// Over the tooth's surface everywhere near the path, along the axis.
+    [[nodiscard]] Vec3 above(const Vec3& tip, double clearanceMm) const {
+        const double top = *std::max_element(surface_.begin(), surface_.end());
+        const double height = axis_.dot(tip);
+        return tip + std::max(0.0, (std::isfinite(top) ? top : height) + clearanceMm - height) * axis_;
+    }
+
+  private:
+    enum Cell : std::uint8_t { outside, sound, decayed };
+    struct Bottom {
+        int di, dj;
+        double heightMm;  ///< of the bur's underside over its tip, there
+    };
+
+    [[nodiscard]] int countOf(double mm) const { return std::max(1, static_cast<int>(std::ceil(mm / cellMm_))); }
+    [[nodiscard]] std::size_t at(int i, int j) const {
+        return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_[0]) + static_cast<std::size_t>(i);
+    }
+    [[nodiscard]] std::size_t at(int i, int j, int k) const {
+        return at(i, j) * static_cast<std::size_t>(layers_) + static_cast<std::size_t>(k);
+    }
+    [[nodiscard]] double heightOf(int k) const { return low_.z() + (k + 0.5) * cellMm_; }
+    [[nodiscard]] Vec3 place(int i, int j, double height) const {
+        return turn_ * Vec3(low_.x() + (i + 0.5) * cellMm_, low_.y() + (j + 0.5) * cellMm_, height);
+    }
+    [[nodiscard]] double volume(double cells) const { return cells * cellMm_ * cellMm_ * cellMm_; }
+    template <class Visit>
+    void forEachColumn(Visit visit) const {
+        for (int j = 0; j < columns_[1]; ++j)
+            for (int i = 0; i < columns_[0]; ++i)
+                visit(i, j);
+    }
+    [[nodiscard]] bool isIn(int i, int j) const { return i >= 0 && j >= 0 && i < columns_[0] && j < columns_[1]; }
+    [[nodiscard]] bool isOnPath(int i, int j) const {
+        return row_[static_cast<std::size_t>(j)] != 0 && std::isfinite(floor_[at(i, j)]);
+    }
+
+    void sample(const geometry::TriangleTree& lesion) {
+        const std::size_t columns = static_cast<std::size_t>(columns_[0]) * static_cast<std::size_t>(columns_[1]);
+        cells_.assign(columns * static_cast<std::size_t>(layers_), outside);
+        lowestDecay_.assign(columns, kInfinity);
+        guarded_ = 0.0;
+        surface_.assign(columns, -kInfinity);
+        guard_.assign(columns, -kInfinity);
+        row_.assign(static_cast<std::size_t>(columns_[1]), 1);
+        const core::Box& box = lesion.bounds();
+        forEachColumn([&](int i, int j) {
+            for (int k = 0; k < layers_; ++k) {
+                const Vec3 p = place(i, j, heightOf(k));
+                if (scene_.outerMm(p) >= 0.0) continue;
+                surface_[at(i, j)] = heightOf(k) + 0.5 * cellMm_;
+                Cell& cell = cells_[at(i, j, k)];
+                cell = sound;
+                if ((p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all() &&
+                    lesion.signedDistance(p) < 0.0) {
+                    cell = decayed;
+                    ++decay_;
+                    lowestDecay_[at(i, j)] = std::min(lowestDecay_[at(i, j)], heightOf(k) - 0.5 * cellMm_);
+                }
+                // Half a cell's diagonal more: between the middles of cells nothing may be nearer.
+                if (scene_.pulpMm && options_.pulpGuardMm > 0.0 &&
+                    scene_.pulpMm(p) < options_.pulpGuardMm + 0.87 * cellMm_)
+                    guard_[at(i, j)] = heightOf(k) + 0.5 * cellMm_;
+            }
+        });
+    }
+
+    [[nodiscard]] std::vector<Bottom> bottomsOf() const {
+        std::vector<Bottom> bottoms;
+        const double radius = scene_.burRadiusMm;
+        const int reach = static_cast<int>(std::ceil(radius / cellMm_));
+        for (int dj = -reach; dj <= reach; ++dj)
+            for (int di = -reach; di <= reach; ++di) {
+                const double rho = cellMm_ * std::hypot(di, dj);
+                if (rho > radius) continue;
+                bottoms.push_back(
+                    {di, dj,
+                     scene_.burBottomMm ? scene_.burBottomMm(rho) : radius - std::sqrt(radius * radius - rho * rho)});
+            }
+        return bottoms;
+    }
+
+    // How low the tip may go in each column when the bur may cut `margin` cells beside the decay and half of that
+    // under it; then what that takes.
+    void setFloor(int margin) {
+        const double under = 0.5 * margin * cellMm_;
+        std::vector<double> allowed(lowestDecay_.size(), kInfinity);  // lowest place that may be cut, by column
+        forEachColumn([&](int i, int j) {
+            double nearest = kInfinity;
+            for (int dj = -margin; dj <= margin; ++dj)
+                for (int di = -margin; di <= margin; ++di) {
+                    const double distance = std::hypot(di, dj);
+                    if (distance > margin || distance >= nearest || !isIn(i + di, j + dj)) continue;
+                    if (!std::isfinite(lowestDecay_[at(i + di, j + dj)])) continue;
+                    nearest = distance;
+                    allowed[at(i, j)] = lowestDecay_[at(i + di, j + dj)] - under;
+                }
+        });
+        const auto floorOver = [&](const std::vector<double>& heights, int i, int j) {
+            double floor = -kInfinity;
+            for (const Bottom& b : bottoms_) {
+                if (!isIn(i + b.di, j + b.dj)) return kInfinity;
+                floor = std::max(floor, heights[at(i + b.di, j + b.dj)] - b.heightMm);
+            }
+            return floor;
+        };
+        floor_.assign(allowed.size(), kInfinity);
+        std::vector<double> unguarded(allowed.size(), kInfinity);
+        forEachColumn([&](int i, int j) {
+            double& floor = unguarded[at(i, j)];
+            floor = floorOver(allowed, i, j);
+            if (options_.depthMm > 0.0 && std::isfinite(floor))
+                floor = std::max(floor, surface_[at(i, j)] - options_.depthMm);
+            if (std::isfinite(floor)) floor_[at(i, j)] = std::max(floor, floorOver(guard_, i, j));
+        });
+        // A place from which the bur meets no decay is left out.
+        forEachColumn([&](int i, int j) {
+            for (std::vector<double>* floors : {&floor_, &unguarded}) {
+                double& floor = (*floors)[at(i, j)];
+                if (std::isfinite(floor) && !meetsDecay(i, j, floor)) floor = kInfinity;
+            }
+        });
+        std::fill(row_.begin(), row_.end(), std::uint8_t{1});
+        const double withoutGuard = takenFrom(unguarded).decay;
+        take();
+        guarded_ = std::max(0.0, withoutGuard - reached_);
+    }
+
+    [[nodiscard]] bool meetsDecay(int i, int j, double floor) const {
+        for (const Bottom& b : bottoms_) {
+            const int k = std::max(0, static_cast<int>(std::floor((floor + b.heightMm - low_.z()) / cellMm_ + 0.5)));
+            for (int l = k; l < layers_; ++l)
+                if (cells_[at(i + b.di, j + b.dj, l)] == decayed) return true;
+        }
+        return false;
+    }
+
+    struct Taken {
+        double decay = 0.0, sound = 0.0, pulpMm = kInfinity;
+    };
+    // What the bur takes with its tip on the rows of these floors.
+    [[nodiscard]] Taken takenFrom(const std::vector<double>& floors) const {
+        std::vector<double> lowest(floors.size(), kInfinity);
+        forEachColumn([&](int i, int j) {
+            if (!row_[static_cast<std::size_t>(j)] || !std::isfinite(floors[at(i, j)])) return;
+            for (const Bottom& b : bottoms_) {
+                double& l = lowest[at(i + b.di, j + b.dj)];
+                l = std::min(l, floors[at(i, j)] + b.heightMm);
+            }
+        });
+        Taken taken;
+        forEachColumn([&](int i, int j) {
+            if (!std::isfinite(lowest[at(i, j)])) return;
+            bool first = true;
+            for (int k = 0; k < layers_; ++k) {
+                if (heightOf(k) < lowest[at(i, j)]) continue;
+                const Cell cell = cells_[at(i, j, k)];
+                taken.decay += cell == decayed;
+                taken.sound += cell == sound;
+                if (cell == outside || !scene_.pulpMm || !std::exchange(first, false)) continue;
+                taken.pulpMm = std::min(taken.pulpMm, scene_.pulpMm(place(i, j, lowest[at(i, j)])));
+            }
+        });
+        return taken;
+    }
+    void take() {
+        const Taken taken = takenFrom(floor_);
+        reached_ = taken.decay;
+        sound_ = taken.sound;
+        nearestPulpMm_ = taken.pulpMm;
+    }
+
+    // Rows as far apart as ridges between them do not matter, and those without which decay would stay.
+    void chooseRows() {
+        const double all = reached_;
+        const int step = std::max(1, static_cast<int>(kRowShare * scene_.burRadiusMm / cellMm_));
+        int first = columns_[1], last = -1;
+        forEachColumn([&](int i, int j) {
+            if (!std::isfinite(floor_[at(i, j)])) return;
+            first = std::min(first, j);
+            last = std::max(last, j);
+        });
+        for (int j = 0; j < columns_[1]; ++j)
+            row_[static_cast<std::size_t>(j)] = j == last || (j >= first && (j - first) % step == 0);
+        take();
+        for (int j = first; j <= last && reached_ < 0.99 * all; ++j) {
+            if (row_[static_cast<std::size_t>(j)]) continue;
+            const double before = reached_;
+            row_[static_cast<std::size_t>(j)] = 1;
+            take();
+            if (reached_ < before + 0.005 * all) row_[static_cast<std::size_t>(j)] = 0;
+        }
+        take();
+    }
+
+    const CuttingScene& scene_;
+    const CuttingOptions& options_;
+    double cellMm_;
+    Vec3 axis_;
+    Quat turn_;  ///< from the lesion's frame, its z along the axis, to the tooth's
+    Vec3 low_;   ///< corner of the grid, in the lesion's frame
+    std::array<int, 2> columns_{};
+    int layers_ = 0;
+    std::vector<std::uint8_t> row_;  ///< 1: the bur goes along it
+    std::vector<Bottom> bottoms_;
+    std::vector<Cell> cells_;
+    std::vector<double> lowestDecay_, surface_, guard_, floor_;  ///< heights by column
+    double decay_ = 0.0, reached_ = 0.0, sound_ = 0.0, guarded_ = 0.0, nearestPulpMm_ = kInfinity;
+};
+
+/// Out of the tooth where the lesion lies nearest to its surface.
+Vec3 outwardsFrom(const CuttingScene& scene, const geometry::TriangleMesh& lesion) {
+    const auto normalAt = [&](const Vec3& p) {
+        constexpr double kStep = 0.02;
+        Vec3 n = Vec3::Zero();
+        for (int a = 0; a < 3; ++a) {
+            const Vec3 d = kStep * Vec3::Unit(a);
+            n[a] = scene.outerMm(p + d) - scene.outerMm(p - d);
+        }
+        return n;
+    };
+    double shallowest = -kInfinity;
+    std::vector<double> depth;
+    for (const Vec3& v : lesion.vertices) {
+        depth.push_back(scene.outerMm(v));
+        shallowest = std::max(shallowest, depth.back());
+    }
+    constexpr double kNear = 0.2;  // mm farther in than the nearest
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t v = 0; v < depth.size(); ++v)
+        if (depth[v] > shallowest - kNear) sum += normalAt(lesion.vertices[v]).normalized();
+    const double length = sum.norm();
+    Vec3 out = length > 1e-6 ? (sum / length).eval() : Vec3::UnitZ().eval();
+    // Not from under the tooth, where no hand is.
+    if (out.z() < 0.0) out.z() = 0.0;
+    return out.norm() > 1e-3 ? out.normalized() : Vec3::UnitZ();
+}
+
+/// Poses one after the other; the pedal goes down and up in place.
+class Path {
+  public:
+    explicit Path(double pedal) : down_(pedal) {}
+    void begin(const Vec3& at, const Quat& turn) { poses_.push_back({0.0, {at, turn}, 0.0}); }
+    [[nodiscard]] bool isEmpty() const { return poses_.empty(); }
+    [[nodiscard]] const core::Pose& last() const { return poses_.back().burInTooth; }
+    void stay(double seconds) {
+        if (seconds > 0.0) poses_.push_back({poses_.back().timeS + seconds, last(), pedal_});
+    }
+    void pedal(bool down) {
+        pedal_ = down ? down_ : 0.0;
+        stay(0.001);
+    }
+    void go(const Vec3& to, double speedMmS) { turnTo({to, last().orientation}, speedMmS); }
+    void turnTo(const core::Pose& to, double speedMmS) {
+        const double way =
+            (to.positionMm - last().positionMm).norm() + last().orientation.angularDistance(to.orientation);
+        if (way > 1e-9) poses_.push_back({poses_.back().timeS + way / speedMmS, to, pedal_});
+    }
+    [[nodiscard]] device::Motion finish() {
+        stay(0.2);
+        return device::Motion(std::move(poses_));
+    }
+
+  private:
+    double down_, pedal_ = 0.0;
+    std::vector<device::TimedPose> poses_;
+};
+
+// Outwards along the axis until the whole bur is out of the ball round the tooth.
+Vec3 parkOver(const CuttingScene& scene, const Vec3& tip, const Vec3& axis, double clearanceMm) {
+    const Vec3 middle = scene.toothBounds.centre(), from = tip - middle;
+    const double radius = 0.5 * scene.toothBounds.size().norm() + scene.burRadiusMm + scene.burLengthMm + clearanceMm;
+    const double along = from.dot(axis), rest = radius * radius - from.squaredNorm() + along * along;
+    return tip + std::max(0.0, std::sqrt(std::max(0.0, rest)) - along) * axis;
+}
+
+// From one parking place to another, always outside that ball.
+void goRound(Path& path, const Vec3& middle, const Vec3& to, const Quat& turn) {
+    const core::Pose from = path.last();
+    const Vec3 a = from.positionMm - middle, b = to - middle;
+    const Quat arc = Quat::FromTwoVectors(a, b);
+    constexpr int kSteps = 12;
+    for (int s = 1; s <= kSteps; ++s) {
+        const double share = static_cast<double>(s) / kSteps;
+        const Vec3 direction = Quat::Identity().slerp(share, arc) * a.normalized();
+        path.turnTo(
+            {middle + (a.norm() + (b.norm() - a.norm()) * share) * direction, from.orientation.slerp(share, turn)},
+            2.0 * kAirMmS);
+    }
+    path.turnTo({to, turn}, kAirMmS);
+}
+
+}  // namespace
+
+Excavation planExcavation(const CuttingScene& scene, const CuttingOptions& o) {
+    validate(o);
+    if (!o.offsetMm.isZero()) throw core::Error("excavation goes where the decay is", "--at", "leave it out");
+    if (scene.decay.empty())
+        throw core::Error("this tooth has no decay", "excavate", "take a case with a caries part, or another motion");
+    Path path(o.pedal);
+    std::vector<LesionPlan> lesions;
+    for (const geometry::TriangleMesh& lesion : lesionsOf(scene.decay)) {
+        const geometry::TriangleTree tree(lesion);
+        const core::Vec3 size = lesion.bounds().size();
+        // A third of the bur, coarser only for lesions as large as a crown.
+        const double cellMm = std::max({std::min(scene.burRadiusMm / 3.0, 0.15), size.maxCoeff() / 60.0, 0.03});
+        if (geometry::enclosedVolumeMm3(lesion) < kSpeckCells * cellMm * cellMm * cellMm) continue;
+        const Vec3 nearest = outwardsFrom(scene, lesion);
+        std::optional<Approach> best;
+        for (const Vec3& axis : {nearest, (nearest + Vec3::UnitZ()).normalized().eval(), Vec3::UnitZ().eval()}) {
+            if (best && axis.dot(best->axis()) > 0.999) continue;
+            Approach approach(scene, o, tree, axis, cellMm);
+            approach.plan();
+            if (!best || approach.cost() < best->cost()) best.emplace(std::move(approach));
+        }
+        lesions.push_back({lesion.bounds().centre(), best->axis(), best->decayMm3(), best->reachedMm3(),
+                           best->soundMm3(), best->guardedMm3(), best->nearestPulpMm()});
+        const std::vector<Approach::Stroke> strokes = best->strokes();
+        if (strokes.empty()) continue;
+        const Vec3 first = strokes.front().tipsMm.front();
+        const Vec3 park = parkOver(scene, first, best->axis(), o.clearanceMm);
+        if (path.isEmpty())
+            path.begin(park, best->turn());
+        else
+            goRound(path, scene.toothBounds.centre(), park, best->turn());
+        path.pedal(true);
+        path.stay(kSpinUpS);
+        const auto over = [&](const Vec3& tip) { return best->above(tip, o.clearanceMm); };
+        bool isOver = true;
+        for (const Approach::Stroke& stroke : strokes) {
+            const Vec3& start = stroke.tipsMm.front();
+            if (isOver || !best->mayGo(path.last().positionMm, start)) {
+                if (!isOver) path.go(over(path.last().positionMm), kAirMmS);
+                path.go(over(start), kAirMmS);
+            }
+            isOver = false;
+            path.go(start, kPlungeFeed * o.feedMmS);
+            for (const Vec3& tip : stroke.tipsMm)
+                path.go(tip, o.feedMmS);
+        }
+        path.stay(o.dwellS);
+        const Vec3 end = path.last().positionMm;
+        path.go(over(end), kAirMmS);
+        path.go(parkOver(scene, path.last().positionMm, best->axis(), o.clearanceMm), kAirMmS);
+        path.pedal(false);
+    }
+    if (path.isEmpty())
+        throw core::Error("the bur cannot come to any of the decay", "excavate",
+                          "take a smaller bur, or a smaller --pulp-guard");
+    return {path.finish(), std::move(lesions)};
+}
+
+}  // namespace handpiece::studies

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// How decay is to be taken out: lesion by lesion, from where each lies nearest to the surface, and not into the pulp.
+
+#include <limits>
+#include <vector>
+
+#include "handpiece/tick/device/motion.h"
+#include "studies/cutting_motion.h"
+
+namespace handpiece::studies {
+
+/// What is to be done about one lesion. Volumes are counts of a grid of a third of the bur's radius.
+struct LesionPlan {
+    core::Vec3 centreMm = core::Vec3::Zero();
+    core::Vec3 axis = core::Vec3::UnitZ();                           ///< along which the bur goes in, out of the tooth
+    double decayMm3 = 0.0, reachedMm3 = 0.0;                         ///< of the lesion; what of it the path takes
+    double soundMm3 = 0.0;                                           ///< what goes with it
+    double guardedMm3 = 0.0;                                         ///< decay that stays because the pulp is near
+    double nearestPulpMm = std::numeric_limits<double>::infinity();  ///< of the planned floor
+};
+
+struct Excavation {
+    device::Motion motion;
+    std::vector<LesionPlan> lesions;
+};
+
+/// The way of the hand through all lesions: in along an axis of its own for each, layer by layer in strokes no wider
+/// than the decay (wider only where the bur is), out again, round the tooth with the pedal up, and on.
+/// Throws core::Error when there is no decay, or none that the bur can come to.
+[[nodiscard]] Excavation planExcavation(const CuttingScene& scene, const CuttingOptions& options = {});
+
+}  // namespace handpiece::studies

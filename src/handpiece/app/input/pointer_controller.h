@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// From mouse and keyboard to what the simulated hand shall do. Knows no window: pixels, modifiers and milliseconds in,
+/// targets out.
+///
+/// **Like a brush.** The hand is guided by two things alone: the line of sight through the pointer, and the tooth as it
+/// was before any cut. What has been cut moves nothing sideways.
+///
+/// - The bur, in its orientation, is led along that line until it would touch the uncut tooth. Half a millimetre before
+///   that it hovers.
+/// - Pressed, it goes on along the line, with the load, as far as tissue gives way and the depth stop lets it. On the
+///   screen that does not move it: its tip is under the pointer at every depth.
+/// - Where tissue holds it back across the line (in a groove, with the pointer beyond the wall) it pulls towards the
+///   pointer with the load, and cuts its way there.
+/// - Where the pointer comes over an edge that hides what lies behind, the bur is lifted out and put down again: it
+/// does
+///   not go through.
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "handpiece/base/messages/haptic_sample.h"
+#include "handpiece/model/instrument/bur.h"
+#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/senses/measure/tooth_probe.h"
+#include "handpiece/senses/view/camera.h"
+#include "handpiece/tick/contact/method.h"
+#include "handpiece/tick/device/pointer_device.h"
+
+namespace handpiece::input {
+
+inline constexpr double kHoverMm = 0.5, kMinLoadN = 0.1, kMaxLoadN = 3.0, kFirstLoadN = 1.0;
+inline constexpr double kNudgeMm = 0.1, kFineNudgeMm = 0.02, kSlowFactor = 0.2, kStopStepMm = 0.1;
+
+/// Where a hand begins: the bur along the tooth's long axis some millimetres above its box, the handle out of the
+/// mouth: to mesial and a little to the cheek for a back tooth, to the lips for a front one (`fdiNumber` 0: as a back
+/// tooth).
+[[nodiscard]] core::Pose startPose(const core::Box& tooth, int fdiNumber, int buccalSign);
+
+/// One thread: the window's. Every call ends in a new target in the mailbox.
+class PointerController {
+  public:
+    /// Meets the tooth along a line of sight, as it is now.
+    using Cast = std::function<std::optional<measure::Hit>(const view::Ray&)>;
+    /// How deep the bur would be, at a pose, in the tooth before any cut.
+    using Feel = std::function<contact::Depth(const core::Pose&)>;
+    PointerController(std::shared_ptr<device::PointerMailbox> mailbox, const core::Pose& start, Cast cast);
+
+    /// With every tooth and bur. Without it there is no tooth.
+    void setFeel(Feel feel);
+
+    /// Before every other call when the eye has moved.
+    void setEye(const view::Camera& camera, const view::Viewport& viewport);
+    /// Where the bur is by now (the proxy): the press begins there, nudges go from there, and whether there is tooth to
+    /// press on is looked up there. With every picture: a bur that has slipped off the tooth is held no sooner.
+    void follow(const messages::HapticSample& sample);
+    /// Hovers kHoverMm off the uncut tooth on the pointer's line of sight, the whole head clear of it; off the tooth in
+    /// the view plane through the last place. `slow`: kSlowFactor, from where it was when that began; what a press has
+    /// lost that way it keeps until it ends.
+    void move(const core::Vec2& pixel, bool slow = false);
+    /// Left button: presses with the load; `turning`: pedal down, else the bur stands still and only touches. A bur
+    /// that was moved by keys is pressed where it is: the pointer leads it on from there.
+    void press(const core::Vec2& pixel, bool turning);
+    /// Lifts the bur off the uncut tooth by kHoverMm, along its axis or towards the eye, as is the shorter way; out of
+    /// a cavity it comes with the pedal still down, led by the walls, and goes elsewhere only when it is out.
+    void release();
+    void latchPedal(bool down);
+    /// View steps of the keyboard [mm]: right and up on the screen, and along the bur's axis (tip first positive).
+    void nudge(double rightMm, double upMm, double advanceMm);
+    /// About the tip: pixels to the right and up by which the handle's end of the bur goes.
+    void pivot(const core::Vec2& pixels);
+    void roll(double radians);
+    /// The bur's axis along the surface normal under the tip; along the tooth's long axis.
+    void alignToNormal();
+    void alignToTooth();
+    void setLoad(double loadN);  ///< held between kMinLoadN and kMaxLoadN
+    /// How far beyond its first touch of the uncut tooth the bur goes: no place of its end lies deeper, along the bur,
+    /// or, where it works with its side, along the line of sight. None: off.
+    void setStop(std::optional<double> depthMm);
+    /// The view is being turned: the bur stands still.
+    void freeze(bool frozen);
+    /// Escape, lost focus: pedal up, no press, the bur lifts. The next move or press brings it back.
+    void escape();
+
+    /// Why a bur that is pressed does not cut.
+    enum class Idle {
+        no,        ///< it cuts, or is about to, or is not pressed
+        offTooth,  ///< no tooth on the pointer's line of sight
+        atStop,    ///< as deep as the depth stop allows
+        through,   ///< no deeper here: beyond it comes out of the tooth
+        onItsWay,  ///< through the air: down to the tooth, over an edge, out of a tooth that was put back round it
+        stalled,   ///< the drive stands
+        held,      ///< nothing gives way: what it touches cannot be cut with this bur, or the load is too small
+    };
+    [[nodiscard]] Idle idle() const noexcept;
+    [[nodiscard]] bool isIdleForLong() const noexcept;  ///< longer than it takes to come down
+    [[nodiscard]] double loadN() const noexcept;
+    [[nodiscard]] std::optional<double> stopMm() const noexcept;
+    [[nodiscard]] bool isPressed() const noexcept;
+    [[nodiscard]] bool pedalLatched() const noexcept;
+    [[nodiscard]] bool isAway() const noexcept;
+    [[nodiscard]] const device::PointerTarget& target() const noexcept;
+
+  private:
+    struct State;
+    std::shared_ptr<State> state_;
+};
+
+/// What PointerController feels of a tooth with a bur. One thread.
+[[nodiscard]] PointerController::Feel feelUncut(std::shared_ptr<const tooth::Tooth> tooth,
+                                                std::shared_ptr<const instrument::Bur> bur);
+
+}  // namespace handpiece::input

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The tooth as its listeners see it: mirror, surface and probe, kept up by one thread, read by others.
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/senses/measure/tooth_probe.h"
+#include "handpiece/senses/surface/brick_update.h"
+#include "handpiece/senses/surface/surface.h"
+
+namespace handpiece::simulation {
+
+/// Fed by one thread (never the tick's); the rest from any thread. Meshes are made without holding anybody up: who
+/// measures waits for the copying of changed bricks only, and for removed depths where they are wanted. News hold one
+/// entry a brick, whoever reads them or not.
+class LiveTooth {
+  public:
+    /// Builds the surface of the whole tooth, then puts `state` in place. Throws core::Error when cancelled.
+    LiveTooth(std::shared_ptr<const tooth::CuttableTooth> base, const tooth::StateDelta& state,
+              const core::Progress& progress = {});
+    ~LiveTooth();
+
+    [[nodiscard]] const tooth::CuttableTooth& base() const noexcept { return *base_; }
+
+    // The feeder.
+    void hear(const tooth::BrickSnapshot& brick);
+    void apply(const tooth::StateDelta& change);
+    /// Meshes for what was heard since the last call; what was heard shows in the probe and in state() from then on.
+    /// Milliseconds: call it at the rate of pictures.
+    void refresh();
+    /// The same, but does nothing and says false while somebody measures: for a thread that must not wait.
+    bool tryRefresh();
+
+    // Anybody.
+
+    /// The surface before any cut, and news since the last call, in the order to be drawn. One reader: whoever asks for
+    /// the whole surface begins anew, and all that was cut so far is news again.
+    [[nodiscard]] std::vector<surface::BrickUpdate> wholeSurface();
+    [[nodiscard]] std::vector<surface::BrickUpdate> takeNews();
+    /// True when takeNews() would give something.
+    [[nodiscard]] bool hasNews() const noexcept { return hasNews_.load(std::memory_order_acquire); }
+    /// From now on news carry removed depths; those of all that was cut so far come again.
+    void wantRemovedDepths(bool wanted);
+    /// Calls f(const measure::ToothProbe&) on the tooth as it is now, and returns what that returns.
+    template <class F>
+    auto withProbe(F&& f) const {
+        const std::lock_guard lock(mutex_);
+        return f(*probe_);
+    }
+    [[nodiscard]] tooth::StateDelta state(const tooth::TissueVolumes& removedMm3) const;
+
+  private:
+    void takeUpPending();
+    void shape(std::unique_lock<std::mutex> lock);
+    [[nodiscard]] bool isNearCut(std::uint32_t dense) const;
+
+    struct Parts;
+    std::shared_ptr<const tooth::CuttableTooth> base_;
+    mutable std::mutex mutex_;
+    std::unique_ptr<Parts> parts_;
+    std::unique_ptr<measure::ToothProbe> probe_;
+    std::atomic<bool> hasNews_{false};
+};
+
+}  // namespace handpiece::simulation

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// A tooth that can be cut, a bur, what turns it and what it feels like: from names to a loop, for the command line and
+/// the window alike.
+
+#include <memory>
+#include <string>
+
+#include "handpiece/model/instrument/catalogue.h"
+#include "handpiece/model/instrument/rotor.h"
+#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/tick/cutting/cutter.h"
+#include "handpiece/tick/device/device.h"
+#include "handpiece/tick/force/parameters.h"
+#include "handpiece/tick/loop/haptic_loop.h"
+
+namespace handpiece::simulation {
+
+/// All that decides what a cut does, besides the tooth and the hand. What a session keeps of it is enough to cut again.
+struct SimulationSettings {
+    double rateHz = 1000.0;
+    field::FieldSettings field;
+    tooth::CutSettings cut;
+    std::shared_ptr<const instrument::Bur> bur;
+    instrument::CuttingParameters cuttingParameters;
+    instrument::Drive drive;
+    cases::TissueTable tissues = cases::builtInTissues();
+    device::Capability capability;
+    force::Parameters parameters = force::defaultParameters();
+    bool fullRemoval = false;
+    bool hull = false;     ///< feels the paper's hulls instead of the field: touching only
+    bool resumed = false;  ///< the tooth was cut before: the session begins with a key frame
+};
+
+/// Everything but the tooth, as JSON; numbers come back bit for bit. Of the bur its outline is kept, which decides all
+/// that it does, and its name: of a file no folder.
+[[nodiscard]] std::string settingsJson(const SimulationSettings& settings);
+/// Throws core::Error naming `where` and what is missing or wrong.
+[[nodiscard]] SimulationSettings settingsFromJson(const std::string& json, const std::string& where);
+
+/// What changes while one works, as the text of the event that tells it.
+[[nodiscard]] std::string burChangeJson(const SimulationSettings& settings);  ///< bur, ability, hull or field
+[[nodiscard]] std::string driveChangeJson(const SimulationSettings& settings);
+[[nodiscard]] std::string parameterChangeJson(const SimulationSettings& settings);
+/// Where a session goes on: with what, and from which state of the tooth (hashText).
+struct Resumption {
+    SimulationSettings settings;
+    std::string stateHash;
+    bool isRecovered = false;  ///< its program had ended: state and history are what recover() finds
+};
+[[nodiscard]] std::string resumptionJson(const Resumption& resumption);
+/// Throws core::Error naming `where`.
+[[nodiscard]] Resumption resumptionFromJson(const std::string& json, const std::string& where);
+/// Which of them a text told.
+struct Changed {
+    bool work = false, drive = false, parameters = false;
+};
+/// Puts a change into `settings`. Throws core::Error naming `where`.
+Changed applyChange(const std::string& json, SimulationSettings& settings, const std::string& where);
+
+/// One tooth under one bur. The field is cut by the loop that gets the work.
+struct SimulationSetup {
+    std::shared_ptr<const tooth::CuttableTooth> tooth;
+    std::uint64_t identity = 0;  ///< of the tooth, for states in files
+    std::shared_ptr<tooth::CutField> field;
+    SimulationSettings settings;
+
+    /// Puts a tooth in place that was cut before. Not while a loop runs.
+    void resume(const tooth::StateDelta& state) const;
+    /// A method and a cutter on the field, for a loop; of hulls a method alone. One loop at a time; while it runs
+    /// another may be made for it, on another thread. Throws core::Error for what has no hull.
+    [[nodiscard]] loop::Work work() const;
+};
+/// The share of makeStation's progress that is over when the distances are known and the tissues are laid out.
+inline constexpr double kDistancesShare = 0.6;
+/// Reads or reopens the fields. Throws core::Error.
+[[nodiscard]] SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings settings, bool useCache,
+                                             const core::Progress& progress = {});
+
+}  // namespace handpiece::simulation

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// A case: the surfaces of a tooth, what they are made of, what is to be done with it. As files hold it.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "handpiece/base/geometry/triangle_mesh.h"
+#include "handpiece/model/case/exercise.h"
+#include "handpiece/model/case/tissue.h"
+
+namespace handpiece::cases {
+
+/// One closed surface of a case and what it is made of.
+struct Part {
+    std::string name;
+    Tissue tissue = Tissue::enamel;
+    int priority = 0;  ///< where parts overlap the higher wins
+    geometry::TriangleMesh mesh;
+};
+
+/// A case as read: a folder with case.toml and STL parts, or one STL (then a single enamel part).
+/// Tooth frame: millimetres, +z occlusal, +x mesial, +y completes the right hand.
+struct Case {
+    std::string name;
+    std::string kind;                        ///< "lower-first-molar"; may be empty
+    int fdiNumber = 0;                       ///< 0 when unknown
+    int buccalSign = 0;                      ///< +1: buccal is +y, -1: -y, 0 unknown
+    std::filesystem::path source;            ///< folder or file, for messages and for the cache beside it
+    geometry::TriangleMesh outer;            ///< the whole tooth as one closed surface; empty when the case has none
+    std::vector<Part> parts;                 ///< tissues of the tooth itself
+    std::vector<Part> scenery;               ///< neighbours, gum, bone: seen, not felt in this version
+    TissueTable tissues = builtInTissues();  ///< with what the case changes
+    std::string tissuesToml;                 ///< the text of what it changes; empty when it changes nothing
+    std::optional<Exercise> exercise;
+};
+
+/// Reads a case folder, a .handpiece file, or a single mesh file. Throws core::Error (what, where, remedy).
+[[nodiscard]] Case readCase(const std::filesystem::path& path);
+/// Writes case.toml and one STL per part (and outer.stl) into a folder, or all of it as one .handpiece file; whole or
+/// not at all.
+void writeCase(const Case& toothCase, const std::filesystem::path& path);
+
+/// A number that differs when the tooth does: its surfaces (as an STL holds them), tissues or priorities. Texts,
+/// scenery and the tissue table count for nothing. An attempt keeps it.
+[[nodiscard]] std::uint64_t contentKey(const Case& toothCase);
+
+/// Why a surface cannot be felt, or that it can: closed, oriented, sane in size, not crossing itself.
+/// Throws core::Error with counts, the first place, and the command that mends it.
+void requireSolid(const geometry::TriangleMesh& mesh, const std::string& where);
+
+}  // namespace handpiece::cases

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/model/field/tissue_cache.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+#include "handpiece/base/core/file.h"
+#include "handpiece/base/core/hash.h"
+
+namespace handpiece::field {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kByteOrder = 0x01020304;
+constexpr char kMagic[8] = {'H', 'P', 'T', 'I', 'S', 'S', 'U', '\n'};
+
+/// The first bytes of a file; everything in the writer's byte order, which the reader checks.
+struct Header {
+    char magic[8];
+    std::uint32_t version, byteOrder;
+    std::uint64_t key;
+    std::uint64_t bricks, mixedBricks, layers;
+    std::uint64_t payloadHash, headerHash;
+};
+static_assert(sizeof(Header) == 64 && std::is_trivially_copyable_v<Header>);
+
+std::uint64_t headerHashOf(const Header& header) {
+    core::Hasher hasher;
+    hasher.add(std::as_bytes(std::span(&header, 1)).first(offsetof(Header, headerHash)));
+    return hasher.value();
+}
+
+}  // namespace
+
+/// The one class besides the map itself that sees its arrays.
+class TissueStorage {
+  public:
+    /// The payload's sections in file order.
+    struct Sections {
+        std::vector<std::uint8_t> uniform;
+        std::vector<std::uint32_t> mixed;  ///< dense index of each mixed brick, rising
+        std::vector<std::uint8_t> rest, layerCount, nodes, layerTissue;
+        std::vector<std::int8_t> values;
+
+        explicit Sections(const Header& h)
+            : uniform(h.bricks),
+              mixed(h.mixedBricks),
+              rest(h.mixedBricks),
+              layerCount(h.mixedBricks),
+              nodes(h.mixedBricks * kBrickValues),
+              layerTissue(h.layers),
+              values(h.layers * kBrickValues) {}
+
+        template <class F>
+        void visit(F&& f) {
+            f(std::as_writable_bytes(std::span(mixed)));
+            f(std::as_writable_bytes(std::span(uniform)));
+            f(std::as_writable_bytes(std::span(rest)));
+            f(std::as_writable_bytes(std::span(layerCount)));
+            f(std::as_writable_bytes(std::span(layerTissue)));
+            f(std::as_writable_bytes(std::span(nodes)));
+            f(std::as_writable_bytes(std::span(values)));
+        }
+    };
+
+    static Header headerOf(const TissueMap& map) {
+        Header header{};
+        std::memcpy(header.magic, kMagic, sizeof kMagic);
+        header.version = kVersion;
+        header.byteOrder = kByteOrder;
+        header.bricks = map.uniform_.size();
+        header.mixedBricks = map.ranges_.size();
+        header.layers = map.layers_.size();
+        return header;
+    }
+
+    static Sections sectionsOf(const TissueMap& map) {
+        Sections s(headerOf(map));
+        s.uniform = map.uniform_;
+        for (std::size_t i = 0, at = 0; i < map.mixed_.size(); ++i)
+            if (map.mixed_[i] >= 0) s.mixed[at++] = static_cast<std::uint32_t>(i);
+        for (std::size_t i = 0; i < map.ranges_.size(); ++i) {
+            s.rest[i] = static_cast<std::uint8_t>(map.ranges_[i].rest);
+            s.layerCount[i] = static_cast<std::uint8_t>(map.ranges_[i].count);
+        }
+        s.nodes = map.nodes_;
+        for (std::size_t i = 0; i < map.layers_.size(); ++i)
+            s.layerTissue[i] = static_cast<std::uint8_t>(map.layers_[i].tissue);
+        s.values = map.values_;
+        return s;
+    }
+
+    static std::optional<TissueMap> mapOf(Sections&& s, const DistanceField& grid, const TissueSet& known) {
+        if (!known.hasAll(s.rest) || !known.hasAll(s.nodes) || !known.hasAll(s.layerTissue)) return std::nullopt;
+        TissueMap map(grid);
+        if (s.uniform.size() != map.uniform_.size()) return std::nullopt;
+        map.uniform_ = std::move(s.uniform);
+        map.nodes_ = std::move(s.nodes);
+        map.values_ = std::move(s.values);
+        for (std::size_t i = 0; i < s.mixed.size(); ++i) {
+            if (s.mixed[i] >= map.mixed_.size() || (i > 0 && s.mixed[i] <= s.mixed[i - 1])) return std::nullopt;
+            map.mixed_[s.mixed[i]] = static_cast<std::int32_t>(i);
+            const std::size_t first = map.layers_.size();
+            if (s.layerCount[i] == 0 || first + s.layerCount[i] > s.layerTissue.size()) return std::nullopt;
+            map.ranges_.push_back(
+                {static_cast<std::uint32_t>(first), s.layerCount[i], static_cast<cases::Tissue>(s.rest[i])});
+            for (std::size_t k = first; k < first + s.layerCount[i]; ++k)
+                map.layers_.push_back(
+                    {static_cast<cases::Tissue>(s.layerTissue[k]), map.values_.data() + k * kBrickValues});
+        }
+        if (map.layers_.size() != s.layerTissue.size()) return std::nullopt;
+        return isSound(map, grid, known) ? std::optional(std::move(map)) : std::nullopt;
+    }
+
+    /// There is tissue where the field has any, and a node is of the first layer that contains it.
+    static bool isSound(const TissueMap& map, const DistanceField& grid, const TissueSet& known) {
+        const FieldView view = grid.view();
+        for (std::uint32_t i = 0; i < map.uniform_.size(); ++i) {
+            const bool matters = view.brickIndex[i] >= 0 || view.coarse[i] < 0.0f;
+            const std::uint8_t* nodes = map.nodes(i);
+            if (nodes == nullptr ? matters != (map.uniform_[i] != 0) || (matters && !known.has(map.uniform_[i]))
+                                 : !matters || map.uniform_[i] != 0)
+                return false;
+            if (nodes == nullptr) continue;
+            const TissueMap::Layers all = map.layers(i);
+            for (std::size_t node = 0; node < kBrickValues; ++node) {
+                const auto inside = std::find_if(all.layers.begin(), all.layers.end(),
+                                                 [&](const TissueMap::Layer& l) { return l.values[node] < 0; });
+                const cases::Tissue tissue = inside == all.layers.end() ? all.rest : inside->tissue;
+                if (nodes[node] != static_cast<std::uint8_t>(tissue)) return false;
+            }
+        }
+        return true;
+    }
+};
+
+std::uint64_t tissueKey(std::uint64_t fieldKey) {
+    core::Hasher hasher;
+    hasher.add(std::string_view("handpiece tissues"));
+    hasher.add(kVersion);
+    hasher.add(fieldKey);
+    return hasher.value();
+}
+
+std::vector<std::byte> encodeTissues(const TissueMap& map, std::uint64_t key) {
+    Header header = TissueStorage::headerOf(map);
+    header.key = key;
+    std::vector<std::byte> data(sizeof header);
+    TissueStorage::sectionsOf(map).visit(
+        [&](std::span<const std::byte> section) { data.insert(data.end(), section.begin(), section.end()); });
+    header.payloadHash = hashOf(std::span(data).subspan(sizeof header));
+    header.headerHash = headerHashOf(header);
+    std::memcpy(data.data(), &header, sizeof header);
+    return data;
+}
+
+std::optional<TissueMap> readTissueFile(const fs::path& path, const DistanceField& grid, std::uint64_t key,
+                                        const TissueSet& tissues) {
+    const core::FileStream file = core::openOwnFile(path);
+    Header header;
+    if (!file || std::fread(&header, sizeof header, 1, file.get()) != 1) return std::nullopt;
+    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion ||
+        header.byteOrder != kByteOrder || header.key != key || header.headerHash != headerHashOf(header))
+        return std::nullopt;
+    const FieldView view = grid.view();
+    const std::uint64_t dense = static_cast<std::uint64_t>(view.bricks[0]) *
+                                static_cast<std::uint64_t>(view.bricks[1]) * static_cast<std::uint64_t>(view.bricks[2]);
+    if (header.bricks != dense || header.mixedBricks > dense || header.layers > 255 * header.mixedBricks ||
+        core::sizeOf(file) != sizeof header + header.bricks + header.mixedBricks * (4 + 2 + kBrickValues) +
+                                  header.layers * (1 + kBrickValues))
+        return std::nullopt;
+    std::vector<std::byte> payload(core::sizeOf(file) - sizeof header);
+    if (std::fread(payload.data(), 1, payload.size(), file.get()) != payload.size() ||
+        hashOf(payload) != header.payloadHash)
+        return std::nullopt;
+    TissueStorage::Sections sections(header);
+    std::size_t at = 0;
+    sections.visit([&](std::span<std::byte> section) {
+        std::copy_n(payload.begin() + static_cast<std::ptrdiff_t>(at), section.size(), section.begin());
+        at += section.size();
+    });
+    return TissueStorage::mapOf(std::move(sections), grid, tissues);
+}
+
+}  // namespace handpiece::field

@@ -1,0 +1,557 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/tick/contact/exact/off_axis_medial_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace handpiece::contact {
+
+using core::Vec3;
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kSpacingMm = 0.09;  // of the grid's balls
+// A top between balls of the grid is taken to rise over the highest of them by no more than this. An assumption,
+// judged by depths against brute force.
+constexpr double kRiseMm = 0.05;
+// A trilinear cell is taken to miss the distance by no more voxels than this. An assumption too.
+constexpr double kFieldErrorVoxels = 0.2;
+constexpr double kOnAxisMm = 1e-9;
+// From any place of a sheet to the nearest ball of its grid, in spacings.
+constexpr double kToGrid = 0.75;
+// A sheet that stands out of a ball kept elsewhere by less than this is not searched: depth is then too small by at
+// most so much. The many blunt corners of a bur from a file are such sheets; rims are not.
+constexpr double kCoveredMm = 4e-4;
+constexpr double kSameTopMm = 0.05;
+constexpr float kDropped = 1e9f;
+constexpr float kKnownMm = 0.5f * kBoundMm;  // distances are less, bounds more
+constexpr double kRefinedMm = 0.004;
+constexpr double kFieldWindowMm = 0.02;
+// A climb ends when another top is higher than so many times what it hopes for.
+constexpr double kFarBehind = 4.0;
+constexpr double kToleranceMm = 2e-8;
+constexpr double kFinalWindowMm = 5e-6;
+constexpr int kMaxSteps = 48, kMaxLooks = 24;
+constexpr double kArcFloorMm = 0.05;  // about the axis an angle is no measure of length
+
+FieldLookup lookupFor(core::SimdLevel level) {
+#if defined(__x86_64__)
+    if (level == core::SimdLevel::avx512) return simd_avx512::fieldLookup();
+    if (level == core::SimdLevel::avx2) return simd_avx2::fieldLookup();
+#endif
+    static_cast<void>(level);
+    return simd_base::fieldLookup();
+}
+
+bool isFine(float d) {
+    return d < kKnownMm && d > -kKnownMm;
+}
+/// The distance, or its bound.
+double distanceOf(float d) {
+    return static_cast<double>(isFine(d) ? d : d > 0.0f ? d - kBoundMm : d + kBoundMm);
+}
+
+/// A triangle near the ball being climbed: what it says of the depth there and how that changes.
+struct Support {
+    double value, alongU, alongArc;
+};
+
+/// Largest of min over supports of (value + slopes . step) within the box, by its corners: four supports and four sides
+/// leave few.
+double solve(const Support* supports, int count, double lowU, double highU, double window, double& stepU,
+             double& stepArc) noexcept {
+    double best = -std::numeric_limits<double>::infinity();
+    const auto offer = [&](double u, double arc) {
+        constexpr double kSlack = 1e-12;
+        if (!(u >= lowU - kSlack && u <= highU + kSlack && std::abs(arc) <= window + kSlack)) return;
+        double least = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < count; ++i)
+            least = std::min(least, supports[i].value + supports[i].alongU * u + supports[i].alongArc * arc);
+        if (least > best) {
+            best = least;
+            stepU = u;
+            stepArc = arc;
+        }
+    };
+    for (const double u : {lowU, highU})
+        for (const double arc : {-window, window})
+            offer(u, arc);
+    for (int i = 0; i < count; ++i)
+        for (int j = i + 1; j < count; ++j) {
+            // Where two are equal: a U + b arc = c.
+            const double a = supports[i].alongU - supports[j].alongU, b = supports[i].alongArc - supports[j].alongArc;
+            const double c = supports[j].value - supports[i].value;
+            if (std::abs(b) > 1e-12)
+                for (const double u : {lowU, highU})
+                    offer(u, (c - a * u) / b);
+            if (std::abs(a) > 1e-12)
+                for (const double arc : {-window, window})
+                    offer((c - b * arc) / a, arc);
+            for (int k = j + 1; k < count; ++k) {
+                const double d = supports[i].alongU - supports[k].alongU,
+                             e = supports[i].alongArc - supports[k].alongArc;
+                const double f = supports[k].value - supports[i].value, det = a * e - b * d;
+                if (std::abs(det) > 1e-14) offer((c * e - b * f) / det, (a * f - c * d) / det);
+            }
+        }
+    return best;
+}
+
+}  // namespace
+
+namespace {
+
+/// Whether the balls of a sheet add nothing that is felt to one of `kept`. A ball (c, R) is at most |c - e| + R - r
+/// deeper than a ball (e, r), whatever the tooth.
+bool isCovered(const instrument::MedialCurve& sheet, const std::vector<instrument::MedialBall>& kept) {
+    return std::any_of(kept.begin(), kept.end(), [&](const instrument::MedialBall& e) {
+        return std::all_of(sheet.balls.begin(), sheet.balls.end(), [&](const instrument::MedialBall& b) {
+            return std::hypot(b.rhoMm - e.rhoMm, b.zMm - e.zMm) + b.radiusMm - e.radiusMm <= kCoveredMm;
+        });
+    });
+}
+
+}  // namespace
+
+OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field::DistanceField& field,
+                                         core::SimdLevel level)
+    : field_(field.view()),
+      lookup_(lookupFor(level)),
+      bandOutMm_(static_cast<float>(field.settings().bandOutMm)),
+      bandInMm_(static_cast<float>(field.settings().bandInMm)),
+      errorMm_(kFieldErrorVoxels * field.settings().voxelMm),
+      brickDiagonalMm_(std::numbers::sqrt3 * field::kBrickCells * field.settings().voxelMm) {
+    std::vector<instrument::MedialBall> kept;
+    for (const instrument::MedialCurve& curve : bur.medialAxis()) {
+        if (curve.balls.empty()) continue;
+        const bool searchedHere = !curve.onAxis && !isCovered(curve, kept);
+        if (curve.onAxis || searchedHere) kept.insert(kept.end(), curve.balls.begin(), curve.balls.end());
+        if (!curve.onAxis && !searchedHere) covered_.insert(covered_.end(), curve.balls.begin(), curve.balls.end());
+        if (!searchedHere) continue;
+        Sheet sheet;
+        for (const instrument::MedialBall& ball : curve.balls) {
+            double u = 0.0;
+            if (!sheet.u.empty()) {
+                const double length = std::hypot(ball.rhoMm - sheet.rho.back(), ball.zMm - sheet.z.back());
+                if (length < 1e-10) continue;
+                u = sheet.u.back() + length;
+            }
+            sheet.u.push_back(u);
+            sheet.rho.push_back(ball.rhoMm);
+            sheet.z.push_back(ball.zMm);
+            sheet.radius.push_back(ball.radiusMm);
+            sheet.maxRho = std::max(sheet.maxRho, ball.rhoMm);
+        }
+        const auto reachFrom = [&](double z) {
+            double reach = 0.0;
+            for (std::size_t i = 0; i < sheet.u.size(); ++i)
+                reach = std::max(reach, sheet.radius[i] + std::hypot(sheet.rho[i], sheet.z[i] - z));
+            return reach;
+        };
+        double low = -1.0, high = bur.lengthMm() + 1.0;  // the reach is convex in z
+        for (int i = 0; i < 80; ++i) {
+            const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
+            (reachFrom(a) < reachFrom(b) ? high : low) = reachFrom(a) < reachFrom(b) ? b : a;
+        }
+        sheet.centreZ = 0.5 * (low + high);
+        sheet.reachMm = reachFrom(sheet.centreZ);
+        for (std::size_t i = 0; i < sheet.u.size(); ++i)
+            sheet.centresMm = std::max(sheet.centresMm, std::hypot(sheet.rho[i], sheet.z[i] - sheet.centreZ));
+        addGrid(sheet);
+        sheets_.push_back(std::move(sheet));
+    }
+    grid_.resize(kMaxGrid);
+    unknown_.resize(kMaxGrid);
+}
+
+void OffAxisMedialSearch::addGrid(Sheet& sheet) const {
+    const double length = sheet.u.back();
+    for (double spacing = kSpacingMm;; spacing *= 1.2) {
+        sheet.rows.clear();
+        sheet.cosine.clear();
+        sheet.sine.clear();
+        sheet.middleCosine.clear();
+        sheet.middleSine.clear();
+        const int steps = std::max(1, static_cast<int>(std::ceil(length / spacing)));
+        std::size_t total = 0, piece = 0;
+        for (int i = 0; i <= steps; ++i) {
+            const double u = length * i / steps;
+            while (piece + 2 < sheet.u.size() && sheet.u[piece + 1] < u)
+                ++piece;
+            const std::size_t next = std::min(piece + 1, sheet.u.size() - 1);
+            const double span = sheet.u[next] - sheet.u[piece], t = span > 0.0 ? (u - sheet.u[piece]) / span : 0.0;
+            Row row;
+            row.u = u;
+            row.rho = sheet.rho[piece] + t * (sheet.rho[next] - sheet.rho[piece]);
+            row.z = sheet.z[piece] + t * (sheet.z[next] - sheet.z[piece]);
+            row.radius = sheet.radius[piece] + t * (sheet.radius[next] - sheet.radius[piece]);
+            row.first = static_cast<std::uint32_t>(total);
+            row.count = 8 * static_cast<std::uint32_t>(std::max(1.0, std::ceil(2.0 * kPi * row.rho / spacing / 8.0)));
+            total += row.count;
+            for (std::uint32_t j = 0; j < row.count; ++j) {
+                sheet.cosine.push_back(std::cos(2.0 * kPi * j / row.count));
+                sheet.sine.push_back(std::sin(2.0 * kPi * j / row.count));
+            }
+            row.firstMiddle = static_cast<std::uint32_t>(sheet.middleCosine.size());
+            for (std::uint32_t j = 0; j < (row.count / 8 + 7) / 8 * 8; ++j) {
+                sheet.middleCosine.push_back(std::cos(2.0 * kPi * (8 * j + 3.5) / row.count));
+                sheet.middleSine.push_back(std::sin(2.0 * kPi * (8 * j + 3.5) / row.count));
+            }
+            sheet.rows.push_back(row);
+        }
+        sheet.spacingMm = spacing;
+        if (total <= kMaxGrid) return;
+    }
+}
+
+void OffAxisMedialSearch::search(const ExactSurface& surface, const core::Pose& burInTooth, bool outsideKnown,
+                                 BallDepth& best) noexcept {
+    if (sheets_.empty()) return;
+    const core::Mat3 rotation = burInTooth.orientation.toRotationMatrix();
+    const Frame frame{burInTooth.positionMm, rotation.col(0), rotation.col(1), rotation.col(2)};
+    for (const Sheet& sheet : sheets_) {
+        const Vec3 centre = frame.tip + sheet.centreZ * frame.z;
+        const double far = surface.farBound(centre);
+        if (far > 0.0 && (outsideKnown ? far > sheet.centresMm : sheet.reachMm - far <= best.depthMm)) continue;
+        std::uint32_t seed = best.triangle;
+        if (far > 0.0 && !outsideKnown) {
+            const BallDepth around = surface.ball(centre, sheet.reachMm, seed, sheet.reachMm - best.depthMm);
+            if (around.triangle == geometry::kNoTriangle) continue;
+            seed = around.triangle;
+        }
+        mostOutsideMm_ = outsideKnown ? kToGrid * sheet.spacingMm + errorMm_ : std::numeric_limits<double>::infinity();
+        searchSheet(surface, sheet, frame, seed, best);
+    }
+    // Twice: a deeper ball has its own nearest place.
+    if (askCovered(surface, frame, best)) askCovered(surface, frame, best);
+}
+
+bool OffAxisMedialSearch::askCovered(const ExactSurface& surface, const Frame& frame, BallDepth& best) const noexcept {
+    if (covered_.empty() || best.triangle == geometry::kNoTriangle || best.depthMm <= 0.0) return false;
+    const Vec3 w = best.surfaceMm - frame.tip;
+    const double along = w.dot(frame.x), across = w.dot(frame.y), rho = std::hypot(along, across);
+    if (rho < kOnAxisMm) return false;
+    bool deeper = false;
+    const Vec3 outward = (along * frame.x + across * frame.y) / rho;
+    for (const instrument::MedialBall& ball : covered_) {
+        const Vec3 centre = frame.tip + ball.rhoMm * outward + ball.zMm * frame.z;
+        // Inside the tooth the nearest point is no farther than the one known.
+        if (ball.radiusMm + (centre - best.surfaceMm).norm() <= best.depthMm) continue;
+        const BallDepth found = surface.ball(centre, ball.radiusMm, best.triangle);
+        if (found.depthMm <= best.depthMm) continue;
+        best = found;
+        deeper = true;
+    }
+    return deeper;
+}
+
+OffAxisMedialSearch::Spot OffAxisMedialSearch::spotAt(const Sheet& sheet, const Frame& frame, double u,
+                                                      double angle) const noexcept {
+    const std::size_t last = sheet.u.size() - 1;
+    std::size_t low = 0, high = last;
+    while (high - low > 1) {
+        const std::size_t middle = (low + high) / 2;
+        (u < sheet.u[middle] ? high : low) = middle;
+    }
+    const double span = sheet.u[high] - sheet.u[low], scale = span > 0.0 ? 1.0 / span : 0.0,
+                 t = (u - sheet.u[low]) * scale;
+    const double dRho = (sheet.rho[high] - sheet.rho[low]) * scale, dZ = (sheet.z[high] - sheet.z[low]) * scale;
+    const double rho = sheet.rho[low] + t * (sheet.rho[high] - sheet.rho[low]);
+    const double z = sheet.z[low] + t * (sheet.z[high] - sheet.z[low]);
+    const double c = std::cos(angle), s = std::sin(angle);
+    const Vec3 outward = c * frame.x + s * frame.y, around = c * frame.y - s * frame.x;
+    Spot spot;
+    spot.centre = frame.tip + rho * outward + z * frame.z;
+    spot.alongU = dRho * outward + dZ * frame.z;
+    spot.arcPerRad = std::max(rho, kArcFloorMm);
+    spot.alongArc = (rho / spot.arcPerRad) * around;
+    spot.radius = sheet.radius[low] + t * (sheet.radius[high] - sheet.radius[low]);
+    spot.radiusAlongU = (sheet.radius[high] - sheet.radius[low]) * scale;
+    return spot;
+}
+
+/// Distances of the grid's balls; of eight that all lie too far outside for their radius none is looked up.
+void OffAxisMedialSearch::scan(const Sheet& sheet, const Frame& frame, double atLeast) noexcept {
+    for (const Row& r : sheet.rows) {
+        FieldRow row;
+        for (int k = 0; k < 3; ++k) {
+            row.centre[k] = frame.tip[k] + r.z * frame.z[k];
+            row.x[k] = r.rho * frame.x[k];
+            row.y[k] = r.rho * frame.y[k];
+        }
+        row.farOutMm = bandOutMm_;
+        row.farInMm = bandInMm_;
+        const double chord = 2.0 * r.rho * std::sin(std::min(0.5 * 3.5 * 2.0 * kPi / r.count, 0.5 * kPi));
+        float middle[8] = {};
+        for (std::uint32_t j = 0; j < r.count; j += 8) {
+            if (r.count >= 24) {
+                if (j % 64 == 0) {
+                    row.cosines = sheet.middleCosine.data() + r.firstMiddle;
+                    row.sines = sheet.middleSine.data() + r.firstMiddle;
+                    lookup_(field_, row, static_cast<int>(j / 8), middle);
+                }
+                const double d = distanceOf(middle[j / 8 % 8]);
+                if (d > 0.0 && (r.radius + chord - d + errorMm_ < atLeast || d - chord > mostOutsideMm_)) {
+                    std::fill_n(&grid_[r.first + j], 8, kDropped);
+                    continue;
+                }
+            }
+            row.cosines = sheet.cosine.data() + r.first;
+            row.sines = sheet.sine.data() + r.first;
+            lookup_(field_, row, static_cast<int>(j), &grid_[r.first + j]);
+        }
+    }
+}
+
+/// Tops of the grid where the field holds distances, and all balls elsewhere that might beat `atLeast`.
+void OffAxisMedialSearch::collect(const Sheet& sheet, const Frame& frame, double atLeast) noexcept {
+    candidateCount_ = unknownCount_ = 0;
+    double least = atLeast;
+    for (const Row& r : sheet.rows)
+        for (std::uint32_t j = 0; j < r.count; ++j)
+            if (const float d = grid_[r.first + j]; isFine(d))
+                least = std::max(least, r.radius - static_cast<double>(d) - errorMm_);
+    for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
+        const Row& r = sheet.rows[i];
+        const bool onAxis = r.rho < kOnAxisMm;  // one ball, many angles
+        for (std::uint32_t j = 0; j < (onAxis ? 1 : r.count); ++j) {
+            const float d = grid_[r.first + j];
+            if (distanceOf(d) > mostOutsideMm_) continue;
+            const double value = r.radius - distanceOf(d), angle = 2.0 * kPi * j / r.count;
+            if (!isFine(d)) {
+                // A brick's bound of an inside distance is short by its diagonal at most.
+                const double upper = d < 0.0f ? value + brickDiagonalMm_ : value;
+                if (upper > atLeast) {
+                    const double c = sheet.cosine[r.first + j], s = sheet.sine[r.first + j];
+                    unknown_[unknownCount_++] = {frame.tip + r.z * frame.z + r.rho * (c * frame.x + s * frame.y),
+                                                 r.radius,
+                                                 upper,
+                                                 r.u,
+                                                 angle,
+                                                 d > 0.0f};
+                }
+                continue;
+            }
+            if (value + kRiseMm < least) continue;
+            const auto isHigher = [&](const Row& other, std::uint32_t at) {
+                const float there = grid_[other.first + at % other.count];
+                return isFine(there) && other.radius - static_cast<double>(there) > value;
+            };
+            bool top = onAxis || (!isHigher(r, j + 1) && !isHigher(r, j + r.count - 1));
+            for (const std::size_t k : {i - 1, i + 1}) {
+                if (k >= sheet.rows.size()) continue;
+                const Row& other = sheet.rows[k];
+                if (!onAxis) top = top && !isHigher(other, (j * other.count + r.count / 2) / r.count);
+                for (std::uint32_t a = 0; onAxis && top && a < other.count; ++a)
+                    top = !isHigher(other, a);
+            }
+            if (!top) continue;
+            const Candidate candidate{value, r.u, angle};
+            if (candidateCount_ < kMaxCandidates) {
+                candidates_[candidateCount_++] = candidate;
+                continue;
+            }
+            const auto lowest =
+                std::min_element(candidates_.begin(), candidates_.end(),
+                                 [](const Candidate& a, const Candidate& b) { return a.value < b.value; });
+            if (lowest->value < value) *lowest = candidate;
+        }
+    }
+}
+
+/// Climbs in the field by looks in eight directions.
+void OffAxisMedialSearch::refine(const Sheet& sheet, const Frame& frame, Candidate& candidate) const noexcept {
+    constexpr double kHalf = std::numbers::sqrt2 / 2.0;
+    static constexpr double kCosine[8] = {1, kHalf, 0, -kHalf, -1, -kHalf, 0, kHalf};
+    static constexpr double kSine[8] = {0, kHalf, 1, kHalf, 0, -kHalf, -1, -kHalf};
+    double step = 0.5 * kSpacingMm;
+    for (int look = 0; look < kMaxLooks && step > kRefinedMm; ++look) {
+        const Spot spot = spotAt(sheet, frame, candidate.u, candidate.angle);
+        FieldRow row;
+        for (int k = 0; k < 3; ++k) {
+            row.centre[k] = spot.centre[k];
+            row.x[k] = step * spot.alongU[k];
+            row.y[k] = step * spot.alongArc[k];
+        }
+        row.cosines = kCosine;
+        row.sines = kSine;
+        row.farOutMm = bandOutMm_;
+        row.farInMm = bandInMm_;
+        float d[8];
+        lookup_(field_, row, 0, d);
+        int best = -1;
+        double bestValue = candidate.value;
+        for (int k = 0; k < 8; ++k) {
+            const double u = candidate.u + step * kCosine[k];
+            const double value = spot.radius + step * kCosine[k] * spot.radiusAlongU - static_cast<double>(d[k]);
+            if (u < -1e-9 || u > sheet.u.back() + 1e-9 || !isFine(d[k])) continue;
+            if (value > bestValue) {
+                bestValue = value;
+                best = k;
+            }
+        }
+        if (best < 0) {
+            step *= 0.4;
+            continue;
+        }
+        candidate.value = bestValue;
+        candidate.u = std::clamp(candidate.u + step * kCosine[best], 0.0, sheet.u.back());
+        candidate.angle += step * kSine[best] / spot.arcPerRad;
+    }
+}
+
+void OffAxisMedialSearch::climbOnce(const ExactSurface& surface, const Sheet& sheet, const Frame& frame,
+                                    const Candidate& from, std::uint32_t& seed, double window,
+                                    BallDepth& best) noexcept {
+    const auto isNear = [&](double u, double angle) {
+        return std::abs(u - from.u) < kSameTopMm &&
+               sheet.maxRho * std::abs(std::remainder(angle - from.angle, 2.0 * kPi)) < kSameTopMm;
+    };
+    if (climbs_ == kMaxClimbs) return;
+    for (int i = 0; i < climbs_; ++i) {
+        const Top& top = tops_[static_cast<std::size_t>(i)];
+        if (isNear(top.u, top.angle) || isNear(top.endU, top.endAngle)) return;
+    }
+    Top& top = tops_[static_cast<std::size_t>(climbs_++)];
+    top = {from.u, from.angle, from.u, from.angle};
+    climb(surface, sheet, frame, from.u, from.angle, seed, window, best, top.endU, top.endAngle);
+    seed = best.triangle != geometry::kNoTriangle ? best.triangle : seed;
+}
+
+/// Balls that the field cannot tell: each one measured bounds those around it.
+void OffAxisMedialSearch::measure(const ExactSurface& surface, const Sheet& sheet, const Frame& frame,
+                                  std::uint32_t& seed, BallDepth& best) noexcept {
+    for (int count = 0; count < kMaxMeasured && unknownCount_ > 0; ++count) {
+        std::size_t at = 0;
+        for (std::size_t i = 1; i < unknownCount_; ++i)
+            if (unknown_[i].upper > unknown_[at].upper) at = i;
+        const Unknown here = unknown_[at];
+        if (here.upper <= best.depthMm + kToleranceMm) return;
+        // Outside, a surface too far to matter need not be found.
+        const double bound =
+            here.outside ? here.radius - best.depthMm + kRiseMm : std::numeric_limits<double>::infinity();
+        const BallDepth found = surface.ball(here.centre, here.radius, seed, bound);
+        const bool isFound = found.triangle != geometry::kNoTriangle;
+        if (isFound) seed = found.triangle;
+        const double value = isFound ? found.depthMm : best.depthMm - kRiseMm;
+        if (value > best.depthMm) best = found;
+        if (value + kRiseMm > best.depthMm && isFound)
+            climbOnce(surface, sheet, frame, {value, here.u, here.angle}, seed, kSpacingMm, best);
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < unknownCount_; ++i) {
+            Unknown other = unknown_[i];
+            if (i == at) continue;
+            const double upper = isFound && found.inside
+                                     ? other.radius + (other.centre - found.surfaceMm).norm()
+                                     : value + other.radius - here.radius + (other.centre - here.centre).norm();
+            other.upper = std::min(other.upper, upper);
+            if (other.upper > best.depthMm + kToleranceMm) unknown_[kept++] = other;
+        }
+        unknownCount_ = kept;
+    }
+}
+
+void OffAxisMedialSearch::searchSheet(const ExactSurface& surface, const Sheet& sheet, const Frame& frame,
+                                      std::uint32_t seed, BallDepth& best) noexcept {
+    scan(sheet, frame, best.depthMm);
+    collect(sheet, frame, best.depthMm);
+    climbs_ = 0;
+    const auto higher = [](const Candidate& a, const Candidate& b) {
+        return a.value != b.value ? a.value > b.value : a.u != b.u ? a.u < b.u : a.angle < b.angle;
+    };
+    const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(candidateCount_);
+    std::sort(candidates_.begin(), end, higher);
+    double least = best.depthMm;
+    for (auto c = candidates_.begin(); c != end; ++c) {
+        if (c->value + kRiseMm < least) continue;
+        refine(sheet, frame, *c);
+        least = std::max(least, c->value - errorMm_);
+    }
+    std::sort(candidates_.begin(), end, higher);
+    for (auto c = candidates_.begin(); c != end && c->value + errorMm_ > best.depthMm; ++c)
+        climbOnce(surface, sheet, frame, *c, seed, kFieldWindowMm, best);
+    measure(surface, sheet, frame, seed, best);
+}
+
+void OffAxisMedialSearch::climb(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, double u,
+                                double angle, std::uint32_t seed, double window, BallDepth& best, double& endU,
+                                double& endAngle) const noexcept {
+    constexpr int kKnown = 8, kActive = 4;
+    std::uint32_t known[kKnown];
+    int knownCount = 0, oldest = 0;
+    const auto remember = [&](std::uint32_t triangle) {
+        for (int i = 0; i < knownCount; ++i)
+            if (known[i] == triangle) return;
+        if (knownCount < kKnown)
+            known[knownCount++] = triangle;
+        else
+            known[oldest++ % kKnown] = triangle;
+    };
+    Spot spot = spotAt(sheet, frame, u, angle);
+    BallDepth here = surface.ball(spot.centre, spot.radius, seed);
+    endU = u;
+    endAngle = angle;
+    if (here.triangle == geometry::kNoTriangle) return;
+    remember(here.triangle);
+    if (spot.alongArc.isZero(1e-9)) {  // on the axis every angle is as good: look up the slope
+        const Vec3 away = (here.inside ? -1.0 : 1.0) * (spot.centre - here.surfaceMm);
+        angle = std::atan2(-away.dot(frame.y), -away.dot(frame.x));
+        spot = spotAt(sheet, frame, u, angle);
+    }
+    for (int step = 0; step < kMaxSteps && window > kFinalWindowMm; ++step) {
+        if (here.depthMm + 4.0 * window < best.depthMm) break;
+        Support supports[kActive];
+        int count = 0;
+        const auto addSupport = [&](const Vec3& outOfTooth, double depth) {
+            const Support s{depth, spot.radiusAlongU - outOfTooth.dot(spot.alongU), -outOfTooth.dot(spot.alongArc)};
+            if (count < kActive) {
+                supports[count++] = s;
+                return;
+            }
+            // Full: the one that limits least makes room. The first is the surface that is touched and stays.
+            int most = 1;
+            for (int i = 2; i < kActive; ++i)
+                if (supports[i].value > supports[most].value) most = i;
+            if (s.value < supports[most].value) supports[most] = s;
+        };
+        const Vec3 away = spot.centre - here.surfaceMm;
+        const double distance = away.norm();
+        addSupport(distance > 1e-9 ? Vec3((here.inside ? -1.0 : 1.0) * away / distance) : surface.outward(here),
+                   here.depthMm);
+        if (here.inside)
+            for (int i = 0; i < knownCount; ++i) {
+                if (known[i] == here.triangle) continue;
+                const Vec3 q = surface.closestOn(known[i], spot.centre);
+                const Vec3 to = q - spot.centre;
+                const double d = to.norm();
+                if (d > 1e-9 && spot.radius + d < here.depthMm + 4.0 * window) addSupport(to / d, spot.radius + d);
+            }
+        double stepU = 0.0, stepArc = 0.0;
+        const double lowU = std::max(-window, -u), highU = std::min(window, sheet.u.back() - u);
+        const double hoped = solve(supports, count, lowU, highU, window, stepU, stepArc) - here.depthMm;
+        if (here.depthMm + kFarBehind * std::max(hoped, kToleranceMm) < best.depthMm) break;
+        if (hoped < kToleranceMm) {
+            window *= 0.25;
+            continue;
+        }
+        const double newU = std::clamp(u + stepU, 0.0, sheet.u.back()), newAngle = angle + stepArc / spot.arcPerRad;
+        const Spot there = spotAt(sheet, frame, newU, newAngle);
+        const BallDepth found = surface.ball(there.centre, there.radius, here.triangle);
+        const double gained = found.depthMm - here.depthMm;  // nothing found: minus infinity
+        if (found.triangle != geometry::kNoTriangle) remember(found.triangle);
+        if (gained > 0.0) {
+            u = newU;
+            angle = newAngle;
+            spot = there;
+            here = found;
+        }
+        window *= gained > 0.75 * hoped ? 1.5 : gained > 0.25 * hoped ? 0.7 : 0.3;
+    }
+    if (here.depthMm > best.depthMm) best = here;
+    endU = u;
+    endAngle = angle;
+}
+
+}  // namespace handpiece::contact

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The part of the medial region off the bur's axis: sheets, turned about the axis, under sharp rims and corners.
+/// Private to this room.
+
+#include <array>
+#include <vector>
+
+#include "handpiece/base/core/vec.h"
+#include "handpiece/model/instrument/bur.h"
+#include "handpiece/tick/contact/exact/exact_depth.h"
+#include "handpiece/tick/contact/sampled/field_row.h"
+
+namespace handpiece::contact {
+
+/// Finds the deepest ball of the sheets: looked for on a grid of balls in the field, eight at a time, then climbed
+/// against the triangles. Where the field holds no distance, balls are measured exactly until the Lipschitz bound drops
+/// the rest. Keeps nothing between queries: the answer does not depend on the last one.
+class OffAxisMedialSearch {
+  public:
+    OffAxisMedialSearch(const instrument::Bur& bur, const field::DistanceField& field, core::SimdLevel level);
+
+    /// Raises `best` to the deepest ball of all sheets; with `outsideKnown` at least to the deepest of those with their
+    /// centres in the tooth. A sheet that cannot beat `best` costs one or two lookups.
+    void search(const ExactSurface& surface, const core::Pose& burInTooth, bool outsideKnown, BallDepth& best) noexcept;
+
+  private:
+    /// A circle of the grid's balls.
+    struct Row {
+        double u, rho, z, radius;
+        std::uint32_t first, count;  ///< count is a multiple of 8
+        std::uint32_t firstMiddle;   ///< of the middles of its eights
+    };
+    struct Sheet {
+        std::vector<double> u, rho, z, radius;  ///< by ball; u is the length along the curve
+        double maxRho = 0.0;
+        double centreZ = 0.0, reachMm = 0.0;  ///< its balls lie in the ball of reach about the axis at centreZ
+        double centresMm = 0.0;               ///< their centres in the ball of this radius
+        double spacingMm = 0.0;               ///< of the grid's balls, at most
+        std::vector<Row> rows;
+        std::vector<double> cosine, sine;              ///< by ball of the grid
+        std::vector<double> middleCosine, middleSine;  ///< by eight of them; each row's padded to eight middles
+    };
+    struct Frame {
+        core::Vec3 tip, x, y, z;
+    };
+    /// A ball of a sheet and how its centre and radius change along u and along the arc.
+    struct Spot {
+        core::Vec3 centre, alongU, alongArc;
+        double radius, radiusAlongU, arcPerRad;
+    };
+    /// A top found in the field, or a ball to be measured exactly.
+    struct Candidate {
+        double value, u, angle;
+    };
+    struct Unknown {
+        core::Vec3 centre;
+        double radius, upper, u, angle;
+        bool outside;
+    };
+    /// Where a climb began and ended.
+    struct Top {
+        double u, angle, endU, endAngle;
+    };
+    static constexpr std::size_t kMaxGrid = 2048, kMaxCandidates = 48;
+    static constexpr int kMaxClimbs = 6, kMaxMeasured = 48;
+
+    void addGrid(Sheet& sheet) const;
+    void scan(const Sheet& sheet, const Frame& frame, double atLeast) noexcept;
+    void collect(const Sheet& sheet, const Frame& frame, double atLeast) noexcept;
+    void refine(const Sheet& sheet, const Frame& frame, Candidate& candidate) const noexcept;
+    void measure(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, std::uint32_t& seed,
+                 BallDepth& best) noexcept;
+    void climbOnce(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, const Candidate& from,
+                   std::uint32_t& seed, double window, BallDepth& best) noexcept;
+    [[nodiscard]] Spot spotAt(const Sheet& sheet, const Frame& frame, double u, double angle) const noexcept;
+    void searchSheet(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, std::uint32_t seed,
+                     BallDepth& best) noexcept;
+    void climb(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, double u, double angle,
+               std::uint32_t seed, double window, BallDepth& best, double& endU, double& endAngle) const noexcept;
+
+    /// True when one of the balls not searched is deeper there.
+    bool askCovered(const ExactSurface& surface, const Frame& frame, BallDepth& best) const noexcept;
+
+    std::vector<Sheet> sheets_;
+    std::vector<instrument::MedialBall> covered_;  ///< balls of sheets that are not searched
+    field::FieldView field_;
+    FieldLookup lookup_;
+    float bandOutMm_, bandInMm_;
+    double errorMm_, brickDiagonalMm_;
+    double mostOutsideMm_ = 0.0;  ///< balls with their centres farther outside are no concern of this search
+    std::vector<float> grid_;     ///< signed distance by ball of the grid; of fixed size, filled anew by each search
+    std::vector<Unknown> unknown_;
+    std::size_t unknownCount_ = 0;
+    std::array<Candidate, kMaxCandidates> candidates_;
+    std::size_t candidateCount_ = 0;
+    std::array<Top, kMaxClimbs> tops_;
+    int climbs_ = 0;
+};
+
+}  // namespace handpiece::contact

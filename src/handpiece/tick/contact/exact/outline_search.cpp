@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/tick/contact/exact/outline_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "handpiece/model/instrument/piece.h"
+
+namespace handpiece::contact {
+
+using core::Vec2;
+using core::Vec3;
+using instrument::ProfilePiece;
+
+namespace {
+
+constexpr int kTangents = 17;  // from -z over rho to +z, beside those of the pieces' ends
+constexpr double kStraightMm = 1e-9;
+
+NearestToOutline nearestFor(core::SimdLevel level) {
+#if defined(__x86_64__)
+    if (level == core::SimdLevel::avx512) return simd_avx512::nearestToOutline();
+    if (level == core::SimdLevel::avx2) return simd_avx2::nearestToOutline();
+#endif
+    static_cast<void>(level);
+    return simd_base::nearestToOutline();
+}
+
+void store(double (&to)[2], const Vec2& v) {
+    to[0] = v.x();
+    to[1] = v.y();
+}
+
+bool isConvex(const std::vector<ProfilePiece>& pieces) {
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (pieces[i].isArc && !pieces[i].convex) return false;
+        if (i > 0 && jointBetween(pieces[i - 1], pieces[i]) == instrument::Joint::reflex) return false;
+    }
+    return true;
+}
+
+/// How far the bur reaches along a direction of the half-plane.
+double supportOf(const std::vector<ProfilePiece>& pieces, const Vec2& direction) {
+    double most = -std::numeric_limits<double>::infinity();
+    for (const ProfilePiece& p : pieces) {
+        most = std::max({most, direction.dot(p.from), direction.dot(p.to)});
+        const Vec2 top = p.centre + p.radiusMm * direction;
+        if (p.isArc && isOnArc(p, top)) most = std::max(most, direction.dot(top));
+    }
+    return most;
+}
+
+/// Whether a sheet begins at a rim that meets the tooth: those by the shank alone are told in a lookup or two.
+bool hasRimBelow(const instrument::Bur& bur) {
+    const auto& curves = bur.medialAxis();
+    return std::any_of(curves.begin(), curves.end(), [&](const instrument::MedialCurve& curve) {
+        return !curve.onAxis && std::any_of(curve.balls.begin(), curve.balls.end(),
+                                            [&](const auto& ball) { return ball.zMm < 0.5 * bur.lengthMm(); });
+    });
+}
+
+std::unique_ptr<const Outline> outlineOf(const instrument::Bur& bur) {
+    const std::vector<ProfilePiece>& pieces = bur.profile().pieces;
+    if (!hasRimBelow(bur) || pieces.size() > static_cast<std::size_t>(kMaxOutlinePieces) || !isConvex(pieces))
+        return nullptr;
+    auto outline = std::make_unique<Outline>();
+    const auto addTangent = [&](const Vec2& normal) {
+        // A normal towards the axis, of rounding, bounds nothing on the other side of it.
+        if (normal.x() < 0.0 || outline->tangentCount == kMaxOutlineTangents) return;
+        outline->tangents[outline->tangentCount++] = {static_cast<float>(normal.x()), static_cast<float>(normal.y()),
+                                                      static_cast<float>(supportOf(pieces, normal))};
+    };
+    for (int i = 0; i < kTangents; ++i) {
+        const double angle = std::numbers::pi * (static_cast<double>(i) / (kTangents - 1) - 0.5);
+        addTangent({std::max(0.0, std::cos(angle)), std::sin(angle)});
+    }
+    for (const ProfilePiece& p : pieces) {
+        if ((p.to - p.from).norm() < kStraightMm) continue;
+        OutlinePiece& piece = outline->pieces[outline->pieceCount++];
+        const Vec2 first = -inwardNormalAt(p, 0.0), last = -inwardNormalAt(p, 1.0);
+        store(piece.from, p.from);
+        store(piece.to, p.to);
+        store(piece.normalFrom, first);
+        store(piece.normalTo, last);
+        store(piece.centre, p.centre);
+        piece.radius = p.isArc ? p.radiusMm : 0.0;
+        addTangent(first);
+        if (p.isArc) addTangent(last);
+    }
+    outline->middleZ = 0.5 * bur.lengthMm();
+    return outline;
+}
+
+}  // namespace
+
+OutlineSearch::OutlineSearch(const instrument::Bur& bur, core::SimdLevel level)
+    : outline_(outlineOf(bur)), nearest_(nearestFor(level)) {}
+
+bool OutlineSearch::search(const ExactSurface& surface, const core::Pose& burInTooth, BallDepth& best) noexcept {
+    const Vec3 tip = burInTooth.positionMm, axis = burInTooth.orientation * Vec3::UnitZ();
+    OutlineHit hit;
+    hit.distance = std::numeric_limits<double>::infinity();
+    hit.triangle = seed_;
+    nearest_(surface.view(), *outline_, tip.data(), axis.data(), hit);
+    if (hit.triangle == geometry::kNoTriangle) return false;
+    seed_ = hit.triangle;
+    best.depthMm = -hit.distance;
+    best.surfaceMm = Vec3(hit.point[0], hit.point[1], hit.point[2]);
+    // Somewhere on the way to the ball's centre: which of the balls there it is does not matter.
+    best.centreMm = best.surfaceMm + Vec3(hit.inwards[0], hit.inwards[1], hit.inwards[2]);
+    best.triangle = hit.triangle;
+    best.inside = false;
+    // A bur that lies in the tooth without meeting its surface is apart from that only.
+    return hit.distance > 0.0 && surface.farBound(tip + outline_->middleZ * axis) > surface.sureMm();
+}
+
+}  // namespace handpiece::contact

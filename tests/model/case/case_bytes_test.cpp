@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/model/case/case_bytes.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/model/field/field_cache.h"
+#include "support/closed_meshes.h"
+#include "support/random.h"
+
+namespace handpiece::cases {
+namespace {
+
+Case ballInBall() {
+    Case made;
+    made.name = "ball";
+    made.kind = "lower-first-molar";
+    made.fdiNumber = 46;
+    made.buccalSign = -1;
+    made.outer = test::sphereMesh(4, 3.0);
+    Part part;
+    part.name = "pulp";
+    part.tissue = Tissue::pulp;
+    part.priority = -7;
+    part.mesh = test::sphereMesh(3, 1.0);
+    for (core::Vec3& v : part.mesh.vertices)
+        v = v.cast<float>().cast<double>();  // as from an STL file
+    made.parts.push_back(part);
+    return made;
+}
+
+TEST(CaseBytes, givesTheSameCaseBack) {
+    const Case given = ballInBall();
+    const std::vector<std::byte> bytes = encodeCase(given);
+    const Case back = decodeCase(bytes, "test");
+    EXPECT_EQ(back.name, given.name);
+    EXPECT_EQ(back.kind, given.kind);
+    EXPECT_EQ(back.fdiNumber, 46);
+    EXPECT_EQ(back.buccalSign, -1);
+    EXPECT_EQ(back.parts.at(0).name, "pulp");
+    EXPECT_EQ(back.parts.at(0).priority, -7);
+    EXPECT_EQ(back.outer.triangles, given.outer.triangles);
+    // The key covers every vertex and index of every surface.
+    EXPECT_EQ(field::cacheKey(back, {}), field::cacheKey(given, {}));
+    EXPECT_EQ(encodeCase(back), bytes);
+    EXPECT_LT(bytes.size(), given.outer.vertices.size() * 24 + given.outer.triangles.size() * 8 + 10000);
+}
+
+TEST(CaseBytes, refusesWhatIsCutOffOrDamaged) {
+    const std::vector<std::byte> bytes = encodeCase(ballInBall());
+    std::mt19937_64 random(test::seed());
+    for (int i = 0; i < 200; ++i) {
+        const auto kept = static_cast<std::size_t>(test::uniform(random, 0, static_cast<double>(bytes.size() - 1)));
+        EXPECT_THROW((void)decodeCase(std::span(bytes).first(kept), "test"), core::Error) << kept;
+    }
+    int refused = 0;
+    for (int i = 0; i < 500; ++i) {
+        std::vector<std::byte> hurt = bytes;
+        hurt[static_cast<std::size_t>(test::uniform(random, 0, static_cast<double>(bytes.size() - 1)))] ^=
+            std::byte{0xff};
+        try {
+            (void)decodeCase(hurt, "test");  // another vertex is another tooth, but a tooth
+        } catch (const core::Error&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 0);
+    std::vector<std::byte> newer = bytes;
+    newer[4] = std::byte{2};
+    EXPECT_THROW((void)decodeCase(newer, "test"), core::Error);
+}
+
+}  // namespace
+}  // namespace handpiece::cases

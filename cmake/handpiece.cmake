@@ -54,6 +54,7 @@ function(handpiece_off_tick target)
     target_compile_options(${target} PRIVATE -O1)
 endfunction()
 
+# HEADERS are public and installed; a room's other headers are its own affair (tools/check_headers.py).
 # handpiece_room(wing/room HEADERS ... SOURCES ... USES room... THIRD_PARTY lib... THIRD_PARTY_PUBLIC lib...)
 function(handpiece_room path)
     cmake_parse_arguments(R "" "" "HEADERS;SOURCES;USES;THIRD_PARTY;THIRD_PARTY_PUBLIC" ${ARGN})

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every public header stands on its own, proven without compiling each a second time: a header is the first include of
-some source file, so the ordinary build compiles it before anything else, and what the precompiled headers would hide
-(the standard library) is held here by name. Exit 1 with one line a breach.
+"""Every header stands on its own, proven without compiling each a second time: a header is the first include of some
+source file, so the ordinary build compiles it before anything else, and what the precompiled headers would hide (the
+standard library) is held here by name. And every header is public or private to its room: the HEADERS line of the
+room's CMakeLists names the public ones, which alone are installed. Nobody else but tests and bench includes a private
+one, no public one includes a private one, and a public one is included from outside or by another public one. Exit 1
+with one line a breach.
     tools/check_headers.py            checks
-    tools/check_headers.py --alone    lists the headers that no source file includes first: the tests' build compiles those alone"""
+    tools/check_headers.py --alone    lists the public headers that no source file includes first: the tests' build compiles those alone"""
 import pathlib
 import re
 import sys
@@ -71,9 +74,36 @@ def headers():
     """Those that a room lists as its public ones."""
     found = []
     for room in (SRC / "handpiece").glob("*/*/CMakeLists.txt"):
-        listed = re.search(r"HEADERS\s+((?:\w+\.h\s+)+)", room.read_text())
+        listed = re.search(r"HEADERS\s+((?:[\w/]+\.h\s+)+)", room.read_text())
         found += [room.parent / name for name in listed.group(1).split()] if listed else []
     return sorted(found)
+
+
+def room_of(name):
+    """wing/room of an include or a path below src; nothing for an application's."""
+    found = re.match(r"handpiece/(\w+/\w+)/", name)
+    return found.group(1) if found else None
+
+
+def privacy():
+    """Breaches of what is public and what is private to its room."""
+    public = {h.relative_to(SRC).as_posix() for h in headers()}
+    breaches, wanted = [], set()
+    for folder in ("src", "apps", "examples"):
+        for path in sorted(p for p in (ROOT / folder).rglob("*") if p.suffix in (".h", ".cpp")):
+            here = path.relative_to(SRC if folder == "src" else ROOT).as_posix()
+            for kind, name in includes(path):
+                if kind != '"' or not room_of(name):
+                    continue
+                isOutside = room_of(name) != room_of(here)
+                if isOutside or here in public:
+                    wanted.add(name)
+                if isOutside and name not in public:
+                    breaches.append(f"{path.relative_to(ROOT).as_posix()}: includes {name}, which is private to its room")
+                elif here in public and name not in public:
+                    breaches.append(f"{path.relative_to(ROOT).as_posix()}: is public and includes {name}, which is private")
+    breaches += [f"src/{name}: is listed as public, and nobody outside of its room includes it" for name in sorted(public - wanted)]
+    return breaches
 
 
 def alone():
@@ -90,8 +120,9 @@ def main():
     if sys.argv[1:] == ["--alone"]:
         print(";".join(h.relative_to(SRC).as_posix() for h in alone()), end="")
         return 0
-    breaches = []
-    for header in headers():
+    breaches = privacy()
+    every = sorted(h for h in SRC.rglob("*.h") if h.name != "pch.h")
+    for header in every:
         has = standard_of(header, set())
         text = COMMENT.sub(" ", header.read_text(errors="replace"))
         for name in sorted(set(re.findall(r"\bstd::(\w+)", text))):
@@ -100,7 +131,7 @@ def main():
                 breaches.append(f"{header.relative_to(ROOT).as_posix()}: std::{name} without <{sorted(need)[0]}>")
     for line in breaches:
         print(line)
-    print(f"header check: {len(headers())} headers, {len(breaches)} breaches")
+    print(f"header check: {len(every)} headers, {len(headers())} of them public, {len(breaches)} breaches")
     return 1 if breaches else 0
 
 

@@ -2,7 +2,6 @@
 // handpiece bench: how long our own methods take on this machine.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -92,17 +91,17 @@ void bench(const BenchOptions& o) {
 
 }  // namespace
 
-void addBenchCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("bench", "Time our contact methods on this machine");
+void addBenchCommand(Command& app) {
+    Command command = app.subcommand("bench", "Time our contact methods on this machine");
     const auto options = std::make_shared<BenchOptions>();
-    command->add_option("--faces", options->faces, "triangles of the teeth")->capture_default_str();
-    command->add_option("--bur", options->bur, "bur by name or mesh file")->capture_default_str();
-    command->add_flag("--quick", options->quick, "the coarsest tooth only, fewer places");
-    command->add_flag("--json", options->json, "print JSON instead of a table");
-    command->footer(
+    command.option("--faces", options->faces, "triangles of the teeth").showDefault();
+    command.option("--bur", options->bur, "bur by name or mesh file").showDefault();
+    command.flag("--quick", options->quick, "the coarsest tooth only, fewer places");
+    command.flag("--json", options->json, "print JSON instead of a table");
+    command.footer(
         "Examples:\n  handpiece bench --quick\n  handpiece bench --faces 68150 --bur round-4 --json\n"
         "Beside other libraries: cmake --preset release, then build/release/bench/contact_bench.");
-    command->callback([options] { bench(*options); });
+    command.callback([options] { bench(*options); });
 }
 
 }  // namespace handpiece::cli

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
@@ -301,10 +300,10 @@ void pack(const PackOptions& o) {
 
 }  // namespace
 
-void addCaseCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("case", "Look into a case, check it, make one, pack it into one file");
-    command->require_subcommand(1);
-    command->footer(
+void addCaseCommand(Command& app) {
+    Command command = app.subcommand("case", "Look into a case, check it, make one, pack it into one file");
+    command.requireSubcommand();
+    command.footer(
         "Examples:\n  handpiece case info molar\n  handpiece case check molar --json\n"
         "  handpiece case new --out mine --outer whole.stl --part enamel=e.stl --part dentine=d.stl\n"
         "  handpiece case pack mine mine.handpiece");
@@ -315,11 +314,11 @@ void addCaseCommand(CLI::App& app) {
     };
     const auto looked = std::make_shared<Looked>();
     const auto looking = [&](const char* name, const char* what, const char* json, auto&& work) {
-        CLI::App* sub = command->add_subcommand(name, what);
-        sub->add_option("CASE", looked->place, "case folder, .handpiece file or mesh file")->required();
-        sub->add_flag("--json", looked->json, json);
-        sub->footer(fmt::format("Example:\n  handpiece case {} molar", name));
-        sub->callback([looked, work] { work(looked->place, looked->json); });
+        Command sub = command.subcommand(name, what);
+        sub.option("CASE", looked->place, "case folder, .handpiece file or mesh file").required();
+        sub.flag("--json", looked->json, json);
+        sub.footer(fmt::format("Example:\n  handpiece case {} molar", name));
+        sub.callback([looked, work] { work(looked->place, looked->json); });
     };
     looking("info", "Name the parts of a case, its tissues and its exercise", "print JSON instead of a table", info);
     looking("check", "Tell what is missing, crossing or sticking out; exit code 1 when it cannot be cut",
@@ -327,35 +326,34 @@ void addCaseCommand(CLI::App& app) {
 
     const auto options = std::make_shared<NewOptions>();
     NewOptions& o = *options;
-    CLI::App* make = command->add_subcommand("new", "Make a case of meshes, one closed surface per part");
-    make->add_option("--out", o.out, "folder or .handpiece file to write")->required();
-    addUnitOptions(*make, o.unit);
-    make->add_option("--outer", o.outer, "mesh of the whole tooth [default: the only part]");
-    make->add_option("--part", o.parts, "TISSUE=FILE or TISSUE:PRIORITY=FILE, in mm; as often as there are parts")
-        ->take_all();
-    make->add_option("--scenery", o.scenery, "TISSUE=FILE around the tooth: neighbours, gum, bone")->take_all();
-    make->add_option("--name", o.name, "name of the case [default: of the folder]");
-    make->add_option("--kind", o.kind, "kind of tooth, as lower-first-molar");
-    make->add_option("--fdi", o.fdi, "FDI number of the tooth, 11 to 48 or 51 to 85")
-        ->check(CLI::Range(11, 85))
-        ->type_name("NUMBER");
-    make->add_option("--buccal", o.buccal, "side that is buccal: +y or -y")->check(CLI::IsMember({"+y", "-y"}));
-    make->add_option("--tissues", o.tissues, "table of tissues of one's own (TOML)");
-    make->footer(
+    Command make = command.subcommand("new", "Make a case of meshes, one closed surface per part");
+    make.option("--out", o.out, "folder or .handpiece file to write").required();
+    addUnitOptions(make, o.unit);
+    make.option("--outer", o.outer, "mesh of the whole tooth [default: the only part]");
+    make.option("--part", o.parts, "TISSUE=FILE or TISSUE:PRIORITY=FILE, in mm; as often as there are parts").takeAll();
+    make.option("--scenery", o.scenery, "TISSUE=FILE around the tooth: neighbours, gum, bone").takeAll();
+    make.option("--name", o.name, "name of the case [default: of the folder]");
+    make.option("--kind", o.kind, "kind of tooth, as lower-first-molar");
+    make.option("--fdi", o.fdi, "FDI number of the tooth, 11 to 48 or 51 to 85")
+        .check(range(11, 85))
+        .typeName("NUMBER");
+    make.option("--buccal", o.buccal, "side that is buccal: +y or -y").check(oneOf({"+y", "-y"}));
+    make.option("--tissues", o.tissues, "table of tissues of one's own (TOML)");
+    make.footer(
         "Example:\n  handpiece case new --out mine --outer whole.stl --part enamel=e.stl --part caries:70=c.stl");
-    make->callback([options] { makeNew(*options); });
+    make.callback([options] { makeNew(*options); });
 
     const auto packed = std::make_shared<PackOptions>();
-    CLI::App* packing =
-        command->add_subcommand("pack", "Pack a case, or an attempt with its case, into one file; or unpack a case");
-    packing->add_option("IN", packed->in, "case or attempt: folder or .handpiece file")->required();
-    packing->add_option("OUT", packed->out, ".handpiece file, or folder to unpack into")->required();
-    packing->add_flag("--hand-in", packed->handIn, "of an attempt: for a teacher, with its recordings");
-    packing->add_option("--student", packed->student, "of an attempt: whose it is, a name or code as you type it");
-    packing->footer(
+    Command packing =
+        command.subcommand("pack", "Pack a case, or an attempt with its case, into one file; or unpack a case");
+    packing.option("IN", packed->in, "case or attempt: folder or .handpiece file").required();
+    packing.option("OUT", packed->out, ".handpiece file, or folder to unpack into").required();
+    packing.flag("--hand-in", packed->handIn, "of an attempt: for a teacher, with its recordings");
+    packing.option("--student", packed->student, "of an attempt: whose it is, a name or code as you type it");
+    packing.footer(
         "Examples:\n  handpiece case pack molar molar.handpiece\n"
         "  handpiece case pack out/attempt S-07.handpiece --hand-in --student S-07");
-    packing->callback([packed] { pack(*packed); });
+    packing.callback([packed] { pack(*packed); });
 }
 
 }  // namespace handpiece::cli

@@ -19,21 +19,22 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods) {
     app.footer(
         "Each command explains itself: handpiece COMMAND --help\n"
         "Exit codes: 0 done, 1 failed (bad input, no permission), 2 wrong usage.");
-    addMakeCommand(app);
-    addMeshCommand(app);
-    addCaseCommand(app);
-    addScanCommand(app);
-    addProbeCommand(app, extraMethods);
-    addRunCommand(app, extraMethods);
-    addDeviceCommand(app);
-    addReplayCommand(app);
-    addExportCommand(app);
-    addReportCommand(app);
-    addPictureCommand(app);
-    addReproduceCommand(app);
-    addBenchCommand(app);
-    addPassivityCommand(app);
-    addCompletionCommand(app);
+    Command top(app);
+    addMakeCommand(top);
+    addMeshCommand(top);
+    addCaseCommand(top);
+    addScanCommand(top);
+    addProbeCommand(top, extraMethods);
+    addRunCommand(top, extraMethods);
+    addDeviceCommand(top);
+    addReplayCommand(top);
+    addExportCommand(top);
+    addReportCommand(top);
+    addPictureCommand(top);
+    addReproduceCommand(top);
+    addBenchCommand(top);
+    addPassivityCommand(top);
+    addCompletionCommand(top);
     studies::installCancel();
     try {
         app.parse(argc, argv);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/completion.h"
+#include "cli/command.h"
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,16 +17,16 @@ struct Level {
     std::vector<std::string> words;
 };
 
-void collect(const CLI::App& app, const std::string& path, std::vector<Level>& levels) {
+void collect(const Command& command, const std::string& path, std::vector<Level>& levels) {
     Level level{path, {}};
-    for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
-        level.words.push_back(sub->get_name());
-    for (const CLI::Option* option : app.get_options())
-        for (const std::string& name : option->get_lnames())
-            level.words.push_back("--" + name);
+    const std::vector<Command> subcommands = command.subcommands();
+    for (const Command& sub : subcommands)
+        level.words.push_back(sub.name());
+    for (const std::string& name : command.optionNames())
+        level.words.push_back("--" + name);
     levels.push_back(std::move(level));
-    for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
-        collect(*sub, path.empty() ? sub->get_name() : path + " " + sub->get_name(), levels);
+    for (const Command& sub : subcommands)
+        collect(sub, path.empty() ? sub.name() : path + " " + sub.name(), levels);
 }
 
 std::string bash(const std::vector<Level>& levels) {
@@ -59,14 +59,12 @@ std::string fish(const std::vector<Level>& levels) {
 
 }  // namespace
 
-void addCompletionCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("completion", "Print a completion script for bash, zsh or fish");
+void addCompletionCommand(Command& app) {
+    Command command = app.subcommand("completion", "Print a completion script for bash, zsh or fish");
     const auto shell = std::make_shared<std::string>();
-    command->add_option("shell", *shell, "bash, zsh or fish")
-        ->required()
-        ->check(CLI::IsMember({"bash", "zsh", "fish"}));
-    command->footer("Example:\n  source <(handpiece completion bash)");
-    command->callback([&app, shell] {
+    command.option("shell", *shell, "bash, zsh or fish").required().check(oneOf({"bash", "zsh", "fish"}));
+    command.footer("Example:\n  source <(handpiece completion bash)");
+    command.callback([&app, shell] {
         std::vector<Level> levels;
         collect(app, "", levels);
         if (*shell == "fish") {

@@ -3,13 +3,11 @@
 /// @file
 /// Completion scripts for shells, made from the commands themselves and so always true.
 
-namespace CLI {
-class App;
-}
+#include "cli/command.h"
 
 namespace handpiece::cli {
 
 /// Adds `completion bash|zsh|fish`, which prints the script for what `app` holds when it runs.
-void addCompletionCommand(CLI::App& app);
+void addCompletionCommand(Command& app);
 
 }  // namespace handpiece::cli

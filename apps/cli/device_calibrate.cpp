@@ -4,7 +4,6 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include <optional>
 #include <thread>
 
+#include "cli/command.h"
 #include "cli/device_command.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/instrument/catalogue.h"
@@ -240,32 +240,31 @@ void calibrate(const CalibrateOptions& o) {
 
 }  // namespace
 
-void addDeviceCalibrateCommand(CLI::App& device) {
-    CLI::App* command = device.add_subcommand("calibrate", "A new device: connect, calibrate, place the tooth, feel");
+void addDeviceCalibrateCommand(Command& device) {
+    Command command = device.subcommand("calibrate", "A new device: connect, calibrate, place the tooth, feel");
     const auto options = std::make_shared<CalibrateOptions>();
     CalibrateOptions& o = *options;
-    command->add_option("--device", o.device.name, "name from the list; else the one that is there, else simulated");
-    command->add_option("--which", o.device.which, "device's name or serial, where there are several");
-    command->add_flag("--yes", o.yes, "ask nothing: the place is where the stylus is, or --at");
-    command->add_option("--at", o.at, "the tooth's place in the device [mm]: x to the right, y up, z to you")
-        ->expected(3);
-    command->add_option("--scale", o.device.scale, "millimetres of the hand for one of the bur: 1, 2 or 3")
-        ->check(CLI::NonNegativeNumber);
-    CLI::Option* left = command->add_flag("--left-handed", o.device.leftHanded, "the hand comes from the left");
-    command->add_flag("--right-handed", o.rightHanded, "the hand comes from the right, as when nothing is said")
-        ->excludes(left);
-    command->add_flag("--along-stylus", o.alongStylus, "the bur goes on along the stylus: no angled head");
-    command->add_option("--head-angle", o.headAngleDeg, "between handle and bur [degrees], 60 to 180; 100 when new");
-    command->add_option("--feel", o.feelS, "seconds at a block of enamel; 0: none")->capture_default_str();
-    command->add_option("--profiles", o.profiles, "folder of the profiles, instead of one's own");
-    command->add_flag("--json", o.json, "what came of it as JSON");
-    command->footer(
+    command.option("--device", o.device.name, "name from the list; else the one that is there, else simulated");
+    command.option("--which", o.device.which, "device's name or serial, where there are several");
+    command.flag("--yes", o.yes, "ask nothing: the place is where the stylus is, or --at");
+    command.option("--at", o.at, "the tooth's place in the device [mm]: x to the right, y up, z to you").expected(3);
+    command.option("--scale", o.device.scale, "millimetres of the hand for one of the bur: 1, 2 or 3")
+        .check(nonNegative());
+    Option left = command.flag("--left-handed", o.device.leftHanded, "the hand comes from the left");
+    command.flag("--right-handed", o.rightHanded, "the hand comes from the right, as when nothing is said")
+        .excludes(left);
+    command.flag("--along-stylus", o.alongStylus, "the bur goes on along the stylus: no angled head");
+    command.option("--head-angle", o.headAngleDeg, "between handle and bur [degrees], 60 to 180; 100 when new");
+    command.option("--feel", o.feelS, "seconds at a block of enamel; 0: none").showDefault();
+    command.option("--profiles", o.profiles, "folder of the profiles, instead of one's own");
+    command.flag("--json", o.json, "what came of it as JSON");
+    command.footer(
         "Writes the device's profile: docs/formats/device-profile.md.\n"
         "Example:\n  handpiece device calibrate --device openhaptics\n"
         "  handpiece device calibrate --device simulated --yes --at 0 0 0");
-    command->callback([options, command] {
-        if (command->count("--device") == 0) options->device.name = deviceMeant();
-        applySchoolDefaults(*command, options->device);
+    command.callback([options, command] {
+        if (!command.isGiven("--device")) options->device.name = deviceMeant();
+        applySchoolDefaults(command, options->device);
         if (options->rightHanded) options->device.leftHanded = false;
         calibrate(*options);
     });

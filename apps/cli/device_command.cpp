@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -94,35 +93,35 @@ std::string deviceMeant() {
     return "simulated";
 }
 
-void addDeviceCommand(CLI::App& app) {
-    CLI::App* device = app.add_subcommand("device", "Haptic devices: which there are, how good they feel, first steps");
-    device->require_subcommand(1);
+void addDeviceCommand(Command& app) {
+    Command device = app.subcommand("device", "Haptic devices: which there are, how good they feel, first steps");
+    device.requireSubcommand();
 
-    CLI::App* listing = device->add_subcommand("list", "Devices that can be used, and whether they are there");
+    Command listing = device.subcommand("list", "Devices that can be used, and whether they are there");
     const auto json = std::make_shared<bool>(false);
-    listing->add_flag("--json", *json, "as JSON");
-    listing->footer("Nothing is opened and nothing moves.\nExample:\n  handpiece device list");
-    listing->callback([json] { list(*json); });
+    listing.flag("--json", *json, "as JSON");
+    listing.footer("Nothing is opened and nothing moves.\nExample:\n  handpiece device list");
+    listing.callback([json] { list(*json); });
 
-    CLI::App* checking = device->add_subcommand("check", "How good this station feels: the fidelity report");
+    Command checking = device.subcommand("check", "How good this station feels: the fidelity report");
     const auto options = std::make_shared<CheckOptions>();
     CheckOptions& o = *options;
-    checking->add_option("--device", o.device.name, "name from the list; else the one that is there, else simulated");
-    checking->add_option("--which", o.device.which, "device's name or serial, where there are several");
-    checking->add_option("--duration", o.durationS, "seconds")->capture_default_str();
-    checking->add_option("--rate", o.rateHz, "ticks a second")->capture_default_str();
-    checking->add_flag("--no-push", o.noPush, "send no force: slope and round trip are not measured");
-    checking->add_flag("--json", o.json, "the report as JSON on the output");
-    checking->add_option("--report", o.report, "the report as a page to print (.html)");
-    checking->footer(
+    checking.option("--device", o.device.name, "name from the list; else the one that is there, else simulated");
+    checking.option("--which", o.device.which, "device's name or serial, where there are several");
+    checking.option("--duration", o.durationS, "seconds").showDefault();
+    checking.option("--rate", o.rateHz, "ticks a second").showDefault();
+    checking.flag("--no-push", o.noPush, "send no force: slope and round trip are not measured");
+    checking.flag("--json", o.json, "the report as JSON on the output");
+    checking.option("--report", o.report, "the report as a page to print (.html)");
+    checking.footer(
         "It pushes upwards, 0.8 N at most, some times for 60 ms, and says so before.\n"
         "Example:\n  handpiece device check --device openhaptics --report station.html");
-    checking->callback([options, checking] {
-        if (checking->count("--device") == 0) options->device.name = deviceMeant();
+    checking.callback([options, checking] {
+        if (!checking.isGiven("--device")) options->device.name = deviceMeant();
         check(*options);
     });
 
-    addDeviceCalibrateCommand(*device);
+    addDeviceCalibrateCommand(device);
 }
 
 }  // namespace handpiece::cli

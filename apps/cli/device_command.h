@@ -5,15 +5,12 @@
 
 #include <string>
 
+#include "cli/command.h"
 #include "cli/run_device.h"
-
-namespace CLI {
-class App;
-}
 
 namespace handpiece::cli {
 
-void addDeviceCalibrateCommand(CLI::App& device);
+void addDeviceCalibrateCommand(Command& device);
 
 /// The device meant when none is named: the school's, else the first one there is that pushes, else the simulated arm.
 [[nodiscard]] std::string deviceMeant();

@@ -2,7 +2,6 @@
 // handpiece export: a session's samples or events as CSV; what is left of each tissue as STL.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -113,35 +112,32 @@ void exportSession(const ExportOptions& o) {
 
 }  // namespace
 
-void addExportCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("export", "A session's samples or events as a table; tissues as surfaces");
+void addExportCommand(Command& app) {
+    Command command = app.subcommand("export", "A session's samples or events as a table; tissues as surfaces");
     const auto options = std::make_shared<ExportOptions>();
     command
-        ->add_option(
-            "session", options->session,
-            "session file (.h5); one that was cut off is read as far as it goes. With --stl also an attempt or "
-            "a case: folder, .handpiece file or mesh")
-        ->required();
-    command->add_flag("--csv", options->csv, "as comma-separated values");
-    command->add_flag("--events", options->events, "what happened at which tick, instead of the samples");
-    command->add_flag("--stl", options->stl,
-                      "what is left of each tissue as a closed surface of its own: enamel.stl, dentine.stl, ... (mm)");
-    command->add_option("--out", options->out, "file to write, - for standard output; of --stl the folder")
-        ->capture_default_str();
-    command
-        ->add_option("--voxel", options->voxelUm, "of --stl for a case or a mesh, voxel of the field [um], 10 to 400")
-        ->check(CLI::Range(10.0, 400.0))
-        ->capture_default_str();
-    command->add_flag("--no-cache", options->noCache, "of --stl: build the fields anew");
-    command->add_option("--threads", options->threads, "threads for long work; 0: all cores")
-        ->check(CLI::Range(std::size_t{0}, std::size_t{1024}))
-        ->capture_default_str();
-    command->footer(
+        .option("session", options->session,
+                "session file (.h5); one that was cut off is read as far as it goes. With --stl also an attempt or "
+                "a case: folder, .handpiece file or mesh")
+        .required();
+    command.flag("--csv", options->csv, "as comma-separated values");
+    command.flag("--events", options->events, "what happened at which tick, instead of the samples");
+    command.flag("--stl", options->stl,
+                 "what is left of each tissue as a closed surface of its own: enamel.stl, dentine.stl, ... (mm)");
+    command.option("--out", options->out, "file to write, - for standard output; of --stl the folder").showDefault();
+    command.option("--voxel", options->voxelUm, "of --stl for a case or a mesh, voxel of the field [um], 10 to 400")
+        .check(range(10.0, 400.0))
+        .showDefault();
+    command.flag("--no-cache", options->noCache, "of --stl: build the fields anew");
+    command.option("--threads", options->threads, "threads for long work; 0: all cores")
+        .check(range(std::size_t{0}, std::size_t{1024}))
+        .showDefault();
+    command.footer(
         "One row a tick: pose of the bur's tip as read from the device, force on the hand, speed, what was removed.\n"
         "--stl writes the tooth as a session leaves it, as an attempt was saved, or as a case is.\n"
         "Example:\n  handpiece export session.h5 --csv --out session.csv\n"
         "  handpiece export session.h5 --stl --out tissues");
-    command->callback([options] { exportSession(*options); });
+    command.callback([options] { exportSession(*options); });
 }
 
 }  // namespace handpiece::cli

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/inputs.h"
+#include "cli/command.h"
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "handpiece/base/core/error.h"
@@ -35,14 +35,14 @@ geometry::TriangleMesh MeshUnit::read(const std::string& file, geometry::ReadNot
     return scaled(geometry::readMesh(fs::path(file), notes), mmPerUnit());
 }
 
-void addUnitOptions(CLI::App& command, MeshUnit& unit, bool withScale) {
-    command.add_option("--unit", unit.name, "unit of a mesh file: mm, cm, m, inch or um")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"mm", "cm", "m", "inch", "um"}));
+void addUnitOptions(Command& command, MeshUnit& unit, bool withScale) {
+    command.option("--unit", unit.name, "unit of a mesh file: mm, cm, m, inch or um")
+        .showDefault()
+        .check(oneOf({"mm", "cm", "m", "inch", "um"}));
     if (!withScale) return;
-    command.add_option("--scale", unit.scale, "multiplies the coordinates of a mesh file, besides its unit")
-        ->capture_default_str()
-        ->check(CLI::Range(1e-9, 1e9));
+    command.option("--scale", unit.scale, "multiplies the coordinates of a mesh file, besides its unit")
+        .showDefault()
+        .check(range(1e-9, 1e9));
 }
 
 cases::Case readToothOf(const ContactInputs& inputs) {
@@ -57,20 +57,19 @@ cases::Case readToothOf(const ContactInputs& inputs) {
     return toothCase;
 }
 
-void addContactOptions(CLI::App& command, ContactInputs& inputs, const MethodRegistry& methods) {
+void addContactOptions(Command& command, ContactInputs& inputs, const MethodRegistry& methods) {
     std::string names = "field (ours, the concave tooth), hull (the paper's convex hull)";
     for (const auto& [name, factory] : methods)
         names += ", " + name;
-    command
-        .add_option("--tooth,--case", inputs.tooth, "case folder, .handpiece file, or mesh file (.stl, .ply, .obj; mm)")
-        ->required();
+    command.option("--tooth,--case", inputs.tooth, "case folder, .handpiece file, or mesh file (.stl, .ply, .obj; mm)")
+        .required();
     addUnitOptions(command, inputs.unit, false);
-    command.add_option("--bur", inputs.bur, "bur by name (330, round-4, paper, cylinder-round:1.0x4.0) or mesh file")
-        ->capture_default_str();
-    command.add_option("--method", inputs.method, "contact method: " + names)->capture_default_str();
-    command.add_option("--voxel", inputs.voxelUm, "voxel of the distance field [um], 10 to 400")->capture_default_str();
-    command.add_flag("--no-cache", inputs.noCache, "build the field anew and keep nothing");
-    command.add_option("--threads", inputs.threads, "threads for long work; 0: all cores")->capture_default_str();
+    command.option("--bur", inputs.bur, "bur by name (330, round-4, paper, cylinder-round:1.0x4.0) or mesh file")
+        .showDefault();
+    command.option("--method", inputs.method, "contact method: " + names).showDefault();
+    command.option("--voxel", inputs.voxelUm, "voxel of the distance field [um], 10 to 400").showDefault();
+    command.flag("--no-cache", inputs.noCache, "build the field anew and keep nothing");
+    command.option("--threads", inputs.threads, "threads for long work; 0: all cores").showDefault();
 }
 
 tooth::PrepareSettings prepareSettingsOf(const ContactInputs& inputs) {

@@ -7,12 +7,9 @@
 #include <string>
 
 #include "cli/cli.h"
+#include "cli/command.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/tick/contact/field_method.h"
-
-namespace CLI {
-class App;
-}
 
 namespace handpiece::cli {
 
@@ -26,7 +23,7 @@ struct MeshUnit {
     [[nodiscard]] geometry::TriangleMesh read(const std::string& file, geometry::ReadNotes* notes = nullptr) const;
 };
 /// --unit, and --scale where that is not an arm's.
-void addUnitOptions(CLI::App& command, MeshUnit& unit, bool withScale = true);
+void addUnitOptions(Command& command, MeshUnit& unit, bool withScale = true);
 
 struct ContactInputs {
     MeshUnit unit;  ///< of a tooth that is a mesh file
@@ -37,7 +34,7 @@ struct ContactInputs {
 };
 
 /// --tooth, --unit, --bur, --method, --voxel, --no-cache, --threads.
-void addContactOptions(CLI::App& command, ContactInputs& inputs, const MethodRegistry& methods);
+void addContactOptions(Command& command, ContactInputs& inputs, const MethodRegistry& methods);
 
 /// The case; one that is a mesh file in its unit. Throws core::Error.
 [[nodiscard]] cases::Case readToothOf(const ContactInputs& inputs);

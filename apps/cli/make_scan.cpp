@@ -2,7 +2,6 @@
 // handpiece make scan: a tooth whose truth is known, as a scanner would give it.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -157,38 +156,35 @@ void makeScan(MakeScanOptions& o) {
 
 }  // namespace
 
-void addMakeScanCommand(CLI::App& make) {
-    CLI::App* scan = make.add_subcommand("scan", "A tooth as CBCT or micro-CT slices, with the truth beside it");
+void addMakeScanCommand(Command& make) {
+    Command scan = make.subcommand("scan", "A tooth as CBCT or micro-CT slices, with the truth beside it");
     const auto options = std::make_shared<MakeScanOptions>();
     MakeScanOptions& o = *options;
     phantom::Settings& s = o.settings;
-    scan->add_option("--out", o.out, "folder to write; the truth goes into OUT-truth")->required();
-    scan->add_option("--voxel", s.voxelUm, "edge of a voxel [um]")->capture_default_str();
-    scan->add_option("--format", o.format, "one of: dicom, tiff, bmp, jpeg, png, nrrd, raw, metaimage, nifti")
-        ->capture_default_str();
-    scan->add_option("--scanner", o.scanner, "micro-ct (0..65535) or cbct (Hounsfield-like)")->capture_default_str();
-    scan->add_option("--kind", o.kind, "tooth that `make tooth` makes")->capture_default_str();
-    scan->add_option("--faces", o.faces, "triangles of its outer surface")->capture_default_str();
-    scan->add_option("--case", o.caseFile, "instead of --kind: a case folder, .handpiece file or mesh");
-    scan->add_option("--noise", s.noise, "standard deviation, as a share of the step from outside to enamel")
-        ->capture_default_str();
-    scan->add_option("--blur", s.blurVoxels, "standard deviation of the point spread [voxels]")->capture_default_str();
-    scan->add_option("--ring", s.ring, "rings about the scan's axis, in the unit of --noise")->capture_default_str();
-    scan->add_option("--metal", s.metal, "puts a filling in, with streaks, in the unit of --noise")
-        ->capture_default_str();
-    scan->add_option("--margin", s.marginMm, "air around it [mm]")->capture_default_str();
-    scan->add_flag("--scenery", s.scenery, "neighbours, gum and bone too");
-    scan->add_option("--turn", o.turnDeg, "of the tooth in the scanner, about x, then y, then z [degrees]")
-        ->expected(3)
-        ->delimiter(',');
-    scan->add_option("--seed", s.seed, "of noise, rings and streaks")->capture_default_str();
-    scan->add_option("--threads", o.threads, "0: all; the scan is the same at any number")->capture_default_str();
-    scan->footer(
+    scan.option("--out", o.out, "folder to write; the truth goes into OUT-truth").required();
+    scan.option("--voxel", s.voxelUm, "edge of a voxel [um]").showDefault();
+    scan.option("--format", o.format, "one of: dicom, tiff, bmp, jpeg, png, nrrd, raw, metaimage, nifti").showDefault();
+    scan.option("--scanner", o.scanner, "micro-ct (0..65535) or cbct (Hounsfield-like)").showDefault();
+    scan.option("--kind", o.kind, "tooth that `make tooth` makes").showDefault();
+    scan.option("--faces", o.faces, "triangles of its outer surface").showDefault();
+    scan.option("--case", o.caseFile, "instead of --kind: a case folder, .handpiece file or mesh");
+    scan.option("--noise", s.noise, "standard deviation, as a share of the step from outside to enamel").showDefault();
+    scan.option("--blur", s.blurVoxels, "standard deviation of the point spread [voxels]").showDefault();
+    scan.option("--ring", s.ring, "rings about the scan's axis, in the unit of --noise").showDefault();
+    scan.option("--metal", s.metal, "puts a filling in, with streaks, in the unit of --noise").showDefault();
+    scan.option("--margin", s.marginMm, "air around it [mm]").showDefault();
+    scan.flag("--scenery", s.scenery, "neighbours, gum and bone too");
+    scan.option("--turn", o.turnDeg, "of the tooth in the scanner, about x, then y, then z [degrees]")
+        .expected(3)
+        .delimiter(',');
+    scan.option("--seed", s.seed, "of noise, rings and streaks").showDefault();
+    scan.option("--threads", o.threads, "0: all; the scan is the same at any number").showDefault();
+    scan.footer(
         "Examples:\n  handpiece make scan --voxel 100 --format dicom --out molar-scan\n"
         "  handpiece make scan --kind upper-incisor --scanner cbct --voxel 200 --format nrrd --metal 0.1 --out "
         "incisor\n"
         "  handpiece make scan --case molar --voxel 50 --format tiff --turn 10,20,30 --out turned");
-    scan->callback([options] { makeScan(*options); });
+    scan.callback([options] { makeScan(*options); });
 }
 
 }  // namespace handpiece::cli

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -230,10 +229,10 @@ void repair(const RepairOptions& options) {
 
 }  // namespace
 
-void addMeshCommand(CLI::App& app) {
-    CLI::App* mesh = app.add_subcommand("mesh", "Tell what is wrong with a mesh, and mend it");
-    mesh->require_subcommand(1);
-    mesh->footer(
+void addMeshCommand(Command& app) {
+    Command mesh = app.subcommand("mesh", "Tell what is wrong with a mesh, and mend it");
+    mesh.requireSubcommand();
+    mesh.footer(
         "Examples:\n"
         "  handpiece mesh info molar.stl\n"
         "  handpiece mesh info molar.stl --json\n"
@@ -245,33 +244,31 @@ void addMeshCommand(CLI::App& app) {
         bool json = false;
     };
     const auto infoOptions = std::make_shared<InfoOptions>();
-    CLI::App* infoCommand = mesh->add_subcommand("info", "Count the faces and the flaws of a mesh, measure it");
-    infoCommand->add_option("FILE", infoOptions->file, "STL, PLY or OBJ")->required();
-    addUnitOptions(*infoCommand, infoOptions->unit);
-    infoCommand->add_flag("--json", infoOptions->json, "Print JSON instead of a table");
-    infoCommand->footer("Example:\n  handpiece mesh info molar.stl");
-    infoCommand->callback([infoOptions] { info(infoOptions->file, infoOptions->unit, infoOptions->json); });
+    Command infoCommand = mesh.subcommand("info", "Count the faces and the flaws of a mesh, measure it");
+    infoCommand.option("FILE", infoOptions->file, "STL, PLY or OBJ").required();
+    addUnitOptions(infoCommand, infoOptions->unit);
+    infoCommand.flag("--json", infoOptions->json, "Print JSON instead of a table");
+    infoCommand.footer("Example:\n  handpiece mesh info molar.stl");
+    infoCommand.callback([infoOptions] { info(infoOptions->file, infoOptions->unit, infoOptions->json); });
 
     const auto options = std::make_shared<RepairOptions>();
-    CLI::App* repairCommand =
-        mesh->add_subcommand("repair", "Close holes, orient, weld, drop debris; say what was done");
-    repairCommand->add_option("IN", options->in, "STL, PLY or OBJ")->required();
-    repairCommand->add_option("OUT", options->out, "Where to write the result, .stl or .ply")->required();
-    addUnitOptions(*repairCommand, options->unit);
+    Command repairCommand = mesh.subcommand("repair", "Close holes, orient, weld, drop debris; say what was done");
+    repairCommand.option("IN", options->in, "STL, PLY or OBJ").required();
+    repairCommand.option("OUT", options->out, "Where to write the result, .stl or .ply").required();
+    addUnitOptions(repairCommand, options->unit);
     repairCommand
-        ->add_option("--weld", options->weldMm,
-                     "Vertices nearer than this become one [default: 1e-5 of the box's diagonal]")
-        ->type_name("MM")
-        ->check(CLI::NonNegativeNumber);
-    repairCommand->add_flag("--keep-debris", options->keepDebris,
-                            "Keep shells of less than 1 % of the largest shell's area");
-    repairCommand->add_flag("--json", options->json, "Print JSON instead of a table");
-    repairCommand->footer(
+        .option("--weld", options->weldMm, "Vertices nearer than this become one [default: 1e-5 of the box's diagonal]")
+        .typeName("MM")
+        .check(nonNegative());
+    repairCommand.flag("--keep-debris", options->keepDebris,
+                       "Keep shells of less than 1 % of the largest shell's area");
+    repairCommand.flag("--json", options->json, "Print JSON instead of a table");
+    repairCommand.footer(
         "Examples:\n"
         "  handpiece mesh repair scan.stl molar.stl\n"
         "  handpiece mesh repair inches.obj molar.stl --unit inch\n"
         "  handpiece mesh repair scan.ply molar.stl --weld 0.01 --keep-debris");
-    repairCommand->callback([options] { repair(*options); });
+    repairCommand.callback([options] { repair(*options); });
 }
 
 }  // namespace handpiece::cli

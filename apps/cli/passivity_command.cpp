@@ -2,7 +2,6 @@
 // handpiece passivity: where the closed loop of hand, device and tooth stays passive, as a table and a map.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -152,30 +151,28 @@ void passivity(const PassivityOptions& o) {
 
 }  // namespace
 
-void addPassivityCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("passivity", "Map where hand, device and tooth stay passive together");
+void addPassivityCommand(Command& app) {
+    Command command = app.subcommand("passivity", "Map where hand, device and tooth stay passive together");
     const auto options = std::make_shared<PassivityOptions>();
-    command->add_option("--out", options->out, "folder for the table and the pictures")->required();
-    command->add_option("--stiffness", options->stiffness, "multiplier on every tissue's stiffness")
-        ->capture_default_str();
-    command->add_option("--damping", options->damping, "multiplier on every tissue's damping")->capture_default_str();
-    command->add_option("--stiffness-limit", options->limit, "the device's stiffness limit [N/mm]; 0: its own");
-    CLI::Option* map =
-        command->add_flag("--map", options->map,
-                          "the whole stability map instead: contacts of 0.1 to 5 N/mm touched, slid over, cut and "
-                          "wedged, with the passivity controller off and on (minutes)");
-    CLI::Option* quick = command->add_flag("--quick", options->quick, "a small part of that map (seconds)");
-    command->add_option("--motion", options->motions, "of the map: touch, slide, cut, wedge; several allowed");
-    command->add_option("--assume-delay", options->assumedDelayMs,
-                        "of the map: the longest delay [ms] the controller is told; left out: the true one");
+    command.option("--out", options->out, "folder for the table and the pictures").required();
+    command.option("--stiffness", options->stiffness, "multiplier on every tissue's stiffness").showDefault();
+    command.option("--damping", options->damping, "multiplier on every tissue's damping").showDefault();
+    command.option("--stiffness-limit", options->limit, "the device's stiffness limit [N/mm]; 0: its own");
+    Option map = command.flag("--map", options->map,
+                              "the whole stability map instead: contacts of 0.1 to 5 N/mm touched, slid over, cut and "
+                              "wedged, with the passivity controller off and on (minutes)");
+    Option quick = command.flag("--quick", options->quick, "a small part of that map (seconds)");
+    command.option("--motion", options->motions, "of the map: touch, slide, cut, wedge; several allowed");
+    command.option("--assume-delay", options->assumedDelayMs,
+                   "of the map: the longest delay [ms] the controller is told; left out: the true one");
     for (const char* name : {"--stiffness", "--damping", "--stiffness-limit"}) {
-        map->excludes(name);
-        quick->excludes(name);
+        map.excludes(name);
+        quick.excludes(name);
     }
-    command->footer(
+    command.footer(
         "The formula, the hands, the device and the controller are in docs/physics.md.\n"
         "Examples:\n  handpiece passivity --out out/passivity\n  handpiece passivity --map --out out/stability");
-    command->callback([options] { passivity(*options); });
+    command.callback([options] { passivity(*options); });
 }
 
 }  // namespace handpiece::cli

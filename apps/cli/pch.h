@@ -2,7 +2,6 @@
 // Precompiled once for the commands: what nearly every one includes.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -2,7 +2,6 @@
 // handpiece picture: a tooth, an attempt or a moment of a session as a PNG, drawn by the window's renderer.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -380,53 +379,49 @@ void picture(const PictureOptions& o) {
 
 }  // namespace
 
-void addPictureCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("picture", "A tooth, an attempt or a moment of a session as a PNG");
+void addPictureCommand(Command& app) {
+    Command command = app.subcommand("picture", "A tooth, an attempt or a moment of a session as a PNG");
     const auto options = std::make_shared<PictureOptions>();
     PictureOptions& o = *options;
-    command->add_option("what", o.what, "case, attempt, session (.h5) or mesh (.stl, .ply, .obj)")->required();
-    command->add_option("--out", o.out, "picture to write (.png)")->required();
+    command.option("what", o.what, "case, attempt, session (.h5) or mesh (.stl, .ply, .obj)").required();
+    command.option("--out", o.out, "picture to write (.png)").required();
     std::string views;
     for (const auto& [view, name] : view::standardViews())
         views += (views.empty() ? "" : ", ") + std::string(name);
-    command->add_option("--view", o.view, "from where: " + views)->capture_default_str();
-    command->add_option("--eye", o.eye, "X,Y,Z of the eye instead [mm, tooth frame]");
-    command->add_option("--target", o.target, "X,Y,Z that it looks at [default: the middle of the tooth]");
-    command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels, 16 to 8192 a side")->capture_default_str();
-    command->add_option_function<double>(
-        "--at",
-        [options](double s) {
-            options->atS = s;
-            options->atGiven = true;
-        },
-        "second of the session [default: its end]");
-    command->add_option("--look", o.look, "now, before (any cut), ghost (what was cut away as glass), removed-depth")
-        ->capture_default_str();
-    command->add_option("--section", o.section,
-                        "cut open: x, y or z through the middle, or NX,NY,NZ,OFFSET (what lies beyond goes)");
-    command->add_flag("--grid", o.grid, "millimetre lines on the section");
-    command->add_option("--hide", o.hide, "tissues not to show, by name")->delimiter(',');
-    command->add_flag("--no-scenery", o.noScenery, "without neighbours, gum and bone");
-    command->add_option("--bur", o.bur, "this bur in its handpiece, resting on the middle of the crown");
-    command->add_flag("--no-bur", o.noBur, "without the session's bur");
-    command->add_flag("--mirror", o.mirror, "with a mouth mirror that shows the side one does not see");
-    command->add_flag("--arrows", o.arrows, "contact and force (2 mm a newton) as arrows");
-    command->add_flag("--scale-bar", o.scaleBar, "5 mm in steps of 1 mm, at the depth of the target");
-    command->add_option("--palette", o.palette, "natural, textbook, colour-safe")->capture_default_str();
-    command->add_option("--quality", o.quality, "fast, fine, rich")->capture_default_str();
-    command->add_option("--stereo", o.stereo, "none, side-by-side, anaglyph (red-cyan)")->capture_default_str();
-    command->add_option("--voxel", o.voxelUm, "voxel of a case's distance field [um], 10 to 400")
-        ->capture_default_str();
-    command->add_flag("--no-cache", o.noCache, "build the field anew and keep nothing");
-    command->add_option("--threads", o.threads, "threads for long work; 0: all cores")
-        ->check(CLI::Range(std::size_t{0}, std::size_t{1024}))
-        ->capture_default_str();
-    command->footer(
+    command.option("--view", o.view, "from where: " + views).showDefault();
+    command.option("--eye", o.eye, "X,Y,Z of the eye instead [mm, tooth frame]");
+    command.option("--target", o.target, "X,Y,Z that it looks at [default: the middle of the tooth]");
+    command.option("--size", o.size, "WIDTHxHEIGHT in pixels, 16 to 8192 a side").showDefault();
+    command.option("--at", o.atS, "second of the session [default: its end]");
+    command.option("--look", o.look, "now, before (any cut), ghost (what was cut away as glass), removed-depth")
+        .showDefault();
+    command.option("--section", o.section,
+                   "cut open: x, y or z through the middle, or NX,NY,NZ,OFFSET (what lies beyond goes)");
+    command.flag("--grid", o.grid, "millimetre lines on the section");
+    command.option("--hide", o.hide, "tissues not to show, by name").delimiter(',');
+    command.flag("--no-scenery", o.noScenery, "without neighbours, gum and bone");
+    command.option("--bur", o.bur, "this bur in its handpiece, resting on the middle of the crown");
+    command.flag("--no-bur", o.noBur, "without the session's bur");
+    command.flag("--mirror", o.mirror, "with a mouth mirror that shows the side one does not see");
+    command.flag("--arrows", o.arrows, "contact and force (2 mm a newton) as arrows");
+    command.flag("--scale-bar", o.scaleBar, "5 mm in steps of 1 mm, at the depth of the target");
+    command.option("--palette", o.palette, "natural, textbook, colour-safe").showDefault();
+    command.option("--quality", o.quality, "fast, fine, rich").showDefault();
+    command.option("--stereo", o.stereo, "none, side-by-side, anaglyph (red-cyan)").showDefault();
+    command.option("--voxel", o.voxelUm, "voxel of a case's distance field [um], 10 to 400").showDefault();
+    command.flag("--no-cache", o.noCache, "build the field anew and keep nothing");
+    command.option("--threads", o.threads, "threads for long work; 0: all cores")
+        .check(range(std::size_t{0}, std::size_t{1024}))
+        .showDefault();
+    command.footer(
         "No display is needed. The same input gives the same picture on the same machine.\n"
         "Examples:\n  handpiece picture molar --view occlusal --out molar.png\n"
         "  handpiece picture out/attempt --section y --grid --scale-bar --out section.png\n"
         "  handpiece picture out/session.h5 --at 12.5 --arrows --out moment.png");
-    command->callback([options] { picture(*options); });
+    command.callback([options, command] {
+        options->atGiven = command.isGiven("--at");
+        picture(*options);
+    });
 }
 
 }  // namespace handpiece::cli

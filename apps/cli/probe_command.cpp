@@ -2,7 +2,6 @@
 // handpiece probe: depth, normal, area and tissue at given poses.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
 
@@ -46,17 +45,17 @@ void probe(const ProbeOptions& o, const MethodRegistry& methods) {
 
 }  // namespace
 
-void addProbeCommand(CLI::App& app, const MethodRegistry& methods) {
-    CLI::App* command = app.add_subcommand("probe", "Signed distance or depth, normal, area and tissue at given poses");
+void addProbeCommand(Command& app, const MethodRegistry& methods) {
+    Command command = app.subcommand("probe", "Signed distance or depth, normal, area and tissue at given poses");
     const auto options = std::make_shared<ProbeOptions>();
-    addContactOptions(*command, options->inputs, methods);
-    command->add_option("--poses", options->poses, "CSV of x,y,z,qw,qx,qy,qz [mm], the bur's tip; - for standard input")
-        ->required();
-    command->add_option("--out", options->out, "CSV to write; - for standard output")->capture_default_str();
-    command->footer(
+    addContactOptions(command, options->inputs, methods);
+    command.option("--poses", options->poses, "CSV of x,y,z,qw,qx,qy,qz [mm], the bur's tip; - for standard input")
+        .required();
+    command.option("--out", options->out, "CSV to write; - for standard output").showDefault();
+    command.footer(
         "Depth is positive inside, minus the distance outside; beyond 5 mm it is a bound and the normal is 0.\n"
         "Example:\n  handpiece probe --tooth molar --bur round-4 --poses poses.csv --method field --out out.csv");
-    command->callback([options, &methods] { probe(*options, methods); });
+    command.callback([options, &methods] { probe(*options, methods); });
 }
 
 }  // namespace handpiece::cli

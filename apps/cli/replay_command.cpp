@@ -2,7 +2,6 @@
 // handpiece replay: cuts a session's tooth again with the hand that was recorded, and compares what is left.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -52,20 +51,20 @@ void replay(const ReplayOptions& o) {
 
 }  // namespace
 
-void addReplayCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("replay", "Cut a session's tooth again and prove that it is the same");
+void addReplayCommand(Command& app) {
+    Command command = app.subcommand("replay", "Cut a session's tooth again and prove that it is the same");
     const auto options = std::make_shared<ReplayOptions>();
-    command->add_option("session", options->session, "session file (.h5)")->required();
-    command->add_flag("--json", options->json, "print the result as JSON");
-    command->add_flag("--no-cache", options->noCache, "build the fields anew");
-    command->add_option("--threads", options->threads, "threads for long work; 0: all cores")
-        ->check(CLI::Range(std::size_t{0}, std::size_t{1024}))
-        ->capture_default_str();
-    command->footer(
+    command.option("session", options->session, "session file (.h5)").required();
+    command.flag("--json", options->json, "print the result as JSON");
+    command.flag("--no-cache", options->noCache, "build the fields anew");
+    command.option("--threads", options->threads, "threads for long work; 0: all cores")
+        .check(range(std::size_t{0}, std::size_t{1024}))
+        .showDefault();
+    command.footer(
         "The session holds the tooth, the bur and the hand. state_hash is that of the cut tooth, bit for bit, at the "
         "session's\nend, or at its last key frame when it was cut off; matches says whether it was the same then.\n"
         "Example:\n  handpiece replay session.h5 --json");
-    command->callback([options] { replay(*options); });
+    command.callback([options] { replay(*options); });
 }
 
 }  // namespace handpiece::cli

@@ -2,7 +2,6 @@
 // handpiece report: a session as one page to print.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 
@@ -37,21 +36,21 @@ void report(const ReportOptions& o) {
 
 }  // namespace
 
-void addReportCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("report", "Write a session as one page to print");
+void addReportCommand(Command& app) {
+    Command command = app.subcommand("report", "Write a session as one page to print");
     const auto options = std::make_shared<ReportOptions>();
-    command->add_option("session", options->session, "session file (.h5)")->required();
-    command->add_option("--out", options->out, "the page (.html)")->required();
-    command->add_flag("--no-pictures", options->noPictures, "without pictures of the tooth");
-    command->add_flag("--no-cache", options->noCache, "build the fields anew");
-    command->add_option("--threads", options->threads, "threads for long work; 0: all cores")
-        ->check(CLI::Range(std::size_t{0}, std::size_t{1024}))
-        ->capture_default_str();
-    command->footer(
+    command.option("session", options->session, "session file (.h5)").required();
+    command.option("--out", options->out, "the page (.html)").required();
+    command.flag("--no-pictures", options->noPictures, "without pictures of the tooth");
+    command.flag("--no-cache", options->noCache, "build the fields anew");
+    command.option("--threads", options->threads, "threads for long work; 0: all cores")
+        .check(range(std::size_t{0}, std::size_t{1024}))
+        .showDefault();
+    command.footer(
         "The page needs nothing beside it: views before and after, volumes, times, forces, speed, events, settings,\n"
         "and whether the tooth comes out the same when it is cut again.\n"
         "Example:\n  handpiece report session.h5 --out report.html");
-    command->callback([options] { report(*options); });
+    command.callback([options] { report(*options); });
 }
 
 }  // namespace handpiece::cli

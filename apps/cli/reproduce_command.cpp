@@ -2,7 +2,6 @@
 // handpiece reproduce: the paper's tables and figures with ours beside them, on one page.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -34,21 +33,6 @@ struct ReproduceOptions {
 
 constexpr std::array kPercent{6.0, 12.0, 25.0, 50.0, 100.0};  // as the paper's resolutions are called
 constexpr std::size_t kQuickTeeth = 2;
-
-}  // namespace
-
-double loadMsOf(const fs::path& file, geometry::TriangleMesh& mesh) {
-    double best = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < 5; ++i) {
-        const auto start = std::chrono::steady_clock::now();
-        mesh = geometry::readMesh(file);
-        const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - start;
-        best = std::min(best, ms.count());
-    }
-    return best;
-}
-
-namespace {
 
 /// What is there from an earlier run is used when it has the faces wanted.
 bool isThere(const fs::path& file, std::size_t faces) {
@@ -174,24 +158,23 @@ void reproduce(const ReproduceOptions& o) {
 
 }  // namespace
 
-void addReproduceCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "reproduce", "The paper's tables and figures with ours beside them: report.html, results.json");
+void addReproduceCommand(Command& app) {
+    Command command =
+        app.subcommand("reproduce", "The paper's tables and figures with ours beside them: report.html, results.json");
     const auto options = std::make_shared<ReproduceOptions>();
-    command->add_option("--out", options->out, "folder for the report; the teeth are kept in it")->required();
-    command->add_option("--tooth", options->tooth, "case folder or mesh file instead of the starter molar");
-    CLI::Option* scan = command->add_option(
-        "--scan", options->scan, "slices for Table II instead of the starter molar as the phantom scanner images it");
-    command
-        ->add_option("--spacing", options->spacingMm, "distance of the scan's voxels [mm], where its files do not tell")
-        ->check(CLI::PositiveNumber)
-        ->needs(scan);
-    command->add_flag("--labels", options->labels, "the scan holds tissue numbers, not grey values")->needs(scan);
-    command->add_flag("--quick", options->quick, "the two coarsest teeth and shorter drops only");
-    command->add_flag("--json", options->json, "print results.json");
-    command->footer(
+    command.option("--out", options->out, "folder for the report; the teeth are kept in it").required();
+    command.option("--tooth", options->tooth, "case folder or mesh file instead of the starter molar");
+    Option scan = command.option("--scan", options->scan,
+                                 "slices for Table II instead of the starter molar as the phantom scanner images it");
+    command.option("--spacing", options->spacingMm, "distance of the scan's voxels [mm], where its files do not tell")
+        .check(positive())
+        .needs(scan);
+    command.flag("--labels", options->labels, "the scan holds tissue numbers, not grey values").needs(scan);
+    command.flag("--quick", options->quick, "the two coarsest teeth and shorter drops only");
+    command.flag("--json", options->json, "print results.json");
+    command.footer(
         "Examples:\n  handpiece reproduce --quick --out paper\n  handpiece reproduce --tooth molar.stl --out paper");
-    command->callback([options] { reproduce(*options); });
+    command.callback([options] { reproduce(*options); });
 }
 
 }  // namespace handpiece::cli

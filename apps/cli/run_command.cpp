@@ -2,7 +2,6 @@
 // handpiece run: a simulated hand moves the bur, the loop feels the tooth; a trace, plots and a summary come out.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -486,11 +485,11 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
 
 }  // namespace
 
-void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
-    CLI::App* command = app.add_subcommand("run", "A hand, simulated or real, works on a tooth: trace, plots, summary");
+void addRunCommand(Command& app, const MethodRegistry& methods) {
+    Command command = app.subcommand("run", "A hand, simulated or real, works on a tooth: trace, plots, summary");
     const auto options = std::make_shared<RunOptions>();
     RunOptions& o = *options;
-    addContactOptions(*command, o.inputs, methods);
+    addContactOptions(command, o.inputs, methods);
     std::string motions;
     for (const studies::BuiltInMotion& m : studies::builtInMotions())
         motions += fmt::format("{}{} ({})", motions.empty() ? "" : ", ", m.name, m.description);
@@ -501,16 +500,16 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
     for (const device::Capability& c : device::knownDevices())
         models += (models.empty() ? "" : ", ") + c.name;
     const auto add = [&](const char* name, auto& value, std::string help) {
-        return command->add_option(name, value, std::move(help))->capture_default_str();
+        return command.option(name, value, std::move(help)).showDefault();
     };
     add("--motion", o.motion, motions + "; cuts: " + cutNames + "; or a CSV of t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz");
-    command->add_option("--out", o.out, "folder for trace.csv, the plots and summary.json")->required();
-    command->add_option("--sound", o.sound, "WAV file of what is heard, for headphones (48 kHz stereo)");
-    addDeviceOptions(*command, o.device);
-    command->add_option("--inject", o.device.inject, "faults on purpose, \"unplug@2.5, stall@3:0.2\" or \"random:100\"")
-        ->group("Device");
-    command->add_option("--crisp", o.device.crisp, "on or off: contact knocks, cutting hums")->group("Device");
-    command->add_flag("--foot-pedal", o.device.pedal, "a pedal beside the device")->group("Device");
+    command.option("--out", o.out, "folder for trace.csv, the plots and summary.json").required();
+    command.option("--sound", o.sound, "WAV file of what is heard, for headphones (48 kHz stereo)");
+    addDeviceOptions(command, o.device);
+    command.option("--inject", o.device.inject, "faults on purpose, \"unplug@2.5, stall@3:0.2\" or \"random:100\"")
+        .group("Device");
+    command.option("--crisp", o.device.crisp, "on or off: contact knocks, cutting hums").group("Device");
+    command.flag("--foot-pedal", o.device.pedal, "a pedal beside the device").group("Device");
     add("--device-model", o.deviceModel, "what the simulated device is like: " + models);
     add("--rate", o.rateHz, "ticks a second: 1000, 2000, 4000 or 8000");
     add("--duration", o.durationS, "seconds; 0: as long as the motion");
@@ -519,11 +518,11 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
     add("--damping", o.damping, "multiplier on every tissue's damping");
     add("--slide-friction", o.slide, "multiplier on every tissue's friction under a still bur");
     add("--speed", o.speedMmS, "of the named motions [mm/s]; the feed of a cut: 2 unless given");
-    add("--load", o.loadN, "what the hand presses with, as far as it gives way [N]")->check(CLI::PositiveNumber);
+    add("--load", o.loadN, "what the hand presses with, as far as it gives way [N]").check(positive());
     add("--depth", o.depthMm, "instead of a load: how far beyond the surface the hand intends to go [mm]")
-        ->check(CLI::NonNegativeNumber);
+        .check(nonNegative());
     add("--length", o.lengthMm, "of a slide or drag [mm]; 0: 60 % of the tooth");
-    add("--at", o.at, "x and y of the first touch from the tooth's middle [mm]")->expected(2);
+    add("--at", o.at, "x and y of the first touch from the tooth's middle [mm]").expected(2);
     add("--hand", o.hand, "loose, normal, stiff, or rigid (exactly on the path; cuts are rigid unless given)");
     add("--delay", o.delayMs, "from the command to the force [ms]");
     add("--friction", o.frictionN, "of the device [N]");
@@ -531,12 +530,11 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
     for (const instrument::Drive& d : instrument::drives())
         drives += (drives.empty() ? "" : ", ") + d.name;
     const auto cut = [&](const char* name, auto& value, std::string help) {
-        return command->add_option(name, value, std::move(help))->capture_default_str()->group("Cutting");
+        return command.option(name, value, std::move(help)).showDefault().group("Cutting");
     };
-    cut("--pedal", o.pedal, "0 to 1: the bur turns and cuts (1 for the cutting motions)")->check(CLI::Range(0.0, 1.0));
-    command
-        ->add_flag("--full-removal", o.fullRemoval, "take away all that the bur sweeps, whatever the load (rigid hand)")
-        ->group("Cutting");
+    cut("--pedal", o.pedal, "0 to 1: the bur turns and cuts (1 for the cutting motions)").check(range(0.0, 1.0));
+    command.flag("--full-removal", o.fullRemoval, "take away all that the bur sweeps, whatever the load (rigid hand)")
+        .group("Cutting");
     cut("--drive", o.drive, drives);
     cut("--ability", o.cuttingParameters, "of the bur, instead of its own: see docs/burs.md");
     cut("--abilities", o.abilities, "TOML file with abilities and burs of one's own");
@@ -545,15 +543,15 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
     cut("--height", o.heightMm, "of a shoulder over z = 0 of the tooth [mm]");
     cut("--pulp-guard", o.pulpGuardMm, "excavate comes no nearer to the pulp [mm]; 0: does not heed it");
     cut("--dwell", o.dwellS, "at the end of a cut [s]");
-    cut("--tremor", o.tremorUm, "of the hand, root mean square [um]")->check(CLI::Range(0.0, 1000.0));
+    cut("--tremor", o.tremorUm, "of the hand, root mean square [um]").check(range(0.0, 1000.0));
     cut("--seed", o.seed, "of the tremor");
     cut("--code,--student", o.code, "kept in the session: who cut, as letters, digits, - and _; never a name");
     cut("--undo-at", o.undoAtS, "take the last stroke back at this time [s]; may be given several times");
     cut("--redo-at", o.redoAtS, "do it again at this time [s]");
     cut("--reset-at", o.resetAtS, "make the tooth whole at this time [s]");
-    command->add_flag("--real-time", o.realTime, "on the wall clock, with what priority the machine grants");
-    command->add_flag("--json", o.json, "print summary.json instead of a table");
-    command->footer(
+    command.flag("--real-time", o.realTime, "on the wall clock, with what priority the machine grants");
+    command.flag("--json", o.json, "print summary.json instead of a table");
+    command.footer(
         "Without --real-time the same command gives the same trace, but for its two columns of time.\n"
         "Examples:\n"
         "  handpiece run --tooth molar --motion drop --out drop\n"
@@ -564,12 +562,12 @@ void addRunCommand(CLI::App& app, const MethodRegistry& methods) {
         "  handpiece run --case molar --device openhaptics --scale 2 --out practice\n"
         "  handpiece run --case molar --motion class-one --inject random:100 --out faults\n"
         "  handpiece run --tooth molar --method hull --force penalty --motion press --speed 60 --out hull");
-    command->callback([options, command, &methods] {
-        options->pedalGiven = command->count("--pedal") > 0;
-        options->handGiven = command->count("--hand") > 0;
-        options->speedGiven = command->count("--speed") > 0;
-        options->motionGiven = command->count("--motion") > 0;
-        applySchoolDefaults(*command, options->device);
+    command.callback([options, command, &methods] {
+        options->pedalGiven = command.isGiven("--pedal");
+        options->handGiven = command.isGiven("--hand");
+        options->speedGiven = command.isGiven("--speed");
+        options->motionGiven = command.isGiven("--motion");
+        applySchoolDefaults(command, options->device);
         if (isReal(options->device) && !options->motionGiven) options->motion = "hand";
         runCommand(*options, methods);
     });

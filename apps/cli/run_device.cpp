@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/run_device.h"
+#include "cli/command.h"
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -34,30 +34,27 @@ bool inTime(const safety::FaultOutcome& o) {
 
 }  // namespace
 
-void addDeviceOptions(CLI::App& command, DeviceOptions& o) {
+void addDeviceOptions(Command& command, DeviceOptions& o) {
     std::string names;
     for (const std::string& name : input::deviceNames())
         names += (names.empty() ? "" : ", ") + name;
     const auto add = [&](const char* name, auto& value, std::string help) {
-        return command.add_option(name, value, std::move(help))->group("Device");
+        return command.option(name, value, std::move(help)).group("Device");
     };
-    add("--device", o.name, names)->capture_default_str();
+    add("--device", o.name, names).showDefault();
     add("--which", o.which, "device's name or serial, where there are several");
     add("--profile", o.profile, "TOML file instead of the device's own profile (docs/formats/device-profile.md)");
-    add("--scale", o.scale, "millimetres of the hand for one of the bur: 1, 2 or 3")->check(CLI::NonNegativeNumber);
-    command.add_flag("--left-handed", o.leftHanded, "the hand comes from the left; the instrument is mirrored")
-        ->group("Device");
+    add("--scale", o.scale, "millimetres of the hand for one of the bur: 1, 2 or 3").check(nonNegative());
+    command.flag("--left-handed", o.leftHanded, "the hand comes from the left; the instrument is mirrored")
+        .group("Device");
     add("--controller", o.controller, "on or off: lets no more energy out to the hand than is passive");
 }
 
-void applySchoolDefaults(const CLI::App& command, DeviceOptions& o) {
+void applySchoolDefaults(const Command& command, DeviceOptions& o) {
     const exercise::SchoolDefaults school = exercise::schoolDefaults();
     for (const std::string& problem : school.problems)
         fmt::print(stderr, "handpiece: {}\n", problem);
-    const auto given = [&](const char* name) {
-        const CLI::Option* option = command.get_option_no_throw(name);
-        return option != nullptr && option->count() > 0;
-    };
+    const auto given = [&](const char* name) { return command.isGiven(name); };
     // Of a real device only: what a simulated run comes to is the same everywhere.
     if (!isReal(o)) return;
     if (!given("--scale") && school.scale) o.scale = *school.scale;

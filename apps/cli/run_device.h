@@ -8,12 +8,9 @@
 #include <optional>
 #include <string>
 
+#include "cli/command.h"
 #include "handpiece/app/input/device_opening.h"
 #include "studies/run_job.h"
-
-namespace CLI {
-class App;
-}
 
 namespace handpiece::cli {
 
@@ -24,9 +21,9 @@ struct DeviceOptions {
     bool leftHanded = false, pedal = false;
 };
 /// --device and what goes with it.
-void addDeviceOptions(CLI::App& command, DeviceOptions& options);
+void addDeviceOptions(Command& command, DeviceOptions& options);
 /// What the school says where the command line does not. Its problems are told.
-void applySchoolDefaults(const CLI::App& command, DeviceOptions& options);
+void applySchoolDefaults(const Command& command, DeviceOptions& options);
 /// Throws core::Error for a name that there is not, a scale, an on or off that is none.
 void validate(const DeviceOptions& options);
 

@@ -2,7 +2,6 @@
 // handpiece scan: from a patient's CT to a tooth that can be cut.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -455,50 +454,48 @@ void makeCase(const ScanOptions& o) {
     }
 }
 
-void addJobOptions(CLI::App& command, ScanOptions& o) {
-    command.add_option("PATH", o.path, "file, folder, ZIP or DICOMDIR; may be left out with --job");
-    command.add_option("--job", o.job, "file of decisions to start from; options given here win over it");
-    command.add_option("--save-job", o.saveJob, "file to keep all decisions in (with the scan's place)");
-    command.add_option("--series", o.series, "which series, as scan info numbers them");
-    command.add_option("--spacing", o.spacing, "millimetres between voxels, one number or X,Y,Z; wins over the file's");
-    command.add_flag("--labels", o.labels,
-                     "the scan is labels: 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 restoration, "
-                     "6 bone, 7 gum");
-    command.add_option("--label-order", o.labelOrder, "what the file's labels 0, 1, 2, ... mean, in those numbers");
-    command.add_option("--at", o.at, "X,Y,Z of a place in the tooth wanted [mm, the scan's frame]; else the largest");
-    command.add_option("--threshold", o.threshold, "tooth=VALUE,enamel=VALUE: grey values from which on they begin");
-    command.add_option("--lesion", o.lesions, "X,Y,Z,R of an authored lesion, a ball in the tooth; as often as wanted")
-        ->take_all();
-    command.add_option("--cut", o.cuts, "X,Y,Z,NX,NY,NZ: leave out what lies on this side of a plane")->take_all();
-    command.add_option("--mark", o.marks, "TISSUE=X,Y,Z,R: within this ball there is this tissue (or none)")
-        ->take_all();
-    command.add_flag("--no-damp", o.noDamp, "leave noise, streaks and rings as they are");
-    command.add_flag("--no-caries", o.noCaries, "do not look for caries");
-    command.add_option("--voxel", o.voxelMm, "voxel of the result [mm]; 0: the scan's")
-        ->check(CLI::Range(0.0, 5.0))
-        ->capture_default_str();
-    command.add_option("--threads", o.threads, "threads for long work; 0: all cores")
-        ->check(CLI::Range(std::size_t{0}, std::size_t{1024}))
-        ->capture_default_str();
+void addJobOptions(Command& command, ScanOptions& o) {
+    command.option("PATH", o.path, "file, folder, ZIP or DICOMDIR; may be left out with --job");
+    command.option("--job", o.job, "file of decisions to start from; options given here win over it");
+    command.option("--save-job", o.saveJob, "file to keep all decisions in (with the scan's place)");
+    command.option("--series", o.series, "which series, as scan info numbers them");
+    command.option("--spacing", o.spacing, "millimetres between voxels, one number or X,Y,Z; wins over the file's");
+    command.flag("--labels", o.labels,
+                 "the scan is labels: 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 restoration, "
+                 "6 bone, 7 gum");
+    command.option("--label-order", o.labelOrder, "what the file's labels 0, 1, 2, ... mean, in those numbers");
+    command.option("--at", o.at, "X,Y,Z of a place in the tooth wanted [mm, the scan's frame]; else the largest");
+    command.option("--threshold", o.threshold, "tooth=VALUE,enamel=VALUE: grey values from which on they begin");
+    command.option("--lesion", o.lesions, "X,Y,Z,R of an authored lesion, a ball in the tooth; as often as wanted")
+        .takeAll();
+    command.option("--cut", o.cuts, "X,Y,Z,NX,NY,NZ: leave out what lies on this side of a plane").takeAll();
+    command.option("--mark", o.marks, "TISSUE=X,Y,Z,R: within this ball there is this tissue (or none)").takeAll();
+    command.flag("--no-damp", o.noDamp, "leave noise, streaks and rings as they are");
+    command.flag("--no-caries", o.noCaries, "do not look for caries");
+    command.option("--voxel", o.voxelMm, "voxel of the result [mm]; 0: the scan's")
+        .check(range(0.0, 5.0))
+        .showDefault();
+    command.option("--threads", o.threads, "threads for long work; 0: all cores")
+        .check(range(std::size_t{0}, std::size_t{1024}))
+        .showDefault();
 }
 
-void addSurfaceOptions(CLI::App& command, ScanOptions& o) {
-    command.add_flag("--no-smooth", o.noSmooth, "surfaces as they come out of the voxels");
-    command.add_option("--faces", o.faces, "triangles of all surfaces together");
-    command.add_option("--percent", o.percent,
-                       "share of the full surfaces' triangles, P or P,P,...: a case each; "
-                       "else a case has as many as its field can use, and scan surface all");
-    command.add_flag("--table2", o.tableTwo, "the paper's five: 6, 12, 25, 50 and 100 %");
-    command.add_option("--intraoral", o.intraoral,
-                       "mesh of an intraoral scan: found on the tooth, then its outer surface");
+void addSurfaceOptions(Command& command, ScanOptions& o) {
+    command.flag("--no-smooth", o.noSmooth, "surfaces as they come out of the voxels");
+    command.option("--faces", o.faces, "triangles of all surfaces together");
+    command.option("--percent", o.percent,
+                   "share of the full surfaces' triangles, P or P,P,...: a case each; "
+                   "else a case has as many as its field can use, and scan surface all");
+    command.flag("--table2", o.tableTwo, "the paper's five: 6, 12, 25, 50 and 100 %");
+    command.option("--intraoral", o.intraoral, "mesh of an intraoral scan: found on the tooth, then its outer surface");
 }
 
 }  // namespace
 
-void addScanCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("scan", "From a CT scan to a tooth that can be cut");
-    command->require_subcommand(1);
-    command->footer(
+void addScanCommand(Command& app) {
+    Command command = app.subcommand("scan", "From a CT scan to a tooth that can be cut");
+    command.requireSubcommand();
+    command.footer(
         "Reads DICOM, BMP, JPEG, PNG, TIFF, NRRD, MetaImage, NIfTI and raw with a description. Nothing that names the\n"
         "patient, no path and no file's name goes into a case, a report or the cache.\n"
         "Examples:\n  handpiece scan info slices --pictures seen\n"
@@ -507,47 +504,46 @@ void addScanCommand(CLI::App& app) {
     const auto options = std::make_shared<ScanOptions>();
     ScanOptions& o = *options;
 
-    CLI::App* looking = command->add_subcommand("info", "What a scan holds: series, sizes, spacings, pictures, teeth");
-    looking->add_option("PATH", o.path, "file, folder, ZIP or DICOMDIR")->required();
-    looking->add_flag("--json", o.json, "print JSON instead of a table");
-    looking->add_option("--pictures", o.pictures, "folder for a small picture of each series");
-    looking->add_flag("--teeth", o.teeth, "also what may be a tooth in it, each with its --at");
-    looking->add_option("--series", o.series, "of which series --teeth tells");
-    looking->add_option("--spacing", o.spacing, "for --teeth, where the file tells none [mm]");
-    looking->add_option("--threads", o.threads, "threads for long work; 0: all cores")->capture_default_str();
-    looking->footer("Example:\n  handpiece scan info slices --json --pictures seen");
-    looking->callback([options] { info(*options); });
+    Command looking = command.subcommand("info", "What a scan holds: series, sizes, spacings, pictures, teeth");
+    looking.option("PATH", o.path, "file, folder, ZIP or DICOMDIR").required();
+    looking.flag("--json", o.json, "print JSON instead of a table");
+    looking.option("--pictures", o.pictures, "folder for a small picture of each series");
+    looking.flag("--teeth", o.teeth, "also what may be a tooth in it, each with its --at");
+    looking.option("--series", o.series, "of which series --teeth tells");
+    looking.option("--spacing", o.spacing, "for --teeth, where the file tells none [mm]");
+    looking.option("--threads", o.threads, "threads for long work; 0: all cores").showDefault();
+    looking.footer("Example:\n  handpiece scan info slices --json --pictures seen");
+    looking.callback([options] { info(*options); });
 
-    CLI::App* labels = command->add_subcommand("segment", "Tissues of one tooth as labels");
-    addJobOptions(*labels, o);
-    labels->add_option("--out", o.out, "labels to write (.nrrd)")->required();
-    labels->footer("Example:\n  handpiece scan segment slices --spacing 0.05 --out labels.nrrd");
-    labels->callback([options] { segment(*options); });
+    Command labels = command.subcommand("segment", "Tissues of one tooth as labels");
+    addJobOptions(labels, o);
+    labels.option("--out", o.out, "labels to write (.nrrd)").required();
+    labels.footer("Example:\n  handpiece scan segment slices --spacing 0.05 --out labels.nrrd");
+    labels.callback([options] { segment(*options); });
 
-    CLI::App* surfaces = command->add_subcommand("surface", "Surfaces of a tooth and its tissues as STL");
-    addJobOptions(*surfaces, o);
-    addSurfaceOptions(*surfaces, o);
-    surfaces->add_option("--out", o.out, "folder to write into")->required();
-    surfaces->footer("Example:\n  handpiece scan surface slices --percent 25 --out meshes");
-    surfaces->callback([options] { surface(*options); });
+    Command surfaces = command.subcommand("surface", "Surfaces of a tooth and its tissues as STL");
+    addJobOptions(surfaces, o);
+    addSurfaceOptions(surfaces, o);
+    surfaces.option("--out", o.out, "folder to write into").required();
+    surfaces.footer("Example:\n  handpiece scan surface slices --percent 25 --out meshes");
+    surfaces.callback([options] { surface(*options); });
 
-    CLI::App* cases = command->add_subcommand("case", "A case that can be felt and cut");
-    addJobOptions(*cases, o);
-    addSurfaceOptions(*cases, o);
-    cases->add_option("--out", o.out, "folder or .handpiece file; several percents make OUT-6, OUT-12, ...")
-        ->required();
-    cases->add_option("--name", o.name, "name of the case, never taken from the scan [default: scanned tooth]");
-    cases->add_option("--kind", o.kind, "kind of tooth, as lower-first-molar");
-    cases->add_option("--tooth", o.tooth, "FDI number of the tooth, 11 to 48 or 51 to 85")
-        ->check(CLI::Range(11, 85))
-        ->type_name("FDI");
-    cases->add_option("--occlusal", o.occlusal, "X,Y,Z direction out of the crown in the scan's frame");
-    cases->add_option("--mesial", o.mesial, "X,Y,Z direction to mesial in the scan's frame");
-    cases->add_option("--tissues", o.tissues, "table of tissues of one's own (TOML), kept in the case");
-    cases->add_flag("--scenery", o.scenery, "keep what stands around the tooth, to be seen");
-    cases->add_flag("--report", o.report, "also a page to print: pictures, volumes, thicknesses, quality");
-    cases->footer("Example:\n  handpiece scan case slices --spacing 0.05 --tooth 46 --table2 --out mine --report");
-    cases->callback([options] { makeCase(*options); });
+    Command cases = command.subcommand("case", "A case that can be felt and cut");
+    addJobOptions(cases, o);
+    addSurfaceOptions(cases, o);
+    cases.option("--out", o.out, "folder or .handpiece file; several percents make OUT-6, OUT-12, ...").required();
+    cases.option("--name", o.name, "name of the case, never taken from the scan [default: scanned tooth]");
+    cases.option("--kind", o.kind, "kind of tooth, as lower-first-molar");
+    cases.option("--tooth", o.tooth, "FDI number of the tooth, 11 to 48 or 51 to 85")
+        .check(range(11, 85))
+        .typeName("FDI");
+    cases.option("--occlusal", o.occlusal, "X,Y,Z direction out of the crown in the scan's frame");
+    cases.option("--mesial", o.mesial, "X,Y,Z direction to mesial in the scan's frame");
+    cases.option("--tissues", o.tissues, "table of tissues of one's own (TOML), kept in the case");
+    cases.flag("--scenery", o.scenery, "keep what stands around the tooth, to be seen");
+    cases.flag("--report", o.report, "also a page to print: pictures, volumes, thicknesses, quality");
+    cases.footer("Example:\n  handpiece scan case slices --spacing 0.05 --tooth 46 --table2 --out mine --report");
+    cases.callback([options] { makeCase(*options); });
 }
 
 }  // namespace handpiece::cli

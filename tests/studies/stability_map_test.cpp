@@ -8,7 +8,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 
-namespace handpiece::loop {
+namespace handpiece::studies {
 namespace {
 
 TEST(StabilityMap, withTheControllerEveryLoopHolds) {
@@ -78,4 +78,4 @@ TEST(StabilityMap, isTheSameAtAnyThreadCountAndCanBeCancelled) {
 }
 
 }  // namespace
-}  // namespace handpiece::loop
+}  // namespace handpiece::studies

@@ -144,7 +144,7 @@ TEST_F(SchoolDefaultsFile, theOneThatIsInstalledSaysNothingAndEachOfItsLinesIsGo
                 d.sessionsFolder && d.casesFolder && d.record && d.sound && d.volume);
 }
 
-TEST(simulation::SimulationSettings, keepKnockAndHumAndReadSessionsFromBeforeThem) {
+TEST(SimulationSettings, keepKnockAndHumAndReadSessionsFromBeforeThem) {
     simulation::SimulationSettings settings = simulation::blockSettings();
     settings.parameters.transients = {true, 1.5};
     settings.parameters.vibration = {true, 0.25};

@@ -118,7 +118,7 @@ void header() {
         "most N | mm3 |\n  |---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
-const char* scan_case::nameOf(StandardView eye) {
+const char* nameOf(StandardView eye) {
     for (const auto& [view, name] : view::standardViews())
         if (view == eye) return name.data();
     return "";
@@ -130,7 +130,7 @@ CourseFigures run(const Case& c, const PointerPath& path, PointerCourse& course)
     const CourseFigures f = course.play(path);
     const std::string stop = c.stopMm > 0.0 ? std::to_string(c.stopMm).substr(0, 3) : "-";
     std::printf("  | %s, %s | %s | %s | %s | %.1f, %s | %.2f | %.2f | %.3f | %.2f | %.2f | %.3f |\n", c.name,
-                path.name.c_str(), std::string(starter::infoOf(c.tooth).name).c_str(), c.bur, scan_case::nameOf(c.eye),
+                path.name.c_str(), std::string(starter::infoOf(c.tooth).name).c_str(), c.bur, nameOf(c.eye),
                 c.loadN, stop.c_str(), f.targetOffPx, f.tipOffMm, f.notNearestMm, f.idleS, f.mostLoadN, f.removedMm3);
     EXPECT_LT(f.targetOffPx, kMaxTargetPx) << c.name;
     EXPECT_LT(f.notNearestMm, kMaxNotNearestMm) << c.name;
@@ -197,7 +197,7 @@ TEST(PointerCourse, theSamePathTwiceCutsTheSameGroove) {
         (void)course.play(path);
         const PointerCourse::Outside o = course.outside();
         std::printf("  | %s, %s, %s, %.1f mm3 first | %s | %.4f | %.5f | %.1f %% |\n", c.name, c.path, c.bur,
-                    first.removedMm3, scan_case::nameOf(c.eye), o.secondMm3, o.outsideMm3,
+                    first.removedMm3, nameOf(c.eye), o.secondMm3, o.outsideMm3,
                     100.0 * o.outsideMm3 / std::max(1e-9, o.secondMm3));
         EXPECT_GT(first.removedMm3, 0.15);
         EXPECT_LE(o.outsideMm3, kMaxOutside * o.secondMm3) << c.path;
@@ -286,11 +286,11 @@ TEST(PointerCourse, theStopHoldsAndTheLoadIsTheForce) {
             if (depth < 1e-3) break;
             out += std::max(depth, 1e-3);
         }
-        std::printf("  stop at 1.0 mm, %s: %.3f mm\n", scan_case::nameOf(eye), out);
+        std::printf("  stop at 1.0 mm, %s: %.3f mm\n", nameOf(eye), out);
         // Seen aslant over a slope three times the stop along the line of sight may be less than the stop along the
         // bur.
-        EXPECT_LT(out, 1.03) << scan_case::nameOf(eye);
-        EXPECT_GT(out, eye == StandardView::occlusal ? 0.97 : 0.7) << scan_case::nameOf(eye);
+        EXPECT_LT(out, 1.03) << nameOf(eye);
+        EXPECT_GT(out, eye == StandardView::occlusal ? 0.97 : 0.7) << nameOf(eye);
     }
 }
 
@@ -325,7 +325,7 @@ TEST(PointerCourse, liftingOutDoesNotCutSideways) {
         const CourseFigures f = course.play(path, [&](double t, const messages::HapticSample&) {
             if (t < path.releaseS) beforeLift = course.removedMm3();
         });
-        std::printf("  %s: %.3f mm3, of it %.4f when lifted\n", scan_case::nameOf(eye), f.removedMm3,
+        std::printf("  %s: %.3f mm3, of it %.4f when lifted\n", nameOf(eye), f.removedMm3,
                     f.removedMm3 - beforeLift);
         EXPECT_LT(f.removedMm3 - beforeLift, 0.1 * f.removedMm3);
         EXPECT_EQ(course.hand->target().pedal, 0.0) << "and it has come out";

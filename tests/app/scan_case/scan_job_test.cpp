@@ -13,7 +13,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::simulation {
+namespace handpiece::scan_case {
 namespace {
 
 using core::Vec3;
@@ -264,4 +264,4 @@ TEST(ScanRun, KeepsTheFacesThatAFieldCanUse) {
 }
 
 }  // namespace
-}  // namespace handpiece::simulation
+}  // namespace handpiece::scan_case

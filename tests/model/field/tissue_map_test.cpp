@@ -31,7 +31,7 @@ DistanceField ballField(double radius) {
 }
 
 void expectSame(const TissueMap& a, const TissueMap& b, const DistanceField& field) {
-    for (std::uint32_t dense = 0; dense < test::denseCount(field); ++dense) {
+    for (std::uint32_t dense = 0; dense < tooth::test::denseCount(field); ++dense) {
         ASSERT_EQ(a.ofBrick(dense), b.ofBrick(dense));
         const TissueMap::Layers one = a.layers(dense), two = b.layers(dense);
         ASSERT_EQ(one.layers.size(), two.layers.size());
@@ -97,7 +97,7 @@ TEST(TissueMap, NodesLayersAndPointsTellTheSame) {
     const TissueMap map = TissueMap::fromFunctions(field, parts, cases::Tissue::enamel);
     const FieldView view = field.view();
     std::size_t mixed = 0, triple = 0;
-    for (std::uint32_t dense = 0; dense < test::denseCount(field); ++dense) {
+    for (std::uint32_t dense = 0; dense < tooth::test::denseCount(field); ++dense) {
         const std::uint8_t* nodes = map.nodes(dense);
         const TissueMap::Layers layers = map.layers(dense);
         EXPECT_EQ(nodes == nullptr, layers.layers.empty());
@@ -296,7 +296,7 @@ TEST(PrepareCutting, KeepsTheTissuesOfACase) {
     toothCase.outer = handpiece::test::bumpyMesh(3, 2.0);
     toothCase.parts = {{"enamel", cases::Tissue::enamel, 10, toothCase.outer},
                        {"dentine", cases::Tissue::dentine, 20, handpiece::test::sphereMesh(3, 1.2)}};
-    PrepareSettings settings;
+    tooth::PrepareSettings settings;
     settings.cacheFolder = folder.path();
     const auto files = [&] {
         std::size_t count = 0;

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/command.h"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdint>
+
+namespace handpiece::cli {
+namespace {
+
+Check checkOf(const CLI::Validator& validator) {
+    return {[validator](std::string& value) { return validator(value); }, validator.get_description()};
+}
+
+}  // namespace
+
+template <class T>
+Check range(T low, T high) {
+    return checkOf(CLI::Range(low, high));
+}
+template Check range(int, int);
+template Check range(double, double);
+template Check range(std::size_t, std::size_t);
+Check nonNegative() {
+    return checkOf(CLI::NonNegativeNumber);
+}
+Check positive() {
+    return checkOf(CLI::PositiveNumber);
+}
+Check oneOf(const std::vector<std::string>& values) {
+    return checkOf(CLI::IsMember(values));
+}
+
+Option& Option::required() {
+    option_->required();
+    return *this;
+}
+Option& Option::check(const Check& check) {
+    option_->check(CLI::Validator(check.test, check.description));
+    return *this;
+}
+Option& Option::showDefault() {
+    option_->capture_default_str();
+    return *this;
+}
+Option& Option::group(const std::string& heading) {
+    option_->group(heading);
+    return *this;
+}
+Option& Option::takeAll() {
+    option_->take_all();
+    return *this;
+}
+Option& Option::expected(int values) {
+    option_->expected(values);
+    return *this;
+}
+Option& Option::delimiter(char between) {
+    option_->delimiter(between);
+    return *this;
+}
+Option& Option::typeName(const std::string& name) {
+    option_->type_name(name);
+    return *this;
+}
+Option& Option::excludes(const Option& other) {
+    option_->excludes(other.option_);
+    return *this;
+}
+Option& Option::excludes(const char* name) {
+    option_->excludes(name);
+    return *this;
+}
+Option& Option::needs(const Option& other) {
+    option_->needs(other.option_);
+    return *this;
+}
+
+Command Command::subcommand(const std::string& name, const std::string& what) {
+    return Command(*app_->add_subcommand(name, what));
+}
+void Command::requireSubcommand() {
+    app_->require_subcommand(1);
+}
+void Command::footer(const std::string& text) {
+    app_->footer(text);
+}
+void Command::callback(std::function<void()> work) {
+    app_->callback(std::move(work));
+}
+template <class T>
+Option Command::option(const std::string& name, T& value, const std::string& help) {
+    return Option(*app_->add_option(name, value, help));
+}
+Option Command::flag(const std::string& name, bool& value, const std::string& help) {
+    return Option(*app_->add_flag(name, value, help));
+}
+template Option Command::option(const std::string&, std::string&, const std::string&);
+template Option Command::option(const std::string&, double&, const std::string&);
+template Option Command::option(const std::string&, int&, const std::string&);
+template Option Command::option(const std::string&, std::size_t&, const std::string&);
+template Option Command::option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option Command::option(const std::string&, std::vector<double>&, const std::string&);
+template Option Command::option(const std::string&, std::vector<std::size_t>&, const std::string&);
+
+bool Command::isGiven(const std::string& name) const {
+    const CLI::Option* option = app_->get_option_no_throw(name);
+    return option != nullptr && option->count() > 0;
+}
+std::string Command::name() const {
+    return app_->get_name();
+}
+std::vector<Command> Command::subcommands() const {
+    std::vector<Command> all;
+    for (CLI::App* sub : app_->get_subcommands([](CLI::App*) { return true; }))
+        all.emplace_back(*sub);
+    return all;
+}
+std::vector<std::string> Command::optionNames() const {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app_->get_options())
+        for (const std::string& name : option->get_lnames())
+            names.push_back(name);
+    return names;
+}
+
+}  // namespace handpiece::cli

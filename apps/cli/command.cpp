@@ -12,6 +12,14 @@ Check checkOf(const CLI::Validator& validator) {
     return {[validator](std::string& value) { return validator(value); }, validator.get_description()};
 }
 
+// CLI11's own words name the largest double there is.
+Check saying(const CLI::Validator& validator, const char* what) {
+    return {[validator, what](std::string& value) {
+                return validator(value).empty() ? std::string() : value + " is not " + what;
+            },
+            validator.get_description()};
+}
+
 }  // namespace
 
 template <class T>
@@ -22,10 +30,10 @@ template Check range(int, int);
 template Check range(double, double);
 template Check range(std::size_t, std::size_t);
 Check nonNegative() {
-    return checkOf(CLI::NonNegativeNumber);
+    return saying(CLI::NonNegativeNumber, "0 or more");
 }
 Check positive() {
-    return checkOf(CLI::PositiveNumber);
+    return saying(CLI::PositiveNumber, "more than 0");
 }
 Check oneOf(const std::vector<std::string>& values) {
     return checkOf(CLI::IsMember(values));

@@ -130,8 +130,8 @@ CourseFigures run(const Case& c, const PointerPath& path, PointerCourse& course)
     const CourseFigures f = course.play(path);
     const std::string stop = c.stopMm > 0.0 ? std::to_string(c.stopMm).substr(0, 3) : "-";
     std::printf("  | %s, %s | %s | %s | %s | %.1f, %s | %.2f | %.2f | %.3f | %.2f | %.2f | %.3f |\n", c.name,
-                path.name.c_str(), std::string(starter::infoOf(c.tooth).name).c_str(), c.bur, nameOf(c.eye),
-                c.loadN, stop.c_str(), f.targetOffPx, f.tipOffMm, f.notNearestMm, f.idleS, f.mostLoadN, f.removedMm3);
+                path.name.c_str(), std::string(starter::infoOf(c.tooth).name).c_str(), c.bur, nameOf(c.eye), c.loadN,
+                stop.c_str(), f.targetOffPx, f.tipOffMm, f.notNearestMm, f.idleS, f.mostLoadN, f.removedMm3);
     EXPECT_LT(f.targetOffPx, kMaxTargetPx) << c.name;
     EXPECT_LT(f.notNearestMm, kMaxNotNearestMm) << c.name;
     if (path.name == "hold") {
@@ -325,8 +325,7 @@ TEST(PointerCourse, liftingOutDoesNotCutSideways) {
         const CourseFigures f = course.play(path, [&](double t, const messages::HapticSample&) {
             if (t < path.releaseS) beforeLift = course.removedMm3();
         });
-        std::printf("  %s: %.3f mm3, of it %.4f when lifted\n", nameOf(eye), f.removedMm3,
-                    f.removedMm3 - beforeLift);
+        std::printf("  %s: %.3f mm3, of it %.4f when lifted\n", nameOf(eye), f.removedMm3, f.removedMm3 - beforeLift);
         EXPECT_LT(f.removedMm3 - beforeLift, 0.1 * f.removedMm3);
         EXPECT_EQ(course.hand->target().pedal, 0.0) << "and it has come out";
     }

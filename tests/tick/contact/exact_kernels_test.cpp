@@ -147,7 +147,7 @@ TEST(OutlineKernels, everyInstructionSetGivesTheSameBits) {
         BallDepth first;
         for (std::size_t level = 0; level < all.size(); ++level) {
             BallDepth found;
-            const bool isApart = all[level].search(surface, pose, found);
+            const bool isApart = all[level].search(surface, BurFrame(pose), found);
             if (level == 0) first = found;
             apart += isApart;
             EXPECT_EQ(found.depthMm, first.depthMm);

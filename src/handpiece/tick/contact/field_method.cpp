@@ -127,7 +127,7 @@ class FieldMethod final : public Method {
     [[nodiscard]] std::uint64_t toothVersion() const noexcept override { return live_.version(); }
 
     [[nodiscard]] bool isCutNear(const core::Pose& burInTooth) const noexcept override {
-        return cut_ && burInTooth.isValid() && cut_->isCutNear(boxAround(burInTooth, live_.outMm()));
+        return cut_ && burInTooth.isValid() && cut_->isCutNear(boxAround(BurFrame(burInTooth), live_.outMm()));
     }
 
     void reset() noexcept override {
@@ -151,29 +151,26 @@ class FieldMethod final : public Method {
     }
 
     /// The bur's box, `byMm` wider on every side.
-    [[nodiscard]] core::Box boxAround(const core::Pose& pose, double byMm) const noexcept {
-        const Vec3 axis = pose.orientation * Vec3::UnitZ(), end = pose.positionMm + bur_->lengthMm() * axis;
-        Vec3 wide;
-        for (int k = 0; k < 3; ++k)
-            wide[k] = byMm + bur_->maxRadiusMm() * std::sqrt(std::max(0.0, 1.0 - axis[k] * axis[k]));
-        return {pose.positionMm.cwiseMin(end) - wide, pose.positionMm.cwiseMax(end) + wide};
+    [[nodiscard]] core::Box boxAround(const BurFrame& frame, double byMm) const noexcept {
+        return frame.boxAround(bur_->lengthMm(), bur_->maxRadiusMm(), byMm);
     }
 
     /// From the triangles of the whole tooth. Cutting takes away only: where a cut may change the answer it remains a
     /// bound.
     void depthOfWhole(const core::Pose& burInTooth, Depth& result) noexcept {
+        const BurFrame frame(burInTooth);
         BallDepth best;
-        const bool outsideKnown = outline_.isFit(), apart = outsideKnown && outline_.search(surface_, burInTooth, best);
+        const bool outsideKnown = outline_.isFit(), apart = outsideKnown && outline_.search(surface_, frame, best);
         if (!apart) {
-            if (!outsideKnown || axis_.mayEnter(surface_, burInTooth)) axis_.search(surface_, burInTooth, best);
-            sheets_.search(surface_, burInTooth, outsideKnown, best);
+            if (!outsideKnown || axis_.mayEnter(surface_, frame)) axis_.search(surface_, frame, best);
+            sheets_.search(surface_, frame, outsideKnown, best);
         }
         if (!(best.depthMm >= -settings_.reachMm)) {
             setFar(burInTooth, std::isfinite(best.depthMm) ? -best.depthMm : 0.0);
             return;
         }
         result.depthMm = best.depthMm;
-        if (best.depthMm < 0.0 && cut_ && isGone(burInTooth, best)) return;
+        if (best.depthMm < 0.0 && cut_ && isGone(frame, best)) return;
         result.status = Status::ok;
         result.toothPointMm = best.surfaceMm;
         const Vec3 away = best.inside ? Vec3(best.surfaceMm - best.centreMm) : Vec3(best.centreMm - best.surfaceMm);
@@ -182,9 +179,8 @@ class FieldMethod final : public Method {
     }
 
     /// Apart: the point of the whole tooth that is nearest may have been cut away.
-    [[nodiscard]] bool isGone(const core::Pose& burInTooth, const BallDepth& best) const noexcept {
-        return cut_->isCutNear({best.surfaceMm, best.surfaceMm}) &&
-               cut_->isCutNear(boxAround(burInTooth, -best.depthMm));
+    [[nodiscard]] bool isGone(const BurFrame& frame, const BallDepth& best) const noexcept {
+        return cut_->isCutNear({best.surfaceMm, best.surfaceMm}) && cut_->isCutNear(boxAround(frame, -best.depthMm));
     }
 
     void depthInField(const core::Pose& burInTooth, Depth& result) noexcept {

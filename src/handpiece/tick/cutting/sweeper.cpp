@@ -9,6 +9,7 @@
 
 namespace handpiece::cutting {
 
+using contact::BurFrame;
 using core::Vec3;
 using field::kBrickCells;
 using field::kBrickNodes;
@@ -64,7 +65,7 @@ double alongStepFor(const instrument::Bur& bur) {
 }  // namespace
 
 /// Places are of the bur's frame in kernel units.
-struct Sweeper::Frame {
+struct Sweeper::GridInBur {
     std::int64_t anchor[3];                       // a node near the bur
     std::int32_t origin[3];                       // its place
     std::int32_t axes[3][3];                      // one node farther along x, y, z
@@ -132,47 +133,44 @@ Sweeper::Sweeper(tooth::CutField& field, const instrument::Bur& bur, core::SimdL
     simplePass_.pieces = simple_.pieces().data();
 }
 
-Sweeper::Frame Sweeper::frameOf(const core::Pose& pose) noexcept {
+Sweeper::GridInBur Sweeper::gridIn(const BurFrame& bur) const noexcept {
     const field::FieldView view = field_.field().view();
-    const core::Mat3 rotation = pose.orientation.toRotationMatrix();
-    Frame frame;
+    GridInBur grid;
     Vec3 away;
     for (int k = 0; k < 3; ++k) {
-        const double node = std::round((pose.positionMm[k] - view.originMm[k]) * view.inverseVoxelMm);
-        frame.anchor[k] = static_cast<std::int64_t>(node);
-        away[k] = view.originMm[k] + node * voxelMm_ - pose.positionMm[k];
+        const double node = std::round((bur.tip[k] - view.originMm[k]) * view.inverseVoxelMm);
+        grid.anchor[k] = static_cast<std::int64_t>(node);
+        away[k] = view.originMm[k] + node * voxelMm_ - bur.tip[k];
     }
-    const Vec3 inBur = rotation.transpose() * away;
+    const Vec3 inBur(bur.x.dot(away), bur.y.dot(away), bur.z.dot(away));
     for (int k = 0; k < 3; ++k) {
-        frame.origin[k] = static_cast<std::int32_t>(std::lround(inBur[k] / unitMm_));
+        grid.origin[k] = static_cast<std::int32_t>(std::lround(inBur[k] / unitMm_));
         for (int a = 0; a < 3; ++a)
-            frame.axes[a][k] = static_cast<std::int32_t>(std::lround(rotation(a, k) * voxelMm_ / unitMm_));
+            grid.axes[a][k] = static_cast<std::int32_t>(std::lround(bur.toBur(k, a) * voxelMm_ / unitMm_));
     }
     constexpr float kHalf = 0.5f * kBrickCells;
-    frame.round = kHalf * std::sqrt(3.0f) * static_cast<float>(voxelMm_);
-    frame.halfZ = 0.0f;
+    grid.round = kHalf * std::sqrt(3.0f) * static_cast<float>(voxelMm_);
+    grid.halfZ = 0.0f;
     for (int k = 0; k < 3; ++k) {
-        frame.half[k] = 0.0f;
+        grid.half[k] = 0.0f;
         for (int a = 0; a < 3; ++a) {
-            frame.halfAxes[a][k] = kHalf * static_cast<float>(frame.axes[a][k]) * pass_.unitMm;
-            frame.half[k] += frame.halfAxes[a][k];
+            grid.halfAxes[a][k] = kHalf * static_cast<float>(grid.axes[a][k]) * pass_.unitMm;
+            grid.half[k] += grid.halfAxes[a][k];
         }
     }
     for (int a = 0; a < 3; ++a)
-        frame.halfZ += std::abs(frame.halfAxes[a][2]);
-    return frame;
+        grid.halfZ += std::abs(grid.halfAxes[a][2]);
+    return grid;
 }
 
-bool Sweeper::rangeNear(const core::Pose& pose, double reachMm, std::int32_t (&low)[3],
+bool Sweeper::rangeNear(const BurFrame& bur, double reachMm, std::int32_t (&low)[3],
                         std::int32_t (&high)[3]) const noexcept {
     const field::FieldView view = field_.field().view();
-    const Vec3 axis = pose.orientation * Vec3::UnitZ();
+    const core::Box box = bur.boxAround(lengthMm_, radiusMm_, reachMm);
+    const double perBrick = view.inverseVoxelMm / kBrickCells;
     for (int k = 0; k < 3; ++k) {
-        const double side = radiusMm_ * std::sqrt(std::max(0.0, 1.0 - axis[k] * axis[k])) + reachMm;
-        const double tip = pose.positionMm[k], top = tip + lengthMm_ * axis[k];
-        const double perBrick = view.inverseVoxelMm / kBrickCells;
-        const double first = std::floor((std::min(tip, top) - side - view.originMm[k]) * perBrick),
-                     last = std::floor((std::max(tip, top) + side - view.originMm[k]) * perBrick);
+        const double first = std::floor((box.min[k] - view.originMm[k]) * perBrick),
+                     last = std::floor((box.max[k] - view.originMm[k]) * perBrick);
         if (!(last >= 0.0 && first < view.bricks[k])) return false;
         low[k] = static_cast<std::int32_t>(std::max(first, 0.0));
         high[k] = static_cast<std::int32_t>(std::min(last, view.bricks[k] - 1.0));
@@ -198,25 +196,26 @@ std::int32_t Sweeper::wayAfter(double mm) const noexcept {
 }
 
 /// What holds in a brick until the bur has moved kPiecesVoxels.
-OutlineTable::Region Sweeper::regionOf(const Frame& frame, const std::int32_t (&base)[3]) const noexcept {
-    const float x = static_cast<float>(base[0]) * pass_.unitMm + frame.half[0],
-                y = static_cast<float>(base[1]) * pass_.unitMm + frame.half[1],
-                z = static_cast<float>(base[2]) * pass_.unitMm + frame.half[2];
+OutlineTable::Region Sweeper::regionOf(const GridInBur& grid, const std::int32_t (&base)[3]) const noexcept {
+    const float x = static_cast<float>(base[0]) * pass_.unitMm + grid.half[0],
+                y = static_cast<float>(base[1]) * pass_.unitMm + grid.half[1],
+                z = static_cast<float>(base[2]) * pass_.unitMm + grid.half[2];
     const float rho = std::sqrt(x * x + y * y), inverse = rho > 0.0f ? 1.0f / rho : 0.0f;
     float along = 0.0f, across = 0.0f;
     for (int a = 0; a < 3; ++a) {
-        along += std::abs(frame.halfAxes[a][0] * x + frame.halfAxes[a][1] * y);
-        across += std::abs(frame.halfAxes[a][1] * x - frame.halfAxes[a][0] * y);
+        along += std::abs(grid.halfAxes[a][0] * x + grid.halfAxes[a][1] * y);
+        across += std::abs(grid.halfAxes[a][1] * x - grid.halfAxes[a][0] * y);
     }
     const auto grown = static_cast<float>(kPiecesVoxels * voxelMm_);
-    along = grown + (rho > 0.0f ? along * inverse : frame.round);
-    across = grown + (rho > 0.0f ? across * inverse : frame.round);
-    const float farthest = rho + along, high = frame.halfZ + grown;
+    along = grown + (rho > 0.0f ? along * inverse : grid.round);
+    across = grown + (rho > 0.0f ? across * inverse : grid.round);
+    const float farthest = rho + along, high = grid.halfZ + grown;
     return outline_.region(
         {std::max(rho - along, 0.0f), std::sqrt(farthest * farthest + across * across), z - high, z + high});
 }
 
-void Sweeper::visit(const Frame& frame, std::uint32_t dense, const std::int32_t (&base)[3], Outcome& outcome) noexcept {
+void Sweeper::visit(const GridInBur& grid, std::uint32_t dense, const std::int32_t (&base)[3],
+                    Outcome& outcome) noexcept {
     Memory& memory = memory_[dense];
     const bool isNew = memory.epoch != epoch_;
     std::int32_t stored = field_.field().view().brickIndex[dense];
@@ -225,7 +224,7 @@ void Sweeper::visit(const Frame& frame, std::uint32_t dense, const std::int32_t 
         if (stored < 0 && field_.coarse()[dense] >= 0.0f) return;  // outside the tooth
     }
     if (memory.piecesDue <= way_) {
-        const OutlineTable::Region region = regionOf(frame, base);
+        const OutlineTable::Region region = regionOf(grid, base);
         if (region.lowMm >= bandMm_) {
             memory.due = wayAfter(static_cast<double>(region.lowMm) - bandMm_);
             // Its steps are not looked at meanwhile, and may be due when it comes back.
@@ -276,32 +275,34 @@ void Sweeper::visit(const Frame& frame, std::uint32_t dense, const std::int32_t 
 void Sweeper::cutAt(const core::Pose& pose, Outcome& outcome) noexcept {
     ++outcome.poses;
     std::int32_t low[3], high[3];
-    if (!rangeNear(pose, bandMm_, low, high)) return;
-    const Frame frame = frameOf(pose);
+    const BurFrame bur(pose);
+    if (!rangeNear(bur, bandMm_, low, high)) return;
+    const GridInBur grid = gridIn(bur);
     std::int32_t* const offsets[3] = {nodes_->offset[0], nodes_->offset[1], nodes_->offset[2]};
-    kernels_.makeOffsets(frame.axes, offsets);
+    kernels_.makeOffsets(grid.axes, offsets);
     const field::FieldView view = field_.field().view();
     for (std::int32_t bz = low[2]; bz <= high[2]; ++bz)
         for (std::int32_t by = low[1]; by <= high[1]; ++by) {
             const std::int64_t node[3] = {std::int64_t{kBrickCells} * low[0], std::int64_t{kBrickCells} * by,
                                           std::int64_t{kBrickCells} * bz};
             std::int32_t base[3];
-            frame.placeOf(node, base);
+            grid.placeOf(node, base);
             std::uint32_t dense = static_cast<std::uint32_t>(
                 low[0] + view.bricks[0] * (by + static_cast<std::int64_t>(view.bricks[1]) * bz));
             for (std::int32_t bx = low[0]; bx <= high[0]; ++bx, ++dense) {
-                if (memory_[dense].epoch != epoch_ || memory_[dense].due <= way_) visit(frame, dense, base, outcome);
+                if (memory_[dense].epoch != epoch_ || memory_[dense].due <= way_) visit(grid, dense, base, outcome);
                 for (int k = 0; k < 3; ++k)
-                    base[k] += kBrickCells * frame.axes[0][k];
+                    base[k] += kBrickCells * grid.axes[0][k];
             }
         }
 }
 
 void Sweeper::raiseCoarse(const core::Pose& pose, bool all) noexcept {
+    const BurFrame bur(pose);
     // The whole box once in half a brick's way, in even portions.
     const double cycleMm = 0.5 * kBrickCells * voxelMm_;
     if (all || coarseRow_ >= coarseRows_) {
-        if (!rangeNear(pose, kCoarseReachMm, coarseLow_, coarseHigh_)) return;
+        if (!rangeNear(bur, kCoarseReachMm, coarseLow_, coarseHigh_)) return;
         coarseRow_ = 0;
         coarseRows_ = (std::int64_t{coarseHigh_[1]} - coarseLow_[1] + 1) * (coarseHigh_[2] - coarseLow_[2] + 1);
         coarseTravelMm_ = travelMm_;
@@ -310,8 +311,8 @@ void Sweeper::raiseCoarse(const core::Pose& pose, bool all) noexcept {
     const auto until = static_cast<std::int64_t>(std::ceil(share * static_cast<double>(coarseRows_)));
     if (coarseRow_ >= until) return;
     std::int32_t low[3], high[3];
-    if (!rangeNear(pose, kCoarseReachMm, low, high)) return;
-    const Frame frame = frameOf(pose);
+    if (!rangeNear(bur, kCoarseReachMm, low, high)) return;
+    const GridInBur grid = gridIn(bur);
     const field::FieldView view = field_.field().view();
     for (; coarseRow_ < until; ++coarseRow_) {
         const std::int64_t height = std::int64_t{coarseHigh_[1]} - coarseLow_[1] + 1;
@@ -320,9 +321,9 @@ void Sweeper::raiseCoarse(const core::Pose& pose, bool all) noexcept {
         const std::int64_t node[3] = {std::int64_t{kBrickCells} * low[0] + kBrickCells / 2,
                                       kBrickCells * by + kBrickCells / 2, kBrickCells * bz + kBrickCells / 2};
         SweepRow row;
-        frame.placeOf(node, row.base);
+        grid.placeOf(node, row.base);
         for (int k = 0; k < 3; ++k)
-            row.step[k] = kBrickCells * frame.axes[0][k];
+            row.step[k] = kBrickCells * grid.axes[0][k];
         row.count = high[0] - low[0] + 1;
         const std::int64_t dense = low[0] + view.bricks[0] * (by + view.bricks[1] * bz);
         kernels_.raiseRow(simplePass_, row, simpleList_.data(), static_cast<std::int32_t>(simpleList_.size()),
@@ -331,7 +332,7 @@ void Sweeper::raiseCoarse(const core::Pose& pose, bool all) noexcept {
 }
 
 /// How deep a notch, over the way between two poses, is left standing where a corner is the outermost part of the bur
-/// seen along the way; `direction` (unit) in the bur's frame.
+/// seen along the way; `direction` (unit) in the bur's grid.
 double Sweeper::notchOf(const Vec3& direction) const noexcept {
     const double sideways = std::hypot(direction.x(), direction.y());
     double most = 0.0;

@@ -13,6 +13,7 @@
 #include "handpiece/base/core/vec.h"
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/tick/contact/bur_frame.h"
 #include "handpiece/tick/cutting/outline_table.h"
 
 namespace handpiece::cutting {
@@ -39,7 +40,7 @@ class Sweeper {
     [[nodiscard]] const core::Pose& pose() const noexcept { return pose_; }
 
   private:
-    struct Frame;  ///< where the grid lies in the bur's frame
+    struct GridInBur;  ///< where the grid lies in the bur's frame
     /// What is known of a brick since the last settle().
     struct Memory {
         std::int32_t due = 0;  ///< the way before which nothing in it can rise
@@ -53,12 +54,12 @@ class Sweeper {
     };
     void setTravel(double mm) noexcept;
     void forget() noexcept;
-    [[nodiscard]] Frame frameOf(const core::Pose& pose) noexcept;
-    [[nodiscard]] bool rangeNear(const core::Pose& pose, double reachMm, std::int32_t (&low)[3],
+    [[nodiscard]] GridInBur gridIn(const contact::BurFrame& bur) const noexcept;
+    [[nodiscard]] bool rangeNear(const contact::BurFrame& bur, double reachMm, std::int32_t (&low)[3],
                                  std::int32_t (&high)[3]) const noexcept;
     void cutAt(const core::Pose& pose, Outcome& outcome) noexcept;
-    void visit(const Frame& frame, std::uint32_t dense, const std::int32_t (&base)[3], Outcome& outcome) noexcept;
-    [[nodiscard]] OutlineTable::Region regionOf(const Frame& frame, const std::int32_t (&base)[3]) const noexcept;
+    void visit(const GridInBur& grid, std::uint32_t dense, const std::int32_t (&base)[3], Outcome& outcome) noexcept;
+    [[nodiscard]] OutlineTable::Region regionOf(const GridInBur& grid, const std::int32_t (&base)[3]) const noexcept;
     [[nodiscard]] std::int32_t wayAfter(double mm) const noexcept;
     [[nodiscard]] std::uint8_t uniformTissue(std::uint32_t dense, std::int32_t stored) noexcept;
     void raiseCoarse(const core::Pose& pose, bool all) noexcept;

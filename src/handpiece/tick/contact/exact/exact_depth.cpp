@@ -144,8 +144,7 @@ void AxisSearch::addRun(const std::vector<MedialBall>& balls) {
     }
 }
 
-void AxisSearch::search(const ExactSurface& surface, const core::Pose& burInTooth, BallDepth& best) noexcept {
-    const Vec3 tip = burInTooth.positionMm, axis = burInTooth.orientation * Vec3::UnitZ();
+void AxisSearch::search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) noexcept {
     for (std::size_t i = 0; i < runs_.size(); ++i) {
         const Run& run = runs_[i];
         std::uint32_t& seed = seeds_[std::min(i, kMaxSeeds - 1)];
@@ -153,10 +152,10 @@ void AxisSearch::search(const ExactSurface& surface, const core::Pose& burInToot
         // The bound is that of balls outside: an axis in the tooth must still find its nearest triangle.
         hit.value = std::numeric_limits<double>::infinity();
         hit.triangle = seed;
-        surface.kernels().nearestToRun(surface.view(), run.plain, tip.data(), axis.data(), hit);
+        surface.kernels().nearestToRun(surface.view(), run.plain, frame.tip.data(), frame.z.data(), hit);
         if (hit.triangle == kNoTriangle) continue;
         seed = hit.triangle;
-        const Vec3 centre = tip + hit.z * axis, point = vectorOf(hit.point);
+        const Vec3 centre = frame.onAxis(hit.z), point = vectorOf(hit.point);
         const double distance = (centre - point).norm();
         bool mayEnter = distance < kSamePlaceMm;
         if (!mayEnter && !run.constant) {
@@ -171,21 +170,20 @@ void AxisSearch::search(const ExactSurface& surface, const core::Pose& burInToot
             SurfaceHit crossing;
             crossing.value = kSamePlaceMm;
             crossing.triangle = kNoTriangle;
-            surface.kernels().nearestToRun(surface.view(), thread, tip.data(), axis.data(), crossing);
+            surface.kernels().nearestToRun(surface.view(), thread, frame.tip.data(), frame.z.data(), crossing);
             mayEnter = crossing.triangle != kNoTriangle;
         }
         const bool inside = surface.isInside(centre, hit);
         if (!inside && -hit.value > best.depthMm) best = {-hit.value, centre, point, hit.triangle, hit.feature, false};
-        if (inside || mayEnter) searchInside(surface, run, tip, axis, hit, best);
+        if (inside || mayEnter) searchInside(surface, run, frame, hit, best);
     }
 }
 
-bool AxisSearch::mayEnter(const ExactSurface& surface, const core::Pose& burInTooth) const noexcept {
-    const Vec3 tip = burInTooth.positionMm, axis = burInTooth.orientation * Vec3::UnitZ();
+bool AxisSearch::mayEnter(const ExactSurface& surface, const BurFrame& frame) const noexcept {
     return std::any_of(runs_.begin(), runs_.end(), [&](const Run& run) {
         // A distance clears the axis that far on.
         for (double z = run.z.front();;) {
-            const double clear = surface.farBound(tip + z * axis);
+            const double clear = surface.farBound(frame.onAxis(z));
             if (clear < surface.sureMm()) return true;
             if (z + clear >= run.z.back()) return false;
             z += clear;
@@ -273,13 +271,13 @@ class Cuts {
 
 }  // namespace
 
-void AxisSearch::searchInside(const ExactSurface& surface, const Run& run, const Vec3& tip, const Vec3& axis,
+void AxisSearch::searchInside(const ExactSurface& surface, const Run& run, const BurFrame& frame,
                               const SurfaceHit& first, BallDepth& best) const noexcept {
     Cuts cuts(run.z, run.radius, run.slope);
     const auto add = [&](const Vec3& q) {
-        const Vec3 w = q - tip;
-        const double along = w.dot(axis);
-        cuts.addPoint(along, (w - along * axis).squaredNorm());
+        const Vec3 w = q - frame.tip;
+        const double along = w.dot(frame.z);
+        cuts.addPoint(along, (w - along * frame.z).squaredNorm());
     };
     add(vectorOf(first.point));
     std::uint32_t seed = first.triangle;
@@ -287,7 +285,7 @@ void AxisSearch::searchInside(const ExactSurface& surface, const Run& run, const
         double bound = 0.0;
         const double s = cuts.highest(bound);
         if (bound <= best.depthMm + kTolerance) return;
-        const BallDepth found = surface.ball(tip + s * axis, cuts.radiusAt(s), seed);
+        const BallDepth found = surface.ball(frame.onAxis(s), cuts.radiusAt(s), seed);
         seed = found.triangle;
         if (found.depthMm > best.depthMm) best = found;
         const double distance = (found.centreMm - found.surfaceMm).norm();

@@ -12,6 +12,7 @@
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/model/field/distance_field.h"
 #include "handpiece/model/instrument/bur.h"
+#include "handpiece/tick/contact/bur_frame.h"
 #include "handpiece/tick/contact/exact/exact_kernels.h"
 
 namespace handpiece::contact {
@@ -60,9 +61,9 @@ class AxisSearch {
     explicit AxisSearch(const instrument::Bur& bur);
 
     /// Raises `best` to the deepest ball of the axis; seeds only save time.
-    void search(const ExactSurface& surface, const core::Pose& burInTooth, BallDepth& best) noexcept;
+    void search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) noexcept;
     /// False when all of its balls have their centres outside the tooth.
-    [[nodiscard]] bool mayEnter(const ExactSurface& surface, const core::Pose& burInTooth) const noexcept;
+    [[nodiscard]] bool mayEnter(const ExactSurface& surface, const BurFrame& frame) const noexcept;
     void reset() noexcept { seeds_.fill(geometry::kNoTriangle); }
 
     static constexpr int kMaxCuts = 16;
@@ -76,8 +77,8 @@ class AxisSearch {
         bool constant = false;
     };
     void addRun(const std::vector<instrument::MedialBall>& balls);
-    void searchInside(const ExactSurface& surface, const Run& run, const core::Vec3& tip, const core::Vec3& axis,
-                      const SurfaceHit& first, BallDepth& best) const noexcept;
+    void searchInside(const ExactSurface& surface, const Run& run, const BurFrame& frame, const SurfaceHit& first,
+                      BallDepth& best) const noexcept;
 
     std::vector<Run> runs_;
     static constexpr std::size_t kMaxSeeds = 8;

@@ -206,13 +206,10 @@ void OffAxisMedialSearch::addGrid(Sheet& sheet) const {
     }
 }
 
-void OffAxisMedialSearch::search(const ExactSurface& surface, const core::Pose& burInTooth, bool outsideKnown,
+void OffAxisMedialSearch::search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown,
                                  BallDepth& best) noexcept {
-    if (sheets_.empty()) return;
-    const core::Mat3 rotation = burInTooth.orientation.toRotationMatrix();
-    const Frame frame{burInTooth.positionMm, rotation.col(0), rotation.col(1), rotation.col(2)};
     for (const Sheet& sheet : sheets_) {
-        const Vec3 centre = frame.tip + sheet.centreZ * frame.z;
+        const Vec3 centre = frame.onAxis(sheet.centreZ);
         const double far = surface.farBound(centre);
         if (far > 0.0 && (outsideKnown ? far > sheet.centresMm : sheet.reachMm - far <= best.depthMm)) continue;
         std::uint32_t seed = best.triangle;
@@ -228,7 +225,8 @@ void OffAxisMedialSearch::search(const ExactSurface& surface, const core::Pose& 
     if (askCovered(surface, frame, best)) askCovered(surface, frame, best);
 }
 
-bool OffAxisMedialSearch::askCovered(const ExactSurface& surface, const Frame& frame, BallDepth& best) const noexcept {
+bool OffAxisMedialSearch::askCovered(const ExactSurface& surface, const BurFrame& frame,
+                                     BallDepth& best) const noexcept {
     if (covered_.empty() || best.triangle == geometry::kNoTriangle || best.depthMm <= 0.0) return false;
     const Vec3 w = best.surfaceMm - frame.tip;
     const double along = w.dot(frame.x), across = w.dot(frame.y), rho = std::hypot(along, across);
@@ -247,7 +245,7 @@ bool OffAxisMedialSearch::askCovered(const ExactSurface& surface, const Frame& f
     return deeper;
 }
 
-OffAxisMedialSearch::Spot OffAxisMedialSearch::spotAt(const Sheet& sheet, const Frame& frame, double u,
+OffAxisMedialSearch::Spot OffAxisMedialSearch::spotAt(const Sheet& sheet, const BurFrame& frame, double u,
                                                       double angle) const noexcept {
     const std::size_t last = sheet.u.size() - 1;
     std::size_t low = 0, high = last;
@@ -273,7 +271,7 @@ OffAxisMedialSearch::Spot OffAxisMedialSearch::spotAt(const Sheet& sheet, const 
 }
 
 /// Distances of the grid's balls; of eight that all lie too far outside for their radius none is looked up.
-void OffAxisMedialSearch::scan(const Sheet& sheet, const Frame& frame, double atLeast) noexcept {
+void OffAxisMedialSearch::scan(const Sheet& sheet, const BurFrame& frame, double atLeast) noexcept {
     for (const Row& r : sheet.rows) {
         FieldRow row;
         for (int k = 0; k < 3; ++k) {
@@ -306,7 +304,7 @@ void OffAxisMedialSearch::scan(const Sheet& sheet, const Frame& frame, double at
 }
 
 /// Tops of the grid where the field holds distances, and all balls elsewhere that might beat `atLeast`.
-void OffAxisMedialSearch::collect(const Sheet& sheet, const Frame& frame, double atLeast) noexcept {
+void OffAxisMedialSearch::collect(const Sheet& sheet, const BurFrame& frame, double atLeast) noexcept {
     candidateCount_ = unknownCount_ = 0;
     double least = atLeast;
     for (const Row& r : sheet.rows)
@@ -362,7 +360,7 @@ void OffAxisMedialSearch::collect(const Sheet& sheet, const Frame& frame, double
 }
 
 /// Climbs in the field by looks in eight directions.
-void OffAxisMedialSearch::refine(const Sheet& sheet, const Frame& frame, Candidate& candidate) const noexcept {
+void OffAxisMedialSearch::refine(const Sheet& sheet, const BurFrame& frame, Candidate& candidate) const noexcept {
     constexpr double kHalf = std::numbers::sqrt2 / 2.0;
     static constexpr double kCosine[8] = {1, kHalf, 0, -kHalf, -1, -kHalf, 0, kHalf};
     static constexpr double kSine[8] = {0, kHalf, 1, kHalf, 0, -kHalf, -1, -kHalf};
@@ -402,7 +400,7 @@ void OffAxisMedialSearch::refine(const Sheet& sheet, const Frame& frame, Candida
     }
 }
 
-void OffAxisMedialSearch::climbOnce(const ExactSurface& surface, const Sheet& sheet, const Frame& frame,
+void OffAxisMedialSearch::climbOnce(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame,
                                     const Candidate& from, std::uint32_t& seed, double window,
                                     BallDepth& best) noexcept {
     const auto isNear = [&](double u, double angle) {
@@ -421,7 +419,7 @@ void OffAxisMedialSearch::climbOnce(const ExactSurface& surface, const Sheet& sh
 }
 
 /// Balls that the field cannot tell: each one measured bounds those around it.
-void OffAxisMedialSearch::measure(const ExactSurface& surface, const Sheet& sheet, const Frame& frame,
+void OffAxisMedialSearch::measure(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame,
                                   std::uint32_t& seed, BallDepth& best) noexcept {
     for (int count = 0; count < kMaxMeasured && unknownCount_ > 0; ++count) {
         std::size_t at = 0;
@@ -453,7 +451,7 @@ void OffAxisMedialSearch::measure(const ExactSurface& surface, const Sheet& shee
     }
 }
 
-void OffAxisMedialSearch::searchSheet(const ExactSurface& surface, const Sheet& sheet, const Frame& frame,
+void OffAxisMedialSearch::searchSheet(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame,
                                       std::uint32_t seed, BallDepth& best) noexcept {
     scan(sheet, frame, best.depthMm);
     collect(sheet, frame, best.depthMm);
@@ -475,7 +473,7 @@ void OffAxisMedialSearch::searchSheet(const ExactSurface& surface, const Sheet& 
     measure(surface, sheet, frame, seed, best);
 }
 
-void OffAxisMedialSearch::climb(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, double u,
+void OffAxisMedialSearch::climb(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, double u,
                                 double angle, std::uint32_t seed, double window, BallDepth& best, double& endU,
                                 double& endAngle) const noexcept {
     constexpr int kKnown = 8, kActive = 4;

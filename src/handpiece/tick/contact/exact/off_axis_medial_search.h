@@ -9,6 +9,7 @@
 
 #include "handpiece/base/core/vec.h"
 #include "handpiece/model/instrument/bur.h"
+#include "handpiece/tick/contact/bur_frame.h"
 #include "handpiece/tick/contact/exact/exact_depth.h"
 #include "handpiece/tick/contact/sampled/field_row.h"
 
@@ -23,7 +24,7 @@ class OffAxisMedialSearch {
 
     /// Raises `best` to the deepest ball of all sheets; with `outsideKnown` at least to the deepest of those with their
     /// centres in the tooth. A sheet that cannot beat `best` costs one or two lookups.
-    void search(const ExactSurface& surface, const core::Pose& burInTooth, bool outsideKnown, BallDepth& best) noexcept;
+    void search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown, BallDepth& best) noexcept;
 
   private:
     /// A circle of the grid's balls.
@@ -41,9 +42,6 @@ class OffAxisMedialSearch {
         std::vector<Row> rows;
         std::vector<double> cosine, sine;              ///< by ball of the grid
         std::vector<double> middleCosine, middleSine;  ///< by eight of them; each row's padded to eight middles
-    };
-    struct Frame {
-        core::Vec3 tip, x, y, z;
     };
     /// A ball of a sheet and how its centre and radius change along u and along the arc.
     struct Spot {
@@ -67,21 +65,21 @@ class OffAxisMedialSearch {
     static constexpr int kMaxClimbs = 6, kMaxMeasured = 48;
 
     void addGrid(Sheet& sheet) const;
-    void scan(const Sheet& sheet, const Frame& frame, double atLeast) noexcept;
-    void collect(const Sheet& sheet, const Frame& frame, double atLeast) noexcept;
-    void refine(const Sheet& sheet, const Frame& frame, Candidate& candidate) const noexcept;
-    void measure(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, std::uint32_t& seed,
+    void scan(const Sheet& sheet, const BurFrame& frame, double atLeast) noexcept;
+    void collect(const Sheet& sheet, const BurFrame& frame, double atLeast) noexcept;
+    void refine(const Sheet& sheet, const BurFrame& frame, Candidate& candidate) const noexcept;
+    void measure(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, std::uint32_t& seed,
                  BallDepth& best) noexcept;
-    void climbOnce(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, const Candidate& from,
+    void climbOnce(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, const Candidate& from,
                    std::uint32_t& seed, double window, BallDepth& best) noexcept;
-    [[nodiscard]] Spot spotAt(const Sheet& sheet, const Frame& frame, double u, double angle) const noexcept;
-    void searchSheet(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, std::uint32_t seed,
+    [[nodiscard]] Spot spotAt(const Sheet& sheet, const BurFrame& frame, double u, double angle) const noexcept;
+    void searchSheet(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, std::uint32_t seed,
                      BallDepth& best) noexcept;
-    void climb(const ExactSurface& surface, const Sheet& sheet, const Frame& frame, double u, double angle,
+    void climb(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, double u, double angle,
                std::uint32_t seed, double window, BallDepth& best, double& endU, double& endAngle) const noexcept;
 
     /// True when one of the balls not searched is deeper there.
-    bool askCovered(const ExactSurface& surface, const Frame& frame, BallDepth& best) const noexcept;
+    bool askCovered(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) const noexcept;
 
     std::vector<Sheet> sheets_;
     std::vector<instrument::MedialBall> covered_;  ///< balls of sheets that are not searched

@@ -98,12 +98,11 @@ std::unique_ptr<const Outline> outlineOf(const instrument::Bur& bur) {
 OutlineSearch::OutlineSearch(const instrument::Bur& bur, core::SimdLevel level)
     : outline_(outlineOf(bur)), nearest_(nearestFor(level)) {}
 
-bool OutlineSearch::search(const ExactSurface& surface, const core::Pose& burInTooth, BallDepth& best) noexcept {
-    const Vec3 tip = burInTooth.positionMm, axis = burInTooth.orientation * Vec3::UnitZ();
+bool OutlineSearch::search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) noexcept {
     OutlineHit hit;
     hit.distance = std::numeric_limits<double>::infinity();
     hit.triangle = seed_;
-    nearest_(surface.view(), *outline_, tip.data(), axis.data(), hit);
+    nearest_(surface.view(), *outline_, frame.tip.data(), frame.z.data(), hit);
     if (hit.triangle == geometry::kNoTriangle) return false;
     seed_ = hit.triangle;
     best.depthMm = -hit.distance;
@@ -113,7 +112,7 @@ bool OutlineSearch::search(const ExactSurface& surface, const core::Pose& burInT
     best.triangle = hit.triangle;
     best.inside = false;
     // A bur that lies in the tooth without meeting its surface is apart from that only.
-    return hit.distance > 0.0 && surface.farBound(tip + outline_->middleZ * axis) > surface.sureMm();
+    return hit.distance > 0.0 && surface.farBound(frame.onAxis(outline_->middleZ)) > surface.sureMm();
 }
 
 }  // namespace handpiece::contact

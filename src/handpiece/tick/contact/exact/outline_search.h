@@ -8,6 +8,7 @@
 #include "handpiece/base/core/simd.h"
 #include "handpiece/base/core/vec.h"
 #include "handpiece/model/instrument/bur.h"
+#include "handpiece/tick/contact/bur_frame.h"
 #include "handpiece/tick/contact/exact/exact_depth.h"
 #include "handpiece/tick/contact/exact/outline_kernels.h"
 
@@ -26,7 +27,7 @@ class OutlineSearch {
     /// Whether this bur can be searched for so: convex, of few pieces, and with sheets worth sparing.
     [[nodiscard]] bool isFit() const noexcept { return outline_ != nullptr; }
     /// Sets `best` to - min of phiB over the surface, and returns whether bur and tooth are apart: then it is all.
-    [[nodiscard]] bool search(const ExactSurface& surface, const core::Pose& burInTooth, BallDepth& best) noexcept;
+    [[nodiscard]] bool search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) noexcept;
     void reset() noexcept { seed_ = geometry::kNoTriangle; }
 
   private:

@@ -189,7 +189,7 @@ double FieldDepth::radiusAt(double z) const noexcept {
     return a.radiusMm + (b.radiusMm - a.radiusMm) * (z - a.zMm) / (b.zMm - a.zMm);
 }
 
-double FieldDepth::depthAt(const Frame& frame, const Vec3& p, double distanceMm) const noexcept {
+double FieldDepth::depthAt(const BurFrame& frame, const Vec3& p, double distanceMm) const noexcept {
     return -distanceMm - bur_.signedDistance(frame.toBur * (p - frame.tip));
 }
 
@@ -243,7 +243,7 @@ std::size_t FieldDepth::nearestSpot(std::size_t from, double rho, double z) cons
 /// inwards is a choice, that takes the place of going along the outline.
 class FieldDepth::DepthAscent {
   public:
-    DepthAscent(const FieldDepth& depth, const Frame& frame, const Start& start)
+    DepthAscent(const FieldDepth& depth, const BurFrame& frame, const Start& start)
         : depth_(depth), frame_(frame), at_(start.spot), in_(start.inMm) {
         anchor(start.spot, start.cosine, start.sine);
     }
@@ -405,7 +405,7 @@ class FieldDepth::DepthAscent {
     }
 
     const FieldDepth& depth_;
-    const Frame& frame_;
+    const BurFrame& frame_;
     std::size_t at_;
     const Spot* spot_ = nullptr;
     double cosine_ = 1.0, sine_ = 0.0;
@@ -416,8 +416,7 @@ class FieldDepth::DepthAscent {
 
 FieldTouch FieldDepth::search(const core::Pose& burInTooth, SurfaceSampler& rings) noexcept {
     FieldTouch best;
-    const core::Mat3 rotation = burInTooth.orientation.toRotationMatrix();
-    const Frame frame{burInTooth.positionMm, rotation.col(0), rotation.col(1), rotation.col(2), rotation.transpose()};
+    const BurFrame frame(burInTooth);
     double topZ = 0.0;
     const double top = deepestOfAxis(frame, topZ);
     if (top > inMm_) {  // deeper than the values on its surface can tell
@@ -434,9 +433,8 @@ FieldTouch FieldDepth::search(const core::Pose& burInTooth, SurfaceSampler& ring
     if (least <= -inMm_) searchInside(frame, best);
     const RingArrays& arrays = sensed ? rings.arrays() : probe_;
     std::array<RingPoint, kStarts> points;
-    const RingPose pose{frame.tip, frame.x, frame.y, frame.z};
     const std::size_t count =
-        pickNearest(arrays, pose, nullptr, sensed ? windowMm_ : 2.0 * windowMm_, kApartMm, points);
+        pickNearest(arrays, frame, nullptr, sensed ? windowMm_ : 2.0 * windowMm_, kApartMm, points);
     for (std::size_t i = 0; i < count; ++i) {
         const RingPoint& p = points[i];
         if (p.gapMm <= -inMm_) continue;
@@ -450,12 +448,12 @@ FieldTouch FieldDepth::search(const core::Pose& burInTooth, SurfaceSampler& ring
     return best;
 }
 
-void FieldDepth::sense(const RingArrays& arrays, const Frame& frame) const noexcept {
+void FieldDepth::sense(const RingArrays& arrays, const BurFrame& frame) const noexcept {
     RingQuery query{};
-    store(query.tip, frame.tip);
-    store(query.x, frame.x);
-    store(query.y, frame.y);
-    store(query.z, frame.z);
+    query.tip = frame.tip.data();
+    query.x = frame.x.data();
+    query.y = frame.y.data();
+    query.z = frame.z.data();
     query.thresholdMm = static_cast<float>(outMm_);
     query.farOutMm = static_cast<float>(field_.outMm());
     query.farInMm = static_cast<float>(field_.inMm());
@@ -464,12 +462,11 @@ void FieldDepth::sense(const RingArrays& arrays, const Frame& frame) const noexc
 }
 
 /// Values on the bur's surface no longer tell how deep it is: its inside does.
-void FieldDepth::searchInside(const Frame& frame, FieldTouch& best) noexcept {
+void FieldDepth::searchInside(const BurFrame& frame, FieldTouch& best) noexcept {
     if (inner_.rings.empty()) return;
     sense(inner_, frame);
     std::array<RingPoint, kStarts> points;
-    const RingPose pose{frame.tip, frame.x, frame.y, frame.z};
-    const std::size_t count = pickNearest(inner_, pose, innerDepth_.data(), kInnerWindowMm, kApartMm, points);
+    const std::size_t count = pickNearest(inner_, frame, innerDepth_.data(), kInnerWindowMm, kApartMm, points);
     for (std::size_t i = 0; i < count; ++i) {
         const RingPoint& p = points[i];
         DepthAscent(*this, frame,
@@ -479,8 +476,8 @@ void FieldDepth::searchInside(const Frame& frame, FieldTouch& best) noexcept {
     }
 }
 
-void FieldDepth::takeAxis(const Frame& frame, double z, FieldTouch& best) const noexcept {
-    Vec3 p = frame.tip + z * frame.z;
+void FieldDepth::takeAxis(const BurFrame& frame, double z, FieldTouch& best) const noexcept {
+    Vec3 p = frame.onAxis(z);
     double d = field_.field.distance(p);
     const Vec3 away = outward(p);
     Vec3 q = p;
@@ -496,7 +493,7 @@ void FieldDepth::takeAxis(const Frame& frame, double z, FieldTouch& best) const 
     if (depth > best.depthMm) best = {depth, away, q};
 }
 
-double FieldDepth::scanAxis(const Frame& frame, double fromZ, double step, int count, double& topZ) const noexcept {
+double FieldDepth::scanAxis(const BurFrame& frame, double fromZ, double step, int count, double& topZ) const noexcept {
     AroundQuery query{};
     store(query.alongU, frame.z);
     query.farOutMm = static_cast<float>(field_.outMm());
@@ -505,7 +502,7 @@ double FieldDepth::scanAxis(const Frame& frame, double fromZ, double step, int c
     double top = -std::numeric_limits<double>::infinity();
     for (int first = 0; first < count; first += 8) {
         const double from = fromZ + first * step;
-        store(query.centre, frame.tip + from * frame.z);
+        store(query.centre, frame.onAxis(from));
         double z[8];
         for (int i = 0; i < 8; ++i) {
             z[i] = std::clamp(from + step * i, axis_.front().zMm, axis_.back().zMm);
@@ -528,14 +525,14 @@ double FieldDepth::scanAxis(const Frame& frame, double fromZ, double step, int c
 }
 
 /// The deepest ball of the axis to within its spacing; minus infinity when all of it is farther out than the band.
-double FieldDepth::deepestOfAxis(const Frame& frame, double& topZ) const noexcept {
+double FieldDepth::deepestOfAxis(const BurFrame& frame, double& topZ) const noexcept {
     if (axis_.empty()) return -std::numeric_limits<double>::infinity();
     const double low = axis_.front().zMm, length = axis_.back().zMm - low;
     const int steps = std::max(1, static_cast<int>(std::ceil(length / kAxisSpacingMm)));
     return scanAxis(frame, low, length / steps, steps + 1, topZ);
 }
 
-void FieldDepth::climbAxis(const Frame& frame, double top, double topZ, FieldTouch& best) const noexcept {
+void FieldDepth::climbAxis(const BurFrame& frame, double top, double topZ, FieldTouch& best) const noexcept {
     for (double step = 0.25 * kAxisSpacingMm; step > 1e-4; step *= 0.25) {
         double z = topZ;
         const double value = scanAxis(frame, std::max(axis_.front().zMm, topZ - 3.5 * step), step, 8, z);

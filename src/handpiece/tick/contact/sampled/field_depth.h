@@ -45,25 +45,21 @@ class FieldDepth {
         double deeperPerMm;              ///< how fast -phiB grows inwards: less than 1 from a corner
         bool isCorner;
     };
-    struct Frame {
-        core::Vec3 tip, x, y, z;
-        core::Mat3 toBur;
-    };
     struct Start {
         std::size_t spot;
         double cosine, sine, inMm;
     };
     class DepthAscent;
-    void sense(const RingArrays& arrays, const Frame& frame) const noexcept;
-    void searchInside(const Frame& frame, FieldTouch& best) noexcept;
-    [[nodiscard]] double scanAxis(const Frame& frame, double fromZ, double step, int count,
+    void sense(const RingArrays& arrays, const BurFrame& frame) const noexcept;
+    void searchInside(const BurFrame& frame, FieldTouch& best) noexcept;
+    [[nodiscard]] double scanAxis(const BurFrame& frame, double fromZ, double step, int count,
                                   double& topZ) const noexcept;
-    [[nodiscard]] double deepestOfAxis(const Frame& frame, double& topZ) const noexcept;
-    void climbAxis(const Frame& frame, double top, double topZ, FieldTouch& best) const noexcept;
-    void takeAxis(const Frame& frame, double z, FieldTouch& best) const noexcept;
+    [[nodiscard]] double deepestOfAxis(const BurFrame& frame, double& topZ) const noexcept;
+    void climbAxis(const BurFrame& frame, double top, double topZ, FieldTouch& best) const noexcept;
+    void takeAxis(const BurFrame& frame, double z, FieldTouch& best) const noexcept;
     [[nodiscard]] core::Vec3 outward(const core::Vec3& p) const noexcept;
     [[nodiscard]] double radiusAt(double z) const noexcept;
-    [[nodiscard]] double depthAt(const Frame& frame, const core::Vec3& p, double distanceMm) const noexcept;
+    [[nodiscard]] double depthAt(const BurFrame& frame, const core::Vec3& p, double distanceMm) const noexcept;
     [[nodiscard]] std::size_t nearestSpot(std::size_t from, double rho, double z) const noexcept;
 
     LiveField field_;

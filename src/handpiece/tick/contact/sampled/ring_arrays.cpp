@@ -84,7 +84,7 @@ double leastOf(const RingArrays& arrays) noexcept {
     return static_cast<double>(least);
 }
 
-std::size_t pickNearest(const RingArrays& arrays, const RingPose& pose, const float* inMm, double windowMm,
+std::size_t pickNearest(const RingArrays& arrays, const BurFrame& frame, const float* inMm, double windowMm,
                         double apartMm, std::span<RingPoint> out) noexcept {
     std::size_t count = 0;
     float most = 0.5f * kNotLiveMm;
@@ -98,7 +98,7 @@ std::size_t pickNearest(const RingArrays& arrays, const RingPose& pose, const fl
             const float* gaps = &arrays.distance[static_cast<std::size_t>(ring.first)];
             for (std::int32_t j = 0; j < ring.count; ++j) {
                 if (!(gaps[j] - in < least)) continue;
-                const core::Vec3 place = pose.placeMm(arrays, ring, j);
+                const core::Vec3 place = placeOf(arrays, frame, ring, j);
                 bool taken = false;
                 for (std::size_t k = 0; k < count && !taken; ++k)
                     taken = (out[k].placeMm - place).squaredNorm() < apartMm * apartMm;

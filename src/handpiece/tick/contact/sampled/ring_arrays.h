@@ -10,6 +10,7 @@
 
 #include "handpiece/base/core/simd.h"
 #include "handpiece/model/instrument/bur.h"
+#include "handpiece/tick/contact/bur_frame.h"
 #include "handpiece/tick/contact/sampled/ring_kernels.h"
 
 namespace handpiece::contact {
@@ -36,16 +37,13 @@ class RingArrays {
 /// Least distance found; kNotLiveMm when no point is live.
 [[nodiscard]] double leastOf(const RingArrays& arrays) noexcept;
 
-/// The bur frame in the tooth frame.
-struct RingPose {
-    core::Vec3 tip, x, y, z;
-
-    [[nodiscard]] core::Vec3 placeMm(const RingArrays& arrays, const BurRing& ring, std::int32_t j) const noexcept {
-        const auto a = static_cast<std::size_t>(ring.angles + j);
-        return tip + ring.zMm * z +
-               ring.rhoMm * (static_cast<double>(arrays.cosines[a]) * x + static_cast<double>(arrays.sines[a]) * y);
-    }
-};
+/// Where point j of a ring lies in the tooth frame.
+[[nodiscard]] inline core::Vec3 placeOf(const RingArrays& arrays, const BurFrame& frame, const BurRing& ring,
+                                        std::int32_t j) noexcept {
+    const auto a = static_cast<std::size_t>(ring.angles + j);
+    return frame.onAxis(ring.zMm) + ring.rhoMm * (static_cast<double>(arrays.cosines[a]) * frame.x +
+                                                  static_cast<double>(arrays.sines[a]) * frame.y);
+}
 /// A point of the rings in or near the tooth.
 struct RingPoint {
     std::size_t ring = 0, angle = 0;  ///< which ring, and where its cosine and sine stand
@@ -54,7 +52,7 @@ struct RingPoint {
 };
 /// The nearest live points, at least `apartMm` from one another and no farther than the nearest and `windowMm`; each
 /// ring counts as nearer by its `inMm` (null: 0). Returns how many.
-std::size_t pickNearest(const RingArrays& arrays, const RingPose& pose, const float* inMm, double windowMm,
+std::size_t pickNearest(const RingArrays& arrays, const BurFrame& frame, const float* inMm, double windowMm,
                         double apartMm, std::span<RingPoint> out) noexcept;
 
 /// Bands of the bur's surface about its rings: one a ring, two where a corner of the outline parts it.

@@ -31,12 +31,12 @@ struct BurRings {
 
 /// Where the bur is and what is asked.
 struct RingQuery {
-    double tip[3], x[3], y[3], z[3];  ///< bur frame in the tooth frame [mm]
-    float thresholdMm;                ///< points this near the surface are live, and all inside
-    float farOutMm, farInMm;          ///< where no brick is stored the surface is at least this far
-    bool skipsDeep;                   ///< points inside where no brick is stored, or deeper than deepMm, are not live
-    float deepMm;                     ///< values hold no more than this
-    std::uint8_t tissue;              ///< when everything is of one tissue, else kManyTissues
+    const double *tip, *x, *y, *z;  ///< of the BurFrame, three numbers each
+    float thresholdMm;              ///< points this near the surface are live, and all inside
+    float farOutMm, farInMm;        ///< where no brick is stored the surface is at least this far
+    bool skipsDeep;                 ///< points inside where no brick is stored, or deeper than deepMm, are not live
+    float deepMm;                   ///< values hold no more than this
+    std::uint8_t tissue;            ///< when everything is of one tissue, else kManyTissues
 };
 inline constexpr std::uint8_t kManyTissues = 0xff;
 

@@ -14,11 +14,6 @@ namespace {
 
 constexpr std::uint64_t kNone = ~std::uint64_t{0};
 
-void store(double (&to)[3], const Vec3& v) noexcept {
-    for (int k = 0; k < 3; ++k)
-        to[k] = v[k];
-}
-
 /// The one tissue of all that can be touched, or kManyTissues.
 std::uint8_t onlyTissue(const field::TissueMap& map) {
     std::uint8_t only = kManyTissues;
@@ -69,12 +64,6 @@ SurfaceSampler::SurfaceSampler(const LiveField& field, const instrument::Bur& bu
     query_.tissue = tissueOfAll_;
 }
 
-Vec3 SurfaceSampler::pointMm(const BurRing& ring, std::int32_t j) const noexcept {
-    const auto a = static_cast<std::size_t>(ring.angles + j);
-    return tip_ + ring.zMm * z_ +
-           ring.rhoMm * (static_cast<double>(arrays_.cosines[a]) * x_ + static_cast<double>(arrays_.sines[a]) * y_);
-}
-
 std::uint8_t SurfaceSampler::tissueAt(std::int32_t at) const noexcept {
     return tissueOfAll_ != kManyTissues ? tissueOfAll_ : arrays_.tissue[static_cast<std::size_t>(at)];
 }
@@ -85,15 +74,11 @@ bool SurfaceSampler::isSensed(const core::Pose& pose) const noexcept {
 }
 
 void SurfaceSampler::sense(const core::Pose& burInTooth, double thresholdMm, bool skipsDeep) noexcept {
-    const core::Mat3 rotation = burInTooth.orientation.toRotationMatrix();
-    tip_ = burInTooth.positionMm;
-    x_ = rotation.col(0);
-    y_ = rotation.col(1);
-    z_ = rotation.col(2);
-    store(query_.tip, tip_);
-    store(query_.x, x_);
-    store(query_.y, y_);
-    store(query_.z, z_);
+    frame_ = BurFrame(burInTooth);
+    query_.tip = frame_.tip.data();
+    query_.x = frame_.x.data();
+    query_.y = frame_.y.data();
+    query_.z = frame_.z.data();
     query_.thresholdMm = static_cast<float>(thresholdMm);
     query_.skipsDeep = skipsDeep;
     kernels_.sense(view_, arrays_.bur, query_, arrays_.touch);
@@ -122,7 +107,7 @@ void SurfaceSampler::bearing(const core::Pose& burInTooth, const Vec3& direction
     }
     // A point farther off than that does not count whichever way it faces.
     sense(burInTooth, kContactMarginMm + std::max(leadMm, 0.0), false);
-    const Vec3 along(direction.dot(x_), direction.dot(y_), direction.dot(z_));
+    const Vec3 along(direction.dot(frame_.x), direction.dot(frame_.y), direction.dot(frame_.z));
     BearingQuery query{};
     query.x = static_cast<float>(along.x());
     query.y = static_cast<float>(along.y());
@@ -138,7 +123,7 @@ void SurfaceSampler::bearing(const core::Pose& burInTooth, const Vec3& direction
         if (tissueOfAll_ != kManyTissues && t != tissueOfAll_) continue;
         out.areaMm2[t] = sumOf(sums[t].area);
         out.resistanceMm[t] = sumOf(sums[t].resistance);
-        out.tangentMm[t] = sumOf(sums[t].x) * x_ + sumOf(sums[t].y) * y_;
+        out.tangentMm[t] = sumOf(sums[t].x) * frame_.x + sumOf(sums[t].y) * frame_.y;
     }
 }
 
@@ -284,7 +269,9 @@ void SurfaceSampler::patches(const core::Pose& burInTooth, PatchSet& out) noexce
         const TouchSums& lanes = sum.lanes;
         const Vec3 gradient(sumOf(lanes.gradientX), sumOf(lanes.gradientY), sumOf(lanes.gradientZ));
         const double n = gradient.norm();
-        const Vec3 centre = tip_ + (sumOf(lanes.x) * x_ + sumOf(lanes.y) * y_ + sumOf(lanes.z) * z_) / sum.pressure;
+        const Vec3 centre =
+            frame_.tip +
+            (sumOf(lanes.x) * frame_.x + sumOf(lanes.y) * frame_.y + sumOf(lanes.z) * frame_.z) / sum.pressure;
         const float least = *std::min_element(std::begin(lanes.least), std::end(lanes.least));
         const auto most = std::max_element(sum.tissue.begin(), sum.tissue.end()) - sum.tissue.begin();
         if (!out.patches.pushBack({centre, n > 1e-12 ? Vec3(gradient / n) : Vec3::Zero(), sum.area,
@@ -396,7 +383,7 @@ Status SurfaceSampler::constraints(const core::Pose& burInTooth, double reachMm,
         const Vec3 gradient(arrays_.gx[point], arrays_.gy[point], arrays_.gz[point]);
         const double n = gradient.norm();
         if (!(n > 1e-12)) continue;
-        out.pushBack({gradient / n, static_cast<double>(arrays_.distance[point]), pointMm(ring, j),
+        out.pushBack({gradient / n, static_cast<double>(arrays_.distance[point]), placeOf(arrays_, frame_, ring, j),
                       static_cast<cases::Tissue>(tissueAt(ring.first + j))});
     }
     return count > kMaxConstraints ? Status::truncated : Status::ok;

@@ -48,7 +48,6 @@ class SurfaceSampler {
 
     void sense(const core::Pose& burInTooth, double thresholdMm, bool skipsDeep) noexcept;
     [[nodiscard]] bool isSensed(const core::Pose& pose) const noexcept;
-    [[nodiscard]] core::Vec3 pointMm(const BurRing& ring, std::int32_t j) const noexcept;
     [[nodiscard]] std::uint8_t tissueAt(std::int32_t at) const noexcept;
     std::size_t findRuns() noexcept;
     void joinRuns(std::size_t begin, std::size_t middle, std::size_t end) noexcept;
@@ -74,7 +73,7 @@ class SurfaceSampler {
     std::array<Sums, kMaxSums> sums_;
     std::vector<std::uint64_t> candidates_;
     std::vector<std::uint64_t> nearest_;  ///< key of the nearest point by block of rings and sector
-    core::Vec3 tip_ = core::Vec3::Zero(), x_ = core::Vec3::UnitX(), y_ = core::Vec3::UnitY(), z_ = core::Vec3::UnitZ();
+    BurFrame frame_;                      ///< where the rings were sensed last
 };
 
 }  // namespace handpiece::contact

@@ -5,10 +5,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <memory>
 #include <span>
 #include <string_view>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/hash.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/model/field/field_cache.h"
+#include "handpiece/model/tooth/cut_state_file.h"
 
 namespace handpiece::fuzz {
 
@@ -21,6 +27,40 @@ int readText(const std::uint8_t* data, std::size_t size, const Work& work) {
         if (e.problem().empty()) __builtin_trap();
     }
     return 0;
+}
+
+/// Of the small tooth, in files.
+inline constexpr std::uint64_t kSmallToothKey = 0x0123456789abcdefull;
+
+/// A ball of enamel of 0.7 mm at 0.1 mm voxels.
+inline std::shared_ptr<const tooth::CuttableTooth> smallTooth() {
+    core::setThreadCount(1);
+    field::FieldSettings settings;
+    settings.voxelMm = 0.1;
+    geometry::TriangleMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    geometry::TriangleTree tree(mesh);
+    field::DistanceField field =
+        field::DistanceField::fromFunction({core::Vec3::Constant(-0.9), core::Vec3::Constant(0.9)}, settings,
+                                           [](const core::Vec3& p) { return p.norm() - 0.7; });
+    field::TissueMap map = field::TissueMap::uniform(field, cases::Tissue::enamel);
+    return tooth::prepareCutting(
+        std::make_shared<tooth::Tooth>(tooth::Tooth{"ball", mesh, std::move(tree), std::move(field), false, 0.0}),
+        std::move(map));
+}
+
+/// Bytes before the payload of a cut state.
+inline constexpr std::size_t kStateHeaderBytes = 136;
+/// Sets size and checksums of a cut state right, or nothing would get past those.
+inline void seal(std::span<std::byte> state) {
+    constexpr std::size_t kPayloadBytes = 32, kPayloadHash = 120, kHeaderHash = 128;
+    const auto put = [&](std::size_t at, std::uint64_t number) { std::memcpy(&state[at], &number, sizeof number); };
+    put(kPayloadBytes, state.size() - kStateHeaderBytes);
+    put(kPayloadHash, field::hashOf(state.subspan(kStateHeaderBytes)));
+    core::Hasher hasher;
+    hasher.add(std::span<const std::byte>(state.first(kHeaderHash)));
+    put(kHeaderHash, hasher.value());
 }
 
 }  // namespace handpiece::fuzz

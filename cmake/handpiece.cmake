@@ -17,6 +17,19 @@ add_library(handpiece_options INTERFACE)
 # No contraction, no fast-math: the same inputs give the same tooth, bit for bit.
 target_compile_options(handpiece_options INTERFACE
     $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wshadow -Wno-psabi -ffp-contract=off>)
+# Makes a fault in a reader of files harder to use. What the loader has written is read-only in every build; the checks
+# of stacks and of lengths are for what is shipped, since an object that has them is another than one that has not.
+if(NOT HANDPIECE_SANITIZE)
+    target_link_options(handpiece_options INTERFACE $<BUILD_INTERFACE:LINKER:-z,relro,-z,now>
+        $<BUILD_INTERFACE:$<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-pie>>)
+endif()
+if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT HANDPIECE_SANITIZE)
+    target_compile_options(handpiece_options INTERFACE $<BUILD_INTERFACE:-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2
+        -fstack-protector-strong -fstack-clash-protection>)
+    if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+        target_compile_options(handpiece_options INTERFACE $<BUILD_INTERFACE:-fcf-protection>)
+    endif()
+endif()
 if(HANDPIECE_SANITIZE)
     target_compile_options(handpiece_options INTERFACE
         $<BUILD_INTERFACE:-fsanitize=${HANDPIECE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all>)

@@ -53,6 +53,21 @@ class Installed(unittest.TestCase):
             for path in re.findall(r"(?:RPATH|RUNPATH).*\[(.*)\]", paths):
                 self.assertEqual(path, "$ORIGIN/../lib/handpiece")
 
+    def test_programs_are_hardened_as_the_build_says(self):
+        cache = (BUILD / "CMakeCache.txt").read_text()
+        setting = lambda name: re.search(rf"^{name}:\w+=(.*)$", cache, re.M).group(1)
+        if setting("HANDPIECE_SANITIZE"):
+            self.skipTest("sanitizers watch more than that")
+        for program in (self.tree / "bin").iterdir():
+            read = lambda what: subprocess.run(["readelf", "-W", what, program], capture_output=True, text=True, check=True).stdout
+            self.assertRegex(read("-h"), r"Type:\s+DYN", program)
+            self.assertIn("GNU_RELRO", read("-l"), program)
+            self.assertRegex(read("-d"), r"BIND_NOW|FLAGS_1.*\bNOW\b", program)
+            if setting("CMAKE_BUILD_TYPE") == "Release":
+                symbols = read("--dyn-syms")
+                self.assertIn("__stack_chk_fail", symbols, program)
+                self.assertRegex(symbols, r"__(mem|str|v?s?n?printf|read)\w*_chk", program)
+
 
 class Files(unittest.TestCase):
     def test_rules_open_devices_to_who_sits_there_and_to_nobody_else(self):

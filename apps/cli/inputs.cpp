@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/inspect.h"
@@ -80,10 +81,7 @@ tooth::PrepareSettings prepareSettingsOf(const ContactInputs& inputs) {
     if (!(inputs.voxelUm >= 10.0 && inputs.voxelUm <= 400.0))
         throw core::Error(fmt::format("a voxel of {} um", inputs.voxelUm), "--voxel", "give 10 to 400 um");
     tooth::PrepareSettings settings;
-    settings.field.voxelMm = inputs.voxelUm * 1e-3;
-    // The band is counted in millimetres, but never thinner than a few voxels.
-    settings.field.bandOutMm = std::max(settings.field.bandOutMm, 2.0 * settings.field.voxelMm);
-    settings.field.bandInMm = std::max(settings.field.bandInMm, 4.0 * settings.field.voxelMm);
+    settings.field = simulation::fieldSettingsAt(inputs.voxelUm * 1e-3);
     settings.useCache = !inputs.noCache;
     return settings;
 }

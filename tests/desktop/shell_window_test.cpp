@@ -15,11 +15,13 @@
 #include <QSet>
 #include <QStatusBar>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <numeric>
 #include <set>
 
+#include "cli/cli.h"
 #include "desktop/view/section_bar.h"
 #include "handpiece/app/input/pointer_controller.h"
 #include "handpiece/base/core/file.h"
@@ -215,6 +217,29 @@ TEST_F(ShellTest, ACaseThatVanishesIsSavedWithTheAttempt) {
     window().openFile(file_);
     ASSERT_TRUE(
         waitFor([this] { return simulator().document().attemptFile == toPath(file_) && !simulator().isBusy(); }));
+    ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 10; }));
+    EXPECT_NEAR(removedMm3(), cutMm3, 1e-9);
+}
+
+// At voxels where the bands of the field are no longer the usual ones.
+TEST_F(ShellTest, AnAttemptGoesFromTheWindowToTheCommandLineAndBack) {
+    startWithTooth();
+    ASSERT_TRUE(cut());
+    file_ = own_.filePath("window.handpiece");
+    action("actionSaveAs")->trigger();
+    ASSERT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !simulator().isUnsaved(); }));
+    const std::string tooth = file_.toStdString(), out = at("plunge").string();
+    const std::array line{"handpiece", "run",     "--case", tooth.c_str(), "--motion", "plunge", "--depth",
+                          "0.5",       "--dwell", "0",      "--speed",     "4",        "--at",   "1.5",
+                          "0",         "--voxel", "100",    "--out",       out.c_str()};
+    ASSERT_EQ(cli::run(static_cast<int>(line.size()), line.data()), 0);
+    const fs::path attempt = at("plunge") / "attempt";
+    double cutMm3 = 0.0;
+    for (const double mm3 : cases::openAttempt(attempt).attempt.removedMm3)
+        cutMm3 += mm3;
+    EXPECT_GT(cutMm3, removedMm3() + 0.01);
+    window().openFile(toQString(attempt));
+    ASSERT_TRUE(waitFor([&] { return simulator().document().attemptFile == attempt && !simulator().isBusy(); }));
     ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 10; }));
     EXPECT_NEAR(removedMm3(), cutMm3, 1e-9);
 }

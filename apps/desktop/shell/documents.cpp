@@ -194,7 +194,7 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
         attempt = std::move(open.attempt);
         loaded.document.student = attempt->student;
         loaded.document.recordings = placesOf(*attempt, request);
-        settings.field.voxelMm = attempt->voxelMm;
+        settings.field = simulation::fieldSettingsAt(attempt->voxelMm);
         loaded.elapsedS = attempt->elapsedS;
         loaded.code = attempt->student;
     } else {

@@ -47,7 +47,7 @@ Simulator::Simulator(const Options& options, QObject* parent)
     settings_.cuttingParameters = made.cuttingParameters;
     settings_.drive = driveAt(driveName_.toStdString(), 0.0);
     speedRpm_ = settings_.drive.freeSpeedRpm;
-    settings_.field.voxelMm = 1e-3 * voxelUm_;
+    settings_.field = simulation::fieldSettingsAt(1e-3 * voxelUm_);
     settings_.capability = device::pointerCapability();
     connect(&hands_, &DeviceManager::changed, this, &Simulator::passHandpiece);
     if (options.sound) player_ = std::make_unique<sound::Player>();
@@ -222,13 +222,13 @@ void Simulator::stopLiveSession(bool keepMarker) {
     mode_ = Mode::empty;
 }
 
-void Simulator::stopAll() {
+void Simulator::stopAll(bool keepsReview) {
     timer_.stop();
     replay_.reset();
     // A tooth that waits behind a replay: what nobody saved of it is offered again at the next start.
     if (leftFor_ && !leftFor_->file.note.unsaved) shelf_.settle(leftFor_->file.session);
     leftFor_.reset();
-    reviewed_.reset();
+    if (!keepsReview) reviewed_.reset();
     stopLiveSession(false);
 }
 

@@ -233,7 +233,7 @@ class Simulator : public QObject {
     void sit(LoadedTooth loaded);
     void watch(std::unique_ptr<ReplayDriver> driver);
     void takeReplayed(const simulation::SimulationSettings& settings);
-    void stopAll();
+    void stopAll(bool keepsReview = false);
     [[nodiscard]] std::unique_ptr<device::Device> takeHandpiece();
     void passHandpiece();
     void stopLiveSession(bool keepMarker);

@@ -81,8 +81,7 @@ LoadRequest Simulator::request() const {
     request.settings = settings_;
     request.settings.rateHz = options_.rateHz;
     request.settings.resumed = false;
-    request.settings.field = {};
-    request.settings.field.voxelMm = 1e-3 * options_.voxelUm;
+    request.settings.field = simulation::fieldSettingsAt(1e-3 * options_.voxelUm);
     return request;
 }
 
@@ -183,10 +182,8 @@ void Simulator::openSession(const fs::path& path, bool keepsReview) {
         },
         [this, player, path, keepsReview] {
             std::shared_ptr<Left> left = std::move(leftFor_);
-            std::shared_ptr<Reviewed> reviewed = keepsReview ? reviewed_ : nullptr;
-            stopAll();
+            stopAll(keepsReview);
             leftFor_ = std::move(left);
-            reviewed_ = std::move(reviewed);
             unsaved_ = false;
             document_ = {};
             document_.name = path.filename().string();
@@ -450,8 +447,7 @@ void Simulator::setVoxel(int um) {
         emit settingsChanged();
         return;
     }
-    field::FieldSettings field;
-    field.voxelMm = 1e-3 * um;
+    const field::FieldSettings field = simulation::fieldSettingsAt(1e-3 * um);
     const auto left = std::make_shared<Left>(leaveLiveSession());
     const auto loaded = std::make_shared<LoadedTooth>(left->tooth);
     start(

@@ -93,18 +93,14 @@ void Simulator::review(const fs::path& attempt) {
     LoadRequest wanted = request();
     wanted.path = attempt;
     loadFor(std::move(wanted), tr("Opening %1").arg(toQString(attempt.filename())), [this](LoadedTooth loaded) {
-        const auto reviewed = std::make_shared<Reviewed>();
-        reviewed->tooth = std::move(loaded);
-        stopAll();
-        reviewed_ = reviewed;
+        reviewed_ = std::make_shared<Reviewed>();
+        reviewed_->tooth = std::move(loaded);
         showReviewed();
     });
 }
 
 void Simulator::showReviewed() {
-    const std::shared_ptr<Reviewed> reviewed = reviewed_;
-    stopAll();
-    reviewed_ = reviewed;
+    stopAll(true);
     const LoadedTooth& tooth = reviewed_->tooth;
     document_ = tooth.document;
     toothCase_ = tooth.toothCase;

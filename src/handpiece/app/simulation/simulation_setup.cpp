@@ -301,6 +301,14 @@ Json settingsOf(const SimulationSettings& s) {
 
 }  // namespace
 
+field::FieldSettings fieldSettingsAt(double voxelMm) {
+    field::FieldSettings settings;
+    settings.voxelMm = voxelMm;
+    settings.bandOutMm = std::max(settings.bandOutMm, 2.0 * voxelMm);
+    settings.bandInMm = std::max(settings.bandInMm, 4.0 * voxelMm);
+    return settings;
+}
+
 std::string settingsJson(const SimulationSettings& s) {
     return textOf(settingsOf(s), 2);
 }

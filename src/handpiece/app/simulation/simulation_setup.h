@@ -17,6 +17,10 @@
 
 namespace handpiece::simulation {
 
+/// The field of a tooth at this voxel, whoever cuts it: an attempt fits no other. Its bands are counted in millimetres,
+/// but are never thinner than a few voxels.
+[[nodiscard]] field::FieldSettings fieldSettingsAt(double voxelMm);
+
 /// All that decides what a cut does, besides the tooth and the hand. What a session keeps of it is enough to cut again.
 struct SimulationSettings {
     double rateHz = 1000.0;

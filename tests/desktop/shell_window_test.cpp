@@ -232,12 +232,16 @@ TEST_F(ShellTest, AnAttemptGoesFromTheWindowToTheCommandLineAndBack) {
     const std::array line{"handpiece", "run",     "--case", tooth.c_str(), "--motion", "plunge", "--depth",
                           "0.5",       "--dwell", "0",      "--speed",     "4",        "--at",   "1.5",
                           "0",         "--voxel", "100",    "--out",       out.c_str()};
+    double savedMm3 = 0.0;
+    for (const double mm3 : cases::openAttempt(toPath(file_)).attempt.removedMm3)
+        savedMm3 += mm3;
+    ASSERT_GT(savedMm3, 0.0);
     ASSERT_EQ(cli::run(static_cast<int>(line.size()), line.data()), 0);
     const fs::path attempt = at("plunge") / "attempt";
     double cutMm3 = 0.0;
     for (const double mm3 : cases::openAttempt(attempt).attempt.removedMm3)
         cutMm3 += mm3;
-    EXPECT_GT(cutMm3, removedMm3() + 0.01);
+    EXPECT_GT(cutMm3, savedMm3 + 0.001);
     window().openFile(toQString(attempt));
     ASSERT_TRUE(waitFor([&] { return simulator().document().attemptFile == attempt && !simulator().isBusy(); }));
     ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 10; }));

@@ -75,7 +75,7 @@ class Painter {
             });
         const auto paintSolid = [&](const segmentation::Solid& solid, Colour colour) {
             outline(image, left, width, height, colour, [&](std::size_t n) {
-                return nearest(region_.grid, solid.insideMm, places[n], -1.0f) > 0.0f ? 1 : 0;
+                return nearest(region_.grid, solid.distanceMm, places[n], 1.0f) < 0.0f ? 1 : 0;
             });
         };
         paintSolid(region_.outer, {255, 60, 60});

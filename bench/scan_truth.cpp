@@ -92,14 +92,12 @@ ComparedSurface compared(const geometry::TriangleMesh& mesh) {
     return {{{std::make_shared<const geometry::TriangleTree>(mesh)}}, sampled(mesh, kPoints)};
 }
 
-geometry::TriangleMesh zeroOf(const volume::Grid& grid, std::vector<float> insideMm) {
-    for (float& value : insideMm)
-        value = -value;
+geometry::TriangleMesh zeroOf(const volume::Grid& grid, std::vector<float> distanceMm) {
     geometry::ScalarGrid scalar;
     scalar.nodes = {static_cast<std::uint32_t>(grid.size[0]), static_cast<std::uint32_t>(grid.size[1]),
                     static_cast<std::uint32_t>(grid.size[2])};
     scalar.spacingMm = 1.0;
-    scalar.values = insideMm;
+    scalar.values = std::move(distanceMm);
     geometry::TriangleMesh mesh = geometry::isosurface(scalar);
     for (Vec3& v : mesh.vertices)
         v = grid.toMm(v);
@@ -245,8 +243,8 @@ std::array<double, cases::kTissueCount> ToothTruth::dice(const segmentation::Reg
     std::vector<Slice> slices(static_cast<std::size_t>(grid.size[2]));
     const auto surely = static_cast<float>(own.spacingMm.maxCoeff());
     const auto inside = [&](const segmentation::Solid& solid, const Vec3& p, std::size_t nearest) {
-        const float there = solid.insideMm[nearest];
-        return std::abs(there) > surely ? there > 0.0f : between(own, solid.insideMm, p) > 0.0f;
+        const float there = solid.distanceMm[nearest];
+        return std::abs(there) > surely ? there < 0.0f : between(own, solid.distanceMm, p) < 0.0f;
     };
     core::parallelFor(slices.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k)
@@ -291,13 +289,13 @@ std::array<double, cases::kTissueCount> ToothTruth::dice(const segmentation::Reg
 
 ComparedSurfaces surfacesOf(const segmentation::Region& region) {
     ComparedSurfaces all;
-    all[indexOf(SolidKind::outer)] = compared(zeroOf(region.grid, region.outer.insideMm));
-    std::vector<float> enamel = region.outer.insideMm;
+    all[indexOf(SolidKind::outer)] = compared(zeroOf(region.grid, region.outer.distanceMm));
+    std::vector<float> enamel = region.outer.distanceMm;
     for (const segmentation::Solid& solid : region.solids) {
         for (std::size_t n = 0; n < enamel.size(); ++n)
-            enamel[n] = std::min(enamel[n], -solid.insideMm[n]);
+            enamel[n] = std::max(enamel[n], -solid.distanceMm[n]);
         if (solid.tissue == Tissue::restoration) continue;
-        all[indexOf(kindOf(solid.tissue))] = compared(zeroOf(region.grid, solid.insideMm));
+        all[indexOf(kindOf(solid.tissue))] = compared(zeroOf(region.grid, solid.distanceMm));
     }
     all[indexOf(SolidKind::enamel)] = compared(zeroOf(region.grid, std::move(enamel)));
     return all;

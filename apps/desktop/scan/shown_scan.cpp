@@ -33,7 +33,7 @@ float sampled(const Solid& solid, const volume::Grid& grid, const core::Vec3& ij
             at[a] = isHigh ? high[a] : low[a];
             weight *= isHigh ? share[a] : 1.0 - share[a];
         }
-        if (weight > 0.0) sum += weight * solid.insideMm[grid.index(at[0], at[1], at[2])];
+        if (weight > 0.0) sum += weight * solid.distanceMm[grid.index(at[0], at[1], at[2])];
     }
     return static_cast<float>(sum);
 }
@@ -43,7 +43,7 @@ cases::Tissue tissueUnder(const Region& region, const core::Vec3& pointMm) {
     const core::Vec3 ijk = region.grid.toVoxels(pointMm);
     cases::Tissue under = cases::Tissue::enamel;
     for (const Solid& solid : region.solids)
-        if (sampled(solid, region.grid, ijk) > 0) under = solid.tissue;
+        if (sampled(solid, region.grid, ijk) < 0) under = solid.tissue;
     return under;
 }
 

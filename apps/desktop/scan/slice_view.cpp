@@ -228,8 +228,8 @@ void SliceView::makeOverlay() {
                 const std::size_t in =
                     strides[u_] * static_cast<std::size_t>(x) + strides[v_] * static_cast<std::size_t>(y);
                 plane[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] =
-                    (1.0f - share) * solid.insideMm[in + strides[w_] * static_cast<std::size_t>(low)] +
-                    share * solid.insideMm[in + strides[w_] * static_cast<std::size_t>(high)];
+                    (1.0f - share) * solid.distanceMm[in + strides[w_] * static_cast<std::size_t>(low)] +
+                    share * solid.distanceMm[in + strides[w_] * static_cast<std::size_t>(high)];
             }
         return plane;
     };
@@ -253,7 +253,7 @@ void SliceView::makeOverlay() {
             for (int x = 0; x < width; ++x) {
                 const std::size_t n =
                     static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-                if (plane[n] > 0 && outer[n] > 0) row[x] = pixel;
+                if (plane[n] < 0 && outer[n] < 0) row[x] = pixel;
             }
         }
     };

@@ -94,7 +94,7 @@ inline float cappedGrey(const core::Vec3& p) {
 }
 
 /// Distances [voxels] of a solid's zero, where it crosses the grid's lines, from a ball's surface.
-inline std::vector<double> errorsFromBall(const volume::Grid& grid, const std::vector<float>& inside, double radius,
+inline std::vector<double> errorsFromBall(const volume::Grid& grid, const std::vector<float>& distances, double radius,
                                           const std::function<bool(const core::Vec3&)>& counts = {}) {
     std::vector<double> errors;
     const std::array<std::size_t, 3> stride{1, grid.index(0, 1, 0), grid.index(0, 0, 1)};
@@ -103,8 +103,8 @@ inline std::vector<double> errorsFromBall(const volume::Grid& grid, const std::v
             for (int i = 0; i + 1 < grid.size[0]; ++i)
                 for (int axis = 0; axis < 3; ++axis) {
                     const std::size_t at = grid.index(i, j, k);
-                    const double a = inside[at], b = inside[at + stride[static_cast<std::size_t>(axis)]];
-                    if ((a > 0) == (b > 0)) continue;
+                    const double a = distances[at], b = distances[at + stride[static_cast<std::size_t>(axis)]];
+                    if ((a < 0) == (b < 0)) continue;
                     core::Vec3 p(i, j, k);
                     p[axis] += a / (a - b);
                     const core::Vec3 mm = grid.toMm(p);

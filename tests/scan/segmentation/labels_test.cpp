@@ -58,7 +58,7 @@ TEST(SegmentLabels, AreTakenAsTheyAreAndTheirOpenPulpIsFilled) {
             }
     EXPECT_EQ(different, 0u);
     // And no staircase is left: the ball's surface is nearer to its sphere than voxels are.
-    const std::vector<double> errors = test::errorsFromBall(region.grid, region.outer.insideMm, test::kEnamelMm,
+    const std::vector<double> errors = test::errorsFromBall(region.grid, region.outer.distanceMm, test::kEnamelMm,
                                                             [](const Vec3& p) { return p.z() > 0.5; });
     EXPECT_LT(test::share(errors, 0.5), 0.2);
     EXPECT_LT(errors.back(), 1.0);

@@ -31,10 +31,10 @@ TEST_P(Balls, SurfacesLieWithinAQuarterVoxelAndVolumesAreKept) {
     const Solid* pulp = solidOf(region, Tissue::pulp);
     ASSERT_TRUE(dentine != nullptr && pulp != nullptr);
     EXPECT_EQ(solidOf(region, Tissue::caries), nullptr);
-    for (const auto& [inside, radius] :
-         {std::pair(&region.outer.insideMm, test::kEnamelMm), std::pair(&dentine->insideMm, test::kDentineMm),
-          std::pair(&pulp->insideMm, test::kPulpMm)}) {
-        const std::vector<double> errors = errorsFromBall(region.grid, *inside, radius);
+    for (const auto& [distances, radius] :
+         {std::pair(&region.outer.distanceMm, test::kEnamelMm), std::pair(&dentine->distanceMm, test::kDentineMm),
+          std::pair(&pulp->distanceMm, test::kPulpMm)}) {
+        const std::vector<double> errors = errorsFromBall(region.grid, *distances, radius);
         EXPECT_LT(share(errors, 0.5), 0.25) << radius;
         EXPECT_LT(share(errors, 0.95), 0.8) << radius;
         EXPECT_LT(errors.back(), 2.0) << radius;
@@ -62,9 +62,9 @@ TEST(Segment, NoSkinOfDentineLiesOnEnamelAndNoneOfEnamelOnDentine) {
         for (int j = 0; j < region.grid.size[1]; ++j)
             for (int i = 0; i < region.grid.size[0]; ++i) {
                 const std::size_t at = region.grid.index(i, j, k);
-                if (region.outer.insideMm[at] <= 0) continue;
+                if (region.outer.distanceMm[at] >= 0) continue;
                 const core::Vec3 p = region.grid.toMm(core::Vec3(i, j, k));
-                const bool isEnamel = dentine->insideMm[at] <= 0;
+                const bool isEnamel = dentine->distanceMm[at] >= 0;
                 // Where the cap is more than three voxels thick or one voxel away from any.
                 if (p.z() > 2.5 && p.norm() > 3.5 && !isEnamel) ++skin;
                 if (p.z() < -1.2 && isEnamel) ++cap;
@@ -87,22 +87,22 @@ TEST(Segment, SolidsAreNestedClampedAndDistances) {
     const Solid &dentine = *solidOf(region, Tissue::dentine), &pulp = *solidOf(region, Tissue::pulp);
     double worst = 0;
     for (std::size_t n = 0; n < region.grid.count(); ++n) {
-        EXPECT_LE(dentine.insideMm[n], region.outer.insideMm[n]);
-        EXPECT_LE(pulp.insideMm[n], dentine.insideMm[n]);
-        EXPECT_LE(std::abs(region.outer.insideMm[n]), 3.0001 * h);
+        EXPECT_GE(dentine.distanceMm[n], region.outer.distanceMm[n]);
+        EXPECT_GE(pulp.distanceMm[n], dentine.distanceMm[n]);
+        EXPECT_LE(std::abs(region.outer.distanceMm[n]), 3.0001 * h);
     }
     // At least three voxels of margin, and a slope of one beside the surface.
     for (int k = 0; k < region.grid.size[2]; ++k)
         for (int j = 0; j < region.grid.size[1]; ++j)
             for (int i = 0; i < region.grid.size[0]; ++i) {
-                const float inside = region.outer.insideMm[region.grid.index(i, j, k)];
+                const float distance = region.outer.distanceMm[region.grid.index(i, j, k)];
                 const bool isMargin = std::min({i, j, k}) < 3 || i + 3 >= region.grid.size[0] ||
                                       j + 3 >= region.grid.size[1] || k + 3 >= region.grid.size[2];
                 if (isMargin) {
-                    ASSERT_LT(inside, 0);
+                    ASSERT_GT(distance, 0);
                 }
-                const double truth = test::kEnamelMm - region.grid.toMm(core::Vec3(i, j, k)).norm();
-                if (std::abs(truth) < 2 * h) worst = std::max(worst, std::abs(truth - static_cast<double>(inside)));
+                const double truth = region.grid.toMm(core::Vec3(i, j, k)).norm() - test::kEnamelMm;
+                if (std::abs(truth) < 2 * h) worst = std::max(worst, std::abs(truth - static_cast<double>(distance)));
             }
     EXPECT_LT(worst, 0.5 * h);
     const volume::Labels labels = labelsOf(region);
@@ -168,10 +168,10 @@ TEST(Segment, TheSameBytesAtAnyThreadCountAndCancelled) {
     const Region one = segment(v);
     core::setThreadCount(0);
     const Region many = segment(v);
-    EXPECT_EQ(one.outer.insideMm, many.outer.insideMm);
+    EXPECT_EQ(one.outer.distanceMm, many.outer.distanceMm);
     ASSERT_EQ(one.solids.size(), many.solids.size());
     for (std::size_t n = 0; n < one.solids.size(); ++n)
-        EXPECT_EQ(one.solids[n].insideMm, many.solids[n].insideMm);
+        EXPECT_EQ(one.solids[n].distanceMm, many.solids[n].distanceMm);
     for (const double limit : {0.0, 0.3, 0.7})
         EXPECT_THROW((void)segment(v, {}, [&](double done) { return done < limit; }), core::Error) << limit;
 }

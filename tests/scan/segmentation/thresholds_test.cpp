@@ -123,8 +123,8 @@ TEST(Teeth, TwoThatTouchArePartedAndEachCanBeChosen) {
         const core::Vec3 at = region.grid.toVoxels(other);
         const bool holdsOther = at.minCoeff() >= 0 && at.x() < region.grid.size[0] - 1;
         if (holdsOther) {
-            EXPECT_LT(region.outer.insideMm[region.grid.index(static_cast<int>(at.x()), static_cast<int>(at.y()),
-                                                              static_cast<int>(at.z()))],
+            EXPECT_GT(region.outer.distanceMm[region.grid.index(static_cast<int>(at.x()), static_cast<int>(at.y()),
+                                                                static_cast<int>(at.z()))],
                       0);
         }
     }

@@ -84,9 +84,9 @@ segmentation::Region combed(double voxelMm) {
     segmentation::Region region = truth.region(voxelMm, true);
     const test::Shape lesion = test::ball(truth.middle + core::Vec3(0.2, 0.1, truth.radiusMm), 1.3),
                       tooth = truth.outer();
-    std::vector<float>&outer = region.outer.insideMm, &caries = region.solids.back().insideMm;
-    const auto set = [&](std::vector<float>& inside, std::size_t at, bool isIn) {
-        inside[at] = static_cast<float>(isIn ? 0.5 * voxelMm : -0.5 * voxelMm);
+    std::vector<float>&outer = region.outer.distanceMm, &caries = region.solids.back().distanceMm;
+    const auto set = [&](std::vector<float>& distances, std::size_t at, bool isIn) {
+        distances[at] = static_cast<float>(isIn ? -0.5 * voxelMm : 0.5 * voxelMm);
     };
     for (int k = 0; k < region.grid.size[2]; ++k)
         for (int j = 0; j < region.grid.size[1]; ++j)
@@ -96,7 +96,7 @@ segmentation::Region combed(double voxelMm) {
                 const bool isComb = i % 2 == 0 || (j % 3 == 0 && k % 3 == 0);
                 // Beside the lesion the tooth is eaten away between the teeth of the comb.
                 if (lesion(p) < 0.0 && tooth(p) > -3.5 * voxelMm && !isComb) set(outer, at, false);
-                set(caries, at, lesion(p) < 0.0 && isComb && outer[at] > 0.0f);
+                set(caries, at, lesion(p) < 0.0 && isComb && outer[at] < 0.0f);
             }
     return region;
 }

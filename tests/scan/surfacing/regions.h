@@ -29,14 +29,14 @@ inline segmentation::Solid solidOf(const volume::Grid& grid, cases::Tissue tissu
                                    bool isBinary = false) {
     segmentation::Solid solid;
     solid.tissue = tissue;
-    solid.insideMm.resize(grid.count());
+    solid.distanceMm.resize(grid.count());
     const double h = grid.spacingMm.x();
     for (int k = 0; k < grid.size[2]; ++k)
         for (int j = 0; j < grid.size[1]; ++j)
             for (int i = 0; i < grid.size[0]; ++i) {
                 const double d = shape(h * core::Vec3(i, j, k));
-                solid.insideMm[grid.index(i, j, k)] =
-                    static_cast<float>(isBinary ? (d < 0.0 ? 0.5 * h : -0.5 * h) : std::clamp(-d, -3.0 * h, 3.0 * h));
+                solid.distanceMm[grid.index(i, j, k)] =
+                    static_cast<float>(isBinary ? (d < 0.0 ? -0.5 * h : 0.5 * h) : std::clamp(d, -3.0 * h, 3.0 * h));
             }
     return solid;
 }

@@ -298,9 +298,9 @@ TEST(MakeSurfaces, RandomRegionsGiveSolids) {
         segmentation::Solid dentine = region.outer;
         dentine.tissue = Tissue::dentine;
         const double lean = test::uniform(generator, -1, 1);
-        for (std::size_t i = 0; i < dentine.insideMm.size(); ++i) {
+        for (std::size_t i = 0; i < dentine.distanceMm.size(); ++i) {
             const double z = static_cast<double>(i / static_cast<std::size_t>(grid.size[0] * grid.size[1])) - 13.0;
-            dentine.insideMm[i] -= static_cast<float>(h * std::clamp(lean + 0.2 * z, 0.0, 2.0));
+            dentine.distanceMm[i] += static_cast<float>(h * std::clamp(lean + 0.2 * z, 0.0, 2.0));
         }
         region.solids.push_back(dentine);
         const Vec3 at = middle + 3.0 * h * test::randomDirection(generator);
@@ -324,17 +324,17 @@ TEST(MakeSurfaces, RandomRegionsGiveSolids) {
 TEST(MakeSurfaces, SaysWhatIsWrong) {
     Region region = alone(test::cubeGrid(2.0, 0.2), ball(Vec3(1, 1, 1), 0.6));
     Region empty = region;
-    std::fill(empty.outer.insideMm.begin(), empty.outer.insideMm.end(), -0.5f);
+    std::fill(empty.outer.distanceMm.begin(), empty.outer.distanceMm.end(), 0.5f);
     EXPECT_NE(test::errorOf([&] { (void)makeSurfaces(empty); }).find("there is no tooth"), std::string::npos);
     Region few = region;
-    few.outer.insideMm.pop_back();
+    few.outer.distanceMm.pop_back();
     EXPECT_NE(test::errorOf([&] { (void)makeSurfaces(few); }).find("do not fill a grid of 11 x 11 x 11"),
               std::string::npos);
     Region flat = region;
     flat.grid.spacingMm.z() = 0.4;
     EXPECT_NE(test::errorOf([&] { (void)makeSurfaces(flat); }).find("not cubes"), std::string::npos);
     Region broken = region;
-    broken.outer.insideMm[7] = NAN;
+    broken.outer.distanceMm[7] = NAN;
     EXPECT_NE(test::errorOf([&] { (void)makeSurfaces(broken); }).find("the 8th"), std::string::npos);
     EXPECT_NE(
         test::errorOf([&] { (void)makeSurfaces(region, {}, [](double f) { return f < 0.3; }); }).find("cancelled"),

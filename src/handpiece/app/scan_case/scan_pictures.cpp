@@ -53,8 +53,8 @@ double greyAt(const volume::Volume& v, const Vec3& mm) {
 /// A solid's value in voxel coordinates of the region, bilinear in the slice.
 class SolidSlice {
   public:
-    SolidSlice(const volume::Grid& grid, const std::vector<float>& inside, int axis, int at)
-        : grid_(grid), inside_(inside), axis_(axis), at_(at) {}
+    SolidSlice(const volume::Grid& grid, const std::vector<float>& distances, int axis, int at)
+        : grid_(grid), distances_(distances), axis_(axis), at_(at) {}
     [[nodiscard]] double value(double u, double v) const {
         const int i = std::clamp(static_cast<int>(u), 0, std::max(0, size(0) - 2));
         const int j = std::clamp(static_cast<int>(v), 0, std::max(0, size(1) - 2));
@@ -83,10 +83,10 @@ class SolidSlice {
         ijk[static_cast<std::size_t>(axis_)] = at_;
         ijk[static_cast<std::size_t>(along(0))] = std::min(i, size(0) - 1);
         ijk[static_cast<std::size_t>(along(1))] = std::min(j, size(1) - 1);
-        return static_cast<double>(inside_[grid_.index(ijk[0], ijk[1], ijk[2])]);
+        return static_cast<double>(distances_[grid_.index(ijk[0], ijk[1], ijk[2])]);
     }
     const volume::Grid& grid_;
-    const std::vector<float>& inside_;
+    const std::vector<float>& distances_;
     int axis_, at_;
 };
 
@@ -98,9 +98,9 @@ NamedPicture sliceOf(const ScanResult& result, int axis) {
     const int at =
         std::clamp(static_cast<int>(std::lround(middle[axis])), 0, grid.size[static_cast<std::size_t>(axis)] - 1);
     std::vector<std::pair<cases::Tissue, SolidSlice>> solids;
-    solids.emplace_back(cases::Tissue::none, SolidSlice(grid, region.outer.insideMm, axis, at));
+    solids.emplace_back(cases::Tissue::none, SolidSlice(grid, region.outer.distanceMm, axis, at));
     for (const segmentation::Solid& s : region.solids)
-        solids.emplace_back(s.tissue, SolidSlice(grid, s.insideMm, axis, at));
+        solids.emplace_back(s.tissue, SolidSlice(grid, s.distanceMm, axis, at));
     const SolidSlice& outer = solids.front().second;
     const int scale = std::max(1, (kSliceWidth + outer.size(0) - 1) / outer.size(0));
     NamedPicture made;

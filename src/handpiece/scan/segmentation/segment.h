@@ -53,10 +53,10 @@ struct Settings {
     double spacingMm = 0;  ///< of the result; 0: the scan's, at least 0.03 mm
 };
 
-/// One tissue's solid: positive inside, zero on its surface, a distance near it.
+/// One tissue's solid as signed distances: negative inside, zero on its surface.
 struct Solid {
     cases::Tissue tissue = cases::Tissue::none;
-    std::vector<float> insideMm;  ///< on Region::grid, i fastest; clamped to +-3 voxels
+    std::vector<float> distanceMm;  ///< on Region::grid, i fastest; held to +-3 voxels
     bool isAuthored = false;
 };
 

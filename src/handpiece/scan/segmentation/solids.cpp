@@ -114,11 +114,11 @@ Solid solidOf(Work& work, Field&& inside, Tissue tissue, bool isAuthored) {
     Solid solid;
     solid.tissue = tissue;
     solid.isAuthored = isAuthored;
-    solid.insideMm = std::move(inside);
+    solid.distanceMm = std::move(inside);
     const auto h = static_cast<float>(work.spacingMm());
-    core::parallelFor(solid.insideMm.size(), 1 << 16, [&](std::size_t from, std::size_t to) {
+    core::parallelFor(solid.distanceMm.size(), 1 << 16, [&](std::size_t from, std::size_t to) {
         for (std::size_t n = from; n < to; ++n)
-            solid.insideMm[n] = h * std::clamp(solid.insideMm[n], -kBand, kBand);
+            solid.distanceMm[n] = -h * std::clamp(solid.distanceMm[n], -kBand, kBand);
     });
     return solid;
 }
@@ -189,10 +189,10 @@ volume::Labels labelsOf(const Region& region) {
     };
     core::parallelFor(labels.values.size(), 1 << 16, [&](std::size_t from, std::size_t to) {
         for (std::size_t n = from; n < to; ++n) {
-            if (region.outer.insideMm[n] <= 0) continue;
+            if (region.outer.distanceMm[n] >= 0) continue;
             std::uint8_t label = 2;
             for (const Solid& solid : region.solids)
-                if (solid.insideMm[n] > 0) label = number(solid.tissue);
+                if (solid.distanceMm[n] < 0) label = number(solid.tissue);
             labels.values[n] = label;
         }
     });
@@ -208,12 +208,12 @@ std::array<double, cases::kTissueCount> volumesMm3(const Region& region) {
     core::parallelFor(slices, 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t k = from; k < to; ++k)
             for (std::size_t n = k * slice; n < (k + 1) * slice; ++n) {
-                const float whole = coverage(region.outer.insideMm[n] / h);
+                const float whole = coverage(-region.outer.distanceMm[n] / h);
                 if (whole <= 0) continue;
                 float taken = 0;
                 for (std::size_t s = region.solids.size(); s-- > 0;) {
                     const Solid& solid = region.solids[s];
-                    const float reaches = std::max(taken, std::min(whole, coverage(solid.insideMm[n] / h)));
+                    const float reaches = std::max(taken, std::min(whole, coverage(-solid.distanceMm[n] / h)));
                     sums[k][static_cast<std::size_t>(solid.tissue)] += static_cast<double>(reaches - taken);
                     taken = reaches;
                 }

@@ -15,7 +15,8 @@ namespace handpiece::segmentation {
 inline constexpr std::uint8_t kHeldCavity = 1, kHeldCut = 2;
 inline constexpr float kBand = 3;  ///< voxels: beyond it distances are clamped
 
-/// Distances are in voxels, positive inside. What is empty is not there.
+/// Of the tooth and its tissues: depths in voxels, how far inside. A Region has the signed distances. What is empty is
+/// not there.
 struct Work {
     volume::Grid grid;  ///< isotropic
     Shape shape;

@@ -39,21 +39,21 @@ void check(const Region& region) {
                                       grid.spacingMm.y(), grid.spacingMm.z()),
                           "surfaces", "segment the scan again");
     const auto fits = [&](const Solid& solid, std::string_view name) {
-        if (solid.insideMm.size() != grid.count())
-            throw core::Error(fmt::format("{} values of {} do not fill a grid of {} x {} x {}", solid.insideMm.size(),
+        if (solid.distanceMm.size() != grid.count())
+            throw core::Error(fmt::format("{} values of {} do not fill a grid of {} x {} x {}", solid.distanceMm.size(),
                                           name, grid.size[0], grid.size[1], grid.size[2]),
                               "surfaces", "segment the scan again");
-        if (const auto bad = std::find_if_not(solid.insideMm.begin(), solid.insideMm.end(),
+        if (const auto bad = std::find_if_not(solid.distanceMm.begin(), solid.distanceMm.end(),
                                               [](float v) { return std::isfinite(v); });
-            bad != solid.insideMm.end())
+            bad != solid.distanceMm.end())
             throw core::Error(
-                fmt::format("{} has a value that is no number, the {}th", name, bad - solid.insideMm.begin() + 1),
+                fmt::format("{} has a value that is no number, the {}th", name, bad - solid.distanceMm.begin() + 1),
                 "surfaces", "segment the scan again");
     };
     fits(region.outer, "the tooth");
     for (const Solid& solid : region.solids)
         fits(solid, cases::properties(solid.tissue).name);
-    if (std::none_of(region.outer.insideMm.begin(), region.outer.insideMm.end(), [](float v) { return v > 0.0f; }))
+    if (std::none_of(region.outer.distanceMm.begin(), region.outer.distanceMm.end(), [](float v) { return v < 0.0f; }))
         throw core::Error("there is no tooth in the region", "surfaces",
                           "lower the tooth's threshold, or point at the tooth");
 }
@@ -139,7 +139,7 @@ void keepPulpInside(TriangleMesh& pulp, const TriangleMesh& around, const Region
         for (int a = 0; a < 3; ++a)
             at[static_cast<std::size_t>(a)] =
                 std::clamp(static_cast<int>(std::lround(p[a] / h)), 0, grid.size[static_cast<std::size_t>(a)] - 1);
-        if (solid.insideMm[grid.index(at[0], at[1], at[2])] < 2.0 * h) close.push_back(p);
+        if (solid.distanceMm[grid.index(at[0], at[1], at[2])] > -2.0 * h) close.push_back(p);
     }
     if (close.empty()) return;
     const TriangleMesh piece = facesNear(around, close, 3.0 * h);
@@ -210,7 +210,7 @@ Surfaces makeSurfaces(const Region& region, const Settings& settings, const core
                             name, left.kept == 1 ? "a tunnel" : fmt::format("{} tunnels", left.kept),
                             left.kept == 1 ? "goes" : "go", left.kept == 1 ? "is" : "are"));
     };
-    std::vector<float> outer = outerField(region);
+    std::vector<float> outer = region.outer.distanceMm;
     {
         Marched tooth = marched(outer, nullptr, region.grid, true, settings, core::part(progress, 0.0, 0.4 * share));
         smooth(tooth, settings, h, core::part(progress, 0.4 * share, share));

@@ -41,35 +41,25 @@ double standOutMm(double voxelMm) {
     return std::min(kMaxStandOutMm, kStandOutVoxels * voxelMm);
 }
 
-std::vector<float> outerField(const segmentation::Region& region) {
-    const std::vector<float>& inside = region.outer.insideMm;
-    std::vector<float> field(inside.size());
-    core::parallelFor(field.size(), kGrain, [&](std::size_t b, std::size_t e) {
-        for (std::size_t i = b; i < e; ++i)
-            field[i] = -inside[i];
-    });
-    return field;
-}
-
 std::vector<float> fieldOf(const segmentation::Region& region, std::size_t index, const std::vector<float>& outer) {
     const segmentation::Solid& solid = region.solids[index];
-    const std::vector<float>& inside = solid.insideMm;
+    const std::vector<float>& distance = solid.distanceMm;
     const double voxelMm = region.grid.spacingMm.x();
     const auto standOut = static_cast<float>(standOutMm(voxelMm));
     const auto gap = static_cast<float>(kPulpGapVoxels * voxelMm);
     const std::vector<float>* dentine = nullptr;
     for (const segmentation::Solid& other : region.solids)
-        if (other.tissue == Tissue::dentine) dentine = &other.insideMm;
+        if (other.tissue == Tissue::dentine) dentine = &other.distanceMm;
     std::vector<float> field(outer.size());
     core::parallelFor(field.size(), kGrain, [&](std::size_t b, std::size_t e) {
         for (std::size_t i = b; i < e; ++i) {
             if (solid.tissue == Tissue::pulp) {
-                const float around = dentine ? std::min(-outer[i], (*dentine)[i]) : -outer[i];
-                field[i] = -std::min(inside[i], around - gap);
+                const float around = dentine ? std::max(outer[i], (*dentine)[i]) : outer[i];
+                field[i] = std::max(distance[i], around + gap);
             } else {
                 // What covers it here is as thick as the two distances differ: where that is nothing it stands out.
-                const float cover = (-outer[i] - inside[i]) / (2.0f * standOut);
-                field[i] = -std::min(inside[i] + standOut * std::clamp(1.0f - cover, 0.0f, 1.0f), standOut - outer[i]);
+                const float cover = (distance[i] - outer[i]) / (2.0f * standOut);
+                field[i] = std::max(distance[i] - standOut * std::clamp(1.0f - cover, 0.0f, 1.0f), outer[i] - standOut);
             }
         }
     });

@@ -14,10 +14,7 @@ namespace handpiece::surfacing {
 /// By how much a tissue that reaches the outside stands out of the tooth, for voxels of this size.
 [[nodiscard]] double standOutMm(double voxelMm);
 
-/// The whole tooth's values, turned to negative inside.
-[[nodiscard]] std::vector<float> outerField(const segmentation::Region& region);
-/// The values of solid `index` of the region, turned to negative inside, in a tooth whose surface lies where `outer`
-/// (negative inside) is zero.
+/// The distances of solid `index` of the region, in a tooth whose surface lies where `outer` is zero.
 [[nodiscard]] std::vector<float> fieldOf(const segmentation::Region& region, std::size_t index,
                                          const std::vector<float>& outer);
 /// Takes away what stands out of the tooth by more than standOutMm.

@@ -11,7 +11,7 @@
 
 namespace handpiece::cli {
 
-int run(int argc, const char* const* argv, const MethodRegistry& extraMethods) {
+int run(int argc, const char* const* argv, const MethodRegistry& extraMethods, const LawRegistry& extraLaws) {
     CLI::App app{"Handpiece: an open dental surgery simulator", "handpiece"};
     app.require_subcommand(1);
     app.set_version_flag("--version", "handpiece " HANDPIECE_VERSION);
@@ -37,6 +37,8 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods) {
     addCompletionCommand(top);
     studies::installCancel();
     try {
+        for (const auto& [name, make] : extraLaws)
+            force::addLaw(name, make);
         app.parse(argc, argv);
         return 0;
     } catch (const CLI::ParseError& e) {

@@ -138,7 +138,7 @@ studies::RunSettings settingsOf(const RunOptions& o) {
     s.device.delayS = 1e-3 * o.delayMs;
     s.device.rigidHand = o.hand == "rigid";
     if (!s.device.rigidHand && !isReal(o.device)) s.device.hand = device::handByName(o.hand);
-    s.parameters.mode = force::modeByName(o.force);
+    s.parameters.law = force::lawByName(o.force);
     s.parameters.stiffnessMultiplier = o.stiffness;
     s.parameters.dampingMultiplier = o.damping;
     s.parameters.frictionMultiplier = o.slide;

@@ -194,7 +194,7 @@ report::Series forceRun(Reproduction& r, const ForceRun& what, Json extra, Json&
     options.dwellS = r.quick ? 0.3 : 0.6;
     const device::Motion motion = studies::motionByName(what.motion, *method, s.tooth->outer.bounds(), options);
     RunSettings settings;
-    settings.parameters.mode = force::modeByName(what.mode);
+    settings.parameters.law = force::lawByName(what.mode);
     const RunRecord run = recordRun(settings, motion, std::move(method));
     const double limitN = settings.device.capability.maxForceN;
     const bool under = run.summary.peakForceN <= limitN;

@@ -619,12 +619,12 @@ TEST_F(ShellTest, ThePapersForceAndHullAreChosenInItsLayout) {
     auto* force = box->findChild<QComboBox*>("forceMode");
     force->setCurrentIndex(1);
     emit force->activated(1);
-    EXPECT_EQ(simulator().parameters().mode, force::Mode::penalty);
+    EXPECT_EQ(simulator().parameters().law, force::LawId::penalty);
     ASSERT_TRUE(waitFor([&] { return simulator().sample().lastCommand > 0; }));
     // Another tooth is felt the same way, and a reset of the multipliers leaves it.
     simulator().openStarter({starter::ToothKind::upperIncisor, 4000});
     ASSERT_TRUE(idle());
-    EXPECT_EQ(simulator().parameters().mode, force::Mode::penalty);
+    EXPECT_EQ(simulator().parameters().law, force::LawId::penalty);
     EXPECT_EQ(force->currentIndex(), 1);
 }
 

@@ -13,6 +13,7 @@ import unittest
 
 HANDPIECE = os.environ["HANDPIECE"]
 OWN_METHOD = os.environ["HANDPIECE_OWN_METHOD"]
+OWN_LAW = os.environ["HANDPIECE_OWN_LAW"]
 REAL_DATA = pathlib.Path(os.environ["HANDPIECE_REAL_DATA"])
 
 

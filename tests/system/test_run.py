@@ -5,7 +5,7 @@ import json
 import math
 import unittest
 
-from support import OWN_METHOD, SystemTest, ball, box, rows_of, run, write_stl
+from support import OWN_LAW, OWN_METHOD, SystemTest, ball, box, rows_of, run, write_stl
 
 FIRST_COLUMNS = ("t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,vx_mm_s,vy_mm_s,vz_mm_s,fx_n,fy_n,fz_n,depth_mm,work_us,late_us")
 DEVICE_LIMIT_N = 3.3
@@ -138,6 +138,23 @@ class Run(SystemTest):
             self.assertAlmostEqual(float(row["depth_mm"]), 5 - float(row["z_mm"]), delta=1e-6)
         self.assertIn("mine", run("run", "--help", program=OWN_METHOD).stdout)
         self.assertEqual(run(*arguments).returncode, 1, "the plain program does not know it")
+
+    def test_the_examples_own_law_of_force(self):
+        """examples/own_force_law.cpp: stiffness grows from none to all of the tissue's over the first millimetre."""
+        out = self.folder / "cushion"
+        arguments = ["run", "--force", "cushion", "--tooth", self.tooth, "--bur", "round-4", "--motion", "press",
+                     "--slide-friction", "0", "--out", out]
+        self.ok(*arguments, program=OWN_LAW)
+        trace = rows_of((out / "trace.csv").read_text())
+        self.check_forces(trace)
+        touching = [row for row in trace if float(row["depth_mm"]) > 0.1]
+        self.assertGreater(len(touching), 100)
+        for row in touching:
+            depth = float(row["depth_mm"])
+            self.assertAlmostEqual(float(row["fz_n"]), 0.5 * min(depth, 1.0) * depth, delta=0.01)
+        refused = run(*arguments)
+        self.assertEqual(refused.returncode, 1, "the plain program does not know it")
+        self.assertIn("there are proxy and penalty", refused.stderr)
 
 
 if __name__ == "__main__":

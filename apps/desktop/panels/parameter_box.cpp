@@ -115,8 +115,8 @@ ParameterBox::ParameterBox(QWidget* parent) : QWidget(parent) {
     choices->setColumnStretch(1, 1);
     forceName_ = new QLabel(tr("Force by"), this);
     force_ = named(new QComboBox(this), "forceMode", tr("Force model"));
-    force_->addItem(tr("Proxy on the surface"), static_cast<int>(force::Mode::proxy));
-    force_->addItem(tr("Penalty, as in the paper"), static_cast<int>(force::Mode::penalty));
+    force_->addItem(tr("Proxy on the surface"), static_cast<int>(force::LawId::proxy));
+    force_->addItem(tr("Penalty, as in the paper"), static_cast<int>(force::LawId::penalty));
     forceNote_ = note({}, this, "forceModeNote");
     forceName_->setBuddy(force_);
     force_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
@@ -153,7 +153,7 @@ ParameterBox::ParameterBox(QWidget* parent) : QWidget(parent) {
         emit resetRequested();
     });
     connect(force_, &QComboBox::activated, this, [this] {
-        const auto mode = static_cast<force::Mode>(force_->currentData().toInt());
+        const auto mode = static_cast<force::LawId>(force_->currentData().toInt());
         setForceMode(mode);
         emit forceModeChosen(mode);
     });
@@ -171,7 +171,7 @@ ParameterBox::ParameterBox(QWidget* parent) : QWidget(parent) {
         emit voxelChosen(um);
     });
     setLimits({}, {});
-    setForceMode(force::Mode::proxy);
+    setForceMode(force::LawId::proxy);
     setVoxelUm(50);
     showMultipliers();
     showCutting();
@@ -301,10 +301,10 @@ void ParameterBox::setHullMethod(bool hull) {
     showCutting();
 }
 
-void ParameterBox::setForceMode(force::Mode mode) {
+void ParameterBox::setForceMode(force::LawId mode) {
     const QSignalBlocker quiet(force_);
     force_->setCurrentIndex(force_->findData(static_cast<int>(mode)));
-    forceNote_->setText(mode == force::Mode::penalty
+    forceNote_->setText(mode == force::LawId::penalty
                             ? tr("Spring and damper by the depth alone, without friction; the bur sinks in.")
                             : tr("The bur stays on the surface; spring, damper and friction hold the hand to it."));
 }

@@ -47,7 +47,7 @@ class ParameterBox : public QWidget {
     void setMultipliers(const Multipliers& multipliers);
     [[nodiscard]] Multipliers multipliers() const { return multipliers_; }
     void setHullMethod(bool hull);
-    void setForceMode(force::Mode mode);
+    void setForceMode(force::LawId mode);
     void setVoxelUm(int um);
     void setCutting(Cutting cutting);
     void setDetail(Detail detail);
@@ -66,7 +66,7 @@ class ParameterBox : public QWidget {
     void multipliersChanged(double stiffness, double damping, double friction);
     void resetRequested();  ///< after the multipliers have gone back to 1 and told so
     void hullMethodChosen(bool hull);
-    void forceModeChosen(handpiece::force::Mode mode);
+    void forceModeChosen(handpiece::force::LawId mode);
     /// Once cut, the window cuts the tooth again at the new size by replay.
     void voxelChosen(int um);
 

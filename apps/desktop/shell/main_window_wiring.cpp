@@ -436,7 +436,7 @@ void MainWindow::showSettings() {
     parameters_->setLimits(
         {c.maxForceN, c.maxStiffnessNPerMm, c.maxDampingNSPerMm, c.maxForceSlopeNPerS, c.maxTorqueNmm}, deviceInHand());
     parameters_->setHullMethod(simulator_.isHullMethod());
-    parameters_->setForceMode(p.mode);
+    parameters_->setForceMode(p.law);
     parameters_->setVoxelUm(simulator_.voxelUm());
     gauge_->setLimit(c.maxForceN);
     plots_->setForceLimit(c.maxForceN);

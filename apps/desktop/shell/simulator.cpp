@@ -251,7 +251,7 @@ void Simulator::poll() {
         sample_ = now.sample;
         const auto shown = [](const simulation::SimulationSettings& s) {
             const force::Parameters& p = s.parameters;
-            return std::tuple(s.bur, s.hull, s.drive.name, s.drive.freeSpeedRpm, p.mode, p.stiffnessMultiplier,
+            return std::tuple(s.bur, s.hull, s.drive.name, s.drive.freeSpeedRpm, p.law, p.stiffnessMultiplier,
                               p.dampingMultiplier, p.frictionMultiplier, p.transients.on, p.vibration.on);
         };
         if (shown(now.settings) != shown(settings_)) {
@@ -395,9 +395,9 @@ void Simulator::setHullMethod(bool hull) {
     emit settingsChanged();
 }
 
-void Simulator::setForceMode(force::Mode mode) {
-    if (mode_ == Mode::replay || mode == settings_.parameters.mode) return;
-    settings_.parameters.mode = mode;
+void Simulator::setForceMode(force::LawId mode) {
+    if (mode_ == Mode::replay || mode == settings_.parameters.law) return;
+    settings_.parameters.law = mode;
     if (mayWork()) liveSession_->setParameters(settings_.parameters);
     emit settingsChanged();
 }

@@ -158,7 +158,7 @@ class Simulator : public QObject {
     void setMultipliers(double stiffness, double damping, double friction);
     void setHullMethod(bool hull);
     /// The paper's penalty force instead of the proxy's.
-    void setForceMode(force::Mode mode);
+    void setForceMode(force::LawId mode);
     /// A knock at each touch; the hum of the bur. Both off where nothing can be felt anyway: the mouse.
     void setEventBasedForce(bool contact, bool vibration);
     /// Cuts the tooth again with other voxels, by replaying what was recorded.

@@ -274,7 +274,7 @@ TEST(ForceModel, torqueOfAPushAtTheTipIsLeverTimesForce) {
 
 TEST(ForceModel, penaltyIsDepthAndApproachAlongTheNormal) {
     Parameters p = defaultParameters();
-    p.mode = Mode::penalty;
+    p.law = LawId::penalty;
     Scene s(test::plane(), Limits{}, p);
     const ForceCommand f = s.line({0, 0, 3}, {0, 0, -1}, 0.05);
     EXPECT_NEAR(f.forceN.z(), 0.5 * 1.0 + 0.002 * 50, 1e-3);
@@ -286,15 +286,15 @@ TEST(ForceModel, penaltyIsDepthAndApproachAlongTheNormal) {
 
 TEST(ForceModel, penaltyPopsThroughAThinWallWhereTheProxyHolds) {
     // What models of a pure penalty do, and why the proxy is the default.
-    for (const Mode mode : {Mode::penalty, Mode::proxy}) {
+    for (const LawId law : {LawId::penalty, LawId::proxy}) {
         Parameters p = still();
-        p.mode = mode;
+        p.law = law;
         Scene s(test::wall(1.5), Limits{}, p);
         double most = 0.0;
         for (double x = -3; x < 7; x += 0.02)
             most = std::max(most, -s.go(at({x, 0, -2})).forceN.x());
         const Vec3 after = s.go(at({7, 0, -2})).forceN;
-        if (mode == Mode::penalty) {
+        if (law == LawId::penalty) {
             EXPECT_NEAR(most, 0.5 * (0.75 + kRadius), 0.02);  // k (w/2 + r)
             EXPECT_EQ(after, Vec3::Zero());
         } else {
@@ -351,9 +351,9 @@ TEST(Parameters, refusesWhatIsNotANumberOrOutOfRange) {
     refused([](Parameters& p) { p.tissues[1].stiffnessFraction = 1.5; });
     refused([](Parameters& p) { p.velocityTauS = std::numeric_limits<double>::infinity(); });
     refused([](Parameters& p) { p.proxy.iterations = 0; });
-    EXPECT_EQ(modeByName("proxy"), Mode::proxy);
-    EXPECT_EQ(modeByName("penalty"), Mode::penalty);
-    EXPECT_THROW((void)modeByName("magic"), core::Error);
+    EXPECT_EQ(lawByName("proxy"), LawId::proxy);
+    EXPECT_EQ(lawByName("penalty"), LawId::penalty);
+    EXPECT_THROW((void)lawByName("magic"), core::Error);
 }
 
 }  // namespace

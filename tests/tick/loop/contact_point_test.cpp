@@ -88,7 +88,7 @@ TEST(ContactPoint, aCylinderBearsOnAWallAtItsSide) {
 
 TEST(ContactPoint, withoutPatchesItIsTheDeepestPoint) {
     force::Parameters penalty = force::defaultParameters();
-    penalty.mode = force::Mode::penalty;
+    penalty.law = force::LawId::penalty;
     int held = 0;
     goTo(
         std::make_unique<test::AnalyticMethod>(test::plane(), kBurMm, 4.0, cases::Tissue::enamel), Vec3(1, 2, 0.5),

@@ -103,9 +103,9 @@ TEST(HapticLoop, repeatsItselfBitForBitAtEveryRate) {
 
 TEST(HapticLoop, theTickNeitherAllocatesNorLocksNorWaits) {
     if (!test::RealtimeTrap::isActive()) GTEST_SKIP() << "the sanitizers own malloc: the trap is off";
-    for (const force::Mode mode : {force::Mode::proxy, force::Mode::penalty}) {
+    for (const force::LawId mode : {force::LawId::proxy, force::LawId::penalty}) {
         force::Parameters parameters = force::defaultParameters();
-        parameters.mode = mode;
+        parameters.law = mode;
         HapticLoop loop(LoopSettings{}, handThatPresses(), planeMethod(), parameters);
         loop.tick({});
         loop.setParameters(parameters);

@@ -93,7 +93,7 @@ void members(Visit&& visit, Part& part) {
 
 template <class Visit, class Parameters>
 void members(Visit&& visit, Parameters& p) requires std::same_as<std::remove_const_t<Parameters>, force::Parameters> {
-    visit("mode", p.mode);
+    visit("mode", p.law);
     visit("stiffness_multiplier", p.stiffnessMultiplier);
     visit("damping_multiplier", p.dampingMultiplier);
     visit("friction_multiplier", p.frictionMultiplier);
@@ -127,9 +127,7 @@ struct Write {
         }
     }
     void operator()(const std::string& key, const core::Vec3& v) { json[key] = {v.x(), v.y(), v.z()}; }
-    void operator()(const std::string& key, force::Mode mode) {
-        json[key] = mode == force::Mode::proxy ? "proxy" : "penalty";
-    }
+    void operator()(const std::string& key, force::LawId law) { json[key] = force::nameOf(law); }
     void operator()(const std::string& key, const TissueFeels& tissues) {
         for (const force::TissueFeel& t : tissues)
             json[key].push_back({t.stiffnessFraction, t.dampingNSPerMm, t.friction});
@@ -177,8 +175,8 @@ struct Read {
         for (std::size_t k = 0; k < 3; ++k)
             v[static_cast<int>(k)] = json.at(key).at(k).get<double>();
     }
-    void operator()(const std::string& key, force::Mode& mode) const {
-        mode = force::modeByName(json.at(key).get<std::string>());
+    void operator()(const std::string& key, force::LawId& law) const {
+        law = force::lawByName(json.at(key).get<std::string>());
     }
     template <Crisp Part>
     void operator()(const std::string& key, Part& part) const {

@@ -18,13 +18,17 @@ constexpr double kShallowMm = 1e-9;        // below it a direction cannot be tol
 }  // namespace
 
 ForceModel::ForceModel(const Limits& limits, const Parameters& parameters)
-    : limits_(limits), parameters_(parameters), proxy_(parameters.proxy) {
+    : limits_(limits), parameters_(parameters), laws_(makeLaws()), proxy_(parameters.proxy) {
     validate(parameters);
+    law_ = laws_.at(static_cast<std::size_t>(parameters.law)).get();
 }
 
 void ForceModel::setParameters(const Parameters& parameters) noexcept {
     parameters_ = parameters;
     proxy_.setSettings(parameters.proxy);
+    ForceLaw* const law = laws_[std::min(static_cast<std::size_t>(parameters.law), laws_.size() - 1)].get();
+    if (law != law_) law->reset();
+    law_ = law;
 }
 
 const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, bool lost, double periodS) noexcept {
@@ -43,13 +47,14 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     touch_.patches = contact::PatchSet{};
     if (fresh && (released || touch_.depth.depthMm > kDeepStartMm)) guard_.fadeIn();
     updateVelocity(touch_.deviceInTooth.positionMm, fresh, periodS);
+    if (fresh) law_->reset();
     if (waiting_) {
         proxy_.follow(touch_.deviceInTooth);
         touch_.touching = false;
         touch_.tissue = cases::Tissue::none;
         return touch_;
     }
-    if (parameters_.mode == Mode::penalty) {
+    if (!law_->usesProxy()) {
         proxy_.follow(touch_.deviceInTooth);
         return touch_;
     }
@@ -94,61 +99,13 @@ void ForceModel::updateVelocity(const Vec3& positionMm, bool fresh, double perio
     lastPositionMm_ = positionMm;
 }
 
-ForceModel::KelvinVoigt ForceModel::coupling(const Touch& touch) const noexcept {
-    double stiffness = 0.0, damping = 0.0, friction = 0.0, total = 0.0;
-    for (std::size_t i = 0; i < cases::kTissueCount; ++i) {
-        const double share = touch.patches.tissueShare[i];
-        total += share;
-        stiffness += share * parameters_.tissues[i].stiffnessFraction;
-        damping += share * parameters_.tissues[i].dampingNSPerMm;
-        friction += share * parameters_.tissues[i].friction;
-    }
-    if (total > 0.0) {
-        stiffness /= total;
-        damping /= total;
-        friction /= total;
-    } else {
-        // On the surface but with no point within the margin of it: the tissue that holds the proxy.
-        const TissueFeel& feel = parameters_.tissues[static_cast<std::size_t>(touch.tissue)];
-        stiffness = feel.stiffnessFraction;
-        damping = feel.dampingNSPerMm;
-        friction = feel.friction;
-    }
-    return {
-        std::min(stiffness * limits_.maxStiffnessNPerMm * parameters_.stiffnessMultiplier, limits_.maxStiffnessNPerMm),
-        std::min(damping * parameters_.dampingMultiplier, limits_.maxDampingNSPerMm), friction};
-}
-
-Vec3 ForceModel::proxyForce(const Touch& touch) const noexcept {
-    const Vec3 spring = touch.proxyInTooth.positionMm - touch.deviceInTooth.positionMm;
-    const double length = spring.norm();
-    if (!touch.touching || length < kShallowMm) return Vec3::Zero();
-    const Vec3 direction = spring / length;
-    const KelvinVoigt kv = coupling(touch);
-    const double ramp = std::min(1.0, length / parameters_.dampingRampMm);
-    const double approach = -velocityMmS_.dot(direction);
-    return std::max(0.0, kv.stiffnessNPerMm * length + ramp * kv.dampingNSPerMm * approach) * direction;
-}
-
-Vec3 ForceModel::penaltyForce(const Touch& touch) const noexcept {
-    const double depth = touch.depth.depthMm;
-    if (!(depth > 0.0)) return Vec3::Zero();
-    const double k =
-        std::min(parameters_.penaltyStiffnessNPerMm * parameters_.stiffnessMultiplier, limits_.maxStiffnessNPerMm);
-    const double b =
-        std::min(parameters_.penaltyDampingNSPerMm * parameters_.dampingMultiplier, limits_.maxDampingNSPerMm);
-    const double ramp = std::min(1.0, depth / parameters_.dampingRampMm);
-    const double approach = -velocityMmS_.dot(touch.depth.normal);
-    return std::max(0.0, k * depth + ramp * b * approach) * touch.depth.normal;
-}
-
 Vec3 ForceModel::frictionForce(const Touch& touch, const Vec3& pressN, const Turning& turning) noexcept {
     const Vec3 proxy = touch.proxyInTooth.positionMm;
     const Vec3 moved = wasTouching_ ? Vec3(proxy - lastProxyMm_) : Vec3(Vec3::Zero());
     lastProxyMm_ = proxy;
     const double press = pressN.norm();
     wasTouching_ = touch.touching && press > 0.0;
-    const KelvinVoigt kv = coupling(touch);
+    const KelvinVoigt kv = couplingOf(inputOf(touch));
     if (!wasTouching_ || kv.stiffnessNPerMm <= 0.0) {
         bristleMm_.setZero();
         return Vec3::Zero();
@@ -198,10 +155,11 @@ const ForceCommand& ForceModel::compute(const Touch& touch, double periodS, cons
         bristleMm_.setZero();
         tangentialN_.setZero();
     } else {
-        wanted = parameters_.mode == Mode::proxy ? proxyForce(touch) : penaltyForce(touch);
+        wanted = law_->pushN(inputOf(touch));
+        if (!wanted.allFinite()) wanted.setZero();
         const double press = wanted.norm();
         command_.loadN = -guard_.gain() * std::min(1.0, limits_.maxForceN / std::max(press, kShallowMm)) * wanted;
-        if (parameters_.mode == Mode::proxy) wanted += frictionForce(touch, wanted, turning);
+        if (law_->usesProxy()) wanted += frictionForce(touch, wanted, turning);
         tangentialN_ =
             touch.touching
                 ? Vec3(tangentialN_ + periodS / (kTangentialTauS + periodS) * (turning.tangentialN - tangentialN_))

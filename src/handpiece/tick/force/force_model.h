@@ -3,24 +3,19 @@
 /// @file
 /// From contact to the force on the hand: third stage of the tick.
 
+#include <array>
+#include <memory>
+#include <vector>
+
 #include "handpiece/base/core/realtime.h"
 #include "handpiece/tick/contact/method.h"
+#include "handpiece/tick/force/force_law.h"
 #include "handpiece/tick/force/parameters.h"
 #include "handpiece/tick/force/pose_guard.h"
 #include "handpiece/tick/force/proxy.h"
+#include "handpiece/tick/force/touch.h"
 
 namespace handpiece::force {
-
-/// What the bur feels this tick.
-struct Touch {
-    core::Pose deviceInTooth;                    ///< believed; not the reading when that is in doubt
-    contact::Depth depth;                        ///< at the device's pose
-    core::Pose proxyInTooth;                     ///< the device's pose in penalty mode
-    contact::PatchSet patches;                   ///< at the proxy; empty when it does not touch, and in penalty mode
-    bool touching = false;                       ///< the proxy is held by the tooth
-    cases::Tissue tissue = cases::Tissue::none;  ///< that carries most of the pressure
-    int passes = 0;                              ///< constraint passes of the proxy
-};
 
 struct ForceCommand {
     core::Vec3 forceN = core::Vec3::Zero();         ///< on the hand, tooth frame
@@ -38,12 +33,12 @@ struct Turning {
 
 /// The force of one bur in one hand. One thread; keeps the proxy, the filtered velocity and the last force.
 ///
-/// Proxy mode: F = k |proxy - device| + b x (filtered approach speed), towards the proxy; k and b weighted by the
-/// pressure on each tissue, capped by the device; the damper ramped in; never pulling; limited in size and slope.
+/// How a contact pushes is the law's; what is the same for every law is here: the pose is believed or not, the force
+/// fades in, friction and the bur's sideways force are added, size and slope are the device's, and the torque follows.
 /// Friction is a bristle (Dahl 1968): it sticks with the stiffness of the contact up to Coulomb's limit, then slips.
 class ForceModel {
   public:
-    /// Throws core::Error for parameters out of range.
+    /// Throws core::Error for parameters out of range. Makes one of every law that there is by now.
     ForceModel(const Limits& limits, const Parameters& parameters);
 
     /// Finds contact for this tick's reading: depth, proxy and patches.
@@ -65,20 +60,19 @@ class ForceModel {
     [[nodiscard]] const core::Vec3& velocityMmS() const noexcept { return velocityMmS_; }  ///< filtered
 
   private:
-    struct KelvinVoigt {
-        double stiffnessNPerMm, dampingNSPerMm, friction;  ///< means over the tissues that are pressed
-    };
+    [[nodiscard]] LawInput inputOf(const Touch& touch) const noexcept {
+        return {touch, velocityMmS_, parameters_, limits_};
+    }
     void smoothShares(bool isCutNear, double periodS) noexcept;
     void updateVelocity(const core::Vec3& positionMm, bool fresh, double periodS) noexcept;
-    [[nodiscard]] KelvinVoigt coupling(const Touch& touch) const noexcept;
-    [[nodiscard]] core::Vec3 proxyForce(const Touch& touch) const noexcept;
-    [[nodiscard]] core::Vec3 penaltyForce(const Touch& touch) const noexcept;
     [[nodiscard]] core::Vec3 frictionForce(const Touch& touch, const core::Vec3& pressN,
                                            const Turning& turning) noexcept;
     [[nodiscard]] core::Vec3 torqueAboutGrip(const Touch& touch, const core::Vec3& forceN) const noexcept;
 
     Limits limits_;
     Parameters parameters_;
+    std::vector<std::unique_ptr<ForceLaw>> laws_;  // by LawId: changing from one to another makes nothing
+    ForceLaw* law_;
     PoseGuard guard_;
     Proxy proxy_;
     Touch touch_;

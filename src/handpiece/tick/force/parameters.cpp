@@ -4,14 +4,9 @@
 #include <fmt/format.h>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/tick/force/force_law.h"
 
 namespace handpiece::force {
-
-Mode modeByName(std::string_view name) {
-    if (name == "proxy") return Mode::proxy;
-    if (name == "penalty") return Mode::penalty;
-    throw core::Error(fmt::format("no force is called \"{}\"", name), "force", "there are proxy and penalty");
-}
 
 void validate(const Parameters& p) {
     const auto require = [](double value, double low, double high, const char* what) {
@@ -21,6 +16,7 @@ void validate(const Parameters& p) {
                     {what, fmt::format("{}", value), fmt::format("{}", low), fmt::format("{}", high)});
         }
     };
+    require(static_cast<double>(p.law), 0.0, static_cast<double>(lawCount() - 1), "the number of the law of force");
     require(p.stiffnessMultiplier, 0.0, 100.0, "the stiffness multiplier");
     require(p.dampingMultiplier, 0.0, 100.0, "the damping multiplier");
     for (const TissueFeel& t : p.tissues) {

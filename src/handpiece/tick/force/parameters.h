@@ -4,6 +4,8 @@
 /// What a person may turn about the force, and what the device forbids.
 
 #include <array>
+#include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "handpiece/base/core/vec.h"
@@ -12,12 +14,15 @@
 
 namespace handpiece::force {
 
-enum class Mode {
+/// The law of force (force_law.h). Those of one's own have the numbers after these, in the order in which they are
+/// added.
+enum class LawId : std::uint8_t {
     proxy,    ///< Kelvin-Voigt between proxy and device: right in slots and on thin walls
     penalty,  ///< the paper's: depth and approach speed along the normal at the device's pose
 };
-/// "proxy" or "penalty"; throws core::Error otherwise.
-[[nodiscard]] Mode modeByName(std::string_view name);
+/// "proxy", "penalty" or one's own; throws core::Error otherwise.
+[[nodiscard]] LawId lawByName(std::string_view name);
+[[nodiscard]] const std::string& nameOf(LawId law);
 
 /// The part of a device's capability record that bounds the force.
 struct Limits {
@@ -50,13 +55,13 @@ struct CuttingVibration {
 
 /// Set off the tick, staged into it. defaultParameters() fills the tissues from the tooth's table.
 struct Parameters {
-    Mode mode = Mode::proxy;
+    LawId law = LawId::proxy;
     double stiffnessMultiplier = 1.0;  ///< on every tissue; the device's limits stay
     double dampingMultiplier = 1.0;
     double frictionMultiplier = 1.0;      ///< 0: a wall without friction
     double cuttingForceMultiplier = 1.0;  ///< on the sideways force of the turning bur
     std::array<TissueFeel, cases::kTissueCount> tissues{};
-    double penaltyStiffnessNPerMm = 0.5;  ///< penalty mode, times the multiplier
+    double penaltyStiffnessNPerMm = 0.5;  ///< of the penalty law, times the multiplier
     double penaltyDampingNSPerMm = 0.002;
     double velocityTauS = 0.005;        ///< low pass of the velocity
     double dampingRampMm = 0.05;        ///< the damper grows from none to all over this depth

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What the bur feels: the contact's answers of one tick, as the forces use them.
+
+#include "handpiece/base/core/vec.h"
+#include "handpiece/model/case/tissue.h"
+#include "handpiece/tick/contact/method.h"
+
+namespace handpiece::force {
+
+struct Touch {
+    core::Pose deviceInTooth;                    ///< believed; not the reading when that is in doubt
+    contact::Depth depth;                        ///< at the device's pose
+    core::Pose proxyInTooth;                     ///< the device's pose under a law that knows no proxy
+    contact::PatchSet patches;                   ///< at the proxy; empty when it does not touch, or there is none
+    bool touching = false;                       ///< the proxy is held by the tooth
+    cases::Tissue tissue = cases::Tissue::none;  ///< that carries most of the pressure
+    int passes = 0;                              ///< constraint passes of the proxy
+};
+
+}  // namespace handpiece::force

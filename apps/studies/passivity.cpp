@@ -11,7 +11,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "studies/plane_method.h"
 
 namespace handpiece::studies {
@@ -64,7 +64,7 @@ void simulate(const PassivitySweep& sweep, const device::Hand& hand, PassivityRo
     Range before, last;
     row.marginNmm = std::numeric_limits<double>::infinity();
     row.worstWorkNmm = -std::numeric_limits<double>::infinity();
-    (void)loop.runSimulated(duration, [&](const messages::HapticSample& s) {
+    (void)runSimulated(loop, duration, [&](const messages::HapticSample& s) {
         const double z = s.truePositionMm[2];
         if (s.tick > 0) motionSum += (z - lastZ) * (z - lastZ) / period;
         lastZ = z;

@@ -94,7 +94,7 @@ std::unique_ptr<device::Device> deviceOf(const RunSettings& settings, const devi
 
 RunSummary runLoop(const RunSettings& settings, const device::Motion& motion, std::unique_ptr<contact::Method> method,
                    const loop::Listener& listener) {
-    return runLoop(settings, motion, loop::Work{std::move(method), nullptr},
+    return runLoop(settings, motion, loop::Work(std::move(method)),
                    [&](loop::HapticLoop&, const messages::HapticSample& sample) { listener(sample); }, {});
 }
 
@@ -114,7 +114,7 @@ RunSummary runLoop(const RunSettings& settings, const device::Motion& motion, lo
     };
     const double duration = settings.durationS > 0.0 ? settings.durationS : std::max(motion.durationS(), period);
     summary.report =
-        settings.realTime ? haptic.runRealTime(duration, each, bricks) : haptic.runSimulated(duration, each, bricks);
+        settings.realTime ? runRealTime(haptic, duration, each, bricks) : runSimulated(haptic, duration, each, bricks);
     summary.stopped = cancelled();
     return summary;
 }

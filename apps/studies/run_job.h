@@ -12,7 +12,7 @@
 #include "handpiece/tick/device/motion.h"
 #include "handpiece/tick/device/simulated_device.h"
 #include "handpiece/tick/force/parameters.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 
 namespace handpiece::studies {
 

@@ -17,7 +17,7 @@
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/starter/starter.h"
 #include "handpiece/tick/contact/field_method.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "studies/built_in_motion.h"
 #include "studies/plane_method.h"
 #include "studies/shaped_device.h"
@@ -179,7 +179,7 @@ StabilityRow::Outcome simulate(const StabilitySweep& sweep, const StabilityRow& 
     loop::LoopSettings loopSettings;
     loopSettings.rateHz = row.rateHz;
     loopSettings.queueCapacity = 16;
-    loop::Work work = row.motion == LoopMotion::touch ? loop::Work{std::make_unique<PlaneMethod>(row.tissue), nullptr}
+    loop::Work work = row.motion == LoopMotion::touch ? loop::Work(std::make_unique<PlaneMethod>(row.tissue))
                                                       : molar->work(row.motion == LoopMotion::cut);
     loop::HapticLoop loop(loopSettings, std::move(shaped), std::move(work), parameters);
 
@@ -193,7 +193,7 @@ StabilityRow::Outcome simulate(const StabilitySweep& sweep, const StabilityRow& 
     std::uint64_t rested = 0;
     const Vec3 start = arm.truePositionMm();
     Vec3 last = start, lastForce = Vec3::Zero();
-    (void)loop.runSimulated(duration, [&](const messages::HapticSample& s) {
+    (void)runSimulated(loop, duration, [&](const messages::HapticSample& s) {
         const Vec3 x = arm.truePositionMm();
         motionSum += (x - last).squaredNorm() / period;
         last = x;

@@ -12,7 +12,7 @@
 #include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "studies/built_in_motion.h"
 #include "studies/cutting_motion.h"
 
@@ -74,7 +74,7 @@ void cut(const cases::Case& molar, const std::shared_ptr<const tooth::Tooth>& wh
     loop::HapticLoop haptic({}, std::make_unique<device::SimulatedDevice>(arm, std::move(motion)), std::move(work),
                             force::defaultParameters());
     core::Hasher samples;
-    (void)haptic.runSimulated(duration, [&](const messages::HapticSample& s) {
+    (void)runSimulated(haptic, duration, [&](const messages::HapticSample& s) {
         addSample(samples, s);
         samples.add(s.speedRpm);
         for (const double mm3 : s.removedMm3)
@@ -107,7 +107,7 @@ void run() {
                             force::defaultParameters());
     core::Hasher samples;
     std::uint64_t touching = 0;
-    (void)haptic.runSimulated(2.0, [&](const messages::HapticSample& s) {
+    (void)runSimulated(haptic, 2.0, [&](const messages::HapticSample& s) {
         addSample(samples, s);
         touching += s.patchCount > 0;
     });

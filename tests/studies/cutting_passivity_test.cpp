@@ -11,7 +11,7 @@
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "tick/force/prism_tooth.h"
 
 namespace handpiece::studies {
@@ -65,7 +65,7 @@ void simulate(const std::shared_ptr<const tooth::CuttableTooth>& base,
     double motionSum = 0.0, low = 1e9, high = -1e9;
     Vec3 last = Vec3::Zero();
     row.marginNmm = 1e9;
-    (void)loop.runSimulated(poses.back().timeS, [&](const messages::HapticSample& s) {
+    (void)runSimulated(loop, poses.back().timeS, [&](const messages::HapticSample& s) {
         const Vec3 x(s.truePositionMm[0], s.truePositionMm[1], s.truePositionMm[2]);
         if (s.tick > 0) motionSum += (x - last).squaredNorm() / period;
         last = x;

@@ -25,7 +25,7 @@
 #include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "studies/built_in_motion.h"
 #include "studies/cutting_motion.h"
 #include "support/brute_force_depth.h"
@@ -400,7 +400,7 @@ TEST_F(RealData, aDroppedBurIsHeldAtTheSurface) {
             {}, std::make_unique<device::SimulatedDevice>(device::SimulatedDeviceSettings{}, std::move(drop)),
             std::move(method), force::defaultParameters());
         double peakN = 0.0, sinksMm = -10.0, lastN = 0.0;
-        (void)haptic.runSimulated(durationS, [&](const messages::HapticSample& s) {
+        (void)runSimulated(haptic, durationS, [&](const messages::HapticSample& s) {
             core::Pose proxy;
             proxy.positionMm = Vec3(s.proxyPositionMm.data());
             const auto& q = s.proxyOrientation;
@@ -438,7 +438,7 @@ TEST_F(RealData, aClassOneCavityIsCut) {
                             force::defaultParameters());
     double peakN = 0.0;
     tooth::TissueVolumes removed{};
-    (void)haptic.runSimulated(durationS, [&](const messages::HapticSample& s) {
+    (void)runSimulated(haptic, durationS, [&](const messages::HapticSample& s) {
         peakN = std::max(peakN, Vec3(s.forceN.data()).norm());
         removed = s.removedMm3;
     });

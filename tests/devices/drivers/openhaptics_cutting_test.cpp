@@ -12,7 +12,7 @@
 #include "handpiece/devices/safety/guarded_device.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/tick/contact/field_method.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "support/random.h"
 #include "support/small_molar.h"
 
@@ -78,7 +78,7 @@ TEST(OpenHapticsEndToEnd, aHandCutsACavityAndFeelsIt) {
                                                cutting::Cutter::Settings{})},
             force::defaultParameters());
         const auto then = std::chrono::steady_clock::now();
-        haptic.runAttended(true, [&](const std::string&) {
+        runAttended(haptic, true, [&](const std::string&) {
             haptic.fetch(
                 [&](const messages::HapticSample& s) {
                     removedMm3 = 0.0;

@@ -12,7 +12,7 @@
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/record/session/recorder.h"
 #include "handpiece/tick/contact/field_method.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "support/small_molar.h"
 
 namespace handpiece::safety {
@@ -129,7 +129,7 @@ Storm cutInAStorm(const StormSettings& settings) {
             if (recorder) recorder->pushWaiting(session::recordOf(s));
             ++storm.ticks;
         };
-        (void)(settings.realTime ? haptic.runRealTime(durationS, listen) : haptic.runSimulated(durationS, listen));
+        (void)(settings.realTime ? runRealTime(haptic, durationS, listen) : runSimulated(haptic, durationS, listen));
         const Health end = health->read();
         storm.relaxed = end.relaxed;
         storm.troubles = end.gate.troubles;

@@ -12,7 +12,7 @@
 #include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/replay_device.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "support/closed_meshes.h"
 #include "support/realtime_trap.h"
 
@@ -519,7 +519,7 @@ TEST_F(PointerAtATooth, aReplayOfItsReadingsGivesTheSameTicks) {
     loop::HapticLoop again({}, std::make_unique<ReplayDevice>(s.loop->device().capability(), readings), work(field),
                            force::defaultParameters());
     std::size_t i = 0, differing = 0;
-    (void)again.runSimulated(1.499, [&](const HapticSample& h) {
+    (void)runSimulated(again, 1.499, [&](const HapticSample& h) {
         ASSERT_LT(i, live.size());
         differing += h.forceN != live[i].forceN || h.proxyPositionMm != live[i].proxyPositionMm ||
                      h.removedMm3 != live[i].removedMm3 || h.speedRpm != live[i].speedRpm;

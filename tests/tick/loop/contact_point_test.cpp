@@ -5,7 +5,7 @@
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "support/closed_meshes.h"
 #include "tick/force/analytic_methods.h"
 
@@ -41,7 +41,7 @@ void goTo(std::unique_ptr<contact::Method> method, const Vec3& from, const Vec3&
                     std::make_unique<device::SimulatedDevice>(
                         settings, device::drop({from, Quat::Identity()}, way.normalized(), way.norm(), 10.0, 0.3)),
                     std::move(method), parameters);
-    (void)loop.runSimulated(way.norm() / 10.0 + 0.3, each);
+    (void)runSimulated(loop, way.norm() / 10.0 + 0.3, each);
 }
 Vec3 pointOf(const HapticSample& s) {
     return Vec3(s.contactPointMm.data());

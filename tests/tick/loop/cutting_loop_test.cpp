@@ -10,7 +10,7 @@
 #include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "support/closed_meshes.h"
 #include "support/realtime_trap.h"
 
@@ -90,7 +90,7 @@ TEST(CuttingLoop, aTurningBurSinksInAndTheTurbineFeelsIt) {
     auto loop = bench.loop(poses);
     double worstDroop = 0, largestTorque = 0, deepestProxy = 0, peakN = 0;
     HapticSample last;
-    (void)loop->runSimulated(seconds(poses), [&](const HapticSample& s) {
+    (void)runSimulated(*loop, seconds(poses), [&](const HapticSample& s) {
         // Slow against the rotor's 0.35 s: its speed is that of the load's torque on the line from stall to free.
         if (s.timeS > 4.0 && (s.flags & messages::kCutting) != 0)
             worstDroop = std::max(worstDroop, std::abs(s.speedRpm - 400000.0 * (1.0 - s.loadTorqueNmm / 1.2)));
@@ -114,7 +114,7 @@ TEST(CuttingLoop, aStillBurCutsNothing) {
     const auto poses = plungeTo(1.0, 0.5, 0.0);
     auto loop = bench.loop(poses);
     const std::uint64_t before = bench.field->stateHash();
-    (void)loop->runSimulated(seconds(poses), [&](const HapticSample& s) {
+    (void)runSimulated(*loop, seconds(poses), [&](const HapticSample& s) {
         ASSERT_EQ(s.flags & messages::kCutting, 0u);
         ASSERT_EQ(s.speedRpm, 0.0);
     });
@@ -128,7 +128,7 @@ TEST(CuttingLoop, counterAndFieldBalanceByTissue) {
     const auto poses = plungeTo(1.0, 4.0, 1.0);
     auto loop = bench.loop(poses);
     HapticSample last;
-    (void)loop->runSimulated(seconds(poses), [&](const HapticSample& s) { last = s; });
+    (void)runSimulated(*loop, seconds(poses), [&](const HapticSample& s) { last = s; });
     const tooth::TissueVolumes left = bench.field->volumesMm3();
     for (const Tissue t : {Tissue::enamel, Tissue::dentine}) {
         const auto i = static_cast<std::size_t>(t);
@@ -147,7 +147,7 @@ TEST(CuttingLoop, removalIsTheSameAtEveryRateAndVoxel) {
             const auto poses = plungeTo(0.8, 1.5, 1.0);
             auto loop = bench.loop(poses, true, rate);
             HapticSample last;
-            (void)loop->runSimulated(seconds(poses), [&](const HapticSample& s) { last = s; });
+            (void)runSimulated(*loop, seconds(poses), [&](const HapticSample& s) { last = s; });
             const double removed = last.removedMm3[static_cast<std::size_t>(Tissue::enamel)];
             if (reference == 0.0) reference = removed;
             std::printf("  %3.0f um, %.0f Hz: %.5f mm3\n", 1e3 * voxel, rate, removed);
@@ -164,7 +164,7 @@ TEST(CuttingLoop, aboveTwoKilohertzTheCutTakesItsTurn) {
         auto loop = bench.loop(poses, true, 2000.0 * every);
         std::uint64_t last = 0, cuts = 0, apart = 0, told = 0;
         double before = 0.0;
-        (void)loop->runSimulated(seconds(poses), [&](const HapticSample& s) {
+        (void)runSimulated(*loop, seconds(poses), [&](const HapticSample& s) {
             told += (s.flags & messages::kCutting) != 0;
             const double removed = s.removedMm3[static_cast<std::size_t>(Tissue::enamel)];
             if (removed == before) return;
@@ -189,7 +189,7 @@ TEST(CuttingLoop, undoPutsTheToothBackAndNoForceRoundTheBur) {
                                                {7.5, at(0, 0, 0.5), 0.0},    {8.0, at(0, 0, 0.5), 0.0},
                                                {8.5, at(0, 0, -0.6), 0.0},   {9.5, at(0, 0, -0.6), 0.0}};
     auto loop = bench.loop(poses);
-    (void)loop->runSimulated(6.5);
+    (void)runSimulated(*loop, 6.5);
     const tooth::StateDelta cut = bench.field->state();
     ASSERT_FALSE(cut.bricks.empty());
     EXPECT_NE(bench.field->stateHash(), wholeHash);
@@ -203,7 +203,7 @@ TEST(CuttingLoop, undoPutsTheToothBackAndNoForceRoundTheBur) {
     bool waited = false, felt = false;
     double worstWaiting = 0.0, last = 0.0;
     int restoring = 0;
-    (void)loop->runSimulated(3.0, [&](const HapticSample& s) {
+    (void)runSimulated(*loop, 3.0, [&](const HapticSample& s) {
         EXPECT_EQ(s.lastCommand, number);
         restoring += (s.flags & messages::kRestoring) != 0;
         if ((s.flags & messages::kWaiting) != 0) {
@@ -234,7 +234,7 @@ TEST(CuttingLoop, theForceIsSmoothWhileCutting) {
         auto loop = bench.loop(poses);
         Vec3 last = Vec3::Zero();
         double worst = 0.0, when = 0.0;
-        (void)loop->runSimulated(seconds(poses), [&](const HapticSample& s) {
+        (void)runSimulated(*loop, seconds(poses), [&](const HapticSample& s) {
             const Vec3 f(s.forceN[0], s.forceN[1], s.forceN[2]);
             if ((f - last).norm() > worst) {
                 worst = (f - last).norm();
@@ -251,7 +251,7 @@ TEST(CuttingLoop, theForceIsSmoothWhileCutting) {
 double cogging(HapticLoop& loop, double endS, double spanS) {
     std::vector<Eigen::Vector4d> powers;
     std::vector<double> forceN;
-    (void)loop.runSimulated(endS, [&](const HapticSample& s) {
+    (void)runSimulated(loop, endS, [&](const HapticSample& s) {
         const double t = (s.timeS - (endS - spanS)) / spanS;
         if (t < 0.0) return;
         powers.push_back({1.0, t, t * t, t * t * t});
@@ -306,7 +306,7 @@ TEST(CuttingLoop, aSharpRimBearsAndCutsOnASlope) {
         auto loop = bench.loop(poses);
         HapticSample last;
         double largestArea = 0.0;
-        (void)loop->runSimulated(4.0, [&](const HapticSample& s) {
+        (void)runSimulated(*loop, 4.0, [&](const HapticSample& s) {
             largestArea = std::max(largestArea, s.contactAreaMm2);
             last = s;
         });
@@ -323,7 +323,7 @@ TEST(CuttingLoop, aWeakTurbineStallsAndRecovers) {
     auto loop = bench.loop(poses, true, 1000, weak);
     bool stalled = false;
     double after = 0.0;
-    (void)loop->runSimulated(seconds(poses) + 2.0, [&](const HapticSample& s) {
+    (void)runSimulated(*loop, seconds(poses) + 2.0, [&](const HapticSample& s) {
         stalled = stalled || (s.flags & messages::kStalled) != 0;
         if (stalled && s.pedal > 0.0 && s.proxyPositionMm[2] > 0.1) after = std::max(after, s.speedRpm);
     });
@@ -352,8 +352,8 @@ TEST(CuttingLoop, sameInputsSameTooth) {
         auto loop = bench.loop(poses, false);
         tooth::CutMirror mirror(base);
         HapticSample last;
-        (void)loop->runSimulated(
-            seconds(poses), [&](const HapticSample& s) { last = s; },
+        (void)runSimulated(
+            *loop, seconds(poses), [&](const HapticSample& s) { last = s; },
             [&](const tooth::BrickSnapshot& b) { mirror.apply(b); });
         if (run == 0) first = bench.field->stateHash();
         EXPECT_EQ(bench.field->stateHash(), first);

@@ -8,7 +8,7 @@
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "support/closed_meshes.h"
 
 namespace handpiece::loop {
@@ -42,7 +42,7 @@ Plunge plunge(const std::shared_ptr<const tooth::CuttableTooth>& base, double sp
                     force::defaultParameters());
     Plunge result;
     int count = 0;
-    (void)loop.runSimulated(end, [&](const messages::HapticSample& s) {
+    (void)runSimulated(loop, end, [&](const messages::HapticSample& s) {
         result.removedMm3 = 0;
         for (const double v : s.removedMm3)
             result.removedMm3 += v;

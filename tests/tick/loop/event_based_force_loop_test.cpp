@@ -6,7 +6,7 @@
 #include "handpiece/model/tooth/cut_field.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "studies/passivity.h"
 #include "studies/shaped_device.h"
 #include "support/closed_meshes.h"
@@ -67,9 +67,9 @@ TEST(EventBasedForceLoop, whatIsAddedIsFeltAndCutsNothing) {
     for (const double rate : {1000.0, 4000.0}) {
         Bench off(base, false, rate), on(base, true, rate), again(base, true, rate);
         std::vector<HapticSample> plain, crisp, twice;
-        (void)off.loop->runSimulated(1.4, [&](const HapticSample& s) { plain.push_back(s); });
-        (void)on.loop->runSimulated(1.4, [&](const HapticSample& s) { crisp.push_back(s); });
-        (void)again.loop->runSimulated(1.4, [&](const HapticSample& s) { twice.push_back(s); });
+        (void)runSimulated(*off.loop, 1.4, [&](const HapticSample& s) { plain.push_back(s); });
+        (void)runSimulated(*on.loop, 1.4, [&](const HapticSample& s) { crisp.push_back(s); });
+        (void)runSimulated(*again.loop, 1.4, [&](const HapticSample& s) { twice.push_back(s); });
         ASSERT_EQ(plain.size(), crisp.size());
         double mostAdded = 0.0, atTheEnd = 0.0;
         for (std::size_t i = 0; i < plain.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ std::uint64_t stateHash(HapticSample sample) {
 TEST(HapticLoop, aHandPressesOnAPlaneAndFeelsIt) {
     HapticLoop loop = makeLoop();
     std::vector<HapticSample> samples;
-    const RunReport report = loop.runSimulated(0.6, [&](const HapticSample& s) { samples.push_back(s); });
+    const RunReport report = runSimulated(loop, 0.6, [&](const HapticSample& s) { samples.push_back(s); });
     ASSERT_EQ(samples.size(), 601u);
     EXPECT_EQ(report.ticks, 601u);
     EXPECT_EQ(report.queueOverflow, 0u);
@@ -90,7 +90,7 @@ TEST(HapticLoop, repeatsItselfBitForBitAtEveryRate) {
             HapticLoop loop = makeLoop(rate);
             core::Hasher all;
             std::uint64_t count = 0;
-            (void)loop.runSimulated(0.3, [&](const HapticSample& s) {
+            (void)runSimulated(loop, 0.3, [&](const HapticSample& s) {
                 all.add(stateHash(s));
                 ++count;
             });
@@ -127,17 +127,17 @@ TEST(HapticLoop, takesAnotherToothAndOtherParametersBetweenTwoTicks) {
                     force::defaultParameters());
     HapticSample last;
     const auto keep = [&](const HapticSample& s) { last = s; };
-    (void)loop.runSimulated(0.5, keep);
+    (void)runSimulated(loop, 0.5, keep);
     EXPECT_NEAR(last.forceN[2], 0.5 * 0.8, 1e-3);
     force::Parameters softer = force::defaultParameters();
     softer.stiffnessMultiplier = 0.5;
     loop.setParameters(softer);
-    (void)loop.runSimulated(0.1, keep);
+    (void)runSimulated(loop, 0.1, keep);
     EXPECT_NEAR(last.forceN[2], 0.25 * 0.8, 1e-3);
     loop.setMethod(planeMethod(cases::Tissue::dentine));
     double before = last.forceN[2], worstRise = 0.0, whileWaiting = 0.0;
     int waited = 0, clear = 0;
-    (void)loop.runSimulated(1.0, [&](const HapticSample& s) {
+    (void)runSimulated(loop, 1.0, [&](const HapticSample& s) {
         const bool waits = (s.flags & messages::kWaiting) != 0;
         waited += waits;
         clear += s.depthMm <= 0.0;
@@ -180,7 +180,7 @@ class BadDevice final : public device::Device {
 TEST(HapticLoop, anyDoubtEndsInZeroForceAndAFlag) {
     HapticLoop loop(LoopSettings{}, std::make_unique<BadDevice>(), planeMethod(), force::defaultParameters());
     std::vector<HapticSample> s;
-    (void)loop.runSimulated(1.8, [&](const HapticSample& sample) { s.push_back(sample); });
+    (void)runSimulated(loop, 1.8, [&](const HapticSample& sample) { s.push_back(sample); });
     for (const std::size_t fault : {400u, 800u, 1300u}) {
         EXPECT_GT(s[fault - 1].forceN[2], 0.4);
         EXPECT_EQ(s[fault - 1].flags & (messages::kInvalidPose | messages::kFault), 0u);
@@ -209,7 +209,7 @@ TEST(HapticLoop, runsOnTheWallClockAndSaysUnderWhichScheduler) {
     HapticLoop loop = makeLoop(1000);
     std::uint64_t last = 0, count = 0;
     bool ordered = true;
-    const RunReport report = loop.runRealTime(0.25, [&](const HapticSample& s) {
+    const RunReport report = runRealTime(loop, 0.25, [&](const HapticSample& s) {
         ordered = ordered && (count == 0 || s.tick > last);
         last = s.tick;
         ++count;
@@ -243,7 +243,7 @@ TEST(HapticLoop, parametersChangeWhileItRunsOnTheWallClock) {
             pause();
         loop.requestStop();
     });
-    const RunReport report = loop.runRealTime(600.0, [&](const HapticSample& s) {
+    const RunReport report = runRealTime(loop, 600.0, [&](const HapticSample& s) {
         begun = true;
         taken = s.lastCommand;
     });
@@ -255,7 +255,7 @@ TEST(HapticLoop, parametersChangeWhileItRunsOnTheWallClock) {
 
 TEST(HapticLoop, aFailingListenerEndsTheRun) {
     HapticLoop loop = makeLoop();
-    EXPECT_THROW((void)loop.runRealTime(30.0, [](const HapticSample&) { throw core::Error("the disk is full"); }),
+    EXPECT_THROW((void)runRealTime(loop, 30.0, [](const HapticSample&) { throw core::Error("the disk is full"); }),
                  core::Error);
 }
 
@@ -267,9 +267,9 @@ TEST(HapticLoop, refusesRatesThatCannotBeRun) {
     EXPECT_THROW(HapticLoop(LoopSettings{}, nullptr, planeMethod(), force::defaultParameters()), core::Error);
     EXPECT_THROW(HapticLoop(LoopSettings{}, handThatPresses(), nullptr, force::defaultParameters()), core::Error);
     HapticLoop loop = makeLoop();
-    EXPECT_THROW((void)loop.runSimulated(0.0), core::Error);
-    EXPECT_THROW((void)loop.runSimulated(-1.0), core::Error);
-    EXPECT_THROW((void)loop.runSimulated(std::numeric_limits<double>::quiet_NaN()), core::Error);
+    EXPECT_THROW((void)runSimulated(loop, 0.0), core::Error);
+    EXPECT_THROW((void)runSimulated(loop, -1.0), core::Error);
+    EXPECT_THROW((void)runSimulated(loop, std::numeric_limits<double>::quiet_NaN()), core::Error);
     force::Parameters bad = force::defaultParameters();
     bad.dampingMultiplier = -1;
     EXPECT_THROW(loop.setParameters(bad), core::Error);

@@ -10,7 +10,7 @@
 #include "handpiece/model/starter/starter.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "studies/built_in_motion.h"
 #include "support/realtime_trap.h"
 
@@ -60,7 +60,7 @@ TEST_F(ToothLoop, theProxyNeverSinksAndTheHandIsNeverPulled) {
             const auto loop = loopOf(motion, bur);
             const auto probe = method(bur);
             double worst = -10.0, peak = 0.0, pull = 0.0;
-            (void)loop->runSimulated(durationS_, [&](const HapticSample& s) {
+            (void)runSimulated(*loop, durationS_, [&](const HapticSample& s) {
                 core::Pose proxy;
                 proxy.positionMm = Vec3(s.proxyPositionMm.data());
                 const auto& q = s.proxyOrientation;
@@ -91,7 +91,7 @@ TEST_F(ToothLoop, repeatsItselfBitForBit) {
     const auto run = [&] {
         const auto loop = loopOf("drag", "cylinder-round:1.0x4.0", 2000);
         core::Hasher all;
-        (void)loop->runSimulated(durationS_, [&](const HapticSample& s) {
+        (void)runSimulated(*loop, durationS_, [&](const HapticSample& s) {
             for (int i = 0; i < 3; ++i) {
                 all.add(s.forceN[i]);
                 all.add(s.torqueNmm[i]);

@@ -9,7 +9,7 @@
 #include "handpiece/base/core/hash.h"
 #include "handpiece/tick/device/passing_device.h"
 #include "handpiece/tick/device/simulated_device.h"
-#include "handpiece/tick/loop/haptic_loop.h"
+#include "handpiece/tick/loop/loop_run.h"
 #include "studies/plane_method.h"
 #include "studies/shaped_device.h"
 #include "support/random.h"
@@ -80,7 +80,7 @@ Result run(const Case& c) {
     Result r;
     double low = 1e9, high = -1e9;
     core::Hasher hash;
-    (void)loop.runSimulated(duration, [&](const messages::HapticSample& s) {
+    (void)runSimulated(loop, duration, [&](const messages::HapticSample& s) {
         r.margin =
             std::min(r.margin, 0.5 * settings.capability.encoderStepMm * arm.forceVariationN() - arm.appliedWorkNmm());
         const double size = sent.sentN().norm();

@@ -339,7 +339,7 @@ struct LiveSession::State {
 
     void run() {
         try {
-            loop.runAttended(settings.realTime, [this](const std::string& scheduling) { attend(scheduling); });
+            runAttended(loop, settings.realTime, [this](const std::string& scheduling) { attend(scheduling); });
             fetch();
         } catch (const std::exception& e) {
             fault = e.what();

@@ -20,6 +20,7 @@
 #include "handpiece/base/rt/triple_buffer.h"
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/record/session/recorder.h"
+#include "handpiece/tick/loop/loop_run.h"
 
 namespace handpiece::simulation {
 

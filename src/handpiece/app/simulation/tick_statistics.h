@@ -8,6 +8,7 @@
 #include "handpiece/app/simulation/histogram.h"
 #include "handpiece/app/simulation/live_session.h"
 #include "handpiece/base/messages/haptic_sample.h"
+#include "handpiece/tick/loop/loop_run.h"
 
 namespace handpiece::simulation {
 

@@ -34,11 +34,12 @@ struct HapticSample {
     std::uint8_t tissue = 0;         ///< cases::Tissue that carries most of the pressure
     std::uint8_t contactStatus = 0;  ///< contact::Status
     std::uint16_t patchCount = 0;
-    std::uint32_t flags = 0;              ///< SampleFlag bits
-    float workUs = 0.0f;                  ///< from reading the pose to having the force
-    float lateUs = 0.0f;                  ///< start of the tick after its nominal time
-    float cutUs = 0.0f;                   ///< after the force was sent: cutting and handing over
-    float feedMmS = 0.0f;                 ///< speed at which the bur eats into the tooth
+    std::uint16_t tooth = 0;  ///< index of the tooth that `tissue` is of; not in session files, which hold one tooth
+    std::uint32_t flags = 0;  ///< SampleFlag bits
+    float workUs = 0.0f;      ///< from reading the pose to having the force
+    float lateUs = 0.0f;      ///< start of the tick after its nominal time
+    float cutUs = 0.0f;       ///< after the force was sent: cutting and handing over
+    float feedMmS = 0.0f;     ///< speed at which the bur eats into the tooth
     std::int32_t elapsedPeriods = 1;      ///< since the tick before
     std::uint32_t buttons = 0;            ///< bit 0: the upper one
     std::uint32_t waitingBricks = 0;      ///< changed bricks not handed over yet

@@ -34,6 +34,7 @@ struct Depth {
     core::Vec3 toothPointMm = core::Vec3::Zero();  ///< the surface point of the tooth that decides
     cases::Tissue tissue = cases::Tissue::none;    ///< at that point
     Status status = Status::beyondReach;
+    std::uint16_t tooth = 0;  ///< index of the tooth that decides. A method of one tooth says 0, here and below
     /// By how much the surface here may seem nearer than it is, in constraints() as well: zero where it is exact. A
     /// bur that is held off by more would hang in its own cavity.
     double slackMm = 0.0;
@@ -47,6 +48,7 @@ struct Patch {
     double maxDepthMm = 0.0;     ///< of its points, inside the tooth
     double pressureShare = 0.0;  ///< of all patches, sums to 1: sum of area x s, s = max(0, margin - phiT)
     cases::Tissue tissue = cases::Tissue::none;  ///< that carries most of its pressure
+    std::uint16_t tooth = 0;                     ///< whose surface it is on: a patch is of one tooth
 };
 inline constexpr double kContactMarginMm = 0.02;
 inline constexpr std::size_t kMaxPatches = 16;
@@ -65,6 +67,7 @@ struct Constraint {
     double gapMm = 0.0;                       ///< signed distance of the bur's point there; negative inside
     core::Vec3 pointMm = core::Vec3::Zero();  ///< where on the bur, tooth frame
     cases::Tissue tissue = cases::Tissue::none;
+    std::uint16_t tooth = 0;  ///< that holds the bur off
 };
 inline constexpr std::size_t kMaxConstraints = 96;
 using ConstraintSet = core::FixedVector<Constraint, kMaxConstraints>;

@@ -43,6 +43,7 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     touch_.proxyInTooth = touch_.deviceInTooth;
     touch_.touching = touch_.depth.depthMm > 0.0;
     touch_.tissue = touch_.touching ? touch_.depth.tissue : cases::Tissue::none;
+    touch_.tooth = touch_.depth.tooth;
     touch_.passes = 0;
     touch_.patches = contact::PatchSet{};
     if (fresh && (released || touch_.depth.depthMm > kDeepStartMm)) guard_.fadeIn();
@@ -67,6 +68,7 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     if (touch_.touching) {
         method.patches(touch_.proxyInTooth, touch_.patches);
         smoothShares(method.isCutNear(touch_.proxyInTooth), periodS);
+        if (!touch_.patches.patches.empty()) touch_.tooth = touch_.patches.patches[0].tooth;
         double most = 0.0;
         for (std::size_t i = 0; i < cases::kTissueCount; ++i) {
             if (touch_.patches.tissueShare[i] > most) {

@@ -3,6 +3,8 @@
 /// @file
 /// What the bur feels: the contact's answers of one tick, as the forces use them.
 
+#include <cstdint>
+
 #include "handpiece/base/core/vec.h"
 #include "handpiece/model/case/tissue.h"
 #include "handpiece/tick/contact/method.h"
@@ -16,6 +18,7 @@ struct Touch {
     contact::PatchSet patches;                   ///< at the proxy; empty when it does not touch, or there is none
     bool touching = false;                       ///< the proxy is held by the tooth
     cases::Tissue tissue = cases::Tissue::none;  ///< that carries most of the pressure
+    std::uint16_t tooth = 0;                     ///< that tissue's: the one that is cut
     int passes = 0;                              ///< constraint passes of the proxy
 };
 

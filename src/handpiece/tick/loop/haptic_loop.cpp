@@ -59,9 +59,9 @@ void HapticLoop::tick(const rt::Beat& beat) noexcept {
     cut(reading, touch, command, elapsedS);
 
     const std::int64_t workNs = sentNs - startedNs, cutNs = rt::monotonicNs() - sentNs;
-    lateTicks_ += static_cast<double>(beat.lateNs + workNs) * 1e-9 > periodS_;
-    missedPeriods_ += static_cast<std::uint64_t>(beat.periods - 1);
-    ++ticksDone_;
+    count_.lateTicks += static_cast<double>(beat.lateNs + workNs) * 1e-9 > periodS_;
+    count_.missedPeriods += static_cast<std::uint64_t>(beat.periods - 1);
+    ++count_.ticks;
     // Publish.
     publish(reading, touch, command, beat, workNs, cutNs);
 }
@@ -110,41 +110,55 @@ void HapticLoop::cut(const device::Reading& reading, const force::Touch& touch, 
     const double pedal = force_.guard().faulted() ? 0.0 : reading.pedal;
     rotor_.step(pedal, cut_.loadTorqueNmm, elapsedS);
     cutFlags_ = rotor_.stalled() && pedal > 0.0 ? messages::kStalled : 0u;
-    cutting::Cutter* cutter = work_.current()->value.cutter.get();
-    if (cutter == nullptr) {
+    const Work& work = work_.current()->value;
+    if (work.cutters.empty()) {
         isRestoring_ = false;  // nothing there that could change
         restoring_.store(false, std::memory_order_release);
         return;
     }
     const bool cuts = pedal > 0.0 && !force_.waiting() && !isRestoring_;
     uncutS_ = cuts ? uncutS_ + elapsedS : 0.0;
-    if (!cuts) {
-        cut_ = cutter->rest();
-    } else if (uncutS_ >= kCutEveryS) {
-        cut_ = cutter->cut(*work_.current()->value.method,
-                           {touch.proxyInTooth, touch.deviceInTooth, command.loadN, rotor_.speedRadS(), uncutS_});
-        uncutS_ = 0.0;
+    const bool isTurn = uncutS_ >= kCutEveryS;
+    // Of several teeth the one that bears most is cut.
+    for (std::size_t tooth = 0; tooth < work.cutters.size(); ++tooth) {
+        cutting::Cutter& cutter = *work.cutters[tooth];
+        if (tooth != touch.tooth)
+            (void)cutter.rest();
+        else if (!cuts)
+            cut_ = cutter.rest();
+        else if (isTurn)
+            cut_ = cutter.cut(*work.method,
+                              {touch.proxyInTooth, touch.deviceInTooth, command.loadN, rotor_.speedRadS(), uncutS_});
     }
+    if (isTurn) uncutS_ = 0.0;
     if (isRestoring_) restoreSome();
     // Until the next cut this one holds.
     if (std::any_of(cut_.removedMm3.begin(), cut_.removedMm3.end(), [](double v) { return v > 0.0; }))
         cutFlags_ |= messages::kCutting;
     turning_.tangentialN = cut_.tangentialN;
-    turning_.surfaceSpeedMmS = rotor_.speedRadS() * kMeanRadius * cutter->largestRadiusMm();
-    if (cutter->field().outOfBricks()) cutFlags_ |= messages::kOutOfBricks;
-    handedBricks_ += cutter->field().handOver(
-        kBricksPerTick, [this](const tooth::BrickSnapshot& brick) noexcept { return bricks_.tryPush(brick); });
+    turning_.surfaceSpeedMmS = rotor_.speedRadS() * kMeanRadius * work.cutters.front()->largestRadiusMm();
+    handOver();
+}
+
+void HapticLoop::handOver() noexcept {
+    for (const std::unique_ptr<cutting::Cutter>& cutter : work_.current()->value.cutters) {
+        if (cutter->field().outOfBricks()) cutFlags_ |= messages::kOutOfBricks;
+        handedBricks_ += cutter->field().handOver(
+            kBricksPerTick, [this](const tooth::BrickSnapshot& brick) noexcept { return bricks_.tryPush(brick); });
+    }
 }
 
 void HapticLoop::restoreSome() noexcept {
     Restore& restore = restore_.current()->value;
+    const auto& cutters = work_.current()->value.cutters;
     cutFlags_ |= messages::kRestoring;
     force_.waitUntilClear();  // until the last brick is in place
     // The same share of a period at every rate.
     const auto most = static_cast<std::size_t>(1e3 * periodS_ * static_cast<double>(kRestoredPerMs));
-    restore.next =
-        work_.current()->value.cutter->field().restore(restore.change, restore.next, std::max(most, kMinRestored));
-    isRestoring_ = restore.next < restore.change.bricks.size();
+    if (restore.tooth < cutters.size())
+        restore.next =
+            cutters[restore.tooth]->field().restore(restore.change, restore.next, std::max(most, kMinRestored));
+    isRestoring_ = restore.tooth < cutters.size() && restore.next < restore.change.bricks.size();
     if (!isRestoring_) restoring_.store(false, std::memory_order_release);
 }
 
@@ -167,6 +181,7 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     sample.contactAreaMm2 = touch.patches.areaMm2;
     tellContact(touch, sample);
     sample.tissue = static_cast<std::uint8_t>(touch.tissue);
+    sample.tooth = touch.tooth;
     sample.contactStatus = static_cast<std::uint8_t>(touch.depth.status);
     sample.patchCount = static_cast<std::uint16_t>(touch.patches.patches.size());
     sample.flags = cutFlags_ | (command.forceLimited || eventForce_.forceLimited() ? messages::kForceLimited : 0u) |
@@ -184,9 +199,11 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     sample.pedal = reading.pedal;
     sample.speedRpm = rotor_.speedRpm();
     sample.loadTorqueNmm = cut_.loadTorqueNmm;
-    if (const cutting::Cutter* cutter = work_.current()->value.cutter.get()) {
-        sample.removedMm3 = cutter->field().removedMm3();
-        sample.waitingBricks = static_cast<std::uint32_t>(cutter->field().waitingBricks());
+    for (const std::unique_ptr<cutting::Cutter>& cutter : work_.current()->value.cutters) {
+        const tooth::TissueVolumes& removed = cutter->field().removedMm3();
+        for (std::size_t t = 0; t < removed.size(); ++t)
+            sample.removedMm3[t] += removed[t];
+        sample.waitingBricks += static_cast<std::uint32_t>(cutter->field().waitingBricks());
     }
     samples_.tryPush(sample);
 }

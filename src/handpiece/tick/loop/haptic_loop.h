@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The tick: device -> contact -> force -> cutting, at a fixed rate, on simulated or on wall-clock time.
+/// The tick: device -> contact -> force -> cutting.
 
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <string>
+#include <utility>
+#include <vector>
 
 #include "handpiece/base/core/realtime.h"
 #include "handpiece/base/messages/haptic_sample.h"
@@ -31,24 +32,26 @@ struct LoopSettings {
     std::size_t brickCapacity = 2048;   ///< changed bricks on their way to a listener; more wait in the tooth
 };
 
-/// One bur at one tooth: how they touch, and, for a tooth that can be cut, what the bur takes off.
+/// One bur at the teeth of a mouth: how they touch, and what the bur takes off those that can be cut. A mouth has one
+/// tooth today, so indices are 0.
 struct Work {
-    std::unique_ptr<contact::Method> method;
-    std::unique_ptr<cutting::Cutter> cutter;  ///< null: touching only. Cuts the field that `method` feels
+    Work() = default;
+    // NOLINTNEXTLINE(google-explicit-constructor)
+    Work(std::unique_ptr<contact::Method> feeling, std::unique_ptr<cutting::Cutter> cutter = nullptr)
+        : method(std::move(feeling)) {
+        if (cutter) cutters.push_back(std::move(cutter));
+    }
+
+    std::unique_ptr<contact::Method> method;                ///< feels all teeth; its answers name the tooth
+    std::vector<std::unique_ptr<cutting::Cutter>> cutters;  ///< by tooth, each on the field that `method` feels; none:
+                                                            ///< touching only
 };
 
-/// Percentiles of a quantity over a run.
-struct Spread {
-    double p50 = 0, p99 = 0, p999 = 0, max = 0;
-};
-
-struct RunReport {
-    std::string scheduling;           ///< one line for people
+/// How a run went so far, by the tick's own count.
+struct TickCount {
     std::uint64_t ticks = 0;          ///< done
     std::uint64_t lateTicks = 0;      ///< that sent their force more than a period after their nominal time
     std::uint64_t missedPeriods = 0;  ///< left out because a tick or the machine took longer than a period
-    std::uint64_t queueOverflow = 0;  ///< samples no listener fetched in time
-    Spread workUs, latenessUs;        ///< over the samples fetched
 };
 
 /// Fetches each sample, in order; called off the tick.
@@ -56,7 +59,8 @@ using Listener = std::function<void(const messages::HapticSample&)>;
 /// Fetches each brick that a cut has changed, as it then was; called off the tick.
 using BrickListener = std::function<void(const tooth::BrickSnapshot&)>;
 
-/// Owns a device, a contact method, a force model, a rotor and a cutter and composes them, tick by tick.
+/// Owns a device, a contact method, a force model, a rotor and a cutter and composes them, tick by tick. loop_run.h
+/// makes it tick.
 ///
 /// Parameters, bur, tooth and drive can be replaced while it runs, from one other thread: they are prepared there,
 /// swapped in between two ticks and disposed of there. Each such command has a number; a sample tells the newest that
@@ -69,22 +73,8 @@ class HapticLoop {
     HapticLoop(const LoopSettings& settings, std::unique_ptr<device::Device> device, Work work,
                const force::Parameters& parameters, const instrument::Drive& drive = {});
 
-    /// As fast as possible on simulated time: the same inputs give the same samples, bit for bit, but for workUs and
-    /// lateUs.
-    RunReport runSimulated(double durationS, const Listener& listener = {}, const BrickListener& bricks = {});
-    /// On the wall clock, in a thread with what real-time privileges there are; this thread feeds the listener
-    /// meanwhile.
-    RunReport runRealTime(double durationS, const Listener& listener = {}, const BrickListener& bricks = {});
-    /// The same without an end, for a caller who does more than listen: `attend` is called every two milliseconds or
-    /// so on this thread, with one line about the scheduling; it calls fetch(), and requestStop() to end the run. What
-    /// it throws ends the run and comes out of here. However it ends, the device is left without force.
-    using Attend = std::function<void(const std::string& scheduling)>;
-    void runAttended(bool realTime, const Attend& attend);
-    /// Gives what the tick has told since the last call, in its order: each sample after the bricks that were handed
-    /// over up to it, and no later ones. One consumer, who does not take from samples() or bricks() as well.
-    void fetch(const Listener& listener, const BrickListener& bricks);
-    /// Ends a run after the tick under way. Any thread, also a signal handler.
-    void requestStop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+    /// One tick.
+    void tick(const rt::Beat& beat) noexcept HANDPIECE_REALTIME;
 
     /// Take effect at the next tick; return the command's number. Throw core::Error for values out of range. From one
     /// thread that is not the tick's. Of two of a kind given within a tick only the later one takes effect.
@@ -95,17 +85,28 @@ class HapticLoop {
     std::uint64_t setMethod(std::unique_ptr<contact::Method> method);
     /// Undo, redo, reset: puts bricks of the tooth in place, some a tick; no force until that is done and the bur is
     /// clear. Throws core::Error while an earlier change is still being put in place, and when no tooth can be cut.
-    std::uint64_t restore(tooth::StateDelta change);
+    std::uint64_t restore(tooth::StateDelta change, std::uint16_t toothIndex = 0);
     [[nodiscard]] bool restoring() const noexcept { return restoring_.load(std::memory_order_acquire); }
 
-    /// One tick. For run...() and for tests.
-    void tick(const rt::Beat& beat) noexcept HANDPIECE_REALTIME;
-
-    [[nodiscard]] const device::Device& device() const noexcept { return *device_; }
-    [[nodiscard]] double periodS() const noexcept { return periodS_; }
-    /// The samples, for a listener of one's own instead of run...()'s. One consumer.
+    /// Gives what the tick has told since the last call, in its order: each sample after the bricks that were handed
+    /// over up to it, and no later ones. One consumer, who does not take from samples() or bricks() as well.
+    void fetch(const Listener& listener, const BrickListener& bricks);
+    /// The samples, for a listener of one's own instead of fetch(). One consumer.
     [[nodiscard]] rt::SpscQueue<messages::HapticSample>& samples() noexcept { return samples_; }
     [[nodiscard]] rt::SpscQueue<tooth::BrickSnapshot>& bricks() noexcept { return bricks_; }
+
+    /// Before a run: nothing has been counted and nobody has asked it to stop. While none is under way.
+    void beginRun() noexcept;
+    /// Ends a run after the tick under way. Any thread, also a signal handler.
+    void requestStop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+    [[nodiscard]] bool stopRequested() const noexcept { return stop_.load(std::memory_order_relaxed); }
+    /// After a run: leaves the device without force.
+    void release() noexcept;
+
+    [[nodiscard]] const LoopSettings& settings() const noexcept { return settings_; }
+    [[nodiscard]] const TickCount& count() const noexcept { return count_; }  ///< while no run is under way
+    [[nodiscard]] const device::Device& device() const noexcept { return *device_; }
+    [[nodiscard]] double periodS() const noexcept { return periodS_; }
 
   private:
     template <class T>
@@ -115,9 +116,9 @@ class HapticLoop {
     };
     struct Restore {
         tooth::StateDelta change;
+        std::uint16_t tooth = 0;
         std::size_t next = 0;
     };
-    class Statistics;
     void takeStagedCommands() noexcept;
     void took(std::uint64_t number) noexcept;
     [[nodiscard]] device::Reading readDevice(double elapsedS) noexcept;
@@ -126,9 +127,7 @@ class HapticLoop {
     void restoreSome() noexcept;
     void publish(const device::Reading& reading, const force::Touch& touch, const force::ForceCommand& command,
                  const rt::Beat& beat, std::int64_t workNs, std::int64_t cutNs) noexcept;
-    std::uint64_t ticksFor(double durationS);
-    std::string tickOnClock(std::uint64_t ticks, bool realTime, const Attend& attend);
-    RunReport finish(const Statistics& statistics, std::string scheduling) const;
+    void handOver() noexcept;
 
     LoopSettings settings_;
     double periodS_;
@@ -155,7 +154,7 @@ class HapticLoop {
     std::atomic<bool> stop_{false};
     bool started_ = false;
     std::uint64_t tick_ = 0;
-    std::uint64_t ticksDone_ = 0, lateTicks_ = 0, missedPeriods_ = 0;
+    TickCount count_;
 };
 
 }  // namespace handpiece::loop

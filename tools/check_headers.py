@@ -88,7 +88,8 @@ def room_of(name):
 def privacy():
     """Breaches of what is public and what is private to its room."""
     public = {h.relative_to(SRC).as_posix() for h in headers()}
-    breaches, wanted = [], set()
+    breaches = [f"src/{name}: is listed as public, and is not there" for name in sorted(public) if not (SRC / name).is_file()]
+    wanted = set()
     for folder in ("src", "apps", "examples"):
         for path in sorted(p for p in (ROOT / folder).rglob("*") if p.suffix in (".h", ".cpp")):
             here = path.relative_to(SRC if folder == "src" else ROOT).as_posix()

@@ -35,6 +35,19 @@ THIRD_PARTY = {
     r"boost/": r"src/handpiece/devices/drivers/\w+\.cpp|tests/devices/.*",
     r"Q[A-Z]\w+$|QtWidgets/|QtCore/|QtTest/": r"(apps|tests)/desktop/.*",
 }
+# The window's folders: whom each includes beside itself. A feature includes these and no other feature, unless a line
+# here says so: ("features/result", "features/exercise").
+DESKTOP = {
+    "widgets": set(),
+    "picture": {"widgets"},
+    "framework": {"widgets", "picture"},
+    "work": {"framework"},
+    "features": {"widgets", "picture", "framework", "work"},
+    "program": {"widgets", "picture", "framework", "work", "features"},
+}
+BETWEEN_FEATURES = set()
+# The applications stand beside each other.
+APPS = {"cli": {"studies"}, "studies": set(), "desktop": set()}
 # What the tick's own rooms never include: anything that locks, waits, prints or touches a file. The device drivers and
 # the loop's runner may talk to base/rt, which hides the threads.
 TICK_FORBIDDEN = re.compile(r"<(mutex|shared_mutex|condition_variable|future|thread|iostream|fstream|sstream|filesystem|regex|unistd\.h|pthread\.h|stdio\.h)>")
@@ -80,9 +93,40 @@ def cycle(uses):
     return None
 
 
+def app_breach(rel, name):
+    """Why this file of an application (relative to the root) may not include this; None where it may."""
+    own, target = re.match(r"apps/(\w+)/(.*)", rel), re.match(r"(cli|desktop|studies)/(.*)", name)
+    if not own or not target:
+        return None
+    app, other = own.group(1), target.group(1)
+    if app != other:
+        return None if other in APPS[app] else f"{rel}: apps/{app} includes {name}"
+    if app != "desktop":
+        return None
+    mine, theirs = own.group(2).split("/"), target.group(2).split("/")
+    if mine[0] != theirs[0]:
+        return None if theirs[0] in DESKTOP[mine[0]] else f"{rel}: {mine[0]} includes {name}"
+    if mine[0] == "features" and len(mine) > 2 and mine[:2] != theirs[:2] and ("/".join(mine[:2]), "/".join(theirs[:2])) not in BETWEEN_FEATURES:
+        return f"{rel}: a feature includes another ({name})"
+    return None
+
+
+def self_test():
+    """What must be found, and what must not: a check that finds nothing looks like one that passes."""
+    wrong = [("desktop/framework/docks.cpp", "desktop/features/sound/sound_control.h"), ("desktop/features/sound/a.cpp", "desktop/features/view/view_bar.h"),
+             ("desktop/features/sound/a.cpp", "desktop/program/host.h"), ("desktop/widgets/theme.cpp", "desktop/framework/job.h"),
+             ("desktop/work/simulator.cpp", "desktop/features/features.h"), ("cli/cli.cpp", "desktop/framework/job.h"),
+             ("desktop/program/host.cpp", "cli/inputs.h"), ("studies/csv.cpp", "cli/inputs.h"), ("studies/csv.cpp", "desktop/framework/job.h")]
+    right = [("desktop/features/sound/a.cpp", "desktop/features/sound/b.h"), ("desktop/features/features.cpp", "desktop/features/sound/b.h"),
+             ("desktop/features/sound/a.cpp", "desktop/work/simulator.h"), ("desktop/program/host.cpp", "desktop/features/features.h"),
+             ("cli/cli.cpp", "studies/csv.h"), ("cli/cli.cpp", "handpiece/base/core/error.h")]
+    missed = [f"{rel} -> {name}" for rel, name in wrong if not app_breach("apps/" + rel, name)]
+    return [f"self-test: not found: {line}" for line in missed] + [f"self-test: {app_breach('apps/' + rel, name)}" for rel, name in right if app_breach("apps/" + rel, name)]
+
+
 def main():
     uses = rooms()
-    breaches = []
+    breaches = self_test()
     loop = cycle(uses)
     if loop:
         breaches.append("rooms use each other in a circle: " + " -> ".join(loop))
@@ -97,7 +141,9 @@ def main():
                 mine = own.group(1)
                 if target.group(0)[10:-1] != mine and target.group(2) not in uses.get(mine, set()):
                     breaches.append(f"{rel}: includes {name}, but {mine} does not use '{target.group(2)}'")
-            if own and re.match(r"(cli|desktop)/", name):
+            if breach := app_breach(rel, name):
+                breaches.append(breach)
+            if own and re.match(r"(cli|desktop|studies)/", name):
                 breaches.append(f"{rel}: a room includes an application ({name})")
             if own and own.group(1).startswith("tick/") and rel not in OFF_TICK and TICK_FORBIDDEN.fullmatch(include):
                 breaches.append(f"{rel}: the tick includes {include}")

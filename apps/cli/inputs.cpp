@@ -110,19 +110,4 @@ std::unique_ptr<contact::Method> makeMethod(const std::string& name, const Metho
                       "choose one of " + names);
 }
 
-double distanceToTouch(contact::Method& method, const core::Pose& start, const core::Vec3& direction, double reachMm) {
-    // Conservative advancement: the distance there is can always be gone.
-    core::Pose pose = start;
-    double gone = 0.0;
-    for (int i = 0; i < 1000 && gone < reachMm; ++i) {
-        const contact::Depth depth = method.depth(pose);
-        if (depth.depthMm >= -1e-7) return gone;
-        gone += std::max(-depth.depthMm, 1e-7);
-        pose.positionMm = start.positionMm + gone * direction;
-    }
-    if (gone < reachMm) return gone;
-    throw core::Error(fmt::format("the bur meets nothing within {:.1f} mm", reachMm), "motion",
-                      "the tooth's crown must point to +z: see docs/user-guide.md");
-}
-
 }  // namespace handpiece::cli

@@ -49,9 +49,4 @@ void addContactOptions(Command& command, ContactInputs& inputs, const MethodRegi
                                                           std::shared_ptr<const tooth::Tooth> tooth,
                                                           std::shared_ptr<const instrument::Bur> bur);
 
-/// The lowest point of a straight drop: how far (mm) the bur at `start` can move along `direction` until it touches.
-/// Throws core::Error when it meets nothing within `reachMm`.
-[[nodiscard]] double distanceToTouch(contact::Method& method, const core::Pose& start, const core::Vec3& direction,
-                                     double reachMm);
-
 }  // namespace handpiece::cli

@@ -22,6 +22,7 @@
 #include "handpiece/model/instrument/turbine.h"
 #include "handpiece/model/tooth/cut_state_file.h"
 #include "handpiece/senses/view/renderer.h"
+#include "studies/built_in_motion.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::cli {
@@ -233,7 +234,7 @@ void restBur(Subject& subject, const simulation::SimulationSetup& station, const
     const Vec3 middle = subject.bounds.centre();
     pose.positionMm = {middle.x(), middle.y(), subject.bounds.max.z() + 2.0};
     const double reach = subject.bounds.size().z() + 4.0;
-    pose.positionMm.z() -= distanceToTouch(*method, pose, -Vec3::UnitZ(), reach);
+    pose.positionMm.z() -= studies::distanceToTouch(*method, pose, -Vec3::UnitZ(), reach);
     subject.moment.contact = true;
     subject.moment.contactPointMm = pose.positionMm;
 }

@@ -13,7 +13,6 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "cli/run_device.h"
-#include "cli/run_output.h"
 #include "cli/sound_track.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/case/attempt.h"
@@ -26,6 +25,7 @@
 #include "studies/excavation.h"
 #include "studies/progress_bar.h"
 #include "studies/run_job.h"
+#include "studies/run_output.h"
 
 namespace handpiece::cli {
 namespace {
@@ -305,7 +305,7 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
     std::optional<RunDevice> device;
     if (isGuarded(o.device)) device.emplace(o.device);
     const tooth::PrepareSettings prepare = prepareSettingsOf(o.inputs);
-    Outputs outputs(o.out);  // before the work: a folder that cannot be written is told at once
+    studies::Outputs outputs(o.out);  // before the work: a folder that cannot be written is told at once
     // An attempt goes on where it was.
     std::optional<cases::OpenAttempt> before;
     if (cases::isAttempt(o.inputs.tooth)) before = cases::openAttempt(o.inputs.tooth);
@@ -438,7 +438,7 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
     std::unique_ptr<device::Motion> motion;
     if (isFile)
         motion = std::make_unique<device::Motion>(studies::readMotion(o.motion, settings.device.capability, o.rateHz));
-    Outputs outputs(o.out);  // before the work: a folder that cannot be written is told at once
+    studies::Outputs outputs(o.out);  // before the work: a folder that cannot be written is told at once
     const auto tooth = loadTooth(o.inputs);
     auto method = makeMethod(o.inputs.method, methods, tooth, loadBur(o.inputs.bur));
     const std::string methodName = method->name();
@@ -450,7 +450,7 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
     }
 
     const double duration = o.durationS > 0.0 ? o.durationS : motion->durationS();
-    RunTrace trace(outputs.path("trace.csv"), duration);
+    studies::RunTrace trace(outputs.path("trace.csv"), duration);
     std::optional<SoundTrack> sound;
     if (!o.sound.empty()) {
         const instrument::Instrument held = instrument::makeInstrument(o.inputs.bur);

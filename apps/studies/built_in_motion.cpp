@@ -2,6 +2,7 @@
 #include "studies/built_in_motion.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "handpiece/base/core/error.h"
 
@@ -112,6 +113,21 @@ device::Motion motionByName(std::string_view name, contact::Method& method, cons
         if (point) surface.push_back(point->positionMm);
     }
     return device::drag(surface, touch->orientation, kDown, options.depthMm, options.clearanceMm, options.speedMmS);
+}
+
+double distanceToTouch(contact::Method& method, const core::Pose& start, const core::Vec3& direction, double reachMm) {
+    // Conservative advancement: the distance there is can always be gone.
+    core::Pose pose = start;
+    double gone = 0.0;
+    for (int i = 0; i < 1000 && gone < reachMm; ++i) {
+        const contact::Depth depth = method.depth(pose);
+        if (depth.depthMm >= -1e-7) return gone;
+        gone += std::max(-depth.depthMm, 1e-7);
+        pose.positionMm = start.positionMm + gone * direction;
+    }
+    if (gone < reachMm) return gone;
+    throw core::Error(fmt::format("the bur meets nothing within {:.1f} mm", reachMm), "motion",
+                      "the tooth's crown must point to +z: see docs/user-guide.md");
 }
 
 }  // namespace handpiece::studies

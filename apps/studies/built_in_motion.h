@@ -19,6 +19,11 @@ namespace handpiece::studies {
 [[nodiscard]] std::optional<core::Pose> firstTouch(contact::Method& method, const core::Pose& start,
                                                    const core::Vec3& direction, double rangeMm);
 
+/// The lowest point of a straight drop: how far (mm) the bur at `start` can move along `direction` until it touches.
+/// Throws core::Error when it meets nothing within `reachMm`.
+[[nodiscard]] double distanceToTouch(contact::Method& method, const core::Pose& start, const core::Vec3& direction,
+                                     double reachMm);
+
 struct MotionOptions {
     double depthMm = 4.0;  ///< how far beyond the surface the hand intends to go
     double speedMmS = 10.0;

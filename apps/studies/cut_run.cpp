@@ -32,7 +32,7 @@ struct Due {
 
 /// The tooth that is left, as one closed surface and as a case of its own.
 void writeCut(const simulation::SimulationSetup& station, const cases::Case& toothCase, const tooth::StateDelta& state,
-              cli::Outputs& outputs, CutOutcome& outcome) {
+              Outputs& outputs, CutOutcome& outcome) {
     ProgressBar bar("shaping the cut tooth");
     const core::Progress progress = bar.listener();
     tooth::CutMirror mirror(station.tooth);
@@ -62,7 +62,7 @@ void writeCut(const simulation::SimulationSetup& station, const cases::Case& too
 /// What was cut, to go on with later.
 void writeAttempt(const simulation::SimulationSetup& station, const cases::Case& toothCase,
                   const tooth::StateDelta& state, const CutRunOptions& options, const CutOutcome& outcome,
-                  const cli::Outputs& outputs) {
+                  const Outputs& outputs) {
     cases::Attempt attempt;
     attempt.caseFile = core::wholePath(options.casePath);
     attempt.caseKey = cases::contentKey(toothCase);
@@ -130,7 +130,7 @@ device::Motion withTremor(const device::Motion& motion, double amplitudeMm, std:
 }
 
 CutOutcome runCut(const simulation::SimulationSetup& station, const cases::Case& toothCase, const RunSettings& settings,
-                  const device::Motion& motion, const CutRunOptions& options, cli::Outputs& outputs) {
+                  const device::Motion& motion, const CutRunOptions& options, Outputs& outputs) {
     const double duration = settings.durationS > 0.0 ? settings.durationS : motion.durationS();
     session::SessionInfo info;
     info.rateHz = settings.rateHz;
@@ -145,7 +145,7 @@ CutOutcome runCut(const simulation::SimulationSetup& station, const cases::Case&
                          {simulation::CutSession::Step::redo, options.redoAtS},
                          {simulation::CutSession::Step::reset, options.resetAtS}};
     CutOutcome outcome;
-    cli::RunTrace trace(outputs.path("trace.csv"), duration);
+    RunTrace trace(outputs.path("trace.csv"), duration);
     ProgressBar bar("cutting");
     const core::Progress progress = bar.listener();
     std::uint64_t lastTick = 0;

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/run_output.h"
 #include "handpiece/app/simulation/cut_session.h"
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "studies/run_job.h"
+#include "studies/run_output.h"
 
 namespace handpiece::studies {
 
@@ -39,7 +39,7 @@ struct CutOutcome {
 /// `outputs`.
 [[nodiscard]] CutOutcome runCut(const simulation::SimulationSetup& station, const cases::Case& toothCase,
                                 const RunSettings& settings, const device::Motion& motion, const CutRunOptions& options,
-                                cli::Outputs& outputs);
+                                Outputs& outputs);
 
 /// The motion with the pedal at `pedal` all the way and let go at its end.
 [[nodiscard]] device::Motion withPedal(const device::Motion& motion, double pedal);

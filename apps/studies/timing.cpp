@@ -10,8 +10,8 @@
 #include <limits>
 #include <thread>
 
-#include "cli/inputs.h"
 #include "handpiece/base/core/error.h"
+#include "studies/built_in_motion.h"
 
 namespace handpiece::studies {
 namespace {
@@ -54,7 +54,7 @@ core::Pose touchAt(contact::Method& method, const core::Box& bounds, const core:
     start.positionMm = {xyMm.x(), xyMm.y(), bounds.max.z() + 1.0};
     method.reset();
     const core::Vec3 down(0.0, 0.0, -1.0);
-    start.positionMm += cli::distanceToTouch(method, start, down, bounds.size().z() + 2.0) * down;
+    start.positionMm += distanceToTouch(method, start, down, bounds.size().z() + 2.0) * down;
     return start;
 }
 

@@ -16,11 +16,11 @@
 #include <atomic>
 #include <thread>
 
-#include "device/fidelity_box.h"
-#include "device/fidelity_words.h"
-#include "device/first_plug_in.h"
-#include "device/install.h"
-#include "device/profile_box.h"
+#include "desktop/features/device/fidelity_box.h"
+#include "desktop/features/device/fidelity_words.h"
+#include "desktop/features/device/first_plug_in.h"
+#include "desktop/features/device/profile_box.h"
+#include "desktop/widgets/notice_bar.h"
 #include "devices/drivers/gamepad_virtual.h"
 #include "handpiece/app/simulation/cut_session.h"
 #include "handpiece/app/simulation/session_player.h"
@@ -28,7 +28,6 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/rt/clock.h"
 #include "led_driver.h"
-#include "panels/notice_bar.h"
 #include "shell_support.h"
 
 namespace handpiece::desktop {
@@ -62,11 +61,7 @@ class DeviceWindowTest : public ShellTest {
         };
         return options;
     }
-    void startHere(const CommandLine& line = {}) {
-        startWithTooth(line);
-        if (::testing::Test::HasFatalFailure()) return;
-        installDeviceDialogs(window(), simulator(), host_->settings(), false);
-    }
+    void startHere(const CommandLine& line = {}) { startWithTooth(line); }
     [[nodiscard]] DeviceManager& hands() { return simulator().hands(); }
     [[nodiscard]] QAction* entry(const char* name) {
         return window().findChild<QAction*>(QStringLiteral("actionDevice_") + QLatin1String(name));
@@ -385,6 +380,7 @@ TEST_F(DeviceWindowTest, TheSchoolChoosesBelowThePerson) {
     const QString file = own_.filePath(QStringLiteral("school.toml"));
     core::writeFile(toPath(file), "[hand]\ndevice = \"openhaptics\"\nleft_handed = true\n");
     qputenv("HANDPIECE_SCHOOL_SETTINGS", file.toLocal8Bit());
+    Settings(options().folders.settingsFile).set(QStringLiteral("device/seen_openhaptics"), true);
     startHere();
     EXPECT_TRUE(waitFor([&] { return simulator().usedHand() != nullptr && !simulator().isBusy(); }));
     EXPECT_TRUE(hands().current()->profile().placing.leftHanded);

@@ -12,17 +12,17 @@
 #include <QToolButton>
 #include <set>
 
-#include "desktop/view/help_card.h"
-#include "exercise/exercise_feature.h"
-#include "exercise/exercise_panel.h"
+#include "desktop/features/drill/drill_bar.h"
+#include "desktop/features/drill/welcome_strip.h"
+#include "desktop/features/exercise/exercise_feature.h"
+#include "desktop/features/exercise/exercise_panel.h"
+#include "desktop/features/measure/measure_box.h"
+#include "desktop/features/measure/volume_bars.h"
+#include "desktop/picture/help_card.h"
+#include "desktop/widgets/notice_bar.h"
+#include "desktop/widgets/tooth_chart.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/record/session/session_reader.h"
-#include "panels/drill_bar.h"
-#include "panels/measure_box.h"
-#include "panels/notice_bar.h"
-#include "panels/tooth_chart.h"
-#include "panels/volume_bars.h"
-#include "panels/welcome_strip.h"
 #include "shell_support.h"
 
 namespace handpiece::desktop {
@@ -50,13 +50,14 @@ class ExerciseTest : public ShellTest {
         }));
         view()->showStandardView(view::StandardView::occlusal);
     }
+    [[nodiscard]] ExerciseFeature& feature() { return *window().findChild<ExerciseFeature*>(); }
     void startWith(const std::vector<std::string>& locked, const CommandLine& line = {}) {
         startWithTooth(line);
-        window().exercise().questions.student = [this](const QString&) {
+        feature().questions.student = [this](const QString&) {
             ++askedStudent_;
             return std::optional<QString>(student_);
         };
-        window().exercise().questions.lookOrGoOn = [this](const QString& student) {
+        feature().questions.lookOrGoOn = [this](const QString& student) {
             askedAbout_ = student;
             return choice_;
         };
@@ -108,7 +109,7 @@ TEST_F(ExerciseTest, TitleAndInstructionsStandInTheWindowInItsLanguageAsPlainTex
     EXPECT_FALSE(dock->isHidden());
     QCoreApplication::processEvents();
     EXPECT_EQ(view()->size(), picture);
-    window().openStarter({starter::ToothKind::upperIncisor, 4000});
+    openStarter({starter::ToothKind::upperIncisor, 4000});
     ASSERT_TRUE(waitFor([&] { return simulator().toothCase()->kind == "upper-incisor"; }));
     EXPECT_TRUE(dock->isHidden());
 }
@@ -134,7 +135,7 @@ class LockTest : public ExerciseTest {
             if (filter.contains(QLatin1String("html"))) open_.insert("score");
             return QString();
         };
-        window().exercise().questions.student = [](const QString&) { return std::nullopt; };
+        feature().questions.student = [](const QString&) { return std::nullopt; };
         window().setDetail(Detail::laboratory);
         QObject::connect(&closer_, &QTimer::timeout, [this] { closeDialogs(); });
         closer_.start(30);
@@ -179,7 +180,7 @@ class LockTest : public ExerciseTest {
             note("chart", chart->isVisible());
     }
     void tryCommands() {
-        for (QAction* command : window().actions().all()) {
+        for (QAction* command : window().commands().all()) {
             // They end what is being looked at; the replay has a walk of its own.
             if (command->objectName() == "actionQuit" || command->objectName() == "actionReplay") continue;
             command->trigger();

@@ -12,22 +12,22 @@
 #include <cmath>
 #include <cstdio>
 
-#include "panels/drill_bar.h"
-#include "panels/force_gauge.h"
-#include "panels/icon_factory.h"
-#include "panels/legend.h"
-#include "panels/measure_box.h"
-#include "panels/notice_bar.h"
-#include "panels/parameter_box.h"
-#include "panels/plot_panel.h"
-#include "panels/replay_bar.h"
-#include "panels/sound_control.h"
-#include "panels/status_line.h"
-#include "panels/theme.h"
-#include "panels/tooth_chart.h"
-#include "panels/view_bar.h"
-#include "panels/volume_bars.h"
-#include "panels/welcome_strip.h"
+#include "desktop/features/drill/drill_bar.h"
+#include "desktop/features/drill/parameter_box.h"
+#include "desktop/features/drill/welcome_strip.h"
+#include "desktop/features/measure/measure_box.h"
+#include "desktop/features/measure/plot_panel.h"
+#include "desktop/features/measure/volume_bars.h"
+#include "desktop/features/replay/replay_bar.h"
+#include "desktop/features/sound/sound_control.h"
+#include "desktop/features/view/view_bar.h"
+#include "desktop/widgets/force_gauge.h"
+#include "desktop/widgets/icon_factory.h"
+#include "desktop/widgets/legend.h"
+#include "desktop/widgets/notice_bar.h"
+#include "desktop/widgets/status_line.h"
+#include "desktop/widgets/theme.h"
+#include "desktop/widgets/tooth_chart.h"
 
 using namespace handpiece;
 using namespace handpiece::desktop;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <QtTest>
 
-#include "panels/notation.h"
+#include "desktop/widgets/notation.h"
 
 using namespace handpiece::desktop;
 

@@ -20,17 +20,16 @@
 #include <filesystem>
 #include <memory>
 
+#include "desktop/features/scan/histogram_view.h"
+#include "desktop/features/scan/placing_page.h"
+#include "desktop/features/scan/report_page.h"
+#include "desktop/features/scan/scan_wizard.h"
+#include "desktop/features/scan/slice_view.h"
+#include "desktop/features/scan/solid_view.h"
+#include "desktop/features/scan/tissue_page.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/case/case.h"
 #include "handpiece/scan/volume/write_scan.h"
-#include "scan/histogram_view.h"
-#include "scan/install.h"
-#include "scan/placing_page.h"
-#include "scan/report_page.h"
-#include "scan/scan_wizard.h"
-#include "scan/slice_view.h"
-#include "scan/solid_view.h"
-#include "scan/tissue_page.h"
 #include "shell_support.h"
 
 namespace handpiece::desktop {
@@ -577,7 +576,6 @@ class ScanInWindowTest : public ShellTest {};
 
 TEST_F(ScanInWindowTest, AFolderOfSlicesDroppedOnTheWindowOpensTheWizard) {
     startWithTooth();
-    installScanWizard(window());
     const QString folder = own_.filePath(QStringLiteral("slices"));
     volume::writeScan(toothVolume(), toPath(folder), volume::ScanFormat::png);
     drop(folder);
@@ -603,7 +601,6 @@ TEST_F(ScanInWindowTest, AFolderOfSlicesDroppedOnTheWindowOpensTheWizard) {
 
 TEST_F(ScanInWindowTest, CasesAndMeshesAreNoScans) {
     startWithTooth();
-    installScanWizard(window());
     const fs::path folder = toPath(own_.filePath(QStringLiteral("case")));
     cases::writeCase(eggTooth(starter::ToothKind::lowerFirstMolar), folder);
     drop(toQString(folder));

@@ -4,7 +4,7 @@
 
 #include <QTemporaryDir>
 
-#include "shell/application.h"
+#include "desktop/framework/application.h"
 
 int main(int argc, char** argv) {
     ::testing::InitGoogleTest(&argc, argv);

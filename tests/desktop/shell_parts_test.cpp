@@ -10,6 +10,11 @@
 #include <cmath>
 #include <fstream>
 
+#include "desktop/framework/application.h"
+#include "desktop/framework/language.h"
+#include "desktop/program/command_line.h"
+#include "desktop/program/run_statistics.h"
+#include "desktop/work/session_shelf.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/case/case_bytes.h"
@@ -18,11 +23,6 @@
 #include "handpiece/record/session/session_reader.h"
 #include "handpiece/senses/sound/player.h"
 #include "handpiece/tick/device/simulated_device.h"
-#include "shell/application.h"
-#include "shell/command_line.h"
-#include "shell/language.h"
-#include "shell/run_statistics.h"
-#include "shell/session_shelf.h"
 #include "shell_support.h"
 
 namespace handpiece::desktop {

@@ -1,25 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a person at work meets around the picture: it stays where it is, and what is told of the tooth is so.
 #include <QComboBox>
-#include <QFile>
 #include <QHeaderView>
 #include <QLabel>
 #include <QListView>
-#include <QRegularExpression>
 #include <QSet>
 #include <QSortFilterProxyModel>
 #include <QTableWidget>
 #include <fstream>
 
+#include "desktop/features/drill/bur_list.h"
+#include "desktop/features/drill/drill_bar.h"
+#include "desktop/features/drill/welcome_strip.h"
+#include "desktop/framework/job_strip.h"
+#include "desktop/widgets/force_gauge.h"
+#include "desktop/widgets/notice_bar.h"
+#include "desktop/widgets/press_words.h"
 #include "handpiece/app/input/pointer_controller.h"
 #include "handpiece/base/geometry/mesh_io.h"
-#include "panels/bur_list.h"
-#include "panels/drill_bar.h"
-#include "panels/force_gauge.h"
-#include "panels/notice_bar.h"
-#include "panels/press_words.h"
-#include "panels/welcome_strip.h"
-#include "shell/job_strip.h"
 #include "shell_support.h"
 
 namespace handpiece::desktop {
@@ -36,17 +34,6 @@ class PictureTest : public ShellTest {
         return {view()->mapTo(&window(), QPoint(0, 0)), view()->size()};
     }
     [[nodiscard]] NoticeBar* notices() { return window().findChild<NoticeBar*>(); }
-    /// Every id that the window has words for, from its source.
-    [[nodiscard]] static QSet<QString> noticeIds() {
-        QFile file(QStringLiteral(HANDPIECE_SOURCES "/apps/desktop/shell/main_window.cpp"));
-        if (!file.open(QIODevice::ReadOnly)) return {};
-        QSet<QString> ids;
-        static const QRegularExpression id(QStringLiteral("if \\(id == QLatin1String\\(\"([a-z-]+)\"\\)\\)"));
-        const QString text = QString::fromUtf8(file.readAll());
-        for (auto all = id.globalMatch(text); all.hasNext();)
-            ids << all.next().captured(1);
-        return ids;
-    }
     [[nodiscard]] double pulpMm3() {
         return simulator().sample().removedMm3[static_cast<std::size_t>(cases::Tissue::pulp)];
     }
@@ -55,7 +42,7 @@ class PictureTest : public ShellTest {
 TEST_F(PictureTest, NothingTheWindowTellsMovesThePicture) {
     startWithTooth();
     ASSERT_TRUE(idle());
-    const QSet<QString> ids = noticeIds();
+    const QStringList ids = noticeIds();
     ASSERT_GT(ids.size(), 25);
     const QString longText(400, QLatin1Char('w'));
     for (const QSize size : {QSize(1440, 900), QSize(1024, 700)}) {
@@ -69,14 +56,14 @@ TEST_F(PictureTest, NothingTheWindowTellsMovesThePicture) {
                 EXPECT_EQ(window().size(), size) << when.toStdString();
             };
             for (const QString& id : ids) {
-                window().tell(id, {longText, longText});
+                window().notices().tell(*noticeOf(id), {longText, longText});
                 EXPECT_TRUE(notices()->isVisible());
                 same(id);
                 notices()->remove(id);
                 same(id + QStringLiteral(" gone"));
             }
             for (const QString& id : ids)
-                window().tell(id, {longText, longText});
+                window().notices().tell(*noticeOf(id), {longText, longText});
             same(QStringLiteral("all notices"));
             notices()->clear();
             auto* welcome = window().findChild<WelcomeStrip*>();
@@ -94,7 +81,7 @@ TEST_F(PictureTest, NothingTheWindowTellsMovesThePicture) {
             same(QStringLiteral("long work"));
             job->end();
             window().tellSaved(QStringLiteral("/tmp/") + longText);
-            window().tell(QStringLiteral("pulp-exposed"));
+            window().notices().tell(Notice::pulpExposed);
             window().tellSaved(QStringLiteral("/tmp/") + longText);
             same(QStringLiteral("saved"));
             notices()->clear();
@@ -105,7 +92,7 @@ TEST_F(PictureTest, NothingTheWindowTellsMovesThePicture) {
 
 TEST_F(PictureTest, AMessageLiesOverThePictureAndAPressOnItCutsNothing) {
     startWithTooth();
-    window().tell(QStringLiteral("pulp-exposed"));
+    window().notices().tell(Notice::pulpExposed);
     (void)place();
     const QRect strip(notices()->mapTo(&window(), QPoint(0, 0)), notices()->size());
     EXPECT_TRUE(place().contains(strip));
@@ -140,7 +127,7 @@ TEST_F(PictureTest, AToothThatWasResetHasNoOpenPulp) {
     ASSERT_TRUE(waitFor([&] { return pulpMm3() > 1e-5; }));
     EXPECT_TRUE(waitFor([&] { return notices()->current() == QLatin1String("pulp-exposed"); }));
     // Another tooth has nothing of it.
-    window().openStarter({starter::ToothKind::upperIncisor, 4000});
+    openStarter({starter::ToothKind::upperIncisor, 4000});
     ASSERT_TRUE(waitFor([&] { return simulator().toothCase()->kind == "upper-incisor"; }));
     EXPECT_NE(notices()->current(), QLatin1String("pulp-exposed"));
 }

@@ -20,8 +20,9 @@
 #include <functional>
 #include <memory>
 
-#include "shell/error_dialog.h"
-#include "shell/host.h"
+#include "desktop/features/files/starter_feature.h"
+#include "desktop/framework/error_dialog.h"
+#include "desktop/program/host.h"
 #include "support/closed_meshes.h"
 
 namespace handpiece::desktop {
@@ -103,8 +104,9 @@ class ShellTest : public ::testing::Test {
     }
     [[nodiscard]] MainWindow& window() { return host_->window(); }
     [[nodiscard]] Simulator& simulator() { return host_->simulator(); }
+    void openStarter(const Starter& starter) { window().findChild<StarterFeature*>()->open(starter); }
     [[nodiscard]] ViewWidget* view() { return window().view(); }
-    [[nodiscard]] QAction* action(const char* name) { return window().actions()[name]; }
+    [[nodiscard]] QAction* action(const char* name) { return window().findChild<QAction*>(QLatin1String(name)); }
     [[nodiscard]] double removedMm3() {
         double sum = 0.0;
         for (const double v : simulator().sample().removedMm3)
@@ -151,7 +153,7 @@ class ShellTest : public ::testing::Test {
 
     QTemporaryDir own_;
     std::unique_ptr<Host> host_;
-    MainWindow::Questions::Unsaved answer_ = MainWindow::Questions::Unsaved::discard;
+    Questions::Unsaved answer_ = Questions::Unsaved::discard;
     /// Drops a file onto the window, as a file manager does.
     void drop(const QString& file) {
         QMimeData data;

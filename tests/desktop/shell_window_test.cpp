@@ -22,20 +22,21 @@
 #include <set>
 
 #include "cli/cli.h"
-#include "desktop/view/section_bar.h"
+#include "desktop/features/drill/drill_bar.h"
+#include "desktop/features/drill/parameter_box.h"
+#include "desktop/features/measure/measure_box.h"
+#include "desktop/features/measure/volume_bars.h"
+#include "desktop/features/replay/replay_bar.h"
+#include "desktop/features/replay/timeline.h"
+#include "desktop/features/sound/sound_control.h"
+#include "desktop/picture/section_bar.h"
+#include "desktop/widgets/force_gauge.h"
+#include "desktop/widgets/notice_bar.h"
 #include "handpiece/app/input/pointer_controller.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/record/session/session_reader.h"
-#include "panels/drill_bar.h"
-#include "panels/force_gauge.h"
-#include "panels/measure_box.h"
-#include "panels/notice_bar.h"
-#include "panels/parameter_box.h"
-#include "panels/replay_bar.h"
-#include "panels/timeline.h"
-#include "panels/volume_bars.h"
 #include "shell_support.h"
 
 namespace handpiece::desktop {
@@ -68,7 +69,7 @@ TEST_F(ShellTest, EveryCommandHasANameATooltipAKeyAndAPlaceInTheMenus) {
     for (QAction* top : window().menuBar()->actions())
         collect(top->menu(), inMenus);
     QSet<QString> names, keys;
-    for (QAction* action : window().actions().all()) {
+    for (QAction* action : window().commands().all()) {
         EXPECT_TRUE(inMenus.contains(action)) << qPrintable(action->objectName());
         EXPECT_FALSE(action->toolTip().isEmpty()) << qPrintable(action->objectName());
         EXPECT_FALSE(action->shortcut().isEmpty()) << qPrintable(action->objectName());
@@ -100,7 +101,7 @@ TEST_F(ShellTest, CutsUndoesSavesAndResumes) {
     ASSERT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !simulator().isUnsaved(); }));
     EXPECT_EQ(asked_, 0);
     // Another tooth in between: nothing is unsaved, so nobody asks.
-    window().openStarter({starter::ToothKind::upperIncisor, 4000});
+    openStarter({starter::ToothKind::upperIncisor, 4000});
     ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "upper-incisor"; }));
     action("actionResume")->trigger();
     ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "lower-first-molar"; }));
@@ -123,12 +124,12 @@ TEST_F(ShellTest, AsksBeforeUnsavedWorkGoes) {
     EXPECT_LT((simulator().startPose().positionMm - start.positionMm).norm(), 1e-9);
     EXPECT_LT(simulator().startPose().orientation.angularDistance(start.orientation), 1e-6);
     ASSERT_TRUE(cut());
-    answer_ = MainWindow::Questions::Unsaved::cancel;
+    answer_ = Questions::Unsaved::cancel;
     window().close();
     EXPECT_EQ(asked_, 1);
     EXPECT_TRUE(window().isVisible());
     EXPECT_GT(removedMm3(), 0.0);
-    answer_ = MainWindow::Questions::Unsaved::save;
+    answer_ = Questions::Unsaved::save;
     file_ = own_.filePath("at-closing.handpiece");
     window().close();
     EXPECT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !window().isVisible(); }));
@@ -142,7 +143,7 @@ TEST_F(ShellTest, WhatIsOpenedWhileAnotherToothIsOpeningIsNotLost) {
         cases::writeCase(made, place);
     }
     startWithTooth();
-    window().openStarter({starter::ToothKind::upperIncisor, 4000});
+    openStarter({starter::ToothKind::upperIncisor, 4000});
     ASSERT_TRUE(simulator().isBusy());
     window().openFile(toQString(first));
     window().openFile(toQString(last));
@@ -163,7 +164,7 @@ TEST_F(ShellTest, WhatIsOpenedWhileAnotherToothIsOpeningIsNotLost) {
     EXPECT_EQ(asked_, 0);
     view()->showStandardView(view::StandardView::occlusal);
     ASSERT_TRUE(cut());
-    answer_ = MainWindow::Questions::Unsaved::cancel;
+    answer_ = Questions::Unsaved::cancel;
     simulator().exportStl(at("left.stl"));
     ASSERT_TRUE(simulator().isBusy());
     window().openFile(toQString(first));
@@ -448,13 +449,13 @@ TEST_F(ShellTest, AsksForWorkThatWaitsBehindAReplay) {
     ASSERT_TRUE(cut());
     action("actionReplay")->trigger();
     ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
-    answer_ = MainWindow::Questions::Unsaved::cancel;
-    window().openStarter({starter::ToothKind::upperIncisor, 4000});
+    answer_ = Questions::Unsaved::cancel;
+    openStarter({starter::ToothKind::upperIncisor, 4000});
     EXPECT_EQ(asked_, 1);
     EXPECT_EQ(simulator().mode(), Simulator::Mode::replay);
-    answer_ = MainWindow::Questions::Unsaved::save;
+    answer_ = Questions::Unsaved::save;
     file_ = own_.filePath("behind.handpiece");
-    window().openStarter({starter::ToothKind::upperIncisor, 4000});
+    openStarter({starter::ToothKind::upperIncisor, 4000});
     ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "upper-incisor"; }));
     EXPECT_TRUE(fs::exists(toPath(file_)));
     EXPECT_EQ(asked_, 2);
@@ -631,14 +632,14 @@ TEST_F(ShellTest, ThePapersForceAndHullAreChosenInItsLayout) {
 TEST_F(ShellTest, AHintGoesByItselfAndCoversNothing) {
     startWithTooth();
     auto* notices = window().findChild<NoticeBar*>();
-    window().hintMs = 300;
+    window().notices().hintMs = 300;
     file_ = own_.filePath("kept.png");
     action("actionPicture")->trigger();
     EXPECT_EQ(notices->current(), "saved");
     EXPECT_TRUE(waitFor([&] { return notices->current().isEmpty(); }));
     // Beside something of the work it stands in the status bar.
-    window().hintMs = 1500;
-    window().tell("stalled");
+    window().notices().hintMs = 1500;
+    window().notices().tell(Notice::stalled);
     file_ = own_.filePath("other.png");
     action("actionPicture")->trigger();
     EXPECT_EQ(notices->current(), "stalled");
@@ -646,8 +647,8 @@ TEST_F(ShellTest, AHintGoesByItselfAndCoversNothing) {
     EXPECT_TRUE(waitFor([&] { return notices->current().isEmpty(); }));
     EXPECT_TRUE(waitFor([&] { return window().statusBar()->currentMessage().isEmpty(); }));
     // A warning stays until somebody has read it.
-    window().hintMs = 100;
-    window().tell("neighbour-touched");
+    window().notices().hintMs = 100;
+    window().notices().tell(Notice::neighbourTouched);
     QTest::qWait(400);
     EXPECT_EQ(notices->current(), "neighbour-touched");
 }

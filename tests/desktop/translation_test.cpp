@@ -15,7 +15,7 @@
 #include <map>
 #include <set>
 
-#include "shell/language.h"
+#include "desktop/framework/language.h"
 #include "shell_support.h"
 
 // These speak of the global namespace.
@@ -129,7 +129,7 @@ TEST(Translation, KnowsEveryTextOfTheProgram) {
     QProcess lupdate;
     lupdate.setProcessChannelMode(QProcess::SeparateChannels);
     lupdate.start(QStringLiteral(HANDPIECE_LUPDATE),
-                  {"-I", apps, "-I", apps + "/desktop", apps + "/desktop", "-locations", "none", "-ts", fresh});
+                  {"-I", apps, apps + "/desktop", "-locations", "none", "-ts", fresh});
     ASSERT_TRUE(lupdate.waitForFinished(60000)) << lupdate.errorString().toStdString();
     ASSERT_EQ(lupdate.exitCode(), 0);
     // A warning is a text whose context nobody knows: the program would look it up elsewhere, and find nothing.
@@ -137,7 +137,7 @@ TEST(Translation, KnowsEveryTextOfTheProgram) {
     const Ts now = readTs(fresh);
     ASSERT_GT(now.entries.size(), 700u);
     const char* remedy =
-        ": in the repository's root, lupdate -I apps -I apps/desktop apps/desktop -locations none "
+        ": in the repository's root, lupdate -I apps apps/desktop -locations none "
         "-no-obsolete -ts apps/desktop/translations/handpiece_ja.ts, then translate";
     for (const auto& [key, entry] : now.entries)
         EXPECT_TRUE(japanese().entries.count(key)) << said(key) << " has no translation" << remedy;
@@ -157,7 +157,7 @@ TEST(Translation, IsWhatTheProgramLooksUp) {
             << said(key);
     }
     ASSERT_TRUE(language.use(QStringLiteral("en")));
-    EXPECT_EQ(QCoreApplication::translate("Actions", "Undo"), QStringLiteral("Undo"));
+    EXPECT_EQ(QCoreApplication::translate("Commands", "Undo"), QStringLiteral("Undo"));
 }
 
 /// What a person may read or hear of a widget and its children; the place it stands at -> the text.
@@ -250,7 +250,7 @@ TEST_F(JapaneseWindow, WithoutItsFileSpeaksEnglish) {
     host_.reset();
     bringTranslationsBack();
     EXPECT_TRUE(language.use(QStringLiteral("ja")));
-    EXPECT_EQ(QCoreApplication::translate("Actions", "Undo"), QStringLiteral("元に戻す"));
+    EXPECT_EQ(QCoreApplication::translate("Commands", "Undo"), QStringLiteral("元に戻す"));
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 #include <QPushButton>
 #include <algorithm>
 
-#include "desktop/view/help_card.h"
-#include "desktop/view/key_bindings_dialog.h"
-#include "desktop/view/latency.h"
+#include "desktop/picture/help_card.h"
+#include "desktop/picture/key_bindings_dialog.h"
+#include "desktop/picture/latency.h"
 
 namespace handpiece::desktop {
 namespace {

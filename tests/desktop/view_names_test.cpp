@@ -96,7 +96,7 @@ TEST_F(NamesTest, TheGuideTellsEveryName) {
         const QString name = command->objectName();
         if (name.isEmpty() || name.startsWith(QLatin1String("_q_"))) continue;
         EXPECT_TRUE(known(name)) << "not in docs/desktop-objects.md: " << name.toStdString();
-        if (!window().actions().all().contains(const_cast<QAction*>(command))) continue;
+        if (!window().commands().all().contains(const_cast<QAction*>(command))) continue;
         const QString row = QStringLiteral("| `%1` | %2 | %3 | %4 |")
                                 .arg(name, plain(command->text()), plain(command->statusTip()),
                                      command->shortcut().toString(QKeySequence::PortableText));

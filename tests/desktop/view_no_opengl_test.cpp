@@ -5,7 +5,7 @@
 #include <QSignalSpy>
 #include <QTest>
 
-#include "desktop/view/view_widget.h"
+#include "desktop/picture/view_widget.h"
 #include "view_ball.h"
 
 namespace handpiece::desktop {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "desktop/view/view_widget.h"
+#include "desktop/picture/view_widget.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "desktop/view/overlay.h"
+#include "desktop/picture/overlay.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "view_ball.h"
 

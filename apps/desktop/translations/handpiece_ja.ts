@@ -2,7 +2,7 @@
 <!DOCTYPE TS>
 <TS version="2.1" language="ja_JP" sourcelanguage="en">
 <context>
-    <name>Actions</name>
+    <name>Commands</name>
     <message>
         <source>Open case...</source>
         <translation>症例を開く...</translation>
@@ -1570,6 +1570,26 @@
         <source>Handed in: %1, with its tooth. Recordings in it: %2 (%3 MB). Recordings that are no longer there, or too large together, and not in it: %4.</source>
         <translation>提出しました: %1（歯を含む）。含まれる記録: %2（%3 MB）。もう存在しないか、合計が大きすぎて含まれない記録: %4。</translation>
     </message>
+    <message>
+        <source>Reconnect</source>
+        <translation>再接続</translation>
+    </message>
+    <message>
+        <source>Try again</source>
+        <translation>もう一度</translation>
+    </message>
+    <message>
+        <source>Bring it back</source>
+        <translation>復元する</translation>
+    </message>
+    <message>
+        <source>Not now</source>
+        <translation>後で</translation>
+    </message>
+    <message>
+        <source>Save as...</source>
+        <translation>名前を付けて保存...</translation>
+    </message>
 </context>
 <context>
     <name>Overlay</name>
@@ -3064,6 +3084,30 @@
         <source>Whose work is it? Your code, given by your teacher: no name. It is asked once; change it with File, Your code.</source>
         <translation>誰の結果ですか。先生から渡されたコードを入力してください（名前は不要です）。尋ねるのは一度だけで、「ファイル」の「受講者コード」で変更できます。</translation>
     </message>
+    <message>
+        <source>Exercise</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>The code your teacher gave you: File, Your code...</source>
+        <translation>先生から渡されたコード：ファイル、受講者コード...</translation>
+    </message>
+    <message>
+        <source>Attempt with its tooth (*.handpiece)</source>
+        <translation>作業と歯 (*.handpiece)</translation>
+    </message>
+    <message>
+        <source>Your code</source>
+        <translation>受講者コード</translation>
+    </message>
+    <message>
+        <source>Code (given by your teacher). No name: recordings and saved attempts carry it.</source>
+        <translation>先生から渡されたコード。記録と保存した作業に入るため、名前は書かないでください。</translation>
+    </message>
+    <message>
+        <source>Code: %1</source>
+        <translation>コード：%1</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::ExercisePanel</name>
@@ -3774,158 +3818,81 @@
     </message>
 </context>
 <context>
-    <name>handpiece::desktop::MainWindow</name>
+    <name>handpiece::desktop::DeviceFeature</name>
+    <message>
+        <source>Device by name or serial</source>
+        <translation>名前またはシリアル番号で装置を選ぶ</translation>
+    </message>
+    <message>
+        <source>One of %1; a colon; then the device&apos;s name, serial or number.
+openhaptics:Left Arm, or forcedimension:2</source>
+        <translation>%1 のどれか、コロン、続けて装置の名前・シリアル番号・番号を入力します。
+例: openhaptics:Left Arm、forcedimension:2</translation>
+    </message>
+    <message>
+        <source>Mouse and keyboard</source>
+        <translation>マウスとキーボード</translation>
+    </message>
+    <message>
+        <source>Always there</source>
+        <translation>いつでも使えます</translation>
+    </message>
+    <message>
+        <source>Gives force</source>
+        <translation>力を出します</translation>
+    </message>
+    <message>
+        <source>Moves the handpiece, gives no force</source>
+        <translation>ハンドピースを動かします。力は出しません</translation>
+    </message>
+    <message>
+        <source>%1: not there</source>
+        <translation>%1：ありません</translation>
+    </message>
+    <message>
+        <source>Looking...</source>
+        <translation>探しています...</translation>
+    </message>
+    <message>
+        <source>being opened</source>
+        <translation>開いています</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::Docks</name>
     <message>
         <source>Show or hide this panel</source>
         <translation>このパネルの表示を切り替えます</translation>
     </message>
+</context>
+<context>
+    <name>handpiece::desktop::DrillFeature</name>
     <message>
         <source>Drill</source>
         <translation>ドリル</translation>
-    </message>
-    <message>
-        <source>View</source>
-        <translation>表示</translation>
     </message>
     <message>
         <source>Pressure</source>
         <translation>押す力</translation>
     </message>
     <message>
-        <source>Measure</source>
-        <translation>計測</translation>
-    </message>
-    <message>
-        <source>Removed</source>
-        <translation>切削量</translation>
-    </message>
-    <message>
-        <source>Sound</source>
-        <translation>音</translation>
-    </message>
-    <message>
         <source>Parameters</source>
         <translation>パラメーター</translation>
     </message>
     <message>
-        <source>Plots</source>
-        <translation>グラフ</translation>
+        <source>A bur of your own</source>
+        <translation>自作のバー</translation>
     </message>
     <message>
-        <source>File bar</source>
-        <translation>ファイルバー</translation>
+        <source>Surfaces (*.stl *.ply *.obj)</source>
+        <translation>曲面 (*.stl *.ply *.obj)</translation>
     </message>
-    <message>
-        <source>Starter tooth&apos;s resolution</source>
-        <translation>練習用の歯の解像度</translation>
-    </message>
-    <message>
-        <source>The starter tooth at one of the five resolutions of the paper&apos;s Table II</source>
-        <translation>練習用の歯を、論文の表 II にある 5 つの解像度から選んで開きます</translation>
-    </message>
-    <message>
-        <source>Starter tooth</source>
-        <translation>練習用の歯</translation>
-    </message>
-    <message>
-        <source>%1 % · %2 faces</source>
-        <translation>%1 % · %2 面</translation>
-    </message>
-    <message>
-        <source>Tool bar</source>
-        <translation>ツールバー</translation>
-    </message>
-    <message>
-        <source>Views</source>
-        <translation>視点</translation>
-    </message>
-    <message>
-        <source>Standard dental views</source>
-        <translation>歯科の標準的な視点</translation>
-    </message>
-    <message>
-        <source>Mixing ratio of motor and cutting sound</source>
-        <translation>モーター音と切削音の割合</translation>
-    </message>
-    <message>
-        <source>Mixing ratio: left the motor alone, right the cutting alone</source>
-        <translation>割合：左端はモーター音だけ、右端は切削音だけです</translation>
-    </message>
-    <message>
-        <source>Motor</source>
-        <translation>モーター</translation>
-    </message>
-    <message>
-        <source>Cutting</source>
-        <translation>切削</translation>
-    </message>
-    <message>
-        <source>File</source>
-        <translation>ファイル</translation>
-    </message>
-    <message>
-        <source>Open this starter tooth</source>
-        <translation>この練習用の歯を開きます</translation>
-    </message>
+</context>
+<context>
+    <name>handpiece::desktop::FilesFeature</name>
     <message>
         <source>Open recent</source>
         <translation>最近使ったファイル</translation>
-    </message>
-    <message>
-        <source>Edit</source>
-        <translation>編集</translation>
-    </message>
-    <message>
-        <source>Panels</source>
-        <translation>パネル</translation>
-    </message>
-    <message>
-        <source>Show or hide this bar</source>
-        <translation>このバーの表示を切り替えます</translation>
-    </message>
-    <message>
-        <source>Colours of the window</source>
-        <translation>ウィンドウの配色</translation>
-    </message>
-    <message>
-        <source>Language</source>
-        <translation>言語</translation>
-    </message>
-    <message>
-        <source>As the desktop</source>
-        <translation>デスクトップに合わせる</translation>
-    </message>
-    <message>
-        <source>The language of the window</source>
-        <translation>ウィンドウの言語</translation>
-    </message>
-    <message>
-        <source>Tools</source>
-        <translation>ツール</translation>
-    </message>
-    <message>
-        <source>Help</source>
-        <translation>ヘルプ</translation>
-    </message>
-    <message>
-        <source>Save what was cut?</source>
-        <translation>切削した歯を保存しますか？</translation>
-    </message>
-    <message>
-        <source>The tooth has been cut since it was saved.</source>
-        <translation>保存した後に、さらに切削しています。</translation>
-    </message>
-    <message>
-        <source>Without saving, it can only be watched in the recording, not cut on.</source>
-        <translation>保存しないと、記録を見ることはできますが、切削の続きはできません。</translation>
-    </message>
-    <message>
-        <source>Bring it back</source>
-        <translation>復元する</translation>
-    </message>
-    <message>
-        <source>Save as...</source>
-        <translation>名前を付けて保存...</translation>
     </message>
     <message>
         <source>Open case</source>
@@ -3944,14 +3911,6 @@
         <translation>曲面 (*.stl *.ply *.obj);;すべてのファイル (*)</translation>
     </message>
     <message>
-        <source>Open recording</source>
-        <translation>記録を開く</translation>
-    </message>
-    <message>
-        <source>Recordings (*.h5);;All files (*)</source>
-        <translation>記録 (*.h5);;すべてのファイル (*)</translation>
-    </message>
-    <message>
         <source>Export STL</source>
         <translation>STL に書き出す</translation>
     </message>
@@ -3960,8 +3919,28 @@
         <translation>STL (*.stl)</translation>
     </message>
     <message>
-        <source>Open it again</source>
-        <translation>もう一度開きます</translation>
+        <source>Folder for the tissues</source>
+        <translation>組織の書き出し先フォルダー</translation>
+    </message>
+    <message>
+        <source>Write the report</source>
+        <translation>レポートを書き出す</translation>
+    </message>
+    <message>
+        <source>Page to print (*.html)</source>
+        <translation>印刷用ページ (*.html)</translation>
+    </message>
+    <message>
+        <source>Save what was cut?</source>
+        <translation>切削した歯を保存しますか？</translation>
+    </message>
+    <message>
+        <source>The tooth has been cut since it was saved.</source>
+        <translation>保存した後に、さらに切削しています。</translation>
+    </message>
+    <message>
+        <source>Without saving, it can only be watched in the recording, not cut on.</source>
+        <translation>保存しないと、記録を見ることはできますが、切削の続きはできません。</translation>
     </message>
     <message>
         <source>Save the attempt</source>
@@ -3980,52 +3959,39 @@
         <translation>画像 (*.png)</translation>
     </message>
     <message>
-        <source>Write the report</source>
-        <translation>レポートを書き出す</translation>
+        <source>Open it again</source>
+        <translation>もう一度開きます</translation>
     </message>
     <message>
-        <source>Page to print (*.html)</source>
-        <translation>印刷用ページ (*.html)</translation>
+        <source>Mend...</source>
+        <translation>修復...</translation>
     </message>
     <message>
-        <source>Keep the recording</source>
-        <translation>記録を保存</translation>
+        <source>Close holes and turn faces; nothing is written unasked</source>
+        <translation>穴を閉じ、面の向きをそろえます。指示なしには何も書き込みません</translation>
     </message>
     <message>
-        <source>Recording (*.h5)</source>
-        <translation>記録 (*.h5)</translation>
+        <source>%1-mended.stl</source>
+        <translation>%1-修復済み.stl</translation>
     </message>
     <message>
-        <source>Save the plots</source>
-        <translation>グラフを保存</translation>
+        <source>Save the mended surface</source>
+        <translation>修復した表面の保存</translation>
     </message>
     <message>
-        <source>Choose a tooth</source>
-        <translation>歯を選ぶ</translation>
+        <source>Surfaces (*.stl *.ply)</source>
+        <translation>表面 (*.stl *.ply)</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::LayoutFeature</name>
+    <message>
+        <source>As the desktop</source>
+        <translation>デスクトップに合わせる</translation>
     </message>
     <message>
-        <source>Notation</source>
-        <translation>歯式</translation>
-    </message>
-    <message>
-        <source>How teeth are numbered</source>
-        <translation>歯の番号の付け方を選びます</translation>
-    </message>
-    <message>
-        <source>FDI (ISO 3950)</source>
-        <translation>FDI (ISO 3950)</translation>
-    </message>
-    <message>
-        <source>Universal</source>
-        <translation>ユニバーサル</translation>
-    </message>
-    <message>
-        <source>Palmer</source>
-        <translation>パーマー（ジグモンディ）</translation>
-    </message>
-    <message>
-        <source>The teeth in full colour come with the program. Others are opened as cases.</source>
-        <translation>灰色でない歯はプログラムに付属しています。ほかの歯は症例として開いてください。</translation>
+        <source>The language of the window</source>
+        <translation>ウィンドウの言語</translation>
     </message>
     <message>
         <source>About Handpiece</source>
@@ -4043,37 +4009,86 @@
         <source>nothing yet</source>
         <translation>まだありません</translation>
     </message>
+</context>
+<context>
+    <name>handpiece::desktop::MeasureFeature</name>
+    <message>
+        <source>Measure</source>
+        <translation>計測</translation>
+    </message>
+    <message>
+        <source>Removed</source>
+        <translation>切削量</translation>
+    </message>
+    <message>
+        <source>Plots</source>
+        <translation>グラフ</translation>
+    </message>
     <message>
         <source>Pulp</source>
         <translation>歯髄</translation>
     </message>
     <message>
-        <source>A bur of your own</source>
-        <translation>自作のバー</translation>
+        <source>Save the plots</source>
+        <translation>グラフを保存</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::RecoveryFeature</name>
+    <message>
+        <source>Work that ended without saving</source>
+        <translation>保存されずに終わった作業</translation>
     </message>
     <message>
-        <source>Surfaces (*.stl *.ply *.obj)</source>
-        <translation>曲面 (*.stl *.ply *.obj)</translation>
+        <source>There is none: everything was saved or given up.</source>
+        <translation>ありません。すべて保存または破棄されています。</translation>
     </message>
     <message>
-        <source>Sound of a real drill</source>
-        <translation>実際のドリルの音</translation>
+        <source>Choose what to bring back:</source>
+        <translation>復元するものを選んでください：</translation>
     </message>
     <message>
-        <source>Sound (*.wav)</source>
-        <translation>音声 (*.wav)</translation>
+        <source>The newest first</source>
+        <translation>新しい順に並んでいます</translation>
     </message>
     <message>
-        <source>No sound</source>
-        <translation>音なし</translation>
+        <source>%1, %2</source>
+        <translation>%1、%2</translation>
     </message>
     <message>
-        <source>Muted</source>
-        <translation>消音中</translation>
+        <source>Bring it back</source>
+        <translation>復元する</translation>
     </message>
     <message>
-        <source>Nothing is played: %1</source>
-        <translation>音を再生していません：%1</translation>
+        <source>Open the tooth as it was when the program ended</source>
+        <translation>プログラムが終わったときの状態で歯を開きます</translation>
+    </message>
+    <message>
+        <source>Give it up</source>
+        <translation>破棄する</translation>
+    </message>
+    <message>
+        <source>It is not offered again; its recording stays for a while</source>
+        <translation>次からは表示されません。記録はしばらく残ります</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ReplayFeature</name>
+    <message>
+        <source>Open recording</source>
+        <translation>記録を開く</translation>
+    </message>
+    <message>
+        <source>Recordings (*.h5);;All files (*)</source>
+        <translation>記録 (*.h5);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Keep the recording</source>
+        <translation>記録を保存</translation>
+    </message>
+    <message>
+        <source>Recording (*.h5)</source>
+        <translation>記録 (*.h5)</translation>
     </message>
     <message>
         <source>Stroke begins</source>
@@ -4117,7 +4132,7 @@
     </message>
     <message>
         <source>Reset</source>
-        <translation>最初の状態に戻す</translation>
+        <translation>初期化</translation>
     </message>
     <message>
         <source>Settings changed</source>
@@ -4128,68 +4143,98 @@
         <translation>異常</translation>
     </message>
     <message>
+        <source>Gone on with</source>
+        <translation>作業の再開</translation>
+    </message>
+    <message>
         <source>End</source>
         <translation>終了</translation>
     </message>
+</context>
+<context>
+    <name>handpiece::desktop::Shelves</name>
     <message>
-        <source>Mouse</source>
-        <translation>マウス</translation>
+        <source>File bar</source>
+        <translation>ファイルバー</translation>
     </message>
     <message>
-        <source>Simulated device</source>
-        <translation>模擬デバイス</translation>
+        <source>Tool bar</source>
+        <translation>ツールバー</translation>
     </message>
     <message>
-        <source>The code your teacher gave you: File, Your code...</source>
-        <translation>先生から渡されたコード：ファイル、受講者コード...</translation>
+        <source>File</source>
+        <translation>ファイル</translation>
     </message>
     <message>
-        <source>Not now</source>
-        <translation>後で</translation>
+        <source>Edit</source>
+        <translation>編集</translation>
     </message>
     <message>
-        <source>Work that ended without saving</source>
-        <translation>保存されずに終わった作業</translation>
+        <source>View</source>
+        <translation>表示</translation>
     </message>
     <message>
-        <source>There is none: everything was saved or given up.</source>
-        <translation>ありません。すべて保存または破棄されています。</translation>
+        <source>Tools</source>
+        <translation>ツール</translation>
     </message>
     <message>
-        <source>Choose what to bring back:</source>
-        <translation>復元するものを選んでください：</translation>
+        <source>Sound</source>
+        <translation>音</translation>
     </message>
     <message>
-        <source>The newest first</source>
-        <translation>新しい順に並んでいます</translation>
+        <source>Device</source>
+        <translation>デバイス</translation>
     </message>
     <message>
-        <source>%1, %2</source>
-        <translation>%1、%2</translation>
+        <source>Help</source>
+        <translation>ヘルプ</translation>
     </message>
     <message>
-        <source>Open the tooth as it was when the program ended</source>
-        <translation>プログラムが終わったときの状態で歯を開きます</translation>
+        <source>Panels</source>
+        <translation>パネル</translation>
     </message>
     <message>
-        <source>Give it up</source>
-        <translation>破棄する</translation>
+        <source>Colours of the window</source>
+        <translation>ウィンドウの配色</translation>
     </message>
     <message>
-        <source>It is not offered again; its recording stays for a while</source>
-        <translation>次からは表示されません。記録はしばらく残ります</translation>
+        <source>Language</source>
+        <translation>言語</translation>
     </message>
     <message>
-        <source>Your code</source>
-        <translation>受講者コード</translation>
+        <source>Show or hide this bar</source>
+        <translation>このバーの表示を切り替えます</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::SoundFeature</name>
+    <message>
+        <source>Sound</source>
+        <translation>音</translation>
     </message>
     <message>
-        <source>Code (given by your teacher). No name: recordings and saved attempts carry it.</source>
-        <translation>先生から渡されたコード。記録と保存した作業に入るため、名前は書かないでください。</translation>
+        <source>Mixing ratio of motor and cutting sound</source>
+        <translation>モーター音と切削音の割合</translation>
     </message>
     <message>
-        <source>Code: %1</source>
-        <translation>コード：%1</translation>
+        <source>Mixing ratio: left the motor alone, right the cutting alone</source>
+        <translation>割合：左端はモーター音だけ、右端は切削音だけです</translation>
+    </message>
+    <message>
+        <source>Motor</source>
+        <translation>モーター</translation>
+    </message>
+    <message>
+        <source>Cutting</source>
+        <translation>切削</translation>
+    </message>
+    <message>
+        <source>Sound of a real drill</source>
+        <translation>実際のドリルの音</translation>
+    </message>
+    <message>
+        <source>Sound (*.wav)</source>
+        <translation>音声 (*.wav)</translation>
     </message>
     <message>
         <source>Reading the sound</source>
@@ -4200,90 +4245,82 @@
         <translation>サウンドカードがありません。</translation>
     </message>
     <message>
-        <source>Device</source>
-        <translation>デバイス</translation>
+        <source>No sound</source>
+        <translation>音を出しません</translation>
     </message>
     <message>
-        <source>Reconnect</source>
-        <translation>再接続</translation>
+        <source>Muted</source>
+        <translation>消音中</translation>
     </message>
     <message>
-        <source>Try again</source>
-        <translation>もう一度</translation>
+        <source>Nothing is played: %1</source>
+        <translation>音を再生していません：%1</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::StarterFeature</name>
+    <message>
+        <source>Starter tooth</source>
+        <translation>練習用の歯</translation>
     </message>
     <message>
-        <source>Mouse and keyboard</source>
-        <translation>マウスとキーボード</translation>
+        <source>%1 % · %2 faces</source>
+        <translation>%1 % · %2 面</translation>
     </message>
     <message>
-        <source>Always there</source>
-        <translation>いつでも使えます</translation>
+        <source>Open this starter tooth</source>
+        <translation>この練習用の歯を開きます</translation>
     </message>
     <message>
-        <source>Gives force</source>
-        <translation>力を出します</translation>
+        <source>Starter tooth&apos;s resolution</source>
+        <translation>練習用の歯の解像度</translation>
     </message>
     <message>
-        <source>Moves the handpiece, gives no force</source>
-        <translation>ハンドピースを動かします。力は出しません</translation>
+        <source>The starter tooth at one of the five resolutions of the paper&apos;s Table II</source>
+        <translation>練習用の歯を、論文の表 II にある 5 つの解像度から選んで開きます</translation>
     </message>
     <message>
-        <source>%1: not there</source>
-        <translation>%1：ありません</translation>
+        <source>Choose a tooth</source>
+        <translation>歯を選ぶ</translation>
     </message>
     <message>
-        <source>Looking...</source>
-        <translation>探しています...</translation>
+        <source>Notation</source>
+        <translation>歯式</translation>
     </message>
     <message>
-        <source>being opened</source>
-        <translation>開いています</translation>
+        <source>How teeth are numbered</source>
+        <translation>歯の番号の付け方を選びます</translation>
     </message>
     <message>
-        <source>Mend...</source>
-        <translation>修復...</translation>
+        <source>FDI (ISO 3950)</source>
+        <translation>FDI (ISO 3950)</translation>
     </message>
     <message>
-        <source>Close holes and turn faces; nothing is written unasked</source>
-        <translation>穴を閉じ、面の向きをそろえます。指示なしには何も書き込みません</translation>
+        <source>Universal</source>
+        <translation>ユニバーサル</translation>
     </message>
     <message>
-        <source>%1-mended.stl</source>
-        <translation>%1-修復済み.stl</translation>
+        <source>Palmer</source>
+        <translation>パーマー（ジグモンディ）</translation>
     </message>
     <message>
-        <source>Save the mended surface</source>
-        <translation>修復した表面の保存</translation>
+        <source>The teeth in full colour come with the program. Others are opened as cases.</source>
+        <translation>灰色でない歯はプログラムに付属しています。ほかの歯は症例として開いてください。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ViewFeature</name>
+    <message>
+        <source>View</source>
+        <translation>表示</translation>
     </message>
     <message>
-        <source>Surfaces (*.stl *.ply)</source>
-        <translation>表面 (*.stl *.ply)</translation>
+        <source>Views</source>
+        <translation>視点</translation>
     </message>
     <message>
-        <source>Gone on with</source>
-        <translation>作業の再開</translation>
-    </message>
-    <message>
-        <source>Folder for the tissues</source>
-        <translation>組織の書き出し先フォルダー</translation>
-    </message>
-    <message>
-        <source>Exercise</source>
-        <translation>課題</translation>
-    </message>
-    <message>
-        <source>Device by name or serial</source>
-        <translation>名前またはシリアル番号で装置を選ぶ</translation>
-    </message>
-    <message>
-        <source>One of %1; a colon; then the device&apos;s name, serial or number.
-openhaptics:Left Arm, or forcedimension:2</source>
-        <translation>%1 のどれか、コロン、続けて装置の名前・シリアル番号・番号を入力します。
-例: openhaptics:Left Arm、forcedimension:2</translation>
-    </message>
-    <message>
-        <source>Hand in</source>
-        <translation>提出</translation>
+        <source>Standard dental views</source>
+        <translation>歯科の標準的な視点</translation>
     </message>
 </context>
 <context>
@@ -5724,6 +5761,14 @@ openhaptics:Left Arm, or forcedimension:2</source>
     <message>
         <source>Handing in</source>
         <translation>提出しています</translation>
+    </message>
+    <message>
+        <source>Mouse</source>
+        <translation>マウス</translation>
+    </message>
+    <message>
+        <source>Simulated device</source>
+        <translation>模擬デバイス</translation>
     </message>
 </context>
 <context>

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "desktop/features/features.h"
+
+#include <vector>
+
+#include "desktop/features/device/device_feature.h"
+#include "desktop/features/drill/drill_feature.h"
+#include "desktop/features/exercise/exercise_feature.h"
+#include "desktop/features/files/files_feature.h"
+#include "desktop/features/files/recovery_feature.h"
+#include "desktop/features/files/starter_feature.h"
+#include "desktop/features/measure/measure_feature.h"
+#include "desktop/features/replay/replay_feature.h"
+#include "desktop/features/scan/scan_feature.h"
+#include "desktop/features/sound/sound_feature.h"
+#include "desktop/features/view/layout_feature.h"
+#include "desktop/features/view/view_feature.h"
+#include "desktop/work/simulator.h"
+
+namespace handpiece::desktop {
+
+void installFeatures(const FeatureContext& context) {
+    MainWindow& window = context.window;
+    Simulator& simulator = context.simulator;
+    std::vector<Feature*> features;
+    const auto add = [&features](Feature* feature) { features.push_back(feature); };
+    // In the order in which they are asked about a file, and hear of a tooth: first the picture has it.
+    add(new StarterFeature(context));
+    add(new RecoveryFeature(context));
+    add(new ViewFeature(context));
+    add(new ExerciseFeature(context));
+    add(new LayoutFeature(context));
+    add(new ReplayFeature(context));
+    add(new MeasureFeature(context));
+    add(new DrillFeature(context));
+    add(new SoundFeature(context));
+    add(new DeviceFeature(context));
+    add(new ScanFeature(context));
+    add(new FilesFeature(context));  // it opens whatever the others leave
+    const auto refresh = [&window, &simulator] { window.refresh(simulator.permissions()); };
+    const auto showTick = [features, refresh] {
+        for (Feature* feature : features)
+            feature->showTick();
+        refresh();
+    };
+    const auto showDocument = [features, showTick] {
+        for (Feature* feature : features)
+            feature->showDocument();
+        showTick();
+    };
+    QObject* first = features.front();  // with it the window ends
+    QObject::connect(&simulator, &Simulator::documentChanged, first, showDocument);
+    QObject::connect(&simulator, &Simulator::ticked, first, showTick);
+    QObject::connect(&simulator, &Simulator::jobStarted, first, refresh);
+    QObject::connect(&simulator, &Simulator::jobEnded, first, refresh);
+    window.begin();
+    showDocument();
+}
+
+}  // namespace handpiece::desktop

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Opening, saving, exports, pictures, reports; what the window's title says, and the work that goes on beside it.
+
+#include <functional>
+
+#include "desktop/framework/feature.h"
+
+class QMenu;
+
+namespace handpiece::desktop {
+
+class FilesFeature : public Feature {
+    Q_OBJECT
+  public:
+    enum class Command { openCase, openStl, resume, save, saveAs, stl, tissues, picture, report, quit };
+    explicit FilesFeature(const FeatureContext& context);
+    void showDocument() override;
+
+  private:
+    void connectCommands();
+    void connectJobs();
+    void connectMessages();
+    void enableCommands();
+    void leave(std::function<void()> then);
+    [[nodiscard]] Questions::Unsaved askUnsaved();
+    void resumeLast();
+    void save(bool underNewName, std::function<void()> then = {});
+    void takeSaved(const QString& file);
+    void writePicture();
+    void listRecent();
+    void showTitle();
+    void offerToMend(ErrorDialog* dialog);
+    void mend();
+
+    CommandSet<Command> commands_;
+    QMenu* recent_;
+    QString lastOpened_;  ///< or tried to
+};
+
+}  // namespace handpiece::desktop

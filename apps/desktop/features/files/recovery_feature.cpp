@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "desktop/features/files/recovery_feature.h"
+
+#include <QDialog>
+#include <QDialogButtonBox>
+#include <QFileInfo>
+#include <QLabel>
+#include <QListWidget>
+#include <QLocale>
+#include <QPushButton>
+#include <QVBoxLayout>
+
+#include "desktop/widgets/notation.h"
+#include "desktop/work/simulator.h"
+
+namespace handpiece::desktop {
+namespace {
+
+using Command = RecoveryFeature::Command;
+constexpr CommandOf<Command> kCommands[] = {
+    {Command::recover, "actionRecover", QT_TRANSLATE_NOOP("Commands", "Recover..."),
+     QT_TRANSLATE_NOOP("Commands", "Bring back, or give up, work that ended without saving"), "recent", "Ctrl+Shift+R",
+     in(Shelf::file, 7)},
+};
+
+QString titleOf(const SessionNote& note) {
+    if (note.attemptFile.isEmpty())
+        for (const starter::ToothKindInfo& info : starter::toothKinds())
+            if (note.starter == QLatin1String(info.name.data(), static_cast<qsizetype>(info.name.size())))
+                return toothName(info.fdiNumber);
+    return note.title;
+}
+
+}  // namespace
+
+RecoveryFeature::RecoveryFeature(const FeatureContext& context)
+    : Feature(context), commands_(window_.commands(), kCommands) {
+    on(commands_[Command::recover], [this] { choose(); });
+    window_.commands().enableWhile(commands_[Command::recover], [this] { return !simulator_.isBusy(); });
+    connect(&window_, &MainWindow::greet, this, &RecoveryFeature::greet);
+    connect(&window_.notices(), &Notices::remedyChosen, this, [this](Notice notice) {
+        if (notice == Notice::crashed && !crashed_.empty()) recover(crashed_.front());
+    });
+}
+
+void RecoveryFeature::greet() {
+    Notices& notices = window_.notices();
+    if (!settings_.setAside().isEmpty()) notices.tell(Notice::settingsBroken, {settings_.setAside()});
+    crashed_ = simulator_.crashed();
+    if (!crashed_.empty()) notices.tell(Notice::crashed, {titleOf(crashed_.front().note)});
+}
+
+void RecoveryFeature::recover(const Crashed& crashed) {
+    window_.whenMayLeave([this, crashed] { simulator_.recover(crashed); });
+}
+
+void RecoveryFeature::choose() {
+    crashed_ = simulator_.crashed();
+    auto* dialog = new QDialog(&window_);
+    dialog->setObjectName(QStringLiteral("recoverDialog"));
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->setWindowTitle(tr("Work that ended without saving"));
+    auto* column = new QVBoxLayout(dialog);
+    auto* text = new QLabel(crashed_.empty() ? tr("There is none: everything was saved or given up.")
+                                             : tr("Choose what to bring back:"));
+    column->addWidget(text);
+    auto* list = new QListWidget;
+    list->setObjectName(QStringLiteral("recoverList"));
+    list->setAccessibleName(tr("Work that ended without saving"));
+    list->setToolTip(tr("The newest first"));
+    for (const Crashed& crashed : crashed_)
+        list->addItem(tr("%1, %2").arg(
+            titleOf(crashed.note),
+            QLocale().toString(QFileInfo(toQString(crashed.session)).lastModified(), QLocale::ShortFormat)));
+    list->setCurrentRow(0);
+    list->setVisible(!crashed_.empty());
+    column->addWidget(list);
+    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
+    auto* back = buttons->addButton(tr("Bring it back"), QDialogButtonBox::AcceptRole);
+    back->setObjectName(QStringLiteral("recoverBack"));
+    back->setToolTip(tr("Open the tooth as it was when the program ended"));
+    auto* forget = buttons->addButton(tr("Give it up"), QDialogButtonBox::DestructiveRole);
+    forget->setObjectName(QStringLiteral("recoverForget"));
+    forget->setToolTip(tr("It is not offered again; its recording stays for a while"));
+    for (QPushButton* button : {back, forget})
+        button->setEnabled(!crashed_.empty());
+    column->addWidget(buttons);
+    const auto chosen = [this, list]() -> std::optional<Crashed> {
+        const auto row = static_cast<std::size_t>(list->currentRow());
+        return row < crashed_.size() ? std::optional(crashed_[row]) : std::nullopt;
+    };
+    connect(buttons, &QDialogButtonBox::rejected, dialog, &QDialog::reject);
+    connect(buttons, &QDialogButtonBox::accepted, dialog, [this, dialog, chosen] {
+        const std::optional<Crashed> one = chosen();
+        dialog->accept();
+        window_.notices().takeBack(End::crashSettled);
+        if (one) recover(*one);
+    });
+    connect(forget, &QPushButton::clicked, dialog, [this, list, chosen, back, forget] {
+        const std::optional<Crashed> one = chosen();
+        if (!one) return;
+        simulator_.forget(*one);
+        crashed_.erase(crashed_.begin() + list->currentRow());
+        delete list->takeItem(list->currentRow());
+        window_.notices().takeBack(End::crashSettled);
+        for (QPushButton* button : {back, forget})
+            button->setEnabled(!crashed_.empty());
+    });
+    dialog->open();
+}
+
+}  // namespace handpiece::desktop

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The starter teeth: by the menu, by the chart of the mouth, by resolution.
+
+#include "desktop/framework/feature.h"
+#include "desktop/work/documents.h"
+
+class QComboBox;
+
+namespace handpiece::desktop {
+
+class StarterFeature : public Feature {
+    Q_OBJECT
+  public:
+    enum class Command { choose };
+    explicit StarterFeature(const FeatureContext& context);
+    /// Asks about unsaved work first.
+    void open(const Starter& starter);
+
+  private:
+    void fillMenu();
+    void addResolutions();
+    void choose();
+
+    CommandSet<Command> commands_;
+    QComboBox* resolution_;
+};
+
+}  // namespace handpiece::desktop

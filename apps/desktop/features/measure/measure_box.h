@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What is measured: depth, distance, dentine over the pulp; the load, the depth stop, the section.
+
+#include <QWidget>
+#include <optional>
+
+#include "desktop/widgets/detail.h"
+#include "handpiece/app/exercise/permissions.h"
+#include "handpiece/senses/measure/pulp_light.h"
+
+class QCheckBox;
+class QComboBox;
+class QDoubleSpinBox;
+class QLabel;
+class QPushButton;
+class QSlider;
+class QToolButton;
+
+namespace handpiece::desktop {
+
+class TrafficLight;
+
+/// [measureBox]. Lengths in millimetres, loads in newtons.
+class MeasureBox : public QWidget {
+    Q_OBJECT
+  public:
+    enum class Orientation { buccolingual, mesiodistal, horizontal };
+    Q_ENUM(Orientation)
+    static constexpr double kMinLoadN = 0.1, kMaxLoadN = 3.0, kMaxStopMm = 9.9;
+
+    explicit MeasureBox(QWidget* parent = nullptr);
+
+    // Readouts; nothing shows a dash.
+    void setDepth(const std::optional<double>& depthMm);
+    void setCalliper(const std::optional<double>& distanceMm);
+    /// Dentine left over the pulp. `exposed`: the pulp is open.
+    void setLeftOverPulp(const std::optional<double>& leftMm, bool exposed = false);
+    /// Of its lamps.
+    void setPulpLimits(const measure::PulpLimits& limits) { pulpLimits_ = limits; }
+
+    // Controls; setters tell nobody.
+    void setLoad(double loadN);
+    /// 0: off.
+    void setDepthStop(double stopMm);
+    void setSection(bool on, MeasureBox::Orientation orientation, double offsetMm);
+    /// How far the section may move [mm].
+    void setSectionRange(double leastMm, double mostMm);
+    void setCalliperActive(bool active);
+    void setPermissions(const exercise::Permissions& permissions);
+    /// A real device presses itself: no load to set.
+    void setLoadShown(bool shown);
+    void setDetail(Detail detail);
+
+  signals:
+    void loadChanged(double loadN);
+    void depthStopChanged(double stopMm);
+    void calliperToggled(bool on);
+    void sectionChanged(bool on, MeasureBox::Orientation orientation, double offsetMm);
+
+  private:
+    measure::PulpLimits pulpLimits_;
+    void showLoad();
+    void tellSection();
+
+    QLabel *depth_, *calliper_, *left_, *leftWords_, *depthCaption_, *calliperCaption_, *leftCaption_;
+    TrafficLight* light_;
+    QToolButton* calliperButton_;
+    QWidget* loadRow_;
+    QLabel *loadCaption_, *loadValue_;
+    QSlider* load_;
+    QCheckBox* stopOn_;
+    QDoubleSpinBox* stop_;
+    QCheckBox* sectionOn_;
+    QComboBox* orientation_;
+    QSlider* offset_;
+    QDoubleSpinBox* offsetValue_;
+    QLabel* locked_;
+    Detail detail_ = Detail::practice;
+    double loadN_ = 1.0, offsetMm_ = 0.0;
+};
+
+}  // namespace handpiece::desktop

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "desktop/framework/application.h"
+
+#include "handpiece/base/core/any_error.h"
+
+namespace handpiece::desktop {
+
+bool Application::notify(QObject* receiver, QEvent* event) {
+    try {
+        return QApplication::notify(receiver, event);
+    } catch (const std::exception& error) {
+        if (!whenThrown) throw;
+        whenThrown(core::asError(error));
+        return true;
+    }
+}
+
+}  // namespace handpiece::desktop

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "desktop/picture/strip_stack.h"
+
+#include <QEvent>
+#include <QLayout>
+#include <QWidget>
+#include <algorithm>
+
+namespace handpiece::desktop {
+
+namespace {
+
+constexpr int kSide = 12, kBetween = 6, kWidest = 760;
+
+}  // namespace
+
+StripStack::StripStack(QWidget* picture) : QObject(picture), picture_(picture) {
+    picture_->installEventFilter(this);
+}
+
+void StripStack::add(QWidget* strip) {
+    const bool shown = !strip->isHidden();
+    strip->setParent(picture_);
+    // A press on a message is none on the tooth under it.
+    strip->setAttribute(Qt::WA_NoMousePropagation);
+    strip->setCursor(Qt::ArrowCursor);
+    strip->setVisible(shown);
+    strip->installEventFilter(this);
+    strips_ << strip;
+    place();
+}
+
+void StripStack::setTop(int pixels) {
+    if (pixels == top_) return;
+    top_ = pixels;
+    place();
+}
+
+bool StripStack::eventFilter(QObject* watched, QEvent* event) {
+    switch (event->type()) {
+        case QEvent::Resize:
+            if (watched == picture_) place();
+            break;
+        case QEvent::ShowToParent:
+        case QEvent::HideToParent:
+        case QEvent::LayoutRequest:
+            if (watched != picture_) place();
+            break;
+        default:
+            break;
+    }
+    return QObject::eventFilter(watched, event);
+}
+
+void StripStack::place() {
+    const int width = std::min(picture_->width() - 2 * kSide, kWidest);
+    int y = top_;
+    for (QWidget* strip : strips_) {
+        if (strip->isHidden()) continue;
+        if (strip->layout()) strip->layout()->activate();
+        const int height = strip->hasHeightForWidth() ? strip->heightForWidth(width) : strip->sizeHint().height();
+        strip->setGeometry((picture_->width() - width) / 2, y, width, height);
+        strip->raise();
+        y += height + kBetween;
+    }
+}
+
+}  // namespace handpiece::desktop

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tools on the picture, and what of them is allowed.
+#include <algorithm>
+#include <utility>
+
+#include "desktop/picture/view_state.h"
+
+namespace handpiece::desktop {
+namespace {
+
+constexpr double kMirrorAcross = 0.3, kMirrorDown = 0.2;  // of the picture: where the mirror comes out
+
+using exercise::Operation;
+
+std::optional<Operation> operationOf(Tool tool) {
+    switch (tool) {
+        case Tool::calliper:
+            return Operation::calliper;
+        case Tool::depth:
+            return Operation::depthTool;
+        case Tool::pulp:
+            return Operation::pulpTool;
+        case Tool::section:
+            return Operation::section;
+        case Tool::mirror:
+            return Operation::mirror;
+        default:
+            return std::nullopt;
+    }
+}
+
+Operation operationOf(Measurement::Kind kind) {
+    return kind == Measurement::Kind::distance ? Operation::calliper
+           : kind == Measurement::Kind::depth  ? Operation::depthTool
+                                               : Operation::pulpTool;
+}
+
+}  // namespace
+
+void ViewWidget::setTool(Tool tool) {
+    State& s = *state_;
+    if (const auto needs = operationOf(tool); needs && s.tooth && !s.may(*needs)) tool = Tool::drill;
+    if (tool != Tool::drill && !s.tooth) tool = Tool::drill;
+    if (tool == s.tool) return;
+    s.end();
+    s.tool = tool;
+    s.calliperStartMm.reset();
+    s.pointerMm.reset();
+    s.reading.reset();
+    if (s.cross) s.pointer = s.cross = std::nullopt;
+    // Where no mouse points, the keys do.
+    if (s.measures() && !s.pointer) s.putCross({s.viewport().width / 2.0, s.viewport().height / 2.0});
+    if (s.hand) s.hand->freeze(tool != Tool::drill);
+    s.probe->wantThinnest(tool == Tool::pulp);
+    if (tool == Tool::section && !s.section) setSection(s.lastSection);
+    if (tool == Tool::mirror && !s.mirrorCentreMm) setMirrorShown(true);
+    s.updateCursor();
+    s.wish();
+    update();
+    emit toolChanged(tool);
+}
+Tool ViewWidget::tool() const {
+    return state_->tool;
+}
+
+void ViewWidget::setCompare(bool compare) {
+    State& s = *state_;
+    if (compare && !s.may(Operation::compare)) compare = false;
+    if (compare == s.compare) return;
+    s.end();
+    s.compare = compare;
+    if (s.tooth) s.turnHalf();
+    s.eyeMoved();
+    emit compareChanged(compare);
+}
+bool ViewWidget::isComparing() const {
+    return state_->compare;
+}
+
+void ViewWidget::setSection(std::optional<SectionPlace> place) {
+    State& s = *state_;
+    if (place && (!s.tooth || !s.may(Operation::section))) place.reset();
+    if (place) {
+        if (!std::exchange(s.sectionPlaced, true)) place->offsetMm = s.bounds.centre()[axisAcross(place->direction)];
+        const int axis = axisAcross(place->direction);
+        place->offsetMm = std::clamp(place->offsetMm, s.bounds.min[axis], s.bounds.max[axis]);
+        s.lastSection = *place;
+    }
+    if (place == s.section) return;
+    s.section = place;
+    s.probe->setPlane(place ? std::optional(planeOf(*place)) : std::nullopt);
+    s.layOut();
+    s.wish();
+    update();
+    if (!place && s.tool == Tool::section) setTool(Tool::drill);
+    emit sectionChanged(place.has_value());
+}
+std::optional<SectionPlace> ViewWidget::section() const {
+    return state_->section;
+}
+
+void ViewWidget::setMirrorShown(bool shown) {
+    State& s = *state_;
+    if (shown == s.mirrorCentreMm.has_value() || (shown && !s.tooth)) return;
+    if (shown && !s.may(Operation::mirror)) {
+        emit mirrorChanged(false);
+        return;
+    }
+    s.mirrorCentreMm.reset();
+    if (shown) {
+        // Over the tooth's far side in the picture, where the handpiece is not: there it shows what one cannot see.
+        const view::Viewport port = s.viewport();
+        const view::Ray ray = view::rayThrough(s.camera, port, {kMirrorAcross * port.width, kMirrorDown * port.height});
+        const core::Vec3 forward = s.camera.forward(), centre = s.eyeBounds.centre();
+        const double behind = 0.25 * s.eyeBounds.size().dot(forward.cwiseAbs());
+        const double depth = forward.dot(centre - s.camera.eyeMm) + behind;
+        s.mirrorCentreMm = s.camera.eyeMm + ray.direction * (depth / ray.direction.dot(forward));
+    }
+    s.wish();
+    update();
+    if (!shown && s.tool == Tool::mirror) setTool(Tool::drill);
+    emit mirrorChanged(shown);
+}
+bool ViewWidget::isMirrorShown() const {
+    return state_->mirrorCentreMm.has_value();
+}
+
+void ViewWidget::clearMeasurements() {
+    state_->measurements.clear();
+    state_->calliperStartMm.reset();
+    state_->reading.reset();
+    update();
+}
+
+void ViewWidget::setPulpLimits(const measure::PulpLimits& limits) {
+    state_->pulpLimits = limits;
+    update();
+}
+
+void ViewWidget::setPermissions(const exercise::Permissions& permissions) {
+    State& s = *state_;
+    s.permissions = permissions;
+    std::erase_if(s.measurements, [&s](const Measurement& one) { return !s.allows(operationOf(one.kind)); });
+    if (const auto needs = operationOf(s.tool); needs && !s.allows(*needs)) setTool(Tool::drill);
+    if (!s.allows(Operation::section)) setSection(std::nullopt);
+    if (!s.allows(Operation::compare)) setCompare(false);
+    if (!s.allows(Operation::mirror)) setMirrorShown(false);
+    if (!s.allows(Operation::depthStop)) setStop(std::nullopt);
+    s.wish();
+    update();
+}
+const exercise::Permissions& ViewWidget::permissions() const {
+    return state_->permissions;
+}
+
+bool ViewWidget::State::may(Operation operation) {
+    if (permissions.locks(operation)) emit widget->refused(operation);
+    return allows(operation);
+}
+
+}  // namespace handpiece::desktop

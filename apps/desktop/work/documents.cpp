@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "desktop/work/documents.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "handpiece/app/exercise/permissions.h"
+#include "handpiece/app/simulation/session_player.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/senses/surface/brick_source.h"
+#include "handpiece/senses/surface/closed_surface.h"
+
+namespace handpiece::desktop {
+namespace {
+
+namespace fs = std::filesystem;
+
+void takeBur(LoadedTooth& loaded, simulation::SimulationSettings& settings, const std::string& bur,
+             const std::string& cuttingParameters) {
+    instrument::Instrument made = instrument::makeInstrument(bur, {}, cuttingParameters);
+    settings.bur = std::move(made.bur);
+    settings.cuttingParameters = std::move(made.cuttingParameters);
+    loaded.bur = bur;
+}
+
+/// What an attempt was cut with. A bur out of a file that is gone by now is no reason not to open it.
+void takeInstruments(LoadedTooth& loaded, simulation::SimulationSettings& settings, const LoadRequest& request,
+                     const cases::Attempt* attempt) {
+    loaded.drive = request.drive;
+    loaded.speedRpm = request.speedRpm;
+    const cases::Exercise* exercise = loaded.toothCase->exercise ? &*loaded.toothCase->exercise : nullptr;
+    const std::string otherwise = exercise::firstBur(exercise, request.bur);
+    std::string bur = otherwise, cuttingParameters;
+    if (attempt) {
+        const auto& drives = instrument::drives();
+        if (std::any_of(drives.begin(), drives.end(), [&](const auto& d) { return d.name == attempt->drive; })) {
+            loaded.drive = attempt->drive;
+            loaded.speedRpm = 0.0;
+        }
+        bur = exercise::firstBur(exercise, attempt->bur);
+        if (bur == attempt->bur)
+            cuttingParameters = attempt->cuttingParameters;
+        else
+            loaded.lockedBur = attempt->bur;
+    } else if (exercise && !exercise->bur.empty()) {
+        bur = exercise->bur;
+    }
+    try {
+        takeBur(loaded, settings, bur, cuttingParameters);
+    } catch (const core::Error&) {
+        loaded.missingBur = bur;
+        takeBur(loaded, settings, otherwise, {});
+    }
+    settings.drive = driveAt(loaded.drive, loaded.speedRpm);
+    loaded.speedRpm = settings.drive.freeSpeedRpm;
+}
+
+/// The tissues' feel from the case's own table; the person's multipliers stay.
+void takeTissues(simulation::SimulationSettings& settings, const cases::Case& toothCase) {
+    settings.tissues = toothCase.tissues;
+    const force::Parameters wanted = settings.parameters;
+    settings.parameters = force::defaultParameters(toothCase.tissues);
+    settings.parameters.law = wanted.law;
+    settings.parameters.stiffnessMultiplier = wanted.stiffnessMultiplier;
+    settings.parameters.dampingMultiplier = wanted.dampingMultiplier;
+    settings.parameters.frictionMultiplier = wanted.frictionMultiplier;
+}
+
+void tell(const LoadListener& listener, LoadStep step) {
+    if (listener.step) listener.step(step);
+}
+
+/// An attempt of before named its last recording only.
+std::vector<RecordingPlace> placesOf(const cases::Attempt& attempt, const LoadRequest& request) {
+    std::vector<cases::Attempt::Recording> named = attempt.recordings;
+    if (named.empty() && !attempt.session.empty()) named.push_back({attempt.session, false});
+    std::vector<RecordingPlace> places;
+    for (const cases::Attempt::Recording& r : named)
+        places.push_back({r.name, r.packed ? request.path : request.sessionFolder / r.name, r.packed});
+    return places;
+}
+
+}  // namespace
+
+cases::PackageFiles recordingBytes(const std::vector<RecordingPlace>& places, bool packedOnly, std::size_t& leftOut,
+                                   const core::Progress& progress) {
+    cases::PackageFiles files;
+    std::uint64_t bytes = 0;
+    leftOut = 0;
+    for (std::size_t i = places.size(); i-- > 0;) {
+        const RecordingPlace& place = places[i];
+        core::report(progress, 1.0 - static_cast<double>(i + 1) / static_cast<double>(places.size()));
+        if (packedOnly && !place.packed) continue;
+        const std::uint64_t room = cases::kMaxRecordingBytes - bytes;
+        std::error_code error;
+        const std::uint64_t size = fs::file_size(place.in, error);
+        if (error || (!place.packed && size > room)) {
+            ++leftOut;
+            continue;
+        }
+        std::vector<std::byte> data =
+            place.packed ? cases::readRecording(place.in, place.name) : core::readFile(place.in, room);
+        if (data.size() > room) {
+            ++leftOut;
+            continue;
+        }
+        bytes += data.size();
+        files[place.name] = std::move(data);
+    }
+    return files;
+}
+
+FileKind fileKindOf(const fs::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::error_code error;
+    if (fs::is_directory(path, error)) return cases::isAttempt(path) ? FileKind::attempt : FileKind::toothCase;
+    if (extension == ".h5") return FileKind::session;
+    if (extension == ".toml") return FileKind::toothCase;
+    if (extension == ".handpiece")
+        return fs::exists(path, error) && cases::isAttempt(path) ? FileKind::attempt : FileKind::toothCase;
+    if (geometry::meshFormatOf(path) != geometry::MeshFormat::unknown) return FileKind::mesh;
+    return FileKind::unknown;
+}
+
+cases::Case starterCase(const Starter& starter, const fs::path& folder, const core::Progress& progress,
+                        const LoadListener& listener) {
+    const starter::ToothKindInfo& info = starter::infoOf(starter.kind);
+    // The version stands in the name: a later one may make another tooth of the same rules.
+    const fs::path place = folder / fmt::format("{}-{}-{}", info.name, starter.faces, HANDPIECE_VERSION);
+    std::error_code error;
+    if (fs::exists(place / "case.toml", error)) {
+        try {
+            return cases::readCase(place);
+        } catch (const core::Error&) {
+            fs::remove_all(place, error);  // damaged: it is made again
+        }
+    }
+    tell(listener, LoadStep::shaping);
+    if (listener.sketch) listener.sketch(std::make_shared<const cases::Case>(starter::makeSketch(starter.kind)));
+    const cases::Case made = starter::makeTooth(starter.kind, {starter.faces, 0, true}, progress);
+    fs::create_directories(folder, error);
+    cases::writeCase(made, place);
+    // As read back: an STL holds less than a double, and the cache beside it belongs to what it holds.
+    return cases::readCase(place);
+}
+
+instrument::Drive driveAt(const std::string& name, double speedRpm) {
+    instrument::Drive drive = instrument::driveByName(name);
+    if (speedRpm > 0.0) drive.freeSpeedRpm = std::clamp(speedRpm, 0.02 * drive.freeSpeedRpm, drive.freeSpeedRpm);
+    return drive;
+}
+
+LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress, const LoadListener& listener) {
+    LoadedTooth loaded;
+    tell(listener, request.recover ? LoadStep::recovering : LoadStep::reading);
+    simulation::SimulationSettings settings = request.settings;
+    std::optional<cases::Attempt> attempt;
+    std::optional<simulation::Recovered> recovered;
+    const core::Progress reading = core::part(progress, 0.0, 0.5), preparing = core::part(progress, 0.5, 0.8);
+    if (request.recover) {
+        recovered = simulation::recover(request.path, reading);
+        loaded.document = request.recovered;
+        recovered->toothCase.exercise = request.exercise;
+        loaded.toothCase = std::make_shared<const cases::Case>(std::move(recovered->toothCase));
+        loaded.elapsedS = recovered->elapsedS;
+        loaded.code = recovered->code;
+        loaded.recording = request.path;
+        loaded.session = simulation::LiveSessionSettings::Session::recovered;
+        settings = recovered->settings;
+        settings.capability = request.settings.capability;
+        settings.hull = false;
+        loaded.bur = settings.bur->name();
+        loaded.drive = settings.drive.name;
+        loaded.speedRpm = settings.drive.freeSpeedRpm;
+    } else if (request.starter) {
+        cases::Case made = starterCase(*request.starter, request.starterFolder, reading, listener);
+        loaded.document.caseFile = made.source;
+        loaded.document.starter = request.starter;
+        loaded.document.name = made.name;
+        loaded.toothCase = std::make_shared<const cases::Case>(std::move(made));
+    } else if (fileKindOf(request.path) == FileKind::attempt) {
+        cases::OpenAttempt open = cases::openAttempt(request.path);
+        loaded.document.attemptFile = request.path;
+        loaded.document.caseFile = open.attempt.caseFile;
+        loaded.document.name = request.path.stem().string();
+        loaded.toothCase = std::make_shared<const cases::Case>(std::move(open.toothCase));
+        attempt = std::move(open.attempt);
+        loaded.document.student = attempt->student;
+        loaded.document.recordings = placesOf(*attempt, request);
+        settings.field = simulation::fieldSettingsAt(attempt->voxelMm);
+        loaded.elapsedS = attempt->elapsedS;
+        loaded.code = attempt->student;
+    } else {
+        const fs::path path = request.path.extension() == ".toml" ? request.path.parent_path() : request.path;
+        cases::Case read = cases::readCase(path);
+        loaded.document.caseFile = core::wholePath(path);
+        loaded.document.name = read.name;
+        loaded.toothCase = std::make_shared<const cases::Case>(std::move(read));
+    }
+    core::report(preparing, 0.0);
+    if (listener.sketch) listener.sketch(loaded.toothCase);
+    tell(listener, LoadStep::distances);
+    if (!recovered) {
+        takeTissues(settings, *loaded.toothCase);
+        takeInstruments(loaded, settings, request, attempt ? &*attempt : nullptr);
+    }
+    settings.resumed = attempt || recovered;
+    std::atomic<bool> hasDistances{false};
+    const core::Progress stepwise = [&](double fraction) {
+        if (fraction >= simulation::kDistancesShare && !hasDistances.exchange(true)) tell(listener, LoadStep::tissues);
+        return !preparing || preparing(fraction);
+    };
+    loaded.station = simulation::makeSimulation(*loaded.toothCase, std::move(settings), request.useCache, stepwise);
+    if (attempt)
+        loaded.state =
+            tooth::decodeState(attempt->state, loaded.station.identity, *loaded.station.tooth, request.path.string());
+    if (recovered) loaded.state = std::move(recovered->state);
+    if (attempt || recovered) loaded.station.resume(loaded.state);
+    if (recovered) loaded.history = simulation::keepHistory(recovered->history, loaded.state, loaded.station);
+    tell(listener, LoadStep::surface);
+    loaded.liveTooth =
+        std::make_shared<simulation::LiveTooth>(loaded.station.tooth, loaded.state, core::part(progress, 0.8, 1.0));
+    return loaded;
+}
+
+std::vector<cases::Tissue> presentTissues(const cases::Case& toothCase) {
+    std::vector<cases::Tissue> present;
+    for (const cases::Part& part : toothCase.parts)
+        if (std::find(present.begin(), present.end(), part.tissue) == present.end()) present.push_back(part.tissue);
+    if (present.empty()) present.push_back(cases::Tissue::enamel);
+    std::sort(present.begin(), present.end());
+    return present;
+}
+
+}  // namespace handpiece::desktop

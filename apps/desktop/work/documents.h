@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// From a file's name, or a starter tooth's, to a tooth ready to be cut. No widgets, any thread.
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "handpiece/app/simulation/history_bytes.h"
+#include "handpiece/app/simulation/live_session.h"
+#include "handpiece/app/simulation/live_tooth.h"
+#include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/base/core/progress.h"
+#include "handpiece/model/case/attempt.h"
+#include "handpiece/model/case/case.h"
+#include "handpiece/model/starter/starter.h"
+
+namespace handpiece::desktop {
+
+/// A starter tooth at one of the five resolutions of the paper's Table II.
+struct Starter {
+    starter::ToothKind kind = starter::ToothKind::lowerFirstMolar;
+    std::size_t faces = 68151;
+    friend bool operator==(const Starter&, const Starter&) = default;
+};
+struct Resolution {
+    int percent;
+    std::size_t faces;
+};
+inline constexpr std::array<Resolution, 5> kResolutions{
+    {{6, 9760}, {12, 19516}, {25, 40656}, {50, 68151}, {100, 325312}}};
+
+/// What a file is, told by its name and content.
+enum class FileKind { unknown, toothCase, attempt, mesh, session };
+[[nodiscard]] FileKind fileKindOf(const std::filesystem::path& path);
+
+/// A recording and where its bytes are: itself on the shelf, or the attempt that it came with.
+struct RecordingPlace {
+    std::string name;  ///< of its file
+    std::filesystem::path in;
+    bool packed = false;  ///< `in` is the attempt
+};
+
+/// What is open.
+struct Document {
+    std::filesystem::path caseFile;     ///< of the tooth; of a starter tooth its place in the cache
+    std::filesystem::path attemptFile;  ///< where it was saved or read; empty: nowhere yet
+    std::optional<Starter> starter;
+    std::string name;  ///< for the title: the file's, or the tooth's
+    /// That led to this tooth before the recording under way, in their order.
+    std::vector<RecordingPlace> recordings{};
+    std::string student{};  ///< of an attempt, as typed
+};
+
+/// What is being done for a tooth that opens, for people.
+enum class LoadStep { reading, recovering, shaping, distances, tissues, surface };
+/// Hears of it on the thread that loads.
+struct LoadListener {
+    std::function<void(LoadStep step)> step;
+    /// Something to look at before there is anything to feel: its parts and what stands around them.
+    std::function<void(std::shared_ptr<const cases::Case> sketch)> sketch;
+};
+
+/// What to open, and with what in hand.
+struct LoadRequest {
+    std::filesystem::path path;  ///< case, attempt or mesh; a session to be recovered from
+    std::optional<Starter> starter;
+    bool recover = false;
+    Document recovered;  ///< with `recover`: what its marker says
+    std::optional<cases::Exercise> exercise;
+    std::filesystem::path sessionFolder;  ///< where recordings are that an attempt only names
+    std::filesystem::path starterFolder;
+    std::string bur = "330", drive = "turbine";
+    double speedRpm = 0.0;  ///< 0: the drive's own
+    simulation::SimulationSettings settings;
+    bool useCache = true;
+};
+struct LoadedTooth {
+    Document document;
+    std::shared_ptr<const cases::Case> toothCase;
+    simulation::SimulationSetup station;
+    std::shared_ptr<simulation::LiveTooth> liveTooth;
+    tooth::StateDelta state;  ///< that it was resumed with
+    simulation::KeptHistory history;
+    double elapsedS = 0.0;
+    std::string bur, drive, code;
+    double speedRpm = 0.0;
+    /// The recording that goes on with it, and from where; empty: a new one begins.
+    std::filesystem::path recording;
+    simulation::LiveSessionSettings::Session session = simulation::LiveSessionSettings::Session::anew;
+    std::string missingBur;  ///< the bur an attempt was cut with, when it cannot be had: another is in hand
+    std::string lockedBur;   ///< and when its exercise does not allow it
+};
+/// Seconds, the first time; a tooth whose cache stands within one. Throws core::Error.
+[[nodiscard]] LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress,
+                                    const LoadListener& listener = {});
+
+/// The recordings' bytes by name, the newest first as far as they go into tooth::kMaxRecordingBytes; `packedOnly`: of
+/// those that came with an attempt. `leftOut`: how many did not fit, or are no longer there.
+[[nodiscard]] cases::PackageFiles recordingBytes(const std::vector<RecordingPlace>& places, bool packedOnly,
+                                                 std::size_t& leftOut, const core::Progress& progress);
+
+/// The case of a starter tooth, out of its folder in the cache; made and put there the first time.
+[[nodiscard]] cases::Case starterCase(const Starter& starter, const std::filesystem::path& folder,
+                                      const core::Progress& progress, const LoadListener& listener = {});
+
+/// The drive by name, its free speed set to `speedRpm` (0: its own; never more than that).
+[[nodiscard]] instrument::Drive driveAt(const std::string& name, double speedRpm);
+
+/// The tissues of its parts, in their order; of a case without parts enamel.
+[[nodiscard]] std::vector<cases::Tissue> presentTissues(const cases::Case& toothCase);
+
+}  // namespace handpiece::desktop

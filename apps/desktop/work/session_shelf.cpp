@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "desktop/work/session_shelf.h"
+
+#include <QCoreApplication>
+#include <QDateTime>
+#include <QFile>
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <algorithm>
+
+#include "desktop/framework/problem.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+
+namespace handpiece::desktop {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path beside(const fs::path& session, const char* extension) {
+    return fs::path(session).replace_extension(extension);
+}
+
+/// Held by a program that lives. A lock of one that died is taken over and given back.
+bool isAlive(const fs::path& session) {
+    QLockFile lock(toQString(beside(session, ".lock")));
+    lock.setStaleLockTime(0);
+    if (!lock.tryLock(0)) return true;
+    lock.unlock();
+    return false;
+}
+
+std::optional<SessionNote> readNote(const fs::path& session) {
+    QFile file(toQString(beside(session, ".json")));
+    if (!file.open(QIODevice::ReadOnly)) return std::nullopt;
+    const QJsonObject o = QJsonDocument::fromJson(file.readAll()).object();
+    // A marker cut short by the crash itself still marks.
+    SessionNote note{
+        o[QStringLiteral("case")].toString(),    o[QStringLiteral("title")].toString(),
+        o[QStringLiteral("attempt")].toString(), o[QStringLiteral("unsaved")].toBool(true),
+        o[QStringLiteral("starter")].toString(), static_cast<std::size_t>(o[QStringLiteral("faces")].toInteger())};
+    note.exercise = o[QStringLiteral("exercise")].toString();
+    for (const QJsonValue& name : o[QStringLiteral("recordings")].toArray())
+        note.recordings << name.toString();
+    return note;
+}
+
+void writeNote(const fs::path& session, const SessionNote& note) {
+    QJsonObject o;
+    o[QStringLiteral("case")] = note.caseFile;
+    o[QStringLiteral("title")] = note.title;
+    o[QStringLiteral("attempt")] = note.attemptFile;
+    o[QStringLiteral("unsaved")] = note.unsaved;
+    if (!note.starter.isEmpty()) {
+        o[QStringLiteral("starter")] = note.starter;
+        o[QStringLiteral("faces")] = static_cast<qint64>(note.faces);
+    }
+    if (!note.exercise.isEmpty()) o[QStringLiteral("exercise")] = note.exercise;
+    if (!note.recordings.isEmpty()) o[QStringLiteral("recordings")] = QJsonArray::fromStringList(note.recordings);
+    core::writeFile(beside(session, ".json"), QJsonDocument(o).toJson().toStdString(),
+                    {.ownerOnly = true, .lasting = false});
+}
+
+std::vector<fs::path> sessionsIn(const fs::path& folder) {
+    std::vector<fs::path> sessions;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+        if (entry.path().extension() == ".h5") sessions.push_back(entry.path());
+    // Names begin with the time: the newest first.
+    std::sort(sessions.rbegin(), sessions.rend());
+    return sessions;
+}
+
+}  // namespace
+
+SessionShelf::SessionShelf(fs::path folder) : SessionShelf(std::move(folder), Limits{}) {}
+SessionShelf::SessionShelf(fs::path folder, Limits limits) : folder_(std::move(folder)), limits_(limits) {}
+
+fs::path SessionShelf::begin(const SessionNote& note) {
+    end();
+    core::prepareOutputFolder(folder_, true);
+    const std::string time = QDateTime::currentDateTime().toString(QStringLiteral("yyyyMMdd-HHmmss-zzz")).toStdString();
+    take(folder_ / (time + "-" + std::to_string(QCoreApplication::applicationPid()) + ".h5"));
+    writeNote(current_, note);
+    return current_;
+}
+
+void SessionShelf::goOn(const fs::path& session) {
+    end();
+    take(session);
+}
+
+void SessionShelf::take(const fs::path& session) {
+    auto lock = std::make_unique<QLockFile>(toQString(beside(session, ".lock")));
+    lock->setStaleLockTime(0);
+    if (!lock->tryLock(0)) throw core::Error("the recording's place is taken", session.string(), "start again");
+    current_ = session;
+    lock_ = std::move(lock);
+}
+
+void SessionShelf::note(const SessionNote& note) {
+    if (!current_.empty()) writeNote(current_, note);
+}
+
+void SessionShelf::end() {
+    if (current_.empty()) return;
+    settle(current_);
+    leave();
+}
+
+void SessionShelf::leave() {
+    current_.clear();
+    lock_.reset();
+}
+
+std::vector<Crashed> SessionShelf::crashed() const {
+    std::vector<Crashed> found;
+    for (const fs::path& session : sessionsIn(folder_)) {
+        if (session == current_) continue;
+        const auto note = readNote(session);
+        if (!note || isAlive(session)) continue;
+        if (note->unsaved) found.push_back({session, *note});
+    }
+    return found;
+}
+
+void SessionShelf::settle(const fs::path& session) {
+    std::error_code error;
+    fs::remove(beside(session, ".json"), error);
+}
+
+std::size_t SessionShelf::tidy() {
+    std::size_t kept = 0, removed = 0;
+    std::uint64_t bytes = 0;
+    std::error_code ignored;
+    // Killed in the first instant, before anything was recorded.
+    for (const auto& entry : fs::directory_iterator(folder_, ignored)) {
+        const fs::path session = fs::path(entry.path()).replace_extension();
+        if (entry.path().extension() != ".begun" || isAlive(session)) continue;
+        fs::remove(entry.path(), ignored);
+        for (const char* extension : {".json", ".lock"})
+            fs::remove(beside(session, extension), ignored);
+    }
+    for (const fs::path& session : sessionsIn(folder_)) {
+        std::error_code error;
+        const std::uint64_t size = fs::file_size(session, error);
+        const auto note = readNote(session);
+        // A marker that says "saved" was left by a crash with nothing lost.
+        const bool holds = note && (note->unsaved || isAlive(session));
+        if (!holds && (kept >= limits_.sessions || bytes + (error ? 0 : size) > limits_.bytes)) {
+            fs::remove(session, error);
+            if (!error) ++removed;
+            for (const char* extension : {".json", ".lock"})
+                fs::remove(beside(session, extension), error);
+            continue;
+        }
+        ++kept;
+        bytes += error ? 0 : size;
+    }
+    return removed;
+}
+
+}  // namespace handpiece::desktop

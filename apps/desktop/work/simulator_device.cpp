@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who holds the handpiece: the mouse, or a device that was chosen.
+#include "desktop/work/simulator.h"
+#include "handpiece/app/input/pointer_controller.h"
+#include "handpiece/devices/safety/input_device.h"
+
+namespace handpiece::desktop {
+
+namespace {
+
+core::Box boundsOf(const cases::Case& toothCase) {
+    core::Box box = toothCase.outer.bounds();
+    if (toothCase.outer.vertices.empty())
+        for (const cases::Part& part : toothCase.parts)
+            for (const core::Vec3& v : part.mesh.vertices)
+                box.extend(v);
+    return box;
+}
+
+}  // namespace
+
+std::unique_ptr<device::Device> Simulator::takeHandpiece() {
+    handChanged_ = false;
+    usedHand_ = hands_.current() && !handLentAway_ ? hands_.current() : nullptr;
+    const input::ToothPlace tooth{boundsOf(*toothCase_), toothCase_->fdiNumber, toothCase_->buccalSign};
+    startPose_ = input::startPose(tooth.box, tooth.fdiNumber, tooth.buccalSign);
+    if (usedHand_) {
+        mailbox_.reset();
+        usedHand_->placeFor(tooth);
+        return std::make_unique<LentDevice>(usedHand_);
+    }
+    mailbox_ = std::make_shared<device::PointerMailbox>();
+    return safety::withPedal(
+        std::make_unique<device::PointerDevice>(device::PointerHandSettings{}, mailbox_, startPose_), foot_.value());
+}
+
+/// The same tooth, as it is, in another hand: what was cut stays, with what can be undone.
+void Simulator::passHandpiece() {
+    const std::shared_ptr<Hand> now = handLentAway_ ? nullptr : hands_.current();
+    settings_.capability = now ? now->device().capability() : device::pointerCapability();
+    handChanged_ = mode_ == Mode::liveSession && now != usedHand_;
+    // A job that is under way ends first.
+    if (handChanged_ && !job_) {
+        const auto left = std::make_shared<Left>(leaveLiveSession());
+        comeBack(left);
+    }
+    emit settingsChanged();
+}
+
+void Simulator::setEventBasedForce(bool contact, bool vibration) {
+    if (mode_ == Mode::replay || mode_ == Mode::review) return;
+    settings_.parameters.transients.on = contact;
+    settings_.parameters.vibration.on = vibration;
+    if (mayWork()) liveSession_->setParameters(settings_.parameters);
+    emit settingsChanged();
+}
+
+void Simulator::lendHand(bool away) {
+    if (away == handLentAway_) return;
+    handLentAway_ = away;
+    passHandpiece();
+}
+
+}  // namespace handpiece::desktop

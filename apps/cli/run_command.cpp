@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 
 #include "cli/commands.h"
@@ -191,6 +192,28 @@ simulation::SimulationSettings stationSettingsOf(const RunOptions& o, const stud
     return s;
 }
 
+/// How fast this bur comes through the tissues under this hand.
+studies::CuttingRates ratesOf(const RunOptions& o, const studies::RunSettings& run,
+                              const simulation::SimulationSettings& s) {
+    constexpr double kUnderLoad = 0.85;  // of the free speed
+    studies::CuttingRates rates;
+    for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
+        const double felt =
+            std::min(1.0, s.parameters.tissues[t].stiffnessFraction * run.parameters.stiffnessMultiplier) *
+            s.capability.maxStiffnessNPerMm;
+        const double hand = run.device.hand.stiffnessNPerMm;
+        rates.stiffnessNPerMm[t] = run.device.rigidHand ? felt : felt * hand / (felt + hand);
+        rates.cuttingMm2PerN[t] = s.cuttingParameters.cutting * s.tissues.rows[t].cuttingMm2PerN;
+    }
+    rates.speedRadS = kUnderLoad * s.drive.freeSpeedRpm * std::numbers::pi / 30.0 * (o.pedalGiven ? o.pedal : 1.0);
+    rates.loadN = o.loadN;
+    rates.loadCapN = s.cuttingParameters.loadCapN;
+    rates.maxFeedMmS =
+        s.cuttingParameters.chipMm * s.cuttingParameters.edges * rates.speedRadS / (2.0 * std::numbers::pi);
+    rates.centreRadius = s.cuttingParameters.centreRadius;
+    return rates;
+}
+
 /// The bur's lowest point at a distance from its axis.
 double bottomOf(const instrument::Bur& bur, double rhoMm) {
     double low = 0.0, high = bur.lengthMm();
@@ -240,34 +263,47 @@ device::Motion cutMotionOf(const RunOptions& o, const studies::RunSettings& sett
                 nearest = std::min(nearest, tree.signedDistance(p));
             return nearest;
         };
+    scene.tissueAt = [&](const core::Vec3& p) { return station.tooth->tissues.at(p); };
+    if (!o.fullRemoval && pedal > 0.0) scene.rates = ratesOf(o, settings, station.settings);
     studies::Excavation plan = studies::planExcavation(scene, cut);
     lesions = std::move(plan.lesions);
     return std::move(plan.motion);
 }
 
-Json lesionsJson(const std::vector<studies::LesionPlan>& lesions) {
+double shareOf(const studies::LesionOutcome& outcome) {
+    return outcome.decayMm3 > 0.0 ? outcome.takenMm3 / outcome.decayMm3 : 1.0;
+}
+
+Json lesionsJson(const std::vector<studies::LesionPlan>& lesions, const std::vector<studies::LesionOutcome>& outcomes) {
     Json all = Json::array();
-    for (const studies::LesionPlan& l : lesions)
+    for (std::size_t i = 0; i < lesions.size(); ++i) {
+        const studies::LesionPlan& l = lesions[i];
         all.push_back({{"centre_mm", {l.centreMm.x(), l.centreMm.y(), l.centreMm.z()}},
                        {"axis", {l.axis.x(), l.axis.y(), l.axis.z()}},
                        {"decay_mm3", l.decayMm3},
                        {"planned_decay_mm3", l.reachedMm3},
                        {"planned_sound_mm3", l.soundMm3},
                        {"left_for_the_pulp_mm3", l.guardedMm3},
-                       {"planned_over_pulp_mm", std::isfinite(l.nearestPulpMm) ? Json(l.nearestPulpMm) : Json()}});
+                       {"planned_over_pulp_mm", std::isfinite(l.nearestPulpMm) ? Json(l.nearestPulpMm) : Json()},
+                       {"taken_decay_mm3", outcomes[i].takenMm3},
+                       {"taken_share", shareOf(outcomes[i])},
+                       {"taken_sound_mm3", outcomes[i].soundMm3}});
+    }
     return all;
 }
 
-void printLesions(const std::vector<studies::LesionPlan>& lesions, double guardMm) {
+void printLesions(const std::vector<studies::LesionPlan>& lesions, const std::vector<studies::LesionOutcome>& outcomes,
+                  double guardMm) {
     for (std::size_t i = 0; i < lesions.size(); ++i) {
         const studies::LesionPlan& l = lesions[i];
         std::string text = fmt::format(
-            "{} of {} at ({:.1f}, {:.1f}, {:.1f}), from ({:.2f}, {:.2f}, {:.2f}): {:.2f} of {:.2f} mm3 within reach, "
-            "{:.2f} mm3 of sound tissue on the way",
+            "{} of {} at ({:.1f}, {:.1f}, {:.1f}), from ({:.2f}, {:.2f}, {:.2f}): {:.2f} of {:.2f} mm3 taken "
+            "({:.0f} %), {:.2f} mm3 of sound tooth with it",
             i + 1, lesions.size(), l.centreMm.x(), l.centreMm.y(), l.centreMm.z(), l.axis.x(), l.axis.y(), l.axis.z(),
-            l.reachedMm3, l.decayMm3, l.soundMm3);
+            outcomes[i].takenMm3, outcomes[i].decayMm3, 100.0 * shareOf(outcomes[i]), outcomes[i].soundMm3);
         if (l.guardedMm3 > 0.0)
-            text += fmt::format("; {:.2f} mm3 stay, {:.2g} mm over the pulp", l.guardedMm3, guardMm);
+            text +=
+                fmt::format("; stopped {:.2g} mm short of the pulp: {:.2f} mm3 stay for that", guardMm, l.guardedMm3);
         printRow("lesion", text);
     }
 }
@@ -367,7 +403,11 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
     json["drive"] = station.settings.drive.name;
     json["removed_mm3"] = removed;
     json["left_mm3"] = left;
-    if (!lesions.empty()) json["lesions"] = lesionsJson(lesions);
+    const std::vector<studies::LesionOutcome> outcomes = studies::lesionOutcomes(
+        lesions, station.tooth->tooth->outer.bounds(),
+        [&](const core::Vec3& p) { return station.tooth->tooth->field.distance(p); },
+        [&](const core::Vec3& p) { return station.field->field().distance(p); });
+    if (!lesions.empty()) json["lesions"] = lesionsJson(lesions, outcomes);
     json["left_over_pulp_mm"] = outcome.leftOverPulpMm ? Json(*outcome.leftOverPulpMm) : Json();
     json["cut_stl_mm3"] = outcome.cutMeshMm3;
     json["outer_mm3"] = geometry::enclosedVolumeMm3(toothCase.outer);
@@ -401,7 +441,7 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
         for (const double mm3 : outcome.summary.removedMm3)
             soundMm3 += mm3;
         const double gone = outcome.summary.removedMm3[kCaries], all = gone + outcome.leftMm3[kCaries];
-        printLesions(lesions, o.pulpGuardMm);
+        printLesions(lesions, outcomes, o.pulpGuardMm);
         double plannedMm3 = 0.0;
         for (const studies::LesionPlan& l : lesions)
             plannedMm3 += l.reachedMm3;

@@ -3,11 +3,14 @@
 /// @file
 /// What a hand intends when it cuts: plunge, class I cavity, crown shoulder, excavation of decay.
 
+#include <array>
 #include <functional>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "handpiece/base/geometry/triangle_mesh.h"
+#include "handpiece/model/case/tissue.h"
 #include "handpiece/tick/contact/method.h"
 #include "handpiece/tick/device/motion.h"
 #include "studies/built_in_motion.h"
@@ -32,6 +35,16 @@ struct CuttingOptions {
     double pulpGuardMm = kPulpGuardMm;  ///< excavate comes no nearer to the pulp; 0: does not heed it
 };
 
+/// How fast the bur comes through each tissue under a hand that is ahead of it: docs/physics.md#cutting.
+struct CuttingRates {
+    std::array<double, cases::kTissueCount> stiffnessNPerMm{};  ///< of what the hand presses against
+    std::array<double, cases::kTissueCount> cuttingMm2PerN{};   ///< K, of this bur
+    double speedRadS = 0.0;                                     ///< of the rotor under load
+    double loadN = 1.0, loadCapN = 1.5;  ///< what the hand presses with at most; more cuts no faster
+    double maxFeedMmS = 10.0;            ///< that the chips allow
+    double centreRadius = 0.3;           ///< of the bur's: nearer to the axis it cuts as if it were there
+};
+
 /// What the cut is aimed at, in the tooth frame. All but excavate need only the bounds and the bur's size.
 struct CuttingScene {
     core::Box toothBounds;
@@ -40,6 +53,8 @@ struct CuttingScene {
     std::vector<geometry::TriangleMesh> decay;  ///< closed; each connected part of them is a lesion
     std::function<double(const core::Vec3&)> outerMm;  ///< signed distance to the uncut surface, negative inside
     std::function<double(const core::Vec3&)> pulpMm;   ///< the same to the pulp; empty: there is none
+    std::function<cases::Tissue(const core::Vec3&)> tissueAt;  ///< of the uncut tooth; empty: dentine
+    std::optional<CuttingRates> rates;                         ///< what excavation waits for; empty: for nothing
 };
 
 /// Throws core::Error for what is out of range.

@@ -27,6 +27,13 @@ constexpr double kEnough = 0.97;     // of the decay that can be reached at all:
 constexpr double kDecayWorth = 3.0;  // decay left counts so many times sound tissue lost, between two directions
 constexpr double kRowShare = 0.6;    // of the radius between two strokes: ridges of a twentieth of it stay
 constexpr double kSpeckCells = 4;    // smaller lesions are artefacts of the surface
+// Of a hand that waits for the bur.
+constexpr double kBeyondMm = 0.5;        // the most that it intends below the floor, where no pulp is near
+constexpr double kForeseen = 1.5;        // of the rate under the middle of the bur: it cuts on the way there too
+constexpr double kMaxWaitS = 20.0;       // at one place: what cannot be cut is left
+constexpr double kMaxWaitByPulpS = 2.0;  // where the hand goes no lower than the bur may
+constexpr double kLowerStepMm = 0.02;
+constexpr double kClearOfLayerMm = 0.2;  // there the bur comes down slowly
 
 /// The connected parts of closed surfaces.
 std::vector<geometry::TriangleMesh> lesionsOf(const std::vector<geometry::TriangleMesh>& decay) {
@@ -100,10 +107,13 @@ class Approach {
     [[nodiscard]] const Vec3& axis() const { return axis_; }
     [[nodiscard]] const Quat& turn() const { return turn_; }
 
-    /// A stroke at one depth: places of the tip, in the tooth frame.
-    struct Stroke {
-        std::vector<Vec3> tipsMm;
+    /// Where the tip is to come, where the hand goes for that, and how long it takes at least.
+    struct Place {
+        Vec3 tipMm, handMm, aboveMm;  ///< above what is there yet
+        double waitS = 0.0;
     };
+    /// A stroke at one depth, in the tooth frame.
+    using Stroke = std::vector<Place>;
     [[nodiscard]] std::vector<Stroke> strokes() const {
         std::vector<Stroke> strokes;
         double top = -kInfinity, bottom = kInfinity;
@@ -115,27 +125,21 @@ class Approach {
         });
         if (!(bottom < top)) return strokes;
         const int layers = static_cast<int>(std::ceil((top - bottom) / kLayerMm));
+        std::vector<double> left = surface_;
         bool back = false;
         for (int layer = 1; layer <= layers; ++layer) {
             const double above = top - (top - bottom) * (layer - 1) / layers, z = top - (top - bottom) * layer / layers;
             for (int j = 0; j < columns_[1]; ++j) {
-                std::vector<Stroke> row;
-                bool open = false;
-                for (int i = 0; i < columns_[0]; ++i) {
+                bool open = false, any = false;
+                for (int n = 0; n < columns_[0]; ++n) {
+                    const int i = back ? columns_[0] - 1 - n : n;
                     const bool goes = isOnPath(i, j) && floor_[at(i, j)] < above;
-                    if (goes && !open) row.emplace_back();
-                    if (goes) row.back().tipsMm.push_back(place(i, j, std::max(z, floor_[at(i, j)])));
+                    if (goes && !open) strokes.emplace_back();
+                    if (goes) strokes.back().push_back(lower(i, j, std::max(z, floor_[at(i, j)]), left));
                     open = goes;
+                    any = any || goes;
                 }
-                if (row.empty()) continue;
-                if (back) {
-                    std::reverse(row.begin(), row.end());
-                    for (Stroke& s : row)
-                        std::reverse(s.tipsMm.begin(), s.tipsMm.end());
-                }
-                back = !back;
-                for (Stroke& s : row)
-                    strokes.push_back(std::move(s));
+                if (any) back = !back;
             }
         }
         return strokes;
@@ -161,11 +165,61 @@ class Approach {
     }
 
   private:
-    enum Cell : std::uint8_t { outside, sound, decayed };
+    using Cell = cases::Tissue;  // caries is this lesion's alone
+    static constexpr Cell outside = Cell::none, decayed = Cell::caries;
     struct Bottom {
         int di, dj;
-        double heightMm;  ///< of the bur's underside over its tip, there
+        double heightMm;     ///< of the bur's underside over its tip, there
+        double resistingMm;  ///< what this column adds to sum(A cos2(theta) / rho)
     };
+
+    /// Lets the bur sink to a height of the tip in a column, into the heights that are `left`, and counts the seconds.
+    [[nodiscard]] Place lower(int i, int j, double target, std::vector<double>& left) const {
+        Place there{place(i, j, target), place(i, j, target), place(i, j, target)};
+        if (!scene_.rates) return there;
+        const CuttingRates& rates = *scene_.rates;
+        double tip = target;
+        for (const Bottom& b : bottoms_)
+            tip = std::max(tip, left[at(i + b.di, j + b.dj)] - b.heightMm);
+        there.aboveMm = place(i, j, tip + kClearOfLayerMm);
+        double hand = target;
+        // Over the pulp the hand itself stays where the bur may go: nothing that was foreseen wrongly opens it.
+        const double beyond = std::min(kBeyondMm, floor_[at(i, j)] - lowestByPulp_[at(i, j)]);
+        const bool isHeld = beyond < kBeyondMm && target < floor_[at(i, j)] + 1e-9;
+        const double mostS = isHeld ? kMaxWaitByPulpS : kMaxWaitS;
+        for (bool first = true; tip > target && there.waitS < mostS; first = false) {
+            double resistance = 0.0, stiffness = 0.0, bearing = 0.0;
+            for (const Bottom& b : bottoms_) {
+                const std::size_t column = at(i + b.di, j + b.dj);
+                if (!(left[column] > tip - kLowerStepMm + b.heightMm)) continue;
+                const int k = static_cast<int>(std::floor((left[column] - low_.z()) / cellMm_ - 0.01));
+                const Cell cell = cells_[column * static_cast<std::size_t>(layers_) +
+                                         static_cast<std::size_t>(std::clamp(k, 0, layers_ - 1))];
+                if (cell == outside) continue;
+                const auto tissue = static_cast<std::size_t>(cell);
+                resistance += b.resistingMm / std::max(rates.cuttingMm2PerN[tissue], 1e-12);
+                stiffness += rates.stiffnessNPerMm[tissue];
+                ++bearing;
+            }
+            const double step = std::min(kLowerStepMm, tip - target);
+            if (bearing > 0.0) {
+                stiffness /= bearing;
+                if (first)
+                    hand = std::min(target,
+                                    std::max(tip - rates.loadN / std::max(stiffness, 1e-6), floor_[at(i, j)] - beyond));
+                const double load = std::min(stiffness * (tip - 0.5 * step - hand), rates.loadCapN);
+                there.waitS += step / (kForeseen * std::min(load * rates.speedRadS / resistance, rates.maxFeedMmS));
+            }
+            tip -= step;
+            for (const Bottom& b : bottoms_) {
+                double& height = left[at(i + b.di, j + b.dj)];
+                height = std::min(height, tip + b.heightMm);
+            }
+        }
+        there.handMm = place(i, j, hand);
+        there.waitS = std::min(there.waitS, mostS);
+        return there;
+    }
 
     [[nodiscard]] int countOf(double mm) const { return std::max(1, static_cast<int>(std::ceil(mm / cellMm_))); }
     [[nodiscard]] std::size_t at(int i, int j) const {
@@ -205,7 +259,8 @@ class Approach {
                 if (scene_.outerMm(p) >= 0.0) continue;
                 surface_[at(i, j)] = heightOf(k) + 0.5 * cellMm_;
                 Cell& cell = cells_[at(i, j, k)];
-                cell = sound;
+                cell = scene_.tissueAt ? scene_.tissueAt(p) : Cell::dentine;
+                if (cell == outside || cell == decayed) cell = Cell::dentine;  // the surface, and other lesions
                 if ((p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all() &&
                     lesion.signedDistance(p) < 0.0) {
                     cell = decayed;
@@ -223,14 +278,19 @@ class Approach {
     [[nodiscard]] std::vector<Bottom> bottomsOf() const {
         std::vector<Bottom> bottoms;
         const double radius = scene_.burRadiusMm;
+        const double leastRho = radius * (scene_.rates ? scene_.rates->centreRadius : 1.0);
         const int reach = static_cast<int>(std::ceil(radius / cellMm_));
+        const auto heightAt = [&](double rho) {
+            return scene_.burBottomMm ? scene_.burBottomMm(rho) : radius - std::sqrt(radius * radius - rho * rho);
+        };
         for (int dj = -reach; dj <= reach; ++dj)
             for (int di = -reach; di <= reach; ++di) {
                 const double rho = cellMm_ * std::hypot(di, dj);
                 if (rho > radius) continue;
+                const double in = std::max(0.0, rho - 0.5 * cellMm_), out = std::min(radius, rho + 0.5 * cellMm_);
+                const double slope = (heightAt(out) - heightAt(in)) / (out - in);
                 bottoms.push_back(
-                    {di, dj,
-                     scene_.burBottomMm ? scene_.burBottomMm(rho) : radius - std::sqrt(radius * radius - rho * rho)});
+                    {di, dj, heightAt(rho), cellMm_ * cellMm_ / std::hypot(1.0, slope) / std::max(rho, leastRho)});
             }
         return bottoms;
     }
@@ -260,13 +320,15 @@ class Approach {
             return floor;
         };
         floor_.assign(allowed.size(), kInfinity);
+        lowestByPulp_.assign(allowed.size(), -kInfinity);
         std::vector<double> unguarded(allowed.size(), kInfinity);
         forEachColumn([&](int i, int j) {
             double& floor = unguarded[at(i, j)];
             floor = floorOver(allowed, i, j);
             if (options_.depthMm > 0.0 && std::isfinite(floor))
                 floor = std::max(floor, surface_[at(i, j)] - options_.depthMm);
-            if (std::isfinite(floor)) floor_[at(i, j)] = std::max(floor, floorOver(guard_, i, j));
+            lowestByPulp_[at(i, j)] = floorOver(guard_, i, j);
+            if (std::isfinite(floor)) floor_[at(i, j)] = std::max(floor, lowestByPulp_[at(i, j)]);
         });
         // A place from which the bur meets no decay is left out.
         forEachColumn([&](int i, int j) {
@@ -311,7 +373,7 @@ class Approach {
                 if (heightOf(k) < lowest[at(i, j)]) continue;
                 const Cell cell = cells_[at(i, j, k)];
                 taken.decay += cell == decayed;
-                taken.sound += cell == sound;
+                taken.sound += cell != decayed && cell != outside;
                 if (cell == outside || !scene_.pulpMm || !std::exchange(first, false)) continue;
                 taken.pulpMm = std::min(taken.pulpMm, scene_.pulpMm(place(i, j, lowest[at(i, j)])));
             }
@@ -359,7 +421,7 @@ class Approach {
     std::vector<std::uint8_t> row_;  ///< 1: the bur goes along it
     std::vector<Bottom> bottoms_;
     std::vector<Cell> cells_;
-    std::vector<double> lowestDecay_, surface_, guard_, floor_;  ///< heights by column
+    std::vector<double> lowestDecay_, surface_, guard_, floor_, lowestByPulp_;  ///< heights by column
     double decay_ = 0.0, reached_ = 0.0, sound_ = 0.0, guarded_ = 0.0, nearestPulpMm_ = kInfinity;
 };
 
@@ -405,11 +467,14 @@ class Path {
         pedal_ = down ? down_ : 0.0;
         stay(0.001);
     }
-    void go(const Vec3& to, double speedMmS) { turnTo({to, last().orientation}, speedMmS); }
-    void turnTo(const core::Pose& to, double speedMmS) {
+    void go(const Vec3& to, double speedMmS, double leastS = 0.0) {
+        turnTo({to, last().orientation}, speedMmS, leastS);
+    }
+    void turnTo(const core::Pose& to, double speedMmS, double leastS = 0.0) {
         const double way =
             (to.positionMm - last().positionMm).norm() + last().orientation.angularDistance(to.orientation);
-        if (way > 1e-9) poses_.push_back({poses_.back().timeS + way / speedMmS, to, pedal_});
+        const double seconds = std::max(way / speedMmS, leastS);
+        if (seconds > 1e-9) poses_.push_back({poses_.back().timeS + seconds, to, pedal_});
     }
     [[nodiscard]] device::Motion finish() {
         stay(0.2);
@@ -468,11 +533,11 @@ Excavation planExcavation(const CuttingScene& scene, const CuttingOptions& o) {
             approach.plan();
             if (!best || approach.cost() < best->cost()) best.emplace(std::move(approach));
         }
-        lesions.push_back({lesion.bounds().centre(), best->axis(), best->decayMm3(), best->reachedMm3(),
+        lesions.push_back({lesion, lesion.bounds().centre(), best->axis(), best->decayMm3(), best->reachedMm3(),
                            best->soundMm3(), best->guardedMm3(), best->nearestPulpMm()});
         const std::vector<Approach::Stroke> strokes = best->strokes();
         if (strokes.empty()) continue;
-        const Vec3 first = strokes.front().tipsMm.front();
+        const Vec3 first = strokes.front().front().tipMm;
         const Vec3 park = parkOver(scene, first, best->axis(), o.clearanceMm);
         if (path.isEmpty())
             path.begin(park, best->turn());
@@ -481,19 +546,21 @@ Excavation planExcavation(const CuttingScene& scene, const CuttingOptions& o) {
         path.pedal(true);
         path.stay(kSpinUpS);
         const auto over = [&](const Vec3& tip) { return best->above(tip, o.clearanceMm); };
-        bool isOver = true;
+        std::optional<Vec3> tip;
         for (const Approach::Stroke& stroke : strokes) {
-            const Vec3& start = stroke.tipsMm.front();
-            if (isOver || !best->mayGo(path.last().positionMm, start)) {
-                if (!isOver) path.go(over(path.last().positionMm), kAirMmS);
-                path.go(over(start), kAirMmS);
+            const Approach::Place& start = stroke.front();
+            if (!tip || !best->mayGo(*tip, start.tipMm)) {
+                if (tip) path.go(over(*tip), kAirMmS);
+                path.go(over(start.tipMm), kAirMmS);
+                if (scene.rates) path.go(start.aboveMm, kAirMmS);
             }
-            isOver = false;
-            path.go(start, kPlungeFeed * o.feedMmS);
-            for (const Vec3& tip : stroke.tipsMm)
-                path.go(tip, o.feedMmS);
+            path.go(start.handMm, kPlungeFeed * o.feedMmS);
+            path.stay(start.waitS);
+            for (const Approach::Place& place : stroke)
+                if (&place != &start) path.go(place.handMm, o.feedMmS, place.waitS);
+            tip = stroke.back().tipMm;
         }
-        path.stay(o.dwellS);
+        if (!scene.rates) path.stay(o.dwellS);
         const Vec3 end = path.last().positionMm;
         path.go(over(end), kAirMmS);
         path.go(parkOver(scene, path.last().positionMm, best->axis(), o.clearanceMm), kAirMmS);
@@ -503,6 +570,36 @@ Excavation planExcavation(const CuttingScene& scene, const CuttingOptions& o) {
         throw core::Error("the bur cannot come to any of the decay", "excavate",
                           "take a smaller bur, or a smaller --pulp-guard");
     return {path.finish(), std::move(lesions)};
+}
+
+std::vector<LesionOutcome> lesionOutcomes(const std::vector<LesionPlan>& lesions, const core::Box& toothBounds,
+                                          const std::function<double(const core::Vec3&)>& beforeMm,
+                                          const std::function<double(const core::Vec3&)>& afterMm) {
+    constexpr double kCell = 0.1, kVolume = kCell * kCell * kCell;
+    std::vector<geometry::TriangleTree> trees;
+    for (const LesionPlan& l : lesions)
+        trees.emplace_back(l.mesh);
+    std::vector<LesionOutcome> outcomes(lesions.size());
+    core::Vec3 p;
+    for (p.z() = toothBounds.min.z() + 0.5 * kCell; p.z() < toothBounds.max.z(); p.z() += kCell)
+        for (p.y() = toothBounds.min.y() + 0.5 * kCell; p.y() < toothBounds.max.y(); p.y() += kCell)
+            for (p.x() = toothBounds.min.x() + 0.5 * kCell; p.x() < toothBounds.max.x(); p.x() += kCell) {
+                if (!(beforeMm(p) < 0.0)) continue;
+                const bool isGone = afterMm(p) > 0.0;
+                double nearestMm = kInfinity;
+                std::size_t nearest = 0;
+                for (std::size_t l = 0; l < trees.size(); ++l) {
+                    const core::Box& box = trees[l].bounds();
+                    if (!isGone && ((p.array() < box.min.array()).any() || (p.array() > box.max.array()).any()))
+                        continue;
+                    const double mm = trees[l].signedDistance(p);
+                    if (mm < nearestMm) nearestMm = mm, nearest = l;
+                }
+                if (nearestMm < 0.0) outcomes[nearest].decayMm3 += kVolume;
+                if (isGone && nearestMm < kInfinity)
+                    (nearestMm < 0.0 ? outcomes[nearest].takenMm3 : outcomes[nearest].soundMm3) += kVolume;
+            }
+    return outcomes;
 }
 
 }  // namespace handpiece::studies

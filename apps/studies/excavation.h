@@ -13,6 +13,7 @@ namespace handpiece::studies {
 
 /// What is to be done about one lesion. Volumes are counts of a grid of a third of the bur's radius.
 struct LesionPlan {
+    geometry::TriangleMesh mesh;
     core::Vec3 centreMm = core::Vec3::Zero();
     core::Vec3 axis = core::Vec3::UnitZ();                           ///< along which the bur goes in, out of the tooth
     double decayMm3 = 0.0, reachedMm3 = 0.0;                         ///< of the lesion; what of it the path takes
@@ -27,8 +28,19 @@ struct Excavation {
 };
 
 /// The way of the hand through all lesions: in along an axis of its own for each, layer by layer in strokes no wider
-/// than the decay (wider only where the bur is), out again, round the tooth with the pedal up, and on.
+/// than the decay (wider only where the bur is), out again, round the tooth with the pedal up, and on. With rates the
+/// hand presses, by being ahead of where the bur is to go, and waits at each place for as long as the bur needs there.
 /// Throws core::Error when there is no decay, or none that the bur can come to.
 [[nodiscard]] Excavation planExcavation(const CuttingScene& scene, const CuttingOptions& options = {});
+
+/// What came of one lesion, counted on a grid. Sound tooth that is gone belongs to the lesion that is nearest to it.
+struct LesionOutcome {
+    double decayMm3 = 0.0, takenMm3 = 0.0, soundMm3 = 0.0;
+};
+/// From the signed distances to the tooth's surface before the cut and after it.
+[[nodiscard]] std::vector<LesionOutcome> lesionOutcomes(const std::vector<LesionPlan>& lesions,
+                                                        const core::Box& toothBounds,
+                                                        const std::function<double(const core::Vec3&)>& beforeMm,
+                                                        const std::function<double(const core::Vec3&)>& afterMm);
 
 }  // namespace handpiece::studies

@@ -158,6 +158,33 @@ TEST(Excavation, stopsShortOfThePulpUnlessToldOtherwise) {
     EXPECT_GE(cut(lesions, planExcavation(scene, careful).motion).nearestPulpMm, 0.99);
 }
 
+// Where the bur needs time the hand gives it, in the order of what is hard, and goes no nearer to the pulp for that.
+TEST(Excavation, waitsForTheBur) {
+    const std::vector<Ball> lesions{{{0, 0, 3.0}, 1.5}};  // touches the pulp
+    CuttingScene scene = sceneOf(lesions);
+    const double unheeding = planExcavation(scene).motion.durationS();
+    CuttingRates rates;
+    rates.stiffnessNPerMm.fill(0.3);
+    rates.cuttingMm2PerN.fill(8e-5);
+    rates.cuttingMm2PerN[static_cast<std::size_t>(cases::Tissue::caries)] = 4e-4;
+    rates.speedRadS = 4000.0;
+    scene.rates = rates;
+    const Excavation plan = planExcavation(scene);
+    EXPECT_GT(plan.motion.durationS(), 1.2 * unheeding);
+    const Outcome done = cut(lesions, plan.motion);
+    EXPECT_GE(done.nearestPulpMm, kPulpGuardMm - 0.03);
+    scene.rates->speedRadS = 1000.0;
+    EXPECT_GT(planExcavation(scene).motion.durationS(), 1.5 * plan.motion.durationS());
+    // What is gone is counted by lesion, sound tooth with the lesion that is nearest.
+    const auto outcomes =
+        lesionOutcomes(plan.lesions, scene.toothBounds, scene.outerMm, [](const Vec3& p) { return p.z() - 2.0; });
+    ASSERT_EQ(outcomes.size(), 1u);
+    EXPECT_NEAR(outcomes[0].decayMm3, 4.0 / 3.0 * M_PI * 1.5 * 1.5 * 1.5, 0.3);
+    EXPECT_NEAR(outcomes[0].takenMm3 / outcomes[0].decayMm3, 0.926, 0.02);  // above z = 2
+    const double cap = M_PI * 3.0 * 3.0 * (kTooth - 1.0);
+    EXPECT_NEAR(outcomes[0].takenMm3 + outcomes[0].soundMm3, cap, 0.02 * cap);
+}
+
 TEST(Excavation, refusesWhereThereIsNothingToReach) {
     CuttingScene scene = sceneOf({{{0, 0, 4.6}, 1.0}});
     CuttingOptions aside;

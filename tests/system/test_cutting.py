@@ -4,6 +4,7 @@
 import json
 import math
 import os
+import re
 import resource
 import signal
 import subprocess
@@ -19,7 +20,7 @@ except ImportError:  # another Python than Debian's, which has python3-h5py
     print("skipped: there is no h5py (python3-h5py)")
     sys.exit(0)
 
-from support import HANDPIECE, SystemTest, box, rows_of, run, write_stl
+from support import HANDPIECE, SystemTest, ball, box, rows_of, run, write_stl
 
 REMOVED = ["removed_enamel_mm3", "removed_dentine_mm3", "removed_caries_mm3", "removed_pulp_mm3"]
 OUTPUTS = ["attempt", "cut", "cut.stl", "depth.svg", "feed.svg", "force.svg", "removed.svg", "rotor.svg",
@@ -238,6 +239,27 @@ class Cutting(SystemTest):
         self.assertEqual(left["session.h5"], left["attempt"])
         self.refused("export", out / "session.h5", "--stl", mentions=["--out"])
         self.refused("export", out / "session.h5", "--stl", "--csv", "--out", self.folder / "both", mentions=["--stl"])
+
+    def test_excavation_waits_for_the_bur_and_stops_over_the_pulp(self):
+        parts = {"outer": box((-3, -3, 0), (3, 3, TOP)), "dentine": box((-3, -3, 0), (3, 3, TOP)),
+                 "caries": ball(0.75, centre=(0, 0, TOP - 0.8)), "pulp": box((-1, -1, 1), (1, 1, 2.1))}
+        for name, facets in parts.items():
+            write_stl(self.folder / f"{name}.stl", facets)
+        case = self.folder / "decayed"
+        self.ok("case", "new", "--out", case, "--outer", self.folder / "outer.stl",
+                *[word for t in ("dentine", "caries", "pulp") for word in ("--part", f"{t}={self.folder}/{t}.stl")])
+        done = self.ok("run", "--case", case, "--bur", "round-4", "--drive", "low-speed", "--motion", "excavate",
+                       "--voxel", "100", "--out", self.folder / "excavated")
+        lesion = re.search(r"lesion .*: ([0-9.]+) of ([0-9.]+) mm3 .* ([0-9.]+) mm3 of sound tooth", done.stdout)
+        self.assertTrue(lesion, done.stdout)
+        self.assertIn("mm short of the pulp", done.stdout)
+        over = float(re.search(r"pulp +([0-9.]+) mm left over it", done.stdout).group(1))
+        self.assertGreaterEqual(over, 0.45)
+        summary = json.loads((self.folder / "excavated/summary.json").read_text())
+        told, = summary["lesions"]
+        may_go = told["decay_mm3"] - told["left_for_the_pulp_mm3"]
+        self.assertGreater(told["taken_decay_mm3"], 0.9 * may_go)
+        self.assertNotIn("pulp", [t for t, mm3 in summary["removed_mm3"].items() if mm3 > 0])
 
     def test_bad_input_is_one_message(self):
         def bad(*arguments, tooth=None, motion="plunge", **options):

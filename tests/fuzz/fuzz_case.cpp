@@ -5,7 +5,7 @@
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/case_files.h"
 
-namespace tooth = handpiece::tooth;
+namespace cases = handpiece::cases;
 
 namespace {
 

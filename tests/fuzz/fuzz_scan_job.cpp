@@ -3,7 +3,7 @@
 #include "fuzz_model.h"
 #include "handpiece/app/scan_case/scan_job.h"
 
-namespace simulation = handpiece::station;
+namespace scan_case = handpiece::scan_case;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     return handpiece::fuzz::readText(data, size, [](std::string_view text) {

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Dual contouring (Ju, Losasso, Schaefer & Warren 2002): where the surface crosses an edge of a cell, point and normal
+// give a plane; the cell's vertex is the point that lies best on all of its planes, so that edges of the solid stay
+// sharp. Cells through which several sheets pass have a vertex for each (Nielson 2004, "Dual marching cubes"), told
+// apart by which edges belong together: cell_cases.h. All in voxels, from the brick's node 0.
+//
+// What is not in those papers: the field of a cut tooth is max(phi, -bur), with a kink where the two meet, so a
+// difference across a kink is neither one's slope. Differences are taken away from kinks (Sampler), and where a kink
+// lies on an edge itself both sides are carried on to where each is zero.
 #include "handpiece/senses/surface/brick_contour.h"
 
 #include <algorithm>
@@ -70,7 +78,7 @@ class Sampler {
 
     [[nodiscard]] float at(int i) const { return value_[static_cast<std::size_t>(i)]; }
 
-    /// Gradient at a node, of the function that is in force there: differences are taken away from edges.
+    /// Gradient at a node, of the function that is in force there: differences are taken away from kinks. See slope().
     const Float3& gradient(int i, int node) {
         Float3& g = gradient_[static_cast<std::size_t>(node)];
         std::uint64_t& word = gradientReady_[static_cast<std::size_t>(node / 64)];
@@ -83,6 +91,8 @@ class Sampler {
     }
 
     /// Where the surface crosses the edge that begins at node `i` along `axis`: a share of it, and the gradient there.
+    /// Without a kink t = -vIn / (vOut - vIn), and the gradient between those of both nodes. `isClean`: no kink is
+    /// near.
     struct Crossing {
         float t;
         Float3 gradient;
@@ -140,6 +150,9 @@ class Sampler {
         }
     }
 
+    /// Of the differences below and above the node, their mean where they agree, which is the slope to second order.
+    /// Else there is a kink: that on one side of it is taken, the side where the next difference bends less, and
+    /// carried to the node by half of that bend (a one-sided difference of second order).
     [[nodiscard]] float slope(int i, int s) const {
         const float below = at(i) - at(i - s), above = at(i + s) - at(i);
         if (std::abs(above - below) <= kKink) return 0.5f * (below + above);
@@ -159,7 +172,9 @@ struct Plane {
     bool isClean;  ///< both ends of the edge see the same plane
 };
 
-/// The point that lies on all planes as well as may be, within `low`..`high` of the cell's corner.
+/// The point x that lies on all planes (n_i, p_i) as well as may be: the least sum of (n_i . (x - p_i))^2 and
+/// count kHold |x - mean|^2, which holds it near the mean of the p_i where the planes leave it free. With o = x - mean that
+/// is A o = b, A = sum n n^T + count kHold I, b = sum n (n . (p - mean)).
 struct PlaneSum {
     Float3 mean{}, normal{};
     float a[6]{};  ///< xx, xy, xz, yy, yz, zz
@@ -217,12 +232,13 @@ struct PlaneSum {
         return {inverse * (c00 * b[0] + c01 * b[1] + c02 * b[2]), inverse * (c01 * b[0] + c11 * b[1] + c12 * b[2]),
                 inverse * (c02 * b[0] + c12 * b[1] + c22 * b[2])};
     }
-    /// Twice what an offset is short of lying on all planes, less a constant.
+    /// o^T A o - 2 b^T o: the sum that is to be least, less a constant.
     [[nodiscard]] float cost(const Float3& x) const {
         return x[0] * (a[0] * x[0] + 2.0f * (a[1] * x[1] + a[2] * x[2] - b[0])) +
                x[1] * (a[3] * x[1] + 2.0f * (a[4] * x[2] - b[1])) + x[2] * (a[5] * x[2] - 2.0f * b[2]);
     }
-    /// The best offset where each coordinate is held to a range: of all faces, edges and corners of that box.
+    /// The best offset in a box when the free one is not in it: the sum is convex, so the best lies on a face. On each
+    /// face it is solved for in the two coordinates left; where that leads out of the face, along its edges, clamped.
     [[nodiscard]] Float3 solveWithin(const Float3& low, const Float3& high) const {
         const auto at = [&](std::size_t i, std::size_t j) { return a[i == 0 ? j : i + j + 1]; };
         Float3 best{};
@@ -358,7 +374,8 @@ class Contourer {
     }
 
     /// Of faces whose inside corners are diagonal to each other, those with the saddle between them inside: the same
-    /// for the cells on both sides.
+    /// for the cells on both sides. The bilinear saddle is (v0 v2 - v1 v3) / (v0 + v2 - v1 - v3), so its sign is that
+    /// of the products of the diagonals (the asymptotic decider, Nielson & Hamann 1991).
     unsigned joinedFaces(const int (&at)[3], unsigned faces) const {
         unsigned joined = 0;
         const int origin = Sampler::index(at[0], at[1], at[2]);
@@ -436,7 +453,7 @@ class Contourer {
     }
 
     /// Near an edge of the solid: planes at the distance that each node of the cell tells, along its own gradient, so
-    /// that none is of two minds.
+    /// that none is of two minds. A node at p with value v and unit gradient g sees the plane through p - v g.
     void takeNodePlanes(PlaneSum& sum, const int (&at)[3], const Plane* const* planes, int count) {
         Float3 normals[8], feet[8];
         int taken = 0;

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// depth = max over the medial balls (c, R) of R - phiT(c), here over the balls of the sheets: docs/contact.md, "Depth
+// lies on the medial axis" for why, "Rims" for the way, "Every tolerance" for the constants. A sheet is a curve
+// (rho(u), z(u), R(u)), u its length, turned about the axis: c(u, a) = tip + rho (cos a x + sin a y) + z axis. The
+// field tells which of its balls are promising, the triangles how deep those are.
 #include "handpiece/tick/contact/exact/off_axis_medial_search.h"
 
 #include <algorithm>
@@ -58,8 +62,9 @@ struct Support {
     double value, alongU, alongArc;
 };
 
-/// Largest of min over supports of (value + slopes . step) within the box, by its corners: four supports and four sides
-/// leave few.
+/// Largest of min over supports of (value + slopes . step) within the box: a linear program in two unknowns, whose best
+/// lies at a corner. A corner is where two of these meet: sides of the box, and lines along which two supports are
+/// equal. Four supports and four sides leave few, so all are tried.
 double solve(const Support* supports, int count, double lowU, double highU, double window, double& stepU,
              double& stepArc) noexcept {
     double best = -std::numeric_limits<double>::infinity();
@@ -107,6 +112,7 @@ namespace {
 /// deeper than a ball (e, r), whatever the tooth.
 bool isCovered(const instrument::MedialCurve& sheet, const std::vector<instrument::MedialBall>& kept) {
     return std::any_of(kept.begin(), kept.end(), [&](const instrument::MedialBall& e) {
+        // A curve turned about the axis: the ball e that is nearest lies at the same angle.
         return std::all_of(sheet.balls.begin(), sheet.balls.end(), [&](const instrument::MedialBall& b) {
             return std::hypot(b.rhoMm - e.rhoMm, b.zMm - e.zMm) + b.radiusMm - e.radiusMm <= kCoveredMm;
         });
@@ -150,7 +156,8 @@ OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field
                 reach = std::max(reach, sheet.radius[i] + std::hypot(sheet.rho[i], sheet.z[i] - z));
             return reach;
         };
-        double low = -1.0, high = bur.lengthMm() + 1.0;  // the reach is convex in z
+        // The smallest ball about the axis that holds the sheet's: its reach is convex in z, so thirds close in on it.
+        double low = -1.0, high = bur.lengthMm() + 1.0;
         for (int i = 0; i < 80; ++i) {
             const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
             (reachFrom(a) < reachFrom(b) ? high : low) = reachFrom(a) < reachFrom(b) ? b : a;
@@ -166,6 +173,8 @@ OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field
     unknown_.resize(kMaxGrid);
 }
 
+/// Balls of the sheet about kSpacingMm apart along the curve and around, in circles of whole eights; farther apart
+/// where there would be more than kMaxGrid.
 void OffAxisMedialSearch::addGrid(Sheet& sheet) const {
     const double length = sheet.u.back();
     for (double spacing = kSpacingMm;; spacing *= 1.2) {
@@ -206,6 +215,9 @@ void OffAxisMedialSearch::addGrid(Sheet& sheet) const {
     }
 }
 
+/// A distance is 1-Lipschitz: at phiT(m) outside, with m the middle of the ball of reach about all of a sheet's, none
+/// of them is deeper than reach - phiT(m); and none has its centre in the tooth when phiT(m) is more than the centres'
+/// reach.
 void OffAxisMedialSearch::search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown,
                                  BallDepth& best) noexcept {
     for (const Sheet& sheet : sheets_) {
@@ -225,6 +237,8 @@ void OffAxisMedialSearch::search(const ExactSurface& surface, const BurFrame& fr
     if (askCovered(surface, frame, best)) askCovered(surface, frame, best);
 }
 
+/// Of a sheet that is not searched, the balls at the angle at which the tooth is nearest to what was found: R + |c - q|
+/// bounds each from above, with q the tooth's place, and the few that could be deeper are measured.
 bool OffAxisMedialSearch::askCovered(const ExactSurface& surface, const BurFrame& frame,
                                      BallDepth& best) const noexcept {
     if (covered_.empty() || best.triangle == geometry::kNoTriangle || best.depthMm <= 0.0) return false;
@@ -245,6 +259,8 @@ bool OffAxisMedialSearch::askCovered(const ExactSurface& surface, const BurFrame
     return deeper;
 }
 
+/// c(u, a) and its slopes: dc/du = rho' e_r + z' axis, and along the arc (rho / r) e_t, where r = max(rho, kArcFloorMm)
+/// turns a length into an angle.
 OffAxisMedialSearch::Spot OffAxisMedialSearch::spotAt(const Sheet& sheet, const BurFrame& frame, double u,
                                                       double angle) const noexcept {
     const std::size_t last = sheet.u.size() - 1;
@@ -270,7 +286,9 @@ OffAxisMedialSearch::Spot OffAxisMedialSearch::spotAt(const Sheet& sheet, const 
     return spot;
 }
 
-/// Distances of the grid's balls; of eight that all lie too far outside for their radius none is looked up.
+/// Distances of the grid's balls. Of eight neighbours none is farther than a chord from their middle, so by the
+/// Lipschitz bound none is deeper than R + chord - phiT(middle): where that is not enough, none of the eight is looked
+/// up.
 void OffAxisMedialSearch::scan(const Sheet& sheet, const BurFrame& frame, double atLeast) noexcept {
     for (const Row& r : sheet.rows) {
         FieldRow row;
@@ -303,7 +321,8 @@ void OffAxisMedialSearch::scan(const Sheet& sheet, const BurFrame& frame, double
     }
 }
 
-/// Tops of the grid where the field holds distances, and all balls elsewhere that might beat `atLeast`.
+/// Tops of the grid (no neighbour on its circle or the two beside it is higher) where the field holds distances, and
+/// all balls elsewhere that might beat `atLeast`. A top within kRiseMm of the highest that is sure is kept.
 void OffAxisMedialSearch::collect(const Sheet& sheet, const BurFrame& frame, double atLeast) noexcept {
     candidateCount_ = unknownCount_ = 0;
     double least = atLeast;
@@ -359,7 +378,8 @@ void OffAxisMedialSearch::collect(const Sheet& sheet, const BurFrame& frame, dou
     }
 }
 
-/// Climbs in the field by looks in eight directions.
+/// Climbs in the field by looks in eight directions; the step shrinks where none leads up (a pattern search: the field
+/// is trilinear and has no slope worth following within a voxel).
 void OffAxisMedialSearch::refine(const Sheet& sheet, const BurFrame& frame, Candidate& candidate) const noexcept {
     constexpr double kHalf = std::numbers::sqrt2 / 2.0;
     static constexpr double kCosine[8] = {1, kHalf, 0, -kHalf, -1, -kHalf, 0, kHalf};
@@ -418,7 +438,9 @@ void OffAxisMedialSearch::climbOnce(const ExactSurface& surface, const Sheet& sh
     seed = best.triangle != geometry::kNoTriangle ? best.triangle : seed;
 }
 
-/// Balls that the field cannot tell: each one measured bounds those around it.
+/// Balls that the field cannot tell, the one with the highest bound first. Each one measured bounds the others: a ball
+/// (c', R') is at most R' + |c' - q| deep, with q the tooth's place that a ball inside has found, and at most
+/// R' - R + |c' - c| deeper than a ball (c, R) anywhere. What can no longer be the deepest is dropped.
 void OffAxisMedialSearch::measure(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame,
                                   std::uint32_t& seed, BallDepth& best) noexcept {
     for (int count = 0; count < kMaxMeasured && unknownCount_ > 0; ++count) {
@@ -473,6 +495,11 @@ void OffAxisMedialSearch::searchSheet(const ExactSurface& surface, const Sheet& 
     measure(surface, sheet, frame, seed, best);
 }
 
+/// From a ball to the deepest one nearby, on the triangles. Inside the tooth every triangle bounds the depth from
+/// above, D(c) <= R + |c - q(c)|, with the slope R' - n . c' (n out of the tooth, from c to q); the depth is the least
+/// of these bounds. Those of the triangles seen so far are taken as linear and the step is the corner of them that
+/// promises most within a window (solve()); the window grows when the gain keeps the promise and shrinks when it does
+/// not: a bundle method with a trust region. docs/contact.md, "Rims".
 void OffAxisMedialSearch::climb(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, double u,
                                 double angle, std::uint32_t seed, double window, BallDepth& best, double& endU,
                                 double& endAngle) const noexcept {
@@ -499,6 +526,7 @@ void OffAxisMedialSearch::climb(const ExactSurface& surface, const Sheet& sheet,
         spot = spotAt(sheet, frame, u, angle);
     }
     for (int step = 0; step < kMaxSteps && window > kFinalWindowMm; ++step) {
+        // No ball of the window is deeper by more than its diagonal and what the radius gains on the way.
         if (here.depthMm + 4.0 * window < best.depthMm) break;
         Support supports[kActive];
         int count = 0;

@@ -88,7 +88,20 @@ FieldDepth::FieldDepth(const LiveField& field, const instrument::Bur& bur, core:
       windowMm_(kWindow * bur.surfaceSpacingMm()),
       inner_({}),
       probe_({}) {
-    const auto& rings = bur.rings();
+    addSpots();
+    measureInscribed();
+    measureRoom();
+    addShells();
+    addProbes();
+    for (const instrument::MedialCurve& curve : bur.medialAxis())
+        if (curve.onAxis) axis_.insert(axis_.end(), curve.balls.begin(), curve.balls.end());
+    std::sort(axis_.begin(), axis_.end(), [](const MedialBall& a, const MedialBall& b) { return a.zMm < b.zMm; });
+}
+
+/// A spot a ring, with the outline's curvature on both sides of it, and whether the outline has a corner there. Rings
+/// follow the outline from piece to piece; the last of one is the first of the next.
+void FieldDepth::addSpots() {
+    const auto& rings = bur_.rings();
     for (const instrument::SurfaceRing& r : rings) {
         const double around = r.rhoMm > kTinyMm ? r.normalRho / r.rhoMm : 0.0;
         Spot spot{};
@@ -101,7 +114,7 @@ FieldDepth::FieldDepth(const LiveField& field, const instrument::Bur& bur, core:
         spots_.push_back(spot);
     }
     std::size_t first = 0;
-    for (const instrument::ProfilePiece& piece : bur.profile().pieces) {
+    for (const instrument::ProfilePiece& piece : bur_.profile().pieces) {
         std::size_t last = first + 1;
         while (last + 1 < rings.size() && (Vec2(rings[last].rhoMm, rings[last].zMm) - piece.to).norm() > kTinyMm)
             ++last;
@@ -115,19 +128,28 @@ FieldDepth::FieldDepth(const LiveField& field, const instrument::Bur& bur, core:
         }
         first = last;
     }
+}
+
+/// How far inwards from each spot the nearest point of the bur's surface stays this one: there its parallel surfaces
+/// end.
+void FieldDepth::measureInscribed() {
     for (Spot& s : spots_) {
         const Vec2 place(s.rho, s.z), normal(s.normalRho, s.normalZ);
         if (s.rho < kTinyMm) {  // round about the axis: both curvatures are the outline's
-            const double end = s.z < 0.5 * bur.lengthMm() ? s.curvatureAfter : s.curvatureBefore;
+            const double end = s.z < 0.5 * bur_.lengthMm() ? s.curvatureAfter : s.curvatureBefore;
             s.curvatureBefore = s.curvatureAfter = s.curvatureAround = end;
         }
         if (s.isCorner) {
             constexpr double kStepMm = 1e-4;
             const Vec2 inside = place - kStepMm * normal;
-            s.deeperPerMm = std::clamp(-bur.signedDistance({inside.x(), 0.0, inside.y()}) / kStepMm, 0.0, 1.0);
+            s.deeperPerMm = std::clamp(-bur_.signedDistance({inside.x(), 0.0, inside.y()}) / kStepMm, 0.0, 1.0);
         }
-        s.inscribedMm = inscribedAt(bur, place, normal, s.deeperPerMm);
+        s.inscribedMm = inscribedAt(bur_, place, normal, s.deeperPerMm);
     }
+}
+
+/// How far along the outline to the next corner on both sides, and how the inscribed depth changes on the way.
+void FieldDepth::measureRoom() {
     constexpr double kNoCornerMm = 1e3;
     const auto stepTo = [&](std::size_t i, std::size_t j) {
         return std::hypot(spots_[i].rho - spots_[j].rho, spots_[i].z - spots_[j].z);
@@ -146,6 +168,15 @@ FieldDepth::FieldDepth(const LiveField& field, const instrument::Bur& bur, core:
         s.slopeAfter = (inscribedOf(i + 1) - inscribedOf(i)) / stepTo(i, i + 1);
         s.roomAfter = (spots_[i + 1].isCorner ? 0.0 : spots_[i + 1].roomAfter) + stepTo(i, i + 1);
     }
+}
+
+/// Rings of points inside the bur, on its parallel surfaces: what is asked where the bur lies deeper than the field's
+/// values on its own surface can tell.
+void FieldDepth::addShells() {
+    const auto& rings = bur_.rings();
+    const auto stepTo = [&](std::size_t i, std::size_t j) {
+        return std::hypot(spots_[i].rho - spots_[j].rho, spots_[i].z - spots_[j].z);
+    };
     std::vector<instrument::SurfaceRing> shells;
     double nextAlong = 0.0, along = 0.0;
     for (std::size_t i = 0; i < rings.size(); ++i) {
@@ -166,6 +197,11 @@ FieldDepth::FieldDepth(const LiveField& field, const instrument::Bur& bur, core:
         }
     }
     inner_ = RingArrays(shells);
+}
+
+/// Every second point of every second ring, and all corners: enough to begin a climb from.
+void FieldDepth::addProbes() {
+    const auto& rings = bur_.rings();
     std::vector<instrument::SurfaceRing> probes;
     for (std::size_t i = 0; i < rings.size(); ++i) {
         if (i % 2 != 0 && !spots_[i].isCorner && i + 1 != rings.size()) continue;
@@ -175,9 +211,6 @@ FieldDepth::FieldDepth(const LiveField& field, const instrument::Bur& bur, core:
         probeSpot_.push_back(i);
     }
     probe_ = RingArrays(probes);
-    for (const instrument::MedialCurve& curve : bur.medialAxis())
-        if (curve.onAxis) axis_.insert(axis_.end(), curve.balls.begin(), curve.balls.end());
-    std::sort(axis_.begin(), axis_.end(), [](const MedialBall& a, const MedialBall& b) { return a.zMm < b.zMm; });
 }
 
 double FieldDepth::radiusAt(double z) const noexcept {

@@ -50,6 +50,11 @@ class FieldDepth {
         double cosine, sine, inMm;
     };
     class DepthAscent;
+    void addSpots();
+    void measureInscribed();
+    void measureRoom();
+    void addShells();
+    void addProbes();
     void sense(const RingArrays& arrays, const BurFrame& frame) const noexcept;
     void searchInside(const BurFrame& frame, FieldTouch& best) noexcept;
     [[nodiscard]] double scanAxis(const BurFrame& frame, double fromZ, double step, int count,

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compiled once per instruction set; see cmake/handpiece.cmake.
+//
+// The bur's rings in the field, eight points at a time: docs/contact.md, "Rings". A point of ring (rho, z) at angle a
+// is p = tip + z axis + rho (cos a x + sin a y). Its distance is trilinear in its cell,
+//     phi = mix(mix(mix(v000, v100, tx), mix(v010, v110, tx), ty), mix(..., ..., ty), tz), mix(a, b, t) = a + t (b -
+//     a),
+// and the gradient is the slope of the same polynomial: d phi/dx = the mix over ty, tz of the four differences along x.
+// What need not be looked up is left out by the Lipschitz bound, ring by ring from the axis (phi of a point is at least
+// phi of the ring's middle less rho) and eight by eight from the middle of each (less the chord).
 #include "handpiece/tick/contact/sampled/ring_kernels.h"
 
 #include "handpiece/tick/contact/lanes.h"
@@ -108,7 +116,9 @@ struct Places {
 #endif
     }
 
-    /// What is known without a brick: the sign, and a bound of the distance.
+    /// What is known without a brick: the sign, and a bound of the distance. A brick keeps the distance at its centre,
+    /// and a place in it is nearer to the surface by no more than its way from there: |phi| >= |centre| - |p - centre|.
+    /// Outside of the grid the surface is at least as far as the grid.
     [[nodiscard]] Floats farMm(const FieldView& field, const Row& row, float farOutMm, float farInMm) const {
         Floats away2{}, gap2{}, centre;
         for (int k = 0; k < 3; ++k) {
@@ -181,6 +191,7 @@ struct Corners {
     }
 };
 
+/// One linear step of the trilinear sum.
 inline Floats mix(Floats a, Floats b, Floats t) {
     return a + t * (b - a);
 }
@@ -216,7 +227,7 @@ inline float leastOf(Floats d) {
     return least;
 }
 
-/// Looks eight points of a ring up; returns which are live.
+/// Looks eight points of a ring up: distance, gradient and tissue of those that are live, which it returns as bits.
 inline unsigned senseEight(const FieldView& field, const BurRings& bur, const RingQuery& query, const RingTouch& touch,
                            const BurRing& ring, const Row& row, int eight, Floats& least) {
     const int lanes = ring.count - 8 * eight;
@@ -276,8 +287,8 @@ void sense(const FieldView& field, const BurRings& bur, const RingQuery& query, 
     double reach[3];
     for (int k = 0; k < 3; ++k)
         reach[k] = pose.z[k] < 0.0 ? -pose.z[k] : pose.z[k];
-    // Cells near an edge of the surface are off by more than rounding; what lies beyond bounds by that much is looked
-    // up.
+    // In a trilinear cell the Lipschitz bound holds but for what the cell is off, a tenth of a voxel near an edge of
+    // the surface: what lies beyond a bound by no more than that is looked up.
     const auto slackMm = static_cast<float>(0.1 * field.voxelMm);
     const float threshold = query.thresholdMm + slackMm;
     for (std::int32_t i = 0; i < bur.count; i += 8) {
@@ -344,6 +355,8 @@ inline void add(float (&sum)[8], Floats value) {
     __builtin_memcpy(sum, &value, sizeof value);
 }
 
+/// Sums over a run of points, w = area (margin - phi): of w itself, of w times the place (x and y are scaled by the
+/// ring's radius in the end), and of w times the gradient, whose direction is the patch's normal.
 void addRun(const BurRings& bur, const RingTouch& touch, std::int32_t i, std::int32_t from, std::int32_t to,
             float marginMm, TouchSums& sums) noexcept {
     const BurRing& ring = bur.rings[i];
@@ -408,6 +421,9 @@ inline void addBearing(BearingSums& sums, Floats area, Floats resistance, Floats
     add(sums.y, turns * areaMm2 * perRho * y);
 }
 
+/// What each live point bears when the bur is pushed along a direction d (Bearing in method.h): c = max(0, n . d) with
+/// n the band's outward normal, a weight that falls from 1 at the surface to 0 at the margin above it, where the point
+/// counts as lead c nearer. Sums of w c, w c^2 / rho and w c t / rho, t = (sin a, -cos a): docs/physics.md#cutting.
 void bear(const BurRings& bur, const RingTouch& touch, const BearingBand* bands, std::int32_t count,
           const BearingQuery& query, BearingSums* byTissue) noexcept {
     const float across = __builtin_sqrtf(query.x * query.x + query.y * query.y), perMargin = 1.0f / query.marginMm;

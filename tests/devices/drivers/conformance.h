@@ -183,6 +183,13 @@ class Conformance : public testing::TestWithParam<MakeAdaptor> {
             << "trouble: " << link::idOf(probe.last().trouble);
         return driver;
     }
+    /// The interface goes on for many frames, told to somebody else: what was still on its way comes meanwhile.
+    void anotherRound() {
+        Probe other;
+        auto driver = started(0, other);
+        EXPECT_TRUE(await([&] { return other.count() > 20; }));
+        driver->stop();
+    }
     [[nodiscard]] bool felt() const { return traits.force && traits.felt; }
     std::unique_ptr<Adaptor> adaptor;
     Traits traits;

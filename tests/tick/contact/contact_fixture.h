@@ -4,8 +4,10 @@
 /// Teeth without files, and poses that press a bur into them by a given depth.
 
 #include <memory>
+#include <vector>
 
 #include "handpiece/base/core/rotation.h"
+#include "handpiece/base/core/simd.h"
 #include "handpiece/model/field/field_builder.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/tooth/tooth.h"
@@ -20,6 +22,23 @@ inline std::shared_ptr<const tooth::Tooth> toothOf(geometry::TriangleMesh mesh) 
     field::DistanceField field = field::FieldBuilder::fromSurface(mesh, tree, {}, {});
     return std::make_shared<const tooth::Tooth>(
         tooth::Tooth{"test", std::move(mesh), std::move(tree), std::move(field), false, 0.0});
+}
+
+/// The ball with grooves, made once.
+inline const tooth::Tooth& grooved() {
+    static const auto tooth = toothOf(groovedBall(24));
+    return *tooth;
+}
+/// Anywhere in and about it.
+inline core::Vec3 anywhere(std::mt19937_64& g) {
+    return {uniform(g, -5, 5), uniform(g, -5, 5), uniform(g, -5, 5)};
+}
+/// The instruction sets of this processor.
+inline std::vector<core::SimdLevel> levels() {
+    std::vector<core::SimdLevel> all;
+    for (const core::SimdLevel level : {core::SimdLevel::base, core::SimdLevel::avx2, core::SimdLevel::avx512})
+        if (level <= core::simdLevel()) all.push_back(level);
+    return all;
 }
 
 /// A closed box; each face a grid of `steps` x `steps` squares.

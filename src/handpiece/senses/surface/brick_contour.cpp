@@ -173,8 +173,8 @@ struct Plane {
 };
 
 /// The point x that lies on all planes (n_i, p_i) as well as may be: the least sum of (n_i . (x - p_i))^2 and
-/// count kHold |x - mean|^2, which holds it near the mean of the p_i where the planes leave it free. With o = x - mean that
-/// is A o = b, A = sum n n^T + count kHold I, b = sum n (n . (p - mean)).
+/// count kHold |x - mean|^2, which holds it near the mean of the p_i where the planes leave it free. With o = x - mean
+/// that is A o = b, A = sum n n^T + count kHold I, b = sum n (n . (p - mean)).
 struct PlaneSum {
     Float3 mean{}, normal{};
     float a[6]{};  ///< xx, xy, xz, yy, yz, zz

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/completion.h"
+#include "handpiece/base/config/words.h"
 #include "handpiece/base/core/any_error.h"
 #include "studies/progress_bar.h"
 
@@ -19,6 +20,12 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods, c
     app.footer(
         "Each command explains itself: handpiece COMMAND --help\n"
         "Exit codes: 0 done, 1 failed (bad input, no permission), 2 wrong usage.");
+    config::useLanguage(config::languageOfEnvironment());
+    app.fallthrough();
+    app.add_option_function<std::string>(
+           "--language", [](const std::string& language) { config::useLanguage(language); },
+           "of the reports: en or ja; else what LANG asks for")
+        ->check(CLI::IsMember(config::Words::languages()));
     Command top(app);
     addMakeCommand(top);
     addMeshCommand(top);

@@ -9,13 +9,16 @@
 
 #include "cli/commands.h"
 #include "handpiece/app/exercise/school_defaults.h"
+#include "handpiece/app/report/fidelity_report.h"
+#include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
-#include "handpiece/devices/fidelity/fidelity.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 namespace {
+
+using config::words;
 
 using Json = nlohmann::ordered_json;
 
@@ -66,7 +69,7 @@ void check(const CheckOptions& o) {
     settings.announce = [](const std::string& sentence) { fmt::print(stderr, "handpiece: {}\n", sentence); };
     const fidelity::Report report =
         fidelity::check(std::move(driver), settings, [](double) { return !studies::cancelled(); });
-    if (!o.report.empty()) core::writeFile(o.report, fidelity::asHtml(report));
+    if (!o.report.empty()) core::writeFile(o.report, report::fidelityReport(report));
     if (o.json) {
         fmt::print("{}", fidelity::asJson(report));
         return;
@@ -74,12 +77,13 @@ void check(const CheckOptions& o) {
     fmt::print("{} ({}), {:.1f} s\n  {}\n", report.device.model, report.device.driver, report.durationS,
                report.machine);
     for (const fidelity::Finding& f : report.findings) {
-        fmt::print("  {:<13}{:<26}{}\n", fidelity::idOf(f.verdict), f.name, f.value);
+        fmt::print("  {:<13}{:<26}{}\n", words()(fmt::format("fidelity.verdict.{}", idOf(f.verdict))),
+                   nameOf(f, words()), words()(f.value));
         const bool mind = f.verdict == fidelity::Verdict::warn || f.verdict == fidelity::Verdict::fail;
-        if (mind) fmt::print("  {:<13}{:<26}held against: {}\n", "", "", f.against);
-        if (mind && !f.remedy.empty()) fmt::print("  {:<13}{:<26}to do: {}\n", "", "", f.remedy);
+        if (mind) fmt::print("  {:<39}{}: {}\n", "", words()("fidelity.held-against"), words()(f.against));
+        if (mind && !f.remedy.empty()) fmt::print("  {:<39}{}: {}\n", "", words()("fidelity.to-do"), words()(f.remedy));
     }
-    fmt::print("{}\n", report.passed ? "fit to practise with" : "not fit to practise with");
+    fmt::print("{}\n", report.passed ? words()("fidelity.fit") : words()("fidelity.not-fit"));
     if (!o.report.empty()) fmt::print("{}\n", o.report);
 }
 

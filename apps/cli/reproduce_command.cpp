@@ -108,7 +108,7 @@ void introduce(studies::Reproduction& r, const ReproduceOptions& o) {
                                    studies::machineDescription(), r.bur->mesh().vertices.size(),
                                    o.tooth.empty() ? "the starter molar" : fs::path(o.tooth).filename().string(),
                                    o.quick ? " Quick: the two coarsest teeth, shorter drops." : ""),
-                       true);
+                       report::HtmlReport::Tone::note);
 }
 
 void conclude(studies::Reproduction& r) {

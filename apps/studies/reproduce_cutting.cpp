@@ -139,7 +139,7 @@ Json addStroboscope(Reproduction& r, const std::shared_ptr<const tooth::Cuttable
     r.step("drawing " + file);
     const std::filesystem::path path = r.out / file;
     if (const std::string missing = writeStroboscope(whole, state, *r.bur, shot, path); !missing.empty()) {
-        r.report.paragraph("No picture in three dimensions: " + missing, true);
+        r.report.paragraph("No picture in three dimensions: " + missing, report::HtmlReport::Tone::note);
         return {};
     }
     r.report.picture(path, caption);

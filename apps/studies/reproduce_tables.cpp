@@ -73,7 +73,7 @@ void table1(Reproduction& r) {
     r.report.paragraph(
         "A closed surface has about half as many vertices as faces; the paper's counts have more, so its surfaces were "
         "open or doubled along seams. Ours are closed.",
-        true);
+        report::HtmlReport::Tone::note);
 }
 
 void table2(Reproduction& r) {
@@ -113,7 +113,7 @@ void table2(Reproduction& r) {
                     drawing.renderer.empty() ? "" : "; by " + drawing.renderer));
     r.report.paragraph(r.ownTooth ? "The teeth are the one given, thinned to the paper's percentages of its own faces."
                                   : "The teeth are the starter molar, meshed to the paper's counts of faces.",
-                       true);
+                       report::HtmlReport::Tone::note);
 }
 
 void table3(Reproduction& r) {
@@ -176,7 +176,7 @@ void table3(Reproduction& r) {
         "the worst of five stand there. The paper's last row is as printed: 871.54 ms cutting, 22,535.17 ms not "
         "cutting. "
         "Each other time of ours is the fastest of three passes and includes the clock's own 20 to 30 ns.",
-        true);
+        report::HtmlReport::Tone::note);
 }
 
 /// Changes of depth over one step, over all places.
@@ -253,7 +253,7 @@ void table4(Reproduction& r) {
     r.report.paragraph(
         "The paper moved a bur into a plane step by step; it lists neither its plane nor 100 %, which it could not "
         "use.",
-        true);
+        report::HtmlReport::Tone::note);
 }
 
 }  // namespace

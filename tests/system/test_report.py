@@ -6,7 +6,7 @@ import json
 import re
 import unittest
 
-from support import SystemTest, box, write_stl
+from support import SystemTest, box, run, write_stl
 
 
 class Page(html.parser.HTMLParser):
@@ -63,6 +63,13 @@ class Report(SystemTest):
         self.assertNotIn(str(self.folder), text)
         self.assertNotIn("nan", page.text)
         self.assertEqual(text.count("<svg"), 3)
+        self.assertEqual(text.count("<style>"), 1)
+        self.ok("report", out / "session.h5", "--no-pictures", "--language", "ja", "--out", self.folder / "ja.html")
+        japanese = (self.folder / "ja.html").read_text()
+        self.assertIn('<html lang="ja">', japanese)
+        for word in ("実習の記録", "除去の合計", "エナメル質", "時間 [s]"):
+            self.assertIn(word, japanese)
+        self.assertEqual(run("--language", "xx", "report", out / "session.h5", "--out", self.folder / "x.html").returncode, 2)
         summary = json.loads((out / "summary.json").read_text())
         replay = json.loads(self.ok("replay", out / "session.h5", "--json").stdout)
         self.assertIn(replay["state_hash"], page.text)

@@ -5,6 +5,8 @@
 #include <QLibraryInfo>
 #include <QLocale>
 
+#include "handpiece/base/config/words.h"
+
 namespace handpiece::desktop {
 
 // Qt 6.4's own Japanese misspells this key: our file has it right, and is asked first.
@@ -27,6 +29,7 @@ bool Language::use(const QString& wanted) {
         *translator = std::make_unique<QTranslator>();
     }
     code_ = code;
+    config::useLanguage(code.toStdString());
     QLocale::setDefault(QLocale(code == QLatin1String("ja") ? QLocale::Japanese : QLocale::English,
                                 code == QLatin1String("ja") ? QLocale::Japan : QLocale::UnitedKingdom));
     // Qt's own texts (OK, Cancel, file dialogs) are missing on some machines: those then stay English.

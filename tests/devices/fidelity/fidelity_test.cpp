@@ -60,7 +60,7 @@ TEST(Fidelity, findsTheDelayThatTheArmHas) {
         const Report report = checked(arm, lasting(5.0));
         EXPECT_NEAR(figure(report, "round-trip-delay", "delay_ms"), delayMs,
                     std::max(0.7, figure(report, "round-trip-delay", "uncertainty_ms")))
-            << of(report, "round-trip-delay").value;
+            << config::words()(of(report, "round-trip-delay").value);
         EXPECT_LT(figure(report, "round-trip-delay", "uncertainty_ms"), 1.5);
         EXPECT_EQ(of(report, "round-trip-delay").verdict, delayMs > 3.0 ? Verdict::warn : Verdict::pass);
     }
@@ -70,7 +70,8 @@ TEST(Fidelity, findsItWithTheEncoderOfADesktopArmToo) {
     drivers::SimulatedSettings arm = still();
     arm.arm.delayS = 0.004;
     const Report report = checked(arm, lasting(6.0));
-    EXPECT_NEAR(figure(report, "round-trip-delay", "delay_ms"), 4.0, 2.0) << of(report, "round-trip-delay").value;
+    EXPECT_NEAR(figure(report, "round-trip-delay", "delay_ms"), 4.0, 2.0)
+        << config::words()(of(report, "round-trip-delay").value);
 }
 
 TEST(Fidelity, aWellArmPasses) {
@@ -123,7 +124,8 @@ TEST(Fidelity, aTroubleIsToldInWordsAndFails) {
     const Report report = checked(still(), lasting(3.0), "error@1.2:0.1=0x0301");
     const Finding& troubles = of(report, "troubles");
     EXPECT_EQ(troubles.verdict, Verdict::fail);
-    EXPECT_NE(troubles.value.find("own software reports"), std::string::npos) << troubles.value;
+    const std::string said = config::words()(troubles.value);
+    EXPECT_NE(said.find("own software reports"), std::string::npos) << said;
     EXPECT_FALSE(troubles.remedy.empty());
     EXPECT_FALSE(report.passed);
 }

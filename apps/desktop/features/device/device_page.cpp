@@ -11,6 +11,7 @@
 #include "desktop/features/device/live_box.h"
 #include "desktop/features/device/profile_box.h"
 #include "desktop/widgets/parts.h"
+#include "handpiece/app/report/fidelity_report.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 
@@ -169,7 +170,7 @@ void DevicePage::save() {
     try {
         core::writeFile(toPath(file), file.endsWith(QLatin1String(".json"), Qt::CaseInsensitive)
                                           ? fidelity::asJson(*fidelity_->report())
-                                          : fidelity::asHtml(*fidelity_->report()));
+                                          : report::fidelityReport(*fidelity_->report()));
         emit simulator_.saved(file);
     } catch (const core::Error& error) {
         emit simulator_.failed(problemOf(error));

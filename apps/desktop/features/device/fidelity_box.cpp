@@ -12,7 +12,6 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "desktop/features/device/fidelity_words.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
 #include "desktop/work/device_manager.h"
@@ -135,7 +134,8 @@ void FidelityBox::setReport(const fidelity::Report& report) {
     const Tones tones = tonesOf(palette());
     int warnings = 0, failures = 0;
     for (const fidelity::Finding& finding : report.findings) {
-        QString value = fidelityWords(finding.value), remedy = fidelityWords(finding.remedy);
+        const auto said = [](const std::string& text) { return QString::fromStdString(text); };
+        QString value = said(config::words()(finding.value)), remedy = said(config::words()(finding.remedy));
         if (finding.id == "troubles" && !report.troubles.empty()) {
             // As the message says it that came with each.
             QStringList said;
@@ -144,7 +144,8 @@ void FidelityBox::setReport(const fidelity::Report& report) {
             value = said.join(QLatin1Char(' '));
             remedy = problemOf(report.troubles.front(), report.vendorCode).remedy;
         }
-        auto* item = new QTreeWidgetItem(list_, {wordOf(finding.verdict), fidelityWords(finding.name), value});
+        auto* item =
+            new QTreeWidgetItem(list_, {wordOf(finding.verdict), said(nameOf(finding, config::words())), value});
         item->setData(0, Qt::UserRole, QString::fromStdString(finding.id));
         const bool warn = finding.verdict == fidelity::Verdict::warn;
         const bool fail = finding.verdict == fidelity::Verdict::fail;
@@ -155,7 +156,7 @@ void FidelityBox::setReport(const fidelity::Report& report) {
                                : finding.verdict == fidelity::Verdict::notMeasured ? tones.quiet
                                                                                    : tones.good);
         for (int column = 0; column < 3; ++column)
-            item->setToolTip(column, value + QLatin1Char('\n') + QString::fromStdString(finding.against));
+            item->setToolTip(column, value + QLatin1Char('\n') + said(config::words()(finding.against)));
         if ((warn || fail) && !remedy.isEmpty()) {
             auto* below = new QTreeWidgetItem(item, {QString(), QString(), remedy});
             below->setToolTip(2, remedy);

@@ -167,6 +167,51 @@ double legend(const Plot& plot, double left, double right, double top, std::stri
     return any ? y - top + 20.0 : 0.0;
 }
 
+std::string marksOf(const Plot& plot, const Frame& f) {
+    std::string text;
+    for (const Mark& mark : plot.marks)
+        text += fmt::format("<path class=\"hp-mark\" d=\"M{:.1f} {:.1f}V{:.1f}\"><title>{:.2f}: {}</title></path>\n",
+                            f.px(mark.x), f.top, f.bottom, mark.x, escaped(mark.label));
+    return text;
+}
+
+/// What of a histogram is worth drawing: from its first to its last count, at most so far.
+struct Drawn {
+    std::size_t first = 0, last = 0, perBar = 1;
+    double most = 0.0, total = 0.0, beyond = 0.0;
+    std::vector<double> bars;
+};
+
+Drawn drawnOf(const std::vector<double>& counts, bool fromZero) {
+    Drawn d;
+    for (const double c : counts)
+        d.total += c;
+    const auto counted = [](double c) { return c > 0.0; };
+    const auto begin = std::find_if(counts.begin(), counts.end(), counted);
+    d.first = fromZero ? 0 : static_cast<std::size_t>(begin - counts.begin());
+    // The last thousandth is told in words: one late frame would make a line of all the others.
+    double sum = 0.0;
+    d.last = d.first;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        sum += counts[i];
+        if (sum <= 0.999 * d.total) d.last = std::max(d.last, i + 1);
+    }
+    d.last = std::min(std::max(d.last, d.first + 10), std::max(counts.size(), d.first + 10));
+    constexpr std::size_t kBars = 120;
+    d.perBar = std::max<std::size_t>(1, (d.last - d.first + kBars) / kBars);
+    for (std::size_t i = d.first; i <= d.last; i += d.perBar) {
+        double bar = 0.0;
+        for (std::size_t j = i; j < std::min(i + d.perBar, counts.size()); ++j)
+            bar += counts[j];
+        d.bars.push_back(bar);
+        d.most = std::max(d.most, bar);
+    }
+    const std::size_t end = d.first + d.bars.size() * d.perBar;
+    for (std::size_t i = end; i < counts.size(); ++i)
+        d.beyond += counts[i];
+    return d;
+}
+
 }  // namespace
 
 std::string toSvg(const Plot& plot, bool standalone) {
@@ -176,11 +221,13 @@ std::string toSvg(const Plot& plot, bool standalone) {
             if (drawable(s, i)) f.x.take(s.x[i]), f.y.take(s.y[i]);
     for (const Limit& limit : plot.limits)
         f.y.take(limit.y);
+    for (const Mark& mark : plot.marks)
+        f.x.take(mark.x);
     f.x.open(0.0);
     f.y.open(0.06);
     std::string names;
     f.top += legend(plot, f.left, f.right, f.top + 12.0, names);
-    std::string body = axes(plot, f) + names;
+    std::string body = axes(plot, f) + names + marksOf(plot, f);
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
         const Series& s = plot.series[i];
         if (s.line) body += lineOf(s, f, colourOf(s, i));
@@ -197,6 +244,41 @@ std::string toSvg(const Plot& plot, bool standalone) {
         body, standalone ? fmt::format("width=\"{}\" height=\"{}\" ", plot.width, plot.height) : "");
 }
 
+Histogram histogramSvg(const std::vector<double>& counts, std::string_view title, std::string_view xLabel,
+                       bool fromZero) {
+    constexpr double kWidth = 640, kHeight = 150, kLeft = 46, kBottom = 34, kTop = 8, kRight = 24;
+    const Drawn d = drawnOf(counts, fromZero);
+    if (d.total <= 0.0) return {};
+    const double w = kWidth - kLeft - kRight, h = kHeight - kBottom - kTop;
+    const double decades = std::max(1.0, std::ceil(std::log10(std::max(d.most, 1.0)) + 1e-9));
+    std::string s = fmt::format(
+        "<svg class=\"hp\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\" "
+        "xmlns=\"http://www.w3.org/2000/svg\">",
+        kWidth, kHeight, escaped(title));
+    for (int k = 0; k <= static_cast<int>(decades); ++k) {
+        const double y = kTop + h * (1.0 - k / decades);
+        s += fmt::format(
+            "<line class=\"hp-grid\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>"
+            "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{:.0f}</text>",
+            kLeft, kLeft + w, y, y, kLeft - 5, y + 4, std::pow(10.0, k));
+    }
+    const double each = w / static_cast<double>(d.bars.size());
+    for (std::size_t i = 0; i < d.bars.size(); ++i) {
+        if (d.bars[i] <= 0.0) continue;
+        // One count is seen too.
+        const double tall = h * std::max(0.02, std::log10(d.bars[i]) / decades);
+        s += fmt::format("<rect class=\"hp-bar\" x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\"/>",
+                         kLeft + each * static_cast<double>(i), kTop + h - tall, std::max(each - 0.4, 0.6), tall);
+    }
+    const double first = static_cast<double>(d.first), span = static_cast<double>(d.bars.size() * d.perBar);
+    for (int k = 0; k <= 4; ++k)
+        s += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.0f}</text>", kLeft + w * k / 4.0,
+                         kTop + h + 15, first + span * k / 4.0);
+    s += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text></svg>", kLeft + w / 2,
+                     kHeight - 4, escaped(xLabel));
+    return {std::move(s), d.total, d.beyond};
+}
+
 std::string_view svgStyle() {
     // Plain classes, no CSS variables: converters know them too.
     return R"(
@@ -205,6 +287,7 @@ std::string_view svgStyle() {
 .hp .hp-grid { stroke: #8a93a3; stroke-opacity: 0.28; stroke-width: 1; }
 .hp .hp-frame { fill: none; stroke: #8a93a3; stroke-width: 1; }
 .hp .hp-line { fill: none; stroke-width: 1.7; stroke-linejoin: round; } .hp .hp-dash { stroke-dasharray: 6 4; }
+.hp .hp-mark { stroke: #c9762b; stroke-width: 0.8; stroke-dasharray: 3 2; } .hp .hp-bar { fill: #2f6f9f; }
 .hp .hp-limit { stroke: #c62828; stroke-width: 1.3; stroke-dasharray: 8 5; } .hp .hp-limit-text { fill: #c62828; }
 .hp .hp-tooth { fill: #d9c9a3; fill-opacity: 0.75; stroke: #8c7a4f; stroke-width: 1; }
 .hp .hp-behind { fill: #d9c9a3; fill-opacity: 0.30; stroke: none; }

@@ -26,10 +26,17 @@ struct Limit {
     std::string label;
 };
 
+/// A vertical line where something happened.
+struct Mark {
+    double x = 0.0;
+    std::string label;
+};
+
 struct Plot {
     std::string title, xLabel, yLabel;  ///< labels with their unit: "time [s]"
     std::vector<Series> series;
     std::vector<Limit> limits;
+    std::vector<Mark> marks;
     int width = 760, height = 340;
 };
 
@@ -37,6 +44,15 @@ struct Plot {
 /// carries svgStyle() once instead. Series longer than the plot is wide are drawn by the least and greatest value of
 /// each pixel column. Values that are not finite leave gaps.
 [[nodiscard]] std::string toSvg(const Plot& plot, bool standalone);
+
+/// Counts by bins of one, as bars on a logarithmic scale: rare ones are what matters. From the first count, or from 0;
+/// the last thousandth is left to the caption. `xLabel` with the unit of a bin. Empty without counts.
+struct Histogram {
+    std::string svg;
+    double total = 0.0, beyond = 0.0;  ///< counts; those beyond the right edge
+};
+[[nodiscard]] Histogram histogramSvg(const std::vector<double>& counts, std::string_view title, std::string_view xLabel,
+                                     bool fromZero);
 
 /// The style sheet of all pictures, without the <style> tags.
 [[nodiscard]] std::string_view svgStyle();

@@ -22,18 +22,4 @@ struct SessionFigures {
 /// Reads the whole record by stretches; memory does not grow with it.
 [[nodiscard]] SessionFigures figuresOf(const session::SessionReader& reader);
 
-struct EventMark {
-    double timeS;
-    std::string name;
-};
-/// A line plot of one member of the points over time as one <svg>, with marks at the events.
-[[nodiscard]] std::string timePlot(const std::vector<simulation::PlotPoint>& points,
-                                   float simulation::PlotPoint::*value, const std::vector<EventMark>& marks,
-                                   const std::string& label, const std::string& unit);
-
-/// For text inside HTML.
-[[nodiscard]] std::string escapedText(std::string_view text);
-/// Bytes as base64, for a data: address.
-[[nodiscard]] std::string base64Of(const std::vector<std::uint8_t>& bytes);
-
 }  // namespace handpiece::report

@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "handpiece/app/report/plot.h"
-#include "handpiece/app/report/report_figures.h"
+#include "handpiece/base/config/words.h"
 #include "handpiece/base/core/file.h"
 
 namespace handpiece::report {
@@ -14,31 +15,59 @@ namespace {
 
 constexpr std::string_view kPageStyle = R"(
 :root { color-scheme: light dark; }
-body { max-width: 900px; margin: 2.5rem auto; padding: 0 1.2rem; color: #1c2430; background: #ffffff;
-  font: 16px/1.55 Georgia, "Times New Roman", serif; }
-h1, h2, h3, table, figcaption, caption { font-family: "Helvetica Neue", Arial, sans-serif; }
-h1 { font-size: 1.9rem; line-height: 1.2; margin-bottom: 0.4rem; }
-h2 { font-size: 1.3rem; margin: 2.6rem 0 0.5rem; padding-bottom: 0.25rem; border-bottom: 1px solid #c9ced6; }
-h3 { font-size: 1.02rem; margin: 1.6rem 0 0.3rem; }
-.note { color: #59636f; font-size: 0.92rem; }
-.scroll { overflow-x: auto; margin: 1rem 0; }
-table { border-collapse: collapse; font-size: 0.85rem; width: 100%; }
-caption { text-align: left; color: #59636f; padding-bottom: 0.4rem; }
+@page { size: A4; margin: 14mm; }
+body { max-width: 900px; margin: 2.2rem auto; padding: 0 1.2rem; color: #1c2430; background: #ffffff;
+  font: 15px/1.5 "Helvetica Neue", Arial, "Noto Sans CJK JP", "IPAGothic", sans-serif; }
+h1 { font-size: 1.7rem; line-height: 1.2; margin: 0 0 0.3rem; }
+h2 { font-size: 1.25rem; margin: 2rem 0 0.5rem; padding-bottom: 0.2rem; border-bottom: 1px solid #c9ced6; }
+h3 { font-size: 1.02rem; margin: 1.4rem 0 0.3rem; }
+.note { color: #59636f; font-size: 0.9rem; } .good { color: #1d7a3f; font-weight: 600; } .bad { color: #c62828; font-weight: 600; }
+.missing { border: 1px dashed #8a93a3; padding: 1rem; }
+.scroll { overflow-x: auto; margin: 0.8rem 0; }
+table { border-collapse: collapse; font-size: 0.86rem; width: 100%; }
+caption { text-align: left; color: #59636f; padding-bottom: 0.3rem; }
 th { text-align: left; vertical-align: bottom; border-bottom: 1.5px solid #8a93a3; padding: 0.3rem 0.6rem; font-weight: 600; }
-td { border-bottom: 1px solid #dfe3e8; padding: 0.25rem 0.6rem; } tbody tr:hover { background: #f1f4f8; }
-td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+td { border-bottom: 1px solid #dfe3e8; padding: 0.25rem 0.6rem; vertical-align: top; } tbody tr:hover { background: #f1f4f8; }
+th.n, td.n { text-align: right; } td.n { font-variant-numeric: tabular-nums; white-space: nowrap; }
 td.yes { color: #1d7a3f; } td.no { color: #c62828; font-weight: 600; }
-figure { margin: 1.2rem 0; } figure svg, figure img { width: 100%; height: auto; display: block; }
-figcaption { color: #59636f; font-size: 0.85rem; margin-top: 0.4rem; }
+.columns { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1.6rem; }
+.pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 0.6rem; }
+.slices { display: grid; grid-template-columns: 1fr 1fr 1fr; gap: 0.6rem; align-items: end; }
+.slices img { max-height: 90mm; object-fit: contain; background: #000; }
+.frame { border: 1.5px solid #0b62a4; border-radius: 8px; padding: 0.2rem 1.2rem; background: #f2f7fc; }
+figure { margin: 1rem 0; } .pictures figure, .slices figure { margin: 0; }
+figure svg, figure img { width: 100%; height: auto; display: block; }
+figcaption { color: #59636f; font-size: 0.85rem; margin-top: 0.3rem; }
+.chip { display: inline-block; width: 0.9rem; height: 0.9rem; border: 1px solid #59636f; vertical-align: -0.1rem; margin: 0 0.25rem 0 0.8rem; }
+code { font: 0.85rem/1.5 "DejaVu Sans Mono", Menlo, monospace; } pre { background: #eef1f5; padding: 0.5rem 0.8rem; overflow-x: auto; }
 @media (prefers-color-scheme: dark) {
 body { color: #dfe4ec; background: #14181f; } h2 { border-color: #3a4250; } td { border-color: #2a313c; }
-tbody tr:hover { background: #1d232d; } .note, caption, figcaption { color: #9aa5b4; }
-td.yes { color: #66c98c; } td.no { color: #ff7b72; } }
-@media print { body { max-width: none; } h2, figure, table { break-inside: avoid; } }
+tbody tr:hover { background: #1d232d; } .note, caption, figcaption { color: #9aa5b4; } .frame { background: #182230; } pre { background: #1d232d; }
+td.yes, .good { color: #66c98c; } td.no, .bad { color: #ff7b72; } }
+@media print { body { font-size: 10.5pt; margin: 0; padding: 0; max-width: none; } h2 { break-after: avoid; }
+figure, tr, .frame { break-inside: avoid; } * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
 )";
 
+std::string dataAddress(const std::filesystem::path& png) {
+    static constexpr char kLetters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const std::vector<std::byte> bytes = core::readFile(png);
+    std::string out = "data:image/png;base64,";
+    out.reserve(out.size() + (bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t left = std::min<std::size_t>(bytes.size() - i, 3);
+        std::uint32_t three = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            three = three << 8 | (k < left ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k)
+            out += k <= left ? kLetters[three >> (18 - 6 * k) & 63] : '=';
+    }
+    return out;
+}
+
 bool isNumber(std::string_view cell) {
-    return !cell.empty() && std::string_view("0123456789-+.").find(cell.front()) != std::string_view::npos;
+    constexpr std::size_t kLongest = 24;  // longer: a sentence that starts with a number
+    return !cell.empty() && cell.size() <= kLongest &&
+           std::string_view("0123456789-+.").find(cell.front()) != std::string_view::npos;
 }
 
 }  // namespace
@@ -55,23 +84,57 @@ void HtmlReport::subheading(std::string_view text) {
     body_ += fmt::format("<h3>{}</h3>\n", escaped(text));
 }
 
-void HtmlReport::paragraph(std::string_view text, bool isNote) {
-    body_ += fmt::format("<p{}>{}</p>\n", isNote ? " class=\"note\"" : "", escaped(text));
+void HtmlReport::paragraph(std::string_view text, Tone tone) {
+    constexpr std::array kClasses{"", " class=\"note\"", " class=\"good\"", " class=\"bad\"", " class=\"missing\""};
+    body_ += fmt::format("<p{}>{}</p>\n", kClasses[static_cast<std::size_t>(tone)], escaped(text));
+}
+
+void HtmlReport::list(const std::vector<std::string>& items) {
+    body_ += "<ul>\n";
+    for (const std::string& item : items)
+        body_ += fmt::format("<li>{}</li>\n", escaped(item));
+    body_ += "</ul>\n";
+}
+
+void HtmlReport::legend(const std::vector<Chip>& chips) {
+    body_ += "<p class=\"note\">";
+    for (const Chip& chip : chips)
+        body_ += fmt::format("<span class=\"chip\" style=\"background:#{:02x}{:02x}{:02x}\"></span>{}", chip.colour[0],
+                             chip.colour[1], chip.colour[2], escaped(chip.name));
+    body_ += "</p>\n";
+}
+
+void HtmlReport::link(std::string_view address, std::string_view text) {
+    body_ += fmt::format("<p><a href=\"{}\">{}</a></p>\n", escaped(address), escaped(text));
+}
+
+void HtmlReport::code(std::string_view text) {
+    body_ += fmt::format("<pre><code>{}</code></pre>\n", escaped(text));
 }
 
 void HtmlReport::table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows,
                        std::string_view caption) {
-    body_ += fmt::format("<div class=\"scroll\"><table><caption>{}</caption><thead><tr>", escaped(caption));
-    for (const std::string& cell : header)
-        body_ += fmt::format("<th>{}</th>", escaped(cell));
-    body_ += "</tr></thead><tbody>\n";
+    body_ += "<div class=\"scroll\"><table>";
+    if (!caption.empty()) body_ += fmt::format("<caption>{}</caption>", escaped(caption));
+    if (!header.empty()) {
+        body_ += "<thead><tr>";
+        for (std::size_t c = 0; c < header.size(); ++c) {
+            const bool numbers = c > 0 && !rows.empty() && std::all_of(rows.begin(), rows.end(), [c](const auto& row) {
+                                     return c >= row.size() || row[c].empty() || isNumber(row[c]);
+                                 });
+            body_ += fmt::format("<th{}>{}</th>", numbers ? " class=\"n\"" : "", escaped(header[c]));
+        }
+        body_ += "</tr></thead>";
+    }
+    body_ += "<tbody>\n";
     for (const std::vector<std::string>& row : rows) {
         body_ += "<tr>";
         for (std::size_t c = 0; c < row.size(); ++c) {
-            const std::string_view kind = c > 0 && isNumber(row[c])     ? " class=\"n\""
-                                          : row[c].rfind("yes", 0) == 0 ? " class=\"yes\""
-                                          : row[c].rfind("no", 0) == 0  ? " class=\"no\""
-                                                                        : "";
+            const std::string_view first = std::string_view(row[c]).substr(0, row[c].find_first_of(" :,;"));
+            const std::string_view kind = c > 0 && isNumber(row[c]) ? " class=\"n\""
+                                          : first == "yes"          ? " class=\"yes\""
+                                          : first == "no"           ? " class=\"no\""
+                                                                    : "";
             body_ += fmt::format("<td{}>{}</td>", kind, escaped(row[c]));
         }
         body_ += "</tr>\n";
@@ -79,26 +142,44 @@ void HtmlReport::table(const std::vector<std::string>& header, const std::vector
     body_ += "</tbody></table></div>\n";
 }
 
+void HtmlReport::facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows) {
+    std::vector<std::vector<std::string>> cells;
+    for (const auto& [what, value] : rows)
+        cells.push_back({what, value});
+    table({}, cells, caption);
+}
+
 void HtmlReport::figure(std::string_view svg, std::string_view caption) {
     body_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, escaped(caption));
 }
 
 void HtmlReport::picture(const std::filesystem::path& png, std::string_view caption) {
-    const std::vector<std::byte> bytes = core::readFile(png);
-    std::vector<std::uint8_t> numbers(bytes.size());
-    std::transform(bytes.begin(), bytes.end(), numbers.begin(),
-                   [](std::byte b) { return std::to_integer<std::uint8_t>(b); });
-    body_ += fmt::format(
-        "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
-        escaped(caption), report::base64Of(numbers));
+    body_ += fmt::format("<figure><img alt=\"{0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>\n",
+                         escaped(caption), dataAddress(png));
+}
+
+void HtmlReport::picture(const view::Image& image, std::string_view caption) {
+    const core::PrivateFolder folder;
+    const std::filesystem::path file = folder.path() / "picture.png";
+    view::writePng(image, file);
+    picture(file, caption);
+}
+
+void HtmlReport::begin(Group group) {
+    constexpr std::array kClasses{"columns", "pictures", "slices", "frame"};
+    body_ += fmt::format("<div class=\"{}\">\n", kClasses[static_cast<std::size_t>(group)]);
+}
+
+void HtmlReport::end() {
+    body_ += "</div>\n";
 }
 
 std::string HtmlReport::text() const {
     return fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
         "<style>{}{}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
-        escaped(title_), kPageStyle, svgStyle(), body_);
+        config::words().language(), escaped(title_), kPageStyle, svgStyle(), body_);
 }
 
 }  // namespace handpiece::report

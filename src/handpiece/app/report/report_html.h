@@ -1,29 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// One self-contained HTML page: headings, text, tables, pictures. Nothing is loaded from elsewhere.
+/// One self-contained HTML page, to read and to print: headings, text, tables, pictures. Nothing is loaded from
+/// elsewhere. Every page of the program is made with it, in the program's language.
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "handpiece/senses/view/image.h"
 
 namespace handpiece::report {
 
 class HtmlReport {
   public:
+    enum class Tone { plain, note, good, bad, missing };
+    /// What stands side by side, or in a frame.
+    enum class Group { columns, pictures, slices, frame };
+    struct Chip {
+        std::array<std::uint8_t, 3> colour;
+        std::string name;
+    };
+
+    /// All text is escaped.
     explicit HtmlReport(std::string title);
     void heading(std::string_view text);
     void subheading(std::string_view text);
-    /// `text` is escaped, as all text here.
-    void paragraph(std::string_view text, bool isNote = false);
-    /// Cells that start with a digit, a sign or a dot stand right. Cells "yes" and "no" are coloured.
+    void paragraph(std::string_view text, Tone tone = Tone::plain);
+    void list(const std::vector<std::string>& items);
+    void legend(const std::vector<Chip>& chips);
+    void link(std::string_view address, std::string_view text);
+    void code(std::string_view text);
+    /// Cells that start with a digit, a sign or a dot stand right, and so do the heads of columns that have no others.
+    /// Cells "yes" and "no" are coloured.
     void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows,
-               std::string_view caption);
+               std::string_view caption = {});
+    /// What, and how much.
+    void facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows);
     /// `svg` as made by toSvg() or stroboscopeSvg(), without a style of its own.
     void figure(std::string_view svg, std::string_view caption);
     /// A PNG file, taken into the page.
     void picture(const std::filesystem::path& png, std::string_view caption);
+    void picture(const view::Image& image, std::string_view caption);
+    void begin(Group group);
+    void end();
     /// The page.
     [[nodiscard]] std::string text() const;
 

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "handpiece/app/report/report_html.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/base/core/progress.h"
 
@@ -14,6 +15,11 @@ struct ReportSettings {
     bool pictures = true;  ///< false, or without OpenGL: the page says so in their place
     int pictureWidth = 640, pictureHeight = 480;
 };
+
+/// In the program's language.
+[[nodiscard]] std::string nameOf(cases::Tissue tissue);
+/// The legend of pictures in textbook colours.
+[[nodiscard]] std::vector<HtmlReport::Chip> chipsOf(const std::vector<cases::Tissue>& tissues);
 
 /// One HTML page, A4, nothing loaded from elsewhere. Cuts the session again from its beginning: its verdict is on the
 /// page, and the player stands at the end afterwards. Needs a player with a tooth() when there are to be pictures.

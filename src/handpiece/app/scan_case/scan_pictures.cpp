@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "handpiece/app/report/report_figures.h"
 #include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/error.h"
@@ -254,17 +253,6 @@ std::vector<NamedPicture> viewsOf(const ScanResult& result, int width, int heigh
     if (!finest->toothCase.scenery.empty()) pictures.push_back(artist.scenery(finest->toothCase.scenery));
     core::report(progress, 1.0);
     return pictures;
-}
-
-std::string dataAddressOf(const view::Image& image) {
-    const core::PrivateFolder folder;
-    const std::filesystem::path file = folder.path() / "picture.png";
-    view::writePng(image, file);
-    const std::vector<std::byte> bytes = core::readFile(file);
-    std::vector<std::uint8_t> numbers(bytes.size());
-    std::transform(bytes.begin(), bytes.end(), numbers.begin(),
-                   [](std::byte b) { return std::to_integer<std::uint8_t>(b); });
-    return "data:image/png;base64," + report::base64Of(numbers);
 }
 
 }  // namespace handpiece::scan_case

@@ -24,7 +24,5 @@ struct NamedPicture {
 /// The case of most faces from the standard views and cut open. Throws core::Error where there is no OpenGL.
 [[nodiscard]] std::vector<NamedPicture> viewsOf(const ScanResult& result, int width, int height,
                                                 const core::Progress& progress);
-/// As a data: address, PNG.
-[[nodiscard]] std::string dataAddressOf(const view::Image& image);
 
 }  // namespace handpiece::scan_case

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "handpiece/base/config/words.h"
 #include "handpiece/base/core/progress.h"
 #include "handpiece/devices/link/driver.h"
 
@@ -21,14 +22,16 @@ enum class Verdict : std::uint8_t { pass, warn, fail, notMeasured };
 [[nodiscard]] std::string_view idOf(Verdict verdict) noexcept;
 
 struct Finding {
-    std::string id;     ///< "servo-period"
-    std::string name;   ///< "Servo period"
-    std::string value;  ///< "1.000 ms, p99.9 1.043 ms"
+    std::string id;        ///< "servo-period"; nameOf() says it
+    config::Phrase value;  ///< "1.000 ms, p99.9 1.043 ms"
     Verdict verdict = Verdict::notMeasured;
-    std::string against;                                  ///< what it is judged by, with its source
-    std::string remedy;                                   ///< what to do when it does not pass
+    config::Phrase against;                               ///< what it is judged by, with its source
+    config::Phrase remedy;                                ///< what to do when it does not pass
     std::vector<std::pair<std::string, double>> figures;  ///< for machines, with units in their names
 };
+
+/// "Servo period".
+[[nodiscard]] std::string nameOf(const Finding& finding, const config::Words& words);
 
 struct Report {
     link::DriverInfo device;
@@ -55,9 +58,7 @@ struct CheckSettings {
 /// Runs `driver` behind its gate for a while and measures. Throws core::Error as the driver does.
 [[nodiscard]] Report check(std::unique_ptr<link::Driver> driver, const CheckSettings& settings,
                            const core::Progress& progress = {});
-/// For machines; keys as the findings' ids and figures. docs/cli.md
+/// For machines, in English; keys as the findings' ids and figures. docs/cli.md
 [[nodiscard]] std::string asJson(const Report& report);
-/// One page, printable, no outside references.
-[[nodiscard]] std::string asHtml(const Report& report);
 
 }  // namespace handpiece::fidelity

@@ -10,6 +10,8 @@
 namespace handpiece::fidelity {
 namespace {
 
+using config::phrase, config::verbatim;
+
 constexpr double kNsPerS = 1e9;
 // OpenHaptics Programmer's Guide: at least 1000 Hz for stability, as low as 500 on some devices, not recommended.
 constexpr double kGoodHz = 1000.0, kMinHz = 500.0;
@@ -27,10 +29,9 @@ std::string ms(double seconds) {
     return fmt::format("{:.3f} ms", 1e3 * seconds);
 }
 
-Finding finding(const char* id, const char* name, std::string against) {
+Finding finding(const char* id, config::Phrase against) {
     Finding f;
     f.id = id;
-    f.name = name;
     f.against = std::move(against);
     return f;
 }
@@ -50,9 +51,12 @@ std::vector<double> histogramOf(const std::vector<double>& valuesS) {
 }
 
 /// What makes threads come in time.
-std::string steadier(const Recording& r) {
-    return r.grant.realTime ? "close other programs; switch power saving off in the machine's set-up"
-                            : "let the machine grant real-time scheduling (docs/devices.md)";
+config::Phrase steadier(const Recording& r) {
+    return r.grant.realTime ? phrase("fidelity.close-programs-and-power-saving") : phrase("fidelity.grant-real-time");
+}
+
+config::Phrase spreadOf(const Quantiles& q) {
+    return phrase("fidelity.spread", ms(q.p50), ms(q.p99), ms(q.p999), ms(q.worst));
 }
 
 std::vector<double> periodsOf(const Recording& r) {
@@ -68,43 +72,36 @@ void addSpread(Finding& f, const Quantiles& q) {
 }
 
 Finding servoPeriod(const Recording& r, const std::vector<double>& periods) {
-    Finding f = finding("servo-period", "Servo period",
-                        "at least 1000 Hz, 500 Hz at the very least (OpenHaptics Programmer's Guide), and the rate the "
-                        "device names");
+    Finding f = finding("servo-period", phrase("fidelity.servo-period-against"));
     if (periods.empty()) {
-        f.value = "too few frames";
+        f.value = phrase("fidelity.too-few-frames");
         f.verdict = Verdict::fail;
-        f.remedy = "switch the device off and on";
+        f.remedy = phrase("fidelity.off-and-on");
         return f;
     }
     const Quantiles q = quantilesOf(periods);
     const double hz = q.p50 > 0.0 ? 1.0 / q.p50 : 0.0, asked = r.info.servoHz;
     f.value =
-        fmt::format("{:.0f} Hz ({}), p99 {}, p99.9 {}, worst {}", hz, ms(q.p50), ms(q.p99), ms(q.p999), ms(q.worst));
+        phrase("fidelity.rate-and-spread", fmt::format("{:.0f}", hz), ms(q.p50), ms(q.p99), ms(q.p999), ms(q.worst));
     addSpread(f, q);
     f.figures.insert(f.figures.begin(), {{"rate_hz", hz}, {"nominal_hz", asked}});
     const double floorHz = r.info.pushes ? kMinHz : 0.0, goodHz = r.info.pushes ? kGoodHz : 0.0;
     f.verdict = hz < 0.99 * floorHz                   ? Verdict::fail
                 : hz < 0.95 * std::max(goodHz, asked) ? Verdict::warn
                                                       : Verdict::pass;
-    if (f.verdict != Verdict::pass)
-        f.remedy = "connect it without a hub, close other programs, and let the machine grant real-time scheduling";
+    if (f.verdict != Verdict::pass) f.remedy = phrase("fidelity.no-hub-real-time");
     return f;
 }
 
 Finding servoJitter(const Recording& r, const std::vector<double>& periods) {
     const double nominal = 1.0 / std::max(r.info.servoHz, 1.0);
-    Finding f = finding("servo-jitter", "Servo jitter",
-                        "p99.9 within half a period of the middle; vibration is felt from under 0.01 um on at 150 to "
-                        "200 Hz (Brisben 1999), long before it is seen");
+    Finding f = finding("servo-jitter", phrase("fidelity.servo-jitter-against"));
     const Quantiles q = quantilesOf(periods);
-    double worst = 0.0;
     std::vector<double> apart;
     for (const double p : periods)
         apart.push_back(std::abs(p - q.p50));
     const Quantiles j = quantilesOf(std::move(apart));
-    worst = j.worst;
-    f.value = fmt::format("p50 {}, p99 {}, p99.9 {}, worst {}", ms(j.p50), ms(j.p99), ms(j.p999), ms(worst));
+    f.value = spreadOf(j);
     addSpread(f, j);
     f.verdict = graded(j.p999, 0.5 * nominal, 2.0 * nominal);
     if (f.verdict != Verdict::pass) f.remedy = steadier(r);
@@ -112,10 +109,11 @@ Finding servoJitter(const Recording& r, const std::vector<double>& periods) {
 }
 
 Finding servoGaps(const Recording& r, const std::vector<double>& periods) {
-    Finding f = finding("servo-gaps", "Pauses of the servo",
-                        fmt::format("none longer than {:.1f} ms: the gate takes the force away", 1e3 * r.gateTimeoutS));
+    Finding f =
+        finding("servo-gaps", phrase("fidelity.servo-gaps-against", fmt::format("{:.1f}", 1e3 * r.gateTimeoutS)));
     const auto gaps = std::count_if(periods.begin(), periods.end(), [&](double p) { return p > r.gateTimeoutS; });
-    f.value = gaps == 0 ? "none" : fmt::format("{} in {:.1f} s", gaps, r.settings.durationS);
+    f.value = gaps == 0 ? phrase("fidelity.none")
+                        : phrase("fidelity.gaps", std::to_string(gaps), fmt::format("{:.1f}", r.settings.durationS));
     f.figures = {{"gaps", static_cast<double>(gaps)}, {"limit_ms", 1e3 * r.gateTimeoutS}};
     f.verdict = gaps == 0 ? Verdict::pass : gaps <= 2 ? Verdict::warn : Verdict::fail;
     if (gaps > 0) f.remedy = steadier(r);
@@ -123,10 +121,9 @@ Finding servoGaps(const Recording& r, const std::vector<double>& periods) {
 }
 
 Finding tickLateness(const Recording& r, std::vector<double> late) {
-    Finding f = finding("tick-lateness", "Lateness of the tick",
-                        "at most 0.1 % of the ticks later than a period; 1 % is bearable");
+    Finding f = finding("tick-lateness", phrase("fidelity.tick-lateness-against"));
     if (r.settings.advance || late.empty()) {
-        f.value = "not on this clock";
+        f.value = phrase("fidelity.not-on-this-clock");
         return f;
     }
     const double periodS = 1.0 / r.settings.rateHz;
@@ -138,8 +135,8 @@ Finding tickLateness(const Recording& r, std::vector<double> late) {
     }
     const double share = due > 0.0 ? lateTicks / due : 0.0;
     const Quantiles q = quantilesOf(std::move(late));
-    f.value = fmt::format("{:.3g} % late at {:.0f} Hz; p50 {}, p99 {}, p99.9 {}, worst {}", 1e2 * share,
-                          r.settings.rateHz, ms(q.p50), ms(q.p99), ms(q.p999), ms(q.worst));
+    f.value = phrase("fidelity.late-and-spread", fmt::format("{:.3g}", 1e2 * share),
+                     fmt::format("{:.0f}", r.settings.rateHz), ms(q.p50), ms(q.p99), ms(q.p999), ms(q.worst));
     addSpread(f, q);
     f.figures.insert(f.figures.begin(), {"late_share", share});
     f.verdict = graded(share, kGoodLateShare, kMaxLateShare);
@@ -149,31 +146,26 @@ Finding tickLateness(const Recording& r, std::vector<double> late) {
 
 Finding readingAge(const Recording& r) {
     const double servoS = 1.0 / std::max(r.info.servoHz, 1.0);
-    Finding f = finding("reading-age", "Age of a pose at the tick",
-                        "p99 within one and a half periods of the servo: older ones add to the delay that stability "
-                        "must bear");
+    Finding f = finding("reading-age", phrase("fidelity.reading-age-against"));
     std::vector<double> ages;
     for (const TickRecord& t : r.ticks)
         if (t.ageNs >= 0) ages.push_back(static_cast<double>(t.ageNs) / kNsPerS);
     if (ages.empty()) {
-        f.value = "no ticks";
+        f.value = phrase("fidelity.no-ticks");
         return f;
     }
     const Quantiles q = quantilesOf(std::move(ages));
-    f.value = fmt::format("p50 {}, p99 {}, p99.9 {}, worst {}", ms(q.p50), ms(q.p99), ms(q.p999), ms(q.worst));
+    f.value = spreadOf(q);
     addSpread(f, q);
     f.verdict = graded(q.p99, 1.5 * servoS, 4.0 * servoS);
-    if (f.verdict != Verdict::pass) f.remedy = "connect the device without a hub; close other programs";
+    if (f.verdict != Verdict::pass) f.remedy = phrase("fidelity.no-hub");
     return f;
 }
 
 Finding forceSlope(const Recording& r) {
-    Finding f = finding("force-slope", "Slope of the force",
-                        fmt::format("a step of the force is sent within two frames and what the record's {:.0f} N/s "
-                                    "take",
-                                    r.maxSlopeNPerS));
+    Finding f = finding("force-slope", phrase("fidelity.force-slope-against", fmt::format("{:.0f}", r.maxSlopeNPerS)));
     if (r.pulses.empty()) {
-        f.value = r.info.pushes ? "it was not to push" : "it cannot push";
+        f.value = r.info.pushes ? phrase("fidelity.was-not-to-push") : phrase("fidelity.cannot-push");
         return f;
     }
     double steepest = 0.0;
@@ -193,88 +185,81 @@ Finding forceSlope(const Recording& r) {
     const double frameS = 1.0 / std::max(r.info.servoHz, 1.0);
     const double allowed = 2.0 * frameS + (r.pulses[0].toN - r.pulses[0].fromN) / r.maxSlopeNPerS;
     const Quantiles q = quantilesOf(rises);
-    f.value = fmt::format("{:.0f} N/s; 90 % of {:.2f} N after {} (p50), {} at worst", steepest, r.pulses[0].toN,
-                          ms(q.p50), ms(q.worst));
+    f.value = phrase("fidelity.slope", fmt::format("{:.0f}", steepest), fmt::format("{:.2f}", r.pulses[0].toN),
+                     ms(q.p50), ms(q.worst));
     f.figures = {{"steepest_n_per_s", steepest},
                  {"rise_p50_ms", 1e3 * q.p50},
                  {"rise_worst_ms", 1e3 * q.worst},
                  {"pulses", static_cast<double>(r.pulses.size())},
                  {"pulse_n", r.pulses[0].toN}};
     f.verdict = rises.size() < r.pulses.size() ? Verdict::fail : graded(q.p50, allowed, 3.0 * allowed);
-    if (f.verdict != Verdict::pass) f.remedy = "see the servo's period and pauses above; they come first";
+    if (f.verdict != Verdict::pass) f.remedy = phrase("fidelity.see-the-servo");
     return f;
 }
 
 Finding roundTrip(const Recording& r) {
-    Finding f =
-        finding("round-trip-delay", "Round-trip delay",
-                "within 3 ms (the stability map of docs/physics.md goes so far); from 25 ms on what is seen and "
-                "what is felt come apart [R]");
+    Finding f = finding("round-trip-delay", phrase("fidelity.round-trip-against"));
     const Delay d = roundTripOf(r);
     if (!d.measured) {
-        f.value = "not measured: " + d.why;
-        if (r.info.pushes && r.settings.push) f.remedy = "hold the stylus loosely while it pushes";
+        f.value = d.why;
+        if (r.info.pushes && r.settings.push) f.remedy = phrase("fidelity.hold-loosely");
         return f;
     }
-    f.value = fmt::format("{:.1f} ms, give or take {:.1f} (a pulse moved it by {:.2f} mm)", 1e3 * d.seconds,
-                          1e3 * d.uncertaintyS, d.pathMm);
+    const bool isRough = d.uncertaintyS > kGoodDelayS;
+    f.value = phrase(isRough ? "fidelity.delay-too-rough" : "fidelity.delay", fmt::format("{:.1f}", 1e3 * d.seconds),
+                     fmt::format("{:.1f}", 1e3 * d.uncertaintyS), fmt::format("{:.2f}", d.pathMm));
     f.figures = {{"delay_ms", 1e3 * d.seconds}, {"uncertainty_ms", 1e3 * d.uncertaintyS}, {"path_mm", d.pathMm}};
-    if (d.uncertaintyS > kGoodDelayS) {
-        f.value += ": too rough to judge";
-        f.remedy = "check again for longer, with nothing else running";
+    if (isRough) {
+        f.remedy = phrase("fidelity.check-longer");
         return f;
     }
     f.verdict = graded(d.seconds, kGoodDelayS, kMaxDelayS);
-    if (f.verdict != Verdict::pass) f.remedy = "choose a softer stiffness, or the device's fastest servo";
+    if (f.verdict != Verdict::pass) f.remedy = phrase("fidelity.softer-or-faster");
     return f;
 }
 
 Finding encoderStep(const Recording& r, const Rest& rest) {
     const double told = r.info.capability.encoderStepMm;
-    Finding f = finding("encoder-step", "Step of the encoders",
-                        fmt::format("at most half as much again as its record, {:.1f} um", 1e3 * told));
+    Finding f = finding("encoder-step", phrase("fidelity.encoder-step-against", fmt::format("{:.1f}", 1e3 * told)));
     if (rest.stepMm < 0.0) {
-        f.value = "not measured: it hardly moved";
+        f.value = phrase("fidelity.hardly-moved");
         return f;
     }
-    f.value = fmt::format("{:.2f} um", 1e3 * rest.stepMm);
+    f.value = verbatim(fmt::format("{:.2f} um", 1e3 * rest.stepMm));
     f.figures = {{"step_um", 1e3 * rest.stepMm}, {"record_um", 1e3 * told}};
     f.verdict = told <= 0.0 || rest.stepMm <= 1.5 * told ? Verdict::pass : Verdict::warn;
-    if (f.verdict != Verdict::pass) f.remedy = "calibrate the device; hold it still while it is measured";
+    if (f.verdict != Verdict::pass) f.remedy = phrase("fidelity.calibrate-and-hold-still");
     return f;
 }
 
 Finding restNoise(const Recording& r, const Rest& rest) {
     const double k = r.info.capability.maxStiffnessNPerMm, felt = rest.noiseMm * k;
-    Finding f = finding("rest-noise", "Noise at rest",
-                        "at the device's largest stiffness less than 0.07 N: 7 % of the 1 N one presses with are felt "
-                        "(Pang, Tan and Durlach 1991; theirs were 2.5 to 10 N)");
+    Finding f = finding("rest-noise", phrase("fidelity.rest-noise-against"));
     if (rest.moved) {
-        f.value = "not measured: it was moved";
-        f.remedy = "leave the device alone for the first seconds";
+        f.value = phrase("fidelity.was-moved");
+        f.remedy = phrase("fidelity.leave-alone");
         return f;
     }
-    f.value = fmt::format("{:.2f} um root mean square, {:.4f} N at {:.2f} N/mm", 1e3 * rest.noiseMm, felt, k);
+    f.value = phrase("fidelity.noise", fmt::format("{:.2f}", 1e3 * rest.noiseMm), fmt::format("{:.4f}", felt),
+                     fmt::format("{:.2f}", k));
     f.figures = {{"noise_um", 1e3 * rest.noiseMm}, {"noise_n", felt}};
     f.verdict = r.info.pushes ? graded(felt, 0.5 * kFeltN, 2.0 * kFeltN) : Verdict::pass;
-    if (f.verdict != Verdict::pass) f.remedy = "put it on a firm table; lay the stylus down while it is measured";
+    if (f.verdict != Verdict::pass) f.remedy = phrase("fidelity.firm-table");
     return f;
 }
 
 Finding limits(const Recording& r) {
     const device::Capability& c = r.info.capability;
-    Finding f = finding("limits", "What the device can do",
-                        "0.8 to 1.0 N/mm are taken for a hard surface (Choi and Tan 2004); enamel is harder than any "
-                        "desktop arm can show");
+    Finding f = finding("limits", phrase("fidelity.limits-against"));
     if (!r.info.pushes) {
-        f.value = "it cannot push: input only";
+        f.value = phrase("fidelity.input-only");
         return f;
     }
-    f.value =
-        fmt::format("{:.1f} N peak, {:.2f} N for long, {:.2f} N/mm, {:.4f} N s/mm, {:.0f} N/s, torque {}", c.maxForceN,
-                    c.continuousForceN, c.maxStiffnessNPerMm, c.maxDampingNSPerMm, c.maxForceSlopeNPerS,
-                    c.maxTorqueNmm > 0.0 ? fmt::format("{:.0f} N mm", c.maxTorqueNmm) : std::string("none"));
-    if (!r.info.sources.empty()) f.value += " (" + r.info.sources + ")";
+    f.value = phrase("fidelity.limits", fmt::format("{:.1f}", c.maxForceN), fmt::format("{:.2f}", c.continuousForceN),
+                     fmt::format("{:.2f}", c.maxStiffnessNPerMm), fmt::format("{:.4f}", c.maxDampingNSPerMm),
+                     fmt::format("{:.0f}", c.maxForceSlopeNPerS),
+                     c.maxTorqueNmm > 0.0 ? fmt::format("{:.0f} N mm", c.maxTorqueNmm) : "0",
+                     r.info.sources.empty() ? std::string() : " (" + r.info.sources + ")");
     f.figures = {{"max_force_n", c.maxForceN},
                  {"continuous_force_n", c.continuousForceN},
                  {"stiffness_n_per_mm", c.maxStiffnessNPerMm},
@@ -282,25 +267,23 @@ Finding limits(const Recording& r) {
                  {"slope_n_per_s", c.maxForceSlopeNPerS},
                  {"torque_nmm", c.maxTorqueNmm}};
     f.verdict = c.maxStiffnessNPerMm >= kHardNPerMm ? Verdict::pass : Verdict::warn;
-    if (f.verdict != Verdict::pass)
-        f.remedy = "contact is made crisp by short transients instead: run --crisp on, or Device, Crisp contact";
+    if (f.verdict != Verdict::pass) f.remedy = phrase("fidelity.crisp-contact");
     return f;
 }
 
 Finding temperature(const Recording& r) {
-    Finding f =
-        finding("temperature", "Motors", "under 0.8 of what the maker allows; the force fades out from there on");
+    Finding f = finding("temperature", phrase("fidelity.temperature-against"));
     float hottest = -1.0f;
     for (const FrameRecord& frame : r.frames)
         hottest = std::max(hottest, frame.motorTemperature);
     if (hottest < 0.0f) {
-        f.value = "not told by this device";
+        f.value = phrase("fidelity.not-told-by-device");
         return f;
     }
-    f.value = fmt::format("{:.0f} % of what the maker allows", 1e2 * static_cast<double>(hottest));
+    f.value = phrase("fidelity.temperature", fmt::format("{:.0f}", 1e2 * static_cast<double>(hottest)));
     f.figures = {{"temperature", static_cast<double>(hottest)}};
     f.verdict = graded(static_cast<double>(hottest), kWarm, kHot);
-    if (f.verdict != Verdict::pass) f.remedy = "let the device rest for some minutes";
+    if (f.verdict != Verdict::pass) f.remedy = phrase("fidelity.let-rest");
     return f;
 }
 
@@ -319,61 +302,60 @@ std::vector<link::DeviceFault> troublesOf(const Recording& r) {
 }
 
 Finding troubles(const Recording& r, const std::vector<link::DeviceFault>& kinds) {
-    Finding f = finding("troubles", "Troubles", "none while it was measured");
+    Finding f = finding("troubles", phrase("fidelity.troubles-against"));
     f.figures = {{"kinds", static_cast<double>(kinds.size())}};
     f.verdict = kinds.empty() ? Verdict::pass : Verdict::fail;
-    if (kinds.empty()) f.value = "none";
+    std::string said;
     for (const link::DeviceFault kind : kinds) {
-        f.value += fmt::format("{}{}", f.value.empty() ? "" : " ", link::sentenceOf(kind));
-        if (f.remedy.empty()) f.remedy = std::string(link::remedyOf(kind));
+        said += fmt::format("{}{}", said.empty() ? "" : " ", link::sentenceOf(kind));
+        if (f.remedy.empty()) f.remedy = verbatim(std::string(link::remedyOf(kind)));
     }
     // A tick that stood is the machine's, and told above with figures.
     if (kinds.size() == 1 && (kinds[0] == link::DeviceFault::tickStalled || kinds[0] == link::DeviceFault::stalled))
         f.verdict = Verdict::warn;
     if (r.health.gate.vendorCode != 0)
-        f.value += fmt::format(" (code 0x{:04x})", static_cast<std::uint32_t>(r.health.gate.vendorCode));
+        said += fmt::format(" (code 0x{:04x})", static_cast<std::uint32_t>(r.health.gate.vendorCode));
+    f.value = kinds.empty() ? phrase("fidelity.none") : verbatim(said);
     return f;
 }
 
 Finding calibrated(const Recording& r) {
-    Finding f = finding("calibration", "Calibration", "the device knows where its axes are");
+    Finding f = finding("calibration", phrase("fidelity.calibration-against"));
     f.verdict = Verdict::pass;
     switch (r.calibration) {
         case link::CalibrationState::notNeeded:
-            f.value = "none needed";
+            f.value = phrase("fidelity.none-needed");
             break;
         case link::CalibrationState::good:
-            f.value = "good";
+            f.value = phrase("fidelity.calibrated");
             break;
         case link::CalibrationState::wanted:
         case link::CalibrationState::wantedByHand:
-            f.value = "wanted";
+            f.value = phrase("fidelity.calibration-wanted");
             f.verdict = Verdict::fail;
-            f.remedy = r.calibrationStep.empty() ? "handpiece device calibrate" : r.calibrationStep;
+            f.remedy = verbatim(r.calibrationStep.empty() ? "handpiece device calibrate" : r.calibrationStep);
     }
     return f;
 }
 
 Finding scheduling(const Recording& r) {
-    Finding f = finding("scheduling", "Scheduling", "SCHED_FIFO for tick and servo: else anything may come in between");
-    f.value = r.grant.line;
+    Finding f = finding("scheduling", phrase("fidelity.scheduling-against"));
+    f.value = verbatim(r.grant.line);
     if (r.settings.advance) return f;
     f.verdict = r.grant.realTime ? Verdict::pass : Verdict::warn;
-    if (f.verdict != Verdict::pass)
-        f.remedy = "let your group ask for it: rtprio in /etc/security/limits.d (docs/devices.md)";
+    if (f.verdict != Verdict::pass) f.remedy = phrase("fidelity.let-ask-for-priority");
     return f;
 }
 
 Finding memory(const Recording& r) {
-    Finding f = finding("memory-locked", "Memory", "locked: a page fetched from disk takes longer than a tick may");
+    Finding f = finding("memory-locked", phrase("fidelity.memory-against"));
     if (r.settings.advance) {
-        f.value = "virtual time";
+        f.value = phrase("fidelity.virtual-time");
         return f;
     }
-    f.value = r.grant.memoryLocked ? "locked" : "not locked";
+    f.value = r.grant.memoryLocked ? phrase("fidelity.locked") : phrase("fidelity.not-locked");
     f.verdict = r.grant.memoryLocked ? Verdict::pass : Verdict::warn;
-    if (f.verdict != Verdict::pass)
-        f.remedy = "let your group lock it: memlock in /etc/security/limits.d (docs/devices.md)";
+    if (f.verdict != Verdict::pass) f.remedy = phrase("fidelity.let-lock-memory");
     return f;
 }
 
@@ -412,10 +394,10 @@ Report judge(const Recording& r) {
                        governorFinding(),
                        usbFinding(r.info.driver)};
     if (r.lost > 0) {
-        Finding f = finding("lost-records", "Records lost", "none: figures would be of a part only");
-        f.value = fmt::format("{}", r.lost);
+        Finding f = finding("lost-records", phrase("fidelity.lost-records-against"));
+        f.value = verbatim(std::to_string(r.lost));
         f.verdict = Verdict::warn;
-        f.remedy = "close other programs and check again";
+        f.remedy = phrase("fidelity.close-and-check-again");
         report.findings.push_back(std::move(f));
     }
     report.passed = std::none_of(report.findings.begin(), report.findings.end(),

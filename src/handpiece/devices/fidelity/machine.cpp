@@ -43,8 +43,7 @@ std::string machineLine(const rt::SchedulingGrant& grant) {
 Finding governorFinding() {
     Finding f;
     f.id = "cpu-governor";
-    f.name = "CPU frequency";
-    f.against = "the governor \"performance\" everywhere: clocks that wake up take longer than a tick may";
+    f.against = config::phrase("fidelity.cpu-governor-against");
     std::map<std::string, int> governors;
     std::error_code ec;
     for (const auto& cpu : fs::directory_iterator("/sys/devices/system/cpu", ec)) {
@@ -52,24 +51,25 @@ Finding governorFinding() {
         if (!governor.empty()) ++governors[governor];
     }
     if (governors.empty()) {
-        f.value = "not told by this machine";
+        f.value = config::phrase("fidelity.not-told-by-machine");
         return f;
     }
+    std::string all;
     for (const auto& [name, count] : governors)
-        f.value += fmt::format("{}{} on {} cores", f.value.empty() ? "" : ", ", name, count);
+        all += fmt::format("{}{} ({})", all.empty() ? "" : ", ", name, count);
+    f.value = config::phrase("fidelity.cpu-governor", all);
     f.verdict = governors.size() == 1 && governors.count("performance") == 1 ? Verdict::pass : Verdict::warn;
-    if (f.verdict == Verdict::warn) f.remedy = "set it while practising: cpupower frequency-set -g performance";
+    if (f.verdict == Verdict::warn) f.remedy = config::phrase("fidelity.set-governor");
     return f;
 }
 
 Finding usbFinding(const std::string& driver) {
     Finding f;
     f.id = "permission";
-    f.name = "Permission";
-    f.against = "whoever practises may read and write the device's node under /dev/bus/usb";
+    f.against = config::phrase("fidelity.permission-against");
     const auto [vendor, product] = usbIdsOf(driver);
     if (vendor.empty()) {
-        f.value = "not asked for: this driver opens no USB device itself";
+        f.value = config::phrase("fidelity.no-usb-itself");
         return f;
     }
     std::error_code ec;
@@ -80,15 +80,16 @@ Finding usbFinding(const std::string& driver) {
             const fs::path node = fmt::format("/dev/bus/usb/{:03}/{:03}", std::stoi(lineOf(entry.path() / "busnum")),
                                               std::stoi(lineOf(entry.path() / "devnum")));
             const bool may = std::fstream(node, std::ios::in | std::ios::out | std::ios::binary).is_open();
-            f.value = fmt::format("{} {}", node.string(), may ? "may be opened" : "may not be opened");
+            f.value = may ? config::phrase("fidelity.may-be-opened", node.string())
+                          : config::phrase("fidelity.may-not-be-opened", node.string());
             f.verdict = may ? Verdict::pass : Verdict::fail;
-            if (!may) f.remedy = "install the udev rules (docs/devices.md) and connect the device again";
+            if (!may) f.remedy = config::phrase("fidelity.install-rules");
             return f;
         } catch (const std::exception&) {
             continue;  // gone while it was looked at
         }
     }
-    f.value = fmt::format("no USB device of maker {} is connected", vendor);
+    f.value = config::phrase("fidelity.none-of-maker", vendor);
     return f;
 }
 

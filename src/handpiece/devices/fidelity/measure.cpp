@@ -162,11 +162,11 @@ Rest restOf(const Recording& recording) {
 Delay roundTripOf(const Recording& recording) {
     Delay delay;
     if (!recording.info.pushes) {
-        delay.why = "it cannot push";
+        delay.why = config::phrase("fidelity.unmeasured-cannot-push");
         return delay;
     }
     if (recording.pulses.empty()) {
-        delay.why = "it was not to push";
+        delay.why = config::phrase("fidelity.unmeasured-was-not-to-push");
         return delay;
     }
     const double told = recording.info.capability.encoderStepMm, seen = restOf(recording).stepMm;
@@ -179,13 +179,13 @@ Delay roundTripOf(const Recording& recording) {
         paths.push_back(r.pathMm);
     delay.pathMm = quantilesOf(paths).p50;
     if (responses.size() < 3 || delay.pathMm < kMinPathSteps * stepMm) {
-        delay.why =
-            fmt::format("the pulses moved it by {:.3f} mm, less than {:.0f} of its steps", delay.pathMm, kMinPathSteps);
+        delay.why = config::phrase("fidelity.unmeasured-path", fmt::format("{:.3f}", delay.pathMm),
+                                   fmt::format("{:.0f}", kMinPathSteps));
         return delay;
     }
     const Fitted bent = fitted(responses, true), straight = fitted(responses, false);
     if (!straight.any) {
-        delay.why = "too few frames saw it move";
+        delay.why = config::phrase("fidelity.unmeasured-few-frames");
         return delay;
     }
     const bool useBent = bent.any && bent.errorS < kGoodErrorS;

@@ -71,7 +71,7 @@ struct Delay {
     bool measured = false;
     double seconds = 0.0, uncertaintyS = 0.0;
     double pathMm = 0.0;  ///< that a pulse moved it
-    std::string why;      ///< when it was not measured
+    config::Phrase why;   ///< when it was not measured
 };
 [[nodiscard]] Delay roundTripOf(const Recording& recording);
 

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// The catalogue of texts against itself and against the sources: every name in every language with the same places,
+// none missing, none left over.
+#include "handpiece/base/config/words.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "handpiece/base/core/error.h"
+
+namespace handpiece::config {
+namespace {
+
+/// Number and format of each place: "0:.2f".
+std::multiset<std::string> placesOf(const std::string& text) {
+    static const std::regex place(R"(\{(\d*)(:[^}]*)?\})");
+    std::multiset<std::string> places;
+    int next = 0;
+    for (std::sregex_iterator i(text.begin(), text.end(), place), end; i != end; ++i)
+        places.insert(((*i)[1].length() > 0 ? (*i)[1].str() : std::to_string(next++)) + (*i)[2].str());
+    return places;
+}
+
+std::string sources() {
+    std::ostringstream all;
+    for (const char* folder : {"/src", "/apps"})
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(std::string(HANDPIECE_SOURCES) + folder))
+            if (entry.path().extension() == ".cpp" || entry.path().extension() == ".h")
+                all << std::ifstream(entry.path()).rdbuf();
+    return all.str();
+}
+
+TEST(Words, EveryTextIsInEveryLanguageWithTheSamePlaces) {
+    const Words& english = Words::in("en");
+    ASSERT_GT(english.texts().size(), 100u);
+    for (const std::string& language : Words::languages()) {
+        const Words& words = Words::in(language);
+        EXPECT_EQ(words.texts().size(), english.texts().size()) << language;
+        for (const auto& [id, text] : english.texts()) {
+            ASSERT_TRUE(words.has(id)) << language << " lacks " << id;
+            EXPECT_FALSE(words.text(id).empty()) << language << ", " << id;
+            EXPECT_EQ(placesOf(words.text(id)), placesOf(text)) << language << ", " << id;
+            static const std::regex numbered(R"(\{\d)"), counted(R"(\{[:}])");
+            EXPECT_FALSE(std::regex_search(words.text(id), numbered) && std::regex_search(words.text(id), counted))
+                << language << ", " << id << " numbers some of its places and not all";
+        }
+    }
+}
+
+TEST(Words, EveryTextThatIsUsedIsThereAndEveryOneIsUsed) {
+    const std::string all = sources();
+    static const std::regex used(R"re((?:words\(\)|phrase)\(\s*"([a-z0-9.-]+)")re");
+    std::size_t count = 0;
+    for (std::sregex_iterator i(all.begin(), all.end(), used), end; i != end; ++i, ++count)
+        EXPECT_TRUE(Words::in("en").has((*i)[1].str())) << (*i)[1];
+    EXPECT_GT(count, 100u);
+    for (const auto& [id, text] : Words::in("en").texts()) {
+        // Names of families are put together: a tissue, a finding, a verdict.
+        bool isFamily = false;
+        for (const char* family : {"tissue.", "fidelity.name.", "fidelity.verdict."})
+            isFamily = isFamily || (id.rfind(family, 0) == 0 &&
+                                    all.find('"' + id.substr(std::string(family).size()) + '"') != std::string::npos);
+        EXPECT_TRUE(isFamily || all.find('"' + id + '"') != std::string::npos) << id << " is used by nobody";
+    }
+}
+
+TEST(Words, FillIn) {
+    EXPECT_EQ(Words::in("en")("session.times-of", 1, 3), "1 of 3 times");
+    EXPECT_EQ(Words::in("ja")("session.times-of", 1, 3), "3 回のうち 1 回");
+    EXPECT_EQ(Words::in("en")(phrase("fidelity.gaps", std::string("2"), "10.0")), "2 in 10.0 s");
+    EXPECT_EQ(Words::in("ja")(verbatim("{} as it is")), "{} as it is");
+    EXPECT_THROW((void)Words::in("xx"), core::Error);
+    EXPECT_THROW((void)Words::in("en").text("no.such"), core::Error);
+}
+
+TEST(Words, TheEnvironmentChooses) {
+    for (const char* name : {"LC_ALL", "LC_MESSAGES"})
+        ::unsetenv(name);
+    ::setenv("LANG", "ja_JP.UTF-8", 1);
+    EXPECT_EQ(languageOfEnvironment(), "ja");
+    ::setenv("LC_ALL", "C", 1);
+    EXPECT_EQ(languageOfEnvironment(), "en");
+    ::unsetenv("LC_ALL");
+    ::setenv("LANG", "de_DE.UTF-8", 1);
+    EXPECT_EQ(languageOfEnvironment(), "en");
+}
+
+}  // namespace
+}  // namespace handpiece::config

@@ -43,12 +43,12 @@ std::shared_ptr<const instrument::Bur> burOf(std::string_view name) {
     return std::make_shared<const instrument::Bur>(instrument::makeBur(name));
 }
 
-std::shared_ptr<const tooth::Tooth> molarOf(std::size_t faces) {
+std::shared_ptr<const tooth::ToothModel> molarOf(std::size_t faces) {
     geometry::TriangleMesh mesh = starter::makeOuter(starter::ToothKind::lowerFirstMolar, faces);
     geometry::TriangleTree tree(mesh);
     field::DistanceField field = field::FieldBuilder::fromSurface(mesh, tree, {}, {});
-    return std::make_shared<const tooth::Tooth>(
-        tooth::Tooth{"molar", std::move(mesh), std::move(tree), std::move(field), false, 0.0});
+    return std::make_shared<const tooth::ToothModel>(
+        tooth::ToothModel{"molar", std::move(mesh), std::move(tree), std::move(field)});
 }
 
 double uniform(std::mt19937_64& generator, double low, double high) {
@@ -86,7 +86,7 @@ double percentile(const std::vector<double>& ascending, double share) {
                               static_cast<std::size_t>(share * static_cast<double>(ascending.size())))];
 }
 
-void report(const std::shared_ptr<const tooth::Tooth>& tooth, const char* burName, contact::DepthSource source,
+void report(const std::shared_ptr<const tooth::ToothModel>& tooth, const char* burName, contact::DepthSource source,
             int count) {
     const auto bur = burOf(burName);
     contact::FieldMethodSettings settings;
@@ -132,7 +132,7 @@ void reportOwnCavity(double deepestMm, int count) {
     const auto bur = burOf("cylinder-round:1.0x4.0");
     const core::Vec3 tip(0.013, -0.021, -2.0);
     test::carve(*cut, {{-1, -1, -3}, {1, 1, 1}}, [&](const core::Vec3& p) { return test::shaftDistance(p, tip, 0.5); });
-    const auto method = contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(cut), bur);
+    const auto method = contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut), bur);
     std::mt19937_64 generator(kSeed);
     std::vector<double> errors, times, after;
     contact::ConstraintSet constraints;

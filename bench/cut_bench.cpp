@@ -85,8 +85,8 @@ std::vector<core::Pose> posesOf(Workload& workload, const instrument::Bur& bur, 
 /// Ours: contact on the live field, then the cut.
 class FieldRun {
   public:
-    FieldRun(std::shared_ptr<const tooth::CuttableTooth> base, std::shared_ptr<const instrument::Bur> bur)
-        : field_(std::make_shared<tooth::CutField>(base)), bur_(bur), method_(contact::makeFieldMethod(field_, bur)) {
+    FieldRun(std::shared_ptr<const tooth::ToothModel> base, std::shared_ptr<const instrument::Bur> bur)
+        : field_(std::make_shared<tooth::ToothState>(base)), bur_(bur), method_(contact::makeFieldMethod(field_, bur)) {
         cutting::Cutter::Settings settings;
         settings.fullRemoval = true;
         cutter_ = std::make_unique<cutting::Cutter>(field_, bur_, instrument::CuttingParameters{},
@@ -128,7 +128,7 @@ class FieldRun {
     }
 
   private:
-    std::shared_ptr<tooth::CutField> field_;
+    std::shared_ptr<tooth::ToothState> field_;
     std::shared_ptr<const instrument::Bur> bur_;
     std::unique_ptr<contact::Method> method_;
     std::unique_ptr<cutting::Cutter> cutter_;
@@ -140,7 +140,7 @@ double microsecondsSince(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
-/// Every pass starts with a whole tooth, so that a tick does the same work in each.
+/// Every pass starts with an uncut tooth, so that a tick does the same work in each.
 template <class Start, class Tick, class After>
 Timing measureCut(std::span<const core::Pose> poses, int repeats, double budgetS, Start&& start, Tick&& tick,
                   After&& after) {
@@ -192,17 +192,17 @@ struct Session {
     Workload workload;
     bool quick;
     std::string key;
-    std::shared_ptr<const tooth::CuttableTooth> base;
+    std::shared_ptr<const tooth::ToothModel> base;
 
-    std::shared_ptr<const tooth::CuttableTooth> cuttable(const Resolution& resolution, double voxelMm) {
+    std::shared_ptr<const tooth::ToothModel> cuttable(const Resolution& resolution, double voxelMm) {
         const std::string wanted = fmt::format("{} {}", resolution.name, voxelMm);
         if (key != wanted) {
             base.reset();
-            auto whole = workload.tooth(resolution, voxelMm);
-            auto tissues = field::TissueMap::uniform(whole->field, cases::Tissue::enamel);
+            auto uncut = workload.tooth(resolution, voxelMm);
+            auto tissues = field::TissueMap::uniform(uncut->field, cases::Tissue::enamel);
             tooth::CutSettings settings;
             settings.reserveBricks = kReserveBricks;
-            base = tooth::prepareCutting(std::move(whole), std::move(tissues), settings);
+            base = tooth::withTissues(*uncut, std::move(tissues), settings);
             key = wanted;
         }
         return base;
@@ -214,7 +214,7 @@ void runField(benchmark::State& state, Session& session, const Resolution& resol
               const BurKind& kind) {
     const auto bur = burOf(kind);
     const auto base = session.cuttable(resolution, voxelMm);
-    const auto poses = posesOf(session.workload, *bur, base->tooth->field, depth, session.ticks());
+    const auto poses = posesOf(session.workload, *bur, base->field, depth, session.ticks());
     const int repeats = session.quick ? 2 : 5;
     std::unique_ptr<FieldRun> run;
     std::vector<double> dirty, query(poses.size(), std::numeric_limits<double>::infinity());

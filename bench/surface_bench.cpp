@@ -19,7 +19,8 @@
 
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/starter/starter.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
+#include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/senses/surface/closed_surface.h"
 #include "handpiece/senses/surface/surface.h"
 #include "handpiece/tick/cutting/sweeper.h"
@@ -47,15 +48,15 @@ double percentile(const std::vector<double>& ascending, double share) {
     return ascending[std::clamp<std::size_t>(rank, 1, ascending.size()) - 1];
 }
 
-std::shared_ptr<const tooth::CuttableTooth> molar(int voxelUm) {
-    static std::map<int, std::shared_ptr<const tooth::CuttableTooth>> all;
+std::shared_ptr<const tooth::ToothModel> molar(int voxelUm) {
+    static std::map<int, std::shared_ptr<const tooth::ToothModel>> all;
     auto& made = all[voxelUm];
     if (made == nullptr) {
         const cases::Case toothCase = starter::makeTooth(starter::ToothKind::lowerFirstMolar, {68151});
-        tooth::PrepareSettings settings;
+        tooth::LoadSettings settings;
         settings.field.voxelMm = 1e-3 * voxelUm;
         settings.cacheFolder = HANDPIECE_BENCH_CACHE;
-        made = tooth::prepareCutting(toothCase, tooth::prepareTooth(toothCase, settings), settings);
+        made = tooth::loadModel(toothCase, settings);
     }
     return made;
 }
@@ -89,11 +90,11 @@ struct Pass {
 
 /// One pass over the way with an update every `every` ticks. Cutting is part of what is timed as `allUs`: all that lies
 /// between a cut and its triangles, save waiting for the next tick and for the next picture.
-Pass follow(const std::shared_ptr<const tooth::CuttableTooth>& base, const instrument::Bur& bur,
+Pass follow(const std::shared_ptr<const tooth::ToothModel>& base, const instrument::Bur& bur,
             const std::vector<core::Pose>& poses, std::size_t every) {
-    tooth::CutField field(base);
+    tooth::ToothState field(base);
     cutting::Sweeper sweeper(field, bur, core::simdLevel());
-    tooth::CutMirror mirror(base);
+    tooth::ToothMirror mirror(base);
     const surface::MirrorSource source(mirror);
     surface::Surface shown(source, &base->tissues);
     shown.build();
@@ -145,7 +146,7 @@ std::vector<double> bestOf(const std::vector<Pass>& passes, std::vector<double> 
 void runCut(benchmark::State& state, int voxelUm, bool deep) {
     const auto base = molar(voxelUm);
     const instrument::Bur bur = instrument::makeBur("330");
-    const std::vector<core::Pose> poses = way(base->tooth->field, deep, isQuick() ? 85 : 1020);
+    const std::vector<core::Pose> poses = way(base->field, deep, isQuick() ? 85 : 1020);
     std::vector<Pass> single, picture;
     std::vector<double> raw;
     for (int pass = 0; pass < (isQuick() ? 1 : 3); ++pass) {
@@ -175,7 +176,7 @@ void runCut(benchmark::State& state, int voxelUm, bool deep) {
 
 void runFull(benchmark::State& state, int voxelUm) {
     const auto base = molar(voxelUm);
-    const tooth::CutMirror mirror(base);
+    const tooth::ToothMirror mirror(base);
     const surface::MirrorSource source(mirror);
     double triangles = 0.0, bricks = 0.0;
     for (auto _ : state) {

@@ -21,7 +21,8 @@
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/instrument/turbine.h"
 #include "handpiece/model/starter/starter.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
+#include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/senses/surface/surface.h"
 #include "handpiece/senses/view/renderer.h"
 #include "handpiece/tick/cutting/sweeper.h"
@@ -42,24 +43,24 @@ double nowMs() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::shared_ptr<const tooth::CuttableTooth> molar(std::size_t faces) {
-    static std::map<std::size_t, std::shared_ptr<const tooth::CuttableTooth>> all;
+std::shared_ptr<const tooth::ToothModel> molar(std::size_t faces) {
+    static std::map<std::size_t, std::shared_ptr<const tooth::ToothModel>> all;
     auto& made = all[faces];
     if (made == nullptr) {
         const cases::Case toothCase = starter::makeTooth(starter::ToothKind::lowerFirstMolar, {faces});
-        tooth::PrepareSettings settings;
+        tooth::LoadSettings settings;
         settings.field.voxelMm = kVoxelMm;
         settings.cacheFolder = HANDPIECE_BENCH_CACHE;
-        made = tooth::prepareCutting(toothCase, tooth::prepareTooth(toothCase, settings), settings);
+        made = tooth::loadModel(toothCase, settings);
     }
     return made;
 }
 
 /// The tooth as its listeners keep it: cut field, mirror, and surfaces in full and in little detail.
 struct Bench {
-    Bench(std::shared_ptr<const tooth::CuttableTooth> whole, bool coarseToo)
+    Bench(std::shared_ptr<const tooth::ToothModel> uncut, bool coarseToo)
         : withCoarse(coarseToo),
-          base(std::move(whole)),
+          base(std::move(uncut)),
           field(base),
           mirror(base),
           source(mirror),
@@ -98,9 +99,9 @@ struct Bench {
     }
 
     bool withCoarse;
-    std::shared_ptr<const tooth::CuttableTooth> base;
-    tooth::CutField field;
-    tooth::CutMirror mirror;
+    std::shared_ptr<const tooth::ToothModel> base;
+    tooth::ToothState field;
+    tooth::ToothMirror mirror;
     surface::MirrorSource source;
     surface::Surface fine, coarse;
 };
@@ -121,11 +122,11 @@ struct Pass {
     std::size_t triangles = 0;
 };
 
-Pass follow(const std::shared_ptr<const tooth::CuttableTooth>& base, Way way, view::Quality quality,
+Pass follow(const std::shared_ptr<const tooth::ToothModel>& base, Way way, view::Quality quality,
             const view::Viewport& size, int pictures) {
     // Without the coarse meshes an eye in motion has full detail to draw.
     Bench bench(base, way != Way::full);
-    const core::Box bounds = base->tooth->field.bounds();
+    const core::Box bounds = base->field.bounds();
     const instrument::Bur bur = instrument::makeBur("330");
     view::Renderer renderer;
     renderer.setTooth(bounds);
@@ -140,7 +141,7 @@ Pass follow(const std::shared_ptr<const tooth::CuttableTooth>& base, Way way, vi
     look.quality = quality;
     view::Moment moment;
     moment.speedRpm = 300000.0;
-    moment.burInTooth = poseAt(base->tooth->field, 0.0, way == Way::cut);
+    moment.burInTooth = poseAt(base->field, 0.0, way == Way::cut);
     view::Image picture;
     cutting::Sweeper sweeper(bench.field, bur, core::simdLevel());
     for (int i = 0; i < 4; ++i)
@@ -149,12 +150,12 @@ Pass follow(const std::shared_ptr<const tooth::CuttableTooth>& base, Way way, vi
     for (int i = 0; i < pictures; ++i) {
         moment.timeS += 1.0 / 60.0;
         const double alongMm = kStepMm * kPictureTicks * i;
-        if (way == Way::bur || way == Way::along) moment.burInTooth = poseAt(base->tooth->field, 3.0 * alongMm, false);
+        if (way == Way::bur || way == Way::along) moment.burInTooth = poseAt(base->field, 3.0 * alongMm, false);
         double uploadMs = 0.0;
         std::clock_t cpu = std::clock();
         if (way == Way::cut) {
             for (int tick = 0; tick < kPictureTicks; ++tick)
-                (void)sweeper.sweepTo(moment.burInTooth = poseAt(base->tooth->field, alongMm + kStepMm * tick, true));
+                (void)sweeper.sweepTo(moment.burInTooth = poseAt(base->field, alongMm + kStepMm * tick, true));
             moment.removalMm3S = 0.5;
             moment.tissue = cases::Tissue::enamel;
             moment.water = true;

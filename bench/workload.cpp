@@ -75,13 +75,13 @@ PeerInput Workload::peerInput(const Resolution& resolution) {
     return {mesh(resolution), bur_->mesh(), bur_->maxRadiusMm(), bur_->lengthMm()};
 }
 
-std::shared_ptr<const tooth::Tooth> Workload::tooth(const Resolution& resolution, double voxelMm) {
+std::shared_ptr<const tooth::ToothModel> Workload::tooth(const Resolution& resolution, double voxelMm) {
     const std::string key = fmt::format("{} {}", resolution.name, voxelMm);
     if (lastTooth_.first == key) return lastTooth_.second;
-    tooth::PrepareSettings settings;
+    tooth::LoadSettings settings;
     settings.field.voxelMm = voxelMm;
     settings.cacheFolder = cache_;
-    lastTooth_ = {key, tooth::prepareTooth(cases::readCase(toothFile(resolution)), settings)};
+    lastTooth_ = {key, tooth::loadModel(cases::readCase(toothFile(resolution)), settings)};
     return lastTooth_.second;
 }
 

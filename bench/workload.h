@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "handpiece/model/instrument/bur.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "query.h"
 #include "trajectory.h"
@@ -42,7 +42,7 @@ class Workload {
 
     [[nodiscard]] const instrument::Bur& bur() const { return *bur_; }
     [[nodiscard]] PeerInput peerInput(const Resolution& resolution);
-    [[nodiscard]] std::shared_ptr<const tooth::Tooth> tooth(const Resolution& resolution, double voxelMm);
+    [[nodiscard]] std::shared_ptr<const tooth::ToothModel> tooth(const Resolution& resolution, double voxelMm);
     /// Farther apart than `reachMm` the answer is kNoContact.
     [[nodiscard]] std::unique_ptr<Query> exactQuery(const Resolution& resolution, double reachMm);
     [[nodiscard]] std::unique_ptr<Query> fieldQuery(const Resolution& resolution,
@@ -63,7 +63,7 @@ class Workload {
     std::filesystem::path cache_;
     std::shared_ptr<const instrument::Bur> bur_;
     std::map<std::string, geometry::TriangleMesh> meshes_;
-    std::pair<std::string, std::shared_ptr<const tooth::Tooth>> lastTooth_;
+    std::pair<std::string, std::shared_ptr<const tooth::ToothModel>> lastTooth_;
     std::map<Way, std::vector<core::Pose>> poses_;
     std::map<std::pair<std::string, Way>, std::vector<Reference>> references_;
 };

@@ -13,7 +13,7 @@ using namespace handpiece;
 
 class TableMethod final : public contact::Method {
   public:
-    TableMethod(const tooth::Tooth& tooth, std::shared_ptr<const instrument::Bur> bur)
+    TableMethod(const tooth::ToothModel& tooth, std::shared_ptr<const instrument::Bur> bur)
         : topMm_(tooth.outer.bounds().max.z()), bur_(std::move(bur)) {}
 
     [[nodiscard]] const char* name() const noexcept override { return "mine"; }

@@ -48,9 +48,9 @@ void bench(const BenchOptions& o) {
         made.name = fmt::format("starter {}", n);
         made.outer =
             starter::makeOuter(starter::ToothKind::lowerFirstMolar, n, [&](double f) { return progress(0.4 * f); });
-        tooth::PrepareSettings settings;
+        tooth::LoadSettings settings;
         settings.useCache = false;
-        const auto tooth = tooth::prepareTooth(made, settings, [&](double f) { return progress(0.4 + 0.3 * f); });
+        const auto tooth = tooth::loadModel(made, settings, [&](double f) { return progress(0.4 + 0.3 * f); });
         const auto field = contact::makeFieldMethod(tooth, bur);
         const auto hull = contact::makeHullMethod(tooth->outer, bur->mesh());
         for (const double depthMm : {0.1, -1.0}) {

@@ -10,14 +10,14 @@
 #include <string>
 
 #include "handpiece/model/instrument/bur.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "handpiece/tick/contact/method.h"
 #include "handpiece/tick/force/force_law.h"
 
 namespace handpiece::cli {
 
 /// Makes a contact method for a tooth and a bur; called off the tick.
-using MethodFactory = std::function<std::unique_ptr<contact::Method>(std::shared_ptr<const tooth::Tooth>,
+using MethodFactory = std::function<std::unique_ptr<contact::Method>(std::shared_ptr<const tooth::ToothModel>,
                                                                      std::shared_ptr<const instrument::Bur>)>;
 /// By the name typed after --method. "field" and "hull" are always there.
 using MethodRegistry = std::map<std::string, MethodFactory>;

@@ -150,12 +150,12 @@ cases::Case blockCase() {
 
 studies::RunSummary feelBlock(const CalibrateOptions& o, const workspace::Profile& profile) {
     const cases::Case block = blockCase();
-    tooth::PrepareSettings prepare;
+    tooth::LoadSettings prepare;
     prepare.field.voxelMm = 0.2;
     prepare.field.bandOutMm = std::max(prepare.field.bandOutMm, 0.4);
     prepare.field.bandInMm = std::max(prepare.field.bandInMm, 0.8);
     prepare.useCache = false;
-    const auto tooth = tooth::prepareTooth(block, prepare);
+    const auto tooth = tooth::loadModel(block, prepare);
     input::DeviceChoice choice = choiceOf(o.device);
     choice.placing = profile.placing;
     choice.placing->toothMm = Vec3::Zero();

@@ -73,23 +73,23 @@ void addContactOptions(Command& command, ContactInputs& inputs, const MethodRegi
     command.option("--threads", inputs.threads, "threads for long work; 0: all cores").showDefault();
 }
 
-tooth::PrepareSettings prepareSettingsOf(const ContactInputs& inputs) {
+tooth::LoadSettings prepareSettingsOf(const ContactInputs& inputs) {
     // A count below zero arrives here as an enormous one.
     if (inputs.threads > kMaxThreads)
         throw core::Error("this many threads are not possible", "--threads", fmt::format("give 0 to {}", kMaxThreads));
     core::setThreadCount(inputs.threads);
     if (!(inputs.voxelUm >= 10.0 && inputs.voxelUm <= 400.0))
         throw core::Error(fmt::format("a voxel of {} um", inputs.voxelUm), "--voxel", "give 10 to 400 um");
-    tooth::PrepareSettings settings;
+    tooth::LoadSettings settings;
     settings.field = simulation::fieldSettingsAt(inputs.voxelUm * 1e-3);
     settings.useCache = !inputs.noCache;
     return settings;
 }
 
-std::shared_ptr<const tooth::Tooth> loadTooth(const ContactInputs& inputs) {
-    const tooth::PrepareSettings settings = prepareSettingsOf(inputs);
+std::shared_ptr<const tooth::ToothModel> loadTooth(const ContactInputs& inputs) {
+    const tooth::LoadSettings settings = prepareSettingsOf(inputs);
     studies::ProgressBar bar("preparing the tooth");
-    return tooth::prepareTooth(readToothOf(inputs), settings, bar.listener());
+    return tooth::loadModel(readToothOf(inputs), settings, bar.listener());
 }
 
 std::shared_ptr<const instrument::Bur> loadBur(const std::string& nameOrFile) {
@@ -97,7 +97,7 @@ std::shared_ptr<const instrument::Bur> loadBur(const std::string& nameOrFile) {
 }
 
 std::unique_ptr<contact::Method> makeMethod(const std::string& name, const MethodRegistry& extra,
-                                            std::shared_ptr<const tooth::Tooth> tooth,
+                                            std::shared_ptr<const tooth::ToothModel> tooth,
                                             std::shared_ptr<const instrument::Bur> bur) {
     if (name == "field") return contact::makeFieldMethod(std::move(tooth), std::move(bur));
     if (name == "hull") return contact::makeHullMethod(tooth->outer, bur->mesh());

@@ -39,14 +39,14 @@ void addContactOptions(Command& command, ContactInputs& inputs, const MethodRegi
 /// The case; one that is a mesh file in its unit. Throws core::Error.
 [[nodiscard]] cases::Case readToothOf(const ContactInputs& inputs);
 /// Voxel, bands and cache as asked for; sets the number of threads. Throws core::Error for values out of range.
-[[nodiscard]] tooth::PrepareSettings prepareSettingsOf(const ContactInputs& inputs);
+[[nodiscard]] tooth::LoadSettings prepareSettingsOf(const ContactInputs& inputs);
 /// Reads or reopens the tooth, with a progress bar. Throws core::Error.
-[[nodiscard]] std::shared_ptr<const tooth::Tooth> loadTooth(const ContactInputs& inputs);
+[[nodiscard]] std::shared_ptr<const tooth::ToothModel> loadTooth(const ContactInputs& inputs);
 /// A name of the catalogue, SHAPE:DxL, or a mesh file.
 [[nodiscard]] std::shared_ptr<const instrument::Bur> loadBur(const std::string& nameOrFile);
 /// By name: field, hull or a registered one; throws core::Error naming those there are.
 [[nodiscard]] std::unique_ptr<contact::Method> makeMethod(const std::string& name, const MethodRegistry& extra,
-                                                          std::shared_ptr<const tooth::Tooth> tooth,
+                                                          std::shared_ptr<const tooth::ToothModel> tooth,
                                                           std::shared_ptr<const instrument::Bur> bur);
 
 }  // namespace handpiece::cli

@@ -20,7 +20,7 @@
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/model/instrument/turbine.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "handpiece/senses/view/renderer.h"
 #include "studies/built_in_motion.h"
 #include "studies/progress_bar.h"
@@ -181,7 +181,7 @@ void takeCase(Subject& subject, const cases::Case& toothCase) {
     subject.buccalSign = toothCase.buccalSign;
     subject.scenery = toothCase.scenery;
     subject.parts = toothCase.parts;
-    subject.bounds = subject.live->base().tooth->outer.bounds();
+    subject.bounds = subject.live->model().outer.bounds();
 }
 
 Subject openSession(const PictureOptions& o) {
@@ -229,7 +229,7 @@ Subject openSession(const PictureOptions& o) {
 void restBur(Subject& subject, const simulation::SimulationSetup& station, const instrument::Instrument& instrument) {
     subject.bur = instrument.bur;
     subject.finish = view::finishOf(*instrument.bur, instrument.cuttingParameters.name);
-    const auto method = contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(station.field), subject.bur);
+    const auto method = contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(station.field), subject.bur);
     core::Pose& pose = subject.moment.burInTooth;
     const Vec3 middle = subject.bounds.centre();
     pose.positionMm = {middle.x(), middle.y(), subject.bounds.max.z() + 2.0};
@@ -247,7 +247,7 @@ Subject openCase(const PictureOptions& o, const Asked& asked) {
     inputs.threads = o.threads;
     inputs.noCache = o.noCache;
     inputs.voxelUm = attempt ? 1e3 * attempt->attempt.voxelMm : o.voxelUm;
-    const tooth::PrepareSettings prepare = prepareSettingsOf(inputs);
+    const tooth::LoadSettings prepare = prepareSettingsOf(inputs);
     const cases::Case toothCase = attempt ? attempt->toothCase : cases::readCase(o.what);
     simulation::SimulationSettings settings;
     settings.field = prepare.field;
@@ -256,7 +256,7 @@ Subject openCase(const PictureOptions& o, const Asked& asked) {
         toothCase, std::move(settings), prepare.useCache, core::part(bar.listener(), 0.0, 0.7));
     tooth::StateDelta state;
     if (attempt) {
-        state = tooth::decodeState(attempt->attempt.state, station.identity, *station.tooth, o.what);
+        state = tooth::decodeState(attempt->attempt.state, *station.tooth, o.what);
         station.resume(state);
     }
     subject.live = std::make_shared<simulation::LiveTooth>(station.tooth, state, core::part(bar.listener(), 0.7, 1.0));
@@ -347,7 +347,7 @@ void picture(const PictureOptions& o) {
     view::Renderer renderer;
     if (subject.live) {
         renderer.setTooth(subject.bounds);
-        renderer.updateBricks(subject.live->wholeSurface(), true);
+        renderer.updateBricks(subject.live->uncutSurface(), true);
         if (look.removedDepthColours) {
             subject.live->wantRemovedDepths(true);
             subject.live->refresh();

@@ -42,7 +42,7 @@ bool isThere(const fs::path& file, std::size_t faces) {
 }
 
 void feel(studies::Surface& s, const fs::path& felt, const std::shared_ptr<const instrument::Bur>& bur) {
-    s.tooth = tooth::prepareTooth(cases::readCase(felt));
+    s.tooth = tooth::loadModel(cases::readCase(felt));
     s.field = contact::makeFieldMethod(s.tooth, bur);
     s.hull = contact::makeHullMethod(s.tooth->outer, bur->mesh());
 }

@@ -18,7 +18,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/instrument/catalogue.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "handpiece/tick/device/capability.h"
 #include "studies/built_in_motion.h"
 #include "studies/cut_run.h"
@@ -174,7 +174,7 @@ bool isMotionFile(const std::string& name) {
 }
 
 simulation::SimulationSettings stationSettingsOf(const RunOptions& o, const studies::RunSettings& run,
-                                                 const cases::Case& toothCase, const tooth::PrepareSettings& prepare) {
+                                                 const cases::Case& toothCase, const tooth::LoadSettings& prepare) {
     simulation::SimulationSettings s;
     s.rateHz = run.rateHz;
     s.field = prepare.field;
@@ -226,7 +226,7 @@ double bottomOf(const instrument::Bur& bur, double rhoMm) {
 device::Motion cutMotionOf(const RunOptions& o, const studies::RunSettings& settings, const cases::Case& toothCase,
                            const simulation::SimulationSetup& station, std::vector<studies::LesionPlan>& lesions) {
     const double pedal = o.pedalGiven ? o.pedal : 1.0;
-    const auto& tooth = station.tooth->tooth;
+    const auto& tooth = station.tooth;
     const auto method = contact::makeFieldMethod(tooth, station.settings.bur);
     if (!isCuttingMotion(o.motion)) {
         device::Motion motion = isMotionFile(o.motion)
@@ -323,7 +323,7 @@ device::Motion noMotion() {
 }
 
 input::ToothPlace placeOf(const cases::Case& toothCase, const simulation::SimulationSetup& station) {
-    return {station.tooth->tooth->outer.bounds(), toothCase.fdiNumber, toothCase.buccalSign};
+    return {station.tooth->outer.bounds(), toothCase.fdiNumber, toothCase.buccalSign};
 }
 
 void cutCommand(const RunOptions& o, studies::RunSettings settings) {
@@ -340,7 +340,7 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
             fmt::format("first: handpiece mesh repair {} OUT.stl --unit {}", o.inputs.tooth, o.inputs.unit.name));
     std::optional<RunDevice> device;
     if (isGuarded(o.device)) device.emplace(o.device);
-    const tooth::PrepareSettings prepare = prepareSettingsOf(o.inputs);
+    const tooth::LoadSettings prepare = prepareSettingsOf(o.inputs);
     studies::Outputs outputs(o.out);  // before the work: a folder that cannot be written is told at once
     // An attempt goes on where it was.
     std::optional<cases::OpenAttempt> before;
@@ -356,8 +356,7 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
     simulation::SimulationSetup station =
         simulation::makeSimulation(toothCase, std::move(stationSettings), prepare.useCache, preparing.listener());
     preparing.finish();
-    if (before)
-        station.resume(tooth::decodeState(before->attempt.state, station.identity, *station.tooth, o.inputs.tooth));
+    if (before) station.resume(tooth::decodeState(before->attempt.state, *station.tooth, o.inputs.tooth));
     settings.parameters = station.settings.parameters;
     std::vector<studies::LesionPlan> lesions;
     device::Motion motion = isReal(o.device) ? noMotion() : cutMotionOf(o, settings, toothCase, station, lesions);

@@ -13,7 +13,7 @@
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/case_bytes.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "handpiece/senses/measure/tooth_probe.h"
 #include "handpiece/senses/surface/closed_surface.h"
 #include "studies/progress_bar.h"
@@ -35,7 +35,7 @@ void writeCut(const simulation::SimulationSetup& station, const cases::Case& too
               Outputs& outputs, CutOutcome& outcome) {
     ProgressBar bar("shaping the cut tooth");
     const core::Progress progress = bar.listener();
-    tooth::CutMirror mirror(station.tooth);
+    tooth::ToothMirror mirror(station.tooth);
     mirror.apply(state);
     if (const auto thinnest = measure::ToothProbe(mirror).thinnestOverPulp()) outcome.leftOverPulpMm = thinnest->leftMm;
     const surface::MirrorSource source(mirror);
@@ -67,7 +67,7 @@ void writeAttempt(const simulation::SimulationSetup& station, const cases::Case&
     attempt.caseFile = core::wholePath(options.casePath);
     attempt.caseKey = cases::contentKey(toothCase);
     attempt.caseName = toothCase.name;
-    attempt.state = tooth::encodeState(state, station.identity);
+    attempt.state = tooth::encodeState(state, station.tooth->identity);
     attempt.voxelMm = station.settings.field.voxelMm;
     attempt.removedMm3 = state.removedMm3;
     attempt.bur = station.settings.bur->name();

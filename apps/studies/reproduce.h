@@ -13,8 +13,8 @@
 
 #include "handpiece/app/report/report_html.h"
 #include "handpiece/model/instrument/bur.h"
-#include "handpiece/model/tooth/cut_field.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/tooth/state_delta.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "handpiece/tick/contact/method.h"
 #include "studies/stroboscope.h"
 #include "studies/timing.h"
@@ -29,7 +29,7 @@ struct Surface {
     std::filesystem::path file;
     std::size_t paperVertices = 0, paperFaces = 0, vertices = 0, faces = 0;
     double loadMs = 0.0;  ///< of `file`
-    std::shared_ptr<const tooth::Tooth> tooth;
+    std::shared_ptr<const tooth::ToothModel> tooth;
     std::shared_ptr<contact::Method> field, hull;
 
     [[nodiscard]] bool isPlane() const { return name == "plane"; }
@@ -100,10 +100,10 @@ struct CutTiming {
 };
 [[nodiscard]] CutTiming timeCut(const Reproduction& r, const Surface& surface, std::size_t count);
 /// A surface of enamel throughout, to be cut.
-[[nodiscard]] std::shared_ptr<const tooth::CuttableTooth> wholeOf(const Surface& surface);
+[[nodiscard]] std::shared_ptr<const tooth::ToothModel> wholeOf(const Surface& surface);
 /// A stroboscope picture in three dimensions, in the report and as a file beside it; gives the file's name, or null
 /// when there is no OpenGL: then the report says so.
-Json addStroboscope(Reproduction& r, const std::shared_ptr<const tooth::CuttableTooth>& whole,
+Json addStroboscope(Reproduction& r, const std::shared_ptr<const tooth::ToothModel>& uncut,
                     const tooth::StateDelta& state, const Stroboscope& shot, const std::string& file,
                     const std::string& caption);
 /// Figure 11.

@@ -22,11 +22,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using messages::HapticSample;
 
-/// The surface under the paper's bur, whole. One tissue throughout, as the paper's teeth are.
-simulation::SimulationSetup stationOn(const Reproduction& r, const std::shared_ptr<const tooth::CuttableTooth>& whole) {
+/// The surface under the paper's bur, uncut. One tissue throughout, as the paper's teeth are.
+simulation::SimulationSetup stationOn(const Reproduction& r, const std::shared_ptr<const tooth::ToothModel>& uncut) {
     simulation::SimulationSetup station;
-    station.tooth = whole;
-    station.field = std::make_shared<tooth::CutField>(whole);
+    station.tooth = uncut;
+    station.field = std::make_shared<tooth::ToothState>(uncut);
     station.settings.bur = r.bur;
     station.settings.cuttingParameters = instrument::makeInstrument("paper").cuttingParameters;
     station.settings.capability = device::SimulatedDeviceSettings{}.capability;
@@ -77,7 +77,7 @@ struct CutPicture {
     double speedMmS, depthMm, lengthMm, everyS;
 };
 
-void figure11(Reproduction& r, const Surface& s, const std::shared_ptr<const tooth::CuttableTooth>& whole) {
+void figure11(Reproduction& r, const Surface& s, const std::shared_ptr<const tooth::ToothModel>& uncut) {
     r.report.heading("Figure 11: a tooth being cut");
     Json rows = Json::array();
     const CutPicture pictures[] = {
@@ -86,7 +86,7 @@ void figure11(Reproduction& r, const Surface& s, const std::shared_ptr<const too
     };
     for (const CutPicture& picture : pictures) {
         r.step("cutting");
-        const simulation::SimulationSetup station = stationOn(r, whole);
+        const simulation::SimulationSetup station = stationOn(r, uncut);
         studies::MotionOptions options;
         options.speedMmS = picture.speedMmS;
         options.depthMm = picture.depthMm;
@@ -109,7 +109,7 @@ void figure11(Reproduction& r, const Surface& s, const std::shared_ptr<const too
                 picture.caption, picture.everyS, s.name, cut.samples.back().removedMm3[1], picture.speedMmS,
                 cut.summary.peakForceN));
         const Json file = addStroboscope(
-            r, whole, station.field->state(), shot, fmt::format("figure11-{}.png", picture.motion),
+            r, uncut, station.field->state(), shot, fmt::format("figure11-{}.png", picture.motion),
             fmt::format("The same in three dimensions: the tooth afterwards, cut open at the bur, and the bur every "
                         "{:.1f} s.",
                         picture.everyS));
@@ -129,16 +129,16 @@ void figure11(Reproduction& r, const Surface& s, const std::shared_ptr<const too
 
 }  // namespace
 
-std::shared_ptr<const tooth::CuttableTooth> wholeOf(const Surface& s) {
-    return tooth::prepareCutting(s.tooth, field::TissueMap::uniform(s.tooth->field, cases::Tissue::enamel));
+std::shared_ptr<const tooth::ToothModel> wholeOf(const Surface& s) {
+    return tooth::withTissues(*s.tooth, field::TissueMap::uniform(s.tooth->field, cases::Tissue::enamel));
 }
 
-Json addStroboscope(Reproduction& r, const std::shared_ptr<const tooth::CuttableTooth>& whole,
+Json addStroboscope(Reproduction& r, const std::shared_ptr<const tooth::ToothModel>& uncut,
                     const tooth::StateDelta& state, const Stroboscope& shot, const std::string& file,
                     const std::string& caption) {
     r.step("drawing " + file);
     const std::filesystem::path path = r.out / file;
-    if (const std::string missing = writeStroboscope(whole, state, *r.bur, shot, path); !missing.empty()) {
+    if (const std::string missing = writeStroboscope(uncut, state, *r.bur, shot, path); !missing.empty()) {
         r.report.paragraph("No picture in three dimensions: " + missing, report::HtmlReport::Tone::note);
         return {};
     }
@@ -149,11 +149,11 @@ Json addStroboscope(Reproduction& r, const std::shared_ptr<const tooth::Cuttable
 CutTiming timeCut(const Reproduction& r, const Surface& s, std::size_t count) {
     constexpr int kPasses = 3, kHulls = 5;
     const auto poses = sweepAt(*s.field, s.tooth->outer.bounds(), 0.1, count);
-    const auto whole = wholeOf(s);
+    const auto uncut = wholeOf(s);
     CutTiming timing;
     std::vector<double> best(poses.size(), std::numeric_limits<double>::infinity());
     for (int pass = 0; pass < kPasses; ++pass) {
-        simulation::SimulationSetup station = stationOn(r, whole);
+        simulation::SimulationSetup station = stationOn(r, uncut);
         station.settings.fullRemoval = true;
         const loop::Work work = station.work();
         cutting::CutInput input;
@@ -188,7 +188,7 @@ void reproduceCutPictures(Reproduction& r, const Surface& s) {
 }
 
 void reproduceCutForces(Reproduction& r, const Surface& s, Json& rows, std::vector<std::vector<std::string>>& cells) {
-    const auto whole = wholeOf(s);
+    const auto uncut = wholeOf(s);
     for (const char* name : {"press", "drag"}) {
         report::Plot plot{fmt::format("(a) cutting and (b) touching: the same {}", name),
                           "time [s]",
@@ -202,7 +202,7 @@ void reproduceCutForces(Reproduction& r, const Surface& s, Json& rows, std::vect
         const device::Motion motion = studies::motionByName(name, *s.field, s.tooth->outer.bounds(), options);
         for (const bool cuts : {true, false}) {
             r.step("forces while cutting");
-            const simulation::SimulationSetup station = stationOn(r, whole);
+            const simulation::SimulationSetup station = stationOn(r, uncut);
             const RunSettings settings;
             const CutTrial run = trial(station, settings, motion, cuts ? 1.0 : 0.0);
             report::Series curve;

@@ -45,19 +45,19 @@ class Molar {
         molar.outer =
             starter::makeOuter(starter::ToothKind::lowerFirstMolar, kMolarFaces, core::part(progress, 0, 0.3));
         molar.parts.push_back({"enamel", cases::Tissue::enamel, 0, molar.outer});
-        tooth::PrepareSettings settings;
+        tooth::LoadSettings settings;
         settings.useCache = false;
-        whole_ = tooth::prepareTooth(molar, settings, core::part(progress, 0.3, 1.0));
+        molar_ = tooth::loadModel(molar, settings, core::part(progress, 0.3, 1.0));
         findPlaces();
     }
     void use(cases::Tissue tissue) {
-        base_ = tooth::prepareCutting(whole_, field::TissueMap::uniform(whole_->field, tissue));
-        uncut_ = std::make_shared<const tooth::CutField>(base_);
+        base_ = tooth::withTissues(*molar_, field::TissueMap::uniform(molar_->field, tissue));
+        uncut_ = std::make_shared<const tooth::ToothState>(base_);
     }
     [[nodiscard]] loop::Work work(bool cutting) const {
         if (!cutting) return {contact::makeFieldMethod(uncut_, bur_), nullptr};
-        const auto field = std::make_shared<tooth::CutField>(base_);
-        return {contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur_),
+        const auto field = std::make_shared<tooth::ToothState>(base_);
+        return {contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(field), bur_),
                 std::make_unique<cutting::Cutter>(field, bur_, instrument::CuttingParameters{}, cases::builtInTissues(),
                                                   cutting::Cutter::Settings{})};
     }
@@ -67,8 +67,8 @@ class Molar {
   private:
     /// The highest place that the bur rests at, and the lowest between the cusps on the way across the middle.
     void findPlaces() {
-        const auto method = contact::makeFieldMethod(whole_, bur_);
-        const core::Box box = whole_->outer.bounds();
+        const auto method = contact::makeFieldMethod(molar_, bur_);
+        const core::Box box = molar_->outer.bounds();
         const Vec3 middle = box.centre();
         double highest = -std::numeric_limits<double>::infinity(), lowest = -highest;
         for (int i = -20; i <= 20; ++i)
@@ -90,9 +90,9 @@ class Molar {
     }
 
     std::shared_ptr<const instrument::Bur> bur_;
-    std::shared_ptr<const tooth::Tooth> whole_;
-    std::shared_ptr<const tooth::CuttableTooth> base_;
-    std::shared_ptr<const tooth::CutField> uncut_;
+    std::shared_ptr<const tooth::ToothModel> molar_;
+    std::shared_ptr<const tooth::ToothModel> base_;
+    std::shared_ptr<const tooth::ToothState> uncut_;
     Vec3 cusp_ = Vec3::Zero(), fissure_ = Vec3::Zero();
 };
 

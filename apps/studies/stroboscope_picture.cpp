@@ -82,7 +82,7 @@ void expose(view::Image& film, const view::Image& exposure, const view::Image& e
 
 }  // namespace
 
-std::string writeStroboscope(const std::shared_ptr<const tooth::CuttableTooth>& whole, const tooth::StateDelta& state,
+std::string writeStroboscope(const std::shared_ptr<const tooth::ToothModel>& uncut, const tooth::StateDelta& state,
                              const instrument::Bur& bur, const Stroboscope& shot, const std::filesystem::path& file) {
     if (shot.tipsMm.empty()) throw core::Error("a stroboscope needs a place of the bur", "stroboscope");
     std::optional<view::Renderer> renderer;
@@ -91,9 +91,9 @@ std::string writeStroboscope(const std::shared_ptr<const tooth::CuttableTooth>& 
     } catch (const core::Error& e) {
         return e.what();
     }
-    simulation::LiveTooth live(whole, state);
-    renderer->setTooth(whole->tooth->outer.bounds());
-    renderer->updateBricks(live.wholeSurface(), true);
+    simulation::LiveTooth live(uncut, state);
+    renderer->setTooth(uncut->outer.bounds());
+    renderer->updateBricks(live.uncutSurface(), true);
     renderer->updateBricks(live.takeNews());
     renderer->setBur(bur.mesh(), bur.lengthMm(), bur.maxRadiusMm());
     const view::Plane plane{-Vec3::UnitY(), -shot.tipsMm.front().y()};

@@ -5,8 +5,7 @@
 
 #include <memory>
 
-#include "handpiece/model/tooth/cut_field.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "support/closed_meshes.h"
 
 namespace handpiece::desktop {
@@ -24,13 +23,13 @@ inline cases::Case ballCase() {
     return ball;
 }
 
-inline const std::shared_ptr<const tooth::CuttableTooth>& cuttableBall() {
-    static const std::shared_ptr<const tooth::CuttableTooth> ball = [] {
-        tooth::PrepareSettings settings;
+inline const std::shared_ptr<const tooth::ToothModel>& cuttableBall() {
+    static const std::shared_ptr<const tooth::ToothModel> ball = [] {
+        tooth::LoadSettings settings;
         settings.useCache = false;
         settings.field.voxelMm = 0.2;
         const cases::Case toothCase = ballCase();
-        return tooth::prepareCutting(toothCase, tooth::prepareTooth(toothCase, settings), settings);
+        return tooth::loadModel(toothCase, settings);
     }();
     return ball;
 }

@@ -28,7 +28,7 @@ struct Made {
     geometry::TriangleTree tree{outer}, core{inner};
     field::FieldSettings settings{0.1, 0.1, 0.2};
     field::TissueSet tissues{cases::Tissue::enamel, cases::Tissue::dentine};
-    field::DistanceField field;
+    field::DistanceField field{field::FieldStorage{}};
     std::vector<std::byte> fieldFile, tissueFile;
     std::filesystem::path place;
 

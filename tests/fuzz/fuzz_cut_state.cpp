@@ -10,17 +10,16 @@ namespace {
 
 using namespace handpiece;
 
-void tryOut(std::span<const std::byte> data, const std::shared_ptr<const tooth::CuttableTooth>& base) {
+void tryOut(std::span<const std::byte> data, const std::shared_ptr<const tooth::ToothModel>& base) {
     tooth::StateDelta state;
     try {
-        state = tooth::decodeState(data, fuzz::kSmallToothKey, *base);
+        state = tooth::decodeState(data, *base);
     } catch (const core::Error&) {
         return;
     }
-    const tooth::StateDelta again =
-        tooth::decodeState(tooth::encodeState(state, fuzz::kSmallToothKey), fuzz::kSmallToothKey, *base);
+    const tooth::StateDelta again = tooth::decodeState(tooth::encodeState(state, base->identity), *base);
     if (tooth::stateHash(again) != tooth::stateHash(state)) std::abort();
-    tooth::CutField field(base);
+    tooth::ToothState field(base);
     if (field.restore(state, 0, state.bricks.size()) != state.bricks.size()) std::abort();
     (void)field.volumesMm3();
 }
@@ -28,12 +27,12 @@ void tryOut(std::span<const std::byte> data, const std::shared_ptr<const tooth::
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const std::shared_ptr<const tooth::CuttableTooth> base = fuzz::smallTooth();
+    static const std::shared_ptr<const tooth::ToothModel> base = fuzz::smallTooth();
     const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size));
     tryOut(bytes, base);
     if (size >= fuzz::kStateHeaderBytes) {
         std::vector<std::byte> sealed(bytes.begin(), bytes.end());
-        fuzz::seal(sealed);
+        fuzz::seal(sealed, base->identity);
         tryOut(sealed, base);
     }
     return 0;

@@ -13,7 +13,7 @@ using namespace handpiece;
 // A history: magic, three numbers, then each stroke's size and cut state.
 constexpr std::size_t kHead = 28;
 
-std::vector<std::byte> sealed(std::span<const std::byte> data) {
+std::vector<std::byte> sealed(std::span<const std::byte> data, std::uint64_t identity) {
     std::vector<std::byte> out(data.begin(), data.end());
     for (std::size_t at = kHead; at + 8 < out.size();) {
         std::uint64_t size = 0;
@@ -22,7 +22,7 @@ std::vector<std::byte> sealed(std::span<const std::byte> data) {
         std::memcpy(&out[at], &size, 8);
         at += 8;
         if (size < fuzz::kStateHeaderBytes) break;
-        fuzz::seal(std::span(out).subspan(at, size));
+        fuzz::seal(std::span(out).subspan(at, size), identity);
         at += size;
     }
     return out;
@@ -47,11 +47,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const simulation::SimulationSetup station = [] {
         simulation::SimulationSetup made;
         made.tooth = fuzz::smallTooth();
-        made.identity = fuzz::kSmallToothKey;
         return made;
     }();
     const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size));
     tryOut(bytes, station);
-    if (size > kHead) tryOut(sealed(bytes), station);
+    if (size > kHead) tryOut(sealed(bytes, station.tooth->identity), station);
     return 0;
 }

@@ -14,7 +14,8 @@
 #include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/field/field_cache.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
+#include "handpiece/model/tooth/tooth_state.h"
 
 namespace handpiece::fuzz {
 
@@ -29,11 +30,8 @@ int readText(const std::uint8_t* data, std::size_t size, const Work& work) {
     return 0;
 }
 
-/// Of the small tooth, in files.
-inline constexpr std::uint64_t kSmallToothKey = 0x0123456789abcdefull;
-
 /// A ball of enamel of 0.7 mm at 0.1 mm voxels.
-inline std::shared_ptr<const tooth::CuttableTooth> smallTooth() {
+inline std::shared_ptr<const tooth::ToothModel> smallTooth() {
     core::setThreadCount(1);
     field::FieldSettings settings;
     settings.voxelMm = 0.1;
@@ -45,17 +43,16 @@ inline std::shared_ptr<const tooth::CuttableTooth> smallTooth() {
         field::DistanceField::fromFunction({core::Vec3::Constant(-0.9), core::Vec3::Constant(0.9)}, settings,
                                            [](const core::Vec3& p) { return p.norm() - 0.7; });
     field::TissueMap map = field::TissueMap::uniform(field, cases::Tissue::enamel);
-    return tooth::prepareCutting(
-        std::make_shared<tooth::Tooth>(tooth::Tooth{"ball", mesh, std::move(tree), std::move(field), false, 0.0}),
-        std::move(map));
+    return tooth::withTissues(tooth::ToothModel{"ball", mesh, std::move(tree), std::move(field)}, std::move(map));
 }
 
 /// Bytes before the payload of a cut state.
 inline constexpr std::size_t kStateHeaderBytes = 136;
-/// Sets size and checksums of a cut state right, or nothing would get past those.
-inline void seal(std::span<std::byte> state) {
-    constexpr std::size_t kPayloadBytes = 32, kPayloadHash = 120, kHeaderHash = 128;
+/// Sets whose it is, size and checksums of a cut state right, or nothing would get past those.
+inline void seal(std::span<std::byte> state, std::uint64_t identity) {
+    constexpr std::size_t kKey = 16, kPayloadBytes = 32, kPayloadHash = 120, kHeaderHash = 128;
     const auto put = [&](std::size_t at, std::uint64_t number) { std::memcpy(&state[at], &number, sizeof number); };
+    put(kKey, identity);
     put(kPayloadBytes, state.size() - kStateHeaderBytes);
     put(kPayloadHash, field::hashOf(state.subspan(kStateHeaderBytes)));
     core::Hasher hasher;

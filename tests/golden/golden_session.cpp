@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes a tooth, drags a bur across it and prints a hash of each stage: golden_session [THREADS]
+// Makes teeth, drags a bur across each, cuts it and prints a hash of each stage: golden_session [THREADS]
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -8,8 +8,8 @@
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/starter/starter.h"
-#include "handpiece/model/tooth/cut_field.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
+#include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
 #include "handpiece/tick/loop/loop_run.h"
@@ -19,9 +19,17 @@
 namespace handpiece {
 namespace {
 
-void print(const char* stage, std::uint64_t hash) {
-    std::printf("%-8s %016llx\n", stage, static_cast<unsigned long long>(hash));
-}
+/// A tooth and the bur it meets.
+struct Meeting {
+    const char* prefix;  ///< of what is printed
+    starter::ToothKind tooth;
+    const char* bur;
+    double depthMm;  ///< of the plunge
+
+    void print(const char* stage, std::uint64_t hash) const {
+        std::printf("%s%-8s %016llx\n", prefix, stage, static_cast<unsigned long long>(hash));
+    }
+};
 
 void addMesh(core::Hasher& hash, const geometry::TriangleMesh& mesh) {
     for (const core::Vec3& v : mesh.vertices)
@@ -52,23 +60,21 @@ void addSample(core::Hasher& hash, const messages::HapticSample& s) {
 }
 
 /// A plunge of a turning bur: the tooth that is left, the parts that it is of, and every sample on the way.
-void cut(const cases::Case& molar, const std::shared_ptr<const tooth::Tooth>& whole,
-         const tooth::PrepareSettings& prepare) {
-    const auto base = tooth::prepareCutting(molar, whole, prepare);
-    const auto field = std::make_shared<tooth::CutField>(base);
-    const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur("330"));
-    const auto feeler = contact::makeFieldMethod(whole, bur);
+void cut(const Meeting& meeting, const std::shared_ptr<const tooth::ToothModel>& uncut) {
+    const auto field = std::make_shared<tooth::ToothState>(uncut);
+    const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur(meeting.bur));
+    const auto feeler = contact::makeFieldMethod(uncut, bur);
     studies::CuttingScene scene;
-    scene.toothBounds = whole->outer.bounds();
+    scene.toothBounds = uncut->outer.bounds();
     scene.burRadiusMm = bur->maxRadiusMm();
     studies::CuttingOptions options;
-    options.depthMm = 0.6;
+    options.depthMm = meeting.depthMm;
     options.dwellS = 0.5;
     device::Motion motion = studies::cuttingMotionByName("plunge", *feeler, scene, options);
     device::SimulatedDeviceSettings arm;
     arm.rigidHand = true;
     const double duration = motion.durationS();
-    loop::Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
+    loop::Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(field), bur),
                     std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{},
                                                       cases::builtInTissues(), cutting::Cutter::Settings{})};
     loop::HapticLoop haptic({}, std::make_unique<device::SimulatedDevice>(arm, std::move(motion)), std::move(work),
@@ -80,25 +86,26 @@ void cut(const cases::Case& molar, const std::shared_ptr<const tooth::Tooth>& wh
         for (const double mm3 : s.removedMm3)
             samples.add(mm3);
     });
-    print("tissues", tooth::identityOf(*base));
-    print("cutting", samples.value());
-    print("cut", field->stateHash());
+    meeting.print("tissues", uncut->identity);
+    meeting.print("cutting", samples.value());
+    meeting.print("cut", field->stateHash());
 }
 
-void run() {
-    const cases::Case molar = starter::makeTooth(starter::ToothKind::lowerFirstMolar, {10000, 2000, false});
+void run(const Meeting& meeting) {
+    const cases::Case made = starter::makeTooth(meeting.tooth, {10000, 2000, false});
     core::Hasher surfaces;
-    addMesh(surfaces, molar.outer);
-    for (const cases::Part& part : molar.parts)
+    addMesh(surfaces, made.outer);
+    for (const cases::Part& part : made.parts)
         addMesh(surfaces, part.mesh);
-    print("surfaces", surfaces.value());
+    meeting.print("surfaces", surfaces.value());
 
-    tooth::PrepareSettings prepare;
+    tooth::LoadSettings prepare;
     prepare.useCache = false;
-    const auto tooth = tooth::prepareTooth(molar, prepare);
-    print("field", tooth->field.stateHash());
+    const auto tooth = tooth::loadModel(made, prepare);
+    meeting.print("field", tooth->fieldHash);
 
-    auto method = contact::makeFieldMethod(tooth, std::make_shared<const instrument::Bur>(instrument::makeBur("330")));
+    auto method =
+        contact::makeFieldMethod(tooth, std::make_shared<const instrument::Bur>(instrument::makeBur(meeting.bur)));
     device::Motion drag = studies::motionByName("drag", *method, tooth->outer.bounds());
     method->reset();
     device::SimulatedDeviceSettings arm;
@@ -111,9 +118,9 @@ void run() {
         addSample(samples, s);
         touching += s.patchCount > 0;
     });
-    print("samples", samples.value());
-    std::printf("touching %llu\n", static_cast<unsigned long long>(touching));
-    cut(molar, tooth, prepare);
+    meeting.print("samples", samples.value());
+    std::printf("%stouching %llu\n", meeting.prefix, static_cast<unsigned long long>(touching));
+    cut(meeting, tooth);
 }
 
 }  // namespace
@@ -122,7 +129,9 @@ void run() {
 int main(int argc, char** argv) {
     try {
         if (argc > 1) handpiece::core::setThreadCount(std::strtoull(argv[1], nullptr, 10));
-        handpiece::run();
+        using handpiece::starter::ToothKind;
+        handpiece::run({"", ToothKind::lowerFirstMolar, "330", 0.6});
+        handpiece::run({"premolar ", ToothKind::upperPremolar, "cylinder-flat:1.2x4.0", 0.5});
         return 0;
     } catch (const std::exception& e) {
         std::fprintf(stderr, "golden_session: %s\n", e.what());

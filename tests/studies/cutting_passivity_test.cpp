@@ -29,14 +29,15 @@ struct Row {
     double marginNmm = 0, removedMm3 = 0, rippleN = 0;
 };
 
-std::shared_ptr<const tooth::CuttableTooth> cuttable(const std::shared_ptr<const tooth::Tooth>& whole, Tissue tissue) {
-    return tooth::prepareCutting(whole, field::TissueMap::uniform(whole->field, tissue));
+std::shared_ptr<const tooth::ToothModel> cuttable(const std::shared_ptr<const tooth::ToothModel>& uncut,
+                                                  Tissue tissue) {
+    return tooth::withTissues(*uncut, field::TissueMap::uniform(uncut->field, tissue));
 }
 
-void simulate(const std::shared_ptr<const tooth::CuttableTooth>& base,
-              const std::shared_ptr<const instrument::Bur>& bur, Row& row) {
-    const auto field = std::make_shared<tooth::CutField>(base);
-    loop::Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
+void simulate(const std::shared_ptr<const tooth::ToothModel>& base, const std::shared_ptr<const instrument::Bur>& bur,
+              Row& row) {
+    const auto field = std::make_shared<tooth::ToothState>(base);
+    loop::Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(field), bur),
                     std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{},
                                                       cases::builtInTissues(), cutting::Cutter::Settings{})};
     device::SimulatedDeviceSettings settings;
@@ -99,7 +100,7 @@ TEST(CuttingPassivity, cuttingAndWedgedTheLoopStaysPassive) {
                             if (!whole && rate > 1000.0 && tissue == Tissue::dentine) continue;
                             rows.push_back({&hand, friction, delay, rate, tissue, wedged});
                         }
-    std::vector<std::shared_ptr<const tooth::CuttableTooth>> bases;
+    std::vector<std::shared_ptr<const tooth::ToothModel>> bases;
     for (const Tissue t : {Tissue::enamel, Tissue::dentine, Tissue::caries})
         for (const auto& tooth : {flat, groove})
             bases.push_back(cuttable(tooth, t));

@@ -5,8 +5,9 @@
 
 #include <functional>
 
-#include "handpiece/model/tooth/cut_field.h"
-#include "handpiece/model/tooth/cut_volumes.h"
+#include "handpiece/model/field/brick_index.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
+#include "handpiece/model/tooth/tooth_state.h"
 #include "support/random.h"
 
 namespace handpiece::tooth::test {
@@ -14,12 +15,12 @@ namespace handpiece::tooth::test {
 using core::Vec3;
 
 /// A tooth of which only the field counts; its surface is a token triangle.
-inline std::shared_ptr<const Tooth> toothOf(field::DistanceField field) {
+inline std::shared_ptr<const ToothModel> toothOf(field::DistanceField field) {
     geometry::TriangleMesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     mesh.triangles = {{0, 1, 2}};
     geometry::TriangleTree tree(mesh);
-    return std::make_shared<Tooth>(Tooth{"closed form", mesh, std::move(tree), std::move(field), false, 0.0});
+    return std::make_shared<ToothModel>(ToothModel{"closed form", mesh, std::move(tree), std::move(field)});
 }
 
 inline double ball(const Vec3& p, double radiusMm) {
@@ -27,8 +28,8 @@ inline double ball(const Vec3& p, double radiusMm) {
 }
 
 /// A ball of dentine of `innerMm` in one of enamel of `outerMm`.
-inline std::shared_ptr<const CuttableTooth> ballTooth(double outerMm, double innerMm, double voxelMm,
-                                                      const CutSettings& settings = {}, double bandInMm = 0.3) {
+inline std::shared_ptr<const ToothModel> ballTooth(double outerMm, double innerMm, double voxelMm,
+                                                   const CutSettings& settings = {}, double bandInMm = 0.3) {
     const double edge = outerMm + 0.3;
     field::FieldSettings field;
     field.voxelMm = voxelMm;
@@ -38,7 +39,7 @@ inline std::shared_ptr<const CuttableTooth> ballTooth(double outerMm, double inn
     const field::TissueMap::PartFunction dentine{[=](const Vec3& p) { return ball(p, innerMm); },
                                                  cases::Tissue::dentine, 1};
     field::TissueMap map = field::TissueMap::fromFunctions(tooth->field, std::span(&dentine, 1), cases::Tissue::enamel);
-    return prepareCutting(std::move(tooth), std::move(map), settings);
+    return withTissues(*tooth, std::move(map), settings);
 }
 
 inline std::uint32_t denseCount(const field::DistanceField& field) {
@@ -47,10 +48,10 @@ inline std::uint32_t denseCount(const field::DistanceField& field) {
 }
 
 /// Takes a shape (its signed distance, negative inside) out of the tooth, brick by brick over the whole grid.
-inline void cutAway(CutField& field, const std::function<double(const Vec3&)>& shape) {
+inline void cutAway(ToothState& field, const std::function<double(const Vec3&)>& shape) {
     const field::FieldView view = field.field().view();
-    const auto low = static_cast<float>(-field.base().settings.bandMm),
-               high = static_cast<float>(field.base().bandOutMm);
+    const auto low = static_cast<float>(-field.model().settings.bandMm),
+               high = static_cast<float>(field.model().bandOutMm);
     std::array<float, field::kBrickValues> fresh;
     for (std::uint32_t dense = 0; dense < denseCount(field.field()); ++dense) {
         const auto brick = field::brickAt(view.bricks, dense);
@@ -78,7 +79,7 @@ inline void cutAway(CutField& field, const std::function<double(const Vec3&)>& s
 }
 
 /// Every node that two stored bricks hold has the same bits in both.
-inline std::size_t tornNodes(const CutField& field) {
+inline std::size_t tornNodes(const ToothState& field) {
     const field::FieldView view = field.field().view();
     std::size_t torn = 0;
     for (std::uint32_t dense = 0; dense < denseCount(field.field()); ++dense) {

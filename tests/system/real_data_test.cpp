@@ -22,7 +22,7 @@
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/base/geometry/repair.h"
 #include "handpiece/model/instrument/shapes.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
 #include "handpiece/tick/loop/loop_run.h"
@@ -312,10 +312,10 @@ class RealData : public testing::Test {
         if (const char* keep = std::getenv("HANDPIECE_KEEP_REAL")) {
             cases::writeCase(molar_, std::filesystem::path(keep) / "molar");
         }
-        tooth::PrepareSettings settings;
+        tooth::LoadSettings settings;
         settings.useCache = false;
         settings.field.voxelMm = 0.05;
-        tooth_ = tooth::prepareTooth(molar_, settings);
+        tooth_ = tooth::loadModel(molar_, settings);
         std::printf("  field of %zu bricks in %.2f s\n", tooth_->field.brickCount(), tooth_->buildSeconds);
     }
     static void TearDownTestSuite() {
@@ -336,7 +336,7 @@ class RealData : public testing::Test {
     static inline std::filesystem::path folder_;
     static inline double labelledMm3_ = 0.0, filledMm3_ = 0.0;
     static inline cases::Case molar_;
-    static inline std::shared_ptr<const tooth::Tooth> tooth_;
+    static inline std::shared_ptr<const tooth::ToothModel> tooth_;
 };
 
 TEST_F(RealData, theMolarIsOneClosedSurfaceOfItsLabelsVolumeAndItsPulp) {
@@ -418,8 +418,7 @@ TEST_F(RealData, aDroppedBurIsHeldAtTheSurface) {
 }
 
 TEST_F(RealData, aClassOneCavityIsCut) {
-    const auto base = tooth::prepareCutting(molar_, tooth_, {});
-    const auto field = std::make_shared<tooth::CutField>(base);
+    const auto field = std::make_shared<tooth::ToothState>(tooth_);
     const auto bur = burs().front();
     studies::CuttingScene scene;
     scene.toothBounds = tooth_->outer.bounds();
@@ -431,7 +430,7 @@ TEST_F(RealData, aClassOneCavityIsCut) {
     const double durationS = motion.durationS();
     device::SimulatedDeviceSettings rigid;
     rigid.rigidHand = true;
-    loop::Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
+    loop::Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(field), bur),
                     std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{},
                                                       cases::builtInTissues(), cutting::Cutter::Settings{})};
     loop::HapticLoop haptic({}, std::make_unique<device::SimulatedDevice>(rigid, std::move(motion)), std::move(work),
@@ -446,7 +445,7 @@ TEST_F(RealData, aClassOneCavityIsCut) {
     const tooth::TissueVolumes left = field->volumesMm3();
     for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
         total += removed[t];
-        EXPECT_NEAR(removed[t], base->volumesMm3[t] - left[t], 1e-6);
+        EXPECT_NEAR(removed[t], tooth_->volumesMm3[t] - left[t], 1e-6);
     }
     std::printf("  cavity of %.3f mm3 (enamel %.3f, dentine %.3f, decay %.3f), peak %.2f N, state %016llx\n", total,
                 removed[1], removed[2], removed[4], peakN, static_cast<unsigned long long>(field->stateHash()));

@@ -84,11 +84,11 @@ struct RenderThread::Worker {
     view::Image image, beforeImage, bothImage;
 
     void setTooth(view::Renderer& to, bool alsoCuts) const {
-        to.setTooth(tooth ? tooth->base().tooth->outer.bounds() : sketchBounds());
+        to.setTooth(tooth ? tooth->model().outer.bounds() : sketchBounds());
         if (parts) to.setParts(*parts);
         if (scenery) to.setScenery(*scenery);
         if (!tooth) return;
-        to.updateBricks(tooth->wholeSurface(), true);
+        to.updateBricks(tooth->uncutSurface(), true);
         if (alsoCuts) to.updateBricks(tooth->takeNews());
     }
 

@@ -194,7 +194,7 @@ void ViewWidget::State::hoverAgain() {
 }
 
 void ViewWidget::State::feelUncut() {
-    if (hand) hand->setFeel(tooth ? input::feelUncut(tooth->base().tooth, bur) : input::PointerController::Feel());
+    if (hand) hand->setFeel(tooth ? input::feelUncut(tooth->modelShared(), bur) : input::PointerController::Feel());
 }
 
 void ViewWidget::State::followHand() {

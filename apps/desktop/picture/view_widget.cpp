@@ -54,7 +54,7 @@ void ViewWidget::setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth, cons
     clearTooth();
     State& s = *state_;
     s.tooth = std::move(liveTooth);
-    s.take(toothCase, s.tooth->base().tooth->outer.bounds());
+    s.take(toothCase, s.tooth->model().outer.bounds());
     s.tissues = tissuesOf(toothCase);
     s.render->setTooth(s.tooth, toothCase.parts, toothCase.scenery, std::move(feed));
     s.probe->setTooth(s.tooth);

@@ -11,7 +11,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "handpiece/senses/surface/brick_source.h"
 #include "handpiece/senses/surface/closed_surface.h"
 
@@ -214,13 +214,11 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
     settings.resumed = attempt || recovered;
     std::atomic<bool> hasDistances{false};
     const core::Progress stepwise = [&](double fraction) {
-        if (fraction >= simulation::kDistancesShare && !hasDistances.exchange(true)) tell(listener, LoadStep::tissues);
+        if (fraction >= tooth::kDistancesShare && !hasDistances.exchange(true)) tell(listener, LoadStep::tissues);
         return !preparing || preparing(fraction);
     };
     loaded.station = simulation::makeSimulation(*loaded.toothCase, std::move(settings), request.useCache, stepwise);
-    if (attempt)
-        loaded.state =
-            tooth::decodeState(attempt->state, loaded.station.identity, *loaded.station.tooth, request.path.string());
+    if (attempt) loaded.state = tooth::decodeState(attempt->state, *loaded.station.tooth, request.path.string());
     if (recovered) loaded.state = std::move(recovered->state);
     if (attempt || recovered) loaded.station.resume(loaded.state);
     if (recovered) loaded.history = simulation::keepHistory(recovered->history, loaded.state, loaded.station);

@@ -228,7 +228,7 @@ void Simulator::comeBack(const std::shared_ptr<Left>& left, std::function<void()
         tr("Bringing the tooth back"),
         [left, loaded](const core::Progress& progress) {
             // A field of its own: what the old loop had yet to hand over is in the state.
-            loaded->station.field = std::make_shared<tooth::CutField>(loaded->station.tooth);
+            loaded->station.field = std::make_shared<tooth::ToothState>(loaded->station.tooth);
             loaded->station.resume(loaded->state);
             loaded->history = simulation::keepHistory(left->history, loaded->state, loaded->station);
             loaded->liveTooth = std::make_shared<simulation::LiveTooth>(loaded->station.tooth, loaded->state, progress);
@@ -359,14 +359,13 @@ void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
 namespace {
 
 /// The tooth as it is on the way to a file.
-using Export = std::function<void(const std::shared_ptr<const tooth::CuttableTooth>& base,
-                                  const tooth::StateDelta& state, const core::Progress& progress)>;
+using Export = std::function<void(const std::shared_ptr<const tooth::ToothModel>& base, const tooth::StateDelta& state,
+                                  const core::Progress& progress)>;
 
 Job::Work exporting(const std::shared_ptr<simulation::LiveTooth>& tooth, const messages::HapticSample& sample,
                     Export to) {
     return [tooth, removedMm3 = sample.removedMm3, to = std::move(to)](const core::Progress& progress) {
-        const auto base = std::shared_ptr<const tooth::CuttableTooth>(tooth, &tooth->base());
-        to(base, tooth->state(removedMm3), progress);
+        to(tooth->modelShared(), tooth->state(removedMm3), progress);
     };
 }
 

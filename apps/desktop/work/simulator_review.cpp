@@ -116,7 +116,7 @@ void Simulator::showReviewed() {
     // The bur rests over the tooth; what is gone is told.
     sample_ = {};
     sample_.removedMm3 = tooth.state.removedMm3;
-    const core::Box box = tooth_->base().tooth->outer.bounds();
+    const core::Box box = tooth_->model().outer.bounds();
     startPose_ = {{box.centre().x(), box.centre().y(), box.max.z() + kRestsOverMm}, core::Quat::Identity()};
     for (std::size_t axis = 0; axis < 3; ++axis)
         sample_.positionMm[axis] = sample_.proxyPositionMm[axis] = startPose_.positionMm[static_cast<int>(axis)];

@@ -50,7 +50,7 @@ class PointerCourse {
     PointerCourse(simulation::SimulationSetup made, view::StandardView eye, int buccalSign, double crownShare,
                   view::Viewport port = {900, 700})
         : station(std::move(made)), mirror(station.tooth), first(station.tooth), probe(mirror), viewport(port) {
-        core::Box box = station.tooth->tooth->outer.bounds();
+        core::Box box = station.tooth->outer.bounds();
         const core::Pose start = startPose(box, 36, buccalSign);
         box.min.z() = box.max.z() - crownShare * box.size().z();
         camera = view::standardView(eye, box, buccalSign, viewport);
@@ -62,9 +62,9 @@ class PointerCourse {
             std::make_unique<device::PointerDevice>(device::PointerHandSettings{}, mailbox, start), station.work(),
             force::defaultParameters());
         hand->setEye(camera, viewport);
-        hand->setFeel(feelUncut(station.tooth->tooth, station.settings.bur));
-        uncut = contact::makeFieldMethod(station.tooth->tooth, station.settings.bur);
-        now = contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(station.field), station.settings.bur);
+        hand->setFeel(feelUncut(station.tooth, station.settings.bur));
+        uncut = contact::makeFieldMethod(station.tooth, station.settings.bur);
+        now = contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(station.field), station.settings.bur);
     }
     [[nodiscard]] core::Vec2 pixel(const core::Vec3& p) const { return view::pixelOf(camera, viewport, p).value(); }
     [[nodiscard]] core::Vec3 tip() const { return core::Vec3(last.proxyPositionMm.data()); }
@@ -181,12 +181,12 @@ class PointerCourse {
     /// seen by the eye, whatever its depth.
     [[nodiscard]] Outside outside(double widenMm = 0.1) const {
         const measure::ToothProbe before(first);
-        const auto& whole = station.tooth->tooth->field;
+        const auto& uncut = station.tooth->field;
         const double h = 0.05;
-        const core::Box box = whole.bounds();
+        const core::Box box = uncut.bounds();
         Outside sum;
         const auto gone1 = [&](const core::Vec3& p) {
-            return whole.distance(p) < 0.0 && before.signedDistanceMm(p) >= 0.0;
+            return uncut.distance(p) < 0.0 && before.signedDistanceMm(p) >= 0.0;
         };
         std::vector<core::Vec3> second, gone;
         const core::Vec3 size = box.size();
@@ -196,7 +196,7 @@ class PointerCourse {
             for (double y = 0.5 * h; y < size.y(); y += h)
                 for (double x = 0.5 * h; x < size.x(); x += h) {
                     const core::Vec3 p = box.min + core::Vec3(x, y, z);
-                    if (whole.distance(p) >= 0.0 || probe.signedDistanceMm(p) < 0.0) continue;
+                    if (uncut.distance(p) >= 0.0 || probe.signedDistanceMm(p) < 0.0) continue;
                     (before.signedDistanceMm(p) >= 0.0 ? gone : second).push_back(p);
                 }
         }
@@ -225,7 +225,7 @@ class PointerCourse {
     }
 
     simulation::SimulationSetup station;
-    tooth::CutMirror mirror, first;
+    tooth::ToothMirror mirror, first;
     measure::ToothProbe probe;
     view::Viewport viewport;
     view::Camera camera;

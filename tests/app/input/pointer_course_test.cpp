@@ -38,7 +38,7 @@ struct Case {
     Vec2 fromPx{-25, 10};  // from the middle of the crown
 };
 
-/// Prepared once: a whole tooth and the tissues in it.
+/// Prepared once: an uncut tooth and the tissues in it.
 simulation::SimulationSetup stationOf(ToothKind kind, const std::string& bur) {
     static std::map<ToothKind, simulation::SimulationSetup> made;
     simulation::SimulationSettings settings;
@@ -59,7 +59,7 @@ simulation::SimulationSetup stationOf(ToothKind kind, const std::string& bur) {
         found = made.emplace(kind, simulation::makeSimulation(toothCase, settings, false)).first;
     }
     simulation::SimulationSetup station = found->second;
-    station.field = std::make_shared<tooth::CutField>(station.tooth);
+    station.field = std::make_shared<tooth::ToothState>(station.tooth);
     station.settings.bur = settings.bur;
     station.settings.cuttingParameters = settings.cuttingParameters;
     return station;
@@ -67,7 +67,7 @@ simulation::SimulationSetup stationOf(ToothKind kind, const std::string& bur) {
 
 /// The middle of the crown as one sees it.
 Vec2 middleOf(const PointerCourse& course) {
-    const core::Box box = course.station.tooth->tooth->outer.bounds();
+    const core::Box box = course.station.tooth->outer.bounds();
     return course.pixel({box.centre().x(), box.centre().y(), box.max.z() - 0.15 * box.size().z()});
 }
 
@@ -210,7 +210,7 @@ TEST(PointerCourse, aLongStrokeBesideTheFissure) {
     if (std::getenv("HANDPIECE_POINTER_SWEEP") == nullptr) GTEST_SKIP() << "takes six seconds";
     PointerCourse course(stationOf(kMolar, "330"), StandardView::occlusal, 1, 0.42);
     course.hand->setStop(1.5);
-    const core::Box box = course.station.tooth->tooth->outer.bounds();
+    const core::Box box = course.station.tooth->outer.bounds();
     const Vec3 middle(box.centre().x(), box.centre().y() + 0.6, box.max.z() - 1.0);
     const Vec2 pixel = course.pixel(middle);
     const double px = 1.0 / view::mmPerPixel(course.camera, course.viewport, middle);

@@ -74,13 +74,13 @@ TEST(LiveSession, tellsWhatIsCutAndWhatIsShownIsWhatIsLeft) {
     EXPECT_TRUE(liveSession.takePlot().empty());
 
     // The surface kept up by news is that of the tooth that is left, built at once.
-    tooth::CutMirror mirror(station.tooth);
+    tooth::ToothMirror mirror(station.tooth);
     mirror.apply(state);
     const surface::MirrorSource source(mirror);
     surface::Surface fine(source, &station.tooth->tissues);
     fine.build();
     std::vector<std::shared_ptr<const surface::BrickMesh>> shown(source.grid().count());
-    for (const surface::BrickUpdate& update : live->wholeSurface())
+    for (const surface::BrickUpdate& update : live->uncutSurface())
         shown[update.dense] = update.mesh;
     std::set<std::uint32_t> seen;
     const std::vector<surface::BrickUpdate> news = live->takeNews();
@@ -99,7 +99,7 @@ TEST(LiveSession, tellsWhatIsCutAndWhatIsShownIsWhatIsLeft) {
 
     // Another window over the same tooth shows the same.
     shown.assign(shown.size(), nullptr);
-    for (const surface::BrickUpdate& update : live->wholeSurface())
+    for (const surface::BrickUpdate& update : live->uncutSurface())
         shown[update.dense] = update.mesh;
     for (const surface::BrickUpdate& update : live->takeNews())
         shown[update.dense] = update.mesh;

@@ -12,7 +12,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/case/case_bytes.h"
 #include "handpiece/model/instrument/catalogue.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 
 namespace handpiece::simulation {
 namespace {
@@ -173,15 +173,15 @@ TEST(SessionPlayer, theSameHandInAnotherFieldCutsAsMuch) {
     EXPECT_NEAR(removed(recut.state.removedMm3), removed(recorded().state.removedMm3),
                 0.1 * removed(recorded().state.removedMm3));
     // A state of that station: it can be packed and put in place.
-    const auto bytes = tooth::encodeState(recut.state, recut.station.identity);
-    EXPECT_NO_THROW((void)tooth::decodeState(bytes, recut.station.identity, *recut.station.tooth));
+    const auto bytes = tooth::encodeState(recut.state, recut.station.tooth->identity);
+    EXPECT_NO_THROW((void)tooth::decodeState(bytes, *recut.station.tooth));
 }
 
 /// Undoes all there is at a tooth in this state, in a sitting of its own that is recorded to `file`.
 void undoAll(const SimulationSetup& begun, const tooth::StateDelta& state, const history::History& strokes,
              std::size_t steps, const std::filesystem::path& file) {
     SimulationSetup station = begun;
-    station.field = std::make_shared<tooth::CutField>(station.tooth);
+    station.field = std::make_shared<tooth::ToothState>(station.tooth);
     station.resume(state);
     station.settings.resumed = true;
     LiveSessionSettings settings;
@@ -285,7 +285,7 @@ TEST(SessionPlayer, hullAndFieldInOneSession) {
     LiveSessionSettings settings;
     settings.sessionFile = folder.path() / "session.h5";
     SimulationSetup station = blockStation();
-    // Up at first: the hull is for a whole tooth at rest.
+    // Up at first: the hull is for an uncut tooth at rest.
     std::vector<device::TimedPose> poses = twoHoles().poses();
     for (device::TimedPose& p : poses)
         if (p.timeS < 1.7) p.pedal = 0.0;

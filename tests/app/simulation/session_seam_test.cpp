@@ -16,7 +16,7 @@
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "handpiece/record/session/recorder.h"
 
 namespace handpiece::simulation {
@@ -55,7 +55,7 @@ void cutUntilKilled(const fs::path& file) {
 tooth::StateDelta goOn(const fs::path& file, SimulationSetup station, const tooth::StateDelta& state,
                        const history::History& strokes, LiveSessionSettings::Session session, std::size_t undone,
                        history::History* strokesAfter = nullptr) {
-    station.field = std::make_shared<tooth::CutField>(station.tooth);
+    station.field = std::make_shared<tooth::ToothState>(station.tooth);
     station.resume(state);
     station.settings.resumed = true;
     LiveSessionSettings settings;
@@ -147,8 +147,7 @@ TEST(SessionSeam, aSecondKillAndAPauseLoseNothingEither) {
          {frames.size() - 1, std::size_t{0}, frames.size() / 2, std::size_t{1}, frames.size() - 2}) {
         player.seek(static_cast<double>(frames[f]) / 1000);
         const session::KeyFrame frame = player.reader().keyFrame(f);
-        const tooth::StateDelta there =
-            tooth::decodeState(frame.state, player.station().identity, *player.station().tooth, "frame");
+        const tooth::StateDelta there = tooth::decodeState(frame.state, *player.station().tooth, "frame");
         EXPECT_EQ(player.sample().tick, frames[f]);
         EXPECT_NEAR(removed(player.state().removedMm3), removed(there.removedMm3), 1e-4) << f;
         const auto& told = player.sample().removedMm3;
@@ -166,7 +165,7 @@ TEST(SessionSeam, aSeamThatDoesNotFitIsTold) {
     history::History strokes = recovered.history;
     const auto undo = strokes.undo();
     ASSERT_TRUE(undo);
-    tooth::CutMirror mirror(station.tooth);
+    tooth::ToothMirror mirror(station.tooth);
     mirror.apply(state);
     mirror.apply(*undo);
     history::History none;

@@ -57,8 +57,8 @@ TEST(OpenHapticsEndToEnd, aHandCutsACavityAndFeelsIt) {
     setenv("HANDPIECE_HD_DOUBLE_LOG", (folder / "motors.csv").c_str(), 1);
 
     const auto base = test::smallMolar(0.2);
-    const core::Box box = base->tooth->outer.bounds();
-    const auto field = std::make_shared<tooth::CutField>(base);
+    const core::Box box = base->outer.bounds();
+    const auto field = std::make_shared<tooth::ToothState>(base);
     const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur("round:1.4x1.4"));
     double removedMm3 = 0.0, removedBeforeMm3 = 0.0;
     std::uint64_t troubles = 0;
@@ -73,7 +73,7 @@ TEST(OpenHapticsEndToEnd, aHandCutsACavityAndFeelsIt) {
         const auto health = device->health();
         loop::HapticLoop haptic(
             {}, std::move(device),
-            {contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
+            {contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(field), bur),
              std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{}, cases::builtInTissues(),
                                                cutting::Cutter::Settings{})},
             force::defaultParameters());

@@ -70,13 +70,13 @@ double length(const std::array<double, 3>& v) {
 }  // namespace
 
 Storm cutInAStorm(const StormSettings& settings) {
-    static const std::shared_ptr<const tooth::CuttableTooth> base = test::smallMolar(0.12);
+    static const std::shared_ptr<const tooth::ToothModel> base = test::smallMolar(0.12);
     std::vector<Fault> faults = parseFaults(settings.faults);
     const double durationS =
         settings.durationS > 0.0 ? settings.durationS : faults.back().atS + faults.back().lastsS + 1.0;
 
     drivers::SimulatedSettings simulated;
-    simulated.motion = strokes(base->tooth->outer.bounds().max.z(), durationS);
+    simulated.motion = strokes(base->outer.bounds().max.z(), durationS);
     simulated.arm.hand = device::handByName("stiff");
     simulated.arm.subStepS = 1e-4;
     simulated.arm.capability.maxForceSlopeNPerS = settings.slopeNPerS;
@@ -104,7 +104,7 @@ Storm cutInAStorm(const StormSettings& settings) {
         withFaults(std::make_unique<Witness>(std::move(driver), storm.sent), std::move(faults), log), guard);
     const std::shared_ptr<HealthBoard> health = device->health();
 
-    const auto field = std::make_shared<tooth::CutField>(base);
+    const auto field = std::make_shared<tooth::ToothState>(base);
     const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur("round:1.0x1.0"));
     loop::LoopSettings loopSettings;
     loopSettings.rateHz = settings.tickHz;
@@ -118,7 +118,7 @@ Storm cutInAStorm(const StormSettings& settings) {
     {
         loop::HapticLoop haptic(
             loopSettings, std::move(device),
-            {contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
+            {contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(field), bur),
              std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{}, cases::builtInTissues(),
                                                cutting::Cutter::Settings{})},
             force::defaultParameters());

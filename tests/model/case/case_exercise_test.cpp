@@ -8,7 +8,7 @@
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/case_check.h"
 #include "handpiece/model/case/package.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "support/error_of.h"
 #include "support/random.h"
 

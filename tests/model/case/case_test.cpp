@@ -10,7 +10,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "support/error_of.h"
 #include "support/random.h"
 

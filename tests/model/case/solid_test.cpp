@@ -5,7 +5,7 @@
 #include "base/geometry/meshes.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/mesh_io.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "support/random.h"
 
 namespace handpiece::cases {

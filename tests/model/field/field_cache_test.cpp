@@ -30,7 +30,7 @@ struct Made {
     geometry::TriangleMesh core = test::sphereMesh(2, 0.7);
     geometry::TriangleTree tree{mesh}, coreTree{core};
     FieldSettings settings;
-    DistanceField field;
+    DistanceField field{FieldStorage{}};
     std::vector<std::byte> data;
 
     Made() {

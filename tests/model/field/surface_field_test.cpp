@@ -49,15 +49,15 @@ void forNodes(const DistanceField& field, std::size_t every, F&& visit) {
     for (int bz = 0; bz < v.bricks[2]; ++bz)
         for (int by = 0; by < v.bricks[1]; ++by)
             for (int bx = 0; bx < v.bricks[0]; ++bx) {
-                const std::int32_t brick = v.brickIndex[bx + v.bricks[0] * (by + v.bricks[1] * bz)];
+                const std::int32_t dense = bx + v.bricks[0] * (by + v.bricks[1] * bz), brick = v.brickIndex[dense];
                 if (brick < 0) continue;
+                const std::uint8_t* tissues = v.tissue + v.tissueStart[dense];
                 for (int i = 0; i < kBrickValues; ++i, ++counter) {
                     if (counter % every != 0) continue;
                     const Vec3 p(v.originMm[0] + v.voxelMm * (8 * bx + i % 9),
                                  v.originMm[1] + v.voxelMm * (8 * by + i / 9 % 9),
                                  v.originMm[2] + v.voxelMm * (8 * bz + i / 81));
-                    visit(p, v.values[brick * kBrickValues + i],
-                          static_cast<cases::Tissue>(v.tissue[brick * kBrickValues + i]));
+                    visit(p, v.values[brick * kBrickValues + i], static_cast<cases::Tissue>(tissues[i]));
                 }
             }
 }
@@ -192,6 +192,9 @@ TEST(SurfaceField, RepeatedNodesAreEqualBitForBit) {
     std::size_t compared = 0;
     const auto at = [&](int x, int y, int z) { return v.brickIndex[x + v.bricks[0] * (y + v.bricks[1] * z)]; };
     // All pairs of bricks that touch, by face, edge or corner.
+    const auto tissueOf = [&](int x, int y, int z) {
+        return v.tissue + v.tissueStart[x + v.bricks[0] * (y + v.bricks[1] * z)];
+    };
     for (int bz = 0; bz < v.bricks[2]; ++bz)
         for (int by = 0; by < v.bricks[1]; ++by)
             for (int bx = 0; bx < v.bricks[0]; ++bx)
@@ -214,7 +217,7 @@ TEST(SurfaceField, RepeatedNodesAreEqualBitForBit) {
                         ++compared;
                         const int j = m[0] + 9 * (m[1] + 9 * m[2]);
                         ASSERT_EQ(v.values[a * kBrickValues + i], v.values[b * kBrickValues + j]);
-                        ASSERT_EQ(v.tissue[a * kBrickValues + i], v.tissue[b * kBrickValues + j]);
+                        ASSERT_EQ(tissueOf(bx, by, bz)[i], tissueOf(o[0], o[1], o[2])[j]);
                     }
                 }
     EXPECT_GT(compared, 50000u);
@@ -290,7 +293,7 @@ TEST(SurfaceField, TissuesByPriorityAndElseByTheNearestPart) {
     EXPECT_GT(seen[static_cast<int>(cases::Tissue::dentine)], 10);
     // Deep inside, brick by brick.
     EXPECT_EQ(field.tissueAt({0, 0, 0}), cases::Tissue::dentine);
-    EXPECT_EQ(v.coarseTissue[0], static_cast<std::uint8_t>(cases::Tissue::none));
+    EXPECT_EQ(v.tissue[v.tissueStart[0]], static_cast<std::uint8_t>(cases::Tissue::none));
     // One part needs no looking.
     const DistanceField single = FieldBuilder::fromSurface(outer, outerTree, std::span(parts).subspan(2, 1), {});
     EXPECT_EQ(single.tissueAt({0, 0, 1.9}), cases::Tissue::dentine);

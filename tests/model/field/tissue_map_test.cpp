@@ -40,9 +40,8 @@ void expectSame(const TissueMap& a, const TissueMap& b, const DistanceField& fie
             ASSERT_EQ(one.layers[k].tissue, two.layers[k].tissue);
             ASSERT_TRUE(std::equal(one.layers[k].values, one.layers[k].values + kBrickValues, two.layers[k].values));
         }
-        if (a.nodes(dense) != nullptr) {
-            ASSERT_TRUE(std::equal(a.nodes(dense), a.nodes(dense) + kBrickValues, b.nodes(dense)));
-        }
+        const std::uint8_t* nodes = a.nodes()->of(dense);
+        ASSERT_TRUE(std::equal(nodes, nodes + kBrickValues, b.nodes()->of(dense)));
     }
 }
 
@@ -98,10 +97,10 @@ TEST(TissueMap, NodesLayersAndPointsTellTheSame) {
     const FieldView view = field.view();
     std::size_t mixed = 0, triple = 0;
     for (std::uint32_t dense = 0; dense < tooth::test::denseCount(field); ++dense) {
-        const std::uint8_t* nodes = map.nodes(dense);
+        const std::uint8_t* nodes = map.nodes()->of(dense);
         const TissueMap::Layers layers = map.layers(dense);
-        EXPECT_EQ(nodes == nullptr, layers.layers.empty());
-        if (nodes == nullptr) continue;
+        EXPECT_EQ(map.nodes()->isMixed(dense), !layers.layers.empty());
+        if (!map.nodes()->isMixed(dense)) continue;
         ++mixed;
         triple += layers.layers.size() >= 2;
         const auto brick = field::brickAt(view.bricks, dense);
@@ -181,7 +180,7 @@ TEST(TissueMap, UniformIsOneTissueEverywhere) {
     const TissueMap map = TissueMap::uniform(field, cases::Tissue::bone);
     EXPECT_EQ(map.tissues(), std::vector{cases::Tissue::bone});
     EXPECT_EQ(map.at(Vec3::Zero()), cases::Tissue::bone);
-    EXPECT_EQ(map.nodes(0), nullptr);
+    EXPECT_EQ(map.nodes()->mixedBricks(), 0u);
     EXPECT_TRUE(map.isOn(field));
     EXPECT_FALSE(map.isOn(ballField(1.0)));
 }
@@ -289,14 +288,14 @@ TEST(TissueCache, SumsThatAreRightProveNothing) {
     EXPECT_FALSE(readTissueFile(file, field, 7, known)) << "a file that anybody may have written";
 }
 
-TEST(PrepareCutting, KeepsTheTissuesOfACase) {
+TEST(LoadModel, KeepsTheTissuesOfACase) {
     const handpiece::test::TemporaryFolder folder;
     cases::Case toothCase;
     toothCase.name = "bumpy";
     toothCase.outer = handpiece::test::bumpyMesh(3, 2.0);
     toothCase.parts = {{"enamel", cases::Tissue::enamel, 10, toothCase.outer},
                        {"dentine", cases::Tissue::dentine, 20, handpiece::test::sphereMesh(3, 1.2)}};
-    tooth::PrepareSettings settings;
+    tooth::LoadSettings settings;
     settings.cacheFolder = folder.path();
     const auto files = [&] {
         std::size_t count = 0;
@@ -304,16 +303,15 @@ TEST(PrepareCutting, KeepsTheTissuesOfACase) {
             count += entry.path().extension() == ".tissues";
         return count;
     };
-    const auto tooth = tooth::prepareTooth(toothCase, settings);
     settings.useCache = false;
-    const auto plain = tooth::prepareCutting(toothCase, tooth, settings);
+    const auto plain = tooth::loadModel(toothCase, settings);
     EXPECT_EQ(files(), 0u);
     settings.useCache = true;
-    const auto built = tooth::prepareCutting(toothCase, tooth, settings);
+    const auto built = tooth::loadModel(toothCase, settings);
     EXPECT_EQ(files(), 1u);
-    const auto again = tooth::prepareCutting(toothCase, tooth, settings);
-    expectSame(built->tissues, plain->tissues, tooth->field);
-    expectSame(again->tissues, plain->tissues, tooth->field);
+    const auto again = tooth::loadModel(toothCase, settings);
+    expectSame(built->tissues, plain->tissues, plain->field);
+    expectSame(again->tissues, plain->tissues, plain->field);
     EXPECT_EQ(again->volumesMm3, plain->volumesMm3);
     const double dentine = geometry::enclosedVolumeMm3(toothCase.parts[1].mesh),
                  all = geometry::enclosedVolumeMm3(toothCase.outer);
@@ -321,7 +319,7 @@ TEST(PrepareCutting, KeepsTheTissuesOfACase) {
     EXPECT_NEAR(again->volumesMm3[static_cast<std::size_t>(cases::Tissue::enamel)], all - dentine, 2e-3 * all);
     // Alone, a part is all of it.
     toothCase.parts.pop_back();
-    const auto alone = tooth::prepareCutting(toothCase, tooth, settings);
+    const auto alone = tooth::loadModel(toothCase, settings);
     EXPECT_EQ(alone->tissues.tissues(), std::vector{cases::Tissue::enamel});
     EXPECT_EQ(files(), 1u);
 }

@@ -13,14 +13,14 @@ namespace {
 
 using Values = std::array<float, field::kBrickValues>;
 
-/// A mirror that is a map: what is not in it is whole.
+/// A mirror that is a map: what is not in it is uncut.
 class FakeMirror final : public history::BrickSource {
   public:
     bool isChanged(std::uint32_t dense) const override { return bricks.contains(dense); }
     const float* values(std::uint32_t dense, float*) const override { return bricks.at(dense).data(); }
     void apply(const tooth::StateDelta& change) {
         for (const auto& brick : change.bricks) {
-            if (brick.whole) {
+            if (brick.uncut) {
                 bricks.erase(brick.dense);
             } else {
                 bricks[brick.dense] = brick.values;
@@ -40,14 +40,14 @@ class HistoryTest : public testing::Test {
     void cut(history::History& history, std::size_t bricks) {
         for (std::size_t i = 0; i < bricks; ++i) {
             const auto dense = static_cast<std::uint32_t>(generator() % 200);
-            Values& v = mirror.bricks.try_emplace(dense, whole(dense)).first->second;
+            Values& v = mirror.bricks.try_emplace(dense, uncut(dense)).first->second;
             for (int k = 0; k < 50; ++k)
                 v[generator() % v.size()] += static_cast<float>(test::uniform(generator, 0, 0.01));
             mirror.removed[1 + dense % 3] += 0.001;
             history.noteTouched(dense);
         }
     }
-    static Values whole(std::uint32_t dense) {
+    static Values uncut(std::uint32_t dense) {
         Values v;
         for (std::size_t i = 0; i < v.size(); ++i)
             v[i] = static_cast<float>(static_cast<double>(i) * 1e-3 - dense * 1e-2);
@@ -158,13 +158,13 @@ TEST_F(HistoryTest, AResumedToothCannotBeUndoneButResetIsWhole) {
     history::History history;
     tooth::StateDelta resumed;
     resumed.removedMm3[1] = 2;
-    resumed.bricks.push_back({17, false, whole(3)});
+    resumed.bricks.push_back({17, false, uncut(3)});
     mirror.apply(resumed);
     history.start(resumed);
     EXPECT_EQ(history.undoSteps(), 0u);
     stroke(history, 20);
     mirror.apply(*history.undo());
-    EXPECT_EQ(mirror.bricks.at(17), whole(3));
+    EXPECT_EQ(mirror.bricks.at(17), uncut(3));
     EXPECT_EQ(mirror.removed, resumed.removedMm3);
     mirror.apply(*history.reset());
     EXPECT_TRUE(mirror.bricks.empty());

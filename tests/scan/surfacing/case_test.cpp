@@ -4,8 +4,7 @@
 #include <array>
 
 #include "handpiece/model/case/case_check.h"
-#include "handpiece/model/tooth/cut_field.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "handpiece/scan/surfacing/surfaces.h"
 #include "scan/surfacing/regions.h"
 
@@ -27,10 +26,10 @@ cases::Case caseOf(const Surfaces& surfaces) {
 }
 
 tooth::TissueVolumes fieldVolumes(const cases::Case& made, double voxelMm) {
-    tooth::PrepareSettings settings;
+    tooth::LoadSettings settings;
     settings.useCache = false;
     settings.field.voxelMm = voxelMm;
-    return tooth::prepareCutting(made, tooth::prepareTooth(made, settings), settings)->volumesMm3;
+    return tooth::loadModel(made, settings)->volumesMm3;
 }
 
 // What a bur will find in the tooth against closed forms, at all faces and at few.

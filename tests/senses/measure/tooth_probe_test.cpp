@@ -21,19 +21,19 @@ constexpr double kVoxel = 0.05;
 constexpr double kOuter = 2.0, kDentine = 1.5, kPulp = 0.6;  // balls in one another
 
 /// A tooth of a mesh, with a ball of dentine and one of pulp in it.
-std::shared_ptr<const tooth::CuttableTooth> toothOf(const geometry::TriangleMesh& mesh, bool withPulp = true) {
+std::shared_ptr<const tooth::ToothModel> toothOf(const geometry::TriangleMesh& mesh, bool withPulp = true) {
     cases::Case made;
     made.name = "closed form";
     made.outer = mesh;
-    tooth::PrepareSettings settings;
+    tooth::LoadSettings settings;
     settings.useCache = false;
     settings.field.voxelMm = kVoxel;
-    auto whole = tooth::prepareTooth(made, settings);
+    auto uncut = tooth::loadModel(made, settings);
     std::vector<field::TissueMap::PartFunction> parts{
         {[](const Vec3& p) { return p.norm() - kDentine; }, Tissue::dentine, 1}};
     if (withPulp) parts.push_back({[](const Vec3& p) { return p.norm() - kPulp; }, Tissue::pulp, 2});
-    field::TissueMap tissues = field::TissueMap::fromFunctions(whole->field, parts, Tissue::enamel);
-    return tooth::prepareCutting(std::move(whole), std::move(tissues));
+    field::TissueMap tissues = field::TissueMap::fromFunctions(uncut->field, parts, Tissue::enamel);
+    return tooth::withTissues(*uncut, std::move(tissues));
 }
 
 /// A cavity from above: a cylinder of radius 0.5 about z with a round end whose lowest point is at `floorMm`.
@@ -72,22 +72,22 @@ class Bored : public testing::Test {
   protected:
     static void SetUpTestSuite() {
         base_ = toothOf(test::sphereMesh(5, kOuter));
-        field_ = std::make_unique<tooth::CutField>(base_);
+        field_ = std::make_unique<tooth::ToothState>(base_);
         tooth::test::cutAway(*field_, [](const Vec3& p) { return boring(p, kFloor); });
-        mirror_ = std::make_unique<tooth::CutMirror>(base_);
+        mirror_ = std::make_unique<tooth::ToothMirror>(base_);
         mirror_->apply(field_->state());
-        whole_ = std::make_unique<tooth::CutMirror>(base_);
+        uncut_ = std::make_unique<tooth::ToothMirror>(base_);
     }
     static void TearDownTestSuite() {
         mirror_.reset();
-        whole_.reset();
+        uncut_.reset();
         field_.reset();
         base_.reset();
     }
     static constexpr double kFloor = 0.9;
-    static inline std::shared_ptr<const tooth::CuttableTooth> base_;
-    static inline std::unique_ptr<tooth::CutField> field_;
-    static inline std::unique_ptr<tooth::CutMirror> mirror_, whole_;
+    static inline std::shared_ptr<const tooth::ToothModel> base_;
+    static inline std::unique_ptr<tooth::ToothState> field_;
+    static inline std::unique_ptr<tooth::ToothMirror> mirror_, uncut_;
 };
 
 TEST_F(Bored, aLineOfSightEndsAtTheFloor) {
@@ -126,7 +126,7 @@ TEST_F(Bored, aLineOfSightEndsAtTheFloor) {
 
 TEST_F(Bored, aCastFindsTheFirstZeroThatMarchingFinds) {
     std::mt19937_64 random(test::seed());
-    for (const tooth::CutMirror* mirror : {mirror_.get(), whole_.get()}) {
+    for (const tooth::ToothMirror* mirror : {mirror_.get(), uncut_.get()}) {
         const ToothProbe probe(*mirror);
         int hits = 0;
         for (int i = 0; i < 150; ++i) {
@@ -158,7 +158,7 @@ TEST_F(Bored, aCastFindsTheFirstZeroThatMarchingFinds) {
 TEST(ToothProbe, castsMeetTheTrianglesThatBruteForceMeets) {
     const geometry::TriangleMesh mesh = test::bumpyMesh(4, 2.0);
     const auto base = toothOf(mesh);
-    const tooth::CutMirror mirror(base);
+    const tooth::ToothMirror mirror(base);
     const ToothProbe probe(mirror);
     std::mt19937_64 random(test::seed());
     int hits = 0, compared = 0;
@@ -265,14 +265,14 @@ TEST_F(Bored, dentineOverThePulpIsTheWayToIt) {
     ASSERT_TRUE(thinnest);
     EXPECT_NEAR(thinnest->leftMm, kFloor - kPulp, 0.5 * kVoxel);
     EXPECT_NEAR((thinnest->pointMm - Vec3(0, 0, kFloor)).norm(), 0.0, 0.12);
-    EXPECT_FALSE(ToothProbe(*whole_).thinnestOverPulp());
+    EXPECT_FALSE(ToothProbe(*uncut_).thinnestOverPulp());
 }
 
 TEST(ToothProbe, anOpenedPulpHasNothingOverIt) {
     const auto base = toothOf(test::sphereMesh(4, kOuter));
-    tooth::CutField field(base);
+    tooth::ToothState field(base);
     tooth::test::cutAway(field, [](const Vec3& p) { return boring(p, 0.3); });
-    tooth::CutMirror mirror(base);
+    tooth::ToothMirror mirror(base);
     mirror.apply(field.state());
     const auto thinnest = ToothProbe(mirror).thinnestOverPulp();
     ASSERT_TRUE(thinnest);
@@ -281,7 +281,7 @@ TEST(ToothProbe, anOpenedPulpHasNothingOverIt) {
 
 TEST(ToothProbe, aToothWithoutPulpHasNoneToSpare) {
     const auto base = toothOf(test::sphereMesh(3, kOuter), false);
-    const tooth::CutMirror mirror(base);
+    const tooth::ToothMirror mirror(base);
     const ToothProbe probe(mirror);
     EXPECT_FALSE(probe.leftOverPulpMm(Vec3(0, 0, 1)));
     EXPECT_FALSE(probe.thinnestOverPulp());

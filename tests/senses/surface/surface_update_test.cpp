@@ -27,11 +27,11 @@ using core::Vec3;
 
 /// A ball of dentine in one of enamel, its cutting, and its mirror.
 struct Cutting {
-    std::shared_ptr<const tooth::CuttableTooth> base;
-    tooth::CutField field;
-    tooth::CutMirror mirror;
+    std::shared_ptr<const tooth::ToothModel> base;
+    tooth::ToothState field;
+    tooth::ToothMirror mirror;
 
-    explicit Cutting(std::shared_ptr<const tooth::CuttableTooth> tooth) : base(tooth), field(tooth), mirror(tooth) {}
+    explicit Cutting(std::shared_ptr<const tooth::ToothModel> tooth) : base(tooth), field(tooth), mirror(tooth) {}
     explicit Cutting(double voxelMm = 0.05) : Cutting(tooth::test::ballTooth(1.2, 0.8, voxelMm)) {}
 
     void cut(const test::Distance& bur) {
@@ -257,7 +257,7 @@ TEST(SurfaceTissues, MeetInALineOnTheirBoundary) {
         const auto plane = [=](const Vec3& p) { return normal.dot(p) - offset; };
         const field::TissueMap::PartFunction dentine{plane, Tissue::dentine, 1};
         auto map = field::TissueMap::fromFunctions(tooth->field, std::span(&dentine, 1), Tissue::enamel);
-        Cutting cutting(tooth::prepareCutting(tooth, std::move(map)));
+        Cutting cutting(tooth::withTissues(*tooth, std::move(map)));
         cutting.cut(test::sphere(normal.unitOrthogonal(), 0.5));
         const MirrorSource source(cutting.mirror);
         Surface surface(source, &cutting.base->tissues);

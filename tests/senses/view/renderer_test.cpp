@@ -388,19 +388,19 @@ TEST(Renderer, BeforeAndGhostShowWhatWasCutAway) {
     renderer.updateBricks(table(), true);
     const Camera camera = above();
     Look look = plainLook();
-    const Image whole = picture(renderer, camera, look, withoutBur());
+    const Image uncut = picture(renderer, camera, look, withoutBur());
     const std::vector<BrickUpdate> gone = {brick(27, nullptr), brick(28, nullptr), brick(35, nullptr),
                                            brick(36, nullptr)};
     renderer.updateBricks(gone);
     const Image cut = picture(renderer, camera, look, withoutBur());
     const Vec3 hole(0.0, 0.0, 0.0);
-    EXPECT_GT(brightness(at(whole, camera, hole)), brightness(at(cut, camera, hole)) + 150);
+    EXPECT_GT(brightness(at(uncut, camera, hole)), brightness(at(cut, camera, hole)) + 150);
     look.tooth = ToothShown::before;
-    expectSame(whole, picture(renderer, camera, look, withoutBur()));
+    expectSame(uncut, picture(renderer, camera, look, withoutBur()));
     look.tooth = ToothShown::ghost;
     const Image ghost = picture(renderer, camera, look, withoutBur());
     EXPECT_GT(brightness(at(ghost, camera, hole)), brightness(at(cut, camera, hole)) + 20);
-    EXPECT_LT(brightness(at(ghost, camera, hole)), brightness(at(whole, camera, hole)) - 20);
+    EXPECT_LT(brightness(at(ghost, camera, hole)), brightness(at(uncut, camera, hole)) - 20);
 }
 
 TEST(Renderer, ATissueThatIsNotVisibleIsNotDrawn) {

@@ -10,22 +10,22 @@
 #include "handpiece/base/core/simd.h"
 #include "handpiece/model/field/field_builder.h"
 #include "handpiece/model/instrument/shapes.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "support/random.h"
 #include "tick/contact/grooved_ball.h"
 
 namespace handpiece::test {
 
-inline std::shared_ptr<const tooth::Tooth> toothOf(geometry::TriangleMesh mesh) {
+inline std::shared_ptr<const tooth::ToothModel> toothOf(geometry::TriangleMesh mesh) {
     geometry::TriangleTree tree(mesh);
     field::DistanceField field = field::FieldBuilder::fromSurface(mesh, tree, {}, {});
-    return std::make_shared<const tooth::Tooth>(
-        tooth::Tooth{"test", std::move(mesh), std::move(tree), std::move(field), false, 0.0});
+    return std::make_shared<const tooth::ToothModel>(
+        tooth::ToothModel{"test", std::move(mesh), std::move(tree), std::move(field)});
 }
 
 /// The ball with grooves, made once.
-inline const tooth::Tooth& grooved() {
+inline const tooth::ToothModel& grooved() {
     static const auto tooth = toothOf(groovedBall(24));
     return *tooth;
 }

@@ -6,13 +6,13 @@
 #include <functional>
 #include <memory>
 
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_state.h"
 #include "tick/contact/contact_fixture.h"
 
 namespace handpiece::test {
 
 /// z <= 0 within +-4 mm, 3 mm thick, on triangles and as a field; dentine for x > 0 when `twoTissues`.
-inline std::shared_ptr<tooth::CutField> slabToCut(bool twoTissues = false, double voxelMm = 0.05) {
+inline std::shared_ptr<tooth::ToothState> slabToCut(bool twoTissues = false, double voxelMm = 0.05) {
     geometry::TriangleMesh mesh = boxMesh({-4, -4, -3}, {4, 4, 0}, 24);
     geometry::TriangleTree tree(mesh);
     field::FieldSettings settings;
@@ -25,17 +25,17 @@ inline std::shared_ptr<tooth::CutField> slabToCut(bool twoTissues = false, doubl
             std::vector<field::TissueMap::PartFunction>{
                 {[](const core::Vec3& p) { return -p.x(); }, cases::Tissue::dentine, 1}},
             cases::Tissue::enamel);
-    auto whole = std::make_shared<const tooth::Tooth>(
-        tooth::Tooth{"slab", std::move(mesh), std::move(tree), std::move(field), false, 0.0});
-    return std::make_shared<tooth::CutField>(tooth::prepareCutting(std::move(whole), std::move(tissues)));
+    auto uncut = std::make_shared<const tooth::ToothModel>(
+        tooth::ToothModel{"slab", std::move(mesh), std::move(tree), std::move(field)});
+    return std::make_shared<tooth::ToothState>(tooth::withTissues(*uncut, std::move(tissues)));
 }
 
 /// Takes away where `signedDistance` is negative: every node within `box` that may change.
-inline void carve(tooth::CutField& cut, const core::Box& box,
+inline void carve(tooth::ToothState& cut, const core::Box& box,
                   const std::function<double(const core::Vec3&)>& signedDistance) {
     const field::FieldView view = cut.field().view();
     const double brickMm = field::kBrickCells * view.voxelMm;
-    const auto low = static_cast<float>(-cut.base().settings.bandMm), high = static_cast<float>(cut.base().bandOutMm);
+    const auto low = static_cast<float>(-cut.model().settings.bandMm), high = static_cast<float>(cut.model().bandOutMm);
     std::int32_t first[3], last[3];
     for (int k = 0; k < 3; ++k) {
         const auto at = [&](double x) {

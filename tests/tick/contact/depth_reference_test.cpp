@@ -18,7 +18,7 @@ namespace {
 using core::Vec3;
 constexpr double kPi = std::numbers::pi;
 
-std::shared_ptr<const tooth::Tooth> molar() {
+std::shared_ptr<const tooth::ToothModel> molar() {
     static const auto tooth = test::toothOf(starter::makeOuter(starter::ToothKind::lowerFirstMolar, 9760));
     return tooth;
 }

@@ -21,11 +21,11 @@ using core::Vec3;
 std::shared_ptr<const instrument::Bur> burOf(std::string_view name) {
     return std::make_shared<const instrument::Bur>(instrument::makeBur(name));
 }
-std::shared_ptr<const tooth::Tooth> grooved() {
+std::shared_ptr<const tooth::ToothModel> grooved() {
     static const auto tooth = test::toothOf(test::groovedBall(35));
     return tooth;
 }
-std::shared_ptr<const tooth::Tooth> slab() {
+std::shared_ptr<const tooth::ToothModel> slab() {
     static const auto tooth = test::toothOf(test::boxMesh({-4, -4, -3}, {4, 4, 0}, 24));
     return tooth;
 }
@@ -216,7 +216,7 @@ TEST(FieldMethod, refusesASenselessReach) {
     FieldMethodSettings settings;
     settings.reachMm = -1.0;
     EXPECT_THROW((void)makeFieldMethod(slab(), burOf("paper"), settings), core::Error);
-    EXPECT_THROW((void)makeFieldMethod(std::shared_ptr<const tooth::Tooth>(), burOf("paper")), core::Error);
+    EXPECT_THROW((void)makeFieldMethod(std::shared_ptr<const tooth::ToothModel>(), burOf("paper")), core::Error);
 }
 
 TEST(FieldMethod, aRoundEndPressedIntoASlabTouchesACap) {
@@ -321,9 +321,9 @@ class OwnCavity : public testing::Test {
   protected:
     static constexpr double kRadius = 0.5;
     const Vec3 tip_{0.013, -0.021, -2.0};
-    std::shared_ptr<tooth::CutField> cut_ = test::slabToCut(true);
+    std::shared_ptr<tooth::ToothState> cut_ = test::slabToCut(true);
     std::shared_ptr<const instrument::Bur> bur_ = burOf("cylinder-round:1.0x4.0");
-    std::unique_ptr<Method> method_ = makeFieldMethod(std::shared_ptr<const tooth::CutField>(cut_), bur_);
+    std::unique_ptr<Method> method_ = makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut_), bur_);
 
     void carve() {
         test::carve(*cut_, {{-3, -3, -3}, {3, 3, 1}},
@@ -336,12 +336,12 @@ class OwnCavity : public testing::Test {
 };
 
 TEST_F(OwnCavity, beforeAnyCutTheDepthIsThatOfTheWholeTooth) {
-    const auto whole = makeFieldMethod(cut_->base().tooth, bur_);
+    const auto uncut = makeFieldMethod(cut_->modelShared(), bur_);
     std::mt19937_64 generator(test::seed());
     for (int i = 0; i < 50; ++i) {
         const core::Pose pose = upright(test::uniform(generator, -2, 2), test::uniform(generator, -2, 2),
                                         test::uniform(generator, -1.0, 2.0));
-        EXPECT_EQ(method_->depth(pose).depthMm, whole->depth(pose).depthMm);
+        EXPECT_EQ(method_->depth(pose).depthMm, uncut->depth(pose).depthMm);
     }
 }
 
@@ -381,7 +381,7 @@ TEST_F(OwnCavity, deeperThanTheFieldFollowsTheDepthIsABound) {
 TEST_F(OwnCavity, apartIsTrueInTheCavityOverItAndBesideIt) {
     carve();
     // A thinner bur in the middle of the cavity: 0.3 mm from every wall, nothing in sight.
-    const auto thin = makeFieldMethod(std::shared_ptr<const tooth::CutField>(cut_), burOf("cylinder-round:0.4x4.0"));
+    const auto thin = makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut_), burOf("cylinder-round:0.4x4.0"));
     core::Pose pose = pushed({0.0, 0.0, 0.3});
     Depth d = thin->depth(pose);
     EXPECT_EQ(d.status, Status::beyondReach);
@@ -406,7 +406,7 @@ TEST_F(OwnCavity, apartIsTrueInTheCavityOverItAndBesideIt) {
 
 TEST_F(OwnCavity, whatConstraintsSensedServesTheDepthAndChangesNothing) {
     carve();
-    const auto other = makeFieldMethod(std::shared_ptr<const tooth::CutField>(cut_), bur_);
+    const auto other = makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut_), bur_);
     std::mt19937_64 generator(test::seed());
     for (int i = 0; i < 60; ++i) {
         const core::Pose pose = pushed(test::uniform(generator, 0.0, 0.1) * test::randomDirection(generator));

@@ -67,7 +67,7 @@ double expectedFeed(const instrument::CuttingParameters& cuttingParameters, doub
 }
 
 struct Bench {
-    std::shared_ptr<tooth::CutField> field;
+    std::shared_ptr<tooth::ToothState> field;
     std::shared_ptr<const instrument::Bur> bur =
         std::make_shared<const instrument::Bur>(instrument::makeBur("cylinder-flat:1.0x4.0"));
     cases::TissueTable table = cases::builtInTissues();
@@ -77,9 +77,9 @@ struct Bench {
     Bench(Tissue tissue, double voxelMm, const instrument::CuttingParameters& cuttingParameters,
           const Cutter::Settings& settings = {}) {
         const core::Box box{Vec3(-1.2, -1.2, -1.6), Vec3(1.2, 1.2, 0)};
-        const auto whole = test::phantom(box, voxelMm, test::boxDistance(box));
-        field = std::make_shared<tooth::CutField>(
-            tooth::prepareCutting(whole, field::TissueMap::uniform(whole->field, tissue)));
+        const auto uncut = test::phantom(box, voxelMm, test::boxDistance(box));
+        field = std::make_shared<tooth::ToothState>(
+            tooth::withTissues(*uncut, field::TissueMap::uniform(uncut->field, tissue)));
         cutter = std::make_unique<Cutter>(field, bur, cuttingParameters, table, settings);
     }
     double cuttingOf(Tissue tissue) const { return table.of(tissue).cuttingMm2PerN; }

@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "handpiece/model/instrument/bur.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "support/random.h"
 
 namespace handpiece::test {
@@ -26,8 +26,8 @@ inline Distance boxDistance(const core::Box& box) {
 }
 
 /// A tooth without a mesh: the field alone.
-inline std::shared_ptr<const tooth::Tooth> phantom(const core::Box& box, double voxelMm, const Distance& distance,
-                                                   double bandInMm = 0.3) {
+inline std::shared_ptr<const tooth::ToothModel> phantom(const core::Box& box, double voxelMm, const Distance& distance,
+                                                        double bandInMm = 0.3) {
     const field::FieldSettings settings{voxelMm, 0.1, bandInMm};
     auto field = field::DistanceField::fromFunction(box.grown(0.3), settings, distance);
     // No surface is asked for; a tree wants one.
@@ -35,16 +35,16 @@ inline std::shared_ptr<const tooth::Tooth> phantom(const core::Box& box, double 
     mesh.vertices = {core::Vec3(0, 0, 0), core::Vec3(1, 0, 0), core::Vec3(0, 1, 0)};
     mesh.triangles = {{0, 1, 2}};
     geometry::TriangleTree tree(mesh);
-    return std::make_shared<const tooth::Tooth>(
-        tooth::Tooth{"phantom", std::move(mesh), std::move(tree), std::move(field), false, 0.0});
+    return std::make_shared<const tooth::ToothModel>(
+        tooth::ToothModel{"phantom", std::move(mesh), std::move(tree), std::move(field)});
 }
 
 /// A block of enamel.
-inline std::shared_ptr<const tooth::CuttableTooth> enamelBlock(const core::Vec3& low, const core::Vec3& high,
-                                                               double voxelMm) {
+inline std::shared_ptr<const tooth::ToothModel> enamelBlock(const core::Vec3& low, const core::Vec3& high,
+                                                            double voxelMm) {
     const core::Box box{low, high};
-    const auto whole = phantom(box, voxelMm, boxDistance(box));
-    return tooth::prepareCutting(whole, field::TissueMap::uniform(whole->field, cases::Tissue::enamel));
+    const auto uncut = phantom(box, voxelMm, boxDistance(box));
+    return tooth::withTissues(*uncut, field::TissueMap::uniform(uncut->field, cases::Tissue::enamel));
 }
 
 inline core::Pose poseAt(const core::Vec3& p, const core::Quat& q = core::Quat::Identity()) {

@@ -129,7 +129,7 @@ TEST(Sweeper, aPlungeIsTheHoleOfItsClosedForm) {
         const instrument::Bur bur = burOf(name);
         const double depth = 1.23;
         const Vec3 tip(0.013, -0.021, -depth);
-        tooth::CutField field(test::enamelBlock(Vec3(-1.6, -1.6, -2.2), Vec3(1.6, 1.6, 0), kVoxel));
+        tooth::ToothState field(test::enamelBlock(Vec3(-1.6, -1.6, -2.2), Vec3(1.6, 1.6, 0), kVoxel));
         Sweeper sweeper(field, bur, core::simdLevel());
         double removed = 0.0;
         for (double z = 0.2; z > -depth; z -= 0.01)
@@ -160,7 +160,7 @@ TEST(Sweeper, aGrooveIsThatOfItsClosedForm) {
         const core::Quat askew(Eigen::AngleAxisd(turn, Vec3::UnitZ()));
         const Vec3 along = askew * Vec3::UnitX(), across = askew * Vec3::UnitY(),
                    from = -0.5 * length * along - depth * Vec3::UnitZ();
-        tooth::CutField field(test::enamelBlock(Vec3(-2.2, -2.2, -1.4), Vec3(2.2, 2.2, 0), kVoxel));
+        tooth::ToothState field(test::enamelBlock(Vec3(-2.2, -2.2, -1.4), Vec3(2.2, 2.2, 0), kVoxel));
         Sweeper sweeper(field, bur, core::simdLevel());
         sweepAlong(sweeper, poseAt(from), poseAt(from + length * along), 0.01);
         sweeper.settle();
@@ -182,7 +182,7 @@ TEST(Sweeper, anArcIsThatOfItsClosedForm) {
     for (const char* name : {"cylinder-flat:1.0x4.0", "cylinder-round:1.0x4.0"}) {
         const instrument::Bur bur = burOf(name);
         const double depth = 0.83, radius = 1.1, angle = 2.0;
-        tooth::CutField field(test::enamelBlock(Vec3(-2.0, -2.0, -1.6), Vec3(2.0, 2.0, 0), kVoxel));
+        tooth::ToothState field(test::enamelBlock(Vec3(-2.0, -2.0, -1.6), Vec3(2.0, 2.0, 0), kVoxel));
         Sweeper sweeper(field, bur, core::simdLevel());
         const int steps = 400;
         const auto centre = [&](double a) { return Vec3(radius * std::cos(a), radius * std::sin(a), -depth); };
@@ -237,7 +237,7 @@ TEST(Sweeper, everyNodeIsWhatItIsAlone) {
     const auto base = test::enamelBlock(Vec3(-1.5, -1.5, -1.6), Vec3(1.5, 1.5, 1.6), 0.06);
     for (const char* name : kManyBurs) {
         const instrument::Bur bur = burOf(name);
-        tooth::CutField field(base);
+        tooth::ToothState field(base);
         Sweeper sweeper(field, bur, core::simdLevel());
         // From the middle of the block, so that all of a short head is buried at times. Each pose alone: nothing
         // between them, so that the truth is a maximum over the poses.
@@ -246,9 +246,9 @@ TEST(Sweeper, everyNodeIsWhatItIsAlone) {
             if (sweeper.hasPose() && (pose.positionMm - sweeper.pose().positionMm).norm() > 0.005) sweeper.settle();
             ASSERT_EQ(sweeper.sweepTo(pose).poses, 1u) << name;
         }
-        const field::FieldView view = field.field().view(), before = base->tooth->field.view();
+        const field::FieldView view = field.field().view(), before = base->field.view();
         const double band = base->settings.bandMm, bandOut = base->bandOutMm;
-        std::array<float, kBrickValues> whole;
+        std::array<float, kBrickValues> uncut;
         double worst = 0.0;
         std::size_t changed = 0;
         std::int32_t dense = -1;
@@ -257,18 +257,18 @@ TEST(Sweeper, everyNodeIsWhatItIsAlone) {
                 for (std::int32_t bx = 0; bx < view.bricks[0]; ++bx) {
                     ++dense;
                     if (before.brickIndex[dense] < 0 && before.coarse[dense] >= 0.0f) continue;  // outside
-                    base->wholeBrick(static_cast<std::uint32_t>(dense), whole.data());
+                    base->uncutBrick(static_cast<std::uint32_t>(dense), uncut.data());
                     // Not stored yet: then nothing may have risen in it.
                     const float* values =
                         view.brickIndex[dense] < 0
-                            ? whole.data()
+                            ? uncut.data()
                             : view.values + static_cast<std::size_t>(view.brickIndex[dense]) * kBrickValues;
                     for (int i = 0; i < kBrickValues; ++i) {
                         const Vec3 p(
                             view.originMm[0] + view.voxelMm * (kBrickCells * bx + i % kBrickNodes),
                             view.originMm[1] + view.voxelMm * (kBrickCells * by + i / kBrickNodes % kBrickNodes),
                             view.originMm[2] + view.voxelMm * (kBrickCells * bz + i / (kBrickNodes * kBrickNodes)));
-                        const auto was = static_cast<double>(whole[static_cast<std::size_t>(i)]);
+                        const auto was = static_cast<double>(uncut[static_cast<std::size_t>(i)]);
                         double expected = was;
                         for (const Pose& pose : poses)
                             expected = std::max(expected,
@@ -292,7 +292,7 @@ TEST(Sweeper, nodesThatBricksShareAreEqualToTheBitAtEveryInstructionSet) {
         tooth::TissueVolumes removed{};
         for (const core::SimdLevel level : {core::SimdLevel::base, core::SimdLevel::avx2, core::SimdLevel::avx512}) {
             if (level > core::simdLevel()) continue;
-            tooth::CutField field(base);
+            tooth::ToothState field(base);
             Sweeper sweeper(field, bur, level);
             for (const Pose& pose : poses)
                 sweeper.sweepTo(pose);
@@ -341,14 +341,13 @@ TEST(Sweeper, nodesThatBricksShareAreEqualToTheBitAtEveryInstructionSet) {
 TEST(Sweeper, whatIsCountedIsWhatTheFieldLostTissueByTissue) {
     std::mt19937_64 g(test::seed());
     const core::Box box{Vec3(-1.5, -1.5, -1.6), Vec3(1.5, 1.5, 0)};
-    const auto whole = test::phantom(box, 0.05, test::boxDistance(box));
+    const auto uncut = test::phantom(box, 0.05, test::boxDistance(box));
     const field::TissueMap::PartFunction parts[] = {
         {[](const Vec3& p) { return (p - Vec3(0.2, 0.1, -0.3)).norm() - 0.6; }, Tissue::caries, 2},
         {[](const Vec3& p) { return p.z() + 0.5 + 0.2 * p.x(); }, Tissue::dentine, 1}};
-    const auto base =
-        tooth::prepareCutting(whole, field::TissueMap::fromFunctions(whole->field, parts, Tissue::enamel));
+    const auto base = tooth::withTissues(*uncut, field::TissueMap::fromFunctions(uncut->field, parts, Tissue::enamel));
     for (const char* name : {"cylinder-round:1.0x4.0", "inverted-cone:1.2x1.0"}) {
-        tooth::CutField field(base);
+        tooth::ToothState field(base);
         Sweeper sweeper(field, burOf(name), core::simdLevel());
         tooth::TissueVolumes told{};
         std::vector<Pose> poses = walk(g, 200);
@@ -376,7 +375,7 @@ TEST(Sweeper, aMetreASecondIsTheSameAsASlowHand) {
         const instrument::Bur bur = burOf(name);
         const Pose from = poseAt(Vec3(-1.5, -0.3, -0.2)),
                    to = poseAt(Vec3(1.5, 0.3, -0.9), core::Quat(Eigen::AngleAxisd(0.35, Vec3(0.3, 1, 0).normalized())));
-        tooth::CutField fast(base), slow(base);
+        tooth::ToothState fast(base), slow(base);
         Sweeper a(fast, bur, core::simdLevel()), b(slow, bur, core::simdLevel());
         sweepAlong(a, from, to, 1.05);
         sweepAlong(b, from, to, 0.002);
@@ -415,7 +414,7 @@ TEST(Sweeper, alongItsAxisAStraightSideIsCutAtOnce) {
     for (const Way& way : {Way{"cylinder-flat:1.0x4.0", -0.2, -1.2, 2}, Way{"cylinder-flat:1.0x4.0", -1.2, -0.7, 1},
                            Way{"wheel:2.0x0.8", 0.3, -1.3, 8}}) {
         const instrument::Bur bur = burOf(way.bur);
-        tooth::CutField once(base), slow(base);
+        tooth::ToothState once(base), slow(base);
         Sweeper a(once, bur, core::simdLevel()), b(slow, bur, core::simdLevel());
         const Pose from = poseAt(Vec3(0.01, 0.02, way.fromZ)), to = poseAt(Vec3(0.01, 0.02, way.toZ));
         a.sweepTo(from);
@@ -434,7 +433,7 @@ TEST(Sweeper, hardlyAnyDepthIsLeftWhereTheBurHasBeen) {
     for (const char* name : {"round:1.4x1.4", "cylinder-round:1.0x4.0", "pear:0.8x1.5", "cylinder-flat:1.0x4.0",
                              "wheel:2.0x0.8", "inverted-cone:1.2x1.0"}) {
         const instrument::Bur bur = burOf(name);
-        tooth::CutField field(base);
+        tooth::ToothState field(base);
         Sweeper sweeper(field, bur, core::simdLevel());
         const core::Quat tilt(Eigen::AngleAxisd(0.26, Vec3(1, 0.3, 0).normalized()));
         double clear = 0.0, rim = 0.0;
@@ -469,7 +468,7 @@ TEST(Sweeper, hardlyAnyDepthIsLeftWhereTheBurHasBeen) {
 TEST(Sweeper, theInsideOfACutIsAsDeepAsTheCutSolid) {
     const auto base = test::enamelBlock(Vec3(-1.6, -1.6, -2.2), Vec3(1.6, 1.6, 0), kVoxel);
     const instrument::Bur bur = burOf("round:1.4x1.4");
-    tooth::CutField field(base);
+    tooth::ToothState field(base);
     Sweeper sweeper(field, bur, core::simdLevel());
     const double depth = 1.2, radius = 0.7;
     sweepAlong(sweeper, poseAt(Vec3(0, 0, 0.3)), poseAt(Vec3(0, 0, -depth)), 0.005);
@@ -501,7 +500,7 @@ TEST(Sweeper, theInsideOfACutIsAsDeepAsTheCutSolid) {
 
 TEST(Sweeper, takesNoMemoryInTheTick) {
     if (!test::RealtimeTrap::isActive()) GTEST_SKIP() << "the sanitizers own malloc";
-    tooth::CutField field(test::enamelBlock(Vec3(-1.5, -1.5, -1.6), Vec3(1.5, 1.5, 0), kVoxel));
+    tooth::ToothState field(test::enamelBlock(Vec3(-1.5, -1.5, -1.6), Vec3(1.5, 1.5, 0), kVoxel));
     Sweeper sweeper(field, burOf("cylinder-flat:1.0x4.0"), core::simdLevel());
     std::mt19937_64 g(test::seed());
     const std::vector<Pose> poses = walk(g, 50);

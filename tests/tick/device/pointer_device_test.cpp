@@ -9,7 +9,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/instrument/shapes.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/replay_device.h"
 #include "handpiece/tick/loop/loop_run.h"
@@ -358,30 +358,30 @@ class PointerAtATooth : public testing::Test {
         cases::Case made;
         made.name = "block";
         made.outer = test::boxMesh(Vec3(-3, -3, -3), Vec3(3, 3, 0));
-        tooth::PrepareSettings settings;
+        tooth::LoadSettings settings;
         settings.useCache = false;
-        auto whole = tooth::prepareTooth(made, settings);
+        auto uncut = tooth::loadModel(made, settings);
         const field::TissueMap::PartFunction dentine{[](const Vec3& p) { return p.z() + 1.2; }, Tissue::dentine, 20};
         field::TissueMap tissues =
-            field::TissueMap::fromFunctions(whole->field, std::span(&dentine, 1), Tissue::enamel);
-        base_ = tooth::prepareCutting(std::move(whole), std::move(tissues));
+            field::TissueMap::fromFunctions(uncut->field, std::span(&dentine, 1), Tissue::enamel);
+        base_ = tooth::withTissues(*uncut, std::move(tissues));
     }
     static void TearDownTestSuite() { base_.reset(); }
 
     struct Scene {
-        std::shared_ptr<tooth::CutField> field;
+        std::shared_ptr<tooth::ToothState> field;
         std::shared_ptr<PointerMailbox> mailbox;
         std::unique_ptr<loop::HapticLoop> loop;
     };
-    static loop::Work work(const std::shared_ptr<tooth::CutField>& field) {
+    static loop::Work work(const std::shared_ptr<tooth::ToothState>& field) {
         const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur("cylinder-round:1.0x4.0"));
-        return {contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
+        return {contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(field), bur),
                 std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{}, cases::builtInTissues(),
                                                   cutting::Cutter::Settings{})};
     }
     static Scene scene(double rateHz, const Vec3& start = Vec3(0, 0, 0.5)) {
         Scene s;
-        s.field = std::make_shared<tooth::CutField>(base_);
+        s.field = std::make_shared<tooth::ToothState>(base_);
         s.mailbox = std::make_shared<PointerMailbox>();
         loop::LoopSettings settings;
         settings.rateHz = rateHz;
@@ -404,7 +404,7 @@ class PointerAtATooth : public testing::Test {
         }
     }
 
-    static inline std::shared_ptr<const tooth::CuttableTooth> base_;
+    static inline std::shared_ptr<const tooth::ToothModel> base_;
 };
 
 TEST_F(PointerAtATooth, aLoadOnEnamelIsFeltAsThatLoadAtEveryRate) {
@@ -515,7 +515,7 @@ TEST_F(PointerAtATooth, aReplayOfItsReadingsGivesTheSameTicks) {
         r.pedal = h.pedal;
         readings.push_back(r);
     }
-    const auto field = std::make_shared<tooth::CutField>(base_);
+    const auto field = std::make_shared<tooth::ToothState>(base_);
     loop::HapticLoop again({}, std::make_unique<ReplayDevice>(s.loop->device().capability(), readings), work(field),
                            force::defaultParameters());
     std::size_t i = 0, differing = 0;

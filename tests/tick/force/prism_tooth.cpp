@@ -40,8 +40,8 @@ std::vector<geometry::Triangle> triangulate(const std::vector<Vec2>& p) {
 
 }  // namespace
 
-std::shared_ptr<const tooth::Tooth> prismTooth(const std::vector<Vec2>& corners, double halfLengthMm, double voxelMm,
-                                               const core::Quat& turn) {
+std::shared_ptr<const tooth::ToothModel> prismTooth(const std::vector<Vec2>& corners, double halfLengthMm,
+                                                    double voxelMm, const core::Quat& turn) {
     geometry::TriangleMesh mesh;
     const auto n = static_cast<std::uint32_t>(corners.size());
     for (const double y : {-halfLengthMm, halfLengthMm}) {
@@ -63,8 +63,8 @@ std::shared_ptr<const tooth::Tooth> prismTooth(const std::vector<Vec2>& corners,
     settings.voxelMm = voxelMm;
     field::DistanceField field = field::DistanceField::fromFunction(
         mesh.bounds().grown(0.5), settings, [&](const Vec3& p) { return tree.signedDistance(p); });
-    return std::make_shared<const tooth::Tooth>(
-        tooth::Tooth{"prism", std::move(mesh), tree, std::move(field), false, 0.0});
+    return std::make_shared<const tooth::ToothModel>(
+        tooth::ToothModel{"prism", std::move(mesh), tree, std::move(field)});
 }
 
 }  // namespace handpiece::test

@@ -6,15 +6,15 @@
 #include <memory>
 #include <vector>
 
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/tooth/tooth_model.h"
 
 namespace handpiece::test {
 
 /// Corners counter-clockwise with x to the right and z up; the solid reaches from -halfLength to halfLength in y, then
 /// turned by `turn` about the origin. Its field holds exact distances to its triangles.
-[[nodiscard]] std::shared_ptr<const tooth::Tooth> prismTooth(const std::vector<core::Vec2>& corners,
-                                                             double halfLengthMm, double voxelMm,
-                                                             const core::Quat& turn = core::Quat::Identity());
+[[nodiscard]] std::shared_ptr<const tooth::ToothModel> prismTooth(const std::vector<core::Vec2>& corners,
+                                                                  double halfLengthMm, double voxelMm,
+                                                                  const core::Quat& turn = core::Quat::Identity());
 
 [[nodiscard]] inline std::vector<core::Vec2> slotOutline() {  // 0.7 mm wide, 1.2 deep, top at z = 0
     return {{-1.6, -1.8}, {1.6, -1.8}, {1.6, 0}, {0.35, 0}, {0.35, -1.2}, {-0.35, -1.2}, {-0.35, 0}, {-1.6, 0}};

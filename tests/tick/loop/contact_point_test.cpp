@@ -24,9 +24,9 @@ std::unique_ptr<contact::Method> methodOf(const geometry::TriangleMesh& mesh, co
     made.name = "made";
     made.outer = mesh;
     made.parts.push_back({"enamel", cases::Tissue::enamel, 0, mesh});
-    tooth::PrepareSettings settings;
+    tooth::LoadSettings settings;
     settings.useCache = false;
-    return contact::makeFieldMethod(tooth::prepareTooth(made, settings),
+    return contact::makeFieldMethod(tooth::loadModel(made, settings),
                                     std::make_shared<const instrument::Bur>(instrument::makeBur(bur)));
 }
 

@@ -7,7 +7,8 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/instrument/shapes.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
+#include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
 #include "handpiece/tick/loop/loop_run.h"
@@ -25,17 +26,17 @@ using messages::HapticSample;
 
 constexpr double kEdge = 4.0;  // of the block; its top is at z = 0
 
-std::shared_ptr<const tooth::CuttableTooth> block(const std::vector<field::TissueMap::PartFunction>& parts,
-                                                  double voxelMm = 0.05) {
+std::shared_ptr<const tooth::ToothModel> block(const std::vector<field::TissueMap::PartFunction>& parts,
+                                               double voxelMm = 0.05) {
     cases::Case made;
     made.name = "block";
     made.outer = test::boxMesh(Vec3(-kEdge / 2, -kEdge / 2, -kEdge / 2), Vec3(kEdge / 2, kEdge / 2, 0.0));
-    tooth::PrepareSettings settings;
+    tooth::LoadSettings settings;
     settings.useCache = false;
     settings.field.voxelMm = voxelMm;
-    auto whole = tooth::prepareTooth(made, settings);
-    field::TissueMap tissues = field::TissueMap::fromFunctions(whole->field, parts, Tissue::enamel);
-    return tooth::prepareCutting(std::move(whole), std::move(tissues));
+    auto uncut = tooth::loadModel(made, settings);
+    field::TissueMap tissues = field::TissueMap::fromFunctions(uncut->field, parts, Tissue::enamel);
+    return tooth::withTissues(*uncut, std::move(tissues));
 }
 
 Pose at(double x, double y, double z) {
@@ -43,13 +44,13 @@ Pose at(double x, double y, double z) {
 }
 
 struct Bench {
-    explicit Bench(std::shared_ptr<const tooth::CuttableTooth> base, const char* burName = "cylinder-flat:1.0x3.0",
+    explicit Bench(std::shared_ptr<const tooth::ToothModel> base, const char* burName = "cylinder-flat:1.0x3.0",
                    bool fullRemoval = false)
-        : field(std::make_shared<tooth::CutField>(std::move(base))), full(fullRemoval) {
+        : field(std::make_shared<tooth::ToothState>(std::move(base))), full(fullRemoval) {
         bur = std::make_shared<const instrument::Bur>(instrument::makeBur(burName));
     }
     [[nodiscard]] Work work() const {
-        return {contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
+        return {contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(field), bur),
                 std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{}, cases::builtInTissues(),
                                                   cutting::Cutter::Settings{full})};
     }
@@ -63,7 +64,7 @@ struct Bench {
             loopSettings, std::make_unique<device::SimulatedDevice>(settings, device::Motion(std::move(poses))), work(),
             force::defaultParameters(), drive);
     }
-    std::shared_ptr<tooth::CutField> field;
+    std::shared_ptr<tooth::ToothState> field;
     std::shared_ptr<const instrument::Bur> bur;
     bool full;
 };
@@ -180,8 +181,8 @@ TEST(CuttingLoop, aboveTwoKilohertzTheCutTakesItsTurn) {
 
 TEST(CuttingLoop, undoPutsTheToothBackAndNoForceRoundTheBur) {
     const Bench bench(block({}));
-    const tooth::StateDelta whole = bench.field->state();
-    const std::uint64_t wholeHash = bench.field->stateHash();
+    const tooth::StateDelta uncut = bench.field->state();
+    const std::uint64_t uncutHash = bench.field->stateHash();
     // In, cut, and stay in the hole with the pedal up while the hole is filled again.
     const std::vector<device::TimedPose> poses{{0.0, at(0, 0, 0.2), 1.0},    {0.8, at(0, 0, 0.2), 1.0},
                                                {1.6, at(0, 0, -1.0), 1.0},   {6.0, at(0, 0, -1.0), 1.0},
@@ -192,10 +193,10 @@ TEST(CuttingLoop, undoPutsTheToothBackAndNoForceRoundTheBur) {
     (void)runSimulated(*loop, 6.5);
     const tooth::StateDelta cut = bench.field->state();
     ASSERT_FALSE(cut.bricks.empty());
-    EXPECT_NE(bench.field->stateHash(), wholeHash);
+    EXPECT_NE(bench.field->stateHash(), uncutHash);
     tooth::StateDelta change;
     for (tooth::StateDelta::Brick brick : cut.bricks) {
-        brick.whole = true;
+        brick.uncut = true;
         change.bricks.push_back(brick);
     }
     const std::uint64_t number = loop->restore(std::move(change));
@@ -218,8 +219,8 @@ TEST(CuttingLoop, undoPutsTheToothBackAndNoForceRoundTheBur) {
     EXPECT_EQ(worstWaiting, 0.0);
     EXPECT_TRUE(felt);
     EXPECT_NEAR(last, 0.5 * 0.6, 0.01);  // the whole surface, felt again
-    EXPECT_EQ(bench.field->stateHash(), wholeHash);
-    EXPECT_EQ(bench.field->removedMm3(), whole.removedMm3);
+    EXPECT_EQ(bench.field->stateHash(), uncutHash);
+    EXPECT_EQ(bench.field->removedMm3(), uncut.removedMm3);
 }
 
 TEST(CuttingLoop, theForceIsSmoothWhileCutting) {
@@ -350,7 +351,7 @@ TEST(CuttingLoop, sameInputsSameTooth) {
         const Bench bench(base, "330");
         const auto poses = plungeTo(0.8, 1.0, 1.0, 0.013);
         auto loop = bench.loop(poses, false);
-        tooth::CutMirror mirror(base);
+        tooth::ToothMirror mirror(base);
         HapticSample last;
         (void)runSimulated(
             *loop, seconds(poses), [&](const HapticSample& s) { last = s; },

@@ -23,13 +23,13 @@ struct Plunge {
 };
 
 /// Straight down at `speed` mm/s for 7 mm of a bur 1 mm wide; means over the last 0.4 mm of the hand's way.
-Plunge plunge(const std::shared_ptr<const tooth::CuttableTooth>& base, double speed, const char* burName,
+Plunge plunge(const std::shared_ptr<const tooth::ToothModel>& base, double speed, const char* burName,
               double loadCapN) {
-    const auto field = std::make_shared<tooth::CutField>(base);
+    const auto field = std::make_shared<tooth::ToothState>(base);
     const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur(burName));
     instrument::CuttingParameters cuttingParameters;
     cuttingParameters.loadCapN = loadCapN;
-    Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
+    Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(field), bur),
               std::make_unique<cutting::Cutter>(field, bur, cuttingParameters, cases::builtInTissues(),
                                                 cutting::Cutter::Settings{})};
     device::SimulatedDeviceSettings rigid;
@@ -60,13 +60,13 @@ TEST(CuttingTissue, enamelResistsDentineLessAndDecayGivesWay) {
     cases::Case made;
     made.name = "block";
     made.outer = test::boxMesh(Vec3(-1.2, -1.2, -8.0), Vec3(1.2, 1.2, 0.0));
-    tooth::PrepareSettings settings;
+    tooth::LoadSettings settings;
     settings.useCache = false;
-    const auto whole = tooth::prepareTooth(made, settings);
+    const auto uncut = tooth::loadModel(made, settings);
     constexpr std::array tissues{Tissue::enamel, Tissue::dentine, Tissue::caries};
-    std::array<std::shared_ptr<const tooth::CuttableTooth>, 3> blocks;
+    std::array<std::shared_ptr<const tooth::ToothModel>, 3> blocks;
     for (std::size_t i = 0; i < tissues.size(); ++i)
-        blocks[i] = tooth::prepareCutting(whole, field::TissueMap::uniform(whole->field, tissues[i]));
+        blocks[i] = tooth::withTissues(*uncut, field::TissueMap::uniform(uncut->field, tissues[i]));
     for (const char* bur : {"round:1.0x1.0", "cylinder-round:1.0x4.0"})
         for (const double cap : {1.5, 3.0}) {
             std::array<Plunge, 3> fast;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "handpiece/model/instrument/shapes.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/device/simulated_device.h"
 #include "handpiece/tick/loop/loop_run.h"
@@ -20,17 +20,17 @@ using core::Quat;
 using core::Vec3;
 using messages::HapticSample;
 
-std::shared_ptr<const tooth::CuttableTooth> block() {
+std::shared_ptr<const tooth::ToothModel> block() {
     cases::Case made;
     made.name = "block";
     made.outer = test::boxMesh(Vec3(-1.5, -1.5, -1.5), Vec3(1.5, 1.5, 0.0));
-    tooth::PrepareSettings settings;
+    tooth::LoadSettings settings;
     settings.useCache = false;
-    auto whole = tooth::prepareTooth(made, settings);
+    auto uncut = tooth::loadModel(made, settings);
     const std::vector<field::TissueMap::PartFunction> parts{
         {[](const Vec3& p) { return p.z() + 0.2; }, cases::Tissue::dentine, 20}};
-    auto tissues = field::TissueMap::fromFunctions(whole->field, parts, cases::Tissue::enamel);
-    return tooth::prepareCutting(std::move(whole), std::move(tissues));
+    auto tissues = field::TissueMap::fromFunctions(uncut->field, parts, cases::Tissue::enamel);
+    return tooth::withTissues(*uncut, std::move(tissues));
 }
 
 force::Parameters parameters(bool crisp) {
@@ -41,8 +41,8 @@ force::Parameters parameters(bool crisp) {
 
 /// A hand that nothing moves strikes the block, cuts into it for a second and goes.
 struct Bench {
-    Bench(std::shared_ptr<const tooth::CuttableTooth> base, bool crisp, double rateHz)
-        : field(std::make_shared<tooth::CutField>(std::move(base))) {
+    Bench(std::shared_ptr<const tooth::ToothModel> base, bool crisp, double rateHz)
+        : field(std::make_shared<tooth::ToothState>(std::move(base))) {
         const auto at = [](double z) { return Pose{Vec3(0, 0, z), Quat::Identity()}; };
         const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur("cylinder-round:1.0x3.0"));
         device::SimulatedDeviceSettings hand;
@@ -51,14 +51,14 @@ struct Bench {
         settings.rateHz = rateHz;
         std::vector<device::TimedPose> motion{{0.0, at(0.5), 1.0},  {0.5, at(0.5), 1.0}, {0.52, at(-0.5), 1.0},
                                               {1.2, at(-1.0), 1.0}, {1.3, at(1.0), 0.0}, {1.4, at(1.0), 0.0}};
-        Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), bur),
+        Work work{contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(field), bur),
                   std::make_unique<cutting::Cutter>(field, bur, instrument::CuttingParameters{},
                                                     cases::builtInTissues(), cutting::Cutter::Settings{})};
         loop = std::make_unique<HapticLoop>(
             settings, std::make_unique<device::SimulatedDevice>(hand, device::Motion(std::move(motion))),
             std::move(work), parameters(crisp));
     }
-    std::shared_ptr<tooth::CutField> field;
+    std::shared_ptr<tooth::ToothState> field;
     std::unique_ptr<HapticLoop> loop;
 };
 

@@ -27,9 +27,9 @@ class ToothLoop : public testing::Test {
         molar.name = "molar";
         molar.outer = starter::makeOuter(starter::ToothKind::lowerFirstMolar, 10000);
         molar.parts.push_back({"enamel", cases::Tissue::enamel, 0, molar.outer});
-        tooth::PrepareSettings settings;
+        tooth::LoadSettings settings;
         settings.useCache = false;
-        tooth_ = tooth::prepareTooth(molar, settings);
+        tooth_ = tooth::loadModel(molar, settings);
     }
     static void TearDownTestSuite() { tooth_.reset(); }
 
@@ -49,7 +49,7 @@ class ToothLoop : public testing::Test {
                                             std::move(contact), force::defaultParameters());
     }
 
-    static inline std::shared_ptr<const tooth::Tooth> tooth_;
+    static inline std::shared_ptr<const tooth::ToothModel> tooth_;
     static inline double durationS_ = 0.0;
 };
 

@@ -196,7 +196,7 @@ void MeasureFeature::showLegend() {
 }
 
 core::Box MeasureFeature::toothBounds() const {
-    return simulator_.tooth() ? simulator_.tooth()->base().tooth->outer.bounds()
+    return simulator_.tooth() ? simulator_.tooth()->model().outer.bounds()
                               : core::Box{core::Vec3::Constant(-10.0), core::Vec3::Constant(10.0)};
 }
 

@@ -556,7 +556,7 @@ const device::PointerTarget& PointerController::target() const noexcept {
     return state_->target;
 }
 
-PointerController::Feel feelUncut(std::shared_ptr<const tooth::Tooth> tooth,
+PointerController::Feel feelUncut(std::shared_ptr<const tooth::ToothModel> tooth,
                                   std::shared_ptr<const instrument::Bur> bur) {
     if (tooth == nullptr || bur == nullptr) return {};
     const std::shared_ptr<contact::Method> method = contact::makeFieldMethod(std::move(tooth), std::move(bur));

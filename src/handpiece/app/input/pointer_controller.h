@@ -23,7 +23,7 @@
 
 #include "handpiece/base/messages/haptic_sample.h"
 #include "handpiece/model/instrument/bur.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "handpiece/senses/measure/tooth_probe.h"
 #include "handpiece/senses/view/camera.h"
 #include "handpiece/tick/contact/method.h"
@@ -109,7 +109,7 @@ class PointerController {
 };
 
 /// What PointerController feels of a tooth with a bur. One thread.
-[[nodiscard]] PointerController::Feel feelUncut(std::shared_ptr<const tooth::Tooth> tooth,
+[[nodiscard]] PointerController::Feel feelUncut(std::shared_ptr<const tooth::ToothModel> tooth,
                                                 std::shared_ptr<const instrument::Bur> bur);
 
 }  // namespace handpiece::input

@@ -56,11 +56,11 @@ Deepest deepestOf(const std::vector<surface::BrickUpdate>& updates) {
 class Artist {
   public:
     Artist(const simulation::SessionPlayer& player, const ReportSettings& settings)
-        : bounds_(player.station().tooth->tooth->outer.bounds()),
+        : bounds_(player.station().tooth->outer.bounds()),
           buccal_(player.toothCase().buccalSign),
           viewport_{settings.pictureWidth, settings.pictureHeight} {
         renderer_.setTooth(bounds_);
-        renderer_.updateBricks(player.tooth()->wholeSurface(), true);
+        renderer_.updateBricks(player.tooth()->uncutSurface(), true);
         look_.quality = view::Quality::fine;
         look_.palette = view::Palette::textbook;
         look_.bur = look_.turbine = look_.debris = look_.spray = false;
@@ -137,11 +137,11 @@ void addPictures(HtmlReport& page, const simulation::SessionPlayer& player, cons
 }
 
 void addVolumes(HtmlReport& page, const simulation::SessionPlayer& player, const SessionFigures& figures) {
-    const tooth::TissueVolumes& whole = player.station().tooth->volumesMm3;
+    const tooth::TissueVolumes& uncut = player.station().tooth->volumesMm3;
     std::vector<std::vector<std::string>> rows;
     for (const cases::Tissue tissue : player.station().tooth->tissues.tissues()) {
         const auto t = static_cast<std::size_t>(tissue);
-        const double before = whole[t], gone = figures.removedMm3[t];
+        const double before = uncut[t], gone = figures.removedMm3[t];
         rows.push_back({nameOf(tissue), fmt::format("{:.2f}", before), fmt::format("{:.3f}", gone),
                         fmt::format("{:.2f}", before - gone),
                         fmt::format("{:.1f}", before > 0.0 ? 100.0 * gone / before : 0.0)});

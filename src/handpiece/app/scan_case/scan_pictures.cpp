@@ -159,9 +159,9 @@ class Artist {
             simulation::makeSimulation(toothCase, std::move(settings), false, core::part(progress, 0.0, 0.6));
         live_ =
             std::make_unique<simulation::LiveTooth>(station.tooth, tooth::StateDelta{}, core::part(progress, 0.6, 0.8));
-        bounds_ = station.tooth->tooth->outer.bounds();
+        bounds_ = station.tooth->outer.bounds();
         renderer_.setTooth(bounds_);
-        renderer_.updateBricks(live_->wholeSurface(), true);
+        renderer_.updateBricks(live_->uncutSurface(), true);
         renderer_.setParts(toothCase.parts);
         renderer_.setScenery(toothCase.scenery);
         look_.quality = view::Quality::fine;

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "handpiece/base/core/error.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 
 namespace handpiece::simulation {
 namespace {
@@ -39,7 +39,7 @@ CutSession::CutSession(const SimulationSetup& station, session::Recorder* record
         history_.start(state);
     removedMm3_ = state.removedMm3;
     if (recorder_ != nullptr && station.settings.resumed)
-        recorder_->keyFrame(0, tooth::encodeState(state, station_.identity));
+        recorder_->keyFrame(0, tooth::encodeState(state, station_.tooth->identity));
 }
 
 void CutSession::tell(std::uint64_t tick, EventName name, std::string_view text) {
@@ -100,7 +100,7 @@ void CutSession::keepKeyFrame(const messages::HapticSample& sample) {
     if (recorder_ == nullptr) return;
     if (keyFrameBytes_ > kKeyFrameFirstBytes + kKeyFrameBytesPerS * sample.timeS) return;
     lastKeyFrameS_ = sample.timeS;
-    std::vector<std::byte> bytes = tooth::encodeState(mirror_.state(sample.removedMm3), station_.identity);
+    std::vector<std::byte> bytes = tooth::encodeState(mirror_.state(sample.removedMm3), station_.tooth->identity);
     keyFrameBytes_ += static_cast<double>(bytes.size());
     recorder_->keyFrame(sample.tick, std::move(bytes));
 }
@@ -125,7 +125,7 @@ bool CutSession::takeAgain(Step step, loop::HapticLoop& loop) {
 
 void CutSession::finish(const tooth::StateDelta& state, std::uint64_t tick) {
     if (recorder_ == nullptr) return;
-    recorder_->keyFrame(tick, tooth::encodeState(state, station_.identity));
+    recorder_->keyFrame(tick, tooth::encodeState(state, station_.tooth->identity));
     recorder_->event(tick, EventName::end,
                      fmt::format("{{\"state_hash\": \"{}\"}}", hashText(tooth::stateHash(state))));
 }

@@ -62,7 +62,7 @@ class CutSession {
     const SimulationSetup& station_;
     session::Recorder* recorder_;
     bool mayWait_;
-    tooth::CutMirror mirror_;
+    tooth::ToothMirror mirror_;
     history::MirrorSource source_;
     history::History history_;
     session::EventWatch watch_;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "handpiece/base/core/error.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "handpiece/record/session/layout.h"
 
 namespace handpiece::simulation {
@@ -53,7 +53,7 @@ KeptHistory keepHistory(const history::History& history, const tooth::StateDelta
     std::vector<std::vector<std::byte>> steps;
     std::size_t size = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        steps.push_back(tooth::encodeState(history.step(i), station.identity));
+        steps.push_back(tooth::encodeState(history.step(i), station.tooth->identity));
         size += steps.back().size() + 8;
     }
     constexpr std::size_t kRoom = session::kMaxHistoryBytes - 64;
@@ -91,8 +91,7 @@ history::History decodeHistory(std::span<const std::byte> bytes, const tooth::St
     history::History history;
     history.start(now);
     for (std::uint64_t i = 0; i < count; ++i)
-        history.append(tooth::decodeState(reader.take(reader.number()), station.identity, *station.tooth, where),
-                       i < done);
+        history.append(tooth::decodeState(reader.take(reader.number()), *station.tooth, where), i < done);
     if (!reader.isAtEnd()) reader.refuse();
     return history;
 }

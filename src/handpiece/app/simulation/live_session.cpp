@@ -19,7 +19,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/rt/clock.h"
 #include "handpiece/model/case/case_bytes.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 
 namespace handpiece::simulation {
 namespace {
@@ -526,7 +526,7 @@ cases::Attempt LiveSession::attempt(const std::filesystem::path& caseFile) const
     attempt.caseFile = core::wholePath(caseFile);
     attempt.caseKey = state_->caseKey;
     attempt.caseName = state_->caseName;
-    attempt.state = tooth::encodeState(now, state_->station.identity);
+    attempt.state = tooth::encodeState(now, state_->station.tooth->identity);
     attempt.voxelMm = chosen.field.voxelMm;
     attempt.removedMm3 = now.removedMm3;
     attempt.bur = chosen.bur->name();

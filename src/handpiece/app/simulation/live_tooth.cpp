@@ -17,21 +17,21 @@ constexpr std::uint32_t kNoNews = 0xffffffffu;
 }  // namespace
 
 struct LiveTooth::Parts {
-    explicit Parts(const std::shared_ptr<const tooth::CuttableTooth>& base)
-        : mirror(base),
+    explicit Parts(const std::shared_ptr<const tooth::ToothModel>& model)
+        : mirror(model),
           source(mirror),
-          fine(source, &base->tissues),
-          coarse(source, &base->tissues),
+          fine(source, &model->tissues),
+          coarse(source, &model->tissues),
           newsAt(source.grid().count(), kNoNews),
           pendingAt(source.grid().count(), kNoNews) {}
 
-    tooth::CutMirror mirror;
+    tooth::ToothMirror mirror;
     surface::MirrorSource source;
     // The feeder's alone.
     surface::Surface fine, coarse;
     std::vector<tooth::BrickSnapshot> pending;  ///< heard, not yet in the mirror; the latest of each brick
     // Under the mutex, as writing the mirror is.
-    std::vector<surface::BrickUpdate> whole;
+    std::vector<surface::BrickUpdate> uncut;
     std::vector<surface::BrickUpdate> news;
     std::vector<std::uint32_t> newsAt;                   ///< by dense brick: where in `news`
     std::vector<std::uint32_t> pendingAt;                ///< by dense brick: where in `pending`; the feeder's
@@ -56,14 +56,14 @@ struct LiveTooth::Parts {
     }
 };
 
-LiveTooth::LiveTooth(std::shared_ptr<const tooth::CuttableTooth> base, const tooth::StateDelta& state,
+LiveTooth::LiveTooth(std::shared_ptr<const tooth::ToothModel> model, const tooth::StateDelta& state,
                      const core::Progress& progress)
-    : base_(std::move(base)), parts_(std::make_unique<Parts>(base_)) {
+    : model_(std::move(model)), parts_(std::make_unique<Parts>(model_)) {
     Parts& p = *parts_;
     probe_ = std::make_unique<measure::ToothProbe>(p.mirror);
     // The probe makes the pulp's surface when it is first asked for, a tenth of a second: not under somebody's hands.
     const std::future<void> warmed =
-        std::async(std::launch::async, [this] { (void)probe_->leftOverPulpMm(base_->tooth->outer.bounds().centre()); });
+        std::async(std::launch::async, [this] { (void)probe_->leftOverPulpMm(model_->outer.bounds().centre()); });
     const auto count = static_cast<std::uint32_t>(p.source.grid().count());
     for (std::uint32_t dense = 0; dense < count; ++dense)
         p.coarse.setLevel(dense, kCoarseLevel);
@@ -71,7 +71,7 @@ LiveTooth::LiveTooth(std::shared_ptr<const tooth::CuttableTooth> base, const too
     p.coarse.build(core::part(progress, 0.6, 0.9));
     for (std::uint32_t dense = 0; dense < count; ++dense) {
         surface::BrickUpdate update = p.updateOf(dense);
-        if (update.mesh != nullptr || update.coarse != nullptr) p.whole.push_back(std::move(update));
+        if (update.mesh != nullptr || update.coarse != nullptr) p.uncut.push_back(std::move(update));
     }
     warmed.wait();
     if (!state.bricks.empty()) {
@@ -168,12 +168,12 @@ bool LiveTooth::isNearCut(std::uint32_t dense) const {
     return false;
 }
 
-std::vector<surface::BrickUpdate> LiveTooth::wholeSurface() {
+std::vector<surface::BrickUpdate> LiveTooth::uncutSurface() {
     const std::lock_guard lock(mutex_);
     for (const auto& [dense, update] : parts_->told)
         parts_->add(update);
     hasNews_.store(!parts_->news.empty(), std::memory_order_release);
-    return parts_->whole;
+    return parts_->uncut;
 }
 
 std::vector<surface::BrickUpdate> LiveTooth::takeNews() {

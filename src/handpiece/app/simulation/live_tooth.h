@@ -8,7 +8,7 @@
 #include <mutex>
 #include <vector>
 
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "handpiece/senses/measure/tooth_probe.h"
 #include "handpiece/senses/surface/brick_update.h"
 #include "handpiece/senses/surface/surface.h"
@@ -20,12 +20,13 @@ namespace handpiece::simulation {
 /// entry a brick, whoever reads them or not.
 class LiveTooth {
   public:
-    /// Builds the surface of the whole tooth, then puts `state` in place. Throws core::Error when cancelled.
-    LiveTooth(std::shared_ptr<const tooth::CuttableTooth> base, const tooth::StateDelta& state,
+    /// Builds the surface of the uncut tooth, then puts `state` in place. Throws core::Error when cancelled.
+    LiveTooth(std::shared_ptr<const tooth::ToothModel> model, const tooth::StateDelta& state,
               const core::Progress& progress = {});
     ~LiveTooth();
 
-    [[nodiscard]] const tooth::CuttableTooth& base() const noexcept { return *base_; }
+    [[nodiscard]] const tooth::ToothModel& model() const noexcept { return *model_; }
+    [[nodiscard]] const std::shared_ptr<const tooth::ToothModel>& modelShared() const noexcept { return model_; }
 
     // The feeder.
     void hear(const tooth::BrickSnapshot& brick);
@@ -39,8 +40,8 @@ class LiveTooth {
     // Anybody.
 
     /// The surface before any cut, and news since the last call, in the order to be drawn. One reader: whoever asks for
-    /// the whole surface begins anew, and all that was cut so far is news again.
-    [[nodiscard]] std::vector<surface::BrickUpdate> wholeSurface();
+    /// the uncut surface begins anew, and all that was cut so far is news again.
+    [[nodiscard]] std::vector<surface::BrickUpdate> uncutSurface();
     [[nodiscard]] std::vector<surface::BrickUpdate> takeNews();
     /// True when takeNews() would give something.
     [[nodiscard]] bool hasNews() const noexcept { return hasNews_.load(std::memory_order_acquire); }
@@ -60,7 +61,7 @@ class LiveTooth {
     [[nodiscard]] bool isNearCut(std::uint32_t dense) const;
 
     struct Parts;
-    std::shared_ptr<const tooth::CuttableTooth> base_;
+    std::shared_ptr<const tooth::ToothModel> model_;
     mutable std::mutex mutex_;
     std::unique_ptr<Parts> parts_;
     std::unique_ptr<measure::ToothProbe> probe_;

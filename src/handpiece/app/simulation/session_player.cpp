@@ -11,7 +11,7 @@
 #include "handpiece/app/simulation/history_bytes.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/case/case_bytes.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "handpiece/tick/device/replay_device.h"
 #include "handpiece/tick/force/pose_guard.h"
 
@@ -178,7 +178,7 @@ struct SessionPlayer::State {
     }
 
     [[nodiscard]] tooth::StateDelta stateOf(const session::KeyFrame& frame) const {
-        return tooth::decodeState(frame.state, station.identity, *station.tooth, where);
+        return tooth::decodeState(frame.state, *station.tooth, where);
     }
 
     /// A tooth in this state and a loop that begins with record `index`. The field is a new one: what follows does not
@@ -186,7 +186,7 @@ struct SessionPlayer::State {
     void startAt(std::uint64_t index, const tooth::StateDelta& state, const history::History* strokes = nullptr) {
         loop.reset();
         cutting.reset();
-        station.field = std::make_shared<tooth::CutField>(station.tooth);
+        station.field = std::make_shared<tooth::ToothState>(station.tooth);
         if (!state.bricks.empty()) station.resume(state);
         station.settings = first;
         next = index;
@@ -446,7 +446,7 @@ struct SessionPlayer::State {
     /// As the session's first segments leave it, this one the last.
     [[nodiscard]] history::History historyByKeyFrames(const tooth::StateDelta& end, std::size_t lastSegment) const {
         const std::uint64_t last = reader.records(endOf(lastSegment) - 1, 1).front().tick;
-        tooth::CutMirror mirror(station.tooth);
+        tooth::ToothMirror mirror(station.tooth);
         const history::MirrorSource source(mirror);
         history::History history;
         mirror.apply(start);

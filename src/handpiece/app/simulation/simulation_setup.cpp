@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "handpiece/base/core/error.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/contact/hull/hull_method.h"
 #include "handpiece/tick/device/capability.h"
@@ -407,24 +407,18 @@ loop::Work SimulationSetup::work() const {
     if (settings.hull) {
         // Of the outline, which is what a session keeps of a bur.
         const instrument::Bur bur(settings.bur->name(), settings.bur->profile());
-        return {contact::makeHullMethod(tooth->tooth->outer, bur.mesh()), nullptr};
+        return {contact::makeHullMethod(tooth->outer, bur.mesh()), nullptr};
     }
-    return {contact::makeFieldMethod(std::shared_ptr<const tooth::CutField>(field), settings.bur),
+    return {contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(field), settings.bur),
             std::make_unique<cutting::Cutter>(field, settings.bur, settings.cuttingParameters, settings.tissues,
                                               cutting::Cutter::Settings{settings.fullRemoval})};
 }
 
 SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings settings, bool useCache,
                                const core::Progress& progress) {
-    tooth::PrepareSettings prepare;
-    prepare.field = settings.field;
-    prepare.useCache = useCache;
     SimulationSetup station;
-    const auto tooth = tooth::prepareTooth(toothCase, prepare, core::part(progress, 0.0, kDistancesShare));
-    station.tooth =
-        tooth::prepareCutting(toothCase, tooth, prepare, settings.cut, core::part(progress, kDistancesShare, 1.0));
-    station.identity = tooth::identityOf(*station.tooth);
-    station.field = std::make_shared<tooth::CutField>(station.tooth);
+    station.tooth = tooth::loadModel(toothCase, {settings.field, settings.cut, useCache}, progress);
+    station.field = std::make_shared<tooth::ToothState>(station.tooth);
     station.settings = std::move(settings);
     return station;
 }

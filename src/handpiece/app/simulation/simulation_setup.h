@@ -9,7 +9,7 @@
 
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/model/instrument/rotor.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/tick/cutting/cutter.h"
 #include "handpiece/tick/device/device.h"
 #include "handpiece/tick/force/parameters.h"
@@ -65,9 +65,8 @@ Changed applyChange(const std::string& json, SimulationSettings& settings, const
 
 /// One tooth under one bur. The field is cut by the loop that gets the work.
 struct SimulationSetup {
-    std::shared_ptr<const tooth::CuttableTooth> tooth;
-    std::uint64_t identity = 0;  ///< of the tooth, for states in files
-    std::shared_ptr<tooth::CutField> field;
+    std::shared_ptr<const tooth::ToothModel> tooth;
+    std::shared_ptr<tooth::ToothState> field;
     SimulationSettings settings;
 
     /// Puts a tooth in place that was cut before. Not while a loop runs.
@@ -76,9 +75,7 @@ struct SimulationSetup {
     /// another may be made for it, on another thread. Throws core::Error for what has no hull.
     [[nodiscard]] loop::Work work() const;
 };
-/// The share of makeStation's progress that is over when the distances are known and the tissues are laid out.
-inline constexpr double kDistancesShare = 0.6;
-/// Reads or reopens the fields. Throws core::Error.
+/// A loaded tooth, yet uncut, and a state of it to cut. Throws core::Error.
 [[nodiscard]] SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings settings, bool useCache,
                                              const core::Progress& progress = {});
 

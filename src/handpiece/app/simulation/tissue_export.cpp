@@ -9,24 +9,24 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/attempt.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "handpiece/senses/surface/brick_source.h"
 #include "handpiece/senses/surface/closed_surface.h"
 
 namespace handpiece::simulation {
 namespace fs = std::filesystem;
 
-void exportStl(const std::shared_ptr<const tooth::CuttableTooth>& base, const tooth::StateDelta& state,
+void exportStl(const std::shared_ptr<const tooth::ToothModel>& base, const tooth::StateDelta& state,
                const fs::path& file, const core::Progress& progress) {
-    tooth::CutMirror mirror(base);
+    tooth::ToothMirror mirror(base);
     mirror.apply(state);
     geometry::writeStl(file, surface::closedSurface(surface::MirrorSource(mirror), progress));
 }
 
-std::vector<fs::path> exportTissues(const std::shared_ptr<const tooth::CuttableTooth>& base,
+std::vector<fs::path> exportTissues(const std::shared_ptr<const tooth::ToothModel>& base,
                                     const tooth::StateDelta& state, const fs::path& folder,
                                     const core::Progress& progress) {
-    tooth::CutMirror mirror(base);
+    tooth::ToothMirror mirror(base);
     mirror.apply(state);
     const surface::MirrorSource source(mirror);
     const std::vector<cases::Tissue> tissues = base->tissues.tissues();
@@ -72,8 +72,7 @@ ToothOfFile toothOf(const fs::path& path, double voxelMm, bool useCache, const c
         settings.field.voxelMm = open.attempt.voxelMm;
         const auto saved = [&] {
             const SimulationSetup station = makeSimulation(open.toothCase, settings, useCache, progress);
-            return ToothOfFile{station.tooth,
-                               tooth::decodeState(open.attempt.state, station.identity, *station.tooth, path.string())};
+            return ToothOfFile{station.tooth, tooth::decodeState(open.attempt.state, *station.tooth, path.string())};
         };
         // It does not tell its bands: the command line never makes them thinner than a few voxels, the window keeps
         // them.

@@ -9,24 +9,25 @@
 #include <vector>
 
 #include "handpiece/base/core/progress.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/state_delta.h"
+#include "handpiece/model/tooth/tooth_model.h"
 
 namespace handpiece::simulation {
 
 /// The whole as one closed STL. Throws core::Error.
-void exportStl(const std::shared_ptr<const tooth::CuttableTooth>& base, const tooth::StateDelta& state,
+void exportStl(const std::shared_ptr<const tooth::ToothModel>& base, const tooth::StateDelta& state,
                const std::filesystem::path& file, const core::Progress& progress = {});
 
 /// Each tissue as a closed STL of its own, "enamel.stl" and so on, into a folder that is made where there is none.
 /// Tissues of which nothing is left have no file; one of theirs from before goes. Returns the files. All surfaces are
 /// made before the first is written. Throws core::Error.
-std::vector<std::filesystem::path> exportTissues(const std::shared_ptr<const tooth::CuttableTooth>& base,
+std::vector<std::filesystem::path> exportTissues(const std::shared_ptr<const tooth::ToothModel>& base,
                                                  const tooth::StateDelta& state, const std::filesystem::path& folder,
                                                  const core::Progress& progress = {});
 
 /// A tooth out of a file: a case or a mesh as it is, an attempt as it was saved, a session as it ended.
 struct ToothOfFile {
-    std::shared_ptr<const tooth::CuttableTooth> base;
+    std::shared_ptr<const tooth::ToothModel> base;
     tooth::StateDelta state;
 };
 /// `voxelMm`: of cases and meshes, which have none of their own. Throws core::Error.

@@ -72,13 +72,25 @@ Vec3 trilinearGradient(const float* v, const double (&t)[3]) noexcept {
 
 }  // namespace
 
+std::vector<cases::Tissue> BrickTissues::tissues() const {
+    bool seen[256] = {};
+    for (const std::uint32_t first : start)
+        if (first < kShared) seen[nodes[first]] = true;
+    for (std::size_t i = kShared; i < nodes.size(); ++i)
+        seen[nodes[i]] = true;
+    std::vector<cases::Tissue> found;
+    for (std::size_t i = 1; i < cases::kTissueCount; ++i)
+        if (seen[i]) found.push_back(static_cast<cases::Tissue>(i));
+    return found;
+}
+
 double DistanceField::distance(const Vec3& p) const noexcept {
-    const double h = settings_.voxelMm;
-    const Vec3 u = (p - originMm_) / h;
-    if (isInside(u, bricks_)) return distanceInGrid(u);
+    const double h = s_.settings.voxelMm;
+    const Vec3 u = (p - s_.originMm) / h;
+    if (isInside(u, s_.bricks)) return distanceInGrid(u);
     // The surface lies in the grid's box: nothing is nearer than the box. Points that are no numbers are far away.
     if (!p.allFinite()) return std::numeric_limits<double>::infinity();
-    const Vec3 top(kBrickCells * bricks_[0], kBrickCells * bricks_[1], kBrickCells * bricks_[2]);
+    const Vec3 top(kBrickCells * s_.bricks[0], kBrickCells * s_.bricks[1], kBrickCells * s_.bricks[2]);
     const Vec3 nearest = u.cwiseMax(Vec3::Zero()).cwiseMin(top);
     const double toBox = h * (u - nearest).stableNorm();
     // A distance averaged over a cell's corners is off by less than a voxel.
@@ -86,28 +98,28 @@ double DistanceField::distance(const Vec3& p) const noexcept {
 }
 
 double DistanceField::distanceInGrid(const Vec3& gridPoint) const noexcept {
-    const Place at = placeOf(gridPoint, bricks_);
-    const std::int32_t brick = brickIndex_[at.dense];
-    if (brick >= 0) return trilinear(cellCorner(values_, brick, at), at.fraction);
-    const double centre = coarse_[at.dense];
+    const Place at = placeOf(gridPoint, s_.bricks);
+    const std::int32_t brick = s_.brickIndex[at.dense];
+    if (brick >= 0) return trilinear(cellCorner(s_.values, brick, at), at.fraction);
+    const double centre = s_.coarse[at.dense];
     Vec3 away;
     for (int k = 0; k < 3; ++k)
         away[k] = at.cell[k] + at.fraction[k] - 0.5 * kBrickCells;
     // A hair less than the triangle inequality gives, for the rounding of the centre's value to float.
-    const double magnitude = std::max(0.0, std::abs(centre) * (1.0 - 1e-6) - settings_.voxelMm * away.norm());
+    const double magnitude = std::max(0.0, std::abs(centre) * (1.0 - 1e-6) - s_.settings.voxelMm * away.norm());
     return centre < 0.0 ? -magnitude : magnitude;
 }
 
 bool DistanceField::isFine(const Vec3& p) const noexcept {
-    const Vec3 u = (p - originMm_) / settings_.voxelMm;
-    return isInside(u, bricks_) && brickIndex_[placeOf(u, bricks_).dense] >= 0;
+    const Vec3 u = (p - s_.originMm) / s_.settings.voxelMm;
+    return isInside(u, s_.bricks) && s_.brickIndex[placeOf(u, s_.bricks).dense] >= 0;
 }
 
 Vec3 DistanceField::normal(const Vec3& p) const noexcept {
-    const Vec3 u = (p - originMm_) / settings_.voxelMm;
-    if (!isInside(u, bricks_)) return Vec3::Zero();
-    const Place at = placeOf(u, bricks_);
-    const std::int32_t brick = brickIndex_[at.dense];
+    const Vec3 u = (p - s_.originMm) / s_.settings.voxelMm;
+    if (!isInside(u, s_.bricks)) return Vec3::Zero();
+    const Place at = placeOf(u, s_.bricks);
+    const std::int32_t brick = s_.brickIndex[at.dense];
     if (brick < 0) return Vec3::Zero();
     // Differences over a whole voxel are continuous from cell to cell, the trilinear gradient is not.
     Vec3 gradient;
@@ -117,73 +129,80 @@ Vec3 DistanceField::normal(const Vec3& p) const noexcept {
         for (int s = 0; s < 2 && whole; ++s) {
             Vec3 v = u;
             v[k] += s == 0 ? -0.5 : 0.5;
-            whole = isInside(v, bricks_);
+            whole = isInside(v, s_.bricks);
             if (!whole) break;
-            const Place there = placeOf(v, bricks_);
-            whole = brickIndex_[there.dense] >= 0;
-            if (whole) side[s] = trilinear(cellCorner(values_, brickIndex_[there.dense], there), there.fraction);
+            const Place there = placeOf(v, s_.bricks);
+            whole = s_.brickIndex[there.dense] >= 0;
+            if (whole) side[s] = trilinear(cellCorner(s_.values, s_.brickIndex[there.dense], there), there.fraction);
         }
         if (whole) gradient[k] = side[1] - side[0];
     }
-    if (!whole) gradient = trilinearGradient(cellCorner(values_, brick, at), at.fraction);
+    if (!whole) gradient = trilinearGradient(cellCorner(s_.values, brick, at), at.fraction);
     const double length = gradient.norm();
     return length > 0.0 ? Vec3(gradient / length) : Vec3::Zero();
 }
 
 cases::Tissue DistanceField::tissueAt(const Vec3& p) const noexcept {
-    const Vec3 u = (p - originMm_) / settings_.voxelMm;
-    if (!isInside(u, bricks_)) return cases::Tissue::none;
-    const Place at = placeOf(u, bricks_);
-    const std::int32_t brick = brickIndex_[at.dense];
-    if (brick < 0) return static_cast<cases::Tissue>(coarseTissue_[at.dense]);
+    const Vec3 u = (p - s_.originMm) / s_.settings.voxelMm;
+    if (!isInside(u, s_.bricks)) return cases::Tissue::none;
+    const Place at = placeOf(u, s_.bricks);
+    const std::int32_t brick = s_.brickIndex[at.dense];
+    const std::uint8_t* tissues = s_.tissues->of(at.dense);
+    if (brick < 0) return static_cast<cases::Tissue>(tissues[kCentreNode]);
     int node[3];
     for (int k = 0; k < 3; ++k)
         node[k] = at.cell[k] + (at.fraction[k] >= 0.5 ? 1 : 0);
-    return static_cast<cases::Tissue>(
-        tissue_[static_cast<std::size_t>(brick) * kBrickValues +
-                static_cast<std::size_t>(node[0] + kBrickNodes * (node[1] + kBrickNodes * node[2]))]);
+    return static_cast<cases::Tissue>(tissues[node[0] + kBrickNodes * (node[1] + kBrickNodes * node[2])]);
 }
 
 FieldView DistanceField::view() const noexcept {
     FieldView v{};
     for (int k = 0; k < 3; ++k) {
-        v.originMm[k] = originMm_[k];
-        v.bricks[k] = bricks_[k];
+        v.originMm[k] = s_.originMm[k];
+        v.bricks[k] = s_.bricks[k];
     }
-    v.voxelMm = settings_.voxelMm;
-    v.inverseVoxelMm = 1.0 / settings_.voxelMm;
-    v.brickIndex = brickIndex_.data();
-    v.values = values_.data();
-    v.coarse = coarse_.data();
-    v.tissue = tissue_.data();
-    v.coarseTissue = coarseTissue_.data();
+    v.voxelMm = s_.settings.voxelMm;
+    v.inverseVoxelMm = 1.0 / s_.settings.voxelMm;
+    v.brickIndex = s_.brickIndex.data();
+    v.values = s_.values.data();
+    v.coarse = s_.coarse.data();
+    v.tissueStart = s_.tissues->start.data();
+    v.tissue = s_.tissues->nodes.data();
     return v;
 }
 
 core::Box DistanceField::bounds() const noexcept {
-    const double edge = kBrickCells * settings_.voxelMm;
-    return {originMm_, originMm_ + Vec3(edge * bricks_[0], edge * bricks_[1], edge * bricks_[2])};
+    const double edge = kBrickCells * s_.settings.voxelMm;
+    return {s_.originMm, s_.originMm + Vec3(edge * s_.bricks[0], edge * s_.bricks[1], edge * s_.bricks[2])};
 }
 
 std::size_t DistanceField::memoryBytes() const noexcept {
-    return values_.size() * sizeof(float) + tissue_.size() + brickIndex_.size() * sizeof(std::int32_t) +
-           coarse_.size() * sizeof(float) + coarseTissue_.size();
+    return s_.values.size() * sizeof(float) + s_.brickIndex.size() * sizeof(std::int32_t) +
+           s_.coarse.size() * sizeof(float) + s_.tissues->memoryBytes();
 }
 
 std::uint64_t DistanceField::stateHash() const {
     core::Hasher hasher;
-    hasher.add(settings_.voxelMm);
-    hasher.add(settings_.bandOutMm);
-    hasher.add(settings_.bandInMm);
+    hasher.add(s_.settings.voxelMm);
+    hasher.add(s_.settings.bandOutMm);
+    hasher.add(s_.settings.bandInMm);
     for (int k = 0; k < 3; ++k) {
-        hasher.add(originMm_[k]);
-        hasher.add(bricks_[k]);
+        hasher.add(s_.originMm[k]);
+        hasher.add(s_.bricks[k]);
     }
-    hasher.add(std::as_bytes(std::span(brickIndex_)));
-    hasher.add(std::as_bytes(std::span(values_)));
-    hasher.add(std::as_bytes(std::span(coarse_)));
-    hasher.add(std::as_bytes(std::span(tissue_)));
-    hasher.add(std::as_bytes(std::span(coarseTissue_)));
+    hasher.add(std::as_bytes(std::span(s_.brickIndex)));
+    hasher.add(std::as_bytes(std::span(s_.values)));
+    hasher.add(std::as_bytes(std::span(s_.coarse)));
+    // Node by node of the stored bricks, and at every brick's centre inside.
+    std::vector<std::uint8_t> tissues, atCentre(s_.coarse.size(), 0);
+    tissues.reserve(s_.values.size());
+    for (std::size_t i = 0; i < s_.coarse.size(); ++i) {
+        const std::uint8_t* nodes = s_.tissues->of(i);
+        if (s_.brickIndex[i] >= 0) tissues.insert(tissues.end(), nodes, nodes + kBrickValues);
+        if (s_.coarse[i] < 0.0f) atCentre[i] = nodes[kCentreNode];
+    }
+    hasher.add(std::as_bytes(std::span(tissues)));
+    hasher.add(std::as_bytes(std::span(atCentre)));
     return hasher.value();
 }
 

@@ -6,16 +6,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "handpiece/base/core/progress.h"
 #include "handpiece/base/core/vec.h"
-#include "handpiece/model/case/tissue.h"
-#include "handpiece/model/field/field_view.h"
-
-namespace handpiece::tooth {
-class CutField;  // has the arrays of a field of its own
-}
+#include "handpiece/model/field/brick_tissues.h"
 
 namespace handpiece::field {
 
@@ -25,9 +22,33 @@ struct FieldSettings {
     double bandInMm = 0.3;   ///< the same inside
 };
 
-/// Immutable in this version; readers on any thread, no locks, no allocation.
+/// How far from the surface values are distances.
+struct FieldReach {
+    double outMm, inMm;
+};
+
+/// What a field consists of.
+struct FieldStorage {
+    FieldSettings settings;
+    core::Vec3 originMm = core::Vec3::Zero();
+    std::int32_t bricks[3] = {0, 0, 0};
+    std::vector<std::int32_t> brickIndex;  ///< this and the rest: as FieldView tells
+    std::vector<float> values, coarse;
+    std::shared_ptr<const BrickTissues> tissues;
+    std::optional<FieldReach> heldTo;  ///< values beyond these only say "at least"; none: all are distances
+    std::uint64_t version = 1;         ///< another number after every change
+
+    [[nodiscard]] std::size_t brickCount() const noexcept { return values.size() / kBrickValues; }
+};
+
+/// Readers on any thread while its owner leaves it alone; no locks, no allocation.
 class DistanceField {
   public:
+    explicit DistanceField(FieldStorage storage) : s_(std::move(storage)) {}
+    [[nodiscard]] const FieldStorage& storage() const noexcept { return s_; }
+    /// For its owner, who made it or cuts it: everybody else has it const.
+    [[nodiscard]] FieldStorage& storage() noexcept { return s_; }
+
     /// Signed distance [mm]: trilinear where a brick is stored; elsewhere the sign is right and the magnitude is a
     /// lower bound of the distance to the surface. Outside the grid: at least the distance to the grid's box.
     [[nodiscard]] double distance(const core::Vec3& p) const noexcept;
@@ -41,9 +62,14 @@ class DistanceField {
     [[nodiscard]] cases::Tissue tissueAt(const core::Vec3& p) const noexcept;
 
     [[nodiscard]] FieldView view() const noexcept;
-    [[nodiscard]] const FieldSettings& settings() const noexcept { return settings_; }
+    [[nodiscard]] const FieldSettings& settings() const noexcept { return s_.settings; }
+    [[nodiscard]] FieldReach reach() const noexcept {
+        return s_.heldTo.value_or(FieldReach{s_.settings.bandOutMm, s_.settings.bandInMm});
+    }
+    /// What was looked up at the same one still holds.
+    [[nodiscard]] std::uint64_t version() const noexcept { return s_.version; }
     [[nodiscard]] core::Box bounds() const noexcept;
-    [[nodiscard]] std::size_t brickCount() const noexcept { return values_.size() / kBrickValues; }
+    [[nodiscard]] std::size_t brickCount() const noexcept { return s_.brickCount(); }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
     /// Volume [mm3] of the inside and area [mm2] of the zero surface, by integrating the cells. For checks.
     [[nodiscard]] double volumeMm3() const;
@@ -63,18 +89,8 @@ class DistanceField {
                                                     const core::Progress& progress = {});
 
   private:
-    friend class FieldBuilder;
-    friend class FieldStorage;
-    friend class tooth::CutField;
     [[nodiscard]] double distanceInGrid(const core::Vec3& gridPoint) const noexcept;  // in voxels from the origin
-    FieldSettings settings_;
-    core::Vec3 originMm_ = core::Vec3::Zero();
-    std::int32_t bricks_[3] = {0, 0, 0};
-    std::vector<std::int32_t> brickIndex_;
-    std::vector<float> values_;
-    std::vector<float> coarse_;
-    std::vector<std::uint8_t> tissue_;
-    std::vector<std::uint8_t> coarseTissue_;
+    FieldStorage s_;
 };
 
 }  // namespace handpiece::field

@@ -28,7 +28,7 @@ FieldBuilder::FieldBuilder(const core::Box& box, const FieldSettings& settings) 
             refuse(fmt::format("a band of {} mm makes no grid", band), "give 0 or more");
     if (box.isEmpty() || !box.min.allFinite() || !box.max.allFinite())
         refuse("the box to cover is empty or not finite", "");
-    field_.settings_ = settings;
+    field_.settings = settings;
     const double edge = brickMm();
     double total = 1.0;
     for (int k = 0; k < 3; ++k) {
@@ -38,22 +38,22 @@ FieldBuilder::FieldBuilder(const core::Box& box, const FieldSettings& settings) 
             refuse(fmt::format("{:.3g} x {:.3g} x {:.3g} mm at a voxel of {} mm needs too many bricks", box.size().x(),
                                box.size().y(), box.size().z(), settings.voxelMm),
                    "check the unit of the mesh (millimetres), or take larger voxels");
-        field_.bricks_[k] = static_cast<std::int32_t>(count);
-        field_.originMm_[k] = 0.5 * (box.min[k] + box.max[k]) - 0.5 * count * edge;
+        field_.bricks[k] = static_cast<std::int32_t>(count);
+        field_.originMm[k] = 0.5 * (box.min[k] + box.max[k]) - 0.5 * count * edge;
     }
     const auto dense = static_cast<std::size_t>(total);
-    field_.brickIndex_.assign(dense, -1);
-    field_.coarse_.assign(dense, 0.0f);
-    field_.coarseTissue_.assign(dense, static_cast<std::uint8_t>(cases::Tissue::none));
+    field_.brickIndex.assign(dense, -1);
+    field_.coarse.assign(dense, 0.0f);
+    coarseTissues_.assign(dense, static_cast<std::uint8_t>(cases::Tissue::none));
 }
 
 Vec3 FieldBuilder::nodeMm(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    const double h = field_.settings_.voxelMm;
-    return field_.originMm_ + Vec3(h * static_cast<double>(x), h * static_cast<double>(y), h * static_cast<double>(z));
+    const double h = field_.settings.voxelMm;
+    return field_.originMm + Vec3(h * static_cast<double>(x), h * static_cast<double>(y), h * static_cast<double>(z));
 }
 
 std::array<std::int32_t, 3> FieldBuilder::brickAt(std::size_t dense) const {
-    const auto nx = static_cast<std::size_t>(field_.bricks_[0]), ny = static_cast<std::size_t>(field_.bricks_[1]);
+    const auto nx = static_cast<std::size_t>(field_.bricks[0]), ny = static_cast<std::size_t>(field_.bricks[1]);
     return {static_cast<std::int32_t>(dense % nx), static_cast<std::int32_t>(dense / nx % ny),
             static_cast<std::int32_t>(dense / (nx * ny))};
 }
@@ -67,10 +67,10 @@ Vec3 FieldBuilder::centreMm(std::size_t dense) const {
 
 std::int32_t FieldBuilder::storedAt(const std::array<std::int32_t, 3>& brick) const {
     for (std::size_t k = 0; k < 3; ++k)
-        if (brick[k] < 0 || brick[k] >= field_.bricks_[k]) return -1;
-    const auto nx = static_cast<std::size_t>(field_.bricks_[0]), ny = static_cast<std::size_t>(field_.bricks_[1]);
-    return field_.brickIndex_[static_cast<std::size_t>(brick[0]) +
-                              nx * (static_cast<std::size_t>(brick[1]) + ny * static_cast<std::size_t>(brick[2]))];
+        if (brick[k] < 0 || brick[k] >= field_.bricks[k]) return -1;
+    const auto nx = static_cast<std::size_t>(field_.bricks[0]), ny = static_cast<std::size_t>(field_.bricks[1]);
+    return field_.brickIndex[static_cast<std::size_t>(brick[0]) +
+                             nx * (static_cast<std::size_t>(brick[1]) + ny * static_cast<std::size_t>(brick[2]))];
 }
 
 FieldBuilder FieldBuilder::around(const core::Box& surface, const FieldSettings& settings) {
@@ -80,16 +80,16 @@ FieldBuilder FieldBuilder::around(const core::Box& surface, const FieldSettings&
 
 bool FieldBuilder::isStored(float centreDistanceMm) const {
     // A distance changes by no more than the way gone: beyond half the diagonal the band cannot reach into the brick.
-    const double above = field_.settings_.bandOutMm + halfDiagonalMm(),
-                 below = field_.settings_.bandInMm + halfDiagonalMm();
+    const double above = field_.settings.bandOutMm + halfDiagonalMm(),
+                 below = field_.settings.bandInMm + halfDiagonalMm();
     return centreDistanceMm <= above && centreDistanceMm >= -below;
 }
 
 void FieldBuilder::classify(const std::function<double(std::size_t)>& centreDistance) {
     core::parallelFor(denseBricks(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            field_.coarse_[i] = static_cast<float>(centreDistance(i));
-            field_.brickIndex_[i] = isStored(field_.coarse_[i]) ? 0 : -1;
+            field_.coarse[i] = static_cast<float>(centreDistance(i));
+            field_.brickIndex[i] = isStored(field_.coarse[i]) ? 0 : -1;
         }
     });
 }
@@ -97,16 +97,31 @@ void FieldBuilder::classify(const std::function<double(std::size_t)>& centreDist
 void FieldBuilder::store() {
     stored_.clear();
     for (std::size_t i = 0; i < denseBricks(); ++i) {
-        if (field_.brickIndex_[i] < 0) continue;
-        field_.brickIndex_[i] = static_cast<std::int32_t>(stored_.size());
+        if (field_.brickIndex[i] < 0) continue;
+        field_.brickIndex[i] = static_cast<std::int32_t>(stored_.size());
         stored_.push_back(static_cast<std::uint32_t>(i));
     }
     if (stored_.size() > kMaxStoredBricks)
         throw core::Error(fmt::format("{} bricks would be stored, more than the {} there is room for", stored_.size(),
                                       kMaxStoredBricks),
                           "distance field", "take larger voxels or a narrower band");
-    field_.values_.resize(stored_.size() * kBrickValues);
-    field_.tissue_.resize(stored_.size() * kBrickValues);
+    field_.values.resize(stored_.size() * kBrickValues);
+    tissues_.resize(stored_.size() * kBrickValues);
+}
+
+DistanceField FieldBuilder::finish() && {
+    auto tissues = std::make_shared<BrickTissues>(denseBricks());
+    for (std::size_t i = 0; i < denseBricks(); ++i)
+        tissues->setUniform(i, coarseTissues_[i]);
+    for (std::size_t i = 0; i < stored_.size(); ++i) {
+        const std::uint8_t* nodes = &tissues_[i * kBrickValues];
+        if (std::all_of(nodes, nodes + kBrickValues, [nodes](std::uint8_t t) { return t == *nodes; }))
+            tissues->setUniform(stored_[i], *nodes);
+        else
+            tissues->addMixed(stored_[i], nodes);
+    }
+    field_.tissues = std::move(tissues);
+    return DistanceField(std::move(field_));
 }
 
 DistanceField DistanceField::fromFunction(const core::Box& box, const FieldSettings& settings,

@@ -37,9 +37,9 @@ class FieldBuilder {
     /// An empty grid of bricks over `box`. Throws core::Error for settings that make no grid, or one too large.
     FieldBuilder(const core::Box& box, const FieldSettings& settings);
 
-    [[nodiscard]] std::size_t denseBricks() const { return field_.coarse_.size(); }
-    [[nodiscard]] std::int32_t bricksAlongX() const { return field_.bricks_[0]; }
-    [[nodiscard]] double brickMm() const { return kBrickCells * field_.settings_.voxelMm; }
+    [[nodiscard]] std::size_t denseBricks() const { return field_.coarse.size(); }
+    [[nodiscard]] std::int32_t bricksAlongX() const { return field_.bricks[0]; }
+    [[nodiscard]] double brickMm() const { return kBrickCells * field_.settings.voxelMm; }
     [[nodiscard]] double halfDiagonalMm() const { return 0.5 * std::sqrt(3.0) * brickMm(); }
     /// Where node (x, y, z) of the whole grid lies [mm]: the same bits whichever brick asks.
     [[nodiscard]] core::Vec3 nodeMm(std::int64_t x, std::int64_t y, std::int64_t z) const;
@@ -57,18 +57,19 @@ class FieldBuilder {
     /// Dense index of every stored brick, in storage order.
     [[nodiscard]] const std::vector<std::uint32_t>& storedBricks() const { return stored_; }
 
-    [[nodiscard]] float* values(std::size_t storedBrick) { return &field_.values_[storedBrick * kBrickValues]; }
-    [[nodiscard]] std::uint8_t* tissues(std::size_t storedBrick) { return &field_.tissue_[storedBrick * kBrickValues]; }
-    [[nodiscard]] float coarse(std::size_t dense) const { return field_.coarse_[dense]; }
+    [[nodiscard]] float* values(std::size_t storedBrick) { return &field_.values[storedBrick * kBrickValues]; }
+    [[nodiscard]] std::uint8_t* tissues(std::size_t storedBrick) { return &tissues_[storedBrick * kBrickValues]; }
+    [[nodiscard]] float coarse(std::size_t dense) const { return field_.coarse[dense]; }
     void setCoarseTissue(std::size_t dense, cases::Tissue tissue) {
-        field_.coarseTissue_[dense] = static_cast<std::uint8_t>(tissue);
+        coarseTissues_[dense] = static_cast<std::uint8_t>(tissue);
     }
-    [[nodiscard]] const FieldSettings& settings() const { return field_.settings_; }
-    [[nodiscard]] DistanceField finish() && { return std::move(field_); }
+    [[nodiscard]] const FieldSettings& settings() const { return field_.settings; }
+    [[nodiscard]] DistanceField finish() &&;
 
   private:
-    DistanceField field_;
+    FieldStorage field_;
     std::vector<std::uint32_t> stored_;
+    std::vector<std::uint8_t> tissues_, coarseTissues_;  ///< by stored and by dense brick
 };
 
 }  // namespace handpiece::field

@@ -58,88 +58,98 @@ constexpr double kRoundingMm = 1e-5;
 
 }  // namespace
 
-/// The one class besides the builder that sees a field's arrays.
-class FieldStorage {
+/// A field and the sections of its file.
+class FieldFile {
   public:
     /// The payload's sections in file order.
     struct Sections {
-        DistanceField field;
-        std::vector<std::uint8_t> tissueOfBrick,
-            mixedTissues;  // one tissue a stored brick, or all nodes of the mixed ones
+        FieldStorage field;
+        /// At every brick's centre; one a stored brick, or all nodes of the mixed ones.
+        std::vector<std::uint8_t> coarseTissue, tissueOfBrick, mixedTissues;
 
         template <class F>
         void visit(F&& f) {
-            f(std::as_writable_bytes(std::span(field.brickIndex_)));
-            f(std::as_writable_bytes(std::span(field.coarse_)));
-            f(std::as_writable_bytes(std::span(field.coarseTissue_)));
+            f(std::as_writable_bytes(std::span(field.brickIndex)));
+            f(std::as_writable_bytes(std::span(field.coarse)));
+            f(std::as_writable_bytes(std::span(coarseTissue)));
             f(std::as_writable_bytes(std::span(tissueOfBrick)));
             f(std::as_writable_bytes(std::span(mixedTissues)));
-            f(std::as_writable_bytes(std::span(field.values_)));
+            f(std::as_writable_bytes(std::span(field.values)));
         }
     };
 
-    static Header headerOf(const DistanceField& field) {
+    static Header headerOf(const FieldStorage& field) {
         Header header{};
         std::memcpy(header.magic, kMagic, sizeof kMagic);
         header.version = kVersion;
         header.byteOrder = kByteOrder;
-        header.voxelMm = field.settings_.voxelMm;
-        header.bandOutMm = field.settings_.bandOutMm;
-        header.bandInMm = field.settings_.bandInMm;
+        header.voxelMm = field.settings.voxelMm;
+        header.bandOutMm = field.settings.bandOutMm;
+        header.bandInMm = field.settings.bandInMm;
         for (int k = 0; k < 3; ++k) {
-            header.originMm[k] = field.originMm_[k];
-            header.bricks[k] = field.bricks_[k];
+            header.originMm[k] = field.originMm[k];
+            header.bricks[k] = field.bricks[k];
         }
-        header.denseBricks = field.coarse_.size();
+        header.denseBricks = field.coarse.size();
         header.storedBricks = field.brickCount();
         return header;
     }
 
     /// What Sections::visit would visit, of a field that stays where it is.
-    static std::array<std::span<const std::byte>, 6> payloadOf(const DistanceField& field, const Sections& s) {
-        return {std::as_bytes(std::span(field.brickIndex_)),   std::as_bytes(std::span(field.coarse_)),
-                std::as_bytes(std::span(field.coarseTissue_)), std::as_bytes(std::span(s.tissueOfBrick)),
-                std::as_bytes(std::span(s.mixedTissues)),      std::as_bytes(std::span(field.values_))};
+    static std::array<std::span<const std::byte>, 6> payloadOf(const FieldStorage& field, const Sections& s) {
+        return {std::as_bytes(std::span(field.brickIndex)), std::as_bytes(std::span(field.coarse)),
+                std::as_bytes(std::span(s.coarseTissue)),   std::as_bytes(std::span(s.tissueOfBrick)),
+                std::as_bytes(std::span(s.mixedTissues)),   std::as_bytes(std::span(field.values))};
     }
 
-    static void packTissues(const DistanceField& field, Sections& s) {
-        const std::vector<std::uint8_t>& all = field.tissue_;
-        for (std::size_t i = 0; i < field.brickCount(); ++i) {
-            const auto first = all.begin() + static_cast<std::ptrdiff_t>(i * kBrickValues);
-            const bool uniform = std::all_of(first, first + kBrickValues, [&](std::uint8_t t) { return t == *first; });
-            s.tissueOfBrick.push_back(uniform ? *first : kMixedTissues);
-            if (!uniform) s.mixedTissues.insert(s.mixedTissues.end(), first, first + kBrickValues);
+    static void packTissues(const FieldStorage& field, Sections& s) {
+        s.coarseTissue.assign(field.coarse.size(), static_cast<std::uint8_t>(cases::Tissue::none));
+        for (std::size_t i = 0; i < field.coarse.size(); ++i) {
+            const std::uint8_t* nodes = field.tissues->of(i);
+            const bool mixed = field.tissues->isMixed(i);
+            if (field.coarse[i] < 0.0f) s.coarseTissue[i] = nodes[kCentreNode];
+            if (field.brickIndex[i] < 0) continue;
+            s.tissueOfBrick.push_back(mixed ? kMixedTissues : *nodes);
+            if (mixed) s.mixedTissues.insert(s.mixedTissues.end(), nodes, nodes + kBrickValues);
         }
     }
 
+    /// After bricksAreSound().
     static bool unpackTissues(Sections& s, const TissueSet& known) {
-        s.field.tissue_.resize(s.tissueOfBrick.size() * kBrickValues);
+        if (!known.hasAll(s.mixedTissues)) return false;
+        auto tissues = std::make_shared<BrickTissues>(s.coarseTissue.size());
         std::size_t mixed = 0;
-        for (std::size_t i = 0; i < s.tissueOfBrick.size(); ++i) {
-            std::uint8_t* out = &s.field.tissue_[i * kBrickValues];
-            if (s.tissueOfBrick[i] == kMixedTissues) {
-                if ((mixed + 1) * kBrickValues > s.mixedTissues.size()) return false;
-                std::copy_n(&s.mixedTissues[mixed++ * kBrickValues], kBrickValues, out);
+        for (std::size_t i = 0; i < s.coarseTissue.size(); ++i) {
+            tissues->setUniform(i, s.coarseTissue[i]);
+            if (s.field.brickIndex[i] < 0) continue;
+            const std::uint8_t tissue = s.tissueOfBrick[static_cast<std::size_t>(s.field.brickIndex[i])];
+            if (tissue != kMixedTissues) {
+                if (!known.has(tissue)) return false;
+                tissues->setUniform(i, tissue);
             } else {
-                std::fill_n(out, kBrickValues, s.tissueOfBrick[i]);
+                if ((mixed + 1) * kBrickValues > s.mixedTissues.size()) return false;
+                tissues->addMixed(i, &s.mixedTissues[mixed++ * kBrickValues]);
             }
+            if (s.field.coarse[i] < 0.0f && tissues->of(i)[kCentreNode] != s.coarseTissue[i]) return false;
         }
-        return mixed * kBrickValues == s.mixedTissues.size() && known.hasAll(s.field.tissue_);
+        s.field.tissues = std::move(tissues);
+        return mixed * kBrickValues == s.mixedTissues.size();
     }
 
     /// The empty grid of the asked field with room for what the header tells; only after the file's length agrees.
     static Sections room(const Header& header, const FieldBuilder& empty) {
         Sections s;
-        s.field = FieldBuilder(empty).finish();
+        s.field = FieldBuilder(empty).finish().storage();
+        s.coarseTissue.resize(header.denseBricks);
         s.tissueOfBrick.resize(header.storedBricks);
         s.mixedTissues.resize(header.mixedBricks * kBrickValues);
-        s.field.values_.resize(header.storedBricks * kBrickValues);
+        s.field.values.resize(header.storedBricks * kBrickValues);
         return s;
     }
 
     /// Bytes of the payload, or nothing when the header is not that of the asked grid or the counts cannot be right.
     static std::optional<std::uint64_t> payloadBytes(const Header& h, const FieldBuilder& empty) {
-        const Header asked = headerOf(FieldBuilder(empty).finish());
+        const Header asked = headerOf(FieldBuilder(empty).finish().storage());
         const bool sameGrid = h.voxelMm == asked.voxelMm && h.bandOutMm == asked.bandOutMm &&
                               h.bandInMm == asked.bandInMm && std::equal(h.originMm, h.originMm + 3, asked.originMm) &&
                               std::equal(h.bricks, h.bricks + 3, asked.bricks);
@@ -150,14 +160,15 @@ class FieldStorage {
     }
 
     /// Bricks are stored where and only where the band passes, one after the other; outside there is no tissue.
-    static bool bricksAreSound(const DistanceField& field, const FieldBuilder& empty, const TissueSet& known) {
-        const double farthest = field.bounds().size().norm();
+    static bool bricksAreSound(const Sections& s, const FieldBuilder& empty, const TissueSet& known) {
+        const FieldStorage& field = s.field;
+        const double farthest = core::Vec3(field.bricks[0], field.bricks[1], field.bricks[2]).norm() * empty.brickMm();
         std::int32_t stored = 0;
-        for (std::size_t i = 0; i < field.coarse_.size(); ++i) {
-            const float centre = field.coarse_[i];
+        for (std::size_t i = 0; i < field.coarse.size(); ++i) {
+            const float centre = field.coarse[i];
             if (!(std::abs(centre) <= farthest)) return false;
-            if (field.brickIndex_[i] != (empty.isStored(centre) ? stored++ : -1)) return false;
-            const std::uint8_t tissue = field.coarseTissue_[i];
+            if (field.brickIndex[i] != (empty.isStored(centre) ? stored++ : -1)) return false;
+            const std::uint8_t tissue = s.coarseTissue[i];
             if (centre < 0.0f ? !known.has(tissue) : tissue != static_cast<std::uint8_t>(cases::Tissue::none))
                 return false;
         }
@@ -165,22 +176,22 @@ class FieldStorage {
     }
 
     /// No distance differs from that of its brick's centre by more than the way between them.
-    static bool valuesAreSound(const DistanceField& field) {
+    static bool valuesAreSound(const FieldStorage& field) {
         std::array<float, kBrickValues> wayMm;
         for (int z = 0, at = 0; z < kBrickNodes; ++z)
             for (int y = 0; y < kBrickNodes; ++y)
                 for (int x = 0; x < kBrickNodes; ++x, ++at) {
                     constexpr int kHalf = kBrickCells / 2;
-                    const double way = core::Vec3(x - kHalf, y - kHalf, z - kHalf).norm() * field.settings_.voxelMm;
+                    const double way = core::Vec3(x - kHalf, y - kHalf, z - kHalf).norm() * field.settings.voxelMm;
                     wayMm[static_cast<std::size_t>(at)] = static_cast<float>(way + kRoundingMm);
                 }
         std::atomic<bool> sound{true};
-        core::parallelFor(field.brickIndex_.size(), 64, [&](std::size_t begin, std::size_t end) {
+        core::parallelFor(field.brickIndex.size(), 64, [&](std::size_t begin, std::size_t end) {
             bool good = true;
             for (std::size_t i = begin; i < end; ++i) {
-                if (field.brickIndex_[i] < 0) continue;
-                const float* values = &field.values_[static_cast<std::size_t>(field.brickIndex_[i]) * kBrickValues];
-                const float centre = std::abs(field.coarse_[i]);
+                if (field.brickIndex[i] < 0) continue;
+                const float* values = &field.values[static_cast<std::size_t>(field.brickIndex[i]) * kBrickValues];
+                const float centre = std::abs(field.coarse[i]);
                 for (std::size_t node = 0; node < kBrickValues; ++node)
                     good &= std::abs(std::abs(values[node]) - centre) <= wayMm[node];
             }
@@ -190,26 +201,26 @@ class FieldStorage {
     }
 
     /// As the surface itself has it, at some places: each time other ones.
-    static bool isOf(const geometry::TriangleTree& tree, const DistanceField& field, const FieldBuilder& empty) {
+    static bool isOf(const geometry::TriangleTree& tree, const FieldStorage& field, const FieldBuilder& empty) {
         std::mt19937_64 dice(std::random_device{}());
         const auto agrees = [&](const core::Vec3& p, float told) {
             return std::abs(tree.signedDistance(p) - static_cast<double>(told)) <= kRoundingMm;
         };
         for (std::size_t i = 0; i < kLookedAt; ++i) {
-            const std::size_t dense = dice() % field.coarse_.size();
-            if (!agrees(empty.centreMm(dense), field.coarse_[dense])) return false;
+            const std::size_t dense = dice() % field.coarse.size();
+            if (!agrees(empty.centreMm(dense), field.coarse[dense])) return false;
         }
         for (std::size_t i = 0, looked = 0; i < 64 * kLookedAt && looked < kLookedAt; ++i) {
-            const std::size_t dense = dice() % field.coarse_.size();
-            if (field.brickIndex_[dense] < 0) continue;
+            const std::size_t dense = dice() % field.coarse.size();
+            if (field.brickIndex[dense] < 0) continue;
             ++looked;
             const auto node = static_cast<int>(dice() % kBrickValues);
             const auto [x, y, z] = empty.brickAt(dense);
             const core::Vec3 p = empty.nodeMm(kBrickCells * std::int64_t{x} + node % kBrickNodes,
                                               kBrickCells * std::int64_t{y} + node / kBrickNodes % kBrickNodes,
                                               kBrickCells * std::int64_t{z} + node / (kBrickNodes * kBrickNodes));
-            if (!agrees(p, field.values_[static_cast<std::size_t>(field.brickIndex_[dense]) * kBrickValues +
-                                         static_cast<std::size_t>(node)]))
+            if (!agrees(p, field.values[static_cast<std::size_t>(field.brickIndex[dense]) * kBrickValues +
+                                        static_cast<std::size_t>(node)]))
                 return false;
         }
         return true;
@@ -271,12 +282,12 @@ std::uint64_t cacheKey(const cases::Case& toothCase, const FieldSettings& settin
 
 std::vector<std::byte> encodeField(const DistanceField& field, std::uint64_t key) {
     // A field is most of a tooth's memory: not copied, and the bytes in one piece from the start.
-    FieldStorage::Sections sections;
-    FieldStorage::packTissues(field, sections);
-    Header header = FieldStorage::headerOf(field);
+    FieldFile::Sections sections;
+    FieldFile::packTissues(field.storage(), sections);
+    Header header = FieldFile::headerOf(field.storage());
     header.key = key;
     header.mixedBricks = sections.mixedTissues.size() / kBrickValues;
-    const auto payload = FieldStorage::payloadOf(field, sections);
+    const auto payload = FieldFile::payloadOf(field.storage(), sections);
     std::size_t bytes = sizeof header;
     for (const std::span<const std::byte> section : payload)
         bytes += section.size();
@@ -304,22 +315,22 @@ std::optional<DistanceField> readFieldFile(const fs::path& path, std::uint64_t k
         header.byteOrder != kByteOrder || header.key != key || header.headerHash != headerHashOf(header))
         return std::nullopt;
     const FieldBuilder empty = FieldBuilder::around(tree.bounds(), settings);
-    const std::optional<std::uint64_t> payload = FieldStorage::payloadBytes(header, empty);
+    const std::optional<std::uint64_t> payload = FieldFile::payloadBytes(header, empty);
     if (!payload || core::sizeOf(file) != sizeof(Header) + *payload) return std::nullopt;
 
-    FieldStorage::Sections sections = FieldStorage::room(header, empty);
+    FieldFile::Sections sections = FieldFile::room(header, empty);
     core::Hasher hasher;
     bool whole = true;
     sections.visit([&](std::span<std::byte> section) {
         whole = whole && std::fread(section.data(), 1, section.size(), file.get()) == section.size();
         if (whole) hasher.add(hashOf(section));
     });
-    const DistanceField& field = sections.field;
+    const FieldStorage& field = sections.field;
     const bool believed = whole && hasher.value() == header.payloadHash &&
-                          FieldStorage::bricksAreSound(field, empty, tissues) && FieldStorage::valuesAreSound(field) &&
-                          FieldStorage::unpackTissues(sections, tissues) && FieldStorage::isOf(tree, field, empty);
+                          FieldFile::bricksAreSound(sections, empty, tissues) && FieldFile::valuesAreSound(field) &&
+                          FieldFile::unpackTissues(sections, tissues) && FieldFile::isOf(tree, field, empty);
     if (!believed) return std::nullopt;
-    return std::move(sections.field);
+    return DistanceField(std::move(sections.field));
 }
 
 std::vector<fs::path> cachePlaces(const cases::Case& toothCase, const fs::path& cacheFolder, std::uint64_t key) {

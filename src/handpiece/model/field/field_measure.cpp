@@ -107,8 +107,8 @@ Measure fieldMeasure(const FieldView& view, std::size_t stored, std::size_t dens
 }  // namespace
 
 DistanceField::Extent DistanceField::extent() const {
-    const Measure sum = fieldMeasure(view(), brickCount(), coarse_.size());
-    const double h = settings_.voxelMm;
+    const Measure sum = fieldMeasure(view(), brickCount(), s_.coarse.size());
+    const double h = s_.settings.voxelMm;
     return {sum.volume * h * h * h, sum.area * h * h};
 }
 

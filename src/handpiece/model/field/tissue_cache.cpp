@@ -71,7 +71,7 @@ class TissueStorage {
         std::memcpy(header.magic, kMagic, sizeof kMagic);
         header.version = kVersion;
         header.byteOrder = kByteOrder;
-        header.bricks = map.uniform_.size();
+        header.bricks = map.nodes_->start.size();
         header.mixedBricks = map.ranges_.size();
         header.layers = map.layers_.size();
         return header;
@@ -79,14 +79,15 @@ class TissueStorage {
 
     static Sections sectionsOf(const TissueMap& map) {
         Sections s(headerOf(map));
-        s.uniform = map.uniform_;
-        for (std::size_t i = 0, at = 0; i < map.mixed_.size(); ++i)
-            if (map.mixed_[i] >= 0) s.mixed[at++] = static_cast<std::uint32_t>(i);
+        for (std::size_t i = 0, at = 0; i < s.uniform.size(); ++i) {
+            s.uniform[i] = static_cast<std::uint8_t>(map.ofBrick(static_cast<std::uint32_t>(i)));
+            if (map.nodes_->isMixed(i)) s.mixed[at++] = static_cast<std::uint32_t>(i);
+        }
         for (std::size_t i = 0; i < map.ranges_.size(); ++i) {
             s.rest[i] = static_cast<std::uint8_t>(map.ranges_[i].rest);
             s.layerCount[i] = static_cast<std::uint8_t>(map.ranges_[i].count);
         }
-        s.nodes = map.nodes_;
+        s.nodes.assign(map.nodes_->nodes.begin() + BrickTissues::kShared, map.nodes_->nodes.end());
         for (std::size_t i = 0; i < map.layers_.size(); ++i)
             s.layerTissue[i] = static_cast<std::uint8_t>(map.layers_[i].tissue);
         s.values = map.values_;
@@ -96,13 +97,17 @@ class TissueStorage {
     static std::optional<TissueMap> mapOf(Sections&& s, const DistanceField& grid, const TissueSet& known) {
         if (!known.hasAll(s.rest) || !known.hasAll(s.nodes) || !known.hasAll(s.layerTissue)) return std::nullopt;
         TissueMap map(grid);
-        if (s.uniform.size() != map.uniform_.size()) return std::nullopt;
-        map.uniform_ = std::move(s.uniform);
-        map.nodes_ = std::move(s.nodes);
+        auto nodes = std::make_shared<BrickTissues>(s.uniform.size());
+        nodes->nodes.reserve(BrickTissues::kShared + s.nodes.size());
+        for (std::size_t i = 0; i < s.uniform.size(); ++i) {
+            if (s.uniform[i] != 0 && !known.has(s.uniform[i])) return std::nullopt;
+            nodes->setUniform(i, s.uniform[i]);
+        }
         map.values_ = std::move(s.values);
         for (std::size_t i = 0; i < s.mixed.size(); ++i) {
-            if (s.mixed[i] >= map.mixed_.size() || (i > 0 && s.mixed[i] <= s.mixed[i - 1])) return std::nullopt;
-            map.mixed_[s.mixed[i]] = static_cast<std::int32_t>(i);
+            if (s.mixed[i] >= s.uniform.size() || (i > 0 && s.mixed[i] <= s.mixed[i - 1]) || s.uniform[s.mixed[i]] != 0)
+                return std::nullopt;
+            nodes->addMixed(s.mixed[i], &s.nodes[i * kBrickValues]);
             const std::size_t first = map.layers_.size();
             if (s.layerCount[i] == 0 || first + s.layerCount[i] > s.layerTissue.size()) return std::nullopt;
             map.ranges_.push_back(
@@ -112,19 +117,18 @@ class TissueStorage {
                     {static_cast<cases::Tissue>(s.layerTissue[k]), map.values_.data() + k * kBrickValues});
         }
         if (map.layers_.size() != s.layerTissue.size()) return std::nullopt;
-        return isSound(map, grid, known) ? std::optional(std::move(map)) : std::nullopt;
+        map.nodes_ = std::move(nodes);
+        return isSound(map, grid) ? std::optional(std::move(map)) : std::nullopt;
     }
 
     /// There is tissue where the field has any, and a node is of the first layer that contains it.
-    static bool isSound(const TissueMap& map, const DistanceField& grid, const TissueSet& known) {
+    static bool isSound(const TissueMap& map, const DistanceField& grid) {
         const FieldView view = grid.view();
-        for (std::uint32_t i = 0; i < map.uniform_.size(); ++i) {
-            const bool matters = view.brickIndex[i] >= 0 || view.coarse[i] < 0.0f;
-            const std::uint8_t* nodes = map.nodes(i);
-            if (nodes == nullptr ? matters != (map.uniform_[i] != 0) || (matters && !known.has(map.uniform_[i]))
-                                 : !matters || map.uniform_[i] != 0)
-                return false;
-            if (nodes == nullptr) continue;
+        for (std::uint32_t i = 0; i < map.nodes_->start.size(); ++i) {
+            const bool matters = view.brickIndex[i] >= 0 || view.coarse[i] < 0.0f, mixed = map.nodes_->isMixed(i);
+            const std::uint8_t* nodes = map.nodes_->of(i);
+            if (matters != (mixed || *nodes != 0)) return false;
+            if (!mixed) continue;
             const TissueMap::Layers all = map.layers(i);
             for (std::size_t node = 0; node < kBrickValues; ++node) {
                 const auto inside = std::find_if(all.layers.begin(), all.layers.end(),
@@ -165,9 +169,7 @@ std::optional<TissueMap> readTissueFile(const fs::path& path, const DistanceFiel
     if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion ||
         header.byteOrder != kByteOrder || header.key != key || header.headerHash != headerHashOf(header))
         return std::nullopt;
-    const FieldView view = grid.view();
-    const std::uint64_t dense = static_cast<std::uint64_t>(view.bricks[0]) *
-                                static_cast<std::uint64_t>(view.bricks[1]) * static_cast<std::uint64_t>(view.bricks[2]);
+    const std::size_t dense = grid.storage().coarse.size();
     if (header.bricks != dense || header.mixedBricks > dense || header.layers > 255 * header.mixedBricks ||
         core::sizeOf(file) != sizeof header + header.bricks + header.mixedBricks * (4 + 2 + kBrickValues) +
                                   header.layers * (1 + kBrickValues))

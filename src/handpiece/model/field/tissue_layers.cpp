@@ -15,7 +15,7 @@ std::int8_t quantised(float distanceMm, float perUnit) {
 
 }  // namespace
 
-BrickTissues layeredBrick(const std::vector<NearPart>& parts, cases::Tissue rest, bool nearest, double unitMm) {
+LayeredBrick layeredBrick(const std::vector<NearPart>& parts, cases::Tissue rest, bool nearest, double unitMm) {
     BrickLayers brick;
     brick.rest = rest;
     brick.values.resize(parts.size() * kBrickValues);

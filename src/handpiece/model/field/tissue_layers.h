@@ -27,14 +27,14 @@ struct BrickLayers {
 };
 
 /// What a brick is made of: one tissue, or layers.
-struct BrickTissues {
+struct LayeredBrick {
     cases::Tissue uniform = cases::Tissue::none;
     std::unique_ptr<BrickLayers> layers;
 };
 
 /// `parts` by falling priority. Where a node lies in none of them: of `rest`, or (`nearest`) of the part whose surface
 /// is nearest.
-[[nodiscard]] BrickTissues layeredBrick(const std::vector<NearPart>& parts, cases::Tissue rest, bool nearest,
+[[nodiscard]] LayeredBrick layeredBrick(const std::vector<NearPart>& parts, cases::Tissue rest, bool nearest,
                                         double unitMm);
 
 }  // namespace handpiece::field

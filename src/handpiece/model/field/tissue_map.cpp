@@ -9,21 +9,21 @@ using core::Vec3;
 
 TissueMap::TissueMap(const DistanceField& grid) {
     const FieldView view = grid.view();
-    std::size_t dense = 1;
     for (int k = 0; k < 3; ++k) {
         originMm_[k] = view.originMm[k];
         bricks_[k] = view.bricks[k];
-        dense *= static_cast<std::size_t>(view.bricks[k]);
     }
     voxelMm_ = view.voxelMm;
     unitMm_ = voxelMm_ / kUnitsAVoxel;
-    uniform_.assign(dense, static_cast<std::uint8_t>(cases::Tissue::none));
-    mixed_.assign(dense, -1);
 }
 
 TissueMap TissueMap::uniform(const DistanceField& grid, cases::Tissue tissue) {
     TissueMap map(grid);
-    std::fill(map.uniform_.begin(), map.uniform_.end(), static_cast<std::uint8_t>(tissue));
+    const FieldStorage& s = grid.storage();
+    auto nodes = std::make_shared<BrickTissues>(s.coarse.size());
+    for (std::size_t i = 0; i < s.coarse.size(); ++i)
+        if (s.brickIndex[i] >= 0 || s.coarse[i] < 0.0f) nodes->setUniform(i, static_cast<std::uint8_t>(tissue));
+    map.nodes_ = std::move(nodes);
     return map;
 }
 
@@ -34,13 +34,9 @@ bool TissueMap::isOn(const DistanceField& grid) const noexcept {
     return view.voxelMm == voxelMm_;
 }
 
-const std::uint8_t* TissueMap::nodes(std::uint32_t dense) const noexcept {
-    return mixed_[dense] < 0 ? nullptr : &nodes_[static_cast<std::size_t>(mixed_[dense]) * kBrickValues];
-}
-
 TissueMap::Layers TissueMap::layers(std::uint32_t dense) const noexcept {
-    if (mixed_[dense] < 0) return {{}, static_cast<cases::Tissue>(uniform_[dense])};
-    const LayerRange& range = ranges_[static_cast<std::size_t>(mixed_[dense])];
+    if (!nodes_->isMixed(dense)) return {{}, ofBrick(dense)};
+    const LayerRange& range = ranges_[(nodes_->start[dense] - BrickTissues::kShared) / kBrickValues];
     return {std::span(layers_).subspan(range.first, range.count), range.rest};
 }
 
@@ -69,18 +65,6 @@ cases::Tissue TissueMap::at(const Vec3& p) const noexcept {
         if (value < 0.0) return layer.tissue;
     }
     return all.rest;
-}
-
-std::vector<cases::Tissue> TissueMap::tissues() const {
-    bool seen[256] = {};
-    for (std::size_t i = 0; i < uniform_.size(); ++i)
-        if (mixed_[i] < 0) seen[uniform_[i]] = true;
-    for (const std::uint8_t tissue : nodes_)
-        seen[tissue] = true;
-    std::vector<cases::Tissue> found;
-    for (std::size_t i = 1; i < cases::kTissueCount; ++i)
-        if (seen[i]) found.push_back(static_cast<cases::Tissue>(i));
-    return found;
 }
 
 }  // namespace handpiece::field

@@ -5,17 +5,17 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "handpiece/base/core/progress.h"
 #include "handpiece/base/core/vec.h"
-#include "handpiece/model/case/tissue.h"
-#include "handpiece/model/field/field_view.h"
+#include "handpiece/model/field/brick_tissues.h"
 
 namespace handpiece::field {
 
-struct BrickTissues;
+struct LayeredBrick;
 struct PartSurface;
 class DistanceField;
 
@@ -49,10 +49,10 @@ class TissueMap {
     [[nodiscard]] cases::Tissue at(const core::Vec3& p) const noexcept;
     /// Tissue of the whole brick, or none when it is mixed.
     [[nodiscard]] cases::Tissue ofBrick(std::uint32_t dense) const noexcept {
-        return mixed_[dense] < 0 ? static_cast<cases::Tissue>(uniform_[dense]) : cases::Tissue::none;
+        return nodes_->isMixed(dense) ? cases::Tissue::none : static_cast<cases::Tissue>(*nodes_->of(dense));
     }
-    /// Tissue of each node of a mixed brick (index x + 9 y + 81 z); null for a uniform one.
-    [[nodiscard]] const std::uint8_t* nodes(std::uint32_t dense) const noexcept;
+    /// Of every node: what a field of the same bricks is to hold as well.
+    [[nodiscard]] const std::shared_ptr<const BrickTissues>& nodes() const noexcept { return nodes_; }
 
     /// A part's surface in a mixed brick: signed distance = unit x value, negative inside, at the nodes.
     struct Layer {
@@ -68,8 +68,7 @@ class TissueMap {
     [[nodiscard]] double unitMm() const noexcept { return unitMm_; }
     /// True when it was made on a grid of the same bricks.
     [[nodiscard]] bool isOn(const DistanceField& grid) const noexcept;
-    /// Tissues that occur anywhere.
-    [[nodiscard]] std::vector<cases::Tissue> tissues() const;
+    [[nodiscard]] std::vector<cases::Tissue> tissues() const { return nodes_->tissues(); }
 
     /// Layers hold distances in this fraction of a voxel.
     static constexpr int kUnitsAVoxel = 32;
@@ -78,19 +77,17 @@ class TissueMap {
     friend class TissueStorage;
     explicit TissueMap(const DistanceField& grid);
     /// Lays the bricks, by dense index, one after the other.
-    void assemble(std::vector<BrickTissues> bricks);
+    void assemble(std::vector<LayeredBrick> bricks);
 
     core::Vec3 originMm_ = core::Vec3::Zero();
     double voxelMm_ = 0.0, unitMm_ = 0.0;
     std::int32_t bricks_[3] = {0, 0, 0};
-    std::vector<std::uint8_t> uniform_;  ///< by dense brick
-    std::vector<std::int32_t> mixed_;    ///< by dense brick: index into the mixed ones, or -1
-    std::vector<std::uint8_t> nodes_;    ///< kBrickValues a mixed brick
+    std::shared_ptr<const BrickTissues> nodes_;
     struct LayerRange {
         std::uint32_t first, count;
         cases::Tissue rest;
     };
-    std::vector<LayerRange> ranges_;  ///< by mixed brick
+    std::vector<LayerRange> ranges_;  ///< by mixed brick, as their nodes lie
     std::vector<Layer> layers_;
     std::vector<std::int8_t> values_;
 };

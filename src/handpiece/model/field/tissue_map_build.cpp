@@ -88,29 +88,30 @@ void nodeDistances(const Grid& grid, const std::array<std::int32_t, 3>& brick, c
 
 }  // namespace
 
-void TissueMap::assemble(std::vector<BrickTissues> bricks) {
+void TissueMap::assemble(std::vector<LayeredBrick> bricks) {
     std::size_t mixed = 0, layers = 0;
-    for (const BrickTissues& brick : bricks) {
+    for (const LayeredBrick& brick : bricks) {
         mixed += brick.layers != nullptr;
         layers += brick.layers ? brick.layers->tissues.size() : 0;
     }
-    nodes_.reserve(mixed * kBrickValues);
+    auto nodes = std::make_shared<BrickTissues>(bricks.size());
+    nodes->nodes.reserve(BrickTissues::kShared + mixed * kBrickValues);
     ranges_.reserve(mixed);
     layers_.reserve(layers);
     values_.reserve(layers * kBrickValues);  // and so layers may point into it at once
     for (std::size_t i = 0; i < bricks.size(); ++i) {
-        uniform_[i] = static_cast<std::uint8_t>(bricks[i].uniform);
+        nodes->setUniform(i, static_cast<std::uint8_t>(bricks[i].uniform));
         if (!bricks[i].layers) continue;
         const BrickLayers& brick = *bricks[i].layers;
-        mixed_[i] = static_cast<std::int32_t>(ranges_.size());
         ranges_.push_back(
             {static_cast<std::uint32_t>(layers_.size()), static_cast<std::uint32_t>(brick.tissues.size()), brick.rest});
-        nodes_.insert(nodes_.end(), brick.nodes.begin(), brick.nodes.end());
+        nodes->addMixed(i, brick.nodes.data());
         for (std::size_t k = 0; k < brick.tissues.size(); ++k)
             layers_.push_back({brick.tissues[k], values_.data() + values_.size() + k * kBrickValues});
         values_.insert(values_.end(), brick.values.begin(), brick.values.end());
         bricks[i].layers.reset();
     }
+    nodes_ = std::move(nodes);
 }
 
 TissueMap TissueMap::fromFunctions(const DistanceField& field, std::span<const PartFunction> given,
@@ -118,7 +119,7 @@ TissueMap TissueMap::fromFunctions(const DistanceField& field, std::span<const P
     TissueMap map(field);
     const Grid grid(field);
     const std::vector<PartFunction> parts = byPriority(given);
-    std::vector<BrickTissues> bricks(map.uniform_.size());
+    std::vector<LayeredBrick> bricks(field.storage().coarse.size());
     core::parallelFor(bricks.size(), 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (!grid.matters(i)) continue;
@@ -161,7 +162,7 @@ TissueMap TissueMap::fromParts(const DistanceField& field, std::span<const PartS
         surfaces.emplace_back(*part.tree);
     core::report(progress, 0.05);
 
-    std::vector<BrickTissues> bricks(map.uniform_.size());
+    std::vector<LayeredBrick> bricks(field.storage().coarse.size());
     std::atomic<std::size_t> done{0};
     // Row by row, each search starting from the last one's triangle: rows, not pieces of work, so that ties fall alike.
     core::parallelFor(grid.rows(), 1, [&](std::size_t begin, std::size_t end) {

@@ -63,7 +63,7 @@ void History::start(const tooth::StateDelta& state) {
     done_ = memoryBytes_ = 0;
     removedMm3_ = state.removedMm3;
     for (const tooth::StateDelta::Brick& brick : state.bricks) {
-        if (brick.whole) continue;
+        if (brick.uncut) continue;
         const auto& packed = now_[brick.dense] = pack(brick.values.data());
         memoryBytes_ += packed.capacity() + kNodeBytes;
     }
@@ -110,8 +110,8 @@ tooth::StateDelta History::unpacked(const Step& step) {
     for (const auto& [dense, packed] : step.bricks) {
         tooth::StateDelta::Brick& brick = change.bricks[i++];
         brick.dense = dense;
-        brick.whole = packed.empty();
-        if (brick.whole) {
+        brick.uncut = packed.empty();
+        if (brick.uncut) {
             brick.values.fill(0.0f);
         } else {
             unpack(packed, brick.values.data());
@@ -128,7 +128,7 @@ tooth::StateDelta History::step(std::size_t index) const {
 void History::append(const tooth::StateDelta& otherSide, bool isDone) {
     Step step;
     for (const tooth::StateDelta::Brick& brick : otherSide.bricks)
-        step.bricks[brick.dense] = brick.whole ? Packed{} : pack(brick.values.data());
+        step.bricks[brick.dense] = brick.uncut ? Packed{} : pack(brick.values.data());
     step.removedMm3 = otherSide.removedMm3;
     memoryBytes_ += bytesOf(step);
     steps_.push_back(std::move(step));
@@ -157,7 +157,7 @@ std::optional<tooth::StateDelta> History::redo() {
 std::optional<tooth::StateDelta> History::reset() {
     Step step;
     for (const auto& [dense, packed] : now_)
-        if (!packed.empty()) step.bricks[dense];  // the other side: whole
+        if (!packed.empty()) step.bricks[dense];  // the other side: uncut
     if (step.bricks.empty()) return std::nullopt;
     tooth::StateDelta change = exchange(step);
     for (const auto& [dense, packed] : step.bricks)

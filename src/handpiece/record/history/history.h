@@ -11,7 +11,7 @@
 #include <set>
 #include <vector>
 
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
 
 namespace handpiece::history {
 
@@ -28,14 +28,14 @@ class BrickSource {
 /// The mirror as a source.
 class MirrorSource final : public BrickSource {
   public:
-    explicit MirrorSource(const tooth::CutMirror& mirror) : mirror_(mirror) {}
+    explicit MirrorSource(const tooth::ToothMirror& mirror) : mirror_(mirror) {}
     [[nodiscard]] bool isChanged(std::uint32_t dense) const override { return mirror_.isChanged(dense); }
     [[nodiscard]] const float* values(std::uint32_t dense, float* scratch) const override {
         return mirror_.values(dense, scratch);
     }
 
   private:
-    const tooth::CutMirror& mirror_;
+    const tooth::ToothMirror& mirror_;
 };
 
 struct HistorySettings {
@@ -66,7 +66,7 @@ class History {
     /// is nothing to undo. To be put into the field (in the tick, in chunks) and into the mirror.
     [[nodiscard]] std::optional<tooth::StateDelta> undo();
     [[nodiscard]] std::optional<tooth::StateDelta> redo();
-    /// What makes the tooth whole; a step that can be undone. None when it is whole.
+    /// What makes the tooth uncut; a step that can be undone. None when it is uncut.
     [[nodiscard]] std::optional<tooth::StateDelta> reset();
 
     // To be kept and put together again, on a tooth in the same state.
@@ -94,7 +94,7 @@ class History {
     static std::size_t bytesOf(const Step& step);
 
     HistorySettings settings_;
-    std::map<std::uint32_t, Packed> now_;  ///< bricks that differ from the whole tooth, after the last step done
+    std::map<std::uint32_t, Packed> now_;  ///< bricks that differ from the uncut tooth, after the last step done
     tooth::TissueVolumes removedMm3_{};
     std::deque<Step> steps_;  ///< done ones first
     std::size_t done_ = 0, memoryBytes_ = 0;

@@ -81,12 +81,12 @@ std::optional<double> firstChange(const Cubic& f, double length, bool inside) {
 
 }  // namespace
 
-FieldRay::FieldRay(const tooth::CutMirror& mirror)
+FieldRay::FieldRay(const tooth::ToothMirror& mirror)
     : mirror_(mirror),
-      whole_(mirror.base().tooth->field),
-      view_(whole_.view()),
+      uncut_(mirror.model().field),
+      view_(uncut_.view()),
       originMm_(view_.originMm[0], view_.originMm[1], view_.originMm[2]),
-      bandMm_(std::min(mirror.base().settings.bandMm, whole_.settings().bandInMm)) {}
+      bandMm_(std::min(mirror.model().settings.bandMm, uncut_.settings().bandInMm)) {}
 
 const float* FieldRay::nodes(std::uint32_t dense) const {
     if (mirror_.isChanged(dense)) return mirror_.values(dense, nullptr);
@@ -124,10 +124,10 @@ std::optional<double> FieldRay::valueAt(const Vec3& u) const {
 double FieldRay::signedDistanceMm(const Vec3& p) const {
     const Vec3 u = (p - originMm_) * view_.inverseVoxelMm;
     if (const std::optional<double> value = valueAt(u)) return std::max(*value, -bandMm_);
-    if (!isInGrid(u)) return whole_.distance(p);
+    if (!isInGrid(u)) return uncut_.distance(p);
     // What is far from the surface stays so until its brick is cut; then it has nodes.
     if (isDeep(placeOf(u).dense)) return -bandMm_;
-    return std::max(whole_.settings().bandOutMm, whole_.distance(p));
+    return std::max(uncut_.settings().bandOutMm, uncut_.distance(p));
 }
 
 Vec3 FieldRay::normal(const Vec3& p) const {

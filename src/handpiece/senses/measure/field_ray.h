@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "handpiece/base/core/vec.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
 
 namespace handpiece::measure {
 
@@ -14,7 +14,7 @@ namespace handpiece::measure {
 /// while nobody feeds the mirror.
 class FieldRay {
   public:
-    explicit FieldRay(const tooth::CutMirror& mirror);
+    explicit FieldRay(const tooth::ToothMirror& mirror);
 
     /// Nodes of a brick; null where none are held: all of it lies deep inside or far outside.
     [[nodiscard]] const float* nodes(std::uint32_t dense) const;
@@ -39,8 +39,8 @@ class FieldRay {
     [[nodiscard]] Place placeOf(const core::Vec3& u) const;
     [[nodiscard]] std::optional<double> valueAt(const core::Vec3& u) const;
 
-    const tooth::CutMirror& mirror_;
-    const field::DistanceField& whole_;
+    const tooth::ToothMirror& mirror_;
+    const field::DistanceField& uncut_;
     field::FieldView view_;
     core::Vec3 originMm_;
     double bandMm_;  ///< how deep under the surface values are distances

@@ -20,12 +20,14 @@ double distance2(const core::Box& box, const Vec3& p) {
     return (box.min - p).cwiseMax(p - box.max).cwiseMax(Vec3::Zero()).squaredNorm();
 }
 
-void addPoints(const tooth::CuttableTooth& base, std::uint32_t dense, std::vector<Vec3>& points) {
+void addPoints(const tooth::ToothModel& base, std::uint32_t dense, std::vector<Vec3>& points) {
     constexpr auto kPulp = static_cast<std::uint8_t>(Tissue::pulp);
     constexpr int kWays[6][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}};
-    const field::FieldView view = base.tooth->field.view();
-    const std::uint8_t* nodes = base.tissues.nodes(dense);
-    if (nodes == nullptr || std::find(nodes, nodes + field::kBrickValues, kPulp) == nodes + field::kBrickValues) return;
+    const field::FieldView view = base.field.view();
+    const std::uint8_t* nodes = base.tissues.nodes()->of(dense);
+    if (!base.tissues.nodes()->isMixed(dense) ||
+        std::find(nodes, nodes + field::kBrickValues, kPulp) == nodes + field::kBrickValues)
+        return;
     for (int z = 0; z < kBrickCells; ++z)
         for (int y = 0; y < kBrickCells; ++y)
             for (int x = 0; x < kBrickCells; ++x)
@@ -56,8 +58,8 @@ Vec3 nodeMm(const field::FieldView& view, std::uint32_t dense, int x, int y, int
     return p;
 }
 
-PulpSurface::PulpSurface(const tooth::CuttableTooth& base) {
-    const field::FieldView view = base.tooth->field.view();
+PulpSurface::PulpSurface(const tooth::ToothModel& base) {
+    const field::FieldView view = base.field.view();
     const std::uint32_t perLayer =
         static_cast<std::uint32_t>(view.bricks[0]) * static_cast<std::uint32_t>(view.bricks[1]);
     std::vector<std::vector<std::vector<Vec3>>> layers(static_cast<std::size_t>(view.bricks[2]));

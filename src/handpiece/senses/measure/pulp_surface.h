@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "handpiece/base/core/vec.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_model.h"
 
 namespace handpiece::measure {
 
@@ -16,7 +16,7 @@ namespace handpiece::measure {
 class PulpSurface {
   public:
     /// In parallel; the same points at any thread count.
-    explicit PulpSurface(const tooth::CuttableTooth& base);
+    explicit PulpSurface(const tooth::ToothModel& base);
 
     [[nodiscard]] bool isEmpty() const { return points_.empty(); }
     /// Distance to the nearest point; infinite when none lies within `boundMm`.

@@ -20,11 +20,6 @@ using field::kBrickNodes;
 
 constexpr double kMaxPixels = 64e6;
 
-std::size_t brickCount(const field::FieldView& view) {
-    return static_cast<std::size_t>(view.bricks[0]) * static_cast<std::size_t>(view.bricks[1]) *
-           static_cast<std::size_t>(view.bricks[2]);
-}
-
 /// Calls found(low, high, lowNode, highNode) for the edges of a brick's cells that begin at nodes 0..7.
 template <class Found>
 void eachEdge(const Found& found) {
@@ -45,7 +40,7 @@ bool isUnit(const Vec3& v) {
 }  // namespace
 
 struct ToothProbe::State {
-    explicit State(const tooth::CutMirror& m) : mirror(m), base(m.base()), field(m) {}
+    explicit State(const tooth::ToothMirror& m) : mirror(m), base(m.model()), field(m) {}
 
     /// Null when the tooth has no pulp. Made when first asked for.
     const PulpSurface* pulp() {
@@ -54,24 +49,24 @@ struct ToothProbe::State {
     }
     /// Farther than a voxel inside the surface before any cut.
     [[nodiscard]] bool wasDeep(const Vec3& p) const {
-        const field::DistanceField& whole = base.tooth->field;
-        return whole.distance(p) < (whole.isFine(p) ? -whole.settings().voxelMm : 0.0);
+        const field::DistanceField& uncut = base.field;
+        return uncut.distance(p) < (uncut.isFine(p) ? -uncut.settings().voxelMm : 0.0);
     }
     /// What a ray along `inward` meets at a point of the surface.
     [[nodiscard]] Tissue under(const Vec3& p, const Vec3& inward) const {
-        const double voxel = base.tooth->field.settings().voxelMm;
+        const double voxel = base.field.settings().voxelMm;
         for (const double depth : {0.5, 1.0, 1.5})
             if (const Tissue t = base.tissues.at(p + depth * voxel * inward); t != Tissue::none) return t;
-        return base.tooth->field.tissueAt(p);
+        return base.field.tissueAt(p);
     }
 
-    const tooth::CutMirror& mirror;
-    const tooth::CuttableTooth& base;
+    const tooth::ToothMirror& mirror;
+    const tooth::ToothModel& base;
     FieldRay field;
     std::unique_ptr<PulpSurface> pulpSurface;
 };
 
-ToothProbe::ToothProbe(const tooth::CutMirror& mirror) : state_(std::make_unique<State>(mirror)) {}
+ToothProbe::ToothProbe(const tooth::ToothMirror& mirror) : state_(std::make_unique<State>(mirror)) {}
 ToothProbe::~ToothProbe() = default;
 
 double ToothProbe::signedDistanceMm(const Vec3& pointMm) const {
@@ -98,7 +93,7 @@ std::optional<Hit> ToothProbe::cast(const Vec3& originMm, const Vec3& direction,
 
 std::optional<Hit> ToothProbe::castUncut(const Vec3& originMm, const Vec3& direction, double farMm) const {
     if (!originMm.allFinite() || !isUnit(direction) || !(farMm > 0.0)) return {};
-    const geometry::TriangleTree& tree = state_->base.tooth->tree;
+    const geometry::TriangleTree& tree = state_->base.tree;
     const geometry::RayMeeting met = tree.firstMeeting(originMm, direction, farMm);
     if (met.triangle == geometry::kNoTriangle) return {};
     Hit hit;
@@ -112,12 +107,12 @@ std::optional<Hit> ToothProbe::castUncut(const Vec3& originMm, const Vec3& direc
 }
 
 double ToothProbe::depthBelowUncutMm(const Vec3& pointMm) const {
-    return -state_->base.tooth->tree.signedDistance(pointMm);
+    return -state_->base.tree.signedDistance(pointMm);
 }
 
 std::optional<double> ToothProbe::depthAlongMm(const Vec3& pointMm, const Vec3& towards) const {
     if (!pointMm.allFinite() || !isUnit(towards)) return {};
-    const geometry::TriangleTree& tree = state_->base.tooth->tree;
+    const geometry::TriangleTree& tree = state_->base.tree;
     if (tree.signedDistance(pointMm) >= 0.0) return 0.0;
     const geometry::RayMeeting met = tree.firstMeeting(pointMm, towards);
     if (met.triangle == geometry::kNoTriangle) return {};
@@ -137,7 +132,7 @@ std::optional<ToothProbe::Thinnest> ToothProbe::thinnestOverPulp() const {
     if (pulp == nullptr) return {};
     const field::FieldView& view = s.field.view();
     std::vector<std::uint32_t> changed;
-    for (std::uint32_t dense = 0; dense < brickCount(view); ++dense)
+    for (std::uint32_t dense = 0; dense < s.base.field.storage().coarse.size(); ++dense)
         if (s.mirror.isChanged(dense)) changed.push_back(dense);
     // Each brick's own thinnest place: what is farther than that found so far costs next to nothing.
     std::vector<std::optional<Thinnest>> found(changed.size());
@@ -179,7 +174,7 @@ Section ToothProbe::section(const Vec3& normal, double offsetMm, double mmPerPix
     section.vAxis = (up - n * n.dot(up)).normalized();
     section.uAxis = section.vAxis.cross(n);
     section.mmPerPixel = mmPerPixel;
-    const core::Box box = state_->base.tooth->field.bounds();
+    const core::Box box = state_->base.field.bounds();
     double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 p((corner & 1) != 0 ? box.max.x() : box.min.x(), (corner & 2) != 0 ? box.max.y() : box.min.y(),
@@ -212,15 +207,15 @@ Section ToothProbe::section(const Vec3& normal, double offsetMm, double mmPerPix
 
 std::vector<float> ToothProbe::removedDepths(const std::vector<std::array<float, 3>>& verticesMm) const {
     std::vector<float> depths(verticesMm.size(), 0.0f);
-    const field::DistanceField& whole = state_->base.tooth->field;
-    const geometry::TriangleTree& tree = state_->base.tooth->tree;
-    const double nearby = 0.25 * whole.settings().voxelMm;
+    const field::DistanceField& uncut = state_->base.field;
+    const geometry::TriangleTree& tree = state_->base.tree;
+    const double nearby = 0.25 * uncut.settings().voxelMm;
     core::parallelFor(verticesMm.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Vec3 p(static_cast<double>(verticesMm[i][0]), static_cast<double>(verticesMm[i][1]),
                          static_cast<double>(verticesMm[i][2]));
             // Most of a tooth is as it was: a surface that is the field's own is not measured against the triangles.
-            if (!p.allFinite() || (whole.isFine(p) && whole.distance(p) > -nearby)) continue;
+            if (!p.allFinite() || (uncut.isFine(p) && uncut.distance(p) > -nearby)) continue;
             depths[i] = static_cast<float>(std::max(0.0, -tree.signedDistance(p)));
         }
     });

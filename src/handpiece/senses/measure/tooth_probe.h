@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "handpiece/base/core/vec.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
 
 namespace handpiece::measure {
 
@@ -35,7 +35,7 @@ struct Section {
 /// The tooth as `mirror` has it. One thread, the one that feeds the mirror.
 class ToothProbe {
   public:
-    explicit ToothProbe(const tooth::CutMirror& mirror);
+    explicit ToothProbe(const tooth::ToothMirror& mirror);
     ~ToothProbe();
     ToothProbe(const ToothProbe&) = delete;
     ToothProbe& operator=(const ToothProbe&) = delete;

@@ -8,7 +8,7 @@
 
 #include "handpiece/base/core/vec.h"
 #include "handpiece/model/field/distance_field.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
 
 namespace handpiece::surface {
 
@@ -65,8 +65,8 @@ class FieldSource final : public BrickSource {
 /// A tooth that is being cut, as its mirror has it.
 class MirrorSource final : public BrickSource {
   public:
-    explicit MirrorSource(const tooth::CutMirror& mirror)
-        : mirror_(mirror), view_(mirror.base().tooth->field.view()), grid_(gridOf(view_)) {}
+    explicit MirrorSource(const tooth::ToothMirror& mirror)
+        : mirror_(mirror), view_(mirror.model().field.view()), grid_(gridOf(view_)) {}
     [[nodiscard]] const BrickGrid& grid() const override { return grid_; }
     [[nodiscard]] bool mayHoldSurface(std::uint32_t dense) const override {
         return view_.brickIndex[dense] >= 0 || mirror_.isChanged(dense);
@@ -76,7 +76,7 @@ class MirrorSource final : public BrickSource {
     }
 
   private:
-    const tooth::CutMirror& mirror_;
+    const tooth::ToothMirror& mirror_;
     field::FieldView view_;
     BrickGrid grid_;
 };

@@ -10,7 +10,6 @@
 #include "handpiece/tick/contact/exact/off_axis_medial_search.h"
 #include "handpiece/tick/contact/exact/outline_search.h"
 #include "handpiece/tick/contact/sampled/field_depth.h"
-#include "handpiece/tick/contact/sampled/live_field.h"
 #include "handpiece/tick/contact/sampled/surface_sampler.h"
 
 namespace handpiece::contact {
@@ -31,25 +30,25 @@ constexpr std::size_t kSpineBalls = 8;
 
 class FieldMethod final : public Method {
   public:
-    FieldMethod(std::shared_ptr<const tooth::Tooth> tooth, std::shared_ptr<const tooth::CutField> cut,
+    FieldMethod(std::shared_ptr<const tooth::ToothModel> tooth, std::shared_ptr<const tooth::ToothState> cut,
                 std::shared_ptr<const instrument::Bur> bur, const FieldMethodSettings& settings)
         : tooth_(std::move(tooth)),
           cut_(std::move(cut)),
           bur_(std::move(bur)),
           settings_(settings),
-          live_(cut_ ? LiveField(*cut_) : LiveField(tooth_->field)),
+          live_(cut_ ? cut_->field() : tooth_->field),
           surface_(tooth_->tree, tooth_->field, core::simdLevel()),
           outline_(*bur_, core::simdLevel()),
           axis_(*bur_),
           sheets_(*bur_, tooth_->field, core::simdLevel()),
-          feeler_(cut_ ? instrument::filleted(*bur_, kFeelerFilletVoxels * live_.field.settings().voxelMm) : *bur_),
+          feeler_(cut_ ? instrument::filleted(*bur_, kFeelerFilletVoxels * live_.settings().voxelMm) : *bur_),
           rings_(live_, feeler_, core::simdLevel()),
           sharpRings_(feeler_.profile().pieces.size() != bur_->profile().pieces.size()
                           ? std::make_unique<SurfaceSampler>(live_, *bur_, core::simdLevel())
                           : nullptr),
           field_(live_, feeler_, core::simdLevel()),
-          slackMm_(cut_ ? std::max(kMinSlackMm, kSlackShare * live_.field.settings().voxelMm *
-                                                    live_.field.settings().voxelMm / (0.5 * bur_->maxRadiusMm()))
+          slackMm_(cut_ ? std::max(kMinSlackMm, kSlackShare * live_.settings().voxelMm * live_.settings().voxelMm /
+                                                    (0.5 * bur_->maxRadiusMm()))
                         : 0.0),
           farthestMm_(std::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {
         for (const instrument::MedialCurve& curve : bur_->medialAxis())
@@ -72,10 +71,9 @@ class FieldMethod final : public Method {
         if (settings_.depthSource == DepthSource::field || isCutNear(burInTooth))
             depthInField(burInTooth, result);
         else
-            depthOfWhole(burInTooth, result);
+            depthOfUncut(burInTooth, result);
         if (result.status == Status::ok)
-            result.tissue =
-                live_.field.tissueAt(result.toothPointMm - 0.5 * live_.field.settings().voxelMm * result.normal);
+            result.tissue = live_.tissueAt(result.toothPointMm - 0.5 * live_.settings().voxelMm * result.normal);
         return result;
     }
 
@@ -84,12 +82,12 @@ class FieldMethod final : public Method {
         // Each ball of the bur with its centre in the tooth promises a depth: the field tells at most how deep it is.
         for (const instrument::MedialBall& ball : spine_) {
             const Vec3 centre = burInTooth.apply(Vec3(0.0, 0.0, ball.zMm));
-            const double inside = -live_.field.distance(centre), promised = ball.radiusMm + inside;
+            const double inside = -live_.distance(centre), promised = ball.radiusMm + inside;
             if (!(inside > 0.0 && promised > enoughMm)) continue;
             Depth result;
             result.depthMm = promised;
             result.toothPointMm = centre;
-            result.tissue = live_.field.tissueAt(centre);
+            result.tissue = live_.tissueAt(centre);
             result.status = Status::ok;
             return result;
         }
@@ -127,7 +125,7 @@ class FieldMethod final : public Method {
     [[nodiscard]] std::uint64_t toothVersion() const noexcept override { return live_.version(); }
 
     [[nodiscard]] bool isCutNear(const core::Pose& burInTooth) const noexcept override {
-        return cut_ && burInTooth.isValid() && cut_->isCutNear(boxAround(BurFrame(burInTooth), live_.outMm()));
+        return cut_ && burInTooth.isValid() && cut_->isCutNear(boxAround(BurFrame(burInTooth), live_.reach().outMm));
     }
 
     void reset() noexcept override {
@@ -155,9 +153,9 @@ class FieldMethod final : public Method {
         return frame.boxAround(bur_->lengthMm(), bur_->maxRadiusMm(), byMm);
     }
 
-    /// From the triangles of the whole tooth. Cutting takes away only: where a cut may change the answer it remains a
+    /// From the triangles of the uncut tooth. Cutting takes away only: where a cut may change the answer it remains a
     /// bound.
-    void depthOfWhole(const core::Pose& burInTooth, Depth& result) noexcept {
+    void depthOfUncut(const core::Pose& burInTooth, Depth& result) noexcept {
         const BurFrame frame(burInTooth);
         BallDepth best;
         const bool outsideKnown = outline_.isFit(), apart = outsideKnown && outline_.search(surface_, frame, best);
@@ -178,7 +176,7 @@ class FieldMethod final : public Method {
         result.normal = distance > kNoDirectionMm ? Vec3(away / distance) : surface_.outward(best);
     }
 
-    /// Apart: the point of the whole tooth that is nearest may have been cut away.
+    /// Apart: the point of the uncut tooth that is nearest may have been cut away.
     [[nodiscard]] bool isGone(const BurFrame& frame, const BallDepth& best) const noexcept {
         return cut_->isCutNear({best.surfaceMm, best.surfaceMm}) && cut_->isCutNear(boxAround(frame, -best.depthMm));
     }
@@ -186,8 +184,8 @@ class FieldMethod final : public Method {
     void depthInField(const core::Pose& burInTooth, Depth& result) noexcept {
         // The nearest that the tooth can be to the ball about the bur.
         const Vec3 middle = burInTooth.apply(Vec3(0.0, 0.0, 0.5 * bur_->lengthMm()));
-        const double clear = live_.field.distance(middle) - std::hypot(0.5 * bur_->lengthMm(), bur_->maxRadiusMm());
-        if (clear > live_.outMm()) {
+        const double clear = live_.distance(middle) - std::hypot(0.5 * bur_->lengthMm(), bur_->maxRadiusMm());
+        if (clear > live_.reach().outMm) {
             result.depthMm = std::max(-clear, -settings_.reachMm);
             setFar(burInTooth, clear);
             return;
@@ -204,11 +202,11 @@ class FieldMethod final : public Method {
         result.normal = found.normal;
     }
 
-    std::shared_ptr<const tooth::Tooth> tooth_;
-    std::shared_ptr<const tooth::CutField> cut_;  ///< null: the tooth is never cut
+    std::shared_ptr<const tooth::ToothModel> tooth_;
+    std::shared_ptr<const tooth::ToothState> cut_;  ///< null: the tooth is never cut
     std::shared_ptr<const instrument::Bur> bur_;
     FieldMethodSettings settings_;
-    LiveField live_;
+    const field::DistanceField& live_;
     ExactSurface surface_;
     OutlineSearch outline_;
     AxisSearch axis_;
@@ -234,19 +232,18 @@ void check(bool isThere, const FieldMethodSettings& settings) {
 
 }  // namespace
 
-std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::Tooth> tooth,
+std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::ToothModel> tooth,
                                         std::shared_ptr<const instrument::Bur> bur,
                                         const FieldMethodSettings& settings) {
     check(tooth && bur, settings);
     return std::make_unique<FieldMethod>(std::move(tooth), nullptr, std::move(bur), settings);
 }
 
-std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::CutField> tooth,
+std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::ToothState> tooth,
                                         std::shared_ptr<const instrument::Bur> bur,
                                         const FieldMethodSettings& settings) {
     check(tooth && bur, settings);
-    std::shared_ptr<const tooth::Tooth> whole = tooth->base().tooth;
-    return std::make_unique<FieldMethod>(std::move(whole), std::move(tooth), std::move(bur), settings);
+    return std::make_unique<FieldMethod>(tooth->modelShared(), std::move(tooth), std::move(bur), settings);
 }
 
 }  // namespace handpiece::contact

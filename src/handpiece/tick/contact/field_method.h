@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "handpiece/model/instrument/bur.h"
-#include "handpiece/model/tooth/cut_field.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/tooth/tooth_model.h"
+#include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/tick/contact/method.h"
 
 namespace handpiece::contact {
@@ -23,7 +23,7 @@ struct FieldMethodSettings {
     double reachMm = 5.0;  ///< farther apart than this is "beyond reach"
 };
 
-[[nodiscard]] std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::Tooth> tooth,
+[[nodiscard]] std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::ToothModel> tooth,
                                                       std::shared_ptr<const instrument::Bur> bur,
                                                       const FieldMethodSettings& settings = {});
 
@@ -33,7 +33,7 @@ struct FieldMethodSettings {
 /// A field that has been cut sees no farther out than its band. When it sees nothing, or when what was nearest has been
 /// cut away, the depth is Status::beyondReach and depthMm minus a distance that is surely free, not minus the reach.
 /// Deeper in than the band and the bur's radius the depth is what the bricks' centres promise, at least.
-[[nodiscard]] std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::CutField> tooth,
+[[nodiscard]] std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::ToothState> tooth,
                                                       std::shared_ptr<const instrument::Bur> bur,
                                                       const FieldMethodSettings& settings = {});
 

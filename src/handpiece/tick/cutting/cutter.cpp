@@ -29,7 +29,7 @@ struct Resistance {
 }  // namespace
 
 struct Cutter::State {
-    State(std::shared_ptr<tooth::CutField> cutField, std::shared_ptr<const instrument::Bur> theBur,
+    State(std::shared_ptr<tooth::ToothState> cutField, std::shared_ptr<const instrument::Bur> theBur,
           const instrument::CuttingParameters& theCuttingParameters, const cases::TissueTable& tissues,
           const Settings& theSettings)
         : field(std::move(cutField)),
@@ -110,7 +110,7 @@ struct Cutter::State {
         take(sweeper.sweepTo(cutter));
     }
 
-    std::shared_ptr<tooth::CutField> field;
+    std::shared_ptr<tooth::ToothState> field;
     std::shared_ptr<const instrument::Bur> bur;
     instrument::CuttingParameters cuttingParameters;
     Settings settings;
@@ -123,7 +123,7 @@ struct Cutter::State {
     CutResult result;
 };
 
-Cutter::Cutter(std::shared_ptr<tooth::CutField> field, std::shared_ptr<const instrument::Bur> bur,
+Cutter::Cutter(std::shared_ptr<tooth::ToothState> field, std::shared_ptr<const instrument::Bur> bur,
                const instrument::CuttingParameters& cuttingParameters, const cases::TissueTable& tissues,
                const Settings& settings)
     : state_(std::make_unique<State>(std::move(field), std::move(bur), cuttingParameters, tissues, settings)) {
@@ -170,11 +170,11 @@ const CutResult& Cutter::rest() noexcept {
     return s.result;
 }
 
-tooth::CutField& Cutter::field() noexcept {
+tooth::ToothState& Cutter::field() noexcept {
     return *state_->field;
 }
 
-const tooth::CutField& Cutter::field() const noexcept {
+const tooth::ToothState& Cutter::field() const noexcept {
     return *state_->field;
 }
 

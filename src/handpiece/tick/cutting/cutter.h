@@ -9,7 +9,7 @@
 #include "handpiece/base/core/vec.h"
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/model/instrument/cutting_parameters.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/tick/contact/method.h"
 
 namespace handpiece::cutting {
@@ -42,7 +42,7 @@ class Cutter {
     struct Settings {
         bool fullRemoval = false;  ///< take away all that the device's bur sweeps, whatever the load
     };
-    Cutter(std::shared_ptr<tooth::CutField> field, std::shared_ptr<const instrument::Bur> bur,
+    Cutter(std::shared_ptr<tooth::ToothState> field, std::shared_ptr<const instrument::Bur> bur,
            const instrument::CuttingParameters& cuttingParameters, const cases::TissueTable& tissues,
            const Settings& settings);
     ~Cutter();
@@ -54,8 +54,8 @@ class Cutter {
     /// The bur is not cutting in this tick: nothing is swept on the way to where it cuts next.
     const CutResult& rest() noexcept HANDPIECE_REALTIME;
 
-    [[nodiscard]] tooth::CutField& field() noexcept;
-    [[nodiscard]] const tooth::CutField& field() const noexcept;
+    [[nodiscard]] tooth::ToothState& field() noexcept;
+    [[nodiscard]] const tooth::ToothState& field() const noexcept;
     [[nodiscard]] double largestRadiusMm() const noexcept;  ///< of the bur
 
   private:

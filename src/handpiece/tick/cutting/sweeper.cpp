@@ -17,7 +17,6 @@ using field::kBrickValues;
 
 namespace {
 
-constexpr std::uint8_t kUnknown = 255, kMixed = 254;
 constexpr double kCoarseReachMm{tooth::kCoarseDepthMm};
 /// A brick's pieces are those of a region so much larger, and looked up again when the bur has moved as far.
 constexpr double kPiecesVoxels = 1.0;
@@ -80,12 +79,12 @@ struct Sweeper::GridInBur {
     }
 };
 
-Sweeper::Sweeper(tooth::CutField& field, const instrument::Bur& bur, core::SimdLevel level)
+Sweeper::Sweeper(tooth::ToothState& field, const instrument::Bur& bur, core::SimdLevel level)
     : field_(field),
       kernels_(kernelsFor(level)),
       voxelMm_(field.field().settings().voxelMm),
-      bandMm_(field.base().settings.bandMm),
-      bandOutMm_(field.base().bandOutMm),
+      bandMm_(field.model().settings.bandMm),
+      bandOutMm_(field.model().bandOutMm),
       lengthMm_(bur.lengthMm()),
       radiusMm_(bur.maxRadiusMm()),
       unitMm_(unitFor(bur, voxelMm_)),
@@ -102,9 +101,6 @@ Sweeper::Sweeper(tooth::CutField& field, const instrument::Bur& bur, core::SimdL
         nodes_->owned[i] = own ? -1 : 0;
     }
     simple_.list(~std::uint64_t{0} >> (64 - std::min<std::size_t>(64, simpleList_.size())), simpleList_.data());
-    const field::FieldView view = field.field().view();
-    const auto bricks = static_cast<std::size_t>(view.bricks[0]) * static_cast<std::size_t>(view.bricks[1]) *
-                        static_cast<std::size_t>(view.bricks[2]);
     const auto& pieces = bur.profile().pieces;
     for (std::size_t i = 0; i + 1 < pieces.size(); ++i) {
         if (instrument::jointBetween(pieces[i], pieces[i + 1]) != instrument::Joint::convex) continue;
@@ -113,11 +109,10 @@ Sweeper::Sweeper(tooth::CutField& field, const instrument::Bur& bur, core::SimdL
         corners_.push_back({before, after, std::abs(before.x() * after.y() - before.y() * after.x()),
                             i + 2 == pieces.size() && after.y() > 0.999});
     }
-    memory_.resize(bricks);
+    memory_.resize(field.field().storage().coarse.size());
     Dues never{};
     std::fill_n(never.steps, kSweepDues, kSweepMostWay);
     dues_.assign(field.field().brickCount(), never);
-    uniform_.assign(bricks, kUnknown);
     for (std::size_t k = 0; k < 3; ++k)
         pass_.offset[k] = nodes_->offset[k];
     pass_.owned = nodes_->owned;
@@ -176,16 +171,6 @@ bool Sweeper::rangeNear(const BurFrame& bur, double reachMm, std::int32_t (&low)
         high[k] = static_cast<std::int32_t>(std::min(last, view.bricks[k] - 1.0));
     }
     return true;
-}
-
-std::uint8_t Sweeper::uniformTissue(std::uint32_t dense, std::int32_t stored) noexcept {
-    std::uint8_t& known = uniform_[dense];
-    if (known != kUnknown) return known;
-    const std::uint8_t* tissues = field_.tissues(stored);
-    known = tissues[0];
-    for (int i = 1; i < kBrickValues; ++i)
-        if (tissues[i] != tissues[0]) known = kMixed;
-    return known;
 }
 
 /// The way at which the bur may have come `mm` nearer.
@@ -261,8 +246,9 @@ void Sweeper::visit(const GridInBur& grid, std::uint32_t dense, const std::int32
         dues.epoch = epoch_;
         std::fill_n(dues.steps, kSweepSteps, way_);
     }
-    brick.uniform = uniformTissue(dense, stored);
-    brick.tissue = brick.uniform == kMixed ? field_.tissues(stored) : nullptr;
+    const field::BrickTissues& tissues = *field_.field().storage().tissues;
+    brick.uniform = *tissues.of(dense);
+    brick.tissue = tissues.isMixed(dense) ? tissues.of(dense) : nullptr;
     brick.way = way_;
     brick.due = dues.steps;
     const SweepOutcome raised = kernels_.raise(pass_, brick, field_.values(stored), quanta_.data());

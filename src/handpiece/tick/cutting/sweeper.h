@@ -12,7 +12,7 @@
 #include "handpiece/base/core/simd.h"
 #include "handpiece/base/core/vec.h"
 #include "handpiece/model/instrument/bur.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/tick/contact/bur_frame.h"
 #include "handpiece/tick/cutting/outline_table.h"
 
@@ -24,7 +24,7 @@ namespace handpiece::cutting {
 /// Allocates at construction alone. One thread, that of the field.
 class Sweeper {
   public:
-    Sweeper(tooth::CutField& field, const instrument::Bur& bur, core::SimdLevel level);
+    Sweeper(tooth::ToothState& field, const instrument::Bur& bur, core::SimdLevel level);
 
     struct Outcome {
         tooth::TissueVolumes removedMm3{};
@@ -61,12 +61,11 @@ class Sweeper {
     void visit(const GridInBur& grid, std::uint32_t dense, const std::int32_t (&base)[3], Outcome& outcome) noexcept;
     [[nodiscard]] OutlineTable::Region regionOf(const GridInBur& grid, const std::int32_t (&base)[3]) const noexcept;
     [[nodiscard]] std::int32_t wayAfter(double mm) const noexcept;
-    [[nodiscard]] std::uint8_t uniformTissue(std::uint32_t dense, std::int32_t stored) noexcept;
     void raiseCoarse(const core::Pose& pose, bool all) noexcept;
     [[nodiscard]] double notchOf(const core::Vec3& direction) const noexcept;
     [[nodiscard]] double stepsBetween(const core::Pose& from, const core::Pose& to, double& movedMm) const noexcept;
 
-    tooth::CutField& field_;
+    tooth::ToothState& field_;
     SweepKernels kernels_;
     double voxelMm_, bandMm_, bandOutMm_, lengthMm_, radiusMm_, unitMm_, sidewaysStepMm_, alongStepMm_;
     /// A convex corner of the outline: the outward normals on both sides, and the sine between them.
@@ -82,9 +81,8 @@ class Sweeper {
     };
     std::unique_ptr<Nodes> nodes_;
     std::vector<std::uint16_t> list_, simpleList_;
-    std::vector<Memory> memory_;         ///< by dense brick
-    std::vector<Dues> dues_;             ///< by stored brick
-    std::vector<std::uint8_t> uniform_;  ///< by dense brick: its tissue, kMixed, or kUnknown
+    std::vector<Memory> memory_;  ///< by dense brick
+    std::vector<Dues> dues_;      ///< by stored brick
     SweepPass pass_{}, simplePass_{};
     std::array<std::int64_t, cases::kTissueCount> quanta_{};
     core::Pose pose_;

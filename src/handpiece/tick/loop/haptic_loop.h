@@ -16,7 +16,7 @@
 #include "handpiece/base/rt/spsc_queue.h"
 #include "handpiece/base/rt/staged.h"
 #include "handpiece/model/instrument/rotor.h"
-#include "handpiece/model/tooth/cut_field.h"
+#include "handpiece/model/tooth/state_delta.h"
 #include "handpiece/tick/contact/method.h"
 #include "handpiece/tick/cutting/cutter.h"
 #include "handpiece/tick/device/device.h"

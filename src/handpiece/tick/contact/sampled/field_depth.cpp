@@ -74,13 +74,13 @@ double inscribedAt(const instrument::Bur& bur, const Vec2& p, const Vec2& normal
 
 }  // namespace
 
-FieldDepth::FieldDepth(const LiveField& field, const instrument::Bur& bur, core::SimdLevel level)
+FieldDepth::FieldDepth(const field::DistanceField& field, const instrument::Bur& bur, core::SimdLevel level)
     : field_(field),
       bur_(bur),
-      view_(field.field.view()),
+      view_(field.view()),
       kernels_(ringKernelsFor(level)),
-      outMm_(kSaturated * field.outMm()),
-      inMm_(kSaturated * field.inMm()),
+      outMm_(kSaturated * field.reach().outMm),
+      inMm_(kSaturated * field.reach().inMm),
       // Half a diagonal of the rings' mesh, and what a trilinear cell may be off.
       clearMm_(std::max(
           0.0, std::sqrt(std::max(0.0, outMm_ * outMm_ - 0.5 * bur.surfaceSpacingMm() * bur.surfaceSpacingMm())) -
@@ -228,8 +228,8 @@ double FieldDepth::depthAt(const BurFrame& frame, const Vec3& p, double distance
 
 /// Out of the tooth: the field's slope, or that of the bricks' centres where the field is level.
 Vec3 FieldDepth::outward(const Vec3& p) const noexcept {
-    const Vec3 fine = field_.field.normal(p);
-    const double d = field_.field.distance(p);
+    const Vec3 fine = field_.normal(p);
+    const double d = field_.distance(p);
     if (!fine.isZero() && d > -inMm_ && d < outMm_) return fine;
     const double perBrick = view_.inverseVoxelMm / field::kBrickCells;
     std::int32_t at[3];
@@ -347,8 +347,8 @@ class FieldDepth::DepthAscent {
         store(query.alongU, alongU_);
         store(query.alongArc, alongArc_);
         store(query.inward, -normal_);
-        query.farOutMm = static_cast<float>(depth_.field_.outMm());
-        query.farInMm = static_cast<float>(depth_.field_.inMm());
+        query.farOutMm = static_cast<float>(depth_.field_.reach().outMm);
+        query.farInMm = static_cast<float>(depth_.field_.reach().inMm);
         const bool isCorner = spot_->isCorner;
         // On the bur's inner ridge the way along it leads up or down.
         const bool onRidge = !isCorner && in_ >= most(u_) - kTinyMm;
@@ -412,7 +412,7 @@ class FieldDepth::DepthAscent {
             double alongU = 0.0, inwards = 0.0;
             stepsTo(u_, arc_, in_, alongU, inwards);
             const Vec3 p = place_ + alongU * alongU_ + arc_ * alongArc_ - inwards * normal_;
-            const double d = depth_.field_.field.distance(p), depth = depth_.depthAt(frame_, p, d);
+            const double d = depth_.field_.distance(p), depth = depth_.depthAt(frame_, p, d);
             // Outside the tooth a field that has been cut may tell less than the distance.
             const bool trusted = d <= kOnSurfaceMm || in_ <= 0.0;
             if (trusted && depth > best.depthMm) {
@@ -488,8 +488,8 @@ void FieldDepth::sense(const RingArrays& arrays, const BurFrame& frame) const no
     query.y = frame.y.data();
     query.z = frame.z.data();
     query.thresholdMm = static_cast<float>(outMm_);
-    query.farOutMm = static_cast<float>(field_.outMm());
-    query.farInMm = static_cast<float>(field_.inMm());
+    query.farOutMm = static_cast<float>(field_.reach().outMm);
+    query.farInMm = static_cast<float>(field_.reach().inMm);
     query.tissue = 0;
     kernels_.sense(view_, arrays.bur, query, arrays.touch);
 }
@@ -511,14 +511,14 @@ void FieldDepth::searchInside(const BurFrame& frame, FieldTouch& best) noexcept 
 
 void FieldDepth::takeAxis(const BurFrame& frame, double z, FieldTouch& best) const noexcept {
     Vec3 p = frame.onAxis(z);
-    double d = field_.field.distance(p);
+    double d = field_.distance(p);
     const Vec3 away = outward(p);
     Vec3 q = p;
     if (d > 0.0) {  // beside an edge a field that has been cut tells less than the distance: ask on the surface
         for (int i = 0; i < kProjections; ++i)
-            q -= field_.field.distance(q) * field_.field.normal(q);
+            q -= field_.distance(q) * field_.normal(q);
         p = q;
-        d = field_.field.distance(p);
+        d = field_.distance(p);
     } else {
         q = p - d * away;
     }
@@ -529,8 +529,8 @@ void FieldDepth::takeAxis(const BurFrame& frame, double z, FieldTouch& best) con
 double FieldDepth::scanAxis(const BurFrame& frame, double fromZ, double step, int count, double& topZ) const noexcept {
     AroundQuery query{};
     store(query.alongU, frame.z);
-    query.farOutMm = static_cast<float>(field_.outMm());
-    query.farInMm = static_cast<float>(field_.inMm());
+    query.farOutMm = static_cast<float>(field_.reach().outMm);
+    query.farInMm = static_cast<float>(field_.reach().inMm);
     query.reachMm = 8.0 * step;
     double top = -std::numeric_limits<double>::infinity();
     for (int first = 0; first < count; first += 8) {

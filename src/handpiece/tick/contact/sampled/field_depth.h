@@ -8,7 +8,6 @@
 #include "handpiece/base/core/simd.h"
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/tick/contact/method.h"
-#include "handpiece/tick/contact/sampled/live_field.h"
 #include "handpiece/tick/contact/sampled/ring_arrays.h"
 #include "handpiece/tick/contact/sampled/surface_sampler.h"
 
@@ -26,7 +25,7 @@ struct FieldTouch {
 /// that lies deeper than the field's values reach is looked for on shells inside it and on its axis.
 class FieldDepth {
   public:
-    FieldDepth(const LiveField& field, const instrument::Bur& bur, core::SimdLevel level);
+    FieldDepth(const field::DistanceField& field, const instrument::Bur& bur, core::SimdLevel level);
 
     /// The depth; minus infinity when nothing lies within clearMm() of the bur. Where values only say "at least", so
     /// does the depth.
@@ -67,7 +66,7 @@ class FieldDepth {
     [[nodiscard]] double depthAt(const BurFrame& frame, const core::Vec3& p, double distanceMm) const noexcept;
     [[nodiscard]] std::size_t nearestSpot(std::size_t from, double rho, double z) const noexcept;
 
-    LiveField field_;
+    const field::DistanceField& field_;
     const instrument::Bur& bur_;
     field::FieldView view_;
     RingKernels kernels_;

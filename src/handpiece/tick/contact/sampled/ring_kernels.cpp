@@ -273,9 +273,8 @@ inline unsigned senseEight(const FieldView& field, const BurRings& bur, const Ri
                              (t[1] > 0.5f ? Ints{} + kY : Ints{}) + (t[2] > 0.5f ? Ints{} + kZ : Ints{});
         for (int i = 0; i < 8; ++i) {
             if ((live >> i & 1u) == 0) continue;
-            const std::int32_t brick = places.stored[i];
-            touch.tissue[at + i] = brick < 0 ? field.coarseTissue[places.dense[i]]
-                                             : field.tissue[std::int64_t{brick} * kBrickValues + nearest[i]];
+            const std::int32_t node = places.stored[i] < 0 ? field::kCentreNode : nearest[i];
+            touch.tissue[at + i] = field.tissue[field.tissueStart[places.dense[i]] + static_cast<std::uint32_t>(node)];
         }
     }
     return live;

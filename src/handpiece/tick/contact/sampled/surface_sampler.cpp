@@ -15,27 +15,9 @@ namespace {
 constexpr std::uint64_t kNone = ~std::uint64_t{0};
 
 /// The one tissue of all that can be touched, or kManyTissues.
-std::uint8_t onlyTissue(const field::TissueMap& map) {
-    std::uint8_t only = kManyTissues;
-    for (const cases::Tissue tissue : map.tissues()) {
-        if (tissue == cases::Tissue::none) continue;
-        if (only != kManyTissues) return kManyTissues;
-        only = static_cast<std::uint8_t>(tissue);
-    }
-    return only;
-}
-std::uint8_t onlyTissue(const field::DistanceField& field, const field::FieldView& view) {
-    std::uint8_t only = kManyTissues;
-    const auto isOther = [&](std::uint8_t tissue) {
-        if (only == kManyTissues) only = tissue;
-        return tissue != only;
-    };
-    const std::size_t dense = static_cast<std::size_t>(view.bricks[0]) * static_cast<std::size_t>(view.bricks[1]) *
-                              static_cast<std::size_t>(view.bricks[2]);
-    for (std::size_t i = 0; i < dense; ++i)
-        if (view.brickIndex[i] < 0 && view.coarse[i] < 0.0f && isOther(view.coarseTissue[i])) return kManyTissues;
-    const std::uint8_t* end = view.tissue + field.brickCount() * field::kBrickValues;
-    return std::any_of(view.tissue, end, isOther) ? kManyTissues : only;
+std::uint8_t onlyTissue(const field::DistanceField& field) {
+    const std::vector<cases::Tissue> all = field.storage().tissues->tissues();
+    return all.size() == 1 ? static_cast<std::uint8_t>(all.front()) : kManyTissues;
 }
 
 double sumOf(const float (&lanes)[8]) noexcept {
@@ -47,20 +29,20 @@ double sumOf(const float (&lanes)[8]) noexcept {
 
 }  // namespace
 
-SurfaceSampler::SurfaceSampler(const LiveField& field, const instrument::Bur& bur, core::SimdLevel level)
+SurfaceSampler::SurfaceSampler(const field::DistanceField& field, const instrument::Bur& bur, core::SimdLevel level)
     : field_(field),
-      view_(field.field.view()),
+      view_(field.view()),
       kernels_(ringKernelsFor(level)),
       arrays_(bur.rings()),
       bands_(bearingBands(bur)),
-      tissueOfAll_(field.cut != nullptr ? onlyTissue(field.cut->base().tissues) : onlyTissue(field.field, view_)) {
+      tissueOfAll_(onlyTissue(field)) {
     runs_.resize(kMaxRuns);
     candidates_.resize(arrays_.distance.size());
     nearest_.resize((arrays_.rings.size() + kRingsPerBlock - 1) / kRingsPerBlock * kSectors);
-    query_.farOutMm = static_cast<float>(field.outMm());
-    query_.farInMm = static_cast<float>(field.inMm());
-    // Values of a tooth that is not cut are distances however deep.
-    query_.deepMm = field.cut != nullptr ? static_cast<float>(kSaturated * field.inMm()) : kNotLiveMm;
+    query_.farOutMm = static_cast<float>(field.reach().outMm);
+    query_.farInMm = static_cast<float>(field.reach().inMm);
+    // Values that are not held to anything are distances however deep.
+    query_.deepMm = field.storage().heldTo ? static_cast<float>(kSaturated * field.reach().inMm) : kNotLiveMm;
     query_.tissue = tissueOfAll_;
 }
 

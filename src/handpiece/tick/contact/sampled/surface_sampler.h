@@ -8,17 +8,21 @@
 #include <vector>
 
 #include "handpiece/base/core/simd.h"
+#include "handpiece/model/field/distance_field.h"
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/tick/contact/method.h"
-#include "handpiece/tick/contact/sampled/live_field.h"
 #include "handpiece/tick/contact/sampled/ring_arrays.h"
 
 namespace handpiece::contact {
 
-/// Feels the field with the bur's surface rings. Cost depends on the contact, never on the mesh. For one thread.
+/// A value beyond this share of what a field is held to says no more than "at least".
+inline constexpr double kSaturated = 0.98;
+
+/// Feels the field, which must outlive this, with the bur's surface rings. Cost depends on the contact, never on the
+/// mesh. For one thread.
 class SurfaceSampler {
   public:
-    SurfaceSampler(const LiveField& field, const instrument::Bur& bur, core::SimdLevel level);
+    SurfaceSampler(const field::DistanceField& field, const instrument::Bur& bur, core::SimdLevel level);
 
     void patches(const core::Pose& burInTooth, PatchSet& out) noexcept;
     Status constraints(const core::Pose& burInTooth, double reachMm, ConstraintSet& out) noexcept;
@@ -59,7 +63,7 @@ class SurfaceSampler {
     std::size_t findMinima() noexcept;
     std::size_t addSectors(std::size_t minima) noexcept;
 
-    LiveField field_;
+    const field::DistanceField& field_;
     field::FieldView view_;
     RingKernels kernels_;
     RingArrays arrays_;

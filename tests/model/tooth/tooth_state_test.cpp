@@ -26,14 +26,14 @@ double of(const TissueVolumes& v, cases::Tissue tissue) {
     return v[static_cast<std::size_t>(tissue)];
 }
 
-TEST(CutField, VolumesByTissueAreThoseOfTheShapes) {
+TEST(ToothState, VolumesByTissueAreThoseOfTheShapes) {
     const auto base = ballTooth(2.0, 1.2, 0.05);
     // Inner boundaries count by whole nodes, and this ball lies evenly on them.
     EXPECT_NEAR(of(base->volumesMm3, cases::Tissue::dentine), ballMm3(1.2), 4e-3 * ballMm3(1.2));
     EXPECT_NEAR(of(base->volumesMm3, cases::Tissue::dentine) + of(base->volumesMm3, cases::Tissue::enamel),
                 ballMm3(2.0), 3e-4 * ballMm3(2.0));
     EXPECT_NEAR(of(base->volumesMm3, cases::Tissue::enamel), ballMm3(2.0) - ballMm3(1.2), 1e-3 * ballMm3(2.0));
-    CutField field(base);
+    ToothState field(base);
     EXPECT_EQ(field.volumesMm3(), base->volumesMm3);
 
     // A ball of 0.5 mm out of the dentine, and one out of enamel and dentine along x.
@@ -55,13 +55,13 @@ TEST(CutField, VolumesByTissueAreThoseOfTheShapes) {
     EXPECT_NEAR(dentine, lens, 0.03 * ballMm3(0.3));
 }
 
-TEST(CutField, WholeBricksAgreeOnTheNodesTheyShare) {
+TEST(ToothState, WholeBricksAgreeOnTheNodesTheyShare) {
     // Also with a band deeper than the field's own, where most of it is only a bound.
     for (const auto& [band, bandIn] : {std::pair{0.2, 0.3}, {0.3, 0.1}, {0.3, 0.3}}) {
         CutSettings settings;
         settings.bandMm = band;
         const auto base = ballTooth(2.0, 1.0, 0.05, settings, bandIn);
-        CutField field(base);
+        ToothState field(base);
         const field::FieldView view = field.field().view();
         std::size_t fresh = 0;
         for (std::uint32_t dense = 0; dense < test::denseCount(field.field()); ++dense) {
@@ -92,16 +92,16 @@ TEST(CutField, WholeBricksAgreeOnTheNodesTheyShare) {
     }
 }
 
-TEST(CutField, HashesTheToothAndNotItsHistory) {
+TEST(ToothState, HashesTheToothAndNotItsHistory) {
     const auto base = ballTooth(1.5, 0.8, 0.05);
     const auto shapeA = [](const Vec3& p) { return test::ball(p - Vec3(1.4, 0, 0), 0.4); };
     const auto shapeB = [](const Vec3& p) { return test::ball(p - Vec3(0.9, 0.5, 0), 0.4); };
-    CutField one(base), two(base);
+    ToothState one(base), two(base);
     EXPECT_EQ(one.stateHash(), two.stateHash());
     cutAway(one, shapeA);
     EXPECT_NE(one.stateHash(), two.stateHash());
     cutAway(one, shapeB);
-    // The other way round, after bricks that stay whole were stored.
+    // The other way round, after bricks that stay uncut were stored.
     for (std::uint32_t dense = test::denseCount(two.field()); dense-- > 0;)
         if (dense % 3 == 0) (void)two.storeBrick(dense);
     cutAway(two, shapeB);
@@ -115,10 +115,10 @@ TEST(CutField, HashesTheToothAndNotItsHistory) {
     EXPECT_EQ(alone, one.volumesMm3());
 }
 
-TEST(CutField, RestoresInPiecesWithoutATear) {
+TEST(ToothState, RestoresInPiecesWithoutATear) {
     const auto base = ballTooth(1.5, 0.8, 0.05);
     std::mt19937_64 generator(handpiece::test::seed());
-    CutField field(base);
+    ToothState field(base);
     std::vector<StateDelta> states{field.state()};
     for (int step = 0; step < 4; ++step) {
         const Vec3 centre = handpiece::test::randomDirection(generator) * handpiece::test::uniform(generator, 0.0, 1.6);
@@ -149,15 +149,15 @@ TEST(CutField, RestoresInPiecesWithoutATear) {
     }
 }
 
-TEST(CutField, BoundsInTheCoreHoldAfterARestore) {
+TEST(ToothState, BoundsInTheCoreHoldAfterARestore) {
     const auto base = ballTooth(3.0, 2.0, 0.05);
     const Vec3 at(2.6, 0.3, -0.2);
     const auto shape = [&](const Vec3& p) { return test::ball(p - at, 0.9); };
-    CutField cut(base), field(base);
+    ToothState cut(base), field(base);
     cutAway(cut, shape);
     const StateDelta state = cut.state();
     (void)field.restore(state, 0, state.bricks.size());
-    const field::FieldView view = field.field().view(), before = base->tooth->field.view();
+    const field::FieldView view = field.field().view(), before = base->field.view();
     std::size_t raised = 0, core = 0;
     for (std::uint32_t dense = 0; dense < test::denseCount(field.field()); ++dense) {
         if (view.brickIndex[dense] >= 0 || before.coarse[dense] >= 0.0f) continue;
@@ -179,14 +179,14 @@ TEST(CutField, BoundsInTheCoreHoldAfterARestore) {
         ASSERT_EQ(view.coarse[dense], std::max(before.coarse[dense], -2.0f));
 }
 
-TEST(CutField, SaysWhereItIsCut) {
+TEST(ToothState, SaysWhereItIsCut) {
     const auto base = ballTooth(1.5, 0.8, 0.05);
-    CutField field(base);
+    ToothState field(base);
     const auto near = [&](const Vec3& centre, double half) {
         return field.isCutNear({centre - Vec3::Constant(half), centre + Vec3::Constant(half)});
     };
     EXPECT_FALSE(near(Vec3::Zero(), 10.0));
-    const StateDelta whole = field.state();
+    const StateDelta uncut = field.state();
     const Vec3 at(1.5, 0.0, 0.0);
     cutAway(field, [&](const Vec3& p) { return test::ball(p - at, 0.3); });
     EXPECT_TRUE(near(at, 0.1));
@@ -214,15 +214,15 @@ TEST(CutField, SaysWhereItIsCut) {
         }
         EXPECT_EQ(near(centre, half), wanted);
     }
-    // Once put back it is whole.
-    const StateDelta change = changeBetween(field.state(), whole);
+    // Once put back it is uncut.
+    const StateDelta change = changeBetween(field.state(), uncut);
     EXPECT_EQ(field.restore(change, 0, change.bricks.size() + 100000), change.bricks.size());
     EXPECT_FALSE(near(Vec3::Zero(), 10.0));
 }
 
-TEST(CutField, HandsOverEveryChangeOnceInTurn) {
+TEST(ToothState, HandsOverEveryChangeOnceInTurn) {
     const auto base = ballTooth(1.5, 0.8, 0.05);
-    CutField field(base);
+    ToothState field(base);
     EXPECT_EQ(field.handOver(10, [](const BrickSnapshot&) { return true; }), 0u);
     cutAway(field, [](const Vec3& p) { return test::ball(p - Vec3(1.5, 0, 0), 0.4); });
     const std::size_t waiting = field.waitingBricks();
@@ -244,21 +244,21 @@ TEST(CutField, HandsOverEveryChangeOnceInTurn) {
     EXPECT_EQ(field.waitingBricks(), 0u);
 }
 
-TEST(CutField, RunsOutOfBricksWithoutHarm) {
+TEST(ToothState, RunsOutOfBricksWithoutHarm) {
     CutSettings settings;
     settings.reserveBricks = 3;
     const auto base = ballTooth(2.0, 0.8, 0.05, settings);
-    CutField field(base);
+    ToothState field(base);
     cutAway(field, [](const Vec3& p) { return test::ball(p, 0.8); });
     EXPECT_TRUE(field.outOfBricks());
     EXPECT_EQ(field.state().bricks.size(), 3u);
     EXPECT_EQ(test::tornNodes(field), 0u);
 }
 
-TEST(CutField, KeepsTheTicksLaw) {
+TEST(ToothState, KeepsTheTicksLaw) {
     if (!handpiece::test::RealtimeTrap::isActive()) GTEST_SKIP() << "sanitizers own malloc";
     const auto base = ballTooth(1.5, 0.8, 0.05);
-    CutField field(base);
+    ToothState field(base);
     cutAway(field, [](const Vec3& p) { return test::ball(p - Vec3(1.5, 0, 0), 0.4); });
     const StateDelta cut = field.state();
     const StateDelta change = changeBetween(cut, StateDelta{});
@@ -277,19 +277,16 @@ TEST(CutField, KeepsTheTicksLaw) {
     EXPECT_EQ(calls, 0u);
 }
 
-TEST(PrepareCutting, RefusesWhatCannotBe) {
+TEST(WithTissues, RefusesWhatCannotBe) {
     const auto base = ballTooth(1.0, 0.5, 0.05);
     for (const double band : {-1.0, 0.01, 50.0, std::numeric_limits<double>::quiet_NaN()}) {
         CutSettings settings;
         settings.bandMm = band;
-        EXPECT_THROW((void)prepareCutting(
-                         base->tooth, field::TissueMap::uniform(base->tooth->field, cases::Tissue::enamel), settings),
+        EXPECT_THROW((void)withTissues(*base, field::TissueMap::uniform(base->field, cases::Tissue::enamel), settings),
                      core::Error);
     }
     const auto other = ballTooth(1.5, 0.5, 0.05);
-    EXPECT_THROW(
-        (void)prepareCutting(base->tooth, field::TissueMap::uniform(other->tooth->field, cases::Tissue::enamel)),
-        core::Error);
+    EXPECT_THROW((void)withTissues(*base, field::TissueMap::uniform(other->field, cases::Tissue::enamel)), core::Error);
     EXPECT_DOUBLE_EQ(base->settings.bandMm, 0.2);
     EXPECT_DOUBLE_EQ(ballTooth(1.0, 0.5, 0.1)->settings.bandMm, 0.3);
 }

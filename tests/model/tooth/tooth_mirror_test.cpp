@@ -15,12 +15,12 @@ using core::Vec3;
 using test::ballTooth;
 using test::cutAway;
 
-TEST(CutMirror, FollowsTheField) {
+TEST(ToothMirror, FollowsTheField) {
     const auto base = ballTooth(1.5, 0.8, 0.05);
-    CutField field(base);
-    CutMirror mirror(base);
+    ToothState field(base);
+    ToothMirror mirror(base);
     std::mt19937_64 generator(handpiece::test::seed());
-    const StateDelta whole = field.state();
+    const StateDelta uncut = field.state();
     std::vector<std::uint32_t> touched;
     for (int step = 0; step < 5; ++step) {
         const Vec3 centre = handpiece::test::randomDirection(generator) * 1.4;
@@ -45,39 +45,39 @@ TEST(CutMirror, FollowsTheField) {
 
     // An undo comes through snapshots like any cut, or at once as a change.
     const StateDelta cut = field.state();
-    const StateDelta undo = changeBetween(cut, whole);
+    const StateDelta undo = changeBetween(cut, uncut);
     (void)field.restore(undo, 0, undo.bricks.size());
     (void)field.handOver(100000, [&](const BrickSnapshot& s) {
         mirror.apply(s);
         return true;
     });
     EXPECT_TRUE(mirror.state({}).bricks.empty());
-    mirror.apply(changeBetween(whole, cut));
+    mirror.apply(changeBetween(uncut, cut));
     EXPECT_EQ(stateHash(mirror.state({})), stateHash(cut));
     mirror.apply(undo);
     EXPECT_TRUE(mirror.state({}).bricks.empty());
     EXPECT_FALSE(mirror.isChanged(cut.bricks[0].dense));
     std::array<float, field::kBrickValues> scratch, wanted;
-    base->wholeBrick(cut.bricks[0].dense, wanted.data());
+    base->uncutBrick(cut.bricks[0].dense, wanted.data());
     const float* values = mirror.values(cut.bricks[0].dense, scratch.data());
     EXPECT_TRUE(std::equal(wanted.begin(), wanted.end(), values));
 }
 
 TEST(StateDelta, ChangesLeadFromAnyStateToAnyOther) {
     const auto base = ballTooth(1.2, 0.6, 0.05);
-    CutField one(base), two(base);
+    ToothState one(base), two(base);
     cutAway(one, [](const Vec3& p) { return test::ball(p - Vec3(1.2, 0, 0), 0.4); });
     cutAway(two, [](const Vec3& p) { return test::ball(p - Vec3(0.9, 0.6, 0), 0.4); });
     const StateDelta a = one.state(), b = two.state();
     const StateDelta change = changeBetween(a, b);
-    std::size_t whole = 0;
+    std::size_t uncut = 0;
     for (std::size_t i = 0; i < change.bricks.size(); ++i) {
-        whole += change.bricks[i].whole;
+        uncut += change.bricks[i].uncut;
         EXPECT_TRUE(i == 0 || change.bricks[i - 1].dense < change.bricks[i].dense);
     }
-    EXPECT_GT(whole, 0u);
-    EXPECT_LT(whole, change.bricks.size());
-    CutMirror mirror(base);
+    EXPECT_GT(uncut, 0u);
+    EXPECT_LT(uncut, change.bricks.size());
+    ToothMirror mirror(base);
     mirror.apply(a);
     mirror.apply(change);
     EXPECT_EQ(stateHash(mirror.state({})), stateHash(b));

@@ -10,7 +10,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "support/cut_support.h"
 
 namespace handpiece::tooth {
@@ -22,8 +22,8 @@ using test::cutAway;
 
 class CutStateFile : public ::testing::Test {
   protected:
-    CutStateFile() : base(ballTooth(1.5, 0.8, 0.05)), key(identityOf(*base)) {
-        CutField field(base);
+    CutStateFile() : base(ballTooth(1.5, 0.8, 0.05)), key(base->identity) {
+        ToothState field(base);
         cutAway(field, [](const Vec3& p) { return test::ball(p - Vec3(1.4, 0.2, 0.1), 0.5); });
         TissueVolumes removed{};
         removed[1] = 0.1234567890123;
@@ -36,15 +36,15 @@ class CutStateFile : public ::testing::Test {
         EXPECT_EQ(a.removedMm3, b.removedMm3);
         for (std::size_t i = 0; i < a.bricks.size(); ++i) {
             EXPECT_EQ(a.bricks[i].dense, b.bricks[i].dense);
-            ASSERT_EQ(a.bricks[i].whole, b.bricks[i].whole);
-            if (!a.bricks[i].whole) {
+            ASSERT_EQ(a.bricks[i].uncut, b.bricks[i].uncut);
+            if (!a.bricks[i].uncut) {
                 EXPECT_EQ(std::memcmp(&a.bricks[i].values, &b.bricks[i].values, sizeof a.bricks[i].values), 0);
             }
         }
     }
     std::string refusal(std::span<const std::byte> data) const {
         try {
-            (void)decodeState(data, key, *base, "here");
+            (void)decodeState(data, *base, "here");
         } catch (const core::Error& error) {
             EXPECT_EQ(error.where(), "here");
             return error.problem();
@@ -52,7 +52,7 @@ class CutStateFile : public ::testing::Test {
         return "taken";
     }
 
-    std::shared_ptr<const CuttableTooth> base;
+    std::shared_ptr<const ToothModel> base;
     std::uint64_t key;
     StateDelta state;
 };
@@ -60,20 +60,20 @@ class CutStateFile : public ::testing::Test {
 TEST_F(CutStateFile, ComesBackBitForBit) {
     ASSERT_GT(state.bricks.size(), 30u);
     const std::vector<std::byte> data = encodeState(state, key);
-    expectSame(decodeState(data, key, *base), state);
+    expectSame(decodeState(data, *base), state);
     core::setThreadCount(1);
     EXPECT_EQ(encodeState(state, key), data);
     core::setThreadCount(0);
     // Well below the plain floats.
     EXPECT_LT(data.size(), state.bricks.size() * sizeof(float) * field::kBrickValues / 2);
-    expectSame(decodeState(encodeState(StateDelta{}, key), key, *base), StateDelta{});
+    expectSame(decodeState(encodeState(StateDelta{}, key), *base), StateDelta{});
 }
 
 TEST_F(CutStateFile, ChangesToo) {
-    CutField field(base);
+    ToothState field(base);
     cutAway(field, [](const Vec3& p) { return test::ball(p - Vec3(0.0, 1.4, 0.1), 0.5); });
     const StateDelta change = changeBetween(state, field.state());
-    expectSame(decodeState(encodeState(change, key), key, *base), change);
+    expectSame(decodeState(encodeState(change, key), *base), change);
 }
 
 TEST_F(CutStateFile, AnyValuesComeBack) {
@@ -83,12 +83,12 @@ TEST_F(CutStateFile, AnyValuesComeBack) {
             value = generator() % 8 == 0 ? -0.0f
                                          : static_cast<float>(handpiece::test::uniform(generator, -0.2, 0.1)) *
                                                (generator() % 4 == 0 ? 1e-30f : 1.0f);
-    expectSame(decodeState(encodeState(state, key), key, *base), state);
+    expectSame(decodeState(encodeState(state, key), *base), state);
 }
 
 TEST_F(CutStateFile, ResumesInAFieldOfItsOwn) {
-    const StateDelta back = decodeState(encodeState(state, key), key, *base);
-    CutField field(base);
+    const StateDelta back = decodeState(encodeState(state, key), *base);
+    ToothState field(base);
     (void)field.restore(back, 0, back.bricks.size());
     EXPECT_EQ(field.stateHash(), stateHash(state));
     EXPECT_EQ(field.removedMm3(), state.removedMm3);
@@ -124,7 +124,7 @@ TEST_F(CutStateFile, RefusesEverythingElse) {
         EXPECT_THAT(refusal(encodeState(wrong, key)), HasSubstr("damaged"));
     }
     wrong = state;
-    wrong.bricks.back().dense = test::denseCount(base->tooth->field);
+    wrong.bricks.back().dense = test::denseCount(base->field);
     EXPECT_THAT(refusal(encodeState(wrong, key)), HasSubstr("damaged"));
     wrong = state;
     wrong.bricks.insert(wrong.bricks.begin(), {0, true, {}});  // a corner of the grid, outside the tooth
@@ -132,11 +132,11 @@ TEST_F(CutStateFile, RefusesEverythingElse) {
 }
 
 TEST_F(CutStateFile, TeethAreToldApart) {
-    EXPECT_EQ(identityOf(*ballTooth(1.5, 0.8, 0.05)), key);
-    EXPECT_NE(identityOf(*ballTooth(1.5, 0.7, 0.05)), key);
+    EXPECT_EQ(ballTooth(1.5, 0.8, 0.05)->identity, key);
+    EXPECT_NE(ballTooth(1.5, 0.7, 0.05)->identity, key);
     CutSettings settings;
     settings.bandMm = 0.25;
-    EXPECT_NE(identityOf(*ballTooth(1.5, 0.8, 0.05, settings)), key);
+    EXPECT_NE(ballTooth(1.5, 0.8, 0.05, settings)->identity, key);
 }
 
 }  // namespace

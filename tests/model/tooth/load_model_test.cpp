@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// prepareTooth: builds, keeps, reopens, refuses.
+/// loadModel: builds, keeps, reopens, refuses.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/field/field_cache.h"
-#include "handpiece/model/tooth/tooth.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "support/closed_meshes.h"
 #include "support/random.h"
 
@@ -20,9 +20,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A tooth of enamel around dentine, in a folder of its own; XDG_CACHE_HOME points into another.
-class PrepareTooth : public ::testing::Test {
+class LoadModel : public ::testing::Test {
   protected:
-    PrepareTooth() {
+    LoadModel() {
         toothCase.name = "bumpy";
         toothCase.source = folder.path() / "case";
         fs::create_directories(toothCase.source);
@@ -32,25 +32,30 @@ class PrepareTooth : public ::testing::Test {
         settings.field.voxelMm = 0.1;
         ::setenv("XDG_CACHE_HOME", (folder.path() / "user").c_str(), 1);
     }
-    ~PrepareTooth() override { ::unsetenv("XDG_CACHE_HOME"); }
+    ~LoadModel() override { ::unsetenv("XDG_CACHE_HOME"); }
 
-    static std::size_t filesIn(const fs::path& where) {
+    /// Of the distances; tissues lie beside them.
+    static std::vector<fs::path> fieldsIn(const fs::path& where) {
+        std::vector<fs::path> found;
         std::error_code ec;
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(where, ec), fs::directory_iterator()));
+        for (const auto& entry : fs::directory_iterator(where, ec))
+            if (entry.path().extension() == ".field") found.push_back(entry.path());
+        return found;
     }
+    static std::size_t filesIn(const fs::path& where) { return fieldsIn(where).size(); }
 
     test::TemporaryFolder folder;
     cases::Case toothCase;
-    tooth::PrepareSettings settings;
+    tooth::LoadSettings settings;
 };
 
-TEST_F(PrepareTooth, BuildsThenReopensTheSame) {
-    const auto built = prepareTooth(toothCase, settings);
+TEST_F(LoadModel, BuildsThenReopensTheSame) {
+    const auto built = loadModel(toothCase, settings);
     EXPECT_FALSE(built->fromCache);
     EXPECT_GT(built->buildSeconds, 0.0);
     EXPECT_EQ(built->name, "bumpy");
     EXPECT_EQ(filesIn(toothCase.source / ".handpiece-cache"), 1u);
-    const auto again = prepareTooth(toothCase, settings);
+    const auto again = loadModel(toothCase, settings);
     EXPECT_TRUE(again->fromCache);
     EXPECT_EQ(again->field.stateHash(), built->field.stateHash());
     EXPECT_EQ(again->outer.triangles, built->outer.triangles);
@@ -59,28 +64,28 @@ TEST_F(PrepareTooth, BuildsThenReopensTheSame) {
     EXPECT_EQ(again->field.tissueAt({0, 0, 0}), cases::Tissue::dentine);
 }
 
-TEST_F(PrepareTooth, OtherSettingsOrSurfacesAreBuiltAnew) {
-    (void)prepareTooth(toothCase, settings);
+TEST_F(LoadModel, OtherSettingsOrSurfacesAreBuiltAnew) {
+    (void)loadModel(toothCase, settings);
     settings.field.bandInMm = 0.35;
-    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_FALSE(loadModel(toothCase, settings)->fromCache);
     toothCase.outer.vertices[0] *= 1.001;
-    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
-    EXPECT_TRUE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_FALSE(loadModel(toothCase, settings)->fromCache);
+    EXPECT_TRUE(loadModel(toothCase, settings)->fromCache);
 }
 
-TEST_F(PrepareTooth, DamagedCacheIsRebuiltAndReplaced) {
-    (void)prepareTooth(toothCase, settings);
-    const fs::path file = fs::directory_iterator(toothCase.source / ".handpiece-cache")->path();
+TEST_F(LoadModel, DamagedCacheIsRebuiltAndReplaced) {
+    (void)loadModel(toothCase, settings);
+    const fs::path file = fieldsIn(toothCase.source / ".handpiece-cache").front();
     std::vector<std::byte> data = core::readFile(file);
     data[data.size() / 2] ^= std::byte{1};
     core::writeFile(file, data);
-    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
-    EXPECT_TRUE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_FALSE(loadModel(toothCase, settings)->fromCache);
+    EXPECT_TRUE(loadModel(toothCase, settings)->fromCache);
 }
 
-TEST_F(PrepareTooth, AForgedCacheIsBuiltAnew) {
-    const auto built = prepareTooth(toothCase, settings);
-    const fs::path file = fs::directory_iterator(toothCase.source / ".handpiece-cache")->path();
+TEST_F(LoadModel, AForgedCacheIsBuiltAnew) {
+    const auto built = loadModel(toothCase, settings);
+    const fs::path file = fieldsIn(toothCase.source / ".handpiece-cache").front();
     const std::vector<std::byte> good = core::readFile(file);
     // All of the surface a tenth of a millimetre too high, and every sum as it should be.
     const auto shifted = field::DistanceField::fromFunction(
@@ -88,7 +93,7 @@ TEST_F(PrepareTooth, AForgedCacheIsBuiltAnew) {
         [&](const core::Vec3& p) { return built->tree.signedDistance(p - core::Vec3(0, 0, 0.1)); });
     const std::uint64_t key = field::cacheKey(toothCase, settings.field);
     core::writeFile(file, field::encodeField(shifted, key));
-    auto again = prepareTooth(toothCase, settings);
+    auto again = loadModel(toothCase, settings);
     EXPECT_FALSE(again->fromCache);
     EXPECT_EQ(again->field.stateHash(), built->field.stateHash());
     EXPECT_EQ(core::readFile(file), good) << "and it is mended";
@@ -96,57 +101,57 @@ TEST_F(PrepareTooth, AForgedCacheIsBuiltAnew) {
     const fs::path theirs = folder.path() / "theirs";
     fs::rename(file, theirs);
     fs::create_symlink(theirs, file);
-    again = prepareTooth(toothCase, settings);
+    again = loadModel(toothCase, settings);
     EXPECT_FALSE(again->fromCache);
     EXPECT_EQ(again->field.stateHash(), built->field.stateHash());
     EXPECT_EQ(filesIn(folder.path() / "user" / "handpiece"), 1u);
     EXPECT_TRUE(fs::is_symlink(file));
-    EXPECT_TRUE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_TRUE(loadModel(toothCase, settings)->fromCache);
 }
 
-TEST_F(PrepareTooth, WithoutCacheNothingIsWritten) {
+TEST_F(LoadModel, WithoutCacheNothingIsWritten) {
     settings.useCache = false;
-    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
-    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_FALSE(loadModel(toothCase, settings)->fromCache);
+    EXPECT_FALSE(loadModel(toothCase, settings)->fromCache);
     EXPECT_FALSE(fs::exists(toothCase.source / ".handpiece-cache"));
     EXPECT_FALSE(fs::exists(folder.path() / "user"));
 }
 
-TEST_F(PrepareTooth, TheFolderAskedForAndNoOther) {
+TEST_F(LoadModel, TheFolderAskedForAndNoOther) {
     settings.cacheFolder = folder.path() / "asked";
-    (void)prepareTooth(toothCase, settings);
+    (void)loadModel(toothCase, settings);
     EXPECT_EQ(filesIn(folder.path() / "asked"), 1u);
     EXPECT_FALSE(fs::exists(toothCase.source / ".handpiece-cache"));
-    EXPECT_TRUE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_TRUE(loadModel(toothCase, settings)->fromCache);
 }
 
-TEST_F(PrepareTooth, ASingleFileGoesToTheUsersCache) {
+TEST_F(LoadModel, ASingleFileGoesToTheUsersCache) {
     toothCase.source = folder.path() / "tooth.stl";
     core::writeFile(toothCase.source, std::string_view("solid"));
     toothCase.parts.resize(1);
     toothCase.outer = {};
-    const auto tooth = prepareTooth(toothCase, settings);
+    const auto tooth = loadModel(toothCase, settings);
     EXPECT_EQ(tooth->outer.triangles, toothCase.parts[0].mesh.triangles);
     EXPECT_EQ(filesIn(folder.path() / "user" / "handpiece"), 1u);
-    EXPECT_TRUE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_TRUE(loadModel(toothCase, settings)->fromCache);
 }
 
-TEST_F(PrepareTooth, AReadOnlyCaseUsesTheUsersCache) {
+TEST_F(LoadModel, AReadOnlyCaseUsesTheUsersCache) {
     // A file where the folder should be stands for a folder without permission: root may write anywhere.
     core::writeFile(toothCase.source / ".handpiece-cache", std::string_view("in the way"));
-    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_FALSE(loadModel(toothCase, settings)->fromCache);
     EXPECT_EQ(filesIn(folder.path() / "user" / "handpiece"), 1u);
-    EXPECT_TRUE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_TRUE(loadModel(toothCase, settings)->fromCache);
     // No place at all: it opens all the same.
     core::writeFile(folder.path() / "blocked", std::string_view("in the way"));
     ::setenv("XDG_CACHE_HOME", (folder.path() / "blocked").c_str(), 1);
-    EXPECT_FALSE(prepareTooth(toothCase, settings)->fromCache);
+    EXPECT_FALSE(loadModel(toothCase, settings)->fromCache);
 }
 
-TEST_F(PrepareTooth, SaysWhyACaseCannotBeFelt) {
+TEST_F(LoadModel, SaysWhyACaseCannotBeFelt) {
     const auto complaint = [&](const cases::Case& c) -> std::string {
         try {
-            (void)prepareTooth(c, settings);
+            (void)loadModel(c, settings);
         } catch (const core::Error& error) {
             return error.what();
         }
@@ -166,12 +171,12 @@ TEST_F(PrepareTooth, SaysWhyACaseCannotBeFelt) {
     EXPECT_FALSE(fs::exists(toothCase.source / ".handpiece-cache")) << "nothing is kept of what failed";
 }
 
-TEST_F(PrepareTooth, ProgressRisesToOneAndCancels) {
+TEST_F(LoadModel, ProgressRisesToOneAndCancels) {
     double last = -1.0;
     bool rising = true;
     settings.useCache = false;
     core::setThreadCount(1);
-    (void)prepareTooth(toothCase, settings, [&](double f) {
+    (void)loadModel(toothCase, settings, [&](double f) {
         rising = rising && f >= last - 1e-12;
         last = f;
         return true;
@@ -180,12 +185,12 @@ TEST_F(PrepareTooth, ProgressRisesToOneAndCancels) {
     EXPECT_TRUE(rising);
     EXPECT_EQ(last, 1.0);
     for (const double stop : {0.0, 0.15, 0.5})
-        EXPECT_THROW((void)prepareTooth(toothCase, settings, [&](double f) { return f < stop; }), core::Error);
+        EXPECT_THROW((void)loadModel(toothCase, settings, [&](double f) { return f < stop; }), core::Error);
     // A cancelled opening from the cache stops too, and does not build instead.
     settings.useCache = true;
-    (void)prepareTooth(toothCase, settings);
+    (void)loadModel(toothCase, settings);
     int calls = 0;
-    EXPECT_THROW((void)prepareTooth(toothCase, settings, [&](double f) { return ++calls, f < 1.0; }), core::Error);
+    EXPECT_THROW((void)loadModel(toothCase, settings, [&](double f) { return ++calls, f < 1.0; }), core::Error);
     EXPECT_LE(calls, 3);
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "handpiece/model/tooth/tooth_model.h"
+
 #include <fmt/format.h>
 
 #include <vector>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/parallel.h"
-#include "handpiece/model/field/field_builder.h"
-#include "handpiece/model/field/field_cache.h"
-#include "handpiece/model/field/tissue_cache.h"
-#include "handpiece/model/tooth/cut_volumes.h"
+#include "handpiece/model/field/brick_index.h"
 
 namespace handpiece::tooth {
 namespace {
@@ -57,12 +57,11 @@ float sharedValue(const field::FieldView& field, const std::array<std::int32_t, 
 
 }  // namespace
 
-void CuttableTooth::wholeBrick(std::uint32_t dense, float* out) const noexcept {
-    const field::DistanceField& whole = tooth->field;
-    const field::FieldView field = whole.view();
+void ToothModel::uncutBrick(std::uint32_t dense, float* out) const noexcept {
+    const field::FieldView view = field.view();
     const auto low = static_cast<float>(-settings.bandMm), high = static_cast<float>(bandOutMm);
-    if (const std::int32_t stored = field.brickIndex[dense]; stored >= 0) {
-        const float* values = field.values + static_cast<std::size_t>(stored) * field::kBrickValues;
+    if (const std::int32_t stored = view.brickIndex[dense]; stored >= 0) {
+        const float* values = view.values + static_cast<std::size_t>(stored) * field::kBrickValues;
         for (int i = 0; i < field::kBrickValues; ++i) {
             const float up = values[i] < low ? low : values[i];
             out[i] = up > high ? high : up;
@@ -70,46 +69,45 @@ void CuttableTooth::wholeBrick(std::uint32_t dense, float* out) const noexcept {
         return;
     }
     // A brick that is not stored lies deeper than the field's own band, all of it.
-    if (field.coarse[dense] < 0.0f && settings.bandMm <= whole.settings().bandInMm * (1.0 - 1e-4)) {
+    if (view.coarse[dense] < 0.0f && settings.bandMm <= field.settings().bandInMm * (1.0 - 1e-4)) {
         std::fill_n(out, field::kBrickValues, low);
         return;
     }
-    const std::array<std::int32_t, 3> brick = field::brickAt(field.bricks, dense);
+    const std::array<std::int32_t, 3> brick = field::brickAt(view.bricks, dense);
     int node[3];
     for (node[2] = 0; node[2] < field::kBrickNodes; ++node[2])
         for (node[1] = 0; node[1] < field::kBrickNodes; ++node[1])
             for (node[0] = 0; node[0] < field::kBrickNodes; ++node[0])
-                *out++ = std::clamp(sharedValue(field, brick, node), low, high);
+                *out++ = std::clamp(sharedValue(view, brick, node), low, high);
 }
 
-TissueVolumes integrateVolumes(const CuttableTooth& base,
+TissueVolumes integrateVolumes(const ToothModel& model,
                                const std::function<const float*(std::uint32_t dense)>& valuesOf) {
-    const field::FieldView field = base.tooth->field.view();
+    const field::FieldView field = model.field.view();
     const auto inverseVoxel = static_cast<float>(field.inverseVoxelMm);
     const double voxelMm3 = field.voxelMm * field.voxelMm * field.voxelMm;
     const std::uint32_t perLayer =
         static_cast<std::uint32_t>(field.bricks[0]) * static_cast<std::uint32_t>(field.bricks[1]);
     std::vector<TissueVolumes> layers(static_cast<std::size_t>(field.bricks[2]), TissueVolumes{});
     core::parallelFor(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
-        std::array<float, field::kBrickValues> whole;
+        std::array<float, field::kBrickValues> uncut;
         for (std::size_t layer = begin; layer < end; ++layer)
             for (std::uint32_t i = 0; i < perLayer; ++i) {
                 const std::uint32_t dense = static_cast<std::uint32_t>(layer) * perLayer + i;
                 const float* values = valuesOf(dense);
                 if (values == nullptr) {
                     if (field.brickIndex[dense] < 0 && field.coarse[dense] >= 0.0f) continue;
-                    base.wholeBrick(dense, whole.data());
-                    values = whole.data();
+                    model.uncutBrick(dense, uncut.data());
+                    values = uncut.data();
                 }
-                const std::uint8_t* nodes = base.tissues.nodes(dense);
-                const auto all = static_cast<std::size_t>(base.tissues.ofBrick(dense));
+                const std::uint8_t* tissues = model.field.storage().tissues->of(dense);
                 // Nodes 0..7 along each axis: the others are the next brick's.
                 TissueVolumes sum{};
                 for (int z = 0; z < field::kBrickCells; ++z)
                     for (int y = 0; y < field::kBrickCells; ++y)
                         for (int x = 0; x < field::kBrickCells; ++x) {
                             const int at = x + kStride[1] * y + kStride[2] * z;
-                            sum[nodes != nullptr ? nodes[at] : all] += occupancy(values[at], inverseVoxel);
+                            sum[tissues[at]] += occupancy(values[at], inverseVoxel);
                         }
                 for (std::size_t k = 0; k < cases::kTissueCount; ++k)
                     layers[layer][k] += sum[k] * voxelMm3;
@@ -122,74 +120,52 @@ TissueVolumes integrateVolumes(const CuttableTooth& base,
     return total;
 }
 
-std::shared_ptr<const CuttableTooth> prepareCutting(std::shared_ptr<const Tooth> tooth, field::TissueMap tissues,
-                                                    const CutSettings& settings) {
-    const field::FieldSettings& field = tooth->field.settings();
+std::shared_ptr<const ToothModel> withTissues(const ToothModel& model, field::TissueMap tissues,
+                                              const CutSettings& settings) {
+    ToothModel copy{model.name, model.outer, model.tree, model.field};
+    copy.fieldHash = model.fieldHash;
+    return withTissues(std::move(copy), std::move(tissues), settings);
+}
+
+std::shared_ptr<const ToothModel> withTissues(ToothModel&& model, field::TissueMap tissues,
+                                              const CutSettings& settings) {
+    const field::FieldSettings& field = model.field.settings();
     const auto refuse = [](const std::string& what, const std::string& remedy) {
         throw core::Error(what, "cutting", remedy);
     };
-    auto base = std::make_shared<CuttableTooth>();
-    base->settings = settings;
-    base->bandOutMm = std::max(field.bandOutMm, 2.0 * field.voxelMm);
-    double& band = base->settings.bandMm;
+    model.settings = settings;
+    model.bandOutMm = std::max(field.bandOutMm, 2.0 * field.voxelMm);
+    double& band = model.settings.bandMm;
     if (band == 0.0) band = std::max(0.2, 3.0 * field.voxelMm);
     const double least = 2.0 * field.voxelMm, most = std::max(kMaxBandMm, 4.0 * field.voxelMm);
     if (!(band >= least && band <= most))
         refuse(fmt::format("a band of {} mm cannot follow a cut at a voxel of {} mm", band, field.voxelMm),
                fmt::format("give {} to {} mm", least, most));
-    if (!tissues.isOn(tooth->field))
+    if (!tissues.isOn(model.field))
         refuse("the tissues were laid out on another grid than the tooth's", "make them from this tooth's field");
 
-    const field::FieldView view = tooth->field.view();
+    field::FieldStorage& s = model.field.storage();
     std::size_t inside = 0;
-    const std::size_t dense = static_cast<std::size_t>(view.bricks[0]) * static_cast<std::size_t>(view.bricks[1]) *
-                              static_cast<std::size_t>(view.bricks[2]);
-    for (std::size_t i = 0; i < dense; ++i)
-        if (view.brickIndex[i] < 0 && view.coarse[i] < 0.0f) ++inside;
+    for (std::size_t i = 0; i < s.coarse.size(); ++i)
+        if (s.brickIndex[i] < 0 && s.coarse[i] < 0.0f) ++inside;
+    // As sessions have counted it from the first.
     constexpr std::size_t kBytesABrick = field::kBrickValues * (sizeof(float) + 1);
-    std::size_t& reserve = base->settings.reserveBricks;
+    std::size_t& reserve = model.settings.reserveBricks;
     reserve = std::min(inside, reserve == 0 ? kReserveBytes / kBytesABrick : reserve);
 
-    base->tooth = std::move(tooth);
-    base->tissues = std::move(tissues);
-    base->volumesMm3 = integrateVolumes(*base, [](std::uint32_t) -> const float* { return nullptr; });
-    return base;
-}
-
-std::shared_ptr<const CuttableTooth> prepareCutting(const cases::Case& toothCase, std::shared_ptr<const Tooth> tooth,
-                                                    const PrepareSettings& cache, const CutSettings& settings,
-                                                    const core::Progress& progress) {
-    core::report(progress, 0.0);
-    const auto finished = [&](field::TissueMap map) {
-        auto base = prepareCutting(std::move(tooth), std::move(map), settings);
-        core::report(progress, 1.0);
-        return base;
-    };
-    if (toothCase.parts.size() <= 1)
-        return finished(field::TissueMap::uniform(
-            tooth->field, toothCase.parts.empty() ? cases::Tissue::enamel : toothCase.parts[0].tissue));
-    std::vector<std::filesystem::path> places;
-    std::uint64_t key = 0;
-    if (cache.useCache) {
-        key = field::tissueKey(field::cacheKey(toothCase, tooth->field.settings()));
-        places = field::cachePlaces(toothCase, cache.cacheFolder, key);
-        for (std::filesystem::path& place : places) {
-            place.replace_extension(".tissues");
-            if (std::optional<field::TissueMap> map =
-                    field::readTissueFile(place, tooth->field, key, field::TissueSet(toothCase)))
-                return finished(std::move(*map));
-        }
-    }
-    std::vector<geometry::TriangleTree> trees;
-    trees.reserve(toothCase.parts.size());
-    std::vector<field::PartSurface> parts;
-    for (const cases::Part& part : toothCase.parts) {
-        parts.push_back({&trees.emplace_back(part.mesh), part.tissue, part.priority});
-        core::report(progress, 0.1);
-    }
-    field::TissueMap map = field::TissueMap::fromParts(tooth->field, parts, core::part(progress, 0.1, 0.9));
-    if (!places.empty()) (void)field::writeFieldFile(places, field::encodeTissues(map, key));
-    return finished(std::move(map));
+    if (model.fieldHash == 0) model.fieldHash = model.field.stateHash();
+    model.tissues = std::move(tissues);
+    s.tissues = model.tissues.nodes();
+    model.volumesMm3 = integrateVolumes(model, [](std::uint32_t) -> const float* { return nullptr; });
+    core::Hasher hasher;
+    hasher.add(std::string_view("handpiece cut"));
+    hasher.add(model.fieldHash);
+    hasher.add(model.settings.bandMm);
+    hasher.add(model.bandOutMm);
+    for (const double mm3 : model.volumesMm3)
+        hasher.add(mm3);
+    model.identity = hasher.value();
+    return std::make_shared<const ToothModel>(std::move(model));
 }
 
 }  // namespace handpiece::tooth

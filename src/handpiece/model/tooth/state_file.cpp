@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "handpiece/model/tooth/cut_state_file.h"
+#include "handpiece/model/tooth/state_file.h"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -78,21 +78,21 @@ void forEachNode(F&& visit) {
                 visit(at++, x, y, z);
 }
 
-/// A piece before compression: indices, flags, then the numbers of the bricks that are not whole, byte by byte: all
+/// A piece before compression: indices, flags, then the numbers of the bricks that are not uncut, byte by byte: all
 /// lowest bytes first, all highest last.
 std::vector<std::uint8_t> packed(std::span<const StateDelta::Brick> bricks) {
     std::size_t cut = 0;
     for (const StateDelta::Brick& brick : bricks)
-        cut += !brick.whole;
+        cut += !brick.uncut;
     const std::size_t plane = cut * field::kBrickValues;
     std::vector<std::uint8_t> raw(bricks.size() * 5 + plane * 4);
     for (std::size_t i = 0; i < bricks.size(); ++i) {
         std::memcpy(&raw[4 * i], &bricks[i].dense, 4);
-        raw[4 * bricks.size() + i] = bricks[i].whole;
+        raw[4 * bricks.size() + i] = bricks[i].uncut;
     }
     std::uint8_t* out = raw.data() + bricks.size() * 5;
     for (const StateDelta::Brick& brick : bricks) {
-        if (brick.whole) continue;
+        if (brick.uncut) continue;
         const float* values = brick.values.data();
         forEachNode([&](int at, int x, int y, int z) {
             const std::uint32_t number = folded(ordered(values[at]) - ordered(predicted(values + at, x, y, z)));
@@ -110,17 +110,17 @@ bool unpack(std::span<const std::uint8_t> raw, std::span<StateDelta::Brick> bric
     if (raw.size() < bricks.size() * 5) return false;
     for (std::size_t i = 0; i < bricks.size(); ++i) {
         std::memcpy(&bricks[i].dense, &raw[4 * i], 4);
-        const std::uint8_t whole = raw[4 * bricks.size() + i];
-        if (whole > 1) return false;
-        bricks[i].whole = whole != 0;
-        cut += !bricks[i].whole;
+        const std::uint8_t uncut = raw[4 * bricks.size() + i];
+        if (uncut > 1) return false;
+        bricks[i].uncut = uncut != 0;
+        cut += !bricks[i].uncut;
     }
     const std::size_t plane = cut * field::kBrickValues;
     if (raw.size() != bricks.size() * 5 + plane * 4) return false;
     const std::uint8_t* in = raw.data() + bricks.size() * 5;
     for (StateDelta::Brick& brick : bricks) {
         brick.values.fill(0.0f);
-        if (brick.whole) continue;
+        if (brick.uncut) continue;
         float* values = brick.values.data();
         forEachNode([&](int at, int x, int y, int z) {
             std::uint32_t number = 0;
@@ -143,17 +143,14 @@ std::vector<std::uint8_t> compressed(const std::vector<std::uint8_t>& raw) {
 }
 
 /// Everything that a field could not hold. True when all is well.
-bool fits(const StateDelta& state, const CuttableTooth& base) {
-    const field::FieldView field = base.tooth->field.view();
-    const std::uint64_t dense = static_cast<std::uint64_t>(field.bricks[0]) *
-                                static_cast<std::uint64_t>(field.bricks[1]) *
-                                static_cast<std::uint64_t>(field.bricks[2]);
-    const auto low = static_cast<float>(-base.settings.bandMm), high = static_cast<float>(base.bandOutMm);
+bool fits(const StateDelta& state, const ToothModel& model) {
+    const field::FieldStorage& field = model.field.storage();
+    const auto low = static_cast<float>(-model.settings.bandMm), high = static_cast<float>(model.bandOutMm);
     for (std::size_t i = 0; i < state.bricks.size(); ++i) {
         const StateDelta::Brick& brick = state.bricks[i];
-        if (brick.dense >= dense || (i > 0 && brick.dense <= state.bricks[i - 1].dense)) return false;
+        if (brick.dense >= field.coarse.size() || (i > 0 && brick.dense <= state.bricks[i - 1].dense)) return false;
         if (field.brickIndex[brick.dense] < 0 && field.coarse[brick.dense] >= 0.0f) return false;
-        if (brick.whole) continue;
+        if (brick.uncut) continue;
         for (const float value : brick.values)
             if (!(value >= low && value <= high)) return false;
     }
@@ -164,18 +161,7 @@ bool fits(const StateDelta& state, const CuttableTooth& base) {
 
 }  // namespace
 
-std::uint64_t identityOf(const CuttableTooth& base) {
-    core::Hasher hasher;
-    hasher.add(std::string_view("handpiece cut"));
-    hasher.add(base.tooth->field.stateHash());
-    hasher.add(base.settings.bandMm);
-    hasher.add(base.bandOutMm);
-    for (const double mm3 : base.volumesMm3)
-        hasher.add(mm3);
-    return hasher.value();
-}
-
-std::vector<std::byte> encodeState(const StateDelta& state, std::uint64_t baseKey) {
+std::vector<std::byte> encodeState(const StateDelta& state, std::uint64_t identity) {
     const std::size_t count = state.bricks.size();
     std::vector<std::vector<std::uint8_t>> pieces(piecesOf(count));
     core::parallelFor(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -200,7 +186,7 @@ std::vector<std::byte> encodeState(const StateDelta& state, std::uint64_t baseKe
     std::memcpy(header.magic, kMagic, sizeof kMagic);
     header.version = kVersion;
     header.byteOrder = kByteOrder;
-    header.key = baseKey;
+    header.key = identity;
     header.bricks = count;
     header.payloadBytes = data.size() - sizeof header;
     std::copy(state.removedMm3.begin(), state.removedMm3.end(), header.removedMm3);
@@ -210,8 +196,7 @@ std::vector<std::byte> encodeState(const StateDelta& state, std::uint64_t baseKe
     return data;
 }
 
-StateDelta decodeState(std::span<const std::byte> data, std::uint64_t baseKey, const CuttableTooth& base,
-                       const std::string& where) {
+StateDelta decodeState(std::span<const std::byte> data, const ToothModel& model, const std::string& where) {
     Header header;
     const auto cutShort = [&] { return core::Error("the cut state is cut short", where, "take an older copy"); };
     const auto damaged = [&] { return core::Error("the cut state is damaged", where, "take an older copy"); };
@@ -226,18 +211,14 @@ StateDelta decodeState(std::span<const std::byte> data, std::uint64_t baseKey, c
             fmt::format("the cut state is of version {}, this program knows {}", header.version, kVersion), where,
             "use a newer Handpiece");
     if (header.version == 0 || header.headerHash != headerHashOf(header)) throw damaged();
-    if (header.key != baseKey)
+    if (header.key != model.identity)
         throw core::Error("the cut state belongs to another tooth, or to another voxel or band", where,
                           "open it with the case and the settings that it was saved with");
     const std::span<const std::byte> payload = data.subspan(sizeof header);
     if (payload.size() < header.payloadBytes) throw cutShort();
     if (payload.size() > header.payloadBytes || field::hashOf(payload) != header.payloadHash) throw damaged();
 
-    const field::FieldView field = base.tooth->field.view();
-    const std::uint64_t dense = static_cast<std::uint64_t>(field.bricks[0]) *
-                                static_cast<std::uint64_t>(field.bricks[1]) *
-                                static_cast<std::uint64_t>(field.bricks[2]);
-    if (header.bricks > dense) throw damaged();
+    if (header.bricks > model.field.storage().coarse.size()) throw damaged();
     const std::size_t count = header.bricks, pieces = piecesOf(count);
     if (payload.size() < pieces * sizeof(std::uint32_t)) throw damaged();
     std::vector<std::size_t> start(pieces + 1, pieces * sizeof(std::uint32_t));
@@ -264,7 +245,7 @@ StateDelta decodeState(std::span<const std::byte> data, std::uint64_t baseKey, c
                 throw damaged();
         }
     });
-    if (!fits(state, base)) throw damaged();
+    if (!fits(state, model)) throw damaged();
     return state;
 }
 

@@ -403,8 +403,7 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
     json["removed_mm3"] = removed;
     json["left_mm3"] = left;
     const std::vector<studies::LesionOutcome> outcomes = studies::lesionOutcomes(
-        lesions, station.tooth->tooth->outer.bounds(),
-        [&](const core::Vec3& p) { return station.tooth->tooth->field.distance(p); },
+        lesions, station.tooth->outer.bounds(), [&](const core::Vec3& p) { return station.tooth->field.distance(p); },
         [&](const core::Vec3& p) { return station.field->field().distance(p); });
     if (!lesions.empty()) json["lesions"] = lesionsJson(lesions, outcomes);
     json["left_over_pulp_mm"] = outcome.leftOverPulpMm ? Json(*outcome.leftOverPulpMm) : Json();

@@ -64,7 +64,7 @@ def rooms():
     for path in SRC.glob("*/*/CMakeLists.txt"):
         text = path.read_text()
         name = re.search(r"handpiece_room\((\S+)", text).group(1)
-        line = re.search(r"USES((?:\s+[a-z]+)*)\s*(?:THIRD_PARTY|\))", text)
+        line = re.search(r"USES((?:\s+[a-z_]+)*)\s*(?:THIRD_PARTY|\))", text)
         uses[name] = set(line.group(1).split()) if line else set()
     return uses
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 
+#include "base/geometry/meshes.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
 
 namespace handpiece::test {
@@ -57,16 +58,6 @@ inline geometry::TriangleMesh bumpyMesh(int level, double radiusMm) {
             1.0 + 0.18 * std::sin(5.0 * v.x() + 1.0) * std::cos(4.0 * v.y()) + 0.12 * std::sin(7.0 * v.z());
         return core::Vec3(radiusMm * bump * v);
     });
-}
-
-inline geometry::TriangleMesh boxMesh(const core::Vec3& low, const core::Vec3& high) {
-    geometry::TriangleMesh mesh;
-    for (int i = 0; i < 8; ++i)
-        mesh.vertices.emplace_back((i & 1) != 0 ? high.x() : low.x(), (i & 2) != 0 ? high.y() : low.y(),
-                                   (i & 4) != 0 ? high.z() : low.z());
-    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    return mesh;
 }
 
 inline double distanceToSegment(const core::Vec3& p, const core::Vec3& a, const core::Vec3& b) {

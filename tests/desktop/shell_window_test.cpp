@@ -765,7 +765,7 @@ TEST_F(ShellTest, AfterACrashTheToothComesBack) {
     ASSERT_TRUE(idle());
     const std::vector<std::byte> page = core::readFile(at("report.html"));
     const std::string text(reinterpret_cast<const char*>(page.data()), page.size());
-    EXPECT_NE(text.find("class=\"ok\""), std::string::npos);
+    EXPECT_NE(text.find("class=\"good\""), std::string::npos);
     EXPECT_NE(text.find("1 of 1 times"), std::string::npos);
     simulator().closeReplay();
     ASSERT_TRUE(waitFor([&] { return simulator().mode() == Simulator::Mode::liveSession && removedMm3() > cutMm3; }));

@@ -561,6 +561,7 @@ TEST_F(ShellTest, TheSimulatedArmIsAlwaysThereAndAnInjectedFaultEndsInTheMouse) 
     CommandLine line;
     line.device = QStringLiteral("simulated");
     line.inject = QStringLiteral("unplug@0.5:1000");
+    Settings(options().folders.settingsFile).set(QStringLiteral("device/seen_simulated"), true);
     startWithTooth(line);
     ASSERT_TRUE(waitFor([&] { return simulator().usedHand() != nullptr; }));
     ASSERT_TRUE(waitFor([&] { return window().findChild<NoticeBar*>()->current() == "device-lost"; }));

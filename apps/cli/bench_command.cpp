@@ -22,7 +22,7 @@ using Json = nlohmann::ordered_json;
 
 struct BenchOptions {
     std::vector<std::size_t> faces{9760, 68152, 325312};
-    std::string bur = "330";
+    BurInput bur;
     bool quick = false, json = false;
 };
 
@@ -74,11 +74,12 @@ void bench(const BenchOptions& o) {
             row["constant_load"] = timingJson(r.constant);
             out.push_back(std::move(row));
         }
-        fmt::print("{}\n", Json{{"machine", studies::machineDescription()}, {"bur", o.bur}, {"rows", out}}.dump(2));
+        fmt::print("{}\n",
+                   Json{{"machine", studies::machineDescription()}, {"bur", o.bur.name}, {"rows", out}}.dump(2));
         return;
     }
     fmt::print("{}\nbur {}, lower first molar; one query after the other along a sweep over the crown, {} places\n\n",
-               studies::machineDescription(), o.bur, count);
+               studies::machineDescription(), o.bur.name, count);
     fmt::print("{:>7} {:<5} {:<19}{:>9}{:>9}{:>9}{:>9}   constant load:{:>7}{:>9}\n", "faces", "", "method", "p50 us",
                "p99", "p99.9", "worst", "p50", "p99.9");
     for (const Row& r : rows)
@@ -95,7 +96,7 @@ void addBenchCommand(Command& app) {
     Command command = app.subcommand("bench", "Time our contact methods on this machine");
     const auto options = std::make_shared<BenchOptions>();
     command.option("--faces", options->faces, "triangles of the teeth").showDefault();
-    command.option("--bur", options->bur, "bur by name or mesh file").showDefault();
+    addBurOption(command, options->bur);
     command.flag("--quick", options->quick, "the coarsest tooth only, fewer places");
     command.flag("--json", options->json, "print JSON instead of a table");
     command.footer(

@@ -20,12 +20,6 @@ namespace fs = std::filesystem;
 
 namespace {
 constexpr std::size_t kMaxThreads = 1024;
-
-geometry::TriangleMesh scaled(geometry::TriangleMesh mesh, double factor) {
-    for (core::Vec3& v : mesh.vertices)
-        v *= factor;
-    return mesh;
-}
 }  // namespace
 
 double MeshUnit::mmPerUnit() const {
@@ -33,7 +27,7 @@ double MeshUnit::mmPerUnit() const {
 }
 
 geometry::TriangleMesh MeshUnit::read(const std::string& file, geometry::ReadNotes* notes) const {
-    return scaled(geometry::readMesh(fs::path(file), notes), mmPerUnit());
+    return geometry::scaled(geometry::readMesh(fs::path(file), notes), mmPerUnit());
 }
 
 void addUnitOptions(Command& command, MeshUnit& unit, bool withScale) {
@@ -52,9 +46,9 @@ cases::Case readToothOf(const ContactInputs& inputs) {
     if (mm == 1.0) return toothCase;
     if (geometry::meshFormatOf(inputs.tooth) == geometry::MeshFormat::unknown)
         throw core::Error("a case is in millimetres", "--unit", "give a unit only for a mesh file");
-    toothCase.outer = scaled(std::move(toothCase.outer), mm);
+    toothCase.outer = geometry::scaled(std::move(toothCase.outer), mm);
     for (cases::Part& part : toothCase.parts)
-        part.mesh = scaled(std::move(part.mesh), mm);
+        part.mesh = geometry::scaled(std::move(part.mesh), mm);
     return toothCase;
 }
 
@@ -65,8 +59,7 @@ void addContactOptions(Command& command, ContactInputs& inputs, const MethodRegi
     command.option("--tooth,--case", inputs.tooth, "case folder, .handpiece file, or mesh file (.stl, .ply, .obj; mm)")
         .required();
     addUnitOptions(command, inputs.unit, false);
-    command.option("--bur", inputs.bur, "bur by name (330, round-4, paper, cylinder-round:1.0x4.0) or mesh file")
-        .showDefault();
+    addBurOption(command, inputs.bur);
     command.option("--method", inputs.method, "contact method: " + names).showDefault();
     command.option("--voxel", inputs.voxelUm, "voxel of the distance field [um], 10 to 400").showDefault();
     command.flag("--no-cache", inputs.noCache, "build the field anew and keep nothing");
@@ -92,8 +85,20 @@ std::shared_ptr<const tooth::ToothModel> loadTooth(const ContactInputs& inputs) 
     return tooth::loadModel(readToothOf(inputs), settings, bar.listener());
 }
 
-std::shared_ptr<const instrument::Bur> loadBur(const std::string& nameOrFile) {
-    return instrument::makeInstrument(nameOrFile).bur;
+void addBurOption(Command& command, BurInput& bur) {
+    command.option("--bur", bur.name, "bur by name (330, round-4, paper, cylinder-round:1.0x4.0) or mesh file")
+        .showDefault();
+    command.option("--bur-unit", bur.unit, "unit of a bur that is a mesh file: mm, cm, m, inch or um")
+        .showDefault()
+        .check(oneOf({"mm", "cm", "m", "inch", "um"}));
+}
+
+double BurInput::mmPerUnit() const {
+    return geometry::millimetresPer(geometry::unitByName(unit));
+}
+
+std::shared_ptr<const instrument::Bur> loadBur(const BurInput& bur) {
+    return instrument::makeInstrument(bur.name, {}, {}, bur.mmPerUnit()).bur;
 }
 
 std::unique_ptr<contact::Method> makeMethod(const std::string& name, const MethodRegistry& extra,

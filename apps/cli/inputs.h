@@ -25,9 +25,19 @@ struct MeshUnit {
 /// --unit, and --scale where that is not an arm's.
 void addUnitOptions(Command& command, MeshUnit& unit, bool withScale = true);
 
+/// A bur by name, or a mesh file in a unit.
+struct BurInput {
+    std::string name = "330", unit = "mm";
+
+    [[nodiscard]] double mmPerUnit() const;
+};
+/// --bur and --bur-unit.
+void addBurOption(Command& command, BurInput& bur);
+
 struct ContactInputs {
     MeshUnit unit;  ///< of a tooth that is a mesh file
-    std::string tooth, bur = "330", method = "field";
+    std::string tooth, method = "field";
+    BurInput bur;
     double voxelUm = 50.0;
     bool noCache = false;
     std::size_t threads = 0;
@@ -43,7 +53,7 @@ void addContactOptions(Command& command, ContactInputs& inputs, const MethodRegi
 /// Reads or reopens the tooth, with a progress bar. Throws core::Error.
 [[nodiscard]] std::shared_ptr<const tooth::ToothModel> loadTooth(const ContactInputs& inputs);
 /// A name of the catalogue, SHAPE:DxL, or a mesh file.
-[[nodiscard]] std::shared_ptr<const instrument::Bur> loadBur(const std::string& nameOrFile);
+[[nodiscard]] std::shared_ptr<const instrument::Bur> loadBur(const BurInput& bur);
 /// By name: field, hull or a registered one; throws core::Error naming those there are.
 [[nodiscard]] std::unique_ptr<contact::Method> makeMethod(const std::string& name, const MethodRegistry& extra,
                                                           std::shared_ptr<const tooth::ToothModel> tooth,

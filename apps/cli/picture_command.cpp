@@ -37,7 +37,9 @@ constexpr double kRateOverS = 0.05;  // what is removed in this time says how ma
 
 struct PictureOptions {
     std::string what, out, view = "oblique", size = "1280x800", quality = "rich", palette = "natural", look = "now",
-                           section, eye, target, stereo = "none", bur;
+                           section, eye, target, stereo = "none";
+    BurInput bur{"", "mm"};  ///< no name: none
+    MeshUnit unit;           ///< of a tooth that is a mesh file
     std::vector<std::string> hide;
     double atS = -1.0, voxelUm = 50.0;
     std::size_t threads = 0;
@@ -158,9 +160,9 @@ Asked read(const PictureOptions& o) {
     const bool isSession = fs::path(o.what).extension() == ".h5";
     if (o.atGiven && !isSession)
         throw core::Error("only a session has a time", "--at", "give a session file (.h5), or leave --at out");
-    if (isSession && !o.bur.empty())
+    if (isSession && !o.bur.name.empty())
         throw core::Error("a session has its own bur", "--bur", "leave it out, or hide that one with --no-bur");
-    if (!o.bur.empty()) asked.bur = instrument::makeInstrument(o.bur);
+    if (!o.bur.name.empty()) asked.bur = instrument::makeInstrument(o.bur.name, {}, {}, o.bur.mmPerUnit());
     return asked;
 }
 
@@ -246,9 +248,11 @@ Subject openCase(const PictureOptions& o, const Asked& asked) {
     ContactInputs inputs;
     inputs.threads = o.threads;
     inputs.noCache = o.noCache;
+    inputs.tooth = o.what;
+    inputs.unit = o.unit;
     inputs.voxelUm = attempt ? 1e3 * attempt->attempt.voxelMm : o.voxelUm;
     const tooth::LoadSettings prepare = prepareSettingsOf(inputs);
-    const cases::Case toothCase = attempt ? attempt->toothCase : cases::readCase(o.what);
+    const cases::Case toothCase = attempt ? attempt->toothCase : readToothOf(inputs);
     simulation::SimulationSettings settings;
     settings.field = prepare.field;
     studies::ProgressBar bar("preparing the tooth");
@@ -268,7 +272,7 @@ Subject openCase(const PictureOptions& o, const Asked& asked) {
 
 Subject openMesh(const PictureOptions& o) {
     Subject subject;
-    subject.mesh = geometry::readMesh(o.what);
+    subject.mesh = o.unit.read(o.what);
     subject.bounds = subject.mesh->bounds();
     return subject;
 }
@@ -401,7 +405,11 @@ void addPictureCommand(Command& app) {
     command.flag("--grid", o.grid, "millimetre lines on the section");
     command.option("--hide", o.hide, "tissues not to show, by name").delimiter(',');
     command.flag("--no-scenery", o.noScenery, "without neighbours, gum and bone");
-    command.option("--bur", o.bur, "this bur in its handpiece, resting on the middle of the crown");
+    command.option("--bur", o.bur.name, "this bur in its handpiece, resting on the middle of the crown");
+    command.option("--bur-unit", o.bur.unit, "unit of a bur that is a mesh file")
+        .showDefault()
+        .check(oneOf({"mm", "cm", "m", "inch", "um"}));
+    addUnitOptions(command, o.unit, false);
     command.flag("--no-bur", o.noBur, "without the session's bur");
     command.flag("--mirror", o.mirror, "with a mouth mirror that shows the side one does not see");
     command.flag("--arrows", o.arrows, "contact and force (2 mm a newton) as arrows");

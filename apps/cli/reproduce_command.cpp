@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "cli/commands.h"
+#include "cli/inputs.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/decimate.h"
@@ -26,6 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ReproduceOptions {
+    MeshUnit unit;  ///< of --tooth
     std::string out, tooth, scan;
     double spacingMm = 0.0;
     bool quick = false, json = false, labels = false;
@@ -59,7 +61,10 @@ void addSurface(studies::Reproduction& r, studies::Surface s, const fs::path& fe
 /// The surface given with --tooth; empty without.
 geometry::TriangleMesh ownSurface(const ReproduceOptions& o) {
     if (o.tooth.empty()) return {};
-    cases::Case given = cases::readCase(o.tooth);
+    ContactInputs inputs;
+    inputs.tooth = o.tooth;
+    inputs.unit = o.unit;
+    cases::Case given = readToothOf(inputs);
     geometry::TriangleMesh own = std::move(!given.outer.triangles.empty() ? given.outer : given.parts.front().mesh);
     cases::requireSolid(own, o.tooth);
     return own;
@@ -164,6 +169,7 @@ void addReproduceCommand(Command& app) {
     const auto options = std::make_shared<ReproduceOptions>();
     command.option("--out", options->out, "folder for the report; the teeth are kept in it").required();
     command.option("--tooth", options->tooth, "case folder or mesh file instead of the starter molar");
+    addUnitOptions(command, options->unit, false);
     Option scan = command.option("--scan", options->scan,
                                  "slices for Table II instead of the starter molar as the phantom scanner images it");
     command.option("--spacing", options->spacingMm, "distance of the scan's voxels [mm], where its files do not tell")

@@ -66,7 +66,7 @@ Json spreadJson(const loop::Spread& s) {
 Json summaryJson(const RunOptions& o, const studies::RunSummary& s, const std::string& method,
                  const std::string& hand) {
     return {{"tooth", o.inputs.tooth},
-            {"bur", o.inputs.bur},
+            {"bur", o.inputs.bur.name},
             {"method", method},
             {"motion", o.motion},
             {"force", o.force},
@@ -102,7 +102,7 @@ void printSummary(const RunOptions& o, const studies::RunSummary& s, const std::
     const auto row = printRow;
     const loop::RunReport& r = s.report;
     fmt::print("{}{}\n", o.out, s.stopped ? " (stopped early; what there was is written)" : "");
-    row("ran", fmt::format("{} on {} with {}, {}, {:.3f} s at {:.0f} Hz", o.motion, o.inputs.tooth, o.inputs.bur,
+    row("ran", fmt::format("{} on {} with {}, {}, {:.3f} s at {:.0f} Hz", o.motion, o.inputs.tooth, o.inputs.bur.name,
                            method, s.durationS, o.rateHz));
     row("ticks", fmt::format("{}, late {}, left out {}", r.ticks, r.lateTicks, r.missedPeriods));
     row("scheduling", r.scheduling);
@@ -179,7 +179,7 @@ simulation::SimulationSettings stationSettingsOf(const RunOptions& o, const stud
     s.rateHz = run.rateHz;
     s.field = prepare.field;
     const instrument::Instrument instrument =
-        instrument::makeInstrument(o.inputs.bur, o.abilities, o.cuttingParameters);
+        instrument::makeInstrument(o.inputs.bur.name, o.abilities, o.cuttingParameters, o.inputs.bur.mmPerUnit());
     s.cuttingParameters = instrument.cuttingParameters;
     s.bur = instrument.bur;
     s.drive = run.drive;
@@ -491,7 +491,8 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
     studies::RunTrace trace(outputs.path("trace.csv"), duration);
     std::optional<SoundTrack> sound;
     if (!o.sound.empty()) {
-        const instrument::Instrument held = instrument::makeInstrument(o.inputs.bur);
+        const instrument::Instrument held =
+            instrument::makeInstrument(o.inputs.bur.name, {}, {}, o.inputs.bur.mmPerUnit());
         sound.emplace(o.sound, *held.bur, held.cuttingParameters, settings.drive, settings.rateHz, duration);
     }
     studies::ProgressBar bar("running");

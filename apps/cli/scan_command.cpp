@@ -96,7 +96,7 @@ Vec3 directionOf(const std::string& text, const char* option) {
 
 struct ScanOptions {
     std::string path, out, job, saveJob, series, spacing, labelOrder, at, threshold, occlusal, mesial, name, kind,
-        tissues, intraoral, percent, pictures;
+        tissues, intraoral, intraoralUnit = "mm", percent, pictures;
     std::vector<std::string> lesions, cuts, marks;
     double voxelMm = 0.0;
     std::size_t faces = 0, threads = 0;
@@ -181,7 +181,10 @@ ScanJob jobOf(const ScanOptions& o) {
     if (!o.name.empty()) job.name = o.name;
     if (!o.kind.empty()) job.kind = o.kind;
     if (!o.tissues.empty()) job.tissuesFile = o.tissues;
-    if (!o.intraoral.empty()) job.intraoral = o.intraoral;
+    if (!o.intraoral.empty()) {
+        job.intraoral = o.intraoral;
+        job.intraoralUnit = o.intraoralUnit;
+    }
     if (o.scenery) job.scenery = true;
     if (static_cast<int>(o.faces > 0) + static_cast<int>(!o.percent.empty()) + static_cast<int>(o.tableTwo) > 1)
         throw core::Error("give one of --faces, --percent and --table2", "scan", "they all say how fine the case is");
@@ -488,6 +491,9 @@ void addSurfaceOptions(Command& command, ScanOptions& o) {
                    "else a case has as many as its field can use, and scan surface all");
     command.flag("--table2", o.tableTwo, "the paper's five: 6, 12, 25, 50 and 100 %");
     command.option("--intraoral", o.intraoral, "mesh of an intraoral scan: found on the tooth, then its outer surface");
+    command.option("--intraoral-unit", o.intraoralUnit, "unit of that mesh: mm, cm, m, inch or um")
+        .showDefault()
+        .check(oneOf({"mm", "cm", "m", "inch", "um"}));
 }
 
 }  // namespace

@@ -98,8 +98,19 @@ class MakeAndMesh(SystemTest):
         poses = "0,0,6.85,1,0,0,0\n"
         felt = self.ok("probe", "--tooth", metres, "--unit", "m", "--bur", "round-4", "--poses", "-", stdin=poses)
         self.assertAlmostEqual(float(felt.stdout.splitlines()[1].split(",")[0]), -0.5, delta=0.01)
+        bur, tiny = self.folder / "bur.stl", self.folder / "bur-in-metres.stl"
+        self.ok("make", "bur", "--name", "round-4", "--out", bur)
+        self.ok("mesh", "repair", bur, tiny, "--scale", "0.001")
+        with_bur = [self.ok("probe", "--tooth", metres, "--unit", "m", "--bur", *b, "--poses", "-", stdin=poses).stdout.splitlines()[1].split(",")[0]
+                    for b in ((bur,), (tiny, "--bur-unit", "m"))]
+        self.assertAlmostEqual(float(with_bur[0]), float(with_bur[1]), delta=1e-4)
+        self.refused("probe", "--tooth", metres, "--unit", "m", "--bur", tiny, "--poses", "-", stdin=poses, mentions=["bur"])
         mended = self.folder / "mended.stl"
         self.ok("mesh", "repair", metres, mended, "--unit", "m")
+        pictures = [self.folder / f"{name}.png" for name in ("metres", "mended")]
+        self.ok("picture", metres, "--unit", "m", "--size", "64x64", "--out", pictures[0])
+        self.ok("picture", mended, "--size", "64x64", "--out", pictures[1])
+        self.assertEqual(*(p.read_bytes() for p in pictures))
         self.expect_solid(self.info(mended))
         self.assertAlmostEqual(self.info(mended)["box_size_mm"][2], 12.7, delta=1e-3)
         self.ok("case", "new", "--out", self.folder / "case", "--part", f"enamel={metres}", "--unit", "m")

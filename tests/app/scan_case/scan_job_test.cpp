@@ -40,6 +40,7 @@ ScanJob everything() {
     job.enamelFrom = -4.0;
     job.smooth = false;
     job.intraoral = "crown.stl";
+    job.intraoralUnit = "inch";
     job.intraoralInScan = core::Pose{Vec3(1, 2, 3), core::Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()))};
     job.intraoralReachMm = 0.3;
     job.intraoralOverlap = 0.2;
@@ -69,6 +70,7 @@ TEST(ScanJobFile, KeepsEveryDecision) {
     EXPECT_EQ(back.segmentation.marks[1].tissue, cases::Tissue::none);
     EXPECT_EQ(back.segmentation.cutPlanes[1].normal, Vec3(0.6, 0, 0.8));
     EXPECT_EQ(back.segmentation.lesions[0].halfAxesMm, Vec3(0.5, 0.75, 1.0));
+    EXPECT_EQ(back.intraoralUnit, "inch");
     EXPECT_LT(back.intraoralInScan->orientation.angularDistance(job.intraoralInScan->orientation), 1e-12);
     EXPECT_EQ(back.labelOrder, job.labelOrder);
     EXPECT_EQ(back.percents, job.percents);
@@ -102,6 +104,7 @@ TEST(ScanJobFile, TellsWhatIsWrong) {
     EXPECT_THAT(told("format = 1\npercents = []\n"), HasSubstr("percent"));
     EXPECT_THAT(told("format = 1\nlabel_order = [1.5]\n"), HasSubstr("label_order"));
     EXPECT_THAT(told("format = 1\n[placing]\nocclusal = [0, 0, 0]\n"), HasSubstr("no direction"));
+    EXPECT_THAT(told("format = 1\n[intraoral]\nmesh = \"a.stl\"\nunit = \"ell\"\n"), HasSubstr("no unit"));
     EXPECT_THAT(told("format = 1\n[intraoral]\nposition_mm = [0, 0, 0]\n"), HasSubstr("quaternion"));
     EXPECT_THAT(told("format = 1\n[segmentation.thresholds]\noutside = 1\n"), HasSubstr("missing"));
     EXPECT_THAT(told("format = 1\n[[segmentation.lesion]]\ncentre_mm = [0, 0, 0]\nhalf_axes_mm = [1, 0, 1]\n"),

@@ -12,6 +12,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/memory.h"
+#include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/case_check.h"
 #include "handpiece/model/case/package.h"
@@ -86,7 +87,8 @@ void surface(ScanResult& result, const core::Progress& progress) {
         surfacing::makeSurfaces(*result.region, {job.smooth}, core::part(progress, 0.0, share));
     result.registered.reset();
     if (!job.intraoral.empty()) {
-        const geometry::TriangleMesh scan = geometry::readMesh(job.intraoral);
+        const geometry::TriangleMesh scan = geometry::scaled(
+            geometry::readMesh(job.intraoral), geometry::millimetresPer(geometry::unitByName(job.intraoralUnit)));
         registration::RegisterSettings settings;
         settings.roughly = job.intraoralInScan;
         settings.overlap = job.intraoralOverlap;

@@ -39,6 +39,7 @@ struct ScanJob {
     bool smooth = true;
     // An intraoral scan as the outer surface.
     std::filesystem::path intraoral;                        ///< mesh; empty: none
+    std::string intraoralUnit = "mm";                       ///< of that mesh: mm, cm, m, inch or um
     std::optional<core::Pose> intraoralInScan;              ///< roughly, by hand; none: found by features
     double intraoralReachMm = 0.5, intraoralOverlap = 0.5;  ///< as registration::withOuterSurface, RegisterSettings
     // The tooth's own frame and the case's words.

@@ -11,6 +11,7 @@
 #include "handpiece/base/config/table.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/geometry/inspect.h"
 
 namespace handpiece::scan_case {
 namespace {
@@ -221,6 +222,7 @@ std::string surfaceToml(const ScanJob& job) {
     const ScanJob usual;
     Lines lines;
     lines.text("mesh", job.intraoral.string());
+    if (job.intraoralUnit != usual.intraoralUnit) lines.text("unit", job.intraoralUnit);
     lines.numberUnless("reach_mm", job.intraoralReachMm, usual.intraoralReachMm);
     lines.numberUnless("overlap", job.intraoralOverlap, usual.intraoralOverlap);
     if (job.intraoralInScan) {
@@ -310,8 +312,11 @@ ScanJob scanJobFromToml(std::string_view text, const std::string& where) {
         job.placing.mesial = directionOf(*t, "mesial");
     }
     if (const auto t = table.table("intraoral")) {
-        t->allowOnly({"mesh", "reach_mm", "overlap", "position_mm", "orientation"});
+        t->allowOnly({"mesh", "unit", "reach_mm", "overlap", "position_mm", "orientation"});
         job.intraoral = t->text("mesh").value_or("");
+        job.intraoralUnit = t->text("unit").value_or("mm");
+        if (geometry::unitByName(job.intraoralUnit) == geometry::LengthUnit::unknown)
+            t->fail(fmt::format("there is no unit \"{}\"", job.intraoralUnit), "give mm, cm, m, inch or um", "unit");
         take(*t, "reach_mm", job.intraoralReachMm, 0.01, 2.0);
         take(*t, "overlap", job.intraoralOverlap, 0.01, 1.0);
         if (t->has("position_mm") || t->has("orientation")) {

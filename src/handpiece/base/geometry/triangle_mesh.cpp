@@ -23,6 +23,12 @@ double enclosedVolumeMm3(const TriangleMesh& mesh) {
     return sixTimes / 6.0;
 }
 
+TriangleMesh scaled(TriangleMesh mesh, double factor) {
+    for (core::Vec3& v : mesh.vertices)
+        v *= factor;
+    return mesh;
+}
+
 TriangleMesh transformed(TriangleMesh mesh, const core::Pose& pose) {
     for (core::Vec3& v : mesh.vertices)
         v = pose.apply(v);

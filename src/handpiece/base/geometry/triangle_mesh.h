@@ -30,6 +30,8 @@ struct TriangleMesh {
 [[nodiscard]] double surfaceAreaMm2(const TriangleMesh& mesh);
 /// Signed enclosed volume [mm3], by the divergence theorem; positive when the triangles face outwards.
 [[nodiscard]] double enclosedVolumeMm3(const TriangleMesh& mesh);
+/// The mesh with every coordinate multiplied: into another unit.
+[[nodiscard]] TriangleMesh scaled(TriangleMesh mesh, double factor);
 /// The mesh with every vertex mapped by `pose`.
 [[nodiscard]] TriangleMesh transformed(TriangleMesh mesh, const core::Pose& pose);
 

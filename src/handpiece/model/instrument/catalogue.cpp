@@ -183,8 +183,8 @@ BurFile readFile(const Table& root, const fs::path& folder, const BurFile* shipp
     return file;
 }
 
-Bur burOfMesh(const fs::path& file, const std::string& name) {
-    return burFromMesh(name, geometry::readMesh(file));
+Bur burOfMesh(const fs::path& file, const std::string& name, double mmPerUnit = 1.0) {
+    return burFromMesh(name, geometry::scaled(geometry::readMesh(file), mmPerUnit));
 }
 
 Bur burOf(const CatalogueEntry& e) {
@@ -224,7 +224,7 @@ BurFile readAbilities(const fs::path& file) {
 }
 
 Instrument makeInstrument(std::string_view nameOrFile, const fs::path& abilitiesFile,
-                          std::string_view cuttingParameters) {
+                          std::string_view cuttingParameters, double mmPerUnit) {
     std::optional<BurFile> own;
     if (!abilitiesFile.empty()) own = readAbilities(abilitiesFile);
     const BurFile* ownFile = own ? &*own : nullptr;
@@ -238,7 +238,7 @@ Instrument makeInstrument(std::string_view nameOrFile, const fs::path& abilities
     if (entry) {
         made.bur = std::make_shared<const Bur>(burOf(*entry));
     } else if (const fs::path file(nameOrFile); geometry::meshFormatOf(file) != geometry::MeshFormat::unknown) {
-        made.bur = std::make_shared<const Bur>(burOfMesh(file, file.filename().string()));
+        made.bur = std::make_shared<const Bur>(burOfMesh(file, file.filename().string(), mmPerUnit));
     } else {
         made.bur = std::make_shared<const Bur>(makeBur(nameOrFile));
     }

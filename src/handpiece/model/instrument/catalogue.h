@@ -64,8 +64,8 @@ struct Instrument {
 };
 /// By a name of the file of one's own (first) or of the catalogue, "paper", SHAPE:DIAMETERxLENGTH, or a mesh file. What
 /// names no ability has `ability`, and that wins where it is given; without either it is a medium diamond.
-/// Throws core::Error.
+/// A mesh file's coordinates are multiplied by `mmPerUnit`. Throws core::Error.
 [[nodiscard]] Instrument makeInstrument(std::string_view nameOrFile, const std::filesystem::path& abilitiesFile = {},
-                                        std::string_view cuttingParameters = {});
+                                        std::string_view cuttingParameters = {}, double mmPerUnit = 1.0);
 
 }  // namespace handpiece::instrument

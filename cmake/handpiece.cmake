@@ -68,7 +68,6 @@ function(handpiece_off_tick target)
     target_compile_options(${target} PRIVATE -O1)
 endfunction()
 
-# HEADERS are public and installed; a room's other headers are its own affair (tools/check_headers.py).
 # Several sources in one: half of what a whole build costs.
 option(HANDPIECE_UNITY "Compile several sources at once (off: one file that changed is compiled sooner)" ON)
 set(CMAKE_UNITY_BUILD ${HANDPIECE_UNITY})
@@ -78,6 +77,7 @@ function(handpiece_alone)
     set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
+# HEADERS are public and installed; a room's other headers are its own affair (tools/check_headers.py).
 # handpiece_room(wing/room HEADERS ... SOURCES ... USES room... THIRD_PARTY lib... THIRD_PARTY_PUBLIC lib...)
 function(handpiece_room path)
     cmake_parse_arguments(R "" "" "HEADERS;SOURCES;USES;THIRD_PARTY;THIRD_PARTY_PUBLIC" ${ARGN})

@@ -30,10 +30,12 @@ geometry::TriangleMesh MeshUnit::read(const std::string& file, geometry::ReadNot
     return geometry::scaled(geometry::readMesh(fs::path(file), notes), mmPerUnit());
 }
 
+void addLengthUnit(Command& command, const char* name, std::string& unit, const char* help) {
+    command.option(name, unit, help).showDefault().check(oneOf({"mm", "cm", "m", "inch", "um"}));
+}
+
 void addUnitOptions(Command& command, MeshUnit& unit, bool withScale) {
-    command.option("--unit", unit.name, "unit of a mesh file: mm, cm, m, inch or um")
-        .showDefault()
-        .check(oneOf({"mm", "cm", "m", "inch", "um"}));
+    addLengthUnit(command, "--unit", unit.name, "unit of a mesh file: mm, cm, m, inch or um");
     if (!withScale) return;
     command.option("--scale", unit.scale, "multiplies the coordinates of a mesh file, besides its unit")
         .showDefault()
@@ -88,9 +90,7 @@ std::shared_ptr<const tooth::ToothModel> loadTooth(const ContactInputs& inputs) 
 void addBurOption(Command& command, BurInput& bur) {
     command.option("--bur", bur.name, "bur by name (330, round-4, paper, cylinder-round:1.0x4.0) or mesh file")
         .showDefault();
-    command.option("--bur-unit", bur.unit, "unit of a bur that is a mesh file: mm, cm, m, inch or um")
-        .showDefault()
-        .check(oneOf({"mm", "cm", "m", "inch", "um"}));
+    addLengthUnit(command, "--bur-unit", bur.unit, "unit of a bur that is a mesh file: mm, cm, m, inch or um");
 }
 
 double BurInput::mmPerUnit() const {

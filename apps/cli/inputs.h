@@ -22,6 +22,8 @@ struct MeshUnit {
     /// A mesh file in millimetres. Throws core::Error.
     [[nodiscard]] geometry::TriangleMesh read(const std::string& file, geometry::ReadNotes* notes = nullptr) const;
 };
+/// An option that takes a unit of length.
+void addLengthUnit(Command& command, const char* name, std::string& unit, const char* help);
 /// --unit, and --scale where that is not an arm's.
 void addUnitOptions(Command& command, MeshUnit& unit, bool withScale = true);
 

@@ -406,9 +406,7 @@ void addPictureCommand(Command& app) {
     command.option("--hide", o.hide, "tissues not to show, by name").delimiter(',');
     command.flag("--no-scenery", o.noScenery, "without neighbours, gum and bone");
     command.option("--bur", o.bur.name, "this bur in its handpiece, resting on the middle of the crown");
-    command.option("--bur-unit", o.bur.unit, "unit of a bur that is a mesh file")
-        .showDefault()
-        .check(oneOf({"mm", "cm", "m", "inch", "um"}));
+    addLengthUnit(command, "--bur-unit", o.bur.unit, "unit of a bur that is a mesh file");
     addUnitOptions(command, o.unit, false);
     command.flag("--no-bur", o.noBur, "without the session's bur");
     command.flag("--mirror", o.mirror, "with a mouth mirror that shows the side one does not see");

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/inputs.h"
 #include "handpiece/app/scan_case/scan_job.h"
 #include "handpiece/app/scan_case/scan_report.h"
 #include "handpiece/base/core/error.h"
@@ -491,9 +492,7 @@ void addSurfaceOptions(Command& command, ScanOptions& o) {
                    "else a case has as many as its field can use, and scan surface all");
     command.flag("--table2", o.tableTwo, "the paper's five: 6, 12, 25, 50 and 100 %");
     command.option("--intraoral", o.intraoral, "mesh of an intraoral scan: found on the tooth, then its outer surface");
-    command.option("--intraoral-unit", o.intraoralUnit, "unit of that mesh: mm, cm, m, inch or um")
-        .showDefault()
-        .check(oneOf({"mm", "cm", "m", "inch", "um"}));
+    addLengthUnit(command, "--intraoral-unit", o.intraoralUnit, "unit of that mesh: mm, cm, m, inch or um");
 }
 
 }  // namespace

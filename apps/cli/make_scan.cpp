@@ -12,6 +12,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/rotation.h"
 #include "handpiece/model/case/case.h"
 #include "handpiece/model/starter/starter.h"
 #include "handpiece/scan/phantom/phantom.h"
@@ -128,7 +129,7 @@ void makeScan(MakeScanOptions& o) {
     o.settings.scanner = phantom::scannerByName(o.scanner);
     core::requireReplaceable(truthBeside(o.out), kTruthFile);
     const auto about = [&](std::size_t axis, const core::Vec3& direction) {
-        return core::Quat(Eigen::AngleAxisd(o.turnDeg[axis] * std::numbers::pi / 180.0, direction));
+        return core::rotationAbout(direction, o.turnDeg[axis] * std::numbers::pi / 180.0);
     };
     o.settings.turn = about(2, core::Vec3::UnitZ()) * about(1, core::Vec3::UnitY()) * about(0, core::Vec3::UnitX());
     phantom::check(o.settings);

@@ -33,7 +33,7 @@ void replay(const ReplayOptions& o) {
         nlohmann::ordered_json out{
             {"state_hash", v.hash}, {"recorded_hash", v.recorded},         {"matches", v.matches},
             {"ticks", v.ticks},     {"differing_ticks", v.differingTicks}, {"complete", v.complete},
-            {"seams", v.seams},     {"broken_seams", v.brokenSeams}};
+            {"seams", v.seams},     {"broken_seams", v.brokenSeams},       {"engine_revision", v.engineRevision}};
         fmt::print("{}\n", out.dump(2));
     } else {
         fmt::print("state_hash {}\nmatches {}\n", v.hash, v.matches);
@@ -42,6 +42,11 @@ void replay(const ReplayOptions& o) {
         if (v.seams > 0)
             fmt::print("goes on {} times, {} of them on another tooth than was left\n", v.seams, v.brokenSeams);
     }
+    if (v.isOtherEngine())
+        throw core::Error(fmt::format("recorded by engine revision {}; this program's is {}: replayed approximately, "
+                                      "which proves nothing",
+                                      v.engineRevision, core::kEngineRevision),
+                          o.session, "prove it with the version of Handpiece that recorded it");
     if (v.recorded.empty())
         throw core::Error("the session was cut off before it told a state to compare with", o.session);
     if (v.brokenSeams > 0)
@@ -62,7 +67,9 @@ void addReplayCommand(Command& app) {
         .showDefault();
     command.footer(
         "The session holds the tooth, the bur and the hand. state_hash is that of the cut tooth, bit for bit, at the "
-        "session's\nend, or at its last key frame when it was cut off; matches says whether it was the same then.\n"
+        "session's\nend, or at its last key frame when it was cut off; matches says whether it was the same then. A "
+        "session of "
+        "another\nengine revision is cut again approximately, and cannot be proven.\n"
         "Example:\n  handpiece replay session.h5 --json");
     command.callback([options] { replay(*options); });
 }

@@ -10,6 +10,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/case_bytes.h"
@@ -123,7 +124,7 @@ device::Motion withTremor(const device::Motion& motion, double amplitudeMm, std:
         pose.timeS = t;
         for (int axis = 0; axis < 3; ++axis)
             for (const Wave& w : waves[axis])
-                pose.burInTooth.positionMm[axis] += each * std::sin(2.0 * std::numbers::pi * w.hz * t + w.phase);
+                pose.burInTooth.positionMm[axis] += each * core::sin(2.0 * std::numbers::pi * w.hz * t + w.phase);
         poses.push_back(pose);
     }
     return device::Motion(std::move(poses));

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "studies/excavation.h"
 
 namespace handpiece::studies {
@@ -113,11 +114,11 @@ device::Motion classOne(const Vec3& touch, const CuttingScene& scene, double dep
 device::Motion crownShoulder(contact::Method& method, const CuttingScene& scene, double depthMm,
                              const CuttingOptions& o) {
     const Vec3 size = scene.toothBounds.size(), middle = scene.toothBounds.centre();
-    const double far = 0.5 * std::hypot(size.x(), size.y()) + scene.burRadiusMm + 1.0;
+    const double far = 0.5 * core::hypot(size.x(), size.y()) + scene.burRadiusMm + 1.0;
     std::vector<Vec3> touch, inward;
     for (int i = 0; i < kShoulderAngles; ++i) {
         const double angle = 2.0 * std::numbers::pi * i / kShoulderAngles;
-        inward.emplace_back(-std::cos(angle), -std::sin(angle), 0.0);
+        inward.emplace_back(-core::cos(angle), -core::sin(angle), 0.0);
         const Vec3 start(middle.x() - far * inward.back().x(), middle.y() - far * inward.back().y(), o.heightMm);
         touch.push_back(touchFrom(method, start, inward.back(), 2.0 * far));
     }

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/rotation.h"
 #include "handpiece/base/geometry/mesh_edges.h"
 #include "handpiece/base/geometry/triangle_tree.h"
 
@@ -285,12 +287,12 @@ class Approach {
         };
         for (int dj = -reach; dj <= reach; ++dj)
             for (int di = -reach; di <= reach; ++di) {
-                const double rho = cellMm_ * std::hypot(di, dj);
+                const double rho = cellMm_ * core::hypot(di, dj);
                 if (rho > radius) continue;
                 const double in = std::max(0.0, rho - 0.5 * cellMm_), out = std::min(radius, rho + 0.5 * cellMm_);
                 const double slope = (heightAt(out) - heightAt(in)) / (out - in);
                 bottoms.push_back(
-                    {di, dj, heightAt(rho), cellMm_ * cellMm_ / std::hypot(1.0, slope) / std::max(rho, leastRho)});
+                    {di, dj, heightAt(rho), cellMm_ * cellMm_ / core::hypot(1.0, slope) / std::max(rho, leastRho)});
             }
         return bottoms;
     }
@@ -304,7 +306,7 @@ class Approach {
             double nearest = kInfinity;
             for (int dj = -margin; dj <= margin; ++dj)
                 for (int di = -margin; di <= margin; ++di) {
-                    const double distance = std::hypot(di, dj);
+                    const double distance = core::hypot(di, dj);
                     if (distance > margin || distance >= nearest || !isIn(i + di, j + dj)) continue;
                     if (!std::isfinite(lowestDecay_[at(i + di, j + dj)])) continue;
                     nearest = distance;
@@ -472,7 +474,7 @@ class Path {
     }
     void turnTo(const core::Pose& to, double speedMmS, double leastS = 0.0) {
         const double way =
-            (to.positionMm - last().positionMm).norm() + last().orientation.angularDistance(to.orientation);
+            (to.positionMm - last().positionMm).norm() + core::angleBetween(last().orientation, to.orientation);
         const double seconds = std::max(way / speedMmS, leastS);
         if (seconds > 1e-9) poses_.push_back({poses_.back().timeS + seconds, to, pedal_});
     }
@@ -502,10 +504,10 @@ void goRound(Path& path, const Vec3& middle, const Vec3& to, const Quat& turn) {
     constexpr int kSteps = 12;
     for (int s = 1; s <= kSteps; ++s) {
         const double share = static_cast<double>(s) / kSteps;
-        const Vec3 direction = Quat::Identity().slerp(share, arc) * a.normalized();
-        path.turnTo(
-            {middle + (a.norm() + (b.norm() - a.norm()) * share) * direction, from.orientation.slerp(share, turn)},
-            2.0 * kAirMmS);
+        const Vec3 direction = core::interpolated(Quat::Identity(), share, arc) * a.normalized();
+        path.turnTo({middle + (a.norm() + (b.norm() - a.norm()) * share) * direction,
+                     core::interpolated(from.orientation, share, turn)},
+                    2.0 * kAirMmS);
     }
     path.turnTo({to, turn}, kAirMmS);
 }

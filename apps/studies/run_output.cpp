@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/tick/contact/method.h"
 #include "studies/run_job.h"
 
@@ -92,7 +93,7 @@ void RunTrace::take(const HapticSample& s) {
     // A bound, not a distance, where nothing is within reach: a gap in the plot.
     if (s.contactStatus != static_cast<std::uint8_t>(contact::Status::beyondReach)) depth_.take(s.timeS, s.depthMm);
     force_.take(s.timeS, studies::forceOf(s));
-    applied_.take(s.timeS, std::hypot(s.appliedForceN[0], s.appliedForceN[1], s.appliedForceN[2]));
+    applied_.take(s.timeS, core::hypot(s.appliedForceN[0], s.appliedForceN[1], s.appliedForceN[2]));
     for (std::size_t axis = 0; axis < 3; ++axis)
         speed_[axis].take(s.timeS, s.velocityMmS[axis]);
     rotor_.take(s.timeS, 1e-3 * s.speedRpm);

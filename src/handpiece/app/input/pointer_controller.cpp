@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/rotation.h"
 #include "handpiece/tick/contact/field_method.h"
 
 namespace handpiece::input {
@@ -47,7 +48,7 @@ core::Pose startPose(const core::Box& tooth, int fdiNumber, int buccalSign) {
     const double turn = buccal * (front ? 0.5 : 1.0 / 9.0) * std::numbers::pi;
     core::Pose pose;
     pose.positionMm = {tooth.centre().x(), tooth.centre().y(), tooth.max.z() + kStartAboveMm};
-    pose.orientation = Quat(Eigen::AngleAxisd(turn, Vec3::UnitZ()));
+    pose.orientation = core::rotationAbout(Vec3::UnitZ(), turn);
     return pose;
 }
 
@@ -463,14 +464,14 @@ void PointerController::pivot(const Vec2& pixels) {
     const Vec3 towards = pixels.x() * s.camera.right() + pixels.y() * s.camera.upward();
     const Vec3 turn = s.axis().cross(towards) * kPivotRadPerPixel;
     const double angle = turn.norm();
-    if (angle > 1e-9) s.orientation = normalised(Quat(Eigen::AngleAxisd(angle, turn / angle)) * s.orientation);
+    if (angle > 1e-9) s.orientation = normalised(core::rotationAbout(turn / angle, angle) * s.orientation);
     s.send();
 }
 
 void PointerController::roll(double radians) {
     State& s = *state_;
     if (!std::isfinite(radians)) return;
-    s.orientation = normalised(s.orientation * Quat(Eigen::AngleAxisd(radians, Vec3::UnitZ())));
+    s.orientation = normalised(s.orientation * core::rotationAbout(Vec3::UnitZ(), radians));
     s.send();
 }
 

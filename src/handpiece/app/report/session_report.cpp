@@ -302,11 +302,15 @@ std::string sessionReport(simulation::SessionPlayer& player, const ReportSetting
     page.facts(words()("session.settings"), settingsOf(first));
     page.facts(words()("session.record"), record);
     page.end();
-    const std::string told = verdict.matches            ? words()("session.same")
+    const std::string told = verdict.isOtherEngine()
+                                 ? words()("session.other-engine", verdict.engineRevision, core::kEngineRevision)
+                             : verdict.matches          ? words()("session.same")
                              : verdict.recorded.empty() ? words()("session.no-state")
                              : verdict.brokenSeams > 0  ? words()("session.another-after-pause")
                                                         : words()("session.another");
-    page.paragraph(words()("session.state", told, verdict.hash), verdict.matches ? Tone::good : Tone::bad);
+    page.paragraph(words()("session.state", told, verdict.hash), verdict.matches           ? Tone::good
+                                                                 : verdict.isOtherEngine() ? Tone::note
+                                                                                           : Tone::bad);
     core::report(progress, 1.0);
     return page.text();
 }

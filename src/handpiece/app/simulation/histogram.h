@@ -8,6 +8,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
+
+#include "handpiece/base/core/portable_math.h"
 
 namespace handpiece::simulation {
 
@@ -17,7 +20,7 @@ class Histogram {
   public:
     void add(double value) {
         if (!std::isfinite(value)) return;
-        const double place = kCells * std::log2(std::max(value, kLeast) / kLeast);
+        const double place = kCells / std::numbers::ln2 * core::log(std::max(value, kLeast) / kLeast);
         ++cells_[std::min(static_cast<std::size_t>(place), cells_.size() - 1)];
         ++count_;
         most_ = std::max(most_, value);
@@ -31,7 +34,7 @@ class Histogram {
         for (std::size_t i = 0; i < cells_.size(); ++i) {
             seen += cells_[i];
             if (seen > 0 && static_cast<double>(seen) >= wanted)
-                return std::min(most_, kLeast * std::exp2((static_cast<double>(i) + 0.5) / kCells));
+                return std::min(most_, kLeast * core::pow(2.0, (static_cast<double>(i) + 0.5) / kCells));
         }
         return 0.0;
     }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/case/tissue.h"
 
 namespace handpiece::simulation {
@@ -32,7 +33,7 @@ class PlotGatherer {
     void take(double timeS, const Tick& tick, Done&& done) {
         const double place = std::floor(timeS / stepS_ + 1e-9);
         if (any_ && place != place_) finish(done);
-        const auto force = static_cast<float>(std::hypot(tick.forceN[0], tick.forceN[1], tick.forceN[2]));
+        const auto force = static_cast<float>(core::hypot(tick.forceN[0], tick.forceN[1], tick.forceN[2]));
         const auto depth = static_cast<float>(tick.depthMm), rpm = static_cast<float>(tick.speedRpm);
         point_.timeS = timeS;
         point_.forceN = any_ ? std::max(point_.forceN, force) : force;

@@ -220,7 +220,8 @@ struct SessionPlayer::State {
 
     void begin() {
         startAt(0, start, strokesBefore ? &*strokesBefore : nullptr);
-        isExact = true;
+        // In another field there is no key frame to be put right by.
+        isExact = isOtherField || reader.info().engineRevision == core::kEngineRevision;
         brokenSeams = 0;
     }
 
@@ -610,7 +611,8 @@ Verdict SessionPlayer::compareAll(const core::Progress& progress) {
     verdict.recorded = told ? told->hash : "";
     verdict.seams = s.seams.size();
     verdict.brokenSeams = s.brokenSeams;
-    verdict.matches = told && verdict.hash == told->hash && verdict.brokenSeams == 0;
+    verdict.engineRevision = s.reader.info().engineRevision;
+    verdict.matches = told && verdict.hash == told->hash && verdict.brokenSeams == 0 && !verdict.isOtherEngine();
     verdict.differingTicks = s.differs;
     verdict.firstDifferingTick = s.firstDiffering;
     return verdict;

@@ -13,6 +13,7 @@
 #include "handpiece/app/simulation/live_session.h"
 #include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/base/core/engine_revision.h"
 #include "handpiece/record/session/session_reader.h"
 
 namespace handpiece::simulation {
@@ -22,14 +23,18 @@ struct Verdict {
     std::string hash;      ///< of the tooth that was cut again: at the session's end, or at its last key frame
     std::string recorded;  ///< what the session says; empty when it was cut off before it told a state
     bool matches = false, complete = false;
+    /// Recorded by an engine of this revision. If it is not core::kEngineRevision, what was cut again was put right at
+    /// each key frame, and nothing is proven.
+    std::int32_t engineRevision = 0;
+    [[nodiscard]] bool isOtherEngine() const noexcept { return engineRevision != core::kEngineRevision; }
     std::uint64_t ticks = 0, differingTicks = 0, firstDifferingTick = 0;
     /// Where the session goes on after a pause or a crash, and how often the tooth there is not what was done before.
     std::uint64_t seams = 0, brokenSeams = 0;
 };
-/// From the beginning on it cuts the very tooth that was cut, bit for bit. After a jump it goes on from the key frame
-/// before, with half a second of run-up for rotor and proxy; at each further key frame the tooth is the recorded one
-/// again. Where the session goes on after a pause or a crash it does what was done then: another loop, on the tooth as
-/// it was brought back. One thread.
+/// From the beginning on it cuts the very tooth that was cut, bit for bit. After a jump, and in a session of another
+/// engine revision, it goes on from the key frame before, with half a second of run-up for rotor and proxy; at each
+/// further key frame the tooth is the recorded one again. Where the session goes on after a pause or a crash it does
+/// what was done then: another loop, on the tooth as it was brought back. One thread.
 class SessionPlayer {
   public:
     struct Settings {
@@ -73,7 +78,8 @@ class SessionPlayer {
     /// `end`. A stroke without a key frame of its own (the session grew too large) is one with the next.
     [[nodiscard]] history::History historyByKeyFrames(const tooth::StateDelta& end) const;
 
-    /// True from the beginning on, until a jump: what is computed is what was computed then, bit for bit.
+    /// True from the beginning on, until a jump, in a session of this engine: what is computed is what was computed
+    /// then, bit for bit.
     [[nodiscard]] bool isExact() const noexcept;
     /// Ticks that differed from the record since the beginning or the last jump, and the first of them.
     [[nodiscard]] std::uint64_t differingTicks() const noexcept;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Rotations whose template machinery is heavy to compile: here once for everybody.
+/// Rotations that need angles: Eigen's own ask the C library, and would not give the same bits on every machine.
 
+#include "handpiece/base/core/realtime.h"
 #include "handpiece/base/core/vec.h"
 
 namespace handpiece::core {
@@ -10,5 +11,14 @@ namespace handpiece::core {
 /// The shortest rotation that takes the direction of `from` to that of `to`; of opposite directions, one of the half
 /// turns. Neither vector may be zero.
 [[nodiscard]] Quat rotationBetween(const Vec3& from, const Vec3& to);
+
+/// The turn by `rad` about `axis` (unit).
+[[nodiscard]] Quat rotationAbout(const Vec3& axis, double rad) noexcept HANDPIECE_REALTIME;
+
+/// The angle from one rotation to the other, 0 to pi; q and -q are the same one.
+[[nodiscard]] double angleBetween(const Quat& a, const Quat& b) noexcept HANDPIECE_REALTIME;
+
+/// `share` of the way from one rotation to the other, at an even pace, the shorter way round.
+[[nodiscard]] Quat interpolated(const Quat& from, double share, const Quat& to) noexcept HANDPIECE_REALTIME;
 
 }  // namespace handpiece::core

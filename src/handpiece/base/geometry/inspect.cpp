@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/geometry/mesh_edges.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/base/geometry/mesh_io_formats.h"
@@ -127,10 +128,10 @@ UnitGuess probableUnit(double diagonal) {
     constexpr double kToothMm = 15.0;
     UnitGuess best{LengthUnit::unknown, 0.0,
                    fmt::format("a diagonal of {:.4g} suits no dental object in um, mm, cm, m or inch", diagonal)};
-    double bestOff = std::log(200.0 / kToothMm);
+    double bestOff = core::log(200.0 / kToothMm);
     for (const LengthUnit unit :
          {LengthUnit::metre, LengthUnit::inch, LengthUnit::centimetre, LengthUnit::micrometre}) {
-        const double mm = diagonal * millimetresPer(unit), off = std::abs(std::log(mm / kToothMm));
+        const double mm = diagonal * millimetresPer(unit), off = std::abs(core::log(mm / kToothMm));
         if (mm < 0.3 || mm > 60.0 || off >= bestOff) continue;
         bestOff = off;
         best = {unit, millimetresPer(unit),

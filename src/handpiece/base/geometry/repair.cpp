@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/geometry/mesh_edges.h"
 #include "handpiece/base/geometry/repair_holes.h"
 #include "handpiece/base/geometry/self_intersection.h"
@@ -343,7 +344,7 @@ class Mender {
         std::vector<Sheet> sheets;
         for (const HalfEdge h : half) {
             const Vec3 arm = mesh_.vertices[fromVertex(mesh_, previousHalfEdge(h))] - mesh_.vertices[e.low];
-            sheets.push_back({std::atan2(v.dot(arm), u.dot(arm)), h, fromVertex(mesh_, h) == e.low});
+            sheets.push_back({core::atan2(v.dot(arm), u.dot(arm)), h, fromVertex(mesh_, h) == e.low});
         }
         std::sort(sheets.begin(), sheets.end(), [](const Sheet& a, const Sheet& b) {
             return a.angle != b.angle ? a.angle < b.angle : a.halfEdge < b.halfEdge;
@@ -658,7 +659,7 @@ class Mender {
         const std::vector<double> volume = shellVolumesMm3(mesh_, shells), area = areasOf(shells);
         std::vector<std::uint8_t> drop(shells.count, 0);
         for (std::size_t s = 0; s < shells.count; ++s)
-            drop[s] = std::abs(volume[s]) <= 1e-9 * std::pow(area[s], 1.5);
+            drop[s] = std::abs(volume[s]) <= 1e-9 * core::pow(area[s], 1.5);
         // A sheet that lay there by itself held nothing; one that was part of something larger is a loss.
         std::vector<double> flatMm2(given_.size(), 0.0);
         for (std::size_t f = 0; f < mesh_.triangles.size(); ++f)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "handpiece/base/core/portable_math.h"
+
 namespace handpiece::geometry {
 namespace {
 
@@ -271,8 +273,8 @@ double TriangleTree::windingNumber(const Vec3& p) const noexcept {
                     const Vec3 a = load(triangles_[i].a) - p;
                     const Vec3 b = a + load(triangles_[i].ab), c = a + load(triangles_[i].ac);
                     const double la = a.norm(), lb = b.norm(), lc = c.norm();
-                    solidAngle += 2.0 * std::atan2(a.dot(b.cross(c)),
-                                                   la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+                    solidAngle += 2.0 * core::atan2(a.dot(b.cross(c)),
+                                                    la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
                 }
             }
         }

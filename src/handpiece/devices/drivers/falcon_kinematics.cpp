@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "handpiece/base/core/portable_math.h"
+
 namespace handpiece::drivers::falcon {
 namespace {
 
@@ -21,7 +23,7 @@ const std::array<ArmFrame, 3>& armFrames() noexcept {
     static const std::array<ArmFrame, 3> frames = [] {
         std::array<ArmFrame, 3> made{};
         for (std::size_t i = 0; i < 3; ++i)
-            made[i] = {std::cos(kArmAtDeg[i] * kRadPerDeg), std::sin(kArmAtDeg[i] * kRadPerDeg)};
+            made[i] = {core::cos(kArmAtDeg[i] * kRadPerDeg), core::sin(kArmAtDeg[i] * kRadPerDeg)};
         return made;
     }();
     return frames;
@@ -44,7 +46,7 @@ bool closingOf(const ArmFrame& arm, const Vec3& grip, double crank, Closing& clo
     const double under = kParallelogramMm * kParallelogramMm - q.y() * q.y();
     if (!(under > 1e-6)) return false;
     const double root = std::sqrt(under), reach = 2 * kJointMm + root;
-    const double c = std::cos(crank), s = std::sin(crank);
+    const double c = core::cos(crank), s = core::sin(crank);
     const double du = q.x() - kCrankMm * c, dw = q.z() - kCrankMm * s;
     closing.value = du * du + dw * dw - reach * reach;
     closing.byCrank = 2 * kCrankMm * (du * s - dw * c);
@@ -74,11 +76,11 @@ bool inverse(const Vec3& gripMm, Vec3& cranksRad) noexcept {
         const double under = kParallelogramMm * kParallelogramMm - q.y() * q.y();
         if (!(under > 0)) return false;
         const double reach = 2 * kJointMm + std::sqrt(under);
-        const double out = std::hypot(q.x(), q.z());
+        const double out = core::hypot(q.x(), q.z());
         const double cosine = (out * out + kCrankMm * kCrankMm - reach * reach) / (2 * kCrankMm * out);
         if (!(std::abs(cosine) <= 1)) return false;
         // Of the two the one whose knee points away from the axis.
-        found[static_cast<Eigen::Index>(i)] = std::atan2(q.z(), q.x()) - std::acos(cosine);
+        found[static_cast<Eigen::Index>(i)] = core::atan2(q.z(), q.x()) - core::acos(cosine);
     }
     cranksRad = found;
     return true;

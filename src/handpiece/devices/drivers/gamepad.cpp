@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/rt/clock.h"
 #include "handpiece/devices/drivers/rate_hand.h"
 #include "handpiece/devices/drivers/sdl_library.h"
@@ -125,7 +126,7 @@ void Pad::read(double dtS) noexcept {
 
 /// A force can only be told by shaking.
 void Pad::shake(const link::DriverCommand& command) noexcept {
-    const double force = std::hypot(command.forceN[0], command.forceN[1], command.forceN[2]) / kStrongestN;
+    const double force = core::hypot(command.forceN[0], command.forceN[1], command.forceN[2]) / kStrongestN;
     double strength = std::max(static_cast<double>(command.vibration), force);
     strength = strength > 0.0 ? std::min(strength, 1.0) : 0.0;  // what is no number is none
     const auto wanted = static_cast<std::uint16_t>(std::lround(strength * 65535.0));

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "handpiece/base/core/rotation.h"
+
 namespace handpiece::drivers {
 namespace {
 
@@ -29,10 +31,11 @@ Vec3 shaped(const Vec3& deflection, double deadZone) noexcept {
 void RateHand::step(const Vec3& move, const Vec3& turn, bool goHome, double dtS) noexcept {
     const double dt = dtS > 0.0 ? std::min(dtS, kMaxStepS) : 0.0;
     if (goHome) {
-        const double far = positionMm_.norm(), angle = orientation_.angularDistance(Quat::Identity());
+        const double far = positionMm_.norm(), angle = core::angleBetween(orientation_, Quat::Identity());
         const double step = settings_.returnMmS * dt, bit = settings_.returnRadS * dt;
         positionMm_ = far > step ? Vec3(positionMm_ * (1.0 - step / far)) : Vec3(Vec3::Zero());
-        orientation_ = angle > bit ? orientation_.slerp(bit / angle, Quat::Identity()).normalized() : Quat::Identity();
+        orientation_ = angle > bit ? core::interpolated(orientation_, bit / angle, Quat::Identity()).normalized()
+                                   : Quat::Identity();
         return;
     }
     positionMm_ += settings_.speedMmS * dt * shaped(move, settings_.deadZone);
@@ -40,9 +43,11 @@ void RateHand::step(const Vec3& move, const Vec3& turn, bool goHome, double dtS)
     const Vec3 w = settings_.turnRadS * dt * shaped(turn, settings_.deadZone);
     if (w.isZero()) return;
     // About the axes of the room, as a cap is turned.
-    const Quat next = (Quat(Eigen::AngleAxisd(w.norm(), w.normalized())) * orientation_).normalized();
-    const double angle = next.angularDistance(Quat::Identity());
-    orientation_ = angle > settings_.mostTurnRad ? Quat::Identity().slerp(settings_.mostTurnRad / angle, next) : next;
+    const Quat next = (core::rotationAbout(w.normalized(), w.norm()) * orientation_).normalized();
+    const double angle = core::angleBetween(next, Quat::Identity());
+    orientation_ = angle > settings_.mostTurnRad
+                       ? core::interpolated(Quat::Identity(), settings_.mostTurnRad / angle, next)
+                       : next;
 }
 
 void RateHand::tell(link::DriverReading& reading) const noexcept {

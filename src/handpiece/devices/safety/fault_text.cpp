@@ -9,6 +9,7 @@
 #include <random>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/devices/safety/injector.h"
 
 namespace handpiece::safety {
@@ -148,8 +149,8 @@ void random(Text& text, std::vector<Fault>& faults) {
         fault.atS = at;
         const bool stands = fault.kind == FaultKind::stall || fault.kind == FaultKind::tickStall;
         // As many short ones as long ones.
-        fault.lastsS = stands ? 0.005 * std::pow(100.0, uniform(generator, 0.0, 1.0))
-                              : 0.001 * std::pow(100.0, uniform(generator, 0.0, 1.0));
+        fault.lastsS = stands ? 0.005 * core::pow(100.0, uniform(generator, 0.0, 1.0))
+                              : 0.001 * core::pow(100.0, uniform(generator, 0.0, 1.0));
         if (fault.kind == FaultKind::jump) fault.size = uniform(generator, 0.1, 3.0);
         if (fault.kind == FaultKind::error) fault.size = kErrorCodes[generator() % kErrorCodes.size()];
         if (fault.kind == FaultKind::hot) fault.size = uniform(generator, 1.0, 1.5);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/tick/device/capability.h"
 
 namespace handpiece::safety {
@@ -35,7 +36,7 @@ bool finite(const Triple& v) noexcept {
 }
 
 double length(const Triple& v) noexcept {
-    return std::hypot(v[0], v[1], v[2]);
+    return core::hypot(v[0], v[1], v[2]);
 }
 
 Triple scaled(const Triple& v, double by) noexcept {
@@ -72,7 +73,7 @@ bool isUnit(const std::array<double, 4>& q) noexcept {
 /// Angle between two rotations; q and -q are the same one.
 double turnRad(const std::array<double, 4>& a, const std::array<double, 4>& b) noexcept {
     const double dot = std::abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]);
-    return 2.0 * std::acos(std::min(1.0, dot));
+    return 2.0 * core::acos(std::min(1.0, dot));
 }
 
 }  // namespace

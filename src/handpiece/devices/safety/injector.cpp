@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/devices/link/passing_driver.h"
 #include "handpiece/devices/safety/guard_servo.h"
 
@@ -22,7 +23,7 @@ constexpr double kNsPerS = 1e9;
 constexpr double kJumpMm = 100.0;
 
 double length(const std::array<double, 3>& v) noexcept {
-    return std::hypot(v[0], v[1], v[2]);
+    return core::hypot(v[0], v[1], v[2]);
 }
 
 /// The next of a sequence of bits that look random (splitmix64).
@@ -157,7 +158,7 @@ class FaultyDriver final : public link::PassingDriver {
         if (answered) {
             if (output.samples > 0 && !doubtful && timeNs > noted_) {
                 const auto &a = last_.forceN, &b = before_;
-                const double change = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+                const double change = core::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
                 output.largestSlopeNPerS =
                     std::max(output.largestSlopeNPerS, change / (static_cast<double>(timeNs - noted_) / kNsPerS));
             }

@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/rotation.h"
 
 namespace handpiece::workspace {
 
@@ -34,13 +36,13 @@ Quat headOnHandle(const WorkspaceMapping& p) {
     const double angle = p.burAlongStylus ? 180.0 : p.headAngleDeg;
     const double rise = (angle - 90.0) * kRadPerDeg;  // of the handle over the plane across the bur
     core::Mat3 burAxes;                               // its columns, in the stylus frame
-    burAxes.col(0) = Vec3(0.0, -std::sin(rise), std::cos(rise));
+    burAxes.col(0) = Vec3(0.0, -core::sin(rise), core::cos(rise));
     burAxes.col(1) = Vec3::UnitX();
-    burAxes.col(2) = Vec3(0.0, std::cos(rise), std::sin(rise));
+    burAxes.col(2) = Vec3(0.0, core::cos(rise), core::sin(rise));
     // The bur points down from the handle, so a turn about +z (to the tail) brings its tip to the right. Mirroring the
     // instrument (x to -x) turns the roll round; bur and handpiece are themselves symmetric left to right.
     const double roll = p.burAlongStylus ? 0.0 : (p.leftHanded ? -1.0 : 1.0) * p.headRollDeg * kRadPerDeg;
-    return (Quat(Eigen::AngleAxisd(roll, Vec3::UnitZ())) * Quat(burAxes)).normalized();
+    return (core::rotationAbout(Vec3::UnitZ(), roll) * Quat(burAxes)).normalized();
 }
 
 Vec3 vectorOf(const std::array<double, 3>& a) noexcept {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/self_intersection.h"
 #include "handpiece/model/case/case.h"
@@ -62,7 +63,7 @@ void requireSolid(const geometry::TriangleMesh& mesh, const std::string& where) 
                           where, remedy)
             .as("turned-faces", {fmt::format("{}", report.insideOutShells), place(*report.firstFlippedFaceMm)});
     // A sphere has 0.094 of its area to the power of 3/2; what has next to nothing encloses nothing.
-    if (!(report.volumeMm3 > 1e-9 * std::pow(report.areaMm2, 1.5)))
+    if (!(report.volumeMm3 > 1e-9 * core::pow(report.areaMm2, 1.5)))
         throw core::Error(fmt::format("the surface encloses no volume ({:.3g} mm3)", report.volumeMm3), where,
                           "give a solid")
             .as("no-volume");

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/model/instrument/envelope.h"
 
@@ -84,7 +85,7 @@ void requireUpright(const std::string& name, const Mat3& covariance) {
     const double along = spread[axis], across = 0.5 * (spread.sum() - along);
     if (std::abs(along - across) < kClearAxis * std::max(along, across)) return;  // as round as a ball
     const Vec3 direction = solver.eigenvectors().col(axis);
-    const double tilt = std::acos(std::min(1.0, std::abs(direction.z())));
+    const double tilt = core::acos(std::min(1.0, std::abs(direction.z())));
     if (tilt > kMaxTiltRad)
         throw core::Error(fmt::format("the bur's axis is {:.1f} degrees off z (it runs along {:.3f}, {:.3f}, {:.3f})",
                                       tilt * 180.0 / std::numbers::pi, direction.x(), direction.y(), direction.z()),

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/instrument/piece.h"
 
 namespace handpiece::instrument {
@@ -29,14 +30,14 @@ Foot footOn(const ProfilePiece& piece, const Vec2& p) {
         return {piece.from + t * way, t};
     }
     const Vec2 from = piece.from - piece.centre, to = p - piece.centre;
-    const double angle = std::atan2(from.x() * to.y() - from.y() * to.x(), from.dot(to));
+    const double angle = core::atan2(from.x() * to.y() - from.y() * to.x(), from.dot(to));
     const double t = std::clamp(angle / arcSweepRad(piece), 0.0, 1.0);
     return {pointAt(piece, t), t};
 }
 
 double turnRad(const ProfilePiece& before, const ProfilePiece& after) {
     const Vec2 a = inwardNormalAt(before, 1.0), b = inwardNormalAt(after, 0.0);
-    return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+    return core::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
 }
 
 /// The medial sheet that starts in a corner, from the corner on.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/instrument/piece.h"
 
 namespace handpiece::instrument {
@@ -47,7 +48,7 @@ class Walk {
             if (joints_.back() != Joint::reflex) continue;
             const Vec2 a = inwardNormalAt(profile.pieces[i], 1.0), b = inwardNormalAt(profile.pieces[i + 1], 0.0);
             elements_.push_back(
-                {true, i, profile.pieces[i].to, std::atan2(a.y(), a.x()), std::atan2(cross(a, b), a.dot(b))});
+                {true, i, profile.pieces[i].to, core::atan2(a.y(), a.x()), core::atan2(cross(a, b), a.dot(b))});
         }
     }
 
@@ -62,7 +63,7 @@ class Walk {
         const Element& element = elements_[static_cast<std::size_t>(e)];
         if (element.isCorner) {
             const double angle = element.startRad + t * element.sweepRad;
-            return grow(e, element.corner, {std::cos(angle), std::sin(angle)}, t);
+            return grow(e, element.corner, {core::cos(angle), core::sin(angle)}, t);
         }
         const ProfilePiece& piece = profile_.pieces[element.piece];
         return grow(e, pointAt(piece, t), inwardNormalAt(piece, t), t);

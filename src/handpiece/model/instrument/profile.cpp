@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/instrument/piece.h"
 
 namespace handpiece::instrument {
@@ -82,12 +83,12 @@ bool cross(const Chord& a, const Chord& b) {
 }  // namespace
 
 double arcStartRad(const ProfilePiece& arc) {
-    return std::atan2(arc.from.y() - arc.centre.y(), arc.from.x() - arc.centre.x());
+    return core::atan2(arc.from.y() - arc.centre.y(), arc.from.x() - arc.centre.x());
 }
 
 double arcSweepRad(const ProfilePiece& arc) {
     const Vec2 a = arc.from - arc.centre, b = arc.to - arc.centre;
-    double sweep = std::atan2(cross(a, b), a.dot(b));
+    double sweep = core::atan2(cross(a, b), a.dot(b));
     // A half circle may come out as either +pi or -pi: the bulge says which.
     if (arc.convex && sweep < 0.0) sweep += 2.0 * std::numbers::pi;
     if (!arc.convex && sweep > 0.0) sweep -= 2.0 * std::numbers::pi;
@@ -103,7 +104,7 @@ Vec2 pointAt(const ProfilePiece& piece, double t) {
     if (t >= 1.0) return piece.to;
     if (!piece.isArc) return piece.from + t * (piece.to - piece.from);
     const double angle = arcStartRad(piece) + t * arcSweepRad(piece);
-    return piece.centre + piece.radiusMm * Vec2(std::cos(angle), std::sin(angle));
+    return piece.centre + piece.radiusMm * Vec2(core::cos(angle), core::sin(angle));
 }
 
 Vec2 inwardNormalAt(const ProfilePiece& piece, double t) {
@@ -123,7 +124,8 @@ double turnedAreaMm2(const ProfilePiece& piece, double t0, double t1) {
     }
     const double start = arcStartRad(piece), sweep = arcSweepRad(piece);
     const double a = start + t0 * sweep, b = start + t1 * sweep;
-    return twoPi * piece.radiusMm * std::abs(piece.centre.x() * (b - a) + piece.radiusMm * (std::sin(b) - std::sin(a)));
+    return twoPi * piece.radiusMm *
+           std::abs(piece.centre.x() * (b - a) + piece.radiusMm * (core::sin(b) - core::sin(a)));
 }
 
 Joint jointBetween(const ProfilePiece& before, const ProfilePiece& after) {
@@ -209,8 +211,8 @@ double volumeMm3(const Profile& profile) {
         }
         const double c = piece.centre.x(), r = piece.radiusMm;
         const auto primitive = [&](double angle) {
-            const double s = std::sin(angle);
-            return r * (c * c * s + c * r * (angle + 0.5 * std::sin(2.0 * angle)) + r * r * (s - s * s * s / 3.0));
+            const double s = core::sin(angle);
+            return r * (c * c * s + c * r * (angle + 0.5 * core::sin(2.0 * angle)) + r * r * (s - s * s * s / 3.0));
         };
         const double start = arcStartRad(piece);
         integral += primitive(start + arcSweepRad(piece)) - primitive(start);

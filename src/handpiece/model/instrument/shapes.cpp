@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/instrument/catalogue.h"
 
 namespace handpiece::instrument {
@@ -65,7 +66,7 @@ Profile round(double d, double length) {
 }
 
 Profile invertedCone(double d, double length) {
-    const double r = 0.5 * d, slope = std::tan(kInvertedConeHalfAngleRad);
+    const double r = 0.5 * d, slope = core::tan(kInvertedConeHalfAngleRad);
     needLength("inverted-cone", d, length, kMinMm, r * (1.0 - kMinEndRadius) / slope);
     return polygon({{r, 0}, {r - length * slope, length}});
 }
@@ -87,13 +88,13 @@ Profile cylinderRound(double d, double length) {
 }
 
 Profile taperFlat(double d, double length) {
-    const double r = 0.5 * d, slope = std::tan(kTaperHalfAngleRad);
+    const double r = 0.5 * d, slope = core::tan(kTaperHalfAngleRad);
     needLength("taper-flat", d, length, kMinMm, r * (1.0 - kMinEndRadius) / slope);
     return polygon({{r - length * slope, 0}, {r, length}});
 }
 
 Profile taperRound(double d, double length) {
-    const double r = 0.5 * d, c = std::cos(kTaperHalfAngleRad), s = std::sin(kTaperHalfAngleRad);
+    const double r = 0.5 * d, c = core::cos(kTaperHalfAngleRad), s = core::sin(kTaperHalfAngleRad);
     // Tip ball of radius t tangent to the wall that reaches r at the top: t (1 - s) = r c - length s.
     const double tip = (r * c - length * s) / (1.0 - s);
     needLength("taper-round", d, length, r + 0.01, (r * c - kMinEndRadius * r * (1.0 - s)) / s);
@@ -105,8 +106,8 @@ Profile pear(double d, double length) {
     needLength("pear", d, length, d, 8.0 * d);
     // A ball at the tip and a tangent cone that narrows by b to kPearTopRadius: h sin b + q cos b = r.
     const double r = 0.5 * d, h = length - r, q = kPearTopRadius * r;
-    const double b = std::atan2(h, q) - std::acos(r / std::hypot(h, q));
-    const Vec2 joint(r * std::cos(b), r + r * std::sin(b));
+    const double b = core::atan2(h, q) - core::acos(r / core::hypot(h, q));
+    const Vec2 joint(r * core::cos(b), r + r * core::sin(b));
     return {{arc({0, 0}, joint, {0, r}, r), line(joint, {q, length}), line({q, length}, {0, length})}};
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 
 namespace handpiece::instrument {
 
@@ -38,9 +39,9 @@ Frame upright(const Vec3& place) {
 /// The axis of neck and handle at arc length s: straight out of the head, a bend, straight on.
 Frame handleAt(const Vec3& start, double s) {
     const double turned = std::clamp((s - kNeckLength) / kBendRadius, 0.0, kBendRad);
-    const Vec3 along(std::cos(turned), 0.0, std::sin(turned));
+    const Vec3 along(core::cos(turned), 0.0, core::sin(turned));
     Vec3 place = start + Vec3(std::min(s, kNeckLength), 0.0, 0.0);
-    place += kBendRadius * Vec3(std::sin(turned), 0.0, 1.0 - std::cos(turned));
+    place += kBendRadius * Vec3(core::sin(turned), 0.0, 1.0 - core::cos(turned));
     place += std::max(0.0, s - kNeckLength - kBendRadius * kBendRad) * along;
     return {place, along, Vec3::UnitY(), along.cross(Vec3::UnitY())};
 }
@@ -59,7 +60,7 @@ void addTube(TriangleMesh& mesh, const std::vector<SimulationSetup>& stations, i
         const Frame f = frameAt(station.along);
         for (std::uint32_t j = 0; j < n; ++j) {
             const double angle = 2.0 * std::numbers::pi * j / n;
-            mesh.vertices.push_back(f.place + station.radius * (std::cos(angle) * f.side + std::sin(angle) * f.up));
+            mesh.vertices.push_back(f.place + station.radius * (core::cos(angle) * f.side + core::sin(angle) * f.up));
         }
     }
     const auto bottom = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -80,7 +81,7 @@ void addTube(TriangleMesh& mesh, const std::vector<SimulationSetup>& stations, i
 void addRounding(std::vector<SimulationSetup>& stations, double a, double ra, double b, double rb, int steps) {
     for (int i = 0; i <= steps; ++i) {
         const double angle = 0.5 * std::numbers::pi * i / steps;
-        stations.push_back({a + (b - a) * std::sin(angle), rb + (ra - rb) * std::cos(angle)});
+        stations.push_back({a + (b - a) * core::sin(angle), rb + (ra - rb) * core::cos(angle)});
     }
 }
 
@@ -146,7 +147,7 @@ TriangleMesh turbineMesh(double burReachMm) {
     addRounding(head, 2.2, 3.0, 0.0, 2.4, 4);
     std::reverse(head.begin(), head.end());
     for (int i = 0; i <= 8; ++i)
-        head.push_back({2.6 + 0.9 * i, kHeadRadius - 0.9 * std::pow(1.0 - i / 8.0, 2.0)});
+        head.push_back({2.6 + 0.9 * i, kHeadRadius - 0.9 * core::pow(1.0 - i / 8.0, 2.0)});
     addRounding(head, 10.4, kHeadRadius, kHeadHeight, 4.2, 11);
     addTube(mesh, head, kAround, above(0.0));
 
@@ -174,7 +175,7 @@ TriangleMesh turbineMesh(double burReachMm) {
     // Three spray ports round the bur, and the light between them and the neck.
     for (const double turn : {0.5, 1.0, 1.5}) {
         const double angle = std::numbers::pi * turn;
-        const Vec3 foot(2.3 * std::cos(angle), 2.3 * std::sin(angle), burReachMm - 0.12);
+        const Vec3 foot(2.3 * core::cos(angle), 2.3 * core::sin(angle), burReachMm - 0.12);
         addTube(mesh, {{0.0, 0.3}, {0.6, 0.35}}, kSmallAround,
                 [&](double along) { return upright(foot + along * Vec3::UnitZ()); });
     }
@@ -187,7 +188,7 @@ TriangleMesh turbineMesh(double burReachMm) {
         const Frame f = handleAt(neck, s);
         for (int j = 0; j < kGripAround; ++j) {
             const double angle = 2.0 * std::numbers::pi * (j + 0.5 * (row % 2)) / kGripAround;
-            const Vec3 out = std::cos(angle) * f.side + std::sin(angle) * f.up;
+            const Vec3 out = core::cos(angle) * f.side + core::sin(angle) * f.up;
             addGripPoint(mesh, f.place + handleRadius(s) * out, out, f.along);
         }
     }

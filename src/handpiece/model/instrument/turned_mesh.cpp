@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/instrument/piece.h"
 #include "handpiece/model/instrument/shapes.h"
 
@@ -29,7 +30,7 @@ geometry::TriangleMesh turnedMesh(const Profile& profile, int around, double spa
     for (const core::Vec2& place : places)
         for (std::uint32_t j = 0; j < n; ++j) {
             const double angle = 2.0 * std::numbers::pi * j / n;
-            mesh.vertices.emplace_back(place.x() * std::cos(angle), place.x() * std::sin(angle), place.y());
+            mesh.vertices.emplace_back(place.x() * core::cos(angle), place.x() * core::sin(angle), place.y());
         }
     const auto top = static_cast<std::uint32_t>(mesh.vertices.size());
     mesh.vertices.emplace_back(0.0, 0.0, profile.pieces.back().to.y());

@@ -86,7 +86,7 @@ std::string_view readme() noexcept {
 /scenery     what stands around it, where there is something, for the program.
 /settings    JSON: bur, parameters, all that a replay needs.
 
-Attributes of the file: format, format_version, handpiece_version, hdf5_version, rate_hz, and code, which the student
+Attributes of the file: format, format_version, handpiece_version, engine_revision, hdf5_version, rate_hz, and code, which the student
 typed. There is no name of a person or a machine in it.
 
 Python:  f = h5py.File('session.h5', 'r'); n = len(f['samples/tick']); t = f['samples/tick'][:] / f.attrs['rate_hz']

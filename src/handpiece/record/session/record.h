@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/messages/haptic_sample.h"
 #include "handpiece/model/case/tissue.h"
 
@@ -110,6 +111,7 @@ struct SessionInfo {
     std::vector<std::byte> tooth;      ///< the tooth it is cut from (cases::encodeCase), or nothing
     std::vector<std::byte> scenery{};  ///< what stands around it (the parts of a cases::encodeCase), or nothing
     std::vector<std::byte> history{};  ///< strokes before it that can be undone, of a tooth that was cut before
+    std::int32_t engineRevision = core::kEngineRevision;  ///< of the program that recorded its first tick
 };
 
 }  // namespace handpiece::session

@@ -199,6 +199,9 @@ void SessionReader::State::readHead() {
     }
     source.require(version >= 1, "format_version", "is no version");
     info.version = source.text(f, "handpiece_version");
+    info.engineRevision = H5Aexists(f, "engine_revision") > 0
+                              ? source.number<std::int32_t>(f, "engine_revision", H5T_INTEGER, H5T_NATIVE_INT32)
+                              : 1;
     info.code = source.text(f, "code");
     info.rateHz = source.number<double>(f, "rate_hz", H5T_FLOAT, H5T_NATIVE_DOUBLE);
     source.require(info.rateHz >= 100 && info.rateHz <= 10000, "rate_hz", "is out of range");

@@ -202,6 +202,7 @@ SessionWriter::SessionWriter(const std::filesystem::path& path, const SessionInf
     writeAttribute(file, "format", kFormatName);
     writeAttribute(file, "format_version", H5T_STD_I32LE, &kFormatVersion);
     writeAttribute(file, "handpiece_version", info.version);
+    writeAttribute(file, "engine_revision", H5T_STD_I32LE, &info.engineRevision);
     writeAttribute(file, "hdf5_version", fmt::format("{}.{}.{}", major, minor, release));
     writeAttribute(file, "rate_hz", H5T_IEEE_F64LE, &info.rateHz);
     writeAttribute(file, "code", info.code);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/scan/phantom/phantom.h"
 
 namespace handpiece::phantom {
@@ -30,10 +31,10 @@ void normalSlice(std::uint64_t seed, std::size_t slice, std::span<float> out) {
     const std::uint64_t first = mixed(mixed(seed) ^ (slice + 1));
     for (std::size_t n = 0; n < out.size(); n += 2) {
         const std::uint64_t bits = mixed(first + n);
-        const double radius = std::sqrt(-2.0 * std::log(uniform(static_cast<std::uint32_t>(bits >> 32))));
+        const double radius = std::sqrt(-2.0 * core::log(uniform(static_cast<std::uint32_t>(bits >> 32))));
         const double angle = 2.0 * std::numbers::pi * uniform(static_cast<std::uint32_t>(bits));
-        out[n] = static_cast<float>(radius * std::cos(angle));
-        if (n + 1 < out.size()) out[n + 1] = static_cast<float>(radius * std::sin(angle));
+        out[n] = static_cast<float>(radius * core::cos(angle));
+        if (n + 1 < out.size()) out[n + 1] = static_cast<float>(radius * core::sin(angle));
     }
 }
 
@@ -66,7 +67,7 @@ std::vector<float> streakPattern(std::uint64_t seed, std::size_t directions) {
         for (const int waves : {2, 5, 9, 14, 23}) {
             const double phase = 2.0 * std::numbers::pi *
                                  uniform(static_cast<std::uint32_t>(mixed(seed + static_cast<unsigned>(waves))));
-            sum += std::cos(waves * angle + phase);
+            sum += core::cos(waves * angle + phase);
         }
         pattern[d] = static_cast<float>(sum);
         least = std::min(least, sum);
@@ -97,9 +98,9 @@ class Adder {
         double squares = 0.0;
         for (const double w : weights_)
             squares += w * w;
-        noiseScale_ = static_cast<float>(artefacts.noise / std::pow(squares, 1.5));
+        noiseScale_ = static_cast<float>(artefacts.noise / core::pow(squares, 1.5));
         const double middle[2] = {0.5 * (columns_ - 1), 0.5 * (rows_ - 1)};
-        const int rings = static_cast<int>(std::hypot(middle[0], middle[1])) + 3;
+        const int rings = static_cast<int>(core::hypot(middle[0], middle[1])) + 3;
         for (int r = 0; r < rings; ++r)
             rings_.push_back(static_cast<float>(artefacts.ring) * ringOf(artefacts.seed, r));
         if (artefacts.streaks) pattern_ = streakPattern(artefacts.seed ^ 0x4D455441ull, 4096);
@@ -173,7 +174,7 @@ class Adder {
             for (int i = 0; i < columns_; ++i, ++values) {
                 const double x = i - s.centreVoxels.x(), y = j - s.centreVoxels.y();
                 const double r = std::sqrt(x * x + y * y);
-                const double turn = (std::atan2(y, x) / (2.0 * std::numbers::pi) + 0.5) * directions;
+                const double turn = (core::atan2(y, x) / (2.0 * std::numbers::pi) + 0.5) * directions;
                 const std::size_t at = static_cast<std::size_t>(turn) % pattern_.size();
                 // The filling itself hides them.
                 const double fall = r < s.radiusVoxels ? r / s.radiusVoxels : s.radiusVoxels / r;
@@ -198,7 +199,7 @@ std::vector<double> normalWeights(double sigmaVoxels) {
     std::vector<double> weights;
     double sum = 0.0;
     for (int w = -reach; w <= reach; ++w) {
-        weights.push_back(std::exp(-0.5 * w * w / (sigmaVoxels * sigmaVoxels)));
+        weights.push_back(core::exp(-0.5 * w * w / (sigmaVoxels * sigmaVoxels)));
         sum += weights.back();
     }
     for (double& w : weights)

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
 
 namespace handpiece::registration {
 namespace {
@@ -72,7 +73,7 @@ void addPair(Feature& f, const Vec3& p, const Vec3& n, const Vec3& q, const Vec3
     const double across = v.norm();
     if (!(across > 1e-6)) return;
     const Vec3 unitV = v / across, w = n.cross(unitV);
-    const double alpha = unitV.dot(m), phi = n.dot(towards), theta = std::atan2(w.dot(m), n.dot(m));
+    const double alpha = unitV.dot(m), phi = n.dot(towards), theta = core::atan2(w.dot(m), n.dot(m));
     f[static_cast<std::size_t>(binOf(alpha, -1.0, 1.0))] += weight;
     f[static_cast<std::size_t>(kBins + binOf(phi, -1.0, 1.0))] += weight;
     f[static_cast<std::size_t>(2 * kBins + binOf(theta, -std::numbers::pi, std::numbers::pi))] += weight;

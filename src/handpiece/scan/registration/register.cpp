@@ -10,6 +10,8 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/rotation.h"
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/scan/registration/features.h"
 #include "handpiece/scan/registration/registration.h"
@@ -162,7 +164,7 @@ Refined refine(const Fixed& fixed, const Points& points, std::size_t step, Pose 
         if (!x.allFinite()) return {pose, 1e300};
         const double angle = x.head<3>().norm();
         Pose step1;
-        if (angle > 1e-15) step1.orientation = core::Quat(Eigen::AngleAxisd(std::min(angle, 0.3), x.head<3>() / angle));
+        if (angle > 1e-15) step1.orientation = core::rotationAbout(x.head<3>() / angle, std::min(angle, 0.3));
         step1.positionMm = about - step1.orientation * about + x.tail<3>();
         pose = compose(step1, pose);
         core::report(progress, static_cast<double>(round + 1) / rounds);
@@ -172,7 +174,7 @@ Refined refine(const Fixed& fixed, const Points& points, std::size_t step, Pose 
 }
 
 double angleDegrees(const core::Quat& a, const core::Quat& b) {
-    return 2.0 * std::acos(std::clamp(std::abs(a.dot(b)), 0.0, 1.0)) * 180.0 / std::numbers::pi;
+    return 2.0 * core::acos(std::clamp(std::abs(a.dot(b)), 0.0, 1.0)) * 180.0 / std::numbers::pi;
 }
 
 /// The counterparts of each chosen point: the fixed points whose surroundings look most alike.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
 
 namespace handpiece::segmentation {
 
@@ -90,12 +91,12 @@ std::vector<Peak> findPeaks(const Shape& shape, const Field& values) {
     const int radius = static_cast<int>(3 * sigma);
     double norm = 0;
     for (int d = -radius; d <= radius; ++d)
-        norm += std::exp(-0.5 * d * d / (sigma * sigma));
+        norm += core::exp(-0.5 * d * d / (sigma * sigma));
     for (int b = 0; b < kBins; ++b)
         for (int d = -radius; d <= radius; ++d)
             if (b + d >= 0 && b + d < kBins)
                 smooth[static_cast<std::size_t>(b)] +=
-                    bins[static_cast<std::size_t>(b + d)] * std::exp(-0.5 * d * d / (sigma * sigma)) / norm;
+                    bins[static_cast<std::size_t>(b + d)] * core::exp(-0.5 * d * d / (sigma * sigma)) / norm;
     std::vector<int> tops, saddles;
     for (int b = 0; b < kBins; ++b) {
         const double v = smooth[static_cast<std::size_t>(b)];
@@ -236,7 +237,7 @@ Thresholds findThresholds(const volume::Volume& volume, const core::Progress& pr
     // Blocks of two voxels or more: less noise, and never more than some millions of them.
     const double spacing = volume.grid.spacingMm.minCoeff();
     double block = 2 * spacing;
-    while (static_cast<double>(volume.grid.count()) * std::pow(spacing / block, 3) > 2.5e6)
+    while (static_cast<double>(volume.grid.count()) * core::pow(spacing / block, 3) > 2.5e6)
         block += spacing;
     if (spacing >= 0.15) block = spacing;
     const Coarse coarse = coarsen(volume, block, core::part(progress, 0, 0.6));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/scan/segmentation/work.h"
 
 namespace handpiece::segmentation {
@@ -179,7 +180,7 @@ Region segmentLabels(const volume::Labels& labels, const Settings& settings, con
         std::uint32_t chosen = parts.largest();
         if (settings.toothAtMm) {
             const Vec3 at = work.grid.toVoxels(*settings.toothAtMm);
-            double nearest = std::pow(1.5 / h, 2);
+            double nearest = core::pow(1.5 / h, 2);
             chosen = 0;
             for (std::size_t n = 0; n < solid.size(); ++n) {
                 if (!solid[n]) continue;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/scan/segmentation/work.h"
 
 namespace handpiece::segmentation {
@@ -160,7 +161,7 @@ Mask closedCavities(const Shape& shape, const Mask& solid, double spacingMm) {
                 if (cavity[o]) return;
                 (mask[o] ? wall : mouth)[parts.of[n]] += 1;
             });
-    const double least = kMinCavityMm3 / std::pow(spacingMm * f, 3);
+    const double least = kMinCavityMm3 / core::pow(spacingMm * f, 3);
     std::vector<std::uint8_t> keep(parts.counts.size(), 0);
     for (std::size_t p = 1; p < keep.size(); ++p)
         keep[p] = mouth[p] == 0 ||

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
 
 namespace handpiece::segmentation {
 
@@ -109,7 +110,7 @@ CoarseTeeth partTeeth(const volume::Volume& volume, const Thresholds& thresholds
     Mask mask(shape.count());
     for (std::size_t n = 0; n < mask.size(); ++n)
         mask[n] = result.coarse.values[n] > thresholds.toothFrom;
-    const double spacing = std::cbrt(result.coarse.spacingMm.prod());
+    const double spacing = core::pow(result.coarse.spacingMm.prod(), 1.0 / 3.0);
     const Mask solid = filled(shape, mask, spacing);
     core::report(progress, 0.6);
     const std::vector<std::uint32_t> of = floodFromThickest(shape, solid, spacing);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
 
 namespace handpiece::segmentation {
 
@@ -25,10 +26,10 @@ void blur(const Shape& shape, const Field& in, Field& out, Field& scratch, doubl
     std::vector<float> weights(static_cast<std::size_t>(2 * radius + 1));
     double sum = 0;
     for (int n = -radius; n <= radius; ++n)
-        sum += std::exp(-0.5 * n * n / (sigma * sigma));
+        sum += core::exp(-0.5 * n * n / (sigma * sigma));
     for (int n = -radius; n <= radius; ++n)
         weights[static_cast<std::size_t>(n + radius)] =
-            static_cast<float>(std::exp(-0.5 * n * n / (sigma * sigma)) / sum);
+            static_cast<float>(core::exp(-0.5 * n * n / (sigma * sigma)) / sum);
     scratch.resize(in.size());
     out.resize(in.size());
     const int nx = shape.size[0], ny = shape.size[1], nz = shape.size[2];

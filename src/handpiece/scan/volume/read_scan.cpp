@@ -12,6 +12,7 @@
 #include <set>
 
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/scan/volume/candidate.h"
 #include "handpiece/scan/volume/header_text.h"
 
@@ -146,7 +147,7 @@ void straighten(Scan& scan, const core::Vec3& stepMm, std::uint64_t limitBytes, 
     });
     scan.volume.grid = to;
     scan.volume.values = std::move(values);
-    const double slope = std::atan2(std::hypot(local.x(), local.y()), std::abs(local.z())) * 180.0 / M_PI;
+    const double slope = core::atan2(core::hypot(local.x(), local.y()), std::abs(local.z())) * 180.0 / M_PI;
     scan.series.notes.push_back(
         fmt::format("the slices were tilted by {:.1f} degrees and have been straightened", slope));
 }

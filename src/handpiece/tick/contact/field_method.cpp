@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/instrument/fillet.h"
 #include "handpiece/tick/contact/exact/exact_depth.h"
 #include "handpiece/tick/contact/exact/off_axis_medial_search.h"
@@ -50,7 +51,7 @@ class FieldMethod final : public Method {
           slackMm_(cut_ ? std::max(kMinSlackMm, kSlackShare * live_.settings().voxelMm * live_.settings().voxelMm /
                                                     (0.5 * bur_->maxRadiusMm()))
                         : 0.0),
-          farthestMm_(std::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {
+          farthestMm_(core::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {
         for (const instrument::MedialCurve& curve : bur_->medialAxis())
             if (curve.onAxis)
                 for (std::size_t i = 0; i < kSpineBalls; ++i)
@@ -184,7 +185,7 @@ class FieldMethod final : public Method {
     void depthInField(const core::Pose& burInTooth, Depth& result) noexcept {
         // The nearest that the tooth can be to the ball about the bur.
         const Vec3 middle = burInTooth.apply(Vec3(0.0, 0.0, 0.5 * bur_->lengthMm()));
-        const double clear = live_.distance(middle) - std::hypot(0.5 * bur_->lengthMm(), bur_->maxRadiusMm());
+        const double clear = live_.distance(middle) - core::hypot(0.5 * bur_->lengthMm(), bur_->maxRadiusMm());
         if (clear > live_.reach().outMm) {
             result.depthMm = std::max(-clear, -settings_.reachMm);
             setFar(burInTooth, clear);

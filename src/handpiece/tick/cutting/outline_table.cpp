@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/instrument/piece.h"
 
 namespace handpiece::cutting {
@@ -159,7 +160,7 @@ OutlineTable::OutlineTable(const instrument::Profile& profile, double unitMm, do
             }
             for (std::size_t k = 0; k < tips.size(); ++k) {
                 const ProfilePiece &tip = profile.pieces[tips[k]], &side = profile.pieces[tips[k] + 1];
-                const double whole = std::hypot(middle.x(), std::min(middle.y() - tip.centre.y(), 0.0)) - tip.radiusMm;
+                const double whole = core::hypot(middle.x(), std::min(middle.y() - tip.centre.y(), 0.0)) - tip.radiusMm;
                 const std::uint64_t both = std::uint64_t{3} << tips[k];
                 bool isOnlyThese = (cell.groups & ~both) == 0;
                 for (const double r : {-half, half})
@@ -216,7 +217,7 @@ instrument::Profile simpleOutline(const instrument::Profile& profile) {
         const int samples = piece.isArc ? 64 : 1;
         // Between samples an arc sticks out of its chord by less than this.
         const double bulge =
-            piece.isArc ? piece.radiusMm * (1.0 - std::cos(0.5 * instrument::arcSweepRad(piece) / samples)) : 0.0;
+            piece.isArc ? piece.radiusMm * (1.0 - core::cos(0.5 * instrument::arcSweepRad(piece) / samples)) : 0.0;
         for (int k = 0; k < samples; ++k) {
             const Vec2 a = instrument::pointAt(piece, static_cast<double>(k) / samples),
                        b = instrument::pointAt(piece, (k + 1.0) / samples);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/rotation.h"
 #include "handpiece/model/instrument/piece.h"
 
 namespace handpiece::cutting {
@@ -320,7 +322,7 @@ void Sweeper::raiseCoarse(const core::Pose& pose, bool all) noexcept {
 /// How deep a notch, over the way between two poses, is left standing where a corner is the outermost part of the bur
 /// seen along the way; `direction` (unit) in the bur's grid.
 double Sweeper::notchOf(const Vec3& direction) const noexcept {
-    const double sideways = std::hypot(direction.x(), direction.y());
+    const double sideways = core::hypot(direction.x(), direction.y());
     double most = 0.0;
     for (const Corner& corner : corners_) {
         const double share = corner.atTop ? kNotchVoxels / kFastNotchVoxels : 1.0;
@@ -338,7 +340,7 @@ double Sweeper::stepsBetween(const core::Pose& from, const core::Pose& to, doubl
     // No point of the bur moves farther than this.
     const double reach = std::sqrt(lengthMm_ * lengthMm_ + radiusMm_ * radiusMm_);
     const Vec3 way = to.positionMm - from.positionMm;
-    const double shifted = way.norm(), turned = reach * from.orientation.angularDistance(to.orientation);
+    const double shifted = way.norm(), turned = reach * core::angleBetween(from.orientation, to.orientation);
     movedMm = shifted + turned;
     const Vec3 axis = from.orientation * Vec3::UnitZ();
     const double sideways = (way - way.dot(axis) * axis).norm() + turned;
@@ -375,7 +377,7 @@ Sweeper::Outcome Sweeper::sweepTo(const core::Pose& to) noexcept {
         const double t = i / steps;
         core::Pose between;
         between.positionMm = pose_.positionMm + t * (to.positionMm - pose_.positionMm);
-        between.orientation = pose_.orientation.slerp(t, to.orientation);
+        between.orientation = core::interpolated(pose_.orientation, t, to.orientation);
         setTravel(before + t * moved);
         cutAt(between, outcome);
     }

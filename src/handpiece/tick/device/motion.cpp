@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/rotation.h"
 
 namespace handpiece::device {
 namespace {
@@ -81,7 +83,8 @@ TimedPose Motion::at(double timeS) const noexcept {
     TimedPose result;
     result.timeS = timeS;
     result.burInTooth.positionMm = a.burInTooth.positionMm + s * (b.burInTooth.positionMm - a.burInTooth.positionMm);
-    result.burInTooth.orientation = a.burInTooth.orientation.slerp(s, b.burInTooth.orientation).normalized();
+    result.burInTooth.orientation =
+        core::interpolated(a.burInTooth.orientation, s, b.burInTooth.orientation).normalized();
     result.pedal = a.pedal + s * (b.pedal - a.pedal);
     return result;
 }
@@ -136,7 +139,7 @@ Motion closedLoop(const Pose& start, const Vec3& firstAxis, const Vec3& secondAx
     Path path(start);
     for (int i = 1; i <= turns * kPointsPerTurn; ++i) {
         const double angle = 2.0 * std::numbers::pi * (i % kPointsPerTurn) / kPointsPerTurn;
-        path.lineTo(start.positionMm + radiusMm * ((std::cos(angle) - 1.0) * a + std::sin(angle) * b), speedMmS);
+        path.lineTo(start.positionMm + radiusMm * ((core::cos(angle) - 1.0) * a + core::sin(angle) * b), speedMmS);
     }
     return path.finish();
 }

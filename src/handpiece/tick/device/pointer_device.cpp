@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/rotation.h"
 #include "handpiece/tick/device/capability.h"
 
 namespace handpiece::device {
@@ -203,11 +205,11 @@ void PointerDevice::State::begin(bool pressing) noexcept {
 }
 
 void PointerDevice::State::turn(double periodS) noexcept {
-    const double angle = orientation.angularDistance(wish.orientation);
+    const double angle = core::angleBetween(orientation, wish.orientation);
     if (!(angle > 0.0)) return;
-    const double wanted = angle * (1.0 - std::exp(-periodS / kTurnS));
+    const double wanted = angle * (1.0 - core::exp(-periodS / kTurnS));
     const double share = std::min(wanted, settings.turnRadS * periodS) / angle;
-    orientation = orientation.slerp(share, wish.orientation).normalized();
+    orientation = core::interpolated(orientation, share, wish.orientation).normalized();
 }
 
 void PointerDevice::State::follow(const Vec3& place, bool still, double h) noexcept {
@@ -247,8 +249,8 @@ void PointerDevice::State::move(double h) noexcept {
 void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexcept {
     // Shares of what is left, so that no period is too long: of the way to a place, of a force that is missing.
     const double k = capability.maxStiffnessNPerMm, b = settings.dampingNSPerMm;
-    const double back = 1.0 - std::exp(-periodS * settings.stiffnessNPerMm / b);
-    const double mmPerN = (1.0 - std::exp(-periodS * k / b)) / k;
+    const double back = 1.0 - core::exp(-periodS * settings.stiffnessNPerMm / b);
+    const double mmPerN = (1.0 - core::exp(-periodS * k / b)) / k;
     const Vec3& way = wish.way;
     const auto across = [&](const Vec3& v) { return Vec3(v - way * way.dot(v)); };
     if (!watches) {  // before the first tick has told it of its tip
@@ -259,8 +261,8 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
     const double most = settings.approachMmS * periodS, ahead = left.dot(way) + wish.farMm, allN = pressN.norm();
     const double missing = (wish.loadN - allN) * mmPerN;  // millimetres of it
     const double in = std::min({most, missing, ahead * back - pressN.dot(way) * mmPerN});
-    const double share = 1.0 - std::exp(-periodS / kTipS), gain = std::min(kTipGain, kMaxShare / share);
-    settledMm = heldTo(across(settledMm) + gain * (1.0 - std::exp(-periodS / kSettleS)) * beside, wish.loadN / k);
+    const double share = 1.0 - core::exp(-periodS / kTipS), gain = std::min(kTipGain, kMaxShare / share);
+    settledMm = heldTo(across(settledMm) + gain * (1.0 - core::exp(-periodS / kSettleS)) * beside, wish.loadN / k);
     // With the pointer, as the uncut tooth rises and falls under it; and on until the tip is under it.
     const Vec3 over = across(tipMm - positionMm);
     Vec3 step = (std::min(way.dot(moved), most) + in) * way +

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "handpiece/base/core/portable_math.h"
+
 namespace handpiece::force {
 namespace {
 
@@ -116,7 +118,7 @@ Vec3 ForceModel::frictionForce(const Touch& touch, const Vec3& pressN, const Tur
     const auto alongSurface = [&](const Vec3& v) { return Vec3(v - normal * normal.dot(v)); };
     // Friction points against the slip of surface on surface: of a turning bur the hand's share of that is small.
     const double slide = alongSurface(velocityMmS_).norm();
-    const double share = turning.surfaceSpeedMmS > 0.0 ? slide / std::hypot(slide, turning.surfaceSpeedMmS) : 1.0;
+    const double share = turning.surfaceSpeedMmS > 0.0 ? slide / core::hypot(slide, turning.surfaceSpeedMmS) : 1.0;
     const double limit = parameters_.frictionMultiplier * kv.friction * share * press / kv.stiffnessNPerMm;
     bristleMm_ = alongSurface(bristleMm_ + moved);
     const double length = bristleMm_.norm();

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "handpiece/base/core/rotation.h"
+
 namespace handpiece::force {
 namespace {
 
@@ -148,7 +150,7 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth, con
     const Vec3 target = deviceInTooth.positionMm;
     // A bur that hardly moves need not look far around itself; steps that want more reach farther pass by pass.
     const double moved = (target - lastDevice_.positionMm).norm() +
-                         kLeverMm * deviceInTooth.orientation.angularDistance(lastDevice_.orientation);
+                         kLeverMm * core::angleBetween(deviceInTooth.orientation, lastDevice_.orientation);
     reachMm_ = std::clamp(4.0 * moved, kMinReachMm, 2.0 * settings_.maxStepMm);
     lastDevice_ = deviceInTooth;
     pose_.orientation = deviceInTooth.orientation;

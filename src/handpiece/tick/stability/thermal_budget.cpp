@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "handpiece/base/core/portable_math.h"
+
 namespace handpiece::stability {
 
 void ThermalBudget::set(double maxForceN, double continuousForceN, double tauS) noexcept {
@@ -20,7 +22,7 @@ double ThermalBudget::scale() const noexcept {
 
 void ThermalBudget::spend(double forceN, double periodS) noexcept {
     const double share = forceN / continuousN_, aim = share * share;
-    heat_ = std::clamp(aim + (heat_ - aim) * std::exp(-periodS / tauS_), 0.0, 1.0);
+    heat_ = std::clamp(aim + (heat_ - aim) * core::exp(-periodS / tauS_), 0.0, 1.0);
 }
 
 }  // namespace handpiece::stability

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "handpiece/base/core/portable_math.h"
+
 namespace handpiece::contact {
 
 using core::Vec3;
@@ -114,7 +116,7 @@ bool isCovered(const instrument::MedialCurve& sheet, const std::vector<instrumen
     return std::any_of(kept.begin(), kept.end(), [&](const instrument::MedialBall& e) {
         // A curve turned about the axis: the ball e that is nearest lies at the same angle.
         return std::all_of(sheet.balls.begin(), sheet.balls.end(), [&](const instrument::MedialBall& b) {
-            return std::hypot(b.rhoMm - e.rhoMm, b.zMm - e.zMm) + b.radiusMm - e.radiusMm <= kCoveredMm;
+            return core::hypot(b.rhoMm - e.rhoMm, b.zMm - e.zMm) + b.radiusMm - e.radiusMm <= kCoveredMm;
         });
     });
 }
@@ -140,7 +142,7 @@ OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field
         for (const instrument::MedialBall& ball : curve.balls) {
             double u = 0.0;
             if (!sheet.u.empty()) {
-                const double length = std::hypot(ball.rhoMm - sheet.rho.back(), ball.zMm - sheet.z.back());
+                const double length = core::hypot(ball.rhoMm - sheet.rho.back(), ball.zMm - sheet.z.back());
                 if (length < 1e-10) continue;
                 u = sheet.u.back() + length;
             }
@@ -153,7 +155,7 @@ OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field
         const auto reachFrom = [&](double z) {
             double reach = 0.0;
             for (std::size_t i = 0; i < sheet.u.size(); ++i)
-                reach = std::max(reach, sheet.radius[i] + std::hypot(sheet.rho[i], sheet.z[i] - z));
+                reach = std::max(reach, sheet.radius[i] + core::hypot(sheet.rho[i], sheet.z[i] - z));
             return reach;
         };
         // The smallest ball about the axis that holds the sheet's: its reach is convex in z, so thirds close in on it.
@@ -165,7 +167,7 @@ OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field
         sheet.centreZ = 0.5 * (low + high);
         sheet.reachMm = reachFrom(sheet.centreZ);
         for (std::size_t i = 0; i < sheet.u.size(); ++i)
-            sheet.centresMm = std::max(sheet.centresMm, std::hypot(sheet.rho[i], sheet.z[i] - sheet.centreZ));
+            sheet.centresMm = std::max(sheet.centresMm, core::hypot(sheet.rho[i], sheet.z[i] - sheet.centreZ));
         addGrid(sheet);
         sheets_.push_back(std::move(sheet));
     }
@@ -200,13 +202,13 @@ void OffAxisMedialSearch::addGrid(Sheet& sheet) const {
             row.count = 8 * static_cast<std::uint32_t>(std::max(1.0, std::ceil(2.0 * kPi * row.rho / spacing / 8.0)));
             total += row.count;
             for (std::uint32_t j = 0; j < row.count; ++j) {
-                sheet.cosine.push_back(std::cos(2.0 * kPi * j / row.count));
-                sheet.sine.push_back(std::sin(2.0 * kPi * j / row.count));
+                sheet.cosine.push_back(core::cos(2.0 * kPi * j / row.count));
+                sheet.sine.push_back(core::sin(2.0 * kPi * j / row.count));
             }
             row.firstMiddle = static_cast<std::uint32_t>(sheet.middleCosine.size());
             for (std::uint32_t j = 0; j < (row.count / 8 + 7) / 8 * 8; ++j) {
-                sheet.middleCosine.push_back(std::cos(2.0 * kPi * (8 * j + 3.5) / row.count));
-                sheet.middleSine.push_back(std::sin(2.0 * kPi * (8 * j + 3.5) / row.count));
+                sheet.middleCosine.push_back(core::cos(2.0 * kPi * (8 * j + 3.5) / row.count));
+                sheet.middleSine.push_back(core::sin(2.0 * kPi * (8 * j + 3.5) / row.count));
             }
             sheet.rows.push_back(row);
         }
@@ -243,7 +245,7 @@ bool OffAxisMedialSearch::askCovered(const ExactSurface& surface, const BurFrame
                                      BallDepth& best) const noexcept {
     if (covered_.empty() || best.triangle == geometry::kNoTriangle || best.depthMm <= 0.0) return false;
     const Vec3 w = best.surfaceMm - frame.tip;
-    const double along = w.dot(frame.x), across = w.dot(frame.y), rho = std::hypot(along, across);
+    const double along = w.dot(frame.x), across = w.dot(frame.y), rho = core::hypot(along, across);
     if (rho < kOnAxisMm) return false;
     bool deeper = false;
     const Vec3 outward = (along * frame.x + across * frame.y) / rho;
@@ -274,7 +276,7 @@ OffAxisMedialSearch::Spot OffAxisMedialSearch::spotAt(const Sheet& sheet, const 
     const double dRho = (sheet.rho[high] - sheet.rho[low]) * scale, dZ = (sheet.z[high] - sheet.z[low]) * scale;
     const double rho = sheet.rho[low] + t * (sheet.rho[high] - sheet.rho[low]);
     const double z = sheet.z[low] + t * (sheet.z[high] - sheet.z[low]);
-    const double c = std::cos(angle), s = std::sin(angle);
+    const double c = core::cos(angle), s = core::sin(angle);
     const Vec3 outward = c * frame.x + s * frame.y, around = c * frame.y - s * frame.x;
     Spot spot;
     spot.centre = frame.tip + rho * outward + z * frame.z;
@@ -299,7 +301,7 @@ void OffAxisMedialSearch::scan(const Sheet& sheet, const BurFrame& frame, double
         }
         row.farOutMm = bandOutMm_;
         row.farInMm = bandInMm_;
-        const double chord = 2.0 * r.rho * std::sin(std::min(0.5 * 3.5 * 2.0 * kPi / r.count, 0.5 * kPi));
+        const double chord = 2.0 * r.rho * core::sin(std::min(0.5 * 3.5 * 2.0 * kPi / r.count, 0.5 * kPi));
         float middle[8] = {};
         for (std::uint32_t j = 0; j < r.count; j += 8) {
             if (r.count >= 24) {
@@ -522,7 +524,7 @@ void OffAxisMedialSearch::climb(const ExactSurface& surface, const Sheet& sheet,
     remember(here.triangle);
     if (spot.alongArc.isZero(1e-9)) {  // on the axis every angle is as good: look up the slope
         const Vec3 away = (here.inside ? -1.0 : 1.0) * (spot.centre - here.surfaceMm);
-        angle = std::atan2(-away.dot(frame.y), -away.dot(frame.x));
+        angle = core::atan2(-away.dot(frame.y), -away.dot(frame.x));
         spot = spotAt(sheet, frame, u, angle);
     }
     for (int step = 0; step < kMaxSteps && window > kFinalWindowMm; ++step) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/instrument/piece.h"
 
 namespace handpiece::contact {
@@ -74,7 +75,7 @@ std::unique_ptr<const Outline> outlineOf(const instrument::Bur& bur) {
     };
     for (int i = 0; i < kTangents; ++i) {
         const double angle = std::numbers::pi * (static_cast<double>(i) / (kTangents - 1) - 0.5);
-        addTangent({std::max(0.0, std::cos(angle)), std::sin(angle)});
+        addTangent({std::max(0.0, core::cos(angle)), core::sin(angle)});
     }
     for (const ProfilePiece& p : pieces) {
         if ((p.to - p.from).norm() < kStraightMm) continue;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/instrument/piece.h"
 
 namespace handpiece::contact {
@@ -152,7 +153,7 @@ void FieldDepth::measureInscribed() {
 void FieldDepth::measureRoom() {
     constexpr double kNoCornerMm = 1e3;
     const auto stepTo = [&](std::size_t i, std::size_t j) {
-        return std::hypot(spots_[i].rho - spots_[j].rho, spots_[i].z - spots_[j].z);
+        return core::hypot(spots_[i].rho - spots_[j].rho, spots_[i].z - spots_[j].z);
     };
     const auto inscribedOf = [&](std::size_t i) { return spots_[i].isCorner ? 0.0 : spots_[i].inscribedMm; };
     for (std::size_t i = 0; i < spots_.size(); ++i) {
@@ -175,7 +176,7 @@ void FieldDepth::measureRoom() {
 void FieldDepth::addShells() {
     const auto& rings = bur_.rings();
     const auto stepTo = [&](std::size_t i, std::size_t j) {
-        return std::hypot(spots_[i].rho - spots_[j].rho, spots_[i].z - spots_[j].z);
+        return core::hypot(spots_[i].rho - spots_[j].rho, spots_[i].z - spots_[j].z);
     };
     std::vector<instrument::SurfaceRing> shells;
     double nextAlong = 0.0, along = 0.0;
@@ -310,7 +311,7 @@ class FieldDepth::DepthAscent {
     }
     void anchorAnew() noexcept {
         const double rho = spot_->rho - u_ * spot_->normalZ, z = spot_->z + u_ * spot_->normalRho;
-        const double out = std::hypot(rho, arc_);
+        const double out = core::hypot(rho, arc_);
         if (out < kTinyMm) return;
         const double c = rho / out, s = arc_ / out;
         const std::size_t next = spot_->isCorner ? at_ : depth_.nearestSpot(at_, out, z);

@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/instrument/piece.h"
 
 namespace handpiece::contact {
@@ -26,8 +27,8 @@ RingArrays::RingArrays(std::span<const instrument::SurfaceRing> given) {
     std::map<std::uint32_t, Table> tables;
     std::size_t points = kRingPad, eightsInAll = 0;
     const auto addAngle = [this](double angle, std::size_t inSector) {
-        cosines.push_back(static_cast<float>(std::cos(angle)));
-        sines.push_back(static_cast<float>(std::sin(angle)));
+        cosines.push_back(static_cast<float>(core::cos(angle)));
+        sines.push_back(static_cast<float>(core::sin(angle)));
         sector.push_back(static_cast<std::uint8_t>(inSector));
     };
     for (const instrument::SurfaceRing& r : given) {
@@ -50,7 +51,7 @@ RingArrays::RingArrays(std::span<const instrument::SurfaceRing> given) {
         ring.zMm = r.zMm;
         ring.rhoMm = r.rhoMm;
         ring.areaMm2 = static_cast<float>(r.areaMm2);
-        ring.chordMm = static_cast<float>(2.0 * r.rhoMm * std::sin(0.5 * halfAngle));
+        ring.chordMm = static_cast<float>(2.0 * r.rhoMm * core::sin(0.5 * halfAngle));
         ring.count = static_cast<std::int32_t>(count);
         ring.eights = static_cast<std::int32_t>(eights);
         ring.first = static_cast<std::int32_t>(points);

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Which bits the same inputs give.
+
+#include <cstdint>
+
+namespace handpiece::core {
+
+/// Raised in each commit that renews tests/golden/hashes.txt. Sessions carry it: only those of the same number are cut
+/// again bit for bit. A file without one has 1.
+inline constexpr std::int32_t kEngineRevision = 2;
+
+}  // namespace handpiece::core

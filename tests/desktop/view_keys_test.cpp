@@ -152,16 +152,25 @@ TEST(LatencyMeter, CountsFromTheEventToThePictureOfATickThatKnewIt) {
     for (int ms = 0; ms < 200; ++ms)
         meter.sampleSeen(ms * 1e-3, start + std::chrono::milliseconds(ms + 1));
     meter.target(start + 200ms);
-    meter.presented(0.199, start + 205ms);
+    const auto shown = [&](double timeS, LatencyMeter::Clock::time_point at) {
+        meter.presented({timeS, at - 6ms, at - 5ms, at - 2ms}, at);
+    };
+    shown(0.199, start + 205ms);
     EXPECT_EQ(meter.report().count, 0u) << "that tick was before the event";
-    meter.presented(0.2005, start + 208ms);
+    shown(0.2005, start + 208ms);
     EXPECT_EQ(meter.report().count, 0u) << "too close to be sure";
-    meter.presented(0.204, start + 220ms);
+    shown(0.204, start + 220ms);
     ASSERT_EQ(meter.report().count, 1u);
     EXPECT_NEAR(meter.report().p50Ms, 20.0, 1e-6);
+    // That tick's sample is of our 205th millisecond, told by the soonest.
+    constexpr std::array kStagesMs{5.0, 9.0, 1.0, 3.0, 2.0};
+    for (std::size_t i = 0; i < kStagesMs.size(); ++i) {
+        EXPECT_NEAR(meter.report().stages[i].p50Ms, kStagesMs[i], 1e-6) << kLatencyStages[i];
+        EXPECT_NEAR(meter.report().stages[i].inSlowestMs, kStagesMs[i], 1e-6) << kLatencyStages[i];
+    }
     for (int i = 0; i < 99; ++i) {
         meter.target(start + 300ms);
-        meter.presented(0.310, start + 310ms);
+        shown(0.310, start + 310ms);
     }
     EXPECT_NEAR(meter.report().p50Ms, 10.0, 1e-6);
     EXPECT_NEAR(meter.report().worstMs, 20.0, 1e-6);
@@ -177,7 +186,7 @@ TEST(LatencyMeter, FollowsATickThatFallsBehind) {
     for (int ms = 500; ms < 6000; ++ms)
         meter.sampleSeen((ms - 500) * 1e-3, start + std::chrono::milliseconds(ms));
     meter.target(start + 6000ms);
-    meter.presented(5.505, start + 6010ms);
+    meter.presented({5.505, start + 6006ms, start + 6007ms, start + 6009ms}, start + 6010ms);
     ASSERT_EQ(meter.report().count, 1u);
     EXPECT_NEAR(meter.report().p50Ms, 10.0, 1e-6);
 }

@@ -33,16 +33,22 @@ double LatencyMeter::offsetS() const {
     return std::min(now_.offsetS, before_.offsetS);
 }
 
-void LatencyMeter::presented(double timeS, Clock::time_point at) {
+void LatencyMeter::presented(const Picture& picture, Clock::time_point at) {
     const double offset = offsetS();
     if (offset > 1e299) return;
-    while (!waiting_.empty() && timeS + offset >= seconds(waiting_.front()) + kMarginS) {
-        const double tookMs = std::chrono::duration<double, std::milli>(at - waiting_.front()).count();
+    const double madeS = picture.timeS + offset;
+    while (!waiting_.empty() && madeS >= seconds(waiting_.front()) + kMarginS) {
+        const std::array<double, kLatencyStages.size() + 1> times{seconds(waiting_.front()), madeS,
+                                                                  seconds(picture.seen),     seconds(picture.begun),
+                                                                  seconds(picture.drawn),    seconds(at)};
         waiting_.pop_front();
-        if (ms_.size() < kMaxKept)
-            ms_.push_back(tookMs);
+        Answer answer{1e3 * (times.back() - times.front()), {}};
+        for (std::size_t i = 0; i < kLatencyStages.size(); ++i)
+            answer.stagesMs[i] = 1e3 * (times[i + 1] - times[i]);
+        if (answers_.size() < kMaxKept)
+            answers_.push_back(answer);
         else
-            ms_[next_++ % kMaxKept] = tookMs;
+            answers_[next_++ % kMaxKept] = answer;
     }
 }
 
@@ -52,16 +58,27 @@ void LatencyMeter::reset() {
 
 LatencyReport LatencyMeter::report() const {
     LatencyReport report;
-    report.count = ms_.size();
-    if (ms_.empty()) return report;
-    std::vector<double> sorted = ms_;
-    std::sort(sorted.begin(), sorted.end());
-    const auto at = [&](double share) {
-        return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5)];
+    report.count = answers_.size();
+    if (answers_.empty()) return report;
+    std::vector<Answer> sorted = answers_;
+    std::sort(sorted.begin(), sorted.end(), [](const Answer& a, const Answer& b) { return a.ms < b.ms; });
+    const auto rank = [&](double share) {
+        return static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5);
     };
-    report.p50Ms = at(0.5);
-    report.p99Ms = at(0.99);
-    report.worstMs = sorted.back();
+    report.p50Ms = sorted[rank(0.5)].ms;
+    report.p99Ms = sorted[rank(0.99)].ms;
+    report.worstMs = sorted.back().ms;
+    for (std::size_t i = 0; i < kLatencyStages.size(); ++i) {
+        std::vector<double> stage;
+        double slowest = 0.0;
+        for (std::size_t k = 0; k < sorted.size(); ++k) {
+            stage.push_back(sorted[k].stagesMs[i]);
+            if (k >= rank(0.99)) slowest += stage.back();
+        }
+        std::sort(stage.begin(), stage.end());
+        report.stages[i] = {stage[rank(0.5)], stage[rank(0.99)],
+                            slowest / static_cast<double>(sorted.size() - rank(0.99))};
+    }
     return report;
 }
 

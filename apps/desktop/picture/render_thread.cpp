@@ -14,9 +14,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr auto kFramePeriod = std::chrono::microseconds(16667);
-// While nothing is drawn, news are looked for this often: soon when something happened lately.
-constexpr auto kPollSoon = std::chrono::milliseconds(3), kPollLater = std::chrono::milliseconds(15);
-constexpr auto kLately = std::chrono::seconds(2);
+// A sample that shows something else, and the window, wake the thread. Bricks that come while the bur stands still, as
+// after an undo, are looked for this often.
+constexpr auto kPoll = std::chrono::milliseconds(15);
 constexpr double kDebrisS = 1.5;                        // particles fly on for about this long
 constexpr double kHeadHides = 0.82, kHeadClear = 0.78;  // cosines of bur's axis and line of sight, either way round
 constexpr double kMaxSoftwarePixels = 1.6e6;            // more would be seen later than they are seen sharper
@@ -31,14 +31,12 @@ bool moved(const messages::HapticSample& a, const messages::HapticSample& b) {
     return most > 5e-4 || turned > 5e-5;
 }
 
-double removedMm3(const messages::HapticSample& sample) {
-    return std::accumulate(sample.removedMm3.begin(), sample.removedMm3.end(), 0.0);
+bool turns(const messages::HapticSample& sample) {
+    return sample.speedRpm > 1.0;
 }
 
-/// A copy, in what the window's own pictures are made of: fast to paint.
-QImage toQt(const view::Image& image) {
-    return QImage(image.rgba.data(), image.width, image.height, 4 * image.width, QImage::Format_RGBX8888)
-        .convertToFormat(QImage::Format_RGB32);
+double removedMm3(const messages::HapticSample& sample) {
+    return std::accumulate(sample.removedMm3.begin(), sample.removedMm3.end(), 0.0);
 }
 
 }  // namespace
@@ -48,10 +46,52 @@ core::Pose proxyPose(const messages::HapticSample& sample) {
     return {core::toVec(sample.proxyPositionMm), core::Quat(q[0], q[1], q[2], q[3])};
 }
 
+/// Pictures that are handed to the window as they are and come back when it has done with them.
+class RenderThread::PicturePool : public std::enable_shared_from_this<PicturePool> {
+  public:
+    /// The one that came back last: the least of it is out of date.
+    [[nodiscard]] std::unique_ptr<view::Image> take() {
+        const std::lock_guard lock(mutex_);
+        if (free_.empty()) {
+            auto made = std::make_unique<view::Image>();
+            made->blueFirst = true;  // as the window's own pictures: fast to paint
+            return made;
+        }
+        std::unique_ptr<view::Image> taken = std::move(free_.back());
+        free_.pop_back();
+        return taken;
+    }
+    [[nodiscard]] QImage lend(std::unique_ptr<view::Image> image) {
+        struct Loan {
+            std::shared_ptr<PicturePool> pool;
+            std::unique_ptr<view::Image> image;
+        };
+        const view::Image& lent = *image;
+        return {lent.rgba.data(),
+                lent.width,
+                lent.height,
+                static_cast<qsizetype>(4) * lent.width,
+                QImage::Format_RGB32,
+                [](void* loan) {
+                    const std::unique_ptr<Loan> over(static_cast<Loan*>(loan));
+                    over->pool->giveBack(std::move(over->image));
+                },
+                new Loan{shared_from_this(), std::move(image)}};
+    }
+
+  private:
+    void giveBack(std::unique_ptr<view::Image> image) {
+        const std::lock_guard lock(mutex_);
+        free_.push_back(std::move(image));
+    }
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<view::Image>> free_;
+};
+
 struct RenderThread::Shared {
     std::mutex mutex;
     std::condition_variable wake;
-    bool stop = false, poked = false;
+    bool stop = false, poked = false, idle = false;  ///< idle: the thread waits for news
 
     RenderRequest renderRequest;
     std::shared_ptr<simulation::LiveTooth> tooth;
@@ -66,6 +106,22 @@ struct RenderThread::Shared {
     messages::HapticSample sample;  ///< the newest seen
     std::optional<Frame> ready;
     QString description;
+
+    messages::HapticSample told;  ///< that woke the thread last; the feed's writer's alone
+
+    void poke() {
+        {
+            const std::lock_guard lock(mutex);
+            poked = true;
+            if (!idle) return;
+        }
+        wake.notify_all();
+    }
+    void hear(const messages::HapticSample& sample) {
+        if (!moved(sample, told) && !turns(sample) && !turns(told)) return;
+        told = sample;
+        poke();
+    }
 };
 
 /// All that belongs to the drawing thread.
@@ -78,10 +134,12 @@ struct RenderThread::Worker {
     RenderRequest renderRequest;
     std::optional<view::Plane> cutPlane;
     messages::HapticSample sample, drawn;
+    Clock::time_point seen{};
     bool headInTheWay = false, missing = false, dirty = true, beforeDirty = true, wantsDepths = false;
     double removalMm3S = 0.0;
-    Clock::time_point animateUntil{}, lastEvent{};
-    view::Image image, beforeImage, bothImage;
+    Clock::time_point animateUntil{};
+    view::Image nowImage, beforeImage;  ///< beside each other
+    std::shared_ptr<PicturePool> pictures = std::make_shared<PicturePool>();
 
     void setTooth(view::Renderer& to, bool alsoCuts) const {
         to.setTooth(tooth ? tooth->model().outer.bounds() : sketchBounds());
@@ -157,9 +215,10 @@ Frame RenderThread::Worker::draw() {
     Frame frame;
     frame.camera = renderRequest.camera;
     frame.sample = sample;
+    std::unique_ptr<view::Image> image = pictures->take();
     if (!renderRequest.compare) {
-        frame.report = renderer->draw(renderRequest.camera, pixels(renderRequest.size), lookNow(), momentNow(), image);
-        frame.image = toQt(image);
+        frame.report = renderer->draw(renderRequest.camera, pixels(renderRequest.size), lookNow(), momentNow(), *image);
+        frame.image = pictures->lend(std::move(image));
         return frame;
     }
     const view::Viewport half = pixels({renderRequest.size.width() / 2, renderRequest.size.height()});
@@ -169,7 +228,8 @@ Frame RenderThread::Worker::draw() {
         setTooth(*before, false);
         beforeDirty = true;
     }
-    frame.report = renderer->draw(renderRequest.camera, half, lookNow(), momentNow(), image);
+    nowImage.blueFirst = beforeImage.blueFirst = true;
+    frame.report = renderer->draw(renderRequest.camera, half, lookNow(), momentNow(), nowImage);
     if (beforeDirty) {
         view::Look look = lookNow();
         look.bur = look.turbine = look.removedDepthColours = false;
@@ -184,16 +244,17 @@ Frame RenderThread::Worker::draw() {
         frame.report.triangles += report.triangles;
         frame.report.refining = frame.report.refining || report.refining;
     }
-    view::Image& both = bothImage;
+    view::Image& both = *image;
+    both.picture = {};
     both.width = 2 * half.width;
     both.height = half.height;
     both.rgba.resize(4 * static_cast<std::size_t>(both.width) * static_cast<std::size_t>(both.height));
     for (int y = 0; y < half.height; ++y) {
         const auto row = 4 * static_cast<std::ptrdiff_t>(half.width);
         std::copy_n(beforeImage.at(0, y), row, both.rgba.begin() + 2 * row * y);
-        std::copy_n(image.at(0, y), row, both.rgba.begin() + 2 * row * y + row);
+        std::copy_n(nowImage.at(0, y), row, both.rgba.begin() + 2 * row * y + row);
     }
-    frame.image = toQt(both);
+    frame.image = pictures->lend(std::move(image));
     return frame;
 }
 
@@ -206,7 +267,14 @@ RenderThread::~RenderThread() {
     finish();
 }
 
+void RenderThread::listenTo(std::shared_ptr<simulation::SampleFeed> feed) {
+    if (heard_) heard_->setWake({});
+    heard_ = std::move(feed);
+    if (heard_) heard_->setWake([this](const messages::HapticSample& sample) { shared_->hear(sample); });
+}
+
 void RenderThread::finish() {
+    listenTo(nullptr);
     if (!thread_.joinable()) return;
     {
         const std::lock_guard lock(shared_->mutex);
@@ -236,27 +304,27 @@ void RenderThread::run() {
     Clock::time_point lastFrame{};
     bool justDrawn = false;
     while (true) {
-        bool newTooth = false, newBur = false;
+        bool newTooth = false, newBur = false, fresh = false;
         std::shared_ptr<const geometry::TriangleMesh> turbine;
         std::optional<std::optional<view::SectionFace>> face;
         {
             std::unique_lock lock(shared_->mutex);
-            const auto now = Clock::now();
-            const auto poll = now - worker.lastEvent < kLately ? kPollSoon : kPollLater;
             // A picture that is due waits for its turn; else wait for a word from the window, or look for news.
             // Straight after a picture the next sample is there already.
             if (std::exchange(justDrawn, false))
                 ;
             else if (worker.dirty && !worker.missing && worker.renderRequest.visible)
                 shared_->wake.wait_until(lock, lastFrame + kFramePeriod, [&] { return shared_->stop; });
-            else
-                shared_->wake.wait_for(lock, poll, [&] { return shared_->poked; });
+            else {
+                shared_->idle = true;
+                shared_->wake.wait_for(lock, kPoll, [&] { return shared_->poked; });
+                shared_->idle = false;
+            }
             if (shared_->stop) return;
             shared_->poked = false;
             if (std::exchange(shared_->newRequest, false)) {
                 worker.renderRequest = shared_->renderRequest;
                 worker.dirty = worker.beforeDirty = true;
-                worker.lastEvent = now;
             }
             if (std::exchange(shared_->newTooth, false)) {
                 worker.tooth = shared_->tooth;
@@ -272,7 +340,6 @@ void RenderThread::run() {
             if (std::exchange(shared_->newTurbine, false)) turbine = shared_->turbine;
             if (std::exchange(shared_->newFace, false)) face = std::exchange(shared_->face, std::nullopt);
             const messages::HapticSample earlier = worker.sample;
-            bool fresh = false;
             if (worker.feed && worker.feed->hasNews()) {
                 worker.sample = worker.feed->read();
                 fresh = true;
@@ -281,6 +348,7 @@ void RenderThread::run() {
                 fresh = true;
             }
             if (fresh) {
+                worker.seen = Clock::now();
                 shared_->sample = worker.sample;
                 const double dt = worker.sample.timeS - earlier.timeS;
                 worker.removalMm3S =
@@ -288,17 +356,15 @@ void RenderThread::run() {
             }
         }
         const auto now = Clock::now();
-        if (worker.feed) {
+        if (worker.feed && fresh) {
             const std::lock_guard lock(meterMutex_);
-            meter_.sampleSeen(worker.sample.timeS, now);
+            meter_.sampleSeen(worker.sample.timeS, worker.seen);
         }
-        if (worker.removalMm3S > 0.0 || worker.sample.speedRpm > 1.0)
+        if (worker.removalMm3S > 0.0 || turns(worker.sample))
             worker.animateUntil = now + std::chrono::milliseconds(static_cast<int>(kDebrisS * 1000));
         if (moved(worker.sample, worker.drawn) ||
-            (now < worker.animateUntil && worker.sample.timeS != worker.drawn.timeS)) {
+            (now < worker.animateUntil && worker.sample.timeS != worker.drawn.timeS))
             worker.dirty = true;
-            worker.lastEvent = now;
-        }
         try {
             if (worker.tooth && worker.wantsDepths != worker.renderRequest.look.removedDepthColours) {
                 worker.wantsDepths = worker.renderRequest.look.removedDepthColours;
@@ -332,6 +398,9 @@ void RenderThread::run() {
             if (!worker.dirty || !worker.renderRequest.visible || now < lastFrame + kFramePeriod) continue;
             lastFrame = now;
             Frame frame = worker.draw();
+            frame.seen = worker.seen;
+            frame.begun = now;
+            frame.drawn = Clock::now();
             worker.drawn = worker.sample;
             worker.dirty = frame.report.refining;
             {
@@ -364,6 +433,7 @@ void RenderThread::setTooth(std::shared_ptr<simulation::LiveTooth> tooth, std::v
                             std::vector<cases::Part> scenery, std::shared_ptr<simulation::SampleFeed> feed) {
     auto keptParts = std::make_shared<const std::vector<cases::Part>>(std::move(parts));
     auto keptScenery = std::make_shared<const std::vector<cases::Part>>(std::move(scenery));
+    listenTo(feed);
     tell(*shared_, [&](Shared& s) {
         s.tooth = std::move(tooth);
         s.parts = std::move(keptParts);
@@ -434,9 +504,9 @@ void RenderThread::pointerMoved() {
     meter_.target(Clock::now());
 }
 
-void RenderThread::presented(const messages::HapticSample& sample) {
+void RenderThread::presented(const Frame& frame) {
     const std::lock_guard lock(meterMutex_);
-    meter_.presented(sample.timeS, Clock::now());
+    meter_.presented({frame.sample.timeS, frame.seen, frame.begun, frame.drawn}, Clock::now());
 }
 
 LatencyReport RenderThread::latency() const {

@@ -31,6 +31,7 @@ struct Frame {
     view::Camera camera;
     view::FrameReport report;
     messages::HapticSample sample;
+    LatencyMeter::Clock::time_point seen, begun, drawn;  ///< the sample; the drawing's begin and end
 };
 
 /// What is to be seen, by value: the latest counts.
@@ -74,17 +75,20 @@ class RenderThread {
     [[nodiscard]] messages::HapticSample sample() const;
     [[nodiscard]] QString description() const;
 
-    void pointerMoved();                                   ///< now: for the latency
-    void presented(const messages::HapticSample& sample);  ///< now
+    void pointerMoved();                 ///< now: for the latency
+    void presented(const Frame& frame);  ///< now
     [[nodiscard]] LatencyReport latency() const;
     void resetLatency();
 
   private:
+    class PicturePool;
     struct Worker;
     struct Shared;
     void run();
+    void listenTo(std::shared_ptr<simulation::SampleFeed> feed);
 
     Callbacks callbacks_;
+    std::shared_ptr<simulation::SampleFeed> heard_;
     std::unique_ptr<Shared> shared_;
     mutable std::mutex meterMutex_;
     LatencyMeter meter_;

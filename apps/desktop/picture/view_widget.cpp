@@ -324,7 +324,7 @@ void ViewWidget::paintEvent(QPaintEvent*) {
     }
     paintOverlay(painter, rect(), s.overlay());
     painter.end();
-    if (s.frame) s.render->presented(s.frame->sample);
+    if (s.frame) s.render->presented(*s.frame);
 }
 
 void ViewWidget::resizeEvent(QResizeEvent*) {

@@ -38,10 +38,19 @@ std::string runStatistics(const simulation::LiveSessionStatus& liveSession, cons
     const QJsonObject draw{{QStringLiteral("p50"), rounded(picture.drawMs.at(0.5))},
                            {QStringLiteral("p99"), rounded(picture.drawMs.at(0.99))},
                            {QStringLiteral("max"), rounded(picture.drawMs.most())}};
+    QJsonObject stages;
+    for (std::size_t i = 0; i < kLatencyStages.size(); ++i) {
+        const LatencyReport::Stage& stage = picture.latency.stages[i];
+        stages[QLatin1String(kLatencyStages[i])] =
+            QJsonObject{{QStringLiteral("p50"), rounded(stage.p50Ms)},
+                        {QStringLiteral("p99"), rounded(stage.p99Ms)},
+                        {QStringLiteral("inSlowest"), rounded(stage.inSlowestMs)}};
+    }
     const QJsonObject hand{{QStringLiteral("count"), static_cast<qint64>(picture.latency.count)},
                            {QStringLiteral("p50"), rounded(picture.latency.p50Ms)},
                            {QStringLiteral("p99"), rounded(picture.latency.p99Ms)},
-                           {QStringLiteral("max"), rounded(picture.latency.worstMs)}};
+                           {QStringLiteral("max"), rounded(picture.latency.worstMs)},
+                           {QStringLiteral("stages"), stages}};
     const QJsonObject drawn{{QStringLiteral("frames"), static_cast<qint64>(picture.drawMs.count())},
                             {QStringLiteral("drawAndReadMs"), draw},
                             {QStringLiteral("handToPictureMs"), hand}};

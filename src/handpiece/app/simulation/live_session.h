@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "handpiece/app/simulation/history_bytes.h"
@@ -24,8 +26,31 @@
 
 namespace handpiece::simulation {
 
-/// The latest sample, for one reader.
-using SampleFeed = rt::TripleBuffer<messages::HapticSample>;
+/// The latest sample, for one reader, who can be woken by it.
+class SampleFeed {
+  public:
+    /// The writer's thread, which may not be the tick's.
+    void write(const messages::HapticSample& sample) {
+        latest_.write(sample);
+        const std::lock_guard lock(mutex_);
+        if (wake_) wake_(sample);
+    }
+    // The reader's.
+    const messages::HapticSample& read() noexcept { return latest_.read(); }
+    [[nodiscard]] bool hasNews() const noexcept { return latest_.hasNews(); }
+    /// Called by the writer after each sample from now on; must not wait. Empty: nobody is. When this returns, whoever
+    /// was called before is called no more.
+    using Wake = std::function<void(const messages::HapticSample& sample)>;
+    void setWake(Wake wake) {
+        const std::lock_guard lock(mutex_);
+        wake_ = std::move(wake);
+    }
+
+  private:
+    rt::TripleBuffer<messages::HapticSample> latest_;
+    std::mutex mutex_;
+    Wake wake_;
+};
 
 struct LiveSessionSettings {
     std::filesystem::path sessionFile;  ///< empty: nothing is recorded

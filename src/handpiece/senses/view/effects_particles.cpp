@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "handpiece/senses/view/effects.h"
 #include "handpiece/senses/view/particles.h"
@@ -49,8 +52,18 @@ flat in vec4 shade;
 in float depthMm;
 uniform sampler2D toothDepth;
 uniform vec2 unproject;
+#ifdef MIST
+uniform sampler2D solidDepth;
+#endif
 out vec4 result;
 void main() {
+#ifdef MIST
+    // At half the size: a pixel of the whole stands for four.
+    ivec2 pixel = min(2 * ivec2(gl_FragCoord.xy), textureSize(solidDepth, 0) - 1);
+    if (gl_FragCoord.z >= texelFetch(solidDepth, pixel, 0).r) discard;
+#else
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+#endif
     // 0 at the head, 1 at the tail: what the eye smears of a drop ends in nothing.
     float along = clamp((at.x + halfLength) / max(2.0 * halfLength, 1e-3), 0.0, 1.0);
     float narrow = mix(1.0, 0.45, along * min(1.0, halfLength));
@@ -60,7 +73,7 @@ void main() {
     float cover = 1.0 - smoothstep(edge, 1.0, d);
     if (hard < 0.3) {
         // Mist has no edge where it meets the tooth.
-        float z = texelFetch(toothDepth, ivec2(gl_FragCoord.xy), 0).r;
+        float z = texelFetch(toothDepth, pixel, 0).r;
         float behind = unproject.y / (2.0 * z - 1.0 + unproject.x) - depthMm;
         cover *= clamp(1.2 * behind + 0.15, 0.0, 1.0);
     }
@@ -68,6 +81,23 @@ void main() {
     result = vec4(shade.rgb * mix(1.12 - 0.35 * d, 1.0, 1.0 - hard), shade.a * cover);
 }
 )";
+
+// What mist lets through, laid over the picture in mist's own colour.
+const char* const kVeilFragment = R"(
+in vec2 uv;
+uniform sampler2D through;
+uniform vec3 mist;
+out vec4 result;
+void main() {
+    float veil = 1.0 - texture(through, 0.5 * gl_FragCoord.xy / vec2(textureSize(through, 0))).r;
+    if (veil < 0.002) discard;
+    result = vec4(mist, veil);
+}
+)";
+
+PixelRect halfOf(const PixelRect& r) {
+    return {r.x0 / 2, r.y0 / 2, (r.x1 + 1) / 2, (r.y1 + 1) / 2};
+}
 
 class ParticlePass : public Pass {
   public:
@@ -78,7 +108,13 @@ class ParticlePass : public Pass {
         const gl::Mat4f m = context.eye.viewProjection();
         const Viewport& v = context.viewport;
         PixelRect rect;
+        mist_.clear();
+        specks_.clear();
+        mistRect_ = {};
         for (const Speck& s : particles_.specks()) {
+            const bool isMist = s.hardness == 0.0f;
+            PixelRect& reached = isMist ? mistRect_ : rect;
+            (isMist ? mist_ : specks_).push_back(s);
             const gl::Vec3f head(s.positionMm[0], s.positionMm[1], s.positionMm[2]);
             const gl::Vec3f streak(s.streakMm[0], s.streakMm[1], s.streakMm[2]);
             for (const gl::Vec3f& p : {head, gl::Vec3f(head + streak)}) {
@@ -92,15 +128,28 @@ class ParticlePass : public Pass {
                 const PixelRect one =
                     PixelRect{pixel(x - reach) - 1, pixel(y - reach) - 1, pixel(x + reach) + 2, pixel(y + reach) + 2}
                         .common({0, 0, v.width, v.height});
-                rect = rect.joined(one);
+                reached = reached.joined(one);
             }
         }
-        return rect;
+        return rect.joined(mistRect_);
     }
 
     std::size_t draw(const PassContext& context) override {
-        const auto specks = particles_.specks();
-        if (specks.empty()) return 0;
+        const PixelRect misty = mistRect_.common(context.scissor);
+        if (!mist_.empty() && !misty.isEmpty()) drawMist(context, misty);
+        if (specks_.empty()) return 2 * mist_.size();
+        prepare(program_, context, specks_);
+        glEnable(GL_BLEND);
+        glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+        glDepthMask(GL_FALSE);
+        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(specks_.size()));
+        glDepthMask(GL_TRUE);
+        glDisable(GL_BLEND);
+        return 2 * (mist_.size() + specks_.size());
+    }
+
+  private:
+    void prepare(gl::Program& program, const PassContext& context, const std::vector<Speck>& specks) {
         array_.bind();
         vertices_.fill(GL_ARRAY_BUFFER, specks.data(), specks.size() * sizeof(Speck), GL_STREAM_DRAW);
         array_.attach(vertices_, sizeof(Speck),
@@ -110,28 +159,61 @@ class ParticlePass : public Pass {
                        {3, 1, GL_FLOAT, false, offsetof(Speck, hardness), false, 1},
                        {4, 4, GL_UNSIGNED_BYTE, true, offsetof(Speck, rgba), false, 1}});
         const gl::Mat4f& p = context.eye.projection;
-        program_.use();
-        program_.set("view", context.eye.view);
-        program_.set("projection", p);
-        program_.set("pixelShare", 2.0f / (std::abs(p(1, 1)) * static_cast<float>(context.viewport.height)));
+        program.use();
+        program.set("view", context.eye.view);
+        program.set("projection", p);
+        program.set("pixelShare", 2.0f / (std::abs(p(1, 1)) * static_cast<float>(context.viewport.height)));
         // NDC z is -p22 + p23 / depth.
-        program_.set("unproject", gl::Vec2f(p(2, 2), p(2, 3)));
-        program_.set("toothDepth", context.toothDepth, 0);
-        glEnable(GL_BLEND);
-        glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-        glDepthMask(GL_FALSE);
-        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(specks.size()));
-        glDepthMask(GL_TRUE);
-        glDisable(GL_BLEND);
-        return 2 * specks.size();
+        program.set("unproject", gl::Vec2f(p(2, 2), p(2, 3)));
+        program.set("toothDepth", context.toothDepth, 0);
     }
 
-  private:
+    /// Mist is large and soft, and puffs lie over each other by the dozen: it is drawn at half the size. All of it has
+    /// one colour, so what is kept is only how much of what lies behind comes through all puffs.
+    void drawMist(const PassContext& context, const PixelRect& rect) {
+        const int width = (context.viewport.width + 1) / 2, height = (context.viewport.height + 1) / 2;
+        if (through_.width() != width || through_.height() != height) {
+            through_.allocate(width, height, GL_R16F, true);
+            throughTarget_.attach({&through_}, nullptr);
+        }
+        const PixelRect half = halfOf(rect).grown(1).common({0, 0, width, height});
+        throughTarget_.bind();
+        glViewport(0, 0, width, height);
+        glScissor(half.x0, half.y0, half.x1 - half.x0, half.y1 - half.y0);
+        glDisable(GL_DEPTH_TEST);
+        constexpr std::array<float, 4> kAll{1.0f, 1.0f, 1.0f, 1.0f};
+        glClearBufferfv(GL_COLOR, 0, kAll.data());
+        prepare(mistProgram_, context, mist_);
+        mistProgram_.set("solidDepth", context.solidDepth, 1);
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(mist_.size()));
+
+        restoreTarget(context);
+        glDisable(GL_DEPTH_TEST);
+        glScissor(rect.x0, rect.y0, rect.x1 - rect.x0, rect.y1 - rect.y0);
+        none_.bind();
+        veilProgram_.use();
+        veilProgram_.set("through", through_, 0);
+        veilProgram_.set("mist", gl::Vec3f(gl::Vec3f(kMistColour[0], kMistColour[1], kMistColour[2]) / 255.0f));
+        glEnable(GL_BLEND);
+        glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+        gl::drawFullScreen();
+        glDisable(GL_BLEND);
+        restoreTarget(context);
+    }
+
     std::function<double()> headRadiusMm_;
     Particles particles_;
+    std::vector<Speck> specks_, mist_;  ///< of this picture
+    PixelRect mistRect_;
     gl::Program program_{"particles", kVertex, kFragment};
+    gl::Program mistProgram_{"mist", kVertex, std::string("#define MIST\n") + kFragment};
+    gl::Program veilProgram_{"veil of mist", gl::kFullScreenVertex, kVeilFragment};
+    gl::Texture through_;  ///< what mist lets through
+    gl::Framebuffer throughTarget_;
     gl::Buffer vertices_;
-    gl::VertexArray array_;
+    gl::VertexArray array_, none_;
 };
 
 }  // namespace

@@ -16,6 +16,14 @@ namespace handpiece::view {
 struct Image {
     int width = 0, height = 0;
     std::vector<std::uint8_t> rgba;
+    /// Blue, green, red, alpha instead, as windows have their pictures: for Renderer::draw() alone, which keeps to it.
+    bool blueFirst = false;
+    /// Which of whose pictures it holds, told by Renderer::draw(): given the same image again, it reads what changed
+    /// since. To be cleared by whoever else writes into the image.
+    struct Picture {
+        std::uint64_t source = 0, number = 0;
+    };
+    Picture picture{};
 
     [[nodiscard]] const std::uint8_t* at(int x, int y) const {
         return &rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x))];

@@ -203,7 +203,8 @@ void Particles::show(const Moment& moment, const Look& look, double headRadiusMm
         if (p.kind == Kind::puff) {
             // Mist spreads and thins.
             s.radiusMm = static_cast<float>(p.radiusMm * (1.0 + 1.9 * age));
-            s.rgba = {226, 236, 244, byte(40.0 * (1.0 - age) * std::min(1.0, 6.0 * age))};
+            s.rgba = {kMistColour[0], kMistColour[1], kMistColour[2],
+                      byte(40.0 * (1.0 - age) * std::min(1.0, 6.0 * age))};
         } else {
             // What the eye smears of a fast speck, held short: chips would look like needles, drops like sticks.
             Vec3 streak = -0.004 * p.velocityMmS;
@@ -235,7 +236,7 @@ void Particles::show(const Moment& moment, const Look& look, double headRadiusMm
         s.streakMm = floats(moment.burInTooth.orientation * (kJetShare * (aim - port)));
         s.radiusMm = 0.11f;
         s.hardness = 0.0f;
-        s.rgba = {222, 236, 248, 64};
+        s.rgba = {kMistColour[0], kMistColour[1], kMistColour[2], 64};
         specks_.push_back(s);
     }
 }

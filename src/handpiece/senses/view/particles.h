@@ -25,6 +25,9 @@ struct Speck {
     std::array<std::uint8_t, 4> rgba{};  ///< sRGB, not premultiplied
 };
 
+/// Of puffs and jets: what has no hardness.
+inline constexpr std::array<std::uint8_t, 3> kMistColour{226, 236, 244};
+
 inline constexpr std::size_t kMaxChips = 220, kMaxDroplets = 90, kMaxPuffs = 60, kJets = 3;
 inline constexpr std::size_t kMaxSpecks = kMaxChips + kMaxDroplets + kMaxPuffs + kJets;
 

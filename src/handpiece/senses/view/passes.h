@@ -61,6 +61,7 @@ struct PassContext {
     const Moment& moment;
     gl::Vec3f lightDirection;        ///< unit, from the scene to the lamp, tooth frame
     const gl::Texture& toothDepth;   ///< window depth (0..1) of tooth and scenery; 1: nothing. Not the one written to.
+    const gl::Texture& solidDepth;   ///< the same with instruments: the one written to, to be read from elsewhere only
     const gl::Texture& toothColour;  ///< tooth and scenery as lit, sRGB values
     GLuint framebuffer;              ///< to bind again after drawing elsewhere
     PixelRect scissor;               ///< to set again likewise

@@ -2,6 +2,8 @@
 #include "handpiece/senses/view/renderer.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -55,6 +57,20 @@ struct EyeTarget {
     PixelRect instruments, passing;  ///< where instruments, and the rest over the tooth, lay in the last picture
     std::uint64_t appearance = 0;    ///< of the instruments, then
     Smoothing was = Smoothing::none;
+    // Its pictures are counted; what changed in each of the last ones is kept, for those who read them.
+    std::uint64_t source = 0, number = 0;
+    std::array<PixelRect, 8> changed;
+
+    void change(const PixelRect& rect) { changed[++number % changed.size()] = rect; }
+    /// Of what `held` shows: to be read again.
+    [[nodiscard]] PixelRect changedSince(const Image::Picture& held) const {
+        if (held.source != source || number - held.number > changed.size())
+            return {0, 0, colour.width(), colour.height()};
+        PixelRect rect;
+        for (std::uint64_t i = held.number + 1; i <= number; ++i)
+            rect = rect.joined(changed[i % changed.size()]);
+        return rect;
+    }
 
     void allocate(const Viewport& viewport) {
         if (colour.width() == viewport.width && colour.height() == viewport.height) return;
@@ -68,6 +84,8 @@ struct EyeTarget {
         instruments = {0, 0, viewport.width, viewport.height};
         appearance = 0;
         was = Smoothing::none;
+        static std::atomic<std::uint64_t> sources{0};
+        source = ++sources;
     }
 };
 
@@ -111,10 +129,7 @@ struct Renderer::State {
     }
     bool drawSmall(const Camera& camera, const Viewport& size, const Look& look, const Moment& moment, Detail detail,
                    Image& out, FrameReport& report);
-    void read(const gl::Framebuffer& from, const Viewport& size, Image& out, FrameReport& report) const;
-    static const gl::Framebuffer& pictureOf(const EyeTarget& target) {
-        return target.was == Smoothing::all ? target.smooth : target.composed;
-    }
+    void read(const EyeTarget& from, Image& out, FrameReport& report) const;
 };
 
 void Renderer::State::renewDepthScale(double mostMm) {
@@ -242,6 +257,7 @@ void Renderer::State::drawEye(EyeTarget& target, const Camera& from, const Eye& 
                          moment,
                          lighting.lamp,
                          target.layer.depth(),
+                         target.depth,
                          target.layer.colour(),
                          target.composed.name(),
                          whole,
@@ -303,6 +319,7 @@ void Renderer::State::drawEye(EyeTarget& target, const Camera& from, const Eye& 
     target.passing = passing;
     target.appearance = appearance;
     target.was = smoothing;
+    target.change(smoothing == Smoothing::all && !dirty.isEmpty() ? dirty.grown(kSmoothMargin).common(whole) : dirty);
     if (dirty.isEmpty()) return;
 
     const bool fromSmooth = inPieces(smoothing);
@@ -332,7 +349,7 @@ void Renderer::State::drawEye(EyeTarget& target, const Camera& from, const Eye& 
         report.triangles += pass->draw(context_);
 
     if (smoothing == Smoothing::all)
-        smooth(target.colour, target.smooth, dirty.grown(kSmoothMargin).common(whole), size);
+        smooth(target.colour, target.smooth, target.changed[target.number % target.changed.size()], size);
 }
 
 void Renderer::State::smooth(const gl::Texture& from, const gl::Framebuffer& to, std::span<const PixelRect> rects,
@@ -372,20 +389,34 @@ bool Renderer::State::drawSmall(const Camera& from, const Viewport& size, const 
     const Viewport small{static_cast<int>(std::lround(scale * size.width)),
                          static_cast<int>(std::lround(scale * size.height))};
     drawEye(moving, from, eyeOf(from, small), small, look, moment, detail, report);
-    read(pictureOf(moving), small, smallPicture, report);
+    smallPicture.blueFirst = out.blueFirst;
+    read(moving, smallPicture, report);
     enlarge(smallPicture, size, out);
+    out.picture = {};
     return true;
 }
 
-void Renderer::State::read(const gl::Framebuffer& from, const Viewport& size, Image& out, FrameReport& report) const {
+void Renderer::State::read(const EyeTarget& from, Image& out, FrameReport& report) const {
     glFinish();
     const double begin = nowMs();
-    out.width = size.width;
-    out.height = size.height;
-    out.rgba.resize(4 * static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height));
-    from.bind();
-    glPixelStorei(GL_PACK_ALIGNMENT, 4);
-    glReadPixels(0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, out.rgba.data());
+    const int width = from.colour.width(), height = from.colour.height();
+    const std::size_t bytes = 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    if (out.width != width || out.height != height || out.rgba.size() != bytes) out.picture = {};
+    out.width = width;
+    out.height = height;
+    out.rgba.resize(bytes);
+    const PixelRect rect = from.changedSince(out.picture);
+    out.picture = {from.source, from.number};
+    if (!rect.isEmpty()) {
+        (from.was == Smoothing::all ? from.smooth : from.composed).bind();
+        glPixelStorei(GL_PACK_ALIGNMENT, 4);
+        glPixelStorei(GL_PACK_ROW_LENGTH, width);
+        glReadPixels(rect.x0, rect.y0, rect.x1 - rect.x0, rect.y1 - rect.y0, out.blueFirst ? GL_BGRA : GL_RGBA,
+                     GL_UNSIGNED_BYTE,
+                     &out.rgba[4 * (static_cast<std::size_t>(rect.y0) * static_cast<std::size_t>(width) +
+                                    static_cast<std::size_t>(rect.x0))]);
+        glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+    }
     report.readMs += nowMs() - begin;
 }
 
@@ -468,16 +499,20 @@ FrameReport Renderer::draw(const Camera& camera, const Viewport& viewport, const
         // Done.
     } else if (one) {
         s.drawEye(s.left, camera, eyeOf(camera, viewport), viewport, look, moment, detail, report);
-        s.read(State::pictureOf(s.left), viewport, out, report);
+        s.read(s.left, out, report);
     } else {
         const Viewport each = stereoViewport(viewport, look.stereo);
         s.drawEye(s.left, camera, stereoEye(camera, each, look.eyeSeparationMm, -1), each, look, moment, detail,
                   report);
-        s.read(State::pictureOf(s.left), each, s.leftPicture, report);
+        s.read(s.left, s.leftPicture, report);
         s.drawEye(s.right, camera, stereoEye(camera, each, look.eyeSeparationMm, 1), each, look, moment, detail,
                   report);
-        s.read(State::pictureOf(s.right), each, s.rightPicture, report);
+        s.read(s.right, s.rightPicture, report);
         composeStereo(s.leftPicture, s.rightPicture, viewport, look.stereo, out);
+        out.picture = {};
+        if (out.blueFirst)
+            for (std::size_t i = 0; i + 3 < out.rgba.size(); i += 4)
+                std::swap(out.rgba[i], out.rgba[i + 2]);
     }
     gl::check("a picture");
     report.drawMs = nowMs() - begin - report.readMs;

@@ -21,7 +21,7 @@ set(CPACK_DEBIAN_HANDPIECE_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_HANDPIECE_PACKAGE_DEPENDS "libegl-mesa0 | libegl-vendor, libgl1-mesa-dri, passwd")
 set(CPACK_DEBIAN_HANDPIECE_PACKAGE_RECOMMENDS "fonts-dejavu-core, qt6-translations-l10n, qt6-wayland")
 # Loaded at run time where they are; without them the program does all the rest.
-set(CPACK_DEBIAN_HANDPIECE_PACKAGE_SUGGESTS "spacenavd, libspnav0, libsdl2-2.0-0, fonts-ipafont-gothic")
+set(CPACK_DEBIAN_HANDPIECE_PACKAGE_SUGGESTS "rtkit, spacenavd, libspnav0, libsdl2-2.0-0, fonts-ipafont-gothic")
 set(CPACK_DEBIAN_HANDPIECE_PACKAGE_CONTROL_EXTRA
     ${PROJECT_SOURCE_DIR}/packaging/debian/postinst ${PROJECT_SOURCE_DIR}/packaging/debian/prerm
     ${PROJECT_SOURCE_DIR}/packaging/debian/postrm ${PROJECT_SOURCE_DIR}/packaging/debian/conffiles)
@@ -33,7 +33,7 @@ replayed and measured, drivers for haptic arms that are loaded at run time.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME handpiece-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-    "libeigen3-dev, libfmt-dev, libtbb-dev, libtomlplusplus-dev, libopenal-dev, libsndfile1-dev, libqhull-dev, libzip-dev, libhdf5-dev, zlib1g-dev, libpng-dev, libtiff-dev, libjpeg-dev, libgdcm-dev, libegl-dev, libopengl-dev")
+    "libeigen3-dev, libfmt-dev, libtbb-dev, libtomlplusplus-dev, libopenal-dev, libsndfile1-dev, libqhull-dev, libzip-dev, libhdf5-dev, zlib1g-dev, libpng-dev, libtiff-dev, libjpeg-dev, libgdcm-dev, libegl-dev, libopengl-dev, libdbus-1-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION
 "Build your own programs on the simulator's library.
 Headers, static libraries and the files for find_package(handpiece).")

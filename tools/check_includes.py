@@ -32,6 +32,7 @@ THIRD_PARTY = {
     r"nifti": r"tests/.*",
     r"sndfile\.h": r"src/handpiece/senses/sound/wav\.cpp",
     r"AL/": r"src/handpiece/senses/sound/\w+\.cpp",
+    r"dbus/": r"src/handpiece/base/rt/realtime_kit\.cpp|tests/.*",
     r"boost/": r"src/handpiece/devices/drivers/\w+\.cpp|tests/devices/.*",
     r"Q[A-Z]\w+$|QtWidgets/|QtCore/|QtTest/": r"(apps|tests)/desktop/.*",
 }

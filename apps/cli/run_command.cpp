@@ -81,7 +81,8 @@ Json summaryJson(const RunOptions& o, const studies::RunSummary& s, const std::s
             {"late_ticks", s.report.lateTicks},
             {"missed_periods", s.report.missedPeriods},
             {"queue_overflow", s.report.queueOverflow},
-            {"scheduling", s.report.scheduling},
+            {"scheduling", s.report.scheduling.line()},
+            {"scheduling_class", rt::nameOf(s.report.scheduling.scheduling)},
             {"work_us", spreadJson(s.report.workUs)},
             {"lateness_us", spreadJson(s.report.latenessUs)},
             {"peak_force_n", s.peakForceN},
@@ -105,7 +106,7 @@ void printSummary(const RunOptions& o, const studies::RunSummary& s, const std::
     row("ran", fmt::format("{} on {} with {}, {}, {:.3f} s at {:.0f} Hz", o.motion, o.inputs.tooth, o.inputs.bur.name,
                            method, s.durationS, o.rateHz));
     row("ticks", fmt::format("{}, late {}, left out {}", r.ticks, r.lateTicks, r.missedPeriods));
-    row("scheduling", r.scheduling);
+    row("scheduling", r.scheduling.line());
     row("work", fmt::format("p50 {:.1f}, p99 {:.1f}, p99.9 {:.1f}, worst {:.1f} us a tick", r.workUs.p50, r.workUs.p99,
                             r.workUs.p999, r.workUs.max));
     row("contact", s.touched ? fmt::format("{:.3f} s, deepest {:.4f} mm, largest area {:.3f} mm2", s.contactS,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "handpiece/base/core/any_error.h"
+#include "handpiece/base/rt/realtime_thread.h"
 
 namespace handpiece::desktop {
 
@@ -285,6 +286,7 @@ void RenderThread::finish() {
 }
 
 void RenderThread::run() {
+    rt::stepBack();  // before the renderer: a software renderer's own threads are as it is
     Worker worker;
     const auto giveUp = [&](const core::Error& error) {
         worker.missing = true;

@@ -27,14 +27,16 @@ QJsonObject spread(const loop::Spread& s) {
 
 std::string runStatistics(const simulation::LiveSessionStatus& liveSession, const sound::PlayerStatus& sound,
                           const PictureStatistics& picture, double firstPictureMs) {
-    const QJsonObject tick{{QStringLiteral("seconds"), rounded(liveSession.timeS)},
-                           {QStringLiteral("ticks"), static_cast<qint64>(liveSession.ticks)},
-                           {QStringLiteral("lateTicks"), static_cast<qint64>(liveSession.lateTicks)},
-                           {QStringLiteral("missedPeriods"), static_cast<qint64>(liveSession.missedPeriods)},
-                           {QStringLiteral("samplesLost"), static_cast<qint64>(liveSession.queueOverflow)},
-                           {QStringLiteral("workUs"), spread(liveSession.allWorkUs)},
-                           {QStringLiteral("latenessUs"), spread(liveSession.allLatenessUs)},
-                           {QStringLiteral("scheduling"), QString::fromStdString(liveSession.scheduling)}};
+    const QJsonObject tick{
+        {QStringLiteral("seconds"), rounded(liveSession.timeS)},
+        {QStringLiteral("ticks"), static_cast<qint64>(liveSession.ticks)},
+        {QStringLiteral("lateTicks"), static_cast<qint64>(liveSession.lateTicks)},
+        {QStringLiteral("missedPeriods"), static_cast<qint64>(liveSession.missedPeriods)},
+        {QStringLiteral("samplesLost"), static_cast<qint64>(liveSession.queueOverflow)},
+        {QStringLiteral("workUs"), spread(liveSession.allWorkUs)},
+        {QStringLiteral("latenessUs"), spread(liveSession.allLatenessUs)},
+        {QStringLiteral("schedulingClass"), QString::fromLatin1(rt::nameOf(liveSession.scheduling.scheduling))},
+        {QStringLiteral("scheduling"), QString::fromStdString(liveSession.scheduling.line())}};
     const QJsonObject draw{{QStringLiteral("p50"), rounded(picture.drawMs.at(0.5))},
                            {QStringLiteral("p99"), rounded(picture.drawMs.at(0.99))},
                            {QStringLiteral("max"), rounded(picture.drawMs.most())}};

@@ -3502,6 +3502,14 @@
         <translation>力のループの始まりの遅れです。100回のうち最も遅い値です</translation>
     </message>
     <message>
+        <source>Real time</source>
+        <translation>リアルタイム</translation>
+    </message>
+    <message>
+        <source>What the machine grants the force loop: without real time some ticks come late</source>
+        <translation>この機械が力のループに許すものです。リアルタイムでないと計算が遅れることがあります</translation>
+    </message>
+    <message>
         <source>Passivity</source>
         <translation>受動性</translation>
     </message>

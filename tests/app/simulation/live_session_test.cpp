@@ -167,8 +167,14 @@ TEST(LiveSession, aListenerThatFailsEndsItWithAFaultAndKeepsTheCut) {
     liveSession.stop();
     const session::SessionReader reader(settings.sessionFile);
     EXPECT_TRUE(reader.isComplete());
-    ASSERT_FALSE(reader.events().empty());
-    EXPECT_EQ(reader.events().back().name, "end");
+    const std::vector<session::Event> events = reader.events();
+    ASSERT_FALSE(events.empty());
+    EXPECT_EQ(events.back().name, "end");
+    const std::string granted = rt::nameOf(liveSession.status().scheduling.scheduling);
+    EXPECT_NE(granted, "not-asked");
+    EXPECT_TRUE(std::any_of(events.begin(), events.end(), [&](const session::Event& e) {
+        return e.name == "scheduling" && e.text == R"({"class": ")" + granted + "\"}";
+    }));
 }
 
 TEST(LiveSession, stopsInAnyStateAndKeepsAnAttempt) {

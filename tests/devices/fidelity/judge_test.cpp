@@ -125,7 +125,8 @@ TEST(FidelityJudge, heatCalibrationAndGrantsAreJudged) {
     EXPECT_EQ(verdict(r, "calibration"), Verdict::fail);
     EXPECT_EQ(config::words()(of(judge(r), "calibration").remedy), r.calibrationStep);
     EXPECT_EQ(verdict(r, "scheduling"), Verdict::warn);
-    r.grant.realTime = r.grant.memoryLocked = true;
+    r.grant.scheduling = rt::Scheduling::fifo;
+    r.grant.memoryLocked = true;
     EXPECT_EQ(verdict(r, "scheduling"), Verdict::pass);
     EXPECT_EQ(verdict(r, "memory-locked"), Verdict::pass);
 }

@@ -12,6 +12,7 @@
 #include "desktop/widgets/force_gauge.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
+#include "handpiece/base/config/words.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -95,6 +96,8 @@ LiveBox::LiveBox(QWidget* parent) : QWidget(parent) {
                        tr("Warmth as the device tells it, and as the thermal budget counts it"));
     servo_ = row(grid, "deviceServo", tr("Servo"), tr("How often the device's own loop asks for a force"));
     late_ = row(grid, "deviceLate", tr("Lateness"), tr("How late the force loop begins, of 100 ticks the latest"));
+    scheduling_ = row(grid, "deviceScheduling", tr("Real time"),
+                      tr("What the machine grants the force loop: without real time some ticks come late"));
     energy_ = row(grid, "deviceEnergy", tr("Passivity"), tr("How often the controller had to take energy out"));
     trouble_ = row(grid, "deviceTrouble", tr("Trouble"), tr("Why it gives no force"));
     clear();
@@ -165,10 +168,11 @@ void LiveBox::setTick(const simulation::LiveSessionStatus& status) {
                        .arg(locale.toString(status.latenessUs.p99, 'f', 0),
                             locale.toString(qulonglong{status.lateTicks}),
                             locale.toString(qulonglong{status.missedPeriods})));
+    scheduling_->setText(QString::fromStdString(config::words()(status.scheduling.told)));
 }
 
 void LiveBox::clear() {
-    for (QLabel* label : {pose_, buttons_, force_, temperature_, servo_, late_, energy_, trouble_})
+    for (QLabel* label : {pose_, buttons_, force_, temperature_, servo_, late_, scheduling_, energy_, trouble_})
         label->setText(QStringLiteral("-"));
     model_->setText(tr("Mouse and keyboard"));
     gauge_->hide();

@@ -51,7 +51,7 @@ class LiveBox : public QWidget {
     double timeS_ = 0.0;
     ReachPicture* reach_;
     ForceGauge* gauge_;
-    QLabel *model_, *pose_, *buttons_, *force_, *temperature_, *servo_, *late_, *energy_, *trouble_;
+    QLabel *model_, *pose_, *buttons_, *force_, *temperature_, *servo_, *late_, *scheduling_, *energy_, *trouble_;
 };
 
 }  // namespace handpiece::desktop

@@ -73,7 +73,9 @@ void ReplayFeature::showMarks() {
     for (const session::Event& event : driver.events()) {
         using Kind = ReplayMark::Kind;
         Kind kind = Kind::other;
-        if (event.name == session::nameOf(session::EventName::keyFrame)) continue;
+        if (event.name == session::nameOf(session::EventName::keyFrame) ||
+            event.name == session::nameOf(session::EventName::scheduling))
+            continue;
         if (event.name == session::nameOf(session::EventName::strokeBegin)) kind = Kind::strokeBegin;
         if (event.name == session::nameOf(session::EventName::strokeEnd)) kind = Kind::strokeEnd;
         if (event.name == session::nameOf(session::EventName::undo) ||

@@ -198,6 +198,13 @@ void addEvents(HtmlReport& page, const simulation::SessionPlayer& player) {
             about = resumption.isRecovered
                         ? words()("session.resumed-after-its-end", now.bur->name(), resumption.stateHash)
                         : words()("session.resumed-after-a-pause", now.bur->name(), resumption.stateHash);
+        } else if (e.name == session::nameOf(session::EventName::scheduling)) {
+            const auto json = nlohmann::ordered_json::parse(e.text, nullptr, false);
+            const std::string id =
+                "scheduling.class." + (json.is_object() && json.contains("class") && json["class"].is_string()
+                                           ? json["class"].get<std::string>()
+                                           : "");
+            if (words().has(id)) about = words().text(id);
         } else if (e.text.size() < 80) {
             about = readable(e.text);
         }

@@ -9,6 +9,7 @@
 #include <exception>
 #include <future>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <variant>
 
@@ -137,6 +138,7 @@ struct LiveSession::State {
     PlotGatherer gatherer;
     input::HeldButton lower;
     HapticSample last;
+    std::optional<rt::Scheduling> told;
     bool any = false, fresh = false, outOfBricks = false, toldStopped = false, toldIncomplete = false;
     std::uint64_t toldLost = 0;
     std::int64_t refreshedNs = 0, watchedNs = 0, toldNs = 0, attendedNs = 0, busyNs = 0, absentNs = 0;
@@ -196,7 +198,7 @@ struct LiveSession::State {
                    });
     }
 
-    void attend(const std::string& scheduling) {
+    void attend(const rt::SchedulingGrant& scheduling) {
         const std::int64_t begunNs = rt::monotonicNs();
         if (attendedNs != 0) absentNs = std::max(absentNs, begunNs - attendedNs);
         std::vector<std::shared_ptr<SampleFeed>> told;
@@ -235,10 +237,14 @@ struct LiveSession::State {
     }
 
     /// Once a second: what the status bar says, and what became of the record.
-    void tell(const std::string& scheduling, std::int64_t nowNs) {
+    void tell(const rt::SchedulingGrant& scheduling, std::int64_t nowNs) {
         LiveSessionStatus now;
         statistics.fill(now);
         now.scheduling = scheduling;
+        if (told != scheduling.scheduling && recorder)
+            recorder->event(last.tick, EventName::scheduling,
+                            fmt::format(R"({{"class": "{}"}})", rt::nameOf(scheduling.scheduling)));
+        told = scheduling.scheduling;
         now.listenerLoad = toldNs == 0 ? 0.0 : static_cast<double>(busyNs) / static_cast<double>((nowNs - toldNs));
         now.listenerAbsentMs = static_cast<double>(absentNs) * 1e-6;
         busyNs = absentNs = 0;
@@ -339,7 +345,7 @@ struct LiveSession::State {
 
     void run() {
         try {
-            runAttended(loop, settings.realTime, [this](const std::string& scheduling) { attend(scheduling); });
+            runAttended(loop, settings.realTime, [this](const rt::SchedulingGrant& scheduling) { attend(scheduling); });
             fetch();
         } catch (const std::exception& e) {
             fault = e.what();

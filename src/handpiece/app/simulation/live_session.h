@@ -67,8 +67,8 @@ struct LiveSessionSettings {
 
 /// How it stands, for the status bar.
 struct LiveSessionStatus {
-    std::string scheduling;  ///< one line
-    double timeS = 0.0;      ///< of the latest sample
+    rt::SchedulingGrant scheduling;  ///< of the tick
+    double timeS = 0.0;              ///< of the latest sample
     std::uint64_t ticks = 0, lateTicks = 0, missedPeriods = 0, queueOverflow = 0;
     loop::Spread workUs, latenessUs;        ///< over the last ten seconds
     loop::Spread allWorkUs, allLatenessUs;  ///< since the beginning, to within 1.1 %, the largest exact; once it ended

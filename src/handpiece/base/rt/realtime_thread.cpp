@@ -4,12 +4,21 @@
 #include <fmt/format.h>
 #include <pthread.h>
 #include <sched.h>
+#include <signal.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <future>
+#include <string_view>
 #include <system_error>
 
 #ifdef __linux__
@@ -17,9 +26,14 @@
 #endif
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/rt/realtime_kit.h"
 
 namespace handpiece::rt {
 namespace {
+
+constexpr int kHighest = 85;  // that any thread asks for
+constexpr std::chrono::milliseconds kPatience{1000};
+constexpr std::size_t kStackBytes = 256 << 10;  // deeper than any tick goes
 
 std::string refusal(int code) {
     if (code != EPERM) return std::strerror(code);
@@ -32,6 +46,112 @@ std::string refusal(int code) {
     return "no permission";
 }
 
+#ifdef __linux__
+constexpr rlim_t kMostUs = 100'000;  // that a real-time thread runs without a pause
+
+bool isRealTime(int policy) noexcept {
+    policy &= ~SCHED_RESET_ON_FORK;
+    return policy == SCHED_FIFO || policy == SCHED_RR;
+}
+
+/// The normal scheduler, at the nice level that the thread has, with the shortest slice that Linux knows: from 6.12 on
+/// a thread that wakes up goes before those of longer slices; kernels before that do not look at it.
+void takeShortSlice() noexcept {
+    struct {  // sched_attr, which glibc does not declare
+        std::uint32_t size, policy;
+        std::uint64_t flags;
+        std::int32_t nice;
+        std::uint32_t priority;
+        std::uint64_t runtimeNs, deadlineNs, periodNs;
+    } attributes{};
+    // What RealtimeKit marked stays so: only an administrator may take the mark off.
+    const int policy = sched_getscheduler(0);
+    attributes.size = sizeof attributes;
+    attributes.flags = policy >= 0 && (policy & SCHED_RESET_ON_FORK) != 0 ? 1 : 0;
+    attributes.nice = isRealTime(policy) ? 0 : getpriority(PRIO_PROCESS, 0);
+    attributes.runtimeNs = 100'000;
+    (void)syscall(SYS_sched_setattr, 0, &attributes, 0);
+}
+
+/// SIGXCPU comes to the thread that ran too long; what RealtimeKit demands would end the program a tenth of a second
+/// later. The tick goes on, late; the gates see that, and give no force meanwhile.
+void onRunaway(int /*signal*/) {
+    const int saved = errno;
+    rlimit limit{};
+    if (isRealTime(sched_getscheduler(0))) {
+        takeShortSlice();
+        // The kernel has put the limit off by a second: back, for the other threads.
+        if (getrlimit(RLIMIT_RTTIME, &limit) == 0) {
+            limit.rlim_cur = std::min(kMostUs, limit.rlim_max);
+            (void)setrlimit(RLIMIT_RTTIME, &limit);
+        }
+    } else if (getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+        (void)signal(SIGXCPU, SIG_DFL);  // the other reason for this signal: its owner wants the program to end
+        (void)raise(SIGXCPU);
+    }
+    errno = saved;
+}
+
+/// False when runaway threads are somebody else's affair: then nothing is asked for that needs a limit.
+bool watchRunaways() {
+    static const bool watched = [] {
+        struct sigaction now {};
+        if (sigaction(SIGXCPU, nullptr, &now) != 0 || now.sa_handler != SIG_DFL) return false;
+        now.sa_handler = onRunaway;
+        now.sa_flags = SA_RESTART;
+        rlimit limit{};
+        if (sigaction(SIGXCPU, &now, nullptr) != 0 || getrlimit(RLIMIT_RTTIME, &limit) != 0) return false;
+        limit.rlim_cur = std::min({kMostUs, limit.rlim_cur, limit.rlim_max});
+        return setrlimit(RLIMIT_RTTIME, &limit) == 0;
+    }();
+    return watched;
+}
+#endif
+
+/// "fifo", "rtkit", "plain": nothing better than that; else all.
+bool mayAsk(Scheduling scheduling) {
+    const char* named = std::getenv("HANDPIECE_SCHEDULING");
+    const std::string_view limit = named != nullptr ? named : "";
+    if (limit == "plain") return false;
+    return scheduling == Scheduling::fifo ? limit != "rtkit" : limit != "fifo";
+}
+
+void askForPriority(SchedulingGrant& grant, int priority) {
+    grant.scheduling = Scheduling::normal;
+    std::string why = "HANDPIECE_SCHEDULING";
+#ifdef __linux__
+    const bool watched = watchRunaways();
+#endif
+    if (mayAsk(Scheduling::fifo)) {
+        sched_param parameters{};
+        parameters.sched_priority = priority;
+        const int code = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
+        if (code == 0) {
+            grant.scheduling = Scheduling::fifo;
+            grant.told = config::phrase("scheduling.fifo", std::to_string(priority));
+            return;
+        }
+        why = refusal(code);
+    }
+#ifdef __linux__
+    if (watched && mayAsk(Scheduling::realtimeKit)) {
+        const KitAnswer kit = askRealtimeKit(kHighest - priority, kPatience);
+        if (kit.priority > 0) {
+            grant.scheduling = Scheduling::realtimeKit;
+            grant.told = config::phrase("scheduling.realtime-kit", std::to_string(kit.priority));
+            return;
+        }
+        why += fmt::format("; RealtimeKit: {}", kit.refusal);
+        if (kit.niceLevel < 0) {
+            grant.scheduling = Scheduling::highPriority;
+            grant.told = config::phrase("scheduling.high-priority", why, std::to_string(kit.niceLevel));
+        }
+    }
+    takeShortSlice();
+#endif
+    if (grant.scheduling == Scheduling::normal) grant.told = config::phrase("scheduling.normal", why);
+}
+
 /// Under a limit only what there is now is locked: locking the future as well would make later allocations fail.
 int lockFlags() {
     rlimit limit{};
@@ -39,41 +159,82 @@ int lockFlags() {
     return unlimited ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT;
 }
 
+/// Where the limit does not let all be locked: the stack that the tick will use is, and the program's code is fetched.
+__attribute__((noinline)) void fetchAndLockWhatFits() {
+    std::array<volatile unsigned char, kStackBytes> stack;
+    for (std::size_t i = 0; i < stack.size(); i += 1024)
+        stack[i] = 0;
+    (void)mlock(const_cast<const unsigned char*>(stack.data()), stack.size());
+#if defined(__linux__) && defined(MADV_POPULATE_READ)
+    extern char codeBegin[] __asm__("__executable_start");
+    extern char codeEnd[] __asm__("etext");
+    const auto pages = ~static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE) - 1);
+    const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(codeBegin) & pages;
+    const auto bytes = reinterpret_cast<std::uintptr_t>(codeEnd) - begin;
+    // Kernels before 5.14 do not know it.
+    (void)madvise(reinterpret_cast<void*>(begin), bytes, MADV_POPULATE_READ);
+#endif
+}
+
 }  // namespace
+
+const char* nameOf(Scheduling scheduling) noexcept {
+    static constexpr std::array<const char*, 5> kNames{"not-asked", "normal", "high-priority", "realtime-kit", "fifo"};
+    return kNames[static_cast<std::size_t>(scheduling)];
+}
+
+std::string SchedulingGrant::line() const {
+    std::string all = config::words()(told);
+    if (scheduling != Scheduling::notAsked)
+        all += "; " + config::words().text(memoryLocked ? "scheduling.memory-locked" : "scheduling.memory-not-locked");
+    return all;
+}
 
 SchedulingGrant requestRealtime(int priority) {
     SchedulingGrant grant;
-    sched_param parameters{};
-    parameters.sched_priority = priority;
-    const int code = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
-    grant.realTime = code == 0;
-    if (grant.realTime) {
-        grant.line = fmt::format("real-time scheduling: SCHED_FIFO priority {}", priority);
-    } else {
-        grant.line =
-            fmt::format("real-time scheduling: not permitted ({}): running under the normal scheduler", refusal(code));
-    }
     grant.memoryLocked = mlockall(lockFlags()) == 0;
-    grant.line += grant.memoryLocked ? "; memory locked" : "; memory not locked";
+    fetchAndLockWhatFits();
+    askForPriority(grant, priority);
 #ifdef __linux__
     grant.timerSlack = prctl(PR_SET_TIMERSLACK, 1UL) == 0;
 #endif
     return grant;
 }
 
+void stepBack() noexcept {
+#ifdef __linux__
+    (void)setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 5);
+#endif
+}
+
 RealtimeThread::RealtimeThread(std::function<void()> body, int priority) {
     std::promise<SchedulingGrant> granted;
     std::future<SchedulingGrant> grant = granted.get_future();
     try {
-        thread_ = std::thread([body = std::move(body), priority, granted = std::move(granted)]() mutable {
-            granted.set_value(requestRealtime(priority));
+        thread_ = std::thread([this, body = std::move(body), priority, granted = std::move(granted)]() mutable {
+            SchedulingGrant mine = requestRealtime(priority);
+#ifdef __linux__
+            id_.store(static_cast<int>(syscall(SYS_gettid)), std::memory_order_release);
+#endif
+            granted.set_value(std::move(mine));
             body();
+            id_.store(0, std::memory_order_release);
         });
     } catch (const std::system_error& e) {
         throw core::Error(fmt::format("no thread can be started: {}", e.what()), "real-time thread",
                           "close other programs or raise ulimit -u");
     }
     grant_ = grant.get();
+}
+
+bool RealtimeThread::lostRealTime() const noexcept {
+#ifdef __linux__
+    const int id = id_.load(std::memory_order_acquire);
+    const int policy = id != 0 ? sched_getscheduler(id) : -1;
+    return grant_.realTime() && policy >= 0 && !isRealTime(policy);
+#else
+    return false;
+#endif
 }
 
 }  // namespace handpiece::rt

@@ -3,23 +3,46 @@
 /// @file
 /// A thread for the tick, with what real-time privileges this machine grants and one plain line about them.
 
+#include <atomic>
 #include <functional>
 #include <string>
 #include <thread>
 
+#include "handpiece/base/config/words.h"
+
 namespace handpiece::rt {
 
-/// What the calling thread was granted.
+/// How a thread is scheduled, best last.
+enum class Scheduling { notAsked, normal, highPriority, realtimeKit, fifo };
+/// "fifo", as in files.
+[[nodiscard]] const char* nameOf(Scheduling scheduling) noexcept;
+
+/// What a thread was granted.
 struct SchedulingGrant {
-    bool realTime = false;      ///< SCHED_FIFO
-    bool memoryLocked = false;  ///< no page of the process can be swapped out
-    bool timerSlack = false;    ///< wake-ups are not rounded to save power
-    std::string line;           ///< for people: "real-time scheduling: SCHED_FIFO priority 80; memory locked"
+    Scheduling scheduling = Scheduling::notAsked;
+    bool memoryLocked = false;                                     ///< no page of the process can be swapped out
+    bool timerSlack = false;                                       ///< wake-ups are not rounded to save power
+    config::Phrase told = config::phrase("scheduling.not-asked");  ///< for people
+
+    [[nodiscard]] bool realTime() const noexcept { return scheduling >= Scheduling::realtimeKit; }
+    /// In the program's language: "real-time scheduling: SCHED_FIFO priority 80; memory locked".
+    [[nodiscard]] std::string line() const;
 };
 
-/// Asks for SCHED_FIFO, locked memory and no timer slack for the calling thread. Never fails: what is not permitted is
-/// said in the line. Allocates; call before the first tick.
+/// Asks for the best that there is for the calling thread, locked memory and no timer slack. Never fails: what is not
+/// permitted is said. Allocates and may take a second; call before the first tick.
+///
+/// SCHED_FIFO by the process's own limits first: it costs one call, stands above all that RealtimeKit gives (20), and
+/// nobody takes it back. RealtimeKit then. Last the normal scheduler, with a slice so short that the thread may go
+/// before others when it wakes up. HANDPIECE_SCHEDULING=fifo, rtkit or plain asks for nothing better than that.
+///
+/// A real-time thread that runs for a tenth of a second without a pause is given to the normal scheduler, so that no
+/// tick keeps a processor from everybody (RLIMIT_RTTIME, SIGXCPU).
 [[nodiscard]] SchedulingGrant requestRealtime(int priority = 80);
+
+/// For a thread that works long at a time and for nobody's hand, such as one that draws: tick, sound and window go
+/// before it, and before the threads that it makes. For good; call at its beginning.
+void stepBack() noexcept;
 
 /// Runs `body` on a thread of its own that has called requestRealtime(). Joins when destroyed.
 class RealtimeThread {
@@ -35,9 +58,13 @@ class RealtimeThread {
         if (thread_.joinable()) thread_.join();
     }
     [[nodiscard]] const SchedulingGrant& grant() const noexcept { return grant_; }
+    /// True once real time that was granted has been taken back: it ran too long without a pause, or RealtimeKit
+    /// rescued the machine. A system call.
+    [[nodiscard]] bool lostRealTime() const noexcept;
 
   private:
     SchedulingGrant grant_;
+    std::atomic<int> id_{0};  // of the kernel's; 0 before and after its body
     std::thread thread_;
 };
 

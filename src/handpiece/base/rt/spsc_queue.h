@@ -15,14 +15,15 @@
 
 namespace handpiece::rt {
 
-/// One producer thread, one consumer thread. Wait-free on both sides; memory is taken once, at construction.
+/// One producer thread, one consumer thread. Wait-free on both sides; memory is taken, and written to so that it is
+/// there, once, at construction.
 template <class T>
 requires std::is_trivially_copyable_v<T>
 class SpscQueue {
   public:
     /// Holds at least `capacity` items (rounded up to a power of two).
     explicit SpscQueue(std::size_t capacity)
-        : mask_(std::bit_ceil(capacity < 2 ? std::size_t{2} : capacity) - 1), items_(new T[mask_ + 1]) {}
+        : mask_(std::bit_ceil(capacity < 2 ? std::size_t{2} : capacity) - 1), items_(new T[mask_ + 1]()) {}
 
     /// False, and one more in overflowCount(), when the queue is full. Producer only.
     bool tryPush(const T& item) noexcept HANDPIECE_REALTIME {

@@ -196,7 +196,7 @@ Report check(std::unique_ptr<link::Driver> driver, const CheckSettings& settings
                 attend(ticker.elapsedS);
                 requireFrames(static_cast<double>(i) * periodS);
             }
-        recording.grant.line = "virtual time";
+        recording.grant.told = config::phrase("scheduling.simulated");
     } else {
         const std::int64_t startNs = rt::monotonicNs();
         rt::RealtimeThread thread([&] {

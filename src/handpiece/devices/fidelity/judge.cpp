@@ -52,7 +52,7 @@ std::vector<double> histogramOf(const std::vector<double>& valuesS) {
 
 /// What makes threads come in time.
 config::Phrase steadier(const Recording& r) {
-    return r.grant.realTime ? phrase("fidelity.close-programs-and-power-saving") : phrase("fidelity.grant-real-time");
+    return r.grant.realTime() ? phrase("fidelity.close-programs-and-power-saving") : phrase("fidelity.grant-real-time");
 }
 
 config::Phrase spreadOf(const Quantiles& q) {
@@ -340,9 +340,9 @@ Finding calibrated(const Recording& r) {
 
 Finding scheduling(const Recording& r) {
     Finding f = finding("scheduling", phrase("fidelity.scheduling-against"));
-    f.value = verbatim(r.grant.line);
+    f.value = verbatim(r.grant.line());
     if (r.settings.advance) return f;
-    f.verdict = r.grant.realTime ? Verdict::pass : Verdict::warn;
+    f.verdict = r.grant.realTime() ? Verdict::pass : Verdict::warn;
     if (f.verdict != Verdict::pass) f.remedy = phrase("fidelity.let-ask-for-priority");
     return f;
 }

@@ -37,7 +37,7 @@ std::string machineLine(const rt::SchedulingGrant& grant) {
     const fs::path kernel = "/proc/sys/kernel";
     const std::string system = lineOf(kernel / "ostype"), release = lineOf(kernel / "osrelease");
     return fmt::format("{} {}, {} cores; {}", system.empty() ? "unknown system" : system, release,
-                       std::max(1u, std::thread::hardware_concurrency()), grant.line);
+                       std::max(1u, std::thread::hardware_concurrency()), grant.line());
 }
 
 Finding governorFinding() {

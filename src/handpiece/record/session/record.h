@@ -80,9 +80,10 @@ enum class EventName : std::uint8_t {
     fault,
     keyFrame,
     end,
-    resume  ///< after a pause or a crash: what follows was done by a new loop on the tooth of the key frame there
+    resume,     ///< after a pause or a crash: what follows was done by a new loop on the tooth of the key frame there
+    scheduling  ///< what real time the tick has from here on
 };
-inline constexpr std::size_t kEventNameCount = 16;
+inline constexpr std::size_t kEventNameCount = 17;
 /// "stroke begin", as in the file.
 [[nodiscard]] std::string_view nameOf(EventName name) noexcept;
 

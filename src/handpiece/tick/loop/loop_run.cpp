@@ -40,7 +40,7 @@ class Statistics {
               if (listener) listener(sample);
           }) {}
     [[nodiscard]] const Listener& each() const { return each_; }
-    [[nodiscard]] RunReport report(HapticLoop& loop, std::string scheduling) const {
+    [[nodiscard]] RunReport report(HapticLoop& loop, rt::SchedulingGrant scheduling) const {
         return {loop.count(), std::move(scheduling), loop.samples().overflowCount(), spreadOf(workUs_),
                 spreadOf(lateUs_)};
     }
@@ -58,7 +58,7 @@ std::uint64_t ticksFor(const HapticLoop& loop, double durationS) {
 }
 
 /// Ticks in a thread of its own, while this one attends to it.
-std::string tickOnClock(HapticLoop& loop, std::uint64_t ticks, bool realTime, const Attend& attend) {
+rt::SchedulingGrant tickOnClock(HapticLoop& loop, std::uint64_t ticks, bool realTime, const Attend& attend) {
     rt::PeriodicClock clock(std::llround(1e9 * loop.periodS()), std::llround(1e3 * loop.settings().spinUs));
     loop.beginRun();
     std::atomic<bool> done{false};
@@ -71,18 +71,22 @@ std::string tickOnClock(HapticLoop& loop, std::uint64_t ticks, bool realTime, co
         }
         done.store(true, std::memory_order_release);
     };
-    std::string scheduling = "no real-time scheduling was asked for";
+    rt::SchedulingGrant scheduling;
     try {
         std::unique_ptr<rt::RealtimeThread> privileged;
         std::jthread plain;
         if (realTime) {
             privileged = std::make_unique<rt::RealtimeThread>(body);
-            scheduling = privileged->grant().line;
+            scheduling = privileged->grant();
         } else {
             plain = std::jthread(body);
         }
         try {
             while (!done.load(std::memory_order_acquire)) {
+                if (privileged && privileged->lostRealTime()) {
+                    scheduling.scheduling = rt::Scheduling::normal;
+                    scheduling.told = config::phrase("scheduling.lost");
+                }
                 attend(scheduling);
                 std::this_thread::sleep_for(std::chrono::milliseconds(2));
             }
@@ -108,14 +112,16 @@ RunReport runSimulated(HapticLoop& loop, double durationS, const Listener& liste
         loop.tick(rt::Beat{});
         loop.fetch(statistics.each(), bricks);
     }
-    return statistics.report(loop, "simulated time: as fast as possible");
+    rt::SchedulingGrant none;
+    none.told = config::phrase("scheduling.simulated");
+    return statistics.report(loop, std::move(none));
 }
 
 RunReport runRealTime(HapticLoop& loop, double durationS, const Listener& listener, const BrickListener& bricks) {
     const std::uint64_t ticks = ticksFor(loop, durationS);
     Statistics statistics(listener);
-    std::string scheduling =
-        tickOnClock(loop, ticks, true, [&](const std::string&) { loop.fetch(statistics.each(), bricks); });
+    rt::SchedulingGrant scheduling =
+        tickOnClock(loop, ticks, true, [&](const rt::SchedulingGrant&) { loop.fetch(statistics.each(), bricks); });
     loop.fetch(statistics.each(), bricks);
     return statistics.report(loop, std::move(scheduling));
 }

@@ -5,8 +5,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <string>
 
+#include "handpiece/base/rt/realtime_thread.h"
 #include "handpiece/tick/loop/haptic_loop.h"
 
 namespace handpiece::loop {
@@ -17,7 +17,7 @@ struct Spread {
 };
 
 struct RunReport : TickCount {
-    std::string scheduling;           ///< one line for people
+    rt::SchedulingGrant scheduling;   ///< as it was at the end
     std::uint64_t queueOverflow = 0;  ///< samples no listener fetched in time
     Spread workUs, latenessUs;        ///< over the samples fetched
 };
@@ -30,9 +30,9 @@ RunReport runSimulated(HapticLoop& loop, double durationS, const Listener& liste
 RunReport runRealTime(HapticLoop& loop, double durationS, const Listener& listener = {},
                       const BrickListener& bricks = {});
 /// The same without an end, for a caller who does more than listen: `attend` is called every two milliseconds or so on
-/// this thread, with one line about the scheduling; it calls the loop's fetch(), and requestStop() to end the run. What
-/// it throws ends the run and comes out of here. However it ends, the device is left without force.
-using Attend = std::function<void(const std::string& scheduling)>;
+/// this thread, with what scheduling the tick has now; it calls the loop's fetch(), and requestStop() to end the run.
+/// What it throws ends the run and comes out of here. However it ends, the device is left without force.
+using Attend = std::function<void(const rt::SchedulingGrant& scheduling)>;
 void runAttended(HapticLoop& loop, bool realTime, const Attend& attend);
 
 }  // namespace handpiece::loop

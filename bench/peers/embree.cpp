@@ -8,6 +8,8 @@
 #include <map>
 #include <vector>
 
+#include "handpiece/base/core/simd.h"
+
 namespace handpiece::bench {
 namespace {
 
@@ -62,7 +64,11 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
 class Embree final : public Query {
   public:
     explicit Embree(const PeerInput& input) : mesh_(input.tooth), bur_(input.bur.vertices) {
-        device_ = rtcNewDevice(nullptr);
+        // Held to the instruction set that we are held to.
+        const core::SimdLevel level = core::simdLevel();
+        device_ = rtcNewDevice(level == core::SimdLevel::avx512 ? nullptr
+                               : level == core::SimdLevel::avx2 ? "isa=avx2"
+                                                                : "isa=sse2");
         scene_ = rtcNewScene(device_);
         RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,

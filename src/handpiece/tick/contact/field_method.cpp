@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/portable_math.h"
@@ -159,9 +160,10 @@ class FieldMethod final : public Method {
     void depthOfUncut(const core::Pose& burInTooth, Depth& result) noexcept {
         const BurFrame frame(burInTooth);
         BallDepth best;
+        double mostMm = -std::numeric_limits<double>::infinity();
         const bool outsideKnown = outline_.isFit(), apart = outsideKnown && outline_.search(surface_, frame, best);
         if (!apart) {
-            if (!outsideKnown || axis_.mayEnter(surface_, frame)) axis_.search(surface_, frame, best);
+            if (!outsideKnown || axis_.mayEnter(surface_, frame)) axis_.search(surface_, frame, best, mostMm);
             sheets_.search(surface_, frame, outsideKnown, best);
         }
         if (!(best.depthMm >= -settings_.reachMm)) {
@@ -169,6 +171,7 @@ class FieldMethod final : public Method {
             return;
         }
         result.depthMm = best.depthMm;
+        result.unseenMm = std::max(0.0, mostMm - best.depthMm);
         if (best.depthMm < 0.0 && cut_ && isGone(frame, best)) return;
         result.status = Status::ok;
         result.toothPointMm = best.surfaceMm;

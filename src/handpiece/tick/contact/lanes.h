@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Eight lanes of float or double in GCC vector extensions. For sources built by handpiece_simd_sources alone:
-/// everything here has internal linkage, so that no copy compiled for one instruction set is kept for another.
+/// Lanes of float or double in GCC vector extensions: eight floats, and as many doubles as one register holds. For
+/// sources built by handpiece_simd_sources alone: everything here has internal linkage, so that no copy compiled for
+/// one instruction set is kept for another.
 
 #include <cstdint>
 #if defined(__SSE2__)
@@ -12,8 +13,16 @@
 namespace handpiece::contact {
 namespace {
 
-using Doubles = double __attribute__((vector_size(64)));
-using Longs = long long __attribute__((vector_size(64)));
+// No wider than a register: GCC takes the comparisons of wider ones lane by lane.
+#if defined(__AVX512F__)
+constexpr int kDoubleLanes = 8;
+#elif defined(__AVX__)
+constexpr int kDoubleLanes = 4;
+#else
+constexpr int kDoubleLanes = 2;
+#endif
+using Doubles = double __attribute__((vector_size(8 * kDoubleLanes)));
+using Longs = long long __attribute__((vector_size(8 * kDoubleLanes)));
 using Floats = float __attribute__((vector_size(32)));
 using Ints = std::int32_t __attribute__((vector_size(32)));
 
@@ -50,29 +59,42 @@ inline Doubles root(Doubles x) {
     x = most(x, Doubles{});
 #if defined(__AVX512F__)
     return (Doubles)_mm512_maskz_sqrt_pd(0xff, (__m512d)x);
-#else
-    Doubles r;
-#if defined(__AVX__)
-    using Half = double __attribute__((vector_size(32)));
-    for (int i = 0; i < 2; ++i) {
-        Half part;
-        __builtin_memcpy(&part, reinterpret_cast<const char*>(&x) + 32 * i, 32);
-        part = (Half)_mm256_sqrt_pd((__m256d)part);
-        __builtin_memcpy(reinterpret_cast<char*>(&r) + 32 * i, &part, 32);
-    }
+#elif defined(__AVX__)
+    return (Doubles)_mm256_sqrt_pd((__m256d)x);
 #elif defined(__SSE2__)
-    using Pair = double __attribute__((vector_size(16)));
-    for (int i = 0; i < 4; ++i) {
-        Pair part;
-        __builtin_memcpy(&part, reinterpret_cast<const char*>(&x) + 16 * i, 16);
-        part = (Pair)_mm_sqrt_pd((__m128d)part);
-        __builtin_memcpy(reinterpret_cast<char*>(&r) + 16 * i, &part, 16);
-    }
+    return (Doubles)_mm_sqrt_pd((__m128d)x);
 #else
-    for (int i = 0; i < 8; ++i)
-        r[i] = __builtin_sqrt(x[i]);
+    for (int i = 0; i < kDoubleLanes; ++i)
+        x[i] = __builtin_sqrt(x[i]);
+    return x;
 #endif
-    return r;
+}
+
+/// Lane by lane, built in a register: what is stored by lanes and loaded as a whole stalls.
+template <class Of>
+inline Doubles gather(const Of& of) {
+#if defined(__AVX512F__)
+    return Doubles{of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)};
+#elif defined(__AVX__)
+    return Doubles{of(0), of(1), of(2), of(3)};
+#else
+    return Doubles{of(0), of(1)};
+#endif
+}
+
+/// Bit i is set where lane i of the mask is.
+inline unsigned bitsOfLongs(Longs mask) {
+#if defined(__AVX512F__)
+    return _mm512_movepi64_mask((__m512i)mask);
+#elif defined(__AVX__)
+    return static_cast<unsigned>(_mm256_movemask_pd((__m256d)mask));
+#elif defined(__SSE2__)
+    return static_cast<unsigned>(_mm_movemask_pd((__m128d)mask));
+#else
+    unsigned bits = 0;
+    for (int i = 0; i < kDoubleLanes; ++i)
+        bits |= (mask[i] ? 1u : 0u) << i;
+    return bits;
 #endif
 }
 

@@ -38,7 +38,11 @@ struct Depth {
     /// By how much the surface here may seem nearer than it is, in constraints() as well: zero where it is exact. A
     /// bur that is held off by more would hang in its own cavity.
     double slackMm = 0.0;
+    /// How much deeper it could be by what was left unseen of the bur's axis in an uncut tooth: zero where that is
+    /// kDepthToleranceMm at most, as it is unless the work that a tick affords ended first.
+    double unseenMm = 0.0;
 };
+inline constexpr double kDepthToleranceMm = 2e-5;
 
 /// A connected piece of the bur's surface within kContactMarginMm of tissue (or inside it).
 struct Patch {

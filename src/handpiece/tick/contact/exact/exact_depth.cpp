@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+
+#include "handpiece/tick/contact/method.h"
 
 namespace handpiece::contact {
 
@@ -26,6 +29,12 @@ namespace {
 /// Concave up to what rounding does to a straight line.
 constexpr double kSlopeSlack = 1e-9;
 constexpr double kSamePlaceMm = 1e-9;
+constexpr double kCrossingMm = 1e-6;  // so much of the axis counts as outside about a ball that is
+
+/// Few places hold most tops; where a wall runs along the axis many are nearly as deep.
+double toleranceAfter(int measured) {
+    return measured < AxisSearch::kFineCuts ? AxisSearch::kFineToleranceMm : kDepthToleranceMm;
+}
 
 ExactKernels kernelsFor(core::SimdLevel level) {
 #if defined(__x86_64__)
@@ -144,7 +153,7 @@ void AxisSearch::addRun(const std::vector<MedialBall>& balls) {
     }
 }
 
-void AxisSearch::search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) noexcept {
+void AxisSearch::search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best, double& mostMm) noexcept {
     for (std::size_t i = 0; i < runs_.size(); ++i) {
         const Run& run = runs_[i];
         std::uint32_t& seed = seeds_[std::min(i, kMaxSeeds - 1)];
@@ -174,8 +183,10 @@ void AxisSearch::search(const ExactSurface& surface, const BurFrame& frame, Ball
             mayEnter = crossing.triangle != kNoTriangle;
         }
         const bool inside = surface.isInside(centre, hit);
-        if (!inside && -hit.value > best.depthMm) best = {-hit.value, centre, point, hit.triangle, hit.feature, false};
-        if (inside || mayEnter) searchInside(surface, run, frame, hit, best);
+        // No ball of the run with its centre outside is deeper: one inside as near is deeper still.
+        const double depth = inside ? 2.0 * distance - hit.value : -hit.value;
+        if (depth > best.depthMm) best = {depth, centre, point, hit.triangle, hit.feature, inside};
+        if (inside || mayEnter) searchInside(surface, run, frame, hit, best, mostMm);
     }
 }
 
@@ -193,105 +204,167 @@ bool AxisSearch::mayEnter(const ExactSurface& surface, const BurFrame& frame) co
 
 namespace {
 
-/// What the triangles seen so far allow: a point q at distance d bounds the inside depth of every ball by its own
-/// distance to q, and a ball found outside clears the stretch of axis that its distance spans.
-class Cuts {
+/// What the points of the tooth seen so far allow: a point q bounds the depth of every ball by R + |c - q|, wherever
+/// its centre lies, and a ball found outside clears the stretch of axis that its distance spans.
+///
+/// With q at `a` along the axis and `b` away from it |c(s) - q|^2 = s^2 + (a^2 + b^2 - 2 a s), so the least of these
+/// distances follows the lower envelope of lines in s. Between the ends of the envelope's pieces and the run's own
+/// balls the bound is a cone over a straight line, convex: its top is at one of those places.
+class AxisBound {
   public:
-    Cuts(const std::vector<double>& z, const std::vector<double>& radius, const std::vector<double>& slope)
-        : z_(z), radius_(radius), slope_(slope) {
-        for (const double at : z)
-            offer(at);
+    AxisBound(const std::vector<double>& z, const std::vector<double>& radius, const std::vector<double>& slope)
+        : z_(z), radius_(radius), slope_(slope) {}
+
+    void begin(double along, double away2) noexcept {
+        lines_[lineCount_++] = {along, along * along + away2};
+        for (std::size_t i = 0; i < z_.size(); ++i)
+            offer(z_[i], radius_[i]);
     }
     void addPoint(double along, double away2) noexcept {
-        if (count_ == kMax) return;
-        const int first = count_++;
-        along_[first] = along;
-        away2_[first] = away2;
-        for (int i = 0; i < candidates_; ++i)
-            bound_[i] = std::min(bound_[i], radiusAt(at_[i]) + distance(first, at_[i]));
-        // Two such distances are equal in one place; the bound peaks there or at a ball.
-        for (int j = 0; j < first; ++j) {
-            const double gap = along_[j] - along_[first];
-            if (std::abs(gap) < 1e-12) continue;
-            const double s =
-                0.5 * (along_[j] * along_[j] + away2_[j] - along_[first] * along_[first] - away2_[first]) / gap;
-            if (s > z_.front() && s < z_.back()) offer(s);
+        if (lineCount_ == kMaxLines) return;
+        const Line added{along, along * along + away2};
+        int at = 0;
+        while (at < lineCount_ && lines_[at].along < along)
+            ++at;
+        if (at < lineCount_ && lines_[at].along - along < kSameLine) {
+            if (lines_[at].offset <= added.offset) return;
+            remove(at);
         }
-    }
-    void clear(double from, double to) noexcept {
-        if (cleared_ == kMax) return;
-        from_[cleared_] = from;
-        to_[cleared_++] = to;
-        for (int i = 0; i < candidates_; ++i)
-            if (at_[i] > from && at_[i] < to) bound_[i] = -1.0;
-        if (from > z_.front()) offer(from);
-        if (to < z_.back()) offer(to);
-    }
-    /// Where the bound is largest, and the bound.
-    [[nodiscard]] double highest(double& bound) const noexcept {
-        int top = 0;
-        for (int i = 1; i < candidates_; ++i)
-            if (bound_[i] > bound_[top]) top = i;
-        bound = bound_[top];
-        return at_[top];
-    }
-    [[nodiscard]] double radiusAt(double s) const noexcept {
-        std::size_t low = 0, high = z_.size() - 1;
-        if (high == 0) return radius_[0];
-        while (high - low > 1) {
-            const std::size_t middle = (low + high) / 2;
-            (s < z_[middle] ? high : low) = middle;
+        if (at > 0 && at < lineCount_ && isAbove(added, meeting(lines_[at - 1], lines_[at]), lines_[at])) return;
+        for (int i = lineCount_++; i > at; --i)
+            lines_[i] = lines_[i - 1];
+        lines_[at] = added;
+        while (at + 2 < lineCount_ && isAbove(lines_[at + 1], meeting(added, lines_[at + 2]), added))
+            remove(at + 1);
+        while (at >= 2 && isAbove(lines_[at - 1], meeting(lines_[at - 2], added), added))
+            remove(--at);
+        for (int i = 0; i < count_; ++i) {
+            Place& p = places_[static_cast<std::size_t>(i)];
+            p.bound = std::min(p.bound, p.radius + distance(added, p.s));
         }
-        return radius_[low] + slope_[low] * (s - z_[low]);
+        if (at > 0) offerMeeting(lines_[at - 1], added);
+        if (at + 1 < lineCount_) offerMeeting(added, lines_[at + 1]);
     }
+    /// The tooth is farther than `freeMm` from the axis at s: no centre there lies in it.
+    void clear(double s, double freeMm) noexcept {
+        if (clearedCount_ == kMaxCleared) return;
+        cleared_[clearedCount_++] = {s - freeMm, s + freeMm};
+        drop([&](const Place& p) { return std::abs(p.s - s) < freeMm; });
+        for (const double end : {s - freeMm, s + freeMm})
+            if (end > z_.front() && end < z_.back()) offer(end, radiusAt(end));
+    }
+    struct Place {
+        double s, radius, bound;
+    };
+    /// Where the bound is largest; bounded by minus infinity when nothing is left above `floorMm`. What lies below is
+    /// forgotten.
+    [[nodiscard]] Place highest(double floorMm) noexcept {
+        drop([&](const Place& p) { return p.bound <= floorMm; });
+        Place top{0.0, 0.0, -std::numeric_limits<double>::infinity()};
+        for (int i = 0; i < count_; ++i)
+            if (places_[static_cast<std::size_t>(i)].bound > top.bound) top = places_[static_cast<std::size_t>(i)];
+        return top;
+    }
+    /// Of places that found no room.
+    [[nodiscard]] double restMm() const noexcept { return restMm_; }
 
   private:
-    static constexpr int kMax = AxisSearch::kMaxCuts + 4;
-    static constexpr int kCandidates = 512;
-    [[nodiscard]] double distance(int cut, double s) const noexcept {
-        const double d = s - along_[cut];
-        return std::sqrt(d * d + away2_[cut]);
+    struct Line {
+        double along, offset;  ///< offset - 2 along s
+    };
+    struct Stretch {
+        double from, to;
+    };
+    static constexpr double kSameLine = 1e-12;
+    static constexpr int kMaxLines = AxisSearch::kMaxCuts + 1;
+    static constexpr int kMaxCleared = AxisSearch::kMaxCuts + AxisSearch::kMaxLooks;
+    static constexpr int kMaxPlaces = 1024;  // the run's balls, two a point, two a stretch
+
+    static double meeting(const Line& a, const Line& b) noexcept {
+        return 0.5 * (b.offset - a.offset) / (b.along - a.along);
     }
-    void offer(double s) noexcept {
-        if (candidates_ == kCandidates) return;
-        for (int i = 0; i < cleared_; ++i)
-            if (s > from_[i] && s < to_[i]) return;
-        double bound = std::numeric_limits<double>::infinity();
-        const double r = radiusAt(s);
-        for (int i = 0; i < count_; ++i)
-            bound = std::min(bound, r + distance(i, s));
-        at_[candidates_] = s;
-        bound_[candidates_++] = bound;
+    static bool isAbove(const Line& line, double s, const Line& other) noexcept {
+        return line.offset - 2.0 * line.along * s >= other.offset - 2.0 * other.along * s;
     }
+    static double distance(const Line& line, double s) noexcept {
+        return std::sqrt(std::max(0.0, s * s + line.offset - 2.0 * line.along * s));
+    }
+    void remove(int line) noexcept {
+        std::copy(lines_ + line + 1, lines_ + lineCount_, lines_ + line);
+        --lineCount_;
+    }
+    template <class Which>
+    void drop(const Which& which) noexcept {
+        count_ = static_cast<int>(std::remove_if(places_.begin(), places_.begin() + count_, which) - places_.begin());
+    }
+    void offerMeeting(const Line& a, const Line& b) noexcept {
+        const double s = meeting(a, b);
+        if (s > z_.front() && s < z_.back()) offer(s, radiusAt(s));
+    }
+    void offer(double s, double radius) noexcept {
+        for (int i = 0; i < clearedCount_; ++i)
+            if (s > cleared_[i].from && s < cleared_[i].to) return;
+        double least = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < lineCount_; ++i)
+            least = std::min(least, distance(lines_[i], s));
+        if (count_ < kMaxPlaces)
+            places_[static_cast<std::size_t>(count_++)] = {s, radius, radius + least};
+        else
+            restMm_ = std::max(restMm_, radius + least);
+    }
+    [[nodiscard]] double radiusAt(double s) const noexcept {
+        if (z_.size() == 1) return radius_[0];
+        const auto next = std::upper_bound(z_.begin() + 1, z_.end() - 1, s) - z_.begin();
+        const auto piece = static_cast<std::size_t>(next - 1);
+        return radius_[piece] + slope_[piece] * (s - z_[piece]);
+    }
+
     const std::vector<double>&z_, &radius_, &slope_;
-    double along_[kMax], away2_[kMax], from_[kMax], to_[kMax];
-    int count_ = 0, cleared_ = 0, candidates_ = 0;
-    double at_[kCandidates], bound_[kCandidates];
+    Line lines_[kMaxLines];
+    Stretch cleared_[kMaxCleared];
+    std::array<Place, kMaxPlaces> places_;
+    int lineCount_ = 0, clearedCount_ = 0, count_ = 0;
+    double restMm_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
 
+/// What of the run lies in the tooth is left only when nothing there can be deeper by more than kTolerance, or when the
+/// work ends: then `mostMm` says how deep it could be. The outside is known: nearestToRun's answer is its deepest.
 void AxisSearch::searchInside(const ExactSurface& surface, const Run& run, const BurFrame& frame,
-                              const SurfaceHit& first, BallDepth& best) const noexcept {
-    Cuts cuts(run.z, run.radius, run.slope);
-    const auto add = [&](const Vec3& q) {
+                              const SurfaceHit& first, BallDepth& best, double& mostMm) const noexcept {
+    AxisBound bound(run.z, run.radius, run.slope);
+    const auto split = [&](const Vec3& q, double& along) {
         const Vec3 w = q - frame.tip;
-        const double along = w.dot(frame.z);
-        cuts.addPoint(along, (w - along * frame.z).squaredNorm());
+        along = w.dot(frame.z);
+        return (w - along * frame.z).squaredNorm();
     };
-    add(vectorOf(first.point));
+    double along = 0.0, away2 = split(vectorOf(first.point), along);
+    bound.begin(along, away2);
     std::uint32_t seed = first.triangle;
-    for (int i = 0; i < kMaxCuts; ++i) {
-        double bound = 0.0;
-        const double s = cuts.highest(bound);
-        if (bound <= best.depthMm + kTolerance) return;
-        const BallDepth found = surface.ball(frame.onAxis(s), cuts.radiusAt(s), seed);
+    for (int measured = 0, looks = 0;;) {
+        const AxisBound::Place top = bound.highest(best.depthMm + toleranceAfter(measured));
+        if (!std::isfinite(top.bound)) break;
+        if (measured == kMaxCuts || looks == kMaxLooks) {
+            mostMm = std::max(mostMm, top.bound);
+            break;
+        }
+        const Vec3 centre = frame.onAxis(top.s);
+        const double far = surface.farBound(centre);
+        if (far > 2.0 * surface.sureMm()) {  // outside, and no triangle need say so
+            bound.clear(top.s, far - surface.sureMm());
+            ++looks;
+            continue;
+        }
+        const BallDepth found = surface.ball(centre, top.radius, seed);
+        ++measured;
         seed = found.triangle;
         if (found.depthMm > best.depthMm) best = found;
-        const double distance = (found.centreMm - found.surfaceMm).norm();
-        add(found.surfaceMm);
-        if (!found.inside) cuts.clear(s - std::max(distance, 1e-6), s + std::max(distance, 1e-6));
+        if (!found.inside) bound.clear(top.s, std::max((centre - found.surfaceMm).norm(), kCrossingMm));
+        away2 = split(found.surfaceMm, along);
+        bound.addPoint(along, away2);
     }
+    mostMm = std::max(mostMm, bound.restMm());
 }
 
 }  // namespace handpiece::contact

@@ -60,14 +60,15 @@ class AxisSearch {
   public:
     explicit AxisSearch(const instrument::Bur& bur);
 
-    /// Raises `best` to the deepest ball of the axis; seeds only save time.
-    void search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) noexcept;
+    /// Raises `best` to the deepest ball of the axis, within kDepthToleranceMm; `mostMm` to what one that was not seen
+    /// could have, where the work ended first. Seeds only save time.
+    void search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best, double& mostMm) noexcept;
     /// False when all of its balls have their centres outside the tooth.
     [[nodiscard]] bool mayEnter(const ExactSurface& surface, const BurFrame& frame) const noexcept;
     void reset() noexcept { seeds_.fill(geometry::kNoTriangle); }
 
-    static constexpr int kMaxCuts = 16;
-    static constexpr double kTolerance = 1e-7;  ///< [mm]
+    static constexpr int kMaxCuts = 48, kMaxLooks = 64, kFineCuts = 12;
+    static constexpr double kFineToleranceMm = 1e-7;
 
   private:
     /// Balls at rising z whose radius is concave along them, and lines above it.
@@ -78,7 +79,7 @@ class AxisSearch {
     };
     void addRun(const std::vector<instrument::MedialBall>& balls);
     void searchInside(const ExactSurface& surface, const Run& run, const BurFrame& frame, const SurfaceHit& first,
-                      BallDepth& best) const noexcept;
+                      BallDepth& best, double& mostMm) const noexcept;
 
     std::vector<Run> runs_;
     static constexpr std::size_t kMaxSeeds = 8;

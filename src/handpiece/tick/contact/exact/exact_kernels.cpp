@@ -14,18 +14,18 @@ inline Vector vectorOf(const double (&v)[3]) {
     return {v[0], v[1], v[2]};
 }
 
-/// Eight triangles side by side; lanes beyond `count` repeat the first.
+/// Triangles side by side, as many as a register holds doubles; lanes beyond `count` repeat the first.
 struct Packet {
     Doubles a[3], ab[3], ac[3];
 
     Packet(const KernelTriangle* triangles, const std::uint32_t* ids, int count) {
-        for (int lane = 0; lane < 8; ++lane) {
-            const KernelTriangle& t = triangles[ids[lane < count ? lane : 0]];
-            for (int k = 0; k < 3; ++k) {
-                a[k][lane] = t.a[k];
-                ab[k][lane] = t.ab[k];
-                ac[k][lane] = t.ac[k];
-            }
+        const KernelTriangle* t[kDoubleLanes];
+        for (int lane = 0; lane < kDoubleLanes; ++lane)
+            t[lane] = &triangles[ids[lane < count ? lane : 0]];
+        for (int k = 0; k < 3; ++k) {
+            a[k] = gather([&](int lane) { return t[lane]->a[k]; });
+            ab[k] = gather([&](int lane) { return t[lane]->ab[k]; });
+            ac[k] = gather([&](int lane) { return t[lane]->ac[k]; });
         }
     }
 };
@@ -49,7 +49,7 @@ struct Shape {
         ab2 = dot(p.ab, p.ab);
         ac2 = dot(p.ac, p.ac);
         abac = dot(p.ab, p.ac);
-        bc2 = most(ab2 - 2.0 * abac + ac2, Doubles{});
+        bc2 = most(ab2 - 2.0 * abac + ac2, splat(0.0));
         inverseAb2 = inverse(ab2);
         inverseAc2 = inverse(ac2);
         inverseBc2 = inverse(bc2);
@@ -63,7 +63,7 @@ struct Shape {
     /// with n; `half` becomes half the derivative of that along a direction whose products are h1, h2, hp, hn.
     inline Doubles distance2(Doubles d1, Doubles d2, Doubles pp, Doubles height, Doubles h1, Doubles h2, Doubles hp,
                              Doubles hn, Doubles& half) const {
-        const Doubles zero{}, one = splat(1.0);
+        const Doubles zero = splat(0.0), one = splat(1.0);
         const Doubles t1 = clampTo(d1 * inverseAb2, zero, one);
         const Doubles t2 = clampTo(d2 * inverseAc2, zero, one);
         const Doubles db = d2 - d1 - abac + ab2;
@@ -137,11 +137,25 @@ class RunQuery {
     }
 
     void evaluate(const std::uint32_t* ids, int count) {
-        const Packet packet(tree_.triangles, ids, count);
-        if (run_.constant)
-            evaluateConstant(packet, ids, count);
-        else
-            evaluateAny(packet, ids, count);
+        double value[8], at[8], radius[8];
+        for (int first = 0; first < count; first += kDoubleLanes) {
+            const Packet packet(tree_.triangles, ids + first, count - first);
+            Doubles bestS, itsRadius = splat(run_.radius[0]);
+            const Doubles best = run_.constant ? leastOfConstant(packet, bestS) : leastOfAny(packet, bestS, itsRadius);
+            __builtin_memcpy(value + first, &best, sizeof best);
+            __builtin_memcpy(at + first, &bestS, sizeof bestS);
+            __builtin_memcpy(radius + first, &itsRadius, sizeof itsRadius);
+        }
+        int lane = 0;
+        for (int i = 1; i < count; ++i)
+            if (value[i] < value[lane]) lane = i;
+        if (run_.constant) {
+            const double limit = hit_.value + run_.radius[0] + 1e-9;
+            if (limit <= 0.0 || value[lane] >= limit * limit) return;
+        } else if (value[lane] >= hit_.value + 1e-9) {
+            return;
+        }
+        take(ids[lane], at[lane], radius[lane]);
     }
 
   private:
@@ -167,19 +181,21 @@ class RunQuery {
         }
         /// Where the axis meets the plane, and whether that is in the triangle.
         [[nodiscard]] Longs crossing(const Shape& shape, Doubles& s) const {
-            const Doubles zero{};
-            s = -n0 / (n1 == zero ? splat(kSmall) : n1);
+            const Doubles zero = splat(0.0);
+            s = -n0 / choose(n1 == zero, splat(kSmall), n1);
             const Doubles d1 = a0 + s * a1, d2 = b0 + s * b1;
             const Doubles v = shape.ac2 * d1 - shape.abac * d2, w = shape.ab2 * d2 - shape.abac * d1;
             return (v >= zero) & (w >= zero) & (v + w <= shape.det) & (shape.det > zero);
         }
     };
 
-    void evaluateConstant(const Packet& packet, const std::uint32_t* ids, int count) {
+    /// Squared distances, and where on the axis.
+    [[nodiscard]] Doubles leastOfConstant(const Packet& packet, Doubles& bestS) const {
         const Shape shape(packet);
         const Products p(packet, shape, tip_, axis_);
-        const Doubles zero{}, one = splat(1.0), s0 = splat(run_.z[0]), s1 = splat(run_.z[run_.count - 1]);
-        Doubles half, bestS = s0, best = p.distance2(shape, s0, half);
+        const Doubles zero = splat(0.0), one = splat(1.0), s0 = splat(run_.z[0]), s1 = splat(run_.z[run_.count - 1]);
+        Doubles half, best = p.distance2(shape, s0, half);
+        bestS = s0;
         const auto offer = [&](Longs valid, Doubles value, Doubles s) {
             const Longs better = valid & (value < best);
             best = choose(better, value, best);
@@ -207,12 +223,7 @@ class RunQuery {
         Doubles s;
         const Longs crosses = p.crossing(shape, s);
         offer(crosses & (s >= s0) & (s <= s1), zero, s);
-        int lane = 0;
-        for (int i = 1; i < count; ++i)
-            if (best[i] < best[lane]) lane = i;
-        const double limit = hit_.value + run_.radius[0] + 1e-9;
-        if (limit <= 0.0 || best[lane] >= limit * limit) return;
-        take(ids[lane], bestS[lane], run_.radius[0]);
+        return best;
     }
 
     /// The products lose digits far from the corner: what is reported is measured once more.
@@ -223,45 +234,42 @@ class RunQuery {
         const double value = __builtin_sqrt(dot(p - q, p - q)) - radius;
         if (value < hit_.value) hit_ = {value, s, {q.x, q.y, q.z}, triangle, feature};
     }
-
-    void evaluateAny(const Packet& packet, const std::uint32_t* ids, int count) {
+    /// Distances less the radius, and where on the axis.
+    [[nodiscard]] Doubles leastOfAny(const Packet& packet, Doubles& bestS, Doubles& itsRadius) const {
         const Shape shape(packet);
         const Products p(packet, shape, tip_, axis_);
         const Doubles a0 = p.a0, a1 = p.a1, b0 = p.b0, b1 = p.b1, c0 = p.c0, c1 = p.c1;
-        const Doubles zero{}, one = splat(1.0);
+        const Doubles zero = splat(0.0), one = splat(1.0);
         Doubles half;
         const auto squared = [&](Doubles s) { return p.distance2(shape, s, half); };
-        Doubles s0, s1, slope, radius0;
-        std::int32_t pieceLow[8] = {}, pieceHigh[8];
-        for (int i = 0; i < 8; ++i)
-            pieceHigh[i] = run_.count - 1;
+        std::int32_t low[kDoubleLanes] = {}, high[kDoubleLanes];
+        for (std::int32_t& piece : high)
+            piece = run_.count - 1;
         // The distance to a triangle less the radius is convex along the run: halve until one piece is left.
         for (int left = run_.count - 1; left > 1; left = (left + 1) / 2) {
-            Doubles s, slopeBefore;
-            for (int i = 0; i < 8; ++i) {
-                const int middle = (pieceLow[i] + pieceHigh[i]) / 2;
-                s[i] = run_.z[middle];
-                slopeBefore[i] = run_.slope[middle > 0 ? middle - 1 : 0];
-            }
+            const Doubles s = gather([&](int i) { return run_.z[(low[i] + high[i]) / 2]; });
+            const Doubles before = gather([&](int i) {
+                const int middle = (low[i] + high[i]) / 2;
+                return run_.slope[middle > 0 ? middle - 1 : 0];
+            });
             const Doubles d = root(squared(s));
-            const Longs rising = half > slopeBefore * d;
-            for (int i = 0; i < 8; ++i) {
-                const int middle = (pieceLow[i] + pieceHigh[i]) / 2;
-                if (pieceHigh[i] - pieceLow[i] <= 1) continue;
-                (rising[i] ? pieceHigh[i] : pieceLow[i]) = middle;
+            const unsigned rising = bitsOfLongs(half > before * d);
+            for (int i = 0; i < kDoubleLanes; ++i) {
+                const int middle = (low[i] + high[i]) / 2;
+                const bool isOpen = high[i] - low[i] > 1, isRising = (rising >> i & 1u) != 0;
+                high[i] = isOpen && isRising ? middle : high[i];
+                low[i] = isOpen && !isRising ? middle : low[i];
             }
         }
-        for (int i = 0; i < 8; ++i) {
-            const int piece = pieceLow[i];
-            s0[i] = run_.z[piece];
-            s1[i] = run_.z[pieceHigh[i]];
-            slope[i] = run_.slope[piece];
-            radius0[i] = run_.radius[piece];
-        }
-        radius0 -= slope * s0;  // so that the radius is radius0 + slope s
+        const Doubles s0 = gather([&](int i) { return run_.z[low[i]]; }),
+                      s1 = gather([&](int i) { return run_.z[high[i]]; }),
+                      slope = gather([&](int i) { return run_.slope[low[i]]; });
+        // So that the radius is radius0 + slope s.
+        const Doubles radius0 = gather([&](int i) { return run_.radius[low[i]]; }) - slope * s0;
         const Doubles lessSlope2 = most(1.0 - slope * slope, splat(1e-12)), tangent = slope / root(lessSlope2);
 
-        Doubles bestS = s0, best = root(squared(s0)) - radius0 - slope * s0;
+        Doubles best = root(squared(s0)) - radius0 - slope * s0;
+        bestS = s0;
         const auto offer = [&](Longs valid, Doubles value, Doubles s) {
             const Longs better = valid & (value < best);
             best = choose(better, value, best);
@@ -294,11 +302,8 @@ class RunQuery {
         Doubles crossingS;
         const Longs crosses = p.crossing(shape, crossingS);
         offer(crosses & (crossingS >= s0) & (crossingS <= s1), -radius0 - slope * crossingS, crossingS);
-        int lane = 0;
-        for (int i = 1; i < count; ++i)
-            if (best[i] < best[lane]) lane = i;
-        if (best[lane] >= hit_.value + 1e-9) return;
-        take(ids[lane], bestS[lane], radius0[lane] + slope[lane] * bestS[lane]);
+        itsRadius = radius0 + slope * bestS;
+        return best;
     }
 
     const TreeView& tree_;
@@ -323,13 +328,16 @@ class PointQuery {
     }
 
     void evaluate(const std::uint32_t* ids, int count) {
-        const Packet packet(tree_.triangles, ids, count);
-        const Shape shape(packet);
-        const Doubles w[3] = {p_.x - packet.a[0], p_.y - packet.a[1], p_.z - packet.a[2]};
-        const Doubles zero{};
-        Doubles half;
-        const Doubles d2 = shape.distance2(dot(packet.ab, w), dot(packet.ac, w), dot(w, w), dot(shape.n, w), zero, zero,
-                                           zero, zero, half);
+        double d2[8];
+        for (int first = 0; first < count; first += kDoubleLanes) {
+            const Packet packet(tree_.triangles, ids + first, count - first);
+            const Shape shape(packet);
+            const Doubles w[3] = {p_.x - packet.a[0], p_.y - packet.a[1], p_.z - packet.a[2]}, zero{};
+            Doubles half;
+            const Doubles found = shape.distance2(dot(packet.ab, w), dot(packet.ac, w), dot(w, w), dot(shape.n, w),
+                                                  zero, zero, zero, zero, half);
+            __builtin_memcpy(d2 + first, &found, sizeof found);
+        }
         int lane = 0;
         for (int i = 1; i < count; ++i)
             if (d2[i] < d2[lane]) lane = i;

@@ -18,12 +18,12 @@ struct Places {
     float far[8];  ///< for places without a brick
 
     Places(const field::FieldView& field, const FieldRow& row, int first) {
-        Doubles cosine, sine;
-        __builtin_memcpy(&cosine, row.cosines + first, sizeof cosine);
-        __builtin_memcpy(&sine, row.sines + first, sizeof sine);
-        Doubles grid[3];
+        double grid[3][8];
         for (int k = 0; k < 3; ++k)
-            grid[k] = (row.centre[k] - field.originMm[k] + cosine * row.x[k] + sine * row.y[k]) * field.inverseVoxelMm;
+            for (int lane = 0; lane < 8; ++lane)
+                grid[k][lane] = (row.centre[k] - field.originMm[k] + row.cosines[first + lane] * row.x[k] +
+                                 row.sines[first + lane] * row.y[k]) *
+                                field.inverseVoxelMm;
         for (int lane = 0; lane < 8; ++lane) {
             int cell[3], brick[3];
             double away2 = 0.0, outside2 = 0.0;

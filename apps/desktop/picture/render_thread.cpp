@@ -404,7 +404,7 @@ void RenderThread::run() {
             frame.begun = now;
             frame.drawn = Clock::now();
             worker.drawn = worker.sample;
-            worker.dirty = frame.report.refining;
+            worker.dirty = frame.report.refining || frame.report.preparing;
             {
                 const std::lock_guard lock(shared_->mutex);
                 shared_->ready = std::move(frame);

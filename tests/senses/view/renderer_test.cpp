@@ -6,12 +6,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <random>
 
 #include "handpiece/model/instrument/catalogue.h"
 #include "support/error_of.h"
+#include "support/random.h"
 
 namespace handpiece::view {
 namespace {
@@ -382,6 +385,49 @@ TEST(Renderer, APictureDoesNotDependOnThoseBefore) {
     }
 }
 
+TEST(Renderer, ImagesUsedByTurnsHoldWhatAFreshOneWould) {
+    std::mt19937_64 random(test::seed());
+    const auto chance = [&](double share) { return test::uniform(random, 0.0, 1.0) < share; };
+    Look look;
+    Renderer renderer;
+    renderer.setTooth(box(4.0, -1.0, 1.0));
+    renderer.updateBricks(table(), true);
+    renderer.setBur(rod(0.5, 3.0), 3.0, 0.5);
+    Camera camera = above();
+    std::array<Image, 3> images;
+    images[1].blueFirst = images[2].blueFirst = true;
+    int compared = 0;
+    Moment moment;
+    for (int i = 0; i < 60; ++i) {
+        moment.timeS += 1.0 / 60.0;
+        moment.speedRpm = 300000.0;
+        moment.water = i / 20 == 1;
+        if (chance(0.8))
+            moment.burInTooth.positionMm = {test::uniform(random, -3.0, 3.0), test::uniform(random, -3.0, 3.0), 0.4};
+        if (chance(0.1)) camera = orbited(camera, 0.1, 0.05);
+        look.quality = chance(0.1) ? Quality::rich : Quality::fast;
+        // One of them lies unused for longer than is remembered.
+        Image& image = images[i < 40 ? static_cast<std::size_t>(i % 2) : 2 - static_cast<std::size_t>(i % 2)];
+        const Viewport size = i % 29 == 28 ? Viewport{200, 150} : kSize;
+        // The picture after one in motion is smoothed otherwise.
+        if (renderer.draw(camera, size, look, moment, image).refining) continue;
+        ++compared;
+        Image whole;
+        whole.blueFirst = image.blueFirst;
+        renderer.draw(camera, size, look, moment, whole);
+        ASSERT_EQ(image.rgba, whole.rgba) << "picture " << i;
+        if (!image.blueFirst) continue;
+        Image redFirst;
+        renderer.draw(camera, size, look, moment, redFirst);
+        for (std::size_t k = 0; k < whole.rgba.size(); k += 4) {
+            ASSERT_EQ(redFirst.rgba[k], whole.rgba[k + 2]);
+            ASSERT_EQ(redFirst.rgba[k + 1], whole.rgba[k + 1]);
+            ASSERT_EQ(redFirst.rgba[k + 2], whole.rgba[k]);
+        }
+    }
+    EXPECT_GT(compared, 20);
+}
+
 TEST(Renderer, BeforeAndGhostShowWhatWasCutAway) {
     Renderer renderer;
     renderer.setTooth(box(4.0, -1.0, 1.0));
@@ -504,6 +550,78 @@ TEST(Renderer, AnEyeInMotionSeesTheCoarseMeshesAndComesToRest) {
         report = renderer.draw(back, kSize, before, moment, image);
     while (report.refining);
     EXPECT_EQ(report.triangles, fine);
+}
+
+/// A dome of 3 mm, 4 mm x 4 mm of it in bricks of 0.5 mm with steps of 50 um.
+std::vector<BrickUpdate> dome() {
+    std::vector<BrickUpdate> bricks;
+    for (int j = 0; j < 8; ++j)
+        for (int i = 0; i < 8; ++i) {
+            auto mesh = square(0.5 * i - 2.0, 0.5 * j - 2.0, 0.5, 0.0, Tissue::enamel, 10);
+            for (surface::SurfaceVertex& v : mesh->vertices) {
+                auto& [x, y, z] = v.positionMm;
+                z = std::sqrt(9.0f - x * x - y * y) - 3.0f;
+                v.normal = {x / 3.0f, y / 3.0f, (z + 3.0f) / 3.0f};
+            }
+            bricks.push_back(brick(static_cast<std::uint32_t>(8 * j + i), std::move(mesh)));
+        }
+    return bricks;
+}
+
+TEST(Renderer, AnEyeInMotionSeesAllDetailToHalfAPixelWithFewerTriangles) {
+    constexpr Viewport kLarge{640, 480};
+    const core::Box bounds{Vec3(-2.0, -2.0, -2.0), Vec3(2.0, 2.0, 0.0)};
+    Renderer window, whole, empty;
+    if (!window.isSoftware()) GTEST_SKIP() << "a GPU draws every triangle";
+    window.setResponsive(true);
+    for (Renderer* renderer : {&window, &whole, &empty})
+        renderer->setTooth(bounds);
+    window.updateBricks(dome(), true);
+    whole.updateBricks(dome(), true);
+    // From the side, the dome's top against the background; 4 um are just below half a pixel.
+    Camera camera;
+    camera.eyeMm = {0.0, -12.3, 0.6};
+    camera.targetMm = {0.0, 0.0, -0.6};
+    Look look = plainLook();
+    look.quality = Quality::fine;
+    Image image;
+    for (int i = 0; i < 500 && window.draw(camera, kLarge, look, withoutBur(), image).preparing; ++i) {
+    }
+    for (const double turn : {0.02, 0.03, 0.04}) {
+        camera = orbited(camera, turn, 0.0);
+        const FrameReport report = window.draw(camera, kLarge, look, withoutBur(), image);
+        EXPECT_TRUE(report.refining);
+        Image expected;
+        const FrameReport all = whole.draw(camera, kLarge, look, withoutBur(), expected);
+        EXPECT_GT(report.triangles, 0u);
+        EXPECT_LT(report.triangles, all.triangles / 3);
+        EXPECT_LT(compareImages(image, expected, 24).differingShare, 0.002);
+        Image background;
+        empty.draw(camera, kLarge, look, withoutBur(), background);
+        const auto isTooth = [&](const Image& of, int x, int y) {
+            int apart = 0;
+            for (int c = 0; c < 3; ++c)
+                apart = std::max(apart, std::abs(of.at(x, y)[c] - background.at(x, y)[c]));
+            return apart > 24;
+        };
+        int edge = 0, off = 0;
+        for (int y = 1; y + 1 < kLarge.height; ++y)
+            for (int x = 1; x + 1 < kLarge.width; ++x) {
+                const bool tooth = isTooth(expected, x, y);
+                const bool onEdge = isTooth(expected, x - 1, y) != tooth || isTooth(expected, x + 1, y) != tooth ||
+                                    isTooth(expected, x, y - 1) != tooth || isTooth(expected, x, y + 1) != tooth;
+                edge += onEdge ? 1 : 0;
+                if (isTooth(image, x, y) == tooth) continue;
+                ++off;
+                ASSERT_TRUE(onEdge) << x << " " << y << ": farther off than a pixel";
+            }
+        EXPECT_GT(edge, 300);
+        EXPECT_LT(off, edge / 2) << "of the outline's pixels";
+    }
+    // From near by, what was left out would be seen.
+    camera.eyeMm *= 0.5;
+    const std::size_t drawn = window.draw(camera, kLarge, look, withoutBur(), image).triangles;
+    EXPECT_EQ(drawn, whole.draw(camera, kLarge, look, withoutBur(), image).triangles);
 }
 
 TEST(Renderer, ComesToRestStripByStripToTheSamePicture) {

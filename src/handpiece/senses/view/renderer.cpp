@@ -113,6 +113,7 @@ struct Renderer::State {
     State() : effects(makeEffects([this] { return instruments.headRadiusMm(); })) {}
 
     void renewDepthScale(double mostMm);
+    [[nodiscard]] bool isSmall(double mm, const Camera& from, const Viewport& size, const Look& look) const;
     Detail detailFor(const Camera& to, const Viewport& size, const Look& look, FrameReport& report);
     [[nodiscard]] LayerWants wantsFor(const Eye& eye, const Viewport& size, const Look& look, const Lighting& lighting,
                                       Detail detail) const;
@@ -158,7 +159,29 @@ Detail Renderer::State::detailFor(const Camera& to, const Viewport& size, const 
     const bool mayBeCoarse =
         scene.hasCoarse() && (look.quality == Quality::fast || (look.quality == Quality::fine && context.isSoftware()));
     report.refining = still < kRestPictures;
-    return mayBeCoarse && report.refining ? Detail::coarse : Detail::full;
+    if (!report.refining) return Detail::full;
+    // All of it looks the same from afar.
+    if (!(scene.hasCoarse() && look.quality == Quality::fast) && isSmall(Scene::kNearMm, to, size, look))
+        return Detail::near;
+    return mayBeCoarse ? Detail::coarse : Detail::full;
+}
+
+/// Whether so much of the tooth as it is, wherever it is seen, is less than half a pixel.
+bool Renderer::State::isSmall(double mm, const Camera& from, const Viewport& size, const Look& look) const {
+    if (!context.isSoftware() || !scene.hasNear() || look.tooth != ToothShown::now || look.removedDepthColours ||
+        look.quality == Quality::rich)
+        return false;
+    const core::Box& box = scene.toothBounds();
+    double depthMm = 1e300;
+    for (int corner = 0; corner < 8; ++corner) {
+        const core::Vec3 at((corner & 1) != 0 ? box.max.x() : box.min.x(),
+                            (corner & 2) != 0 ? box.max.y() : box.min.y(),
+                            (corner & 4) != 0 ? box.max.z() : box.min.z());
+        depthMm = std::min(depthMm, from.forward().dot(at - from.eyeMm));
+    }
+    const double pixelMm = 2.0 * depthMm * std::tan(0.5 * from.fieldOfViewRad) / size.height;
+    // Along the line of sight, towards the picture's corners, it shows by a little more than across.
+    return 1.1 * mm <= 0.5 * pixelMm;
 }
 
 LayerWants Renderer::State::wantsFor(const Eye& eye, const Viewport& size, const Look& look, const Lighting& lighting,
@@ -374,7 +397,7 @@ void Renderer::State::smooth(const gl::Texture& from, const gl::Framebuffer& to,
 bool Renderer::State::drawSmall(const Camera& from, const Viewport& size, const Look& look, const Moment& moment,
                                 Detail detail, Image& out, FrameReport& report) {
     const double scale = std::sqrt(kMotionPixels / (static_cast<double>(size.width) * size.height));
-    if (look.quality != Quality::fast || !context.isSoftware() || scale > 0.9) return false;
+    if (look.quality != Quality::fast || !context.isSoftware() || scale > 0.9 || detail == Detail::near) return false;
     if (detail == Detail::full) {
         // A small picture goes on being shown until the large one is there, unseen, strip by strip.
         if (!responsive || !moving.layer.isComplete() || !scene.hasCoarse()) return false;
@@ -494,6 +517,7 @@ FrameReport Renderer::draw(const Camera& camera, const Viewport& viewport, const
     const double begin = nowMs();
     s.renewDepthScale(look.removedDepthMostMm);
     const Detail detail = s.detailFor(camera, viewport, look, report);
+    const std::uint64_t drawnBefore = s.left.number;
     const bool one = look.stereo == Stereo::none;
     if (one && s.drawSmall(camera, viewport, look, moment, detail, out, report)) {
         // Done.
@@ -513,6 +537,12 @@ FrameReport Renderer::draw(const Camera& camera, const Viewport& viewport, const
         if (out.blueFirst)
             for (std::size_t i = 0; i + 3 < out.rgba.size(); i += 4)
                 std::swap(out.rgba[i], out.rgba[i + 2]);
+    }
+    // In pictures in which nothing changes, a window gets ready for an eye that moves.
+    if (s.responsive && s.context.isSoftware() && !report.refining) {
+        if (s.left.number == drawnBefore + 1 && s.left.changed[s.left.number % s.left.changed.size()].isEmpty())
+            s.scene.simplifySome();
+        report.preparing = s.scene.isStale();
     }
     gl::check("a picture");
     report.drawMs = nowMs() - begin - report.readMs;

@@ -69,12 +69,15 @@ struct FrameReport {
     std::size_t triangles = 0;  ///< drawn, all passes
     bool toothRedrawn = false;  ///< all of it, or only where it changed (false)
     bool refining = false;      ///< the view is still in motion or being refined: draw again soon
+    /// Drawn again with nothing changed, the renderer gets on with what lets a moving eye see all detail.
+    bool preparing = false;
 };
 
 /// Owns an OpenGL context of its own (EGL, surfaceless) and all that it holds. One thread: the one that made it.
 ///
 /// The tooth is kept as drawn while camera and look stay: pictures in which only the bur moves, or a few bricks change,
-/// cost only what changed. While the camera moves, detail goes down as far as `Quality` says and comes back at rest.
+/// cost only what changed. While the camera moves, detail goes down as far as `Quality` says and comes back at rest; a
+/// software renderer leaves out triangles that show by less than half a pixel.
 class Renderer {
   public:
     /// Throws core::Error when there is no OpenGL 3.3: what was tried, and what to install.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "handpiece/senses/view/mesh_pieces.h"
+#include "handpiece/senses/view/simplify.h"
 
 namespace handpiece::view {
 namespace {
@@ -13,6 +14,8 @@ namespace {
 constexpr std::size_t kMaxChanges = 20000;
 constexpr double kCreaseRad = 0.9;
 constexpr double kCrownCentreMm = 3.0;  // under a crown's top
+constexpr float kPatchMm = 2.0f;
+constexpr std::size_t kTrianglesACall = 6000;  // to be simplified: some milliseconds
 
 }  // namespace
 
@@ -45,6 +48,11 @@ void Scene::setTooth(const core::Box& bounds) {
             pool_.remove(brick.beforeCoarse);
         }
     }
+    for (const Patch& patch : patches_)
+        pool_.remove(patch.near);
+    patches_.clear();
+    patchAt_.clear();
+    stale_.clear();
     bricks_.clear();
     slot_.clear();
     sorted_ = true;
@@ -104,7 +112,44 @@ void Scene::put(const surface::BrickUpdate& update, bool before) {
     brick.now = now;
     brick.coarse = coarse;
     brick.hasCoarse = hasCoarse;
+    brick.mesh = update.mesh;
+    putInPatch(brick);
     note(now);
+}
+
+void Scene::putInPatch(Brick& brick) {
+    if (brick.patch == kNoPatch) {
+        if (brick.mesh == nullptr) return;
+        std::array<int, 3> at{};
+        for (std::size_t k = 0; k < 3; ++k)
+            at[k] = static_cast<int>(std::floor(brick.now.centreMm[static_cast<int>(k)] / kPatchMm));
+        const auto [found, isNew] = patchAt_.try_emplace(at, static_cast<std::uint32_t>(patches_.size()));
+        if (isNew) patches_.emplace_back();
+        brick.patch = found->second;
+        patches_[brick.patch].bricks.push_back(brick.dense);
+    }
+    Patch& patch = patches_[brick.patch];
+    if (patch.isStale) return;
+    pool_.remove(patch.near);
+    patch.near = {};
+    patch.isStale = true;
+    stale_.push_back(brick.patch);
+}
+
+void Scene::simplifySome() {
+    std::size_t triangles = 0;
+    while (!stale_.empty() && triangles < kTrianglesACall) {
+        Patch& patch = patches_[stale_.back()];
+        stale_.pop_back();
+        std::vector<std::shared_ptr<const surface::BrickMesh>> meshes;
+        for (const std::uint32_t dense : patch.bricks)
+            if (const auto& mesh = bricks_[slot_.at(dense)].mesh) {
+                meshes.push_back(mesh);
+                triangles += mesh->triangles.size();
+            }
+        patch.near = pool_.add(simplified(meshes, kNearMm).piece);
+        patch.isStale = false;
+    }
 }
 
 void Scene::drop(std::vector<Static>& meshes) {
@@ -175,8 +220,13 @@ const std::vector<const PooledMesh*>& Scene::visible(const Look& look, Detail de
     const auto offer = [&](const PooledMesh& mesh) {
         if (mesh.indexCount > 0 && culler.mayBeSeen(mesh)) visible_.push_back(&mesh);
     };
-    const bool asItWas = look.tooth == ToothShown::before, coarse = detail == Detail::coarse;
+    const bool asItWas = look.tooth == ToothShown::before, coarse = detail == Detail::coarse,
+               near = detail == Detail::near && !asItWas;
+    if (near)
+        for (const Patch& patch : patches_)
+            offer(patch.near);
     for (const Brick& brick : bricks_) {
+        if (near && brick.patch != kNoPatch && patches_[brick.patch].near.indexCount > 0) continue;
         if (asItWas && brick.isCut)
             offer(coarse && brick.beforeHasCoarse ? brick.beforeCoarse : brick.before);
         else

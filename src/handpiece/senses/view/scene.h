@@ -4,7 +4,10 @@
 /// What there is to draw: the tooth by bricks, as it is and as it was, its inner tissues, the scenery. Private to this
 /// room.
 
+#include <array>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -17,7 +20,8 @@
 
 namespace handpiece::view {
 
-enum class Detail { full, coarse };
+/// `near`: the tooth as it is, uncut places with fewer triangles that lie within Scene::kNearMm of all.
+enum class Detail { full, near, coarse };
 
 class Scene {
   public:
@@ -31,6 +35,14 @@ class Scene {
     /// All that may be seen, scenery too.
     [[nodiscard]] const core::Box& bounds() const noexcept { return bounds_; }
     [[nodiscard]] bool hasCoarse() const noexcept { return coarseCount_ > 0; }
+
+    /// How far what Detail::near shows may lie from all triangles [mm].
+    static constexpr float kNearMm = 0.004f;
+    /// Simplifies what is not yet so, a few patches a call.
+    void simplifySome();
+    [[nodiscard]] bool isStale() const noexcept { return !stale_.empty(); }
+    /// Detail::near is worth it: little is still to be simplified, and shown whole until then.
+    [[nodiscard]] bool hasNear() const noexcept { return !patches_.empty() && 8 * stale_.size() <= patches_.size(); }
 
     /// Counts up when all is another; a brick's change only adds to changes().
     [[nodiscard]] std::uint64_t epoch() const noexcept { return epoch_; }
@@ -56,7 +68,16 @@ class Scene {
         std::uint32_t dense = 0;
         PooledMesh now, coarse, before, beforeCoarse;
         bool hasCoarse = false, beforeHasCoarse = false;
-        bool isCut = false;  ///< `now` is not `before`, which then owns its own range
+        bool isCut = false;                              ///< `now` is not `before`, which then owns its own range
+        std::shared_ptr<const surface::BrickMesh> mesh;  ///< of `now`
+        std::uint32_t patch = kNoPatch;
+    };
+    /// Bricks that are simplified together: of those alone most points lie on the rim, and stay.
+    static constexpr std::uint32_t kNoPatch = 0xffffffffu;
+    struct Patch {
+        std::vector<std::uint32_t> bricks;  ///< their dense numbers
+        PooledMesh near;
+        bool isStale = false;
     };
     struct Static {
         cases::Tissue tissue;
@@ -67,6 +88,7 @@ class Scene {
     void drop(std::vector<Static>& meshes);
     void add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cases::Tissue tissue);
     void note(const PooledMesh& mesh);
+    void putInPatch(Brick& brick);
     void changeAll();
     void measure();
 
@@ -76,6 +98,9 @@ class Scene {
     bool sorted_ = true;
     std::vector<Static> mesh_, scenery_, parts_;
     core::Box toothBounds_, bounds_;
+    std::vector<Patch> patches_;
+    std::map<std::array<int, 3>, std::uint32_t> patchAt_;
+    std::vector<std::uint32_t> stale_;  ///< patches that are to be simplified (again)
     std::size_t coarseCount_ = 0, cutCount_ = 0;
     bool hasBefore_ = false;
     std::uint64_t epoch_ = 1;

@@ -146,8 +146,8 @@ ToothLayer::Drawn ToothLayer::update(Shaders& shaders, Scene& scene, const Secti
     bool inStrips = haste == Haste::strips;
     if (haste == Haste::refined) {
         LayerWants coarser = wants;
-        coarser.detail = Detail::coarse;
-        inStrips = !anew || (isComplete() && epoch_ == scene.epoch() && same(*drawn_, coarser));
+        if (drawn_) coarser.detail = drawn_->detail;
+        inStrips = !anew || (coarser.detail != Detail::full && isComplete(scene, coarser));
     }
     if (anew) {
         nextRow_ = 0;

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <thread>
 
+#include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/record/session/layout.h"
 #include "handpiece/record/session/recorder.h"
@@ -75,6 +76,7 @@ TEST_F(Session, WhatIsRecordedIsRead) {
         EXPECT_EQ(reader.info().rateHz, rateHz);
         EXPECT_EQ(reader.info().code, "desk-7");
         EXPECT_EQ(reader.info().version, "0.2.0");
+        EXPECT_EQ(reader.info().engineRevision, core::kEngineRevision);
         EXPECT_EQ(reader.info().settings, info().settings);
         EXPECT_EQ(reader.info().tooth, info().tooth);
         ASSERT_EQ(reader.size(), all.size());
@@ -92,6 +94,11 @@ TEST_F(Session, WhatIsRecordedIsRead) {
         EXPECT_EQ(reader.keyFrameBefore(1000)->tick, 90u);
         EXPECT_FALSE(reader.keyFrameBefore(69));
     }
+}
+
+TEST_F(Session, OneWithoutAnEngineRevisionIsOfTheFirst) {
+    EXPECT_EQ(session::SessionReader(HANDPIECE_SOURCE_DIR "/tests/fuzz/corpus/session/whole.h5").info().engineRevision,
+              1);
 }
 
 /// Records i .. i + count, with a key frame and an event, numbered from 0 on.

@@ -143,32 +143,28 @@ Reduced reduce(double rad) {
     return {static_cast<int>(n), orderedSum(c.high, a.low + (b.low + c.low))};
 }
 
-struct SineCosine {
-    Pair sine, cosine;
-};
+/// Taylor's series within 45 degrees, the last term below 2^-58 of the sum.
+Pair sineSeries(Pair r) {
+    const double z = r.high * r.high;
+    const double more = r.high * z *
+                        polynomial(z, -1 / 6.0, 1 / 120.0, -1 / 5040.0, 1 / 362880.0, -1 / 39916800.0, 1 / 6227020800.0,
+                                   -1 / 1307674368000.0, 1 / 355687428096000.0);
+    return orderedSum(r.high, r.low * (1.0 - 0.5 * z) + more);
+}
+Pair cosineSeries(Pair r) {
+    const double z = r.high * r.high, c = 1.0 - 0.5 * z;
+    const double more = z * z *
+                        polynomial(z, 1 / 24.0, -1 / 720.0, 1 / 40320.0, -1 / 3628800.0, 1 / 479001600.0,
+                                   -1 / 87178291200.0, 1 / 20922789888000.0);
+    return orderedSum(c, ((1.0 - c) - 0.5 * z) + (more - r.high * r.low));
+}
 
-/// For rad >= 0, finite: Taylor's series, the last term below 2^-58 of the sum.
-SineCosine sineCosine(double rad) {
-    const auto [quarters, r] = reduce(rad);
-    const Pair z = r * r;
-    const double x = z.high;
-    const Pair sixth{-kThird.high / 2, -kThird.low / 2};
-    const Pair s =
-        r + r * (z * (sixth + Pair{x * polynomial(x, 1 / 120.0, -1 / 5040.0, 1 / 362880.0, -1 / 39916800.0,
-                                                  1 / 6227020800.0, -1 / 1307674368000.0, 1 / 355687428096000.0)}));
-    const Pair c =
-        Pair{1.0} + z * (Pair{-0.5} + Pair{x * polynomial(x, 1 / 24.0, -1 / 720.0, 1 / 40320.0, -1 / 3628800.0,
-                                                          1 / 479001600.0, -1 / 87178291200.0, 1 / 20922789888000.0)});
-    switch (quarters & 3) {
-        case 0:
-            return {s, c};
-        case 1:
-            return {c, -s};
-        case 2:
-            return {-s, -c};
-        default:
-            return {-c, s};
-    }
+/// For rad >= 0, finite: the sine `quarters` of a turn farther on.
+double sineAhead(double rad, int quarters) {
+    const Reduced reduced = reduce(rad);
+    const int q = reduced.quarters + quarters;
+    const double value = ((q & 1) != 0 ? cosineSeries(reduced.rest) : sineSeries(reduced.rest)).rounded();
+    return (q & 2) != 0 ? -value : value;
 }
 
 /// The angle of (x, y) from the x axis, both from 0 to 2^500 and not both below 2^-480.
@@ -240,18 +236,19 @@ double exponential(Pair x) {
 
 double sin(double rad) noexcept {
     if (!std::isfinite(rad)) return kNan;
-    return std::abs(rad) < 0x1p-27 ? rad : std::copysign(1.0, rad) * sineCosine(std::abs(rad)).sine.rounded();
+    return std::abs(rad) < 0x1p-27 ? rad : std::copysign(1.0, rad) * sineAhead(std::abs(rad), 0);
 }
 
 double cos(double rad) noexcept {
-    return std::isfinite(rad) ? sineCosine(std::abs(rad)).cosine.rounded() : kNan;
+    return std::isfinite(rad) ? sineAhead(std::abs(rad), 1) : kNan;
 }
 
 double tan(double rad) noexcept {
     if (!std::isfinite(rad)) return kNan;
     if (std::abs(rad) < 0x1p-27) return rad;
-    const auto [sine, cosine] = sineCosine(std::abs(rad));
-    return std::copysign(1.0, rad) * (sine / cosine).rounded();
+    const auto [quarters, rest] = reduce(std::abs(rad));
+    const Pair sine = sineSeries(rest), cosine = cosineSeries(rest);
+    return std::copysign(1.0, rad) * ((quarters & 1) != 0 ? -cosine / sine : sine / cosine).rounded();
 }
 
 double acos(double x) noexcept {

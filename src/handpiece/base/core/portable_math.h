@@ -18,7 +18,7 @@ namespace handpiece::core {
 
 static_assert(FLT_EVAL_METHOD == 0, "doubles must be computed as doubles: -msse2 -mfpmath=sse on 32-bit x86");
 
-/// Within 0.55 units, of any finite angle, however large.
+/// Within 0.8 units, the tangent within 1.1, of any finite angle, however large.
 [[nodiscard]] double sin(double rad) noexcept HANDPIECE_REALTIME;
 [[nodiscard]] double cos(double rad) noexcept HANDPIECE_REALTIME;
 [[nodiscard]] double tan(double rad) noexcept HANDPIECE_REALTIME;

@@ -7,29 +7,12 @@
 #include <numbers>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 
 namespace handpiece::instrument {
 namespace {
 
 constexpr double kRadSPerRpm = std::numbers::pi / 30.0;
-
-/// 1 - exp(-x) for x >= 0. Of plain arithmetic: the C library's exp differs in its last bit from one processor to the
-/// next, and a session must replay anywhere.
-double reached(double x) noexcept {
-    if (!(x < 64.0)) return 1.0;
-    int doublings = 0;
-    while (x > 0.25) {
-        x *= 0.5;
-        ++doublings;
-    }
-    double sum = 1.0;  // of (1 - exp(-x)) / x, to below 1e-17
-    for (int n = 12; n >= 2; --n)
-        sum = 1.0 - x / n * sum;
-    double e = x * sum;
-    for (; doublings > 0; --doublings)
-        e *= 2.0 - e;
-    return e;
-}
 
 }  // namespace
 
@@ -88,7 +71,7 @@ void Rotor::step(double pedal, double loadTorqueNmm, double periodS) noexcept {
     // The speed is monotonous in time, so it stops on the way exactly when it would end below zero.
     const double rate = slope / inertia_;
     const double gained =
-        slope > 0.0 ? accelerating / slope * reached(rate * periodS) : accelerating / inertia_ * periodS;
+        slope > 0.0 ? accelerating / slope * (1.0 - core::exp(-rate * periodS)) : accelerating / inertia_ * periodS;
     const double after = speedRadS_ + gained;
     speedRadS_ = after > 0.0 ? after : 0.0;
     stalled_ = speedRadS_ == 0.0 && atRestNmm > 0.0 && load >= atRestNmm;

@@ -2,9 +2,9 @@
 #include "handpiece/model/starter/shape.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstdint>
 #include <limits>
+
+#include "handpiece/base/core/portable_math.h"
 
 namespace handpiece::starter {
 namespace {
@@ -16,18 +16,8 @@ double smoothStep(double from, double to, double x) {
     return t * t * (3.0 - 2.0 * t);
 }
 
-/// log(x) for 1 <= x <= 64 by Halley's steps on steadyExp: the same bits on every machine.
-double steadyLog(double x) {
-    double y = (x - 1.0) / std::sqrt(x);
-    for (int i = 0; i < 3; ++i) {
-        const double e = steadyExp(y);
-        y += 2.0 * (x - e) / (x + e);
-    }
-    return y;
-}
-
 double gauss(double d, double sigma) {
-    return steadyExp(-0.5 * (d / sigma) * (d / sigma));
+    return core::exp(-0.5 * (d / sigma) * (d / sigma));
 }
 
 /// How steep the occlusal height field may count: turns a height difference into about a distance.
@@ -51,16 +41,6 @@ double chainValue(const Canal& canal, const Vec3& p) {
 }
 
 }  // namespace
-
-double steadyExp(double x) {
-    if (x < -700.0) return 0.0;
-    const double k = std::floor(x * 1.4426950408889634 + 0.5);
-    const double r = (x - k * 0.693147180369123816490) - k * 1.90821492927058770002e-10;
-    double e = 1.0;
-    for (int i = 11; i >= 1; --i)
-        e = 1.0 + e * r / i;
-    return e * std::bit_cast<double>((static_cast<std::uint64_t>(1023 + static_cast<std::int64_t>(k))) << 52);
-}
 
 double smoothMax(double a, double b, double width) {
     const double h = std::max(width - std::abs(a - b), 0.0) / width;
@@ -145,9 +125,9 @@ double ToothShape::occlusalHeight(double x, double y) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
         const double below = anatomy_.ridgeSoftness * (heights[i] - highest);
-        if (below > -16.0) sum += steadyExp(below);
+        if (below > -16.0) sum += core::exp(below);
     }
-    return highest + steadyLog(sum) / anatomy_.ridgeSoftness;
+    return highest + core::log(sum) / anatomy_.ridgeSoftness;
 }
 
 double ToothShape::body(const Vec3& p) const {
@@ -183,7 +163,7 @@ double ToothShape::fissureDepth(const Vec3& p) const {
         const double depth = s.fromDepth + t * (s.toDepth - s.fromDepth);
         if (depth <= deepest) continue;
         deepest =
-            std::max(deepest, depth * steadyExp(-0.5 * squared / (anatomy_.fissureSigma * anatomy_.fissureSigma)));
+            std::max(deepest, depth * core::exp(-0.5 * squared / (anatomy_.fissureSigma * anatomy_.fissureSigma)));
     }
     return deepest * smoothStep(anatomy_.fissureFromZ, anatomy_.fissureToZ, p.z());
 }

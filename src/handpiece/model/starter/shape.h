@@ -56,7 +56,5 @@ class ToothShape {
 [[nodiscard]] inline double smoothMin(double a, double b, double width) {
     return -smoothMax(-a, -b, width);
 }
-/// exp(x) for x <= 0 by exactly rounded operations only: the same bits on every machine.
-[[nodiscard]] double steadyExp(double x);
 
 }  // namespace handpiece::starter

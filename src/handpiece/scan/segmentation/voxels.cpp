@@ -301,97 +301,149 @@ Mask dilated(const Shape& shape, const Mask& mask) {
     return combined(shape, mask, true);
 }
 
+namespace {
+
+constexpr float kUnknown = 1e9f;
+
+/// Voxels of a layer by slice, as places in it: each slice is then one thread's own, at any number of threads.
+using PlacesBySlice = std::vector<std::vector<std::uint32_t>>;
+
+/// From how far, on the grid's lines through it, values change their sign beside voxel i of a row; 0: nowhere.
+float distanceToZero(const Shape& shape, const Field& values, int i, int j, int k) {
+    const std::size_t at = shape.index(i, j, k);
+    const std::array<int, 3> c{i, j, k};
+    const std::array<std::size_t, 3> strides{1, shape.rowStride(), shape.sliceStride()};
+    const float v = values[at];
+    const bool in = v > 0;
+    float inverse = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        float nearest = 2;
+        const auto cross = [&](float n) {
+            if ((n > 0) == in) return;
+            const float whole = std::abs(v) + std::abs(n);
+            nearest = std::min(nearest, whole > 0 ? std::abs(v) / whole : 0.5f);
+        };
+        if (c[axis] > 0) cross(values[at - strides[axis]]);
+        if (c[axis] + 1 < shape.size[axis]) cross(values[at + strides[axis]]);
+        if (nearest < 2) {
+            nearest = std::max(nearest, 1e-4f);
+            inverse += 1.0f / (nearest * nearest);
+        }
+    }
+    return inverse > 0 ? 1.0f / std::sqrt(inverse) : 0.0f;
+}
+
+/// The voxels of slice k beside the zero, and how far it is from them.
+void findBeside(const Shape& shape, const Field& values, int k, std::vector<std::uint32_t>& places,
+                std::vector<float>& distances) {
+    const int nx = shape.size[0], ny = shape.size[1], nz = shape.size[2];
+    std::vector<std::uint8_t> crosses(static_cast<std::size_t>(nx));
+    for (int j = 0; j < ny; ++j) {
+        const auto row = [&](int jj, int kk) {
+            return &values[shape.index(0, std::clamp(jj, 0, ny - 1), std::clamp(kk, 0, nz - 1))];
+        };
+        const float *own = row(j, k), *a = row(j - 1, k), *b = row(j + 1, k), *c = row(j, k - 1), *d = row(j, k + 1);
+        for (int i = 0; i < nx; ++i) {
+            const int in = own[i] > 0;
+            crosses[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(
+                (in ^ int{a[i] > 0}) | (in ^ int{b[i] > 0}) | (in ^ int{c[i] > 0}) | (in ^ int{d[i] > 0}));
+        }
+        for (int i = 0; i + 1 < nx; ++i) {
+            const auto changes = static_cast<std::uint8_t>(int{own[i] > 0} ^ int{own[i + 1] > 0});
+            crosses[static_cast<std::size_t>(i)] |= changes;
+            crosses[static_cast<std::size_t>(i) + 1] |= changes;
+        }
+        for (auto at = crosses.begin(); (at = std::find(at, crosses.end(), 1)) != crosses.end(); ++at) {
+            const int i = static_cast<int>(at - crosses.begin());
+            places.push_back(static_cast<std::uint32_t>(j * nx + i));
+            distances.push_back(distanceToZero(shape, values, i, j, k));
+        }
+    }
+}
+
+/// |grad| = 1 from the values around voxel `place` of a slice, first-order upwind.
+float solved(const Shape& shape, const Field& values, std::uint32_t place, int k) {
+    const auto nx = static_cast<std::uint32_t>(shape.size[0]);
+    const std::array<int, 3> c{static_cast<int>(place % nx), static_cast<int>(place / nx), k};
+    const std::array<std::size_t, 3> strides{1, shape.rowStride(), shape.sliceStride()};
+    const std::size_t at = shape.index(0, 0, k) + place;
+    std::array<float, 3> low{kUnknown, kUnknown, kUnknown};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (c[axis] > 0) low[axis] = std::min(low[axis], std::abs(values[at - strides[axis]]));
+        if (c[axis] + 1 < shape.size[axis]) low[axis] = std::min(low[axis], std::abs(values[at + strides[axis]]));
+    }
+    std::sort(low.begin(), low.end());
+    float d = low[0] + 1;
+    if (d > low[1]) {
+        d = 0.5f * (low[0] + low[1] + std::sqrt(std::max(0.0f, 2 - (low[0] - low[1]) * (low[0] - low[1]))));
+        if (d > low[2]) {
+            const float sum = low[0] + low[1] + low[2];
+            const float squares = low[0] * low[0] + low[1] * low[1] + low[2] * low[2];
+            d = (sum + std::sqrt(std::max(0.0f, sum * sum - 3 * (squares - 1)))) / 3;
+        }
+    }
+    return d;
+}
+
+/// The unknown voxels of slice k beside the layer; they are marked as found.
+void findNext(const Shape& shape, Field& values, int k, const PlacesBySlice& layer, std::vector<std::uint32_t>& next) {
+    next.clear();
+    float* own = &values[shape.index(0, 0, k)];
+    const auto take = [&](std::uint32_t place) {
+        float& v = own[place];
+        if (std::abs(v) != kUnknown) return;
+        v *= 2;
+        next.push_back(place);
+    };
+    const auto nx = static_cast<std::uint32_t>(shape.size[0]), count = static_cast<std::uint32_t>(shape.sliceStride());
+    const auto slice = static_cast<std::size_t>(k);
+    for (const std::uint32_t place : layer[slice]) {
+        const std::uint32_t i = place % nx;
+        if (i > 0) take(place - 1);
+        if (i + 1 < nx) take(place + 1);
+        if (place >= nx) take(place - nx);
+        if (place + nx < count) take(place + nx);
+    }
+    if (k > 0) std::for_each(layer[slice - 1].begin(), layer[slice - 1].end(), take);
+    if (slice + 1 < layer.size()) std::for_each(layer[slice + 1].begin(), layer[slice + 1].end(), take);
+}
+
+}  // namespace
+
 void redistance(const Shape& shape, Field& values, float band) {
     // Distances at the voxels beside the zero from where it crosses the grid's lines; further ones layer by layer from
-    // the ones already known (first-order upwind solution of |grad| = 1).
+    // the ones already known.
     const int layers = static_cast<int>(std::ceil(band)) + 1;
-    std::vector<std::vector<std::uint32_t>> beside(static_cast<std::size_t>(shape.size[2]));
-    std::vector<std::vector<float>> distances(static_cast<std::size_t>(shape.size[2]));
-    forRows(shape, [&](int j, int k) {
-        const std::size_t from = shape.index(0, j, k);
-        for (int i = 0; i < shape.size[0]; ++i) {
-            const std::size_t at = from + static_cast<std::size_t>(i);
-            const float v = values[at];
-            const bool in = v > 0;
-            float inverse = 0;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const int c = axis == 0 ? i : (axis == 1 ? j : k);
-                const std::size_t stride = axis == 0 ? 1 : (axis == 1 ? shape.rowStride() : shape.sliceStride());
-                float nearest = 2;
-                const auto cross = [&](float n) {
-                    if ((n > 0) == in) return;
-                    const float whole = std::abs(v) + std::abs(n);
-                    nearest = std::min(nearest, whole > 0 ? std::abs(v) / whole : 0.5f);
-                };
-                if (c > 0) cross(values[at - stride]);
-                if (c + 1 < shape.size[axis]) cross(values[at + stride]);
-                if (nearest < 2) {
-                    nearest = std::max(nearest, 1e-4f);
-                    inverse += 1.0f / (nearest * nearest);
-                }
-            }
-            if (inverse > 0) {
-                beside[static_cast<std::size_t>(k)].push_back(static_cast<std::uint32_t>(at));
-                distances[static_cast<std::size_t>(k)].push_back(1.0f / std::sqrt(inverse));
-            }
-        }
+    const auto slices = static_cast<std::size_t>(shape.size[2]);
+    PlacesBySlice layer(slices), next(slices);
+    std::vector<std::vector<float>> distances(slices);
+    const auto forSlices = [&](const auto& body) {
+        core::parallelFor(slices, 1, [&](std::size_t from, std::size_t to) {
+            for (std::size_t k = from; k < to; ++k)
+                body(k, &values[shape.index(0, 0, static_cast<int>(k))]);
+        });
+    };
+    const auto set = [&](const std::vector<std::uint32_t>& places, const std::vector<float>& to, float* slice) {
+        for (std::size_t n = 0; n < places.size(); ++n)
+            slice[places[n]] = std::copysign(to[n], slice[places[n]]);
+    };
+    forSlices(
+        [&](std::size_t k, const float*) { findBeside(shape, values, static_cast<int>(k), layer[k], distances[k]); });
+    forSlices([&](std::size_t k, float* slice) {
+        for (std::size_t n = 0; n < shape.sliceStride(); ++n)
+            slice[n] = slice[n] > 0 ? kUnknown : -kUnknown;
+        set(layer[k], distances[k], slice);
     });
-    constexpr float kUnknown = 1e9f;
-    core::parallelFor(values.size(), 1 << 18, [&](std::size_t from, std::size_t to) {
-        for (std::size_t n = from; n < to; ++n)
-            values[n] = values[n] > 0 ? kUnknown : -kUnknown;
-    });
-    std::vector<std::uint32_t> layer;
-    for (std::size_t k = 0; k < beside.size(); ++k)
-        for (std::size_t n = 0; n < beside[k].size(); ++n) {
-            float& v = values[beside[k][n]];
-            v = v > 0 ? distances[k][n] : -distances[k][n];
-            layer.push_back(beside[k][n]);
-        }
-    std::vector<std::uint32_t> next;
-    std::vector<float> solved;
     for (int round = 0; round < layers; ++round) {
-        next.clear();
-        for (const std::uint32_t at : layer)
-            forNeighbours(shape, at, [&](std::size_t n) {
-                if (std::abs(values[n]) == kUnknown) {
-                    values[n] = values[n] > 0 ? 2 * kUnknown : -2 * kUnknown;
-                    next.push_back(static_cast<std::uint32_t>(n));
-                }
-            });
-        solved.resize(next.size());
+        forSlices([&](std::size_t k, const float*) { findNext(shape, values, static_cast<int>(k), layer, next[k]); });
         // Twice: the second time a layer's voxels know each other.
         for (int pass = 0; pass < 2; ++pass) {
-            core::parallelFor(next.size(), 4096, [&](std::size_t from, std::size_t to) {
-                for (std::size_t n = from; n < to; ++n) {
-                    std::array<float, 3> low{kUnknown, kUnknown, kUnknown};
-                    const std::size_t at = next[n];
-                    const auto c = shape.at(at);
-                    for (std::size_t axis = 0; axis < 3; ++axis) {
-                        const std::size_t stride =
-                            axis == 0 ? 1 : (axis == 1 ? shape.rowStride() : shape.sliceStride());
-                        if (c[axis] > 0) low[axis] = std::min(low[axis], std::abs(values[at - stride]));
-                        if (c[axis] + 1 < shape.size[axis])
-                            low[axis] = std::min(low[axis], std::abs(values[at + stride]));
-                    }
-                    std::sort(low.begin(), low.end());
-                    float d = low[0] + 1;
-                    if (d > low[1]) {
-                        d = 0.5f *
-                            (low[0] + low[1] + std::sqrt(std::max(0.0f, 2 - (low[0] - low[1]) * (low[0] - low[1]))));
-                        if (d > low[2]) {
-                            const float sum = low[0] + low[1] + low[2];
-                            const float squares = low[0] * low[0] + low[1] * low[1] + low[2] * low[2];
-                            d = (sum + std::sqrt(std::max(0.0f, sum * sum - 3 * (squares - 1)))) / 3;
-                        }
-                    }
-                    solved[n] = d;
-                }
+            forSlices([&](std::size_t k, const float*) {
+                distances[k].resize(next[k].size());
+                for (std::size_t n = 0; n < next[k].size(); ++n)
+                    distances[k][n] = solved(shape, values, next[k][n], static_cast<int>(k));
             });
-            for (std::size_t n = 0; n < next.size(); ++n) {
-                float& v = values[next[n]];
-                v = v > 0 ? solved[n] : -solved[n];
-            }
+            forSlices([&](std::size_t k, float* slice) { set(next[k], distances[k], slice); });
         }
         layer.swap(next);
     }

@@ -328,7 +328,7 @@ class PointQuery {
     }
 
     void evaluate(const std::uint32_t* ids, int count) {
-        double d2[8];
+        double d2[8] = {};
         for (int first = 0; first < count; first += kDoubleLanes) {
             const Packet packet(tree_.triangles, ids + first, count - first);
             const Shape shape(packet);

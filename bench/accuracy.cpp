@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// accuracy [--faces N,N...] [--poses N]: the field method's depth against brute force on the starter molar, one line
-// per bur, face count and source of depth: error and time.
+// accuracy [--faces N,N...] [--poses N] [--bur NAME]: the field method's depth against brute force on the starter
+// molar, one line per bur, face count and source of depth: error and time. accuracy --cut [--json] [--voxel MM] ...:
+// the same after a cut, against the tooth minus the exact sweep.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "accuracy_cut.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/field/field_builder.h"
@@ -43,16 +45,15 @@ std::shared_ptr<const instrument::Bur> burOf(std::string_view name) {
     return std::make_shared<const instrument::Bur>(instrument::makeBur(name));
 }
 
-std::shared_ptr<const tooth::ToothModel> molarOf(std::size_t faces) {
+std::shared_ptr<const tooth::ToothModel> molarOf(std::size_t faces, double voxelMm = 0.05) {
     geometry::TriangleMesh mesh = starter::makeOuter(starter::ToothKind::lowerFirstMolar, faces);
     geometry::TriangleTree tree(mesh);
-    field::DistanceField field = field::FieldBuilder::fromSurface(mesh, tree, {}, {});
-    return std::make_shared<const tooth::ToothModel>(
-        tooth::ToothModel{"molar", std::move(mesh), std::move(tree), std::move(field)});
-}
-
-double uniform(std::mt19937_64& generator, double low, double high) {
-    return low + (high - low) * std::generate_canonical<double, 53>(generator);
+    field::FieldSettings settings;
+    settings.voxelMm = voxelMm;
+    field::DistanceField field = field::FieldBuilder::fromSurface(mesh, tree, {}, settings);
+    auto tissues = field::TissueMap::uniform(field, cases::Tissue::enamel);
+    return tooth::withTissues(tooth::ToothModel{"molar", std::move(mesh), std::move(tree), std::move(field)},
+                              std::move(tissues));
 }
 
 /// Over the crown, tilted by up to 15 degrees, lowered until the depth is the one drawn (even in its logarithm).
@@ -79,11 +80,6 @@ core::Pose drawPose(std::mt19937_64& generator, contact::Method& method, const c
         pose.positionMm.z() = low;
         return pose;
     }
-}
-
-double percentile(const std::vector<double>& ascending, double share) {
-    return ascending[std::min(ascending.size() - 1,
-                              static_cast<std::size_t>(share * static_cast<double>(ascending.size())))];
 }
 
 void report(const std::shared_ptr<const tooth::ToothModel>& tooth, const char* burName, contact::DepthSource source,
@@ -171,24 +167,68 @@ void reportOwnCavity(double deepestMm, int count) {
         percentile(times, 0.99), percentile(after, 0.5));
 }
 
+void reportCuts(std::size_t faces, double voxelMm, const std::string& only, const std::string& onlyCut, int poses,
+                bool json) {
+    const auto tooth = molarOf(faces, voxelMm);
+    if (json) fmt::print("[");
+    bool isFirst = true;
+    for (const char* name : kBurs)
+        for (const char* cut : kCuts) {
+            if ((!only.empty() && only != name) || (!onlyCut.empty() && onlyCut != cut)) continue;
+            const CutAccuracy a = measureCut(tooth, burOf(name), cut, static_cast<std::size_t>(poses), kSeed);
+            if (json)
+                fmt::print(
+                    "{}\n  {{\"bur\": \"{}\", \"cut\": \"{}\", \"voxel_mm\": {}, \"poses\": {}, "
+                    "\"err_med_um\": {:.4f}, \"err_p99_um\": {:.4f}, \"err_max_um\": {:.4f}, \"time_us\": {:.3f}, "
+                    "\"time_p99_us\": {:.3f}}}",
+                    isFirst ? "" : ",", name, cut, voxelMm, a.poses, a.errorMedianUm, a.errorP99Um, a.errorWorstUm,
+                    a.timeUs, a.timeP99Us);
+            else
+                fmt::print("{:<24} {:<9} {:>6} {:>6} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.2f} {:>9.2f}\n", name, cut,
+                           voxelMm, a.poses, a.errorMedianUm, a.errorP99Um, a.errorWorstUm, a.timeUs, a.timeP99Us);
+            std::fflush(stdout);
+            isFirst = false;
+        }
+    if (json) fmt::print("\n]\n");
+}
+
 int mainOf(int argc, char** argv) {
     std::vector<std::size_t> faces = {9760, 68151};
     int poses = 360;
-    std::string only;
+    bool cut = false, json = false;
+    double voxelMm = 0.05;
+    std::string only, onlyCut;
     for (int i = 1; i < argc; ++i) {
         const std::string_view option = argv[i];
-        if (i + 1 == argc || (option != "--faces" && option != "--poses" && option != "--bur")) {
-            fmt::print(stderr, "usage: accuracy [--faces N,N...] [--poses N] [--bur NAME]\n");
+        if (option == "--cut" || option == "--json") {
+            (option == "--cut" ? cut : json) = true;
+            continue;
+        }
+        if (i + 1 == argc || (option != "--faces" && option != "--poses" && option != "--bur" && option != "--voxel" &&
+                              option != "--only")) {
+            fmt::print(
+                stderr,
+                "usage: accuracy [--faces N,N...] [--poses N] [--bur NAME]\n"
+                "       accuracy --cut [--json] [--voxel MM] [--faces N] [--poses N] [--bur NAME] [--only CUT]\n");
             return 2;
         }
         const char* value = argv[++i];
         if (option == "--poses") poses = std::max(1, std::atoi(value));
         if (option == "--bur") only = value;
+        if (option == "--only") onlyCut = value;
+        if (option == "--voxel") voxelMm = std::atof(value);
         if (option == "--faces") {
             faces.clear();
             for (char* at = const_cast<char*>(value); *at != '\0'; at += *at == ',' ? 1 : 0)
                 faces.push_back(std::strtoul(at, &at, 10));
         }
+    }
+    if (cut) {
+        if (!json)
+            fmt::print("{:<24} {:<9} {:>6} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bur", "cut", "voxel", "poses",
+                       "med_um", "p99_um", "worst_um", "med_us", "p99_us");
+        reportCuts(faces.front(), voxelMm, only, onlyCut, poses, json);
+        return 0;
     }
     fmt::print("{:<24} {:>7} {:<6} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bur", "faces", "source", "poses", "med_um",
                "p99_um", "worst_um", "med_us", "p99_us");

@@ -18,7 +18,7 @@ namespace handpiece::field {
 
 struct FieldSettings {
     double voxelMm = 0.05;
-    double bandOutMm = 0.1;  ///< every point this near outside the surface lies in a brick
+    double bandOutMm = 0.15;  ///< every point this near outside the surface lies in a brick
     double bandInMm = 0.3;   ///< the same inside
 };
 

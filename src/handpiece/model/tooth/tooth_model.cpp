@@ -134,7 +134,7 @@ std::shared_ptr<const ToothModel> withTissues(ToothModel&& model, field::TissueM
         throw core::Error(what, "cutting", remedy);
     };
     model.settings = settings;
-    model.bandOutMm = std::max(field.bandOutMm, 2.0 * field.voxelMm);
+    model.bandOutMm = std::max(field.bandOutMm, 3.0 * field.voxelMm);
     double& band = model.settings.bandMm;
     if (band == 0.0) band = std::max(0.2, 3.0 * field.voxelMm);
     const double least = 2.0 * field.voxelMm, most = std::max(kMaxBandMm, 4.0 * field.voxelMm);

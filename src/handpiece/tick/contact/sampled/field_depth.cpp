@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/instrument/piece.h"
@@ -25,6 +26,13 @@ constexpr double kWindow = 0.75;
 constexpr double kInnerWindowMm = 0.09;
 constexpr double kFirstLookMm = 0.03, kLastLookMm = 0.004, kAnchorMm = 0.05;
 constexpr int kLooks = 12;
+/// The same once more by what the field is between its nodes.
+constexpr double kFirstSharpLookMm = 0.016, kLastSharpLookMm = 9e-4;
+constexpr int kSharpLooks = 8, kSharpClimbs = 2;
+/// A mixed cell is off by less than that where two walls meet in it.
+constexpr double kMixedErrorMm = 0.02;
+/// What a sharp climb may still find above the place where the mixed one ended.
+constexpr double kClimbMm = 0.004;
 constexpr double kOnSurfaceMm = 2e-5;
 constexpr int kProjections = 3;
 constexpr double kShellMm = 0.15, kShellSpacingMm = 0.12;
@@ -78,6 +86,7 @@ double inscribedAt(const instrument::Bur& bur, const Vec2& p, const Vec2& normal
 FieldDepth::FieldDepth(const field::DistanceField& field, const instrument::Bur& bur, core::SimdLevel level)
     : field_(field),
       bur_(bur),
+      sharp_(field, level),
       view_(field.view()),
       kernels_(ringKernelsFor(level)),
       outMm_(kSaturated * field.reach().outMm),
@@ -277,17 +286,30 @@ std::size_t FieldDepth::nearestSpot(std::size_t from, double rho, double z) cons
 /// inwards is a choice, that takes the place of going along the outline.
 class FieldDepth::DepthAscent {
   public:
-    DepthAscent(const FieldDepth& depth, const BurFrame& frame, const Start& start)
+    DepthAscent(FieldDepth& depth, const BurFrame& frame, const Start& start)
         : depth_(depth), frame_(frame), at_(start.spot), in_(start.inMm) {
         anchor(start.spot, start.cosine, start.sine);
     }
 
-    void run(FieldTouch& best) noexcept {
+    /// Up to the top between the nodes' values as they are mixed, and what the depth is there.
+    double climb(FieldTouch& best) noexcept {
         double window = kFirstLookMm;
         for (int i = 0; i < kLooks && window > kLastLookMm; ++i) {
-            const double reached = look(window);
-            if (top_ + 3.0 * window < best.depthMm) return;
+            const double reached = look(window, false);
+            if (top_ + 3.0 * window + kMixedErrorMm < best.depthMm) return top_;
             if (reached < 0.7) window *= 0.4;
+            if (std::abs(u_) > kAnchorMm || std::abs(arc_) > kAnchorMm) anchorAnew();
+        }
+        const double here = settle(best);
+        return here;
+    }
+    /// On from there by what the field is between its nodes.
+    void climbSharply(FieldTouch& best) noexcept {
+        double window = kFirstSharpLookMm;
+        for (int i = 0; i < kSharpLooks && window > kLastSharpLookMm; ++i) {
+            const double reached = look(window, true);
+            if (top_ + 2.0 * window < best.depthMm) return;
+            if (reached < 0.7) window *= 0.25;
             if (std::abs(u_) > kAnchorMm || std::abs(arc_) > kAnchorMm) anchorAnew();
         }
         settle(best);
@@ -342,7 +364,7 @@ class FieldDepth::DepthAscent {
     }
 
     /// Looks around and steps towards the top; returns how far, in windows.
-    double look(double window) noexcept {
+    double look(double window, bool sharply) noexcept {
         AroundQuery query;
         store(query.centre, place_);
         store(query.alongU, alongU_);
@@ -368,7 +390,13 @@ class FieldDepth::DepthAscent {
         }
         query.reachMm = 0.2 + in_;
         float distance[8];
-        depth_.kernels_.around(depth_.view_, query, distance);
+        if (sharply)
+            for (int i = 0; i < 8; ++i)
+                distance[i] = static_cast<float>(depth_.sharp_.distance(
+                    place_ + static_cast<double>(query.u[i]) * alongU_ + static_cast<double>(query.arc[i]) * alongArc_ -
+                    static_cast<double>(query.in[i]) * normal_));
+        else
+            depth_.kernels_.around(depth_.view_, query, distance);
         double value[8];
         int highest = 0;
         for (int i = 0; i < 8; ++i) {
@@ -408,23 +436,26 @@ class FieldDepth::DepthAscent {
     }
 
     /// Onto the tooth's surface, and what the depth is there.
-    void settle(FieldTouch& best) noexcept {
+    double settle(FieldTouch& best) noexcept {
+        double deepest = -std::numeric_limits<double>::infinity();
         for (int i = 0; i < kProjections; ++i) {
             double alongU = 0.0, inwards = 0.0;
             stepsTo(u_, arc_, in_, alongU, inwards);
             const Vec3 p = place_ + alongU * alongU_ + arc_ * alongArc_ - inwards * normal_;
-            const double d = depth_.field_.distance(p), depth = depth_.depthAt(frame_, p, d);
+            const double d = depth_.sharp_.distance(p), depth = depth_.depthAt(frame_, p, d);
             // Outside the tooth a field that has been cut may tell less than the distance.
             const bool trusted = d <= kOnSurfaceMm || in_ <= 0.0;
+            if (trusted) deepest = std::max(deepest, depth);
             if (trusted && depth > best.depthMm) {
                 best.depthMm = depth;
                 best.normal = awayAt(p);
                 best.surfaceMm = p - d * best.normal;
             }
             const double next = std::clamp(in_ - d, 0.0, most(u_));
-            if (std::abs(next - in_) < kOnSurfaceMm || (spot_->isCorner && d <= 0.0)) return;
+            if (std::abs(next - in_) < kOnSurfaceMm || (spot_->isCorner && d <= 0.0)) break;
             in_ = next;
         }
+        return deepest;
     }
     [[nodiscard]] Vec3 awayAt(const Vec3& p) const noexcept {
         if (spot_->isCorner) {
@@ -438,7 +469,7 @@ class FieldDepth::DepthAscent {
                     .normalized();
     }
 
-    const FieldDepth& depth_;
+    FieldDepth& depth_;
     const BurFrame& frame_;
     std::size_t at_;
     const Spot* spot_ = nullptr;
@@ -469,16 +500,17 @@ FieldTouch FieldDepth::search(const core::Pose& burInTooth, SurfaceSampler& ring
     std::array<RingPoint, kStarts> points;
     const std::size_t count =
         pickNearest(arrays, frame, nullptr, sensed ? windowMm_ : 2.0 * windowMm_, kApartMm, points);
+    std::array<Start, kStarts> starts;
+    std::size_t found = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const RingPoint& p = points[i];
         if (p.gapMm <= -inMm_) continue;
         const std::size_t spot = sensed ? p.ring : probeSpot_[p.ring];
         const double in = spots_[spot].isCorner ? 0.0 : std::max(0.0, -p.gapMm);
-        DepthAscent(
-            *this, frame,
-            {spot, static_cast<double>(arrays.cosines[p.angle]), static_cast<double>(arrays.sines[p.angle]), in})
-            .run(best);
+        starts[found++] = {spot, static_cast<double>(arrays.cosines[p.angle]),
+                           static_cast<double>(arrays.sines[p.angle]), in};
     }
+    climbFrom(frame, {starts.data(), found}, best);
     return best;
 }
 
@@ -500,26 +532,42 @@ void FieldDepth::searchInside(const BurFrame& frame, FieldTouch& best) noexcept 
     if (inner_.rings.empty()) return;
     sense(inner_, frame);
     std::array<RingPoint, kStarts> points;
+    std::array<Start, kStarts> starts;
     const std::size_t count = pickNearest(inner_, frame, innerDepth_.data(), kInnerWindowMm, kApartMm, points);
     for (std::size_t i = 0; i < count; ++i) {
         const RingPoint& p = points[i];
-        DepthAscent(*this, frame,
-                    {innerSpot_[p.ring], static_cast<double>(inner_.cosines[p.angle]),
-                     static_cast<double>(inner_.sines[p.angle]), static_cast<double>(innerIn_[p.ring])})
-            .run(best);
+        starts[i] = {innerSpot_[p.ring], static_cast<double>(inner_.cosines[p.angle]),
+                     static_cast<double>(inner_.sines[p.angle]), static_cast<double>(innerIn_[p.ring])};
+    }
+    climbFrom(frame, {starts.data(), count}, best);
+}
+
+/// All of them in the mixed field, then the highest on between the nodes.
+void FieldDepth::climbFrom(const BurFrame& frame, std::span<const Start> starts, FieldTouch& best) noexcept {
+    std::array<std::optional<DepthAscent>, kStarts> ascents;
+    std::array<double, kStarts> tops;
+    for (std::size_t i = 0; i < starts.size(); ++i)
+        tops[i] = ascents[i].emplace(*this, frame, starts[i]).climb(best);
+    for (int climbs = 0; climbs < kSharpClimbs; ++climbs) {
+        std::size_t top = kStarts;
+        for (std::size_t i = 0; i < starts.size(); ++i)
+            if (ascents[i] && (top == kStarts || tops[i] > tops[top])) top = i;
+        if (top == kStarts || tops[top] + kClimbMm < best.depthMm) return;
+        ascents[top]->climbSharply(best);
+        ascents[top].reset();
     }
 }
 
-void FieldDepth::takeAxis(const BurFrame& frame, double z, FieldTouch& best) const noexcept {
+void FieldDepth::takeAxis(const BurFrame& frame, double z, FieldTouch& best) noexcept {
     Vec3 p = frame.onAxis(z);
-    double d = field_.distance(p);
+    double d = sharp_.distance(p);
     const Vec3 away = outward(p);
     Vec3 q = p;
     if (d > 0.0) {  // beside an edge a field that has been cut tells less than the distance: ask on the surface
         for (int i = 0; i < kProjections; ++i)
-            q -= field_.distance(q) * field_.normal(q);
+            q -= sharp_.distance(q) * sharp_.normal(q);
         p = q;
-        d = field_.distance(p);
+        d = sharp_.distance(p);
     } else {
         q = p - d * away;
     }
@@ -566,7 +614,7 @@ double FieldDepth::deepestOfAxis(const BurFrame& frame, double& topZ) const noex
     return scanAxis(frame, low, length / steps, steps + 1, topZ);
 }
 
-void FieldDepth::climbAxis(const BurFrame& frame, double top, double topZ, FieldTouch& best) const noexcept {
+void FieldDepth::climbAxis(const BurFrame& frame, double top, double topZ, FieldTouch& best) noexcept {
     for (double step = 0.25 * kAxisSpacingMm; step > 1e-4; step *= 0.25) {
         double z = topZ;
         const double value = scanAxis(frame, std::max(axis_.front().zMm, topZ - 3.5 * step), step, 8, z);

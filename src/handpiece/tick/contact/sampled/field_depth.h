@@ -3,9 +3,11 @@
 /// @file
 /// Depth from the distance field alone, as after a cut. Private to this room.
 
+#include <span>
 #include <vector>
 
 #include "handpiece/base/core/simd.h"
+#include "handpiece/model/field/sharp_lookup.h"
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/tick/contact/method.h"
 #include "handpiece/tick/contact/sampled/ring_arrays.h"
@@ -49,6 +51,7 @@ class FieldDepth {
         double cosine, sine, inMm;
     };
     class DepthAscent;
+    void climbFrom(const BurFrame& frame, std::span<const Start> starts, FieldTouch& best) noexcept;
     void addSpots();
     void measureInscribed();
     void measureRoom();
@@ -59,8 +62,8 @@ class FieldDepth {
     [[nodiscard]] double scanAxis(const BurFrame& frame, double fromZ, double step, int count,
                                   double& topZ) const noexcept;
     [[nodiscard]] double deepestOfAxis(const BurFrame& frame, double& topZ) const noexcept;
-    void climbAxis(const BurFrame& frame, double top, double topZ, FieldTouch& best) const noexcept;
-    void takeAxis(const BurFrame& frame, double z, FieldTouch& best) const noexcept;
+    void climbAxis(const BurFrame& frame, double top, double topZ, FieldTouch& best) noexcept;
+    void takeAxis(const BurFrame& frame, double z, FieldTouch& best) noexcept;
     [[nodiscard]] core::Vec3 outward(const core::Vec3& p) const noexcept;
     [[nodiscard]] double radiusAt(double z) const noexcept;
     [[nodiscard]] double depthAt(const BurFrame& frame, const core::Vec3& p, double distanceMm) const noexcept;
@@ -68,6 +71,7 @@ class FieldDepth {
 
     const field::DistanceField& field_;
     const instrument::Bur& bur_;
+    field::SharpLookup sharp_;
     field::FieldView view_;
     RingKernels kernels_;
     double outMm_, inMm_, clearMm_;  ///< values between -inMm_ and outMm_ are distances

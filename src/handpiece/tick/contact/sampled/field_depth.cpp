@@ -32,7 +32,7 @@ constexpr int kSharpLooks = 8, kSharpClimbs = 2;
 /// A mixed cell is off by less than that where two walls meet in it.
 constexpr double kMixedErrorMm = 0.02;
 /// What a sharp climb may still find above the place where the mixed one ended.
-constexpr double kClimbMm = 0.004;
+constexpr double kClimbMm = 0.004, kGainMm = 0.001;
 constexpr double kOnSurfaceMm = 2e-5;
 constexpr int kProjections = 3;
 constexpr double kShellMm = 0.15, kShellSpacingMm = 0.12;
@@ -305,11 +305,13 @@ class FieldDepth::DepthAscent {
     }
     /// On from there by what the field is between its nodes.
     void climbSharply(FieldTouch& best) noexcept {
-        double window = kFirstSharpLookMm;
+        double window = kFirstSharpLookMm, last = -std::numeric_limits<double>::infinity();
         for (int i = 0; i < kSharpLooks && window > kLastSharpLookMm; ++i) {
             const double reached = look(window, true);
             if (top_ + 2.0 * window < best.depthMm) return;
-            if (reached < 0.7) window *= 0.25;
+            // Along a wall that follows the bur there is way without gain.
+            if (reached < 0.7 || top_ < last + kGainMm) window *= 0.25;
+            last = top_;
             if (std::abs(u_) > kAnchorMm || std::abs(arc_) > kAnchorMm) anchorAnew();
         }
         settle(best);

@@ -194,7 +194,7 @@ class FieldMethod final : public Method {
             setFar(burInTooth, clear);
             return;
         }
-        const FieldTouch found = field_.search(burInTooth, rings_);
+        const FieldTouch found = field_.search(burInTooth, sharpRings_ ? *sharpRings_ : rings_);
         result.slackMm = slackMm_;
         result.depthMm = std::max(found.depthMm, -settings_.reachMm);
         if (!(found.depthMm >= -settings_.reachMm)) {

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
+#include "handpiece/app/simulation/tissue_export.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/model/case/attempt.h"
 #include "studies/csv.h"
 #include "studies/progress_bar.h"
 
@@ -19,14 +23,34 @@ struct ProbeOptions {
     std::string poses, out = "-";
 };
 
+/// On a tooth as it was cut, in an attempt or at a session's end, or on one that never was.
+std::unique_ptr<contact::Method> methodOf(const ProbeOptions& o, const MethodRegistry& methods) {
+    const ContactInputs& in = o.inputs;
+    std::error_code error;
+    const bool exists = std::filesystem::exists(in.tooth, error);
+    const bool isSession = exists && std::filesystem::path(in.tooth).extension() == ".h5";
+    if (!isSession && !(exists && cases::isAttempt(in.tooth)))
+        return makeMethod(in.method, methods, loadTooth(in), loadBur(in.bur));
+    if (in.method != "field")
+        throw core::Error("a tooth that was cut is felt by the method 'field' alone", "--method " + in.method,
+                          "leave --method out, or give the case");
+    core::setThreadCount(in.threads);
+    studies::ProgressBar preparing("preparing the tooth");
+    const simulation::ToothOfFile found =
+        simulation::toothOf(in.tooth, 1e-3 * in.voxelUm, !in.noCache, preparing.listener());
+    preparing.finish();
+    const auto cut = std::make_shared<tooth::ToothState>(found.base);
+    (void)cut->restore(found.state, 0, found.state.bricks.size());
+    return contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut), loadBur(in.bur));
+}
+
 void probe(const ProbeOptions& o, const MethodRegistry& methods) {
     const studies::CsvTable table = studies::readCsv(o.poses, {"x", "y", "z", "qw", "qx", "qy", "qz"});
     std::vector<core::Pose> poses;
     for (std::size_t i = 0; i < table.rows.size(); ++i)
         poses.push_back(studies::poseFrom(table.rows[i], 0, table, i));
     studies::TextWriter out(o.out);  // first: a place that cannot be written is told before the work
-    const auto tooth = loadTooth(o.inputs);
-    const auto method = makeMethod(o.inputs.method, methods, tooth, loadBur(o.inputs.bur));
+    const auto method = methodOf(o, methods);
     out.write("depth_mm,nx,ny,nz,area_mm2,tissue,time_ns\n");
     contact::PatchSet patches;
     for (const core::Pose& pose : poses) {
@@ -53,6 +77,7 @@ void addProbeCommand(Command& app, const MethodRegistry& methods) {
         .required();
     command.option("--out", options->out, "CSV to write; - for standard output").showDefault();
     command.footer(
+        "--tooth also takes an attempt or a session (.h5): the tooth as it was cut.\n"
         "Depth is positive inside, minus the distance outside; beyond 5 mm it is a bound and the normal is 0.\n"
         "Example:\n  handpiece probe --tooth molar --bur round-4 --poses poses.csv --method field --out out.csv");
     command.callback([options, &methods] { probe(*options, methods); });

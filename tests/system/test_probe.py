@@ -94,6 +94,19 @@ class Probe(SystemTest):
             self.assertAlmostEqual(float(a["depth_mm"]), float(b["depth_mm"]), delta=1e-6)
             self.assertAlmostEqual(float(a["nz"]), -float(b["nz"]), delta=1e-6)
 
+    def test_a_session_is_probed_as_it_left_the_tooth(self):
+        block = write_stl(self.folder / "block.stl", box((-2, -2, -2), (2, 2, 0)))
+        self.ok("run", "--tooth", block, "--bur", "330", "--voxel", "100", "--motion", "plunge", "--depth", "0.8", "--out",
+                self.folder / "cut")
+        session = self.folder / "cut" / "session.h5"
+        in_it = (0, 0, -0.3)
+        uncut = self.probe(block, "330", [in_it], "--voxel", "100")
+        cut = self.probe(session, "330", [in_it])
+        self.assertAlmostEqual(float(uncut[0]["depth_mm"]), 0.3, delta=1e-6)
+        self.assertLess(float(cut[0]["depth_mm"]), 0.01)  # there is room now
+        self.refused("probe", "--tooth", session, "--bur", "330", "--method", "hull", "--poses", "-", stdin=poses(in_it),
+                     mentions=("--method hull",))
+
     def test_files_and_pipes_give_the_same(self):
         text = poses((0, 0, 4.1), (0, 0, 3.9))
         (self.folder / "poses.csv").write_text("# a comment\n\n" + text.replace("\n", "\r\n"))

@@ -212,7 +212,7 @@ StateDelta decodeState(std::span<const std::byte> data, const ToothModel& model,
             "use a newer Handpiece");
     if (header.version == 0 || header.headerHash != headerHashOf(header)) throw damaged();
     if (header.key != model.identity)
-        throw core::Error("the cut state belongs to another tooth, or to another voxel or band", where,
+        throw core::Error("the cut state belongs to another tooth, another voxel or band, or an earlier Handpiece", where,
                           "open it with the case and the settings that it was saved with");
     const std::span<const std::byte> payload = data.subspan(sizeof header);
     if (payload.size() < header.payloadBytes) throw cutShort();

@@ -78,7 +78,7 @@ TEST(OpenHapticsEndToEnd, aHandCutsACavityAndFeelsIt) {
                                                cutting::Cutter::Settings{})},
             force::defaultParameters());
         const auto then = std::chrono::steady_clock::now();
-        runAttended(haptic, true, [&](const std::string&) {
+        runAttended(haptic, true, [&](const rt::SchedulingGrant&) {
             haptic.fetch(
                 [&](const messages::HapticSample& s) {
                     removedMm3 = 0.0;

@@ -120,7 +120,7 @@ TEST(SurfaceUpdate, GivesTheSameMeshesAsMakingThemAnew) {
 
 TEST(SurfaceUpdate, GivesTheSameMeshesAfterEveryTickOfARealCut) {
     std::mt19937_64 random(test::seed());
-    for (const char* name : {"330", "cylinder-flat:1.0x4.0"}) {
+    for (const char* name : {"330", "cylinder-flat:1.0x4.0", "inverted-cone:1.2x1.0"}) {
         Cutting cutting;
         const instrument::Bur bur = instrument::makeBur(name);
         cutting::Sweeper sweeper(cutting.field, bur, core::simdLevel());

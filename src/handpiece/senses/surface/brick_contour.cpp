@@ -74,6 +74,7 @@ class Sampler {
             takeLayers(axis, up != 0, from, scale);
         }
         gradientReady_.fill(0);
+        kinked_.fill(0);
     }
 
     [[nodiscard]] float at(int i) const { return value_[static_cast<std::size_t>(i)]; }
@@ -83,11 +84,19 @@ class Sampler {
         Float3& g = gradient_[static_cast<std::size_t>(node)];
         std::uint64_t& word = gradientReady_[static_cast<std::size_t>(node / 64)];
         if ((word >> (node % 64) & 1) == 0) {
-            word |= std::uint64_t{1} << (node % 64);
+            const std::uint64_t bit = std::uint64_t{1} << (node % 64);
+            word |= bit;
             for (int k = 0; k < 3; ++k)
                 g[static_cast<std::size_t>(k)] = slope(i, kStride[k]);
+            if (isKink(i, kStride[0]) || isKink(i, kStride[1]) || isKink(i, kStride[2]))
+                kinked_[static_cast<std::size_t>(node / 64)] |= bit;
         }
         return g;
+    }
+
+    /// The gradient there was asked for, and it looked two nodes on.
+    [[nodiscard]] bool isKinked(int node) const {
+        return (kinked_[static_cast<std::size_t>(node / 64)] >> (node % 64) & 1) != 0;
     }
 
     /// Where the surface crosses the edge that begins at node `i` along `axis`: a share of it, and the gradient there.
@@ -155,15 +164,20 @@ class Sampler {
     /// carried to the node by half of that bend (a one-sided difference of second order).
     [[nodiscard]] float slope(int i, int s) const {
         const float below = at(i) - at(i - s), above = at(i + s) - at(i);
-        if (std::abs(above - below) <= kKink) return 0.5f * (below + above);
+        if (!isKink(i, s)) return 0.5f * (below + above);
         const float below2 = at(i - s) - at(i - 2 * s), above2 = at(i + 2 * s) - at(i + s);
         const float bendBelow = below - below2, bendAbove = above2 - above;
         return std::abs(bendBelow) < std::abs(bendAbove) ? below + 0.5f * bendBelow : above - 0.5f * bendAbove;
     }
 
+    [[nodiscard]] bool isKink(int i, int s) const {
+        const float below = at(i) - at(i - s), above = at(i + s) - at(i);
+        return std::abs(above - below) > kKink;
+    }
+
     std::array<float, kSide * kSide * kSide> value_;
     std::array<Float3, field::kBrickValues> gradient_;
-    std::array<std::uint64_t, (field::kBrickValues + 63) / 64> gradientReady_;
+    std::array<std::uint64_t, (field::kBrickValues + 63) / 64> gradientReady_, kinked_;
 };
 
 /// A plane through a crossing, in voxels from the brick's node 0.
@@ -318,6 +332,7 @@ class Contourer {
         sides |= ((fresh & 0x03) != 0 ? 1u : 0u) | ((fresh & 0xc0) != 0 ? 2u : 0u);
         sampler_.gather(source, dense, own, sides);
         out.cases.fill(0);
+        out.kinked.fill(0);
         out.vertices.clear();
         out.reach = 0;
         planeCount_ = 0;
@@ -403,6 +418,8 @@ class Contourer {
         noteReach(out, {x, y, z});
         const auto number = static_cast<std::size_t>(x + 8 * (y + 8 * z));
         out.cases[number] = before.cases[number];
+        out.kinked[number >> 3] =
+            static_cast<std::uint8_t>(out.kinked[number >> 3] | (before.kinked[number >> 3] & 1 << x));
         out.first[number] = static_cast<std::uint16_t>(out.vertices.size());
         const auto first = before.vertices.begin() + before.first[number];
         out.vertices.insert(out.vertices.end(), first, first + cases_[before.cases[number]].sheets);
@@ -423,6 +440,9 @@ class Contourer {
                 if (cell.sheetOf[cell.edges[i]] == sheet) planes[count++] = &planeOn(x, y, z, cell.edges[i]);
             addVertex(out, number, at, planes, count, cell.sheets == 1);
         }
+        for (int c = 0; c < 8; ++c)
+            if (sampler_.isKinked(x + (c & 1) + kBrickNodes * (y + (c >> 1 & 1) + kBrickNodes * (z + (c >> 2)))))
+                out.kinked[number >> 3] = static_cast<std::uint8_t>(out.kinked[number >> 3] | 1 << x);
     }
 
     void addVertex(BrickContour& out, std::uint16_t number, const int (&at)[3], const Plane* const* planes, int count,
@@ -541,8 +561,9 @@ class Contourer {
 
 }  // namespace
 
-CellMask cellsThatAsk(const NodeMask* own, const std::array<const NodeMask*, 6>& beside) {
-    // The nodes a cell looks at: its own, and from each of them two on along every axis. Bit x + kApron of a row.
+CellMask cellsThatAsk(const NodeMask* own, const std::array<const NodeMask*, 6>& beside, const CellMask* kinked) {
+    // The nodes a cell looks at: its own, and from each of them one on along every axis, or two where a kink is. Bit
+    // x + kApron of a row.
     constexpr int kNodes = kBrickNodes, kCells = kNodes - 1;
     std::array<std::uint16_t, kSide * kSide> changed{};
     const auto row = [&](int y, int z) -> std::uint16_t& {
@@ -565,21 +586,27 @@ CellMask cellsThatAsk(const NodeMask* own, const std::array<const NodeMask*, 6>&
                 if (beside[5] != nullptr) put(q, kCells + layer, of(*beside[5], q, layer) << kApron);
             }
         }
-    std::array<unsigned, kNodes * kNodes> asked;  // bit x of row y + 9 z: by a cell that has this node
+    // Bit x of row y + 9 z: by a cell that has this node; `far`: if it has a kink.
+    std::array<unsigned, kNodes * kNodes> near, far;
     for (int z = 0; z < kNodes; ++z)
         for (int y = 0; y < kNodes; ++y) {
             const unsigned here = row(y, z);
-            unsigned bits = here | here << 1 | here << 2 | here >> 1 | here >> 2;
-            for (int d = 1; d <= kApron; ++d)
-                bits |= row(y - d, z) | row(y + d, z) | row(y, z - d) | row(y, z + d);
-            asked[static_cast<std::size_t>(y + kNodes * z)] = bits >> kApron;
+            const unsigned one =
+                here | here << 1 | here >> 1 | row(y - 1, z) | row(y + 1, z) | row(y, z - 1) | row(y, z + 1);
+            const unsigned two = here << 2 | here >> 2 | row(y - 2, z) | row(y + 2, z) | row(y, z - 2) | row(y, z + 2);
+            near[static_cast<std::size_t>(y + kNodes * z)] = one >> kApron;
+            far[static_cast<std::size_t>(y + kNodes * z)] = (one | two) >> kApron;
         }
     CellMask cells;
     for (std::size_t z = 0; z < 8; ++z)
         for (std::size_t y = 0; y < 8; ++y) {
             const std::size_t at = y + kNodes * z;
-            const unsigned bits = asked[at] | asked[at + 1] | asked[at + kNodes] | asked[at + kNodes + 1];
-            cells[y + 8 * z] = static_cast<std::uint8_t>(bits | bits >> 1);
+            const auto cellsOf = [&](const auto& rows) {
+                const unsigned bits = rows[at] | rows[at + 1] | rows[at + kNodes] | rows[at + kNodes + 1];
+                return bits | bits >> 1;
+            };
+            const unsigned hasKink = kinked != nullptr ? (*kinked)[y + 8 * z] : 0u;
+            cells[y + 8 * z] = static_cast<std::uint8_t>(cellsOf(near) | (cellsOf(far) & hasKink));
         }
     return cells;
 }

@@ -22,6 +22,11 @@ struct SheetVertex {
     friend bool operator==(const SheetVertex&, const SheetVertex&) = default;
 };
 
+/// Bit x of row y + 9 z: a node of a brick.
+using NodeMask = std::array<std::uint16_t, 81>;
+/// Bit x of row y + 8 z: a cell of a brick.
+using CellMask = std::array<std::uint8_t, 64>;
+
 /// What other bricks and the triangles need of a brick. Depends on the brick's values and on two layers of nodes of the
 /// neighbours named by `reach`.
 struct BrickContour {
@@ -30,16 +35,13 @@ struct BrickContour {
     std::array<std::uint16_t, 512> first;  ///< of a cell that the surface passes through: its first vertex
     std::vector<SheetVertex> vertices;     ///< by cell, then by sheet
     std::uint8_t reach = 0;  ///< bit 2 k: depends on the brick below along axis k; 2 k + 1: on the one above
+    CellMask kinked;         ///< cells that looked two nodes on from their own; the others looked one on
 };
 
-/// Bit x of row y + 9 z: a node of a brick.
-using NodeMask = std::array<std::uint16_t, 81>;
-/// Bit x of row y + 8 z: a cell of a brick.
-using CellMask = std::array<std::uint8_t, 64>;
-
 /// Cells that ask for the value of a node that has changed: of those changed in the brick itself, and in the six beside
-/// it (2 k: below along axis k); null where none has.
-[[nodiscard]] CellMask cellsThatAsk(const NodeMask* own, const std::array<const NodeMask*, 6>& beside);
+/// it (2 k: below along axis k); null where none has. `kinked`: of the brick's contour; null where it has none.
+[[nodiscard]] CellMask cellsThatAsk(const NodeMask* own, const std::array<const NodeMask*, 6>& beside,
+                                    const CellMask* kinked);
 /// Cells of `mask` through which the surface passes.
 [[nodiscard]] bool hasActive(const CellMask& mask, const BrickContour& contour);
 /// Who sees that `before` has become `now`. Bit 0: they differ at all; bit s > 0: they differ in a cell that the brick

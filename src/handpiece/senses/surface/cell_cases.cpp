@@ -80,4 +80,14 @@ const std::array<std::uint8_t, 256>& ambiguousFaces() {
     return all;
 }
 
+const std::array<bool, 256>& plainCases() {
+    static const std::array<bool, 256> all = [] {
+        std::array<bool, 256> plain;
+        for (std::size_t i = 0; i < plain.size(); ++i)
+            plain[i] = cellCases()[i].sheets == 1 && ambiguousFaces()[i] == 0;
+        return plain;
+    }();
+    return all;
+}
+
 }  // namespace handpiece::surface

@@ -24,6 +24,8 @@ inline constexpr std::size_t kCellCases = 1u << 14;
 
 /// Faces of the first 256 cases where the inside corners are diagonal to each other.
 [[nodiscard]] const std::array<std::uint8_t, 256>& ambiguousFaces();
+/// Of the first 256 cases those with one sheet and no such face.
+[[nodiscard]] const std::array<bool, 256>& plainCases();
 /// Corners of a face in turn.
 [[nodiscard]] constexpr std::array<int, 4> faceCorners(int face) {
     const int axis = face / 2, at = (face & 1) << axis, u = 1 << ((axis + 1) % 3), w = 1 << ((axis + 2) % 3);

@@ -244,7 +244,8 @@ std::vector<std::uint32_t> Surface::update(std::span<const std::uint32_t> touche
         std::array<const NodeMask*, 6> around{};
         for (std::size_t side = 0; side < 6; ++side)
             if (const Change* change = changeIn(beside(dense, side))) around[side] = &change->nodes;
-        const CellMask dirty = cellsThatAsk(own != nullptr ? &own->nodes : nullptr, around);
+        const CellMask dirty = cellsThatAsk(own != nullptr ? &own->nodes : nullptr, around,
+                                            brick != nullptr ? &brick->contour.kinked : nullptr);
         const bool mayMove = brick == nullptr || brick->level != levels_[dense] || (own != nullptr && own->hasTurned) ||
                              hasActive(dirty, brick->contour);
         seen[i] = mayMove ? contour(dense, &dirty) : 0;

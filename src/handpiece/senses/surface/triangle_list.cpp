@@ -94,6 +94,7 @@ bool TriangleList::fallsTogether(const Corner& from, const Corner& to, unsigned 
     if (!fine_ && (from.brick->level > 0 || to.brick->level > 0)) return false;
     const auto joined = [&](const Corner& c) {
         const unsigned bits = c.brick->contour.cases[c.cell];
+        if (isPlainCase(bits)) return false;
         const CellCase& cell = (*cases_)[bits];
         const unsigned other = c.edge ^ flip;
         if (cell.sheetOf[other] != cell.sheetOf[c.edge]) return false;
@@ -136,7 +137,27 @@ TriangleList::Ref TriangleList::addExtra(const std::array<int, 3>& node, int axi
     return kExtra | static_cast<Ref>(extras_.size() - 1);
 }
 
+/// Most edges: their four cells lie in the brick itself, with one sheet and nothing to tell apart in each.
+bool TriangleList::addPlainEdge(const std::array<int, 3>& node, int axis, bool rising) {
+    const int u = (axis + 1) % 3, w = (axis + 2) % 3;
+    const BrickState& brick = *(*bricks_)[0];
+    if (node[static_cast<std::size_t>(u)] == 0 || node[static_cast<std::size_t>(w)] == 0) return false;
+    if (!fine_ && brick.level > 0) return false;
+    const int last = node[0] + 8 * (node[1] + 8 * node[2]), du = 1 << (3 * u), dw = 1 << (3 * w);
+    const int cells[4] = {last - du - dw, last - dw, last, last - du};  // counter-clockwise about the axis
+    std::array<Ref, 4> q;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto cell = static_cast<std::size_t>(cells[i]);
+        if (!isPlainCase(brick.contour.cases[cell])) return false;
+        q[rising ? i : 3 - i] = brick.contour.first[cell];
+    }
+    uses_ |= 1;
+    addQuad(q);
+    return true;
+}
+
 void TriangleList::addEdge(const std::array<int, 3>& node, int axis, bool rising) {
+    if (addPlainEdge(node, axis, rising)) return;
     // The cells round the edge, counter-clockwise about its axis.
     std::array<Corner, 4> c = {corner(node, axis, 1, 1), corner(node, axis, 0, 1), corner(node, axis, 0, 0),
                                corner(node, axis, 1, 0)};

@@ -50,6 +50,8 @@ class TriangleList {
         std::uint8_t edge;  ///< of the cell
         Ref ref;
     };
+    [[nodiscard]] bool isPlainCase(unsigned bits) const { return bits < 256 && (*plain_)[bits]; }
+    [[nodiscard]] bool addPlainEdge(const std::array<int, 3>& node, int axis, bool rising);
     void addEdge(const std::array<int, 3>& node, int axis, bool rising);
     [[nodiscard]] Corner corner(const std::array<int, 3>& node, int axis, int du, int dw);
     [[nodiscard]] bool fallsTogether(const Corner& from, const Corner& to, unsigned flip) const;
@@ -60,6 +62,7 @@ class TriangleList {
     void addQuad(const std::array<Ref, 4>& q);
 
     const std::array<CellCase, kCellCases>* cases_ = &cellCases();
+    const std::array<bool, 256>* plain_ = &plainCases();
     const BrickGrid* grid_ = nullptr;
     std::array<std::int32_t, 3> brick_{};
     const LowNeighbours* bricks_ = nullptr;

@@ -37,7 +37,7 @@ class OutlineTable {
     std::int32_t list(std::uint64_t groups, std::uint16_t* out) const noexcept;
     [[nodiscard]] SweepForm formOf(std::uint16_t piece) const noexcept {
         const SweepPiece& p = pieces_[piece];
-        if (p.radius == 0.0f) return SweepForm::line;
+        if (p.radius == 0.0f) return p.ur == 0.0f && p.uz == 1.0f ? SweepForm::wall : SweepForm::line;
         return piece < realPieces_ ? SweepForm::ball : SweepForm::capsule;
     }
 

@@ -107,16 +107,6 @@ inline bool anyTrue(Ints mask) {
 #endif
 #endif
 
-/// Squared distance from the axis, and the height.
-struct Places {
-    Floats rho2, z;
-};
-
-inline Places placesOf(Ints x, Ints y, Ints z) {
-    const Floats fx = toFloats(x), fy = toFloats(y);
-    return {fx * fx + fy * fy, toFloats(z)};
-}
-
 /// The nearest so far: squared distance, signed distance, and whether an end is what is nearest: then only the sign of
 /// `value` counts.
 struct Nearest {
@@ -135,7 +125,7 @@ struct Nearest {
     }
 };
 
-inline void measureLine(const SweepPiece& piece, Floats rho, Floats z, Nearest& nearest) {
+inline Nearest lineAt(const SweepPiece& piece, Floats rho, Floats z) {
     const Floats r = rho - piece.r0, h = z - piece.z0;
     const Floats along = r * piece.ur + h * piece.uz, off = r * piece.uz - h * piece.ur;
     const Floats past = along - least(most(along, Floats{}), splat(piece.length));
@@ -143,7 +133,7 @@ inline void measureLine(const SweepPiece& piece, Floats rho, Floats z, Nearest& 
     // The rule of an end counts only beyond it; smooth ends have none.
     if (piece.endSign[0] != 0.0f) value = past < Floats{} ? splat(piece.endSign[0]) : value;
     if (piece.endSign[1] != 0.0f) value = past > Floats{} ? splat(piece.endSign[1]) : value;
-    nearest.take(off * off + past * past, value, past != Floats{});
+    return {off * off + past * past, value, past != Floats{}};
 }
 
 inline void measureArc(const SweepPiece& piece, Floats rho2, Floats rho, Floats z, Nearest& nearest) {
@@ -161,33 +151,54 @@ inline void measureArc(const SweepPiece& piece, Floats rho2, Floats rho, Floats 
     }
 }
 
-/// Signed distances in kernel units.
+/// Signed distances in kernel units. Holds what it needs by value: the values that are written could be anything else.
 template <SweepForm form>
-inline Floats distances(const SweepPass& pass, const std::uint16_t* list, std::int32_t count, Places at) {
-    if constexpr (form == SweepForm::line) {
-        const SweepPiece& piece = pass.pieces[list[0]];
-        return (root(at.rho2) - piece.r0) * piece.uz - (at.z - piece.z0) * piece.ur;
-    } else if constexpr (form == SweepForm::ball) {
-        const SweepPiece& piece = pass.pieces[list[0]];
-        const Floats h = at.z - piece.z0;
-        return (root(at.rho2 + h * h) - piece.radius) * piece.bulge;
-    } else if constexpr (form == SweepForm::capsule) {
-        const SweepPiece& piece = pass.pieces[list[0]];
-        const Floats h = least(at.z - piece.z0, Floats{});
-        return root(at.rho2 + h * h) - piece.radius;
-    } else {
-        const Floats rho = root(at.rho2);
-        Nearest nearest{splat(3e38f), splat(3e38f), Ints{}};
-        for (std::int32_t i = 0; i < count; ++i) {
-            const SweepPiece& piece = pass.pieces[list[i]];
-            if (piece.radius > 0.0f)
-                measureArc(piece, at.rho2, rho, at.z, nearest);
-            else
-                measureLine(piece, rho, at.z, nearest);
-        }
-        return nearest.distance();
+class Distances {
+  public:
+    Distances(const SweepPass& pass, const std::uint16_t* list, std::int32_t count)
+        : pieces_(pass.pieces), list_(list), count_(count), first_(pass.pieces[list[0]]) {
+        if constexpr (form == SweepForm::lines) second_ = pass.pieces[list[1]];
     }
-}
+    [[nodiscard]] inline Floats at(Ints x, Ints y, Ints z) const {
+        const Floats fx = toFloats(x), fy = toFloats(y), rho2 = fx * fx + fy * fy;
+        if constexpr (form == SweepForm::wall) {
+            return root(rho2) - first_.r0;
+        } else if constexpr (form == SweepForm::line) {
+            return (root(rho2) - first_.r0) * first_.uz - (toFloats(z) - first_.z0) * first_.ur;
+        } else if constexpr (form == SweepForm::ball) {
+            const Floats h = toFloats(z) - first_.z0;
+            return (root(rho2 + h * h) - first_.radius) * first_.bulge;
+        } else if constexpr (form == SweepForm::capsule) {
+            const Floats h = least(toFloats(z) - first_.z0, Floats{});
+            return root(rho2 + h * h) - first_.radius;
+        } else if constexpr (form == SweepForm::lines) {
+            const Floats rho = root(rho2), height = toFloats(z);
+            Nearest nearest = lineAt(first_, rho, height);
+            const Nearest other = lineAt(second_, rho, height);
+            nearest.take(other.squared, other.value, other.isEnd);
+            return nearest.distance();
+        } else {
+            const Floats rho = root(rho2), height = toFloats(z);
+            Nearest nearest{splat(3e38f), splat(3e38f), Ints{}};
+            for (std::int32_t i = 0; i < count_; ++i) {
+                const SweepPiece& piece = pieces_[list_[i]];
+                if (piece.radius > 0.0f) {
+                    measureArc(piece, rho2, rho, height, nearest);
+                } else {
+                    const Nearest line = lineAt(piece, rho, height);
+                    nearest.take(line.squared, line.value, line.isEnd);
+                }
+            }
+            return nearest.distance();
+        }
+    }
+
+  private:
+    const SweepPiece* pieces_;
+    const std::uint16_t* list_;
+    std::int32_t count_;
+    SweepPiece first_, second_{};
+};
 
 /// Plus kSweepQuanta: of a sum that is so large the float itself is rounded to a whole number, ties to even.
 inline Ints quantaOf(const SweepPass& pass, Floats value) {
@@ -203,10 +214,14 @@ inline std::int64_t sumOf(Ints x) {
     return sum;
 }
 inline float leastOf(Floats x) {
-    float low = x[0];
-    for (int i = 1; i < kLanes; ++i)
-        low = x[i] < low ? x[i] : low;
-    return low;
+    using Four = float __attribute__((vector_size(16)));
+    Four fours[kLanes / 4];
+    __builtin_memcpy(fours, &x, sizeof x);
+    for (int i = 1; i < kLanes / 4; ++i)
+        fours[0] = fours[i] < fours[0] ? fours[i] : fours[0];
+    const float a = fours[0][1] < fours[0][0] ? fours[0][1] : fours[0][0];
+    const float b = fours[0][3] < fours[0][2] ? fours[0][3] : fours[0][2];
+    return b < a ? b : a;
 }
 
 constexpr int kStep = 16, kParts = kStep / kLanes;
@@ -215,48 +230,45 @@ inline int firstOf(int step) {
     return step + 1 < kSweepSteps ? step * kStep : kSweepNodes - kStep;
 }
 
-inline float leastOfStep(const float* x) {
-    Floats low = load(x);
-    for (int part = 1; part < kParts; ++part)
-        low = least(low, load(x + part * kLanes));
-    return leastOf(low);
-}
-
 // Pass by pass over the steps, so that no branch depends on what a step finds: which steps can rise at all; rising;
 // for how long the others can rest; counting where the surface passes.
 template <SweepForm form>
 SweepOutcome raiseAs(const SweepPass& pass, const SweepBrick& brick, float* values, std::int64_t* quanta) {
     const Ints x = splat(brick.base[0]), y = splat(brick.base[1]), z = splat(brick.base[2]);
     const Floats out = splat(pass.bandOutMm), toMm = splat(-pass.unitMm), shows = splat(pass.showsMm);
-    alignas(64) float was[kSweepSteps * kStep], spare[kSweepSteps * kStep];
+    const Distances<form> distances(pass, brick.list, brick.count);
+    const std::int32_t *const offsetX = pass.offset[0], *const offsetY = pass.offset[1],
+                              *const offsetZ = pass.offset[2];
+    alignas(64) float was[kSweepSteps * kStep], spare[kSweepSteps * kLanes];
     std::uint64_t active = 0, risen = 0, counting = 0;
     for (int i = 0; i < kSweepDues; i += kLanes)
         active |= std::uint64_t{bitsOf(load(brick.due + i) <= splat(brick.way))} << i;
     for (std::uint64_t left = active; left != 0; left &= left - 1) {
         const int step = __builtin_ctzll(left), first = firstOf(step);
         Ints rises{}, counts{};
+        Floats low = splat(3e38f);
         for (int part = 0; part < kParts; ++part) {
-            const int at = first + part * kLanes, kept = step * kStep + part * kLanes;
+            const int at = first + part * kLanes;
             const Floats before = load(values + at);
-            const Places places =
-                placesOf(x + load(pass.offset[0] + at), y + load(pass.offset[1] + at), z + load(pass.offset[2] + at));
-            const Floats reached = distances<form>(pass, brick.list, brick.count, places) * toMm;
+            const Floats reached =
+                distances.at(x + load(offsetX + at), y + load(offsetY + at), z + load(offsetZ + at)) * toMm;
             const Floats after = most(least(reached, out), before);
             store(values + at, after);
-            store(was + kept, before);
-            store(spare + kept, before < out ? before - reached : splat(3e38f));
+            store(was + step * kStep + part * kLanes, before);
+            low = least(before < out ? before - reached : splat(3e38f), low);
             const Ints higher = before < after;
             rises |= higher;
             // Deep under the surface nothing is counted and nothing shows.
             counts |= higher & (before < shows) & (after > -shows);
         }
+        store(spare + step * kLanes, low);
         risen |= std::uint64_t{anyTrue(rises)} << step;
         counting |= std::uint64_t{anyTrue(counts)} << step;
     }
     for (std::uint64_t left = active & ~risen; left != 0; left &= left - 1) {
         const int step = __builtin_ctzll(left);
         // A hair less, so that rounding makes no node wait that rises in a neighbour.
-        const float room = leastOfStep(spare + step * kStep) * (1.0f / kSweepWayMm) - 2.0f;
+        const float room = leastOf(load(spare + step * kLanes)) * (1.0f / kSweepWayMm) - 2.0f;
         const float most = static_cast<float>(kSweepMostWay - brick.way);
         brick.due[step] = room < most ? brick.way + static_cast<std::int32_t>(room) : kSweepMostWay;
     }
@@ -287,46 +299,47 @@ SweepOutcome raiseAs(const SweepPass& pass, const SweepBrick& brick, float* valu
     return outcome;
 }
 
-SweepOutcome raise(const SweepPass& pass, const SweepBrick& brick, float* values, std::int64_t* quanta) {
-    switch (brick.form) {
+/// Calls `with` for the form as a template's argument.
+template <class With>
+auto inForm(SweepForm form, With&& with) {
+    switch (form) {
+        case SweepForm::wall:
+            return with.template operator()<SweepForm::wall>();
         case SweepForm::line:
-            return raiseAs<SweepForm::line>(pass, brick, values, quanta);
+            return with.template operator()<SweepForm::line>();
         case SweepForm::ball:
-            return raiseAs<SweepForm::ball>(pass, brick, values, quanta);
+            return with.template operator()<SweepForm::ball>();
         case SweepForm::capsule:
-            return raiseAs<SweepForm::capsule>(pass, brick, values, quanta);
+            return with.template operator()<SweepForm::capsule>();
+        case SweepForm::lines:
+            return with.template operator()<SweepForm::lines>();
         case SweepForm::general:
             break;
     }
-    return raiseAs<SweepForm::general>(pass, brick, values, quanta);
+    return with.template operator()<SweepForm::general>();
+}
+
+SweepOutcome raise(const SweepPass& pass, const SweepBrick& brick, float* values, std::int64_t* quanta) {
+    return inForm(brick.form, [&]<SweepForm form>() { return raiseAs<form>(pass, brick, values, quanta); });
 }
 
 template <SweepForm form>
 float highestAs(const SweepPass& pass, const SweepBrick& brick) {
     const Ints x = splat(brick.base[0]), y = splat(brick.base[1]), z = splat(brick.base[2]);
+    const Distances<form> distances(pass, brick.list, brick.count);
     Floats low = splat(3e38f);
     for (int step = 0; step < kSweepSteps; ++step)
         for (int part = 0; part < kParts; ++part) {
             const int at = firstOf(step) + part * kLanes;
-            const Places places =
-                placesOf(x + load(pass.offset[0] + at), y + load(pass.offset[1] + at), z + load(pass.offset[2] + at));
-            low = least(distances<form>(pass, brick.list, brick.count, places), low);
+            low = least(distances.at(x + load(pass.offset[0] + at), y + load(pass.offset[1] + at),
+                                     z + load(pass.offset[2] + at)),
+                        low);
         }
     return -pass.unitMm * leastOf(low);
 }
 
 float highest(const SweepPass& pass, const SweepBrick& brick) {
-    switch (brick.form) {
-        case SweepForm::line:
-            return highestAs<SweepForm::line>(pass, brick);
-        case SweepForm::ball:
-            return highestAs<SweepForm::ball>(pass, brick);
-        case SweepForm::capsule:
-            return highestAs<SweepForm::capsule>(pass, brick);
-        case SweepForm::general:
-            break;
-    }
-    return highestAs<SweepForm::general>(pass, brick);
+    return inForm(brick.form, [&]<SweepForm form>() { return highestAs<form>(pass, brick); });
 }
 
 void makeOffsets(const std::int32_t (&axes)[3][3], std::int32_t* const (&offset)[3]) {
@@ -350,6 +363,7 @@ void makeOffsets(const std::int32_t (&axes)[3][3], std::int32_t* const (&offset)
 
 void raiseRow(const SweepPass& pass, const SweepRow& row, const std::uint16_t* list, std::int32_t listCount,
               const std::int32_t* brickIndex, float* coarse) {
+    const Distances<SweepForm::general> distances(pass, list, listCount);
     for (std::int32_t i = 0; i < row.count; i += kLanes) {
         const std::int32_t lanes = row.count - i < kLanes ? row.count - i : kLanes;
         Ints place[3]{};
@@ -360,9 +374,7 @@ void raiseRow(const SweepPass& pass, const SweepRow& row, const std::uint16_t* l
         for (int k = 0; k < 3; ++k)
             for (int lane = 0; lane < kLanes; ++lane)
                 place[k][lane] = row.base[k] + (i + (lane < lanes ? lane : 0)) * row.step[k];
-        const Floats reached =
-            distances<SweepForm::general>(pass, list, listCount, placesOf(place[0], place[1], place[2])) *
-            (-pass.unitMm);
+        const Floats reached = distances.at(place[0], place[1], place[2]) * (-pass.unitMm);
         for (std::int32_t lane = 0; lane < lanes; ++lane)
             if (brickIndex[i + lane] < 0 && coarse[i + lane] < 0.0f && reached[lane] > coarse[i + lane] &&
                 reached[lane] < 0.0f)

@@ -47,14 +47,15 @@ inline constexpr int kSweepRoom = 752;  ///< with what the last steps write or r
 inline constexpr std::int32_t kSweepQuanta = 1 << 23;
 
 /// How much of the outline a brick needs.
-enum class SweepForm : std::uint8_t { general, line, ball, capsule };
+enum class SweepForm : std::uint8_t { general, lines, line, wall, ball, capsule };
 
 struct SweepBrick {
     std::int32_t base[3];       ///< place of the first node
     const std::uint16_t* list;  ///< the pieces that can be nearest
     std::int32_t count;
-    /// line: the one piece is a line and every node faces it; ball: the same for an arc round the axis; capsule: the
-    /// same for such an arc and the cylinder of its radius above its centre.
+    /// lines: two of them; line: the one piece is a line and every node faces it; wall: the same, up along the axis;
+    /// ball: the same for an arc round the axis; capsule: the same for such an arc and the cylinder of its radius above
+    /// its centre.
     SweepForm form;
     const std::uint8_t* tissue;  ///< per node; null: all of tissue `uniform`
     std::uint8_t uniform;

@@ -111,7 +111,8 @@ Sweeper::Sweeper(tooth::ToothState& field, const instrument::Bur& bur, core::Sim
         corners_.push_back({before, after, std::abs(before.x() * after.y() - before.y() * after.x()),
                             i + 2 == pieces.size() && after.y() > 0.999});
     }
-    memory_.resize(field.field().storage().coarse.size());
+    visits_.resize(field.field().storage().coarse.size());
+    memory_.resize(visits_.size());
     Dues never{};
     std::fill_n(never.steps, kSweepDues, kSweepMostWay);
     dues_.assign(field.field().brickCount(), never);
@@ -203,17 +204,18 @@ OutlineTable::Region Sweeper::regionOf(const GridInBur& grid, const std::int32_t
 
 void Sweeper::visit(const GridInBur& grid, std::uint32_t dense, const std::int32_t (&base)[3],
                     Outcome& outcome) noexcept {
+    Visit& next = visits_[dense];
     Memory& memory = memory_[dense];
-    const bool isNew = memory.epoch != epoch_;
-    std::int32_t stored = field_.field().view().brickIndex[dense];
-    if (isNew) {
-        memory = {kSweepMostWay, epoch_, way_, 0, 0};
+    std::int32_t stored = field_.field().storage().brickIndex[dense];
+    if (next.epoch != epoch_) {
+        next = {kSweepMostWay, epoch_};
+        memory = {way_, 0, 0};
         if (stored < 0 && field_.coarse()[dense] >= 0.0f) return;  // outside the tooth
     }
     if (memory.piecesDue <= way_) {
         const OutlineTable::Region region = regionOf(grid, base);
         if (region.lowMm >= bandMm_) {
-            memory.due = wayAfter(static_cast<double>(region.lowMm) - bandMm_);
+            next.due = wayAfter(static_cast<double>(region.lowMm) - bandMm_);
             // Its steps are not looked at meanwhile, and may be due when it comes back.
             return;
         }
@@ -231,13 +233,15 @@ void Sweeper::visit(const GridInBur& grid, std::uint32_t dense, const std::int32
         brick.form = outline_.formOf(list_[0]);
     } else {
         brick.count = outline_.list(memory.groups, list_.data());
+        const auto isLine = [this](std::uint16_t piece) { return outline_.pieces()[piece].radius == 0.0f; };
+        if (brick.count == 2 && isLine(list_[0]) && isLine(list_[1])) brick.form = SweepForm::lines;
     }
     brick.list = list_.data();
 
     if (stored < 0) {
         const double spare = -bandMm_ - static_cast<double>(kernels_.highest(pass_, brick));
         if (spare >= 0.0) {
-            memory.due = wayAfter(spare);
+            next.due = wayAfter(spare);
             return;
         }
         stored = field_.storeBrick(dense);
@@ -254,7 +258,7 @@ void Sweeper::visit(const GridInBur& grid, std::uint32_t dense, const std::int32
     brick.way = way_;
     brick.due = dues.steps;
     const SweepOutcome raised = kernels_.raise(pass_, brick, field_.values(stored), quanta_.data());
-    memory.due = raised.due;
+    next.due = raised.due;
     if (!raised.rose) return;
     field_.noteChanged(dense, raised.shows);
     ++outcome.changedBricks;
@@ -273,14 +277,16 @@ void Sweeper::cutAt(const core::Pose& pose, Outcome& outcome) noexcept {
         for (std::int32_t by = low[1]; by <= high[1]; ++by) {
             const std::int64_t node[3] = {std::int64_t{kBrickCells} * low[0], std::int64_t{kBrickCells} * by,
                                           std::int64_t{kBrickCells} * bz};
-            std::int32_t base[3];
-            grid.placeOf(node, base);
+            std::int32_t row[3];
+            grid.placeOf(node, row);
             std::uint32_t dense = static_cast<std::uint32_t>(
                 low[0] + view.bricks[0] * (by + static_cast<std::int64_t>(view.bricks[1]) * bz));
             for (std::int32_t bx = low[0]; bx <= high[0]; ++bx, ++dense) {
-                if (memory_[dense].epoch != epoch_ || memory_[dense].due <= way_) visit(grid, dense, base, outcome);
+                if (visits_[dense].epoch == epoch_ && visits_[dense].due > way_) continue;
+                std::int32_t base[3];
                 for (int k = 0; k < 3; ++k)
-                    base[k] += kBrickCells * grid.axes[0][k];
+                    base[k] = row[k] + (bx - low[0]) * kBrickCells * grid.axes[0][k];
+                visit(grid, dense, base, outcome);
             }
         }
 }

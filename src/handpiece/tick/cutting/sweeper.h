@@ -41,10 +41,13 @@ class Sweeper {
 
   private:
     struct GridInBur;  ///< where the grid lies in the bur's frame
-    /// What is known of a brick since the last settle().
-    struct Memory {
+    /// When a brick is to be looked at again. By itself, so that passing by the many that rest reads little.
+    struct Visit {
         std::int32_t due = 0;  ///< the way before which nothing in it can rise
         std::uint32_t epoch = 0;
+    };
+    /// What else is known of it since the last settle().
+    struct Memory {
         std::int32_t piecesDue = 0;  ///< the way until which its pieces are these
         std::uint64_t groups = 0, alone = 0;
     };
@@ -81,6 +84,7 @@ class Sweeper {
     };
     std::unique_ptr<Nodes> nodes_;
     std::vector<std::uint16_t> list_, simpleList_;
+    std::vector<Visit> visits_;   ///< by dense brick
     std::vector<Memory> memory_;  ///< by dense brick
     std::vector<Dues> dues_;      ///< by stored brick
     SweepPass pass_{}, simplePass_{};

@@ -41,7 +41,9 @@ std::unique_ptr<contact::Method> methodOf(const ProbeOptions& o, const MethodReg
     preparing.finish();
     const auto cut = std::make_shared<tooth::ToothState>(found.base);
     (void)cut->restore(found.state, 0, found.state.bricks.size());
-    return contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut), loadBur(in.bur));
+    contact::FieldMethodSettings settings;
+    settings.sharpRims = true;
+    return contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut), loadBur(in.bur), settings);
 }
 
 void probe(const ProbeOptions& o, const MethodRegistry& methods) {

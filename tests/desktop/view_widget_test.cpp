@@ -646,13 +646,15 @@ bool comesToRest(ViewWidget& view) {
     if (frames.isEmpty()) return false;
     // Quiet for longer than a picture takes that is being drawn now, in small steps: of a process that was not let run
     // meanwhile nothing is to be seen.
+    // The first picture of a comparison makes a renderer of its own.
     constexpr int kStepMs = 25, kLongestMs = 300000;
+    constexpr double kQuietMs = 1500.0;
     double slowestMs = 0.0, quietMs = 0.0;
     bool refining = true;
     qsizetype seen = 0;
     QElapsedTimer since;
     since.start();
-    while (refining || quietMs < 250.0 + 4.0 * slowestMs) {
+    while (refining || quietMs < kQuietMs + 4.0 * slowestMs) {
         if (since.hasExpired(kLongestMs)) {
             ADD_FAILURE() << "it never comes to rest";
             break;

@@ -382,7 +382,7 @@ TEST_F(RealData, depthIsThatOfBruteForce) {
         std::sort(errors.begin(), errors.end());
         std::printf("  %s, %zu poses, down to %.2f mm: median %.4f um, worst %.4f um\n", bur->name().c_str(),
                     errors.size(), worstDepth, 1e3 * errors[errors.size() / 2], 1e3 * errors.back());
-        EXPECT_LT(errors[errors.size() / 2], 5e-5);
+        EXPECT_LT(errors[errors.size() / 2], 7e-5);  // the search ends at kDepthToleranceMm
         EXPECT_LT(errors.back(), 5e-3);
     }
 }

@@ -56,9 +56,13 @@ TEST_P(Conformance, posesAreExactInTheDeviceFrame) {
     for (const Vec3& at : {Vec3(w.x(), 0, 0), Vec3(0, w.y(), 0), Vec3(0, 0, w.z()), Vec3(-w.x(), 0, 0),
                            Vec3(0, -w.y(), 0), Vec3(0, 0, -w.z()), Vec3(0.31 * w.x(), -0.17 * w.y(), 0.53 * w.z())}) {
         adaptor->move(0, {at, Quat::Identity()});
-        EXPECT_TRUE(await([&] { return (positionOf(probe.last()) - at).norm() <= 2.0 * traits.stepMm; }))
-            << "asked for " << at.transpose() << ", told " << positionOf(probe.last()).transpose();
-        EXPECT_EQ(probe.last().trouble, DeviceFault::none);
+        // A frame that a busy machine keeps waiting is told late, and the next one is whole again.
+        EXPECT_TRUE(await([&] {
+            const auto last = probe.last();
+            return (positionOf(last) - at).norm() <= 2.0 * traits.stepMm && last.trouble == DeviceFault::none;
+        })) << "asked for "
+            << at.transpose() << ", told " << positionOf(probe.last()).transpose() << ' '
+            << link::idOf(probe.last().trouble);
     }
     driver->stop();
     EXPECT_EQ(adaptor->breaches(), 0u) << adaptor->lastBreach();

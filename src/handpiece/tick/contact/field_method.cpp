@@ -48,7 +48,7 @@ class FieldMethod final : public Method {
           sharpRings_(feeler_.profile().pieces.size() != bur_->profile().pieces.size()
                           ? std::make_unique<SurfaceSampler>(live_, *bur_, core::simdLevel())
                           : nullptr),
-          field_(live_, *bur_, core::simdLevel()),
+          field_(live_, settings_.sharpRims ? *bur_ : feeler_, core::simdLevel()),
           slackMm_(cut_ ? std::max(kMinSlackMm, kSlackShare * live_.settings().voxelMm * live_.settings().voxelMm /
                                                     (0.5 * bur_->maxRadiusMm()))
                         : 0.0),
@@ -194,7 +194,7 @@ class FieldMethod final : public Method {
             setFar(burInTooth, clear);
             return;
         }
-        const FieldTouch found = field_.search(burInTooth, sharpRings_ ? *sharpRings_ : rings_);
+        const FieldTouch found = field_.search(burInTooth, settings_.sharpRims && sharpRings_ ? *sharpRings_ : rings_);
         result.slackMm = slackMm_;
         result.depthMm = std::max(found.depthMm, -settings_.reachMm);
         if (!(found.depthMm >= -settings_.reachMm)) {

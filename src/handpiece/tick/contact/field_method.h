@@ -21,6 +21,9 @@ enum class DepthSource : std::uint8_t {
 struct FieldMethodSettings {
     DepthSource depthSource = DepthSource::exact;
     double reachMm = 5.0;  ///< farther apart than this is "beyond reach"
+    /// After a cut the depth is that of the bur as it is. Else a sharp rim has a fillet of a voxel there, as patches and
+    /// constraints have it: what a hand is to feel must agree with them.
+    bool sharpRims = false;
 };
 
 [[nodiscard]] std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::ToothModel> tooth,

@@ -48,7 +48,7 @@ class FieldMethod final : public Method {
           sharpRings_(feeler_.profile().pieces.size() != bur_->profile().pieces.size()
                           ? std::make_unique<SurfaceSampler>(live_, *bur_, core::simdLevel())
                           : nullptr),
-          field_(live_, settings_.sharpRims ? *bur_ : feeler_, core::simdLevel()),
+          field_(live_, settings_.sharpRims ? *bur_ : feeler_, settings_.sharpRims || !sharpRings_, core::simdLevel()),
           slackMm_(cut_ ? std::max(kMinSlackMm, kSlackShare * live_.settings().voxelMm * live_.settings().voxelMm /
                                                     (0.5 * bur_->maxRadiusMm()))
                         : 0.0),

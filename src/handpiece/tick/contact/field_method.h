@@ -21,8 +21,9 @@ enum class DepthSource : std::uint8_t {
 struct FieldMethodSettings {
     DepthSource depthSource = DepthSource::exact;
     double reachMm = 5.0;  ///< farther apart than this is "beyond reach"
-    /// After a cut the depth is that of the bur as it is. Else a sharp rim has a fillet of a voxel there, as patches and
-    /// constraints have it: what a hand is to feel must agree with them.
+    /// After a cut the depth is that of the bur as it is, sharp rims too. Else one with sharp rims has a fillet of a
+    /// voxel there and is asked in the mixed field, as patches and constraints are: what a hand feels must agree with
+    /// them.
     bool sharpRims = false;
 };
 

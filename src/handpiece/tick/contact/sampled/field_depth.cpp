@@ -83,9 +83,11 @@ double inscribedAt(const instrument::Bur& bur, const Vec2& p, const Vec2& normal
 
 }  // namespace
 
-FieldDepth::FieldDepth(const field::DistanceField& field, const instrument::Bur& bur, core::SimdLevel level)
+FieldDepth::FieldDepth(const field::DistanceField& field, const instrument::Bur& bur, bool sharply,
+                       core::SimdLevel level)
     : field_(field),
       bur_(bur),
+      isSharp_(sharply),
       sharp_(field, level),
       view_(field.view()),
       kernels_(ringKernelsFor(level)),
@@ -296,7 +298,7 @@ class FieldDepth::DepthAscent {
         double window = kFirstLookMm;
         for (int i = 0; i < kLooks && window > kLastLookMm; ++i) {
             const double reached = look(window, false);
-            if (top_ + 3.0 * window + kMixedErrorMm < best.depthMm) return top_;
+            if (top_ + 3.0 * window + (depth_.isSharp_ ? kMixedErrorMm : 0.0) < best.depthMm) return top_;
             if (reached < 0.7) window *= 0.4;
             if (std::abs(u_) > kAnchorMm || std::abs(arc_) > kAnchorMm) anchorAnew();
         }
@@ -444,7 +446,7 @@ class FieldDepth::DepthAscent {
             double alongU = 0.0, inwards = 0.0;
             stepsTo(u_, arc_, in_, alongU, inwards);
             const Vec3 p = place_ + alongU * alongU_ + arc_ * alongArc_ - inwards * normal_;
-            const double d = depth_.sharp_.distance(p), depth = depth_.depthAt(frame_, p, d);
+            const double d = depth_.distanceAt(p), depth = depth_.depthAt(frame_, p, d);
             // Outside the tooth a field that has been cut may tell less than the distance.
             const bool trusted = d <= kOnSurfaceMm || in_ <= 0.0;
             if (trusted) deepest = std::max(deepest, depth);
@@ -550,7 +552,7 @@ void FieldDepth::climbFrom(const BurFrame& frame, std::span<const Start> starts,
     std::array<double, kStarts> tops;
     for (std::size_t i = 0; i < starts.size(); ++i)
         tops[i] = ascents[i].emplace(*this, frame, starts[i]).climb(best);
-    for (int climbs = 0; climbs < kSharpClimbs; ++climbs) {
+    for (int climbs = 0; isSharp_ && climbs < kSharpClimbs; ++climbs) {
         std::size_t top = kStarts;
         for (std::size_t i = 0; i < starts.size(); ++i)
             if (ascents[i] && (top == kStarts || tops[i] > tops[top])) top = i;
@@ -562,14 +564,14 @@ void FieldDepth::climbFrom(const BurFrame& frame, std::span<const Start> starts,
 
 void FieldDepth::takeAxis(const BurFrame& frame, double z, FieldTouch& best) noexcept {
     Vec3 p = frame.onAxis(z);
-    double d = sharp_.distance(p);
+    double d = distanceAt(p);
     const Vec3 away = outward(p);
     Vec3 q = p;
     if (d > 0.0) {  // beside an edge a field that has been cut tells less than the distance: ask on the surface
         for (int i = 0; i < kProjections; ++i)
-            q -= sharp_.distance(q) * sharp_.normal(q);
+            q -= distanceAt(q) * normalAt(q);
         p = q;
-        d = sharp_.distance(p);
+        d = distanceAt(p);
     } else {
         q = p - d * away;
     }

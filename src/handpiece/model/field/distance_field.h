@@ -19,7 +19,7 @@ namespace handpiece::field {
 struct FieldSettings {
     double voxelMm = 0.05;
     double bandOutMm = 0.15;  ///< every point this near outside the surface lies in a brick
-    double bandInMm = 0.3;   ///< the same inside
+    double bandInMm = 0.3;    ///< the same inside
 };
 
 /// How far from the surface values are distances.

@@ -212,8 +212,8 @@ StateDelta decodeState(std::span<const std::byte> data, const ToothModel& model,
             "use a newer Handpiece");
     if (header.version == 0 || header.headerHash != headerHashOf(header)) throw damaged();
     if (header.key != model.identity)
-        throw core::Error("the cut state belongs to another tooth, another voxel or band, or an earlier Handpiece", where,
-                          "open it with the case and the settings that it was saved with");
+        throw core::Error("the cut state belongs to another tooth, another voxel or band, or an earlier Handpiece",
+                          where, "open it with the case and the settings that it was saved with");
     const std::span<const std::byte> payload = data.subspan(sizeof header);
     if (payload.size() < header.payloadBytes) throw cutShort();
     if (payload.size() > header.payloadBytes || field::hashOf(payload) != header.payloadHash) throw damaged();

@@ -4,16 +4,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <random>
 
-#include <fmt/format.h>
-
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/simd.h"
-#include "handpiece/model/field/sharp_lookup.h"
 #include "handpiece/model/instrument/piece.h"
 #include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/tick/contact/field_method.h"
@@ -358,31 +354,6 @@ CutAccuracy measureCut(const std::shared_ptr<const tooth::ToothModel>& tooth,
             }
             errors.push_back(1e3 * std::abs(told - wanted[i]));
             times.push_back(fastest);
-            if (std::getenv("HANDPIECE_CUT_WORST") != nullptr &&
-                errors.back() > std::atof(std::getenv("HANDPIECE_CUT_WORST")))
-                fmt::print(stderr, "{} {} place {} pose {}: told {:.6f} truth {:.6f}\n", bur->name(), cut, place, i,
-                           told, wanted[i]),
-                    [&] {
-                        const auto d = method->depth(poses[i]);
-                        const Vec3 p = d.toothPointMm;
-                        field::SharpLookup sharp(state->field(), core::simdLevel());
-                        double strokesD = 1e9;
-                        int which = -1;
-                        for (int k = 0; k < int(strokes.size()); ++k) {
-                            double v = strokeDistance(*bur, strokes[k], p);
-                            if (v < strokesD) {
-                                strokesD = v;
-                                which = k;
-                            }
-                        }
-                        fmt::print(stderr,
-                                   "   at {:.4f} {:.4f} {:.4f} truth {:.5f} (uncut {:.5f} swept {:.5f} #{}) sharp "
-                                   "{:.5f} tri {:.5f} burD {:.5f} normal {:.3f} {:.3f} {:.3f}\n",
-                                   p.x(), p.y(), p.z(), truth.tooth(p), tooth->tree.signedDistance(p), -strokesD, which,
-                                   sharp.distance(p), state->field().distance(p),
-                                   bur->signedDistance(poses[i].orientation.conjugate() * (p - poses[i].positionMm)),
-                                   d.normal.x(), d.normal.y(), d.normal.z());
-                    }();
         }
     }
     std::sort(errors.begin(), errors.end());

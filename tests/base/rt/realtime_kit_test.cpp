@@ -23,6 +23,8 @@
 #include <thread>
 #include <vector>
 
+#include "support/random.h"
+
 extern char** environ;
 
 namespace handpiece::rt {
@@ -135,21 +137,15 @@ struct Granted {
 class RealtimeKit : public testing::Test {
   protected:
     void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "handpiece-bus-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-        chmod(name.c_str(), 0755);
+        chmod(folder_.path().c_str(), 0755);  // rtkit-daemon is another user
         setenv("DBUS_SYSTEM_BUS_ADDRESS", address().c_str(), 1);
     }
-    void TearDown() override {
-        unsetenv("DBUS_SYSTEM_BUS_ADDRESS");
-        fs::remove_all(folder_);
-    }
-    [[nodiscard]] std::string address() const { return "unix:path=" + (folder_ / "bus").string(); }
+    void TearDown() override { unsetenv("DBUS_SYSTEM_BUS_ADDRESS"); }
+    [[nodiscard]] std::string address() const { return "unix:path=" + (folder_.path() / "bus").string(); }
 
     /// False where a bus or, when wanted, rtkit-daemon cannot run; the reason is then in `why_`.
     bool start(bool withDaemon, const std::function<bool(const std::string& action)>& grants = {}) {
-        std::ofstream(folder_ / "bus.conf")
+        std::ofstream(folder_.path() / "bus.conf")
             << "<!DOCTYPE busconfig PUBLIC \"-//freedesktop//DTD D-Bus Bus Configuration 1.0//EN\" "
                "\"http://www.freedesktop.org/standards/dbus/1.0/busconfig.dtd\">\n<busconfig><type>system</"
                "type><listen>"
@@ -157,16 +153,17 @@ class RealtimeKit : public testing::Test {
             << "</listen><auth>EXTERNAL</auth><policy context=\"default\"><allow user=\"*\"/><allow own=\"*\"/>"
                "<allow send_destination=\"*\"/><allow receive_sender=\"*\"/></policy></busconfig>\n";
         bus_ = std::make_unique<Process>(
-            std::vector<std::string>{"dbus-daemon", "--nofork", "--config-file=" + (folder_ / "bus.conf").string()},
-            folder_ / "bus.log");
-        if (!waitFor([&] { return fs::exists(folder_ / "bus"); }))
+            std::vector<std::string>{"dbus-daemon", "--nofork",
+                                     "--config-file=" + (folder_.path() / "bus.conf").string()},
+            folder_.path() / "bus.log");
+        if (!waitFor([&] { return fs::exists(folder_.path() / "bus"); }))
             return because("dbus-daemon does not run here", "bus.log");
         if (!withDaemon) return true;
         if (!fs::exists(kDaemon)) return because("rtkit-daemon is not installed", "bus.log");
         authority_ = std::make_unique<Service>(address(), "org.freedesktop.PolicyKit1", [grants](DBusMessage* call) {
             return authorization(call, grants(actionOf(call)));
         });
-        kit_ = std::make_unique<Process>(std::vector<std::string>{kDaemon}, folder_ / "kit.log");
+        kit_ = std::make_unique<Process>(std::vector<std::string>{kDaemon}, folder_.path() / "kit.log");
         if (!waitFor([&] { return owned("org.freedesktop.RealtimeKit1"); }))
             return because("rtkit-daemon does not run here", "bus.log");
         return true;
@@ -174,10 +171,10 @@ class RealtimeKit : public testing::Test {
 
     Granted ask() {
         const auto begun = steady_clock::now();
-        EXPECT_EQ(Process({HANDPIECE_GRANTED}, folder_ / "granted").wait(), 0);
+        EXPECT_EQ(Process({HANDPIECE_GRANTED}, folder_.path() / "granted").wait(), 0);
         Granted g;
         g.seconds = std::chrono::duration<double>(steady_clock::now() - begun).count();
-        std::ifstream in(folder_ / "granted");
+        std::ifstream in(folder_.path() / "granted");
         std::string numbers, word;
         std::getline(in, g.scheduling);
         std::getline(in, numbers);
@@ -195,7 +192,7 @@ class RealtimeKit : public testing::Test {
         EXPECT_LT(g.seconds, 10.0);
     }
 
-    fs::path folder_;
+    test::TemporaryFolder folder_;
     std::string why_;
 
   private:
@@ -208,7 +205,7 @@ class RealtimeKit : public testing::Test {
     }
     bool because(const std::string& what, const char* log) {
         std::ostringstream text;
-        text << std::ifstream(folder_ / log).rdbuf();
+        text << std::ifstream(folder_.path() / log).rdbuf();
         why_ = what + ": " + text.str();
         return false;
     }
@@ -266,7 +263,7 @@ TEST_F(RealtimeKit, mayBeBehindABusThatStands) {
     const int bus = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_un at{};
     at.sun_family = AF_UNIX;
-    (folder_ / "bus").string().copy(at.sun_path, sizeof at.sun_path - 1);
+    (folder_.path() / "bus").string().copy(at.sun_path, sizeof at.sun_path - 1);
     ASSERT_EQ(bind(bus, reinterpret_cast<const sockaddr*>(&at), sizeof at), 0);
     chmod(at.sun_path, 0666);
     ASSERT_EQ(listen(bus, 0), 0);

@@ -13,3 +13,14 @@ enum class SimdLevel { base = 0, avx2 = 2, avx512 = 3 };
 [[nodiscard]] SimdLevel simdLevel();
 
 }  // namespace handpiece::core
+
+/// The one of three functions of the same name, in simd_base, simd_avx2 and simd_avx512 beside the caller, that is for
+/// a level. Elsewhere than on x86 there is the first alone.
+#if defined(__x86_64__)
+#define HANDPIECE_AT_SIMD_LEVEL(level, function)                             \
+    ((level) == ::handpiece::core::SimdLevel::avx512 ? simd_avx512::function \
+     : (level) == ::handpiece::core::SimdLevel::avx2 ? simd_avx2::function   \
+                                                     : simd_base::function)
+#else
+#define HANDPIECE_AT_SIMD_LEVEL(level, function) (static_cast<void>(level), simd_base::function)
+#endif

@@ -10,6 +10,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/geometry/point_triangle.h"
 
 namespace handpiece::geometry {
 namespace {
@@ -81,29 +82,6 @@ constexpr std::uint32_t nextOf(std::uint32_t h) {
 }
 constexpr std::uint32_t previousOf(std::uint32_t h) {
     return h % 3 == 0 ? h + 2 : h - 1;
-}
-
-/// Squared distance from a point to a triangle (Ericson, Real-Time Collision Detection 5.1.5).
-double squaredDistance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-    const Vec3 ab = b - a, ac = c - a, ap = p - a;
-    const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-    if (d1 <= 0 && d2 <= 0) return ap.squaredNorm();
-    const Vec3 bp = p - b;
-    const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-    if (d3 >= 0 && d4 <= d3) return bp.squaredNorm();
-    const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return (ap - d1 / (d1 - d3) * ab).squaredNorm();
-    const Vec3 cp = p - c;
-    const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-    if (d6 >= 0 && d5 <= d6) return cp.squaredNorm();
-    const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - d2 / (d2 - d6) * ac).squaredNorm();
-    const double va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-        return (p - (b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b))).squaredNorm();
-    const double sum = va + vb + vc;
-    if (!(sum > 0.0)) return std::min({ap.squaredNorm(), bp.squaredNorm(), cp.squaredNorm()});
-    return (ap - vb / sum * ab - vc / sum * ac).squaredNorm();
 }
 
 /// The cheapest first, as one heap of all would give them. Only the cheapest part is kept as a heap, small enough for a

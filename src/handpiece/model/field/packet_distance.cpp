@@ -9,24 +9,6 @@ namespace handpiece::field {
 using core::Vec3;
 using geometry::TreeTriangle;
 
-namespace {
-
-NearestKernel kernelOfThisMachine() {
-#if defined(__x86_64__)
-    switch (core::simdLevel()) {
-        case core::SimdLevel::avx512:
-            return simd_avx512::nearestOfPacket;
-        case core::SimdLevel::avx2:
-            return simd_avx2::nearestOfPacket;
-        case core::SimdLevel::base:
-            break;
-    }
-#endif
-    return simd_base::nearestOfPacket;
-}
-
-}  // namespace
-
 FlatTriangle flattened(const TreeTriangle& t) {
     const Vec3 a(t.a[0], t.a[1], t.a[2]), ab(t.ab[0], t.ab[1], t.ab[2]), ac(t.ac[0], t.ac[1], t.ac[2]);
     // Corner i of the frame's triangle is corner (first + i) % 3 of the mesh's; edge 0 the longest.
@@ -68,7 +50,9 @@ FlatTriangle flattened(const TreeTriangle& t) {
 }
 
 PacketDistance::PacketDistance(const geometry::TriangleTree& tree)
-    : tree_(tree), kernel_(kernelOfThisMachine()), flat_(tree.triangles().size()) {
+    : tree_(tree),
+      kernel_(HANDPIECE_AT_SIMD_LEVEL(core::simdLevel(), nearestOfPacket)),
+      flat_(tree.triangles().size()) {
     core::parallelFor(flat_.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             flat_[i] = flattened(tree.triangles()[i]);

@@ -2,10 +2,10 @@
 // Compiled once per instruction set; see cmake/handpiece.cmake.
 //
 // Along a line six nodes v0 .. v5 lie about the cell v2 .. v3. Where the field is smooth a cubic through the four in
-// the middle is right to the fourth order; beside an edge, the one of three cubics that does not cross it (the least
-// third difference: ENO, A. Harten and others, J. Comput. Phys. 71, 1987 [recalled]). When the edge lies in the cell
-// itself no polynomial is right: then both sides are continued as parabolas up to where they meet (subcell resolution,
-// A. Harten, J. Comput. Phys. 83, 1989 [recalled]). Line by line along z, then y, then x.
+// the middle is right to the fourth order; beside an edge, the cubic on the side of the smaller second
+// difference does not cross it (ENO, A. Harten and others, J. Comput. Phys. 71, 1987 [recalled]). When the edge lies in
+// the cell itself no polynomial is right: then both sides are continued as parabolas up to where they meet (subcell
+// resolution, A. Harten, J. Comput. Phys. 83, 1989 [recalled]). Line by line along z, then y, then x.
 #include "handpiece/model/field/sharp_kernel.h"
 
 namespace handpiece::field::HANDPIECE_SIMD_NS {

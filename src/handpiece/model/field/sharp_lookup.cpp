@@ -7,23 +7,10 @@ namespace handpiece::field {
 
 using core::Vec3;
 
-namespace {
-
-SharpKernels kernelsFor(core::SimdLevel level) {
-#if defined(__x86_64__)
-    if (level == core::SimdLevel::avx512) return simd_avx512::sharpKernels();
-    if (level == core::SimdLevel::avx2) return simd_avx2::sharpKernels();
-#endif
-    static_cast<void>(level);
-    return simd_base::sharpKernels();
-}
-
-}  // namespace
-
 SharpLookup::SharpLookup(const DistanceField& field, core::SimdLevel level)
     : field_(field),
       view_(field.view()),
-      kernels_(kernelsFor(level)),
+      kernels_(HANDPIECE_AT_SIMD_LEVEL(level, sharpKernels)()),
       farOutMm_(static_cast<float>(field.reach().outMm)),
       farInMm_(static_cast<float>(field.reach().inMm)) {}
 

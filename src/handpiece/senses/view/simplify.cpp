@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "handpiece/base/geometry/point_triangle.h"
+
 namespace handpiece::view {
 namespace {
 
@@ -24,28 +26,6 @@ constexpr Index kNone = 0xffff;
 
 Vec3f vec(const std::array<float, 3>& v) {
     return {v[0], v[1], v[2]};
-}
-
-/// Squared distance to a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
-float squaredDistance(const Vec3f& p, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
-    const Vec3f ab = b - a, ac = c - a, ap = p - a;
-    const float d1 = ab.dot(ap), d2 = ac.dot(ap);
-    if (d1 <= 0.0f && d2 <= 0.0f) return ap.squaredNorm();
-    const Vec3f bp = p - b;
-    const float d3 = ab.dot(bp), d4 = ac.dot(bp);
-    if (d3 >= 0.0f && d4 <= d3) return bp.squaredNorm();
-    const float vc = d1 * d4 - d3 * d2;
-    if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f) return (ap - ab * (d1 / (d1 - d3))).squaredNorm();
-    const Vec3f cp = p - c;
-    const float d5 = ab.dot(cp), d6 = ac.dot(cp);
-    if (d6 >= 0.0f && d5 <= d6) return cp.squaredNorm();
-    const float vb = d5 * d2 - d1 * d6;
-    if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f) return (ap - ac * (d2 / (d2 - d6))).squaredNorm();
-    const float va = d3 * d6 - d5 * d4;
-    if (va <= 0.0f && d4 - d3 >= 0.0f && d5 - d6 >= 0.0f)
-        return (bp - (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)))).squaredNorm();
-    const float denominator = 1.0f / (va + vb + vc);
-    return (ap - ab * (vb * denominator) - ac * (vc * denominator)).squaredNorm();
 }
 
 /// Corners are vertices (place, normal, tissue); what stands in one place is one point.
@@ -106,7 +86,7 @@ class Patch {
             }
             made.piece.triangles.push_back(corners);
             for (const Index p : held_[t])
-                worst2 = std::max(worst2, squaredDistance(points_[p], at(t, 0), at(t, 1), at(t, 2)));
+                worst2 = std::max(worst2, geometry::squaredDistance(points_[p], at(t, 0), at(t, 1), at(t, 2)));
         }
         made.errorMm = std::sqrt(worst2);
         return made;
@@ -214,9 +194,9 @@ class Patch {
                 float least = std::numeric_limits<float>::infinity();
                 std::size_t which = 0;
                 for (std::size_t i = 1; i + 1 < count; ++i) {
-                    const float d =
-                        squaredDistance(points_[g], points_[ring_[u].point], points_[ring_[(u + i) % count].point],
-                                        points_[ring_[(u + i + 1) % count].point]);
+                    const float d = geometry::squaredDistance(points_[g], points_[ring_[u].point],
+                                                              points_[ring_[(u + i) % count].point],
+                                                              points_[ring_[(u + i + 1) % count].point]);
                     if (d >= least) continue;
                     least = d;
                     which = i;

@@ -32,15 +32,6 @@ constexpr double kCosines[] = {1.0, 0.9238795325112867,  0.7071067811865476,  0.
                                0.0, -0.3826834323650898, -0.7071067811865476, -0.9238795325112867,
                                -1.0};
 
-SweepKernels kernelsFor(core::SimdLevel level) {
-#if defined(__x86_64__)
-    if (level == core::SimdLevel::avx512) return simd_avx512::sweepKernels();
-    if (level == core::SimdLevel::avx2) return simd_avx2::sweepKernels();
-#endif
-    static_cast<void>(level);
-    return simd_base::sweepKernels();
-}
-
 /// One kernel unit: all that is asked about lies within 2^30 of them.
 double unitFor(const instrument::Bur& bur, double voxelMm) {
     const double extent = 2.0 * (bur.lengthMm() + bur.maxRadiusMm() + kCoarseReachMm + 4.0 * kBrickCells * voxelMm);
@@ -83,7 +74,7 @@ struct Sweeper::GridInBur {
 
 Sweeper::Sweeper(tooth::ToothState& field, const instrument::Bur& bur, core::SimdLevel level)
     : field_(field),
-      kernels_(kernelsFor(level)),
+      kernels_(HANDPIECE_AT_SIMD_LEVEL(level, sweepKernels)()),
       voxelMm_(field.field().settings().voxelMm),
       bandMm_(field.model().settings.bandMm),
       bandOutMm_(field.model().bandOutMm),

@@ -36,15 +36,6 @@ double toleranceAfter(int measured) {
     return measured < AxisSearch::kFineCuts ? AxisSearch::kFineToleranceMm : kDepthToleranceMm;
 }
 
-ExactKernels kernelsFor(core::SimdLevel level) {
-#if defined(__x86_64__)
-    if (level == core::SimdLevel::avx512) return simd_avx512::exactKernels();
-    if (level == core::SimdLevel::avx2) return simd_avx2::exactKernels();
-#endif
-    static_cast<void>(level);
-    return simd_base::exactKernels();
-}
-
 Vec3 vectorOf(const double (&v)[3]) {
     return {v[0], v[1], v[2]};
 }
@@ -52,7 +43,7 @@ Vec3 vectorOf(const double (&v)[3]) {
 }  // namespace
 
 ExactSurface::ExactSurface(const geometry::TriangleTree& tree, const field::DistanceField& field, core::SimdLevel level)
-    : tree_(tree), field_(field), kernels_(kernelsFor(level)) {
+    : tree_(tree), field_(field), kernels_(HANDPIECE_AT_SIMD_LEVEL(level, exactKernels)()) {
     view_.nodes = reinterpret_cast<const KernelNode*>(tree.nodes().data());
     view_.triangles = reinterpret_cast<const KernelTriangle*>(tree.triangles().data());
     view_.triangleCount = static_cast<std::uint32_t>(tree.triangles().size());

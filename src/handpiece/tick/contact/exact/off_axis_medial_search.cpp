@@ -42,15 +42,6 @@ constexpr double kFinalWindowMm = 5e-6;
 constexpr int kMaxSteps = 48, kMaxLooks = 24;
 constexpr double kArcFloorMm = 0.05;  // about the axis an angle is no measure of length
 
-FieldLookup lookupFor(core::SimdLevel level) {
-#if defined(__x86_64__)
-    if (level == core::SimdLevel::avx512) return simd_avx512::fieldLookup();
-    if (level == core::SimdLevel::avx2) return simd_avx2::fieldLookup();
-#endif
-    static_cast<void>(level);
-    return simd_base::fieldLookup();
-}
-
 bool isFine(float d) {
     return d < kKnownMm && d > -kKnownMm;
 }
@@ -126,7 +117,7 @@ bool isCovered(const instrument::MedialCurve& sheet, const std::vector<instrumen
 OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field::DistanceField& field,
                                          core::SimdLevel level)
     : field_(field.view()),
-      lookup_(lookupFor(level)),
+      lookup_(HANDPIECE_AT_SIMD_LEVEL(level, fieldLookup)()),
       bandOutMm_(static_cast<float>(field.settings().bandOutMm)),
       bandInMm_(static_cast<float>(field.settings().bandInMm)),
       errorMm_(kFieldErrorVoxels * field.settings().voxelMm),

@@ -20,15 +20,6 @@ namespace {
 constexpr int kTangents = 17;  // from -z over rho to +z, beside those of the pieces' ends
 constexpr double kStraightMm = 1e-9;
 
-NearestToOutline nearestFor(core::SimdLevel level) {
-#if defined(__x86_64__)
-    if (level == core::SimdLevel::avx512) return simd_avx512::nearestToOutline();
-    if (level == core::SimdLevel::avx2) return simd_avx2::nearestToOutline();
-#endif
-    static_cast<void>(level);
-    return simd_base::nearestToOutline();
-}
-
 void store(double (&to)[2], const Vec2& v) {
     to[0] = v.x();
     to[1] = v.y();
@@ -97,7 +88,7 @@ std::unique_ptr<const Outline> outlineOf(const instrument::Bur& bur) {
 }  // namespace
 
 OutlineSearch::OutlineSearch(const instrument::Bur& bur, core::SimdLevel level)
-    : outline_(outlineOf(bur)), nearest_(nearestFor(level)) {}
+    : outline_(outlineOf(bur)), nearest_(HANDPIECE_AT_SIMD_LEVEL(level, nearestToOutline)()) {}
 
 bool OutlineSearch::search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) noexcept {
     OutlineHit hit;

@@ -302,8 +302,7 @@ class FieldDepth::DepthAscent {
             if (reached < 0.7) window *= 0.4;
             if (std::abs(u_) > kAnchorMm || std::abs(arc_) > kAnchorMm) anchorAnew();
         }
-        const double here = settle(best);
-        return here;
+        return settle(best);
     }
     /// On from there by what the field is between its nodes.
     void climbSharply(FieldTouch& best) noexcept {

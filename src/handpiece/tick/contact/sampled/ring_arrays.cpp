@@ -12,12 +12,7 @@
 namespace handpiece::contact {
 
 RingKernels ringKernelsFor(core::SimdLevel level) {
-#if defined(__x86_64__)
-    if (level == core::SimdLevel::avx512) return simd_avx512::ringKernels();
-    if (level == core::SimdLevel::avx2) return simd_avx2::ringKernels();
-#endif
-    static_cast<void>(level);
-    return simd_base::ringKernels();
+    return HANDPIECE_AT_SIMD_LEVEL(level, ringKernels)();
 }
 
 RingArrays::RingArrays(std::span<const instrument::SurfaceRing> given) {

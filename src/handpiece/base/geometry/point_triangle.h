@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// From a point to a triangle, in the floating point that the vectors have.
+
+#include <algorithm>
+
+namespace handpiece::geometry {
+
+/// Squared distance from a point to a triangle (Ericson, Real-Time Collision Detection 5.1.5).
+template <class Vector>
+[[nodiscard]] typename Vector::Scalar squaredDistance(const Vector& p, const Vector& a, const Vector& b,
+                                                      const Vector& c) {
+    using Real = typename Vector::Scalar;
+    const Vector ab = b - a, ac = c - a, ap = p - a;
+    const Real d1 = ab.dot(ap), d2 = ac.dot(ap);
+    if (d1 <= 0 && d2 <= 0) return ap.squaredNorm();
+    const Vector bp = p - b;
+    const Real d3 = ab.dot(bp), d4 = ac.dot(bp);
+    if (d3 >= 0 && d4 <= d3) return bp.squaredNorm();
+    const Real vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return (ap - d1 / (d1 - d3) * ab).squaredNorm();
+    const Vector cp = p - c;
+    const Real d5 = ab.dot(cp), d6 = ac.dot(cp);
+    if (d6 >= 0 && d5 <= d6) return cp.squaredNorm();
+    const Real vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - d2 / (d2 - d6) * ac).squaredNorm();
+    const Real va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+        return (p - (b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b))).squaredNorm();
+    const Real sum = va + vb + vc;
+    if (!(sum > 0)) return std::min({ap.squaredNorm(), bp.squaredNorm(), cp.squaredNorm()});
+    return (ap - vb / sum * ab - vc / sum * ac).squaredNorm();
+}
+
+}  // namespace handpiece::geometry

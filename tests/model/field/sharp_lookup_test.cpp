@@ -75,6 +75,41 @@ TEST(SharpLookup, isOfTheThirdOrderOnARoundWall) {
     }
 }
 
+TEST(SharpLookup, tellsSlopeAndBendOfARoundWall) {
+    std::mt19937_64 random(test::seed());
+    const Vec3 centre(0.013, -0.02, 0.007);
+    const Distance ball = ballAt(centre, 0.8);
+    const DistanceField field = fieldOf(ball);
+    SharpLookup sharp(field, core::simdLevel());
+    const std::vector<Vec3> points = surfacePoints(ball, random, 2000);
+    std::size_t smooth = 0;
+    for (const Vec3& p : points) {
+        SharpLookup::Wall wall;
+        if (!sharp.wallAt(p, wall)) continue;
+        ++smooth;
+        const Vec3 out = (p - centre).normalized();
+        const core::Mat3 bend = (core::Mat3::Identity() - out * out.transpose()) / (p - centre).norm();
+        EXPECT_NEAR(wall.distanceMm, sharp.distance(p), 1e-7);
+        EXPECT_LT((wall.slope - out).norm(), 1e-4);
+        EXPECT_LT((wall.bendPerMm - bend).norm(), 0.02);
+    }
+    EXPECT_GT(smooth, points.size() * 9 / 10);
+}
+
+TEST(SharpLookup, tellsOfNoSmoothWallWhereTwoMeet) {
+    std::mt19937_64 random(test::seed());
+    const Vec3 side = test::randomDirection(random), other = side.unitOrthogonal();
+    const Distance roof = [&](const Vec3& p) { return std::max(side.dot(p), (0.8 * other + 0.6 * side).dot(p)); };
+    const DistanceField field = fieldOf(roof);
+    SharpLookup sharp(field, core::simdLevel());
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 p = test::uniform(random, -1.2, 1.2) * side.cross(other) +
+                       0.01 * test::uniform(random, 0.0, 1.0) * test::randomDirection(random);
+        SharpLookup::Wall wall;
+        EXPECT_FALSE(sharp.wallAt(p, wall)) << p.transpose();
+    }
+}
+
 TEST(SharpLookup, keepsAnEdgeWhereTwoRoundWallsMeet) {
     std::mt19937_64 random(test::seed());
     for (int turn = 0; turn < 6; ++turn) {
@@ -133,6 +168,24 @@ TEST(SharpLookup, isTheSameToTheBitAtEveryInstructionSetAndFollowsAChange) {
     for (int i = 0; i < 4000; ++i)
         (void)all(
             {test::uniform(random, -1.7, 1.7), test::uniform(random, -1.7, 1.7), test::uniform(random, -1.7, 1.7)});
+    // Eight at once, near one another and all over the field, as one by one.
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 middle(test::uniform(random, -1.6, 1.6), test::uniform(random, -1.6, 1.6),
+                          test::uniform(random, -1.6, 1.6));
+        const double spread = i % 3 == 0 ? 2.0 : i % 3 == 1 ? 0.1 : 0.01;
+        std::vector<Vec3> places;
+        for (int k = 0; k < 1 + i % 8; ++k)
+            places.push_back(middle + spread * test::uniform(random, 0.0, 1.0) * test::randomDirection(random));
+        for (SharpLookup& lookup : lookups) {
+            std::vector<double> told(places.size());
+            lookup.distances(places, told);
+            for (std::size_t k = 0; k < places.size(); ++k)
+                EXPECT_EQ(told[k], lookups.front().distance(places[k])) << places[k].transpose();
+        }
+        const Vec3 normal = lookups.front().normal(middle);
+        for (SharpLookup& lookup : lookups)
+            EXPECT_EQ(lookup.normal(middle), normal);
+    }
     for (float& value : field.storage().values)
         value += 0.01f;
     ++field.storage().version;

@@ -17,82 +17,318 @@ constexpr int kLanes = 8;
 constexpr int kLanes = 4;
 #endif
 using Floats = float __attribute__((vector_size(4 * kLanes)));
+using Ints = std::int32_t __attribute__((vector_size(4 * kLanes)));
 constexpr int kParts = kSharpStride / kLanes;
+using Four = float __attribute__((vector_size(16)));
 
-inline float least(float a, float b) {
+template <class T>
+inline T load(const float* from) {
+    T v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return v;
+}
+template <class T>
+inline void store(float* to, const T& v) {
+    __builtin_memcpy(to, &v, sizeof v);
+}
+template <class T>
+inline T least(T a, T b) {
     return a < b ? a : b;
 }
-inline float most(float a, float b) {
+template <class T>
+inline T most(T a, T b) {
     return a > b ? a : b;
 }
-inline float sizeOf(float x) {
-    return x < 0.0f ? -x : x;
-}
-inline Floats least(Floats a, Floats b) {
-    return a < b ? a : b;
-}
-inline Floats most(Floats a, Floats b) {
-    return a > b ? a : b;
-}
-inline Floats sizeOf(Floats x) {
+template <class T>
+inline T sizeOf(T x) {
     return most(x, -x);
 }
 
-/// What depends on the place alone.
-struct Weights {
-    float t, tt, ttt, after;   // of the differences, in Newton's form
-    float before2, s, after2;  // of the parabolas
-    explicit Weights(float at)
-        : t(at),
-          tt(0.5f * at * (at - 1.0f)),
-          ttt((at + 1.0f) * at * (at - 1.0f) * (1.0f / 6.0f)),
-          after(at * (at - 1.0f) * (at - 2.0f) * (1.0f / 6.0f)),
-          before2(0.5f * at * (at + 1.0f)),
-          s(1.0f - at),
-          after2(0.5f * (1.0f - at) * (2.0f - at)) {}
+/// A line of six nodes between its third and fourth: v2 + t first + tt second + ttt third, where tt = t (t - 1) / 2 and
+/// ttt = (t + 1) tt / 3. Where `meets`, two parabolas: that one, and otherStart + t otherFirst + tt otherSecond.
+template <class T>
+struct Line {
+    T first, second, third, otherStart, otherFirst, otherSecond, sign;
+
+    Line(const T (&v)[kSharpNodes], float kink, float bend) {
+        const T e0 = v[1] - v[0], e1 = v[2] - v[1], e2 = v[3] - v[2], e3 = v[4] - v[3], e4 = v[5] - v[4];
+        const T d1 = e1 - e0, d2 = e2 - e1, d3 = e3 - e2, d4 = e4 - e3;
+        const T third0 = d2 - d1, third1 = d3 - d2, third2 = d4 - d3;
+        const T size0 = sizeOf(third0), size2 = sizeOf(third2);
+        // The cubic in the middle, or away from an edge beside the cell.
+        const auto isRight = sizeOf(d3) < sizeOf(d2);
+        const T beside = isRight ? third2 : third0;
+        const auto isMiddle = sizeOf(third1) <= 2.0f * (isRight ? size2 : size0) + kink;
+        third = isMiddle ? third1 : beside;
+        second = isMiddle ? d2 : isRight ? d3 - third2 : d2;
+        first = e2;
+        // An edge in the cell pulls the third differences on both sides apart and leaves the outer second ones alike.
+        const T apart = least(size0, size2);
+        const auto meets = (third0 * third2 < T{}) & (apart > kink) & (sizeOf(d4 - d1) < 2.0f * apart + kink);
+        // No wall bends more than that: a third wall within the six nodes would lead far off.
+        const T bend1 = least(most(d1, T{} - bend), T{} + bend), bend4 = least(most(d4, T{} - bend), T{} + bend);
+        third = meets ? T{} : third;
+        second = meets ? bend1 : second;
+        first = meets ? e1 + bend1 : first;
+        otherStart = v[3] - e3 + bend4;
+        otherFirst = e3 - bend4;
+        otherSecond = bend4;
+        sign = meets ? (d2 + d3 > d1 + d4 ? T{} + 1.0f : T{} - 1.0f) : T{};
+    }
+    [[nodiscard]] T at(T start, T t, T tt, T ttt) const {
+        return meeting(start + t * first + tt * second + ttt * third, otherStart + t * otherFirst + tt * otherSecond,
+                       sign);
+    }
+    static T meeting(T value, T other, T sign) { return value + sign * most(sign * (other - value), T{}); }
 };
 
-/// For a float and for a vector of them.
-template <class T>
-inline T along(const T (&v)[kSharpNodes], const Weights& w, float kink, float bend) {
-    const T e0 = v[1] - v[0], e1 = v[2] - v[1], e2 = v[3] - v[2], e3 = v[4] - v[3], e4 = v[5] - v[4];
-    const T d1 = e1 - e0, d2 = e2 - e1, d3 = e3 - e2, d4 = e4 - e3;
-    const T third0 = d2 - d1, third1 = d3 - d2, third2 = d4 - d3;
-    const T size0 = sizeOf(third0), size1 = sizeOf(third1), size2 = sizeOf(third2);
-    const T linear = v[2] + w.t * e2;
-    const T middle = linear + w.tt * d2 + w.ttt * third1;
-    const T left = linear + w.tt * d2 + w.ttt * third0;
-    const T right = linear + w.tt * d3 + w.after * third2;
-    // Away from an edge beside the cell.
-    const T smooth = sizeOf(d3) < sizeOf(d2) ? (size1 <= 2.0f * size2 + kink ? middle : right)
-                                             : (size1 <= 2.0f * size0 + kink ? middle : left);
-    // No wall bends more than that: a third wall within the six nodes would lead far off.
-    const T bend1 = least(most(d1, T{} - bend), T{} + bend), bend4 = least(most(d4, T{} - bend), T{} + bend);
-    const T before = v[2] + w.t * e1 + w.before2 * bend1, after = v[3] - w.s * e3 + w.after2 * bend4;
-    const T meets = d2 + d3 > d1 + d4 ? most(before, after) : least(before, after);
-    // An edge in the cell pulls the third differences on both sides apart and leaves the outer second ones alike.
-    const T apart = least(size0, size2);
-    return third0 * third2 < T{} ? (apart > kink ? (sizeOf(d4 - d1) < 2.0f * apart + kink ? meets : smooth) : smooth)
-                                 : smooth;
+void locate(const FieldView& field, SharpPlaces& places) noexcept {
+    for (int i = 0; i < kSharpPlaces; ++i)
+        places.isInGrid[i] = 1;
+    for (int k = 0; k < 3; ++k) {
+        const std::int32_t last = kBrickCells * field.bricks[k] - 1;
+        const double end = last + 1, origin = field.originMm[k], inverse = field.inverseVoxelMm;
+        for (int i = 0; i < kSharpPlaces; ++i) {
+            const double g = (places.mm[k][i] - origin) * inverse;
+            const std::int32_t isIn = g >= 0.0 ? (g <= end ? 1 : 0) : 0;
+            const double near = isIn != 0 ? g : 0.0;
+            const auto whole = static_cast<std::int32_t>(near);
+            const std::int32_t cell = whole < last ? whole : last;
+            places.isInGrid[i] &= isIn;
+            places.cell[k][i] = cell;
+            places.t[k][i] = static_cast<float>(near - cell);
+        }
+    }
 }
 
-float at(const SharpBlock& block, const float (&t)[3]) noexcept {
-    const Weights wx(t[0]), wy(t[1]), wz(t[2]);
-    alignas(32) float row[kSharpStride];
+/// Of the four nodes -1, 0, 1, 2 at t: the cubic through them.
+template <class T>
+inline void cubicWeights(T t, T (&w)[4]) {
+    const T before = t * (t - 1.0f), after = (t + 1.0f) * (t - 2.0f);
+    w[0] = (-1.0f / 6.0f) * before * (t - 2.0f);
+    w[1] = 0.5f * after * (t - 1.0f);
+    w[2] = -0.5f * after * t;
+    w[3] = (1.0f / 6.0f) * before * (t + 1.0f);
+}
+template <class T>
+inline T weighed(const T (&v)[4], const float (&w)[4]) {
+    return (w[0] * v[0] + w[1] * v[1]) + (w[2] * v[2] + w[3] * v[3]);
+}
+
+/// The rows of nodes along x at the t along z and y of a place in a smooth block: the four in the middle.
+inline void smoothRow(const SharpBlock& block, const float (&z)[4], const float (&y)[4], float* row) {
+    Four rows[4];
+    for (int j = 0; j < 4; ++j) {
+        Four v[4];
+        for (int i = 0; i < 4; ++i)
+            v[i] = load<Four>(block.values[i + 1][j + 1] + 1);
+        rows[j] = weighed(v, z);
+    }
+    store(row + 1, weighed(rows, y));
+}
+/// The same, all six, beside an edge. Both: t, tt, ttt.
+inline void sharpRow(const SharpBlock& block, const float (&z)[3], const float (&y)[3], float* row) {
     for (int part = 0; part < kParts; ++part) {
         Floats rows[kSharpNodes];
-        for (int y = 0; y < kSharpNodes; ++y) {
-            Floats v[kSharpNodes];
-            for (int z = 0; z < kSharpNodes; ++z)
-                __builtin_memcpy(&v[z], block.values[z][y] + part * kLanes, sizeof v[z]);
-            rows[y] = along(v, wz, block.kinkMm, block.bendMm);
+        for (int j = 0; j < kSharpNodes; ++j) {
+            const SharpBlock::Lines& lines = block.lines[j];
+            const int from = part * kLanes;
+            rows[j] = load<Floats>(block.values[2][j] + from) + z[0] * load<Floats>(lines.first + from) +
+                      z[1] * load<Floats>(lines.second + from) + z[2] * load<Floats>(lines.third + from);
+            if (block.meets[j])
+                rows[j] = Line<Floats>::meeting(rows[j],
+                                                load<Floats>(lines.otherStart + from) +
+                                                    z[0] * load<Floats>(lines.otherFirst + from) +
+                                                    z[1] * load<Floats>(lines.otherSecond + from),
+                                                load<Floats>(lines.sign + from));
         }
-        const Floats result = along(rows, wy, block.kinkMm, block.bendMm);
-        __builtin_memcpy(row + part * kLanes, &result, sizeof result);
+        const Line<Floats> line(rows, block.kinkMm, block.bendMm);
+        store(row + part * kLanes, line.at(rows[2], Floats{} + y[0], Floats{} + y[1], Floats{} + y[2]));
     }
-    float v[kSharpNodes];
-    __builtin_memcpy(v, row, sizeof v);
-    return along(v, wx, block.kinkMm, block.bendMm);
+}
+
+inline Floats column(const float (&rows)[kSharpPlaces][kSharpStride], int first, int k) {
+#if HANDPIECE_SIMD_LEVEL >= 2
+    return Floats{rows[first][k],     rows[first + 1][k], rows[first + 2][k], rows[first + 3][k],
+                  rows[first + 4][k], rows[first + 5][k], rows[first + 6][k], rows[first + 7][k]};
+#else
+    return Floats{rows[first][k], rows[first + 1][k], rows[first + 2][k], rows[first + 3][k]};
+#endif
+}
+
+/// Along z and y place by place with the nodes along x in lanes, then along x with the places in lanes.
+void at(const SharpPlaces& places, float (&out)[kSharpPlaces]) noexcept {
+    float cubic[3][4][kSharpPlaces], newton[3][3][kSharpPlaces];
+    for (int k = 0; k < 3; ++k)
+        for (int first = 0; first < kSharpPlaces; first += kLanes) {
+            const auto t = load<Floats>(places.t[k] + first);
+            Floats w[4];
+            cubicWeights(t, w);
+            for (int i = 0; i < 4; ++i)
+                store(cubic[k][i] + first, w[i]);
+            const Floats tt = 0.5f * t * (t - 1.0f);
+            store(newton[k][0] + first, t);
+            store(newton[k][1] + first, tt);
+            store(newton[k][2] + first, (1.0f / 3.0f) * (t + 1.0f) * tt);
+        }
+    alignas(32) float rows[kSharpPlaces][kSharpStride] = {};
+    std::int32_t isSmooth[kSharpPlaces] = {};
+    float kink = 0.0f, bend = 0.0f;
+    bool anySharp = false;
+    for (int i = 0; i < kSharpPlaces; ++i) {
+        const SharpBlock* block = places.block[i];
+        if (block == nullptr) continue;
+        const auto of = [i](const auto& all, auto& own) {
+            for (int j = 0; j < static_cast<int>(sizeof own / sizeof own[0]); ++j)
+                own[j] = all[j][i];
+        };
+        if (block->isSmooth) {
+            float z[4], y[4];
+            of(cubic[2], z);
+            of(cubic[1], y);
+            smoothRow(*block, z, y, rows[i]);
+            isSmooth[i] = -1;
+        } else {
+            float z[3], y[3];
+            of(newton[2], z);
+            of(newton[1], y);
+            sharpRow(*block, z, y, rows[i]);
+            anySharp = true;
+            kink = block->kinkMm;
+            bend = block->bendMm;
+        }
+    }
+    for (int first = 0; first < kSharpPlaces; first += kLanes) {
+        Floats v[kSharpNodes];
+        for (int k = 0; k < kSharpNodes; ++k)
+            v[k] = column(rows, first, k);
+        const auto w = [&](int i) { return load<Floats>(cubic[0][i] + first); };
+        Floats d = (w(0) * v[1] + w(1) * v[2]) + (w(2) * v[3] + w(3) * v[4]);
+        if (anySharp) {
+            const auto of = [&](int i) { return load<Floats>(newton[0][i] + first); };
+            Ints smooth;
+            __builtin_memcpy(&smooth, isSmooth + first, sizeof smooth);
+            d = smooth ? d : Line<Floats>(v, kink, bend).at(v[2], of(0), of(1), of(2));
+        }
+        store(out + first, d);
+    }
+}
+
+/// Weights of the four nodes, and of the slope and the bend there.
+struct JetWeights {
+    Four value, slope, bend;
+    explicit JetWeights(float t)
+        : value((Four{0.0f, 6.0f, 0.0f, 0.0f} +
+                 t * (Four{-2.0f, -3.0f, 6.0f, -1.0f} +
+                      t * (Four{3.0f, -6.0f, 3.0f, 0.0f} + t * Four{-1.0f, 3.0f, -3.0f, 1.0f}))) *
+                (1.0f / 6.0f)),
+          slope((Four{-2.0f, -3.0f, 6.0f, -1.0f} +
+                 t * (Four{6.0f, -12.0f, 6.0f, 0.0f} + t * Four{-3.0f, 9.0f, -9.0f, 3.0f})) *
+                (1.0f / 6.0f)),
+          bend(Four{1.0f, -2.0f, 1.0f, 0.0f} + t * Four{-1.0f, 3.0f, -3.0f, 1.0f}) {}
+};
+inline Four weighed(const Four (&v)[4], Four w) {
+    return (w[0] * v[0] + w[1] * v[1]) + (w[2] * v[2] + w[3] * v[3]);
+}
+inline float across(Four v, Four w) {
+    const Four p = v * w;
+    return (p[0] + p[1]) + (p[2] + p[3]);
+}
+
+void jet(const SharpBlock& block, const float (&t)[3], SharpJet& out) noexcept {
+    const JetWeights x(t[0]), y(t[1]), z(t[2]);
+    Four value[4], slope[4], bend[4];
+    for (int j = 0; j < 4; ++j) {
+        Four v[4];
+        for (int i = 0; i < 4; ++i)
+            v[i] = load<Four>(block.values[i + 1][j + 1] + 1);
+        value[j] = weighed(v, z.value);
+        slope[j] = weighed(v, z.slope);
+        bend[j] = weighed(v, z.bend);
+    }
+    const Four row = weighed(value, y.value), rowY = weighed(value, y.slope), rowZ = weighed(slope, y.value);
+    out.value = across(row, x.value);
+    out.slope[0] = across(row, x.slope);
+    out.slope[1] = across(rowY, x.value);
+    out.slope[2] = across(rowZ, x.value);
+    out.xx = across(row, x.bend);
+    out.yy = across(weighed(value, y.bend), x.value);
+    out.zz = across(weighed(bend, y.value), x.value);
+    out.yz = across(weighed(slope, y.slope), x.value);
+    out.xz = across(rowZ, x.slope);
+    out.xy = across(rowY, x.slope);
+}
+
+/// Whether fourth differences along the lines through the block's middle tell of no edge: where the field is smooth
+/// they are some nanometres, and a cubic across an edge is off by at most 0.4 of them. Values of `endMm` and more only
+/// say "at least": no cubic goes through those, and a difference that does tells nothing.
+bool isSmooth(const SharpBlock& block, float endMm) noexcept {
+    Floats high[kParts], worst[kParts] = {};
+    for (Floats& h : high)
+        h = Floats{} - endMm;
+    Four along{};
+    const auto difference = [](const auto& v0, const auto& v1, const auto& v2, const auto& v3, const auto& v4) {
+        return sizeOf((v0 + v4) + 6.0f * v2 - 4.0f * (v1 + v3));
+    };
+    for (int a = 1; a < kSharpNodes - 1; ++a) {
+        for (int part = 0; part < kParts; ++part) {
+            Floats z[kSharpNodes], y[kSharpNodes];
+            for (int i = 0; i < kSharpNodes; ++i) {
+                z[i] = load<Floats>(block.values[i][a] + part * kLanes);
+                y[i] = load<Floats>(block.values[a][i] + part * kLanes);
+            }
+            const auto test = [&](const Floats(&v)[kSharpNodes]) {
+                const Floats before = difference(v[0], v[1], v[2], v[3], v[4]),
+                             after = difference(v[1], v[2], v[3], v[4], v[5]);
+                worst[part] = most(worst[part], v[0] < endMm ? before : Floats{});
+                worst[part] = most(worst[part], v[5] < endMm ? after : Floats{});
+            };
+            test(z);
+            test(y);
+            for (int i = 1; i < kSharpNodes - 1; ++i)
+                high[part] = most(high[part], z[i]);
+        }
+        for (int b = 1; b < kSharpNodes - 1; ++b) {
+            const float* row = block.values[a][b];  // the first two lanes: of v0 .. v4, and of v1 .. v5
+            const Four v0 = load<Four>(row), v4 = load<Four>(row + 4);
+            const Four end{v0[0], v4[1], 0.0f, 0.0f};
+            const Four d = difference(v0, load<Four>(row + 1), load<Four>(row + 2), load<Four>(row + 3), v4);
+            along = most(along, end < endMm ? d : Four{});
+        }
+    }
+    float highest[kSharpStride], lanes[kSharpStride];
+    __builtin_memcpy(highest, high, sizeof highest);
+    __builtin_memcpy(lanes, worst, sizeof lanes);
+    float edge = most(static_cast<float>(along[0]), static_cast<float>(along[1]));
+    for (int i = 1; i < kSharpNodes - 1; ++i) {
+        edge = most(edge, lanes[i]);
+        if (!(highest[i] < endMm)) return false;
+    }
+    return edge <= block.kinkMm;
+}
+
+void findLines(SharpBlock& block) noexcept {
+    for (int j = 0; j < kSharpNodes; ++j) {
+        SharpBlock::Lines& lines = block.lines[j];
+        bool meets = false;
+        for (int part = 0; part < kParts; ++part) {
+            const int from = part * kLanes;
+            Floats v[kSharpNodes];
+            for (int i = 0; i < kSharpNodes; ++i)
+                v[i] = load<Floats>(block.values[i][j] + from);
+            const Line<Floats> line(v, block.kinkMm, block.bendMm);
+            store(lines.first + from, line.first);
+            store(lines.second + from, line.second);
+            store(lines.third + from, line.third);
+            store(lines.otherStart + from, line.otherStart);
+            store(lines.otherFirst + from, line.otherFirst);
+            store(lines.otherSecond + from, line.otherSecond);
+            store(lines.sign + from, line.sign);
+        }
+        for (int i = 0; i < kSharpNodes; ++i)
+            meets = meets || lines.sign[i] != 0.0f;
+        block.meets[j] = meets;
+    }
 }
 
 /// Of a wall whose bend is followed up to an edge.
@@ -133,30 +369,33 @@ void gather(const FieldView& field, const std::int32_t (&cell)[3], float farOutM
     }
     block.kinkMm = static_cast<float>(4e-3 * field.voxelMm);
     block.bendMm = static_cast<float>(field.voxelMm * field.voxelMm / kLeastRadiusMm);
-    const bool isPlain = split[0] == kSharpNodes && local[0][kSharpNodes - 1] - local[0][0] == kSharpNodes - 1;
+    // Eight nodes of a row in each of the two bricks, and which of the sixteen are asked.
+    using Eight = float __attribute__((vector_size(4 * kSharpStride)));
+    using Lanes = std::int32_t __attribute__((vector_size(4 * kSharpStride)));
+    const std::int32_t begin = local[0][0] == 0 ? 0 : 1;
+    Lanes which{}, isNode{};
+    for (int x = 0; x < kSharpNodes; ++x) {
+        which[x] = x >= split[0] ? kSharpStride + local[0][x] - 1 : local[0][x] - begin;
+        isNode[x] = -1;
+    }
     for (int z = 0; z < kSharpNodes; ++z)
         for (int y = 0; y < kSharpNodes; ++y) {
             const int inZ = z >= split[2] ? 1 : 0, inY = y >= split[1] ? 1 : 0;
             const int row = kBrickNodes * (local[1][y] + kBrickNodes * local[2][z]);
-            float* out = block.values[z][y];
-            const float* first = values[inZ][inY][0];
-            if (isPlain && first != nullptr) {
-                __builtin_memcpy(out, first + row + local[0][0], kSharpNodes * sizeof(float));
-            } else {
-                for (int x = 0; x < kSharpNodes; ++x) {
-                    const int inX = x >= split[0] ? 1 : 0;
-                    const float* from = values[inZ][inY][inX];
-                    out[x] = from != nullptr ? from[row + local[0][x]] : far[inZ][inY][inX];
-                }
-            }
-            out[kSharpNodes] = out[kSharpNodes + 1] = 0.0f;
+            const float *first = values[inZ][inY][0], *second = values[inZ][inY][1];
+            const Eight a = first != nullptr ? load<Eight>(first + row + begin) : Eight{} + far[inZ][inY][0];
+            const Eight b = second != nullptr ? load<Eight>(second + row + 1) : Eight{} + far[inZ][inY][1];
+            const Eight nodes = __builtin_shuffle(a, b, which);
+            store(block.values[z][y], isNode ? nodes : Eight{});
         }
+    block.isSmooth = isSmooth(block, 0.999f * farOutMm);
+    if (!block.isSmooth) findLines(block);
 }
 
 }  // namespace
 
 SharpKernels sharpKernels() noexcept {
-    return {gather, at};
+    return {locate, gather, at, jet};
 }
 
 }  // namespace handpiece::field::HANDPIECE_SIMD_NS

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// A field between its nodes to third order, with edges kept sharp: some ten times the cost of DistanceField::distance.
+/// A field between its nodes to third order, with edges kept sharp: a few times the cost of DistanceField::distance.
 
 #include <array>
+#include <span>
 
 #include "handpiece/base/core/simd.h"
 #include "handpiece/model/field/distance_field.h"
@@ -19,23 +20,37 @@ class SharpLookup {
 
     /// Signed distance [mm]; as DistanceField::distance where no brick is stored.
     [[nodiscard]] double distance(const core::Vec3& p) noexcept;
+    /// The same at up to kSharpPlaces places at once, for little more than one costs.
+    void distances(std::span<const core::Vec3> places, std::span<double> out) noexcept;
     /// Unit gradient (out of the tooth); zero where no brick is stored. On an edge that of one of its walls.
     [[nodiscard]] core::Vec3 normal(const core::Vec3& p) noexcept;
 
+    struct Wall {
+        double distanceMm;
+        core::Vec3 slope;      ///< first derivatives
+        core::Mat3 bendPerMm;  ///< second derivatives
+    };
+    /// The smooth wall at a place; false where an edge lies in or beside its cell, or no brick is stored.
+    [[nodiscard]] bool wallAt(const core::Vec3& p, Wall& wall) noexcept;
+
   private:
     struct Cell {
+        std::int32_t at[3] = {-1, -1, -1};
         SharpBlock block;
-        std::int32_t first[3] = {-1, -1, -1};
-        std::uint64_t version = 0;
     };
-    /// The nodes about the cell at `p`; null where no brick is stored. `t`: the place in it.
-    const SharpBlock* find(const core::Vec3& p, float (&t)[3]) noexcept;
+    void locate(std::span<const core::Vec3> places) noexcept;
+    /// Null where no brick is stored.
+    [[nodiscard]] const SharpBlock* blockAt(const std::int32_t (&cell)[3]) noexcept;
+    /// The place itself is the first of places_ then.
+    [[nodiscard]] const SharpBlock* firstBlock(const core::Vec3& p) noexcept;
 
     const DistanceField& field_;
     FieldView view_;
     SharpKernels kernels_;
     float farOutMm_, farInMm_;
+    std::uint64_t version_ = 0;
     std::array<Cell, 8> cells_;  ///< by whether x, y, z are odd: neighbours are kept beside one another
+    SharpPlaces places_{};
 };
 
 }  // namespace handpiece::field

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
 #include <string>
@@ -22,11 +23,15 @@
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/starter/starter.h"
 #include "handpiece/tick/contact/field_method.h"
+#include "measure.h"
 #include "support/brute_force_depth.h"
+#include "support/random.h"
 #include "tick/contact/cut_by_hand.h"
 
 namespace handpiece::bench {
 namespace {
+
+using test::uniform;
 
 constexpr const char* kBurs[] = {
     "cylinder-round:1.0x4.0", "taper-round:1.2x4.0",
@@ -170,26 +175,28 @@ void reportOwnCavity(double deepestMm, int count) {
 void reportCuts(std::size_t faces, double voxelMm, const std::string& only, const std::string& onlyCut, int poses,
                 bool json) {
     const auto tooth = molarOf(faces, voxelMm);
-    if (json) fmt::print("[");
-    bool isFirst = true;
+    auto rows = nlohmann::ordered_json::array();
     for (const char* name : kBurs)
         for (const char* cut : kCuts) {
             if ((!only.empty() && only != name) || (!onlyCut.empty() && onlyCut != cut)) continue;
             const CutAccuracy a = measureCut(tooth, burOf(name), cut, static_cast<std::size_t>(poses), kSeed);
-            if (json)
-                fmt::print(
-                    "{}\n  {{\"bur\": \"{}\", \"cut\": \"{}\", \"voxel_mm\": {}, \"poses\": {}, "
-                    "\"err_med_um\": {:.4f}, \"err_p99_um\": {:.4f}, \"err_max_um\": {:.4f}, \"time_us\": {:.3f}, "
-                    "\"time_p99_us\": {:.3f}}}",
-                    isFirst ? "" : ",", name, cut, voxelMm, a.poses, a.errorMedianUm, a.errorP99Um, a.errorWorstUm,
-                    a.timeUs, a.timeP99Us);
-            else
-                fmt::print("{:<24} {:<9} {:>6} {:>6} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.2f} {:>9.2f}\n", name, cut,
-                           voxelMm, a.poses, a.errorMedianUm, a.errorP99Um, a.errorWorstUm, a.timeUs, a.timeP99Us);
+            if (json) {
+                rows.push_back({{"bur", name},
+                                {"cut", cut},
+                                {"voxel_mm", voxelMm},
+                                {"poses", a.poses},
+                                {"err_med_um", a.errorMedianUm},
+                                {"err_p99_um", a.errorP99Um},
+                                {"err_max_um", a.errorWorstUm},
+                                {"time_us", a.timeUs},
+                                {"time_p99_us", a.timeP99Us}});
+                continue;
+            }
+            fmt::print("{:<24} {:<9} {:>6} {:>6} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.2f} {:>9.2f}\n", name, cut, voxelMm,
+                       a.poses, a.errorMedianUm, a.errorP99Um, a.errorWorstUm, a.timeUs, a.timeP99Us);
             std::fflush(stdout);
-            isFirst = false;
         }
-    if (json) fmt::print("\n]\n");
+    if (json) fmt::print("{}\n", rows.dump(2));
 }
 
 int mainOf(int argc, char** argv) {

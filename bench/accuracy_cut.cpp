@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/simd.h"
@@ -14,12 +15,16 @@
 #include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/cutting/sweeper.h"
+#include "measure.h"
+#include "support/random.h"
 
 namespace handpiece::bench {
 namespace {
 
 using core::Vec2;
 using core::Vec3;
+
+using test::uniform;
 
 constexpr int kCutPasses = 9;
 constexpr double kStrokeStepMm = 0.02;  ///< of a quick hand in one tick
@@ -223,12 +228,6 @@ class Truth {
     std::vector<Spot> spots_;
 };
 
-Vec3 direction(std::mt19937_64& generator) {
-    for (;;) {
-        const Vec3 v(uniform(generator, -1, 1), uniform(generator, -1, 1), uniform(generator, -1, 1));
-        if (v.norm() <= 1.0 && v.norm() > 0.1) return v.normalized();
-    }
-}
 core::Quat tilted(std::mt19937_64& generator, double mostRad) {
     const double turn = uniform(generator, 0.0, 2.0 * std::numbers::pi);
     return core::Quat(Eigen::AngleAxisd(uniform(generator, 0.0, mostRad), Vec3(std::cos(turn), std::sin(turn), 0.0)));
@@ -288,15 +287,6 @@ std::vector<Stroke> strokesOf(const std::string& cut, contact::Method& uncut, co
 
 }  // namespace
 
-double uniform(std::mt19937_64& generator, double low, double high) {
-    return low + (high - low) * std::generate_canonical<double, 53>(generator);
-}
-
-double percentile(const std::vector<double>& ascending, double share) {
-    return ascending[std::min(ascending.size() - 1,
-                              static_cast<std::size_t>(share * static_cast<double>(ascending.size())))];
-}
-
 CutAccuracy measureCut(const std::shared_ptr<const tooth::ToothModel>& tooth,
                        const std::shared_ptr<const instrument::Bur>& bur, const std::string& cut, std::size_t count,
                        unsigned seed) {
@@ -328,8 +318,9 @@ CutAccuracy measureCut(const std::shared_ptr<const tooth::ToothModel>& tooth,
         for (int tries = 0; poses.size() < (count + kPlaces - 1) / kPlaces && tries < 100000; ++tries) {
             const Stroke& stroke = strokes[static_cast<std::size_t>(uniform(generator, 0, 1) * double(strokes.size()))];
             core::Pose pose = stroke.from;
-            pose.positionMm += uniform(generator, 0.0, 1.0) * stroke.wayMm +
-                               std::exp(uniform(generator, std::log(0.004), std::log(0.2))) * direction(generator);
+            pose.positionMm +=
+                uniform(generator, 0.0, 1.0) * stroke.wayMm +
+                std::exp(uniform(generator, std::log(0.004), std::log(0.2))) * test::randomDirection(generator);
             pose.orientation = pose.orientation * tilted(generator, tries % 3 == 0 ? 0.3 : tries % 3 == 1 ? 0.02 : 0.0);
             const contact::Depth told = method->depth(pose);
             if (!(told.depthMm > 0.002 && told.depthMm < 0.2)) continue;

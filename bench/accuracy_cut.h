@@ -4,17 +4,12 @@
 /// Depth after a cut against brute force on the tooth minus the exact sweep.
 
 #include <memory>
-#include <random>
 #include <string>
-#include <vector>
 
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/model/tooth/tooth_model.h"
 
 namespace handpiece::bench {
-
-[[nodiscard]] double uniform(std::mt19937_64& generator, double low, double high);
-[[nodiscard]] double percentile(const std::vector<double>& ascending, double share);
 
 struct CutAccuracy {
     std::string bur, cut;

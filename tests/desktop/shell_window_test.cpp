@@ -36,6 +36,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/record/session/recorder.h"
 #include "handpiece/record/session/session_reader.h"
 #include "shell_support.h"
 
@@ -442,6 +443,28 @@ TEST_F(ShellTest, ACaseASurfaceAndARecordingAreOpenedByDroppingThem) {
     ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "lower-first-molar"; }));
     drop(recording);
     EXPECT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
+}
+
+TEST_F(ShellTest, ARecordingOfAnotherEngineIsToldToBeApproximate) {
+    startWithTooth();
+    ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 100; }));
+    action("actionReplay")->trigger();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
+    const auto* notices = window().findChild<NoticeBar*>();
+    EXPECT_NE(notices->current(), "other-engine");
+    {
+        const session::SessionReader own(simulator().document().caseFile);
+        session::SessionInfo info = own.info();
+        --info.engineRevision;
+        session::Recorder older(at("older.h5"), info);
+        for (const session::Record& record : own.records(0, static_cast<std::size_t>(own.size())))
+            older.pushWaiting(record);
+    }
+    drop(own_.filePath("older.h5"));
+    ASSERT_TRUE(waitFor([&] { return notices->current() == "other-engine"; })) << notices->current().toStdString();
+    EXPECT_EQ(simulator().document().name, "older.h5");
+    simulator().openStarter({starter::ToothKind::upperIncisor, 4000});
+    EXPECT_TRUE(waitFor([&] { return notices->current().isEmpty(); })) << notices->current().toStdString();
 }
 
 TEST_F(ShellTest, AsksForWorkThatWaitsBehindAReplay) {

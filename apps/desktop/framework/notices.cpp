@@ -100,6 +100,10 @@ constexpr Row kRows[] = {
      QT_TRANSLATE_NOOP("Notices",
                        "Handed in: %1, with its tooth. Recordings in it: %2 (%3 MB). Recordings that are no longer "
                        "there, or too large together, and not in it: %4.")},
+    {Notice::otherEngine, "other-engine", Kind::warning,
+     QT_TRANSLATE_NOOP(
+         "Notices", "Recorded by engine revision %1; this program's is %2. What you see is cut again approximately."),
+     only(End::toothOpened)},
     {Notice::caseVanished, "case-vanished", Kind::warning,
      QT_TRANSLATE_NOOP("Notices", "The tooth you opened is no longer at %1. It was saved together with the attempt."),
      0, QT_TRANSLATE_NOOP("Notices", "Save as...")},

@@ -46,6 +46,7 @@ enum class Notice {
     helpLocked,
     handedIn,
     handedInPart,
+    otherEngine,
     caseVanished,
     saved,
     translationMissing,

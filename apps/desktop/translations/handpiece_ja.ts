@@ -1264,6 +1264,10 @@
         <translation>切削に使ったバー %1 がないため、代わりに %2 を使います。</translation>
     </message>
     <message>
+        <source>Recorded by engine revision %1; this program&apos;s is %2. What you see is cut again approximately.</source>
+        <translation>エンジン改訂 %1 による記録です。このプログラムの改訂は %2 なので、表示されているのは近似的な再切削です。</translation>
+    </message>
+    <message>
         <source>This exercise does not allow the bur %1.</source>
         <translation>この課題ではバー %1 を使えません。</translation>
     </message>

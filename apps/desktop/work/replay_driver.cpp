@@ -14,6 +14,7 @@ ReplayDriver::ReplayDriver(std::unique_ptr<simulation::SessionPlayer> player, He
       heard_(std::move(heard)),
       durationS_(player_->durationS()),
       rateHz_(player_->reader().info().rateHz),
+      engineRevision_(player_->reader().info().engineRevision),
       tooth_(player_->tooth()),
       toothCase_(player_->toothCase()),
       events_(player_->events()),

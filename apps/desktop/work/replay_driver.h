@@ -51,6 +51,8 @@ class ReplayDriver {
     [[nodiscard]] const cases::Case& toothCase() const noexcept { return toothCase_; }
     [[nodiscard]] const std::vector<session::Event>& events() const noexcept { return events_; }
     [[nodiscard]] double rateHz() const noexcept { return rateHz_; }
+    /// Of the engine that recorded it.
+    [[nodiscard]] std::int32_t engineRevision() const noexcept { return engineRevision_; }
     [[nodiscard]] const std::vector<simulation::PlotPoint>& plot() const noexcept { return plot_; }
     [[nodiscard]] const simulation::SimulationSettings& firstSettings() const noexcept { return settings_; }
 
@@ -61,6 +63,7 @@ class ReplayDriver {
     std::unique_ptr<simulation::SessionPlayer> player_;
     Heard heard_;
     double durationS_, rateHz_;
+    std::int32_t engineRevision_;
     std::shared_ptr<simulation::LiveTooth> tooth_;
     cases::Case toothCase_;
     std::vector<session::Event> events_;

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <tuple>
 
+#include "handpiece/base/core/engine_revision.h"
+
 namespace handpiece::desktop {
 namespace {
 
@@ -187,6 +189,9 @@ void Simulator::watch(std::unique_ptr<ReplayDriver> driver) {
     timer_.start(kReplayPollMs);
     emit documentChanged();
     emit plotted(replay_->plot());
+    if (replay_->engineRevision() != core::kEngineRevision)
+        emit noticed(QStringLiteral("other-engine"),
+                     {QString::number(replay_->engineRevision()), QString::number(core::kEngineRevision)});
 }
 
 /// What the recorded hand had, beside the device that is here.

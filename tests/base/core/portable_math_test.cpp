@@ -5,6 +5,7 @@
 #include <mpfr.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -202,6 +203,25 @@ TEST(PortableMath, lengths) {
         },
         [](double x, double y) { return hypot(x, y); },
         [](mpfr_ptr out, mpfr_srcptr x, mpfr_srcptr y) { mpfr_hypot(out, x, y, MPFR_RNDN); });
+    std::mt19937_64 generator(test::seed());
+    Exact x, y, z;
+    double worst = 0.0;
+    for (int i = 0; i < kCount; ++i) {
+        std::array<double, 3> at{sides(generator).first, 0.0, 0.0};
+        for (std::size_t k : {1, 2})
+            at[k] = std::ldexp(at[0], static_cast<int>(generator() % 60) - 30) * test::uniform(generator, 0.0, 1.0);
+        if (!std::isfinite(at[1]) || !std::isfinite(at[2])) continue;
+        std::shuffle(at.begin(), at.end(), generator);
+        mpfr_set_d(x.value, at[0], MPFR_RNDN);
+        mpfr_set_d(y.value, at[1], MPFR_RNDN);
+        mpfr_set_d(z.value, at[2], MPFR_RNDN);
+        mpfr_hypot(x.value, x.value, y.value, MPFR_RNDN);
+        mpfr_hypot(x.value, x.value, z.value, MPFR_RNDN);
+        const double off = unitsOff(hypot(at[0], at[1], at[2]), x.value);
+        worst = std::max(worst, off);
+        ASSERT_LE(off, 2.0) << at[0] << " " << at[1] << " " << at[2];
+    }
+    std::printf("worst error %.4f units\n", worst);
     EXPECT_EQ(hypot(2.0, 3.0, 6.0), 7.0);
     EXPECT_EQ(hypot(0x2p1000, 0x3p1000, 0x6p1000), 0x7p1000);
     EXPECT_EQ(hypot(-0x1p-1070, 0.0, 0.0), 0x1p-1070);

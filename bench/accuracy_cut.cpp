@@ -307,9 +307,7 @@ CutAccuracy measureCut(const std::shared_ptr<const tooth::ToothModel>& tooth,
                                        stroke.from.orientation});
             sweeper.settle();
         }
-        contact::FieldMethodSettings settings;
-        settings.sharpRims = true;
-        const auto method = contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(state), bur, settings);
+        const auto method = contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(state), bur);
         const Truth truth(tooth->tree, *bur, strokes);
         std::vector<core::Pose> poses;
         std::vector<double> wanted;

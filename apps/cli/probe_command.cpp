@@ -41,9 +41,7 @@ std::unique_ptr<contact::Method> methodOf(const ProbeOptions& o, const MethodReg
     preparing.finish();
     const auto cut = std::make_shared<tooth::ToothState>(found.base);
     (void)cut->restore(found.state, 0, found.state.bricks.size());
-    contact::FieldMethodSettings settings;
-    settings.sharpRims = true;
-    return contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut), loadBur(in.bur), settings);
+    return contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut), loadBur(in.bur));
 }
 
 void probe(const ProbeOptions& o, const MethodRegistry& methods) {

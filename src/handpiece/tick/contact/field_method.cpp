@@ -7,11 +7,11 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/portable_math.h"
-#include "handpiece/model/instrument/fillet.h"
 #include "handpiece/tick/contact/exact/exact_depth.h"
 #include "handpiece/tick/contact/exact/off_axis_medial_search.h"
 #include "handpiece/tick/contact/exact/outline_search.h"
 #include "handpiece/tick/contact/sampled/field_depth.h"
+#include "handpiece/tick/contact/sampled/known_surface.h"
 #include "handpiece/tick/contact/sampled/surface_sampler.h"
 
 namespace handpiece::contact {
@@ -21,9 +21,6 @@ using core::Vec3;
 namespace {
 
 constexpr double kNoDirectionMm = 1e-9;
-/// A field of voxels rounds the inner corner that a sharp rim cuts by a third of a voxel: with a rim as sharp the bur
-/// would be held up in its own cavity.
-constexpr double kFeelerFilletVoxels = 1.0;
 /// Between its nodes the field of a round wall stands in by h^2 / 8 r at most: a bur in its own cavity is given that
 /// and half as much again, or bumps of a micron would wedge it. r is taken as half the bur's radius.
 constexpr double kSlackShare = 1.5 / 8.0;
@@ -43,12 +40,9 @@ class FieldMethod final : public Method {
           outline_(*bur_, core::simdLevel()),
           axis_(*bur_),
           sheets_(*bur_, tooth_->field, core::simdLevel()),
-          feeler_(cut_ ? instrument::filleted(*bur_, kFeelerFilletVoxels * live_.settings().voxelMm) : *bur_),
-          rings_(live_, feeler_, core::simdLevel()),
-          sharpRings_(feeler_.profile().pieces.size() != bur_->profile().pieces.size()
-                          ? std::make_unique<SurfaceSampler>(live_, *bur_, core::simdLevel())
-                          : nullptr),
-          field_(live_, settings_.sharpRims ? *bur_ : feeler_, settings_.sharpRims || !sharpRings_, core::simdLevel()),
+          known_(live_, *bur_, core::simdLevel()),
+          rings_(known_, *bur_, core::simdLevel()),
+          field_(known_, *bur_, core::simdLevel()),
           slackMm_(cut_ ? std::max(kMinSlackMm, kSlackShare * live_.settings().voxelMm * live_.settings().voxelMm /
                                                     (0.5 * bur_->maxRadiusMm()))
                         : 0.0),
@@ -97,7 +91,7 @@ class FieldMethod final : public Method {
     }
 
     void patches(const core::Pose& burInTooth, PatchSet& out) noexcept override {
-        (sharpRings_ ? *sharpRings_ : rings_).patches(burInTooth, out);
+        rings_.patches(burInTooth, out);
     }
 
     Status constraints(const core::Pose& burInTooth, double reachMm, ConstraintSet& out) noexcept override {
@@ -107,22 +101,9 @@ class FieldMethod final : public Method {
     void bearing(const core::Pose& burInTooth, const Vec3& direction, double leadMm, double leastRadiusMm,
                  Bearing& out) noexcept override {
         rings_.bearing(burInTooth, direction, leadMm, leastRadiusMm, out);
-        if (!sharpRings_) return;
-        // A sharp rim on a slope bears before the rounded one does; in its own cavity the rounded one is the steadier.
-        Bearing sharp;
-        sharpRings_->bearing(burInTooth, direction, leadMm, leastRadiusMm, sharp);
-        double rounded = 0.0, own = 0.0;
-        for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
-            rounded += out.resistanceMm[t];
-            own += sharp.resistanceMm[t];
-        }
-        const double share = own > 0.0 ? std::clamp((rounded / own - 0.2) / 0.3, 0.0, 1.0) : 1.0;
-        for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
-            out.areaMm2[t] += (1.0 - share) * (sharp.areaMm2[t] - out.areaMm2[t]);
-            out.resistanceMm[t] += (1.0 - share) * (sharp.resistanceMm[t] - out.resistanceMm[t]);
-            out.tangentMm[t] += (1.0 - share) * (sharp.tangentMm[t] - out.tangentMm[t]);
-        }
     }
+
+    void noteCut(const core::Pose& burInTooth) noexcept override { known_.noteCut(burInTooth); }
 
     [[nodiscard]] std::uint64_t toothVersion() const noexcept override { return live_.version(); }
 
@@ -133,6 +114,7 @@ class FieldMethod final : public Method {
     void reset() noexcept override {
         outline_.reset();
         axis_.reset();
+        known_.forget();
         clearMm_ = 0.0;
     }
 
@@ -194,7 +176,7 @@ class FieldMethod final : public Method {
             setFar(burInTooth, clear);
             return;
         }
-        const FieldTouch found = field_.search(burInTooth, settings_.sharpRims && sharpRings_ ? *sharpRings_ : rings_);
+        const FieldTouch found = field_.search(burInTooth, rings_);
         result.slackMm = slackMm_;
         result.depthMm = std::max(found.depthMm, -settings_.reachMm);
         if (!(found.depthMm >= -settings_.reachMm)) {
@@ -215,11 +197,8 @@ class FieldMethod final : public Method {
     OutlineSearch outline_;
     AxisSearch axis_;
     OffAxisMedialSearch sheets_;
-    instrument::Bur feeler_;  ///< the bur as the field is felt with it
+    KnownSurface known_;
     SurfaceSampler rings_;
-    /// With the bur's edges as they are, where the feeler's are not: a sharp rim on a slope bears, and cuts, before the
-    /// feeler does.
-    std::unique_ptr<SurfaceSampler> sharpRings_;
     FieldDepth field_;
     std::vector<instrument::MedialBall> spine_;  ///< some balls of the bur's axis
     double slackMm_;                             ///< of the bur in its own cavity

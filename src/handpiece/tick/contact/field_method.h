@@ -21,10 +21,6 @@ enum class DepthSource : std::uint8_t {
 struct FieldMethodSettings {
     DepthSource depthSource = DepthSource::exact;
     double reachMm = 5.0;  ///< farther apart than this is "beyond reach"
-    /// After a cut the depth is that of the bur as it is, sharp rims too. Else one with sharp rims has a fillet of a
-    /// voxel there and is asked in the mixed field, as patches and constraints are: what a hand feels must agree with
-    /// them.
-    bool sharpRims = false;
 };
 
 [[nodiscard]] std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::ToothModel> tooth,

@@ -108,6 +108,7 @@ struct Cutter::State {
         core::Pose cutter = input.proxyInTooth;
         cutter.positionMm = cutterMm;
         take(sweeper.sweepTo(cutter));
+        method.noteCut(cutter);
     }
 
     std::shared_ptr<tooth::ToothState> field;

@@ -83,16 +83,14 @@ double inscribedAt(const instrument::Bur& bur, const Vec2& p, const Vec2& normal
 
 }  // namespace
 
-FieldDepth::FieldDepth(const field::DistanceField& field, const instrument::Bur& bur, bool sharply,
-                       core::SimdLevel level)
-    : field_(field),
+FieldDepth::FieldDepth(KnownSurface& surface, const instrument::Bur& bur, core::SimdLevel level)
+    : surface_(surface),
+      field_(surface.field()),
       bur_(bur),
-      isSharp_(sharply),
-      sharp_(field, level),
-      view_(field.view()),
+      view_(field_.view()),
       kernels_(ringKernelsFor(level)),
-      outMm_(kSaturated * field.reach().outMm),
-      inMm_(kSaturated * field.reach().inMm),
+      outMm_(kSaturated * field_.reach().outMm),
+      inMm_(kSaturated * field_.reach().inMm),
       // Half a diagonal of the rings' mesh, and what a trilinear cell may be off.
       clearMm_(std::max(
           0.0, std::sqrt(std::max(0.0, outMm_ * outMm_ - 0.5 * bur.surfaceSpacingMm() * bur.surfaceSpacingMm())) -
@@ -298,7 +296,7 @@ class FieldDepth::DepthAscent {
         double window = kFirstLookMm;
         for (int i = 0; i < kLooks && window > kLastLookMm; ++i) {
             const double reached = look(window, false);
-            if (top_ + 3.0 * window + (depth_.isSharp_ ? kMixedErrorMm : 0.0) < best.depthMm) return top_;
+            if (top_ + 3.0 * window + kMixedErrorMm < best.depthMm) return top_;
             if (reached < 0.7) window *= 0.4;
             if (std::abs(u_) > kAnchorMm || std::abs(arc_) > kAnchorMm) anchorAnew();
         }
@@ -395,7 +393,7 @@ class FieldDepth::DepthAscent {
         float distance[8];
         if (sharply)
             for (int i = 0; i < 8; ++i)
-                distance[i] = static_cast<float>(depth_.sharp_.distance(
+                distance[i] = static_cast<float>(depth_.surface_.distance(
                     place_ + static_cast<double>(query.u[i]) * alongU_ + static_cast<double>(query.arc[i]) * alongArc_ -
                     static_cast<double>(query.in[i]) * normal_));
         else
@@ -441,11 +439,14 @@ class FieldDepth::DepthAscent {
     /// Onto the tooth's surface, and what the depth is there.
     double settle(FieldTouch& best) noexcept {
         double deepest = -std::numeric_limits<double>::infinity();
-        for (int i = 0; i < kProjections; ++i) {
+        for (int i = 0; i <= kProjections; ++i) {
+            // Where it did not come to lie on the surface in time the bur's own tells the distance.
+            if (i == kProjections && !(std::isinf(deepest) && in_ > 0.0)) break;
+            if (i == kProjections) in_ = 0.0;
             double alongU = 0.0, inwards = 0.0;
             stepsTo(u_, arc_, in_, alongU, inwards);
             const Vec3 p = place_ + alongU * alongU_ + arc_ * alongArc_ - inwards * normal_;
-            const double d = depth_.distanceAt(p), depth = depth_.depthAt(frame_, p, d);
+            const double d = depth_.surface_.distance(p), depth = depth_.depthAt(frame_, p, d);
             // Outside the tooth a field that has been cut may tell less than the distance.
             const bool trusted = d <= kOnSurfaceMm || in_ <= 0.0;
             if (trusted) deepest = std::max(deepest, depth);
@@ -551,7 +552,7 @@ void FieldDepth::climbFrom(const BurFrame& frame, std::span<const Start> starts,
     std::array<double, kStarts> tops;
     for (std::size_t i = 0; i < starts.size(); ++i)
         tops[i] = ascents[i].emplace(*this, frame, starts[i]).climb(best);
-    for (int climbs = 0; isSharp_ && climbs < kSharpClimbs; ++climbs) {
+    for (int climbs = 0; climbs < kSharpClimbs; ++climbs) {
         std::size_t top = kStarts;
         for (std::size_t i = 0; i < starts.size(); ++i)
             if (ascents[i] && (top == kStarts || tops[i] > tops[top])) top = i;
@@ -563,14 +564,14 @@ void FieldDepth::climbFrom(const BurFrame& frame, std::span<const Start> starts,
 
 void FieldDepth::takeAxis(const BurFrame& frame, double z, FieldTouch& best) noexcept {
     Vec3 p = frame.onAxis(z);
-    double d = distanceAt(p);
+    double d = surface_.distance(p);
     const Vec3 away = outward(p);
     Vec3 q = p;
     if (d > 0.0) {  // beside an edge a field that has been cut tells less than the distance: ask on the surface
         for (int i = 0; i < kProjections; ++i)
-            q -= distanceAt(q) * normalAt(q);
+            q -= surface_.distance(q) * surface_.lookup().normal(q);
         p = q;
-        d = distanceAt(p);
+        d = surface_.distance(p);
     } else {
         q = p - d * away;
     }

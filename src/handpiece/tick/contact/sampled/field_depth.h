@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "handpiece/base/core/simd.h"
-#include "handpiece/model/field/sharp_lookup.h"
+#include "handpiece/tick/contact/sampled/known_surface.h"
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/tick/contact/method.h"
 #include "handpiece/tick/contact/sampled/ring_arrays.h"
@@ -27,8 +27,7 @@ struct FieldTouch {
 /// that lies deeper than the field's values reach is looked for on shells inside it and on its axis.
 class FieldDepth {
   public:
-    /// `sharply`: by what the field is between its nodes; else as it is mixed there.
-    FieldDepth(const field::DistanceField& field, const instrument::Bur& bur, bool sharply, core::SimdLevel level);
+    FieldDepth(KnownSurface& surface, const instrument::Bur& bur, core::SimdLevel level);
 
     /// The depth; minus infinity when nothing lies within clearMm() of the bur. Where values only say "at least", so
     /// does the depth.
@@ -66,20 +65,13 @@ class FieldDepth {
     void climbAxis(const BurFrame& frame, double top, double topZ, FieldTouch& best) noexcept;
     void takeAxis(const BurFrame& frame, double z, FieldTouch& best) noexcept;
     [[nodiscard]] core::Vec3 outward(const core::Vec3& p) const noexcept;
-    [[nodiscard]] double distanceAt(const core::Vec3& p) noexcept {
-        return isSharp_ ? sharp_.distance(p) : field_.distance(p);
-    }
-    [[nodiscard]] core::Vec3 normalAt(const core::Vec3& p) noexcept {
-        return isSharp_ ? sharp_.normal(p) : field_.normal(p);
-    }
     [[nodiscard]] double radiusAt(double z) const noexcept;
     [[nodiscard]] double depthAt(const BurFrame& frame, const core::Vec3& p, double distanceMm) const noexcept;
     [[nodiscard]] std::size_t nearestSpot(std::size_t from, double rho, double z) const noexcept;
 
+    KnownSurface& surface_;
     const field::DistanceField& field_;
     const instrument::Bur& bur_;
-    bool isSharp_;
-    field::SharpLookup sharp_;
     field::FieldView view_;
     RingKernels kernels_;
     double outMm_, inMm_, clearMm_;  ///< values between -inMm_ and outMm_ are distances

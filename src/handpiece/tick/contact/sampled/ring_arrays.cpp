@@ -66,11 +66,12 @@ RingArrays::RingArrays(std::span<const instrument::SurfaceRing> given) {
         values->assign(points, 0.0f);
     tissue.assign(points, 0);
     live.assign(eightsInAll, 0);
+    creased.assign(eightsInAll, 0);
     liveRing.assign(rings.size(), 0);
     least.assign(rings.size(), kNotLiveMm);
     bur = {rings.data(), static_cast<std::int32_t>(rings.size()), cosines.data(), sines.data(), heights.data()};
-    touch = {axisDistance.data(), distance.data(), gx.data(),       gy.data(),    gz.data(),
-             tissue.data(),       live.data(),     liveRing.data(), least.data(), skippedDeep.get()};
+    touch = {axisDistance.data(), distance.data(), gx.data(),       gy.data(),    gz.data(),         tissue.data(),
+             live.data(),         creased.data(),  liveRing.data(), least.data(), skippedDeep.get()};
 }
 
 double leastOf(const RingArrays& arrays) noexcept {

@@ -28,7 +28,7 @@ class RingArrays {
     std::vector<float> heights;        ///< of the rings
     // What was found.
     std::vector<float> axisDistance, distance, gx, gy, gz, least;
-    std::vector<std::uint8_t> tissue, live, liveRing;
+    std::vector<std::uint8_t> tissue, live, creased, liveRing;
     std::unique_ptr<bool> skippedDeep = std::make_unique<bool>(false);
     BurRings bur;
     RingTouch touch;

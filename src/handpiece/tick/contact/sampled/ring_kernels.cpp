@@ -227,6 +227,10 @@ inline float leastOf(Floats d) {
     return least;
 }
 
+inline Floats spreadOf(Floats a, Floats b, Floats c, Floats d) {
+    return mostF(mostF(a, b), mostF(c, d)) - leastF(leastF(a, b), leastF(c, d));
+}
+
 /// Looks eight points of a ring up: distance, gradient and tissue of those that are live, which it returns as bits.
 inline unsigned senseEight(const FieldView& field, const BurRings& bur, const RingQuery& query, const RingTouch& touch,
                            const BurRing& ring, const Row& row, int eight, Floats& least) {
@@ -254,17 +258,34 @@ inline unsigned senseEight(const FieldView& field, const BurRings& bur, const Ri
         if (deep != 0) *touch.skippedDeep = true;
         candidates &= ~deep;
     }
-    const unsigned live = bitsOf(d <= query.thresholdMm) & candidates;
+    unsigned live = bitsOf(d <= query.thresholdMm + query.creaseMm) & candidates;
+    if (live == 0) {
+        const Floats none = splatF(kNotLiveMm);
+        __builtin_memcpy(touch.distanceMm + at, &none, sizeof none);
+        touch.live[ring.mask + eight] = touch.creased[ring.mask + eight] = 0;
+        return 0;
+    }
+    const Floats gx = mix(mix(v[1] - v[0], v[3] - v[2], t[1]), mix(v[5] - v[4], v[7] - v[6], t[1]), t[2]);
+    const Floats gy = mix(x10 - x00, x11 - x01, t[2]);
+    const Floats gz = high - low;
+    const auto voxelMm = static_cast<float>(field.voxelMm);
+    const float least2 = query.creaseSlope * query.creaseSlope * voxelMm * voxelMm;
+    const Floats twist = mostF(mostF(spreadOf(v[1] - v[0], v[3] - v[2], v[5] - v[4], v[7] - v[6]),
+                                     spreadOf(v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5])),
+                               spreadOf(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3]));
+    const unsigned creased =
+        bitsOf(((gx * gx + gy * gy + gz * gz < least2) | (twist > query.creaseTwist * voxelMm)) &
+               (absolute(d) < 3.0f * query.creaseMm)) &
+        live & ~places.bare;
+    live &= bitsOf(d <= query.thresholdMm) | creased;
     touch.live[ring.mask + eight] = static_cast<std::uint8_t>(live);
+    touch.creased[ring.mask + eight] = static_cast<std::uint8_t>(creased);
     const Ints lane = {1, 2, 4, 8, 16, 32, 64, 128};
     const Ints isLive = ((Ints{} + static_cast<std::int32_t>(live)) & lane) != 0;
     d = isLive ? d : splatF(kNotLiveMm);
     __builtin_memcpy(touch.distanceMm + at, &d, sizeof d);
     if (live == 0) return 0;
     least = leastF(least, d);
-    const Floats gx = mix(mix(v[1] - v[0], v[3] - v[2], t[1]), mix(v[5] - v[4], v[7] - v[6], t[1]), t[2]);
-    const Floats gy = mix(x10 - x00, x11 - x01, t[2]);
-    const Floats gz = high - low;
     __builtin_memcpy(touch.gradientX + at, &gx, sizeof gx);
     __builtin_memcpy(touch.gradientY + at, &gy, sizeof gy);
     __builtin_memcpy(touch.gradientZ + at, &gz, sizeof gz);
@@ -289,7 +310,7 @@ void sense(const FieldView& field, const BurRings& bur, const RingQuery& query, 
     // In a trilinear cell the Lipschitz bound holds but for what the cell is off, a tenth of a voxel near an edge of
     // the surface: what lies beyond a bound by no more than that is looked up.
     const auto slackMm = static_cast<float>(0.1 * field.voxelMm);
-    const float threshold = query.thresholdMm + slackMm;
+    const float threshold = query.thresholdMm + (slackMm > query.creaseMm ? slackMm : query.creaseMm);
     for (std::int32_t i = 0; i < bur.count; i += 8) {
         // Eight rings: heights from the middle one on.
         const double middle = bur.heights[i + 4];
@@ -333,7 +354,7 @@ void sense(const FieldView& field, const BurRings& bur, const RingQuery& query, 
                 } else {
                     const Floats none = splatF(kNotLiveMm);
                     __builtin_memcpy(touch.distanceMm + ring.first + 8 * e, &none, sizeof none);
-                    touch.live[ring.mask + e] = 0;
+                    touch.live[ring.mask + e] = touch.creased[ring.mask + e] = 0;
                 }
             }
         }

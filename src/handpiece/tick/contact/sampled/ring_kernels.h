@@ -36,6 +36,10 @@ struct RingQuery {
     float farOutMm, farInMm;        ///< where no brick is stored the surface is at least this far
     bool skipsDeep;                 ///< points inside where no brick is stored, or deeper than deepMm, are not live
     float deepMm;                   ///< values hold no more than this
+    /// A point counts as creased, walls meeting in its cell, when its slope is less than this share of a distance's, or
+    /// slopes along the cell's edges differ by more than that. Such are live within creaseMm more, which no cell is off
+    /// by, and told within three times that of the surface: zero for never.
+    float creaseSlope, creaseTwist, creaseMm;
     std::uint8_t tissue;            ///< when everything is of one tissue, else kManyTissues
 };
 inline constexpr std::uint8_t kManyTissues = 0xff;
@@ -47,6 +51,7 @@ struct RingTouch {
     float *gradientX, *gradientY, *gradientZ;  ///< by point: of the field, per voxel; zero where no brick is stored
     std::uint8_t* tissue;                      ///< by point: of the nearest node; unset when all is of one tissue
     std::uint8_t* live;                        ///< by eight: bit i for its point i
+    std::uint8_t* creased;                     ///< by eight of live points
     std::uint8_t* liveRing;                    ///< by ring: has live points
     float* leastMm;                            ///< by ring: least distance of its live points; kNotLiveMm for none
     bool* skippedDeep;                         ///< whether there were points that skipsDeep left out

@@ -11,6 +11,7 @@
 #include "handpiece/model/field/distance_field.h"
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/tick/contact/method.h"
+#include "handpiece/tick/contact/sampled/known_surface.h"
 #include "handpiece/tick/contact/sampled/ring_arrays.h"
 
 namespace handpiece::contact {
@@ -18,11 +19,11 @@ namespace handpiece::contact {
 /// A value beyond this share of what a field is held to says no more than "at least".
 inline constexpr double kSaturated = 0.98;
 
-/// Feels the field, which must outlive this, with the bur's surface rings. Cost depends on the contact, never on the
+/// Feels the surface, which must outlive this, with the bur's surface rings. Cost depends on the contact, never on the
 /// mesh. For one thread.
 class SurfaceSampler {
   public:
-    SurfaceSampler(const field::DistanceField& field, const instrument::Bur& bur, core::SimdLevel level);
+    SurfaceSampler(KnownSurface& surface, const instrument::Bur& bur, core::SimdLevel level);
 
     void patches(const core::Pose& burInTooth, PatchSet& out) noexcept;
     Status constraints(const core::Pose& burInTooth, double reachMm, ConstraintSet& out) noexcept;
@@ -51,6 +52,7 @@ class SurfaceSampler {
     static constexpr std::size_t kRingsPerBlock = 3;
 
     void sense(const core::Pose& burInTooth, double thresholdMm, bool skipsDeep) noexcept;
+    void sharpen() noexcept;
     [[nodiscard]] bool isSensed(const core::Pose& pose) const noexcept;
     [[nodiscard]] std::uint8_t tissueAt(std::int32_t at) const noexcept;
     std::size_t findRuns() noexcept;
@@ -63,6 +65,7 @@ class SurfaceSampler {
     std::size_t findMinima() noexcept;
     std::size_t addSectors(std::size_t minima) noexcept;
 
+    KnownSurface& surface_;
     const field::DistanceField& field_;
     field::FieldView view_;
     RingKernels kernels_;

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// All that is known of a tooth's surface after a cut. Private to this room.
+
+#include <algorithm>
+
+#include "handpiece/base/core/simd.h"
+#include "handpiece/model/field/sharp_lookup.h"
+#include "handpiece/model/instrument/bur.h"
+#include "handpiece/tick/contact/bur_frame.h"
+
+namespace handpiece::contact {
+
+/// The field between its nodes, and the bur where it cut last: nothing of the tooth is in that, so no place in it is
+/// nearer to the tooth than to its outline. A rim that has just cut a corner narrower than the voxels is free in it.
+/// For one thread.
+class KnownSurface {
+  public:
+    /// Both must outlive this.
+    KnownSurface(const field::DistanceField& field, const instrument::Bur& bur, core::SimdLevel level)
+        : field_(field), bur_(bur), lookup_(field, level) {}
+
+    [[nodiscard]] const field::DistanceField& field() const noexcept { return field_; }
+    [[nodiscard]] field::SharpLookup& lookup() noexcept { return lookup_; }
+    /// Signed distance [mm].
+    [[nodiscard]] double distance(const core::Vec3& p) noexcept {
+        const double read = lookup_.distance(p);
+        if (cutVersion_ != field_.version()) return read;
+        return std::max(read, -bur_.signedDistance(cut_.toBur * (p - cut_.tip)));
+    }
+    void noteCut(const core::Pose& burInTooth) noexcept {
+        cut_ = BurFrame(burInTooth);
+        cutVersion_ = field_.version();
+    }
+    void forget() noexcept { cutVersion_ = 0; }
+
+  private:
+    const field::DistanceField& field_;
+    const instrument::Bur& bur_;
+    field::SharpLookup lookup_;
+    BurFrame cut_;  ///< where the bur cut last
+    std::uint64_t cutVersion_ = 0;  ///< of the field after that
+};
+
+}  // namespace handpiece::contact

@@ -64,16 +64,21 @@ struct Line {
         first = e2;
         // An edge in the cell pulls the third differences on both sides apart and leaves the outer second ones alike.
         const T apart = least(size0, size2);
-        const auto meets = (third0 * third2 < T{}) & (apart > kink) & (sizeOf(d4 - d1) < 2.0f * apart + kink);
-        // No wall bends more than that: a third wall within the six nodes would lead far off.
-        const T bend1 = least(most(d1, T{} - bend), T{} + bend), bend4 = least(most(d4, T{} - bend), T{} + bend);
+        const auto alike = (third0 * third2 < T{}) & (apart > kink) & (sizeOf(d4 - d1) < 2.0f * apart + kink);
+        // With another edge on one side they are not alike: then the other side tells, if no wall bends so much.
+        const T outer = least(sizeOf(d1), sizeOf(d4)), inner = least(sizeOf(d2), sizeOf(d3));
+        const auto strong = (inner > kink) & (sizeOf(d2 + d3) > 4.0f * outer + 2.2f * bend);
+        const auto meets = (d2 * d3 > T{}) & (alike | strong);
+        // What bends more is no wall: a third one begins within the six nodes.
+        const T bend1 = sizeOf(d1) <= bend ? d1 : T{}, bend4 = sizeOf(d4) <= bend ? d4 : T{};
         third = meets ? T{} : third;
         second = meets ? bend1 : second;
         first = meets ? e1 + bend1 : first;
         otherStart = v[3] - e3 + bend4;
         otherFirst = e3 - bend4;
         otherSecond = bend4;
-        sign = meets ? (d2 + d3 > d1 + d4 ? T{} + 1.0f : T{} - 1.0f) : T{};
+        const T rise = strong ? d2 : d2 + d3 - d1 - d4;
+        sign = meets ? (rise > T{} ? T{} + 1.0f : T{} - 1.0f) : T{};
     }
     [[nodiscard]] T at(T start, T t, T tt, T ttt) const {
         return meeting(start + t * first + tt * second + ttt * third, otherStart + t * otherFirst + tt * otherSecond,

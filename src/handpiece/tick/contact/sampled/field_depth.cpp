@@ -448,7 +448,8 @@ class FieldDepth::DepthAscent {
             const Vec3 p = place_ + alongU * alongU_ + arc_ * alongArc_ - inwards * normal_;
             const double d = depth_.surface_.distance(p), depth = depth_.depthAt(frame_, p, d);
             // Outside the tooth a field that has been cut may tell less than the distance.
-            const bool trusted = d <= kOnSurfaceMm || in_ <= 0.0;
+            if (i == kProjections && d < 0.0) break;
+            const bool trusted = (d <= kOnSurfaceMm && d > -depth_.inMm_) || in_ <= 0.0;
             if (trusted) deepest = std::max(deepest, depth);
             if (trusted && depth > best.depthMm) {
                 best.depthMm = depth;
@@ -572,6 +573,7 @@ void FieldDepth::takeAxis(const BurFrame& frame, double z, FieldTouch& best) noe
             q -= surface_.distance(q) * surface_.lookup().normal(q);
         p = q;
         d = surface_.distance(p);
+        if (d > kClimbMm) return;  // farther out than values tell: no way led onto the surface
     } else {
         q = p - d * away;
     }

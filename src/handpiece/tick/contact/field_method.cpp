@@ -107,6 +107,8 @@ class FieldMethod final : public Method {
 
     [[nodiscard]] std::uint64_t toothVersion() const noexcept override { return live_.version(); }
 
+    [[nodiscard]] double slackMm() const noexcept override { return slackMm_; }
+
     [[nodiscard]] bool isCutNear(const core::Pose& burInTooth) const noexcept override {
         return cut_ && burInTooth.isValid() && cut_->isCutNear(boxAround(BurFrame(burInTooth), live_.reach().outMm));
     }

@@ -35,9 +35,7 @@ struct Depth {
     cases::Tissue tissue = cases::Tissue::none;    ///< at that point
     Status status = Status::beyondReach;
     std::uint16_t tooth = 0;  ///< index of the tooth that decides. A method of one tooth says 0, here and below
-    /// By how much the surface here may seem nearer than it is, in constraints() as well: zero where it is exact. A
-    /// bur that is held off by more would hang in its own cavity.
-    double slackMm = 0.0;
+    double slackMm = 0.0;  ///< Method::slackMm() where the surface has been cut, else zero
     /// How much deeper it could be by what was left unseen of the bur's axis in an uncut tooth: zero where that is
     /// kDepthToleranceMm at most, as it is unless the work that a tick affords ended first.
     double unseenMm = 0.0;
@@ -123,6 +121,10 @@ class Method {
 
     /// Another number after the tooth has changed: what was found at the same one still holds.
     [[nodiscard]] virtual std::uint64_t toothVersion() const noexcept HANDPIECE_REALTIME { return 0; }
+
+    /// By how much a surface that has been cut may seem nearer than it is, in depth() and constraints(): so far inside
+    /// it a bur may rest, or it would hang in its own cavity, and so far behind the bur the cutter may be.
+    [[nodiscard]] virtual double slackMm() const noexcept HANDPIECE_REALTIME { return 0.0; }
 
     /// Whether the surface near the bur is one that cutting has left: rough by fractions of a micron, in a field.
     [[nodiscard]] virtual bool isCutNear(const core::Pose& /*burInTooth*/) const noexcept HANDPIECE_REALTIME {

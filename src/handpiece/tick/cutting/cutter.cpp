@@ -16,8 +16,6 @@ namespace {
 
 /// The cutter's lead over the proxy that is carried to the next tick; a sharp rim needs most of it.
 constexpr double kMaxLeadVoxels = 1.0;
-/// The proxy may rest this far inside what the cutter has left: its own tolerance and the clearance that it is given.
-constexpr double kSlackVoxels = 0.12, kMinSlackMm = 0.004;
 
 /// What the bearing's tissues say together, each with the weight 1 / K.
 struct Resistance {
@@ -38,8 +36,7 @@ struct Cutter::State {
           settings(theSettings),
           sweeper(*field, *bur, core::simdLevel()),
           leastRadiusMm(cuttingParameters.centreRadius * bur->maxRadiusMm()),
-          mostLeadMm(kMaxLeadVoxels * field->field().settings().voxelMm),
-          slackMm(std::max(kMinSlackMm, kSlackVoxels * field->field().settings().voxelMm)) {
+          mostLeadMm(kMaxLeadVoxels * field->field().settings().voxelMm) {
         for (std::size_t t = 0; t < cases::kTissueCount; ++t)
             cuttingMm2PerN[t] = cuttingParameters.cutting * tissues.rows[t].cuttingMm2PerN;
     }
@@ -70,6 +67,7 @@ struct Cutter::State {
         // The cutter goes on from where it was: ahead of the proxy by what the field has not let through yet, or behind
         // it by what the field lets through too early. Else the proxy's microns would be cut for nothing, tick by tick.
         Vec3 offset = Vec3::Zero();
+        const double slackMm = method.slackMm();
         if (hasCutter && (cutterMm - proxy).norm() <= 2.0 * mostLeadMm) {
             const Vec3 from = cutterMm - proxy;
             const double along = from.dot(direction);
@@ -116,7 +114,7 @@ struct Cutter::State {
     instrument::CuttingParameters cuttingParameters;
     Settings settings;
     Sweeper sweeper;
-    double leastRadiusMm, mostLeadMm, slackMm;
+    double leastRadiusMm, mostLeadMm;
     Vec3 cutterMm = Vec3::Zero();  // where the cutter was when it last cut
     bool hasCutter = false;
     std::array<double, cases::kTissueCount> cuttingMm2PerN{};

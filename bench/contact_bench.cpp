@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// contact/<method>/<faces>/<hover|touch>: ours and the peers on the same poses in the same process. docs/benchmarks.md
-// says what each counter is. HANDPIECE_BENCH_QUICK=1 makes a smoke test of it.
+// contact/<method>/<faces>/<hover|touch>: ours and the peers on the same poses in the same process.
+// burs/<bur>/<faces>/<touch|deep>: ours with sharp rims, and with a bur as an STL brings it, each on its own way.
+// docs/benchmarks.md says what each counter is. HANDPIECE_BENCH_QUICK=1 makes a smoke test of it.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -23,6 +24,8 @@ namespace handpiece::bench {
 namespace {
 
 constexpr int kHoverBatch = 16;
+constexpr const char* kBurs[] = {"cylinder-flat:1.0x4.0", "wheel:2.0x0.8", "inverted-cone:1.2x1.2",
+                                 "taper-flat:1.2x4.0", "mesh"};
 
 struct MethodEntry {
     std::string name;
@@ -56,6 +59,7 @@ class Session {
     explicit Session(bool quick) : workload_(quick), quick_(quick) {}
 
     Workload& workload() { return workload_; }
+    [[nodiscard]] bool isQuick() const { return quick_; }
     /// The query of the last benchmark is kept: hover and touch share it.
     Query& query(const MethodEntry& method, const Resolution& resolution) {
         const std::string key = method.name + "/" + resolution.name;
@@ -139,6 +143,13 @@ void run(benchmark::State& state, Session& session, const MethodEntry& method, c
     if (!label.empty()) state.SetLabel(label);
 }
 
+void runBur(benchmark::State& state, Session& session, const char* bur, const Resolution& resolution, Way way) {
+    const Workload::BurDrag drag = session.workload().drag(bur, resolution, way);
+    const MeasureSettings settings = session.settings(false, way);
+    report(state, measure(*drag.query, drag.poses, settings), settings);
+    reportErrors(state, *drag.query, drag.poses, drag.references);
+}
+
 void runConstantLoad(benchmark::State& state, Session& session, double us) {
     ConstantLoad load(us);
     const MeasureSettings settings = session.settings(false, Way::touch);
@@ -166,6 +177,17 @@ void registerAll(Session& session) {
                     ->UseManualTime()
                     ->Unit(benchmark::kMicrosecond);
             }
+    for (const char* bur : kBurs)
+        for (const Way way : {Way::touch, Way::deep}) {
+            const Resolution& resolution = resolutions()[session.isQuick() ? 0 : 3];
+            const std::string name =
+                fmt::format("burs/{}/{}/{}", bur, resolution.name, way == Way::touch ? "touch" : "deep");
+            benchmark::RegisterBenchmark(
+                name.c_str(), [&, bur, way](benchmark::State& state) { runBur(state, session, bur, resolution, way); })
+                ->Iterations(1)
+                ->UseManualTime()
+                ->Unit(benchmark::kMicrosecond);
+        }
     for (const int us : {1, 2, 4, 8, 16})
         benchmark::RegisterBenchmark(fmt::format("load/constant/{}", us).c_str(),
                                      [&session, us](benchmark::State& state) { runConstantLoad(state, session, us); })

@@ -53,7 +53,9 @@ std::vector<Pose> makeTrajectory(Way way, Query& surface, const geometry::Triang
     while (lengths.empty() || lengths.back() < wantedMm) {
         const double x = centre.x() + 0.6 * half.x() * std::sin(t),
                      y = centre.y() + 0.5 * half.y() * std::sin(2.0 * t + 0.4);
-        const double target = way == Way::hover ? -1.0 : 0.275 - 0.225 * std::cos(std::numbers::pi * along);
+        const double target = way == Way::hover  ? -1.0
+                              : way == Way::deep ? 1.0
+                                                 : 0.275 - 0.225 * std::cos(std::numbers::pi * along);
         const double from = points.empty() ? whole.max.z() + 3.0 : points.back().z() + 0.5;
         points.emplace_back(x, y, heightOfDepth(surface, x, y, from, whole.min.z(), target));
         lengths.push_back(points.size() < 2 ? 0.0

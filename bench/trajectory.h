@@ -13,6 +13,7 @@ namespace handpiece::bench {
 enum class Way {
     hover,  ///< 1.0 mm clear of the tooth, 22 mm long
     touch,  ///< depth swinging between 0.05 and 0.5 mm, 24 mm long, over cusps and fissures
+    deep,   ///< the same way, 1.0 mm deep
 };
 
 /// `ticks` poses (4,000 at 1 kHz: 6 um a tick) of equal spacing along the way, the bur tilted by 15 degrees.

@@ -113,25 +113,42 @@ std::span<const core::Pose> Workload::poses(Way way) {
     if (poses.empty()) {
         const Resolution& finest = resolutions()[quick_ ? 0 : 4];
         const std::unique_ptr<Query> exact = exactQuery(finest, contact::FieldMethodSettings{}.reachMm);
-        poses = makeTrajectory(way, *exact, mesh(finest), quick_ ? kQuickTicks : kTicks);
+        poses = makeTrajectory(way, *exact, mesh(finest), ticks());
     }
     return poses;
 }
 
+int Workload::ticks() const {
+    return quick_ ? kQuickTicks : kTicks;
+}
+
+std::vector<Reference> Workload::referencesOf(const instrument::Bur& bur, const Resolution& resolution,
+                                              std::span<const core::Pose> poses) {
+    const geometry::TriangleTree tree(mesh(resolution));
+    std::vector<Reference> references(poses.size() / kTicksPerReference);
+    core::parallelFor(references.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t tick = i * kTicksPerReference;
+            references[i] = {tick, test::bruteForceDepth(tree, bur, poses[tick]).depthMm};
+        }
+    });
+    return references;
+}
+
 const std::vector<Reference>& Workload::references(const Resolution& resolution, Way way) {
     std::vector<Reference>& references = references_[{resolution.name, way}];
-    if (references.empty()) {
-        const std::span<const core::Pose> all = poses(way);
-        const geometry::TriangleTree tree(mesh(resolution));
-        references.resize(all.size() / kTicksPerReference);
-        core::parallelFor(references.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::size_t tick = i * kTicksPerReference;
-                references[i] = {tick, test::bruteForceDepth(tree, *bur_, all[tick]).depthMm};
-            }
-        });
-    }
+    if (references.empty()) references = referencesOf(*bur_, resolution, poses(way));
     return references;
+}
+
+Workload::BurDrag Workload::drag(const std::string& name, const Resolution& resolution, Way way) {
+    const auto bur = std::make_shared<const instrument::Bur>(
+        name == "mesh" ? instrument::burFromMesh(name, bur_->mesh()) : instrument::makeBur(name));
+    BurDrag drag;
+    drag.query = std::make_unique<MethodQuery>(contact::makeFieldMethod(tooth(resolution, kVoxelMm), bur), false);
+    drag.poses = makeTrajectory(way, *drag.query, mesh(resolution), ticks());
+    drag.references = referencesOf(*bur, resolution, drag.poses);
+    return drag;
 }
 
 }  // namespace handpiece::bench

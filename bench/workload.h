@@ -55,9 +55,22 @@ class Workload {
     /// The depth by its definition at every tenth tick, by brute force.
     [[nodiscard]] const std::vector<Reference>& references(const Resolution& resolution, Way way);
 
+    /// Another bur's own way over one tooth, and the right answers there.
+    struct BurDrag {
+        std::unique_ptr<Query> query;
+        std::vector<core::Pose> poses;
+        std::vector<Reference> references;
+    };
+    /// `name` as makeBur() knows it, or "mesh": the paper's bur as an STL brings it.
+    [[nodiscard]] BurDrag drag(const std::string& name, const Resolution& resolution, Way way);
+
   private:
     [[nodiscard]] std::filesystem::path toothFile(const Resolution& resolution);
     [[nodiscard]] const geometry::TriangleMesh& mesh(const Resolution& resolution);
+
+    [[nodiscard]] int ticks() const;
+    [[nodiscard]] std::vector<Reference> referencesOf(const instrument::Bur& bur, const Resolution& resolution,
+                                                      std::span<const core::Pose> poses);
 
     bool quick_;
     std::filesystem::path cache_;

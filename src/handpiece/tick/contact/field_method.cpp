@@ -148,7 +148,7 @@ class FieldMethod final : public Method {
         const bool outsideKnown = outline_.isFit(), apart = outsideKnown && outline_.search(surface_, frame, best);
         if (!apart) {
             if (!outsideKnown || axis_.mayEnter(surface_, frame)) axis_.search(surface_, frame, best, mostMm);
-            sheets_.search(surface_, frame, outsideKnown, best);
+            sheets_.search(surface_, frame, outsideKnown, best, mostMm);
         }
         if (!(best.depthMm >= -settings_.reachMm)) {
             setFar(burInTooth, std::isfinite(best.depthMm) ? -best.depthMm : 0.0);

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "handpiece/base/core/portable_math.h"
+#include "handpiece/tick/contact/method.h"
 
 namespace handpiece::contact {
 
@@ -40,6 +41,7 @@ constexpr double kFarBehind = 4.0;
 constexpr double kToleranceMm = 2e-8;
 constexpr double kFinalWindowMm = 5e-6;
 constexpr int kMaxSteps = 48, kMaxLooks = 24;
+constexpr float kFarMm = 1e3f;
 constexpr double kArcFloorMm = 0.05;  // about the axis an angle is no measure of length
 
 bool isFine(float d) {
@@ -50,20 +52,16 @@ double distanceOf(float d) {
     return static_cast<double>(isFine(d) ? d : d > 0.0f ? d - kBoundMm : d + kBoundMm);
 }
 
-/// A triangle near the ball being climbed: what it says of the depth there and how that changes.
-struct Support {
-    double value, alongU, alongArc;
-};
-
 /// Largest of min over supports of (value + slopes . step) within the box: a linear program in two unknowns, whose best
 /// lies at a corner. A corner is where two of these meet: sides of the box, and lines along which two supports are
 /// equal. Four supports and four sides leave few, so all are tried.
-double solve(const Support* supports, int count, double lowU, double highU, double window, double& stepU,
-             double& stepArc) noexcept {
+template <class Support>
+double solve(const Support* supports, int count, double lowU, double highU, double lowArc, double highArc,
+             double& stepU, double& stepArc) noexcept {
     double best = -std::numeric_limits<double>::infinity();
     const auto offer = [&](double u, double arc) {
         constexpr double kSlack = 1e-12;
-        if (!(u >= lowU - kSlack && u <= highU + kSlack && std::abs(arc) <= window + kSlack)) return;
+        if (!(u >= lowU - kSlack && u <= highU + kSlack && arc >= lowArc - kSlack && arc <= highArc + kSlack)) return;
         double least = std::numeric_limits<double>::infinity();
         for (int i = 0; i < count; ++i)
             least = std::min(least, supports[i].value + supports[i].alongU * u + supports[i].alongArc * arc);
@@ -74,7 +72,7 @@ double solve(const Support* supports, int count, double lowU, double highU, doub
         }
     };
     for (const double u : {lowU, highU})
-        for (const double arc : {-window, window})
+        for (const double arc : {lowArc, highArc})
             offer(u, arc);
     for (int i = 0; i < count; ++i)
         for (int j = i + 1; j < count; ++j) {
@@ -85,7 +83,7 @@ double solve(const Support* supports, int count, double lowU, double highU, doub
                 for (const double u : {lowU, highU})
                     offer(u, (c - a * u) / b);
             if (std::abs(a) > 1e-12)
-                for (const double arc : {-window, window})
+                for (const double arc : {lowArc, highArc})
                     offer((c - b * arc) / a, arc);
             for (int k = j + 1; k < count; ++k) {
                 const double d = supports[i].alongU - supports[k].alongU,
@@ -118,6 +116,7 @@ OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field
                                          core::SimdLevel level)
     : field_(field.view()),
       lookup_(HANDPIECE_AT_SIMD_LEVEL(level, fieldLookup)()),
+      lowerCells_(HANDPIECE_AT_SIMD_LEVEL(level, lowerCells)()),
       bandOutMm_(static_cast<float>(field.settings().bandOutMm)),
       bandInMm_(static_cast<float>(field.settings().bandInMm)),
       errorMm_(kFieldErrorVoxels * field.settings().voxelMm),
@@ -142,6 +141,7 @@ OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field
             sheet.z.push_back(ball.zMm);
             sheet.radius.push_back(ball.radiusMm);
             sheet.maxRho = std::max(sheet.maxRho, ball.rhoMm);
+            sheet.maxRadius = std::max(sheet.maxRadius, ball.radiusMm);
         }
         const auto reachFrom = [&](double z) {
             double reach = 0.0;
@@ -163,6 +163,9 @@ OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field
         sheets_.push_back(std::move(sheet));
     }
     grid_.resize(kMaxGrid);
+    for (std::vector<float>& corner : corner_)
+        corner.resize(kMaxGrid);
+    upper_.resize(kMaxGrid);
     unknown_.resize(kMaxGrid);
 }
 
@@ -204,15 +207,57 @@ void OffAxisMedialSearch::addGrid(Sheet& sheet) const {
             sheet.rows.push_back(row);
         }
         sheet.spacingMm = spacing;
-        if (total <= kMaxGrid) return;
+        addCells(sheet, spacing);
+        if (total <= kMaxGrid && sheet.cellU.size() <= kMaxGrid) return;
+    }
+}
+
+/// Flat cells between the grid's circles. A circle is off its polygon by no more than r (1 - cos h) / (1 + cos h), with
+/// half a side's angle h and the corners as far without as the sides' middles are within; the curve is off its chord
+/// where it bends. Both are added to the radius.
+void OffAxisMedialSearch::addCells(Sheet& sheet, double spacing) const {
+    for (auto* each : {&sheet.cellX, &sheet.cellY, &sheet.cellZ})
+        for (std::vector<float>& v : *each)
+            v.clear();
+    sheet.cellLowRadius.clear();
+    sheet.cellHighRadius.clear();
+    sheet.cellU.clear();
+    sheet.cellAngle.clear();
+    for (std::size_t i = 0; i + 1 < sheet.rows.size(); ++i) {
+        const Row &low = sheet.rows[i], &high = sheet.rows[i + 1];
+        double off = 0.0, mostRho = std::max(low.rho, high.rho);
+        for (std::size_t k = 0; k < sheet.u.size(); ++k) {
+            if (!(sheet.u[k] > low.u && sheet.u[k] < high.u)) continue;
+            const double t = (sheet.u[k] - low.u) / (high.u - low.u);
+            off = std::max(off, core::hypot(sheet.rho[k] - low.rho - t * (high.rho - low.rho),
+                                            sheet.z[k] - low.z - t * (high.z - low.z)) +
+                                    std::abs(sheet.radius[k] - low.radius - t * (high.radius - low.radius)));
+            mostRho = std::max(mostRho, sheet.rho[k]);
+        }
+        const int count = 8 * std::max(1, static_cast<int>(std::ceil(2.0 * kPi * mostRho / spacing / 8.0)));
+        const double half = kPi / count, cosine = core::cos(half), out = 2.0 / (1.0 + cosine);
+        off += mostRho * (1.0 - cosine) / (1.0 + cosine);
+        for (int j = 0; j < count; ++j) {
+            for (std::size_t k = 0; k < 4; ++k) {
+                const Row& row = k < 2 ? low : high;
+                const double angle = 2.0 * half * (j + static_cast<int>(k % 2));
+                sheet.cellX[k].push_back(static_cast<float>(out * row.rho * core::cos(angle)));
+                sheet.cellY[k].push_back(static_cast<float>(out * row.rho * core::sin(angle)));
+                sheet.cellZ[k].push_back(static_cast<float>(row.z));
+            }
+            sheet.cellLowRadius.push_back(static_cast<float>(low.radius + off));
+            sheet.cellHighRadius.push_back(static_cast<float>(high.radius + off));
+            sheet.cellU.push_back(0.5 * (low.u + high.u));
+            sheet.cellAngle.push_back(half * (2 * j + 1));
+        }
     }
 }
 
 /// A distance is 1-Lipschitz: at phiT(m) outside, with m the middle of the ball of reach about all of a sheet's, none
 /// of them is deeper than reach - phiT(m); and none has its centre in the tooth when phiT(m) is more than the centres'
 /// reach.
-void OffAxisMedialSearch::search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown,
-                                 BallDepth& best) noexcept {
+void OffAxisMedialSearch::search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown, BallDepth& best,
+                                 double& mostMm) noexcept {
     for (const Sheet& sheet : sheets_) {
         const Vec3 centre = frame.onAxis(sheet.centreZ);
         const double far = surface.farBound(centre);
@@ -222,6 +267,10 @@ void OffAxisMedialSearch::search(const ExactSurface& surface, const BurFrame& fr
             const BallDepth around = surface.ball(centre, sheet.reachMm, seed, sheet.reachMm - best.depthMm);
             if (around.triangle == geometry::kNoTriangle) continue;
             seed = around.triangle;
+        }
+        if (best.depthMm >= sheet.maxRadius) {
+            searchDeep(surface, sheet, frame, seed, best, mostMm);
+            continue;
         }
         mostOutsideMm_ = outsideKnown ? kToGrid * sheet.spacingMm + errorMm_ : std::numeric_limits<double>::infinity();
         searchSheet(surface, sheet, frame, seed, best);
@@ -413,8 +462,15 @@ void OffAxisMedialSearch::refine(const Sheet& sheet, const BurFrame& frame, Cand
     }
 }
 
+bool OffAxisMedialSearch::remember(std::uint32_t triangle) noexcept {
+    if (std::find(known_.begin(), known_.begin() + knownCount_, triangle) != known_.begin() + knownCount_) return false;
+    known_[static_cast<std::size_t>(knownCount_ < kMaxKnown ? knownCount_++ : oldest_++ % kMaxKnown)] = triangle;
+    return true;
+}
+
+/// `here`: the ball there, where it is known.
 void OffAxisMedialSearch::climbOnce(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame,
-                                    const Candidate& from, std::uint32_t& seed, double window,
+                                    const Candidate& from, const BallDepth& here, std::uint32_t& seed, double reach,
                                     BallDepth& best) noexcept {
     const auto isNear = [&](double u, double angle) {
         return std::abs(u - from.u) < kSameTopMm &&
@@ -427,7 +483,14 @@ void OffAxisMedialSearch::climbOnce(const ExactSurface& surface, const Sheet& sh
     }
     Top& top = tops_[static_cast<std::size_t>(climbs_++)];
     top = {from.u, from.angle, from.u, from.angle};
-    climb(surface, sheet, frame, from.u, from.angle, seed, window, best, top.endU, top.endAngle);
+    BallDepth start = here;
+    if (start.triangle == geometry::kNoTriangle) {
+        const Spot spot = spotAt(sheet, frame, from.u, from.angle);
+        start = surface.ball(spot.centre, spot.radius, seed);
+        if (start.triangle == geometry::kNoTriangle) return;
+        if (start.depthMm > best.depthMm) best = start;
+    }
+    climb(surface, sheet, frame, top, start, reach, best);
     seed = best.triangle != geometry::kNoTriangle ? best.triangle : seed;
 }
 
@@ -451,7 +514,7 @@ void OffAxisMedialSearch::measure(const ExactSurface& surface, const Sheet& shee
         const double value = isFound ? found.depthMm : best.depthMm - kRiseMm;
         if (value > best.depthMm) best = found;
         if (value + kRiseMm > best.depthMm && isFound)
-            climbOnce(surface, sheet, frame, {value, here.u, here.angle}, seed, kSpacingMm, best);
+            climbOnce(surface, sheet, frame, {value, here.u, here.angle}, found, seed, kSpacingMm, best);
         std::size_t kept = 0;
         for (std::size_t i = 0; i < unknownCount_; ++i) {
             Unknown other = unknown_[i];
@@ -470,7 +533,7 @@ void OffAxisMedialSearch::searchSheet(const ExactSurface& surface, const Sheet& 
                                       std::uint32_t seed, BallDepth& best) noexcept {
     scan(sheet, frame, best.depthMm);
     collect(sheet, frame, best.depthMm);
-    climbs_ = 0;
+    climbs_ = knownCount_ = oldest_ = 0;
     const auto higher = [](const Candidate& a, const Candidate& b) {
         return a.value != b.value ? a.value > b.value : a.u != b.u ? a.u < b.u : a.angle < b.angle;
     };
@@ -484,93 +547,166 @@ void OffAxisMedialSearch::searchSheet(const ExactSurface& surface, const Sheet& 
     }
     std::sort(candidates_.begin(), end, higher);
     for (auto c = candidates_.begin(); c != end && c->value + errorMm_ > best.depthMm; ++c)
-        climbOnce(surface, sheet, frame, *c, seed, kFieldWindowMm, best);
+        climbOnce(surface, sheet, frame, *c, {}, seed, kFieldWindowMm, best);
     measure(surface, sheet, frame, seed, best);
 }
 
-/// From a ball to the deepest one nearby, on the triangles. Inside the tooth every triangle bounds the depth from
-/// above, D(c) <= R + |c - q(c)|, with the slope R' - n . c' (n out of the tooth, from c to q); the depth is the least
-/// of these bounds. Those of the triangles seen so far are taken as linear and the step is the corner of them that
-/// promises most within a window (solve()); the window grows when the gain keeps the promise and shrinks when it does
-/// not: a bundle method with a trust region. docs/contact.md, "Rims".
-void OffAxisMedialSearch::climb(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, double u,
-                                double angle, std::uint32_t seed, double window, BallDepth& best, double& endU,
-                                double& endAngle) const noexcept {
-    constexpr int kKnown = 8, kActive = 4;
-    std::uint32_t known[kKnown];
-    int knownCount = 0, oldest = 0;
-    const auto remember = [&](std::uint32_t triangle) {
-        for (int i = 0; i < knownCount; ++i)
-            if (known[i] == triangle) return;
-        if (knownCount < kKnown)
-            known[knownCount++] = triangle;
-        else
-            known[oldest++ % kKnown] = triangle;
+HighestCell OffAxisMedialSearch::lower(const Sheet& sheet, const BurFrame& frame, const Vec3& place, double freeMm,
+                                       double floorMm) noexcept {
+    const Vec3 w = place - frame.tip;
+    const float inBur[3] = {static_cast<float>(w.dot(frame.x)), static_cast<float>(w.dot(frame.y)),
+                            static_cast<float>(w.dot(frame.z))};
+    SheetCells cells;
+    for (std::size_t k = 0; k < 4; ++k) {
+        cells.x[k] = sheet.cellX[k].data();
+        cells.y[k] = sheet.cellY[k].data();
+        cells.z[k] = sheet.cellZ[k].data();
+        cells.corner[k] = corner_[k].data();
+    }
+    cells.lowRadius = sheet.cellLowRadius.data();
+    cells.highRadius = sheet.cellHighRadius.data();
+    cells.upper = upper_.data();
+    cells.count = static_cast<int>(sheet.cellU.size());
+    return lowerCells_(cells, inBur, static_cast<float>(freeMm), static_cast<float>(floorMm));
+}
+
+HighestCell OffAxisMedialSearch::highest(const Sheet& sheet) const noexcept {
+    const auto end = upper_.begin() + static_cast<std::ptrdiff_t>(sheet.cellU.size());
+    const auto top = std::max_element(upper_.begin(), end);
+    return {*top, static_cast<int>(top - upper_.begin())};
+}
+
+/// With a depth known that no ball outside the tooth can have, the field is not asked: each place of the tooth that is
+/// found bounds all cells, the one with the highest bound is measured, until no other could be deeper.
+void OffAxisMedialSearch::searchDeep(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame,
+                                     std::uint32_t seed, BallDepth& best, double& mostMm) noexcept {
+    climbs_ = knownCount_ = oldest_ = 0;
+    for (std::vector<float>& corner : corner_)
+        std::fill_n(corner.begin(), sheet.cellU.size(), kFarMm);
+    std::fill_n(upper_.begin(), sheet.cellU.size(), kFarMm);
+    const auto floorMm = [&] { return best.depthMm + kDepthToleranceMm; };
+    HighestCell top = lower(sheet, frame, best.surfaceMm, 0.0, floorMm());
+    int measured = 0;
+    for (; measured<kMaxMeasured&& static_cast<double>(top.upper)> floorMm(); ++measured) {
+        const auto cell = static_cast<std::size_t>(top.cell);
+        const Spot spot = spotAt(sheet, frame, sheet.cellU[cell], sheet.cellAngle[cell]);
+        const BallDepth found = surface.ball(spot.centre, spot.radius, seed);
+        seed = found.triangle;
+        settled_[static_cast<std::size_t>(measured)] = top.cell;
+        if (!found.inside) {
+            top = lower(sheet, frame, spot.centre, (spot.centre - found.surfaceMm).norm(), floorMm());
+        } else {
+            const double before = best.depthMm;
+            if (found.depthMm > best.depthMm) best = found;
+            top = lower(sheet, frame, found.surfaceMm, 0.0, floorMm());
+            if (static_cast<double>(upper_[cell]) > floorMm())
+                climbOnce(surface, sheet, frame, {found.depthMm, sheet.cellU[cell], sheet.cellAngle[cell]}, found, seed,
+                          2.0 * sheet.spacingMm, best);
+            if (best.depthMm > before) top = lower(sheet, frame, best.surfaceMm, 0.0, floorMm());
+        }
+        upper_[cell] = -kFarMm;
+        if (top.cell == settled_[static_cast<std::size_t>(measured)]) top = highest(sheet);
+    }
+    if (measured == kMaxMeasured) mostMm = std::max(mostMm, static_cast<double>(top.upper));
+    for (int i = 0; i < measured; ++i) {
+        const auto cell = static_cast<std::size_t>(settled_[static_cast<std::size_t>(i)]);
+        float upper = corner_[0][cell];
+        for (std::size_t k = 1; k < 4; ++k)
+            upper = std::max(upper, corner_[k][cell]);
+        if (static_cast<double>(upper) > floorMm()) mostMm = std::max(mostMm, static_cast<double>(upper));
+    }
+}
+
+/// What the triangles seen so far allow at a place of the sheet: inside the tooth D(c) <= R + |c - q| for the nearest
+/// place q of each, with the slope R' - n . c' (n from c to q); outside the one that is nearest is followed.
+OffAxisMedialSearch::Model OffAxisMedialSearch::modelAt(const ExactSurface& surface, const Sheet& sheet,
+                                                        const BurFrame& frame, const BallDepth& here, double u,
+                                                        double angle) const noexcept {
+    Model model;
+    const Spot spot = spotAt(sheet, frame, u, angle);
+    model.arcPerRad = spot.arcPerRad;
+    const auto add = [&](std::uint32_t triangle, double sign) {
+        const Vec3 to = surface.closestOn(triangle, spot.centre) - spot.centre;
+        const double distance = to.norm();
+        const Vec3 n = distance > kOnAxisMm ? Vec3(sign * to / distance) : surface.outward(here);
+        model.supports[static_cast<std::size_t>(model.count++)] = {
+            spot.radius + sign * distance, spot.radiusAlongU - n.dot(spot.alongU), -n.dot(spot.alongArc)};
     };
-    Spot spot = spotAt(sheet, frame, u, angle);
-    BallDepth here = surface.ball(spot.centre, spot.radius, seed);
-    endU = u;
-    endAngle = angle;
-    if (here.triangle == geometry::kNoTriangle) return;
+    if (here.inside)
+        for (int i = 0; i < knownCount_; ++i)
+            add(known_[static_cast<std::size_t>(i)], 1.0);
+    else
+        add(here.triangle, -1.0);
+    // The lowest few decide.
+    constexpr int kActive = 4;
+    const auto end = model.supports.begin() + model.count;
+    model.count = std::min(model.count, kActive);
+    std::partial_sort(model.supports.begin(), model.supports.begin() + model.count, end,
+                      [](const Support& a, const Support& b) { return a.value < b.value; });
+    return model;
+}
+
+/// From a ball to the deepest one nearby. What the triangles seen so far allow is climbed first (solve(), in a window
+/// that grows when the gain keeps the promise and shrinks when it does not: a bundle method with a trust region); its
+/// top is measured, and each triangle found there lowers it, until it holds. docs/contact.md, "Rims".
+void OffAxisMedialSearch::climb(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, Top& top,
+                                BallDepth here, double reach, BallDepth& best) noexcept {
+    double u = top.u, angle = top.angle;
     remember(here.triangle);
-    if (spot.alongArc.isZero(1e-9)) {  // on the axis every angle is as good: look up the slope
+    if (const Spot spot = spotAt(sheet, frame, u, angle);
+        spot.alongArc.isZero(1e-9)) {  // on the axis every angle is as good: look up the slope
         const Vec3 away = (here.inside ? -1.0 : 1.0) * (spot.centre - here.surfaceMm);
         angle = core::atan2(-away.dot(frame.y), -away.dot(frame.x));
-        spot = spotAt(sheet, frame, u, angle);
     }
-    for (int step = 0; step < kMaxSteps && window > kFinalWindowMm; ++step) {
-        // No ball of the window is deeper by more than its diagonal and what the radius gains on the way.
-        if (here.depthMm + 4.0 * window < best.depthMm) break;
-        Support supports[kActive];
-        int count = 0;
-        const auto addSupport = [&](const Vec3& outOfTooth, double depth) {
-            const Support s{depth, spot.radiusAlongU - outOfTooth.dot(spot.alongU), -outOfTooth.dot(spot.alongArc)};
-            if (count < kActive) {
-                supports[count++] = s;
-                return;
+    for (int step = 0; step < kMaxSteps; ++step) {
+        double newU = u, newAngle = angle;
+        Model model = modelAt(surface, sheet, frame, here, u, angle);
+        double window = reach;
+        for (int look = 0; look < kMaxLooks && window > kFinalWindowMm; ++look) {
+            double stepU = 0.0, stepArc = 0.0;
+            // No farther than the triangles seen can be trusted to tell.
+            const double goneU = newU - u, goneArc = model.arcPerRad * (newAngle - angle);
+            const double lowU = std::max({-window, -newU, -reach - goneU}),
+                         highU = std::min({window, sheet.u.back() - newU, reach - goneU});
+            const double before = model.supports[0].value;
+            const double hoped =
+                solve(model.supports.data(), model.count, lowU, highU, std::max(-window, -reach - goneArc),
+                      std::min(window, reach - goneArc), stepU, stepArc) -
+                before;
+            if (hoped < kToleranceMm) break;
+            const double nextU = std::clamp(newU + stepU, 0.0, sheet.u.back()),
+                         nextAngle = newAngle + stepArc / model.arcPerRad;
+            const Model next = modelAt(surface, sheet, frame, here, nextU, nextAngle);
+            const double gained = next.supports[0].value - before;
+            if (gained > 0.0) {
+                newU = nextU;
+                newAngle = nextAngle;
+                model = next;
             }
-            // Full: the one that limits least makes room. The first is the surface that is touched and stays.
-            int most = 1;
-            for (int i = 2; i < kActive; ++i)
-                if (supports[i].value > supports[most].value) most = i;
-            if (s.value < supports[most].value) supports[most] = s;
-        };
-        const Vec3 away = spot.centre - here.surfaceMm;
-        const double distance = away.norm();
-        addSupport(distance > 1e-9 ? Vec3((here.inside ? -1.0 : 1.0) * away / distance) : surface.outward(here),
-                   here.depthMm);
-        if (here.inside)
-            for (int i = 0; i < knownCount; ++i) {
-                if (known[i] == here.triangle) continue;
-                const Vec3 q = surface.closestOn(known[i], spot.centre);
-                const Vec3 to = q - spot.centre;
-                const double d = to.norm();
-                if (d > 1e-9 && spot.radius + d < here.depthMm + 4.0 * window) addSupport(to / d, spot.radius + d);
-            }
-        double stepU = 0.0, stepArc = 0.0;
-        const double lowU = std::max(-window, -u), highU = std::min(window, sheet.u.back() - u);
-        const double hoped = solve(supports, count, lowU, highU, window, stepU, stepArc) - here.depthMm;
-        if (here.depthMm + kFarBehind * std::max(hoped, kToleranceMm) < best.depthMm) break;
-        if (hoped < kToleranceMm) {
-            window *= 0.25;
-            continue;
+            window *= gained > 0.75 * hoped ? 1.5 : gained > 0.25 * hoped ? 0.7 : 0.3;
         }
-        const double newU = std::clamp(u + stepU, 0.0, sheet.u.back()), newAngle = angle + stepArc / spot.arcPerRad;
+        const double allowed = model.supports[0].value;
+        const bool isLimited =
+            std::max(std::abs(newU - u), model.arcPerRad * std::abs(newAngle - angle)) > 0.99 * reach;
+        const double hoped = allowed - here.depthMm;
+        if (here.depthMm + (isLimited || !here.inside ? kFarBehind : 1.0) * hoped < best.depthMm + kToleranceMm) break;
         const Spot there = spotAt(sheet, frame, newU, newAngle);
         const BallDepth found = surface.ball(there.centre, there.radius, here.triangle);
-        const double gained = found.depthMm - here.depthMm;  // nothing found: minus infinity
-        if (found.triangle != geometry::kNoTriangle) remember(found.triangle);
-        if (gained > 0.0) {
+        const bool isNews = remember(found.triangle);
+        const bool isTop =
+            !isLimited && found.depthMm > allowed - kToleranceMm && (found.inside || found.triangle == here.triangle);
+        if (found.depthMm > here.depthMm) {
+            here = found;
             u = newU;
             angle = newAngle;
-            spot = there;
-            here = found;
+        } else {
+            reach *= isNews ? 0.8 : 0.5;
         }
-        window *= gained > 0.75 * hoped ? 1.5 : gained > 0.25 * hoped ? 0.7 : 0.3;
+        if (found.depthMm > best.depthMm) best = found;
+        if (isTop || reach < kFinalWindowMm) break;
     }
-    if (here.depthMm > best.depthMm) best = here;
-    endU = u;
-    endAngle = angle;
+    top.endU = u;
+    top.endAngle = angle;
 }
 
 }  // namespace handpiece::contact

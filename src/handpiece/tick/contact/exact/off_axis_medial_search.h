@@ -11,6 +11,7 @@
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/tick/contact/bur_frame.h"
 #include "handpiece/tick/contact/exact/exact_depth.h"
+#include "handpiece/tick/contact/exact/sheet_kernels.h"
 #include "handpiece/tick/contact/sampled/field_row.h"
 
 namespace handpiece::contact {
@@ -24,7 +25,8 @@ class OffAxisMedialSearch {
 
     /// Raises `best` to the deepest ball of all sheets; with `outsideKnown` at least to the deepest of those with their
     /// centres in the tooth. A sheet that cannot beat `best` costs one or two lookups.
-    void search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown, BallDepth& best) noexcept;
+    void search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown, BallDepth& best,
+                double& mostMm) noexcept;
 
   private:
     /// A circle of the grid's balls.
@@ -35,13 +37,17 @@ class OffAxisMedialSearch {
     };
     struct Sheet {
         std::vector<double> u, rho, z, radius;  ///< by ball; u is the length along the curve
-        double maxRho = 0.0;
+        double maxRho = 0.0, maxRadius = 0.0;
         double centreZ = 0.0, reachMm = 0.0;  ///< its balls lie in the ball of reach about the axis at centreZ
         double centresMm = 0.0;               ///< their centres in the ball of this radius
         double spacingMm = 0.0;               ///< of the grid's balls, at most
         std::vector<Row> rows;
         std::vector<double> cosine, sine;              ///< by ball of the grid
         std::vector<double> middleCosine, middleSine;  ///< by eight of them; each row's padded to eight middles
+        /// Of its cells: as SheetCells has them, and the middle of each on the curve and around.
+        std::array<std::vector<float>, 4> cellX, cellY, cellZ;
+        std::vector<float> cellLowRadius, cellHighRadius;
+        std::vector<double> cellU, cellAngle;
     };
     /// A ball of a sheet and how its centre and radius change along u and along the arc.
     struct Spot {
@@ -57,12 +63,22 @@ class OffAxisMedialSearch {
         double radius, upper, u, angle;
         bool outside;
     };
+    static constexpr std::size_t kMaxGrid = 2048, kMaxCandidates = 48;
+    static constexpr int kMaxClimbs = 6, kMaxMeasured = 48, kMaxKnown = 16;
+    /// A triangle near the ball being climbed: what it says of the depth there and how that changes.
+    struct Support {
+        double value, alongU, alongArc;
+    };
+    /// Those of them that allow least, the least first.
+    struct Model {
+        std::array<Support, kMaxKnown> supports;
+        int count = 0;
+        double arcPerRad = 1.0;
+    };
     /// Where a climb began and ended.
     struct Top {
         double u, angle, endU, endAngle;
     };
-    static constexpr std::size_t kMaxGrid = 2048, kMaxCandidates = 48;
-    static constexpr int kMaxClimbs = 6, kMaxMeasured = 48;
 
     void addGrid(Sheet& sheet) const;
     void scan(const Sheet& sheet, const BurFrame& frame, double atLeast) noexcept;
@@ -71,12 +87,22 @@ class OffAxisMedialSearch {
     void measure(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, std::uint32_t& seed,
                  BallDepth& best) noexcept;
     void climbOnce(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, const Candidate& from,
-                   std::uint32_t& seed, double window, BallDepth& best) noexcept;
+                   const BallDepth& here, std::uint32_t& seed, double reach, BallDepth& best) noexcept;
     [[nodiscard]] Spot spotAt(const Sheet& sheet, const BurFrame& frame, double u, double angle) const noexcept;
     void searchSheet(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, std::uint32_t seed,
                      BallDepth& best) noexcept;
-    void climb(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, double u, double angle,
-               std::uint32_t seed, double window, BallDepth& best, double& endU, double& endAngle) const noexcept;
+    void climb(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, Top& top, BallDepth here,
+               double reach, BallDepth& best) noexcept;
+    [[nodiscard]] Model modelAt(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame,
+                                const BallDepth& here, double u, double angle) const noexcept;
+    /// False when it was known.
+    bool remember(std::uint32_t triangle) noexcept;
+    void searchDeep(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, std::uint32_t seed,
+                    BallDepth& best, double& mostMm) noexcept;
+    [[nodiscard]] HighestCell lower(const Sheet& sheet, const BurFrame& frame, const core::Vec3& place, double freeMm,
+                                    double floorMm) noexcept;
+    [[nodiscard]] HighestCell highest(const Sheet& sheet) const noexcept;
+    void addCells(Sheet& sheet, double spacing) const;
 
     /// True when one of the balls not searched is deeper there.
     bool askCovered(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) const noexcept;
@@ -85,16 +111,22 @@ class OffAxisMedialSearch {
     std::vector<instrument::MedialBall> covered_;  ///< balls of sheets that are not searched
     field::FieldView field_;
     FieldLookup lookup_;
+    LowerCells lowerCells_;
     float bandOutMm_, bandInMm_;
     double errorMm_, brickDiagonalMm_;
     double mostOutsideMm_ = 0.0;  ///< balls with their centres farther outside are no concern of this search
     std::vector<float> grid_;     ///< signed distance by ball of the grid; of fixed size, filled anew by each search
+    std::array<std::vector<float>, 4> corner_;  ///< how deep a ball could be, by cell: at its corners and anywhere
+    std::vector<float> upper_;
+    std::array<int, kMaxMeasured> settled_;  ///< cells that were measured
     std::vector<Unknown> unknown_;
     std::size_t unknownCount_ = 0;
     std::array<Candidate, kMaxCandidates> candidates_;
     std::size_t candidateCount_ = 0;
     std::array<Top, kMaxClimbs> tops_;
     int climbs_ = 0;
+    std::array<std::uint32_t, kMaxKnown> known_;  ///< triangles that were nearest, of one sheet's search
+    int knownCount_ = 0, oldest_ = 0;
 };
 
 }  // namespace handpiece::contact

@@ -264,58 +264,59 @@ void jet(const SharpBlock& block, const float (&t)[3], SharpJet& out) noexcept {
     out.xy = across(rowY, x.slope);
 }
 
+template <class T>
+inline bool any(T mask) {
+    long long parts[sizeof mask / sizeof(long long)], all = 0;
+    __builtin_memcpy(parts, &mask, sizeof mask);
+    for (const long long part : parts)
+        all |= part;
+    return all != 0;
+}
+template <class T>
+inline T difference(T v0, T v1, T v2, T v3, T v4) {
+    return sizeOf((v0 + v4) + 6.0f * v2 - 4.0f * (v1 + v3));
+}
+
 /// Whether fourth differences along the lines through the block's middle tell of no edge: where the field is smooth
 /// they are some nanometres, and a cubic across an edge is off by at most 0.4 of them. Values of `endMm` and more only
 /// say "at least": no cubic goes through those, and a difference that does tells nothing.
 bool isSmooth(const SharpBlock& block, float endMm) noexcept {
-    Floats high[kParts], worst[kParts] = {};
-    for (Floats& h : high)
-        h = Floats{} - endMm;
-    Four along{};
-    const auto difference = [](const auto& v0, const auto& v1, const auto& v2, const auto& v3, const auto& v4) {
-        return sizeOf((v0 + v4) + 6.0f * v2 - 4.0f * (v1 + v3));
-    };
+    // Of a row along x the four in the middle count, of differences along it the first two.
+    constexpr std::int32_t kMiddle[kSharpStride] = {0, -1, -1, -1, -1, 0, 0, 0};
+    const float kink = block.kinkMm;
     for (int a = 1; a < kSharpNodes - 1; ++a) {
         for (int part = 0; part < kParts; ++part) {
+            Ints middle;
+            __builtin_memcpy(&middle, kMiddle + part * kLanes, sizeof middle);
+            const auto hasEdge = [&](const Floats(&v)[kSharpNodes]) {
+                const Floats before = difference(v[0], v[1], v[2], v[3], v[4]),
+                             after = difference(v[1], v[2], v[3], v[4], v[5]);
+                const Floats high = most(most(v[1], v[2]), most(v[3], v[4]));
+                return any((((before > kink) & (v[0] < endMm)) | ((after > kink) & (v[5] < endMm)) | (high >= endMm)) &
+                           middle);
+            };
             Floats z[kSharpNodes], y[kSharpNodes];
             for (int i = 0; i < kSharpNodes; ++i) {
                 z[i] = load<Floats>(block.values[i][a] + part * kLanes);
                 y[i] = load<Floats>(block.values[a][i] + part * kLanes);
             }
-            const auto test = [&](const Floats(&v)[kSharpNodes]) {
-                const Floats before = difference(v[0], v[1], v[2], v[3], v[4]),
-                             after = difference(v[1], v[2], v[3], v[4], v[5]);
-                worst[part] = most(worst[part], v[0] < endMm ? before : Floats{});
-                worst[part] = most(worst[part], v[5] < endMm ? after : Floats{});
-            };
-            test(z);
-            test(y);
-            for (int i = 1; i < kSharpNodes - 1; ++i)
-                high[part] = most(high[part], z[i]);
+            if (hasEdge(z) || hasEdge(y)) return false;
         }
         for (int b = 1; b < kSharpNodes - 1; ++b) {
-            const float* row = block.values[a][b];  // the first two lanes: of v0 .. v4, and of v1 .. v5
+            const float* row = block.values[a][b];
             const Four v0 = load<Four>(row), v4 = load<Four>(row + 4);
-            const Four end{v0[0], v4[1], 0.0f, 0.0f};
+            const Four end{v0[0], v4[1], endMm, endMm};
             const Four d = difference(v0, load<Four>(row + 1), load<Four>(row + 2), load<Four>(row + 3), v4);
-            along = most(along, end < endMm ? d : Four{});
+            if (any((d > kink) & (end < endMm))) return false;
         }
     }
-    float highest[kSharpStride], lanes[kSharpStride];
-    __builtin_memcpy(highest, high, sizeof highest);
-    __builtin_memcpy(lanes, worst, sizeof lanes);
-    float edge = most(static_cast<float>(along[0]), static_cast<float>(along[1]));
-    for (int i = 1; i < kSharpNodes - 1; ++i) {
-        edge = most(edge, lanes[i]);
-        if (!(highest[i] < endMm)) return false;
-    }
-    return edge <= block.kinkMm;
+    return true;
 }
 
 void findLines(SharpBlock& block) noexcept {
     for (int j = 0; j < kSharpNodes; ++j) {
         SharpBlock::Lines& lines = block.lines[j];
-        bool meets = false;
+        block.meets[j] = false;
         for (int part = 0; part < kParts; ++part) {
             const int from = part * kLanes;
             Floats v[kSharpNodes];
@@ -329,10 +330,8 @@ void findLines(SharpBlock& block) noexcept {
             store(lines.otherFirst + from, line.otherFirst);
             store(lines.otherSecond + from, line.otherSecond);
             store(lines.sign + from, line.sign);
+            block.meets[j] = block.meets[j] || any(line.sign != Floats{});
         }
-        for (int i = 0; i < kSharpNodes; ++i)
-            meets = meets || lines.sign[i] != 0.0f;
-        block.meets[j] = meets;
     }
 }
 

@@ -24,11 +24,15 @@ constexpr double kApartMm = 0.12;
 constexpr double kWindow = 0.75;
 /// The same of the shells inside.
 constexpr double kInnerWindowMm = 0.09;
-constexpr double kFirstLookMm = 0.03, kLastLookMm = 0.004, kAnchorMm = 0.05;
+constexpr double kFirstLookMm = 0.03, kLastLookMm = 0.01, kAnchorMm = 0.05;
 constexpr int kLooks = 12;
 /// The same once more by what the field is between its nodes.
 constexpr double kFirstSharpLookMm = 0.016, kLastSharpLookMm = 9e-4;
 constexpr int kSharpLooks = 8, kSharpClimbs = 2;
+/// A climb on a smooth wall ends where its next step promises no more.
+constexpr double kWallGainMm = 1e-5;
+/// Two climbs that come this near to one another end at one top.
+constexpr double kSameTopMm = 0.03;
 /// A mixed cell is off by less than that where two walls meet in it.
 constexpr double kMixedErrorMm = 0.02;
 /// What a sharp climb may still find above the place where the mixed one ended.
@@ -58,6 +62,23 @@ constexpr double kSine[8] = {0.0,
                              -0.4338837391175581,
                              -0.9749279121818236,
                              -0.7818314824680298};
+// Weights of the seven in the second harmonic: cosine^2 - sine^2, 2 cosine sine.
+constexpr double kCosine2[8] = {0.0,
+                                1.0,
+                                -0.2225209339563143,
+                                -0.9009688679024190,
+                                0.6234898018587335,
+                                0.6234898018587335,
+                                -0.9009688679024190,
+                                -0.2225209339563143};
+constexpr double kSine2[8] = {0.0,
+                              0.0,
+                              0.9749279121818236,
+                              -0.4338837391175582,
+                              -0.7818314824680299,
+                              0.7818314824680299,
+                              0.4338837391175582,
+                              -0.9749279121818236};
 void store(double (&to)[3], const Vec3& v) noexcept {
     for (int k = 0; k < 3; ++k)
         to[k] = v[k];
@@ -291,25 +312,32 @@ class FieldDepth::DepthAscent {
         anchor(start.spot, start.cosine, start.sine);
     }
 
-    /// Up to the top between the nodes' values as they are mixed, and what the depth is there.
-    double climb(FieldTouch& best) noexcept {
+    /// Up to the top between the nodes' values as they are mixed. False where it is lower than `atLeastMm` or the same
+    /// as one of `others`.
+    bool climb(double atLeastMm, std::span<const std::optional<DepthAscent>> others) noexcept {
         double window = kFirstLookMm;
         for (int i = 0; i < kLooks && window > kLastLookMm; ++i) {
             const double reached = look(window, false);
-            if (top_ + 3.0 * window + kMixedErrorMm < best.depthMm) return top_;
+            if (top_ + 3.0 * window + kMixedErrorMm < atLeastMm) return false;
+            topMm_ = placeAt(bends(), u_, arc_, in_);
+            for (const std::optional<DepthAscent>& other : others)
+                if (other && (other->topMm_ - topMm_).squaredNorm() < kSameTopMm * kSameTopMm) return false;
             if (reached < 0.7) window *= 0.4;
             if (std::abs(u_) > kAnchorMm || std::abs(arc_) > kAnchorMm) anchorAnew();
         }
-        return settle(best);
+        return true;
     }
+    /// What the depth is about here, in the tooth and out of it.
+    [[nodiscard]] double estimate() noexcept { return spot_->deeperPerMm * in_ - depth_.surface_.distance(topMm_); }
     /// On from there by what the field is between its nodes.
     void climbSharply(FieldTouch& best) noexcept {
         double window = kFirstSharpLookMm, last = -std::numeric_limits<double>::infinity();
-        for (int i = 0; i < kSharpLooks && window > kLastSharpLookMm; ++i) {
-            const double reached = look(window, true);
+        for (int i = 0; i < kSharpLooks && window > kLastSharpLookMm && !isTop_; ++i) {
+            const bool onWall = stepOnWall(window);
+            const double reached = onWall ? 1.0 : look(window, true);
             if (top_ + 2.0 * window < best.depthMm) return;
             // Along a wall that follows the bur there is way without gain.
-            if (reached < 0.7 || top_ < last + kGainMm) window *= 0.25;
+            if (!onWall && (reached < 0.7 || top_ < last + kGainMm)) window *= 0.25;
             last = top_;
             if (std::abs(u_) > kAnchorMm || std::abs(arc_) > kAnchorMm) anchorAnew();
         }
@@ -342,66 +370,148 @@ class FieldDepth::DepthAscent {
         u_ = spot_->isCorner ? 0.0 : (z - spot_->z) * spot_->normalRho - (out - spot_->rho) * spot_->normalZ;
         arc_ = 0.0;
         in_ = std::min(in_, most(u_));
+        forget();
     }
     [[nodiscard]] double most(double u) const noexcept {
         if (spot_->isCorner) return spot_->inscribedMm;
         const double inscribed = spot_->inscribedMm + u * (u < 0.0 ? spot_->slopeBefore : spot_->slopeAfter);
         return std::clamp(inscribed, 0.0, curlsAt_);
     }
-    [[nodiscard]] double bend(double curvature, double in, double along) const noexcept {
-        return 0.5 * curvature / (1.0 - curvature * in) * along * along;
+    /// How the bur's parallel surface bends `in_` inside it; from a corner, how the rim does.
+    struct Bends {
+        double before, after, around;
+    };
+    [[nodiscard]] Bends bends() const noexcept {
+        if (spot_->isCorner) return {0.0, 0.0, 1.0 / std::max(spot_->rho, kTinyMm)};
+        const auto inside = [this](double curvature) { return curvature / (1.0 - curvature * in_); };
+        return {inside(spot_->curvatureBefore), inside(spot_->curvatureAfter), inside(spot_->curvatureAround)};
     }
     /// Steps along the outline and inwards that lead from the anchor to a place of the chart.
-    void stepsTo(double u, double arc, double in, double& alongU, double& inwards) const noexcept {
+    void stepsTo(const Bends& bends, double u, double arc, double in, double& alongU, double& inwards) const noexcept {
+        const double around = 0.5 * bends.around * arc * arc;
         if (spot_->isCorner) {  // along the rim, which bends towards the axis
-            const double bent = 0.5 * arc * arc / std::max(spot_->rho, kTinyMm);
-            alongU = spot_->normalZ * bent;
-            inwards = in + spot_->normalRho * bent;
+            alongU = spot_->normalZ * around;
+            inwards = in + spot_->normalRho * around;
         } else {
             alongU = u;
-            inwards = in + bend(u < 0.0 ? spot_->curvatureBefore : spot_->curvatureAfter, in, u) +
-                      bend(spot_->curvatureAround, in, arc);
+            inwards = in + 0.5 * (u < 0.0 ? bends.before : bends.after) * u * u + around;
         }
     }
+    [[nodiscard]] Vec3 placeAt(const Bends& bends, double u, double arc, double in) const noexcept {
+        double alongU = 0.0, inwards = 0.0;
+        stepsTo(bends, u, arc, in, alongU, inwards);
+        return place_ + alongU * alongU_ + arc * alongArc_ - inwards * normal_;
+    }
+    /// On the bur's inner ridge the way along it leads up or down.
+    [[nodiscard]] bool isOnRidge() const noexcept { return !spot_->isCorner && in_ >= most(u_) - kTinyMm; }
+
+    /// On a smooth wall, whose slope and bend the field knows: Newton's step, at most a window long. False where there
+    /// is none. The step after one that led down begins where that one did, in a narrower window.
+    bool stepOnWall(double& window) noexcept {
+        if (spot_->isCorner || isOnRidge()) return false;
+        const Bends bend = bends();
+        field::SharpLookup::Wall wall;
+        if (!depth_.surface_.wallAt(placeAt(bend, u_, arc_, in_), wall)) {
+            forget();
+            return false;
+        }
+        const double top = in_ - wall.distanceMm;
+        if (top < before_.top - kWallGainMm) {
+            u_ = before_.u;
+            arc_ = before_.arc;
+            in_ = before_.in;
+            top_ = before_.top;
+            window *= 0.25;
+            forget();
+            return true;
+        }
+        top_ = top;
+        before_ = {u_, arc_, in_, top};
+        const double along = u_ < 0.0 ? bend.before : bend.after, outward = wall.slope.dot(normal_);
+        const Vec3 alongSide = alongU_ - along * u_ * normal_, around = alongArc_ - bend.around * arc_ * normal_;
+        const Vec3 bendSide = wall.bendPerMm * alongSide, bendAround = wall.bendPerMm * around;
+        const double gu = -wall.slope.dot(alongSide), ga = -wall.slope.dot(around);
+        const double uu = along * outward - alongSide.dot(bendSide),
+                     aa = bend.around * outward - around.dot(bendAround), ua = -alongSide.dot(bendAround),
+                     det = uu * aa - ua * ua;
+        double du = gu, da = ga;
+        if (uu < 0.0 && aa < 0.0 && det > 1e-6 * uu * aa) {
+            du = (ua * ga - aa * gu) / det;
+            da = (ua * gu - uu * ga) / det;
+        } else {  // no top in sight: as far as the window goes
+            const double slope = std::sqrt(gu * gu + ga * ga);
+            du *= window / std::max(slope, kTinyMm);
+            da *= window / std::max(slope, kTinyMm);
+        }
+        const double share = std::min(1.0, window / std::max(kTinyMm, std::sqrt(du * du + da * da)));
+        const double toU = u_ + share * du, u = std::clamp(toU, -spot_->roomBefore, spot_->roomAfter);
+        du = u - u_;
+        da *= share;
+        if (u != toU && aa < 0.0)  // a corner is in the way: along it
+            da = std::clamp(-(ga + ua * du) / aa, -window, window);
+        const double gain = gu * du + ga * da + 0.5 * (uu * du * du + aa * da * da) + ua * du * da;
+        isTop_ = gain < kWallGainMm;
+        u_ = u;
+        arc_ += da;
+        in_ = std::clamp(top + gain, 0.0, most(u_));
+        return true;
+    }
+    void forget() noexcept { before_.top = -std::numeric_limits<double>::infinity(); }
 
     /// Looks around and steps towards the top; returns how far, in windows.
     double look(double window, bool sharply) noexcept {
-        AroundQuery query;
-        store(query.centre, place_);
-        store(query.alongU, alongU_);
-        store(query.alongArc, alongArc_);
-        store(query.inward, -normal_);
-        query.farOutMm = static_cast<float>(depth_.field_.reach().outMm);
-        query.farInMm = static_cast<float>(depth_.field_.reach().inMm);
-        const bool isCorner = spot_->isCorner;
-        // On the bur's inner ridge the way along it leads up or down.
-        const bool onRidge = !isCorner && in_ >= most(u_) - kTinyMm;
-        double us[8], arcs[8], ins[8];
-        for (int i = 0; i < 8; ++i) {
-            us[i] = isCorner ? 0.0 : std::clamp(u_ + window * kCosine[i], -spot_->roomBefore, spot_->roomAfter);
-            arcs[i] = arc_ + window * kSine[i];
-            ins[i] = isCorner  ? std::clamp(in_ + window * kCosine[i], 0.0, most(0.0))
-                     : onRidge ? most(us[i])
-                               : std::min(in_, most(us[i]));
-            double alongU = 0.0, inwards = 0.0;
-            stepsTo(us[i], arcs[i], ins[i], alongU, inwards);
-            query.u[i] = static_cast<float>(alongU);
-            query.arc[i] = static_cast<float>(arcs[i]);
-            query.in[i] = static_cast<float>(inwards);
+        const bool isCorner = spot_->isCorner, onRidge = isOnRidge();
+        const Bends bend = bends();
+        double us[8], arcs[8], ins[8], alongU[8], inwards[8];
+        const double low = u_ - window, high = u_ + window;
+        const bool isFree = !isCorner && !onRidge && low >= -spot_->roomBefore && high <= spot_->roomAfter &&
+                            in_ <= std::min({most(low), most(0.0), most(high)});
+        if (isFree) {  // as below, without limits
+            for (int i = 0; i < 8; ++i) {
+                us[i] = alongU[i] = u_ + window * kCosine[i];
+                arcs[i] = arc_ + window * kSine[i];
+                ins[i] = in_;
+                inwards[i] = in_ + 0.5 * ((us[i] < 0.0 ? bend.before : bend.after) * us[i] * us[i] +
+                                          bend.around * arcs[i] * arcs[i]);
+            }
+        } else {
+            for (int i = 0; i < 8; ++i) {
+                us[i] = isCorner ? 0.0 : std::clamp(u_ + window * kCosine[i], -spot_->roomBefore, spot_->roomAfter);
+                arcs[i] = arc_ + window * kSine[i];
+                ins[i] = isCorner  ? std::clamp(in_ + window * kCosine[i], 0.0, most(0.0))
+                         : onRidge ? most(us[i])
+                                   : std::min(in_, most(us[i]));
+                stepsTo(bend, us[i], arcs[i], ins[i], alongU[i], inwards[i]);
+            }
         }
-        query.reachMm = 0.2 + in_;
-        float distance[8];
-        if (sharply)
-            for (int i = 0; i < 8; ++i)
-                distance[i] = static_cast<float>(depth_.surface_.distance(
-                    place_ + static_cast<double>(query.u[i]) * alongU_ + static_cast<double>(query.arc[i]) * alongArc_ -
-                    static_cast<double>(query.in[i]) * normal_));
-        else
-            depth_.kernels_.around(depth_.view_, query, distance);
+        double distance[8];
+        if (sharply) {
+            std::array<Vec3, 8> places;
+            for (std::size_t i = 0; i < 8; ++i)
+                places[i] = place_ + alongU[i] * alongU_ + arcs[i] * alongArc_ - inwards[i] * normal_;
+            depth_.surface_.distances(places, distance);
+        } else {
+            AroundQuery query;
+            store(query.centre, place_);
+            store(query.alongU, alongU_);
+            store(query.alongArc, alongArc_);
+            store(query.inward, -normal_);
+            query.farOutMm = static_cast<float>(depth_.field_.reach().outMm);
+            query.farInMm = static_cast<float>(depth_.field_.reach().inMm);
+            query.reachMm = 0.2 + in_;
+            for (int i = 0; i < 8; ++i) {
+                query.u[i] = static_cast<float>(alongU[i]);
+                query.arc[i] = static_cast<float>(arcs[i]);
+                query.in[i] = static_cast<float>(inwards[i]);
+            }
+            float mixed[8];
+            depth_.kernels_.around(depth_.view_, query, mixed);
+            std::copy_n(mixed, 8, distance);
+        }
         double value[8];
         int highest = 0;
         for (int i = 0; i < 8; ++i) {
-            value[i] = spot_->deeperPerMm * ins[i] - static_cast<double>(distance[i]);
+            value[i] = spot_->deeperPerMm * ins[i] - distance[i];
             if (value[i] > value[highest]) highest = i;
         }
         top_ = value[highest];
@@ -412,8 +522,8 @@ class FieldDepth::DepthAscent {
             mean += value[i];
             c1 += value[i] * kCosine[i];
             s1 += value[i] * kSine[i];
-            c2 += value[i] * (kCosine[i] * kCosine[i] - kSine[i] * kSine[i]);
-            s2 += value[i] * 2.0 * kCosine[i] * kSine[i];
+            c2 += value[i] * kCosine2[i];
+            s2 += value[i] * kSine2[i];
         }
         // A quadratic through them, in units of the window.
         const double bowl = 4.0 * (mean / kAround - value[0]), gu = 2.0 * c1 / kAround, ga = 2.0 * s1 / kAround;
@@ -431,46 +541,45 @@ class FieldDepth::DepthAscent {
             in_ = std::clamp(toFirst, 0.0, most(0.0));
         } else {
             u_ = std::clamp(toFirst, -spot_->roomBefore, spot_->roomAfter);
-            in_ = std::clamp(ins[highest] - static_cast<double>(distance[highest]), 0.0, most(u_));
+            in_ = std::clamp(ins[highest] - distance[highest], 0.0, most(u_));
         }
         return reached;
     }
 
+  public:
     /// Onto the tooth's surface, and what the depth is there.
-    double settle(FieldTouch& best) noexcept {
-        double deepest = -std::numeric_limits<double>::infinity();
+    void settle(FieldTouch& best) noexcept {
+        bool lies = false;
         for (int i = 0; i <= kProjections; ++i) {
             // Where it did not come to lie on the surface in time the bur's own tells the distance.
-            if (i == kProjections && !(std::isinf(deepest) && in_ > 0.0)) break;
+            if (i == kProjections && (lies || in_ <= 0.0)) break;
             if (i == kProjections) in_ = 0.0;
-            double alongU = 0.0, inwards = 0.0;
-            stepsTo(u_, arc_, in_, alongU, inwards);
-            const Vec3 p = place_ + alongU * alongU_ + arc_ * alongArc_ - inwards * normal_;
+            const Bends bend = bends();
+            const Vec3 p = placeAt(bend, u_, arc_, in_);
             const double d = depth_.surface_.distance(p), depth = depth_.depthAt(frame_, p, d);
             // Outside the tooth a field that has been cut may tell less than the distance.
             if (i == kProjections && d < 0.0) break;
             const bool trusted = (d <= kOnSurfaceMm && d > -depth_.inMm_) || in_ <= 0.0;
-            if (trusted) deepest = std::max(deepest, depth);
+            lies = lies || trusted;
             if (trusted && depth > best.depthMm) {
                 best.depthMm = depth;
-                best.normal = awayAt(p);
+                best.normal = awayAt(bend, p);
                 best.surfaceMm = p - d * best.normal;
             }
             const double next = std::clamp(in_ - d, 0.0, most(u_));
             if (std::abs(next - in_) < kOnSurfaceMm || (spot_->isCorner && d <= 0.0)) break;
             in_ = next;
         }
-        return deepest;
     }
-    [[nodiscard]] Vec3 awayAt(const Vec3& p) const noexcept {
+
+  private:
+    [[nodiscard]] Vec3 awayAt(const Bends& bend, const Vec3& p) const noexcept {
         if (spot_->isCorner) {
             const Vec3 slope = depth_.outward(p);
             if (!slope.isZero()) return slope;
             return -normal_;
         }
-        const double k = u_ < 0.0 ? spot_->curvatureBefore : spot_->curvatureAfter;
-        return -(normal_ + k / (1.0 - k * in_) * u_ * alongU_ +
-                 spot_->curvatureAround / (1.0 - spot_->curvatureAround * in_) * arc_ * alongArc_)
+        return -(normal_ + (u_ < 0.0 ? bend.before : bend.after) * u_ * alongU_ + bend.around * arc_ * alongArc_)
                     .normalized();
     }
 
@@ -480,8 +589,13 @@ class FieldDepth::DepthAscent {
     const Spot* spot_ = nullptr;
     double cosine_ = 1.0, sine_ = 0.0;
     Vec3 place_, normal_, alongU_, alongArc_;
+    Vec3 topMm_ = Vec3::Zero();  ///< where the climb has come to
     double curlsAt_ = 0.0;
     double u_ = 0.0, arc_ = 0.0, in_, top_ = 0.0;
+    bool isTop_ = false;
+    struct {
+        double u, arc, in, top;
+    } before_{0.0, 0.0, 0.0, -std::numeric_limits<double>::infinity()};  ///< the last step on a wall
 };
 
 FieldTouch FieldDepth::search(const core::Pose& burInTooth, SurfaceSampler& rings) noexcept {
@@ -497,7 +611,7 @@ FieldTouch FieldDepth::search(const core::Pose& burInTooth, SurfaceSampler& ring
     // What the rings have sensed here serves again; else every second point of every second ring is near enough to
     // begin to climb.
     const bool sensed = rings.hasSensed(burInTooth, outMm_, windowMm_);
-    if (!sensed) sense(probe_, frame);
+    if (!sensed) sense(probe_, frame, 2.0 * windowMm_);
     const double least = sensed ? rings.leastMm() : leastOf(probe_);
     if (!(least <= outMm_)) return best;
     if (least <= -inMm_) searchInside(frame, best);
@@ -519,7 +633,7 @@ FieldTouch FieldDepth::search(const core::Pose& burInTooth, SurfaceSampler& ring
     return best;
 }
 
-void FieldDepth::sense(const RingArrays& arrays, const BurFrame& frame) const noexcept {
+void FieldDepth::sense(const RingArrays& arrays, const BurFrame& frame, double windowMm) const noexcept {
     RingQuery query{};
     query.tip = frame.tip.data();
     query.x = frame.x.data();
@@ -529,13 +643,15 @@ void FieldDepth::sense(const RingArrays& arrays, const BurFrame& frame) const no
     query.farOutMm = static_cast<float>(field_.reach().outMm);
     query.farInMm = static_cast<float>(field_.reach().inMm);
     query.tissue = 0;
+    query.onlyDistances = true;
+    query.windowMm = static_cast<float>(windowMm);
     kernels_.sense(view_, arrays.bur, query, arrays.touch);
 }
 
 /// Values on the bur's surface no longer tell how deep it is: its inside does.
 void FieldDepth::searchInside(const BurFrame& frame, FieldTouch& best) noexcept {
     if (inner_.rings.empty()) return;
-    sense(inner_, frame);
+    sense(inner_, frame, 0.0);
     std::array<RingPoint, kStarts> points;
     std::array<Start, kStarts> starts;
     const std::size_t count = pickNearest(inner_, frame, innerDepth_.data(), kInnerWindowMm, kApartMm, points);
@@ -550,9 +666,17 @@ void FieldDepth::searchInside(const BurFrame& frame, FieldTouch& best) noexcept 
 /// All of them in the mixed field, then the highest on between the nodes.
 void FieldDepth::climbFrom(const BurFrame& frame, std::span<const Start> starts, FieldTouch& best) noexcept {
     std::array<std::optional<DepthAscent>, kStarts> ascents;
-    std::array<double, kStarts> tops;
-    for (std::size_t i = 0; i < starts.size(); ++i)
-        tops[i] = ascents[i].emplace(*this, frame, starts[i]).climb(best);
+    std::array<double, kStarts> tops{};
+    double highest = best.depthMm;
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+        DepthAscent& ascent = ascents[i].emplace(*this, frame, starts[i]);
+        if (!ascent.climb(highest, {ascents.data(), i})) {
+            ascents[i].reset();
+            continue;
+        }
+        tops[i] = ascent.estimate();
+        highest = std::max(highest, tops[i]);
+    }
     for (int climbs = 0; climbs < kSharpClimbs; ++climbs) {
         std::size_t top = kStarts;
         for (std::size_t i = 0; i < starts.size(); ++i)

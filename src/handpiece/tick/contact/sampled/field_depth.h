@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "handpiece/base/core/simd.h"
-#include "handpiece/tick/contact/sampled/known_surface.h"
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/tick/contact/method.h"
+#include "handpiece/tick/contact/sampled/known_surface.h"
 #include "handpiece/tick/contact/sampled/ring_arrays.h"
 #include "handpiece/tick/contact/sampled/surface_sampler.h"
 
@@ -57,7 +57,8 @@ class FieldDepth {
     void measureRoom();
     void addShells();
     void addProbes();
-    void sense(const RingArrays& arrays, const BurFrame& frame) const noexcept;
+    /// All points within `windowMm` of the nearest, and some others.
+    void sense(const RingArrays& arrays, const BurFrame& frame, double windowMm) const noexcept;
     void searchInside(const BurFrame& frame, FieldTouch& best) noexcept;
     [[nodiscard]] double scanAxis(const BurFrame& frame, double fromZ, double step, int count,
                                   double& topZ) const noexcept;

@@ -4,6 +4,7 @@
 /// All that is known of a tooth's surface after a cut. Private to this room.
 
 #include <algorithm>
+#include <span>
 
 #include "handpiece/base/core/simd.h"
 #include "handpiece/model/field/sharp_lookup.h"
@@ -29,6 +30,18 @@ class KnownSurface {
         if (cutVersion_ != field_.version()) return read;
         return std::max(read, -bur_.signedDistance(cut_.toBur * (p - cut_.tip)));
     }
+    /// The same of up to field::kSharpPlaces places at once.
+    void distances(std::span<const core::Vec3> places, std::span<double> out) noexcept {
+        lookup_.distances(places, out);
+        if (cutVersion_ != field_.version()) return;
+        for (std::size_t i = 0; i < places.size(); ++i)
+            out[i] = std::max(out[i], -bur_.signedDistance(cut_.toBur * (places[i] - cut_.tip)));
+    }
+    /// The smooth wall of the field at a place; false where there is none, or the bur is what is known there.
+    [[nodiscard]] bool wallAt(const core::Vec3& p, field::SharpLookup::Wall& wall) noexcept {
+        return lookup_.wallAt(p, wall) && (cutVersion_ != field_.version() ||
+                                           -bur_.signedDistance(cut_.toBur * (p - cut_.tip)) <= wall.distanceMm);
+    }
     void noteCut(const core::Pose& burInTooth) noexcept {
         cut_ = BurFrame(burInTooth);
         cutVersion_ = field_.version();
@@ -39,7 +52,7 @@ class KnownSurface {
     const field::DistanceField& field_;
     const instrument::Bur& bur_;
     field::SharpLookup lookup_;
-    BurFrame cut_;  ///< where the bur cut last
+    BurFrame cut_;                  ///< where the bur cut last
     std::uint64_t cutVersion_ = 0;  ///< of the field after that
 };
 

@@ -70,7 +70,7 @@ RingArrays::RingArrays(std::span<const instrument::SurfaceRing> given) {
     liveRing.assign(rings.size(), 0);
     least.assign(rings.size(), kNotLiveMm);
     bur = {rings.data(), static_cast<std::int32_t>(rings.size()), cosines.data(), sines.data(), heights.data()};
-    touch = {axisDistance.data(), distance.data(), gx.data(),       gy.data(),    gz.data(),         tissue.data(),
+    touch = {axisDistance.data(), distance.data(), gx.data(),       gy.data(),    gz.data(),        tissue.data(),
              live.data(),         creased.data(),  liveRing.data(), least.data(), skippedDeep.get()};
 }
 

@@ -265,6 +265,14 @@ inline unsigned senseEight(const FieldView& field, const BurRings& bur, const Ri
         touch.live[ring.mask + eight] = touch.creased[ring.mask + eight] = 0;
         return 0;
     }
+    const Ints lane = {1, 2, 4, 8, 16, 32, 64, 128};
+    if (query.onlyDistances) {
+        d = ((Ints{} + static_cast<std::int32_t>(live)) & lane) != 0 ? d : splatF(kNotLiveMm);
+        __builtin_memcpy(touch.distanceMm + at, &d, sizeof d);
+        touch.live[ring.mask + eight] = static_cast<std::uint8_t>(live);
+        least = leastF(least, d);
+        return live;
+    }
     const Floats gx = mix(mix(v[1] - v[0], v[3] - v[2], t[1]), mix(v[5] - v[4], v[7] - v[6], t[1]), t[2]);
     const Floats gy = mix(x10 - x00, x11 - x01, t[2]);
     const Floats gz = high - low;
@@ -273,14 +281,12 @@ inline unsigned senseEight(const FieldView& field, const BurRings& bur, const Ri
     const Floats twist = mostF(mostF(spreadOf(v[1] - v[0], v[3] - v[2], v[5] - v[4], v[7] - v[6]),
                                      spreadOf(v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5])),
                                spreadOf(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3]));
-    const unsigned creased =
-        bitsOf(((gx * gx + gy * gy + gz * gz < least2) | (twist > query.creaseTwist * voxelMm)) &
-               (absolute(d) < 3.0f * query.creaseMm)) &
-        live & ~places.bare;
+    const unsigned creased = bitsOf(((gx * gx + gy * gy + gz * gz < least2) | (twist > query.creaseTwist * voxelMm)) &
+                                    (absolute(d) < 3.0f * query.creaseMm)) &
+                             live & ~places.bare;
     live &= bitsOf(d <= query.thresholdMm) | creased;
     touch.live[ring.mask + eight] = static_cast<std::uint8_t>(live);
     touch.creased[ring.mask + eight] = static_cast<std::uint8_t>(creased);
-    const Ints lane = {1, 2, 4, 8, 16, 32, 64, 128};
     const Ints isLive = ((Ints{} + static_cast<std::int32_t>(live)) & lane) != 0;
     d = isLive ? d : splatF(kNotLiveMm);
     __builtin_memcpy(touch.distanceMm + at, &d, sizeof d);
@@ -309,8 +315,9 @@ void sense(const FieldView& field, const BurRings& bur, const RingQuery& query, 
         reach[k] = pose.z[k] < 0.0 ? -pose.z[k] : pose.z[k];
     // In a trilinear cell the Lipschitz bound holds but for what the cell is off, a tenth of a voxel near an edge of
     // the surface: what lies beyond a bound by no more than that is looked up.
-    const auto slackMm = static_cast<float>(0.1 * field.voxelMm);
-    const float threshold = query.thresholdMm + (slackMm > query.creaseMm ? slackMm : query.creaseMm);
+    const auto voxelMm = static_cast<float>(field.voxelMm);
+    const float slackMm = 0.1f * voxelMm > query.creaseMm ? 0.1f * voxelMm : query.creaseMm;
+    float threshold = query.thresholdMm + slackMm;
     for (std::int32_t i = 0; i < bur.count; i += 8) {
         // Eight rings: heights from the middle one on.
         const double middle = bur.heights[i + 4];
@@ -341,8 +348,8 @@ void sense(const FieldView& field, const BurRings& bur, const RingQuery& query, 
         unsigned any = 0;
         Floats least = splatF(kNotLiveMm);
         for (int group = 0; group < ring.eights; group += 8) {
-            unsigned near = 1;
-            if (ring.eights > 1) {
+            unsigned near = 0xff;
+            if (ring.eights > 3) {  // fewer are soon looked up themselves
                 const std::int32_t at = ring.middles + group;
                 const Floats d = distances(field, query, row, loadFloats(bur.cosines + at), loadFloats(bur.sines + at));
                 near = bitsOf(d - ring.chordMm <= threshold);
@@ -361,6 +368,8 @@ void sense(const FieldView& field, const BurRings& bur, const RingQuery& query, 
         if (any == 0) continue;
         touch.liveRing[i] = 1;
         touch.leastMm[i] = leastOf(least);
+        const float enough = touch.leastMm[i] + query.windowMm + slackMm;
+        if (query.windowMm > 0.0f && enough < threshold) threshold = enough;
         // Around the seam. Padding in the last eight is not live, so the neighbour is the last point itself.
         touch.distanceMm[ring.first - 1] = ring.count > 1 ? touch.distanceMm[ring.first + ring.count - 1] : kNotLiveMm;
         touch.distanceMm[ring.first + ring.count] = ring.count > 1 ? touch.distanceMm[ring.first] : kNotLiveMm;

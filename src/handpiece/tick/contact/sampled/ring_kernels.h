@@ -40,7 +40,9 @@ struct RingQuery {
     /// slopes along the cell's edges differ by more than that. Such are live within creaseMm more, which no cell is off
     /// by, and told within three times that of the surface: zero for never.
     float creaseSlope, creaseTwist, creaseMm;
-    std::uint8_t tissue;            ///< when everything is of one tissue, else kManyTissues
+    std::uint8_t tissue;  ///< when everything is of one tissue, else kManyTissues
+    bool onlyDistances;   ///< no gradients and tissues
+    float windowMm;       ///< points this much farther than the nearest need not be told; 0 for all
 };
 inline constexpr std::uint8_t kManyTissues = 0xff;
 

@@ -89,12 +89,10 @@ struct Piece {
     std::array<int, 3> low{};
     Shape shape;
 
-    /// body(index in the block, index in the piece) for the first voxel of each row.
+    /// body(index in the block, index in the piece) for the first voxel of each row, in parallel.
     template <class Body>
     void rows(const Shape& block, const Body& body) const {
-        for (int k = 0; k < shape.size[2]; ++k)
-            for (int j = 0; j < shape.size[1]; ++j)
-                body(block.index(low[0], low[1] + j, low[2] + k), shape.index(0, j, k));
+        forRows(shape, [&](int j, int k) { body(block.index(low[0], low[1] + j, low[2] + k), shape.index(0, j, k)); });
     }
 };
 

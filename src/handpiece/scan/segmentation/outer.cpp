@@ -86,30 +86,40 @@ Field nearerThanOther(const Shape& shape, const Field& outer, const Field& side)
 }  // namespace
 
 void spreadInto(const Shape& shape, Field& values, const Mask& unknown) {
-    std::vector<std::uint32_t> layer, next;
+    constexpr std::size_t kGrain = 1 << 14;
     Mask open = unknown;
-    for (std::size_t n = 0; n < open.size(); ++n)
-        if (open[n] == 1) {
-            bool isBeside = false;
-            forNeighbours(shape, n, [&](std::size_t o) { isBeside = isBeside || !unknown[o]; });
-            if (isBeside) layer.push_back(static_cast<std::uint32_t>(n));
-        }
-    for (const std::uint32_t at : layer)
-        open[at] = 3;
-    std::vector<float> found;
+    // By slices, so that several threads find the same layer.
+    std::vector<std::vector<std::uint32_t>> found(static_cast<std::size_t>(shape.size[2]));
+    core::parallelFor(found.size(), 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t k = from; k < to; ++k)
+            for (std::size_t n = k * shape.sliceStride(); n < (k + 1) * shape.sliceStride(); ++n) {
+                if (unknown[n] != 1) continue;
+                bool isBeside = false;
+                forNeighbours(shape, n, [&](std::size_t o) { isBeside = isBeside || !unknown[o]; });
+                if (!isBeside) continue;
+                found[k].push_back(static_cast<std::uint32_t>(n));
+                open[n] = 3;
+            }
+    });
+    std::vector<std::uint32_t> layer, next;
+    for (const auto& slice : found)
+        layer.insert(layer.end(), slice.begin(), slice.end());
     while (!layer.empty()) {
-        found.resize(layer.size());
-        for (std::size_t n = 0; n < layer.size(); ++n) {
+        const auto ofLayer = [&](const auto& body) {
+            core::parallelFor(layer.size(), kGrain, [&](std::size_t from, std::size_t to) {
+                for (std::size_t n = from; n < to; ++n)
+                    body(layer[n]);
+            });
+        };
+        // What is of the layer itself does not count yet.
+        ofLayer([&](std::uint32_t at) {
             float sum = 0, count = 0;
-            forNeighbours(shape, layer[n], [&](std::size_t o) {
+            forNeighbours(shape, at, [&](std::size_t o) {
                 if (open[o] == 0) sum += values[o], count += 1;
             });
-            found[n] = sum / count;
-        }
-        for (std::size_t n = 0; n < layer.size(); ++n) {
-            values[layer[n]] = found[n];
-            open[layer[n]] = 0;
-        }
+            values[at] = sum / count;
+        });
+        ofLayer([&](std::uint32_t at) { open[at] = 0; });
         next.clear();
         for (const std::uint32_t at : layer)
             forNeighbours(shape, at, [&](std::size_t o) {

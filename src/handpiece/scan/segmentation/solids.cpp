@@ -78,20 +78,27 @@ void applyMark(Work& work, const Mark& mark) {
 /// Keeps the one large piece of the tooth; specks of other tissues go.
 void tidy(const Work& work, Field& inside, bool isOnePiece) {
     Mask mask(inside.size());
-    for (std::size_t n = 0; n < mask.size(); ++n)
-        mask[n] = inside[n] > 0;
+    core::parallelFor(mask.size(), 1 << 18, [&](std::size_t from, std::size_t to) {
+        for (std::size_t n = from; n < to; ++n)
+            mask[n] = inside[n] > 0;
+    });
     const Parts parts = connectedParts(work.shape, mask);
     const std::uint32_t main = parts.largest();
     const double least = std::max(6.0, kMinPieceMm3 / work.grid.voxelMm3());
+    const auto isKept = [&](std::uint32_t p) {
+        return isOnePiece ? p == main : static_cast<double>(parts.counts[p]) >= least;
+    };
     bool any = false;
-    for (std::size_t n = 0; n < mask.size(); ++n) {
-        const std::uint32_t p = parts.of[n];
-        if (p == 0) continue;
-        const bool keep = isOnePiece ? p == main : static_cast<double>(parts.counts[p]) >= least;
-        if (!keep) inside[n] = -0.5f;
-        any = any || keep;
+    for (std::uint32_t p = 1; p < parts.counts.size(); ++p)
+        any = any || isKept(p);
+    if (!any) {
+        inside.clear();
+        return;
     }
-    if (!any) inside.clear();
+    core::parallelFor(mask.size(), 1 << 18, [&](std::size_t from, std::size_t to) {
+        for (std::size_t n = from; n < to; ++n)
+            if (parts.of[n] != 0 && !isKept(parts.of[n])) inside[n] = -0.5f;
+    });
 }
 
 Field lesionsOf(const Work& work, const Settings& settings) {
@@ -139,8 +146,10 @@ Region toRegion(Work&& work, const Settings& settings, const core::Progress& pro
         }
     if (!work.pulp.empty()) {
         if (!work.caries.empty()) keepOutside(work.caries, work.pulp);
-        for (std::size_t n = 0; n < work.pulp.size(); ++n)
-            work.dentine[n] = std::max(work.dentine[n], work.pulp[n]);
+        core::parallelFor(work.pulp.size(), 1 << 18, [&](std::size_t from, std::size_t to) {
+            for (std::size_t n = from; n < to; ++n)
+                work.dentine[n] = std::max(work.dentine[n], work.pulp[n]);
+        });
     }
     keepInside(work.dentine, work.outer);
     core::report(progress, 0.7);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <numeric>
 
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/portable_math.h"
@@ -227,49 +229,85 @@ std::uint32_t Parts::largest() const {
 
 Parts connectedParts(const Shape& shape, const Mask& mask) {
     Parts parts;
-    parts.of.assign(mask.size(), 0);
-    parts.counts.push_back(0);
-    // Runs along i are joined by union and find: one pass over the voxels, one over the runs.
-    std::vector<std::uint32_t> parent{0};
+    parts.of.resize(mask.size());
+    // Runs along i are joined by union and find: a pass over the voxels in pieces of slices, then one over the slices
+    // where pieces meet. Runs are numbered as they come and the lowest of a part names it, however it is cut.
+    const auto slices = static_cast<std::size_t>(shape.size[2]);
+    std::vector<std::uint32_t> firstRun(slices + 1, 1);
+    core::parallelFor(slices, 4, [&](std::size_t from, std::size_t to) {
+        for (std::size_t k = from; k < to; ++k) {
+            std::uint32_t runs = 0;
+            for (int j = 0; j < shape.size[1]; ++j) {
+                const std::uint8_t* row = &mask[shape.index(0, j, static_cast<int>(k))];
+                for (int i = 0; i < shape.size[0]; ++i)
+                    runs += row[i] != 0 && (i == 0 || row[i - 1] == 0);
+            }
+            firstRun[k + 1] = runs;
+        }
+    });
+    std::partial_sum(firstRun.begin(), firstRun.end(), firstRun.begin());
+    std::vector<std::uint32_t> parent(firstRun[slices]);
+    std::iota(parent.begin(), parent.end(), 0u);
     const auto root = [&](std::uint32_t a) {
         while (parent[a] != a)
             a = parent[a] = parent[parent[a]];
         return a;
     };
-    for (int k = 0; k < shape.size[2]; ++k)
-        for (int j = 0; j < shape.size[1]; ++j) {
-            std::size_t at = shape.index(0, j, k);
-            std::uint32_t run = 0;
-            for (int i = 0; i < shape.size[0]; ++i, ++at) {
-                if (!mask[at]) {
-                    run = 0;
-                    continue;
-                }
-                if (run == 0) {
-                    run = static_cast<std::uint32_t>(parent.size());
-                    parent.push_back(run);
-                }
-                parts.of[at] = run;
-                for (const std::uint32_t other :
-                     {j > 0 ? parts.of[at - shape.rowStride()] : 0u, k > 0 ? parts.of[at - shape.sliceStride()] : 0u})
-                    if (other != 0) {
-                        const std::uint32_t a = root(run), b = root(other);
-                        if (a != b) parent[std::max(a, b)] = std::min(a, b);
+    const auto join = [&](std::uint32_t run, std::uint32_t other) {
+        const std::uint32_t a = root(run), b = root(other);
+        if (a != b) parent[std::max(a, b)] = std::min(a, b);
+    };
+    std::vector<std::uint8_t> isFirst(slices, 0);
+    core::parallelFor(slices, 16, [&](std::size_t from, std::size_t to) {
+        isFirst[from] = 1;
+        for (std::size_t k = from; k < to; ++k) {
+            std::uint32_t last = firstRun[k] - 1;
+            for (int j = 0; j < shape.size[1]; ++j) {
+                std::size_t at = shape.index(0, j, static_cast<int>(k));
+                bool isIn = false;
+                for (int i = 0; i < shape.size[0]; ++i, ++at) {
+                    if (!mask[at]) {
+                        parts.of[at] = 0;
+                        isIn = false;
+                        continue;
                     }
+                    if (!isIn) ++last;
+                    isIn = true;
+                    parts.of[at] = last;
+                    if (j > 0 && mask[at - shape.rowStride()]) join(last, parts.of[at - shape.rowStride()]);
+                    if (k > from && mask[at - shape.sliceStride()]) join(last, parts.of[at - shape.sliceStride()]);
+                }
             }
         }
+    });
+    for (std::size_t k = 1; k < slices; ++k)
+        if (isFirst[k] != 0)
+            for (std::size_t at = k * shape.sliceStride(); at < (k + 1) * shape.sliceStride(); ++at)
+                if (parts.of[at] != 0 && parts.of[at - shape.sliceStride()] != 0)
+                    join(parts.of[at], parts.of[at - shape.sliceStride()]);
+    parts.counts.push_back(0);
     std::vector<std::uint32_t> name(parent.size(), 0);
-    for (std::uint32_t p = 1; p < parent.size(); ++p)
+    for (std::uint32_t p = 1; p < parent.size(); ++p) {
         if (root(p) == p) {
             name[p] = static_cast<std::uint32_t>(parts.counts.size());
             parts.counts.push_back(0);
         }
-    for (std::uint32_t p = 1; p < parent.size(); ++p)
         name[p] = name[root(p)];
-    for (std::uint32_t& p : parts.of) {
-        p = name[p];
-        ++parts.counts[p];
     }
+    std::mutex counting;
+    core::parallelFor(parts.of.size(), 1 << 18, [&](std::size_t from, std::size_t to) {
+        // Neighbours are mostly of one part.
+        std::vector<std::pair<std::uint32_t, std::size_t>> stretches;
+        for (std::size_t n = from; n < to; ++n) {
+            std::uint32_t& p = parts.of[n];
+            p = name[p];
+            if (stretches.empty() || stretches.back().first != p) stretches.emplace_back(p, 0);
+            ++stretches.back().second;
+        }
+        const std::lock_guard lock(counting);
+        for (const auto& [part, count] : stretches)
+            parts.counts[part] += count;
+    });
     return parts;
 }
 

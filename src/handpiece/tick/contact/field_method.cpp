@@ -47,10 +47,13 @@ class FieldMethod final : public Method {
                                                     (0.5 * bur_->maxRadiusMm()))
                         : 0.0),
           farthestMm_(core::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {
-        for (const instrument::MedialCurve& curve : bur_->medialAxis())
+        for (const instrument::MedialCurve& curve : bur_->medialAxis()) {
+            for (const instrument::MedialBall& ball : curve.balls)
+                mostRadiusMm_ = std::max(mostRadiusMm_, ball.radiusMm);
             if (curve.onAxis)
                 for (std::size_t i = 0; i < kSpineBalls; ++i)
                     spine_.push_back(curve.balls[i * (curve.balls.size() - 1) / (kSpineBalls - 1)]);
+        }
     }
 
     [[nodiscard]] const char* name() const noexcept override { return "field"; }
@@ -90,9 +93,7 @@ class FieldMethod final : public Method {
         return depth(burInTooth);
     }
 
-    void patches(const core::Pose& burInTooth, PatchSet& out) noexcept override {
-        rings_.patches(burInTooth, out);
-    }
+    void patches(const core::Pose& burInTooth, PatchSet& out) noexcept override { rings_.patches(burInTooth, out); }
 
     Status constraints(const core::Pose& burInTooth, double reachMm, ConstraintSet& out) noexcept override {
         return rings_.constraints(burInTooth, reachMm, out);
@@ -145,7 +146,9 @@ class FieldMethod final : public Method {
         const BurFrame frame(burInTooth);
         BallDepth best;
         double mostMm = -std::numeric_limits<double>::infinity();
-        const bool outsideKnown = outline_.isFit(), apart = outsideKnown && outline_.search(surface_, frame, best);
+        // Deeper than its radius no ball is with its centre outside.
+        const bool isDeep = sheets_.isDeep(surface_, frame, mostRadiusMm_), outsideKnown = isDeep || outline_.isFit();
+        const bool apart = !isDeep && outsideKnown && outline_.search(surface_, frame, best);
         if (!apart) {
             if (!outsideKnown || axis_.mayEnter(surface_, frame)) axis_.search(surface_, frame, best, mostMm);
             sheets_.search(surface_, frame, outsideKnown, best, mostMm);
@@ -204,7 +207,7 @@ class FieldMethod final : public Method {
     FieldDepth field_;
     std::vector<instrument::MedialBall> spine_;  ///< some balls of the bur's axis
     double slackMm_;                             ///< of the bur in its own cavity
-    double farthestMm_;
+    double farthestMm_, mostRadiusMm_ = 0.0;     ///< of the bur's points from its tip; of its medial balls
     core::Pose farPose_;
     double clearMm_ = 0.0;  ///< distance at farPose_ when that was beyond reach
 };

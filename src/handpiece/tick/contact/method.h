@@ -36,8 +36,8 @@ struct Depth {
     Status status = Status::beyondReach;
     std::uint16_t tooth = 0;  ///< index of the tooth that decides. A method of one tooth says 0, here and below
     double slackMm = 0.0;  ///< Method::slackMm() where the surface has been cut, else zero
-    /// How much deeper it could be by what was left unseen of the bur's axis in an uncut tooth: zero where that is
-    /// kDepthToleranceMm at most, as it is unless the work that a tick affords ended first.
+    /// How much deeper it could be by what was left unseen, in an uncut tooth, of the bur's axis and of rims deeper than
+    /// its radius: zero where that is kDepthToleranceMm at most, as it is unless the work that a tick affords ended first.
     double unseenMm = 0.0;
 };
 inline constexpr double kDepthToleranceMm = 2e-5;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The exact depth where walls are thinner than the bur and its axis lies in the tooth: what it leaves unseen is never
-// more than it says. HANDPIECE_POSES=100000 asks that often; a few hundred otherwise.
+// more than it says; likewise sharp rims deep in a tooth. HANDPIECE_POSES=100000 asks that often; a few hundred
+// otherwise.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,6 +36,7 @@ Place ellipsoid(const Vec3& centre, const Vec3& half) {
 
 geometry::TriangleMesh meshOf(std::string_view name) {
     geometry::TriangleMesh mesh;
+    // "solid": the outer surface alone.
     if (name == "sheet") {  // a root half a millimetre thin, bent
         addSphere(mesh, 24, false,
                   [](const Vec3& d) { return Vec3(3.0 * d.x(), 0.25 * d.y() + 0.3 * d.x() * d.x(), 5.0 * d.z()); });
@@ -108,6 +110,57 @@ TEST_P(HardTooth, leavesNoMoreUnseenThanItSays) {
         }
     }
 }
+/// A sharp rim deeper than its balls' radii and 0.2 mm: proven, too, or it says by how much not.
+class RimInTooth : public testing::TestWithParam<const char*> {};
+
+TEST_P(RimInTooth, leavesNoMoreUnseenThanItSays) {
+    constexpr double kBruteMm = 1e-6, kBruteMissesMm = 1e-3, kMostUnseenMm = 0.12;
+    const auto tooth = test::toothOf(meshOf(GetParam()));
+    const core::Box box = tooth->outer.bounds();
+    const char* asked = std::getenv("HANDPIECE_POSES");
+    const int poses = asked != nullptr ? std::max(1, std::atoi(asked)) : 25;
+    for (const char* name : {"cylinder-flat:1.0x4.0", "wheel:2.0x0.8", "inverted-cone:1.2x1.2"}) {
+        const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur(name));
+        const auto method = makeFieldMethod(tooth, bur);
+        double least = 0.0;
+        for (const instrument::MedialCurve& curve : bur->medialAxis())
+            for (const instrument::MedialBall& ball : curve.balls)
+                least = std::max(least, ball.radiusMm + 0.25);
+        std::mt19937_64 generator(test::seed());
+        std::vector<core::Pose> all;
+        std::vector<Depth> told;
+        while (static_cast<int>(all.size()) < poses) {
+            core::Pose pose;
+            pose.orientation = test::randomRotation(generator);
+            for (int k = 0; k < 3; ++k)
+                pose.positionMm[k] = test::uniform(generator, box.min[k] - 1.0, box.max[k] + 1.0);
+            const Depth depth = method->depth(pose);
+            if (depth.status != Status::ok || depth.depthMm < least) continue;
+            all.push_back(pose);
+            told.push_back(depth);
+        }
+        std::vector<double> truth(all.size());
+        core::parallelFor(all.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                truth[i] = test::bruteForceDepth(tooth->tree, *bur, all[i]).depthMm;
+        });
+        double worst = 0.0, mostUnseen = 0.0;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const double leftMm = std::max(told[i].unseenMm, kDepthToleranceMm);
+            EXPECT_LE(truth[i], told[i].depthMm + leftMm + kBruteMm) << name << " pose " << i;
+            EXPECT_LE(told[i].depthMm, truth[i] + kBruteMissesMm) << name << " pose " << i;
+            worst = std::max(worst, truth[i] - told[i].depthMm);
+            mostUnseen = std::max(mostUnseen, told[i].unseenMm);
+        }
+        EXPECT_LE(worst, 2e-3) << name;
+        EXPECT_LE(mostUnseen, kMostUnseenMm) << name;
+        if (asked != nullptr)
+            std::printf("%s, %s: %d poses, worst too little %.3f um, most told unseen %.3f\n", GetParam(), name, poses,
+                        1e3 * worst, 1e3 * mostUnseen);
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Teeth, RimInTooth, testing::Values("solid", "nested", "cavities"));
+
 INSTANTIATE_TEST_SUITE_P(Teeth, HardTooth, testing::Values("shell", "nested", "cavities", "sheet"));
 
 }  // namespace

@@ -42,6 +42,8 @@ constexpr double kToleranceMm = 2e-8;
 constexpr double kFinalWindowMm = 5e-6;
 constexpr int kMaxSteps = 48, kMaxLooks = 24;
 constexpr float kFarMm = 1e3f;
+// Nearer to the surface a place of it says little about the balls beside it, and the field knows more.
+constexpr double kDeepMm = 0.2;
 constexpr double kArcFloorMm = 0.05;  // about the axis an angle is no measure of length
 
 bool isFine(float d) {
@@ -157,8 +159,12 @@ OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field
         }
         sheet.centreZ = 0.5 * (low + high);
         sheet.reachMm = reachFrom(sheet.centreZ);
-        for (std::size_t i = 0; i < sheet.u.size(); ++i)
-            sheet.centresMm = std::max(sheet.centresMm, core::hypot(sheet.rho[i], sheet.z[i] - sheet.centreZ));
+        sheet.promiseMm = -std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < sheet.u.size(); ++i) {
+            const double away = core::hypot(sheet.rho[i], sheet.z[i] - sheet.centreZ);
+            sheet.centresMm = std::max(sheet.centresMm, away);
+            sheet.promiseMm = std::max(sheet.promiseMm, sheet.radius[i] - away);
+        }
         addGrid(sheet);
         sheets_.push_back(std::move(sheet));
     }
@@ -253,6 +259,12 @@ void OffAxisMedialSearch::addCells(Sheet& sheet, double spacing) const {
     }
 }
 
+bool OffAxisMedialSearch::isDeep(const ExactSurface& surface, const BurFrame& frame, double depthMm) const noexcept {
+    return std::any_of(sheets_.begin(), sheets_.end(), [&](const Sheet& sheet) {
+        return sheet.promiseMm - surface.farBound(frame.onAxis(sheet.centreZ)) - surface.sureMm() >= depthMm;
+    });
+}
+
 /// A distance is 1-Lipschitz: at phiT(m) outside, with m the middle of the ball of reach about all of a sheet's, none
 /// of them is deeper than reach - phiT(m); and none has its centre in the tooth when phiT(m) is more than the centres'
 /// reach.
@@ -268,15 +280,16 @@ void OffAxisMedialSearch::search(const ExactSurface& surface, const BurFrame& fr
             if (around.triangle == geometry::kNoTriangle) continue;
             seed = around.triangle;
         }
-        if (best.depthMm >= sheet.maxRadius) {
+        if (std::max(best.depthMm, sheet.promiseMm - far - surface.sureMm()) >= sheet.maxRadius + kDeepMm) {
             searchDeep(surface, sheet, frame, seed, best, mostMm);
             continue;
         }
         mostOutsideMm_ = outsideKnown ? kToGrid * sheet.spacingMm + errorMm_ : std::numeric_limits<double>::infinity();
-        searchSheet(surface, sheet, frame, seed, best);
+        searchSheet(surface, sheet, frame, seed, best, mostMm);
     }
     // Twice: a deeper ball has its own nearest place.
     if (askCovered(surface, frame, best)) askCovered(surface, frame, best);
+    if (!covered_.empty()) mostMm = std::max(mostMm, best.depthMm) + kCoveredMm;
 }
 
 /// Of a sheet that is not searched, the balls at the angle at which the tooth is nearest to what was found: R + |c - q|
@@ -361,6 +374,16 @@ void OffAxisMedialSearch::scan(const Sheet& sheet, const BurFrame& frame, double
             lookup_(field_, row, static_cast<int>(j), &grid_[r.first + j]);
         }
     }
+}
+
+/// Of the grid's balls the one that is deepest by what the field knows at least.
+OffAxisMedialSearch::Candidate OffAxisMedialSearch::highestOfGrid(const Sheet& sheet) const noexcept {
+    Candidate highest{-std::numeric_limits<double>::infinity(), 0.0, 0.0};
+    for (const Row& r : sheet.rows)
+        for (std::uint32_t j = 0; j < r.count; ++j)
+            if (const double value = r.radius - distanceOf(grid_[r.first + j]); value > highest.value)
+                highest = {value, r.u, 2.0 * kPi * j / r.count};
+    return highest;
 }
 
 /// Tops of the grid (no neighbour on its circle or the two beside it is higher) where the field holds distances, and
@@ -530,8 +553,18 @@ void OffAxisMedialSearch::measure(const ExactSurface& surface, const Sheet& shee
 }
 
 void OffAxisMedialSearch::searchSheet(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame,
-                                      std::uint32_t seed, BallDepth& best) noexcept {
+                                      std::uint32_t seed, BallDepth& best, double& mostMm) noexcept {
     scan(sheet, frame, best.depthMm);
+    if (const Candidate promising = highestOfGrid(sheet); promising.value > sheet.maxRadius + kDeepMm) {
+        const Spot spot = spotAt(sheet, frame, promising.u, promising.angle);
+        const BallDepth found = surface.ball(spot.centre, spot.radius, seed);
+        seed = found.triangle;
+        if (found.depthMm > best.depthMm) best = found;
+        if (best.depthMm >= sheet.maxRadius + kDeepMm) {
+            searchDeep(surface, sheet, frame, seed, best, mostMm);
+            return;
+        }
+    }
     collect(sheet, frame, best.depthMm);
     climbs_ = knownCount_ = oldest_ = 0;
     const auto higher = [](const Candidate& a, const Candidate& b) {
@@ -585,7 +618,8 @@ void OffAxisMedialSearch::searchDeep(const ExactSurface& surface, const Sheet& s
         std::fill_n(corner.begin(), sheet.cellU.size(), kFarMm);
     std::fill_n(upper_.begin(), sheet.cellU.size(), kFarMm);
     const auto floorMm = [&] { return best.depthMm + kDepthToleranceMm; };
-    HighestCell top = lower(sheet, frame, best.surfaceMm, 0.0, floorMm());
+    HighestCell top = best.triangle != geometry::kNoTriangle ? lower(sheet, frame, best.surfaceMm, 0.0, floorMm())
+                                                             : HighestCell{kFarMm, 0};
     int measured = 0;
     for (; measured<kMaxMeasured&& static_cast<double>(top.upper)> floorMm(); ++measured) {
         const auto cell = static_cast<std::size_t>(top.cell);
@@ -599,7 +633,7 @@ void OffAxisMedialSearch::searchDeep(const ExactSurface& surface, const Sheet& s
             const double before = best.depthMm;
             if (found.depthMm > best.depthMm) best = found;
             top = lower(sheet, frame, found.surfaceMm, 0.0, floorMm());
-            if (static_cast<double>(upper_[cell]) > floorMm())
+            if (static_cast<double>(upper_[cell]) > best.depthMm + kCoveredMm)
                 climbOnce(surface, sheet, frame, {found.depthMm, sheet.cellU[cell], sheet.cellAngle[cell]}, found, seed,
                           2.0 * sheet.spacingMm, best);
             if (best.depthMm > before) top = lower(sheet, frame, best.surfaceMm, 0.0, floorMm());

@@ -23,6 +23,8 @@ class OffAxisMedialSearch {
   public:
     OffAxisMedialSearch(const instrument::Bur& bur, const field::DistanceField& field, core::SimdLevel level);
 
+    /// Whether a ball of a sheet is that deep for sure: a lookup each.
+    [[nodiscard]] bool isDeep(const ExactSurface& surface, const BurFrame& frame, double depthMm) const noexcept;
     /// Raises `best` to the deepest ball of all sheets; with `outsideKnown` at least to the deepest of those with their
     /// centres in the tooth. A sheet that cannot beat `best` costs one or two lookups.
     void search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown, BallDepth& best,
@@ -40,6 +42,7 @@ class OffAxisMedialSearch {
         double maxRho = 0.0, maxRadius = 0.0;
         double centreZ = 0.0, reachMm = 0.0;  ///< its balls lie in the ball of reach about the axis at centreZ
         double centresMm = 0.0;               ///< their centres in the ball of this radius
+        double promiseMm = 0.0;               ///< one of them is at least so much deeper than the tooth is at centreZ
         double spacingMm = 0.0;               ///< of the grid's balls, at most
         std::vector<Row> rows;
         std::vector<double> cosine, sine;              ///< by ball of the grid
@@ -64,7 +67,7 @@ class OffAxisMedialSearch {
         bool outside;
     };
     static constexpr std::size_t kMaxGrid = 2048, kMaxCandidates = 48;
-    static constexpr int kMaxClimbs = 6, kMaxMeasured = 48, kMaxKnown = 16;
+    static constexpr int kMaxClimbs = 6, kMaxMeasured = 24, kMaxKnown = 16;
     /// A triangle near the ball being climbed: what it says of the depth there and how that changes.
     struct Support {
         double value, alongU, alongArc;
@@ -82,6 +85,7 @@ class OffAxisMedialSearch {
 
     void addGrid(Sheet& sheet) const;
     void scan(const Sheet& sheet, const BurFrame& frame, double atLeast) noexcept;
+    [[nodiscard]] Candidate highestOfGrid(const Sheet& sheet) const noexcept;
     void collect(const Sheet& sheet, const BurFrame& frame, double atLeast) noexcept;
     void refine(const Sheet& sheet, const BurFrame& frame, Candidate& candidate) const noexcept;
     void measure(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, std::uint32_t& seed,
@@ -90,7 +94,7 @@ class OffAxisMedialSearch {
                    const BallDepth& here, std::uint32_t& seed, double reach, BallDepth& best) noexcept;
     [[nodiscard]] Spot spotAt(const Sheet& sheet, const BurFrame& frame, double u, double angle) const noexcept;
     void searchSheet(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, std::uint32_t seed,
-                     BallDepth& best) noexcept;
+                     BallDepth& best, double& mostMm) noexcept;
     void climb(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, Top& top, BallDepth here,
                double reach, BallDepth& best) noexcept;
     [[nodiscard]] Model modelAt(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame,

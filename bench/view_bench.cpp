@@ -145,8 +145,8 @@ Pass follow(const std::shared_ptr<const tooth::ToothModel>& base, Way way, view:
     moment.burInTooth = poseAt(base->field, 0.0, way == Way::cut);
     view::Image picture;
     cutting::Sweeper sweeper(bench.field, bur, core::simdLevel());
-    // As in a window at rest, which gets ready for an eye in motion.
-    renderer.setResponsive(way == Way::full);
+    // As in a window, which at rest gets ready for an eye in motion.
+    renderer.setResponsive(way == Way::full || way == Way::cut);
     view::FrameReport before;
     for (int i = 0; i < 4 || before.refining || before.preparing; ++i)
         before = renderer.draw(camera, size, look, moment, picture);

@@ -683,6 +683,36 @@ TEST(Renderer, ComesToRestStripByStripToTheSamePicture) {
     }
 }
 
+TEST(Renderer, WhatAChangeOccludesFartherOffIsLitWhenNothingElseChanges) {
+    constexpr Viewport kLarge{960, 640};
+    const std::vector<BrickUpdate> heap = {brick(27, square(-1.0, -1.0, 1.0, 0.6, Tissue::dentine))};
+    const auto prepare = [](Renderer& renderer) {
+        renderer.setTooth(box(4.0, -1.0, 1.0));
+        renderer.updateBricks(table(), true);
+    };
+    Renderer fresh;
+    prepare(fresh);
+    fresh.updateBricks(heap);
+    Image expected, image;
+    fresh.draw(above(), kLarge, {}, withoutBur(), expected);
+
+    Renderer patient;
+    prepare(patient);
+    patient.setResponsive(true);
+    while (patient.draw(above(), kLarge, {}, withoutBur(), image).refining) {
+    }
+    patient.updateBricks(heap);
+    FrameReport report = patient.draw(above(), kLarge, {}, withoutBur(), image);
+    EXPECT_TRUE(report.preparing);
+    EXPECT_NE(image.rgba, expected.rgba) << "nothing was put off";
+    const ImageDifference d = compareImages(image, expected, 24);
+    EXPECT_LT(d.rms, 2.0);
+    for (int pictures = 0; report.preparing && pictures < 30; ++pictures)
+        report = patient.draw(above(), kLarge, {}, withoutBur(), image);
+    EXPECT_FALSE(report.preparing);
+    expectSame(expected, image);
+}
+
 TEST(Renderer, SizesThatNoPictureHasAreRefused) {
     Renderer renderer;
     Image image;

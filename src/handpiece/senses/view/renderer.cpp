@@ -272,6 +272,7 @@ void Renderer::State::drawEye(EyeTarget& target, const Camera& from, const Eye& 
     report.triangles += drawn.triangles;
     report.toothRedrawn = report.toothRedrawn || drawn.all;
     report.refining = report.refining || !target.layer.isComplete();
+    report.preparing = report.preparing || target.layer.owes();
 
     PassContext context_{from,
                          size,
@@ -542,7 +543,7 @@ FrameReport Renderer::draw(const Camera& camera, const Viewport& viewport, const
     if (s.responsive && s.context.isSoftware() && !report.refining) {
         if (s.left.number == drawnBefore + 1 && s.left.changed[s.left.number % s.left.changed.size()].isEmpty())
             s.scene.simplifySome();
-        report.preparing = s.scene.isStale();
+        report.preparing = report.preparing || s.scene.isStale();
     }
     gl::check("a picture");
     report.drawMs = nowMs() - begin - report.readMs;

@@ -12,7 +12,7 @@ namespace {
 
 /// More than this, and drawing all is as quick as finding what changed.
 constexpr std::size_t kMaxChanges = 20000;
-constexpr double kCreaseRad = 0.9;
+constexpr double kCreaseRad = 0.9, kPieceTriangles = 200.0;
 constexpr double kCrownCentreMm = 3.0;  // under a crown's top
 constexpr float kPatchMm = 2.0f;
 constexpr std::size_t kTrianglesACall = 6000;  // to be simplified: some milliseconds
@@ -161,8 +161,8 @@ void Scene::drop(std::vector<Static>& meshes) {
 void Scene::add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cases::Tissue tissue) {
     const core::Box box = mesh.bounds();
     if (box.isEmpty()) return;
-    // Pieces of about a thousand triangles.
-    const double cells = std::max(1.0, static_cast<double>(mesh.triangles.size()) / 1000.0);
+    // Small pieces: little is drawn beside the bur while a cut redraws its rectangle.
+    const double cells = std::max(1.0, static_cast<double>(mesh.triangles.size()) / kPieceTriangles);
     for (const MeshPiece& piece : piecesOf(mesh, tissue, kCreaseRad, box.size().maxCoeff() / std::sqrt(cells)))
         to.push_back({tissue, pool_.add(piece), box});
 }

@@ -326,7 +326,7 @@ void main() {
 #endif
     key *= mix(vec3(0.16, 0.12, 0.10) * m.w + 0.04, vec3(1.0), lit);
     float sky = 0.5 + 0.5 * dot(n, eyeUp);
-    vec3 side = normalize(0.85 * eyeRight + 0.25 * eyeUp + 0.35 * (eye - at) / length(eye - at));
+    vec3 side = normalize(0.85 * eyeRight + 0.25 * eyeUp + 0.35 * v);
     float fill = max(0.0, 0.25 + 0.75 * dot(n, side));
     // Light that goes to and fro in a hollow takes up the colour of its walls.
     vec3 a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417, c = 2.7552 * albedo + 0.6903;
@@ -342,7 +342,7 @@ void main() {
 
     vec3 half3 = normalize(lamp + v);
     float nh = dot(n, half3);
-    float fresnel = 0.04 + 0.96 * pow(1.0 - nv, 5.0);
+    float fresnel = 0.04 + 0.96 * rim * rim * (1.0 - nv);
     vec3 r = reflect(-v, n);
     float gloss = m.y * mix(0.45, 1.0, wet);
     float sharp = m.z * mix(0.35, 1.0, wet);
@@ -353,7 +353,10 @@ void main() {
     sum3 += gloss * shade * (spark * max(0.0, min(1.0, 4.0 * nl + 0.2)) * lit * vec3(1.0, 0.98, 0.94) +
              fresnel * (window + above * 0.38 + 0.05) * vec3(0.86, 0.94, 1.0) * (0.55 + 0.9 * wet));
     sum3 = sum3 * (1.0 + sum3 * 0.10) / (1.0 + 0.22 * sum3);
-    colour = vec4(pow(clamp(sum3, 0.0, 1.0), vec3(1.0 / 2.2)), 1.0);
+    // As pow(sum3, 1 / 2.2) to a step of 255, at a part of its cost.
+    sum3 = clamp(sum3, 0.0, 1.0);
+    vec3 root = sqrt(sum3);
+    colour = vec4(0.9549 * root + 0.0956 * sqrt(root) - 0.0511 * sum3, 1.0);
 }
 )";
 

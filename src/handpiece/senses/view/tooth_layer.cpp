@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace handpiece::view {
 namespace {
@@ -16,6 +17,9 @@ constexpr float kOcclusionMm = 1.5f;
 constexpr int kShadowMapSize = 2048;
 // A strip is higher than occlusion reaches: its neighbours are put right by the one after it.
 constexpr int kStrips = 8, kMinRows = 112;
+/// Pixels around a change that are lit anew at once while one cuts: farther off, what it occludes is not seen to
+/// change.
+constexpr int kCloseBy = 20;
 constexpr double kCrownMm = 7.0;  // from the neck to the tips: a first molar's is 7.5 mm high [R]
 
 bool sameLook(Look a, Look b) {
@@ -152,6 +156,7 @@ ToothLayer::Drawn ToothLayer::update(Shaders& shaders, Scene& scene, const Secti
     if (anew) {
         nextRow_ = 0;
         ++serial_;
+        owed_ = {};
     }
     drawn_ = wants;
     epoch_ = scene.epoch();
@@ -163,20 +168,25 @@ ToothLayer::Drawn ToothLayer::update(Shaders& shaders, Scene& scene, const Secti
     result.all = nextRow_ - begin == whole.y1;
     const PixelRect strip = nextRow_ > begin ? PixelRect{0, begin, whole.x1, nextRow_} : PixelRect{};
     changed = changed.common({0, 0, whole.x1, begin});  // farther on it is drawn anyway
+    const bool closeBy = haste == Haste::refined && !changed.isEmpty();
+    if (closeBy)
+        owed_ = owed_.joined(changed);
+    else if (strip.isEmpty())
+        changed = changed.joined(std::exchange(owed_, {}));
     if (changed.isEmpty() && strip.isEmpty()) return result;
 
     glEnable(GL_SCISSOR_TEST);
     glFrontFace(wants.eye.mirrored ? GL_CCW : GL_CW);
     glDisable(GL_BLEND);
     if (shadows && anew) result.triangles += drawShadowMap(shaders, scene, wants);
-    for (const PixelRect& rect : {changed, strip})
-        if (!rect.isEmpty()) redraw(shaders, scene, section, depthScale, wants, rect, result);
+    if (!changed.isEmpty()) redraw(shaders, scene, section, depthScale, wants, changed, closeBy, result);
+    if (!strip.isEmpty()) redraw(shaders, scene, section, depthScale, wants, strip, false, result);
     if (result.all) result.rect = whole;
     return result;
 }
 
 void ToothLayer::redraw(Shaders& shaders, Scene& scene, const Section& section, const gl::Texture& depthScale,
-                        const LayerWants& wants, const PixelRect& changed, Drawn& drawn) {
+                        const LayerWants& wants, const PixelRect& changed, bool closeBy, Drawn& drawn) {
     const PixelRect whole{0, 0, wants.viewport.width, wants.viewport.height};
     glDepthFunc(GL_LESS);
     glDepthMask(GL_TRUE);
@@ -192,7 +202,7 @@ void ToothLayer::redraw(Shaders& shaders, Scene& scene, const Section& section, 
     glDisable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
     none_.bind();
-    const PixelRect reached = changed.grown(mostPixels + 4).common(whole);
+    const PixelRect reached = changed.grown(closeBy ? kCloseBy : mostPixels + 4).common(whole);
     const PixelRect half{reached.x0 / 2, reached.y0 / 2, (reached.x1 + 1) / 2, (reached.y1 + 1) / 2};
     const PixelRect contentHalf{content.x0 / 2 - 2, content.y0 / 2 - 2, content.x1 / 2 + 2, content.y1 / 2 + 2};
     const PixelRect wholeHalf{0, 0, occlusion_.width(), occlusion_.height()};

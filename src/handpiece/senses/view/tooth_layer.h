@@ -63,6 +63,8 @@ class ToothLayer {
     /// All of it is drawn, as wanted; bricks may have changed since.
     [[nodiscard]] bool isComplete(const Scene& scene, const LayerWants& wants) const;
     [[nodiscard]] bool isComplete() const noexcept { return drawn_ && nextRow_ >= drawn_->viewport.height; }
+    /// Occlusion reaches farther than what changed was redrawn: update() does the rest when nothing else changes.
+    [[nodiscard]] bool owes() const noexcept { return !owed_.isEmpty(); }
     /// Another number when all of it is another.
     [[nodiscard]] std::uint64_t serial() const noexcept { return serial_; }
 
@@ -75,7 +77,7 @@ class ToothLayer {
   private:
     void allocate(const Viewport& viewport);
     void redraw(Shaders& shaders, Scene& scene, const Section& section, const gl::Texture& depthScale,
-                const LayerWants& wants, const PixelRect& changed, Drawn& drawn);
+                const LayerWants& wants, const PixelRect& changed, bool closeBy, Drawn& drawn);
     std::size_t drawSurface(Shaders& shaders, Scene& scene, const Section& section, const LayerWants& wants,
                             const PixelRect& rect);
     void drawOcclusion(Shaders& shaders, const LayerWants& wants, const PixelRect& half, int mostPixels);
@@ -97,6 +99,7 @@ class ToothLayer {
     std::uint64_t epoch_ = 0, serial_ = 0;
     std::size_t changesSeen_ = 0;
     int nextRow_ = 0;  ///< rows from here on are still to be drawn
+    PixelRect owed_;   ///< changed, and lit anew only close by
 };
 
 }  // namespace handpiece::view

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -54,12 +55,13 @@ uniform sampler2D toothDepth;
 uniform vec2 unproject;
 #ifdef MIST
 uniform sampler2D solidDepth;
+uniform vec2 pixelsPerPixel;
 #endif
 out vec4 result;
 void main() {
 #ifdef MIST
-    // At half the size: a pixel of the whole stands for four.
-    ivec2 pixel = min(2 * ivec2(gl_FragCoord.xy), textureSize(solidDepth, 0) - 1);
+    // A pixel stands for several of the whole.
+    ivec2 pixel = min(ivec2(pixelsPerPixel * gl_FragCoord.xy), textureSize(solidDepth, 0) - 1);
     if (gl_FragCoord.z >= texelFetch(solidDepth, pixel, 0).r) discard;
 #else
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -89,15 +91,14 @@ uniform sampler2D through;
 uniform vec3 mist;
 out vec4 result;
 void main() {
-    float veil = 1.0 - texture(through, 0.5 * gl_FragCoord.xy / vec2(textureSize(through, 0))).r;
+    float veil = 1.0 - texture(through, uv).r;
     if (veil < 0.002) discard;
     result = vec4(mist, veil);
 }
 )";
 
-PixelRect halfOf(const PixelRect& r) {
-    return {r.x0 / 2, r.y0 / 2, (r.x1 + 1) / 2, (r.y1 + 1) / 2};
-}
+/// Mist is drawn at a half or a quarter of the size; of the least puff's radius so many pixels are left.
+constexpr float kLeastPuffPixels = 5.0f;
 
 class ParticlePass : public Pass {
   public:
@@ -111,8 +112,10 @@ class ParticlePass : public Pass {
         mist_.clear();
         specks_.clear();
         mistRect_ = {};
+        float leastPuff = std::numeric_limits<float>::infinity();
         for (const Speck& s : particles_.specks()) {
-            const bool isMist = s.hardness == 0.0f;
+            // A jet is too thin to be drawn small.
+            const bool isMist = s.hardness == 0.0f && s.streakMm == std::array<float, 3>{};
             PixelRect& reached = isMist ? mistRect_ : rect;
             (isMist ? mist_ : specks_).push_back(s);
             const gl::Vec3f head(s.positionMm[0], s.positionMm[1], s.positionMm[2]);
@@ -120,8 +123,10 @@ class ParticlePass : public Pass {
             for (const gl::Vec3f& p : {head, gl::Vec3f(head + streak)}) {
                 const gl::Vec4f c = m * p.homogeneous();
                 if (c.w() < 0.05f) continue;  // behind the eye; its other end, if seen, is near the edge
-                const float reach = 1.5f + 0.5f * static_cast<float>(v.height) *
-                                               std::abs(context.eye.projection(1, 1)) * s.radiusMm / c.w();
+                const float radius =
+                    0.5f * static_cast<float>(v.height) * std::abs(context.eye.projection(1, 1)) * s.radiusMm / c.w();
+                const float reach = 1.5f + radius;
+                if (isMist) leastPuff = std::min(leastPuff, radius);
                 const float x = 0.5f * (c.x() / c.w() + 1.0f) * static_cast<float>(v.width);
                 const float y = 0.5f * (c.y() / c.w() + 1.0f) * static_cast<float>(v.height);
                 const auto pixel = [](float a) { return static_cast<int>(std::clamp(a, -1e6f, 1e6f)); };
@@ -131,6 +136,7 @@ class ParticlePass : public Pass {
                 reached = reached.joined(one);
             }
         }
+        mistShrinks_ = context.software && leastPuff >= 4 * kLeastPuffPixels ? 4 : 2;
         return rect.joined(mistRect_);
     }
 
@@ -168,23 +174,29 @@ class ParticlePass : public Pass {
         program.set("toothDepth", context.toothDepth, 0);
     }
 
-    /// Mist is large and soft, and puffs lie over each other by the dozen: it is drawn at half the size. All of it has
-    /// one colour, so what is kept is only how much of what lies behind comes through all puffs.
+    /// Mist is large and soft, and puffs lie over each other by the dozen: it is drawn small. All of it has one colour,
+    /// so what is kept is only how much of what lies behind comes through all puffs.
     void drawMist(const PassContext& context, const PixelRect& rect) {
-        const int width = (context.viewport.width + 1) / 2, height = (context.viewport.height + 1) / 2;
+        const int by = mistShrinks_;
+        const int width = (context.viewport.width + by - 1) / by, height = (context.viewport.height + by - 1) / by;
         if (through_.width() != width || through_.height() != height) {
             through_.allocate(width, height, GL_R16F, true);
             throughTarget_.attach({&through_}, nullptr);
         }
-        const PixelRect half = halfOf(rect).grown(1).common({0, 0, width, height});
+        const PixelRect small =
+            PixelRect{rect.x0 / by, rect.y0 / by, (rect.x1 + by - 1) / by, (rect.y1 + by - 1) / by}.grown(1).common(
+                {0, 0, width, height});
         throughTarget_.bind();
         glViewport(0, 0, width, height);
-        glScissor(half.x0, half.y0, half.x1 - half.x0, half.y1 - half.y0);
+        glScissor(small.x0, small.y0, small.x1 - small.x0, small.y1 - small.y0);
         glDisable(GL_DEPTH_TEST);
         constexpr std::array<float, 4> kAll{1.0f, 1.0f, 1.0f, 1.0f};
         glClearBufferfv(GL_COLOR, 0, kAll.data());
         prepare(mistProgram_, context, mist_);
         mistProgram_.set("solidDepth", context.solidDepth, 1);
+        mistProgram_.set("pixelsPerPixel",
+                         gl::Vec2f(static_cast<float>(context.viewport.width) / static_cast<float>(width),
+                                   static_cast<float>(context.viewport.height) / static_cast<float>(height)));
         glEnable(GL_BLEND);
         glBlendFunc(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
         glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(mist_.size()));
@@ -207,6 +219,7 @@ class ParticlePass : public Pass {
     Particles particles_;
     std::vector<Speck> specks_, mist_;  ///< of this picture
     PixelRect mistRect_;
+    int mistShrinks_ = 2;
     gl::Program program_{"particles", kVertex, kFragment};
     gl::Program mistProgram_{"mist", kVertex, std::string("#define MIST\n") + kFragment};
     gl::Program veilProgram_{"veil of mist", gl::kFullScreenVertex, kVeilFragment};

@@ -35,7 +35,7 @@ static_assert(FLT_EVAL_METHOD == 0, "doubles must be computed as doubles: -msse2
 /// sqrt(x^2 + y^2 + z^2) where squares overflow or vanish; for hypot() alone.
 [[nodiscard]] double scaledHypot(double x, double y, double z) noexcept HANDPIECE_REALTIME;
 
-/// Within 1.5 units.
+/// Within 1.5 units; of three sides within 2.
 [[nodiscard]] inline double hypot(double x, double y, double z = 0.0) noexcept HANDPIECE_REALTIME {
     const double squared = x * x + y * y + z * z;
     return squared > 0x1p-900 && squared < 0x1p1000 ? std::sqrt(squared) : scaledHypot(x, y, z);

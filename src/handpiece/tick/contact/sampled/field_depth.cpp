@@ -319,7 +319,6 @@ class FieldDepth::DepthAscent {
         for (int i = 0; i < kLooks && window > kLastLookMm; ++i) {
             const double reached = look(window, false);
             if (top_ + 3.0 * window + kMixedErrorMm < atLeastMm) return false;
-            topMm_ = placeAt(bends(), u_, arc_, in_);
             for (const std::optional<DepthAscent>& other : others)
                 if (other && (other->topMm_ - topMm_).squaredNorm() < kSameTopMm * kSameTopMm) return false;
             if (reached < 0.7) window *= 0.4;
@@ -400,7 +399,9 @@ class FieldDepth::DepthAscent {
     [[nodiscard]] Vec3 placeAt(const Bends& bends, double u, double arc, double in) const noexcept {
         double alongU = 0.0, inwards = 0.0;
         stepsTo(bends, u, arc, in, alongU, inwards);
-        return place_ + alongU * alongU_ + arc * alongArc_ - inwards * normal_;
+        return {place_[0] + alongU * alongU_[0] + arc * alongArc_[0] - inwards * normal_[0],
+                place_[1] + alongU * alongU_[1] + arc * alongArc_[1] - inwards * normal_[1],
+                place_[2] + alongU * alongU_[2] + arc * alongArc_[2] - inwards * normal_[2]};
     }
     /// On the bur's inner ridge the way along it leads up or down.
     [[nodiscard]] bool isOnRidge() const noexcept { return !spot_->isCorner && in_ >= most(u_) - kTinyMm; }
@@ -488,7 +489,9 @@ class FieldDepth::DepthAscent {
         if (sharply) {
             std::array<Vec3, 8> places;
             for (std::size_t i = 0; i < 8; ++i)
-                places[i] = place_ + alongU[i] * alongU_ + arcs[i] * alongArc_ - inwards[i] * normal_;
+                for (int k = 0; k < 3; ++k)
+                    places[i][k] =
+                        place_[k] + alongU[i] * alongU_[k] + arcs[i] * alongArc_[k] - inwards[i] * normal_[k];
             depth_.surface_.distances(places, distance);
         } else {
             AroundQuery query;
@@ -543,6 +546,7 @@ class FieldDepth::DepthAscent {
             u_ = std::clamp(toFirst, -spot_->roomBefore, spot_->roomAfter);
             in_ = std::clamp(ins[highest] - distance[highest], 0.0, most(u_));
         }
+        topMm_ = placeAt(bend, u_, arc_, in_);
         return reached;
     }
 

@@ -338,8 +338,17 @@ void findLines(SharpBlock& block) noexcept {
 /// Of a wall whose bend is followed up to an edge.
 constexpr double kLeastRadiusMm = 0.2;
 
-void gather(const FieldView& field, const std::int32_t (&cell)[3], float farOutMm, float farInMm,
-            SharpBlock& block) noexcept {
+inline float kinkOf(const FieldView& field) {
+    return static_cast<float>(4e-3 * field.voxelMm);
+}
+inline float bendOf(const FieldView& field) {
+    return static_cast<float>(field.voxelMm * field.voxelMm / kLeastRadiusMm);
+}
+
+using Values = float[kSharpNodes][kSharpNodes][kSharpStride];
+
+void gatherValues(const FieldView& field, const std::int32_t (&cell)[3], float farOutMm, float farInMm,
+                  Values& block) noexcept {
     // Along each axis the nodes lie in one brick or two.
     std::int32_t brick[3][2], split[3], local[3][kSharpNodes];
     for (int k = 0; k < 3; ++k) {
@@ -371,8 +380,6 @@ void gather(const FieldView& field, const std::int32_t (&cell)[3], float farOutM
         values[z][y][x] = stored >= 0 ? field.values + static_cast<std::int64_t>(stored) * kBrickValues : nullptr;
         far[z][y][x] = field.coarse[dense] < 0.0f ? -farInMm : farOutMm;
     }
-    block.kinkMm = static_cast<float>(4e-3 * field.voxelMm);
-    block.bendMm = static_cast<float>(field.voxelMm * field.voxelMm / kLeastRadiusMm);
     // Eight nodes of a row in each of the two bricks, and which of the sixteen are asked.
     using Eight = float __attribute__((vector_size(4 * kSharpStride)));
     using Lanes = std::int32_t __attribute__((vector_size(4 * kSharpStride)));
@@ -390,16 +397,51 @@ void gather(const FieldView& field, const std::int32_t (&cell)[3], float farOutM
             const Eight a = first != nullptr ? load<Eight>(first + row + begin) : Eight{} + far[inZ][inY][0];
             const Eight b = second != nullptr ? load<Eight>(second + row + 1) : Eight{} + far[inZ][inY][1];
             const Eight nodes = __builtin_shuffle(a, b, which);
-            store(block.values[z][y], isNode ? nodes : Eight{});
+            store(block[z][y], isNode ? nodes : Eight{});
         }
+}
+
+void gather(const FieldView& field, const std::int32_t (&cell)[3], float farOutMm, float farInMm,
+            SharpBlock& block) noexcept {
+    gatherValues(field, cell, farOutMm, farInMm, block.values);
+    block.kinkMm = kinkOf(field);
+    block.bendMm = bendOf(field);
     block.isSmooth = isSmooth(block, 0.999f * farOutMm);
     if (!block.isSmooth) findLines(block);
+}
+
+float once(const FieldView& field, const std::int32_t (&cell)[3], const float (&t)[3], float farOutMm,
+           float farInMm) noexcept {
+    alignas(32) Values values;
+    gatherValues(field, cell, farOutMm, farInMm, values);
+    const float kink = kinkOf(field), bend = bendOf(field);
+    float tt[3], ttt[3], row[kSharpStride];
+    for (int k = 0; k < 3; ++k) {
+        tt[k] = 0.5f * t[k] * (t[k] - 1.0f);
+        ttt[k] = (1.0f / 3.0f) * (t[k] + 1.0f) * tt[k];
+    }
+    const auto alongAxis = [&]<class T>(const T(&v)[kSharpNodes], int k) {
+        return Line<T>(v, kink, bend).at(v[2], T{} + t[k], T{} + tt[k], T{} + ttt[k]);
+    };
+    for (int part = 0; part < kParts; ++part) {
+        Floats rows[kSharpNodes];
+        for (int y = 0; y < kSharpNodes; ++y) {
+            Floats v[kSharpNodes];
+            for (int z = 0; z < kSharpNodes; ++z)
+                v[z] = load<Floats>(values[z][y] + part * kLanes);
+            rows[y] = alongAxis(v, 2);
+        }
+        store(row + part * kLanes, alongAxis(rows, 1));
+    }
+    float v[kSharpNodes];
+    __builtin_memcpy(v, row, sizeof v);
+    return alongAxis(v, 0);
 }
 
 }  // namespace
 
 SharpKernels sharpKernels() noexcept {
-    return {locate, gather, at, jet};
+    return {locate, gather, at, once, jet};
 }
 
 }  // namespace handpiece::field::HANDPIECE_SIMD_NS

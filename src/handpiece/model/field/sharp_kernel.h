@@ -52,6 +52,9 @@ struct SharpKernels {
                    SharpBlock& block) noexcept;
     /// Signed distances of those places that have a block; each as if it were asked alone.
     void (*at)(const SharpPlaces& places, float (&out)[kSharpPlaces]) noexcept;
+    /// Signed distance at a place of a cell that is asked but once: edges are looked for on its own lines alone.
+    float (*once)(const FieldView& field, const std::int32_t (&cell)[3], const float (&t)[3], float farOutMm,
+                  float farInMm) noexcept;
     /// Of a smooth block.
     void (*jet)(const SharpBlock& block, const float (&t)[3], SharpJet& out) noexcept;
 };

@@ -38,11 +38,7 @@ void SharpLookup::locate(std::span<const Vec3> places) noexcept {
 const SharpBlock* SharpLookup::blockAt(const std::int32_t (&cell)[3]) noexcept {
     Cell& kept = cells_[slotOf(cell)];
     if (std::equal(cell, cell + 3, kept.at)) return &kept.block;
-    const std::int64_t brick =
-        cell[0] / kBrickCells +
-        static_cast<std::int64_t>(view_.bricks[0]) *
-            (cell[1] / kBrickCells + static_cast<std::int64_t>(view_.bricks[1]) * (cell[2] / kBrickCells));
-    if (view_.brickIndex[brick] < 0) return nullptr;
+    if (view_.brickIndex[brickOf(cell)] < 0) return nullptr;
     std::copy_n(cell, 3, kept.at);
     kernels_.gather(view_, cell, farOutMm_, farInMm_, kept.block);
     return &kept.block;
@@ -81,6 +77,27 @@ double SharpLookup::distance(const Vec3& p) noexcept {
     double d = 0.0;
     distances({&p, 1}, {&d, 1});
     return d;
+}
+
+double SharpLookup::distanceOnce(const Vec3& p) const noexcept {
+    std::int32_t cell[3];
+    float t[3];
+    for (int k = 0; k < 3; ++k) {
+        const double g = (p[k] - view_.originMm[k]) * view_.inverseVoxelMm;
+        const std::int32_t last = kBrickCells * view_.bricks[k];
+        if (!(g >= 0.0 && g <= last)) return field_.distance(p);
+        cell[k] = std::min(static_cast<std::int32_t>(g), last - 1);
+        t[k] = static_cast<float>(g - cell[k]);
+    }
+    return view_.brickIndex[brickOf(cell)] < 0
+               ? field_.distance(p)
+               : static_cast<double>(kernels_.once(view_, cell, t, farOutMm_, farInMm_));
+}
+
+std::int64_t SharpLookup::brickOf(const std::int32_t (&cell)[3]) const noexcept {
+    return cell[0] / kBrickCells +
+           static_cast<std::int64_t>(view_.bricks[0]) *
+               (cell[1] / kBrickCells + static_cast<std::int64_t>(view_.bricks[1]) * (cell[2] / kBrickCells));
 }
 
 const SharpBlock* SharpLookup::firstBlock(const Vec3& p) noexcept {

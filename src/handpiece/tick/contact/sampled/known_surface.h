@@ -4,6 +4,7 @@
 /// All that is known of a tooth's surface after a cut. Private to this room.
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
 #include "handpiece/base/core/simd.h"
@@ -26,21 +27,23 @@ class KnownSurface {
     [[nodiscard]] field::SharpLookup& lookup() noexcept { return lookup_; }
     /// Signed distance [mm].
     [[nodiscard]] double distance(const core::Vec3& p) noexcept {
-        const double read = lookup_.distance(p);
-        if (cutVersion_ != field_.version()) return read;
-        return std::max(read, -bur_.signedDistance(cut_.toBur * (p - cut_.tip)));
+        return std::max(lookup_.distance(p), freeMm(p));
+    }
+    /// The same of a place of which the mixed field says `mixedMm`, where walls meet. A cell mixes no wall nearer than a
+    /// place that is known to be free: then that is what is known.
+    [[nodiscard]] double distanceAtCrease(const core::Vec3& p, double mixedMm) const noexcept {
+        const double free = freeMm(p);
+        return free > std::max(mixedMm, -kCreaseFreeMm) ? free : std::max(lookup_.distanceOnce(p), free);
     }
     /// The same of up to field::kSharpPlaces places at once.
     void distances(std::span<const core::Vec3> places, std::span<double> out) noexcept {
         lookup_.distances(places, out);
-        if (cutVersion_ != field_.version()) return;
         for (std::size_t i = 0; i < places.size(); ++i)
-            out[i] = std::max(out[i], -bur_.signedDistance(cut_.toBur * (places[i] - cut_.tip)));
+            out[i] = std::max(out[i], freeMm(places[i]));
     }
     /// The smooth wall of the field at a place; false where there is none, or the bur is what is known there.
     [[nodiscard]] bool wallAt(const core::Vec3& p, field::SharpLookup::Wall& wall) noexcept {
-        return lookup_.wallAt(p, wall) && (cutVersion_ != field_.version() ||
-                                           -bur_.signedDistance(cut_.toBur * (p - cut_.tip)) <= wall.distanceMm);
+        return lookup_.wallAt(p, wall) && freeMm(p) <= wall.distanceMm;
     }
     void noteCut(const core::Pose& burInTooth) noexcept {
         cut_ = BurFrame(burInTooth);
@@ -49,6 +52,13 @@ class KnownSurface {
     void forget() noexcept { cutVersion_ = 0; }
 
   private:
+    static constexpr double kCreaseFreeMm = 0.001;
+    /// The tooth is no nearer, by what the bur has cut last.
+    [[nodiscard]] double freeMm(const core::Vec3& p) const noexcept {
+        return cutVersion_ == field_.version() ? -bur_.signedDistance(cut_.toBur * (p - cut_.tip))
+                                               : -std::numeric_limits<double>::infinity();
+    }
+
     const field::DistanceField& field_;
     const instrument::Bur& bur_;
     field::SharpLookup lookup_;

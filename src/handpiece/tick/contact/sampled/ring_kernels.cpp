@@ -282,7 +282,7 @@ inline unsigned senseEight(const FieldView& field, const BurRings& bur, const Ri
                                      spreadOf(v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5])),
                                spreadOf(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3]));
     const unsigned creased = bitsOf(((gx * gx + gy * gy + gz * gz < least2) | (twist > query.creaseTwist * voxelMm)) &
-                                    (absolute(d) < 3.0f * query.creaseMm)) &
+                                    (absolute(d) < 1.2f * query.creaseMm)) &
                              live & ~places.bare;
     live &= bitsOf(d <= query.thresholdMm) | creased;
     touch.live[ring.mask + eight] = static_cast<std::uint8_t>(live);

@@ -91,7 +91,8 @@ void SurfaceSampler::sharpen() noexcept {
             const auto eight = static_cast<std::size_t>(ring.mask + e);
             for (unsigned creased = arrays_.creased[eight]; creased != 0; creased &= creased - 1) {
                 const std::int32_t j = 8 * e + std::countr_zero(creased);
-                gaps[j] = static_cast<float>(surface_.distance(placeOf(arrays_, frame_, ring, j)));
+                gaps[j] = static_cast<float>(
+                    surface_.distanceAtCrease(placeOf(arrays_, frame_, ring, j), static_cast<double>(gaps[j])));
                 any = true;
                 if (gaps[j] <= query_.thresholdMm) continue;
                 gaps[j] = kNotLiveMm;

@@ -621,8 +621,7 @@ FieldTouch FieldDepth::search(const core::Pose& burInTooth, SurfaceSampler& ring
     if (least <= -inMm_) searchInside(frame, best);
     const RingArrays& arrays = sensed ? rings.arrays() : probe_;
     std::array<RingPoint, kStarts> points;
-    const std::size_t count =
-        pickNearest(arrays, frame, nullptr, sensed ? windowMm_ : 2.0 * windowMm_, kApartMm, points);
+    const std::size_t count = pickNearest(arrays, nullptr, sensed ? windowMm_ : 2.0 * windowMm_, kApartMm, points);
     std::array<Start, kStarts> starts;
     std::size_t found = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -658,7 +657,7 @@ void FieldDepth::searchInside(const BurFrame& frame, FieldTouch& best) noexcept 
     sense(inner_, frame, 0.0);
     std::array<RingPoint, kStarts> points;
     std::array<Start, kStarts> starts;
-    const std::size_t count = pickNearest(inner_, frame, innerDepth_.data(), kInnerWindowMm, kApartMm, points);
+    const std::size_t count = pickNearest(inner_, innerDepth_.data(), kInnerWindowMm, kApartMm, points);
     for (std::size_t i = 0; i < count; ++i) {
         const RingPoint& p = points[i];
         starts[i] = {innerSpot_[p.ring], static_cast<double>(inner_.cosines[p.angle]),

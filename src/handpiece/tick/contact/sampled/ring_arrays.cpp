@@ -81,8 +81,8 @@ double leastOf(const RingArrays& arrays) noexcept {
     return static_cast<double>(least);
 }
 
-std::size_t pickNearest(const RingArrays& arrays, const BurFrame& frame, const float* inMm, double windowMm,
-                        double apartMm, std::span<RingPoint> out) noexcept {
+std::size_t pickNearest(const RingArrays& arrays, const float* inMm, double windowMm, double apartMm,
+                        std::span<RingPoint> out) noexcept {
     std::size_t count = 0;
     float most = 0.5f * kNotLiveMm;
     while (count < out.size()) {
@@ -93,16 +93,26 @@ std::size_t pickNearest(const RingArrays& arrays, const BurFrame& frame, const f
             if (!(arrays.least[i] - in < least)) continue;
             const BurRing& ring = arrays.rings[i];
             const float* gaps = &arrays.distance[static_cast<std::size_t>(ring.first)];
+            // Two points of rings are dz^2 + r^2 + s^2 - 2 r s cos(angle between them) apart, squared.
+            const auto isApart = [&](const RingPoint& other, std::size_t angle) {
+                const BurRing& its = arrays.rings[other.ring];
+                const double dz = ring.zMm - its.zMm;
+                const double cosine = static_cast<double>(arrays.cosines[angle] * arrays.cosines[other.angle] +
+                                                          arrays.sines[angle] * arrays.sines[other.angle]);
+                return dz * dz + ring.rhoMm * ring.rhoMm + its.rhoMm * its.rhoMm -
+                           2.0 * ring.rhoMm * its.rhoMm * cosine >=
+                       apartMm * apartMm;
+            };
             for (std::int32_t j = 0; j < ring.count; ++j) {
                 if (!(gaps[j] - in < least)) continue;
-                const core::Vec3 place = placeOf(arrays, frame, ring, j);
+                const auto angle = static_cast<std::size_t>(ring.angles + j);
                 bool taken = false;
                 for (std::size_t k = 0; k < count && !taken; ++k)
-                    taken = (out[k].placeMm - place).squaredNorm() < apartMm * apartMm;
+                    taken = !isApart(out[k], angle);
                 if (taken) continue;
                 least = gaps[j] - in;
                 found = true;
-                out[count] = {i, static_cast<std::size_t>(ring.angles + j), static_cast<double>(gaps[j]), place};
+                out[count] = {i, angle, static_cast<double>(gaps[j])};
             }
         }
         if (!found) break;

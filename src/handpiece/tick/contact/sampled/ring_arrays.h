@@ -48,12 +48,11 @@ class RingArrays {
 struct RingPoint {
     std::size_t ring = 0, angle = 0;  ///< which ring, and where its cosine and sine stand
     double gapMm = 0.0;
-    core::Vec3 placeMm = core::Vec3::Zero();
 };
 /// The nearest live points, at least `apartMm` from one another and no farther than the nearest and `windowMm`; each
 /// ring counts as nearer by its `inMm` (null: 0). Returns how many.
-std::size_t pickNearest(const RingArrays& arrays, const BurFrame& frame, const float* inMm, double windowMm,
-                        double apartMm, std::span<RingPoint> out) noexcept;
+std::size_t pickNearest(const RingArrays& arrays, const float* inMm, double windowMm, double apartMm,
+                        std::span<RingPoint> out) noexcept;
 
 /// Bands of the bur's surface about its rings: one a ring, two where a corner of the outline parts it.
 [[nodiscard]] std::vector<BearingBand> bearingBands(const instrument::Bur& bur);

@@ -45,6 +45,7 @@ SurfaceSampler::SurfaceSampler(KnownSurface& surface, const instrument::Bur& bur
       tissueOfAll_(onlyTissue(field_)) {
     runs_.resize(kMaxRuns);
     candidates_.resize(arrays_.distance.size());
+    sharpened_.resize(arrays_.distance.size());
     nearest_.resize((arrays_.rings.size() + kRingsPerBlock - 1) / kRingsPerBlock * kSectors);
     query_.farOutMm = static_cast<float>(field_.reach().outMm);
     query_.farInMm = static_cast<float>(field_.reach().inMm);
@@ -74,6 +75,7 @@ void SurfaceSampler::sense(const core::Pose& burInTooth, double thresholdMm, boo
     query_.thresholdMm = static_cast<float>(thresholdMm);
     query_.skipsDeep = skipsDeep;
     kernels_.sense(view_, arrays_.bur, query_, arrays_.touch);
+    if (!isSensed(burInTooth)) ++sharpenings_;
     sharpen();
     sensedPose_ = burInTooth;
     sensedVersion_ = field_.version();
@@ -91,8 +93,11 @@ void SurfaceSampler::sharpen() noexcept {
             const auto eight = static_cast<std::size_t>(ring.mask + e);
             for (unsigned creased = arrays_.creased[eight]; creased != 0; creased &= creased - 1) {
                 const std::int32_t j = 8 * e + std::countr_zero(creased);
-                gaps[j] = static_cast<float>(
-                    surface_.distanceAtCrease(placeOf(arrays_, frame_, ring, j), static_cast<double>(gaps[j])));
+                Sharpened& kept = sharpened_[static_cast<std::size_t>(ring.first + j)];
+                if (kept.when != sharpenings_)
+                    kept = {sharpenings_, static_cast<float>(surface_.distanceAtCrease(
+                                              placeOf(arrays_, frame_, ring, j), static_cast<double>(gaps[j])))};
+                gaps[j] = kept.gapMm;
                 any = true;
                 if (gaps[j] <= query_.thresholdMm) continue;
                 gaps[j] = kNotLiveMm;

@@ -48,6 +48,10 @@ class SurfaceSampler {
         std::array<double, cases::kTissueCount> tissue;
         std::int32_t root;
     };
+    struct Sharpened {
+        std::uint64_t when = 0;
+        float gapMm = 0.0f;
+    };
     static constexpr std::size_t kMaxRuns = 1024, kMaxSums = 2 * kMaxPatches;
     static constexpr std::size_t kRingsPerBlock = 3;
 
@@ -75,6 +79,9 @@ class SurfaceSampler {
     RingQuery query_{};
     core::Pose sensedPose_;
     std::uint64_t sensedVersion_ = 0;
+
+    std::vector<Sharpened> sharpened_;  ///< by point: what it was told at this pose
+    std::uint64_t sharpenings_ = 0;     ///< poses so far
 
     std::vector<Run> runs_;
     std::array<Sums, kMaxSums> sums_;

@@ -35,9 +35,9 @@ struct Depth {
     cases::Tissue tissue = cases::Tissue::none;    ///< at that point
     Status status = Status::beyondReach;
     std::uint16_t tooth = 0;  ///< index of the tooth that decides. A method of one tooth says 0, here and below
-    double slackMm = 0.0;  ///< Method::slackMm() where the surface has been cut, else zero
-    /// How much deeper it could be by what was left unseen, in an uncut tooth, of the bur's axis and of rims deeper than
-    /// its radius: zero where that is kDepthToleranceMm at most, as it is unless the work that a tick affords ended first.
+    double slackMm = 0.0;     ///< Method::slackMm() where the surface has been cut, else zero
+    /// How much deeper it could be by what was left unseen, in an uncut tooth, of the bur's axis and of rims deeper
+    /// than its radius: zero where that is kDepthToleranceMm at most; more where the work that a tick affords ended.
     double unseenMm = 0.0;
 };
 inline constexpr double kDepthToleranceMm = 2e-5;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // accuracy [--faces N,N...] [--poses N] [--bur NAME]: the field method's depth against brute force on the starter
 // molar, one line per bur, face count and source of depth: error and time. accuracy --cut [--json] [--voxel MM] ...:
-// the same after a cut, against the tooth minus the exact sweep.
+// the same after a cut, against the tooth minus the exact sweep. accuracy --margins: the edge of the cut in the surface
+// as files have it, against the same.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -199,24 +200,38 @@ void reportCuts(std::size_t faces, double voxelMm, const std::string& only, cons
     if (json) fmt::print("{}\n", rows.dump(2));
 }
 
+void reportMargins(std::size_t faces, double voxelMm, const std::string& only, const std::string& onlyCut) {
+    fmt::print("{:<24} {:<9} {:>6} {:>6} {:>9} {:>9} {:>9}\n", "bur", "cut", "voxel", "places", "med_um", "p95_um",
+               "worst_um");
+    const auto tooth = molarOf(faces, voxelMm);
+    for (const char* name : kBurs)
+        for (const char* cut : kCuts) {
+            if ((!only.empty() && only != name) || (!onlyCut.empty() && onlyCut != cut)) continue;
+            const MarginAccuracy a = measureMargin(tooth, burOf(name), cut, kSeed);
+            fmt::print("{:<24} {:<9} {:>6} {:>6} {:>9.2f} {:>9.2f} {:>9.2f}\n", name, cut, voxelMm, a.places,
+                       a.medianUm, a.p95Um, a.worstUm);
+            std::fflush(stdout);
+        }
+}
+
 int mainOf(int argc, char** argv) {
     std::vector<std::size_t> faces = {9760, 68151};
     int poses = 360;
-    bool cut = false, json = false;
+    bool cut = false, margins = false, json = false;
     double voxelMm = 0.05;
     std::string only, onlyCut;
     for (int i = 1; i < argc; ++i) {
         const std::string_view option = argv[i];
-        if (option == "--cut" || option == "--json") {
-            (option == "--cut" ? cut : json) = true;
+        if (option == "--cut" || option == "--margins" || option == "--json") {
+            (option == "--cut" ? cut : option == "--margins" ? margins : json) = true;
             continue;
         }
         if (i + 1 == argc || (option != "--faces" && option != "--poses" && option != "--bur" && option != "--voxel" &&
                               option != "--only")) {
-            fmt::print(
-                stderr,
-                "usage: accuracy [--faces N,N...] [--poses N] [--bur NAME]\n"
-                "       accuracy --cut [--json] [--voxel MM] [--faces N] [--poses N] [--bur NAME] [--only CUT]\n");
+            fmt::print(stderr,
+                       "usage: accuracy [--faces N,N...] [--poses N] [--bur NAME]\n"
+                       "       accuracy --cut [--json] [--voxel MM] [--faces N] [--poses N] [--bur NAME] [--only CUT]\n"
+                       "       accuracy --margins [--voxel MM] [--faces N] [--bur NAME] [--only CUT]\n");
             return 2;
         }
         const char* value = argv[++i];
@@ -229,6 +244,10 @@ int mainOf(int argc, char** argv) {
             for (char* at = const_cast<char*>(value); *at != '\0'; at += *at == ',' ? 1 : 0)
                 faces.push_back(std::strtoul(at, &at, 10));
         }
+    }
+    if (margins) {
+        reportMargins(faces.front(), voxelMm, only, onlyCut);
+        return 0;
     }
     if (cut) {
         if (!json)

@@ -12,7 +12,9 @@
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/simd.h"
 #include "handpiece/model/instrument/piece.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
 #include "handpiece/model/tooth/tooth_state.h"
+#include "handpiece/senses/surface/closed_surface.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/cutting/sweeper.h"
 #include "measure.h"
@@ -285,7 +287,71 @@ std::vector<Stroke> strokesOf(const std::string& cut, contact::Method& uncut, co
     return strokes;
 }
 
+/// The tooth after the strokes, in steps of a quick hand.
+std::shared_ptr<tooth::ToothState> cutBy(const std::shared_ptr<const tooth::ToothModel>& tooth,
+                                         const instrument::Bur& bur, const std::vector<Stroke>& strokes) {
+    auto state = std::make_shared<tooth::ToothState>(tooth);
+    cutting::Sweeper sweeper(*state, bur, core::simdLevel());
+    for (const Stroke& stroke : strokes) {
+        const int steps = static_cast<int>(std::ceil(stroke.wayMm.norm() / kStrokeStepMm));
+        for (int i = 0; i <= steps; ++i)
+            (void)sweeper.sweepTo(
+                {stroke.from.positionMm + (static_cast<double>(i) / steps) * stroke.wayMm, stroke.from.orientation});
+        sweeper.settle();
+    }
+    return state;
+}
+
+/// Where the edges of the tooth's triangles pass into what was swept: places of the true margin.
+std::vector<Vec3> marginOf(const geometry::TriangleMesh& mesh, const instrument::Bur& bur,
+                           const std::vector<Stroke>& strokes) {
+    const auto swept = [&](const Vec3& p) {
+        double d = std::numeric_limits<double>::infinity();
+        for (const Stroke& stroke : strokes)
+            d = std::min(d, strokeDistance(bur, stroke, p));
+        return d;
+    };
+    std::vector<std::uint8_t> isGone(mesh.vertices.size());
+    core::parallelFor(isGone.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v)
+            isGone[v] = swept(mesh.vertices[v]) < 0.0;
+    });
+    std::vector<Vec3> margin;
+    for (const geometry::Triangle& t : mesh.triangles)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+            if (a > b || isGone[a] == isGone[b]) continue;
+            Vec3 gone = mesh.vertices[isGone[a] != 0 ? a : b], left = mesh.vertices[isGone[a] != 0 ? b : a];
+            for (int i = 0; i < 30; ++i) {
+                const Vec3 middle = 0.5 * (gone + left);
+                (swept(middle) < 0.0 ? gone : left) = middle;
+            }
+            margin.push_back(gone);
+        }
+    return margin;
+}
+
 }  // namespace
+
+MarginAccuracy measureMargin(const std::shared_ptr<const tooth::ToothModel>& tooth,
+                             const std::shared_ptr<const instrument::Bur>& bur, const std::string& cut, unsigned seed) {
+    std::mt19937_64 generator(seed);
+    const auto uncut = contact::makeFieldMethod(tooth, bur);
+    const std::vector<Stroke> strokes = strokesOf(cut, *uncut, tooth->outer.bounds(), generator);
+    const auto state = cutBy(tooth, *bur, strokes);
+    tooth::ToothMirror mirror(tooth);
+    state->handOver(state->waitingBricks(), [&](const tooth::BrickSnapshot& snapshot) {
+        mirror.apply(snapshot);
+        return true;
+    });
+    const geometry::TriangleTree exported(surface::closedSurface(surface::MirrorSource(mirror)));
+    std::vector<double> errors;
+    for (const Vec3& p : marginOf(tooth->outer, *bur, strokes))
+        errors.push_back(1e3 * exported.nearest(p).distanceMm);
+    std::sort(errors.begin(), errors.end());
+    if (errors.empty()) return {};
+    return {errors.size(), percentile(errors, 0.5), percentile(errors, 0.95), errors.back()};
+}
 
 CutAccuracy measureCut(const std::shared_ptr<const tooth::ToothModel>& tooth,
                        const std::shared_ptr<const instrument::Bur>& bur, const std::string& cut, std::size_t count,
@@ -298,15 +364,7 @@ CutAccuracy measureCut(const std::shared_ptr<const tooth::ToothModel>& tooth,
     constexpr std::size_t kPlaces = 4;
     for (std::size_t place = 0; place < kPlaces; ++place) {
         const std::vector<Stroke> strokes = strokesOf(cut, *uncut, tooth->outer.bounds(), generator);
-        const auto state = std::make_shared<tooth::ToothState>(tooth);
-        cutting::Sweeper sweeper(*state, *bur, core::simdLevel());
-        for (const Stroke& stroke : strokes) {
-            const int steps = static_cast<int>(std::ceil(stroke.wayMm.norm() / kStrokeStepMm));
-            for (int i = 0; i <= steps; ++i)
-                (void)sweeper.sweepTo({stroke.from.positionMm + (static_cast<double>(i) / steps) * stroke.wayMm,
-                                       stroke.from.orientation});
-            sweeper.settle();
-        }
+        const auto state = cutBy(tooth, *bur, strokes);
         const auto method = contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(state), bur);
         const Truth truth(tooth->tree, *bur, strokes);
         std::vector<core::Pose> poses;

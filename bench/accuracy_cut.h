@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Depth after a cut against brute force on the tooth minus the exact sweep.
+/// Depth and margins after a cut against brute force on the tooth minus the exact sweep.
 
 #include <memory>
 #include <string>
@@ -25,5 +25,15 @@ inline constexpr const char* kCuts[] = {"groove", "plunge", "crossing", "undercu
 [[nodiscard]] CutAccuracy measureCut(const std::shared_ptr<const tooth::ToothModel>& tooth,
                                      const std::shared_ptr<const instrument::Bur>& bur, const std::string& cut,
                                      std::size_t count, unsigned seed);
+
+/// How far places of the true margin, where what was swept passes through the uncut tooth's triangles, lie from the
+/// surface as files have it.
+struct MarginAccuracy {
+    std::size_t places = 0;
+    double medianUm = 0.0, p95Um = 0.0, worstUm = 0.0;
+};
+[[nodiscard]] MarginAccuracy measureMargin(const std::shared_ptr<const tooth::ToothModel>& tooth,
+                                           const std::shared_ptr<const instrument::Bur>& bur, const std::string& cut,
+                                           unsigned seed);
 
 }  // namespace handpiece::bench

@@ -36,8 +36,8 @@ constexpr double kSameTopMm = 0.03;
 /// A mixed cell is off by less than that where two walls meet in it.
 constexpr double kMixedErrorMm = 0.02;
 /// What a sharp climb may still find above the place where the mixed one ended.
-constexpr double kClimbMm = 0.004, kGainMm = 0.001;
-constexpr double kOnSurfaceMm = 2e-5;
+constexpr double kClimbMm = 0.012, kGainMm = 0.001;
+constexpr double kOnSurfaceMm = 2e-5, kBesideMm = 0.004;
 constexpr int kProjections = 3;
 constexpr double kShellMm = 0.15, kShellSpacingMm = 0.12;
 constexpr double kCornerCosine = 0.995;  // outlines that turn by less than six degrees are smooth
@@ -326,8 +326,18 @@ class FieldDepth::DepthAscent {
         }
         return true;
     }
-    /// What the depth is about here, in the tooth and out of it.
-    [[nodiscard]] double estimate() noexcept { return spot_->deeperPerMm * in_ - depth_.surface_.distance(topMm_); }
+    /// What the depth is about here. Outside the tooth a field that has been cut may tell less than the distance: so
+    /// from near its surface on.
+    [[nodiscard]] double estimate() noexcept {
+        double d = 0.0;
+        for (int i = 0; i < kProjections; ++i) {
+            d = depth_.surface_.distance(placeAt(bends(), u_, arc_, in_));
+            if (d <= kGainMm || in_ <= 0.0) break;
+            in_ = std::max(0.0, in_ - d);
+            d = 0.0;
+        }
+        return spot_->deeperPerMm * in_ - d;
+    }
     /// On from there by what the field is between its nodes.
     void climbSharply(FieldTouch& best) noexcept {
         double window = kFirstSharpLookMm, last = -std::numeric_limits<double>::infinity();
@@ -700,7 +710,7 @@ void FieldDepth::takeAxis(const BurFrame& frame, double z, FieldTouch& best) noe
             q -= surface_.distance(q) * surface_.lookup().normal(q);
         p = q;
         d = surface_.distance(p);
-        if (d > kClimbMm) return;  // farther out than values tell: no way led onto the surface
+        if (d > kBesideMm) return;  // farther out than values tell: no way led onto the surface
     } else {
         q = p - d * away;
     }

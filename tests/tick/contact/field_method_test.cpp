@@ -244,6 +244,57 @@ TEST(FieldMethod, aRoundEndPressedIntoASlabTouchesACap) {
     EXPECT_EQ(none.areaMm2, 0.0);
 }
 
+TEST(FieldMethod, aRimIsFreeInTheCornerThatItHasJustCut) {
+    // Shallower than the voxels are wide no lookup tells floor, wall and margin apart: where the bur cut last does.
+    for (const char* name : {"cylinder-flat:1.0x4.0", "inverted-cone:1.2x1.0", "wheel:2.0x0.8"}) {
+        const auto bur = burOf(name);
+        double worstKnown = 0.0, worstRead = 0.0;
+        for (const double deep : {0.02, 0.035, 0.06, 0.09, 0.2}) {
+            const auto cut = test::slabToCut();
+            const core::Pose pose = upright(0.013, -0.021, -deep);
+            test::carve(*cut, {{-2, -2, -1}, {2, 2, 1}},
+                        [&](const Vec3& p) { return bur->signedDistance(p - pose.positionMm); });
+            const auto method = makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut), bur);
+            const auto nearest = [&](const core::Pose& at) {
+                ConstraintSet set;
+                (void)method->constraints(at, 0.04, set);
+                double gap = -method->depth(at).depthMm;
+                for (const Constraint& c : set)
+                    gap = std::min(gap, c.gapMm);
+                return gap;
+            };
+            worstRead = std::min(worstRead, nearest(pose));
+            method->noteCut(pose);
+            worstKnown = std::min(worstKnown, nearest(pose));
+            // Held to the floor and the walls all the same.
+            core::Pose lower = pose;
+            lower.positionMm.z() -= 0.01;
+            EXPECT_NEAR(method->depth(lower).depthMm, 0.01, method->slackMm()) << name << " " << deep;
+        }
+        std::printf("  %s: own corner seems nearer by %.1f um, where it cut last by %.1f um\n", name, -1e3 * worstRead,
+                    -1e3 * worstKnown);
+        EXPECT_GE(worstKnown, -0.002) << name;
+    }
+}
+
+TEST(FieldMethod, whatWasCutLastIsForgottenWithTheTooth) {
+    const auto cut = test::slabToCut();
+    const auto bur = burOf("cylinder-flat:1.0x4.0");
+    const auto method = makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut), bur);
+    const auto dent = [&](double deeper) {
+        test::carve(*cut, {{-1, -1, -0.5}, {1, 1, 0.1}},
+                    [deeper](const Vec3& p) { return (p - Vec3(0.0, 0.0, 0.3 - deeper)).norm() - 0.31; });
+    };
+    dent(0.0);
+    const core::Pose pose = upright(0.0, 0.0, -0.05);
+    const double before = method->depth(pose).depthMm;
+    EXPECT_GT(before, 0.03);
+    method->noteCut(pose);  // said, but nothing of it is in the field
+    EXPECT_LT(method->depth(pose).depthMm, 0.002);
+    dent(0.01);  // another field: what was known of the first holds no more
+    EXPECT_NEAR(method->depth(pose).depthMm, before, 0.003);
+}
+
 TEST(FieldMethod, twoWallsOfASlotAreTwoPatches) {
     // A slot 0.96 mm wide for a bur of 1 mm, as two blocks side by side.
     geometry::TriangleMesh left = test::boxMesh({-3, -3, -3}, {-0.48, 3, 3}, 12),

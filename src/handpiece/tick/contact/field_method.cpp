@@ -104,7 +104,10 @@ class FieldMethod final : public Method {
         rings_.bearing(burInTooth, direction, leadMm, leastRadiusMm, out);
     }
 
-    void noteCut(const core::Pose& burInTooth) noexcept override { known_.noteCut(burInTooth); }
+    void noteCut(const core::Pose& burInTooth) noexcept override {
+        known_.noteCut(burInTooth);
+        rings_.senseAnew();
+    }
 
     [[nodiscard]] std::uint64_t toothVersion() const noexcept override { return live_.version(); }
 

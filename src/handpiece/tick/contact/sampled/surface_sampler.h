@@ -31,6 +31,9 @@ class SurfaceSampler {
     void bearing(const core::Pose& burInTooth, const core::Vec3& direction, double leadMm, double leastRadiusMm,
                  Bearing& out) noexcept;
 
+    /// More is known of the surface than when it was sensed last.
+    void senseAnew() noexcept { sensedVersion_ = 0; }
+
     /// True when what was sensed last is of this pose and holds every point up to `windowMm` above the nearest.
     [[nodiscard]] bool hasSensed(const core::Pose& burInTooth, double thresholdMm, double windowMm) const noexcept;
     /// Least distance of the rings' points where they were sensed last; kNotLiveMm when none was within the threshold.

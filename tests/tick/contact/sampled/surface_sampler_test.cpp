@@ -141,7 +141,7 @@ TEST_P(SurfaceSamplerOf, patchesAreThoseOfEveryPointLookedUpAlone) {
     for (const bool two : {false, true}) {
         const field::DistanceField& field = ground(two);
         KnownSurface surface(field, bur, core::simdLevel());
-    SurfaceSampler sensor(surface, bur, core::simdLevel());
+        SurfaceSampler sensor(surface, bur, core::simdLevel());
         for (int n = 0; n < 60; ++n) {
             const core::Pose pose = randomPose(generator);
             const std::vector<Point> points = touching(field, bur, pose);
@@ -249,7 +249,7 @@ TEST(Bearing, aFlatEndBearsOnAPlaneWithItsWholeArea) {
     for (const double radius : {0.5, 0.6}) {
         const instrument::Bur bur("flat", instrument::makeProfile(instrument::Shape::cylinderFlat, 2.0 * radius, 4.0));
         KnownSurface surface(field, bur, core::simdLevel());
-    SurfaceSampler sensor(surface, bur, core::simdLevel());
+        SurfaceSampler sensor(surface, bur, core::simdLevel());
         for (const double floorMm : {0.05, 0.15, 0.3}) {
             Bearing b;
             sensor.bearing(uprightAt({0.01, 0.02, 0.0}), -Vec3::UnitZ(), 0.0, floorMm, b);

@@ -621,7 +621,7 @@ void OffAxisMedialSearch::searchDeep(const ExactSurface& surface, const Sheet& s
     HighestCell top = best.triangle != geometry::kNoTriangle ? lower(sheet, frame, best.surfaceMm, 0.0, floorMm())
                                                              : HighestCell{kFarMm, 0};
     int measured = 0;
-    for (; measured<kMaxMeasured&& static_cast<double>(top.upper)> floorMm(); ++measured) {
+    for (; measured < kMaxMeasured && floorMm() < static_cast<double>(top.upper); ++measured) {
         const auto cell = static_cast<std::size_t>(top.cell);
         const Spot spot = spotAt(sheet, frame, sheet.cellU[cell], sheet.cellAngle[cell]);
         const BallDepth found = surface.ball(spot.centre, spot.radius, seed);

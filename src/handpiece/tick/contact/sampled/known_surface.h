@@ -26,11 +26,9 @@ class KnownSurface {
     [[nodiscard]] const field::DistanceField& field() const noexcept { return field_; }
     [[nodiscard]] field::SharpLookup& lookup() noexcept { return lookup_; }
     /// Signed distance [mm].
-    [[nodiscard]] double distance(const core::Vec3& p) noexcept {
-        return std::max(lookup_.distance(p), freeMm(p));
-    }
-    /// The same of a place of which the mixed field says `mixedMm`, where walls meet. A cell mixes no wall nearer than a
-    /// place that is known to be free: then that is what is known.
+    [[nodiscard]] double distance(const core::Vec3& p) noexcept { return std::max(lookup_.distance(p), freeMm(p)); }
+    /// The same of a place of which the mixed field says `mixedMm`, where walls meet. A cell mixes no wall nearer than
+    /// a place that is known to be free: then that is what is known.
     [[nodiscard]] double distanceAtCrease(const core::Vec3& p, double mixedMm) const noexcept {
         const double free = freeMm(p);
         return free > std::max(mixedMm, -kCreaseFreeMm) ? free : std::max(lookup_.distanceOnce(p), free);

@@ -181,7 +181,7 @@ TEST(SessionPlayer, plotsWhatWasRecorded) {
         expected = std::max(expected, std::hypot(r.forceN[0], r.forceN[1], r.forceN[2]));
         stretches.insert(r.tick / 50);
     }
-    EXPECT_EQ(most, expected);
+    EXPECT_FLOAT_EQ(most, expected);
     EXPECT_EQ(points.size(), stretches.size());
     EXPECT_GT(points.size(), 3u);
     EXPECT_NEAR(static_cast<double>(points.back().removedMm3[2]), recorded().state.removedMm3[2], 1e-3);

@@ -494,7 +494,7 @@ bool OffAxisMedialSearch::remember(std::uint32_t triangle) noexcept {
 /// `here`: the ball there, where it is known.
 void OffAxisMedialSearch::climbOnce(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame,
                                     const Candidate& from, const BallDepth& here, std::uint32_t& seed, double reach,
-                                    BallDepth& best) noexcept {
+                                    bool isDeep, BallDepth& best) noexcept {
     const auto isNear = [&](double u, double angle) {
         return std::abs(u - from.u) < kSameTopMm &&
                sheet.maxRho * std::abs(std::remainder(angle - from.angle, 2.0 * kPi)) < kSameTopMm;
@@ -513,7 +513,10 @@ void OffAxisMedialSearch::climbOnce(const ExactSurface& surface, const Sheet& sh
         if (start.triangle == geometry::kNoTriangle) return;
         if (start.depthMm > best.depthMm) best = start;
     }
-    climb(surface, sheet, frame, top, start, reach, best);
+    if (isDeep)
+        climb(surface, sheet, frame, top, start, reach, best);
+    else
+        climbShallow(surface, sheet, frame, top, start, reach, best);
     seed = best.triangle != geometry::kNoTriangle ? best.triangle : seed;
 }
 
@@ -537,7 +540,7 @@ void OffAxisMedialSearch::measure(const ExactSurface& surface, const Sheet& shee
         const double value = isFound ? found.depthMm : best.depthMm - kRiseMm;
         if (value > best.depthMm) best = found;
         if (value + kRiseMm > best.depthMm && isFound)
-            climbOnce(surface, sheet, frame, {value, here.u, here.angle}, found, seed, kSpacingMm, best);
+            climbOnce(surface, sheet, frame, {value, here.u, here.angle}, found, seed, kSpacingMm, false, best);
         std::size_t kept = 0;
         for (std::size_t i = 0; i < unknownCount_; ++i) {
             Unknown other = unknown_[i];
@@ -580,8 +583,87 @@ void OffAxisMedialSearch::searchSheet(const ExactSurface& surface, const Sheet& 
     }
     std::sort(candidates_.begin(), end, higher);
     for (auto c = candidates_.begin(); c != end && c->value + errorMm_ > best.depthMm; ++c)
-        climbOnce(surface, sheet, frame, *c, {}, seed, kFieldWindowMm, best);
+        climbOnce(surface, sheet, frame, *c, {}, seed, kFieldWindowMm, false, best);
     measure(surface, sheet, frame, seed, best);
+}
+
+/// From a ball to the deepest one nearby where the field has led near it: each step is measured. The triangles seen so
+/// far are taken as linear; the window grows when the gain keeps the promise and shrinks when it does not: a bundle
+/// method with a trust region. docs/contact.md, "Rims".
+void OffAxisMedialSearch::climbShallow(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, Top& top,
+                                       BallDepth here, double window, BallDepth& best) const noexcept {
+    constexpr int kKnown = 8, kActive = 4;
+    std::uint32_t known[kKnown];
+    int knownCount = 0, oldest = 0;
+    const auto remember = [&](std::uint32_t triangle) {
+        for (int i = 0; i < knownCount; ++i)
+            if (known[i] == triangle) return;
+        if (knownCount < kKnown)
+            known[knownCount++] = triangle;
+        else
+            known[oldest++ % kKnown] = triangle;
+    };
+    double u = top.u, angle = top.angle;
+    Spot spot = spotAt(sheet, frame, u, angle);
+    remember(here.triangle);
+    if (spot.alongArc.isZero(1e-9)) {  // on the axis every angle is as good: look up the slope
+        const Vec3 away = (here.inside ? -1.0 : 1.0) * (spot.centre - here.surfaceMm);
+        angle = core::atan2(-away.dot(frame.y), -away.dot(frame.x));
+        spot = spotAt(sheet, frame, u, angle);
+    }
+    for (int step = 0; step < kMaxSteps && window > kFinalWindowMm; ++step) {
+        // No ball of the window is deeper by more than its diagonal and what the radius gains on the way.
+        if (here.depthMm + 4.0 * window < best.depthMm) break;
+        Support supports[kActive];
+        int count = 0;
+        const auto addSupport = [&](const Vec3& outOfTooth, double depth) {
+            const Support s{depth, spot.radiusAlongU - outOfTooth.dot(spot.alongU), -outOfTooth.dot(spot.alongArc)};
+            if (count < kActive) {
+                supports[count++] = s;
+                return;
+            }
+            // Full: the one that limits least makes room. The first is the surface that is touched and stays.
+            int most = 1;
+            for (int i = 2; i < kActive; ++i)
+                if (supports[i].value > supports[most].value) most = i;
+            if (s.value < supports[most].value) supports[most] = s;
+        };
+        const Vec3 away = spot.centre - here.surfaceMm;
+        const double distance = away.norm();
+        addSupport(distance > 1e-9 ? Vec3((here.inside ? -1.0 : 1.0) * away / distance) : surface.outward(here),
+                   here.depthMm);
+        if (here.inside)
+            for (int i = 0; i < knownCount; ++i) {
+                if (known[i] == here.triangle) continue;
+                const Vec3 q = surface.closestOn(known[i], spot.centre);
+                const Vec3 to = q - spot.centre;
+                const double d = to.norm();
+                if (d > 1e-9 && spot.radius + d < here.depthMm + 4.0 * window) addSupport(to / d, spot.radius + d);
+            }
+        double stepU = 0.0, stepArc = 0.0;
+        const double lowU = std::max(-window, -u), highU = std::min(window, sheet.u.back() - u);
+        const double hoped = solve(supports, count, lowU, highU, -window, window, stepU, stepArc) - here.depthMm;
+        if (here.depthMm + kFarBehind * std::max(hoped, kToleranceMm) < best.depthMm) break;
+        if (hoped < kToleranceMm) {
+            window *= 0.25;
+            continue;
+        }
+        const double newU = std::clamp(u + stepU, 0.0, sheet.u.back()), newAngle = angle + stepArc / spot.arcPerRad;
+        const Spot there = spotAt(sheet, frame, newU, newAngle);
+        const BallDepth found = surface.ball(there.centre, there.radius, here.triangle);
+        const double gained = found.depthMm - here.depthMm;  // nothing found: minus infinity
+        if (found.triangle != geometry::kNoTriangle) remember(found.triangle);
+        if (gained > 0.0) {
+            u = newU;
+            angle = newAngle;
+            spot = there;
+            here = found;
+        }
+        window *= gained > 0.75 * hoped ? 1.5 : gained > 0.25 * hoped ? 0.7 : 0.3;
+    }
+    if (here.depthMm > best.depthMm) best = here;
+    top.endU = u;
+    top.endAngle = angle;
 }
 
 HighestCell OffAxisMedialSearch::lower(const Sheet& sheet, const BurFrame& frame, const Vec3& place, double freeMm,
@@ -635,7 +717,7 @@ void OffAxisMedialSearch::searchDeep(const ExactSurface& surface, const Sheet& s
             top = lower(sheet, frame, found.surfaceMm, 0.0, floorMm());
             if (static_cast<double>(upper_[cell]) > best.depthMm + kCoveredMm)
                 climbOnce(surface, sheet, frame, {found.depthMm, sheet.cellU[cell], sheet.cellAngle[cell]}, found, seed,
-                          2.0 * sheet.spacingMm, best);
+                          2.0 * sheet.spacingMm, true, best);
             if (best.depthMm > before) top = lower(sheet, frame, best.surfaceMm, 0.0, floorMm());
         }
         upper_[cell] = -kFarMm;

@@ -91,12 +91,14 @@ class OffAxisMedialSearch {
     void measure(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, std::uint32_t& seed,
                  BallDepth& best) noexcept;
     void climbOnce(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, const Candidate& from,
-                   const BallDepth& here, std::uint32_t& seed, double reach, BallDepth& best) noexcept;
+                   const BallDepth& here, std::uint32_t& seed, double reach, bool isDeep, BallDepth& best) noexcept;
     [[nodiscard]] Spot spotAt(const Sheet& sheet, const BurFrame& frame, double u, double angle) const noexcept;
     void searchSheet(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, std::uint32_t seed,
                      BallDepth& best, double& mostMm) noexcept;
     void climb(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, Top& top, BallDepth here,
                double reach, BallDepth& best) noexcept;
+    void climbShallow(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, Top& top, BallDepth here,
+                      double window, BallDepth& best) const noexcept;
     [[nodiscard]] Model modelAt(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame,
                                 const BallDepth& here, double u, double angle) const noexcept;
     /// False when it was known.

@@ -572,7 +572,6 @@ class FieldDepth::DepthAscent {
             const Vec3 p = placeAt(bend, u_, arc_, in_);
             const double d = depth_.surface_.distance(p), depth = depth_.depthAt(frame_, p, d);
             // Outside the tooth a field that has been cut may tell less than the distance.
-            if (i == kProjections && d < 0.0) break;
             const bool trusted = (d <= kOnSurfaceMm && d > -depth_.inMm_) || in_ <= 0.0;
             lies = lies || trusted;
             if (trusted && depth > best.depthMm) {

@@ -53,44 +53,64 @@ geometry::TriangleMesh meshOf(std::string_view name) {
     return mesh;
 }
 
+// Brute force ends on a window of 2e-8 mm, and misses a top now and then: it is the lower one then.
+constexpr double kBruteMm = 1e-6, kBruteMissesMm = 1e-3;
+
+struct Answers {
+    std::vector<Depth> told;
+    std::vector<double> truth;  ///< by brute force [mm]
+};
+
+/// Of random poses about the tooth, as many as fit(pose, depthMm).
+template <class Fit>
+Answers askAround(const tooth::ToothModel& tooth, const instrument::Bur& bur, Method& method, int poses,
+                  const Fit& fit) {
+    const core::Box box = tooth.outer.bounds();
+    std::mt19937_64 generator(test::seed());
+    std::vector<core::Pose> all;
+    Answers answers;
+    while (static_cast<int>(all.size()) < poses) {
+        core::Pose pose;
+        pose.orientation = test::randomRotation(generator);
+        for (int k = 0; k < 3; ++k)
+            pose.positionMm[k] = test::uniform(generator, box.min[k] - 1.0, box.max[k] + 1.0);
+        const Depth depth = method.depth(pose);
+        if (depth.status != Status::ok || !fit(pose, depth.depthMm)) continue;
+        all.push_back(pose);
+        answers.told.push_back(depth);
+    }
+    answers.truth.resize(all.size());
+    core::parallelFor(all.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            answers.truth[i] = test::bruteForceDepth(tooth.tree, bur, all[i]).depthMm;
+    });
+    return answers;
+}
+
+/// HANDPIECE_POSES asks that often.
+int posesAsked() {
+    const char* asked = std::getenv("HANDPIECE_POSES");
+    return asked != nullptr ? std::max(1, std::atoi(asked)) : 25;
+}
+
 class HardTooth : public testing::TestWithParam<const char*> {};
 
 TEST_P(HardTooth, leavesNoMoreUnseenThanItSays) {
-    // Brute force ends on a window of 2e-8 mm, and misses a top now and then: it is the lower one then.
-    constexpr double kBruteMm = 1e-6, kBruteMissesMm = 1e-3;
     const auto tooth = test::toothOf(meshOf(GetParam()));
-    const core::Box box = tooth->outer.bounds();
-    const char* asked = std::getenv("HANDPIECE_POSES");
-    const int poses = asked != nullptr ? std::max(1, std::atoi(asked)) : 25;
+    const int poses = posesAsked();
     // Long ones: their rims, at the top, stay out of the tooth, and the axis decides.
     for (const char* name :
          {"cylinder-round:1.0x12.0", "taper-round:1.2x9.0", "flame:1.2x9.0", "pear:1.2x9.0", "torpedo:1.4x12.0"}) {
         const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur(name));
         const auto method = makeFieldMethod(tooth, bur);
-        std::mt19937_64 generator(test::seed());
-        std::vector<core::Pose> all;
-        std::vector<Depth> told;
-        while (static_cast<int>(all.size()) < poses) {
-            core::Pose pose;
-            pose.orientation = test::randomRotation(generator);
-            for (int k = 0; k < 3; ++k)
-                pose.positionMm[k] = test::uniform(generator, box.min[k] - 1.0, box.max[k] + 1.0);
+        const auto [told, truth] = askAround(*tooth, *bur, *method, poses, [&](const core::Pose& pose, double depthMm) {
             const Vec3 top = pose.apply(Vec3(0, 0, bur->lengthMm()));
-            if (tooth->tree.signedDistance(top) < bur->maxRadiusMm() + 0.5) continue;
-            const Depth depth = method->depth(pose);
-            if (depth.status != Status::ok || depth.depthMm < -0.1 || depth.depthMm > 3.0 * bur->maxRadiusMm())
-                continue;
-            all.push_back(pose);
-            told.push_back(depth);
-        }
-        std::vector<double> truth(all.size());
-        core::parallelFor(all.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                truth[i] = test::bruteForceDepth(tooth->tree, *bur, all[i]).depthMm;
+            return depthMm >= -0.1 && depthMm <= 3.0 * bur->maxRadiusMm() &&
+                   tooth->tree.signedDistance(top) >= bur->maxRadiusMm() + 0.5;
         });
         double worst = 0.0;
         int cutShort = 0;
-        for (std::size_t i = 0; i < all.size(); ++i) {
+        for (std::size_t i = 0; i < told.size(); ++i) {
             const double leftMm = std::max(told[i].unseenMm, kDepthToleranceMm);
             EXPECT_LE(truth[i], told[i].depthMm + leftMm + kBruteMm) << name << " pose " << i;
             EXPECT_LE(told[i].depthMm, truth[i] + kBruteMissesMm) << name << " pose " << i;
@@ -101,9 +121,9 @@ TEST_P(HardTooth, leavesNoMoreUnseenThanItSays) {
         }
         EXPECT_LE(worst, 1e-4) << name;
         EXPECT_LE(cutShort, std::max(3, poses / 5)) << name;
-        if (asked != nullptr) {
+        if (std::getenv("HANDPIECE_POSES") != nullptr) {
             double most = 0.0;
-            for (std::size_t i = 0; i < all.size(); ++i)
+            for (std::size_t i = 0; i < told.size(); ++i)
                 most = std::max(most, truth[i] - told[i].depthMm);
             std::printf("%s, %s: %d poses, %d cut short, worst too little %.3f um, of the others %.3f\n", GetParam(),
                         name, poses, cutShort, 1e3 * most, 1e3 * worst);
@@ -114,11 +134,9 @@ TEST_P(HardTooth, leavesNoMoreUnseenThanItSays) {
 class RimInTooth : public testing::TestWithParam<const char*> {};
 
 TEST_P(RimInTooth, leavesNoMoreUnseenThanItSays) {
-    constexpr double kBruteMm = 1e-6, kBruteMissesMm = 1e-3, kMostUnseenMm = 0.25;
+    constexpr double kMostUnseenMm = 0.25;
     const auto tooth = test::toothOf(meshOf(GetParam()));
-    const core::Box box = tooth->outer.bounds();
-    const char* asked = std::getenv("HANDPIECE_POSES");
-    const int poses = asked != nullptr ? std::max(1, std::atoi(asked)) : 25;
+    const int poses = posesAsked();
     for (const char* name : {"cylinder-flat:1.0x4.0", "wheel:2.0x0.8", "inverted-cone:1.2x1.2"}) {
         const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur(name));
         const auto method = makeFieldMethod(tooth, bur);
@@ -126,26 +144,10 @@ TEST_P(RimInTooth, leavesNoMoreUnseenThanItSays) {
         for (const instrument::MedialCurve& curve : bur->medialAxis())
             for (const instrument::MedialBall& ball : curve.balls)
                 least = std::max(least, ball.radiusMm + 0.25);
-        std::mt19937_64 generator(test::seed());
-        std::vector<core::Pose> all;
-        std::vector<Depth> told;
-        while (static_cast<int>(all.size()) < poses) {
-            core::Pose pose;
-            pose.orientation = test::randomRotation(generator);
-            for (int k = 0; k < 3; ++k)
-                pose.positionMm[k] = test::uniform(generator, box.min[k] - 1.0, box.max[k] + 1.0);
-            const Depth depth = method->depth(pose);
-            if (depth.status != Status::ok || depth.depthMm < least) continue;
-            all.push_back(pose);
-            told.push_back(depth);
-        }
-        std::vector<double> truth(all.size());
-        core::parallelFor(all.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                truth[i] = test::bruteForceDepth(tooth->tree, *bur, all[i]).depthMm;
-        });
+        const auto [told, truth] = askAround(*tooth, *bur, *method, poses,
+                                             [&](const core::Pose&, double depthMm) { return depthMm >= least; });
         double worst = 0.0, mostUnseen = 0.0;
-        for (std::size_t i = 0; i < all.size(); ++i) {
+        for (std::size_t i = 0; i < told.size(); ++i) {
             const double leftMm = std::max(told[i].unseenMm, kDepthToleranceMm);
             EXPECT_LE(truth[i], told[i].depthMm + leftMm + kBruteMm) << name << " pose " << i;
             EXPECT_LE(told[i].depthMm, truth[i] + kBruteMissesMm) << name << " pose " << i;
@@ -154,7 +156,7 @@ TEST_P(RimInTooth, leavesNoMoreUnseenThanItSays) {
         }
         EXPECT_LE(worst, 2e-3) << name;
         EXPECT_LE(mostUnseen, kMostUnseenMm) << name;
-        if (asked != nullptr)
+        if (std::getenv("HANDPIECE_POSES") != nullptr)
             std::printf("%s, %s: %d poses, worst too little %.3f um, most told unseen %.3f\n", GetParam(), name, poses,
                         1e3 * worst, 1e3 * mostUnseen);
     }

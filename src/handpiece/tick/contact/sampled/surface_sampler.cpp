@@ -102,7 +102,6 @@ void SurfaceSampler::sharpen() noexcept {
                 if (gaps[j] <= query_.thresholdMm) continue;
                 gaps[j] = kNotLiveMm;
                 arrays_.live[eight] &= static_cast<std::uint8_t>(~(1u << j % 8));
-                arrays_.creased[eight] &= static_cast<std::uint8_t>(~(1u << j % 8));
             }
         }
         if (!any) continue;

@@ -137,6 +137,26 @@ TEST(Rotor, StepsWithoutTouchingTheSystem) {
     EXPECT_GT(rotor.speedRpm(), 0.0);
 }
 
+TEST(Rotor, goesOnFromASpeedOfARecordButFromNoOther) {
+    Rotor rotor(driveByName("turbine")), other(driveByName("turbine"));
+    for (int i = 0; i < 300; ++i)
+        rotor.step(0.8, 0.1, 1e-3);
+    other.setSpeedRpm(rotor.speedRpm());
+    for (int i = 0; i < 20; ++i) {
+        rotor.step(0.0, 0.0, 1e-3);
+        other.step(0.0, 0.0, 1e-3);
+        EXPECT_NEAR(other.speedRpm(), rotor.speedRpm(), 1e-6);
+    }
+    other.setSpeedRpm(400000.0);
+    other.setDrive(driveByName("low-speed"));
+    EXPECT_NO_THROW(other.setSpeedRpm(other.speedRpm())) << "it still turns faster than this drive";
+    for (const double bad : {-1.0, 1e7, std::numeric_limits<double>::infinity(), std::nan("")}) {
+        other.setSpeedRpm(1000.0);
+        EXPECT_THROW(other.setSpeedRpm(bad), core::Error) << bad;
+        EXPECT_NEAR(other.speedRpm(), 1000.0, 1e-9);
+    }
+}
+
 TEST(Drive, NamesWhatIsWrong) {
     const auto problem = [](auto&& work) {
         try {

@@ -366,8 +366,11 @@ struct SessionPlayer::State {
         isExact = false;
         startAt(index, state);
         isRunningUp = true;
-        while (next < endOf(loopOf) && record().tick <= frames[frame])
+        while (next < endOf(loopOf) && record().tick <= frames[frame]) {
+            const double rpm = record().speedRpm;
             playOne();
+            loop->setSpeedRpm(rpm);  // the tooth is not yet that of these ticks, nor is the bur's load
+        }
         isRunningUp = false;
         put(state);
         discardBricks();

@@ -12,6 +12,10 @@ namespace handpiece::rt {
 namespace {
 
 constexpr std::int64_t kNsPerS = 1'000'000'000;
+// A fifth of what a thread may run without a pause, for rests that the machine swallows: a wait that is over before the
+// thread has left its processor is none.
+constexpr std::int64_t kMostWithoutRestNs = 20'000'000;
+constexpr std::int64_t kRestNs = 50'000;
 
 void sleepUntil(std::int64_t ns) noexcept {
     const timespec until{static_cast<time_t>(ns / kNsPerS), static_cast<long>(ns % kNsPerS)};
@@ -38,19 +42,27 @@ PeriodicClock::PeriodicClock(std::int64_t periodNs, std::int64_t spinNs) : perio
 }
 
 void PeriodicClock::start() noexcept {
-    nextNs_ = monotonicNs() + periodNs_;
+    restedNs_ = monotonicNs();
+    nextNs_ = restedNs_ + periodNs_;
 }
 
 Beat PeriodicClock::wait() noexcept {
     Beat beat;
     std::int64_t now = monotonicNs();
+    if (now - restedNs_ > kMostWithoutRestNs && now + kRestNs > nextNs_ - spinNs_) {
+        sleepUntil(now + kRestNs);
+        restedNs_ = now = monotonicNs();
+    }
     // A beat that is late by less than a period is still served; only whole missed periods are left out.
     if (now >= nextNs_ + periodNs_) {
         const std::int64_t missed = (now - nextNs_) / periodNs_;
         beat.periods += missed;
         nextNs_ += missed * periodNs_;
     }
-    if (now < nextNs_ - spinNs_) sleepUntil(nextNs_ - spinNs_);
+    if (now < nextNs_ - spinNs_) {
+        sleepUntil(nextNs_ - spinNs_);
+        restedNs_ = nextNs_;
+    }
     do {
         now = monotonicNs();
     } while (now < nextNs_);

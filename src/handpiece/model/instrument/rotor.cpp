@@ -60,6 +60,13 @@ void Rotor::setDrive(const Drive& drive) noexcept {
     stalled_ = false;
 }
 
+void Rotor::setSpeedRpm(double rpm) {
+    if (!(rpm >= 0.0 && rpm * kRadSPerRpm <= std::fmax(freeRadS_, 1e6 * kRadSPerRpm)))
+        throw core::Error(fmt::format("the bur turns at {} rpm", rpm), "rotor", "give a speed from 0 to 1,000,000 rpm");
+    speedRadS_ = rpm * kRadSPerRpm;
+    stalled_ = false;
+}
+
 void Rotor::step(double pedal, double loadTorqueNmm, double periodS) noexcept {
     // Written so that what is no number counts as zero.
     const double air = pedal > 0.0 ? std::fmin(pedal, 1.0) : 0.0;

@@ -37,6 +37,9 @@ class Rotor {
     /// bits on every machine.
     void step(double pedal, double loadTorqueNmm, double periodS) noexcept HANDPIECE_REALTIME;
     void setDrive(const Drive& drive) noexcept HANDPIECE_REALTIME;
+    /// To go on from a record. Throws core::Error unless it is finite and from 0 to 10^6 or the free speed: after a
+    /// change of drive it may turn faster than that. Not from the tick.
+    void setSpeedRpm(double rpm);
     [[nodiscard]] double speedRadS() const noexcept { return speedRadS_; }
     [[nodiscard]] double speedRpm() const noexcept;
     /// The load is more than the drive can turn against and the bur stands.

@@ -97,6 +97,9 @@ class HapticLoop {
 
     /// Before a run: nothing has been counted and nobody has asked it to stop. While none is under way.
     void beginRun() noexcept;
+    /// Goes on with a bur that turns, as a record has it. Throws core::Error as Rotor::setSpeedRpm(). While none is
+    /// under way.
+    void setSpeedRpm(double rpm) { rotor_.setSpeedRpm(rpm); }
     /// Ends a run after the tick under way. Any thread, also a signal handler.
     void requestStop() noexcept { stop_.store(true, std::memory_order_relaxed); }
     [[nodiscard]] bool stopRequested() const noexcept { return stop_.load(std::memory_order_relaxed); }

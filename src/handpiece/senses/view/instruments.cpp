@@ -261,17 +261,6 @@ PixelRect Instruments::rect(const Eye& eye, const Viewport& viewport, const Look
     return rect;
 }
 
-std::vector<PixelRect> Instruments::strips(const Eye& eye, const Viewport& viewport, const Look& look,
-                                           const Moment& moment, const PixelRect& bounds) const {
-    Strips strips(bounds);
-    if (!moment.burShown) return {};
-    const Eye in = inBurOf(eye, moment.burInTooth);
-    eachSeen(Culler(in, viewport, bounds, true), Sight(in, headLengthMm_), look, [&](const PooledMesh& mesh, bool) {
-        strips.addBox(mesh.minMm, mesh.maxMm, in.viewProjection(), viewport);
-    });
-    return strips.rects();
-}
-
 namespace {
 /// Balls whose hull a capsule's shadow lies in: the capsule's own, and the same a shadow's reach away, where its edge
 /// is softest (see the shader). Only the head darkens what it is near; at its far end a shadow has faded.

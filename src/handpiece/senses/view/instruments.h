@@ -27,9 +27,6 @@ class Instruments {
     [[nodiscard]] std::uint64_t appearance(const Moment& moment, const Look& look);
     [[nodiscard]] PixelRect shadowRect(const Eye& eye, const Viewport& viewport, const Look& look, const Moment& moment,
                                        const Lighting& lighting) const;
-    /// What draw() may change, closely; within `bounds`.
-    [[nodiscard]] std::vector<PixelRect> strips(const Eye& eye, const Viewport& viewport, const Look& look,
-                                                const Moment& moment, const PixelRect& bounds) const;
     /// Darkens the picture in the framebuffer that is bound, within `bounds`; `toothDepth` says where the tooth is.
     /// Changes the scissor rectangle.
     void drawShadow(Shaders& shaders, const Eye& eye, const Viewport& viewport, const PixelRect& bounds,

@@ -15,14 +15,13 @@
 #include "handpiece/senses/view/passes.h"
 #include "handpiece/senses/view/scene.h"
 #include "handpiece/senses/view/shaders.h"
-#include "handpiece/senses/view/strips.h"
+#include "handpiece/senses/view/smoothing.h"
 #include "handpiece/senses/view/tooth_layer.h"
 
 namespace handpiece::view {
 namespace {
 
 constexpr int kMaxSize = 8192;
-constexpr int kSmoothMargin = 8;  // pixels that smoothing looks away
 /// Pictures for which the eye must have stood still before full detail comes back.
 constexpr int kRestPictures = 2;
 /// While the eye moves, quick pictures of a software renderer are drawn with no more pixels and made larger.
@@ -41,18 +40,16 @@ bool samePlane(const Plane& a, const Plane& b) {
     return (a.normal - b.normal).norm() < 1e-6 && std::abs(a.offsetMm - b.offsetMm) < 1e-6;
 }
 
-/// Edges are smoothed after the drawing: not at all while a quick picture moves; the tooth once, as it is kept, and the
-/// bur (or all instruments), where that is to be quick; else all of the picture.
-enum class Smoothing { none, toothAndBur, toothAndInstruments, all };
-bool inPieces(Smoothing smoothing) {
-    return smoothing == Smoothing::toothAndBur || smoothing == Smoothing::toothAndInstruments;
-}
+/// Edges are smoothed after the drawing, not at all while a quick picture moves: by the card, or, of a software
+/// renderer's picture, once it has been read.
+enum class Smoothing { none, drawn, read };
 
 /// What one eye sees, kept from picture to picture.
 struct EyeTarget {
     ToothLayer layer;
-    gl::Texture colour, depth, smoothed, smoothedTooth;
-    gl::Framebuffer composed, smooth, smoothTooth;
+    gl::Texture colour, depth, smoothed;
+    gl::Framebuffer composed, smooth;
+    Image rough;                     ///< as read, to be smoothed
     std::uint64_t layerSerial = 0;   ///< of the layer's picture in this one
     PixelRect instruments, passing;  ///< where instruments, and the rest over the tooth, lay in the last picture
     std::uint64_t appearance = 0;    ///< of the instruments, then
@@ -79,8 +76,6 @@ struct EyeTarget {
         smoothed.allocate(viewport.width, viewport.height, GL_RGBA8);
         composed.attach({&colour}, &depth);
         smooth.attach({&smoothed}, nullptr);
-        smoothedTooth.allocate(viewport.width, viewport.height, GL_RGBA8);
-        smoothTooth.attach({&smoothedTooth}, nullptr);
         instruments = {0, 0, viewport.width, viewport.height};
         appearance = 0;
         was = Smoothing::none;
@@ -123,14 +118,10 @@ struct Renderer::State {
                                       const Lighting& lighting, FrameReport& report);
     void drawEye(EyeTarget& target, const Camera& from, const Eye& eye, const Viewport& size, const Look& look,
                  const Moment& moment, Detail detail, FrameReport& report);
-    void smooth(const gl::Texture& from, const gl::Framebuffer& to, std::span<const PixelRect> rects,
-                const Viewport& size);
-    void smooth(const gl::Texture& from, const gl::Framebuffer& to, const PixelRect& rect, const Viewport& size) {
-        smooth(from, to, std::span(&rect, rect.isEmpty() ? 0 : 1), size);
-    }
+    void smooth(const EyeTarget& target, const PixelRect& rect);
     bool drawSmall(const Camera& camera, const Viewport& size, const Look& look, const Moment& moment, Detail detail,
                    Image& out, FrameReport& report);
-    void read(const EyeTarget& from, Image& out, FrameReport& report) const;
+    void read(EyeTarget& from, Image& out, FrameReport& report) const;
 };
 
 void Renderer::State::renewDepthScale(double mostMm) {
@@ -307,10 +298,9 @@ void Renderer::State::drawEye(EyeTarget& target, const Camera& from, const Eye& 
     passing = passing.joined(ghostRect);
 
     const bool quick = look.quality == Quality::fast;
-    const Smoothing smoothing = look.quality == Quality::rich || (!quick && !context.isSoftware()) ? Smoothing::all
-                                : !quick          ? Smoothing::toothAndInstruments
-                                : report.refining ? Smoothing::none
-                                                  : Smoothing::toothAndBur;
+    const Smoothing smoothing = quick && report.refining ? Smoothing::none
+                                : context.isSoftware()   ? Smoothing::read
+                                                         : Smoothing::drawn;
     PixelRect dirty = passing.joined(target.passing).joined(drawn.rect);
     // Instruments that look as they did are there already.
     const std::uint64_t appearance = instruments.appearance(moment, look);
@@ -318,38 +308,15 @@ void Renderer::State::drawEye(EyeTarget& target, const Camera& from, const Eye& 
     dirty = dirty.common(whole);
     const bool all = drawn.all || target.layerSerial != target.layer.serial() || smoothing != target.was;
     target.layerSerial = target.layer.serial();
-    PixelRect smoothedBur;
-    std::vector<PixelRect> smoothedStrips;
-    if (inPieces(smoothing)) {
-        const PixelRect tooth = all                    ? whole
-                                : drawn.rect.isEmpty() ? PixelRect{}
-                                                       : drawn.rect.grown(kSmoothMargin).common(whole);
-        // The background has no edges.
-        copy(target.layer.framebuffer(), target.smoothTooth, tooth, GL_COLOR_BUFFER_BIT);
-        smooth(target.layer.colour(), target.smoothTooth, content.grown(kSmoothMargin).common(tooth), size);
-        dirty = dirty.joined(tooth);
-        // Smoothed as a whole or not at all: what is smoothed already must not be so again.
-        Look which = look;
-        if (smoothing == Smoothing::toothAndBur) which.turbine = false;
-        smoothedBur = instruments.rect(eye, size, which, moment).common(whole);
-        smoothedStrips = instruments.strips(eye, size, which, moment, smoothedBur);
-        if (!smoothedBur.grown(kSmoothMargin).common(dirty).isEmpty() && !smoothedBur.isEmpty())
-            dirty = dirty.joined(smoothedBur.grown(kSmoothMargin)).common(whole);
-        else
-            smoothedBur = {};
-    }
     if (all) dirty = whole;
     target.instruments = solid;
     target.passing = passing;
     target.appearance = appearance;
     target.was = smoothing;
-    target.change(smoothing == Smoothing::all && !dirty.isEmpty() ? dirty.grown(kSmoothMargin).common(whole) : dirty);
+    target.change(smoothing == Smoothing::none || dirty.isEmpty() ? dirty : dirty.grown(kSmoothMargin).common(whole));
     if (dirty.isEmpty()) return;
 
-    const bool fromSmooth = inPieces(smoothing);
-    copy(target.layer.framebuffer(), target.composed, dirty,
-         static_cast<GLbitfield>(GL_DEPTH_BUFFER_BIT) | (fromSmooth ? 0u : GL_COLOR_BUFFER_BIT));
-    if (fromSmooth) copy(target.smoothTooth, target.composed, dirty, GL_COLOR_BUFFER_BIT);
+    copy(target.layer.framebuffer(), target.composed, dirty, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glViewport(0, 0, size.width, size.height);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
@@ -362,35 +329,23 @@ void Renderer::State::drawEye(EyeTarget& target, const Camera& from, const Eye& 
     scissorTo(dirty);
     context_.scissor = dirty;
     report.triangles += instruments.draw(shaders, eye, size, dirty, look, moment, lighting);
-    if (!smoothedBur.isEmpty()) {
-        smooth(target.colour, target.smooth, smoothedStrips, size);
-        for (const PixelRect& strip : smoothedStrips)
-            copy(target.smooth, target.composed, strip, GL_COLOR_BUFFER_BIT);
-        scissorTo(dirty);
-    }
     if (ghost) report.triangles += drawGhost(eye, size, ghostRect, look, lighting);
     for (Pass* pass : passes)
         report.triangles += pass->draw(context_);
 
-    if (smoothing == Smoothing::all)
-        smooth(target.colour, target.smooth, target.changed[target.number % target.changed.size()], size);
+    if (smoothing == Smoothing::drawn) smooth(target, target.changed[target.number % target.changed.size()]);
 }
 
-void Renderer::State::smooth(const gl::Texture& from, const gl::Framebuffer& to, std::span<const PixelRect> rects,
-                             const Viewport& size) {
-    if (rects.empty()) return;
-    to.bind();
-    glViewport(0, 0, size.width, size.height);
+void Renderer::State::smooth(const EyeTarget& target, const PixelRect& rect) {
+    target.smooth.bind();
     glDisable(GL_DEPTH_TEST);
     none.bind();
     shaders.smooth.use();
-    shaders.smooth.set("picture", from, 0);
-    shaders.smooth.set("pixel",
-                       gl::Vec2f(1.0f / static_cast<float>(size.width), 1.0f / static_cast<float>(size.height)));
-    for (const PixelRect& rect : rects) {
-        scissorTo(rect);
-        gl::drawFullScreen();
-    }
+    shaders.smooth.set("picture", target.colour, 0);
+    shaders.smooth.set("pixel", gl::Vec2f(1.0f / static_cast<float>(target.colour.width()),
+                                          1.0f / static_cast<float>(target.colour.height())));
+    scissorTo(rect);
+    gl::drawFullScreen();
     glEnable(GL_DEPTH_TEST);
 }
 
@@ -420,9 +375,9 @@ bool Renderer::State::drawSmall(const Camera& from, const Viewport& size, const 
     return true;
 }
 
-void Renderer::State::read(const EyeTarget& from, Image& out, FrameReport& report) const {
-    glFinish();
-    const double begin = nowMs();
+namespace {
+/// Brings `out` up to the target's picture; the part of it that changed.
+PixelRect readChanged(const EyeTarget& from, const gl::Framebuffer* picture, Image& out) {
     const int width = from.colour.width(), height = from.colour.height();
     const std::size_t bytes = 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     if (out.width != width || out.height != height || out.rgba.size() != bytes) out.picture = {};
@@ -431,15 +386,29 @@ void Renderer::State::read(const EyeTarget& from, Image& out, FrameReport& repor
     out.rgba.resize(bytes);
     const PixelRect rect = from.changedSince(out.picture);
     out.picture = {from.source, from.number};
-    if (!rect.isEmpty()) {
-        (from.was == Smoothing::all ? from.smooth : from.composed).bind();
-        glPixelStorei(GL_PACK_ALIGNMENT, 4);
-        glPixelStorei(GL_PACK_ROW_LENGTH, width);
-        glReadPixels(rect.x0, rect.y0, rect.x1 - rect.x0, rect.y1 - rect.y0, out.blueFirst ? GL_BGRA : GL_RGBA,
-                     GL_UNSIGNED_BYTE,
-                     &out.rgba[4 * (static_cast<std::size_t>(rect.y0) * static_cast<std::size_t>(width) +
-                                    static_cast<std::size_t>(rect.x0))]);
-        glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+    if (rect.isEmpty() || picture == nullptr) return rect;
+    picture->bind();
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glPixelStorei(GL_PACK_ROW_LENGTH, width);
+    glReadPixels(rect.x0, rect.y0, rect.x1 - rect.x0, rect.y1 - rect.y0, out.blueFirst ? GL_BGRA : GL_RGBA,
+                 GL_UNSIGNED_BYTE,
+                 &out.rgba[4 * (static_cast<std::size_t>(rect.y0) * static_cast<std::size_t>(width) +
+                                static_cast<std::size_t>(rect.x0))]);
+    glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+    return rect;
+}
+}  // namespace
+
+void Renderer::State::read(EyeTarget& from, Image& out, FrameReport& report) const {
+    glFinish();
+    const double begin = nowMs();
+    if (from.was == Smoothing::read) {
+        if (from.rough.blueFirst != out.blueFirst) from.rough.picture = {};
+        from.rough.blueFirst = out.blueFirst;
+        readChanged(from, &from.composed, from.rough);
+        smoothEdges(from.rough, readChanged(from, nullptr, out), out);
+    } else {
+        readChanged(from, from.was == Smoothing::drawn ? &from.smooth : &from.composed, out);
     }
     report.readMs += nowMs() - begin;
 }

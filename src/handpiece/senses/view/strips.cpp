@@ -2,7 +2,6 @@
 #include "handpiece/senses/view/strips.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace handpiece::view {
@@ -45,23 +44,6 @@ void Strips::addHull(std::span<const gl::Vec2f> points) {
         rows_[row].x0 = std::min(rows_[row].x0, wholePixel(x0 - kMarginPixels));
         rows_[row].x1 = std::max(rows_[row].x1, wholePixel(x1 + kMarginPixels) + 1);
     }
-}
-
-void Strips::addBox(const gl::Vec3f& minMm, const gl::Vec3f& maxMm, const gl::Mat4f& viewProjection,
-                    const Viewport& viewport) {
-    std::array<gl::Vec2f, 8> corners;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const gl::Vec4f c =
-            viewProjection * gl::Vec4f((i & 1) != 0 ? maxMm.x() : minMm.x(), (i & 2) != 0 ? maxMm.y() : minMm.y(),
-                                       (i & 4) != 0 ? maxMm.z() : minMm.z(), 1.0f);
-        if (c.w() < 1e-3f) {
-            addAll();
-            return;
-        }
-        corners[i] = {(0.5f * c.x() / c.w() + 0.5f) * static_cast<float>(viewport.width),
-                      (0.5f * c.y() / c.w() + 0.5f) * static_cast<float>(viewport.height)};
-    }
-    addHull(corners);
 }
 
 void Strips::addAll() {

@@ -18,9 +18,6 @@ class Strips {
     explicit Strips(const PixelRect& bounds);
     /// The hull of these points [pixels] and two more pixels around it.
     void addHull(std::span<const gl::Vec2f> points);
-    /// The hull of a box's corners, seen by `eye`; all of the bounds when it reaches behind the eye.
-    void addBox(const gl::Vec3f& minMm, const gl::Vec3f& maxMm, const gl::Mat4f& viewProjection,
-                const Viewport& viewport);
     void addAll();
     /// Those with something in them; none overlap.
     [[nodiscard]] std::vector<PixelRect> rects() const;

@@ -292,13 +292,20 @@ void OffAxisMedialSearch::search(const ExactSurface& surface, const BurFrame& fr
     if (!covered_.empty()) mostMm = std::max(mostMm, best.depthMm) + kCoveredMm;
 }
 
-/// Of a sheet that is not searched, the balls at the angle at which the tooth is nearest to what was found: R + |c - q|
-/// bounds each from above, with q the tooth's place, and the few that could be deeper are measured.
+/// Of a sheet that is not searched, the balls at the angle of the one that was found: R + |c - q| bounds each from
+/// above, with q the tooth's place, and the few that could be deeper are measured.
 bool OffAxisMedialSearch::askCovered(const ExactSurface& surface, const BurFrame& frame,
                                      BallDepth& best) const noexcept {
     if (covered_.empty() || best.triangle == geometry::kNoTriangle || best.depthMm <= 0.0) return false;
-    const Vec3 w = best.surfaceMm - frame.tip;
-    const double along = w.dot(frame.x), across = w.dot(frame.y), rho = core::hypot(along, across);
+    // The ball's meridian is the touched place's where that lies in a triangle, and right where several decide.
+    double along = 0.0, across = 0.0, rho = 0.0;
+    for (const Vec3* place : {&best.centreMm, &best.surfaceMm}) {
+        if (rho >= kOnAxisMm) break;
+        const Vec3 w = *place - frame.tip;
+        along = w.dot(frame.x);
+        across = w.dot(frame.y);
+        rho = core::hypot(along, across);
+    }
     if (rho < kOnAxisMm) return false;
     bool deeper = false;
     const Vec3 outward = (along * frame.x + across * frame.y) / rho;
@@ -314,15 +321,14 @@ bool OffAxisMedialSearch::askCovered(const ExactSurface& surface, const BurFrame
     return deeper;
 }
 
-/// c(u, a) and its slopes: dc/du = rho' e_r + z' axis, and along the arc (rho / r) e_t, where r = max(rho, kArcFloorMm)
-/// turns a length into an angle.
-OffAxisMedialSearch::Spot OffAxisMedialSearch::spotAt(const Sheet& sheet, const BurFrame& frame, double u,
-                                                      double angle) const noexcept {
-    const std::size_t last = sheet.u.size() - 1;
-    std::size_t low = 0, high = last;
+/// At a corner of the curve the slopes are those above it, or `isBelow`. c(u, a) and its slopes: dc/du = rho' e_r + z'
+/// axis, and along the arc (rho / r) e_t, where r = max(rho, kArcFloorMm) turns a length into an angle.
+OffAxisMedialSearch::Spot OffAxisMedialSearch::spotAt(const Sheet& sheet, const BurFrame& frame, double u, double angle,
+                                                      bool isBelow) const noexcept {
+    std::size_t low = 0, high = sheet.u.size() - 1;
     while (high - low > 1) {
         const std::size_t middle = (low + high) / 2;
-        (u < sheet.u[middle] ? high : low) = middle;
+        (u < sheet.u[middle] || (isBelow && u == sheet.u[middle]) ? high : low) = middle;
     }
     const double span = sheet.u[high] - sheet.u[low], scale = span > 0.0 ? 1.0 / span : 0.0,
                  t = (u - sheet.u[low]) * scale;
@@ -338,6 +344,8 @@ OffAxisMedialSearch::Spot OffAxisMedialSearch::spotAt(const Sheet& sheet, const 
     spot.alongArc = (rho / spot.arcPerRad) * around;
     spot.radius = sheet.radius[low] + t * (sheet.radius[high] - sheet.radius[low]);
     spot.radiusAlongU = (sheet.radius[high] - sheet.radius[low]) * scale;
+    spot.lowU = sheet.u[low];
+    spot.highU = sheet.u[high];
     return spot;
 }
 
@@ -494,7 +502,7 @@ bool OffAxisMedialSearch::remember(std::uint32_t triangle) noexcept {
 /// `here`: the ball there, where it is known.
 void OffAxisMedialSearch::climbOnce(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame,
                                     const Candidate& from, const BallDepth& here, std::uint32_t& seed, double reach,
-                                    bool isDeep, BallDepth& best) noexcept {
+                                    BallDepth& best) noexcept {
     const auto isNear = [&](double u, double angle) {
         return std::abs(u - from.u) < kSameTopMm &&
                sheet.maxRho * std::abs(std::remainder(angle - from.angle, 2.0 * kPi)) < kSameTopMm;
@@ -513,10 +521,7 @@ void OffAxisMedialSearch::climbOnce(const ExactSurface& surface, const Sheet& sh
         if (start.triangle == geometry::kNoTriangle) return;
         if (start.depthMm > best.depthMm) best = start;
     }
-    if (isDeep)
-        climb(surface, sheet, frame, top, start, reach, best);
-    else
-        climbShallow(surface, sheet, frame, top, start, reach, best);
+    climb(surface, sheet, frame, top, start, reach, best);
     seed = best.triangle != geometry::kNoTriangle ? best.triangle : seed;
 }
 
@@ -540,7 +545,7 @@ void OffAxisMedialSearch::measure(const ExactSurface& surface, const Sheet& shee
         const double value = isFound ? found.depthMm : best.depthMm - kRiseMm;
         if (value > best.depthMm) best = found;
         if (value + kRiseMm > best.depthMm && isFound)
-            climbOnce(surface, sheet, frame, {value, here.u, here.angle}, found, seed, kSpacingMm, false, best);
+            climbOnce(surface, sheet, frame, {value, here.u, here.angle}, found, seed, kSpacingMm, best);
         std::size_t kept = 0;
         for (std::size_t i = 0; i < unknownCount_; ++i) {
             Unknown other = unknown_[i];
@@ -583,87 +588,8 @@ void OffAxisMedialSearch::searchSheet(const ExactSurface& surface, const Sheet& 
     }
     std::sort(candidates_.begin(), end, higher);
     for (auto c = candidates_.begin(); c != end && c->value + errorMm_ > best.depthMm; ++c)
-        climbOnce(surface, sheet, frame, *c, {}, seed, kFieldWindowMm, false, best);
+        climbOnce(surface, sheet, frame, *c, {}, seed, kFieldWindowMm, best);
     measure(surface, sheet, frame, seed, best);
-}
-
-/// From a ball to the deepest one nearby where the field has led near it: each step is measured. The triangles seen so
-/// far are taken as linear; the window grows when the gain keeps the promise and shrinks when it does not: a bundle
-/// method with a trust region. docs/contact.md, "Rims".
-void OffAxisMedialSearch::climbShallow(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, Top& top,
-                                       BallDepth here, double window, BallDepth& best) const noexcept {
-    constexpr int kKnown = 8, kActive = 4;
-    std::uint32_t known[kKnown];
-    int knownCount = 0, oldest = 0;
-    const auto remember = [&](std::uint32_t triangle) {
-        for (int i = 0; i < knownCount; ++i)
-            if (known[i] == triangle) return;
-        if (knownCount < kKnown)
-            known[knownCount++] = triangle;
-        else
-            known[oldest++ % kKnown] = triangle;
-    };
-    double u = top.u, angle = top.angle;
-    Spot spot = spotAt(sheet, frame, u, angle);
-    remember(here.triangle);
-    if (spot.alongArc.isZero(1e-9)) {  // on the axis every angle is as good: look up the slope
-        const Vec3 away = (here.inside ? -1.0 : 1.0) * (spot.centre - here.surfaceMm);
-        angle = core::atan2(-away.dot(frame.y), -away.dot(frame.x));
-        spot = spotAt(sheet, frame, u, angle);
-    }
-    for (int step = 0; step < kMaxSteps && window > kFinalWindowMm; ++step) {
-        // No ball of the window is deeper by more than its diagonal and what the radius gains on the way.
-        if (here.depthMm + 4.0 * window < best.depthMm) break;
-        Support supports[kActive];
-        int count = 0;
-        const auto addSupport = [&](const Vec3& outOfTooth, double depth) {
-            const Support s{depth, spot.radiusAlongU - outOfTooth.dot(spot.alongU), -outOfTooth.dot(spot.alongArc)};
-            if (count < kActive) {
-                supports[count++] = s;
-                return;
-            }
-            // Full: the one that limits least makes room. The first is the surface that is touched and stays.
-            int most = 1;
-            for (int i = 2; i < kActive; ++i)
-                if (supports[i].value > supports[most].value) most = i;
-            if (s.value < supports[most].value) supports[most] = s;
-        };
-        const Vec3 away = spot.centre - here.surfaceMm;
-        const double distance = away.norm();
-        addSupport(distance > 1e-9 ? Vec3((here.inside ? -1.0 : 1.0) * away / distance) : surface.outward(here),
-                   here.depthMm);
-        if (here.inside)
-            for (int i = 0; i < knownCount; ++i) {
-                if (known[i] == here.triangle) continue;
-                const Vec3 q = surface.closestOn(known[i], spot.centre);
-                const Vec3 to = q - spot.centre;
-                const double d = to.norm();
-                if (d > 1e-9 && spot.radius + d < here.depthMm + 4.0 * window) addSupport(to / d, spot.radius + d);
-            }
-        double stepU = 0.0, stepArc = 0.0;
-        const double lowU = std::max(-window, -u), highU = std::min(window, sheet.u.back() - u);
-        const double hoped = solve(supports, count, lowU, highU, -window, window, stepU, stepArc) - here.depthMm;
-        if (here.depthMm + kFarBehind * std::max(hoped, kToleranceMm) < best.depthMm) break;
-        if (hoped < kToleranceMm) {
-            window *= 0.25;
-            continue;
-        }
-        const double newU = std::clamp(u + stepU, 0.0, sheet.u.back()), newAngle = angle + stepArc / spot.arcPerRad;
-        const Spot there = spotAt(sheet, frame, newU, newAngle);
-        const BallDepth found = surface.ball(there.centre, there.radius, here.triangle);
-        const double gained = found.depthMm - here.depthMm;  // nothing found: minus infinity
-        if (found.triangle != geometry::kNoTriangle) remember(found.triangle);
-        if (gained > 0.0) {
-            u = newU;
-            angle = newAngle;
-            spot = there;
-            here = found;
-        }
-        window *= gained > 0.75 * hoped ? 1.5 : gained > 0.25 * hoped ? 0.7 : 0.3;
-    }
-    if (here.depthMm > best.depthMm) best = here;
-    top.endU = u;
-    top.endAngle = angle;
 }
 
 HighestCell OffAxisMedialSearch::lower(const Sheet& sheet, const BurFrame& frame, const Vec3& place, double freeMm,
@@ -717,7 +643,7 @@ void OffAxisMedialSearch::searchDeep(const ExactSurface& surface, const Sheet& s
             top = lower(sheet, frame, found.surfaceMm, 0.0, floorMm());
             if (static_cast<double>(upper_[cell]) > best.depthMm + kCoveredMm)
                 climbOnce(surface, sheet, frame, {found.depthMm, sheet.cellU[cell], sheet.cellAngle[cell]}, found, seed,
-                          2.0 * sheet.spacingMm, true, best);
+                          2.0 * sheet.spacingMm, best);
             if (best.depthMm > before) top = lower(sheet, frame, best.surfaceMm, 0.0, floorMm());
         }
         upper_[cell] = -kFarMm;
@@ -737,10 +663,12 @@ void OffAxisMedialSearch::searchDeep(const ExactSurface& surface, const Sheet& s
 /// place q of each, with the slope R' - n . c' (n from c to q); outside the one that is nearest is followed.
 OffAxisMedialSearch::Model OffAxisMedialSearch::modelAt(const ExactSurface& surface, const Sheet& sheet,
                                                         const BurFrame& frame, const BallDepth& here, double u,
-                                                        double angle) const noexcept {
+                                                        double angle, bool isBelow) const noexcept {
     Model model;
-    const Spot spot = spotAt(sheet, frame, u, angle);
+    const Spot spot = spotAt(sheet, frame, u, angle, isBelow);
     model.arcPerRad = spot.arcPerRad;
+    model.lowU = spot.lowU;
+    model.highU = spot.highU;
     const auto add = [&](std::uint32_t triangle, double sign) {
         const Vec3 to = surface.closestOn(triangle, spot.centre) - spot.centre;
         const double distance = to.norm();
@@ -779,19 +707,27 @@ void OffAxisMedialSearch::climb(const ExactSurface& surface, const Sheet& sheet,
         Model model = modelAt(surface, sheet, frame, here, u, angle);
         double window = reach;
         for (int look = 0; look < kMaxLooks && window > kFinalWindowMm; ++look) {
-            double stepU = 0.0, stepArc = 0.0;
-            // No farther than the triangles seen can be trusted to tell.
-            const double goneU = newU - u, goneArc = model.arcPerRad * (newAngle - angle);
-            const double lowU = std::max({-window, -newU, -reach - goneU}),
-                         highU = std::min({window, sheet.u.back() - newU, reach - goneU});
-            const double before = model.supports[0].value;
-            const double hoped =
-                solve(model.supports.data(), model.count, lowU, highU, std::max(-window, -reach - goneArc),
-                      std::min(window, reach - goneArc), stepU, stepArc) -
-                before;
+            // No farther than the triangles seen can be trusted to tell, nor past a corner of the curve.
+            const double before = model.supports[0].value, goneU = newU - u;
+            double hoped = 0.0, nextU = newU, nextAngle = newAngle;
+            const auto offer = [&](const Model& m) {
+                const double lowU = std::max({-window, m.lowU - newU, -reach - goneU}),
+                             highU = std::min({window, m.highU - newU, reach - goneU}),
+                             goneArc = m.arcPerRad * (newAngle - angle);
+                double stepU = 0.0, stepArc = 0.0;
+                const double gain = solve(m.supports.data(), m.count, lowU, highU, std::max(-window, -reach - goneArc),
+                                          std::min(window, reach - goneArc), stepU, stepArc) -
+                                    before;
+                if (gain <= hoped) return;
+                hoped = gain;
+                nextU = newU + stepU;
+                for (const double end : {m.lowU, m.highU})
+                    if (std::abs(nextU - end) < kOnAxisMm) nextU = end;
+                nextAngle = newAngle + stepArc / m.arcPerRad;
+            };
+            offer(model);
+            if (newU == model.lowU && newU > 0.0) offer(modelAt(surface, sheet, frame, here, newU, newAngle, true));
             if (hoped < kToleranceMm) break;
-            const double nextU = std::clamp(newU + stepU, 0.0, sheet.u.back()),
-                         nextAngle = newAngle + stepArc / model.arcPerRad;
             const Model next = modelAt(surface, sheet, frame, here, nextU, nextAngle);
             const double gained = next.supports[0].value - before;
             if (gained > 0.0) {

@@ -56,6 +56,7 @@ class OffAxisMedialSearch {
     struct Spot {
         core::Vec3 centre, alongU, alongArc;
         double radius, radiusAlongU, arcPerRad;
+        double lowU, highU;  ///< of the straight piece of the curve
     };
     /// A top found in the field, or a ball to be measured exactly.
     struct Candidate {
@@ -76,7 +77,7 @@ class OffAxisMedialSearch {
     struct Model {
         std::array<Support, kMaxKnown> supports;
         int count = 0;
-        double arcPerRad = 1.0;
+        double arcPerRad = 1.0, lowU = 0.0, highU = 0.0;
     };
     /// Where a climb began and ended.
     struct Top {
@@ -91,16 +92,15 @@ class OffAxisMedialSearch {
     void measure(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, std::uint32_t& seed,
                  BallDepth& best) noexcept;
     void climbOnce(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, const Candidate& from,
-                   const BallDepth& here, std::uint32_t& seed, double reach, bool isDeep, BallDepth& best) noexcept;
-    [[nodiscard]] Spot spotAt(const Sheet& sheet, const BurFrame& frame, double u, double angle) const noexcept;
+                   const BallDepth& here, std::uint32_t& seed, double reach, BallDepth& best) noexcept;
+    [[nodiscard]] Spot spotAt(const Sheet& sheet, const BurFrame& frame, double u, double angle,
+                              bool isBelow = false) const noexcept;
     void searchSheet(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, std::uint32_t seed,
                      BallDepth& best, double& mostMm) noexcept;
     void climb(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, Top& top, BallDepth here,
                double reach, BallDepth& best) noexcept;
-    void climbShallow(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, Top& top, BallDepth here,
-                      double window, BallDepth& best) const noexcept;
     [[nodiscard]] Model modelAt(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame,
-                                const BallDepth& here, double u, double angle) const noexcept;
+                                const BallDepth& here, double u, double angle, bool isBelow = false) const noexcept;
     /// False when it was known.
     bool remember(std::uint32_t triangle) noexcept;
     void searchDeep(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, std::uint32_t seed,

@@ -152,6 +152,57 @@ TEST(SurfaceUpdate, GivesTheSameMeshesAfterEveryTickOfARealCut) {
     }
 }
 
+/// What a ball takes away of what `mirror` holds.
+tooth::StateDelta ballCut(const tooth::ToothMirror& mirror, const BrickGrid& grid, const Vec3& at, double radiusMm) {
+    tooth::StateDelta cut;
+    std::array<float, field::kBrickValues> scratch;
+    for (std::uint32_t dense = 0; dense < grid.count(); ++dense) {
+        const float* values = mirror.values(dense, scratch.data());
+        tooth::StateDelta::Brick brick{dense, false, {}};
+        for (int node = 0; node < field::kBrickValues; ++node) {
+            const int step[3] = {node % 9, node / 9 % 9, node / 81};
+            Vec3 p;
+            for (int k = 0; k < 3; ++k)
+                p[k] = grid.originMm[k] + grid.voxelMm * (8 * grid.at(dense)[static_cast<std::size_t>(k)] + step[k]);
+            const auto i = static_cast<std::size_t>(node);
+            brick.values[i] = std::max(values[i], static_cast<float>(radiusMm - (p - at).norm()));
+        }
+        if (!std::equal(brick.values.begin(), brick.values.end(), values)) cut.bricks.push_back(brick);
+    }
+    return cut;
+}
+
+TEST(SurfaceUpdate, GivesTheSameMeshesThroughUndoAndRedo) {
+    std::mt19937_64 random(test::seed());
+    const Cutting cutting(tooth::test::ballTooth(0.4, 0.25, 0.05));
+    tooth::ToothMirror mirror(cutting.base);
+    const MirrorSource source(mirror);
+    Surface kept(source, &cutting.base->tissues);
+    kept.build();
+    std::vector<tooth::StateDelta> states = {mirror.state({})};  // one of every stroke
+    Vec3 at = Vec3::UnitZ();
+    double radius = 0.2;
+    std::size_t changed = 0;
+    for (int i = 0; i < 2000; ++i) {
+        if (i % 8 == 0) {  // another stroke: from any state before it
+            const std::size_t back = random() % states.size();
+            mirror.apply(tooth::changeBetween(states.back(), states[back]));
+            states.resize(back + 1);
+            at = test::uniform(random, 0.3, 0.6) * test::randomDirection(random);
+            radius = test::uniform(random, 0.05, 0.25);
+        } else {
+            at += test::uniform(random, 0.0, 0.02) * test::randomDirection(random);
+            mirror.apply(ballCut(mirror, source.grid(), at, radius));
+            if (i % 8 == 7) states.push_back(mirror.state({}));
+        }
+        changed += kept.update(mirror.takeTouched()).size();
+        Surface fresh(source, &cutting.base->tissues);
+        fresh.build();
+        ASSERT_TRUE(isSame(kept, fresh)) << "step " << i;
+    }
+    EXPECT_GT(changed, 2000u);
+}
+
 TEST(SurfaceUpdate, SnapshotsThatArriveOneByOneEndInTheSameSurface) {
     std::mt19937_64 random(test::seed());
     Cutting cutting;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "handpiece/senses/surface/cell_cases.h"
@@ -141,7 +142,7 @@ class Sampler {
 
   private:
     void takeLayers(int axis, bool up, const float* from, float scale) {
-        const int a = axis, u = (axis + 1) % 3, w = (axis + 2) % 3;
+        const int a = axis, u = axis == 0 ? 1 : 0, w = axis == 2 ? 1 : 2;
         constexpr int kNodeStride[3] = {1, kBrickNodes, kBrickNodes * kBrickNodes};
         const int origin = index(0, 0, 0);
         for (int layer = 1; layer <= kApron; ++layer) {
@@ -301,40 +302,41 @@ class Contourer {
                  const CellMask* dirty) {
         alignas(32) float scratch[field::kBrickValues];
         const float* own = source.values(dense, scratch);
-        unsigned any = 0, all = 0x1ff;
-        for (std::size_t row = 0; row < 81; ++row) {
-            const float* v = own + kBrickNodes * row;
-            unsigned bits = 0;
-            for (unsigned x = 0; x < 9; ++x)
-                bits |= static_cast<unsigned>(v[x] < 0.0f) << x;
-            out.rows[row] = static_cast<std::uint16_t>(bits);
-            any |= bits;
-            all &= bits;
-        }
-        if (any == 0 || all == 0x1ff) return false;
-        // Cells that the surface passes through, and the sides that those to be made anew are near.
-        unsigned fresh = 0, sides = 0;
+        // Below zero, asked of the bits: what compares floats is not made eight at a time.
+        std::array<bool, field::kBrickValues> isInside;
+        for (std::size_t node = 0; node < isInside.size(); ++node)
+            isInside[node] = std::bit_cast<std::uint32_t>(own[node]) > 0x80000000u;
+        out.rows = maskOf(isInside);
+        // Cells that the surface passes through, and the sides that they and those to be made anew are near.
+        unsigned some = 0, fresh = 0, reach = 0, sides = 0;
         std::array<std::uint8_t, 64> active;
         for (int z = 0; z < 8; ++z)
             for (int y = 0; y < 8; ++y) {
                 const unsigned r0 = row(out, y, z), r1 = row(out, y + 1, z), r2 = row(out, y, z + 1),
                                r3 = row(out, y + 1, z + 1);
-                const unsigned some = r0 | r1 | r2 | r3, every = r0 & r1 & r2 & r3;
-                const unsigned bits = (some | some >> 1) & ~(every & every >> 1) & 0xff;
+                const unsigned any = r0 | r1 | r2 | r3, every = r0 & r1 & r2 & r3;
+                const unsigned bits = (any | any >> 1) & ~(every & every >> 1) & 0xff;
                 const auto at = static_cast<std::size_t>(y + 8 * z);
                 active[at] = static_cast<std::uint8_t>(bits);
+                if (bits == 0) continue;
+                const unsigned near = (y < kApron ? 4u : 0u) | (y >= 8 - kApron ? 8u : 0u) | (z < kApron ? 16u : 0u) |
+                                      (z >= 8 - kApron ? 32u : 0u);
+                some |= bits;
+                reach |= near;
                 const unsigned made = before == nullptr ? bits : bits & (*dirty)[at];
                 if (made == 0) continue;
                 fresh |= made;
-                sides |= (y < kApron ? 4u : 0u) | (y >= 8 - kApron ? 8u : 0u) | (z < kApron ? 16u : 0u) |
-                         (z >= 8 - kApron ? 32u : 0u);
+                sides |= near;
             }
-        sides |= ((fresh & 0x03) != 0 ? 1u : 0u) | ((fresh & 0xc0) != 0 ? 2u : 0u);
-        sampler_.gather(source, dense, own, sides);
+        if (some == 0) return false;
+        const auto alongX = [](unsigned bits) {
+            return ((bits & 0x03) != 0 ? 1u : 0u) | ((bits & 0xc0) != 0 ? 2u : 0u);
+        };
+        out.reach = static_cast<std::uint8_t>(reach | alongX(some));
+        sampler_.gather(source, dense, own, sides | alongX(fresh));
         out.cases.fill(0);
         out.kinked.fill(0);
         out.vertices.clear();
-        out.reach = 0;
         planeCount_ = 0;
         for (auto& axis : planeOf_)
             axis.fill(kNone);
@@ -345,10 +347,10 @@ class Contourer {
         voxelMm_ = grid.voxelMm;
         for (int z = 0; z < 8; ++z)
             for (int y = 0; y < 8; ++y) {
-                const unsigned r0 = row(out, y, z), r1 = row(out, y + 1, z), r2 = row(out, y, z + 1),
-                               r3 = row(out, y + 1, z + 1);
                 unsigned left = active[static_cast<std::size_t>(y + 8 * z)];
                 if (left == 0) continue;
+                const unsigned r0 = row(out, y, z), r1 = row(out, y + 1, z), r2 = row(out, y, z + 1),
+                               r3 = row(out, y + 1, z + 1);
                 const unsigned keeps =
                     before == nullptr ? 0u : ~unsigned{(*dirty)[static_cast<std::size_t>(y + 8 * z)]};
                 for (; left != 0; left &= left - 1) {
@@ -361,7 +363,7 @@ class Contourer {
                     addCell(out, x, y, z, bits);
                 }
             }
-        return !out.vertices.empty();
+        return true;
     }
 
   private:
@@ -408,14 +410,7 @@ class Contourer {
         return joined;
     }
 
-    static void noteReach(BrickContour& out, const int (&at)[3]) {
-        for (int k = 0; k < 3; ++k)
-            out.reach = static_cast<std::uint8_t>(out.reach | (at[k] < kApron ? 1 << (2 * k) : 0) |
-                                                  (at[k] >= 8 - kApron ? 2 << (2 * k) : 0));
-    }
-
     void keepCell(BrickContour& out, const BrickContour& before, int x, int y, int z) const {
-        noteReach(out, {x, y, z});
         const auto number = static_cast<std::size_t>(x + 8 * (y + 8 * z));
         out.cases[number] = before.cases[number];
         out.kinked[number >> 3] =
@@ -429,7 +424,6 @@ class Contourer {
         const int at[3] = {x, y, z};
         if (ambiguous_[bits] != 0) bits |= joinedFaces(at, ambiguous_[bits]) << 8;
         const CellCase& cell = cases_[bits];
-        noteReach(out, at);
         const auto number = static_cast<std::uint16_t>(x + 8 * (y + 8 * z));
         out.cases[number] = static_cast<std::uint16_t>(bits);
         out.first[number] = static_cast<std::uint16_t>(out.vertices.size());
@@ -561,52 +555,69 @@ class Contourer {
 
 }  // namespace
 
+NodeMask maskOf(const std::array<bool, field::kBrickValues>& nodes) {
+    NodeMask mask;
+    for (std::size_t row = 0; row < mask.size(); ++row) {
+        const bool* node = nodes.data() + kBrickNodes * row;
+        std::uint64_t eight;
+        std::memcpy(&eight, node, sizeof(eight));
+        // Bit 8 k goes to bit 56 + k, and no two products fall on one bit.
+        mask[row] = static_cast<std::uint16_t>(eight * 0x0102040810204080u >> 56 | unsigned{node[8]} << 8);
+    }
+    return mask;
+}
+
 CellMask cellsThatAsk(const NodeMask* own, const std::array<const NodeMask*, 6>& beside, const CellMask* kinked) {
     // The nodes a cell looks at: its own, and from each of them one on along every axis, or two where a kink is. Bit
     // x + kApron of a row.
     constexpr int kNodes = kBrickNodes, kCells = kNodes - 1;
+    constexpr auto rowAt = [](int y, int z) { return static_cast<std::size_t>(y + kApron + kSide * (z + kApron)); };
     std::array<std::uint16_t, kSide * kSide> changed{};
-    const auto row = [&](int y, int z) -> std::uint16_t& {
-        return changed[static_cast<std::size_t>(y + kApron + kSide * (z + kApron))];
+    struct Rows {
+        int y, z, countY, countZ;
     };
-    const auto of = [](const NodeMask& mask, int y, int z) -> unsigned {
-        return mask[static_cast<std::size_t>(y + kNodes * z)];
-    };
-    const auto put = [&](int y, int z, unsigned bits) { row(y, z) = static_cast<std::uint16_t>(row(y, z) | bits); };
-    for (int q = 0; q < kNodes; ++q)
-        for (int p = 0; p < kNodes; ++p) {
-            if (own != nullptr) put(p, q, of(*own, p, q) << kApron);
-            // Two layers beside: nodes kCells - 2 and kCells - 1 of the brick below, 1 and 2 of the one above.
-            if (beside[0] != nullptr) put(p, q, of(*beside[0], p, q) >> (kCells - kApron) & 3);
-            if (beside[1] != nullptr) put(p, q, (of(*beside[1], p, q) >> 1 & 3) << (kNodes + kApron));
-            for (int layer = 1; layer <= kApron; ++layer) {
-                if (beside[2] != nullptr) put(-layer, q, of(*beside[2], kCells - layer, q) << kApron);
-                if (beside[3] != nullptr) put(kCells + layer, q, of(*beside[3], layer, q) << kApron);
-                if (beside[4] != nullptr) put(q, -layer, of(*beside[4], q, kCells - layer) << kApron);
-                if (beside[5] != nullptr) put(q, kCells + layer, of(*beside[5], q, layer) << kApron);
+    const auto take = [&](const NodeMask* mask, const Rows& rows, int toY, int toZ, const auto& bitsOf) {
+        if (mask == nullptr) return;
+        for (int z = 0; z < rows.countZ; ++z)
+            for (int y = 0; y < rows.countY; ++y) {
+                const unsigned row = (*mask)[static_cast<std::size_t>(rows.y + y + kNodes * (rows.z + z))];
+                std::uint16_t& to = changed[rowAt(toY + y, toZ + z)];
+                to = static_cast<std::uint16_t>(to | bitsOf(row));
             }
-        }
-    // Bit x of row y + 9 z: by a cell that has this node; `far`: if it has a kink.
-    std::array<unsigned, kNodes * kNodes> near, far;
-    for (int z = 0; z < kNodes; ++z)
-        for (int y = 0; y < kNodes; ++y) {
-            const unsigned here = row(y, z);
-            const unsigned one =
-                here | here << 1 | here >> 1 | row(y - 1, z) | row(y + 1, z) | row(y, z - 1) | row(y, z + 1);
-            const unsigned two = here << 2 | here >> 2 | row(y - 2, z) | row(y + 2, z) | row(y, z - 2) | row(y, z + 2);
-            near[static_cast<std::size_t>(y + kNodes * z)] = one >> kApron;
-            far[static_cast<std::size_t>(y + kNodes * z)] = (one | two) >> kApron;
-        }
+    };
+    const auto whole = [](unsigned row) { return row << kApron; };
+    // Two layers beside: nodes kCells - 2 and kCells - 1 of the brick below, 1 and 2 of the one above.
+    constexpr int kLow = kCells - kApron;
+    take(own, {0, 0, kNodes, kNodes}, 0, 0, whole);
+    take(beside[0], {0, 0, kNodes, kNodes}, 0, 0, [](unsigned row) { return row >> kLow & 3; });
+    take(beside[1], {0, 0, kNodes, kNodes}, 0, 0, [](unsigned row) { return (row >> 1 & 3) << (kNodes + kApron); });
+    take(beside[2], {kLow, 0, kApron, kNodes}, -kApron, 0, whole);
+    take(beside[3], {1, 0, kApron, kNodes}, kNodes, 0, whole);
+    take(beside[4], {0, kLow, kNodes, kApron}, 0, -kApron, whole);
+    take(beside[5], {0, 1, kNodes, kApron}, 0, kNodes, whole);
+    // By a cell that has this node; `far`: if it has a kink. In one run over the rows, with those between that nobody
+    // asks for, so that the compiler takes eight at a time.
+    constexpr std::size_t kBegin = rowAt(0, 0), kEnd = rowAt(kCells, kCells) + 1;
+    std::array<std::uint16_t, kSide * kSide> near, far;
+    for (std::size_t i = kBegin; i < kEnd; ++i) {
+        const unsigned here = changed[i];
+        const unsigned one =
+            here | here << 1 | here >> 1 | changed[i - 1] | changed[i + 1] | changed[i - kSide] | changed[i + kSide];
+        const unsigned two =
+            here << 2 | here >> 2 | changed[i - 2] | changed[i + 2] | changed[i - 2 * kSide] | changed[i + 2 * kSide];
+        near[i] = static_cast<std::uint16_t>(one);
+        far[i] = static_cast<std::uint16_t>(one | two);
+    }
     CellMask cells;
-    for (std::size_t z = 0; z < 8; ++z)
-        for (std::size_t y = 0; y < 8; ++y) {
-            const std::size_t at = y + kNodes * z;
-            const auto cellsOf = [&](const auto& rows) {
-                const unsigned bits = rows[at] | rows[at + 1] | rows[at + kNodes] | rows[at + kNodes + 1];
-                return bits | bits >> 1;
+    for (int z = 0; z < kCells; ++z)
+        for (int y = 0; y < kCells; ++y) {
+            const auto cellsOf = [&, at = rowAt(y, z)](const auto& rows) {
+                const unsigned bits = rows[at] | rows[at + 1] | rows[at + kSide] | rows[at + kSide + 1];
+                return (bits | bits >> 1) >> kApron;
             };
-            const unsigned hasKink = kinked != nullptr ? (*kinked)[y + 8 * z] : 0u;
-            cells[y + 8 * z] = static_cast<std::uint8_t>(cellsOf(near) | (cellsOf(far) & hasKink));
+            const auto cell = static_cast<std::size_t>(y + kCells * z);
+            const unsigned hasKink = kinked != nullptr ? (*kinked)[cell] : 0u;
+            cells[cell] = static_cast<std::uint8_t>(cellsOf(near) | (cellsOf(far) & hasKink));
         }
     return cells;
 }
@@ -619,20 +630,21 @@ bool hasActive(const CellMask& mask, const BrickContour& contour) {
 std::uint8_t whoSees(const BrickContour& before, const BrickContour& now) {
     if (before.cases == now.cases && before.rows == now.rows && before.vertices == now.vertices) return 0;
     std::uint8_t seen = 1;
-    for (std::size_t cell = 0; cell < 512; ++cell) {
-        const std::uint16_t bits = now.cases[cell];
-        if ((bits | before.cases[cell]) == 0) continue;
-        const auto sides = static_cast<std::uint8_t>(((cell & 7) == 7 ? 1 : 0) | ((cell >> 3 & 7) == 7 ? 2 : 0) |
-                                                     (cell >> 6 == 7 ? 4 : 0));
-        if (sides == 0) continue;
-        const bool isSame =
-            bits == before.cases[cell] && std::equal(now.vertices.begin() + now.first[cell],
-                                                     now.vertices.begin() + now.first[cell] + cellCases()[bits].sheets,
-                                                     before.vertices.begin() + before.first[cell]);
-        if (isSame) continue;
-        for (unsigned slot = 1; slot < 8; ++slot)
-            if ((slot & sides) == slot) seen = static_cast<std::uint8_t>(seen | 1u << slot);
-    }
+    for (std::size_t row = 0; row < 64; ++row)
+        // Cells on the sides above alone: of most rows the last.
+        for (std::size_t cell = 8 * row + ((row & 7) == 7 || row >= 56 ? 0 : 7); cell < 8 * row + 8; ++cell) {
+            const std::uint16_t bits = now.cases[cell];
+            if ((bits | before.cases[cell]) == 0) continue;
+            const bool isSame = bits == before.cases[cell] &&
+                                std::equal(now.vertices.begin() + now.first[cell],
+                                           now.vertices.begin() + now.first[cell] + cellCases()[bits].sheets,
+                                           before.vertices.begin() + before.first[cell]);
+            if (isSame) continue;
+            const auto sides =
+                static_cast<std::uint8_t>(((cell & 7) == 7 ? 1 : 0) | ((row & 7) == 7 ? 2 : 0) | (row >= 56 ? 4 : 0));
+            for (unsigned slot = 1; slot < 8; ++slot)
+                if ((slot & sides) == slot) seen = static_cast<std::uint8_t>(seen | 1u << slot);
+        }
     return seen;
 }
 

@@ -38,6 +38,8 @@ struct BrickContour {
     CellMask kinked;         ///< cells that looked two nodes on from their own; the others looked one on
 };
 
+/// Those nodes of a brick that are set, in the order of its values.
+[[nodiscard]] NodeMask maskOf(const std::array<bool, field::kBrickValues>& nodes);
 /// Cells that ask for the value of a node that has changed: of those changed in the brick itself, and in the six beside
 /// it (2 k: below along axis k); null where none has. `kinked`: of the brick's contour; null where it has none.
 [[nodiscard]] CellMask cellsThatAsk(const NodeMask* own, const std::array<const NodeMask*, 6>& beside,

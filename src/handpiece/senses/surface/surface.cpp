@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -74,21 +75,17 @@ Surface::Change Surface::changeOf(std::uint32_t dense) {
         change.nodes.fill(0x1ff);
         change.isAny = change.hasTurned = true;
     } else {
-        constexpr std::size_t kRow = field::kBrickNodes;
-        for (std::size_t row = 0; row < change.nodes.size(); ++row) {
-            const float *from = seen->data() + kRow * row, *to = now + kRow * row;
-            if (std::memcmp(from, to, sizeof(float) * kRow) == 0) continue;
-            change.isAny = true;
-            unsigned bits = 0;
-            bool hasTurned = false;
-            for (std::size_t x = 0; x < kRow; ++x) {
-                bits |= static_cast<unsigned>(from[x] != to[x]) << x;
-                hasTurned |= (from[x] < 0.0f) != (to[x] < 0.0f);
-            }
-            change.nodes[row] = static_cast<std::uint16_t>(bits);
-            change.hasTurned |= hasTurned;
+        if (std::memcmp(seen->data(), now, sizeof(*seen)) == 0) return change;
+        std::array<bool, field::kBrickValues> differs;
+        std::uint32_t flipped = 0;
+        for (std::size_t node = 0; node < differs.size(); ++node) {
+            const auto from = std::bit_cast<std::uint32_t>((*seen)[node]), to = std::bit_cast<std::uint32_t>(now[node]);
+            differs[node] = from != to;
+            flipped |= from ^ to;
         }
-        if (!change.isAny) return change;
+        change.nodes = maskOf(differs);
+        change.isAny = true;
+        change.hasTurned = flipped >> 31 != 0;
     }
     std::copy(now, now + field::kBrickValues, seen->begin());
     return change;

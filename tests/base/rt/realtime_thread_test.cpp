@@ -6,6 +6,10 @@
 #include <sys/resource.h>
 
 #include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
 #include <thread>
 
 #include "handpiece/base/rt/clock.h"
@@ -82,6 +86,48 @@ TEST(RealtimeThread, whatRunsWithoutAPauseLosesRealTimeAndNothingElse) {
     ASSERT_EQ(getrlimit(RLIMIT_RTTIME, &limit), 0);
     EXPECT_EQ(limit.rlim_cur, 100'000u);
     stop = true;
+}
+
+TEST(RealtimeThread, whatWasTakenBackIsAskedForAgain) {
+    std::atomic<bool> stop{false};
+    RealtimeThread thread([&] {
+        while (hasRealTime() && !stop) {
+        }
+        while (!stop)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    });
+    if (!thread.grant().realTime()) {
+        stop = true;
+        GTEST_SKIP() << thread.grant().line();
+    }
+    const std::string first = config::words()(thread.grant().told);
+    bool wasLost = false;
+    for (int i = 0; i < 1000 && !(wasLost && thread.grant().realTime()); ++i) {
+        if (!thread.keepRealTime().realTime()) wasLost = true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_TRUE(wasLost);
+    EXPECT_TRUE(thread.grant().realTime()) << thread.grant().line();
+    EXPECT_FALSE(thread.lostRealTime());
+    EXPECT_EQ(thread.grant().timesTakenBack, 1);
+    EXPECT_EQ(thread.grant().text(), first + "; times it was taken back: 1");
+    stop = true;
+}
+
+TEST(RealtimeThreadDeathTest, asksForNothingUnderALimitThatWouldEndTheProgram) {
+    const auto run = [] {
+        const rlimit hard{50'000, 50'000};
+        if (setrlimit(RLIMIT_RTTIME, &hard) != 0) std::exit(2);
+        RealtimeThread thread([] {
+            const std::int64_t end = monotonicNs() + 200'000'000;
+            while (monotonicNs() < end) {
+            }
+        });
+        thread.join();
+        std::fputs(thread.grant().line().c_str(), stderr);
+        std::exit(thread.grant().realTime() ? 1 : 0);
+    };
+    EXPECT_EXIT(run(), testing::ExitedWithCode(0), "RLIMIT_RTTIME is 50000 us");
 }
 
 }  // namespace

@@ -168,7 +168,7 @@ void LiveBox::setTick(const simulation::LiveSessionStatus& status) {
                        .arg(locale.toString(status.latenessUs.p99, 'f', 0),
                             locale.toString(qulonglong{status.lateTicks}),
                             locale.toString(qulonglong{status.missedPeriods})));
-    scheduling_->setText(QString::fromStdString(config::words()(status.scheduling.told)));
+    scheduling_->setText(QString::fromStdString(status.scheduling.text()));
 }
 
 void LiveBox::clear() {

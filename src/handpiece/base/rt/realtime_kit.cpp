@@ -5,8 +5,6 @@
 #include <dbus/dbus.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -149,7 +147,7 @@ KitAnswer ask(std::uint64_t thread, int below, steady_clock::time_point end) {
 
 }  // namespace
 
-KitAnswer askRealtimeKit(int below, milliseconds patience) {
+KitAnswer askRealtimeKit(int thread, int below, milliseconds patience) {
     static std::atomic<bool> stands{false};
     const KitAnswer none{0, 0, fmt::format("no answer within {} ms", patience.count())};
     if (stands.load(std::memory_order_relaxed)) return none;
@@ -158,8 +156,7 @@ KitAnswer askRealtimeKit(int below, milliseconds patience) {
     std::future<KitAnswer> future = promise.get_future();
     const auto end = steady_clock::now() + patience;
     try {
-        std::thread([below, end, promise = std::move(promise),
-                     thread = static_cast<std::uint64_t>(syscall(SYS_gettid))]() mutable {
+        std::thread([below, end, promise = std::move(promise), thread = static_cast<std::uint64_t>(thread)]() mutable {
             try {
                 promise.set_value(ask(thread, below, end));
             } catch (...) {
@@ -182,7 +179,7 @@ KitAnswer askRealtimeKit(int below, milliseconds patience) {
 
 #else
 
-KitAnswer askRealtimeKit(int /*below*/, std::chrono::milliseconds /*patience*/) {
+KitAnswer askRealtimeKit(int /*thread*/, int /*below*/, std::chrono::milliseconds /*patience*/) {
     return {0, 0, "this program was built without D-Bus"};
 }
 

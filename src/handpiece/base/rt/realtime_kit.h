@@ -16,9 +16,9 @@ struct KitAnswer {
     std::string refusal;  ///< why there is no real time; one line
 };
 
-/// Asks for real time for the calling thread, else for a high priority; `below` how far under the highest priority that
-/// it gives. Takes `patience` at most, whatever the bus does; after an answer that did not come, later calls do not
-/// wait again. Lowers the process's RLIMIT_RTTIME to what RealtimeKit demands.
-[[nodiscard]] KitAnswer askRealtimeKit(int below, std::chrono::milliseconds patience);
+/// Asks for real time for a thread of this process (the kernel's number), else for a high priority; `below` how far
+/// under the highest priority that it gives. Takes `patience` at most, whatever the bus does; after an answer that did
+/// not come, later calls do not wait again. Lowers the process's RLIMIT_RTTIME to what RealtimeKit demands.
+[[nodiscard]] KitAnswer askRealtimeKit(int thread, int below, std::chrono::milliseconds patience);
 
 }  // namespace handpiece::rt

@@ -2,7 +2,6 @@
 #include "handpiece/base/rt/realtime_thread.h"
 
 #include <fmt/format.h>
-#include <pthread.h>
 #include <sched.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -17,6 +16,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <future>
 #include <string_view>
 #include <system_error>
@@ -26,6 +26,7 @@
 #endif
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/rt/clock.h"
 #include "handpiece/base/rt/realtime_kit.h"
 
 namespace handpiece::rt {
@@ -33,6 +34,7 @@ namespace {
 
 constexpr int kHighest = 85;  // that any thread asks for
 constexpr std::chrono::milliseconds kPatience{1000};
+constexpr std::array<std::int64_t, 3> kAgainAfterS{1, 30, 330};
 constexpr std::size_t kStackBytes = 256 << 10;  // deeper than any tick goes
 
 std::string refusal(int code) {
@@ -48,15 +50,23 @@ std::string refusal(int code) {
 
 #ifdef __linux__
 constexpr rlim_t kMostUs = 100'000;  // that a real-time thread runs without a pause
+constexpr rlim_t kLeastUs = 40'000;  // twice what PeriodicClock runs without one
+
+/// SIGXCPU comes before the kernel ends the program, and not before a tick that is only long has rested.
+bool limitRuns(rlimit limit) noexcept {
+    limit.rlim_cur = std::min(kMostUs, limit.rlim_max / 2);
+    return setrlimit(RLIMIT_RTTIME, &limit) == 0;
+}
 
 bool isRealTime(int policy) noexcept {
     policy &= ~SCHED_RESET_ON_FORK;
     return policy == SCHED_FIFO || policy == SCHED_RR;
 }
 
-/// The normal scheduler, at the nice level that the thread has, with the shortest slice that Linux knows: from 6.12 on
-/// a thread that wakes up goes before those of longer slices; kernels before that do not look at it.
-void takeShortSlice() noexcept {
+/// The normal scheduler for a thread (0: this one), at the nice level that it has, with the shortest slice that Linux
+/// knows: from 6.12 on a thread that wakes up goes before those of longer slices; kernels before that do not look at
+/// it.
+void takeShortSlice(int thread) noexcept {
     struct {  // sched_attr, which glibc does not declare
         std::uint32_t size, policy;
         std::uint64_t flags;
@@ -65,12 +75,12 @@ void takeShortSlice() noexcept {
         std::uint64_t runtimeNs, deadlineNs, periodNs;
     } attributes{};
     // What RealtimeKit marked stays so: only an administrator may take the mark off.
-    const int policy = sched_getscheduler(0);
+    const int policy = sched_getscheduler(thread);
     attributes.size = sizeof attributes;
     attributes.flags = policy >= 0 && (policy & SCHED_RESET_ON_FORK) != 0 ? 1 : 0;
-    attributes.nice = isRealTime(policy) ? 0 : getpriority(PRIO_PROCESS, 0);
+    attributes.nice = isRealTime(policy) ? 0 : getpriority(PRIO_PROCESS, static_cast<id_t>(thread));
     attributes.runtimeNs = 100'000;
-    (void)syscall(SYS_sched_setattr, 0, &attributes, 0);
+    (void)syscall(SYS_sched_setattr, thread, &attributes, 0);
 }
 
 /// SIGXCPU comes to the thread that ran too long; what RealtimeKit demands would end the program a tenth of a second
@@ -79,12 +89,9 @@ void onRunaway(int /*signal*/) {
     const int saved = errno;
     rlimit limit{};
     if (isRealTime(sched_getscheduler(0))) {
-        takeShortSlice();
+        takeShortSlice(0);
         // The kernel has put the limit off by a second: back, for the other threads.
-        if (getrlimit(RLIMIT_RTTIME, &limit) == 0) {
-            limit.rlim_cur = std::min(kMostUs, limit.rlim_max);
-            (void)setrlimit(RLIMIT_RTTIME, &limit);
-        }
+        if (getrlimit(RLIMIT_RTTIME, &limit) == 0) (void)limitRuns(limit);
     } else if (getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
         (void)signal(SIGXCPU, SIG_DFL);  // the other reason for this signal: its owner wants the program to end
         (void)raise(SIGXCPU);
@@ -101,12 +108,20 @@ bool watchRunaways() {
         now.sa_flags = SA_RESTART;
         rlimit limit{};
         if (sigaction(SIGXCPU, &now, nullptr) != 0 || getrlimit(RLIMIT_RTTIME, &limit) != 0) return false;
-        limit.rlim_cur = std::min({kMostUs, limit.rlim_cur, limit.rlim_max});
-        return setrlimit(RLIMIT_RTTIME, &limit) == 0;
+        return limitRuns(limit);
     }();
     return watched;
 }
 #endif
+
+/// The kernel's number of it.
+int thisThread() noexcept {
+#ifdef __linux__
+    return static_cast<int>(syscall(SYS_gettid));
+#else
+    return 0;
+#endif
+}
 
 /// "fifo", "rtkit", "plain": nothing better than that; else all.
 bool mayAsk(Scheduling scheduling) {
@@ -116,26 +131,32 @@ bool mayAsk(Scheduling scheduling) {
     return scheduling == Scheduling::fifo ? limit != "rtkit" : limit != "fifo";
 }
 
-void askForPriority(SchedulingGrant& grant, int priority) {
+/// For a thread of this process: its own number, so that another one may ask for it.
+void askForPriority(SchedulingGrant& grant, int thread, int priority) {
     grant.scheduling = Scheduling::normal;
     std::string why = "HANDPIECE_SCHEDULING";
 #ifdef __linux__
     const bool watched = watchRunaways();
+    rlimit runs{};
+    if (getrlimit(RLIMIT_RTTIME, &runs) == 0 && runs.rlim_max < 2 * kLeastUs) {  // real time would be the program's end
+        grant.told = config::phrase("scheduling.normal", fmt::format("RLIMIT_RTTIME is {} us", runs.rlim_max));
+        takeShortSlice(thread);
+        return;
+    }
 #endif
     if (mayAsk(Scheduling::fifo)) {
         sched_param parameters{};
         parameters.sched_priority = priority;
-        const int code = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
-        if (code == 0) {
+        if (sched_setscheduler(thread, SCHED_FIFO, &parameters) == 0) {
             grant.scheduling = Scheduling::fifo;
             grant.told = config::phrase("scheduling.fifo", std::to_string(priority));
             return;
         }
-        why = refusal(code);
+        why = refusal(errno);
     }
 #ifdef __linux__
     if (watched && mayAsk(Scheduling::realtimeKit)) {
-        const KitAnswer kit = askRealtimeKit(kHighest - priority, kPatience);
+        const KitAnswer kit = askRealtimeKit(thread, kHighest - priority, kPatience);
         if (kit.priority > 0) {
             grant.scheduling = Scheduling::realtimeKit;
             grant.told = config::phrase("scheduling.realtime-kit", std::to_string(kit.priority));
@@ -147,7 +168,7 @@ void askForPriority(SchedulingGrant& grant, int priority) {
             grant.told = config::phrase("scheduling.high-priority", why, std::to_string(kit.niceLevel));
         }
     }
-    takeShortSlice();
+    takeShortSlice(thread);
 #endif
     if (grant.scheduling == Scheduling::normal) grant.told = config::phrase("scheduling.normal", why);
 }
@@ -183,8 +204,14 @@ const char* nameOf(Scheduling scheduling) noexcept {
     return kNames[static_cast<std::size_t>(scheduling)];
 }
 
-std::string SchedulingGrant::line() const {
+std::string SchedulingGrant::text() const {
     std::string all = config::words()(told);
+    if (timesTakenBack > 0) all += "; " + config::words()("scheduling.taken-back", timesTakenBack);
+    return all;
+}
+
+std::string SchedulingGrant::line() const {
+    std::string all = text();
     if (scheduling != Scheduling::notAsked)
         all += "; " + config::words().text(memoryLocked ? "scheduling.memory-locked" : "scheduling.memory-not-locked");
     return all;
@@ -194,11 +221,17 @@ SchedulingGrant requestRealtime(int priority) {
     SchedulingGrant grant;
     grant.memoryLocked = mlockall(lockFlags()) == 0;
     fetchAndLockWhatFits();
-    askForPriority(grant, priority);
+    askForPriority(grant, thisThread(), priority);
 #ifdef __linux__
     grant.timerSlack = prctl(PR_SET_TIMERSLACK, 1UL) == 0;
 #endif
     return grant;
+}
+
+void guardAgainstRunaways() {
+#ifdef __linux__
+    (void)watchRunaways();
+#endif
 }
 
 void stepBack() noexcept {
@@ -207,15 +240,13 @@ void stepBack() noexcept {
 #endif
 }
 
-RealtimeThread::RealtimeThread(std::function<void()> body, int priority) {
+RealtimeThread::RealtimeThread(std::function<void()> body, int priority) : priority_(priority) {
     std::promise<SchedulingGrant> granted;
     std::future<SchedulingGrant> grant = granted.get_future();
     try {
         thread_ = std::thread([this, body = std::move(body), priority, granted = std::move(granted)]() mutable {
             SchedulingGrant mine = requestRealtime(priority);
-#ifdef __linux__
-            id_.store(static_cast<int>(syscall(SYS_gettid)), std::memory_order_release);
-#endif
+            id_.store(thisThread(), std::memory_order_release);
             granted.set_value(std::move(mine));
             body();
             id_.store(0, std::memory_order_release);
@@ -225,6 +256,41 @@ RealtimeThread::RealtimeThread(std::function<void()> body, int priority) {
                           "close other programs or raise ulimit -u");
     }
     grant_ = grant.get();
+}
+
+const SchedulingGrant& RealtimeThread::keepRealTime() {
+    if (asking_.valid()) {
+        if (asking_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return grant_;
+        const SchedulingGrant again = asking_.get();
+        grant_.scheduling = again.scheduling;
+        grant_.told = again.told;
+    }
+    const std::int64_t now = monotonicNs();
+    if (lostRealTime()) {
+        grant_.scheduling = Scheduling::normal;
+        grant_.told = config::phrase("scheduling.lost");
+        ++grant_.timesTakenBack;
+        sinceNs_ = now;
+    }
+    const int id = id_.load(std::memory_order_acquire);
+    if (grant_.timesTakenBack == 0 || grant_.realTime() || id == 0 || askedAgain_ == kAgainAfterS.size() ||
+        now - sinceNs_ < kAgainAfterS[askedAgain_] * 1'000'000'000)
+        return grant_;
+    ++askedAgain_;
+    sinceNs_ = now;
+    try {
+        asking_ = std::async(std::launch::async, [id, priority = priority_, again = grant_]() mutable {
+            try {
+                askForPriority(again, id, priority);
+            } catch (const std::exception& e) {
+                again.told = config::phrase("scheduling.normal", e.what());
+            }
+            return again;
+        });
+    } catch (const std::system_error&) {
+        // No thread for it now: later.
+    }
+    return grant_;
 }
 
 bool RealtimeThread::lostRealTime() const noexcept {

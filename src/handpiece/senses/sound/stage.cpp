@@ -11,6 +11,7 @@
 #include <deque>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/rt/realtime_thread.h"
 #include "handpiece/senses/sound/signal.h"
 
 namespace handpiece::sound {
@@ -109,6 +110,7 @@ struct Stage::State {
             if (!device)
                 throw core::Error("this OpenAL cannot render into memory", "ALC_SOFT_loopback", "install OpenAL Soft");
         } else {
+            rt::guardAgainstRunaways();  // OpenAL asks RealtimeKit for its own thread
             device = alcOpenDevice(nullptr);
             if (!device)
                 throw core::Error("there is no sound card", "OpenAL", "connect one and check its settings")

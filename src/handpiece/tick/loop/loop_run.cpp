@@ -77,19 +77,15 @@ rt::SchedulingGrant tickOnClock(HapticLoop& loop, std::uint64_t ticks, bool real
         std::jthread plain;
         if (realTime) {
             privileged = std::make_unique<rt::RealtimeThread>(body);
-            scheduling = privileged->grant();
         } else {
             plain = std::jthread(body);
         }
         try {
             while (!done.load(std::memory_order_acquire)) {
-                if (privileged && privileged->lostRealTime()) {
-                    scheduling.scheduling = rt::Scheduling::normal;
-                    scheduling.told = config::phrase("scheduling.lost");
-                }
-                attend(scheduling);
+                attend(privileged ? privileged->keepRealTime() : scheduling);
                 std::this_thread::sleep_for(std::chrono::milliseconds(2));
             }
+            if (privileged) scheduling = privileged->grant();
         } catch (...) {
             loop.requestStop();  // the listener failed: let the tick end before its loop goes
             throw;

@@ -179,7 +179,9 @@ void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec2 middle = texelFetch(occlusion, p, 0).rg;
     float sum = 0.0, weights = 1e-4;
-    for (int y = -2; y < 2; ++y)
+    // A software renderer ends a loop early where none of its pixels goes on: in the background.
+    int end = middle.g < 50000.0 ? 2 : -2;
+    for (int y = -2; y < end; ++y)
         for (int x = -2; x < 2; ++x) {
             vec2 s = texelFetch(occlusion, clamp(p + ivec2(x, y), ivec2(0), last), 0).rg;
             float w = max(0.0, 1.0 - abs(s.g - middle.g) * 3.0) + 1e-5;
@@ -291,20 +293,16 @@ void main() {
             float deep = clamp(1.0 - open, 0.0, 1.0);
             albedo *= mix(vec3(1.0), vec3(0.70, 0.52, 0.33), smoothstep(0.22, 0.85, deep) * 0.9);
         }
-        if (kind == 6) {
 #ifdef FINE
-            float blotch = noise(at * 0.9) * 0.6 + noise(at * 5.0) * 0.4;
+        // Gum is blotched and caries grained in two sizes, other tissues in one.
+        vec3 sizes = kind == 6 ? vec3(0.9, 0.9, 5.0) : kind == 4 ? vec3(9.0, 9.0, 3.0) : vec3(1.6, 3.2, 0.0);
+        float grain = noise(at * sizes.xxy);
+        if (kind == 6 || kind == 4) grain = mix(noise(at * sizes.z), grain, kind == 6 ? 0.6 : 0.5);
+        if (isTooth || kind == 2 || kind == 4 || kind == 5) albedo *= 1.0 + (kind == 4 ? 0.75 : 0.07) * (grain - 0.5);
 #else
-            float blotch = 0.5;
+        float grain = 0.5;
 #endif
-            albedo *= mix(vec3(0.93, 0.82, 0.84), vec3(1.05, 1.06, 1.04), blotch);
-        }
-#ifdef FINE
-        if (isTooth || kind == 2 || kind == 4 || kind == 5) {
-            float grain = kind == 4 ? noise(at * 9.0) * 0.5 + noise(at * 3.0) * 0.5 : noise(at * vec3(1.6, 1.6, 3.2));
-            albedo *= 1.0 + (kind == 4 ? 0.75 : 0.07) * (grain - 0.5);
-        }
-#endif
+        if (kind == 6) albedo *= mix(vec3(0.93, 0.82, 0.84), vec3(1.05, 1.06, 1.04), grain);
     }
     if (removedColours != 0 && kind != 6 && kind != 7 && kind != 8 && kind != 10)
         albedo = texture(depthScale, vec2((code - float(kind) * 4096.0) * 0.005 / removedMost, 0.5)).rgb;

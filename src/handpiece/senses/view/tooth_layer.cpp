@@ -292,7 +292,8 @@ void ToothLayer::drawOcclusion(Shaders& shaders, const LayerWants& wants, const 
     program.set("pixelsPerMm", 0.5f * h * std::abs(p(1, 1)));
     program.set("mostPixels", static_cast<float>(mostPixels));
     const bool coarse = wants.detail == Detail::coarse;
-    const int samples = wants.look.quality == Quality::rich ? 24 : wants.look.quality == Quality::fine ? 14 : 9;
+    const bool many = wants.look.quality == Quality::fine && wants.detail == Detail::full;
+    const int samples = wants.look.quality == Quality::rich ? 24 : many ? 14 : 9;
     program.set("samples", coarse ? 6 : samples);
     program.set("turns", coarse ? 9.0f : 16.0f);
     gl::drawFullScreen();

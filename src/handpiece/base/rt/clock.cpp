@@ -12,10 +12,10 @@ namespace handpiece::rt {
 namespace {
 
 constexpr std::int64_t kNsPerS = 1'000'000'000;
-// A fifth of what a thread may run without a pause, for rests that the machine swallows: a wait that is over before the
-// thread has left its processor is none.
+// A fifth of what a thread may run without a pause. A wait that is over before the thread has left its processor is
+// none: of 20 us 3 % on a virtual machine, of 50 .7, of 100 .04.
 constexpr std::int64_t kMostWithoutRestNs = 20'000'000;
-constexpr std::int64_t kRestNs = 50'000;
+constexpr std::int64_t kRestNs = 100'000;
 
 void sleepUntil(std::int64_t ns) noexcept {
     const timespec until{static_cast<time_t>(ns / kNsPerS), static_cast<long>(ns % kNsPerS)};
@@ -49,7 +49,7 @@ void PeriodicClock::start() noexcept {
 Beat PeriodicClock::wait() noexcept {
     Beat beat;
     std::int64_t now = monotonicNs();
-    if (now - restedNs_ > kMostWithoutRestNs && now + kRestNs > nextNs_ - spinNs_) {
+    if (now - restedNs_ > kMostWithoutRestNs && now + kRestNs / 2 > nextNs_ - spinNs_) {
         sleepUntil(now + kRestNs);
         restedNs_ = now = monotonicNs();
     }
@@ -59,9 +59,10 @@ Beat PeriodicClock::wait() noexcept {
         beat.periods += missed;
         nextNs_ += missed * periodNs_;
     }
-    if (now < nextNs_ - spinNs_) {
-        sleepUntil(nextNs_ - spinNs_);
-        restedNs_ = nextNs_;
+    const std::int64_t wakeNs = nextNs_ - spinNs_;
+    if (now < wakeNs) {
+        sleepUntil(wakeNs);
+        if (wakeNs - now >= kRestNs / 2) restedNs_ = wakeNs;
     }
     do {
         now = monotonicNs();

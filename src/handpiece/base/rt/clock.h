@@ -20,7 +20,7 @@ struct Beat {
 };
 
 /// Beats at multiples of a period of the monotonic clock: sleeps to an absolute time, so that errors do not add up, and
-/// spins through the last `spinNs` where wake-ups are coarse. Who has been behind for 20 ms rests for 50 us all the
+/// spins through the last `spinNs` where wake-ups are coarse. Who has been behind for 20 ms rests for 100 us all the
 /// same: Linux takes real time from a thread that never waits (requestRealtime()).
 class PeriodicClock {
   public:

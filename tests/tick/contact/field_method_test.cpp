@@ -277,6 +277,73 @@ TEST(FieldMethod, aRimIsFreeInTheCornerThatItHasJustCut) {
     }
 }
 
+TEST(FieldMethod, whatWasAskedBeforeACutHoldsButForTheCut) {
+    // Crossing slots, then cuts at a corner of theirs: a method that has asked before each cut, and one that asks anew.
+    const auto cut = test::slabToCut();
+    const auto bur = burOf("cylinder-flat:1.0x4.0");
+    std::vector<Vec3> cuts;
+    const auto carveAt = [&](const core::Pose& at) {
+        cuts.push_back(at.positionMm);
+        test::carve(*cut, {{-3, -3, -1}, {3, 3, 1}},
+                    [&](const Vec3& p) { return bur->signedDistance(p - at.positionMm); });
+    };
+    for (double s = -1.5; s <= 1.5; s += 0.1) {
+        carveAt(upright(s, 0.013, -0.21));
+        carveAt(upright(-0.017, s, -0.13));
+    }
+    std::mt19937_64 random(test::seed());
+    std::uniform_real_distribution<double> place(-0.02, 0.02);
+    const auto asked = makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut), bur);
+    core::Pose pose = upright(0.48, 0.49, -0.05);
+    double keptOff = 0.0, freshOff = 0.0;
+    int compared = 0;
+    for (int i = 0; i < 20; ++i) {
+        pose.positionMm += Vec3(place(random), place(random), -0.003);
+        PatchSet patches;
+        Bearing bearing;
+        asked->patches(pose, patches);
+        asked->bearing(pose, -Vec3::UnitZ(), 0.0, 0.1, bearing);
+        core::Pose cutter = pose;
+        cutter.positionMm.z() -= 0.004;
+        carveAt(cutter);
+        asked->noteCut(cutter);
+        const auto anew = makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut), bur);
+        anew->noteCut(cutter);
+        ConstraintSet kept, fresh;
+        EXPECT_EQ(asked->constraints(pose, 0.04, kept), anew->constraints(pose, 0.04, fresh));
+        ASSERT_FALSE(fresh.empty());
+        for (const Constraint& c : kept)
+            for (const Constraint& d : fresh)
+                if ((c.pointMm - d.pointMm).norm() < 1e-9) {
+                    double truth = c.pointMm.z();
+                    for (const Vec3& tip : cuts)
+                        truth = std::max(truth, -bur->signedDistance(c.pointMm - tip));
+                    keptOff += std::abs(c.gapMm - truth);
+                    freshOff += std::abs(d.gapMm - truth);
+                    ++compared;
+                }
+    }
+    std::printf("  %d gaps: kept through the cut %.3f um off in the mean, asked anew %.3f\n", compared,
+                1e3 * keptOff / compared, 1e3 * freshOff / compared);
+    EXPECT_GT(compared, 200);
+    EXPECT_LE(keptOff, 1.2 * freshOff);
+    // Not asked for its bearing: anything may have changed.
+    PatchSet patches;
+    asked->patches(pose, patches);
+    core::Pose lower = pose;
+    lower.positionMm.z() -= 0.3;
+    carveAt(lower);
+    asked->noteCut(pose);
+    const auto anew = makeFieldMethod(std::shared_ptr<const tooth::ToothState>(cut), bur);
+    anew->noteCut(pose);
+    ConstraintSet kept, fresh;
+    (void)asked->constraints(pose, 0.04, kept);
+    (void)anew->constraints(pose, 0.04, fresh);
+    ASSERT_EQ(kept.size(), fresh.size());
+    for (std::size_t i = 0; i < kept.size(); ++i)
+        EXPECT_EQ(kept[i].gapMm, fresh[i].gapMm);
+}
+
 TEST(FieldMethod, whatWasCutLastIsForgottenWithTheTooth) {
     const auto cut = test::slabToCut();
     const auto bur = burOf("cylinder-flat:1.0x4.0");

@@ -295,6 +295,26 @@ TEST(CuttingLoop, theForceDoesNotCogWithTheVoxels) {
         }
 }
 
+TEST(CuttingLoop, aFlatEndSinksOnWhileItCutsSideways) {
+    // Between the floor and the wall ahead a rim is held by each as it stands, not by one between them: that lifts it.
+    const auto dentine = block({{[](const Vec3&) { return -1.0; }, Tissue::dentine, 20}});
+    const std::vector<device::TimedPose> groove{{0.0, at(-1.75, 0.007, 0.02), 1.0},
+                                                {1.5, at(-1.75, 0.007, 0.02), 1.0},
+                                                {2.5, at(-1.75, 0.007, -0.2), 1.0},
+                                                {5.7, at(1.45, 0.007, -0.2), 1.0}};
+    const Bench bench(dentine, "cylinder-flat:1.0x3.0");
+    auto loop = bench.loop(groove);
+    double lowest = 0.0, highestAbove = 0.0;
+    (void)runSimulated(*loop, seconds(groove), [&](const HapticSample& s) {
+        if (s.timeS < 2.6) return;
+        lowest = std::min(lowest, s.proxyPositionMm[2]);
+        highestAbove = std::max(highestAbove, s.proxyPositionMm[2] - lowest);
+    });
+    std::printf("  floor at %.4f mm, never more than %.2f um above what it had reached\n", lowest, 1e3 * highestAbove);
+    EXPECT_LT(lowest, -0.1995);
+    EXPECT_LT(highestAbove, 0.006);
+}
+
 TEST(CuttingLoop, aSharpRimBearsAndCutsOnASlope) {
     // Flat ends tilted against the block: the rim alone touches.
     const auto base = block({});

@@ -43,6 +43,25 @@ class KnownSurface {
     [[nodiscard]] bool wallAt(const core::Vec3& p, field::SharpLookup::Wall& wall) noexcept {
         return lookup_.wallAt(p, wall) && freeMm(p) <= wall.distanceMm;
     }
+    /// The tooth is no nearer, by what the bur has cut last.
+    [[nodiscard]] double freeMm(const core::Vec3& p) const noexcept {
+        return cutVersion_ == field_.version() ? -bur_.signedDistance(cut_.toBur * (p - cut_.tip))
+                                               : -std::numeric_limits<double>::infinity();
+    }
+    /// Unit normal out of the tooth of the wall that decides at a place where walls meet, told to be `gapMm` off; zero
+    /// where no brick is stored.
+    [[nodiscard]] core::Vec3 normalAtCrease(const core::Vec3& p, double gapMm) noexcept {
+        if (freeMm(p) < gapMm - kSameMm) return lookup_.normal(p);
+        const core::Vec3 inBur = cut_.toBur * (p - cut_.tip);
+        core::Vec3 slope;
+        for (int k = 0; k < 3; ++k) {
+            core::Vec3 before = inBur, after = inBur;
+            before[k] -= kSameMm;
+            after[k] += kSameMm;
+            slope[k] = bur_.signedDistance(before) - bur_.signedDistance(after);
+        }
+        return cut_.toBur.transpose() * slope.normalized();
+    }
     void noteCut(const core::Pose& burInTooth) noexcept {
         cut_ = BurFrame(burInTooth);
         cutVersion_ = field_.version();
@@ -51,11 +70,7 @@ class KnownSurface {
 
   private:
     static constexpr double kCreaseFreeMm = 0.001;
-    /// The tooth is no nearer, by what the bur has cut last.
-    [[nodiscard]] double freeMm(const core::Vec3& p) const noexcept {
-        return cutVersion_ == field_.version() ? -bur_.signedDistance(cut_.toBur * (p - cut_.tip))
-                                               : -std::numeric_limits<double>::infinity();
-    }
+    static constexpr double kSameMm = 1e-6;
 
     const field::DistanceField& field_;
     const instrument::Bur& bur_;

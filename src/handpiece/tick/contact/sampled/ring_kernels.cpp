@@ -231,6 +231,11 @@ inline Floats spreadOf(Floats a, Floats b, Floats c, Floats d) {
     return mostF(mostF(a, b), mostF(c, d)) - leastF(leastF(a, b), leastF(c, d));
 }
 
+/// A point farther off than that is not told, and not creased.
+inline float mostMm(const RingQuery& query) {
+    return query.thresholdMm > query.creaseMm ? query.thresholdMm : query.creaseMm;
+}
+
 /// Looks eight points of a ring up: distance, gradient and tissue of those that are live, which it returns as bits.
 inline unsigned senseEight(const FieldView& field, const BurRings& bur, const RingQuery& query, const RingTouch& touch,
                            const BurRing& ring, const Row& row, int eight, Floats& least) {
@@ -258,7 +263,7 @@ inline unsigned senseEight(const FieldView& field, const BurRings& bur, const Ri
         if (deep != 0) *touch.skippedDeep = true;
         candidates &= ~deep;
     }
-    unsigned live = bitsOf(d <= query.thresholdMm + query.creaseMm) & candidates;
+    unsigned live = bitsOf(d <= mostMm(query)) & candidates;
     if (live == 0) {
         const Floats none = splatF(kNotLiveMm);
         __builtin_memcpy(touch.distanceMm + at, &none, sizeof none);
@@ -282,7 +287,7 @@ inline unsigned senseEight(const FieldView& field, const BurRings& bur, const Ri
                                      spreadOf(v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5])),
                                spreadOf(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3]));
     const unsigned creased = bitsOf(((gx * gx + gy * gy + gz * gz < least2) | (twist > query.creaseTwist * voxelMm)) &
-                                    (absolute(d) < 1.2f * query.creaseMm)) &
+                                    (absolute(d) < query.creaseMm)) &
                              live & ~places.bare;
     live &= bitsOf(d <= query.thresholdMm) | creased;
     touch.live[ring.mask + eight] = static_cast<std::uint8_t>(live);
@@ -316,8 +321,8 @@ void sense(const FieldView& field, const BurRings& bur, const RingQuery& query, 
     // In a trilinear cell the Lipschitz bound holds but for what the cell is off, a tenth of a voxel near an edge of
     // the surface: what lies beyond a bound by no more than that is looked up.
     const auto voxelMm = static_cast<float>(field.voxelMm);
-    const float slackMm = 0.1f * voxelMm > query.creaseMm ? 0.1f * voxelMm : query.creaseMm;
-    float threshold = query.thresholdMm + slackMm;
+    const float slackMm = 0.1f * voxelMm;
+    float threshold = mostMm(query) + slackMm;
     for (std::int32_t i = 0; i < bur.count; i += 8) {
         // Eight rings: heights from the middle one on.
         const double middle = bur.heights[i + 4];

@@ -37,8 +37,8 @@ struct RingQuery {
     bool skipsDeep;                 ///< points inside where no brick is stored, or deeper than deepMm, are not live
     float deepMm;                   ///< values hold no more than this
     /// A point counts as creased, walls meeting in its cell, when its slope is less than this share of a distance's, or
-    /// slopes along the cell's edges differ by more than that. It is live within creaseMm, by which no cell is off,
-    /// more, and counts within a little more than that of the surface: zero for never.
+    /// slopes along the cell's edges differ by more than that, within creaseMm of the surface (zero: never). It is
+    /// live then.
     float creaseSlope, creaseTwist, creaseMm;
     std::uint8_t tissue;  ///< when everything is of one tissue, else kManyTissues
     bool onlyDistances;   ///< no gradients and tissues

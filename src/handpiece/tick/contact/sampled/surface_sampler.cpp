@@ -18,7 +18,8 @@ constexpr std::uint64_t kNone = ~std::uint64_t{0};
 constexpr float kCreaseSlope = 0.995f;
 /// A wall of radius r turns by a voxel / r in a cell: by this of 50 um at 0.2 mm.
 constexpr float kCreaseTwist = 0.25f;
-constexpr double kCreaseVoxels = 1.0 / 3.0;
+/// So near the surface points are asked: a mixed value is off by up to a third of a voxel.
+constexpr double kCreaseVoxels = 0.4;
 
 /// The one tissue of all that can be touched, or kManyTissues.
 std::uint8_t onlyTissue(const field::DistanceField& field) {
@@ -61,9 +62,19 @@ std::uint8_t SurfaceSampler::tissueAt(std::int32_t at) const noexcept {
     return tissueOfAll_ != kManyTissues ? tissueOfAll_ : arrays_.tissue[static_cast<std::size_t>(at)];
 }
 
+bool SurfaceSampler::isSamePose(const core::Pose& pose) const noexcept {
+    return pose.positionMm == sensedPose_.positionMm && pose.orientation.coeffs() == sensedPose_.orientation.coeffs();
+}
+
 bool SurfaceSampler::isSensed(const core::Pose& pose) const noexcept {
-    return sensedVersion_ == field_.version() && pose.positionMm == sensedPose_.positionMm &&
-           pose.orientation.coeffs() == sensedPose_.orientation.coeffs();
+    return sensedVersion_ == field_.version() && isSamePose(pose);
+}
+
+void SurfaceSampler::noteCut() noexcept {
+    // Of a point that has not moved no more has changed than where the bur has cut.
+    sharpenedVersion_ = bearsAtVersion_ == sharpenedVersion_ ? field_.version() : 0;
+    sensedVersion_ = bearsAtVersion_ = 0;
+    ++cuts_;
 }
 
 void SurfaceSampler::sense(const core::Pose& burInTooth, double thresholdMm, bool skipsDeep) noexcept {
@@ -75,10 +86,10 @@ void SurfaceSampler::sense(const core::Pose& burInTooth, double thresholdMm, boo
     query_.thresholdMm = static_cast<float>(thresholdMm);
     query_.skipsDeep = skipsDeep;
     kernels_.sense(view_, arrays_.bur, query_, arrays_.touch);
-    if (!isSensed(burInTooth)) ++sharpenings_;
+    if (sharpenedVersion_ != field_.version() || !isSamePose(burInTooth)) ++sharpenings_;
     sharpen();
     sensedPose_ = burInTooth;
-    sensedVersion_ = field_.version();
+    sensedVersion_ = sharpenedVersion_ = field_.version();
 }
 
 /// Where walls meet in a cell what is mixed there is off by up to a third of a voxel: those few points are asked
@@ -94,9 +105,14 @@ void SurfaceSampler::sharpen() noexcept {
             for (unsigned creased = arrays_.creased[eight]; creased != 0; creased &= creased - 1) {
                 const std::int32_t j = 8 * e + std::countr_zero(creased);
                 Sharpened& kept = sharpened_[static_cast<std::size_t>(ring.first + j)];
-                if (kept.when != sharpenings_)
-                    kept = {sharpenings_, static_cast<float>(surface_.distanceAtCrease(
-                                              placeOf(arrays_, frame_, ring, j), static_cast<double>(gaps[j])))};
+                if (kept.when != sharpenings_ || kept.cuts != cuts_) {
+                    const Vec3 place = placeOf(arrays_, frame_, ring, j);
+                    // Through one cut only: or a bur held by a wrong value would not hear of another.
+                    const bool holds = kept.when == sharpenings_ && !kept.isOld;
+                    const double gap = holds ? std::max(static_cast<double>(kept.gapMm), surface_.freeMm(place))
+                                             : surface_.distanceAtCrease(place, static_cast<double>(gaps[j]));
+                    kept = {sharpenings_, cuts_, static_cast<float>(gap), holds};
+                }
                 gaps[j] = kept.gapMm;
                 any = true;
                 if (gaps[j] <= query_.thresholdMm) continue;
@@ -133,7 +149,10 @@ void SurfaceSampler::bearing(const core::Pose& burInTooth, const Vec3& direction
         return;
     }
     // A point farther off than that does not count whichever way it faces.
-    sense(burInTooth, kContactMarginMm + std::max(leadMm, 0.0), false);
+    if (!isSensed(burInTooth) || leadMm > 0.0 || query_.thresholdMm < static_cast<float>(kContactMarginMm) ||
+        query_.skipsDeep)
+        sense(burInTooth, kContactMarginMm + std::max(leadMm, 0.0), false);
+    bearsAtVersion_ = sensedVersion_;
     const Vec3 along(direction.dot(frame_.x), direction.dot(frame_.y), direction.dot(frame_.z));
     BearingQuery query{};
     query.x = static_cast<float>(along.x());
@@ -407,12 +426,19 @@ Status SurfaceSampler::constraints(const core::Pose& burInTooth, double reachMm,
         const BurRing& ring = arrays_.rings[candidates_[c] >> 16 & 0xffffu];
         const auto j = static_cast<std::int32_t>(candidates_[c] & 0xffffu);
         const auto point = static_cast<std::size_t>(ring.first + j);
-        // Where walls meet the slope is one between theirs: what is free by theirs is free by it.
-        const Vec3 gradient(arrays_.gx[point], arrays_.gy[point], arrays_.gz[point]);
-        const double n = gradient.norm();
-        if (!(n > 1e-12)) continue;
-        out.pushBack({gradient / n, static_cast<double>(arrays_.distance[point]), placeOf(arrays_, frame_, ring, j),
-                      static_cast<cases::Tissue>(tissueAt(ring.first + j))});
+        const Vec3 place = placeOf(arrays_, frame_, ring, j);
+        const double gap = static_cast<double>(arrays_.distance[point]);
+        // Where walls meet the mixed slope is one between theirs: a bur that moves along one into the other would be
+        // lifted off it.
+        const bool creased = (arrays_.creased[static_cast<std::size_t>(ring.mask + j / 8)] >> j % 8 & 1) != 0;
+        Vec3 normal = creased ? surface_.normalAtCrease(place, gap) : Vec3(Vec3::Zero());
+        if (normal.isZero()) {
+            normal = Vec3(arrays_.gx[point], arrays_.gy[point], arrays_.gz[point]);
+            const double n = normal.norm();
+            if (!(n > 1e-12)) continue;
+            normal /= n;
+        }
+        out.pushBack({normal, gap, place, static_cast<cases::Tissue>(tissueAt(ring.first + j))});
     }
     return count > kMaxConstraints ? Status::truncated : Status::ok;
 }

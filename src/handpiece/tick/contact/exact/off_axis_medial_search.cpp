@@ -493,6 +493,21 @@ void OffAxisMedialSearch::refine(const Sheet& sheet, const BurFrame& frame, Cand
     }
 }
 
+/// Where the curve runs along the touched wall's normal its balls are nearly alike, outside the tooth and in it, and a
+/// climb that begins outside ends there: its ends at that angle are asked as well, where the place that is touched lets
+/// them be deeper.
+void OffAxisMedialSearch::askEnds(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, double angle,
+                                  std::uint32_t& seed, BallDepth& best) noexcept {
+    for (const double u : {0.0, sheet.u.back()}) {
+        const Spot spot = spotAt(sheet, frame, u, angle);
+        if (spot.radius + (spot.centre - best.surfaceMm).norm() <= best.depthMm + kToleranceMm) continue;
+        const BallDepth found = surface.ball(spot.centre, spot.radius, seed);
+        if (found.inside && found.depthMm + errorMm_ > best.depthMm)
+            climbOnce(surface, sheet, frame, {found.depthMm, u, angle}, found, seed, kFieldWindowMm, best);
+        if (found.depthMm > best.depthMm) best = found;
+    }
+}
+
 bool OffAxisMedialSearch::remember(std::uint32_t triangle) noexcept {
     if (std::find(known_.begin(), known_.begin() + knownCount_, triangle) != known_.begin() + knownCount_) return false;
     known_[static_cast<std::size_t>(knownCount_ < kMaxKnown ? knownCount_++ : oldest_++ % kMaxKnown)] = triangle;
@@ -587,8 +602,12 @@ void OffAxisMedialSearch::searchSheet(const ExactSurface& surface, const Sheet& 
         least = std::max(least, c->value - errorMm_);
     }
     std::sort(candidates_.begin(), end, higher);
-    for (auto c = candidates_.begin(); c != end && c->value + errorMm_ > best.depthMm; ++c)
+    for (auto c = candidates_.begin(); c != end && c->value + errorMm_ > best.depthMm; ++c) {
+        const int before = climbs_;
         climbOnce(surface, sheet, frame, *c, {}, seed, kFieldWindowMm, best);
+        if (climbs_ > before)
+            askEnds(surface, sheet, frame, tops_[static_cast<std::size_t>(before)].endAngle, seed, best);
+    }
     measure(surface, sheet, frame, seed, best);
 }
 

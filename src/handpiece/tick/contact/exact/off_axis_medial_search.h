@@ -93,6 +93,8 @@ class OffAxisMedialSearch {
                  BallDepth& best) noexcept;
     void climbOnce(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, const Candidate& from,
                    const BallDepth& here, std::uint32_t& seed, double reach, BallDepth& best) noexcept;
+    void askEnds(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, double angle,
+                 std::uint32_t& seed, BallDepth& best) noexcept;
     [[nodiscard]] Spot spotAt(const Sheet& sheet, const BurFrame& frame, double u, double angle,
                               bool isBelow = false) const noexcept;
     void searchSheet(const ExactSurface& surface, const Sheet& sheet, const BurFrame& frame, std::uint32_t seed,

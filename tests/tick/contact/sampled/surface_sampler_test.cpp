@@ -57,7 +57,7 @@ struct Point {
 /// number where it is a matter of rounding whether they do.
 double gapOf(const field::DistanceField& field, field::SharpLookup& lookup, const Vec3& p) {
     const double mixed = field.distance(p), voxel = field.settings().voxelMm;
-    if (std::abs(mixed) >= 0.4 * voxel) return mixed;
+    if (mixed >= 0.25 * voxel || mixed <= -0.4 * voxel) return mixed;
     const field::FieldView view = field.view();
     double v[2][2][2], t[3];
     Vec3 first;

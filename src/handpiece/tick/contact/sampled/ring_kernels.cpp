@@ -287,7 +287,7 @@ inline unsigned senseEight(const FieldView& field, const BurRings& bur, const Ri
                                      spreadOf(v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5])),
                                spreadOf(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3]));
     const unsigned creased = bitsOf(((gx * gx + gy * gy + gz * gz < least2) | (twist > query.creaseTwist * voxelMm)) &
-                                    (absolute(d) < query.creaseMm)) &
+                                    (d < query.creaseMm) & (d > -query.creaseInMm)) &
                              live & ~places.bare;
     live &= bitsOf(d <= query.thresholdMm) | creased;
     touch.live[ring.mask + eight] = static_cast<std::uint8_t>(live);
@@ -420,6 +420,10 @@ void addRun(const BurRings& bur, const RingTouch& touch, std::int32_t i, std::in
     __builtin_memcpy(sums.least, &least, sizeof least);
 }
 
+unsigned within(const BurRings& bur, const RingTouch& touch, std::int32_t i, std::int32_t eight, float mm) noexcept {
+    return bitsOf(get(touch.distanceMm + bur.rings[i].first + 8 * eight) <= mm);
+}
+
 unsigned lowInRing(const BurRings& bur, const RingTouch& touch, std::int32_t i, std::int32_t eight) noexcept {
     const BurRing& ring = bur.rings[i];
     const float* at = touch.distanceMm + ring.first + 8 * eight;
@@ -508,7 +512,7 @@ void bear(const BurRings& bur, const RingTouch& touch, const BearingBand* bands,
 }  // namespace
 
 RingKernels ringKernels() noexcept {
-    return {sense, around, bear, addRun, lowInRing};
+    return {sense, around, bear, addRun, within, lowInRing};
 }
 
 }  // namespace handpiece::contact::HANDPIECE_SIMD_NS

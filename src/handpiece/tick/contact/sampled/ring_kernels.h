@@ -37,9 +37,9 @@ struct RingQuery {
     bool skipsDeep;                 ///< points inside where no brick is stored, or deeper than deepMm, are not live
     float deepMm;                   ///< values hold no more than this
     /// A point counts as creased, walls meeting in its cell, when its slope is less than this share of a distance's, or
-    /// slopes along the cell's edges differ by more than that, within creaseMm of the surface (zero: never). It is
-    /// live then.
-    float creaseSlope, creaseTwist, creaseMm;
+    /// slopes along the cell's edges differ by more than that, no more than creaseMm outside the surface (zero: never)
+    /// and creaseInMm inside. It is live then.
+    float creaseSlope, creaseTwist, creaseMm, creaseInMm;
     std::uint8_t tissue;  ///< when everything is of one tissue, else kManyTissues
     bool onlyDistances;   ///< no gradients and tissues
     float windowMm;       ///< points this much farther than the nearest need not be told; 0 for all
@@ -103,6 +103,9 @@ struct RingKernels {
     /// Adds points from .. to - 1 of a ring, all live.
     void (*addRun)(const BurRings& bur, const RingTouch& touch, std::int32_t ring, std::int32_t from, std::int32_t to,
                    float marginMm, TouchSums& sums) noexcept;
+    /// Bit i tells that point 8 eight + i of a ring with live points is so near, and live.
+    unsigned (*within)(const BurRings& bur, const RingTouch& touch, std::int32_t ring, std::int32_t eight,
+                       float mm) noexcept;
     /// Bit i tells that none of the two neighbours of live point 8 eight + i in its ring is nearer.
     unsigned (*lowInRing)(const BurRings& bur, const RingTouch& touch, std::int32_t ring, std::int32_t eight) noexcept;
 };

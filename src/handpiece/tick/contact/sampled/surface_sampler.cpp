@@ -18,8 +18,11 @@ constexpr std::uint64_t kNone = ~std::uint64_t{0};
 constexpr float kCreaseSlope = 0.995f;
 /// A wall of radius r turns by a voxel / r in a cell: by this of 50 um at 0.2 mm.
 constexpr float kCreaseTwist = 0.25f;
-/// So near the surface points are asked: a mixed value is off by up to a third of a voxel.
-constexpr double kCreaseVoxels = 0.4;
+/// A mixed value is off by up to a third of a voxel: so deep in the tooth, where it would hold the bur off, and so far
+/// outside, where the next tick sees it nearer, points are asked.
+constexpr double kCreaseInVoxels = 0.4, kCreaseVoxels = 0.25;
+/// Points of the patches are told so much farther out, for bearing() to count them for a bur so much ahead.
+constexpr double kLeadMm = 0.005;
 
 /// The one tissue of all that can be touched, or kManyTissues.
 std::uint8_t onlyTissue(const field::DistanceField& field) {
@@ -56,6 +59,7 @@ SurfaceSampler::SurfaceSampler(KnownSurface& surface, const instrument::Bur& bur
     query_.creaseSlope = kCreaseSlope;
     query_.creaseTwist = kCreaseTwist;
     query_.creaseMm = static_cast<float>(kCreaseVoxels * view_.voxelMm);
+    query_.creaseInMm = static_cast<float>(kCreaseInVoxels * view_.voxelMm);
 }
 
 std::uint8_t SurfaceSampler::tissueAt(std::int32_t at) const noexcept {
@@ -149,9 +153,9 @@ void SurfaceSampler::bearing(const core::Pose& burInTooth, const Vec3& direction
         return;
     }
     // A point farther off than that does not count whichever way it faces.
-    if (!isSensed(burInTooth) || leadMm > 0.0 || query_.thresholdMm < static_cast<float>(kContactMarginMm) ||
-        query_.skipsDeep)
-        sense(burInTooth, kContactMarginMm + std::max(leadMm, 0.0), false);
+    const double withinMm = kContactMarginMm + std::max(leadMm, 0.0);
+    if (!isSensed(burInTooth) || query_.thresholdMm < static_cast<float>(withinMm) || query_.skipsDeep)
+        sense(burInTooth, withinMm, false);
     bearsAtVersion_ = sensedVersion_;
     const Vec3 along(direction.dot(frame_.x), direction.dot(frame_.y), direction.dot(frame_.z));
     BearingQuery query{};
@@ -216,7 +220,10 @@ std::size_t SurfaceSampler::findRuns() noexcept {
         };
         std::int32_t from = -1;  // of the run that reaches into the eight at hand
         for (std::int32_t e = 0; e < ring.eights; ++e) {
-            const unsigned bits = arrays_.live[static_cast<std::size_t>(ring.mask + e)];
+            const bool any = arrays_.live[static_cast<std::size_t>(ring.mask + e)] != 0;
+            const unsigned bits = any ? kernels_.within(arrays_.bur, arrays_.touch, static_cast<std::int32_t>(i), e,
+                                                        static_cast<float>(kContactMarginMm))
+                                      : 0u;
             if (bits == (from < 0 ? 0u : 0xffu)) continue;
             for (int bit = 0; bit < 8;) {
                 const unsigned rest = bits >> bit;
@@ -287,7 +294,7 @@ void SurfaceSampler::patches(const core::Pose& burInTooth, PatchSet& out) noexce
         out.status = Status::invalidPose;
         return;
     }
-    sense(burInTooth, kContactMarginMm, false);
+    sense(burInTooth, kContactMarginMm + kLeadMm, false);
     const std::size_t runs = findRuns();
     if (runs == kMaxRuns) out.status = Status::truncated;
     const std::size_t count = sumRuns(runs, out.status);

@@ -106,7 +106,7 @@ class FieldMethod final : public Method {
 
     void noteCut(const core::Pose& burInTooth) noexcept override {
         known_.noteCut(burInTooth);
-        rings_.noteCut();
+        rings_.senseAnew();
     }
 
     [[nodiscard]] std::uint64_t toothVersion() const noexcept override { return live_.version(); }

@@ -131,8 +131,8 @@ class Method {
         return false;
     }
 
-    /// Since the last bearing() the bur has cut, up to here, and nothing else has changed: nothing of the tooth is in
-    /// it, and what a method reads between its samples may not say otherwise. Holds until the tooth changes.
+    /// The bur has cut here, so nothing of the tooth is in it: what a method reads between its samples may not say
+    /// otherwise. Holds until the tooth changes.
     virtual void noteCut(const core::Pose& /*burInTooth*/) noexcept HANDPIECE_REALTIME {}
 
     /// Forget the warm start (after a jump).

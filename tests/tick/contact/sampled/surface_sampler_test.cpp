@@ -57,7 +57,7 @@ struct Point {
 /// number where it is a matter of rounding whether they do.
 double gapOf(const field::DistanceField& field, field::SharpLookup& lookup, const Vec3& p) {
     const double mixed = field.distance(p), voxel = field.settings().voxelMm;
-    if (mixed >= 0.25 * voxel || mixed <= -0.4 * voxel) return mixed;
+    if (mixed >= 0.1 * voxel || mixed <= -0.4 * voxel) return mixed;
     const field::FieldView view = field.view();
     double v[2][2][2], t[3];
     Vec3 first;
@@ -93,13 +93,12 @@ double gapOf(const field::DistanceField& field, field::SharpLookup& lookup, cons
 /// Every point of the rings looked up alone; patches by flooding from neighbour to neighbour.
 std::vector<Point> touching(const field::DistanceField& field, const instrument::Bur& bur, const core::Pose& pose) {
     std::vector<Point> points;
-    field::SharpLookup lookup(field, core::SimdLevel::base);
     for (std::size_t i = 0; i < bur.rings().size(); ++i) {
         const instrument::SurfaceRing& ring = bur.rings()[i];
         for (std::uint32_t j = 0; j < ring.count; ++j) {
             const double turn = 1.0 / ring.count, angle = 2.0 * std::numbers::pi * (j + 0.5) * turn;
             const Vec3 p = pose.apply({ring.rhoMm * std::cos(angle), ring.rhoMm * std::sin(angle), ring.zMm});
-            double gap = gapOf(field, lookup, p);
+            double gap = field.distance(p);
             if (!field.isFine(p)) {  // a bound, of a point beyond the band
                 if (!std::signbit(gap)) continue;
                 gap = std::min(gap, -field.settings().bandInMm);

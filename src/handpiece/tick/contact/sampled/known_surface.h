@@ -45,9 +45,10 @@ class KnownSurface {
     }
     /// The tooth is no nearer, by what the bur has cut last.
     [[nodiscard]] double freeMm(const core::Vec3& p) const noexcept {
-        return cutVersion_ == field_.version() ? -bur_.signedDistance(cut_.toBur * (p - cut_.tip))
-                                               : -std::numeric_limits<double>::infinity();
+        return knowsCut() ? -bur_.signedDistance(cut_.toBur * (p - cut_.tip))
+                          : -std::numeric_limits<double>::infinity();
     }
+    [[nodiscard]] bool knowsCut() const noexcept { return cutVersion_ == field_.version(); }
     /// Unit normal out of the tooth of the wall that decides at a place where walls meet, told to be `gapMm` off; zero
     /// where no brick is stored.
     [[nodiscard]] core::Vec3 normalAtCrease(const core::Vec3& p, double gapMm) noexcept {

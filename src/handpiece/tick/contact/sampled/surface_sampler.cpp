@@ -18,9 +18,8 @@ constexpr std::uint64_t kNone = ~std::uint64_t{0};
 constexpr float kCreaseSlope = 0.995f;
 /// A wall of radius r turns by a voxel / r in a cell: by this of 50 um at 0.2 mm.
 constexpr float kCreaseTwist = 0.25f;
-/// A mixed value is off by up to a third of a voxel: so deep in the tooth, where it would hold the bur off, and so far
-/// outside, where the next tick sees it nearer, points are asked.
-constexpr double kCreaseInVoxels = 0.4, kCreaseVoxels = 0.25;
+/// So deep in the tooth, where a mixed value would hold the bur off, and so far outside, points are asked.
+constexpr double kCreaseInVoxels = 0.4, kCreaseVoxels = 0.1;
 /// Points of the patches are told so much farther out, for bearing() to count them for a bur so much ahead.
 constexpr double kLeadMm = 0.005;
 
@@ -49,7 +48,6 @@ SurfaceSampler::SurfaceSampler(KnownSurface& surface, const instrument::Bur& bur
       tissueOfAll_(onlyTissue(field_)) {
     runs_.resize(kMaxRuns);
     candidates_.resize(arrays_.distance.size());
-    sharpened_.resize(arrays_.distance.size());
     nearest_.resize((arrays_.rings.size() + kRingsPerBlock - 1) / kRingsPerBlock * kSectors);
     query_.farOutMm = static_cast<float>(field_.reach().outMm);
     query_.farInMm = static_cast<float>(field_.reach().inMm);
@@ -66,19 +64,9 @@ std::uint8_t SurfaceSampler::tissueAt(std::int32_t at) const noexcept {
     return tissueOfAll_ != kManyTissues ? tissueOfAll_ : arrays_.tissue[static_cast<std::size_t>(at)];
 }
 
-bool SurfaceSampler::isSamePose(const core::Pose& pose) const noexcept {
-    return pose.positionMm == sensedPose_.positionMm && pose.orientation.coeffs() == sensedPose_.orientation.coeffs();
-}
-
 bool SurfaceSampler::isSensed(const core::Pose& pose) const noexcept {
-    return sensedVersion_ == field_.version() && isSamePose(pose);
-}
-
-void SurfaceSampler::noteCut() noexcept {
-    // Of a point that has not moved no more has changed than where the bur has cut.
-    sharpenedVersion_ = bearsAtVersion_ == sharpenedVersion_ ? field_.version() : 0;
-    sensedVersion_ = bearsAtVersion_ = 0;
-    ++cuts_;
+    return sensedVersion_ == field_.version() && pose.positionMm == sensedPose_.positionMm &&
+           pose.orientation.coeffs() == sensedPose_.orientation.coeffs();
 }
 
 void SurfaceSampler::sense(const core::Pose& burInTooth, double thresholdMm, bool skipsDeep) noexcept {
@@ -90,40 +78,30 @@ void SurfaceSampler::sense(const core::Pose& burInTooth, double thresholdMm, boo
     query_.thresholdMm = static_cast<float>(thresholdMm);
     query_.skipsDeep = skipsDeep;
     kernels_.sense(view_, arrays_.bur, query_, arrays_.touch);
-    if (sharpenedVersion_ != field_.version() || !isSamePose(burInTooth)) ++sharpenings_;
     sharpen();
     sensedPose_ = burInTooth;
-    sensedVersion_ = sharpenedVersion_ = field_.version();
+    sensedVersion_ = field_.version();
 }
 
-/// Where walls meet in a cell what is mixed there is off by up to a third of a voxel: those few points are asked
-/// sharply.
+/// Where walls meet in a cell what is mixed there is off by up to a third of a voxel. For the proxy, which one point
+/// can hold off, those points are asked; for sums over many it is enough to know where the bur has cut last.
 void SurfaceSampler::sharpen() noexcept {
+    if (!query_.skipsDeep && !surface_.knowsCut()) return;
     for (std::size_t i = 0; i < arrays_.rings.size(); ++i) {
         if (arrays_.liveRing[i] == 0) continue;
         const BurRing& ring = arrays_.rings[i];
         float* const gaps = &arrays_.distance[static_cast<std::size_t>(ring.first)];
         bool any = false;
-        for (std::int32_t e = 0; e < ring.eights; ++e) {
-            const auto eight = static_cast<std::size_t>(ring.mask + e);
-            for (unsigned creased = arrays_.creased[eight]; creased != 0; creased &= creased - 1) {
+        for (std::int32_t e = 0; e < ring.eights; ++e)
+            for (unsigned creased = arrays_.creased[static_cast<std::size_t>(ring.mask + e)]; creased != 0;
+                 creased &= creased - 1) {
                 const std::int32_t j = 8 * e + std::countr_zero(creased);
-                Sharpened& kept = sharpened_[static_cast<std::size_t>(ring.first + j)];
-                if (kept.when != sharpenings_ || kept.cuts != cuts_) {
-                    const Vec3 place = placeOf(arrays_, frame_, ring, j);
-                    // Through one cut only: or a bur held by a wrong value would not hear of another.
-                    const bool holds = kept.when == sharpenings_ && !kept.isOld;
-                    const double gap = holds ? std::max(static_cast<double>(kept.gapMm), surface_.freeMm(place))
-                                             : surface_.distanceAtCrease(place, static_cast<double>(gaps[j]));
-                    kept = {sharpenings_, cuts_, static_cast<float>(gap), holds};
-                }
-                gaps[j] = kept.gapMm;
+                const Vec3 place = placeOf(arrays_, frame_, ring, j);
+                const double mixed = static_cast<double>(gaps[j]);
+                gaps[j] = static_cast<float>(query_.skipsDeep ? surface_.distanceAtCrease(place, mixed)
+                                                              : std::max(mixed, surface_.freeMm(place)));
                 any = true;
-                if (gaps[j] <= query_.thresholdMm) continue;
-                gaps[j] = kNotLiveMm;
-                arrays_.live[eight] &= static_cast<std::uint8_t>(~(1u << j % 8));
             }
-        }
         if (!any) continue;
         arrays_.least[i] = *std::min_element(gaps, gaps + ring.count);
         arrays_.liveRing[i] = arrays_.least[i] < kNotLiveMm ? 1 : 0;
@@ -156,7 +134,6 @@ void SurfaceSampler::bearing(const core::Pose& burInTooth, const Vec3& direction
     const double withinMm = kContactMarginMm + std::max(leadMm, 0.0);
     if (!isSensed(burInTooth) || query_.thresholdMm < static_cast<float>(withinMm) || query_.skipsDeep)
         sense(burInTooth, withinMm, false);
-    bearsAtVersion_ = sensedVersion_;
     const Vec3 along(direction.dot(frame_.x), direction.dot(frame_.y), direction.dot(frame_.z));
     BearingQuery query{};
     query.x = static_cast<float>(along.x());

@@ -31,8 +31,8 @@ class SurfaceSampler {
     void bearing(const core::Pose& burInTooth, const core::Vec3& direction, double leadMm, double leastRadiusMm,
                  Bearing& out) noexcept;
 
-    /// Since bearing() the bur has cut, as the surface knows by now, and nothing else has changed.
-    void noteCut() noexcept;
+    /// More is known of the surface than when it was sensed last.
+    void senseAnew() noexcept { sensedVersion_ = 0; }
 
     /// True when what was sensed last is of this pose and holds every point up to `windowMm` above the nearest.
     [[nodiscard]] bool hasSensed(const core::Pose& burInTooth, double thresholdMm, double windowMm) const noexcept;
@@ -51,17 +51,11 @@ class SurfaceSampler {
         std::array<double, cases::kTissueCount> tissue;
         std::int32_t root;
     };
-    struct Sharpened {
-        std::uint64_t when = 0, cuts = 0;
-        float gapMm = 0.0f;
-        bool isOld = false;  ///< from before the last cut
-    };
     static constexpr std::size_t kMaxRuns = 1024, kMaxSums = 2 * kMaxPatches;
     static constexpr std::size_t kRingsPerBlock = 3;
 
     void sense(const core::Pose& burInTooth, double thresholdMm, bool skipsDeep) noexcept;
     void sharpen() noexcept;
-    [[nodiscard]] bool isSamePose(const core::Pose& pose) const noexcept;
     [[nodiscard]] bool isSensed(const core::Pose& pose) const noexcept;
     [[nodiscard]] std::uint8_t tissueAt(std::int32_t at) const noexcept;
     std::size_t findRuns() noexcept;
@@ -83,11 +77,7 @@ class SurfaceSampler {
     std::uint8_t tissueOfAll_;  ///< or kManyTissues
     RingQuery query_{};
     core::Pose sensedPose_;
-    std::uint64_t sensedVersion_ = 0, sharpenedVersion_ = 0, bearsAtVersion_ = 0;
-
-    std::vector<Sharpened> sharpened_;  ///< by point: what it was told at this pose
-    std::uint64_t sharpenings_ = 0;     ///< poses so far
-    std::uint64_t cuts_ = 0;            ///< noted so far
+    std::uint64_t sensedVersion_ = 0;
 
     std::vector<Run> runs_;
     std::array<Sums, kMaxSums> sums_;

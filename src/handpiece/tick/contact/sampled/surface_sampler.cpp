@@ -96,8 +96,9 @@ void SurfaceSampler::sharpen() noexcept {
             for (unsigned creased = arrays_.creased[static_cast<std::size_t>(ring.mask + e)]; creased != 0;
                  creased &= creased - 1) {
                 const std::int32_t j = 8 * e + std::countr_zero(creased);
-                const Vec3 place = placeOf(arrays_, frame_, ring, j);
                 const double mixed = static_cast<double>(gaps[j]);
+                if (!query_.skipsDeep && mixed >= 0.0) continue;
+                const Vec3 place = placeOf(arrays_, frame_, ring, j);
                 gaps[j] = static_cast<float>(query_.skipsDeep ? surface_.distanceAtCrease(place, mixed)
                                                               : std::max(mixed, surface_.freeMm(place)));
                 any = true;

@@ -86,7 +86,8 @@ void SurfaceSampler::sense(const core::Pose& burInTooth, double thresholdMm, boo
 /// Where walls meet in a cell what is mixed there is off by up to a third of a voxel. For the proxy, which one point
 /// can hold off, those points are asked; for sums over many it is enough to know where the bur has cut last.
 void SurfaceSampler::sharpen() noexcept {
-    if (!query_.skipsDeep && !surface_.knowsCut()) return;
+    const bool forProxy = query_.skipsDeep;
+    if (!forProxy && !surface_.knowsCut()) return;
     for (std::size_t i = 0; i < arrays_.rings.size(); ++i) {
         if (arrays_.liveRing[i] == 0) continue;
         const BurRing& ring = arrays_.rings[i];
@@ -97,15 +98,14 @@ void SurfaceSampler::sharpen() noexcept {
                  creased &= creased - 1) {
                 const std::int32_t j = 8 * e + std::countr_zero(creased);
                 const double mixed = static_cast<double>(gaps[j]);
-                if (!query_.skipsDeep && mixed >= 0.0) continue;
+                if (!forProxy && mixed >= 0.0) continue;
                 const Vec3 place = placeOf(arrays_, frame_, ring, j);
-                gaps[j] = static_cast<float>(query_.skipsDeep ? surface_.distanceAtCrease(place, mixed)
-                                                              : std::max(mixed, surface_.freeMm(place)));
+                gaps[j] = static_cast<float>(forProxy ? surface_.distanceAtCrease(place, mixed)
+                                                      : std::max(mixed, surface_.freeMm(place)));
                 any = true;
             }
         if (!any) continue;
         arrays_.least[i] = *std::min_element(gaps, gaps + ring.count);
-        arrays_.liveRing[i] = arrays_.least[i] < kNotLiveMm ? 1 : 0;
         if (ring.count == 1) continue;
         gaps[-1] = gaps[ring.count - 1];
         gaps[ring.count] = gaps[0];

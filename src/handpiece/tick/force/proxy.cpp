@@ -177,7 +177,7 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth, con
     bool settled = false;
     const double settledMm = isCutNear ? kTrustedStepMm : kSettledMm;
     const double leastMm = isCutNear ? std::max(moved, kSmallestRadiusMm) : kSmallestRadiusMm;
-    const double mostMm = isCutNear ? kFollow * moved + kCreepMm : std::numeric_limits<double>::infinity();
+    double leftMm = isCutNear ? kFollow * moved + kCreepMm : std::numeric_limits<double>::infinity();
     const int passes = passesIn(periodS);
     for (int i = 0; i < passes && !settled; ++i) {
         const double gap = evaluate(method);
@@ -205,7 +205,8 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth, con
                                                   : std::min(2.0 * radiusMm_, settings_.maxStepMm);
             const double known = 0.5 * reachMm_;
             if (rest.norm() > known) reachMm_ = std::min(2.0 * reachMm_, 2.0 * settings_.maxStepMm);
-            rest = limited(rest, std::min({radiusMm_, known, mostMm}));
+            rest = limited(rest, std::min({radiusMm_, known, leftMm}));
+            leftMm -= rest.norm();
             lastRest_ = rest;
             step = restore + rest;
         } else {

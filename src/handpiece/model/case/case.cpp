@@ -20,8 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 using config::Table;
 
-constexpr std::int64_t kOldestFormat = 1, kNewestFormat = 2;
+constexpr std::int64_t kOldestFormat = 1, kNewestFormat = 3;
 constexpr int kMaxPriority = 1000;
+constexpr std::size_t kMostTeeth = 64;      // of a mouth: 32, and as many of another's
+constexpr double kFarthestToothMm = 200.0;  // from the case's own tooth
 constexpr const char* kRemedy = "see docs/case-format.md";
 
 geometry::TriangleMesh meshOf(const CaseFiles& files, const std::string& name) {
@@ -29,8 +31,22 @@ geometry::TriangleMesh meshOf(const CaseFiles& files, const std::string& name) {
                               files.where(name));
 }
 
-Part readPart(const Table& entry, const CaseFiles& files, const TissueTable& tissues, bool strict) {
-    if (strict) entry.allowOnly({"name", "file", "tissue", "priority"});
+/// What formats differ in.
+struct Reading {
+    const CaseFiles& files;
+    const TissueTable& tissues;
+    std::int64_t format;
+    [[nodiscard]] bool isStrict() const { return format >= 2; }
+    [[nodiscard]] bool hasOthers() const { return format >= 3; }
+};
+
+Part readPart(const Table& entry, const Reading& reading, bool isScenery) {
+    const auto& [files, tissues, format] = reading;
+    const bool mayBeFelt = isScenery && reading.hasOthers();
+    if (mayBeFelt)
+        entry.allowOnly({"name", "file", "tissue", "priority", "felt"});
+    else if (reading.isStrict())
+        entry.allowOnly({"name", "file", "tissue", "priority"});
     const std::string file = entry.text("file").value_or(""), tissueName = entry.text("tissue").value_or("");
     if (file.empty() || tissueName.empty()) entry.fail("a part without file or tissue", kRemedy);
     Part part;
@@ -48,14 +64,14 @@ Part readPart(const Table& entry, const CaseFiles& files, const TissueTable& tis
     part.priority = static_cast<int>(priority);
     requireInside(entry, file, "file");
     part.mesh = meshOf(files, file);
+    if (mayBeFelt) part.isFelt = entry.flag("felt").value_or(false);
     return part;
 }
 
-std::vector<Part> readParts(const Table& root, std::string_view key, const CaseFiles& files, const TissueTable& tissues,
-                            bool strict) {
+std::vector<Part> readParts(const Table& root, std::string_view key, const Reading& reading) {
     std::vector<Part> parts;
     for (const Table& entry : root.tables(key))
-        parts.push_back(readPart(entry, files, tissues, strict));
+        parts.push_back(readPart(entry, reading, key == "scenery"));
     return parts;
 }
 
@@ -79,6 +95,60 @@ int fdiNumberOf(const Table& root) {
     if (fdi != 0 && (fdi < 11 || fdi > 85 || fdi % 10 < 1 || fdi % 10 > 8))
         root.fail(fmt::format("{} is no tooth number of the FDI", fdi), "11 to 48, or 51 to 85", "fdi");
     return static_cast<int>(fdi);
+}
+
+/// What a case's own tooth and the others have alike.
+void readTooth(const Table& table, const Reading& reading, Tooth& tooth) {
+    tooth.kind = table.text("kind").value_or("");
+    tooth.fdiNumber = fdiNumberOf(table);
+    tooth.buccalSign = buccalSignOf(table);
+    if (const std::string outer = table.text("outer").value_or(""); !outer.empty()) {
+        requireInside(table, outer, "outer");
+        tooth.outer = meshOf(reading.files, outer);
+    }
+    tooth.parts = readParts(table, "part", reading);
+    if (reading.hasOthers()) tooth.landmarks = readLandmarks(table);
+}
+
+core::Pose readPose(const Table& table) {
+    const std::vector<double> at = table.numbers("position_mm"), turn = table.numbers("orientation");
+    if (at.size() != 3) table.fail("a tooth without three numbers that say where it stands", kRemedy, "position_mm");
+    if (turn.size() != 4)
+        table.fail("a tooth without the four numbers of its turn (w, x, y, z)", kRemedy, "orientation");
+    const core::Pose pose{{at[0], at[1], at[2]}, {turn[0], turn[1], turn[2], turn[3]}};
+    if (!pose.isValid())
+        table.fail("the turn of a tooth is no unit quaternion", "write w, x, y, z of length 1", "orientation");
+    if (pose.positionMm.norm() > kFarthestToothMm)
+        table.fail(fmt::format("a tooth stands {:.0f} mm off", pose.positionMm.norm()),
+                   fmt::format("a mouth is {:.0f} mm wide at most", kFarthestToothMm), "position_mm");
+    return pose;
+}
+
+std::vector<PlacedTooth> readOthers(const Table& root, const Reading& reading) {
+    const std::vector<Table> tables = root.tables("tooth");
+    if (tables.size() > kMostTeeth)
+        root.fail(fmt::format("{} teeth in a case", tables.size()), fmt::format("give {} at most", kMostTeeth),
+                  "tooth");
+    std::vector<PlacedTooth> others;
+    for (const Table& table : tables) {
+        table.allowOnly(
+            {"name", "kind", "fdi", "buccal", "outer", "position_mm", "orientation", "cuttable", "part", "landmark"});
+        PlacedTooth& tooth = others.emplace_back();
+        readTooth(table, reading, tooth);
+        tooth.name = table.text("name").value_or(tooth.kind);
+        tooth.inCase = readPose(table);
+        tooth.isCuttable = table.flag("cuttable").value_or(true);
+        if (tooth.outer.triangles.empty() && tooth.parts.size() != 1)
+            table.fail("a tooth of several parts or none, without an outer surface",
+                       "name its whole surface as \"outer\"");
+        const bool isTwice = tooth.fdiNumber != 0 &&
+                             std::count_if(others.begin(), others.end(),
+                                           [&](const PlacedTooth& o) { return o.fdiNumber == tooth.fdiNumber; }) > 1;
+        if (isTwice || (tooth.fdiNumber != 0 && tooth.fdiNumber == root.integer("fdi").value_or(0)))
+            table.fail(fmt::format("tooth {} stands in the case twice", tooth.fdiNumber), "give each its own number",
+                       "fdi");
+    }
+    return others;
 }
 
 }  // namespace
@@ -136,24 +206,21 @@ Case readCaseFiles(const CaseFiles& files) {
         root.fail(fmt::format("the case's format is {}, this program reads formats {} to {}", version, kOldestFormat,
                               kNewestFormat),
                   version > kNewestFormat ? "use a newer Handpiece" : "add the line: format = 1", "format");
-    const bool strict = version >= 2;
-    if (strict)
+    if (version >= 3)
+        root.allowOnly({"format", "name", "kind", "fdi", "buccal", "outer", "tissues", "part", "scenery", "exercise",
+                        "landmark", "tooth"});
+    else if (version == 2)
         root.allowOnly({"format", "name", "kind", "fdi", "buccal", "outer", "tissues", "part", "scenery", "exercise"});
     Case made;
     made.source = files.source;
     const fs::path source = files.source.has_filename() ? files.source : files.source.parent_path();
     const fs::path fallback = isPackageName(source) ? source.stem() : source.filename();
     made.name = root.text("name").value_or(fallback.string());
-    made.kind = root.text("kind").value_or("");
-    made.fdiNumber = fdiNumberOf(root);
-    made.buccalSign = buccalSignOf(root);
     readTissueTable(root, files, made);
-    if (const std::string outer = root.text("outer").value_or(""); !outer.empty()) {
-        requireInside(root, outer, "outer");
-        made.outer = meshOf(files, outer);
-    }
-    made.parts = readParts(root, "part", files, made.tissues, strict);
-    made.scenery = readParts(root, "scenery", files, made.tissues, strict);
+    const Reading reading{files, made.tissues, version};
+    readTooth(root, reading, made);
+    made.scenery = readParts(root, "scenery", reading);
+    if (reading.hasOthers()) made.others = readOthers(root, reading);
     if (const auto exercise = root.table("exercise")) made.exercise = readExercise(*exercise);
     if (made.outer.triangles.empty() && made.parts.empty())
         throw core::Error("the case has neither an outer surface nor a part", root.where(), kRemedy)
@@ -187,7 +254,7 @@ Case readCase(const fs::path& path) {
     return made;
 }
 
-std::uint64_t contentKey(const Case& toothCase) {
+std::uint64_t contentKey(const Tooth& tooth) {
     core::Hasher hasher;
     hasher.add(std::string_view("handpiece case"));
     // As an STL holds it, so that it stays the same when the case is written and read again.
@@ -198,11 +265,27 @@ std::uint64_t contentKey(const Case& toothCase) {
                 for (int k = 0; k < 3; ++k)
                     hasher.add(static_cast<float>(mesh.vertices[v][k]) + 0.0f);  // -0 is 0
     };
-    addMesh(toothCase.outer);
-    for (const Part& part : toothCase.parts) {
+    addMesh(tooth.outer);
+    for (const Part& part : tooth.parts) {
         hasher.add(part.tissue);
         hasher.add(part.priority);
         addMesh(part.mesh);
+    }
+    return hasher.value();
+}
+
+std::uint64_t caseKey(const Case& toothCase) {
+    if (toothCase.others.empty()) return contentKey(toothCase);
+    core::Hasher hasher;
+    hasher.add(std::string_view("handpiece mouth"));
+    hasher.add(contentKey(toothCase));
+    for (const PlacedTooth& tooth : toothCase.others) {
+        hasher.add(contentKey(tooth));
+        hasher.add(tooth.isCuttable);
+        for (int k = 0; k < 3; ++k)
+            hasher.add(tooth.inCase.positionMm[k]);
+        for (int k = 0; k < 4; ++k)
+            hasher.add(tooth.inCase.orientation.coeffs()[k]);
     }
     return hasher.value();
 }

@@ -11,6 +11,7 @@
 
 #include "handpiece/base/geometry/triangle_mesh.h"
 #include "handpiece/model/case/exercise.h"
+#include "handpiece/model/case/landmark.h"
 #include "handpiece/model/case/tissue.h"
 
 namespace handpiece::cases {
@@ -21,19 +22,32 @@ struct Part {
     Tissue tissue = Tissue::enamel;
     int priority = 0;  ///< where parts overlap the higher wins
     geometry::TriangleMesh mesh;
+    bool isFelt = false;  ///< of scenery: a solid that the instrument meets; else it is only seen
 };
 
-/// A case as read: a folder with case.toml and STL parts, or one STL (then a single enamel part).
-/// Tooth frame: millimetres, +z occlusal, +x mesial, +y completes the right hand.
-struct Case {
+/// A tooth as files hold it, in its own frame: millimetres, +z occlusal, +x mesial, +y completes the right hand.
+struct Tooth {
     std::string name;
-    std::string kind;                        ///< "lower-first-molar"; may be empty
-    int fdiNumber = 0;                       ///< 0 when unknown
-    int buccalSign = 0;                      ///< +1: buccal is +y, -1: -y, 0 unknown
+    std::string kind;              ///< "lower-first-molar"; may be empty
+    int fdiNumber = 0;             ///< 0 when unknown
+    int buccalSign = 0;            ///< +1: buccal is +y, -1: -y, 0 unknown
+    geometry::TriangleMesh outer;  ///< the whole tooth as one closed surface; empty when there is none
+    std::vector<Part> parts;       ///< its tissues
+    std::vector<Landmark> landmarks{};
+};
+
+/// Another tooth of the mouth.
+struct PlacedTooth : Tooth {
+    core::Pose inCase;       ///< its frame in that of the case's own tooth: rigid
+    bool isCuttable = true;  ///< else the instrument is held off by it and no more
+};
+
+/// A case as read: a folder with case.toml and STL parts, or one STL (then a single enamel part). It is the tooth that
+/// is worked on, whose frame is the case's, and what stands around it.
+struct Case : Tooth {
     std::filesystem::path source;            ///< folder or file, for messages and for the cache beside it
-    geometry::TriangleMesh outer;            ///< the whole tooth as one closed surface; empty when the case has none
-    std::vector<Part> parts;                 ///< tissues of the tooth itself
-    std::vector<Part> scenery;               ///< neighbours, gum, bone: seen, not felt in this version
+    std::vector<PlacedTooth> others{};       ///< adjacent teeth, antagonists: felt
+    std::vector<Part> scenery{};             ///< gum, bone and what is only seen, in the case's frame
     TissueTable tissues = builtInTissues();  ///< with what the case changes
     std::string tissuesToml;                 ///< the text of what it changes; empty when it changes nothing
     std::optional<Exercise> exercise;
@@ -46,8 +60,10 @@ struct Case {
 void writeCase(const Case& toothCase, const std::filesystem::path& path);
 
 /// A number that differs when the tooth does: its surfaces (as an STL holds them), tissues or priorities. Texts,
-/// scenery and the tissue table count for nothing. An attempt keeps it.
-[[nodiscard]] std::uint64_t contentKey(const Case& toothCase);
+/// landmarks, scenery and the tissue table count for nothing. An attempt keeps it.
+[[nodiscard]] std::uint64_t contentKey(const Tooth& tooth);
+/// Of all teeth of a case and where they stand; contentKey() of its tooth when it has no others.
+[[nodiscard]] std::uint64_t caseKey(const Case& toothCase);
 
 /// Why a surface cannot be felt, or that it can: closed, oriented, sane in size, not crossing itself.
 /// Throws core::Error with counts, the first place, and the command that mends it.

@@ -47,4 +47,9 @@ void requireInside(const config::Table& table, const std::string& name, std::str
 /// As it stands in case.toml, without the heading.
 [[nodiscard]] std::string exerciseToml(const Exercise& exercise);
 
+/// The `landmark` tables of a tooth's table. Throws core::Error.
+[[nodiscard]] std::vector<Landmark> readLandmarks(const config::Table& tooth);
+/// As tables `key` ("landmark", "tooth.landmark"), to 10 nm.
+[[nodiscard]] std::string landmarksToml(const std::vector<Landmark>& marks, std::string_view key);
+
 }  // namespace handpiece::cases

@@ -35,36 +35,63 @@ std::string fileFor(const Part& part, std::string_view prefix, const PackageFile
     return file;
 }
 
-void addParts(const std::vector<Part>& parts, const char* key, std::string_view prefix, PackageFiles& files,
+void addParts(const std::vector<Part>& parts, const std::string& key, std::string_view prefix, PackageFiles& files,
               std::string& toml) {
     for (const Part& part : parts) {
         const std::string file = fileFor(part, prefix, files);
         files[file] = geometry::stlBytes(part.mesh, part.name);
         toml += fmt::format("\n[[{}]]\nname = {}\nfile = {}\ntissue = {}\npriority = {}\n", key, tomlText(part.name),
                             tomlText(file), tomlText(properties(part.tissue).name), part.priority);
+        if (part.isFelt) toml += "felt = true\n";
     }
+}
+
+/// Name, kind, number and surface: the keys of a tooth before its tables.
+std::string toothKeys(const Tooth& tooth, const std::string& outerFile, PackageFiles& files) {
+    std::string toml = fmt::format("name = {}\n", tomlText(tooth.name));
+    if (!tooth.kind.empty()) toml += fmt::format("kind = {}\n", tomlText(tooth.kind));
+    if (tooth.fdiNumber != 0) toml += fmt::format("fdi = {}\n", tooth.fdiNumber);
+    if (tooth.buccalSign != 0) toml += fmt::format("buccal = \"{}\"\n", tooth.buccalSign > 0 ? "+y" : "-y");
+    if (tooth.outer.triangles.empty()) return toml;
+    files[outerFile] = geometry::stlBytes(tooth.outer, outerFile);
+    return toml + fmt::format("outer = \"{}\"\n", outerFile);
+}
+
+void addOther(const PlacedTooth& tooth, std::size_t index, PackageFiles& files, std::string& toml) {
+    const std::string prefix =
+        tooth.fdiNumber != 0 ? fmt::format("{}-", tooth.fdiNumber) : fmt::format("tooth{}-", index + 1);
+    toml += "\n[[tooth]]\n" + toothKeys(tooth, prefix + "outer.stl", files);
+    const core::Vec3& at = tooth.inCase.positionMm;
+    const core::Quat& turn = tooth.inCase.orientation;
+    toml += fmt::format("position_mm = [{}, {}, {}]\norientation = [{}, {}, {}, {}]\ncuttable = {}\n",
+                        tomlNumber(at.x()), tomlNumber(at.y()), tomlNumber(at.z()), tomlNumber(turn.w()),
+                        tomlNumber(turn.x()), tomlNumber(turn.y()), tomlNumber(turn.z()), tooth.isCuttable);
+    addParts(tooth.parts, "tooth.part", prefix, files, toml);
+    toml += landmarksToml(tooth.landmarks, "tooth.landmark");
+}
+
+/// The oldest format that can hold it.
+int formatOf(const Case& c) {
+    const auto isFelt = [](const Part& part) { return part.isFelt; };
+    if (!c.others.empty() || !c.landmarks.empty() || std::any_of(c.scenery.begin(), c.scenery.end(), isFelt)) return 3;
+    return c.exercise || !c.tissuesToml.empty() ? 2 : 1;
 }
 
 }  // namespace
 
 PackageFiles caseFiles(const Case& toothCase) {
-    const bool needsTwo = toothCase.exercise || !toothCase.tissuesToml.empty();
     std::string toml = "# A Handpiece case: docs/case-format.md. Millimetres; +z occlusal, +x mesial.\n";
-    toml += fmt::format("format = {}\nname = {}\n", needsTwo ? 2 : 1, tomlText(toothCase.name));
-    if (!toothCase.kind.empty()) toml += fmt::format("kind = {}\n", tomlText(toothCase.kind));
-    if (toothCase.fdiNumber != 0) toml += fmt::format("fdi = {}\n", toothCase.fdiNumber);
-    if (toothCase.buccalSign != 0) toml += fmt::format("buccal = \"{}\"\n", toothCase.buccalSign > 0 ? "+y" : "-y");
     PackageFiles files;
-    if (!toothCase.outer.triangles.empty()) {
-        files["outer.stl"] = geometry::stlBytes(toothCase.outer, "outer.stl");
-        toml += "outer = \"outer.stl\"\n";
-    }
+    toml += fmt::format("format = {}\n", formatOf(toothCase)) + toothKeys(toothCase, "outer.stl", files);
     if (!toothCase.tissuesToml.empty()) {
         files[kTissueFile] = bytesOf(toothCase.tissuesToml);
         toml += fmt::format("tissues = \"{}\"\n", kTissueFile);
     }
     addParts(toothCase.parts, "part", "", files, toml);
+    toml += landmarksToml(toothCase.landmarks, "landmark");
     addParts(toothCase.scenery, "scenery", "scene-", files, toml);
+    for (std::size_t i = 0; i < toothCase.others.size(); ++i)
+        addOther(toothCase.others[i], i, files, toml);
     if (toothCase.exercise) toml += "\n[exercise]\n" + exerciseToml(*toothCase.exercise);
     files[kCaseFile] = bytesOf(toml);
     return files;

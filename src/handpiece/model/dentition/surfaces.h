@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// A specification as functions of space, negative inside. Private to this room.
+
+#include "handpiece/model/dentition/anatomy.h"
+
+namespace handpiece::dentition {
+
+/// max(a, b) with the edge rounded over `width`, never below max.
+[[nodiscard]] inline double smoothMax(double a, double b, double width) {
+    const double h = std::max(width - std::abs(a - b), 0.0) / width;
+    return std::max(a, b) + 0.25 * width * h * h;
+}
+[[nodiscard]] inline double smoothMin(double a, double b, double width) {
+    return -smoothMax(-a, -b, width);
+}
+[[nodiscard]] double smoothStep(double from, double to, double x);
+
+/// Cross-sections with a smooth surface through them, closed like ellipsoids below and, if asked, above.
+class Loft {
+  public:
+    struct Ends {
+        double bottomZ, bottomLength;
+        double topZ = 0.0, topLength = 0.0;  ///< length 0: open
+    };
+    Loft(std::vector<Section> sections, Ends ends, double lean = 0.0, double wedge = 0.0, double skew = 0.0);
+    [[nodiscard]] double value(const core::Vec3& p) const;
+    [[nodiscard]] Section at(double z) const;
+
+  private:
+    static constexpr int kValues = 6;
+    struct Knot {
+        double z;
+        double value[kValues], slope[kValues];  ///< cx, cy, halfX, halfY, square, waist
+    };
+    void interpolate(double z, double (&v)[kValues]) const;
+
+    std::vector<Knot> knots_;
+    Ends ends_;
+    double lean_, wedge_, skew_;
+};
+
+/// One tooth in the frame of anatomy.h.
+class Anatomy {
+  public:
+    explicit Anatomy(Spec spec);
+
+    [[nodiscard]] double outer(const core::Vec3& p) const;
+    [[nodiscard]] double enamel(const core::Vec3& p) const;
+    [[nodiscard]] double dentine(const core::Vec3& p) const;
+    [[nodiscard]] double pulp(const core::Vec3& p) const;
+    [[nodiscard]] double cementum(const core::Vec3& p) const;
+    [[nodiscard]] double aboveCervix(const core::Vec3& p) const;
+    [[nodiscard]] core::Box bounds() const;
+    [[nodiscard]] const Spec& spec() const { return spec_; }
+
+    /// The point of the surface where the way from `from` along `direction` first leaves the tooth, looked for from
+    /// outside; false when it misses.
+    [[nodiscard]] bool surfaceAlong(const core::Vec3& from, const core::Vec3& direction, core::Vec3& found) const;
+    /// The point of the surface nearest by Newton steps.
+    [[nodiscard]] core::Vec3 onSurface(core::Vec3 p) const;
+    /// The outermost point of the surface in a direction, by climbing from the one seen from `start`.
+    [[nodiscard]] core::Vec3 outermost(const core::Vec3& direction, const core::Vec3& start) const;
+
+    [[nodiscard]] double buccalCervixZ() const { return cervix_[2]; }
+    // Measured on the surface.
+    core::Vec3 highest, lowest, mesialContact, distalContact, buccalContour, lingualContour;
+
+  private:
+    struct Curve {
+        std::vector<core::Vec3> points;
+        double round, slope, reach, topZ;
+        core::Vec2 middle;
+    };
+    struct Line {
+        const Groove* groove;
+        core::Vec2 middle;
+        double reach;
+    };
+    [[nodiscard]] double occlusalHeight(double x, double y) const;
+    [[nodiscard]] double grooveDepth(const core::Vec3& p) const;
+    [[nodiscard]] double body(const core::Vec3& p) const;  ///< without grooves and the step at the cervix
+    [[nodiscard]] double step(double above) const;
+    [[nodiscard]] double core(const core::Vec3& p, double bodyValue) const;
+    void measure();
+
+    Spec spec_;
+    Loft crown_;
+    std::vector<Loft> roots_;
+    std::vector<Loft> chamber_;
+    std::vector<Curve> curves_;
+    std::vector<Line> lines_;
+    double cervix_[4];  ///< heights of the cemento-enamel junction: mesial, distal, buccal, lingual
+    double topZ_, apexZ_, reach_;
+};
+
+}  // namespace handpiece::dentition

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/model/dentition/tooth_form.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/model/dentition/rules.h"
+#include "handpiece/model/dentition/surfaces.h"
+
+namespace handpiece::dentition {
+namespace {
+using core::Vec3;
+
+void checkTooth(int fdi, const Patient& patient) {
+    if (fdi / 10 < 1 || fdi / 10 > 4 || fdi % 10 < 1 || fdi % 10 > 8)
+        throw core::Error(fmt::format("{} is no permanent tooth", fdi), "--fdi",
+                          "give a number of two digits: quadrant 1 to 4, then 1 (central incisor) to 8 (third molar)");
+    if (!(patient.ageYears >= 6.0 && patient.ageYears <= 110.0))
+        throw core::Error(fmt::format("an age of {} years", patient.ageYears), "--age", "give 6 to 110");
+}
+
+/// Numbers of a seed, the same everywhere.
+class Draws {
+  public:
+    explicit Draws(std::uint64_t seed) : state_(seed) {}
+    double uniform() {  // splitmix64
+        std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ull);
+        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
+        z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+        return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+    }
+    /// About normal, of unit spread, never beyond 2.
+    double normal() {
+        double sum = -6.0;
+        for (int i = 0; i < 12; ++i)
+            sum += uniform();
+        return std::clamp(sum, -2.0, 2.0);
+    }
+
+  private:
+    std::uint64_t state_;
+};
+
+Spec specFor(int fdi, const Patient& patient) {
+    const bool upper = fdi < 30;
+    Spec spec = specOf(upper, fdi % 10, patient);
+    // Sizes of one mouth go together; each tooth has some play of its own.
+    Draws mouth(patient.seed), tooth(patient.seed * 1000003 + static_cast<std::uint64_t>(fdi % 10 + (upper ? 0 : 8)));
+    const double all = 1.0 + 0.035 * mouth.normal();
+    const double x = all * (1.0 + 0.02 * tooth.normal()), y = all * (1.0 + 0.02 * tooth.normal());
+    const double crown = all * (1.0 + 0.02 * tooth.normal()), root = all * (1.0 + 0.04 * tooth.normal());
+    scale(spec, x, y, crown, root);
+    wear(spec, (fdi % 10 >= 6 ? 0.012 : 0.008) * std::max(patient.ageYears - 12.0, 0.0));
+    return spec;
+}
+
+}  // namespace
+
+ToothForm::ToothForm(int fdi, const Patient& patient) : fdi_(fdi) {
+    checkTooth(fdi, patient);
+    // +x mesial and +z occlusal: +y is lingual in the lower right and upper left, buccal in the others.
+    buccalSign_ = fdi / 10 == 1 || fdi / 10 == 3 ? 1 : -1;
+    anatomy_ = std::make_shared<const Anatomy>(specFor(fdi, patient));
+}
+
+namespace {
+/// Between the tooth's frame and that of anatomy.h, either way.
+Vec3 turned(const Vec3& p, int buccalSign) {
+    return {p.x(), -buccalSign * p.y(), p.z()};
+}
+}  // namespace
+
+double ToothForm::outer(const Vec3& p) const {
+    return anatomy_->outer(turned(p, buccalSign_));
+}
+double ToothForm::enamel(const Vec3& p) const {
+    return anatomy_->enamel(turned(p, buccalSign_));
+}
+double ToothForm::dentine(const Vec3& p) const {
+    return anatomy_->dentine(turned(p, buccalSign_));
+}
+double ToothForm::pulp(const Vec3& p) const {
+    return anatomy_->pulp(turned(p, buccalSign_));
+}
+double ToothForm::cementum(const Vec3& p) const {
+    return anatomy_->cementum(turned(p, buccalSign_));
+}
+double ToothForm::aboveCervix(const Vec3& p) const {
+    return anatomy_->aboveCervix(turned(p, buccalSign_));
+}
+core::Box ToothForm::bounds() const {
+    return anatomy_->bounds();
+}
+double ToothForm::crownHeightMm() const {
+    return anatomy_->highest.z() - anatomy_->buccalCervixZ();
+}
+double ToothForm::rootLengthMm() const {
+    return anatomy_->buccalCervixZ() - anatomy_->lowest.z();
+}
+double ToothForm::mesiodistalMm() const {
+    return anatomy_->mesialContact.x() - anatomy_->distalContact.x();
+}
+double ToothForm::buccolingualMm() const {
+    return anatomy_->lingualContour.y() - anatomy_->buccalContour.y();
+}
+Vec3 ToothForm::mesialContactMm() const {
+    return turned(anatomy_->mesialContact, buccalSign_);
+}
+Vec3 ToothForm::distalContactMm() const {
+    return turned(anatomy_->distalContact, buccalSign_);
+}
+
+std::vector<cases::Landmark> ToothForm::landmarks() const {
+    std::vector<cases::Landmark> marks;
+    const auto add = [&](cases::LandmarkKind kind, std::string name, std::vector<Vec3> points) {
+        for (Vec3& p : points)
+            p = turned(p, buccalSign_);
+        marks.push_back({kind, std::move(name), std::move(points), cases::LandmarkSource::generated});
+    };
+    const Anatomy& a = *anatomy_;
+    for (const Cusp& c : a.spec().cusps)
+        add(cases::LandmarkKind::cuspTip, c.name, {a.outermost(Vec3::UnitZ(), c.tip)});
+    add(cases::LandmarkKind::contact, "mesial", {a.mesialContact});
+    add(cases::LandmarkKind::contact, "distal", {a.distalContact});
+    return marks;
+}
+
+std::string toothName(int fdi) {
+    static constexpr const char* kNames[] = {"central incisor", "lateral incisor", "canine",       "first premolar",
+                                             "second premolar", "first molar",     "second molar", "third molar"};
+    return fmt::format("{} {} {}", fdi < 30 ? "upper" : "lower", fdi / 10 == 1 || fdi / 10 == 4 ? "right" : "left",
+                       kNames[fdi % 10 - 1]);
+}
+
+std::string toothKindName(int fdi) {
+    std::string name = toothName(fdi);
+    const std::size_t side = name.find(' ');
+    name.erase(side, name.find(' ', side + 1) - side);
+    std::replace(name.begin(), name.end(), ' ', '-');
+    return name;
+}
+
+}  // namespace handpiece::dentition

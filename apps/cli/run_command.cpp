@@ -254,7 +254,7 @@ device::Motion cutMotionOf(const RunOptions& o, const studies::RunSettings& sett
     scene.outerMm = [&](const core::Vec3& p) { return tooth->tree.signedDistance(p); };
     std::vector<geometry::TriangleTree> pulp;
     for (const cases::Part& part : toothCase.parts) {
-        if (part.tissue == cases::Tissue::caries) scene.decay.push_back(part.mesh);
+        if (cases::isCarious(part.tissue)) scene.decay.push_back(part.mesh);
         if (part.tissue == cases::Tissue::pulp) pulp.emplace_back(part.mesh);
     }
     if (!pulp.empty())
@@ -435,11 +435,14 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
             volumes += fmt::format("{}{} {:.4f}", volumes.empty() ? "" : ", ", name, mm3.get<double>());
     printRow("removed", volumes.empty() ? "nothing" : volumes + " mm3");
     if (!lesions.empty()) {
-        constexpr auto kCaries = static_cast<std::size_t>(cases::Tissue::caries);
-        double soundMm3 = -outcome.summary.removedMm3[kCaries];
-        for (const double mm3 : outcome.summary.removedMm3)
-            soundMm3 += mm3;
-        const double gone = outcome.summary.removedMm3[kCaries], all = gone + outcome.leftMm3[kCaries];
+        double soundMm3 = 0.0, gone = 0.0, remaining = 0.0;
+        for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
+            const auto tissue = static_cast<cases::Tissue>(t);
+            if (cases::isCarious(tissue)) remaining += outcome.leftMm3[t];
+            if (tissue != cases::Tissue::demineralisedEnamel)
+                (cases::isCarious(tissue) ? gone : soundMm3) += outcome.summary.removedMm3[t];
+        }
+        const double all = gone + remaining;
         printLesions(lesions, outcomes, o.pulpGuardMm);
         double plannedMm3 = 0.0;
         for (const studies::LesionPlan& l : lesions)
@@ -447,7 +450,7 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
         constexpr double kKeptUp = 0.8;
         printRow("decay",
                  fmt::format("{:.2f} mm3 taken ({:.0f} %), {:.2f} mm3 left; {:.2f} mm3 of sound tissue taken{}", gone,
-                             all > 0.0 ? 100.0 * gone / all : 0.0, outcome.leftMm3[kCaries], soundMm3,
+                             all > 0.0 ? 100.0 * gone / all : 0.0, remaining, soundMm3,
                              gone < kKeptUp * plannedMm3
                                  ? "; the bur did not keep up with the hand: a lower --speed, or a faster drive"
                                  : ""));

@@ -37,7 +37,18 @@ constexpr double kMaxWaitByPulpS = 2.0;  // where the hand goes no lower than th
 constexpr double kLowerStepMm = 0.02;
 constexpr double kClearOfLayerMm = 0.2;  // there the bur comes down slowly
 
-/// The connected parts of closed surfaces.
+/// Whether nearly all of `inner` lies in `outer`: a softer level of the same lesion.
+bool isWithin(const geometry::TriangleMesh& inner, const geometry::TriangleMesh& outer) {
+    constexpr double kTouchMm = 0.05, kNearlyAll = 0.95;
+    const core::Box box = outer.bounds().grown(kTouchMm), in = inner.bounds();
+    if ((in.min.array() < box.min.array()).any() || (in.max.array() > box.max.array()).any()) return false;
+    const geometry::TriangleTree tree(outer);
+    const auto count = std::count_if(inner.vertices.begin(), inner.vertices.end(),
+                                     [&](const Vec3& v) { return tree.signedDistance(v) < kTouchMm; });
+    return static_cast<double>(count) > kNearlyAll * static_cast<double>(inner.vertices.size());
+}
+
+/// The connected parts of closed surfaces, without those that lie in another.
 std::vector<geometry::TriangleMesh> lesionsOf(const std::vector<geometry::TriangleMesh>& decay) {
     std::vector<geometry::TriangleMesh> lesions;
     for (const geometry::TriangleMesh& mesh : decay) {
@@ -59,7 +70,14 @@ std::vector<geometry::TriangleMesh> lesionsOf(const std::vector<geometry::Triang
         for (geometry::TriangleMesh& part : parts)
             if (geometry::enclosedVolumeMm3(part) > 0.0) lesions.push_back(std::move(part));
     }
-    return lesions;
+    std::vector<geometry::TriangleMesh> outermost;
+    for (const geometry::TriangleMesh& lesion : lesions)
+        if (std::none_of(lesions.begin(), lesions.end(), [&](const auto& other) {
+                return geometry::enclosedVolumeMm3(other) > geometry::enclosedVolumeMm3(lesion) &&
+                       isWithin(lesion, other);
+            }))
+            outermost.push_back(lesion);
+    return outermost;
 }
 
 /// One lesion seen along one axis: columns of cells, and how low the bur's tip may go in each.
@@ -167,8 +185,9 @@ class Approach {
     }
 
   private:
-    using Cell = cases::Tissue;  // caries is this lesion's alone
-    static constexpr Cell outside = Cell::none, decayed = Cell::caries;
+    using Cell = cases::Tissue;  // carious cells are this lesion's alone
+    static constexpr Cell outside = Cell::none;
+    static bool isDecayed(Cell cell) { return cases::isCarious(cell); }
     struct Bottom {
         int di, dj;
         double heightMm;     ///< of the bur's underside over its tip, there
@@ -262,10 +281,11 @@ class Approach {
                 surface_[at(i, j)] = heightOf(k) + 0.5 * cellMm_;
                 Cell& cell = cells_[at(i, j, k)];
                 cell = scene_.tissueAt ? scene_.tissueAt(p) : Cell::dentine;
-                if (cell == outside || cell == decayed) cell = Cell::dentine;  // the surface, and other lesions
+                const Cell found = cell;
+                if (cell == outside || isDecayed(cell)) cell = Cell::dentine;  // the surface, and other lesions
                 if ((p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all() &&
                     lesion.signedDistance(p) < 0.0) {
-                    cell = decayed;
+                    cell = isDecayed(found) ? found : Cell::caries;
                     ++decay_;
                     lowestDecay_[at(i, j)] = std::min(lowestDecay_[at(i, j)], heightOf(k) - 0.5 * cellMm_);
                 }
@@ -349,7 +369,7 @@ class Approach {
         for (const Bottom& b : bottoms_) {
             const int k = std::max(0, static_cast<int>(std::floor((floor + b.heightMm - low_.z()) / cellMm_ + 0.5)));
             for (int l = k; l < layers_; ++l)
-                if (cells_[at(i + b.di, j + b.dj, l)] == decayed) return true;
+                if (isDecayed(cells_[at(i + b.di, j + b.dj, l)])) return true;
         }
         return false;
     }
@@ -374,8 +394,8 @@ class Approach {
             for (int k = 0; k < layers_; ++k) {
                 if (heightOf(k) < lowest[at(i, j)]) continue;
                 const Cell cell = cells_[at(i, j, k)];
-                taken.decay += cell == decayed;
-                taken.sound += cell != decayed && cell != outside;
+                taken.decay += isDecayed(cell);
+                taken.sound += !isDecayed(cell) && cell != outside;
                 if (cell == outside || !scene_.pulpMm || !std::exchange(first, false)) continue;
                 taken.pulpMm = std::min(taken.pulpMm, scene_.pulpMm(place(i, j, lowest[at(i, j)])));
             }

@@ -24,7 +24,11 @@ constexpr std::string_view kHeader =
 constexpr Tissue kPlotted[] = {Tissue::enamel, Tissue::dentine, Tissue::caries, Tissue::pulp};
 
 double removed(const HapticSample& s, Tissue tissue) {
-    return s.removedMm3[static_cast<std::size_t>(tissue)];
+    if (tissue != Tissue::caries) return s.removedMm3[static_cast<std::size_t>(tissue)];
+    double carious = 0.0;  // of every level
+    for (std::size_t t = 0; t < cases::kTissueCount; ++t)
+        if (cases::isCarious(static_cast<Tissue>(t))) carious += s.removedMm3[t];
+    return carious;
 }
 
 void writeLine(TextWriter& out, fmt::memory_buffer& buffer, const HapticSample& s) {

@@ -103,8 +103,9 @@ void cut(const std::string& prefix, const std::shared_ptr<const tooth::ToothMode
             [&](const messages::HapticSample& s) {
                 addSample(samples, s);
                 samples.add(s.speedRpm);
-                for (const double mm3 : s.removedMm3)
-                    samples.add(mm3);
+                // Tissues that came later count once they are there, as in a tooth's own number.
+                for (std::size_t t = 0; t < s.removedMm3.size(); ++t)
+                    if (t < cases::kFirstTissueCount || s.removedMm3[t] > 0.0) samples.add(s.removedMm3[t]);
             },
             [&](const tooth::BrickSnapshot& brick) {
                 mirror.apply(brick);

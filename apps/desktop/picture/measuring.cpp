@@ -86,6 +86,24 @@ QString tissueText(cases::Tissue tissue) {
             return Texts::tr("Neighbour");
         case cases::Tissue::restoration:
             return Texts::tr("Restoration");
+        case cases::Tissue::demineralisedEnamel:
+            return Texts::tr("Demineralised enamel");
+        case cases::Tissue::cariesSoft:
+            return Texts::tr("Soft carious dentine");
+        case cases::Tissue::cariesSoftToLeathery:
+            return Texts::tr("Soft to leathery carious dentine");
+        case cases::Tissue::cariesLeathery:
+            return Texts::tr("Leathery carious dentine");
+        case cases::Tissue::cariesLeatheryToFirm:
+            return Texts::tr("Leathery to firm carious dentine");
+        case cases::Tissue::cariesFirm:
+            return Texts::tr("Firm carious dentine");
+        case cases::Tissue::cariesFirmToHard:
+            return Texts::tr("Firm to hard carious dentine");
+        case cases::Tissue::stainedEnamel:
+            return Texts::tr("Stained enamel");
+        case cases::Tissue::calculus:
+            return Texts::tr("Calculus");
     }
     return {};
 }

@@ -1078,6 +1078,42 @@
         <source>Restoration</source>
         <translation>修復物</translation>
     </message>
+    <message>
+        <source>Demineralised enamel</source>
+        <translation>脱灰エナメル質</translation>
+    </message>
+    <message>
+        <source>Soft carious dentine</source>
+        <translation>軟化う蝕象牙質</translation>
+    </message>
+    <message>
+        <source>Soft to leathery carious dentine</source>
+        <translation>軟らかい～革状のう蝕象牙質</translation>
+    </message>
+    <message>
+        <source>Leathery carious dentine</source>
+        <translation>革状のう蝕象牙質</translation>
+    </message>
+    <message>
+        <source>Leathery to firm carious dentine</source>
+        <translation>革状～やや硬いう蝕象牙質</translation>
+    </message>
+    <message>
+        <source>Firm carious dentine</source>
+        <translation>やや硬いう蝕象牙質</translation>
+    </message>
+    <message>
+        <source>Firm to hard carious dentine</source>
+        <translation>やや硬い～硬いう蝕象牙質</translation>
+    </message>
+    <message>
+        <source>Stained enamel</source>
+        <translation>着色エナメル質</translation>
+    </message>
+    <message>
+        <source>Calculus</source>
+        <translation>歯石</translation>
+    </message>
 </context>
 <context>
     <name>MendDialog</name>
@@ -2344,6 +2380,42 @@
     <message>
         <source>Filling</source>
         <translation>修復物</translation>
+    </message>
+    <message>
+        <source>Demineralised enamel</source>
+        <translation>脱灰エナメル質</translation>
+    </message>
+    <message>
+        <source>Soft carious dentine</source>
+        <translation>軟化う蝕象牙質</translation>
+    </message>
+    <message>
+        <source>Soft to leathery carious dentine</source>
+        <translation>軟らかい～革状のう蝕象牙質</translation>
+    </message>
+    <message>
+        <source>Leathery carious dentine</source>
+        <translation>革状のう蝕象牙質</translation>
+    </message>
+    <message>
+        <source>Leathery to firm carious dentine</source>
+        <translation>革状～やや硬いう蝕象牙質</translation>
+    </message>
+    <message>
+        <source>Firm carious dentine</source>
+        <translation>やや硬いう蝕象牙質</translation>
+    </message>
+    <message>
+        <source>Firm to hard carious dentine</source>
+        <translation>やや硬い～硬いう蝕象牙質</translation>
+    </message>
+    <message>
+        <source>Stained enamel</source>
+        <translation>着色エナメル質</translation>
+    </message>
+    <message>
+        <source>Calculus</source>
+        <translation>歯石</translation>
     </message>
 </context>
 <context>

@@ -185,6 +185,24 @@ QString tissueName(cases::Tissue tissue) {
             return text(QT_TRANSLATE_NOOP("Tissue", "Neighbour tooth"));
         case Tissue::restoration:
             return text(QT_TRANSLATE_NOOP("Tissue", "Filling"));
+        case Tissue::demineralisedEnamel:
+            return text(QT_TRANSLATE_NOOP("Tissue", "Demineralised enamel"));
+        case Tissue::cariesSoft:
+            return text(QT_TRANSLATE_NOOP("Tissue", "Soft carious dentine"));
+        case Tissue::cariesSoftToLeathery:
+            return text(QT_TRANSLATE_NOOP("Tissue", "Soft to leathery carious dentine"));
+        case Tissue::cariesLeathery:
+            return text(QT_TRANSLATE_NOOP("Tissue", "Leathery carious dentine"));
+        case Tissue::cariesLeatheryToFirm:
+            return text(QT_TRANSLATE_NOOP("Tissue", "Leathery to firm carious dentine"));
+        case Tissue::cariesFirm:
+            return text(QT_TRANSLATE_NOOP("Tissue", "Firm carious dentine"));
+        case Tissue::cariesFirmToHard:
+            return text(QT_TRANSLATE_NOOP("Tissue", "Firm to hard carious dentine"));
+        case Tissue::stainedEnamel:
+            return text(QT_TRANSLATE_NOOP("Tissue", "Stained enamel"));
+        case Tissue::calculus:
+            return text(QT_TRANSLATE_NOOP("Tissue", "Calculus"));
     }
     return {};
 }

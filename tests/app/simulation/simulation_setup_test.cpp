@@ -39,6 +39,29 @@ TEST(StationSettingsOfAStranger, AsTheyWereTheyAreRead) {
     EXPECT_EQ(settingsJson(settingsFromJson(text, "a session")), text);
 }
 
+TEST(StationSettingsOfAStranger, TissuesThatCameAfterItAreAsShipped) {
+    std::string text = settingsJson(blockSettings());
+    const std::string whole = text;
+    // Before the layers of caries: ten rows, in each of the two tables.
+    const std::regex laterRow(",\\s*\"(demineralised-enamel|caries-[a-z-]+|stained-enamel|calculus)\": \\{[^}]*\\}");
+    text = std::regex_replace(text, laterRow, "");
+    const std::size_t feels = text.rfind("\"tissues\": [");
+    ASSERT_NE(feels, std::string::npos);
+    std::size_t end = feels;
+    for (std::size_t row = 0; row <= cases::kFirstTissueCount; ++row)
+        end = text.find(']', end + 1);
+    const std::size_t tenth = text.rfind(']', end - 1);
+    std::size_t close = end;
+    for (std::size_t row = cases::kFirstTissueCount; row < cases::kTissueCount; ++row)
+        close = text.find(']', close + 1);
+    text.erase(tenth + 1, close - tenth - 1);
+    EXPECT_EQ(text.find("calculus"), std::string::npos);
+    EXPECT_LT(text.size(), whole.size());
+    EXPECT_EQ(problemOf(text), "");
+    EXPECT_EQ(settingsJson(settingsFromJson(text, "an old session")), whole);
+    EXPECT_NE(problemOf(std::regex_replace(text, std::regex("\"restoration\": "), "\"filling\": ")), "");
+}
+
 TEST(StationSettingsOfAStranger, NoFigureIsUsedThatCannotBeMeant) {
     struct Bad {
         const char *key, *value, *within;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -62,10 +63,42 @@ TEST(Tissue, TheFileGivesWhatWasMeasuredOfTheRates) {
         const TissueProperties& p = properties(static_cast<Tissue>(i));
         EXPECT_GT(p.cuttingMm2PerN, 0.0) << p.name;
         EXPECT_GT(p.stiffnessFraction, 0.0) << p.name;
-        EXPECT_EQ(p.dampingNSPerMm, 0.002) << p.name;
+        EXPECT_GE(p.dampingNSPerMm, 0.002) << p.name;
+        // What a tick adds to the energy (K T / 2, at 1 kHz and 0.5 N/mm) and b: nowhere more than in enamel.
+        EXPECT_LE(0.5 * p.stiffnessFraction * 0.0005 + p.dampingNSPerMm, 0.5 * 0.0005 + 0.002 + 1e-12) << p.name;
         EXPECT_GT(p.friction, 0.0) << p.name;
         EXPECT_GT(p.priority, 0) << p.name;
     }
+}
+
+TEST(Tissue, CariousDentineIsOneGradientFromSoftToHard) {
+    const TissueTable own = parseTissues("format = 1\n[caries-leathery]\nstiffness = 0.3\n", "mine.toml");
+    for (const TissueTable& table : {builtInTissues(), own})
+        for (std::size_t i = 0; i < kCariousLevels.size(); ++i) {
+            const TissueProperties& soft = table.of(kCariousLevels[i]);
+            const TissueProperties& hard =
+                table.of(i + 1 < kCariousLevels.size() ? kCariousLevels[i + 1] : Tissue::dentine);
+            // A Weber fraction of an eighth at least, of stiffness; an eighth of the rate too.
+            EXPECT_GT(hard.stiffnessFraction, 1.125 * soft.stiffnessFraction) << soft.name;
+            EXPECT_GT(soft.cuttingMm2PerN, 1.125 * hard.cuttingMm2PerN) << soft.name;
+            EXPECT_GT(soft.friction, hard.friction) << soft.name;
+            EXPECT_GT(soft.dampingNSPerMm, hard.dampingNSPerMm) << soft.name;
+            EXPECT_GT(soft.priority, hard.priority) << soft.name;
+            EXPECT_LT(soft.colour[1], hard.colour[1]) << soft.name;
+            EXPECT_TRUE(isCarious(kCariousLevels[i]));
+            EXPECT_LT(soft.priority, table.of(Tissue::pulp).priority);
+        }
+    EXPECT_NEAR(own.of(Tissue::cariesLeatheryToFirm).stiffnessFraction, std::sqrt(0.3 * 0.42), 1e-12);
+    for (const Tissue sound : {Tissue::enamel, Tissue::dentine, Tissue::demineralisedEnamel, Tissue::stainedEnamel,
+                               Tissue::calculus, Tissue::pulp, Tissue::restoration})
+        EXPECT_FALSE(isCarious(sound));
+    EXPECT_TRUE(isCarious(Tissue::caries));
+    // A lesion of enamel ends where enamel does, and stain lies on whatever enamel is there.
+    const auto priority = [](Tissue t) { return properties(t).priority; };
+    EXPECT_GT(priority(Tissue::demineralisedEnamel), priority(Tissue::enamel));
+    EXPECT_LT(priority(Tissue::demineralisedEnamel), priority(Tissue::cementum));
+    EXPECT_GT(priority(Tissue::stainedEnamel), priority(Tissue::demineralisedEnamel));
+    EXPECT_LT(priority(Tissue::calculus), priority(Tissue::enamel));
 }
 
 TEST(Tissue, EveryShippedValueHasItsSource) {

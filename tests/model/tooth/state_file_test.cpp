@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/tooth/state_file.h"
 #include "support/cut_support.h"
@@ -67,6 +68,33 @@ TEST_F(CutStateFile, ComesBackBitForBit) {
     // Well below the plain floats.
     EXPECT_LT(data.size(), state.bricks.size() * sizeof(float) * field::kBrickValues / 2);
     expectSame(decodeState(encodeState(StateDelta{}, key), *base), StateDelta{});
+}
+
+TEST_F(CutStateFile, OneOfVersionOneIsReadAsItWas) {
+    // As docs/formats/cut-state.md has it: ten tissues in the header.
+    constexpr std::size_t kRemoved = 40, kDouble = sizeof(double), kHashes = 16;
+    std::vector<std::byte> old = encodeState(state, key);
+    const auto at = [](std::size_t offset) { return static_cast<std::ptrdiff_t>(offset); };
+    old.erase(old.begin() + at(kRemoved + cases::kFirstTissueCount * kDouble),
+              old.begin() + at(kRemoved + cases::kTissueCount * kDouble));
+    old[8] = std::byte{1};
+    const std::size_t end = kRemoved + cases::kFirstTissueCount * kDouble + kHashes;
+    const auto seal = [&] {
+        core::Hasher hasher;
+        hasher.add(std::span<const std::byte>(old).first(end - sizeof(std::uint64_t)));
+        const std::uint64_t hash = hasher.value();
+        std::memcpy(&old[end - sizeof hash], &hash, sizeof hash);
+    };
+    EXPECT_THAT(refusal(old), ::testing::HasSubstr("damaged"));
+    seal();
+    expectSame(decodeState(old, *base), state);
+    EXPECT_THAT(refusal(std::span(old).first(end - 1)), ::testing::HasSubstr("cut short"));
+    std::mt19937_64 generator(handpiece::test::seed());
+    for (int i = 0; i < 100; ++i) {
+        std::vector<std::byte> bad = old;
+        bad[generator() % (i % 2 == 0 ? bad.size() : end)] ^= std::byte{1} << (generator() % 8);
+        EXPECT_NE(refusal(bad), "taken");
+    }
 }
 
 TEST_F(CutStateFile, ChangesToo) {

@@ -101,6 +101,23 @@ TEST_F(Session, OneWithoutAnEngineRevisionIsOfTheFirst) {
               1);
 }
 
+TEST_F(Session, OneFromBeforeTheLayersOfCariesIsRead) {
+    // Of format 1: ten tissues a row.
+    const session::SessionReader reader(HANDPIECE_SOURCE_DIR "/tests/fuzz/corpus/session/whole.h5");
+    const std::vector<session::Record> all = reader.records(0, reader.size());
+    ASSERT_GT(all.size(), 10u);
+    double known = 0.0;
+    for (const session::Record& r : all)
+        for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
+            if (t < cases::kFirstTissueCount)
+                known = std::max(known, r.removedMm3[t]);
+            else
+                ASSERT_EQ(r.removedMm3[t], 0.0);
+        }
+    EXPECT_GT(known, 0.0);
+    EXPECT_LT(known, 100.0);
+}
+
 /// Records i .. i + count, with a key frame and an event, numbered from 0 on.
 void recordPart(session::Recorder& recorder, const std::vector<session::Record>& all, std::size_t from,
                 std::size_t count, std::byte mark) {

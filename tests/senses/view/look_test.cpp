@@ -56,21 +56,64 @@ double apart(const Colour& a, const Colour& b, const Vision& vision) {
 }
 
 // Tissues that may lie side by side in a tooth, in its gum or at a restoration.
-const std::vector<std::pair<Tissue, Tissue>> kTouching{
-    {Tissue::enamel, Tissue::dentine},       {Tissue::enamel, Tissue::caries},
-    {Tissue::enamel, Tissue::cementum},      {Tissue::enamel, Tissue::gum},
-    {Tissue::enamel, Tissue::neighbour},     {Tissue::enamel, Tissue::restoration},
-    {Tissue::enamel, Tissue::pulp},          {Tissue::dentine, Tissue::pulp},
-    {Tissue::dentine, Tissue::caries},       {Tissue::dentine, Tissue::cementum},
-    {Tissue::dentine, Tissue::gum},          {Tissue::dentine, Tissue::restoration},
-    {Tissue::pulp, Tissue::caries},          {Tissue::pulp, Tissue::cementum},
-    {Tissue::pulp, Tissue::restoration},     {Tissue::caries, Tissue::cementum},
-    {Tissue::caries, Tissue::gum},           {Tissue::caries, Tissue::restoration},
-    {Tissue::caries, Tissue::neighbour},     {Tissue::cementum, Tissue::gum},
-    {Tissue::cementum, Tissue::bone},        {Tissue::cementum, Tissue::neighbour},
-    {Tissue::cementum, Tissue::restoration}, {Tissue::gum, Tissue::bone},
-    {Tissue::gum, Tissue::neighbour},        {Tissue::gum, Tissue::restoration},
-    {Tissue::bone, Tissue::neighbour},       {Tissue::neighbour, Tissue::restoration}};
+const std::vector<std::pair<Tissue, Tissue>> kTouching{{Tissue::enamel, Tissue::dentine},
+                                                       {Tissue::enamel, Tissue::caries},
+                                                       {Tissue::enamel, Tissue::cementum},
+                                                       {Tissue::enamel, Tissue::gum},
+                                                       {Tissue::enamel, Tissue::neighbour},
+                                                       {Tissue::enamel, Tissue::restoration},
+                                                       {Tissue::enamel, Tissue::pulp},
+                                                       {Tissue::dentine, Tissue::pulp},
+                                                       {Tissue::dentine, Tissue::caries},
+                                                       {Tissue::dentine, Tissue::cementum},
+                                                       {Tissue::dentine, Tissue::gum},
+                                                       {Tissue::dentine, Tissue::restoration},
+                                                       {Tissue::pulp, Tissue::caries},
+                                                       {Tissue::pulp, Tissue::cementum},
+                                                       {Tissue::pulp, Tissue::restoration},
+                                                       {Tissue::caries, Tissue::cementum},
+                                                       {Tissue::caries, Tissue::gum},
+                                                       {Tissue::caries, Tissue::restoration},
+                                                       {Tissue::caries, Tissue::neighbour},
+                                                       {Tissue::cementum, Tissue::gum},
+                                                       {Tissue::cementum, Tissue::bone},
+                                                       {Tissue::cementum, Tissue::neighbour},
+                                                       {Tissue::cementum, Tissue::restoration},
+                                                       {Tissue::gum, Tissue::bone},
+                                                       {Tissue::gum, Tissue::neighbour},
+                                                       {Tissue::gum, Tissue::restoration},
+                                                       {Tissue::bone, Tissue::neighbour},
+                                                       {Tissue::neighbour, Tissue::restoration},
+                                                       {Tissue::enamel, Tissue::demineralisedEnamel},
+                                                       {Tissue::demineralisedEnamel, Tissue::dentine},
+                                                       {Tissue::demineralisedEnamel, Tissue::stainedEnamel},
+                                                       {Tissue::demineralisedEnamel, Tissue::cariesSoft},
+                                                       {Tissue::demineralisedEnamel, Tissue::cariesLeathery},
+                                                       {Tissue::demineralisedEnamel, Tissue::cariesFirm},
+                                                       {Tissue::demineralisedEnamel, Tissue::gum},
+                                                       {Tissue::demineralisedEnamel, Tissue::cementum},
+                                                       {Tissue::demineralisedEnamel, Tissue::neighbour},
+                                                       {Tissue::demineralisedEnamel, Tissue::restoration},
+                                                       {Tissue::enamel, Tissue::stainedEnamel},
+                                                       {Tissue::dentine, Tissue::stainedEnamel},
+                                                       {Tissue::enamel, Tissue::cariesSoft},
+                                                       {Tissue::enamel, Tissue::cariesLeathery},
+                                                       {Tissue::enamel, Tissue::cariesFirm},
+                                                       {Tissue::dentine, Tissue::cariesSoft},
+                                                       {Tissue::dentine, Tissue::cariesLeathery},
+                                                       {Tissue::cariesLeathery, Tissue::cariesFirm},
+                                                       {Tissue::pulp, Tissue::cariesSoft},
+                                                       {Tissue::pulp, Tissue::cariesLeathery},
+                                                       {Tissue::pulp, Tissue::cariesFirm},
+                                                       {Tissue::restoration, Tissue::cariesSoft},
+                                                       {Tissue::restoration, Tissue::cariesLeathery},
+                                                       {Tissue::restoration, Tissue::cariesFirm},
+                                                       {Tissue::cementum, Tissue::cariesSoft},
+                                                       {Tissue::cementum, Tissue::cariesLeathery},
+                                                       {Tissue::gum, Tissue::cariesSoft},
+                                                       {Tissue::enamel, Tissue::calculus},
+                                                       {Tissue::cementum, Tissue::calculus},
+                                                       {Tissue::gum, Tissue::calculus}};
 
 TEST(Look, TheVisionMatricesLeaveGreysAlone) {
     for (const Vision& vision : visions())
@@ -98,6 +141,20 @@ TEST(Look, EveryPaletteTellsNeighbouringTissuesApart) {
             if (palette == Palette::natural && a == Tissue::enamel && b == Tissue::neighbour) continue;
             EXPECT_GE(apart(colourOf(a, palette), colourOf(b, palette), visions()[0]), 10.0)
                 << properties(a).name << " and " << properties(b).name;
+        }
+}
+
+TEST(Look, CariousDentineGetsDarkerLevelByLevelForEveryColourVision) {
+    for (const Palette palette : {Palette::natural, Palette::textbook, Palette::colourSafe})
+        for (const Vision& vision : visions()) {
+            double last = 0.0;
+            for (std::size_t i = 0; i <= cases::kCariousLevels.size(); ++i) {
+                const Tissue level = i < cases::kCariousLevels.size() ? cases::kCariousLevels[i] : Tissue::dentine;
+                const double lightness =
+                    labOf((vision.matrix * linearOf(colourOf(level, palette))).cwiseMax(0.0).cwiseMin(1.0)).x();
+                EXPECT_GT(lightness, last + 5.0) << properties(level).name << ", " << vision.name;
+                last = lightness;
+            }
         }
 }
 

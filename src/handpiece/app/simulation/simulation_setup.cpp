@@ -182,9 +182,18 @@ struct Read {
     void operator()(const std::string& key, Part& part) const {
         if (json.contains(key)) members(Read{json.at(key)}, part);
     }
+    /// Tissues that came after a session are as shipped.
+    void operator()(const std::string& key, cases::TissueTable& table) const {
+        const Json& told = json.at(key);
+        for (std::size_t i = 0; i < table.rows.size(); ++i)
+            if (const std::string name(table.rows[i].name); i < cases::kFirstTissueCount || told.contains(name))
+                members(Read{told.at(name)}, table.rows[i]);
+    }
     void operator()(const std::string& key, TissueFeels& tissues) const {
-        for (std::size_t i = 0; i < tissues.size(); ++i) {
-            const Json& row = json.at(key).at(i);
+        tissues = force::defaultParameters(cases::builtInTissues()).tissues;
+        const Json& told = json.at(key);
+        for (std::size_t i = 0; i < tissues.size() && (i < cases::kFirstTissueCount || i < told.size()); ++i) {
+            const Json& row = told.at(i);
             tissues[i] = {row.at(0), row.at(1), row.at(2)};
         }
     }

@@ -4,6 +4,7 @@
 /// What the tick tells its listeners, once a tick: plain data, copied by value through a queue.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -12,6 +13,9 @@ namespace handpiece::messages {
 /// Steps of a tick's inputs: the loop rounds what it reads from a device to them before using it, so that a record of
 /// whole steps gives the inputs back bit for bit.
 inline constexpr double kPositionStepMm = 0x1p-20, kOrientationStep = 0x1p-30, kPedalStep = 0x1p-16;
+
+/// As many as cases::Tissue has.
+inline constexpr std::size_t kTissues = 19;
 
 /// One tick. Poses are bur in tooth [mm], quaternions w x y z; forces on the hand in the tooth frame [N].
 struct HapticSample {
@@ -40,15 +44,15 @@ struct HapticSample {
     float lateUs = 0.0f;      ///< start of the tick after its nominal time
     float cutUs = 0.0f;       ///< after the force was sent: cutting and handing over
     float feedMmS = 0.0f;     ///< speed at which the bur eats into the tooth
-    std::int32_t elapsedPeriods = 1;      ///< since the tick before
-    std::uint32_t buttons = 0;            ///< bit 0: the upper one
-    std::uint32_t waitingBricks = 0;      ///< changed bricks not handed over yet
-    std::uint64_t handedBricks = 0;       ///< changed bricks handed over so far: those before this sample
-    std::uint64_t lastCommand = 0;        ///< number of the newest staged command that has taken effect
-    double pedal = 0.0;                   ///< 0..1
-    double speedRpm = 0.0;                ///< of the bur
-    double loadTorqueNmm = 0.0;           ///< with which the tooth held the bur back in the tick before
-    std::array<double, 10> removedMm3{};  ///< by cases::Tissue, since the tooth was whole
+    std::int32_t elapsedPeriods = 1;            ///< since the tick before
+    std::uint32_t buttons = 0;                  ///< bit 0: the upper one
+    std::uint32_t waitingBricks = 0;            ///< changed bricks not handed over yet
+    std::uint64_t handedBricks = 0;             ///< changed bricks handed over so far: those before this sample
+    std::uint64_t lastCommand = 0;              ///< number of the newest staged command that has taken effect
+    double pedal = 0.0;                         ///< 0..1
+    double speedRpm = 0.0;                      ///< of the bur
+    double loadTorqueNmm = 0.0;                 ///< with which the tooth held the bur back in the tick before
+    std::array<double, kTissues> removedMm3{};  ///< by cases::Tissue, since the tooth was whole
 };
 
 enum SampleFlag : std::uint32_t {

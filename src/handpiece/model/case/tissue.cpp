@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <optional>
 
 #include "handpiece/base/config/table.h"
@@ -23,8 +24,25 @@ constexpr double kMaxDampingNSPerMm = 10.0, kMaxFriction = 5.0, kMaxCuttingMm2Pe
 constexpr int kMaxPriority = 1000;
 constexpr const char* kRemedy = "see docs/physics.md#tissues";
 // In the order of Tissue: the one thing about tissues that is not in the file.
-constexpr std::array<std::string_view, kTissueCount> kNames = {
-    "none", "enamel", "dentine", "pulp", "caries", "cementum", "gum", "bone", "neighbour", "restoration"};
+constexpr std::array<std::string_view, kTissueCount> kNames = {"none",
+                                                               "enamel",
+                                                               "dentine",
+                                                               "pulp",
+                                                               "caries",
+                                                               "cementum",
+                                                               "gum",
+                                                               "bone",
+                                                               "neighbour",
+                                                               "restoration",
+                                                               "demineralised-enamel",
+                                                               "caries-soft",
+                                                               "caries-soft-to-leathery",
+                                                               "caries-leathery",
+                                                               "caries-leathery-to-firm",
+                                                               "caries-firm",
+                                                               "caries-firm-to-hard",
+                                                               "stained-enamel",
+                                                               "calculus"};
 
 constexpr TissueTable namesOnly() {
     TissueTable table{};
@@ -89,6 +107,17 @@ void readPriority(const Table& row, std::string_view tissue, int& priority) {
     priority = static_cast<int>(value);
 }
 
+/// A level between two others: by ratios what a hand tells apart by ratios.
+void layBetween(const TissueProperties& a, const TissueProperties& b, TissueProperties& level) {
+    level.stiffnessFraction = std::sqrt(a.stiffnessFraction * b.stiffnessFraction);
+    level.cuttingMm2PerN = std::sqrt(a.cuttingMm2PerN * b.cuttingMm2PerN);
+    level.dampingNSPerMm = 0.5 * (a.dampingNSPerMm + b.dampingNSPerMm);
+    level.friction = 0.5 * (a.friction + b.friction);
+    for (std::size_t i = 0; i < level.colour.size(); ++i)
+        level.colour[i] = static_cast<std::uint8_t>((a.colour[i] + b.colour[i]) / 2);
+    level.priority = (a.priority + b.priority) / 2;
+}
+
 TissueTable readOver(const TissueTable& base, const Table& root) {
     const std::int64_t version = root.integer("format").value_or(0);
     if (version != kFormatVersion)
@@ -108,6 +137,12 @@ TissueTable readOver(const TissueTable& base, const Table& root) {
         readNumber(row, name, "cutting", kMaxCuttingMm2PerN, p.cuttingMm2PerN);
         readColour(row, name, p.colour);
         readPriority(row, name, p.priority);
+    }
+    for (std::size_t i = 1; i < kCariousLevels.size(); i += 2) {
+        const Tissue level = kCariousLevels[i],
+                     harder = i + 1 < kCariousLevels.size() ? kCariousLevels[i + 1] : Tissue::dentine;
+        const auto row = static_cast<std::size_t>(level);
+        if (!root.has(kNames[row])) layBetween(table.of(kCariousLevels[i - 1]), table.of(harder), table.rows[row]);
     }
     return table;
 }

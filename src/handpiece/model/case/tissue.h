@@ -12,8 +12,39 @@
 
 namespace handpiece::cases {
 
-enum class Tissue : std::uint8_t { none, enamel, dentine, pulp, caries, cementum, gum, bone, neighbour, restoration };
-inline constexpr std::size_t kTissueCount = 10;
+enum class Tissue : std::uint8_t {
+    none,
+    enamel,
+    dentine,
+    pulp,
+    caries,  ///< as one tissue: of cases that know no layers
+    cementum,
+    gum,
+    bone,
+    neighbour,
+    restoration,
+    demineralisedEnamel,
+    cariesSoft,  ///< from here to cariesFirmToHard: carious dentine, from soft to what is nearly sound
+    cariesSoftToLeathery,
+    cariesLeathery,
+    cariesLeatheryToFirm,
+    cariesFirm,
+    cariesFirmToHard,
+    stainedEnamel,  ///< sound, dark and rough: fissures and cracks in which an instrument sticks
+    calculus
+};
+inline constexpr std::size_t kTissueCount = 19;
+/// Tissues that the first formats of sessions and cut states know.
+inline constexpr std::size_t kFirstTissueCount = 10;
+
+/// Carious dentine from soft to nearly sound, in the words of the ICCC (2016) and halfway between them.
+inline constexpr std::array<Tissue, 6> kCariousLevels = {Tissue::cariesSoft,     Tissue::cariesSoftToLeathery,
+                                                         Tissue::cariesLeathery, Tissue::cariesLeatheryToFirm,
+                                                         Tissue::cariesFirm,     Tissue::cariesFirmToHard};
+/// Caries of the dentine, whatever its level: what excavation is about.
+[[nodiscard]] constexpr bool isCarious(Tissue tissue) noexcept {
+    return tissue == Tissue::caries || (tissue >= Tissue::cariesSoft && tissue <= Tissue::cariesFirmToHard);
+}
 
 /// What a tissue feels like through a device. Stiffness is a fraction of what the device can render stably (its
 /// capability record), because enamel is orders of magnitude stiffer than any desktop arm.
@@ -27,7 +58,7 @@ struct TissueProperties {
     int priority;                        ///< where parts overlap the higher one wins
 };
 
-/// One row a tissue, in the order of Tissue.
+/// One row a tissue, in the order of Tissue. Levels of caries that no file gives lie halfway between their neighbours.
 struct TissueTable {
     std::array<TissueProperties, kTissueCount> rows;
     [[nodiscard]] const TissueProperties& of(Tissue tissue) const noexcept {

@@ -15,25 +15,40 @@
 namespace handpiece::tooth {
 namespace {
 
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::uint32_t kByteOrder = 0x01020304;
 constexpr char kMagic[8] = {'H', 'P', 'S', 'T', 'A', 'T', 'E', '\n'};
 constexpr std::size_t kPieceBricks = 64;  ///< compressed together, beside the other pieces
 
-struct Header {
+template <std::size_t Tissues>
+struct HeaderOf {
     char magic[8];
     std::uint32_t version, byteOrder;
     std::uint64_t key;
     std::uint64_t bricks, payloadBytes;
-    double removedMm3[cases::kTissueCount];
+    double removedMm3[Tissues];
     std::uint64_t payloadHash, headerHash;
 };
-static_assert(sizeof(Header) == 136 && std::is_trivially_copyable_v<Header>);
+using Header = HeaderOf<cases::kTissueCount>;
+using FirstHeader = HeaderOf<cases::kFirstTissueCount>;  // of version 1
+static_assert(sizeof(Header) == 208 && std::is_trivially_copyable_v<Header>);
+static_assert(sizeof(FirstHeader) == 136 && offsetof(FirstHeader, removedMm3) == offsetof(Header, removedMm3));
 
-std::uint64_t headerHashOf(const Header& header) {
+template <class AnyHeader>
+std::uint64_t headerHashOf(const AnyHeader& header) {
     core::Hasher hasher;
-    hasher.add(std::as_bytes(std::span(&header, 1)).first(offsetof(Header, headerHash)));
+    hasher.add(std::as_bytes(std::span(&header, 1)).first(offsetof(AnyHeader, headerHash)));
     return hasher.value();
+}
+
+/// What a version 1 header says, in today's; its checksum holds or is made not to.
+Header todaysOf(const FirstHeader& first) {
+    Header header{};
+    std::memcpy(&header, &first, offsetof(Header, removedMm3));
+    std::copy(std::begin(first.removedMm3), std::end(first.removedMm3), header.removedMm3);
+    header.payloadHash = first.payloadHash;
+    header.headerHash = headerHashOf(header) ^ headerHashOf(first) ^ first.headerHash;
+    return header;
 }
 
 std::size_t piecesOf(std::size_t bricks) {
@@ -202,19 +217,29 @@ StateDelta decodeState(std::span<const std::byte> data, const ToothModel& model,
     const auto damaged = [&] { return core::Error("the cut state is damaged", where, "take an older copy"); };
     if (data.size() < sizeof kMagic || std::memcmp(data.data(), kMagic, sizeof kMagic) != 0)
         throw core::Error("these bytes are no cut state", where);
-    if (data.size() < sizeof header) throw cutShort();
-    std::memcpy(&header, data.data(), sizeof header);
+    if (data.size() < sizeof(FirstHeader)) throw cutShort();
+    std::memcpy(&header, data.data(), sizeof(FirstHeader));
+    const bool isFirst = header.byteOrder == kByteOrder && header.version == 1;
+    const std::size_t headerBytes = isFirst ? sizeof(FirstHeader) : sizeof header;
+    if (isFirst) {
+        FirstHeader first;
+        std::memcpy(&first, data.data(), sizeof first);
+        header = todaysOf(first);
+    } else if (data.size() >= sizeof header) {
+        std::memcpy(&header, data.data(), sizeof header);
+    }
     if (header.byteOrder != kByteOrder)
         throw core::Error("the cut state was written by a machine of another byte order, or is damaged", where);
     if (header.version > kVersion)
         throw core::Error(
             fmt::format("the cut state is of version {}, this program knows {}", header.version, kVersion), where,
             "use a newer Handpiece");
+    if (data.size() < headerBytes) throw cutShort();
     if (header.version == 0 || header.headerHash != headerHashOf(header)) throw damaged();
     if (header.key != model.identity)
         throw core::Error("the cut state belongs to another tooth, another voxel or band, or an earlier Handpiece",
                           where, "open it with the case and the settings that it was saved with");
-    const std::span<const std::byte> payload = data.subspan(sizeof header);
+    const std::span<const std::byte> payload = data.subspan(headerBytes);
     if (payload.size() < header.payloadBytes) throw cutShort();
     if (payload.size() > header.payloadBytes || field::hashOf(payload) != header.payloadHash) throw damaged();
 

@@ -162,8 +162,14 @@ std::shared_ptr<const ToothModel> withTissues(ToothModel&& model, field::TissueM
     hasher.add(model.fieldHash);
     hasher.add(model.settings.bandMm);
     hasher.add(model.bandOutMm);
-    for (const double mm3 : model.volumesMm3)
-        hasher.add(mm3);
+    // Tissues that came later count where they are: a tooth without them keeps the number that it had.
+    for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
+        const double mm3 = model.volumesMm3[t];
+        if (t < cases::kFirstTissueCount)
+            hasher.add(mm3);
+        else if (mm3 > 0.0)
+            hasher.add(t), hasher.add(mm3);
+    }
     model.identity = hasher.value();
     return std::make_shared<const ToothModel>(std::move(model));
 }

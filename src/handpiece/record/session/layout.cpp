@@ -52,7 +52,9 @@ std::span<const Column> columns() noexcept {
         {"feed", f32, 1, offsetof(Record, feedMmS), "mm/s", "at which the bur ate into the tooth"},
         {"tissue", u8, 1, offsetof(Record, tissue), "tissue",
          "that carries most of the pressure: 0 none, 1 enamel, 2 dentine, 3 pulp, 4 caries, 5 cementum, 6 gum, 7 bone, "
-         "8 neighbour, 9 restoration"},
+         "8 neighbour, 9 restoration, 10 demineralised enamel, 11 to 16 carious dentine from soft over leathery (13) "
+         "to "
+         "firm (15) and nearly hard, 17 stained enamel, 18 calculus"},
         {"removed", f64, cases::kTissueCount, offsetof(Record, removedMm3), "mm3",
          "by tissue (see tissue) since the tooth was whole"},
         {"flags", u32, 1, offsetof(Record, flags), "bits",

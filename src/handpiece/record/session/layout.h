@@ -13,7 +13,7 @@
 namespace handpiece::session {
 
 inline constexpr std::string_view kFormatName = "handpiece-session";
-inline constexpr std::int32_t kFormatVersion = 1;
+inline constexpr std::int32_t kFormatVersion = 2;  // 1: without the tissues after restoration
 
 enum class NumberType : std::uint8_t { u8, u16, u32, i32, u64, i64, f32, f64 };
 [[nodiscard]] std::size_t bytesOf(NumberType type) noexcept;

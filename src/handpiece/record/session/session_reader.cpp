@@ -104,6 +104,7 @@ class Rows {
         count_ = size[0];
     }
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+    [[nodiscard]] std::size_t width() const noexcept { return width_; }
     void read(std::uint64_t first, std::size_t rows, hid_t type, void* out) const {
         if (rows == 0) return;
         source_->require(first <= count_ && rows <= count_ - first, name_, "ends too early");
@@ -133,6 +134,7 @@ struct SessionReader::State {
     Source source;
     Hdf5Object file;
     SessionInfo info;
+    std::int32_t version = 0;  ///< of the format
     bool complete = false;
     std::vector<Rows> columns;
     std::uint64_t size = 0;
@@ -190,7 +192,7 @@ void SessionReader::State::readHead() {
     const hid_t f = file.id();
     if (H5Aexists(f, "format") <= 0 || source.text(f, "format") != kFormatName)
         source.damaged("this HDF5 file is no session of Handpiece");
-    const auto version = source.number<std::int32_t>(f, "format_version", H5T_INTEGER, H5T_NATIVE_INT32);
+    version = source.number<std::int32_t>(f, "format_version", H5T_INTEGER, H5T_NATIVE_INT32);
     if (version > kFormatVersion) {
         throw core::Error(
             fmt::format("the session has format {}; this program reads up to {}", version, kFormatVersion),
@@ -226,7 +228,9 @@ void SessionReader::State::openTables() {
                      frames = source.open(file.id(), "key_frames", H5I_GROUP);
     size = kMaxRows;
     for (const Column& column : session::columns()) {
-        columns.emplace_back(source, samples.id(), column.name, fileType(column.type), column.width, kMaxRows);
+        const bool isShort = version == 1 && column.width == cases::kTissueCount;
+        columns.emplace_back(source, samples.id(), column.name, fileType(column.type),
+                             isShort ? cases::kFirstTissueCount : column.width, kMaxRows);
         size = std::min(size, columns.back().count());
     }
     info.tooth = bytesOf("tooth", kMaxToothBytes);
@@ -325,7 +329,7 @@ std::vector<Record> SessionReader::records(std::uint64_t first, std::size_t coun
     std::vector<std::byte> buffer;
     const auto all = columns();
     for (std::size_t c = 0; c < all.size(); ++c) {
-        const std::size_t bytes = all[c].width * bytesOf(all[c].type);
+        const std::size_t bytes = s.columns[c].width() * bytesOf(all[c].type);
         buffer.resize(rows * bytes);
         s.columns[c].read(first, rows, memoryType(all[c].type), buffer.data());
         for (std::size_t i = 0; i < rows; ++i)

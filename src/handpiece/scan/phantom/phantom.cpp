@@ -19,11 +19,14 @@ namespace {
 using cases::Tissue;
 using core::Vec3;
 
-/// Grey values by Tissue: outside, enamel, dentine, pulp, caries, cementum, gum, bone, neighbour, restoration. CBCT in
-/// Hounsfield units, as clinical scans show them; micro-CT as 16 bits of one that is set so that metal just fits.
-constexpr std::array<double, cases::kTissueCount> kCbct = {-1000, 2800, 1500, 80, 900, 1350, 50, 850, 2200, 6000};
-constexpr std::array<double, cases::kTissueCount> kMicroCt = {6000,  48000, 27000, 9500,  19000,
-                                                              24500, 9000,  20000, 38000, 63000};
+/// Grey values by Tissue: outside, enamel, dentine, pulp, caries, cementum, gum, bone, neighbour, restoration,
+/// demineralised enamel, carious dentine from soft to nearly hard, stained enamel, calculus. CBCT in Hounsfield units,
+/// as clinical scans show them; micro-CT as 16 bits of one that is set so that metal just fits.
+constexpr std::array<double, cases::kTissueCount> kCbct = {-1000, 2800, 1500, 80,  900,  1350, 50,   850,  2200, 6000,
+                                                           2100,  600,  750,  900, 1050, 1200, 1350, 2800, 1400};
+constexpr std::array<double, cases::kTissueCount> kMicroCt = {6000,  48000, 27000, 9500,  19000, 24500, 9000,
+                                                              20000, 38000, 63000, 38000, 15000, 17000, 19000,
+                                                              21000, 23000, 25000, 48000, 25000};
 
 /// 16 GB of grey values would be asked for by accident.
 constexpr double kMaxVoxels = 2e9;
@@ -176,8 +179,10 @@ double greyOf(Scanner scanner, Tissue tissue) {
 }
 
 std::uint8_t labelOf(Tissue tissue) {
-    // In the order of Tissue; cementum counts as dentine.
-    constexpr std::array<std::uint8_t, cases::kTissueCount> kLabels = {0, 2, 3, 4, 1, 3, 7, 6, kNeighbourLabel, 5};
+    // In the order of Tissue; cementum counts as dentine, carious dentine of every level as caries, what is left of
+    // enamel as enamel. Calculus has no label of its own: it counts as dentine, which it is as dense as.
+    constexpr std::array<std::uint8_t, cases::kTissueCount> kLabels = {0, 2, 3, 4, 1, 3, 7, 6, kNeighbourLabel, 5, 2,
+                                                                       1, 1, 1, 1, 1, 1, 2, 3};
     return kLabels.at(static_cast<std::size_t>(tissue));
 }
 

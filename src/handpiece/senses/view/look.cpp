@@ -14,7 +14,9 @@ namespace {
 using Colour = std::array<std::uint8_t, 3>;
 using Colours = std::array<Colour, cases::kTissueCount>;
 
-// In the order of cases::Tissue: none, enamel, dentine, pulp, caries, cementum, gum, bone, neighbour, restoration.
+// In the order of cases::Tissue: none, enamel, dentine, pulp, caries, cementum, gum, bone, neighbour, restoration,
+// demineralised enamel, carious dentine from soft to nearly hard (each second one halfway between its neighbours),
+// stained enamel, calculus.
 constexpr Colours kNatural{{{128, 128, 128},
                             {233, 227, 211},
                             {214, 181, 122},
@@ -24,7 +26,16 @@ constexpr Colours kNatural{{{128, 128, 128},
                             {206, 116, 112},
                             {210, 190, 150},
                             {226, 219, 202},
-                            {132, 140, 148}}};
+                            {132, 140, 148},
+                            {252, 252, 252},
+                            {70, 42, 24},
+                            {98, 62, 33},
+                            {126, 82, 42},
+                            {152, 109, 62},
+                            {178, 136, 82},
+                            {196, 158, 102},
+                            {58, 44, 36},
+                            {170, 160, 108}}};
 constexpr Colours kTextbook{{{128, 128, 128},
                              {238, 244, 250},
                              {246, 205, 92},
@@ -34,7 +45,16 @@ constexpr Colours kTextbook{{{128, 128, 128},
                              {240, 150, 156},
                              {206, 192, 150},
                              {186, 200, 212},
-                             {78, 122, 176}}};
+                             {78, 122, 176},
+                             {255, 236, 206},
+                             {74, 42, 26},
+                             {110, 63, 32},
+                             {146, 84, 38},
+                             {174, 115, 50},
+                             {202, 146, 62},
+                             {224, 175, 77},
+                             {60, 60, 66},
+                             {150, 150, 96}}};
 // After Okabe & Ito, "Color Universal Design", 2008 (yellow, vermillion, black, orange, reddish purple, bluish green,
 // sky blue, blue; enamel is the white between them), each moved within its hue until all tissues that may touch are at
 // least 25 apart in CIELAB for every colour vision: look_test computes it.
@@ -47,7 +67,16 @@ constexpr Colours kColourSafe{{{128, 128, 128},
                                {174, 125, 168},
                                {0, 145, 98},
                                {65, 212, 255},
-                               {0, 105, 188}}};
+                               {0, 105, 188},
+                               {146, 190, 161},
+                               {88, 8, 22},
+                               {86, 49, 60},
+                               {85, 90, 98},
+                               {121, 119, 93},
+                               {158, 149, 89},
+                               {206, 186, 56},
+                               {164, 54, 65},
+                               {149, 67, 255}}};
 
 // From the untouched tooth's pale to dark, each step as much darker: the order is read without the hue (after viridis,
 // S. van der Walt and N. Smith, CC0, from its light end).

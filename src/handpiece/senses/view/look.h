@@ -49,13 +49,20 @@ struct LegendEntry {
 /// to dark, so that the order is seen in grey too.
 [[nodiscard]] std::array<std::uint8_t, 3> removedDepthColour(double depthMm, double mostMm);
 
+/// Every tissue is to be seen.
+constexpr std::array<bool, cases::kTissueCount> allVisible() {
+    std::array<bool, cases::kTissueCount> all{};
+    all.fill(true);
+    return all;
+}
+
 struct Look {
     Quality quality = Quality::fast;
     Palette palette = Palette::natural;
     Stereo stereo = Stereo::none;
     double eyeSeparationMm = 3.0;  ///< at tooth scale: about a twentieth of the distance
     ToothShown tooth = ToothShown::now;
-    std::array<bool, cases::kTissueCount> visible{true, true, true, true, true, true, true, true, true, true};
+    std::array<bool, cases::kTissueCount> visible = allVisible();
     bool removedDepthColours = false;
     double removedDepthMostMm = 3.0;  ///< the end of that scale
     std::optional<Plane> cutAway;     ///< applies to tooth and scenery, not to bur and turbine

@@ -51,14 +51,14 @@ void main() {
     if (!gl_FrontFacing) {
         // What was cut through: scenery is filled with its own colour, a tooth shows its walls.
         if (kind == 6.0 || kind == 7.0 || kind == 8.0) {
-            surface = vec4(0.5, 0.5, 0.5, (kind * 4096.0 + 1.0) / 65535.0);
+            surface = vec4(0.5, 0.5, 0.5, (kind * 2048.0 + 1.0) / 65535.0);
             return;
         }
-        k = 10.0;
+        k = 29.0;
     }
 #endif
-    float depth = min(4095.0, floor(removedOut * 13107.0));
-    surface = vec4(normalOut, (k * 4096.0 + depth) / 65535.0);
+    float depth = min(2047.0, floor(removedOut * 6553.5));
+    surface = vec4(normalOut, (k * 2048.0 + depth) / 65535.0);
 }
 )";
 
@@ -112,13 +112,13 @@ void main() {
     vec2 s = 0.8 * max(perPixel, vec2(0.15));
     if (tissueAt(at + vec2(s.x, 0.0)) != kind || tissueAt(at + vec2(0.0, s.y)) != kind ||
         tissueAt(at - vec2(s.x, 0.0)) != kind || tissueAt(at - vec2(0.0, s.y)) != kind)
-        kind = 12;
+        kind = 31;
     if (grid != 0) {
         vec2 mm = (at - 0.5) * mmPerPixel + gridOrigin;
         vec2 away = abs(mm - round(mm)) / (perPixel * mmPerPixel);
-        if (min(away.x, away.y) < 0.55) kind = 11;
+        if (min(away.x, away.y) < 0.55) kind = 30;
     }
-    surface = vec4(0.5, 0.5, 0.5, float(kind) * 4096.0 / 65535.0);
+    surface = vec4(0.5, 0.5, 0.5, float(kind) * 2048.0 / 65535.0);
 }
 )";
 
@@ -215,8 +215,8 @@ uniform sampler2D depthScale;
 uniform mat4 toTooth;   // from NDC
 uniform vec2 depthTerms;
 uniform vec3 eye, lamp, eyeUp, eyeRight;
-uniform vec3 palette[16];   // linear
-uniform vec4 material[16];  // wrap, gloss, sharpness of it, how far light goes under
+uniform vec3 palette[32];   // linear
+uniform vec4 material[32];  // wrap, gloss, sharpness of it, how far light goes under
 uniform float wet;
 uniform int natural;
 uniform vec2 crown;         // where it begins and ends along z
@@ -246,11 +246,11 @@ void main() {
     if (d >= 1.0) discard;
     vec4 g = texelFetch(surface, p, 0);
     float code = floor(g.w * 65535.0 + 0.5);
-    int kind = int(code / 4096.0);
+    int kind = int(code / 2048.0);
     vec3 n = g.xyz * 2.0 - 1.0;
     vec3 albedo = palette[kind];
     if (dot(n, n) < 0.1) {  // a section's face: as a drawing
-        float tone = code - float(kind) * 4096.0 > 0.5 ? 0.55 : 0.92;
+        float tone = code - float(kind) * 2048.0 > 0.5 ? 0.55 : 0.92;
         colour = vec4(pow(albedo * tone, vec3(1.0 / 2.2)), 1.0);
         return;
     }
@@ -258,7 +258,7 @@ void main() {
     vec4 h = toTooth * vec4(2.0 * uv - 1.0, 2.0 * d - 1.0, 1.0);
     vec3 at = h.xyz / h.w;
     vec3 v = normalize(eye - at);
-    if (kind == 10) n = dot(n, v) < 0.0 ? -n : n;
+    if (kind == 29) n = dot(n, v) < 0.0 ? -n : n;
     float nv = clamp(dot(n, v), 0.0, 1.0);
 
     float open = 1.0;
@@ -295,17 +295,20 @@ void main() {
         }
 #ifdef FINE
         // Gum is blotched and caries grained in two sizes, other tissues in one.
-        vec3 sizes = kind == 6 ? vec3(0.9, 0.9, 5.0) : kind == 4 ? vec3(9.0, 9.0, 3.0) : vec3(1.6, 3.2, 0.0);
+        bool isCaries = kind == 4 || (kind >= 11 && kind <= 16);
+        vec3 sizes = kind == 6 ? vec3(0.9, 0.9, 5.0) : isCaries ? vec3(9.0, 9.0, 3.0) : vec3(1.6, 3.2, 0.0);
         float grain = noise(at * sizes.xxy);
-        if (kind == 6 || kind == 4) grain = mix(noise(at * sizes.z), grain, kind == 6 ? 0.6 : 0.5);
-        if (isTooth || kind == 2 || kind == 4 || kind == 5) albedo *= 1.0 + (kind == 4 ? 0.75 : 0.07) * (grain - 0.5);
+        if (kind == 6 || isCaries) grain = mix(noise(at * sizes.z), grain, kind == 6 ? 0.6 : 0.5);
+        // The firmer, the less it crumbles.
+        float coarse = kind == 4 ? 0.75 : isCaries ? 0.6 - 0.09 * float(kind - 11) : 0.07;
+        if (isTooth || kind == 2 || kind == 5 || isCaries) albedo *= 1.0 + coarse * (grain - 0.5);
 #else
         float grain = 0.5;
 #endif
         if (kind == 6) albedo *= mix(vec3(0.93, 0.82, 0.84), vec3(1.05, 1.06, 1.04), grain);
     }
-    if (removedColours != 0 && kind != 6 && kind != 7 && kind != 8 && kind != 10)
-        albedo = texture(depthScale, vec2((code - float(kind) * 4096.0) * 0.005 / removedMost, 0.5)).rgb;
+    if (removedColours != 0 && kind != 6 && kind != 7 && kind != 8 && kind != 29)
+        albedo = texture(depthScale, vec2((code - float(kind) * 2048.0) * 0.01 / removedMost, 0.5)).rgb;
 
     // Light goes into tissue and comes out beside: red farther than blue.
     float nl = dot(n, lamp);

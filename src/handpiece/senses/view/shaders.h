@@ -4,16 +4,16 @@
 /// The programs that draw tooth, scenery and instruments. Private to this room.
 ///
 /// The tooth is drawn in two steps, so that each pixel is lit once however many triangles lie over it. The first writes
-/// depth and, in four times 16 bits, the normal (half of it plus a half; all halves: lit flat) and a code: kind * 4096
-/// + removed depth in 5 um. Kinds are tissues and some more, below.
+/// depth and, in four times 16 bits, the normal (half of it plus a half; all halves: lit flat) and a code: kind * 2048
+/// + removed depth in 10 um. Kinds are tissues and some more, below.
 
 #include "handpiece/senses/view/gl.h"
 
 namespace handpiece::view {
 
-inline constexpr int kInsideKind = 10;  ///< the back of a surface that was cut open
-inline constexpr int kGridKind = 11, kEdgeKind = 12;
-inline constexpr int kKinds = 16;
+inline constexpr int kInsideKind = 29;  ///< the back of a surface that was cut open
+inline constexpr int kGridKind = 30, kEdgeKind = 31;
+inline constexpr int kKinds = 32;
 
 struct Shaders {
     Shaders();

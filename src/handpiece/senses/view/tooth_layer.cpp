@@ -73,6 +73,14 @@ std::array<Vec4f, kKinds> materials() {
     set(cases::Tissue::cementum, {0.12f, 0.35f, 0.7f, 0.3f});
     set(cases::Tissue::pulp, {0.30f, 0.75f, 1.2f, 0.8f});
     set(cases::Tissue::caries, {0.05f, 0.28f, 0.6f, 0.1f});
+    for (std::size_t i = 0; i < cases::kCariousLevels.size(); ++i) {  // the firmer, the more like dentine
+        const float firm = static_cast<float>(i + 1) / static_cast<float>(cases::kCariousLevels.size() + 1);
+        set(cases::kCariousLevels[i],
+            {0.05f + 0.07f * firm, 0.28f + 0.1f * firm, 0.6f + 0.2f * firm, 0.1f + 0.3f * firm});
+    }
+    set(cases::Tissue::demineralisedEnamel, {0.22f, 0.30f, 0.7f, 0.6f});
+    set(cases::Tissue::stainedEnamel, {0.10f, 0.45f, 1.0f, 0.2f});
+    set(cases::Tissue::calculus, {0.10f, 0.15f, 0.5f, 0.2f});
     set(cases::Tissue::gum, {0.35f, 0.50f, 1.1f, 0.9f});
     set(cases::Tissue::bone, {0.15f, 0.20f, 0.5f, 0.3f});
     set(cases::Tissue::restoration, {0.05f, 0.8f, 1.5f, 0.0f});

@@ -24,6 +24,15 @@ constexpr std::array<Knock, cases::kTissueCount> kKnocks{{
     {0.004, 130.0, 140.0},   // bone
     {0.010, 300.0, 90.0},    // neighbour
     {0.009, 280.0, 100.0},   // restoration
+    {0.006, 200.0, 110.0},   // demineralised enamel
+    {0.0, 0.0, 0.0},         // carious dentine: soft
+    {0.0, 0.0, 0.0},         // soft to leathery
+    {0.0, 0.0, 0.0},         // leathery
+    {0.001, 120.0, 160.0},   // leathery to firm
+    {0.0025, 135.0, 145.0},  // firm
+    {0.004, 155.0, 130.0},   // firm to hard
+    {0.010, 300.0, 90.0},    // stained enamel
+    {0.005, 160.0, 130.0},   // calculus
 }};
 
 }  // namespace

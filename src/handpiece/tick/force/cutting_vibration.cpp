@@ -30,6 +30,15 @@ constexpr std::array<Hum, cases::kTissueCount> kHums{{
     {0.10, 0.3},  // bone
     {0.20, 0.5},  // neighbour
     {0.18, 0.6},  // restoration
+    {0.15, 0.4},  // demineralised enamel
+    {0.04, 0.1},  // carious dentine: soft
+    {0.05, 0.1},  // soft to leathery
+    {0.06, 0.1},  // leathery
+    {0.07, 0.2},  // leathery to firm
+    {0.09, 0.2},  // firm
+    {0.1, 0.3},   // firm to hard
+    {0.20, 0.5},  // stained enamel
+    {0.10, 0.4},  // calculus
 }};
 
 }  // namespace

@@ -23,10 +23,11 @@ constexpr double kCreaseInVoxels = 0.4, kCreaseVoxels = 0.1;
 /// Points of the patches are told so much farther out, for bearing() to count them for a bur so much ahead.
 constexpr double kLeadMm = 0.005;
 
-/// The one tissue of all that can be touched, or kManyTissues.
-std::uint8_t onlyTissue(const field::DistanceField& field) {
-    const std::vector<cases::Tissue> all = field.storage().tissues->tissues();
-    return all.size() == 1 ? static_cast<std::uint8_t>(all.front()) : kManyTissues;
+std::vector<std::uint8_t> tissuesOf(const field::DistanceField& field) {
+    std::vector<std::uint8_t> numbers;
+    for (const cases::Tissue tissue : field.storage().tissues->tissues())
+        numbers.push_back(static_cast<std::uint8_t>(tissue));
+    return numbers;
 }
 
 double sumOf(const float (&lanes)[8]) noexcept {
@@ -45,7 +46,8 @@ SurfaceSampler::SurfaceSampler(KnownSurface& surface, const instrument::Bur& bur
       kernels_(ringKernelsFor(level)),
       arrays_(bur.rings()),
       bands_(bearingBands(bur)),
-      tissueOfAll_(onlyTissue(field_)) {
+      tissues_(tissuesOf(field_)),
+      tissueOfAll_(tissues_.size() == 1 ? tissues_.front() : kManyTissues) {
     runs_.resize(kMaxRuns);
     candidates_.resize(arrays_.distance.size());
     nearest_.resize((arrays_.rings.size() + kRingsPerBlock - 1) / kRingsPerBlock * kSectors);
@@ -144,11 +146,12 @@ void SurfaceSampler::bearing(const core::Pose& burInTooth, const Vec3& direction
     query.marginMm = static_cast<float>(kContactMarginMm);
     query.leastRadiusMm = static_cast<float>(leastRadiusMm);
     query.tissue = tissueOfAll_;
-    std::array<BearingSums, cases::kTissueCount> sums{};
+    std::array<BearingSums, cases::kTissueCount> sums;
+    for (const std::uint8_t t : tissues_)
+        sums[t] = {};
     kernels_.bear(arrays_.bur, arrays_.touch, bands_.data(), static_cast<std::int32_t>(bands_.size()), query,
                   sums.data());
-    for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
-        if (tissueOfAll_ != kManyTissues && t != tissueOfAll_) continue;
+    for (const std::uint8_t t : tissues_) {
         out.areaMm2[t] = sumOf(sums[t].area);
         out.resistanceMm[t] = sumOf(sums[t].resistance);
         out.tangentMm[t] = sumOf(sums[t].x) * frame_.x + sumOf(sums[t].y) * frame_.y;

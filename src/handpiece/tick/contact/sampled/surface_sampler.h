@@ -74,7 +74,8 @@ class SurfaceSampler {
     RingKernels kernels_;
     RingArrays arrays_;
     std::vector<BearingBand> bands_;
-    std::uint8_t tissueOfAll_;  ///< or kManyTissues
+    std::vector<std::uint8_t> tissues_;  ///< that can be touched, rising
+    std::uint8_t tissueOfAll_;           ///< the only one, or kManyTissues
     RingQuery query_{};
     core::Pose sensedPose_;
     std::uint64_t sensedVersion_ = 0;

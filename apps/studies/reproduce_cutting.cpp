@@ -162,7 +162,7 @@ CutTiming timeCut(const Reproduction& r, const Surface& s, std::size_t count) {
             input.proxyInTooth = input.deviceInTooth = poses[i];
             const auto start = Clock::now();
             (void)work.method->depth(poses[i]);
-            work.cutters[0]->cut(*work.method, input);
+            work.cutter->cut(*work.method, input);
             best[i] = std::min(best[i], usSince(start));
             while (station.field->handOver(256, [](const tooth::BrickSnapshot&) { return true; }) > 0) {
             }

@@ -65,6 +65,9 @@ enum SampleFlag : std::uint32_t {
     kStalled = 64,       ///< the bur stands although the pedal is down
     kRestoring = 128,    ///< an undo, redo or reset is being put in place
     kOutOfBricks = 256,  ///< the tooth's memory for cuts is used up: it is cut no deeper
+    kShankTouches = 512,    ///< of the instrument behind the bur this bears most: its shank,
+    kHeadTouches = 1024,    ///< the handpiece's head,
+    kHandleTouches = 2048,  ///< or its handle
 };
 
 static_assert(std::is_trivially_copyable_v<HapticSample>);

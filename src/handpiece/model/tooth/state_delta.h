@@ -17,6 +17,7 @@ inline constexpr std::size_t kBrickBytes = sizeof(float) * field::kBrickValues;
 /// One brick as it is now, by value: how listeners learn of a cut.
 struct BrickSnapshot {
     std::uint32_t dense = 0;  ///< which brick: index x + bricks_x (y + bricks_y z)
+    std::uint16_t tooth = 0;  ///< of a mouth
     bool shows = true;        ///< the surface may have moved in it since it was handed over last
     float values[field::kBrickValues];
 };

@@ -131,7 +131,7 @@ void ToothState::addRemoved(const TissueVolumes& mm3) noexcept {
         removedMm3_[i] += mm3[i];
 }
 
-const BrickSnapshot& ToothState::snapshotOfFirstDirty() noexcept {
+BrickSnapshot& ToothState::snapshotOfFirstDirty() noexcept {
     const std::uint32_t dense = dirty_[firstDirty_ % dirty_.size()];
     snapshot_.dense = dense;
     snapshot_.shows = (flags_[dense] & kShows) != 0;

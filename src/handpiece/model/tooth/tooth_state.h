@@ -76,7 +76,7 @@ class ToothState {
         return static_cast<std::size_t>(stored) * field::kBrickValues;
     }
     [[nodiscard]] field::FieldStorage& storage() noexcept { return field_.storage(); }
-    const BrickSnapshot& snapshotOfFirstDirty() noexcept;
+    BrickSnapshot& snapshotOfFirstDirty() noexcept;
     void dropFirstDirty() noexcept;
     void noteWaiting(std::uint32_t dense, bool shows) noexcept;
     void noteUncut(std::uint32_t dense) noexcept;

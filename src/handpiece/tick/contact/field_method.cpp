@@ -105,6 +105,7 @@ class FieldMethod final : public Method {
     }
 
     void noteCut(const core::Pose& burInTooth) noexcept override {
+        if (!cut_) return;
         known_.noteCut(burInTooth);
         rings_.senseAnew();
     }

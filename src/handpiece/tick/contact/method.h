@@ -25,6 +25,10 @@ enum class Status : std::uint8_t {
     invalidPose,  ///< the pose was not finite; results are those of no contact
 };
 
+/// What of the instrument touches. Only the bur cuts and has patches.
+enum class Piece : std::uint8_t { bur, shank, head, handle };
+inline constexpr std::size_t kPieceCount = 4;
+
 /// How deep the bur is in the tooth, or how far from it.
 struct Depth {
     /// - min over x of (phiT(x) + phiB(x)) [mm]: positive when overlapping, zero at touch, minus the distance when
@@ -34,8 +38,9 @@ struct Depth {
     core::Vec3 toothPointMm = core::Vec3::Zero();  ///< the surface point of the tooth that decides
     cases::Tissue tissue = cases::Tissue::none;    ///< at that point
     Status status = Status::beyondReach;
-    std::uint16_t tooth = 0;  ///< index of the tooth that decides. A method of one tooth says 0, here and below
-    double slackMm = 0.0;     ///< Method::slackMm() where the surface has been cut, else zero
+    Piece piece = Piece::bur;  ///< of the instrument that decides. A method of one piece says bur, here and below
+    std::uint16_t tooth = 0;   ///< index of the tooth that decides. A method of one tooth says 0, here and below
+    double slackMm = 0.0;      ///< Method::slackMm() where the surface has been cut, else zero
     /// How much deeper it could be by what was left unseen, in an uncut tooth, of the bur's axis and of rims deeper
     /// than its radius: zero where that is kDepthToleranceMm at most; more where the work that a tick affords ended.
     double unseenMm = 0.0;
@@ -57,7 +62,8 @@ inline constexpr std::size_t kMaxPatches = 16;
 
 struct PatchSet {
     core::FixedVector<Patch, kMaxPatches> patches;
-    double areaMm2 = 0.0;                                   ///< of all
+    double areaMm2 = 0.0;      ///< of all
+    double pressureMm3 = 0.0;  ///< sum of area x s of all: what pressureShare is a share of
     std::array<double, cases::kTissueCount> tissueShare{};  ///< pressure share by tissue, sums to 1 in contact
     Status status = Status::ok;
 };
@@ -69,7 +75,8 @@ struct Constraint {
     double gapMm = 0.0;                       ///< signed distance of the bur's point there; negative inside
     core::Vec3 pointMm = core::Vec3::Zero();  ///< where on the bur, tooth frame
     cases::Tissue tissue = cases::Tissue::none;
-    std::uint16_t tooth = 0;  ///< that holds the bur off
+    std::uint16_t tooth = 0;   ///< that holds the bur off
+    Piece piece = Piece::bur;  ///< that it holds off
 };
 inline constexpr std::size_t kMaxConstraints = 96;
 using ConstraintSet = core::FixedVector<Constraint, kMaxConstraints>;

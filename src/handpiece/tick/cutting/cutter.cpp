@@ -24,23 +24,70 @@ struct Resistance {
     bool held = false;  ///< by something that cannot be cut: that alone counts, with the weight 1
 };
 
+/// A tooth with what sweeps it.
+struct Swept {
+    Swept(CutTooth tooth, const instrument::Bur& bur)
+        : field(std::move(tooth.field)),
+          sweeper(*field, bur, core::simdLevel()),
+          reach(core::Vec3(bur.maxRadiusMm(), bur.maxRadiusMm(), bur.lengthMm()).norm() + kNearMm),
+          bounds(field->model().outer.bounds()),
+          sceneInTooth{tooth.inScene.orientation.conjugate() * -tooth.inScene.positionMm,
+                       tooth.inScene.orientation.conjugate()},
+          turns(tooth.inScene.positionMm != Vec3::Zero() ||
+                tooth.inScene.orientation.coeffs() != core::Quat::Identity().coeffs()) {}
+
+    void sweepTo(const core::Pose& cutterInScene, CutResult& result) noexcept {
+        core::Pose cutter = cutterInScene;
+        if (turns) {
+            // Far off there is nothing to sweep, nor on the way from there: the bur comes by steps.
+            cutter = {sceneInTooth.apply(cutterInScene.positionMm),
+                      sceneInTooth.orientation * cutterInScene.orientation};
+            const Vec3 out = (cutter.positionMm - bounds.max).cwiseMax(bounds.min - cutter.positionMm).cwiseMax(0.0);
+            if (out.norm() > reach) {
+                if (sweeper.hasPose()) sweeper.settle();
+                return;
+            }
+        }
+        const Sweeper::Outcome outcome = sweeper.sweepTo(cutter);
+        for (std::size_t t = 0; t < outcome.removedMm3.size(); ++t)
+            result.removedMm3[t] += outcome.removedMm3[t];
+        result.changedBricks += outcome.changedBricks;
+    }
+
+    static constexpr double kNearMm = 1.0;
+    std::shared_ptr<tooth::ToothState> field;
+    Sweeper sweeper;
+    double reach;  // of the bur from its tip, and room
+    core::Box bounds;
+    core::Pose sceneInTooth;
+    bool turns;
+};
+
 }  // namespace
 
 struct Cutter::State {
-    State(std::shared_ptr<tooth::ToothState> cutField, std::shared_ptr<const instrument::Bur> theBur,
+    State(std::vector<CutTooth> cutTeeth, std::shared_ptr<const instrument::Bur> theBur,
           const instrument::CuttingParameters& theCuttingParameters, const cases::TissueTable& tissues,
           const Settings& theSettings)
-        : field(std::move(cutField)),
-          bur(std::move(theBur)),
+        : bur(std::move(theBur)),
           cuttingParameters(theCuttingParameters),
           settings(theSettings),
-          sweeper(*field, *bur, core::simdLevel()),
           leastRadiusMm(cuttingParameters.centreRadius * bur->maxRadiusMm()),
-          mostLeadMm(kMaxLeadVoxels * field->field().settings().voxelMm) {
+          mostLeadMm(kMaxLeadVoxels * finestVoxelMm(cutTeeth)) {
+        teeth.reserve(cutTeeth.size());
+        for (CutTooth& tooth : cutTeeth)
+            teeth.push_back(std::make_unique<Swept>(std::move(tooth), *bur));
         for (std::size_t t = 0; t < cases::kTissueCount; ++t)
             cuttingMm2PerN[t] = cuttingParameters.cutting * tissues.rows[t].cuttingMm2PerN;
     }
 
+    [[nodiscard]] static double finestVoxelMm(const std::vector<CutTooth>& teeth) {
+        if (teeth.empty()) throw core::Error("there is no tooth to cut", "cutter", "give one");
+        double finest = teeth.front().field->field().settings().voxelMm;
+        for (const CutTooth& tooth : teeth)
+            finest = std::min(finest, tooth.field->field().settings().voxelMm);
+        return finest;
+    }
     [[nodiscard]] Resistance resistanceOf(const contact::Bearing& told) const noexcept {
         Resistance sum;
         for (std::size_t t = 0; t < cases::kTissueCount; ++t)
@@ -55,12 +102,15 @@ struct Cutter::State {
         }
         return sum;
     }
-    void take(const Sweeper::Outcome& outcome) noexcept {
-        result.removedMm3 = outcome.removedMm3;
-        result.changedBricks = outcome.changedBricks;
-        result.cutterInTooth = sweeper.pose();
+    void sweepTo(const core::Pose& cutter) noexcept {
+        for (const std::unique_ptr<Swept>& tooth : teeth)
+            tooth->sweepTo(cutter, result);
+        sweptTo = result.cutterInTooth = cutter;
     }
-    void stop() noexcept { sweeper.settle(); }
+    void stop() noexcept {
+        for (const std::unique_ptr<Swept>& tooth : teeth)
+            tooth->sweeper.settle();
+    }
     void cutUnderLoad(contact::Method& method, const CutInput& input, double loadN) noexcept {
         const Vec3 direction = input.loadN / loadN;
         const Vec3 proxy = input.proxyInTooth.positionMm;
@@ -105,15 +155,15 @@ struct Cutter::State {
         cutterMm += feed * input.periodS * direction;
         core::Pose cutter = input.proxyInTooth;
         cutter.positionMm = cutterMm;
-        take(sweeper.sweepTo(cutter));
+        sweepTo(cutter);
         method.noteCut(cutter);
     }
 
-    std::shared_ptr<tooth::ToothState> field;
     std::shared_ptr<const instrument::Bur> bur;
     instrument::CuttingParameters cuttingParameters;
     Settings settings;
-    Sweeper sweeper;
+    std::vector<std::unique_ptr<Swept>> teeth;
+    core::Pose sweptTo;
     double leastRadiusMm, mostLeadMm;
     Vec3 cutterMm = Vec3::Zero();  // where the cutter was when it last cut
     bool hasCutter = false;
@@ -125,7 +175,12 @@ struct Cutter::State {
 Cutter::Cutter(std::shared_ptr<tooth::ToothState> field, std::shared_ptr<const instrument::Bur> bur,
                const instrument::CuttingParameters& cuttingParameters, const cases::TissueTable& tissues,
                const Settings& settings)
-    : state_(std::make_unique<State>(std::move(field), std::move(bur), cuttingParameters, tissues, settings)) {
+    : Cutter(std::vector<CutTooth>{{std::move(field), {}}}, std::move(bur), cuttingParameters, tissues, settings) {}
+
+Cutter::Cutter(std::vector<CutTooth> teeth, std::shared_ptr<const instrument::Bur> bur,
+               const instrument::CuttingParameters& cuttingParameters, const cases::TissueTable& tissues,
+               const Settings& settings)
+    : state_(std::make_unique<State>(std::move(teeth), std::move(bur), cuttingParameters, tissues, settings)) {
     const auto notBelowZero = [&](double value, const char* what) {
         if (std::isfinite(value) && value >= 0.0) return;
         throw core::Error(std::string(what) + " is not a number of zero or more",
@@ -147,7 +202,7 @@ const CutResult& Cutter::cut(contact::Method& method, const CutInput& input) noe
     s.result.cutterInTooth = input.proxyInTooth;
     if (s.settings.fullRemoval) {
         if (input.speedRadS > 0.0 && input.deviceInTooth.isValid())
-            s.take(s.sweeper.sweepTo(input.deviceInTooth));
+            s.sweepTo(input.deviceInTooth);
         else
             s.stop();
         return s.result;
@@ -162,19 +217,22 @@ const CutResult& Cutter::cut(contact::Method& method, const CutInput& input) noe
 
 const CutResult& Cutter::rest() noexcept {
     State& s = *state_;
-    const core::Pose pose = s.sweeper.pose();
     s.result = {};
-    s.result.cutterInTooth = pose;
+    s.result.cutterInTooth = s.sweptTo;
     s.stop();
     return s.result;
 }
 
-tooth::ToothState& Cutter::field() noexcept {
-    return *state_->field;
+std::size_t Cutter::toothCount() const noexcept {
+    return state_->teeth.size();
 }
 
-const tooth::ToothState& Cutter::field() const noexcept {
-    return *state_->field;
+tooth::ToothState& Cutter::field(std::size_t tooth) noexcept {
+    return *state_->teeth[tooth]->field;
+}
+
+const tooth::ToothState& Cutter::field(std::size_t tooth) const noexcept {
+    return *state_->teeth[tooth]->field;
 }
 
 double Cutter::largestRadiusMm() const noexcept {

@@ -4,6 +4,7 @@
 /// What a turning bur takes off the tooth in one tick. Fourth stage: device -> contact -> force -> [cutting].
 
 #include <memory>
+#include <vector>
 
 #include "handpiece/base/core/realtime.h"
 #include "handpiece/base/core/vec.h"
@@ -31,12 +32,19 @@ struct CutResult {
     std::uint32_t changedBricks = 0;
 };
 
-/// Cuts one tooth with one bur.
+/// A tooth that can be cut, and where it stands.
+struct CutTooth {
+    std::shared_ptr<tooth::ToothState> field;  ///< in the tooth's own frame
+    core::Pose inScene;                        ///< of the method's frame, which is that of the poses
+};
+
+/// Cuts one tooth or several with one bur.
 ///
 /// The bur advances into the tooth as a rigid body: along the load, at the speed at which the pressures that its
 /// contact area needs for that (tissue by tissue, p = v_n / (K omega rho)) add up to the load; load and chip are
-/// capped. What its envelope sweeps from pose to pose is taken away, nothing else. The advance that the field has not
-/// yet let through to the proxy is carried to the next tick, so that removal depends neither on rate nor on voxel.
+/// capped. What its envelope sweeps from pose to pose is taken away from every tooth that is there, nothing else. The
+/// advance that the field has not yet let through to the proxy is carried to the next tick, so that removal depends
+/// neither on rate nor on voxel.
 class Cutter {
   public:
     struct Settings {
@@ -45,17 +53,21 @@ class Cutter {
     Cutter(std::shared_ptr<tooth::ToothState> field, std::shared_ptr<const instrument::Bur> bur,
            const instrument::CuttingParameters& cuttingParameters, const cases::TissueTable& tissues,
            const Settings& settings);
+    Cutter(std::vector<CutTooth> teeth, std::shared_ptr<const instrument::Bur> bur,
+           const instrument::CuttingParameters& cuttingParameters, const cases::TissueTable& tissues,
+           const Settings& settings);
     ~Cutter();
     Cutter(const Cutter&) = delete;
     Cutter& operator=(const Cutter&) = delete;
 
-    /// After the force has been sent. `method` is that of this tick, on the same field.
+    /// After the force has been sent. `method` is that of this tick, on the same fields.
     const CutResult& cut(contact::Method& method, const CutInput& input) noexcept HANDPIECE_REALTIME;
     /// The bur is not cutting in this tick: nothing is swept on the way to where it cuts next.
     const CutResult& rest() noexcept HANDPIECE_REALTIME;
 
-    [[nodiscard]] tooth::ToothState& field() noexcept;
-    [[nodiscard]] const tooth::ToothState& field() const noexcept;
+    [[nodiscard]] std::size_t toothCount() const noexcept;
+    [[nodiscard]] tooth::ToothState& field(std::size_t tooth = 0) noexcept;
+    [[nodiscard]] const tooth::ToothState& field(std::size_t tooth = 0) const noexcept;
     [[nodiscard]] double largestRadiusMm() const noexcept;  ///< of the bur
 
   private:

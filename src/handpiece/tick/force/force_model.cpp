@@ -47,6 +47,8 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     touch_.tissue = touch_.touching ? touch_.depth.tissue : cases::Tissue::none;
     touch_.tooth = touch_.depth.tooth;
     touch_.passes = 0;
+    touch_.behindShare = 0.0;
+    touch_.behind = contact::Piece::bur;
     touch_.patches = contact::PatchSet{};
     if (fresh && (released || touch_.depth.depthMm > kDeepStartMm)) guard_.fadeIn();
     updateVelocity(touch_.deviceInTooth.positionMm, fresh, periodS);
@@ -67,6 +69,11 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     touch_.touching = proxy_.touching();
     touch_.passes = proxy_.passes();
     touch_.tissue = proxy_.strongestTissue();
+    if (touch_.touching && proxy_.behindShare() > 0.0) {
+        touch_.behindShare = proxy_.behindShare();
+        touch_.behindPointMm = proxy_.behindPointMm();
+        touch_.behind = proxy_.strongestBehind();
+    }
     if (touch_.touching) {
         method.patches(touch_.proxyInTooth, touch_.patches);
         smoothShares(method.isCutNear(touch_.proxyInTooth), periodS);
@@ -128,6 +135,13 @@ Vec3 ForceModel::frictionForce(const Touch& touch, const Vec3& pressN, const Tur
 
 Vec3 ForceModel::torqueAboutGrip(const Touch& touch, const Vec3& forceN) const noexcept {
     const Vec3 grip = touch.proxyInTooth.apply(parameters_.gripMm);
+    if (touch.behindShare > 0.0) {
+        Touch ofBur = touch;
+        ofBur.behindShare = 0.0;
+        const Vec3 behindN = touch.behindShare * forceN;
+        const Vec3 behindNmm = (touch.behindPointMm - grip).cross(behindN);
+        return touch.behindShare < 1.0 ? Vec3(behindNmm + torqueAboutGrip(ofBur, forceN - behindN)) : behindNmm;
+    }
     if (touch.patches.patches.empty()) {
         return touch.touching ? Vec3((touch.depth.toothPointMm - grip).cross(forceN)) : Vec3(Vec3::Zero());
     }
@@ -162,7 +176,9 @@ const ForceCommand& ForceModel::compute(const Touch& touch, double periodS, cons
         wanted = law_->pushN(inputOf(touch));
         if (!wanted.allFinite()) wanted.setZero();
         const double press = wanted.norm();
-        command_.loadN = -guard_.gain() * std::min(1.0, limits_.maxForceN / std::max(press, kShallowMm)) * wanted;
+        // What bears on the shank or the head does not press the bur.
+        command_.loadN = -guard_.gain() * (1.0 - touch.behindShare) *
+                         std::min(1.0, limits_.maxForceN / std::max(press, kShallowMm)) * wanted;
         if (law_->usesProxy()) wanted += frictionForce(touch, wanted, turning);
         tangentialN_ =
             touch.touching

@@ -50,7 +50,8 @@ double Proxy::evaluate(contact::Method& method) noexcept {
         c.gapMm += depth.slackMm;
     clearanceMm_ = depth.slackMm - depth.depthMm;
     const bool near = depth.status == contact::Status::ok && clearanceMm_ <= reach;
-    const contact::Constraint exact{depth.normal, clearanceMm_, depth.toothPointMm, depth.tissue};
+    const contact::Constraint exact{depth.normal, clearanceMm_, depth.toothPointMm,
+                                    depth.tissue, depth.tooth,  depth.piece};
     if (near) {
         // A full set keeps its most important first: the last make room.
         const std::size_t room = contact::kMaxConstraints - 1 - memory_.size();
@@ -145,6 +146,30 @@ int Proxy::passesIn(double periodS) const noexcept {
     return std::max(std::min(kLeast, settings_.iterations), static_cast<int>(std::lround(share)));
 }
 
+void Proxy::noteWhatHolds(const Projection& allowed) noexcept {
+    touching_ = allowed.activeCount > 0;
+    double strongest = 0.0, strongestBehind = 0.0, all = 0.0, behind = 0.0;
+    Vec3 moment = Vec3::Zero();
+    for (int j = 0; j < allowed.activeCount; ++j) {
+        const contact::Constraint& held = constraints_[allowed.active[j]];
+        const double share = allowed.multiplierMm[j];
+        if (share > strongest) {
+            strongest = share;
+            strongestTissue_ = held.tissue;
+        }
+        all += std::max(share, 0.0);
+        if (held.piece == contact::Piece::bur || !(share > 0.0)) continue;
+        behind += share;
+        moment += share * held.pointMm;
+        if (share > strongestBehind) {
+            strongestBehind = share;
+            strongestBehind_ = held.piece;
+        }
+    }
+    behindShare_ = behind > 0.0 ? behind / all : 0.0;
+    if (behind > 0.0) behindPointMm_ = moment / behind;
+}
+
 void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth, const contact::Depth& depthAtDevice,
                    double periodS) noexcept {
     const Vec3 target = deviceInTooth.positionMm;
@@ -160,6 +185,7 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth, con
     if (version != toothVersion_) memory_.clear();
     toothVersion_ = version;
     strongestTissue_ = cases::Tissue::none;
+    behindShare_ = 0.0;
     // A ball of that radius about the device is free, and the proxy lies in it.
     if (-depthAtDevice.depthMm > (target - pose_.positionMm).norm()) {
         pose_.positionMm = target;
@@ -187,14 +213,7 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth, con
         }
         const Vec3 wanted = target - pose_.positionMm;
         const Projection allowed = project(constraints_, wanted);
-        touching_ = allowed.activeCount > 0;
-        double strongest = 0.0;
-        for (int j = 0; j < allowed.activeCount; ++j) {
-            if (allowed.multiplierMm[j] > strongest) {
-                strongest = allowed.multiplierMm[j];
-                strongestTissue_ = constraints_[allowed.active[j]].tissue;
-            }
-        }
+        noteWhatHolds(allowed);
         Vec3 step = freeStep(wanted, allowed);
         if (touching_) {
             const double slack = isCutNear ? kYieldingSlack : kFirmSlack;

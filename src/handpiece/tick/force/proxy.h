@@ -48,6 +48,10 @@ class Proxy {
     [[nodiscard]] bool touching() const noexcept { return touching_; }
     /// Tissue of the constraint that pushes most; none when not touching.
     [[nodiscard]] cases::Tissue strongestTissue() const noexcept { return strongestTissue_; }
+    /// Of what holds it, the share that bears on parts behind the bur, 0 to 1, and where in the mean.
+    [[nodiscard]] double behindShare() const noexcept { return behindShare_; }
+    [[nodiscard]] const core::Vec3& behindPointMm() const noexcept { return behindPointMm_; }
+    [[nodiscard]] contact::Piece strongestBehind() const noexcept { return strongestBehind_; }  ///< of those parts
     /// Smallest signed gap at the last pass [mm]: not below -tolerance, unless the bur is wedged.
     [[nodiscard]] double gapMm() const noexcept { return gapMm_; }
     /// Constraint passes of the last update.
@@ -65,6 +69,7 @@ class Proxy {
     void recall() noexcept;
     void remember(const contact::Constraint& exact) noexcept;
     void settleOutside(contact::Method& method) noexcept;
+    void noteWhatHolds(const Projection& allowed) noexcept;
     [[nodiscard]] int passesIn(double periodS) const noexcept;
     [[nodiscard]] core::Vec3 freeStep(const core::Vec3& wanted, const Projection& allowed) const noexcept;
 
@@ -79,6 +84,9 @@ class Proxy {
     core::Vec3 lastRest_ = core::Vec3::Zero();
     bool touching_ = false;
     cases::Tissue strongestTissue_ = cases::Tissue::none;
+    double behindShare_ = 0.0;
+    core::Vec3 behindPointMm_ = core::Vec3::Zero();
+    contact::Piece strongestBehind_ = contact::Piece::bur;
     int passes_ = 0;
 };
 

@@ -12,14 +12,17 @@
 namespace handpiece::force {
 
 struct Touch {
-    core::Pose deviceInTooth;                    ///< believed; not the reading when that is in doubt
-    contact::Depth depth;                        ///< at the device's pose
-    core::Pose proxyInTooth;                     ///< the device's pose under a law that knows no proxy
-    contact::PatchSet patches;                   ///< at the proxy; empty when it does not touch, or there is none
-    bool touching = false;                       ///< the proxy is held by the tooth
-    cases::Tissue tissue = cases::Tissue::none;  ///< that carries most of the pressure
-    std::uint16_t tooth = 0;                     ///< that tissue's: the one that is cut
-    int passes = 0;                              ///< constraint passes of the proxy
+    core::Pose deviceInTooth;                       ///< believed; not the reading when that is in doubt
+    contact::Depth depth;                           ///< at the device's pose
+    core::Pose proxyInTooth;                        ///< the device's pose under a law that knows no proxy
+    contact::PatchSet patches;                      ///< at the proxy; empty when it does not touch, or there is none
+    bool touching = false;                          ///< the proxy is held by the tooth
+    cases::Tissue tissue = cases::Tissue::none;     ///< that carries most of the pressure
+    std::uint16_t tooth = 0;                        ///< that tissue's
+    double behindShare = 0.0;                       ///< of the force, that bears on shank, head or handle: 0 to 1
+    core::Vec3 behindPointMm = core::Vec3::Zero();  ///< where that acts
+    contact::Piece behind = contact::Piece::bur;    ///< which of them bears most; bur for none
+    int passes = 0;                                 ///< constraint passes of the proxy
 };
 
 }  // namespace handpiece::force

@@ -33,6 +33,20 @@ void tellContact(const force::Touch& touch, messages::HapticSample& sample) noex
     sample.contactNormal = core::toArray(normal);
 }
 
+std::uint32_t behindFlag(const force::Touch& touch) noexcept {
+    switch (touch.behind) {
+        case contact::Piece::bur:
+            return 0;
+        case contact::Piece::shank:
+            return messages::kShankTouches;
+        case contact::Piece::head:
+            return messages::kHeadTouches;
+        case contact::Piece::handle:
+            return messages::kHandleTouches;
+    }
+    return 0;
+}
+
 }  // namespace
 
 void HapticLoop::tick(const rt::Beat& beat) noexcept {
@@ -111,7 +125,7 @@ void HapticLoop::cut(const device::Reading& reading, const force::Touch& touch, 
     rotor_.step(pedal, cut_.loadTorqueNmm, elapsedS);
     cutFlags_ = rotor_.stalled() && pedal > 0.0 ? messages::kStalled : 0u;
     const Work& work = work_.current()->value;
-    if (work.cutters.empty()) {
+    if (!work.cutter) {
         isRestoring_ = false;  // nothing there that could change
         restoring_.store(false, std::memory_order_release);
         return;
@@ -119,46 +133,44 @@ void HapticLoop::cut(const device::Reading& reading, const force::Touch& touch, 
     const bool cuts = pedal > 0.0 && !force_.waiting() && !isRestoring_;
     uncutS_ = cuts ? uncutS_ + elapsedS : 0.0;
     const bool isTurn = uncutS_ >= kCutEveryS;
-    // Of several teeth the one that bears most is cut.
-    for (std::size_t tooth = 0; tooth < work.cutters.size(); ++tooth) {
-        cutting::Cutter& cutter = *work.cutters[tooth];
-        if (tooth != touch.tooth)
-            (void)cutter.rest();
-        else if (!cuts)
-            cut_ = cutter.rest();
-        else if (isTurn)
-            cut_ = cutter.cut(*work.method,
-                              {touch.proxyInTooth, touch.deviceInTooth, command.loadN, rotor_.speedRadS(), uncutS_});
-    }
+    if (!cuts)
+        cut_ = work.cutter->rest();
+    else if (isTurn)
+        cut_ = work.cutter->cut(*work.method,
+                                {touch.proxyInTooth, touch.deviceInTooth, command.loadN, rotor_.speedRadS(), uncutS_});
     if (isTurn) uncutS_ = 0.0;
     if (isRestoring_) restoreSome();
     // Until the next cut this one holds.
     if (std::any_of(cut_.removedMm3.begin(), cut_.removedMm3.end(), [](double v) { return v > 0.0; }))
         cutFlags_ |= messages::kCutting;
     turning_.tangentialN = cut_.tangentialN;
-    turning_.surfaceSpeedMmS = rotor_.speedRadS() * kMeanRadius * work.cutters.front()->largestRadiusMm();
+    turning_.surfaceSpeedMmS = rotor_.speedRadS() * kMeanRadius * work.cutter->largestRadiusMm();
     handOver();
 }
 
 void HapticLoop::handOver() noexcept {
-    for (const std::unique_ptr<cutting::Cutter>& cutter : work_.current()->value.cutters) {
-        if (cutter->field().outOfBricks()) cutFlags_ |= messages::kOutOfBricks;
-        handedBricks_ += cutter->field().handOver(
-            kBricksPerTick, [this](const tooth::BrickSnapshot& brick) noexcept { return bricks_.tryPush(brick); });
+    cutting::Cutter& cutter = *work_.current()->value.cutter;
+    for (std::size_t i = 0; i < cutter.toothCount(); ++i) {
+        tooth::ToothState& field = cutter.field(i);
+        if (field.outOfBricks()) cutFlags_ |= messages::kOutOfBricks;
+        handedBricks_ += field.handOver(kBricksPerTick, [this, i](tooth::BrickSnapshot& brick) noexcept {
+            brick.tooth = static_cast<std::uint16_t>(i);
+            return bricks_.tryPush(brick);
+        });
     }
 }
 
 void HapticLoop::restoreSome() noexcept {
     Restore& restore = restore_.current()->value;
-    const auto& cutters = work_.current()->value.cutters;
+    cutting::Cutter& cutter = *work_.current()->value.cutter;
     cutFlags_ |= messages::kRestoring;
     force_.waitUntilClear();  // until the last brick is in place
     // The same share of a period at every rate.
     const auto most = static_cast<std::size_t>(1e3 * periodS_ * static_cast<double>(kRestoredPerMs));
-    if (restore.tooth < cutters.size())
-        restore.next =
-            cutters[restore.tooth]->field().restore(restore.change, restore.next, std::max(most, kMinRestored));
-    isRestoring_ = restore.tooth < cutters.size() && restore.next < restore.change.bricks.size();
+    const bool isThere = restore.tooth < cutter.toothCount();
+    if (isThere)
+        restore.next = cutter.field(restore.tooth).restore(restore.change, restore.next, std::max(most, kMinRestored));
+    isRestoring_ = isThere && restore.next < restore.change.bricks.size();
     if (!isRestoring_) restoring_.store(false, std::memory_order_release);
 }
 
@@ -187,7 +199,8 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     sample.flags = cutFlags_ | (command.forceLimited || eventForce_.forceLimited() ? messages::kForceLimited : 0u) |
                    (command.slopeLimited || eventForce_.slopeLimited() ? messages::kSlopeLimited : 0u) |
                    (force_.guard().invalidNow() ? messages::kInvalidPose : 0u) |
-                   (force_.guard().faulted() ? messages::kFault : 0u) | (force_.waiting() ? messages::kWaiting : 0u);
+                   (force_.guard().faulted() ? messages::kFault : 0u) | (force_.waiting() ? messages::kWaiting : 0u) |
+                   behindFlag(touch);
     sample.workUs = static_cast<float>(static_cast<double>(workNs) * 1e-3);
     sample.lateUs = static_cast<float>(static_cast<double>(beat.lateNs) * 1e-3);
     sample.cutUs = static_cast<float>(static_cast<double>(cutNs) * 1e-3);
@@ -199,12 +212,13 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     sample.pedal = reading.pedal;
     sample.speedRpm = rotor_.speedRpm();
     sample.loadTorqueNmm = cut_.loadTorqueNmm;
-    for (const std::unique_ptr<cutting::Cutter>& cutter : work_.current()->value.cutters) {
-        const tooth::TissueVolumes& removed = cutter->field().removedMm3();
-        for (std::size_t t = 0; t < removed.size(); ++t)
-            sample.removedMm3[t] += removed[t];
-        sample.waitingBricks += static_cast<std::uint32_t>(cutter->field().waitingBricks());
-    }
+    if (const cutting::Cutter* const cutter = work_.current()->value.cutter.get(); cutter != nullptr)
+        for (std::size_t i = 0; i < cutter->toothCount(); ++i) {
+            const tooth::TissueVolumes& removed = cutter->field(i).removedMm3();
+            for (std::size_t t = 0; t < removed.size(); ++t)
+                sample.removedMm3[t] += removed[t];
+            sample.waitingBricks += static_cast<std::uint32_t>(cutter->field(i).waitingBricks());
+        }
     samples_.tryPush(sample);
 }
 

@@ -32,19 +32,10 @@ struct LoopSettings {
     std::size_t brickCapacity = 2048;   ///< changed bricks on their way to a listener; more wait in the tooth
 };
 
-/// One bur at the teeth of a mouth: how they touch, and what the bur takes off those that can be cut. A mouth has one
-/// tooth today, so indices are 0.
+/// One bur at the teeth of a mouth: how they touch, and what the bur takes off those that can be cut.
 struct Work {
-    Work() = default;
-    // NOLINTNEXTLINE(google-explicit-constructor)
-    Work(std::unique_ptr<contact::Method> feeling, std::unique_ptr<cutting::Cutter> cutter = nullptr)
-        : method(std::move(feeling)) {
-        if (cutter) cutters.push_back(std::move(cutter));
-    }
-
-    std::unique_ptr<contact::Method> method;                ///< feels all teeth; its answers name the tooth
-    std::vector<std::unique_ptr<cutting::Cutter>> cutters;  ///< by tooth, each on the field that `method` feels; none:
-                                                            ///< touching only
+    std::unique_ptr<contact::Method> method;  ///< feels all teeth; its answers name the tooth
+    std::unique_ptr<cutting::Cutter> cutter;  ///< on the fields that `method` feels; none: touching only
 };
 
 /// How a run went so far, by the tick's own count.

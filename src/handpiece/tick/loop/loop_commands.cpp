@@ -38,7 +38,7 @@ force::Limits limitsOf(const device::Capability& c) {
 
 HapticLoop::HapticLoop(const LoopSettings& settings, std::unique_ptr<device::Device> device,
                        std::unique_ptr<contact::Method> method, const force::Parameters& parameters)
-    : HapticLoop(settings, std::move(device), Work(std::move(method)), parameters) {}
+    : HapticLoop(settings, std::move(device), Work{std::move(method), nullptr}, parameters) {}
 
 HapticLoop::HapticLoop(const LoopSettings& settings, std::unique_ptr<device::Device> device, Work work,
                        const force::Parameters& parameters, const instrument::Drive& drive)
@@ -79,7 +79,7 @@ std::uint64_t HapticLoop::setWork(Work work) {
 }
 
 std::uint64_t HapticLoop::setMethod(std::unique_ptr<contact::Method> method) {
-    return setWork(Work(std::move(method)));
+    return setWork(Work{std::move(method), nullptr});
 }
 
 std::uint64_t HapticLoop::restore(tooth::StateDelta change, std::uint16_t toothIndex) {

@@ -268,7 +268,7 @@ std::size_t SurfaceSampler::sumRuns(std::size_t runs, Status& status) noexcept {
 
 void SurfaceSampler::patches(const core::Pose& burInTooth, PatchSet& out) noexcept {
     out.patches.clear();
-    out.areaMm2 = 0.0;
+    out.areaMm2 = out.pressureMm3 = 0.0;
     out.tissueShare.fill(0.0);
     out.status = Status::ok;
     if (!burInTooth.isValid()) {
@@ -291,6 +291,7 @@ void SurfaceSampler::patches(const core::Pose& burInTooth, PatchSet& out) noexce
         }
     }
     if (!(pressure > 0.0)) return;
+    out.pressureMm3 = pressure;
     for (double& share : out.tissueShare)
         share /= tissues;
     std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), [this](std::size_t a, std::size_t b) {

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/tick/contact/mouth_method.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/tick/contact/bur_frame.h"
+
+namespace handpiece::contact {
+namespace {
+
+using core::Pose;
+using core::Vec3;
+
+/// What was looked at stays near until the instrument has moved so far.
+constexpr double kNearSlackMm = 1.0;
+constexpr double kFarthestToothMm = 200.0;
+
+Pose inverse(const Pose& pose) {
+    return {pose.orientation.conjugate() * -pose.positionMm, pose.orientation.conjugate()};
+}
+Pose product(const Pose& a, const Pose& b) noexcept {
+    return {a.apply(b.positionMm), a.orientation * b.orientation};
+}
+bool isSame(const Pose& a, const Pose& b) noexcept {
+    return a.positionMm == b.positionMm && a.orientation.coeffs() == b.orientation.coeffs();
+}
+bool isIdentity(const Pose& pose) noexcept {
+    return isSame(pose, Pose{});
+}
+
+/// A pair, with what is known of it between calls.
+struct Pair : PlacedMethod {
+    explicit Pair(PlacedMethod placed)
+        : PlacedMethod(std::move(placed)),
+          sceneInTooth(inverse(toothInScene)),
+          moves(!isIdentity(pieceInBur)),
+          turns(!isIdentity(toothInScene)) {}
+
+    /// The piece in the tooth's frame. Where nothing is moved nothing is rounded.
+    [[nodiscard]] Pose localOf(const Pose& bur) const noexcept {
+        const Pose own = moves ? product(bur, pieceInBur) : bur;
+        return turns ? product(sceneInTooth, own) : own;
+    }
+    [[nodiscard]] Vec3 direction(const Vec3& inTooth) const noexcept {
+        return turns ? Vec3(toothInScene.orientation * inTooth) : inTooth;
+    }
+    [[nodiscard]] Vec3 place(const Vec3& inTooth) const noexcept {
+        return turns ? toothInScene.apply(inTooth) : inTooth;
+    }
+    /// No more than the distance between the two.
+    [[nodiscard]] double gapMm(const Pose& local) const noexcept {
+        const core::Box box = BurFrame(local).boxAround(solid->lengthMm(), solid->maxRadiusMm(), 0.0);
+        const Vec3 apart = (box.min - toothBoxMm.max).cwiseMax(toothBoxMm.min - box.max).cwiseMax(0.0);
+        return apart.norm();
+    }
+    [[nodiscard]] bool isBur() const noexcept { return piece == Piece::bur; }
+
+    Pose sceneInTooth;
+    bool moves, turns;
+    Pose askedAt;  // of a piece that is asked for depth and for constraints at one pose
+    std::uint64_t askedVersion = 0;
+    bool wasAsked = false;
+    Depth answer;
+};
+
+class MouthMethod final : public Method {
+  public:
+    MouthMethod(std::vector<PlacedMethod> placed, double reachMm) : reachMm_(reachMm) {
+        pairs_.reserve(placed.size());
+        for (PlacedMethod& p : placed) {
+            if (!p.method || !p.solid || !p.pieceInBur.isValid() || !p.toothInScene.isValid() ||
+                p.toothInScene.positionMm.norm() > kFarthestToothMm)
+                throw core::Error("a tooth of the mouth stands nowhere", "contact",
+                                  "give it a rigid pose near the others");
+            pairs_.emplace_back(std::move(p));
+            const Pair& pair = pairs_.back();
+            farthestMm_ = std::max(farthestMm_, pair.pieceInBur.positionMm.norm() +
+                                                    std::hypot(pair.solid->lengthMm(), pair.solid->maxRadiusMm()));
+        }
+    }
+
+    [[nodiscard]] const char* name() const noexcept override { return "mouth"; }
+
+    [[nodiscard]] Depth depth(const Pose& bur) noexcept override { return deepest(bur, nullptr); }
+    [[nodiscard]] Depth depthUpTo(double enoughMm, const Pose& bur) noexcept override {
+        return deepest(bur, &enoughMm);
+    }
+
+    void patches(const Pose& bur, PatchSet& out) noexcept override {
+        out = PatchSet{};
+        if (!bur.isValid()) {
+            out.status = Status::invalidPose;
+            return;
+        }
+        lookAround(bur);
+        std::array<Pair*, kMaxSets> touched;
+        std::size_t count = 0;
+        for (std::size_t n = 0; n < nearCount_; ++n) {
+            Pair& pair = pairs_[near_[n]];
+            if (!pair.isBur() || pair.gapMm(pair.localOf(bur)) > kContactMarginMm) continue;
+            if (count == kMaxSets) out.status = Status::truncated;
+            if (count < kMaxSets) touched[count++] = &pair;
+        }
+        if (count == 1) {
+            touched[0]->method->patches(touched[0]->localOf(bur), out);
+            for (Patch& p : out.patches)
+                p = inScene(*touched[0], p);
+            return;
+        }
+        merged_.clear();
+        for (std::size_t n = 0; n < count; ++n) {
+            Pair& pair = *touched[n];
+            pair.method->patches(pair.localOf(bur), scratchPatches_);
+            const PatchSet& own = scratchPatches_;
+            if (out.status == Status::ok) out.status = own.status;
+            out.areaMm2 += own.areaMm2;
+            out.pressureMm3 += own.pressureMm3;
+            for (std::size_t t = 0; t < cases::kTissueCount; ++t)
+                out.tissueShare[t] += own.pressureMm3 * own.tissueShare[t];
+            for (const Patch& p : own.patches) {
+                merged_.pushBack(inScene(pair, p));
+                merged_[merged_.size() - 1].pressureShare *= own.pressureMm3;
+            }
+        }
+        if (!(out.pressureMm3 > 0.0)) return;
+        for (double& share : out.tissueShare)
+            share /= out.pressureMm3;
+        // Of equals the tooth with the lower number comes first.
+        std::sort(merged_.begin(), merged_.end(), [](const Patch& a, const Patch& b) {
+            return a.pressureShare != b.pressureShare ? a.pressureShare > b.pressureShare : a.tooth < b.tooth;
+        });
+        for (Patch& p : merged_) {
+            p.pressureShare /= out.pressureMm3;
+            if (!out.patches.pushBack(p)) out.status = Status::truncated;
+        }
+    }
+
+    Status constraints(const Pose& bur, double reachMm, ConstraintSet& out) noexcept override {
+        out.clear();
+        if (!bur.isValid()) return Status::invalidPose;
+        lookAround(bur);
+        Status status = Status::ok;
+        std::size_t sets = 0;
+        for (std::size_t n = 0; n < nearCount_; ++n) {
+            Pair& pair = pairs_[near_[n]];
+            const Pose local = pair.localOf(bur);
+            if (pair.gapMm(local) > reachMm) continue;
+            if (sets == kMaxSets) {
+                status = Status::truncated;
+                break;
+            }
+            ConstraintSet& own = sets_[sets];
+            const Status said =
+                pair.isBur() ? pair.method->constraints(local, reachMm, own) : ofPiece(pair, local, reachMm, own);
+            if (said == Status::truncated) status = said;
+            if (own.empty()) continue;
+            setOf_[sets++] = &pair;
+        }
+        // The most important of each tooth first, turn by turn.
+        for (std::size_t k = 0; k < kMaxConstraints; ++k) {
+            bool any = false;
+            for (std::size_t s = 0; s < sets; ++s) {
+                if (k >= sets_[s].size()) continue;
+                any = true;
+                const Pair& pair = *setOf_[s];
+                Constraint c = sets_[s][k];
+                c.normal = pair.direction(c.normal);
+                c.pointMm = pair.place(c.pointMm);
+                c.tooth = pair.tooth;
+                c.piece = pair.piece;
+                if (!out.pushBack(c)) return Status::truncated;
+            }
+            if (!any) break;
+        }
+        return status;
+    }
+
+    void bearing(const Pose& bur, const Vec3& direction, double leadMm, double leastRadiusMm,
+                 Bearing& out) noexcept override {
+        out = Bearing{};
+        for (Vec3& t : out.tangentMm)
+            t.setZero();
+        if (!bur.isValid() || !direction.allFinite()) {
+            out.status = Status::invalidPose;
+            return;
+        }
+        lookAround(bur);
+        const double withinMm = kContactMarginMm + std::max(leadMm, 0.0);
+        for (std::size_t n = 0; n < nearCount_; ++n) {
+            Pair& pair = pairs_[near_[n]];
+            const Pose local = pair.localOf(bur);
+            if (!pair.isBur() || pair.gapMm(local) > withinMm) continue;
+            const Vec3 along = pair.turns ? Vec3(pair.sceneInTooth.orientation * direction) : direction;
+            Bearing own;
+            pair.method->bearing(local, along, leadMm, leastRadiusMm, own);
+            if (out.status == Status::ok) out.status = own.status;
+            for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
+                out.areaMm2[t] += own.areaMm2[t];
+                out.resistanceMm[t] += own.resistanceMm[t];
+                out.tangentMm[t] += pair.direction(own.tangentMm[t]);
+            }
+        }
+    }
+
+    [[nodiscard]] std::uint64_t toothVersion() const noexcept override {
+        std::uint64_t sum = 0;
+        for (const Pair& pair : pairs_)
+            if (pair.isBur()) sum += pair.method->toothVersion();
+        return sum;
+    }
+    [[nodiscard]] double slackMm() const noexcept override {
+        double most = 0.0;
+        for (const Pair& pair : pairs_)
+            if (pair.isBur()) most = std::max(most, pair.method->slackMm());
+        return most;
+    }
+    [[nodiscard]] bool isCutNear(const Pose& bur) const noexcept override {
+        if (!bur.isValid()) return false;
+        return std::any_of(pairs_.begin(), pairs_.end(), [&bur](const Pair& pair) {
+            if (!pair.isBur()) return false;
+            const Pose local = pair.localOf(bur);
+            return pair.gapMm(local) <= kNearSlackMm && pair.method->isCutNear(local);
+        });
+    }
+    void noteCut(const Pose& bur) noexcept override {
+        for (Pair& pair : pairs_)
+            if (pair.isBur()) pair.method->noteCut(pair.localOf(bur));
+    }
+    void reset() noexcept override {
+        for (Pair& pair : pairs_) {
+            pair.method->reset();
+            pair.wasAsked = false;
+        }
+        hasLooked_ = false;
+    }
+
+  private:
+    static constexpr std::size_t kMaxSets = 12;
+
+    [[nodiscard]] static Patch inScene(const Pair& pair, Patch p) noexcept {
+        p.centreMm = pair.place(p.centreMm);
+        p.normal = pair.direction(p.normal);
+        p.tooth = pair.tooth;
+        return p;
+    }
+
+    /// Which pairs can touch from here, until the instrument has moved by kNearSlackMm.
+    void lookAround(const Pose& bur) noexcept {
+        if (hasLooked_) {
+            const double cosine = bur.orientation.coeffs().dot(lookedAt_.orientation.coeffs());
+            const double turn = 2.0 * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));  // chord of a unit arm
+            if ((bur.positionMm - lookedAt_.positionMm).norm() + turn * farthestMm_ <= kNearSlackMm) return;
+        }
+        nearCount_ = 0;
+        for (std::size_t i = 0; i < pairs_.size(); ++i)
+            if (pairs_[i].gapMm(pairs_[i].localOf(bur)) <= reachMm_ + kNearSlackMm)
+                near_[nearCount_++] = static_cast<std::uint8_t>(i);
+        lookedAt_ = bur;
+        hasLooked_ = true;
+    }
+
+    /// Of a piece behind the bur one depth serves all who ask at a pose.
+    [[nodiscard]] const Depth& depthOf(Pair& pair, const Pose& local) noexcept {
+        const std::uint64_t version = pair.method->toothVersion();
+        if (!pair.wasAsked || pair.isBur() || version != pair.askedVersion || !isSame(local, pair.askedAt)) {
+            pair.answer = pair.method->depth(local);
+            pair.askedAt = local;
+            pair.askedVersion = version;
+            pair.wasAsked = true;
+        }
+        return pair.answer;
+    }
+    Status ofPiece(Pair& pair, const Pose& local, double reachMm, ConstraintSet& out) noexcept {
+        out.clear();
+        const Depth& d = depthOf(pair, local);
+        if (d.status != Status::ok) return d.status;
+        if (-d.depthMm <= reachMm) out.pushBack({d.normal, -d.depthMm, d.toothPointMm, d.tissue});
+        return Status::ok;
+    }
+
+    [[nodiscard]] Depth deepest(const Pose& bur, const double* enoughMm) noexcept {
+        Depth best;
+        best.depthMm = -reachMm_;
+        if (!bur.isValid()) {
+            best.status = Status::invalidPose;
+            return best;
+        }
+        lookAround(bur);
+        // Nearest boxes first: whoever's box is farther than what was found cannot be deeper.
+        struct Candidate {
+            double gapMm;
+            std::uint8_t pair;
+        };
+        std::array<Candidate, kMaxPlaced> order;
+        std::size_t count = 0;
+        for (std::size_t n = 0; n < nearCount_; ++n) {
+            const Pair& pair = pairs_[near_[n]];
+            const double gap = pair.gapMm(pair.localOf(bur));
+            if (gap <= reachMm_) order[count++] = {gap, near_[n]};
+        }
+        std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
+                  [](const Candidate& a, const Candidate& b) {
+                      return a.gapMm != b.gapMm ? a.gapMm < b.gapMm : a.pair < b.pair;
+                  });
+        const Pair* decides = nullptr;
+        for (std::size_t n = 0; n < count && !(decides != nullptr && order[n].gapMm > -best.depthMm); ++n) {
+            Pair& pair = pairs_[order[n].pair];
+            const Pose local = pair.localOf(bur);
+            const Depth found = enoughMm != nullptr ? pair.method->depthUpTo(*enoughMm, local) : depthOf(pair, local);
+            if (decides != nullptr && !(found.depthMm > best.depthMm)) continue;
+            best = found;
+            decides = &pair;
+        }
+        if (decides == nullptr) return best;
+        best.normal = decides->direction(best.normal);
+        best.toothPointMm = decides->place(best.toothPointMm);
+        best.tooth = decides->tooth;
+        best.piece = decides->piece;
+        return best;
+    }
+
+    double reachMm_, farthestMm_ = 0.0;
+    std::vector<Pair> pairs_;
+    std::array<std::uint8_t, kMaxPlaced> near_{};
+    std::size_t nearCount_ = 0;
+    Pose lookedAt_;
+    bool hasLooked_ = false;
+    std::array<ConstraintSet, kMaxSets> sets_;
+    std::array<const Pair*, kMaxSets> setOf_{};
+    PatchSet scratchPatches_;
+    core::FixedVector<Patch, kMaxSets * kMaxPatches> merged_;
+};
+
+}  // namespace
+
+std::unique_ptr<Method> makeMouthMethod(std::vector<PlacedMethod> placed, double reachMm) {
+    if (placed.empty() || placed.size() > kMaxPlaced)
+        throw core::Error("a mouth has no teeth, or more than can be felt", "contact", "take teeth away from the case");
+    return std::make_unique<MouthMethod>(std::move(placed), reachMm);
+}
+
+}  // namespace handpiece::contact

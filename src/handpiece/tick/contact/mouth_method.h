@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Several teeth felt at once, by the bur and by the parts of the handpiece behind it.
+
+#include <memory>
+#include <vector>
+
+#include "handpiece/model/instrument/bur.h"
+#include "handpiece/tick/contact/method.h"
+
+namespace handpiece::contact {
+
+/// One convex piece of the instrument at one tooth.
+struct PlacedMethod {
+    std::unique_ptr<Method> method;                ///< of piece and tooth, in their own frames
+    std::shared_ptr<const instrument::Bur> solid;  ///< the piece, a solid of revolution
+    core::Pose pieceInBur;
+    core::Pose toothInScene;
+    core::Box toothBoxMm;     ///< of the tooth's surface, its own frame
+    std::uint16_t tooth = 0;  ///< as answers name it
+    Piece piece = Piece::bur;
+};
+
+/// Feels them as one; poses and answers are in the scene's frame, which is that of the case's own tooth. A pair is
+/// asked when its boxes are near enough to matter, so the cost is that of what is near. One pair whose frames are the
+/// scene's gives that method's answers bit for bit.
+///
+/// Throws core::Error for none, or more than kMaxPlaced.
+inline constexpr std::size_t kMaxPlaced = 128;
+[[nodiscard]] std::unique_ptr<Method> makeMouthMethod(std::vector<PlacedMethod> placed, double reachMm = 5.0);
+
+}  // namespace handpiece::contact

@@ -9,7 +9,6 @@
 namespace handpiece::test {
 namespace {
 
-constexpr double kCoarseMm = 0.02;   // cells of the first pass on a curve or sheet
 constexpr double kFinalMm = 2e-8;    // window at which refinement stops
 constexpr std::size_t kRefined = 6;  // places refined per curve
 
@@ -80,7 +79,7 @@ Place refine(const Curve& curve, Place best, double window) {
     return best;
 }
 
-void searchCurve(const Curve& curve, double& bestValue, core::Vec3& bestPoint) {
+void searchCurve(const Curve& curve, double coarseMm, double& bestValue, core::Vec3& bestPoint) {
     // Cells that cannot beat the best are dropped: a ball's value changes by at most twice the way its centre moves.
     struct Cell {
         double value, u, angle, du, dAngle;
@@ -105,10 +104,10 @@ void searchCurve(const Curve& curve, double& bestValue, core::Vec3& bestPoint) {
         for (const Cell& c : cells)
             if (c.value + (c.du + 0.5 * c.dAngle * curve.maxRho()) + 1e-9 >= bestValue) next.push_back(c);
         cells.swap(next);
-        if (widest <= kCoarseMm || cells.empty()) break;
+        if (widest <= coarseMm || cells.empty()) break;
         next.clear();
         for (const Cell& c : cells) {
-            const bool splitU = c.du > 0.5 * kCoarseMm, splitAngle = c.dAngle * curve.maxRho() > 0.5 * kCoarseMm;
+            const bool splitU = c.du > 0.5 * coarseMm, splitAngle = c.dAngle * curve.maxRho() > 0.5 * coarseMm;
             for (int i = 0; i < (splitU ? 2 : 1); ++i)
                 for (int j = 0; j < (splitAngle ? 2 : 1); ++j) {
                     Cell s = c;
@@ -124,11 +123,11 @@ void searchCurve(const Curve& curve, double& bestValue, core::Vec3& bestPoint) {
         places.push_back({c.value, c.u, c.angle});
     if (!curve.onAxis()) {  // the ends of a sheet by themselves: a sharp rim often decides
         const double rho = std::max(curve.maxRho(), 1e-9);
-        const int n = static_cast<int>(std::ceil(tau * rho / kCoarseMm));
+        const int n = static_cast<int>(std::ceil(tau * rho / coarseMm));
         for (int j = 0; j < n; ++j)
             for (const double u : {0.0, curve.length()}) {
                 const double v = curve.value(u, tau * j / n);
-                if (v + 2.0 * kCoarseMm >= bestValue) places.push_back({v, u, tau * j / n});
+                if (v + 2.0 * coarseMm >= bestValue) places.push_back({v, u, tau * j / n});
             }
     } else {
         places.push_back({curve.value(0.0, 0.0), 0.0, 0.0});
@@ -139,12 +138,12 @@ void searchCurve(const Curve& curve, double& bestValue, core::Vec3& bestPoint) {
     for (const Place& p : places) {
         if (done.size() >= kRefined) break;
         const bool seen = std::any_of(done.begin(), done.end(), [&](const Place& d) {
-            return std::abs(d.u - p.u) < 2.0 * kCoarseMm &&
-                   curve.maxRho() * std::abs(std::remainder(d.angle - p.angle, tau)) < 2.0 * kCoarseMm;
+            return std::abs(d.u - p.u) < 2.0 * coarseMm &&
+                   curve.maxRho() * std::abs(std::remainder(d.angle - p.angle, tau)) < 2.0 * coarseMm;
         });
         if (seen) continue;
         done.push_back(p);
-        const Place r = refine(curve, p, kCoarseMm);
+        const Place r = refine(curve, p, coarseMm);
         double radius = 0.0;
         if (r.value > bestValue) bestValue = r.value, bestPoint = curve.at(r.u, r.angle, radius);
     }
@@ -158,7 +157,7 @@ double summedDistance(const geometry::TriangleTree& tooth, const instrument::Bur
 }
 
 BruteForceResult bruteForceDepth(const geometry::TriangleTree& tooth, const instrument::Bur& bur,
-                                 const core::Pose& burInTooth) {
+                                 const core::Pose& burInTooth, double coarseMm) {
     BruteForceResult result;
     double best = -std::numeric_limits<double>::infinity();
     core::Vec3 point = core::Vec3::Zero();
@@ -183,7 +182,7 @@ BruteForceResult bruteForceDepth(const geometry::TriangleTree& tooth, const inst
             if (v > best) best = v, point = x;
         }
     for (const instrument::MedialCurve& c : bur.medialAxis())
-        if (!c.balls.empty()) searchCurve(Curve(tooth, burInTooth, c), best, point);
+        if (!c.balls.empty()) searchCurve(Curve(tooth, burInTooth, c), coarseMm, best, point);
     result.depthMm = best;
     result.pointMm = point;
     return result;

@@ -15,9 +15,10 @@ struct BruteForceResult {
 };
 
 /// Dense points on the bur's medial region, its surface and the tooth's vertices, exact distances to the triangles,
-/// then every promising place refined by shrinking grids. A few milliseconds a pose. The tree's mesh must be closed.
+/// then every promising place refined by shrinking grids. A few milliseconds a pose of a bur; a large solid wants a
+/// coarser first look. The tree's mesh must be closed.
 [[nodiscard]] BruteForceResult bruteForceDepth(const geometry::TriangleTree& tooth, const instrument::Bur& bur,
-                                               const core::Pose& burInTooth);
+                                               const core::Pose& burInTooth, double coarseMm = 0.02);
 
 /// phiT + phiB at one point, tooth frame: the quantity whose minimum is minus the depth.
 [[nodiscard]] double summedDistance(const geometry::TriangleTree& tooth, const instrument::Bur& bur,

@@ -8,6 +8,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/model/instrument/shapes.h"
 #include "support/random.h"
 
 namespace handpiece::instrument {
@@ -55,6 +56,48 @@ TEST(Turbine, IsMadeOfClosedPartsThatFaceOutwards) {
         first = end;
     }
     EXPECT_EQ(parts, report.shells);
+}
+
+TEST(Turbine, ItsConvexPiecesCoverWhatIsDrawn) {
+    const Bur bur = makeBur("330");
+    const std::vector<BodyPiece> pieces = bodyPieces(bur);
+    const auto distance = [&](const core::Vec3& p) {
+        double nearest = 1e9;
+        for (const BodyPiece& piece : pieces)
+            nearest = std::min(nearest, piece.solid->signedDistance(piece.inBur.applyInverse(p)));
+        return nearest;
+    };
+    const geometry::TriangleMesh mesh = turbineMesh();
+    double out = -1e9;
+    for (const core::Vec3& v : mesh.vertices) {
+        const double along = core::Vec2(v.x(), v.z() - kBurReachMm).norm();
+        const bool isLight = core::Vec2(v.x() - 4.6, v.y()).norm() < 0.95 && v.z() < kBurReachMm + 3.7;
+        if (along > 40.0 || v.z() < kBurReachMm || isLight)
+            continue;  // before the grip's points; without collar, ports
+        out = std::max(out, distance(v));
+    }
+    std::printf("  drawn vertices lie %.3f mm outside the pieces at most\n", out);
+    EXPECT_LE(out, kBodyToleranceMm);
+    for (const BodyPiece& piece : pieces) {
+        EXPECT_TRUE(piece.inBur.isValid());
+        // Convex: the middle of any two inside points is inside.
+        std::mt19937_64 g(handpiece::test::seed());
+        const auto anywhereIn = [&] {
+            for (;;) {
+                const double r = piece.solid->maxRadiusMm();
+                const core::Vec3 p(handpiece::test::uniform(g, -r, r), handpiece::test::uniform(g, -r, r),
+                                   handpiece::test::uniform(g, 0.0, piece.solid->lengthMm()));
+                if (piece.solid->signedDistance(p) <= 0.0) return p;
+            }
+        };
+        for (int i = 0; i < 300; ++i)
+            EXPECT_LE(piece.solid->signedDistance(0.5 * (anywhereIn() + anywhereIn())), 1e-9);
+    }
+    EXPECT_EQ(pieces.front().part, BodyPart::shank);
+    EXPECT_NEAR(pieces.front().inBur.positionMm.z(), bur.lengthMm(), 1e-12);
+    // A bur that reaches into the head has no shank to touch with.
+    EXPECT_NE(bodyPieces(makeBur("cylinder-round:1.0x12.0")).front().part, BodyPart::shank);
+    EXPECT_THROW((void)bodyPieces(bur, std::nan("")), core::Error);
 }
 
 TEST(Turbine, KeepsItsCountsThroughAnStl) {

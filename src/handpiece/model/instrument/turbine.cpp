@@ -23,6 +23,8 @@ constexpr double kNeckHeight = 6.4;   // of its axis above the head's lower face
 constexpr double kNeckLength = 14.0;  // straight, from the head's axis
 constexpr double kBendRadius = 45.0, kBendRad = 20.0 * std::numbers::pi / 180.0;
 constexpr double kHandleEnd = 98.0;  // along the axis of neck and handle
+// A friction-grip shank of 1.6 mm [ISO 1797, R] behind a neck, as it is drawn.
+constexpr double kShankRadius = 0.8, kShankNeck = 0.45, kShankWidens = 3.5;
 constexpr int kAround = 48, kSmallAround = 12;
 constexpr int kGripRows = 17, kGripAround = 28;
 constexpr double kGripStart = 46.0, kGripEnd = 72.0;
@@ -47,16 +49,16 @@ Frame handleAt(const Vec3& start, double s) {
 }
 
 /// A ring of a tube: where along its axis, how wide.
-struct SimulationSetup {
+struct Station {
     double along, radius;
 };
 
 /// A closed tube through stations, ends closed by a fan on the axis.
 template <class FrameAt>
-void addTube(TriangleMesh& mesh, const std::vector<SimulationSetup>& stations, int around, const FrameAt& frameAt) {
+void addTube(TriangleMesh& mesh, const std::vector<Station>& stations, int around, const FrameAt& frameAt) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size()), n = static_cast<std::uint32_t>(around);
     const auto rings = static_cast<std::uint32_t>(stations.size());
-    for (const SimulationSetup& station : stations) {
+    for (const Station& station : stations) {
         const Frame f = frameAt(station.along);
         for (std::uint32_t j = 0; j < n; ++j) {
             const double angle = 2.0 * std::numbers::pi * j / n;
@@ -78,7 +80,7 @@ void addTube(TriangleMesh& mesh, const std::vector<SimulationSetup>& stations, i
 }
 
 /// Stations along a quarter of an ellipse, from (a, ra) upright to (b, rb) level: a rounded edge.
-void addRounding(std::vector<SimulationSetup>& stations, double a, double ra, double b, double rb, int steps) {
+void addRounding(std::vector<Station>& stations, double a, double ra, double b, double rb, int steps) {
     for (int i = 0; i <= steps; ++i) {
         const double angle = 0.5 * std::numbers::pi * i / steps;
         stations.push_back({a + (b - a) * core::sin(angle), rb + (ra - rb) * core::cos(angle)});
@@ -96,14 +98,14 @@ double handleRadius(double s) {
 }
 
 /// A groove turned into the handle: down, along its floor, up again.
-void addGroove(std::vector<SimulationSetup>& stations, double at) {
+void addGroove(std::vector<Station>& stations, double at) {
     constexpr double kWidth = 0.5, kDepth = 0.25, kFlank = 0.08;
     for (const auto& [along, depth] : {std::pair{0.0, 0.0}, {kFlank, kDepth}, {kWidth - kFlank, kDepth}, {kWidth, 0.0}})
         stations.push_back({at + along, handleRadius(at + along) - depth});
 }
 
-std::vector<SimulationSetup> handleStations() {
-    std::vector<SimulationSetup> stations;
+std::vector<Station> handleStations() {
+    std::vector<Station> stations;
     for (int i = 0; i < 30; ++i)
         stations.push_back({2.0 + 1.2 * i, handleRadius(2.0 + 1.2 * i)});  // to 36.8
     for (int i = 0; i < 5; ++i)
@@ -133,6 +135,57 @@ void addGripPoint(TriangleMesh& mesh, const Vec3& place, const Vec3& out, const 
     }
 }
 
+std::vector<Station> headStations() {
+    std::vector<Station> head;
+    addRounding(head, 2.2, 3.0, 0.0, 2.4, 4);
+    std::reverse(head.begin(), head.end());
+    for (int i = 0; i <= 8; ++i)
+        head.push_back({2.6 + 0.9 * i, kHeadRadius - 0.9 * core::pow(1.0 - i / 8.0, 2.0)});
+    addRounding(head, 10.4, kHeadRadius, kHeadHeight, 4.2, 11);
+    return head;
+}
+
+std::vector<Station> buttonStations() {
+    std::vector<Station> button{{-0.4, 3.6}, {0.6, 3.6}, {0.8, 3.5}};
+    addRounding(button, 0.9, 3.3, 1.5, 0.6, 8);
+    return button;
+}
+
+/// The convex hull of stations turned about their axis, from its lowest point at z = 0.
+std::shared_ptr<const Bur> hullOf(const char* name, std::vector<Station> stations, double& lowest) {
+    std::sort(stations.begin(), stations.end(), [](const Station& a, const Station& b) {
+        return a.along != b.along ? a.along < b.along : a.radius > b.radius;
+    });
+    std::vector<core::Vec2> hull;  // of (radius, along), upwards: the outer chain
+    for (const Station& s : stations) {
+        const core::Vec2 p(s.radius, s.along);
+        if (!hull.empty() && p.y() == hull.back().y()) continue;
+        while (hull.size() > 1) {
+            const core::Vec2 u = hull.back() - hull[hull.size() - 2], v = p - hull.back();
+            if (u.x() * v.y() - u.y() * v.x() > 0.0) break;
+            hull.pop_back();
+        }
+        hull.push_back(p);
+    }
+    lowest = hull.front().y();
+    Profile profile;
+    core::Vec2 last(0.0, 0.0);
+    hull.emplace_back(0.0, hull.back().y());
+    for (core::Vec2 p : hull) {
+        p.y() -= lowest;
+        if ((p - last).norm() > 0.0) profile.pieces.push_back({last, p});
+        last = p;
+    }
+    return std::make_shared<const Bur>(name, std::move(profile));
+}
+
+/// The turn that brings z to a direction.
+core::Quat turnTo(const Vec3& along) {
+    const Vec3 z = Vec3::UnitZ();
+    const core::Quat turn(1.0 + z.dot(along), z.cross(along).x(), z.cross(along).y(), z.cross(along).z());
+    return turn.normalized();  // none of them points down
+}
+
 }  // namespace
 
 TriangleMesh turbineMesh(double burReachMm) {
@@ -143,16 +196,10 @@ TriangleMesh turbineMesh(double burReachMm) {
         return [=](double along) { return upright({0.0, 0.0, burReachMm + bottom + along}); };
     };
 
-    std::vector<SimulationSetup> head;
-    addRounding(head, 2.2, 3.0, 0.0, 2.4, 4);
-    std::reverse(head.begin(), head.end());
-    for (int i = 0; i <= 8; ++i)
-        head.push_back({2.6 + 0.9 * i, kHeadRadius - 0.9 * core::pow(1.0 - i / 8.0, 2.0)});
-    addRounding(head, 10.4, kHeadRadius, kHeadHeight, 4.2, 11);
+    const std::vector<Station> head = headStations();
     addTube(mesh, head, kAround, above(0.0));
 
-    std::vector<SimulationSetup> button{{-0.4, 3.6}, {0.6, 3.6}, {0.8, 3.5}};
-    addRounding(button, 0.9, 3.3, 1.5, 0.6, 8);
+    const std::vector<Station> button = buttonStations();
     addTube(mesh, button, kAround, above(kHeadHeight));
 
     addTube(mesh, {{-0.9, 1.2}, {-0.8, 1.3}, {-0.5, 1.4}, {-0.3, 1.4}, {-0.2, 1.6}, {0.5, 1.6}}, kAround, above(0.0));
@@ -161,12 +208,12 @@ TriangleMesh turbineMesh(double burReachMm) {
     const auto onHandle = [&](double s) { return handleAt(neck, s); };
     addTube(mesh, handleStations(), kAround, onHandle);
 
-    std::vector<SimulationSetup> coupling{{kHandleEnd - 0.8, 5.2}, {kHandleEnd - 0.6, 5.5}};
+    std::vector<Station> coupling{{kHandleEnd - 0.8, 5.2}, {kHandleEnd - 0.6, 5.5}};
     for (int i = 0; i < 3; ++i)
-        for (const SimulationSetup& s : {SimulationSetup{0.0, 5.5}, {0.1, 5.2}, {0.5, 5.2}, {0.6, 5.5}})
+        for (const Station& s : {Station{0.0, 5.5}, {0.1, 5.2}, {0.5, 5.2}, {0.6, 5.5}})
             coupling.push_back({kHandleEnd + 1.0 * i + s.along, s.radius});
     addTube(mesh, coupling, kAround, onHandle);
-    std::vector<SimulationSetup> connector;
+    std::vector<Station> connector;
     for (int i = 0; i < 9; ++i)
         connector.push_back({kHandleEnd + 2.2 + i, i % 2 == 0 ? 4.2 : 4.5});
     connector.push_back({kHandleEnd + 11.0, 3.9});
@@ -193,6 +240,48 @@ TriangleMesh turbineMesh(double burReachMm) {
         }
     }
     return mesh;
+}
+
+std::vector<BodyPiece> bodyPieces(const Bur& bur, double burReachMm) {
+    if (!std::isfinite(burReachMm))
+        throw core::Error("the bur must stand a finite length out of the head", std::to_string(burReachMm));
+    std::vector<BodyPiece> pieces;
+    double lowest = 0.0;
+    if (const double top = bur.lengthMm(); top < burReachMm - 0.1) {
+        const double wide = std::min(top + kShankWidens, burReachMm);
+        double radius = 0.0;  // of the bur's upper end
+        for (const ProfilePiece& piece : bur.profile().pieces)
+            for (const core::Vec2& p : {piece.from, piece.to})
+                if (p.y() > top - 0.05) radius = std::max(radius, p.x());
+        std::vector<Station> shank{{top, std::min(radius, kShankNeck)}, {wide, kShankRadius}};
+        if (wide < burReachMm) shank.push_back({burReachMm, kShankRadius});
+        auto solid = hullOf("shank", std::move(shank), lowest);
+        pieces.push_back({std::move(solid), {Vec3(0.0, 0.0, lowest), core::Quat::Identity()}, BodyPart::shank});
+    }
+    std::vector<Station> head = headStations();
+    for (const Station& s : buttonStations())
+        head.push_back({kHeadHeight + s.along, s.radius});
+    auto solid = hullOf("head", std::move(head), lowest);
+    pieces.push_back({std::move(solid), {Vec3(0.0, 0.0, burReachMm + lowest), core::Quat::Identity()}, BodyPart::head});
+    // Neck and handle: chords of their axis, short where it bends.
+    const Vec3 neck(0.0, 0.0, burReachMm + kNeckHeight);
+    constexpr double kBends = kBendRadius * kBendRad;
+    const double ends[] = {
+        2.0,       kNeckLength, kNeckLength + kBends / 3.0, kNeckLength + 2.0 * kBends / 3.0, kNeckLength + kBends,
+        kHandleEnd};
+    for (int i = 0; i < 5; ++i) {
+        const Vec3 from = handleAt(neck, ends[i]).place,
+                   along = (handleAt(neck, ends[i + 1]).place - from).normalized();
+        std::vector<Station> stations;
+        constexpr int kSteps = 24;
+        for (int k = 0; k <= kSteps; ++k) {
+            const double s = ends[i] + (ends[i + 1] - ends[i]) * k / kSteps;
+            stations.push_back({(handleAt(neck, s).place - from).dot(along), handleRadius(s)});
+        }
+        auto tube = hullOf("handle", std::move(stations), lowest);
+        pieces.push_back({std::move(tube), {from + lowest * along, turnTo(along)}, BodyPart::handle});
+    }
+    return pieces;
 }
 
 }  // namespace handpiece::instrument

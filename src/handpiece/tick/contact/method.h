@@ -13,6 +13,7 @@
 #include "handpiece/base/core/realtime.h"
 #include "handpiece/base/core/vec.h"
 #include "handpiece/model/case/tissue.h"
+#include "handpiece/model/instrument/body_part.h"
 
 namespace handpiece::contact {
 
@@ -25,9 +26,8 @@ enum class Status : std::uint8_t {
     invalidPose,  ///< the pose was not finite; results are those of no contact
 };
 
-/// What of the instrument touches. Only the bur cuts and has patches.
-enum class Piece : std::uint8_t { bur, shank, head, handle };
-inline constexpr std::size_t kPieceCount = 4;
+/// What of the instrument touches. Only the bur has patches and a bearing.
+using Piece = instrument::BodyPart;
 
 /// How deep the bur is in the tooth, or how far from it.
 struct Depth {

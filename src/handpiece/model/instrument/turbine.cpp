@@ -25,6 +25,7 @@ constexpr double kBendRadius = 45.0, kBendRad = 20.0 * std::numbers::pi / 180.0;
 constexpr double kHandleEnd = 98.0;  // along the axis of neck and handle
 // A friction-grip shank of 1.6 mm [ISO 1797, R] behind a neck, as it is drawn.
 constexpr double kShankRadius = 0.8, kShankNeck = 0.45, kShankWidens = 3.5;
+constexpr double kBlunt = 0.02;  // of a convex piece's outline
 constexpr int kAround = 48, kSmallAround = 12;
 constexpr int kGripRows = 17, kGripAround = 28;
 constexpr double kGripStart = 46.0, kGripEnd = 72.0;
@@ -166,6 +167,14 @@ std::shared_ptr<const Bur> hullOf(const char* name, std::vector<Station> station
             hull.pop_back();
         }
         hull.push_back(p);
+    }
+    // Corners that hardly stand out go: each is a sheet of the medial axis.
+    for (std::size_t i = 1; i + 1 < hull.size();) {
+        const core::Vec2 chord = (hull[i + 1] - hull[i - 1]).normalized(), to = hull[i] - hull[i - 1];
+        if (std::abs(chord.x() * to.y() - chord.y() * to.x()) < kBlunt)
+            hull.erase(hull.begin() + static_cast<std::ptrdiff_t>(i));
+        else
+            ++i;
     }
     lowest = hull.front().y();
     Profile profile;

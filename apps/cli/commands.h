@@ -10,6 +10,7 @@ namespace handpiece::cli {
 
 void addMakeCommand(Command& app);
 void addMakeScanCommand(Command& make);
+void addMakeMouthCommand(Command& make);
 void addMeshCommand(Command& app);
 void addCaseCommand(Command& app);
 void addProbeCommand(Command& app, const MethodRegistry& methods);

@@ -182,6 +182,9 @@ struct Subject {
 void takeCase(Subject& subject, const cases::Case& toothCase) {
     subject.buccalSign = toothCase.buccalSign;
     subject.scenery = toothCase.scenery;
+    for (const cases::PlacedTooth& other : toothCase.others)
+        subject.scenery.push_back(
+            {other.name, cases::Tissue::enamel, 0, geometry::transformed(other.outer, other.inCase), true});
     subject.parts = toothCase.parts;
     subject.bounds = subject.live->model().outer.bounds();
 }
@@ -404,7 +407,7 @@ void addPictureCommand(Command& app) {
                    "cut open: x, y or z through the middle, or NX,NY,NZ,OFFSET (what lies beyond goes)");
     command.flag("--grid", o.grid, "millimetre lines on the section");
     command.option("--hide", o.hide, "tissues not to show, by name").delimiter(',');
-    command.flag("--no-scenery", o.noScenery, "without neighbours, gum and bone");
+    command.flag("--no-scenery", o.noScenery, "without other teeth, gingiva and bone");
     command.option("--bur", o.bur.name, "this bur in its handpiece, resting on the middle of the crown");
     addLengthUnit(command, "--bur-unit", o.bur.unit, "unit of a bur that is a mesh file");
     addUnitOptions(command, o.unit, false);

@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/model/dentition/arch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <numbers>
+#include <vector>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/rotation.h"
+#include "handpiece/model/dentition/tooth_body.h"
+
+namespace handpiece::dentition {
+namespace {
+
+using core::Mat3;
+using core::Pose;
+using core::Quat;
+using core::Vec2;
+using core::Vec3;
+
+constexpr double kRad = std::numbers::pi / 180.0;
+
+// The line through the lower incisal edges and buccal cusps: y = A (cosh(k x) - 1), for teeth whose widths from the
+// midline to the first molars' distal sides add up to kMeanWidthsMm [R].
+constexpr double kCatenaryA = 4.2, kCatenaryK = 0.11, kMeanWidthsMm = 85.0;
+constexpr double kLowestOfSpeeMm = 17.5;  ///< how far behind the incisal edges its lowest place is
+
+/// How far the crown leans towards mesial, and towards buccal (labial) [degrees], against the occlusal plane
+/// [R, after Dempster 1963]. From the second premolars on the cusps lie in the curves of Spee and Wilson instead.
+struct Inclination {
+    double mesial, buccal;
+};
+constexpr Inclination kUpper[8] = {{2, 24}, {7, 22}, {11, 14}, {6, 3}, {5, 4}, {5, 4}, {4, 5}, {0, 5}};
+constexpr Inclination kLower[8] = {{0, 20}, {0, 20}, {5, 10}, {5, -3}, {6, -6}, {8, -12}, {10, -14}, {10, -14}};
+constexpr int kFirstInCurves = 5;
+constexpr double kMostTurnedDeg = 20.0;  ///< into the curves
+
+/// Upper incisal edges below the lower ones: central, lateral, canine [R].
+constexpr double kOverbites[3] = {kOverbiteMm, kOverbiteMm - 0.5, kOverbiteMm - 0.3};
+constexpr double kOcclusalGapMm = 0.008, kToleranceMm = 0.003;
+constexpr double kLookMm = 4.0;  ///< teeth farther apart are brought closer unseen
+
+// How far an upper tooth may leave its place to settle, and what that costs against depth [mm for 1 mm, for 1 degree].
+constexpr double kMostAsideMm = 0.8, kMostTiltDeg = 5.0, kCostOfAside = 0.25, kCostOfTilt = 0.004;
+
+/// The lower arch's line, seen from above, by its length from the midline.
+class ArchLine {
+  public:
+    explicit ArchLine(double scale) : scale_(scale) {
+        double s = 0.0;
+        for (int i = 0; i < kSteps; ++i) {
+            const Vec2 p = point(kStepMm * i);
+            if (i > 0) s += (p - point(kStepMm * (i - 1))).norm();
+            lengths_.push_back(s);
+        }
+    }
+    struct Place {
+        Vec2 point, distal, outward;
+    };
+    /// `side`: +1 the patient's left.
+    [[nodiscard]] Place at(double s, double side) const {
+        const auto next = std::upper_bound(lengths_.begin() + 1, lengths_.end() - 1, s);
+        const auto i = static_cast<double>(next - lengths_.begin());
+        const double from = *(next - 1), x = kStepMm * (i - 1.0 + (s - from) / (*next - from));
+        const double slope =
+            kCatenaryA * kCatenaryK * 0.5 * (core::exp(kCatenaryK * x / scale_) - core::exp(-kCatenaryK * x / scale_));
+        const Vec2 p = point(x), distal = Vec2(1.0, slope).normalized();
+        return {{side * p.x(), p.y()}, {side * distal.x(), distal.y()}, {side * distal.y(), -distal.x()}};
+    }
+    [[nodiscard]] double speeHeight(double y) const {
+        const double low = kLowestOfSpeeMm * scale_;
+        return ((y - low) * (y - low) - low * low) / (2.0 * kSpeeRadiusMm);
+    }
+    [[nodiscard]] double speeSlope(double y) const { return (y - kLowestOfSpeeMm * scale_) / kSpeeRadiusMm; }
+
+  private:
+    static constexpr double kStepMm = 0.1;
+    static constexpr int kSteps = 450;
+    [[nodiscard]] Vec2 point(double x) const {
+        const double k = kCatenaryK * x / scale_;
+        return {x, kCatenaryA * scale_ * (0.5 * (core::exp(k) + core::exp(-k)) - 1.0)};
+    }
+    double scale_;
+    std::vector<double> lengths_;
+};
+
+/// What of a tooth the arches ask for.
+struct Member {
+    const ToothBody& body;
+    Vec3 reference;         ///< comes to lie on the line
+    Quat ownTilt;           ///< turns its occlusal plane, or its long axis, as the arch wants it
+    bool inCurves = false;  ///< its cusps lie in the curves; else its axis has its place's inclination
+    int buccalSign = 0;
+    double halfWidth = 0.0;
+    std::vector<Vec3> occlusal{};  ///< vertices near the top, at most some thousands
+};
+
+Vec3 mean(const std::vector<Vec3>& points) {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& p : points)
+        sum += p;
+    return sum / static_cast<double>(points.size());
+}
+
+Member memberOf(const cases::Tooth& tooth, const ToothBody& body, bool upper, int place) {
+    Member m{body, Vec3::Zero(), Quat::Identity(), false, tooth.buccalSign};
+    const std::vector<Vec3>& vertices = body.mesh.vertices;
+    const double top = body.box.max.z();
+    std::vector<Vec3> buccal, lingual, highest;
+    for (const cases::Landmark& landmark : tooth.landmarks)
+        if (landmark.kind == cases::LandmarkKind::cuspTip)
+            (landmark.pointsMm[0].y() * tooth.buccalSign > 0.0 ? buccal : lingual).push_back(landmark.pointsMm[0]);
+    double least = 1e9, most = -1e9;
+    for (const Vec3& v : vertices) {
+        if (v.z() > 0.0) least = std::min(least, v.x()), most = std::max(most, v.x());
+        if (v.z() > top - 0.25) highest.push_back(v);
+        if (v.z() > top - 4.5) m.occlusal.push_back(v);
+    }
+    constexpr std::size_t kEnough = 3000;
+    if (const std::size_t step = m.occlusal.size() / kEnough + 1; step > 1) {
+        for (std::size_t i = 0; i * step < m.occlusal.size(); ++i)
+            m.occlusal[i] = m.occlusal[i * step];
+        m.occlusal.resize((m.occlusal.size() + step - 1) / step);
+    }
+    m.halfWidth = 0.5 * (most - least);
+    const bool hasTable = place >= 4 && !buccal.empty() && !lingual.empty();
+    const Vec3 edge = place >= 4 && !buccal.empty() ? mean(buccal) : mean(highest);
+    m.reference = {0.5 * (least + most), edge.y(), edge.z()};
+    // The lower buccal cusps bite into the upper central fossae.
+    if (upper && hasTable) m.reference.y() = 0.5 * (edge.y() + mean(lingual).y());
+
+    const Inclination lean = upper ? kUpper[place - 1] : kLower[place - 1];
+    if (m.inCurves = hasTable && place >= kFirstInCurves; m.inCurves) {
+        std::sort(buccal.begin(), buccal.end(), [](const Vec3& a, const Vec3& b) { return a.x() > b.x(); });
+        Vec3 along = Vec3::UnitX() + core::tan(lean.mesial * kRad) * Vec3::UnitZ();
+        if (buccal.size() > 1) along = buccal[0] - buccal[1];
+        const Vec3 across = tooth.buccalSign * (mean(buccal) - mean(lingual));
+        m.ownTilt = core::rotationBetween(along.cross(across), Vec3::UnitZ());
+        const double turned = core::angleBetween(m.ownTilt, Quat::Identity()), allowed = kMostTurnedDeg * kRad;
+        if (turned > allowed) m.ownTilt = core::interpolated(Quat::Identity(), allowed / turned, m.ownTilt);
+    } else {
+        m.ownTilt = core::rotationAbout(Vec3::UnitY(), lean.mesial * kRad) *
+                    core::rotationAbout(Vec3::UnitX(), -tooth.buccalSign * lean.buccal * kRad);
+    }
+    return m;
+}
+
+/// Where a tooth stands on the line: the unknowns of its pose.
+struct Place {
+    double s = 0.0;        ///< along the line, from the midline
+    double asideMm = 0.0;  ///< outwards from it
+    double upMm = 0.0;
+    double mesialDeg = 0.0, buccalDeg = 0.0;  ///< tilted further than its inclination
+};
+
+/// The highest of the lower teeth over each place of the occlusal plane.
+class HeightMap {
+  public:
+    HeightMap() : z_(static_cast<std::size_t>(kWide * kDeep), kNothing) {}
+    void add(const geometry::TriangleMesh& mesh, const Pose& pose) {
+        const Mat3 turn = pose.orientation.toRotationMatrix();
+        std::vector<Vec3> moved;
+        moved.reserve(mesh.vertices.size());
+        for (const Vec3& v : mesh.vertices)
+            moved.push_back(
+                (turn * v + pose.positionMm - Vec3(kFromX, kFromY, 0.0)).cwiseProduct(Vec3(kPerMm, kPerMm, 1.0)));
+        for (const geometry::Triangle& t : mesh.triangles) {
+            const Vec3 &a = moved[t[0]], &b = moved[t[1]], &c = moved[t[2]];
+            const double area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+            if (area < 1e-9) continue;  // looks down
+            const int x0 = std::max(0, static_cast<int>(std::ceil(std::min({a.x(), b.x(), c.x()})))),
+                      x1 = std::min(kWide - 1, static_cast<int>(std::floor(std::max({a.x(), b.x(), c.x()})))),
+                      y0 = std::max(0, static_cast<int>(std::ceil(std::min({a.y(), b.y(), c.y()})))),
+                      y1 = std::min(kDeep - 1, static_cast<int>(std::floor(std::max({a.y(), b.y(), c.y()}))));
+            for (int y = y0; y <= y1; ++y)
+                for (int x = x0; x <= x1; ++x) {
+                    const double u = ((b.x() - x) * (c.y() - y) - (b.y() - y) * (c.x() - x)) / area,
+                                 v = ((c.x() - x) * (a.y() - y) - (c.y() - y) * (a.x() - x)) / area;
+                    if (u < -1e-9 || v < -1e-9 || u + v > 1.0 + 1e-9) continue;
+                    double& z = z_[static_cast<std::size_t>(y * kWide + x)];
+                    z = std::max(z, u * a.z() + v * b.z() + (1.0 - u - v) * c.z());
+                }
+        }
+    }
+    [[nodiscard]] double at(double x, double y) const {
+        const double u = (x - kFromX) * kPerMm, v = (y - kFromY) * kPerMm;
+        if (!(u >= 0.0 && v >= 0.0 && u < kWide - 1 && v < kDeep - 1)) return kNothing;
+        const int i = static_cast<int>(u), j = static_cast<int>(v);
+        const double* const z = &z_[static_cast<std::size_t>(j * kWide + i)];
+        const double s = u - i, t = v - j;
+        return (1.0 - t) * ((1.0 - s) * z[0] + s * z[1]) + t * ((1.0 - s) * z[kWide] + s * z[kWide + 1]);
+    }
+
+  private:
+    static constexpr double kFromX = -42.0, kFromY = -12.0, kPerMm = 8.0, kNothing = -40.0;
+    static constexpr int kWide = 84 * 8, kDeep = 84 * 8;
+    std::vector<double> z_;
+};
+
+class Arranger {
+  public:
+    Arranger(std::span<const cases::Tooth> teeth, const core::Progress& progress)
+        : progress_(progress), line_(scaleOf(teeth)) {
+        bodies_.reserve(kToothCount);
+        for (const cases::Tooth& tooth : teeth)
+            bodies_.emplace_back(tooth.outer);
+        for (std::size_t i = 0; i < kToothCount; ++i)
+            members_.push_back(memberOf(teeth[i], bodies_[i], isUpper(i), 1 + static_cast<int>(i % 8)));
+    }
+
+    Arrangement run() {
+        placeArch(false);
+        for (std::size_t i = 16; i < kToothCount; ++i)
+            lower_.add(bodies_[i].mesh, poseOf(i));
+        placeArch(true);
+        Arrangement made;
+        for (std::size_t i = 0; i < kToothCount; ++i)
+            made.toothInMouth[i] = poseOf(i);
+        made.upperIncisalMm = 0.5 * (edgeOf(0) + edgeOf(8));
+        made.lowerIncisalMm = 0.5 * (edgeOf(16) + edgeOf(24));
+        // Bonwill's triangle of 4 inches, tipped by Balkwill's angle of 22 degrees [R].
+        constexpr double kHeightOfTriangleMm = 88.0, kBalkwill = 22.0 * kRad;
+        made.hingeMm =
+            made.lowerIncisalMm + kHeightOfTriangleMm * Vec3(0.0, core::cos(kBalkwill), core::sin(kBalkwill));
+        return made;
+    }
+
+  private:
+    static double scaleOf(std::span<const cases::Tooth> teeth) {
+        double widths = 0.0;
+        for (std::size_t i = 16; i < kToothCount; ++i)
+            if (i % 8 < 6) {
+                double least = 1e9, most = -1e9;
+                for (const Vec3& v : teeth[i].outer.vertices)
+                    if (v.z() > 0.0) least = std::min(least, v.x()), most = std::max(most, v.x());
+                widths += most - least;
+            }
+        return widths / kMeanWidthsMm;
+    }
+    /// +1: the patient's left.
+    static double sideOf(std::size_t i) { return i / 8 == 1 || i / 8 == 2 ? 1.0 : -1.0; }
+
+    [[nodiscard]] Pose poseOf(std::size_t i) const { return poseOf(i, places_[i]); }
+    [[nodiscard]] Pose poseOf(std::size_t i, const Place& at) const {
+        const Member& m = members_[i];
+        const ArchLine::Place on = line_.at(at.s, sideOf(i));
+        const Vec2 stands = on.point + at.asideMm * on.outward;
+        Vec3 occlusal = Vec3::UnitZ();  // of the lower arch
+        if (m.inCurves) occlusal = Vec3(-on.point.x() / kWilsonRadiusMm, -line_.speeSlope(on.point.y()), 1.0);
+        const Vec3 z = (isUpper(i) ? -occlusal : occlusal).normalized();
+        const Vec3 mesial = -Vec3(on.distal.x(), on.distal.y(), 0.0);
+        const Vec3 x = (mesial - mesial.dot(z) * z).normalized();
+        Mat3 base;
+        base << x, z.cross(x), z;
+        Pose pose;
+        pose.orientation = (Quat(base) * m.ownTilt * core::rotationAbout(Vec3::UnitY(), at.mesialDeg * kRad) *
+                            core::rotationAbout(Vec3::UnitX(), -m.buccalSign * at.buccalDeg * kRad))
+                               .normalized();
+        pose.positionMm =
+            Vec3(stands.x(), stands.y(), line_.speeHeight(on.point.y()) + at.upMm) - pose.orientation * m.reference;
+        return pose;
+    }
+
+    [[nodiscard]] Vec3 edgeOf(std::size_t i) const {
+        const Pose pose = poseOf(i);
+        Vec3 best = pose.apply(members_[i].occlusal.front());
+        for (const Vec3& v : members_[i].occlusal)
+            if (const Vec3 p = pose.apply(v); (p.z() > best.z()) != isUpper(i)) best = p;
+        best.x() = 0.0;
+        return best;
+    }
+
+    [[nodiscard]] double gap(std::size_t i, std::size_t j) const {
+        return gapBetween(bodies_[i], poseOf(i), bodies_[j], poseOf(j), kLookMm).distanceMm;
+    }
+    /// To the lower teeth that an upper one can meet.
+    [[nodiscard]] double gapToLower(std::size_t i) const {
+        double least = kLookMm;
+        const int place = static_cast<int>(i % 8);
+        for (std::size_t j = 16; j < kToothCount; ++j) {
+            const bool sameSide = sideOf(i) == sideOf(j);
+            const int other = static_cast<int>(j % 8);
+            if (sameSide ? std::abs(other - place) > 2 : other + place > 1) continue;
+            least = std::min(least, gapBetween(bodies_[i], poseOf(i), bodies_[j], poseOf(j), least).distanceMm);
+        }
+        return least;
+    }
+    /// Moves `value` until the gap is the one wanted: the gap changes no faster than the value, so that steps as long
+    /// as what is left of it do not pass through; slower ones are lengthened.
+    template <class Measure>
+    void close(double& value, double target, Measure measure) const {
+        double before = 0.0, from = 0.0;
+        for (int i = 0; i < 40; ++i) {
+            const double left = measure() - target;
+            if (std::abs(left) < kToleranceMm) return;
+            double rate = 1.0;
+            if (i > 0 && std::abs(left) < 0.2 && std::abs(before) < 0.4 && value != from)
+                rate = std::clamp((left - before) / (value - from), 0.25, 1.0);
+            before = left, from = value;
+            value -= left / rate;
+        }
+        for (int i = 0; i < 100 && measure() < 0.0; ++i)
+            value += 2.0 * kToleranceMm;
+    }
+
+    void placeArch(bool upper) {
+        const std::size_t right = upper ? 0 : 24, left = upper ? 8 : 16;
+        for (const std::size_t first : {right, left})
+            places_[first].s = members_[first].halfWidth + 0.5;
+        for (int round = 0; round < (upper ? 3 : 1); ++round) {
+            if (upper)
+                core::parallelFor(2, 1, [&](std::size_t from, std::size_t to) {
+                    for (std::size_t k = from; k < to; ++k)
+                        stopOnLower(k == 0 ? right : left);
+                });
+            // Both sides by half of what is between them.
+            double apart = 0.0;
+            const double startRight = places_[right].s, startLeft = places_[left].s;
+            close(apart, kContactGapMm, [&] {
+                places_[right].s = startRight + 0.5 * apart;
+                places_[left].s = startLeft + 0.5 * apart;
+                return gap(right, left);
+            });
+        }
+        core::parallelFor(2, 1, [&](std::size_t from, std::size_t to) {
+            for (std::size_t k = from; k < to; ++k)
+                for (std::size_t i = (k == 0 ? right : left) + 1; i % 8 != 0; ++i)
+                    placeBehind(i);
+        });
+    }
+
+    /// Behind its mesial neighbour, which stands already.
+    void placeBehind(std::size_t i) {
+        Place& at = places_[i];
+        at.s = places_[i - 1].s + members_[i - 1].halfWidth + members_[i].halfWidth + 0.5;
+        if (isUpper(i)) at.asideMm = places_[i - 1].asideMm * (i % 8 < 3 ? 1.0 : 0.0);
+        const auto toNeighbour = [&] { return gap(i, i - 1); };
+        if (!isUpper(i)) {
+            close(at.s, kContactGapMm, toNeighbour);
+        } else {
+            for (int round = 0; round < 4; ++round) {
+                stopOnLower(i, round < 2);
+                close(at.s, kContactGapMm, toNeighbour);
+            }
+            stopOnLower(i, false);
+        }
+        core::report(progress_, static_cast<double>(++placed_) / 28.0);
+    }
+
+    /// An upper tooth comes down, or from in front back, until it meets the lower ones.
+    void stopOnLower(std::size_t i, bool isFree = true) {
+        Place& at = places_[i];
+        if (const std::size_t place = i % 8; place < 3) {
+            if (isFree) at.upMm = -kOverbites[place], at.asideMm = std::max(at.asideMm, 6.0);
+            close(at.asideMm, kOcclusalGapMm, [&] { return gapToLower(i); });
+            return;
+        }
+        if (isFree) settle(i);
+        close(at.upMm, kOcclusalGapMm, [&] { return gapToLower(i); });
+    }
+
+    /// The place near its own, and the tilt, in which it comes down deepest: where its cusps have found the fossae.
+    void settle(std::size_t i) {
+        Place& at = places_[i];
+        const auto cost = [&](Place& p) {
+            p.upMm = 0.0;
+            const Pose pose = poseOf(i, p);
+            const Mat3 turn = pose.orientation.toRotationMatrix();
+            double least = 1e9;
+            for (const Vec3& v : members_[i].occlusal) {
+                const Vec3 q = turn * v + pose.positionMm;
+                least = std::min(least, q.z() - lower_.at(q.x(), q.y()));
+            }
+            p.upMm = -least;
+            return p.upMm + kCostOfAside * p.asideMm * p.asideMm +
+                   kCostOfTilt * (p.mesialDeg * p.mesialDeg + p.buccalDeg * p.buccalDeg);
+        };
+        double best = cost(at);
+        double asideStep = 0.4, tiltStep = 2.0;
+        for (int halving = 0; halving < 5; ++halving, asideStep *= 0.5, tiltStep *= 0.5)
+            for (bool better = true; better;) {
+                better = false;
+                for (int which = 0; which < 6; ++which) {
+                    Place tried = at;
+                    const double sign = which % 2 == 0 ? 1.0 : -1.0;
+                    if (which / 2 == 0) tried.asideMm += sign * asideStep;
+                    if (which / 2 == 1) tried.mesialDeg += sign * tiltStep;
+                    if (which / 2 == 2) tried.buccalDeg += sign * tiltStep;
+                    if (std::abs(tried.asideMm) > kMostAsideMm || std::abs(tried.mesialDeg) > kMostTiltDeg ||
+                        std::abs(tried.buccalDeg) > kMostTiltDeg)
+                        continue;
+                    if (const double value = cost(tried); value < best - 1e-4) best = value, at = tried, better = true;
+                }
+            }
+    }
+
+    core::Progress progress_;
+    ArchLine line_;
+    std::vector<ToothBody> bodies_;
+    std::vector<Member> members_;
+    std::array<Place, kToothCount> places_;
+    HeightMap lower_;
+    std::atomic<int> placed_{0};
+};
+
+}  // namespace
+
+std::size_t indexOf(int fdi) {
+    const int quadrant = fdi / 10, place = fdi % 10;
+    if (fdi < 0 || quadrant < 1 || quadrant > 4 || place < 1 || place > 8)
+        throw core::Error(fmt::format("{} is no permanent tooth", fdi), "--fdi",
+                          "give 11 to 18, 21 to 28, 31 to 38 or 41 to 48");
+    return static_cast<std::size_t>(8 * (quadrant - 1) + place - 1);
+}
+
+Arrangement arrange(std::span<const cases::Tooth> teeth, const core::Progress& progress) {
+    if (teeth.size() != kToothCount)
+        throw core::Error(fmt::format("{} teeth cannot be arranged", teeth.size()), "arches", "give all 32");
+    return Arranger(teeth, progress).run();
+}
+
+Pose opened(const Arrangement& a, double openingMm) {
+    const auto mandible = [&](double rad) {
+        const Quat turn = core::rotationAbout(Vec3::UnitX(), rad);
+        return Pose{a.hingeMm - turn * a.hingeMm, turn};
+    };
+    double least = 0.0, most = 60.0 * kRad;
+    for (int i = 0; i < 50; ++i) {
+        const double middle = 0.5 * (least + most);
+        const bool isWide = (mandible(middle).apply(a.lowerIncisalMm) - a.upperIncisalMm).norm() > openingMm;
+        (isWide ? most : least) = middle;
+    }
+    return openingMm > 0.0 ? mandible(least) : Pose{};
+}
+
+}  // namespace handpiece::dentition

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/model/dentition/gingiva.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/geometry/decimate.h"
+#include "handpiece/base/geometry/isosurface.h"
+#include "handpiece/model/dentition/surfaces.h"
+#include "handpiece/model/dentition/tooth_body.h"
+
+namespace handpiece::dentition {
+namespace {
+
+using core::Box;
+using core::Pose;
+using core::Vec2;
+using core::Vec3;
+using geometry::TriangleMesh;
+
+constexpr double kFarMm = 3.5;   ///< distances to teeth are told up to here
+constexpr double kSeenMm = 6.0;  ///< farther inside a tooth than any place of it
+/// Distances to a tooth are looked up between nodes this far apart: an error of some microns.
+constexpr double kNodeMm = 0.4;
+/// The gingiva reaches so far into a tooth: the edge of its socket, as jagged as its triangles are large, lies unseen,
+/// and its margin is where its own smooth surface meets the tooth.
+constexpr double kIntoToothMm = 0.3;
+constexpr double kThinnestSeptumMm = 0.4;  ///< between two roots; thinner bone is left out
+constexpr double kBaseUnderApexMm = 2.0, kBoneOutOfBaseMm = 1.0;
+constexpr double kSteepest = 4.0;  ///< Lipschitz bound of all that follows
+
+/// smoothMin that blends less the farther away both are: none where a value is told only as "at least `cap`", so that
+/// nothing jumps where a tooth comes into sight.
+double blend(double a, double b, double width, double cap) {
+    const double share = std::clamp(1.0 - std::max(a, b) / cap, 0.0, 1.0);
+    return share > 0.0 ? smoothMin(a, b, width * share) : std::min(a, b);
+}
+
+/// Piecewise linear through points with x rising; level beyond them.
+template <std::size_t N>
+double through(const double (&points)[N][2], double x) {
+    if (x <= points[0][0]) return points[0][1];
+    for (std::size_t i = 1; i < N; ++i)
+        if (x < points[i][0]) {
+            const double t = (x - points[i - 1][0]) / (points[i][0] - points[i - 1][0]);
+            return points[i - 1][1] + t * (points[i][1] - points[i - 1][1]);
+        }
+    return points[N - 1][1];
+}
+
+/// Signed distances from a tooth, in its frame, within kFarMm; looked up between nodes.
+class DistanceGrid {
+  public:
+    explicit DistanceGrid(const ToothBody& body) : from_(body.box.grown(kFarMm + kNodeMm).min) {
+        const Vec3 size = body.box.grown(kFarMm + kNodeMm).size();
+        for (int axis = 0; axis < 3; ++axis)
+            count_[axis] = 2 + static_cast<std::size_t>(size[axis] / kNodeMm);
+        values_.resize(count_[0] * count_[1] * count_[2]);
+        core::parallelFor(count_[2], 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k)
+                for (std::size_t j = 0; j < count_[1]; ++j) {
+                    std::uint32_t seed = geometry::kNoTriangle;
+                    for (std::size_t i = 0; i < count_[0]; ++i) {
+                        const Vec3 p = from_ + kNodeMm * Vec3(static_cast<double>(i), static_cast<double>(j),
+                                                              static_cast<double>(k));
+                        const geometry::NearestPoint n = body.tree.nearest(p, kSeenMm, seed);
+                        seed = n.triangle;
+                        double distance = kFarMm;
+                        if (seed != geometry::kNoTriangle)
+                            distance = std::clamp(body.tree.side(p, n) * n.distanceMm, -kFarMm, kFarMm);
+                        values_[(k * count_[1] + j) * count_[0] + i] = static_cast<float>(distance);
+                    }
+                }
+        });
+    }
+    [[nodiscard]] double at(const Vec3& p) const {
+        const Vec3 u = (p - from_) / kNodeMm;
+        std::size_t first[3];
+        double t[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!(u[axis] >= 0.0 && u[axis] < static_cast<double>(count_[axis] - 1))) return kFarMm;
+            first[axis] = static_cast<std::size_t>(u[axis]);
+            t[axis] = u[axis] - static_cast<double>(first[axis]);
+        }
+        const float* v = &values_[(first[2] * count_[1] + first[1]) * count_[0] + first[0]];
+        double sum = 0.0;
+        for (std::size_t k = 0; k < 2; ++k)
+            for (std::size_t j = 0; j < 2; ++j) {
+                const float* row = v + (k * count_[1] + j) * count_[0];
+                sum += (k ? t[2] : 1.0 - t[2]) * (j ? t[1] : 1.0 - t[1]) * ((1.0 - t[0]) * row[0] + t[0] * row[1]);
+            }
+        return sum;
+    }
+
+  private:
+    Vec3 from_;
+    std::size_t count_[3];
+    std::vector<float> values_;
+};
+
+/// One tooth of the arch: its surface, and the height over its cemento-enamel junction.
+class Stander {
+  public:
+    explicit Stander(const ArchTooth& t)
+        : body_(t.tooth->outer), grid_(body_), pose_(t.inArch), turn_(t.inArch.orientation.toRotationMatrix()) {
+        const cases::Landmark* ring = nullptr;
+        for (const cases::Landmark& landmark : t.tooth->landmarks)
+            if (landmark.kind == cases::LandmarkKind::cementoEnamelJunction) ring = &landmark;
+        if (!ring || ring->pointsMm.size() < 8)
+            throw core::Error(fmt::format("tooth {} has no cemento-enamel junction", t.tooth->fdiNumber), "gingiva",
+                              "add the landmark");
+        // z = c0 + c1 x + c2 y + c3 x^2 + c4 xy + c5 y^2: smooth over the whole tooth, and the junction within some
+        // hundredths of a millimetre.
+        using Vec6 = Eigen::Matrix<double, 6, 1>;
+        Eigen::Matrix<double, 6, 6> square = Eigen::Matrix<double, 6, 6>::Identity() * 1e-6;
+        Vec6 right = Vec6::Zero();
+        for (const Vec3& p : ring->pointsMm) {
+            const Vec6 row = terms(p);
+            square += row * row.transpose();
+            right += p.z() * row;
+            reach_ = std::max(reach_, core::hypot(p.x(), p.y()));
+        }
+        junction_ = square.ldlt().solve(right);
+        rootMm_ = -body_.box.min.z();
+        Box box;
+        for (int corner = 0; corner < 8; ++corner)
+            box.extend(pose_.apply(Vec3(corner & 1 ? body_.box.min.x() : body_.box.max.x(),
+                                        corner & 2 ? body_.box.min.y() : body_.box.max.y(),
+                                        corner & 4 ? body_.box.min.z() : body_.box.max.z())));
+        near_ = box.grown(kFarMm);
+    }
+    [[nodiscard]] const ToothBody& body() const { return body_; }
+    [[nodiscard]] const Pose& pose() const { return pose_; }
+    [[nodiscard]] const Box& near() const { return near_; }
+    [[nodiscard]] Vec3 axis() const { return pose_.orientation * Vec3::UnitZ(); }
+    [[nodiscard]] double rootMm() const { return rootMm_; }
+
+    struct Seen {
+        double distance;     ///< from its surface, within kFarMm
+        double aboveCervix;  ///< over the junction
+    };
+    [[nodiscard]] Seen see(const Vec3& p) const {
+        const Vec3 q = turn_.transpose() * (p - pose_.positionMm);
+        const double distance = grid_.at(q);
+        if (distance >= kFarMm) return {kFarMm, 0.0};
+        // Beside the tooth the junction goes on as it is at its edge.
+        Vec3 at = q;
+        if (const double r = core::hypot(q.x(), q.y()); r > reach_) at *= reach_ / r;
+        return {distance, q.z() - junction_.dot(terms(at))};
+    }
+
+  private:
+    static Eigen::Matrix<double, 6, 1> terms(const Vec3& p) {
+        Eigen::Matrix<double, 6, 1> row;
+        row << 1.0, p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y();
+        return row;
+    }
+    ToothBody body_;
+    DistanceGrid grid_;
+    Pose pose_;
+    core::Mat3 turn_;
+    Box near_;
+    Eigen::Matrix<double, 6, 1> junction_;
+    double reach_ = 0.0, rootMm_ = 0.0;
+};
+
+class Arch {
+  public:
+    explicit Arch(std::span<const ArchTooth> teeth) {
+        standers_.reserve(teeth.size());
+        for (const ArchTooth& t : teeth)
+            standers_.emplace_back(t);
+        for (std::size_t i = 1; i < teeth.size(); ++i)
+            contacts_.push_back(gapBetween(standers_[i - 1].body(), standers_[i - 1].pose(), standers_[i].body(),
+                                           standers_[i].pose(), kFarMm)
+                                    .pointMm);
+        up_ = standers_[teeth.size() / 2].axis().z() > 0.0 ? 1.0 : -1.0;
+        for (const Stander& s : standers_) {
+            for (const double z : {s.body().box.min.z(), 0.0})
+                base_ = std::min(base_, up_ * s.pose().apply(Vec3(0.0, 0.0, z)).z());
+            box_.extend(s.near().min);
+            box_.extend(s.near().max);
+        }
+        base_ -= kBaseUnderApexMm;
+        (up_ > 0.0 ? box_.min.z() : box_.max.z()) = up_ * (base_ - 1.0);
+    }
+
+    [[nodiscard]] const Box& box() const { return box_; }
+
+    struct Values {
+        double gingiva, bone;
+    };
+    /// Negative inside.
+    [[nodiscard]] Values at(const Vec3& p) const {
+        // Distances over the heights: a thickness that grows downwards from the margin or the crest.
+        static constexpr double kRoll[][2] = {{-8, 1.3},  {-3, 1.15},   {-1, 0.9},  {0.1, 0.55},
+                                              {0.7, 0.0}, {1.3, -0.55}, {4.3, -2.5}};
+        static constexpr double kPlate[][2] = {{-14, 1.8},   {-8, 1.4},   {-4, 1.0},
+                                               {-2.2, 0.55}, {-1.5, 0.0}, {1.5, -3.0}};
+        constexpr double kRollCap = kFarMm - 1.3, kPlateCap = kFarMm - 1.8, kWidestPapilla = 1.3;
+        double nearest = kFarMm, second = kFarMm, roll = kRollCap, plate = kPlateCap, papilla = kFarMm - kWidestPapilla;
+        double ligament = kLigamentMm;
+        Stander::Seen before{kFarMm, 0.0};
+        for (std::size_t i = 0; i < standers_.size(); ++i) {
+            const Stander& s = standers_[i];
+            Stander::Seen seen{kFarMm, 0.0};
+            if (((p - s.near().max).array() < 0.0).all() && ((s.near().min - p).array() < 0.0).all()) seen = s.see(p);
+            if (seen.distance < kFarMm) {
+                second = std::min(second, std::max(nearest, seen.distance));
+                if (seen.distance < nearest) {
+                    nearest = seen.distance;
+                    const double fromMiddle = std::min(1.0, std::abs(2.0 * seen.aboveCervix / s.rootMm() + 1.0));
+                    ligament = kLigamentMm + (kLigamentAtEndsMm - kLigamentMm) * fromMiddle * fromMiddle;
+                }
+                roll = blend(roll, seen.distance - through(kRoll, seen.aboveCervix), 1.6, kRollCap);
+                plate = blend(plate, seen.distance - through(kPlate, seen.aboveCervix), 2.0, kPlateCap);
+            }
+            if (i > 0 && std::min(seen.distance, before.distance) < kFarMm) {
+                const Vec3 axis = (standers_[i - 1].axis() + s.axis()).normalized();
+                const double under = (contacts_[i - 1] - p).dot(axis) - kPapillaBelowContactMm;
+                const double wide = std::min(0.75 * under, kWidestPapilla);
+                papilla = std::min(papilla, 0.5 * (seen.distance + before.distance) - wide);
+            }
+            before = seen;
+        }
+        const double base = base_ - up_ * p.z();
+        const double hull = smoothMax(smoothMin(plate, band(p), 2.0), base, 0.8);
+        const double sockets = std::max(ligament - nearest, kThinnestSeptumMm + 2.0 * ligament - nearest - second);
+        double gingiva = smoothMin(smoothMin(roll, papilla, 0.8), hull - kGingivaThicknessMm, 1.0);
+        gingiva = smoothMax(gingiva, base + kBoneOutOfBaseMm, 0.5);
+        return {smoothMax(gingiva, -kIntoToothMm - nearest, 0.1), smoothMax(hull, sockets, 0.25)};
+    }
+
+  private:
+    /// The jaw's ridge under the crest, along the roots.
+    [[nodiscard]] double band(const Vec3& p) const {
+        double least = 1e9;
+        Vec3 before = Vec3::Zero();
+        for (std::size_t i = 0; i < standers_.size(); ++i) {
+            const Stander& s = standers_[i];
+            const Vec3 axis = s.axis();
+            // Where the tooth's axis is at this height, the lean held to what a jaw follows.
+            const double down = std::clamp((s.pose().positionMm.z() - p.z()) * up_, 0.0, 14.0);
+            const Vec3 lean = axis / std::max(0.5, axis.z() * up_);
+            const Vec3 centre = s.pose().positionMm - down * Vec3(lean.x(), lean.y(), 0.0);
+            const double half = 0.5 * (s.body().box.max.y() - s.body().box.min.y());
+            const Vec3 now(centre.x(), centre.y(), half);
+            if (i > 0) {
+                const Vec2 along = (now - before).head<2>(), to = p.head<2>() - before.head<2>();
+                const double t = std::clamp(to.dot(along) / along.squaredNorm(), 0.0, 1.0);
+                const double crest = (1.0 - t) * standers_[i - 1].pose().positionMm.z() * up_ +
+                                     t * s.pose().positionMm.z() * up_ - kCrestUnderCervixMm;
+                const double deep = crest - up_ * p.z();
+                const double width = 0.9 * ((1.0 - t) * before.z() + t * half) + 0.08 * std::clamp(deep, 0.0, 15.0);
+                const double side = (to - t * along).norm() - width;
+                least = std::min(least, smoothMax(side, 2.5 - deep, 2.5));
+            }
+            before = now;
+        }
+        return least;
+    }
+
+    std::vector<Stander> standers_;
+    std::vector<Vec3> contacts_;
+    Box box_;
+    double up_ = 1.0, base_ = 1e9;
+};
+
+/// The shell of the largest area: crumbs between roots and closed-in hollows go.
+TriangleMesh largestShell(const TriangleMesh& mesh) {
+    std::vector<std::uint32_t> parent(mesh.vertices.size());
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root = [&](std::uint32_t v) {
+        while (parent[v] != v)
+            v = parent[v] = parent[parent[v]];
+        return v;
+    };
+    for (const geometry::Triangle& t : mesh.triangles)
+        for (const std::uint32_t v : {t[1], t[2]})
+            parent[root(v)] = root(t[0]);
+    std::vector<std::size_t> faces(mesh.vertices.size(), 0);
+    for (const geometry::Triangle& t : mesh.triangles)
+        ++faces[root(t[0])];
+    const auto largest = static_cast<std::uint32_t>(std::max_element(faces.begin(), faces.end()) - faces.begin());
+    TriangleMesh kept;
+    std::vector<std::uint32_t> index(mesh.vertices.size(), 0);
+    for (std::uint32_t v = 0; v < index.size(); ++v)
+        if (root(v) == largest) {
+            index[v] = static_cast<std::uint32_t>(kept.vertices.size());
+            kept.vertices.push_back(mesh.vertices[v]);
+        }
+    for (const geometry::Triangle& t : mesh.triangles)
+        if (root(t[0]) == largest) kept.triangles.push_back({index[t[0]], index[t[1]], index[t[2]]});
+    return kept;
+}
+
+TriangleMesh solidOf(const Box& box, const geometry::ScalarFunction& f, double spacingMm, std::size_t faces,
+                     const core::Progress& progress) {
+    geometry::IsosurfaceSettings settings;
+    settings.spacingMm = spacingMm;
+    settings.lipschitz = kSteepest;
+    settings.relaxations = 1;
+    const TriangleMesh fine = largestShell(geometry::isosurface(box, f, settings, core::part(progress, 0.0, 0.7)));
+    if (fine.triangles.size() <= faces) return fine;
+    return geometry::decimate(fine, faces, core::part(progress, 0.7, 1.0)).mesh;
+}
+
+}  // namespace
+
+Periodontium makePeriodontium(std::span<const ArchTooth> teeth, const PeriodontiumOptions& options,
+                              const core::Progress& progress) {
+    if (teeth.size() < 2) throw core::Error("an arch needs two teeth", "gingiva");
+    const Arch arch(teeth);
+    Periodontium made;
+    made.gingiva = solidOf(
+        arch.box(), [&](const Vec3& p) { return arch.at(p).gingiva; }, options.spacingMm, options.gingivaFaces,
+        core::part(progress, 0.0, 0.6));
+    made.bone = solidOf(
+        arch.box(), [&](const Vec3& p) { return arch.at(p).bone; }, options.spacingMm, options.boneFaces,
+        core::part(progress, 0.6, 1.0));
+    return made;
+}
+
+}  // namespace handpiece::dentition

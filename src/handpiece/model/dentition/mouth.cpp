@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/model/dentition/mouth.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <numbers>
+#include <vector>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
+#include "handpiece/model/dentition/tooth_body.h"
+
+namespace handpiece::dentition {
+namespace {
+
+using core::Pose;
+
+constexpr double kWidestOpeningMm = 60.0;
+/// Teeth of the other arch nearer than this in occlusion are antagonists.
+constexpr double kAntagonistMm = 0.3;
+/// The gingiva's solid goes on through the bone.
+constexpr int kBonePriority = 6;
+
+/// Along an arch from one end to the other: 18 .. 11, 21 .. 28, or 48 .. 41, 31 .. 38.
+std::vector<std::size_t> alongArch(bool upper) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 8; i-- > 0;)
+        order.push_back((upper ? 0 : 24) + i);
+    for (std::size_t i = 0; i < 8; ++i)
+        order.push_back((upper ? 8 : 16) + i);
+    return order;
+}
+
+Pose after(const Pose& outer, const Pose& inner) {
+    return {outer.apply(inner.positionMm), (outer.orientation * inner.orientation).normalized()};
+}
+
+/// The cemento-enamel junction, where the teeth's maker does not tell it.
+void addJunction(cases::Tooth& tooth, const ToothForm& form) {
+    for (const cases::Landmark& landmark : tooth.landmarks)
+        if (landmark.kind == cases::LandmarkKind::cementoEnamelJunction) return;
+    cases::Landmark ring{cases::LandmarkKind::cementoEnamelJunction, "", {}, cases::LandmarkSource::generated};
+    constexpr int kPoints = 32;
+    for (int i = 0; i < kPoints; ++i) {
+        const double rad = 2.0 * std::numbers::pi * i / kPoints;
+        const core::Vec3 out(core::cos(rad), core::sin(rad), 0.0);
+        core::Vec3 p = core::Vec3::Zero();
+        for (int step = 0; step < 20; ++step) {
+            double inside = 0.0, outside = 10.0;
+            while (outside - inside > 1e-6) {
+                const double middle = 0.5 * (inside + outside);
+                (form.outer(middle * out + core::Vec3(0.0, 0.0, p.z())) < 0.0 ? inside : outside) = middle;
+            }
+            p = inside * out + core::Vec3(0.0, 0.0, p.z());
+            p.z() -= 0.7 * form.aboveCervix(p);
+        }
+        ring.pointsMm.push_back(p);
+    }
+    tooth.landmarks.push_back(std::move(ring));
+}
+
+}  // namespace
+
+double mouthBytes(const MouthOptions& options) {
+    // Measured with the makers of the teeth: what a face of the finished mouth holds, and what one takes while its
+    // surface is sampled and thinned out.
+    constexpr double kPerFaceKept = 60.0, kPerFaceAtWork = 900.0, kRest = 0.4e9;
+    const double faces = static_cast<double>(options.faces);
+    return kToothCount * 2.0 * faces * kPerFaceKept +
+           static_cast<double>(core::threadCount()) * faces * kPerFaceAtWork + kRest;
+}
+
+cases::Case makeMouth(const Patient& patient, const MouthOptions& options, const core::Progress& progress) {
+    const std::size_t own = indexOf(options.fdi);
+    if (!(options.openingMm >= 0.0 && options.openingMm <= kWidestOpeningMm))
+        throw core::Error(fmt::format("a mouth does not open by {} mm", options.openingMm), "--opening",
+                          fmt::format("give 0 (in occlusion) to {} mm", kWidestOpeningMm));
+
+    constexpr double kTeethShare = 0.75, kArchesShare = 0.85;
+    std::vector<cases::Tooth> teeth(kToothCount);
+    std::atomic<int> done{0};
+    core::parallelFor(kToothCount, 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            const core::Progress share = core::part(progress, 0.0, kTeethShare);
+            teeth[i] = makeTooth(fdiOf(i), patient, {options.faces, 0},
+                                 [&](double) { return !share || share(done / static_cast<double>(kToothCount)); });
+            addJunction(teeth[i], ToothForm(fdiOf(i), patient));
+            ++done;
+        }
+    });
+
+    const Arrangement arches = arrange(teeth, core::part(progress, kTeethShare, kArchesShare));
+    const Pose mandible = opened(arches, options.openingMm);
+    std::array<Pose, kToothCount> inMouth = arches.toothInMouth;
+    for (std::size_t i = 16; i < kToothCount; ++i)
+        inMouth[i] = after(mandible, inMouth[i]);
+    const Pose caseFrame = inMouth[own];
+    const Pose mouthInCase{caseFrame.applyInverse(core::Vec3::Zero()), caseFrame.orientation.conjugate()};
+
+    std::array<Periodontium, 2> periodontia;
+    for (const bool upper : {true, false}) {
+        std::vector<ArchTooth> arch;
+        for (const std::size_t i : alongArch(upper))
+            arch.push_back({&teeth[i], arches.toothInMouth[i]});
+        const double begun = upper ? kArchesShare : 0.5 * (1.0 + kArchesShare);
+        periodontia[upper ? 0 : 1] = makePeriodontium(arch, options.periodontium,
+                                                      core::part(progress, begun, begun + 0.5 * (1.0 - kArchesShare)));
+    }
+
+    cases::Case made;
+    static_cast<cases::Tooth&>(made) = teeth[own];
+    made.name = fmt::format("{} in the mouth of patient {}", made.name, patient.seed);
+    const ToothBody ownBody(teeth[own].outer);
+    const std::vector<std::size_t> order = alongArch(isUpper(own));
+    const auto at = std::find(order.begin(), order.end(), own);
+    for (std::size_t i = 0; i < kToothCount; ++i) {
+        if (i == own) continue;
+        cases::PlacedTooth other;
+        static_cast<cases::Tooth&>(other) = std::move(teeth[i]);
+        other.inCase = after(mouthInCase, inMouth[i]);
+        const bool isAdjacent = (at != order.begin() && *(at - 1) == i) || (at + 1 != order.end() && *(at + 1) == i);
+        other.isCuttable = isAdjacent || (isUpper(i) != isUpper(own) &&
+                                          gapBetween(ownBody, arches.toothInMouth[own], ToothBody(other.outer),
+                                                     arches.toothInMouth[i], 2.0 * kAntagonistMm)
+                                                  .distanceMm < kAntagonistMm);
+        made.others.push_back(std::move(other));
+    }
+    const auto add = [&](const char* name, cases::Tissue tissue, geometry::TriangleMesh mesh, const Pose& inCase) {
+        made.scenery.push_back({name, tissue,
+                                tissue == cases::Tissue::bone ? kBonePriority : cases::properties(tissue).priority,
+                                geometry::transformed(std::move(mesh), inCase), true});
+    };
+    const std::array<Pose, 2> jaws{mouthInCase, after(mouthInCase, mandible)};
+    add("upper-gingiva", cases::Tissue::gum, std::move(periodontia[0].gingiva), jaws[0]);
+    add("lower-gingiva", cases::Tissue::gum, std::move(periodontia[1].gingiva), jaws[1]);
+    add("upper-bone", cases::Tissue::bone, std::move(periodontia[0].bone), jaws[0]);
+    add("lower-bone", cases::Tissue::bone, std::move(periodontia[1].bone), jaws[1]);
+    core::report(progress, 1.0);
+    return made;
+}
+
+}  // namespace handpiece::dentition

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/model/dentition/mouth.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/geometry/inspect.h"
+#include "handpiece/base/geometry/isosurface.h"
+#include "handpiece/base/geometry/self_intersection.h"
+#include "handpiece/base/geometry/triangle_tree.h"
+
+namespace handpiece::dentition {
+namespace {
+
+using cases::LandmarkKind;
+using core::Pose;
+using core::Vec3;
+using geometry::TriangleMesh;
+using geometry::TriangleTree;
+
+constexpr std::uint64_t kSeeds[] = {1, 2, 3};
+
+/// Teeth with some 20,000 faces, as arrange() takes them, without their tissues.
+struct Mouth {
+    std::vector<cases::Tooth> teeth;
+    Arrangement arches;
+    std::vector<TriangleMesh> placed;  ///< closed, mouth frame
+    std::vector<TriangleTree> trees;   ///< of those
+
+    [[nodiscard]] Vec3 cusp(int fdi, const std::string& name) const {
+        const std::size_t i = indexOf(fdi);
+        for (const cases::Landmark& mark : teeth[i].landmarks)
+            if (mark.kind == LandmarkKind::cuspTip && mark.name == name)
+                return arches.toothInMouth[i].apply(mark.pointsMm[0]);
+        ADD_FAILURE() << fdi << " has no cusp " << name;
+        return Vec3::Zero();
+    }
+    [[nodiscard]] std::vector<Vec3> cusps(int fdi, bool buccal) const {
+        const std::size_t i = indexOf(fdi);
+        std::vector<Vec3> found;
+        for (const cases::Landmark& mark : teeth[i].landmarks)
+            if (mark.kind == LandmarkKind::cuspTip && (mark.pointsMm[0].y() * teeth[i].buccalSign > 0.0) == buccal)
+                found.push_back(arches.toothInMouth[i].apply(mark.pointsMm[0]));
+        return found;
+    }
+};
+
+std::vector<cases::Tooth> coarseTeeth(const Patient& patient) {
+    std::vector<cases::Tooth> teeth(kToothCount);
+    core::parallelFor(kToothCount, 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            const ToothForm form(fdiOf(i), patient);
+            geometry::IsosurfaceSettings settings;
+            settings.spacingMm = 0.3;
+            settings.lipschitz = ToothForm::kLipschitz;
+            settings.relaxations = 0;
+            teeth[i].outer = geometry::isosurface(
+                form.bounds(), [&](const Vec3& p) { return form.outer(p); }, settings);
+            teeth[i].fdiNumber = form.fdi();
+            teeth[i].buccalSign = form.buccalSign();
+            teeth[i].landmarks = form.landmarks();
+        }
+    });
+    return teeth;
+}
+
+const Mouth& mouth(std::uint64_t seed) {
+    static std::map<std::uint64_t, Mouth> made;
+    if (const auto found = made.find(seed); found != made.end()) return found->second;
+    Mouth& m = made[seed];
+    m.teeth = coarseTeeth({seed, 25.0});
+    m.arches = arrange(m.teeth);
+    for (std::size_t i = 0; i < kToothCount; ++i) {
+        m.placed.push_back(geometry::transformed(m.teeth[i].outer, m.arches.toothInMouth[i]));
+        m.trees.emplace_back(m.placed.back());
+    }
+    return m;
+}
+
+/// Least signed distance of one surface's vertices and edges' middles from the other, both ways; `at` the place.
+double gapOf(const Mouth& m, std::size_t a, std::size_t b, double boundMm, Vec3* at = nullptr) {
+    double least = boundMm;
+    for (const auto& [of, to] : {std::pair{a, b}, std::pair{b, a}}) {
+        const core::Box box = m.trees[to].bounds().grown(boundMm);
+        const auto ask = [&, to = to](const Vec3& p) {
+            if (((p - box.max).array() > 0.0).any() || ((box.min - p).array() > 0.0).any()) return;
+            if (m.trees[to].nearest(p, 1.5).triangle == geometry::kNoTriangle) return;
+            const double distance = m.trees[to].signedDistance(p);
+            if (distance < least) {
+                least = distance;
+                if (at) *at = p;
+            }
+        };
+        for (const Vec3& p : m.placed[of].vertices)
+            ask(p);
+        for (const geometry::Triangle& t : m.placed[of].triangles)
+            for (int e = 0; e < 3; ++e)
+                if (t[e] < t[(e + 1) % 3])
+                    ask(0.5 * (m.placed[of].vertices[t[e]] + m.placed[of].vertices[t[(e + 1) % 3]]));
+    }
+    return least;
+}
+
+std::size_t mesialOf(std::size_t i) {
+    constexpr std::size_t kAcross[] = {8, 0, 24, 16};
+    return i % 8 > 0 ? i - 1 : kAcross[i / 8];
+}
+
+class Mouths : public testing::TestWithParam<std::uint64_t> {};
+INSTANTIATE_TEST_SUITE_P(Seeds, Mouths, testing::ValuesIn(kSeeds));
+
+TEST_P(Mouths, AdjacentCrownsTouchAtTheirContacts) {
+    const Mouth& m = mouth(GetParam());
+    for (std::size_t i = 0; i < kToothCount; ++i) {
+        SCOPED_TRACE(fdiOf(i));
+        Vec3 at = Vec3::Zero();
+        const double gap = gapOf(m, i, mesialOf(i), 0.3, &at);
+        EXPECT_GE(gap, 0.0);
+        EXPECT_LE(gap, 0.030);
+        // In the crown, not at roots that lean against each other; third molars stand as they can.
+        if (i % 8 < 7) {
+            EXPECT_GT(m.arches.toothInMouth[i].applyInverse(at).z(), 1.5);
+        }
+    }
+}
+
+TEST_P(Mouths, NoToothIsInAnother) {
+    const Mouth& m = mouth(GetParam());
+    for (std::size_t a = 0; a < kToothCount; ++a)
+        for (std::size_t b = a + 1; b < kToothCount; ++b) {
+            EXPECT_GE(gapOf(m, a, b, 0.05), -0.002) << fdiOf(a) << " and " << fdiOf(b);
+        }
+}
+
+TEST_P(Mouths, TeethOccludeAsInClassOne) {
+    const Mouth& m = mouth(GetParam());
+    int pairs = 0;
+    for (std::size_t upper = 0; upper < 16; ++upper) {
+        int touching = 0;
+        for (std::size_t lower = 16; lower < kToothCount; ++lower)
+            touching += gapOf(m, upper, lower, 0.06) < 0.05 ? 1 : 0;
+        EXPECT_GE(touching, 1) << fdiOf(upper) << " meets no antagonist";
+        pairs += touching;
+    }
+    EXPECT_GE(pairs, 16);
+    const Vec3 bite = m.arches.lowerIncisalMm - m.arches.upperIncisalMm;
+    EXPECT_NEAR(bite.z(), kOverbiteMm, 1.0) << "overbite";
+    EXPECT_NEAR(bite.y(), 2.5, 1.5) << "overjet";
+    for (const bool right : {true, false}) {
+        const int upper = right ? 16 : 26, lower = right ? 46 : 36;
+        const double groove = 0.5 * (m.cusp(lower, "mesiobuccal").y() + m.cusp(lower, "distobuccal").y());
+        EXPECT_NEAR(m.cusp(upper, "mesiobuccal").y(), groove, 1.5) << upper << " over the buccal groove of " << lower;
+        // Upper buccal cusps stand outside, palatal ones in the lower teeth.
+        const double outside = std::abs(m.cusp(upper, "mesiobuccal").x()),
+                     inside = std::abs(m.cusp(upper, "mesiopalatal").x()),
+                     between = std::abs(m.cusp(lower, "distobuccal").x());
+        EXPECT_GT(outside, between + 1.0);
+        EXPECT_LT(inside, between - 1.0);
+    }
+}
+
+/// Radius of the circle through points (y, z), least squares after Kasa.
+double radiusOf(const std::vector<Vec3>& points) {
+    Eigen::MatrixXd a(points.size(), 3);
+    Eigen::VectorXd b(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        a.row(row) << points[i].y(), points[i].z(), 1.0;
+        b[row] = points[i].y() * points[i].y() + points[i].z() * points[i].z();
+    }
+    const Eigen::Vector3d c = (a.transpose() * a).inverse() * (a.transpose() * b);
+    return std::sqrt(c[2] + 0.25 * (c[0] * c[0] + c[1] * c[1]));
+}
+
+TEST_P(Mouths, LowerCuspsLieInTheCurvesOfSpeeAndWilson) {
+    const Mouth& m = mouth(GetParam());
+    for (const int quadrant : {30, 40}) {
+        std::vector<Vec3> line{m.cusp(quadrant + 3, "cusp")};
+        for (const int place : {4, 5, 6, 7}) {
+            const std::vector<Vec3> buccal = m.cusps(quadrant + place, true);
+            Vec3 mean = Vec3::Zero();
+            for (const Vec3& p : buccal)
+                mean += p / static_cast<double>(buccal.size());
+            line.push_back(mean);
+        }
+        EXPECT_NEAR(radiusOf(line), kSpeeRadiusMm, 0.2 * kSpeeRadiusMm) << "Spee, quadrant " << quadrant;
+        for (const int place : {6, 7}) {
+            Vec3 buccal = Vec3::Zero(), lingual = Vec3::Zero();
+            for (const Vec3& p : m.cusps(quadrant + place, true))
+                buccal += p / static_cast<double>(m.cusps(quadrant + place, true).size());
+            for (const Vec3& p : m.cusps(quadrant + place, false))
+                lingual += p / static_cast<double>(m.cusps(quadrant + place, false).size());
+            const double slope = (buccal.z() - lingual.z()) / std::abs(buccal.x() - lingual.x());
+            EXPECT_NEAR(slope, std::abs(buccal.x()) / kWilsonRadiusMm, 0.08) << "Wilson, " << quadrant + place;
+        }
+    }
+}
+
+TEST(Mouth, MandibleOpensAboutItsHinge) {
+    const Arrangement& a = mouth(1).arches;
+    EXPECT_TRUE(opened(a, 0.0).orientation.isApprox(core::Quat::Identity()));
+    for (const double mm : {35.0, 40.0, 45.0}) {
+        const Pose mandible = opened(a, mm);
+        EXPECT_NEAR((mandible.apply(a.lowerIncisalMm) - a.upperIncisalMm).norm(), mm, 1e-6);
+        EXPECT_LT((mandible.apply(a.hingeMm) - a.hingeMm).norm(), 1e-9);
+        EXPECT_LT(mandible.apply(a.lowerIncisalMm).z(), a.lowerIncisalMm.z() - 20.0);
+        const double deg = 180.0 / std::numbers::pi * core::Quat::Identity().angularDistance(mandible.orientation);
+        EXPECT_GT(deg, 18.0);
+        EXPECT_LT(deg, 35.0);
+    }
+}
+
+TEST(Mouth, ArchesAreTheSameAtAnyThreadCount) {
+    const std::size_t before = core::threadCount();
+    core::setThreadCount(before == 1 ? 2 : 1);
+    const Arrangement again = arrange(mouth(1).teeth);
+    core::setThreadCount(0);
+    for (std::size_t i = 0; i < kToothCount; ++i) {
+        EXPECT_EQ(again.toothInMouth[i].positionMm, mouth(1).arches.toothInMouth[i].positionMm);
+        EXPECT_EQ(again.toothInMouth[i].orientation.coeffs(), mouth(1).arches.toothInMouth[i].orientation.coeffs());
+    }
+}
+
+TEST(Mouth, RefusesPlainly) {
+    EXPECT_THAT([] { (void)makeMouth({}, {.fdi = 19}); },
+                testing::Throws<core::Error>(testing::Property(&core::Error::problem, testing::HasSubstr("19"))));
+    EXPECT_THROW((void)makeMouth({}, {.fdi = 55}), core::Error);
+    EXPECT_THROW((void)makeMouth({}, {.fdi = -11}), core::Error);
+    EXPECT_THROW((void)makeMouth({}, {.faces = 100}), core::Error);
+    EXPECT_THROW((void)makeMouth({}, {.openingMm = 90.0}), core::Error);
+    EXPECT_THROW((void)makeMouth({}, {.openingMm = NAN}), core::Error);
+    EXPECT_THROW((void)makeMouth({}, {.faces = 2000}, [](double) { return false; }), core::Error) << "cancelled";
+    EXPECT_THROW((void)arrange(std::vector<cases::Tooth>(3)), core::Error);
+    EXPECT_GT(mouthBytes({.faces = 2000000}), mouthBytes({.faces = 70000}));
+}
+
+}  // namespace
+}  // namespace handpiece::dentition

@@ -10,9 +10,11 @@
 #include <utility>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/model/instrument/turbine.h"
 #include "handpiece/model/tooth/state_file.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/contact/hull/hull_method.h"
+#include "handpiece/tick/contact/mouth_method.h"
 #include "handpiece/tick/device/capability.h"
 
 namespace handpiece::simulation {
@@ -418,17 +420,53 @@ loop::Work SimulationSetup::work() const {
         const instrument::Bur bur(settings.bur->name(), settings.bur->profile());
         return {contact::makeHullMethod(tooth->outer, bur.mesh()), nullptr};
     }
-    return {contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(field), settings.bur),
-            std::make_unique<cutting::Cutter>(field, settings.bur, settings.cuttingParameters, settings.tissues,
-                                              cutting::Cutter::Settings{settings.fullRemoval})};
+    auto cutter = std::make_unique<cutting::Cutter>(field, settings.bur, settings.cuttingParameters, settings.tissues,
+                                                    cutting::Cutter::Settings{settings.fullRemoval});
+    const std::shared_ptr<const tooth::ToothState> own(field);
+    if (others.empty()) return {contact::makeFieldMethod(own, settings.bur), std::move(cutter)};
+    std::vector<contact::PlacedMethod> placed;
+    const std::vector<instrument::BodyPiece> body = instrument::bodyPieces(*settings.bur);
+    const auto add = [&](const auto& model, const core::Pose& at, const core::Box& bounds, bool isCuttable) {
+        const auto index = static_cast<std::uint16_t>(placed.size() / (body.size() + 1));
+        placed.push_back({contact::makeFieldMethod(model, settings.bur),
+                          settings.bur,
+                          {},
+                          at,
+                          bounds,
+                          index,
+                          contact::Piece::bur,
+                          isCuttable});
+        for (const instrument::BodyPiece& piece : body)
+            placed.push_back({contact::makeFieldMethod(model, piece.solid), piece.solid, piece.inBur, at, bounds, index,
+                              piece.part, isCuttable});
+    };
+    add(own, {}, tooth->outer.bounds(), true);
+    for (const StandingTooth& other : others)
+        add(other.model, other.inCase, other.model->outer.bounds(), false);
+    return {contact::makeMouthMethod(std::move(placed)), std::move(cutter)};
 }
 
 SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings settings, bool useCache,
                                const core::Progress& progress) {
     SimulationSetup station;
-    station.tooth = tooth::loadModel(toothCase, {settings.field, settings.cut, useCache}, progress);
+    const double own = toothCase.others.empty() ? 1.0 : 0.3;
+    station.tooth =
+        tooth::loadModel(toothCase, {settings.field, settings.cut, useCache}, core::part(progress, 0.0, own));
     station.field = std::make_shared<tooth::ToothState>(station.tooth);
     station.settings = std::move(settings);
+    const auto count = static_cast<double>(toothCase.others.size());
+    for (const cases::PlacedTooth& other : toothCase.others) {
+        cases::Case alone;
+        alone.name = other.name;
+        alone.source = toothCase.source;
+        const geometry::TriangleMesh& surface = other.outer.triangles.empty() ? other.parts.front().mesh : other.outer;
+        alone.parts.push_back({other.name, cases::Tissue::neighbour, 0, surface});
+        const double done = static_cast<double>(station.others.size());
+        station.others.push_back({tooth::loadModel(alone, {fieldSettingsAt(kStandingVoxelMm), {}, useCache},
+                                                   core::part(progress, own + (1.0 - own) * done / count,
+                                                              own + (1.0 - own) * (done + 1.0) / count)),
+                                  other.inCase, other.fdiNumber});
+    }
     return station;
 }
 

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/model/instrument/rotor.h"
@@ -63,10 +64,20 @@ struct Changed {
 /// Puts a change into `settings`. Throws core::Error naming `where`.
 Changed applyChange(const std::string& json, SimulationSettings& settings, const std::string& where);
 
-/// One tooth under one bur. The field is cut by the loop that gets the work.
+/// A tooth that stands around the one that is cut: felt by the bur and by the handpiece's body.
+struct StandingTooth {
+    std::shared_ptr<const tooth::ToothModel> model;  ///< in its own frame, all of it Tissue::neighbour
+    core::Pose inCase;
+    int fdiNumber = 0;
+};
+/// Voxel of their fields, which only say where a bur bears on them.
+inline constexpr double kStandingVoxelMm = 0.1;
+
+/// One tooth under one bur, and those that stand around it. The field is cut by the loop that gets the work.
 struct SimulationSetup {
     std::shared_ptr<const tooth::ToothModel> tooth;
     std::shared_ptr<tooth::ToothState> field;
+    std::vector<StandingTooth> others{};
     SimulationSettings settings;
 
     /// Puts a tooth in place that was cut before. Not while a loop runs.
@@ -75,7 +86,7 @@ struct SimulationSetup {
     /// another may be made for it, on another thread. Throws core::Error for what has no hull.
     [[nodiscard]] loop::Work work() const;
 };
-/// A loaded tooth, yet uncut, and a state of it to cut. Throws core::Error.
+/// A loaded tooth, yet uncut, and a state of it to cut; with what stands around it. Throws core::Error.
 [[nodiscard]] SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings settings, bool useCache,
                                              const core::Progress& progress = {});
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <cstdint>
 #include <cstring>
 
@@ -13,8 +14,8 @@ namespace handpiece::cases {
 namespace {
 
 constexpr char kMagic[4] = {'H', 'P', 'C', 'S'};
-constexpr std::uint32_t kVersion = 1;
-constexpr std::uint32_t kMaxParts = 64, kMaxName = 4096;
+constexpr std::uint32_t kAlone = 1, kWithOthers = 2;  // versions
+constexpr std::uint32_t kMaxParts = 64, kMaxName = 4096, kMaxOthers = 64;
 
 void append(std::vector<std::byte>& bytes, std::uint32_t value) {
     for (int i = 0; i < 4; ++i)
@@ -25,6 +26,26 @@ void append(std::vector<std::byte>& bytes, const std::string& text) {
     append(bytes, static_cast<std::uint32_t>(kept.size()));
     const auto* data = reinterpret_cast<const std::byte*>(kept.data());
     bytes.insert(bytes.end(), data, data + kept.size());
+}
+
+void append(std::vector<std::byte>& bytes, double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    append(bytes, static_cast<std::uint32_t>(bits));
+    append(bytes, static_cast<std::uint32_t>(bits >> 32));
+}
+void append(std::vector<std::byte>& bytes, const Tooth& tooth) {
+    append(bytes, tooth.name);
+    append(bytes, tooth.kind);
+    append(bytes, static_cast<std::uint32_t>(tooth.fdiNumber));
+    append(bytes, static_cast<std::uint32_t>(tooth.buccalSign + 1));
+    geometry::appendMesh(bytes, tooth.outer);
+    append(bytes, static_cast<std::uint32_t>(tooth.parts.size()));
+    for (const Part& part : tooth.parts) {
+        append(bytes, part.name);
+        append(bytes, static_cast<std::uint32_t>(part.tissue));
+        append(bytes, static_cast<std::uint32_t>(part.priority));
+        geometry::appendMesh(bytes, part.mesh);
+    }
 }
 
 class Reader {
@@ -52,6 +73,41 @@ class Reader {
         const auto taken = take(size);
         return {reinterpret_cast<const char*>(taken.data()), taken.size()};
     }
+    double real() {
+        const std::uint64_t low = number(), high = number();
+        return std::bit_cast<double>(high << 32 | low);
+    }
+    void tooth(Tooth& made) {
+        made.name = text();
+        made.kind = text();
+        made.fdiNumber = static_cast<int>(number());
+        const std::uint32_t buccal = number();
+        if (buccal > 2) refuse("the tooth inside has no such side");
+        made.buccalSign = static_cast<int>(buccal) - 1;
+        made.outer = mesh();
+        const std::uint32_t parts = number();
+        if (parts > kMaxParts) refuse(fmt::format("the tooth inside claims {} parts", parts));
+        for (std::uint32_t i = 0; i < parts; ++i) {
+            Part part;
+            part.name = text();
+            const std::uint32_t tissue = number();
+            if (tissue == 0 || tissue >= kTissueCount) refuse(fmt::format("there is no tissue {}", tissue));
+            part.tissue = static_cast<Tissue>(tissue);
+            part.priority = static_cast<int>(number());
+            part.mesh = mesh();
+            made.parts.push_back(std::move(part));
+        }
+        if (made.outer.triangles.empty() && made.parts.empty()) refuse("the tooth inside has no surface");
+    }
+    core::Pose pose() {
+        core::Pose pose;
+        for (int k = 0; k < 3; ++k)
+            pose.positionMm[k] = real();
+        for (int k = 0; k < 4; ++k)
+            pose.orientation.coeffs()[k] = real();
+        if (!pose.isValid()) refuse("a tooth inside stands nowhere");
+        return pose;
+    }
     geometry::TriangleMesh mesh() { return geometry::takeMesh(bytes_, where_); }
     [[nodiscard]] bool isAtEnd() const { return bytes_.empty(); }
 
@@ -66,18 +122,17 @@ std::vector<std::byte> encodeCase(const Case& toothCase) {
     std::vector<std::byte> bytes;
     for (const char c : kMagic)
         bytes.push_back(static_cast<std::byte>(c));
-    append(bytes, kVersion);
-    append(bytes, toothCase.name);
-    append(bytes, toothCase.kind);
-    append(bytes, static_cast<std::uint32_t>(toothCase.fdiNumber));
-    append(bytes, static_cast<std::uint32_t>(toothCase.buccalSign + 1));
-    geometry::appendMesh(bytes, toothCase.outer);
-    append(bytes, static_cast<std::uint32_t>(toothCase.parts.size()));
-    for (const Part& part : toothCase.parts) {
-        append(bytes, part.name);
-        append(bytes, static_cast<std::uint32_t>(part.tissue));
-        append(bytes, static_cast<std::uint32_t>(part.priority));
-        geometry::appendMesh(bytes, part.mesh);
+    append(bytes, toothCase.others.empty() ? kAlone : kWithOthers);
+    append(bytes, static_cast<const Tooth&>(toothCase));
+    if (toothCase.others.empty()) return bytes;
+    append(bytes, static_cast<std::uint32_t>(toothCase.others.size()));
+    for (const PlacedTooth& other : toothCase.others) {
+        append(bytes, static_cast<const Tooth&>(other));
+        for (int k = 0; k < 3; ++k)
+            append(bytes, other.inCase.positionMm[k]);
+        for (int k = 0; k < 4; ++k)
+            append(bytes, other.inCase.orientation.coeffs()[k]);
+        append(bytes, static_cast<std::uint32_t>(other.isCuttable));
     }
     return bytes;
 }
@@ -86,31 +141,23 @@ Case decodeCase(std::span<const std::byte> bytes, const std::string& where) {
     Reader reader(bytes, where);
     if (std::memcmp(reader.take(4).data(), kMagic, 4) != 0) reader.refuse("there is no tooth inside");
     const std::uint32_t version = reader.number();
-    if (version != kVersion)
-        reader.refuse(fmt::format("the tooth inside is of version {}, this program reads {}", version, kVersion),
+    if (version != kAlone && version != kWithOthers)
+        reader.refuse(fmt::format("the tooth inside is of version {}, this program reads {} and {}", version, kAlone,
+                                  kWithOthers),
                       "use a newer Handpiece");
     Case made;
-    made.name = reader.text();
-    made.kind = reader.text();
-    made.fdiNumber = static_cast<int>(reader.number());
-    const std::uint32_t buccal = reader.number();
-    if (buccal > 2) reader.refuse("the tooth inside has no such side");
-    made.buccalSign = static_cast<int>(buccal) - 1;
-    made.outer = reader.mesh();
-    const std::uint32_t parts = reader.number();
-    if (parts > kMaxParts) reader.refuse(fmt::format("the tooth inside claims {} parts", parts));
-    for (std::uint32_t i = 0; i < parts; ++i) {
-        Part part;
-        part.name = reader.text();
-        const std::uint32_t tissue = reader.number();
-        if (tissue == 0 || tissue >= kTissueCount) reader.refuse(fmt::format("there is no tissue {}", tissue));
-        part.tissue = static_cast<Tissue>(tissue);
-        part.priority = static_cast<int>(reader.number());
-        part.mesh = reader.mesh();
-        made.parts.push_back(std::move(part));
+    reader.tooth(made);
+    const std::uint32_t others = version == kWithOthers ? reader.number() : 0;
+    if (others > kMaxOthers) reader.refuse(fmt::format("the tooth inside claims {} others", others));
+    for (std::uint32_t i = 0; i < others; ++i) {
+        PlacedTooth& other = made.others.emplace_back();
+        reader.tooth(other);
+        other.inCase = reader.pose();
+        const std::uint32_t cuttable = reader.number();
+        if (cuttable > 1) reader.refuse("a tooth inside is neither to be cut nor not");
+        other.isCuttable = cuttable == 1;
     }
     if (!reader.isAtEnd()) reader.refuse("the tooth inside goes on after its end");
-    if (made.outer.triangles.empty() && made.parts.empty()) reader.refuse("the tooth inside has no surface");
     return made;
 }
 

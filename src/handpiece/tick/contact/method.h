@@ -40,6 +40,7 @@ struct Depth {
     Status status = Status::beyondReach;
     Piece piece = Piece::bur;  ///< of the instrument that decides. A method of one piece says bur, here and below
     std::uint16_t tooth = 0;   ///< index of the tooth that decides. A method of one tooth says 0, here and below
+    bool isHeldOnly = false;   ///< by what takes no cut: not the bur, or a tooth that is not to be cut
     double slackMm = 0.0;      ///< Method::slackMm() where the surface has been cut, else zero
     /// How much deeper it could be by what was left unseen, in an uncut tooth, of the bur's axis and of rims deeper
     /// than its radius: zero where that is kDepthToleranceMm at most; more where the work that a tick affords ended.
@@ -77,6 +78,7 @@ struct Constraint {
     cases::Tissue tissue = cases::Tissue::none;
     std::uint16_t tooth = 0;   ///< that holds the bur off
     Piece piece = Piece::bur;  ///< that it holds off
+    bool isHeldOnly = false;   ///< as in Depth
 };
 inline constexpr std::size_t kMaxConstraints = 96;
 using ConstraintSet = core::FixedVector<Constraint, kMaxConstraints>;

@@ -56,6 +56,7 @@ struct Pair : PlacedMethod {
         return apart.norm();
     }
     [[nodiscard]] bool isBur() const noexcept { return piece == Piece::bur; }
+    [[nodiscard]] bool cuts() const noexcept { return isBur() && isCuttable; }
 
     Pose sceneInTooth;
     bool moves, turns;
@@ -170,6 +171,7 @@ class MouthMethod final : public Method {
                 c.pointMm = pair.place(c.pointMm);
                 c.tooth = pair.tooth;
                 c.piece = pair.piece;
+                c.isHeldOnly = !pair.cuts();
                 if (!out.pushBack(c)) return Status::truncated;
             }
             if (!any) break;
@@ -191,7 +193,7 @@ class MouthMethod final : public Method {
         for (std::size_t n = 0; n < nearCount_; ++n) {
             Pair& pair = pairs_[near_[n]];
             const Pose local = pair.localOf(bur);
-            if (!pair.isBur() || pair.gapMm(local) > withinMm) continue;
+            if (!pair.cuts() || pair.gapMm(local) > withinMm) continue;
             const Vec3 along = pair.turns ? Vec3(pair.sceneInTooth.orientation * direction) : direction;
             Bearing own;
             pair.method->bearing(local, along, leadMm, leastRadiusMm, own);
@@ -256,7 +258,7 @@ class MouthMethod final : public Method {
         nearCount_ = 0;
         for (std::size_t i = 0; i < pairs_.size(); ++i)
             if (pairs_[i].gapMm(pairs_[i].localOf(bur)) <= reachMm_ + kNearSlackMm)
-                near_[nearCount_++] = static_cast<std::uint8_t>(i);
+                near_[nearCount_++] = static_cast<std::uint16_t>(i);
         lookedAt_ = bur;
         hasLooked_ = true;
     }
@@ -291,7 +293,7 @@ class MouthMethod final : public Method {
         // Nearest boxes first: whoever's box is farther than what was found cannot be deeper.
         struct Candidate {
             double gapMm;
-            std::uint8_t pair;
+            std::uint16_t pair;
         };
         std::array<Candidate, kMaxPlaced> order;
         std::size_t count = 0;
@@ -318,12 +320,13 @@ class MouthMethod final : public Method {
         best.toothPointMm = decides->place(best.toothPointMm);
         best.tooth = decides->tooth;
         best.piece = decides->piece;
+        best.isHeldOnly = !decides->cuts();
         return best;
     }
 
     double reachMm_, farthestMm_ = 0.0;
     std::vector<Pair> pairs_;
-    std::array<std::uint8_t, kMaxPlaced> near_{};
+    std::array<std::uint16_t, kMaxPlaced> near_{};
     std::size_t nearCount_ = 0;
     Pose lookedAt_;
     bool hasLooked_ = false;

@@ -20,6 +20,7 @@ struct PlacedMethod {
     core::Box toothBoxMm;     ///< of the tooth's surface, its own frame
     std::uint16_t tooth = 0;  ///< as answers name it
     Piece piece = Piece::bur;
+    bool isCuttable = true;  ///< the tooth is: else the bur has patches on it, and no bearing
 };
 
 /// Feels them as one; poses and answers are in the scene's frame, which is that of the case's own tooth. A pair is
@@ -27,7 +28,7 @@ struct PlacedMethod {
 /// scene's gives that method's answers bit for bit.
 ///
 /// Throws core::Error for none, or more than kMaxPlaced.
-inline constexpr std::size_t kMaxPlaced = 128;
+inline constexpr std::size_t kMaxPlaced = 512;
 [[nodiscard]] std::unique_ptr<Method> makeMouthMethod(std::vector<PlacedMethod> placed, double reachMm = 5.0);
 
 }  // namespace handpiece::contact

@@ -48,6 +48,7 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     touch_.tooth = touch_.depth.tooth;
     touch_.passes = 0;
     touch_.behindShare = 0.0;
+    touch_.isHeldOnly = false;
     touch_.behind = contact::Piece::bur;
     touch_.patches = contact::PatchSet{};
     if (fresh && (released || touch_.depth.depthMm > kDeepStartMm)) guard_.fadeIn();
@@ -69,7 +70,9 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     touch_.touching = proxy_.touching();
     touch_.passes = proxy_.passes();
     touch_.tissue = proxy_.strongestTissue();
-    if (touch_.touching && proxy_.behindShare() > 0.0) {
+    if (touch_.touching && proxy_.isHeldOnly()) {
+        touch_.isHeldOnly = true;
+        touch_.cutShare = proxy_.cutShare();
         touch_.behindShare = proxy_.behindShare();
         touch_.behindPointMm = proxy_.behindPointMm();
         touch_.behind = proxy_.strongestBehind();
@@ -176,9 +179,9 @@ const ForceCommand& ForceModel::compute(const Touch& touch, double periodS, cons
         wanted = law_->pushN(inputOf(touch));
         if (!wanted.allFinite()) wanted.setZero();
         const double press = wanted.norm();
-        // What bears on the shank or the head does not press the bur.
-        command_.loadN = -guard_.gain() * (1.0 - touch.behindShare) *
-                         std::min(1.0, limits_.maxForceN / std::max(press, kShallowMm)) * wanted;
+        command_.loadN = -guard_.gain() * std::min(1.0, limits_.maxForceN / std::max(press, kShallowMm)) * wanted;
+        // What bears on the shank, the head or a tooth that is not cut does not press the bur into what is.
+        if (touch.isHeldOnly) command_.loadN = -command_.loadN.norm() * touch.cutShare;
         if (law_->usesProxy()) wanted += frictionForce(touch, wanted, turning);
         tangentialN_ =
             touch.touching

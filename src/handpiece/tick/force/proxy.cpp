@@ -51,7 +51,7 @@ double Proxy::evaluate(contact::Method& method) noexcept {
     clearanceMm_ = depth.slackMm - depth.depthMm;
     const bool near = depth.status == contact::Status::ok && clearanceMm_ <= reach;
     const contact::Constraint exact{depth.normal, clearanceMm_, depth.toothPointMm,
-                                    depth.tissue, depth.tooth,  depth.piece};
+                                    depth.tissue, depth.tooth, depth.piece, depth.isHeldOnly};
     if (near) {
         // A full set keeps its most important first: the last make room.
         const std::size_t room = contact::kMaxConstraints - 1 - memory_.size();
@@ -149,7 +149,8 @@ int Proxy::passesIn(double periodS) const noexcept {
 void Proxy::noteWhatHolds(const Projection& allowed) noexcept {
     touching_ = allowed.activeCount > 0;
     double strongest = 0.0, strongestBehind = 0.0, all = 0.0, behind = 0.0;
-    Vec3 moment = Vec3::Zero();
+    Vec3 moment = Vec3::Zero(), push = Vec3::Zero(), cutPush = Vec3::Zero();
+    isHeldOnly_ = false;
     for (int j = 0; j < allowed.activeCount; ++j) {
         const contact::Constraint& held = constraints_[allowed.active[j]];
         const double share = allowed.multiplierMm[j];
@@ -158,6 +159,9 @@ void Proxy::noteWhatHolds(const Projection& allowed) noexcept {
             strongestTissue_ = held.tissue;
         }
         all += std::max(share, 0.0);
+        push += share * held.normal;
+        if (!held.isHeldOnly) cutPush += share * held.normal;
+        isHeldOnly_ = isHeldOnly_ || (held.isHeldOnly && share > 0.0);
         if (held.piece == contact::Piece::bur || !(share > 0.0)) continue;
         behind += share;
         moment += share * held.pointMm;
@@ -166,6 +170,8 @@ void Proxy::noteWhatHolds(const Projection& allowed) noexcept {
             strongestBehind_ = held.piece;
         }
     }
+    const double pushed = push.norm();
+    cutShare_ = pushed > 0.0 ? Vec3(cutPush / pushed) : Vec3(Vec3::Zero());
     behindShare_ = behind > 0.0 ? behind / all : 0.0;
     if (behind > 0.0) behindPointMm_ = moment / behind;
 }
@@ -186,6 +192,7 @@ void Proxy::update(contact::Method& method, const core::Pose& deviceInTooth, con
     toothVersion_ = version;
     strongestTissue_ = cases::Tissue::none;
     behindShare_ = 0.0;
+    isHeldOnly_ = false;
     // A ball of that radius about the device is free, and the proxy lies in it.
     if (-depthAtDevice.depthMm > (target - pose_.positionMm).norm()) {
         pose_.positionMm = target;

@@ -48,6 +48,10 @@ class Proxy {
     [[nodiscard]] bool touching() const noexcept { return touching_; }
     /// Tissue of the constraint that pushes most; none when not touching.
     [[nodiscard]] cases::Tissue strongestTissue() const noexcept { return strongestTissue_; }
+    /// Whether something holds it that takes no cut, and of all that holds it the part that can be cut: a vector along
+    /// which that pushes, of length 1 when it is all.
+    [[nodiscard]] bool isHeldOnly() const noexcept { return isHeldOnly_; }
+    [[nodiscard]] const core::Vec3& cutShare() const noexcept { return cutShare_; }
     /// Of what holds it, the share that bears on parts behind the bur, 0 to 1, and where in the mean.
     [[nodiscard]] double behindShare() const noexcept { return behindShare_; }
     [[nodiscard]] const core::Vec3& behindPointMm() const noexcept { return behindPointMm_; }
@@ -84,6 +88,8 @@ class Proxy {
     core::Vec3 lastRest_ = core::Vec3::Zero();
     bool touching_ = false;
     cases::Tissue strongestTissue_ = cases::Tissue::none;
+    bool isHeldOnly_ = false;
+    core::Vec3 cutShare_ = core::Vec3::Zero();
     double behindShare_ = 0.0;
     core::Vec3 behindPointMm_ = core::Vec3::Zero();
     contact::Piece strongestBehind_ = contact::Piece::bur;

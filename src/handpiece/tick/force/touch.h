@@ -19,6 +19,8 @@ struct Touch {
     bool touching = false;                          ///< the proxy is held by the tooth
     cases::Tissue tissue = cases::Tissue::none;     ///< that carries most of the pressure
     std::uint16_t tooth = 0;                        ///< that tissue's
+    bool isHeldOnly = false;                        ///< part of the force is held by what takes no cut
+    core::Vec3 cutShare = core::Vec3::Zero();       ///< then: along which the rest pushes, 1 long when it is all
     double behindShare = 0.0;                       ///< of the force, that bears on shank, head or handle: 0 to 1
     core::Vec3 behindPointMm = core::Vec3::Zero();  ///< where that acts
     contact::Piece behind = contact::Piece::bur;    ///< which of them bears most; bur for none

@@ -8,6 +8,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/case.h"
+#include "handpiece/model/dentition/tooth_form.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/instrument/turbine.h"
 #include "handpiece/model/starter/paper.h"
@@ -22,6 +23,8 @@ struct MakeOptions {
     std::size_t faces = 68150, partFaces = 0;
     bool scene = false, slab = false;
     double diameterMm = 0.0, lengthMm = 0.0;
+    int fdi = 0;
+    dentition::Patient patient;
 };
 
 template <class Range, class Name>
@@ -37,9 +40,16 @@ void tellMesh(const std::string& out, const geometry::TriangleMesh& mesh) {
 }
 
 void makeTooth(const MakeOptions& o) {
+    if (o.fdi != 0 && o.scene)
+        throw core::Error("a tooth by its number comes without a scene", "--scene",
+                          "leave one of --fdi and --scene out");
     studies::ProgressBar bar("making the tooth");
-    const cases::Case made =
-        starter::makeTooth(starter::toothKindByName(o.kind), {o.faces, o.partFaces, o.scene}, bar.listener());
+    cases::Case made;
+    if (o.fdi != 0)
+        static_cast<cases::Tooth&>(made) =
+            dentition::makeTooth(o.fdi, o.patient, {o.faces, o.partFaces}, bar.listener());
+    else
+        made = starter::makeTooth(starter::toothKindByName(o.kind), {o.faces, o.partFaces, o.scene}, bar.listener());
     bar.finish();
     cases::writeCase(made, o.out);
     fmt::print("{}: {}\n  {:<12} {:>8} faces {:>10.2f} mm3\n", o.out, made.name, "outer", made.outer.triangles.size(),
@@ -80,12 +90,18 @@ void addMakeCommand(Command& app) {
     Command tooth = make.subcommand("tooth", "A tooth as a case folder: one STL per tissue and outer.stl");
     tooth.option("--kind", o.kind, "one of: " + listed(starter::toothKinds(), [](const auto& k) { return k.name; }))
         .showDefault();
+    tooth.option("--fdi", o.fdi, "instead of a kind: a permanent tooth by its number, 11 to 48");
+    tooth.option("--seed", o.patient.seed, "with --fdi: whose tooth, another for another number").showDefault();
+    tooth.option("--age", o.patient.ageYears, "with --fdi: of the patient [years]; wear and the pulp's size")
+        .showDefault();
     tooth.option("--faces", o.faces, "triangles of the outer surface").showDefault();
     tooth.option("--part-faces", o.partFaces, "triangles of each tissue's surface; 0: as fine as the outer one")
         .showDefault();
     tooth.flag("--scene", o.scene, "also the neighbours, the gum and the bone");
     tooth.option("--out", o.out, "folder to write").required();
-    tooth.footer("Example:\n  handpiece make tooth --kind upper-premolar --faces 20000 --scene --out premolar");
+    tooth.footer(
+        "Examples:\n  handpiece make tooth --fdi 46 --seed 3 --age 40 --out molar\n  handpiece make tooth --kind "
+        "upper-premolar --faces 20000 --scene --out premolar");
     tooth.callback([options] { makeTooth(*options); });
 
     Command bur = make.subcommand("bur", "A bur as an STL: tip at the origin, shank along +z, millimetres");

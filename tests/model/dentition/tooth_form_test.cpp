@@ -44,8 +44,7 @@ TEST(ToothForm, EveryToothIsOneClosedSurface) {
         SCOPED_TRACE(fdi);
         const ToothForm form(fdi, {});
         geometry::IsosurfaceSettings settings;
-        settings.spacingMm = 0.2;
-        settings.relaxations = 0;
+        settings.spacingMm = 0.1;
         settings.lipschitz = ToothForm::kLipschitz;
         const geometry::TriangleMesh mesh = geometry::isosurface(
             form.bounds(), [&](const Vec3& p) { return form.outer(p); }, settings);

@@ -33,6 +33,7 @@ struct Crest {
     core::Vec3 from, by, to;  ///< a quadratic Bezier curve's points
     double round = 0.8;       ///< the larger, the broader its back [mm]
     double slope = 0.95;      ///< of its flanks
+    bool isRim = false;       ///< one of the ring of cusp and marginal ridges, which pass into each other
 };
 
 /// A groove cut into the finished surface along a line seen from above: points are x, y and depth. V-shaped with
@@ -92,6 +93,7 @@ struct Spec {
     double wedge = 0.0;  ///< relative growth of the buccolingual width towards mesial
     double skew = 0.0;   ///< shift towards mesial for each mm lingual
     double rimRound = 1.2;
+    bool isEdge = false;   ///< the crests are an incisal edge: they say how high it is, the outlines how thick
     double groundZ = 0.0;  ///< no crest reaches below this inside the rim: floor of the fossae
     std::vector<Cusp> cusps;
     std::vector<Crest> crests;
@@ -99,7 +101,7 @@ struct Spec {
     std::vector<Hollow> hollows;
     std::vector<Root> roots;
     double trunk = 0.0;  ///< from the cervix to the furcation; 0 with one root
-    double rootBlend = 0.8;
+    double rootBlend = 1.4;
     double enamelCusp = 2.3, enamelFossa = 1.3, enamelSide = 1.2;
     std::vector<Section> chamber;
     double roofZ = 0.8, floorZ = -1.0;

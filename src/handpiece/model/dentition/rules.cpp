@@ -19,7 +19,7 @@ Crest cuspRidge(const Vec3& tip, const Vec3& end, double side) {
     Vec3 by = between(tip, end, 0.5);
     by.y() += 0.15 * side;
     by.z() += 0.15 * (tip.z() - end.z());
-    return {tip, by, end, 0.55, 1.0};
+    return {tip, by, end, 0.55, 1.0, true};
 }
 
 }  // namespace
@@ -40,24 +40,26 @@ void occlusalSurface(Spec& spec, const OcclusalPlan& plan) {
             spec.crests.push_back({c.tip, by, c.inner, c.round, c.slope});
             spec.crests.push_back(cuspRidge(c.tip, mesial, side));
             spec.crests.push_back(cuspRidge(c.tip, distal, side));
-            // Supplemental grooves on both sides of the triangular ridge, shallow, ending before the rim.
+            // Between the triangular ridge and the rim a lower secondary ridge: supplemental grooves run on both sides.
             for (const Vec3& rim : {mesial, distal}) {
-                const Vec3 from = between(c.inner, rim, 0.18), to = between(between(c.tip, rim, 0.55), c.inner, 0.22);
-                const Vec3 half = between(between(from, to, 0.5), c.tip, -0.06);
+                Vec3 from = between(c.tip, rim, 0.62), to = between(c.inner, rim, 0.3);
+                from.z() -= 0.12, to.z() = c.inner.z() + 0.1;
+                Vec3 half = between(between(from, to, 0.5), c.tip, -0.08);
+                half.z() -= 0.05 * (from.z() - to.z());
+                spec.crests.push_back({from, half, to, 0.35, 1.1});
+                // The groove beside the triangular ridge is cut a little sharper than the valley it lies in.
+                const Vec3 a = between(c.inner, rim, 0.14), e = between(between(c.tip, rim, 0.42), c.inner, 0.25);
+                const Vec3 m = between(between(a, e, 0.5), rim, -0.04);
                 spec.grooves.push_back(
-                    {"",
-                     {Vec3(from.x(), from.y(), 0.04), Vec3(half.x(), half.y(), 0.16), Vec3(to.x(), to.y(), 0.02)},
-                     0.38,
-                     2.0,
-                     3.5});
+                    {"", {Vec3(a.x(), a.y(), 0.03), Vec3(m.x(), m.y(), 0.09), Vec3(e.x(), e.y(), 0.0)}, 0.2, 2.0, 3.5});
             }
         }
     }
     for (const MarginalPlan* m : {&plan.mesial, &plan.distal}) {
         const double outwards = m == &plan.mesial ? 0.25 : -0.25;
         const Vec3 out(outwards, 0, 0);
-        spec.crests.push_back({m->buccal, between(m->buccal, m->middle, 0.5) + out, m->middle, m->round, 1.0});
-        spec.crests.push_back({m->middle, between(m->middle, m->lingual, 0.5) + out, m->lingual, m->round, 1.0});
+        spec.crests.push_back({m->buccal, between(m->buccal, m->middle, 0.5) + out, m->middle, m->round, 1.0, true});
+        spec.crests.push_back({m->middle, between(m->middle, m->lingual, 0.5) + out, m->lingual, m->round, 1.0, true});
     }
 }
 

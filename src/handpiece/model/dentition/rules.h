@@ -39,8 +39,8 @@ void scale(Spec& spec, double x, double y, double crown, double root);
 
 void lowerMolar(Spec& spec, int place, const Patient& patient);
 void upperMolar(Spec& spec, int place, const Patient& patient);
-void upperPremolar(Spec& spec, int place);
+void upperPremolar(Spec& spec, int place, const Patient& patient);
 void lowerPremolar(Spec& spec, int place, const Patient& patient);
-void anterior(Spec& spec, bool upper, int place);
+void anterior(Spec& spec, bool upper, int place, const Patient& patient);
 
 }  // namespace handpiece::dentition

@@ -23,9 +23,9 @@ Spec specOf(bool upper, int place, const Patient& patient) {
     Spec spec;
     spec.sizes = (upper ? kUpper : kLower)[place - 1];
     if (place <= 3)
-        anterior(spec, upper, place);
+        anterior(spec, upper, place, patient);
     else if (place <= 5)
-        upper ? upperPremolar(spec, place) : lowerPremolar(spec, place, patient);
+        upper ? upperPremolar(spec, place, patient) : lowerPremolar(spec, place, patient);
     else
         upper ? upperMolar(spec, place, patient) : lowerMolar(spec, place, patient);
     return spec;

@@ -18,12 +18,30 @@ constexpr double kStepMm = 0.08, kStepHeightMm = 0.3;
 /// Thickness that the enamel ends with, so that its edge is no razor.
 constexpr double kCervicalEnamelMm = 0.06;
 constexpr double kMinDentineOverPulpMm = 0.8;
-/// Flanks of two crests meet in a valley as sharp as this [mm].
-constexpr double kValleyMm = 0.10;
+/// Flanks of two crests meet in a valley as sharp as this [mm]; the ridges of the rim pass into each other softly.
+constexpr double kValleyMm = 0.10, kRimMm = 0.45;
+/// Incisal edges slope towards lingual.
+constexpr double kEdgeBevel = 0.2;
+/// A groove's shoulders reach this much farther than where one sees it end.
+constexpr double kShoulders = 1.12;
 constexpr int kCurvePieces = 6;
 
 double gauss(double t) {
     return core::exp(-0.5 * t * t);
+}
+
+/// A line with its corners cut, twice (Chaikin); the ends stay.
+std::vector<Vec3> rounded(std::vector<Vec3> points) {
+    for (int round = 0; round < 2; ++round) {
+        std::vector<Vec3> next = {points.front()};
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+            if (i > 0) next.push_back(0.75 * points[i] + 0.25 * points[i + 1]);
+            if (i + 2 < points.size()) next.push_back(0.25 * points[i] + 0.75 * points[i + 1]);
+        }
+        next.push_back(points.back());
+        points = std::move(next);
+    }
+    return points;
 }
 
 /// Distance to a chain of balls whose radius runs evenly from the first to the last point.
@@ -39,72 +57,81 @@ double chainValue(const std::vector<Vec3>& points, double from, double to, const
     return best;
 }
 
-/// The crown's sides from its four outlines.
+Vec2 rootCentre(const Root& r, double t) {
+    // Through its middle: a quadratic in the height.
+    const double tm = r.middle.z() / r.apex.z();
+    const Vec2 chord = r.cervix + tm * (r.apex.head<2>() - r.cervix);
+    const Vec2 bow = (r.middle.head<2>() - chord) / (tm * (1.0 - tm));
+    return r.cervix + t * (r.apex.head<2>() - r.cervix) + t * (1.0 - t) * bow;
+}
+
+/// Cross-sections of a root from its end up to the cervix.
+std::vector<Section> sectionsOf(const Root& r) {
+    const double a = r.taper.x(), b = r.taper.y();
+    std::vector<Section> sections;
+    for (const auto& [t, wide] :
+         {std::pair{0.92, b}, {0.72, 0.52 * a + 0.48 * b}, {0.5, a}, {0.25, 0.4 + 0.6 * a}, {0.0, 1.0}}) {
+        const Vec2 c = rootCentre(r, t);
+        sections.push_back({t * r.apex.z(), c.x(), c.y(), r.half.x() * wide, r.half.y() * wide, r.square,
+                            r.waist * smoothStep(0.0, 0.3, t)});
+    }
+    return sections;
+}
+
+Loft::Ends apexOf(const Root& r) {
+    const double narrow = r.taper.y() * std::min(r.half.x(), r.half.y());
+    return {r.apex.z() + 2.2 * narrow, 2.2 * narrow};
+}
+
+/// The crown's sides from its four outlines, with the root below where there is one, else with the trunk of the roots.
 Loft crownOf(const Spec& s) {
     const Sizes& z = s.sizes;
     const double halfX = 0.5 * z.mesiodistalCervix, halfY = 0.5 * z.buccolingualCervix;
-    std::vector<double> heights = {
-        -3.0, 0.0, s.mesial.contourZ, s.distal.contourZ, s.buccal.contourZ, s.lingual.contourZ};
-    for (const Outline* o : {&s.mesial, &s.distal, &s.buccal, &s.lingual}) {
-        heights.push_back(o->rimZ);
-        heights.push_back(o->topZ);
-    }
-    std::sort(heights.begin(), heights.end());
-    // One outline through its own heights, smooth: a small loft of its own, asked at the heights of all.
-    const auto outline = [](const Outline& o, double cervix, double contour) {
-        const double low = cervix * 0.93;
-        return Loft({{-3.0, low, 0, 1, 1, 0},
-                     {0.0, cervix, 0, 1, 1, 0},
-                     {o.contourZ, contour, 0, 1, 1, 0},
-                     {o.rimZ, o.rim, 0, 1, 1, 0},
-                     {o.topZ, o.top, 0, 1, 1, 0}},
-                    {-9.0, 1.0});
+    std::vector<Section> below;
+    Loft::Ends ends{-0.2 * s.trunk, 0.85 * s.trunk};
+    if (s.roots.size() == 1)
+        below = sectionsOf(s.roots.front()), below.pop_back(), ends = apexOf(s.roots.front());
+    else
+        below = {{-s.trunk, s.centreX, 0.0, 0.88 * halfX, 0.9 * halfY, s.cervixSquare}};
+    const double buccalZ = -0.25 * (z.curveMesial + z.curveDistal);
+    const auto outline = [&](const Outline& o, double cervixZ, double cervix, double contour, auto&& root) {
+        std::vector<Profile::Knot> knots;
+        for (const Section& b : below)
+            knots.push_back({b.z, root(b)});
+        knots.insert(knots.end(), {{cervixZ, cervix}, {o.contourZ, contour}, {o.rimZ, o.rim}, {o.topZ, o.top}});
+        return Profile(knots);
     };
-    const Loft mesial = outline(s.mesial, halfX + s.centreX, 0.5 * z.mesiodistal + s.mesial.shift),
-               distal = outline(s.distal, halfX - s.centreX, 0.5 * z.mesiodistal - s.mesial.shift),
-               buccal = outline(s.buccal, halfY, 0.5 * z.buccolingual + s.buccal.shift),
-               lingual = outline(s.lingual, halfY, 0.5 * z.buccolingual - s.buccal.shift);
-    std::vector<Section> sections;
-    for (const double h : heights) {
-        if (!sections.empty() && h - sections.back().z < 0.15) continue;
-        const double m = mesial.at(h).cx, d = distal.at(h).cx, b = buccal.at(h).cx, l = lingual.at(h).cx;
-        const double contourZ = 0.5 * (s.mesial.contourZ + s.distal.contourZ);
-        const double square =
-            h < contourZ ? s.cervixSquare + (s.contourSquare - s.cervixSquare) * smoothStep(0.0, contourZ, h)
-                         : s.contourSquare + (s.rimSquare - s.contourSquare) * smoothStep(contourZ, s.mesial.rimZ, h);
-        sections.push_back({h, 0.5 * (m - d), 0.5 * (l - b), 0.5 * (m + d), 0.5 * (l + b), square});
-    }
-    // Below the cervix it is the trunk of the roots.
-    const double trunk = s.trunk > 0.0 ? s.trunk : 2.4;
-    return Loft(sections, {-0.35 * trunk, 0.65 * trunk}, s.lean, s.wedge, s.skew);
+    std::vector<Profile::Knot> square, waist;
+    for (const Section& b : below)
+        square.push_back({b.z, b.square}), waist.push_back({b.z, b.waist});
+    square.insert(square.end(), {{0.0, s.cervixSquare},
+                                 {0.5 * (s.mesial.contourZ + s.distal.contourZ), s.contourSquare},
+                                 {s.mesial.rimZ, s.rimSquare}});
+    waist.push_back({0.5, 0.0}), waist.push_back({1.0, 0.0});
+    return Loft({outline(s.mesial, buccalZ + z.curveMesial, halfX + s.centreX, 0.5 * z.mesiodistal + s.mesial.shift,
+                         [](const Section& b) { return b.cx + b.halfX; }),
+                 outline(s.distal, buccalZ + z.curveDistal, halfX - s.centreX, 0.5 * z.mesiodistal - s.mesial.shift,
+                         [](const Section& b) { return b.halfX - b.cx; }),
+                 outline(s.buccal, buccalZ, halfY, 0.5 * z.buccolingual + s.buccal.shift,
+                         [](const Section& b) { return b.halfY - b.cy; }),
+                 outline(s.lingual, buccalZ, halfY, 0.5 * z.buccolingual - s.buccal.shift,
+                         [](const Section& b) { return b.halfY + b.cy; }),
+                 Profile(square), Profile(waist)},
+                ends, s.lean, s.wedge, s.skew);
 }
 
 Loft rootOf(const Root& r) {
-    const auto section = [&](double t, double wide) -> Section {
-        const Vec3 top(r.cervix.x(), r.cervix.y(), 0.0);
-        // Through its middle: a quadratic in the height.
-        const double tm = r.middle.z() / r.apex.z();
-        const Vec2 chord = r.cervix + tm * (r.apex.head<2>() - r.cervix);
-        const Vec2 bow = (r.middle.head<2>() - chord) / (tm * (1.0 - tm));
-        const Vec2 c = r.cervix + t * (r.apex.head<2>() - r.cervix) + t * (1.0 - t) * bow;
-        return {t * r.apex.z(),
-                c.x(),
-                c.y(),
-                r.half.x() * wide,
-                r.half.y() * wide,
-                r.square,
-                r.waist * smoothStep(0.0, 0.3, t)};
-    };
-    const double a = r.taper.x(), b = r.taper.y();
-    std::vector<Section> sections = {section(0.98, 0.75 * b),
-                                     section(0.9, b),
-                                     section(0.72, 0.55 * a + 0.45 * b),
-                                     section(0.5, a),
-                                     section(0.25, 0.45 + 0.55 * a),
-                                     section(0.0, 1.0),
-                                     section(-0.04, 1.0)};
-    const double narrow = b * std::min(r.half.x(), r.half.y());
-    return Loft(sections, {r.apex.z() + 1.6 * narrow, 1.6 * narrow, -0.2, 1.4});
+    Loft::Ends ends = apexOf(r);
+    // It begins within the trunk.
+    ends.topZ = -0.5, ends.topLength = 1.5;
+    return Loft(sectionsOf(r), ends);
+}
+
+Profile profileOf(const std::vector<Section>& sections, double (*of)(const Section&)) {
+    std::vector<Profile::Knot> knots;
+    for (const Section& s : sections)
+        knots.push_back({s.z, of(s)});
+    return Profile(knots);
 }
 
 }  // namespace
@@ -114,57 +141,64 @@ double smoothStep(double from, double to, double x) {
     return t * t * (3.0 - 2.0 * t);
 }
 
-Loft::Loft(std::vector<Section> sections, Ends ends, double lean, double wedge, double skew)
-    : ends_(ends), lean_(lean), wedge_(wedge), skew_(skew) {
-    for (const Section& s : sections)
-        knots_.push_back({s.z, {s.cx, s.cy, s.halfX, s.halfY, s.square, s.waist}, {}});
-    // Slopes after Fritsch and Carlson: the loft never swings beyond its sections.
-    for (int c = 0; c < kValues; ++c)
-        for (std::size_t i = 1; i + 1 < knots_.size(); ++i) {
-            const double h0 = knots_[i].z - knots_[i - 1].z, h1 = knots_[i + 1].z - knots_[i].z;
-            const double d0 = (knots_[i].value[c] - knots_[i - 1].value[c]) / h0,
-                         d1 = (knots_[i + 1].value[c] - knots_[i].value[c]) / h1;
-            if (d0 * d1 > 0.0) knots_[i].slope[c] = 3.0 * (h0 + h1) / ((2.0 * h1 + h0) / d0 + (h1 + 2.0 * h0) / d1);
-        }
+Profile::Profile(std::vector<Knot> knots) : knots_(std::move(knots)) {
+    for (std::size_t i = 1; i + 1 < knots_.size(); ++i) {
+        const double h0 = knots_[i].z - knots_[i - 1].z, h1 = knots_[i + 1].z - knots_[i].z;
+        const double d0 = (knots_[i].value - knots_[i - 1].value) / h0,
+                     d1 = (knots_[i + 1].value - knots_[i].value) / h1;
+        if (d0 * d1 > 0.0) knots_[i].slope = 3.0 * (h0 + h1) / ((2.0 * h1 + h0) / d0 + (h1 + 2.0 * h0) / d1);
+    }
+    if (knots_.size() > 1) {
+        const Knot& before = knots_[knots_.size() - 2];
+        knots_.back().slope = (knots_.back().value - before.value) / (knots_.back().z - before.z);
+    }
 }
 
-void Loft::interpolate(double height, double (&v)[kValues]) const {
-    const double z = std::clamp(height, knots_.front().z, knots_.back().z);
+double Profile::at(double height) const {
+    if (height <= knots_.front().z) return knots_.front().value;
+    if (height >= knots_.back().z) return knots_.back().value;
     std::size_t i = 0;
-    while (i + 2 < knots_.size() && z > knots_[i + 1].z)
+    while (height > knots_[i + 1].z)
         ++i;
     const Knot &a = knots_[i], &b = knots_[i + 1];
-    const double h = b.z - a.z, t = (z - a.z) / h;
-    const double t2 = t * t, t3 = t2 * t;
-    const double h01 = 3.0 * t2 - 2.0 * t3, h10 = t3 - 2.0 * t2 + t, h11 = t3 - t2;
-    for (int c = 0; c < kValues; ++c)
-        v[c] = a.value[c] + h01 * (b.value[c] - a.value[c]) + h * (h10 * a.slope[c] + h11 * b.slope[c]);
+    const double h = b.z - a.z, t = (height - a.z) / h, t2 = t * t, t3 = t2 * t;
+    return a.value + (3.0 * t2 - 2.0 * t3) * (b.value - a.value) +
+           h * ((t3 - 2.0 * t2 + t) * a.slope + (t3 - t2) * b.slope);
 }
 
-Section Loft::at(double z) const {
-    double v[kValues];
-    interpolate(z, v);
-    return {z, v[0], v[1], v[2], v[3], v[4], v[5]};
-}
+Loft::Loft(Outlines outlines, Ends ends, double lean, double wedge, double skew)
+    : outlines_(std::move(outlines)), ends_(ends), lean_(lean), wedge_(wedge), skew_(skew) {}
+
+Loft::Loft(const std::vector<Section>& s, Ends ends)
+    : Loft({profileOf(s, [](const Section& b) { return b.cx + b.halfX; }),
+            profileOf(s, [](const Section& b) { return b.halfX - b.cx; }),
+            profileOf(s, [](const Section& b) { return b.halfY - b.cy; }),
+            profileOf(s, [](const Section& b) { return b.halfY + b.cy; }),
+            profileOf(s, [](const Section& b) { return b.square; }),
+            profileOf(s, [](const Section& b) { return b.waist; })},
+           ends) {}
 
 double Loft::value(const Vec3& p) const {
-    double v[kValues];
-    interpolate(p.z(), v);
-    const double dy = p.y() - v[1], dx = p.x() - v[0] - skew_ * dy;
-    double x = dx / v[2], y = dy / v[3];
-    const double longer = 1.0 + lean_ * std::clamp(y, -1.5, 1.5), wide = 1.0 + wedge_ * std::clamp(x, -1.5, 1.5);
-    double halfX = v[2] * longer, halfY = v[3] * wide;
-    if (v[5] > 0.0) halfX *= 1.0 - v[5] * gauss(y / 0.42);
-    x = dx / halfX, y = dy / halfY;
+    const double m = outlines_.mesial.at(p.z()), d = outlines_.distal.at(p.z()), b = outlines_.buccal.at(p.z()),
+                 l = outlines_.lingual.at(p.z());
+    const double square = outlines_.square.at(p.z()), waist = outlines_.waist.at(p.z());
+    const double crown = smoothStep(-2.0, 2.0, p.z());
+    const double dy = p.y() - 0.5 * (l - b), dx = p.x() - 0.5 * (m - d) - crown * skew_ * dy;
+    double halfX = 0.5 * (m + d), halfY = 0.5 * (l + b);
+    const double u = std::clamp(dx / halfX, -1.5, 1.5), v = std::clamp(dy / halfY, -1.5, 1.5);
+    halfX *= 1.0 + crown * lean_ * v;
+    halfY *= 1.0 + crown * wedge_ * u;
+    if (waist > 0.0) halfX *= 1.0 - waist * gauss(v / 0.42);
+    const double x = dx / halfX, y = dy / halfY;
     double w = 0.0, length = 1.0;
     if (p.z() < ends_.bottomZ) w = (ends_.bottomZ - p.z()) / ends_.bottomLength, length = ends_.bottomLength;
     if (ends_.topLength > 0.0 && p.z() > ends_.topZ)
         w = (p.z() - ends_.topZ) / ends_.topLength, length = ends_.topLength;
     // Homogeneous of degree one, so that g - 1 over its gradient is about a distance on all sides of long sections too.
     const double xx = x * x, yy = y * y, sum = xx + yy + 1e-12;
-    const double g = std::sqrt(std::max(sum - v[4] * xx * yy / sum + w * w, 1e-12));
-    const double gx = x * (1.0 - v[4] * yy * yy / (sum * sum)) / halfX,
-                 gy = y * (1.0 - v[4] * xx * xx / (sum * sum)) / halfY, gz = w / length;
+    const double g = std::sqrt(std::max(sum - square * xx * yy / sum + w * w, 1e-12));
+    const double gx = x * (1.0 - square * yy * yy / (sum * sum)) / halfX,
+                 gy = y * (1.0 - square * xx * xx / (sum * sum)) / halfY, gz = w / length;
     const double steep = std::sqrt(gx * gx + gy * gy + gz * gz) / g;
     return std::max((g - 1.0) / std::max(steep, 1e-3), -1.2 * std::min(halfX, halfY));
 }
@@ -184,27 +218,26 @@ Anatomy::Anatomy(Spec spec) : spec_(std::move(spec)), crown_(crownOf(spec_)) {
     }
     topZ_ = z.crown + buccal + 0.6;
     for (const Crest& c : spec_.crests) {
-        Curve curve{{}, c.round, c.slope, 0.0, -1e9, Vec2::Zero()};
+        Curve curve{c.from, c.by - c.from, c.from - 2.0 * c.by + c.to,     c.round, c.slope,
+                    0.0,    -1e9,          0.5 * (c.from + c.to).head<2>()};
         for (int i = 0; i <= kCurvePieces; ++i) {
-            const double t = static_cast<double>(i) / kCurvePieces, u = 1.0 - t;
-            curve.points.push_back(u * u * c.from + 2.0 * u * t * c.by + t * t * c.to);
-            curve.topZ = std::max(curve.topZ, curve.points.back().z());
+            const double t = static_cast<double>(i) / kCurvePieces;
+            const Vec3 at = curve.a + 2.0 * t * curve.b + t * t * curve.c;
+            curve.topZ = std::max(curve.topZ, at.z());
+            curve.reach = std::max(curve.reach, (at.head<2>() - curve.middle).norm());
         }
-        curve.middle = 0.5 * (c.from + c.to).head<2>();
-        for (const Vec3& p : curve.points)
-            curve.reach = std::max(curve.reach, (p.head<2>() - curve.middle).norm());
         topZ_ = std::max(topZ_, curve.topZ + 0.3);
-        curves_.push_back(curve);
+        (c.isRim ? rim_ : curves_).push_back(curve);
     }
     for (const Groove& g : spec_.grooves) {
+        Line line{rounded(g.points), kShoulders * g.halfWidth, g.fromZ, g.toZ, Vec2::Zero(), 0.0};
         core::Box box;
-        for (const Vec3& p : g.points)
+        for (const Vec3& p : line.points)
             box.extend(p);
-        const Vec2 middle = box.centre().head<2>();
-        double reach = 0.0;
-        for (const Vec3& p : g.points)
-            reach = std::max(reach, (p.head<2>() - middle).norm());
-        lines_.push_back({&g, middle, reach + g.halfWidth});
+        line.middle = box.centre().head<2>();
+        for (const Vec3& p : line.points)
+            line.reach = std::max(line.reach, (p.head<2>() - line.middle).norm() + line.halfWidth + 0.06);
+        lines_.push_back(line);
     }
     if (!spec_.chamber.empty())
         chamber_.emplace_back(spec_.chamber, Loft::Ends{spec_.floorZ + 0.5, 0.5, spec_.roofZ - 0.6, 0.6});
@@ -215,41 +248,54 @@ core::Box Anatomy::bounds() const {
     return {Vec3(-reach_, -reach_, apexZ_ - 0.5), Vec3(reach_, reach_, topZ_)};
 }
 
-double Anatomy::occlusalHeight(double x, double y) const {
-    double height = spec_.groundZ;
-    for (const Curve& c : curves_) {
-        const double away = std::max(
-            std::sqrt((x - c.middle.x()) * (x - c.middle.x()) + (y - c.middle.y()) * (y - c.middle.y())) - c.reach,
-            0.0);
-        if (c.topZ - c.slope * (std::sqrt(away * away + c.round * c.round) - c.round) < height - kValleyMm) continue;
-        double best = -1e9;
-        for (std::size_t i = 0; i + 1 < c.points.size(); ++i) {
-            const Vec3 &a = c.points[i], &b = c.points[i + 1];
-            const double dx = b.x() - a.x(), dy = b.y() - a.y();
-            const double t = std::clamp(((x - a.x()) * dx + (y - a.y()) * dy) / (dx * dx + dy * dy + 1e-12), 0.0, 1.0);
-            const double ex = x - a.x() - t * dx, ey = y - a.y() - t * dy;
-            best = std::max(best, a.z() + t * (b.z() - a.z()) -
-                                      c.slope * (std::sqrt(ex * ex + ey * ey + c.round * c.round) - c.round));
-        }
-        height = smoothMax(height, best, kValleyMm);
+double Anatomy::heightOver(const Curve& c, double x, double y, double atLeast) {
+    const Vec2 p(x, y);
+    const double away = std::max((p - c.middle).norm() - c.reach, 0.0);
+    if (c.topZ - c.slope * (std::sqrt(away * away + c.round * c.round) - c.round) < atLeast) return atLeast;
+    // The nearest point of the curve as seen from above: the best of some, then Newton.
+    double nearest = std::numeric_limits<double>::infinity(), t = 0.0;
+    for (int i = 0; i <= kCurvePieces; ++i) {
+        const double u = static_cast<double>(i) / kCurvePieces;
+        const double squared = ((c.a + 2.0 * u * c.b + u * u * c.c).head<2>() - p).squaredNorm();
+        if (squared < nearest) nearest = squared, t = u;
     }
-    return height;
+    for (int i = 0; i < 3; ++i) {
+        const Vec2 off = (c.a + 2.0 * t * c.b + t * t * c.c).head<2>() - p, way = 2.0 * (c.b + t * c.c).head<2>();
+        const double bend = way.squaredNorm() + 2.0 * off.dot(c.c.head<2>());
+        t = std::clamp(t - off.dot(way) / std::max(bend, 0.3 * way.squaredNorm() + 1e-9), 0.0, 1.0);
+    }
+    const Vec3 at = c.a + 2.0 * t * c.b + t * t * c.c;
+    return std::max(at.z() - c.slope * (std::sqrt((at.head<2>() - p).squaredNorm() + c.round * c.round) - c.round),
+                    atLeast);
+}
+
+double Anatomy::occlusalHeight(double x, double y) const {
+    const double across = y;
+    if (spec_.isEdge) y = spec_.cusps.front().tip.y();
+    const double soft = spec_.isEdge ? kValleyMm : kRimMm;
+    double rim = spec_.groundZ;
+    for (const Curve& c : rim_)
+        rim = smoothMax(rim, heightOver(c, x, y, rim - soft), soft);
+    double height = spec_.groundZ;
+    for (const Curve& c : curves_)
+        height = smoothMax(height, heightOver(c, x, y, height - kValleyMm), kValleyMm);
+    if (curves_.empty()) return rim - kEdgeBevel * (across - y);
+    return smoothMax(rim, height, kValleyMm);
 }
 
 double Anatomy::grooveDepth(const Vec3& p) const {
     double deepest = 0.0;
-    for (const Line& line : lines_) {
-        const Groove& g = *line.groove;
+    for (const Line& g : lines_) {
         if (p.z() <= g.fromZ) continue;
-        const double mx = p.x() - line.middle.x(), my = p.y() - line.middle.y();
-        if (mx * mx + my * my > line.reach * line.reach) continue;
+        const double mx = p.x() - g.middle.x(), my = p.y() - g.middle.y();
+        if (mx * mx + my * my > g.reach * g.reach) continue;
         double here = 0.0;
         for (std::size_t i = 0; i + 1 < g.points.size(); ++i) {
             const Vec3 &a = g.points[i], &b = g.points[i + 1];
             const double dx = b.x() - a.x(), dy = b.y() - a.y();
             const double t = std::clamp(((p.x() - a.x()) * dx + (p.y() - a.y()) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
             const double ex = p.x() - a.x() - t * dx, ey = p.y() - a.y() - t * dy;
-            constexpr double kFloor = 0.04;
+            constexpr double kFloor = 0.06;
             const double d = (std::sqrt(ex * ex + ey * ey + kFloor * kFloor) - kFloor) / g.halfWidth;
             if (d < 1.0) here = std::max(here, (a.z() + t * (b.z() - a.z())) * (1.0 - d) * (1.0 - d));
         }
@@ -260,13 +306,16 @@ double Anatomy::grooveDepth(const Vec3& p) const {
 
 double Anatomy::body(const Vec3& p) const {
     double value = crown_.value(p);
-    if (!curves_.empty() && p.z() > 0.25 * topZ_) {
+    if (!spec_.crests.empty() && p.z() > 0.25 * topZ_) {
         const double top = kHeightToDistance * (p.z() - occlusalHeight(p.x(), p.y()));
         value = smoothMax(value, top, spec_.rimRound);
     }
-    if (p.z() < 2.0)
+    if (p.z() < 3.0 && roots_.size() > 1) {
+        // They pass into each other towards the furcation, and leave the cervix as it is.
+        const double blend = 0.1 + spec_.rootBlend * smoothStep(0.0, -spec_.trunk, p.z());
         for (const Loft& root : roots_)
-            value = smoothMin(value, root.value(p), spec_.rootBlend);
+            value = smoothMin(value, root.value(p), blend);
+    }
     for (const Hollow& h : spec_.hollows) {
         const double q = (p - h.centre).cwiseQuotient(h.radii).squaredNorm();
         if (q < 1.0) value += h.depth * (1.0 - q) * (1.0 - q);

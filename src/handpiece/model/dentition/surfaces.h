@@ -3,6 +3,8 @@
 /// @file
 /// A specification as functions of space, negative inside. Private to this room.
 
+#include <algorithm>
+
 #include "handpiece/model/dentition/anatomy.h"
 
 namespace handpiece::dentition {
@@ -17,28 +19,40 @@ namespace handpiece::dentition {
 }
 [[nodiscard]] double smoothStep(double from, double to, double x);
 
-/// Cross-sections with a smooth surface through them, closed like ellipsoids below and, if asked, above.
+/// A smooth curve through values at heights, which never swings beyond them (Fritsch and Carlson).
+class Profile {
+  public:
+    struct Knot {
+        double z, value, slope = 0.0;
+    };
+    explicit Profile(std::vector<Knot> knots);
+    [[nodiscard]] double at(double z) const;
+    [[nodiscard]] double slopeAt(double z) const;
+
+  private:
+    std::vector<Knot> knots_;
+};
+
+/// A body seen from its four sides, each outline a profile, with a cross-section between an ellipse and a rectangle;
+/// closed like an ellipsoid below and, if asked, above.
 class Loft {
   public:
+    struct Outlines {
+        Profile mesial, distal, buccal, lingual;  ///< how far it stands out towards +x, -x, -y, +y
+        Profile square, waist;
+    };
     struct Ends {
         double bottomZ, bottomLength;
         double topZ = 0.0, topLength = 0.0;  ///< length 0: open
     };
-    Loft(std::vector<Section> sections, Ends ends, double lean = 0.0, double wedge = 0.0, double skew = 0.0);
+    Loft(Outlines outlines, Ends ends, double lean = 0.0, double wedge = 0.0, double skew = 0.0);
+    Loft(const std::vector<Section>& sections, Ends ends);
     [[nodiscard]] double value(const core::Vec3& p) const;
-    [[nodiscard]] Section at(double z) const;
 
   private:
-    static constexpr int kValues = 6;
-    struct Knot {
-        double z;
-        double value[kValues], slope[kValues];  ///< cx, cy, halfX, halfY, square, waist
-    };
-    void interpolate(double z, double (&v)[kValues]) const;
-
-    std::vector<Knot> knots_;
+    Outlines outlines_;
     Ends ends_;
-    double lean_, wedge_, skew_;
+    double lean_, wedge_, skew_;  ///< of the crown: they fade out below the cervix
 };
 
 /// One tooth in the frame of anatomy.h.
@@ -69,16 +83,18 @@ class Anatomy {
 
   private:
     struct Curve {
-        std::vector<core::Vec3> points;
+        core::Vec3 a, b, c;  ///< a + 2 b t + c t^2
         double round, slope, reach, topZ;
         core::Vec2 middle;
     };
     struct Line {
-        const Groove* groove;
+        std::vector<core::Vec3> points;
+        double halfWidth, fromZ, toZ;
         core::Vec2 middle;
         double reach;
     };
     [[nodiscard]] double occlusalHeight(double x, double y) const;
+    [[nodiscard]] static double heightOver(const Curve& curve, double x, double y, double atLeast);
     [[nodiscard]] double grooveDepth(const core::Vec3& p) const;
     [[nodiscard]] double body(const core::Vec3& p) const;  ///< without grooves and the step at the cervix
     [[nodiscard]] double step(double above) const;
@@ -89,7 +105,7 @@ class Anatomy {
     Loft crown_;
     std::vector<Loft> roots_;
     std::vector<Loft> chamber_;
-    std::vector<Curve> curves_;
+    std::vector<Curve> rim_, curves_;
     std::vector<Line> lines_;
     double cervix_[4];  ///< heights of the cemento-enamel junction: mesial, distal, buccal, lingual
     double topZ_, apexZ_, reach_;

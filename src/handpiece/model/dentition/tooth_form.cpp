@@ -52,6 +52,18 @@ Spec specFor(int fdi, const Patient& patient) {
     const double x = all * (1.0 + 0.02 * tooth.normal()), y = all * (1.0 + 0.02 * tooth.normal());
     const double crown = all * (1.0 + 0.02 * tooth.normal()), root = all * (1.0 + 0.04 * tooth.normal());
     scale(spec, x, y, crown, root);
+    // Edges are rounded, ridges pass into each other: what is measured is brought to what is asked.
+    const Sizes asked = spec.sizes;
+    for (int i = 0; i < 2; ++i) {
+        const Anatomy made(spec);
+        const double wide = made.mesialContact.x() - made.distalContact.x(),
+                     deep = made.lingualContour.y() - made.buccalContour.y();
+        const Sizes before = spec.sizes;
+        scale(spec, 1.0, 1.0, asked.crown / (made.highest.z() - made.buccalCervixZ()),
+              asked.root / (made.buccalCervixZ() - made.lowest.z()));
+        spec.sizes = before;
+        spec.sizes.mesiodistal += asked.mesiodistal - wide, spec.sizes.buccolingual += asked.buccolingual - deep;
+    }
     wear(spec, (fdi % 10 >= 6 ? 0.012 : 0.008) * std::max(patient.ageYears - 12.0, 0.0));
     return spec;
 }

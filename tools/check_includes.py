@@ -28,7 +28,7 @@ THIRD_PARTY = {
     r"png\.h": r"src/handpiece/senses/view/image\.cpp|src/handpiece/scan/volume/picture_png\.cpp",
     r"jpeglib\.h": r"src/handpiece/scan/volume/picture_jpeg\.cpp",
     r"tiffio\.h": r"src/handpiece/scan/volume/picture_tiff\.cpp|tests/.*",
-    r"gdcm": r"src/handpiece/scan/volume/dicom_\w+\.cpp",
+    r"gdcm": r"src/handpiece/scan/volume/dicom_\w+\.(cpp|h)|tests/.*",
     r"nifti": r"tests/.*",
     r"sndfile\.h": r"src/handpiece/senses/sound/wav\.cpp",
     r"AL/": r"src/handpiece/senses/sound/\w+\.cpp",

@@ -38,6 +38,7 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods, c
     addExportCommand(top);
     addReportCommand(top);
     addPictureCommand(top);
+    addXrayCommand(top);
     addReproduceCommand(top);
     addBenchCommand(top);
     addPassivityCommand(top);

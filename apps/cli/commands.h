@@ -24,5 +24,6 @@ void addPassivityCommand(Command& app);
 void addDeviceCommand(Command& app);
 void addPictureCommand(Command& app);
 void addScanCommand(Command& app);
+void addXrayCommand(Command& app);
 
 }  // namespace handpiece::cli

@@ -74,20 +74,20 @@ bool decode(Stream& stream, png_structp& png, png_infop& head, PictureInfo& info
     return true;
 }
 
-bool encode(Stream& stream, png_structp& png, png_infop& head, const std::uint16_t* grey, int columns, int rows) {
+bool encode(Stream& stream, png_structp& png, png_infop& head, const void* grey, int bits, int columns, int rows) {
     if (setjmp(stream.jump) != 0) return false;
     png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &stream, onError, onWarning);
     head = png ? png_create_info_struct(png) : nullptr;
     if (!head) return false;
     png_set_write_fn(png, &stream, writeSome, flushNothing);
     png_set_compression_level(png, 3);
-    png_set_IHDR(png, head, static_cast<png_uint_32>(columns), static_cast<png_uint_32>(rows), 16, PNG_COLOR_TYPE_GRAY,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, head, static_cast<png_uint_32>(columns), static_cast<png_uint_32>(rows), bits,
+                 PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_write_info(png, head);
-    if (std::endian::native == std::endian::little) png_set_swap(png);
+    if (bits == 16 && std::endian::native == std::endian::little) png_set_swap(png);
+    const std::size_t each = static_cast<std::size_t>(columns) * static_cast<std::size_t>(bits / 8);
     for (int y = 0; y < rows; ++y)
-        png_write_row(png, reinterpret_cast<png_const_bytep>(grey + static_cast<std::size_t>(y) *
-                                                                        static_cast<std::size_t>(columns)));
+        png_write_row(png, static_cast<png_const_bytep>(grey) + static_cast<std::size_t>(y) * each);
     png_write_end(png, nullptr);
     return true;
 }
@@ -137,17 +137,29 @@ void readPng(Input& input, const PictureInfo& info, float* to) {
     }
 }
 
-std::vector<std::byte> pngBytes(std::span<const std::uint16_t> grey, int columns, int rows) {
+namespace {
+
+std::vector<std::byte> encoded(const void* grey, int bits, int columns, int rows) {
     std::vector<std::byte> out;
     Stream stream;
     stream.out = &out;
     png_structp png = nullptr;
     png_infop head = nullptr;
-    const bool good = encode(stream, png, head, grey.data(), columns, rows);
+    const bool good = encode(stream, png, head, grey, bits, columns, rows);
     png_destroy_write_struct(&png, &head);
     if (!good)
-        throw core::Error(fmt::format("cannot be made a PNG: {}", stream.text), "slice", "choose another format");
+        throw core::Error(fmt::format("cannot be made a PNG: {}", stream.text), "picture", "choose another format");
     return out;
+}
+
+}  // namespace
+
+std::vector<std::byte> pngBytes(std::span<const std::uint16_t> grey, int columns, int rows) {
+    return encoded(grey.data(), 16, columns, rows);
+}
+
+std::vector<std::byte> pngBytes(std::span<const std::uint8_t> grey, int columns, int rows) {
+    return encoded(grey.data(), 8, columns, rows);
 }
 
 }  // namespace handpiece::volume

@@ -39,6 +39,7 @@ void readTiff(Input& input, const PictureInfo& info, int first, int count, float
 [[nodiscard]] std::vector<std::byte> bmpBytes(std::span<const std::uint8_t> grey, int columns, int rows);
 [[nodiscard]] std::vector<std::byte> jpegBytes(std::span<const std::uint8_t> grey, int columns, int rows);
 [[nodiscard]] std::vector<std::byte> pngBytes(std::span<const std::uint16_t> grey, int columns, int rows);
+[[nodiscard]] std::vector<std::byte> pngBytes(std::span<const std::uint8_t> grey, int columns, int rows);
 [[nodiscard]] std::vector<std::byte> tiffBytes(std::span<const std::uint16_t> grey, int columns, int rows,
                                                const core::Vec3& spacingMm);
 

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/senses/radiograph/radiograph.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
+#include "handpiece/senses/radiograph/burned_text.h"
+#include "handpiece/senses/radiograph/projection.h"
+
+namespace handpiece::radiograph {
+namespace {
+
+constexpr double kLeastWhite = 1.5, kMostWhite = 4.0;
+constexpr double kAboveWhite = 0.005;  ///< of the picture
+/// Darkest that is told apart: what no quantum passes has no logarithm.
+constexpr double kLeastSignal = 1e-4;
+
+}  // namespace
+
+Exposure expose(const cases::Case& toothCase, const Projection& projection, const Settings& settings,
+                const core::Progress& progress) {
+    check(settings);
+    const Beam beam(settings.kv, settings.filtrationMm, settings.cheekMm, settings.filling);
+    const Scene scene(toothCase);
+    Exposure exposure{projection.width, projection.height, {}};
+    const auto width = static_cast<std::size_t>(projection.width), height = static_cast<std::size_t>(projection.height);
+    std::vector<double> sum(width * height, 0.0);
+    const int each = settings.focalSpotMm > 0.0 ? settings.spotPoints : 1, points = each * each;
+    for (int n = 0; n < points; ++n) {
+        // Points of the spot share its square evenly, rays of each pass another part of the pixel: rows of the spot
+        // and columns of the pixel change places, so that the two do not move together.
+        const int i = n % each, j = n / each;
+        const auto share = [&](int k) { return (2 * k + 1.0) / (2 * each) - 0.5; };
+        const Shadow shadow(scene, projection, core::Vec2(share(i), share(j)) * settings.focalSpotMm,
+                            core::Vec2(share(j), share(each - 1 - i)));
+        const core::Progress part =
+            core::part(progress, static_cast<double>(n) / points, static_cast<double>(n + 1) / points);
+        std::atomic<std::size_t> done{0};
+        core::parallelFor(height, 8, [&](std::size_t begin, std::size_t end) {
+            Shadow::Work work;
+            for (std::size_t y = begin; y < end; ++y) {
+                double* to = &sum[y * width];
+                // 1 is taken off, so that a ray through nothing adds nothing.
+                shadow.row(static_cast<int>(y), work,
+                           [&](int column, const Paths& paths) { to[column] += beam.transmission(paths) - 1.0; });
+                core::report(part, static_cast<double>(++done) / static_cast<double>(height));
+            }
+        });
+    }
+    exposure.signal.resize(sum.size());
+    for (std::size_t p = 0; p < sum.size(); ++p)
+        exposure.signal[p] = static_cast<float>(1.0 + sum[p] / points);
+    return exposure;
+}
+
+Picture develop(const Exposure& exposure) {
+    Picture picture{exposure.width, exposure.height, {}, 0.0};
+    std::vector<float> attenuation(exposure.signal.size());
+    core::parallelFor(attenuation.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p)
+            attenuation[p] =
+                static_cast<float>(-core::log(std::max(static_cast<double>(exposure.signal[p]), kLeastSignal)));
+    });
+    std::vector<float> sorted = attenuation;
+    const auto rank = static_cast<std::ptrdiff_t>(static_cast<double>(sorted.size()) * (1.0 - kAboveWhite));
+    std::nth_element(sorted.begin(), sorted.begin() + rank, sorted.end());
+    picture.whiteAt = std::clamp(static_cast<double>(sorted[static_cast<std::size_t>(rank)]), kLeastWhite, kMostWhite);
+    picture.grey.resize(attenuation.size());
+    for (std::size_t p = 0; p < attenuation.size(); ++p)
+        picture.grey[p] = static_cast<std::uint16_t>(
+            std::lround(65535.0 * std::clamp(static_cast<double>(attenuation[p]) / picture.whiteAt, 0.0, 1.0)));
+    burn(picture, "SIMULATED");
+    return picture;
+}
+
+Radiograph take(const cases::Case& toothCase, const Settings& settings, const core::Progress& progress) {
+    Radiograph r;
+    r.settings = settings;
+    r.fdiNumber = settings.fdiNumber != 0 ? settings.fdiNumber : toothCase.fdiNumber;
+    r.projection = project(toothCase, settings);
+    Exposure exposure = expose(toothCase, r.projection, settings, core::part(progress, 0.0, 0.95));
+    detect(exposure, settings);
+    r.picture = develop(exposure);
+    core::report(progress, 1.0);
+    return r;
+}
+
+}  // namespace handpiece::radiograph

@@ -67,6 +67,7 @@ Json toJson(const Case& c, const std::string& place) {
               {"outer", nullptr},
               {"parts", Json::array()},
               {"scenery", Json::array()},
+              {"teeth", Json::array()},
               {"changes_tissues", !c.tissuesToml.empty()},
               {"tissues", Json::object()},
               {"exercise", c.exercise ? toJson(*c.exercise) : Json(nullptr)}};
@@ -90,6 +91,14 @@ Json toJson(const Case& c, const std::string& place) {
     }
     for (const Part& part : c.scenery)
         json["scenery"].push_back(toJson(part));
+    json["landmarks"] = c.landmarks.size();
+    for (const cases::PlacedTooth& other : c.others)
+        json["teeth"].push_back({{"fdi", other.fdiNumber == 0 ? Json(nullptr) : Json(other.fdiNumber)},
+                                 {"name", other.name},
+                                 {"cuttable", other.isCuttable},
+                                 {"faces", other.surface().triangles.size()},
+                                 {"position_mm", toJson(other.inCase.positionMm)},
+                                 {"landmarks", other.landmarks.size()}});
     return json;
 }
 
@@ -119,6 +128,11 @@ void info(const std::string& place, bool json) {
         printPart(part, "part");
     for (const Part& part : c.scenery)
         printPart(part, "scenery");
+    for (const cases::PlacedTooth& other : c.others)
+        row("tooth",
+            fmt::format("{}{}: {} faces{}", other.fdiNumber == 0 ? "" : fmt::format("{} ", other.fdiNumber), other.name,
+                        other.surface().triangles.size(), other.isCuttable ? "" : ", not to be cut"));
+    if (!c.landmarks.empty()) row("landmarks", std::to_string(c.landmarks.size()));
     if (!c.tissuesToml.empty()) row("tissues", "a table of its own");
     if (c.exercise) {
         const cases::Exercise& e = *c.exercise;

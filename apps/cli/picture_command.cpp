@@ -181,10 +181,7 @@ struct Subject {
 
 void takeCase(Subject& subject, const cases::Case& toothCase) {
     subject.buccalSign = toothCase.buccalSign;
-    subject.scenery = toothCase.scenery;
-    for (const cases::PlacedTooth& other : toothCase.others)
-        subject.scenery.push_back(
-            {other.name, cases::Tissue::enamel, 0, geometry::transformed(other.outer, other.inCase), true});
+    subject.scenery = cases::surroundings(toothCase);
     subject.parts = toothCase.parts;
     subject.bounds = subject.live->model().outer.bounds();
 }

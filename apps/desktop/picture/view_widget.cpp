@@ -21,6 +21,7 @@ std::vector<cases::Tissue> tissuesOf(const cases::Case& toothCase) {
         there[static_cast<std::size_t>(part.tissue)] = true;
     for (const cases::Part& part : toothCase.scenery)
         there[static_cast<std::size_t>(part.tissue)] = true;
+    if (!toothCase.others.empty()) there[static_cast<std::size_t>(cases::Tissue::neighbour)] = true;
     if (toothCase.parts.empty()) there[static_cast<std::size_t>(cases::Tissue::enamel)] = true;
     std::vector<cases::Tissue> tissues;
     for (std::size_t i = 1; i < cases::kTissueCount; ++i)
@@ -56,7 +57,7 @@ void ViewWidget::setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth, cons
     s.tooth = std::move(liveTooth);
     s.take(toothCase, s.tooth->model().outer.bounds());
     s.tissues = tissuesOf(toothCase);
-    s.render->setTooth(s.tooth, toothCase.parts, toothCase.scenery, std::move(feed));
+    s.render->setTooth(s.tooth, toothCase.parts, cases::surroundings(toothCase), std::move(feed));
     s.probe->setTooth(s.tooth);
     showStandardView(view::StandardView::oblique);
     s.layOut();

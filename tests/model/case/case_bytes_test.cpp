@@ -48,6 +48,35 @@ TEST(CaseBytes, givesTheSameCaseBack) {
     EXPECT_LT(bytes.size(), given.outer.vertices.size() * 24 + given.outer.triangles.size() * 8 + 10000);
 }
 
+/// Two more teeth, one of which is not to be cut.
+Case three() {
+    Case made = ballInBall();
+    PlacedTooth other;
+    static_cast<Tooth&>(other) = ballInBall();
+    other.fdiNumber = 45;
+    other.inCase = {{8.1, 1.0 / 3.0, 0}, core::Quat(Eigen::AngleAxisd(0.1, core::Vec3::UnitY()))};
+    made.others.push_back(other);
+    other.parts.clear();
+    other.isCuttable = false;
+    made.others.push_back(other);
+    return made;
+}
+
+TEST(CaseBytes, givesTheOthersBack) {
+    const std::vector<std::byte> bytes = encodeCase(three());
+    const Case back = decodeCase(bytes, "test");
+    ASSERT_EQ(back.others.size(), 2u);
+    EXPECT_EQ(caseKey(back), caseKey(three()));
+    EXPECT_EQ(back.others[0].fdiNumber, 45);
+    EXPECT_FALSE(back.others[1].isCuttable);
+    EXPECT_EQ(encodeCase(back), bytes);
+    std::mt19937_64 random(test::seed());
+    for (int i = 0; i < 100; ++i) {
+        const auto kept = static_cast<std::size_t>(test::uniform(random, 0, static_cast<double>(bytes.size() - 1)));
+        EXPECT_THROW((void)decodeCase(std::span(bytes).first(kept), "test"), core::Error) << kept;
+    }
+}
+
 TEST(CaseBytes, refusesWhatIsCutOffOrDamaged) {
     const std::vector<std::byte> bytes = encodeCase(ballInBall());
     std::mt19937_64 random(test::seed());

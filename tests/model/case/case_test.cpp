@@ -10,7 +10,9 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/model/case/case_check.h"
 #include "handpiece/model/tooth/tooth_model.h"
+#include "support/closed_meshes.h"
 #include "support/error_of.h"
 #include "support/random.h"
 
@@ -120,6 +122,132 @@ TEST_F(CaseTest, ComesBackAsItWasWritten) {
     EXPECT_THAT(names(folder() / "new"),
                 ElementsAre("molar", "molar/case.toml", "molar/deep-caries---pit-2.stl", "molar/deep-caries---pit.stl",
                             "molar/enamel.stl", "molar/outer.stl", "molar/scene-outer.stl"));
+}
+
+/// With a tooth beside it, turned, and gum that is felt.
+Case mouth() {
+    Case c = sample();
+    c.landmarks = {{LandmarkKind::cuspTip, "mesiobuccal", {{2.12345, -1.5, 6.0}}, LandmarkSource::generated},
+                   {LandmarkKind::fissure, "central", {{-2, 0, 5}, {0, 0.1, 4.9}, {2, 0, 5}}, LandmarkSource::set},
+                   {LandmarkKind::cementoEnamelJunction, "", {{4, 0, 0}, {0, 4, 0}, {-4, 0, 0}}, LandmarkSource::found},
+                   {LandmarkKind::longAxis, "", {{0, 0, -14}, {0, 0, 7}}, LandmarkSource::generated}};
+    PlacedTooth other;
+    other.name = "second premolar";
+    other.fdiNumber = 45;
+    other.buccalSign = -1;
+    other.outer = test::boxMesh({-3, -3, -9}, {3, 3, 4});
+    other.parts = {{"enamel", Tissue::enamel, 20, test::boxMesh({-3, -3, 0}, {3, 3, 4}), false}};
+    other.landmarks = {{LandmarkKind::contact, "distal", {{-3, 0, 2}}, LandmarkSource::generated}};
+    other.inCase = {{20.25, 1.0 / 3.0, -0.5}, core::Quat(Eigen::AngleAxisd(0.3, core::Vec3(1, 2, 3).normalized()))};
+    c.others.push_back(other);
+    other.name = "canine";
+    other.fdiNumber = 43;
+    other.isCuttable = false;
+    other.inCase.positionMm.x() = 40.0;
+    c.others.push_back(other);
+    c.scenery.front().isFelt = true;
+    return c;
+}
+
+void expectSameLandmarks(const std::vector<Landmark>& a, const std::vector<Landmark>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        EXPECT_EQ(a[i].kind, b[i].kind);
+        EXPECT_EQ(a[i].name, b[i].name);
+        EXPECT_EQ(a[i].source, b[i].source);
+        ASSERT_EQ(a[i].pointsMm.size(), b[i].pointsMm.size());
+        for (std::size_t k = 0; k < a[i].pointsMm.size(); ++k)
+            EXPECT_LT((a[i].pointsMm[k] - b[i].pointsMm[k]).norm(), 1e-5);
+    }
+}
+
+TEST_F(CaseTest, AMouthComesBackAsItWasWritten) {
+    const Case written = mouth();
+    for (const fs::path& place : {folder() / "mouth", folder() / "mouth.handpiece"}) {
+        writeCase(written, place);
+        const Case read = readCase(place);
+        EXPECT_TRUE(read.scenery.front().isFelt);
+        expectSameLandmarks(read.landmarks, written.landmarks);
+        ASSERT_EQ(read.others.size(), 2u);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const PlacedTooth &a = read.others[i], &b = written.others[i];
+            EXPECT_EQ(a.name, b.name);
+            EXPECT_EQ(a.fdiNumber, b.fdiNumber);
+            EXPECT_EQ(a.buccalSign, -1);
+            EXPECT_EQ(a.isCuttable, i == 0);
+            EXPECT_EQ(a.inCase.positionMm, b.inCase.positionMm);
+            EXPECT_EQ(a.inCase.orientation.coeffs(), b.inCase.orientation.coeffs());
+            expectSameMesh(a.outer, b.outer);
+            expectSameParts(a.parts, b.parts);
+            expectSameLandmarks(a.landmarks, b.landmarks);
+        }
+        EXPECT_EQ(contentKey(read), contentKey(written));
+        EXPECT_EQ(caseKey(read), caseKey(written));
+        EXPECT_EQ(surroundings(read).size(), 3u);
+    }
+    // The key is that of the teeth and where they stand; without others that of the tooth alone.
+    Case moved = written;
+    moved.others[1].inCase.positionMm.y() += 1e-9;
+    EXPECT_NE(caseKey(moved), caseKey(written));
+    EXPECT_EQ(contentKey(moved), contentKey(written));
+    moved.others.clear();
+    EXPECT_EQ(caseKey(moved), contentKey(written));
+}
+
+TEST_F(CaseTest, TellsWhatIsWrongWithAMouth) {
+    const auto error = [&](const std::string& more) {
+        const std::string what = readError(caseOf("format = 3\nfdi = 46\n" + more + "\n" + kPart));
+        EXPECT_EQ(what.find('\n'), std::string::npos) << "one line: " << what;
+        return what;
+    };
+    const std::string tooth = "[[tooth]]\nfdi = 45\nouter = \"part.stl\"\nposition_mm = [10, 0, 0]\n";
+    const std::string turn = "orientation = [1, 0, 0, 0]\n";
+    EXPECT_EQ(error(tooth + turn), "");
+    EXPECT_THAT(error(tooth), HasSubstr("turn"));
+    EXPECT_THAT(error(tooth + "orientation = [1, 1, 0, 0]\n"), HasSubstr("unit quaternion"));
+    EXPECT_THAT(error(tooth + "orientation = [1, 0, 0]\n"), HasSubstr("four numbers"));
+    EXPECT_THAT(error(tooth + turn + "colour = 3\n"), HasSubstr("colour"));
+    EXPECT_THAT(error("[[tooth]]\nfdi = 45\nposition_mm = [10, 0, 0]\n" + turn), HasSubstr("outer"));
+    EXPECT_THAT(error("[[tooth]]\nouter = \"part.stl\"\nposition_mm = [1e4, 0, 0]\n" + turn),
+                HasSubstr("10000 mm off"));
+    EXPECT_THAT(error("[[tooth]]\nouter = \"../part.stl\"\nposition_mm = [1, 0, 0]\n" + turn),
+                HasSubstr("inside the case"));
+    EXPECT_THAT(error(tooth + turn + tooth + turn), HasSubstr("45 stands in the case twice"));
+    EXPECT_THAT(error("[[tooth]]\nfdi = 46\nouter = \"part.stl\"\nposition_mm = [1, 0, 0]\n" + turn),
+                HasSubstr("twice"));
+    EXPECT_THAT(error("[[landmark]]\nkind = \"nose\"\npoints_mm = [1, 2, 3]\n"),
+                AllOf(HasSubstr("nose"), HasSubstr("cusp-tip")));
+    EXPECT_THAT(error("[[landmark]]\nkind = \"cusp-tip\"\npoints_mm = [1, 2]\n"), HasSubstr("2 numbers"));
+    EXPECT_THAT(error("[[landmark]]\nkind = \"fissure\"\npoints_mm = [1, 2, 3]\n"), HasSubstr("3 numbers"));
+    EXPECT_THAT(error("[[landmark]]\nkind = \"cusp-tip\"\npoints_mm = [1, 2, 3e5]\n"), HasSubstr("off the tooth"));
+    EXPECT_THAT(error("[[landmark]]\nkind = \"long-axis\"\npoints_mm = [1, 2, 3, 1, 2, 3]\n"),
+                HasSubstr("no direction"));
+    EXPECT_THAT(error("[[landmark]]\nkind = \"pit\"\nsource = \"god\"\npoints_mm = [1, 2, 3]\n"), HasSubstr("god"));
+    EXPECT_THAT(error("[[part]]\nfile = \"part.stl\"\ntissue = \"enamel\"\nfelt = true\n"), HasSubstr("felt"));
+    // What is new is nothing that an older format may have.
+    EXPECT_THAT(readError(caseOf("format = 2\n" + tooth + turn + kPart)), HasSubstr("tooth"));
+    std::string many = "format = 3\n";
+    for (int i = 0; i < 70; ++i)
+        many += "[[tooth]]\n";
+    EXPECT_THAT(readError(caseOf(many + kPart)), HasSubstr("70 teeth"));
+}
+
+TEST_F(CaseTest, FindsTeethThatCross) {
+    Case c;
+    c.outer = test::sphereMesh(3, 4.0);
+    PlacedTooth other;
+    other.fdiNumber = 45;
+    other.outer = c.outer;
+    for (const double atMm : {7.95, 7.0, 60.0}) {
+        c.others.assign(1, other);
+        c.others[0].inCase.positionMm = {atMm, 0, 0};
+        const auto findings = checkCase(c);
+        const auto errors = std::count_if(findings.begin(), findings.end(), [](const auto& f) { return f.isError; });
+        EXPECT_EQ(errors, atMm == 7.0 ? 1 : 0) << atMm;
+    }
+    c.others[0].outer.triangles.pop_back();
+    EXPECT_THAT(checkCase(c).front().what, HasSubstr("open"));
+    EXPECT_EQ(checkCase(c).front().part, "tooth 45");
 }
 
 TEST_F(CaseTest, WithoutAnOuterSurfaceToo) {

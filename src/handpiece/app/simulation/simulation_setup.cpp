@@ -459,8 +459,7 @@ SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings 
         cases::Case alone;
         alone.name = other.name;
         alone.source = toothCase.source;
-        const geometry::TriangleMesh& surface = other.outer.triangles.empty() ? other.parts.front().mesh : other.outer;
-        alone.parts.push_back({other.name, cases::Tissue::neighbour, 0, surface});
+        alone.parts.push_back({other.name, cases::Tissue::neighbour, 0, other.surface()});
         const double done = static_cast<double>(station.others.size());
         station.others.push_back({tooth::loadModel(alone, {fieldSettingsAt(kStandingVoxelMm), {}, useCache},
                                                    core::part(progress, own + (1.0 - own) * done / count,

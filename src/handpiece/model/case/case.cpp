@@ -254,6 +254,14 @@ Case readCase(const fs::path& path) {
     return made;
 }
 
+std::vector<Part> surroundings(const Case& toothCase) {
+    std::vector<Part> all = toothCase.scenery;
+    for (const PlacedTooth& other : toothCase.others)
+        all.push_back({other.name, Tissue::neighbour, properties(Tissue::neighbour).priority,
+                       geometry::transformed(other.surface(), other.inCase), true});
+    return all;
+}
+
 std::uint64_t contentKey(const Tooth& tooth) {
     core::Hasher hasher;
     hasher.add(std::string_view("handpiece case"));

@@ -34,6 +34,11 @@ struct Tooth {
     geometry::TriangleMesh outer;  ///< the whole tooth as one closed surface; empty when there is none
     std::vector<Part> parts;       ///< its tissues
     std::vector<Landmark> landmarks{};
+
+    /// That is felt: `outer`, or that of its only part; empty when there is neither.
+    [[nodiscard]] const geometry::TriangleMesh& surface() const noexcept {
+        return outer.triangles.empty() && parts.size() == 1 ? parts.front().mesh : outer;
+    }
 };
 
 /// Another tooth of the mouth.
@@ -64,6 +69,10 @@ void writeCase(const Case& toothCase, const std::filesystem::path& path);
 [[nodiscard]] std::uint64_t contentKey(const Tooth& tooth);
 /// Of all teeth of a case and where they stand; contentKey() of its tooth when it has no others.
 [[nodiscard]] std::uint64_t caseKey(const Case& toothCase);
+
+/// All that is to be seen around the tooth that is worked on, in the case's frame: scenery, and the surfaces of the
+/// other teeth as Tissue::neighbour.
+[[nodiscard]] std::vector<Part> surroundings(const Case& toothCase);
 
 /// Why a surface cannot be felt, or that it can: closed, oriented, sane in size, not crossing itself.
 /// Throws core::Error with counts, the first place, and the command that mends it.

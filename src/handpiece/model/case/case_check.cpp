@@ -103,6 +103,37 @@ double uncoveredShare(const TriangleTree& outer, std::span<const Checked> parts)
     return inside > 0.0 ? static_cast<double>(std::count(found.begin(), found.end(), 2)) / inside : 0.0;
 }
 
+/// Whether the other teeth are solids and stand clear of one another and of the case's own.
+void checkOthers(const Case& toothCase, const std::shared_ptr<const TriangleTree>& own,
+                 std::vector<CaseFinding>& findings) {
+    struct Standing {
+        std::string name;
+        std::vector<Vec3> points;  ///< in the case's frame
+        std::shared_ptr<const TriangleTree> tree;
+    };
+    std::vector<Standing> teeth;
+    if (own) teeth.push_back({"the case's own tooth", toothCase.surface().vertices, own});
+    for (const PlacedTooth& other : toothCase.others) {
+        const std::string name = other.fdiNumber != 0 ? fmt::format("tooth {}", other.fdiNumber) : other.name;
+        const geometry::TriangleMesh placed = geometry::transformed(other.surface(), other.inCase);
+        teeth.push_back({name, placed.vertices, solidTree(placed, name, findings)});
+    }
+    for (std::size_t i = 0; i < teeth.size(); ++i)
+        for (std::size_t j = i + 1; j < teeth.size(); ++j) {
+            if (!teeth[i].tree || !teeth[j].tree) continue;
+            const core::Box a = teeth[i].tree->bounds(), b = teeth[j].tree->bounds();
+            if ((a.min.array() > b.max.array()).any() || (b.min.array() > a.max.array()).any()) continue;
+            const Extreme ij = extremeOf(teeth[i].points, *teeth[j].tree, -1.0);
+            const Extreme ji = extremeOf(teeth[j].points, *teeth[i].tree, -1.0);
+            const Extreme& most = ij.valueMm >= ji.valueMm ? ij : ji;
+            if (most.valueMm <= kCaseToleranceMm) continue;
+            findings.push_back(
+                {true, teeth[i].name,
+                 fmt::format("it crosses {} by {:.3f} mm at {}", teeth[j].name, most.valueMm, place(most.at)),
+                 most.valueMm, "move one of them (position_mm, orientation)"});
+        }
+}
+
 }  // namespace
 
 std::vector<CaseFinding> checkCase(const Case& toothCase, const core::Progress& progress) {
@@ -137,6 +168,8 @@ std::vector<CaseFinding> checkCase(const Case& toothCase, const core::Progress& 
             if (parts[j].tree) checkCrossing(parts[i], parts[j], findings);
         core::report(progress, 0.4 + 0.4 * static_cast<double>(i + 1) / static_cast<double>(parts.size()));
     }
+    if (!toothCase.others.empty())
+        checkOthers(toothCase, outer || parts.empty() ? outer : parts.front().tree, findings);
     if (outer && allSolid && !parts.empty())
         if (const double share = uncoveredShare(*outer, parts); share > kUncoveredShare)
             findings.push_back({false, "",

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// A tooth among others: what stands around is felt by bur and body, and is not cut.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/model/instrument/shapes.h"
+#include "handpiece/model/instrument/turbine.h"
+#include "handpiece/tick/device/simulated_device.h"
+#include "handpiece/tick/loop/loop_run.h"
+#include "support/closed_meshes.h"
+#include "support/realtime_trap.h"
+
+namespace handpiece::simulation {
+namespace {
+
+using core::Pose;
+using core::Vec3;
+using messages::HapticSample;
+
+constexpr double kBurRadiusMm = 0.5;
+
+/// A block to be cut, with its top at z = 0, and beside it at x = 2.2 a wider one of the same height that stands
+/// turned.
+cases::Case mouth() {
+    cases::Case made;
+    made.name = "block";
+    made.outer = test::boxMesh(Vec3(-2, -1.5, -4), Vec3(2, 2, 0));
+    made.parts = {{"enamel", cases::Tissue::enamel, 0, made.outer}};
+    cases::PlacedTooth other;
+    other.name = "beside";
+    other.fdiNumber = 45;
+    other.outer = test::boxMesh(Vec3(-2, -2, 0), Vec3(2, 2, 4));
+    other.inCase = {{4.2, 0, 0}, core::Quat(0, 1, 0, 0)};  // half a turn about x
+    made.others.push_back(other);
+    return made;
+}
+
+SimulationSetup setupOf(const cases::Case& c) {
+    SimulationSettings settings;
+    settings.bur = std::make_shared<const instrument::Bur>(instrument::makeBur("cylinder-flat:1.0x3.0"));
+    return makeSimulation(c, settings, false);
+}
+
+device::TimedPose at(double timeS, double x, double y, double z, double pedal) {
+    device::TimedPose pose;
+    pose.timeS = timeS;
+    pose.burInTooth.positionMm = Vec3(x, y, z);
+    pose.pedal = pedal;
+    return pose;
+}
+
+template <class Listen>
+void run(const SimulationSetup& setup, std::vector<device::TimedPose> path, const Listen& listen) {
+    device::SimulatedDeviceSettings device;
+    device.rigidHand = true;
+    const double durationS = path.back().timeS;
+    loop::HapticLoop loop(loop::LoopSettings{},
+                          std::make_unique<device::SimulatedDevice>(device, device::Motion(std::move(path))),
+                          setup.work(), force::defaultParameters());
+    (void)loop::runSimulated(loop, durationS, listen);
+}
+
+double removedOf(const HapticSample& s) {
+    double sum = 0.0;
+    for (const double mm3 : s.removedMm3)
+        sum += mm3;
+    return sum;
+}
+
+TEST(Mouth, TheToothBesideHoldsTheBurAndIsNotCut) {
+    const SimulationSetup setup = setupOf(mouth());
+    ASSERT_EQ(setup.others.size(), 1u);
+    const double wall = 2.2 - kBurRadiusMm;
+    HapticSample last;
+    bool cut = false;
+    // Into the gap between them, turning, and 0.2 mm into the other's wall; the first ends before it.
+    run(setup,
+        {at(0.0, 1.2, -2.6, 1.0, 0), at(0.3, 1.2, -2.6, -1.0, 1), at(0.6, wall + 0.2, -2.2, -1.0, 1),
+         at(1.2, wall + 0.2, -2.2, -1.0, 1)},
+        [&](const HapticSample& s) {
+            last = s;
+            cut = cut || (s.flags & messages::kCutting) != 0;
+        });
+    EXPECT_EQ(last.tooth, 1);
+    EXPECT_EQ(last.tissue, static_cast<std::uint8_t>(cases::Tissue::neighbour));
+    EXPECT_LT(last.forceN[0], -0.02) << "it pushes back";
+    EXPECT_FALSE(cut);
+    EXPECT_EQ(removedOf(last), 0.0);
+}
+
+TEST(Mouth, TheHeadMeetsWhatStandsOverAndTakesThePressOffTheBur) {
+    const std::vector<device::TimedPose> path{at(0.0, 0, 0, 1.5, 0), at(0.5, 0, 0, -0.5, 1), at(2.0, 0, 0, -0.5, 1)};
+    double free = 0.0, held = 0.0, deepest = 1.0;
+    std::uint32_t flags = 0;
+    run(setupOf(mouth()), path, [&](const HapticSample& s) { free = removedOf(s); });
+    // A block beside the bur that stands 9.2 mm high: the head's lower face is 9 mm over the tip.
+    cases::Case low = mouth();
+    cases::PlacedTooth& high = low.others.front();
+    high.outer = test::boxMesh(Vec3(2, -3, 6), Vec3(6, 3, instrument::kBurReachMm + 0.2));
+    high.inCase = {};
+    run(setupOf(low), path, [&](const HapticSample& s) {
+        held = removedOf(s);
+        flags |= s.flags;
+        deepest = std::min(deepest, s.proxyPositionMm[2]);
+    });
+    EXPECT_GT(free, 0.05);
+    EXPECT_EQ(held, 0.0);
+    EXPECT_TRUE((flags & messages::kHeadTouches) != 0) << "which says so";
+    EXPECT_GT(deepest, 0.1) << "the bur never reached the tooth";
+}
+
+}  // namespace
+}  // namespace handpiece::simulation

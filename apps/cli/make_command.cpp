@@ -11,6 +11,7 @@
 #include "handpiece/model/dentition/tooth_form.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/instrument/turbine.h"
+#include "handpiece/model/lesion/lesion.h"
 #include "handpiece/model/starter/paper.h"
 #include "handpiece/model/starter/starter.h"
 #include "studies/progress_bar.h"
@@ -19,7 +20,7 @@ namespace handpiece::cli {
 namespace {
 
 struct MakeOptions {
-    std::string kind = "lower-first-molar", out, shape, name;
+    std::string kind = "lower-first-molar", out, shape, name, lesions;  // lesions: SURFACE:DEPTH,...
     std::size_t faces = 68150, partFaces = 0;
     bool scene = false, slab = false;
     double diameterMm = 0.0, lengthMm = 0.0;
@@ -44,6 +45,7 @@ void makeTooth(const MakeOptions& o) {
         throw core::Error("a tooth by its number comes without a scene", "--scene",
                           "leave one of --fdi and --scene out");
     studies::ProgressBar bar("making the tooth");
+    const std::vector<lesion::Lesion> lesions = lesion::lesionsByName(o.lesions);
     cases::Case made;
     if (o.fdi != 0)
         static_cast<cases::Tooth&>(made) =
@@ -51,12 +53,19 @@ void makeTooth(const MakeOptions& o) {
     else
         made = starter::makeTooth(starter::toothKindByName(o.kind), {o.faces, o.partFaces, o.scene}, bar.listener());
     bar.finish();
+    if (!lesions.empty()) {
+        // In place of the one that a starter tooth comes with.
+        std::erase_if(made.parts, [](const cases::Part& part) { return cases::isCarious(part.tissue); });
+        studies::ProgressBar lesionBar("making its lesions");
+        lesion::addLesions(made, lesions, {.seed = o.patient.seed}, lesionBar.listener());
+        lesionBar.finish();
+    }
     cases::writeCase(made, o.out);
-    fmt::print("{}: {}\n  {:<12} {:>8} faces {:>10.2f} mm3\n", o.out, made.name, "outer", made.outer.triangles.size(),
+    fmt::print("{}: {}\n  {:<40} {:>8} faces {:>10.2f} mm3\n", o.out, made.name, "outer", made.outer.triangles.size(),
                geometry::enclosedVolumeMm3(made.outer));
     for (const std::vector<cases::Part>* parts : {&made.parts, &made.scenery})
         for (const cases::Part& part : *parts)
-            fmt::print("  {:<12} {:>8} faces {:>10.2f} mm3\n", part.name, part.mesh.triangles.size(),
+            fmt::print("  {:<40} {:>8} faces {:>10.2f} mm3\n", part.name, part.mesh.triangles.size(),
                        geometry::enclosedVolumeMm3(part.mesh));
 }
 
@@ -91,13 +100,18 @@ void addMakeCommand(Command& app) {
     tooth.option("--kind", o.kind, "one of: " + listed(starter::toothKinds(), [](const auto& k) { return k.name; }))
         .showDefault();
     tooth.option("--fdi", o.fdi, "instead of a kind: a permanent tooth by its number, 11 to 48");
-    tooth.option("--seed", o.patient.seed, "with --fdi: whose tooth, another for another number").showDefault();
+    tooth.option("--seed", o.patient.seed, "with --fdi and --lesion: whose tooth, another for another number")
+        .showDefault();
     tooth.option("--age", o.patient.ageYears, "with --fdi: of the patient [years]; wear and the pulp's size")
         .showDefault();
     tooth.option("--faces", o.faces, "triangles of the outer surface").showDefault();
     tooth.option("--part-faces", o.partFaces, "triangles of each tissue's surface; 0: as fine as the outer one")
         .showDefault();
     tooth.flag("--scene", o.scene, "also the neighbours, the gum and the bone");
+    tooth.option("--lesion", o.lesions,
+                 "SURFACE:DEPTH,...: caries and what else is found, instead of the tooth's own lesion; surfaces: " +
+                     listed(lesion::kSurfaces, [](auto s) { return s; }) +
+                     "; depths: " + listed(lesion::kFindings, [](auto f) { return f; }));
     tooth.option("--out", o.out, "folder to write").required();
     tooth.footer(
         "Examples:\n  handpiece make tooth --fdi 46 --seed 3 --age 40 --out molar\n  handpiece make tooth --kind "

@@ -293,6 +293,9 @@ void main() {
             float deep = clamp(1.0 - open, 0.0, 1.0);
             albedo *= mix(vec3(1.0), vec3(0.70, 0.52, 0.33), smoothstep(0.22, 0.85, deep) * 0.9);
         }
+        // A white spot is opaque: dentine shines through less, not at all at its tips.
+        float upward = clamp((at.z - crown.x) / (crown.y - crown.x), 0.0, 1.0);
+        if (kind == 10) albedo *= mix(vec3(0.96, 0.90, 0.80), vec3(1.0), smoothstep(0.0, 0.65, upward));
 #ifdef FINE
         // Gum is blotched and caries grained in two sizes, other tissues in one.
         bool isCaries = kind == 4 || (kind >= 11 && kind <= 16);

@@ -112,5 +112,29 @@ TEST(Mouth, TheHeadMeetsWhatStandsOverAndTakesThePressOffTheBur) {
     EXPECT_GT(deepest, 0.1) << "the bur never reached the tooth";
 }
 
+TEST(Mouth, GingivaYieldsPushesBackAndIsTornByTheBur) {
+    cases::Case made = mouth();
+    made.scenery = {{"gingiva", cases::Tissue::gum, 0, test::boxMesh(Vec3(-6, -8, -6), Vec3(6, -3, -1)), true},
+                    {"only seen", cases::Tissue::gum, 0, test::boxMesh(Vec3(-6, -8, 2), Vec3(6, -3, 3)), false}};
+    const SimulationSetup setup = setupOf(made);
+    ASSERT_EQ(setup.others.size(), 2u);
+    // Down onto it, away from the teeth: 0.4 mm deep with the bur at rest, then turning.
+    HapticSample still, last;
+    run(setup,
+        {at(0.0, 0, -5.5, 0.5, 0), at(0.4, 0, -5.5, -1.4, 0), at(1.2, 0, -5.5, -1.4, 0), at(1.21, 0, -5.5, -1.4, 1),
+         at(2.0, 0, -5.5, -1.4, 1)},
+        [&](const HapticSample& s) {
+            if (s.timeS < 1.15) still = s;
+            last = s;
+        });
+    const cases::TissueProperties& gum = cases::properties(cases::Tissue::gum);
+    const double stiffness = gum.stiffnessFraction * device::Capability{}.maxStiffnessNPerMm;
+    EXPECT_NEAR(still.forceN[2], 0.4 * stiffness, 0.02 * stiffness) << "a spring of its own, at rest";
+    EXPECT_EQ(still.flags & (messages::kPressesGingiva | messages::kCutsGingiva), messages::kPressesGingiva);
+    EXPECT_NEAR(still.proxyPositionMm[2], -1.4, 1e-6) << "it holds nothing off";
+    EXPECT_TRUE((last.flags & messages::kCutsGingiva) != 0);
+    EXPECT_EQ(removedOf(last), 0.0);
+}
+
 }  // namespace
 }  // namespace handpiece::simulation

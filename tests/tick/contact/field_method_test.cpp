@@ -488,5 +488,21 @@ TEST_F(OwnCavity, theTickNeverAllocatesOrLocks) {
     EXPECT_EQ(trap.total(), 0u);
 }
 
+TEST(FieldMethod, AFlatEndCentredOverAnEdgeIsPushedOut) {
+    // The diagonal of a box's top runs through the bur's axis: there the middle of the flat end decides.
+    const auto tooth = test::toothOf(test::boxMesh({-3, -2, -3}, {3, 2, 0}, 1));
+    for (const char* name : {"cylinder-flat:1.0x3.0", "inverted-cone:1.2x1.2", "wheel:2.0x0.8", "taper-flat:1.2x4.0"}) {
+        const auto bur = std::make_shared<const instrument::Bur>(instrument::makeBur(name));
+        const auto method = makeFieldMethod(tooth, bur);
+        for (const double depthMm : {-0.1, 1e-6, 0.05, 0.1, 0.15, 0.3}) {
+            core::Pose pose;
+            pose.positionMm = {0, 0, -depthMm};
+            const Depth told = method->depth(pose);
+            EXPECT_NEAR(told.depthMm, depthMm, 1e-6) << name;
+            EXPECT_NEAR(told.normal.z(), 1.0, 1e-9) << name << " " << depthMm;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace handpiece::contact

@@ -426,8 +426,9 @@ loop::Work SimulationSetup::work() const {
     if (others.empty()) return {contact::makeFieldMethod(own, settings.bur), std::move(cutter)};
     std::vector<contact::PlacedMethod> placed;
     const std::vector<instrument::BodyPiece> body = instrument::bodyPieces(*settings.bur);
-    const auto add = [&](const auto& model, const core::Pose& at, const core::Box& bounds, bool isCuttable) {
-        const auto index = static_cast<std::uint16_t>(placed.size() / (body.size() + 1));
+    std::uint16_t index = 0;
+    const auto add = [&](const auto& model, const core::Pose& at, const core::Box& bounds, bool isYielding) {
+        const bool isCuttable = index == 0;
         placed.push_back({contact::makeFieldMethod(model, settings.bur),
                           settings.bur,
                           {},
@@ -435,37 +436,46 @@ loop::Work SimulationSetup::work() const {
                           bounds,
                           index,
                           contact::Piece::bur,
+                          isYielding,
                           isCuttable});
         for (const instrument::BodyPiece& piece : body)
             placed.push_back({contact::makeFieldMethod(model, piece.solid), piece.solid, piece.inBur, at, bounds, index,
-                              piece.part, isCuttable});
+                              piece.part, isYielding, isCuttable});
+        ++index;
     };
-    add(own, {}, tooth->outer.bounds(), true);
+    add(own, {}, tooth->outer.bounds(), false);
     for (const StandingTooth& other : others)
-        add(other.model, other.inCase, other.model->outer.bounds(), false);
+        add(other.model, other.inCase, other.model->outer.bounds(), other.isYielding);
     return {contact::makeMouthMethod(std::move(placed)), std::move(cutter)};
 }
 
 SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings settings, bool useCache,
                                const core::Progress& progress) {
     SimulationSetup station;
-    const double own = toothCase.others.empty() ? 1.0 : 0.3;
+    const double own = toothCase.others.empty() ? 1.0 : 0.3;  // of the work
     station.tooth =
         tooth::loadModel(toothCase, {settings.field, settings.cut, useCache}, core::part(progress, 0.0, own));
     station.field = std::make_shared<tooth::ToothState>(station.tooth);
     station.settings = std::move(settings);
-    const auto count = static_cast<double>(toothCase.others.size());
-    for (const cases::PlacedTooth& other : toothCase.others) {
+    std::vector<cases::Part> yielding;  // bone lies under it
+    for (const cases::Part& part : toothCase.scenery)
+        if (part.isFelt && part.tissue == cases::Tissue::gum) yielding.push_back(part);
+    const auto count = static_cast<double>(toothCase.others.size() + yielding.size());
+    const auto stand = [&](const std::string& name, const cases::Part& surface, const core::Pose& at, int fdiNumber) {
         cases::Case alone;
-        alone.name = other.name;
+        alone.name = name;
         alone.source = toothCase.source;
-        alone.parts.push_back({other.name, cases::Tissue::neighbour, 0, other.surface()});
+        alone.parts.push_back(surface);
         const double done = static_cast<double>(station.others.size());
-        station.others.push_back({tooth::loadModel(alone, {fieldSettingsAt(kStandingVoxelMm), {}, useCache},
-                                                   core::part(progress, own + (1.0 - own) * done / count,
-                                                              own + (1.0 - own) * (done + 1.0) / count)),
-                                  other.inCase, other.fdiNumber});
-    }
+        const core::Progress share =
+            core::part(progress, own + (1.0 - own) * done / count, own + (1.0 - own) * (done + 1.0) / count);
+        station.others.push_back({tooth::loadModel(alone, {fieldSettingsAt(kStandingVoxelMm), {}, useCache}, share), at,
+                                  fdiNumber, surface.tissue == cases::Tissue::gum});
+    };
+    for (const cases::PlacedTooth& other : toothCase.others)
+        stand(other.name, {other.name, cases::Tissue::neighbour, 0, other.surface()}, other.inCase, other.fdiNumber);
+    for (const cases::Part& part : yielding)
+        stand(part.name, part, {}, 0);
     return station;
 }
 

@@ -64,11 +64,12 @@ struct Changed {
 /// Puts a change into `settings`. Throws core::Error naming `where`.
 Changed applyChange(const std::string& json, SimulationSettings& settings, const std::string& where);
 
-/// A tooth that stands around the one that is cut: felt by the bur and by the handpiece's body.
+/// A tooth that stands around the one that is cut, or gingiva: felt by the bur and by the handpiece's body.
 struct StandingTooth {
     std::shared_ptr<const tooth::ToothModel> model;  ///< in its own frame, all of it Tissue::neighbour
     core::Pose inCase;
     int fdiNumber = 0;
+    bool isYielding = false;  ///< no tooth but gingiva; then of its own tissue
 };
 /// Voxel of their fields, which only say where a bur bears on them.
 inline constexpr double kStandingVoxelMm = 0.1;

@@ -56,18 +56,20 @@ struct HapticSample {
 };
 
 enum SampleFlag : std::uint32_t {
-    kForceLimited = 1,   ///< clamped to the device's largest force
-    kSlopeLimited = 2,   ///< the change of force was limited
-    kInvalidPose = 4,    ///< the device's pose was not finite, or jumped: force is zero
-    kFault = 8,          ///< force is held at zero until reset
-    kWaiting = 16,       ///< force is held at zero until the bur is clear of the tooth
-    kCutting = 32,       ///< tissue was taken away in this tick
-    kStalled = 64,       ///< the bur stands although the pedal is down
-    kRestoring = 128,    ///< an undo, redo or reset is being put in place
-    kOutOfBricks = 256,  ///< the tooth's memory for cuts is used up: it is cut no deeper
-    kShankTouches = 512,    ///< of the instrument behind the bur this bears most: its shank,
-    kHeadTouches = 1024,    ///< the handpiece's head,
-    kHandleTouches = 2048,  ///< or its handle
+    kForceLimited = 1,       ///< clamped to the device's largest force
+    kSlopeLimited = 2,       ///< the change of force was limited
+    kInvalidPose = 4,        ///< the device's pose was not finite, or jumped: force is zero
+    kFault = 8,              ///< force is held at zero until reset
+    kWaiting = 16,           ///< force is held at zero until the bur is clear of the tooth
+    kCutting = 32,           ///< tissue was taken away in this tick
+    kStalled = 64,           ///< the bur stands although the pedal is down
+    kRestoring = 128,        ///< an undo, redo or reset is being put in place
+    kOutOfBricks = 256,      ///< the tooth's memory for cuts is used up: it is cut no deeper
+    kShankTouches = 512,     ///< of the instrument behind the bur this bears most: its shank,
+    kHeadTouches = 1024,     ///< the handpiece's head,
+    kHandleTouches = 2048,   ///< or its handle
+    kPressesGingiva = 4096,  ///< part of the instrument presses on gingiva
+    kCutsGingiva = 8192,     ///< the turning bur is in it
 };
 
 static_assert(std::is_trivially_copyable_v<HapticSample>);

@@ -43,6 +43,8 @@ void EventWatch::look(const HapticSample& s) {
     if (s.tissue == static_cast<std::uint8_t>(Tissue::neighbour) && lastTissue_ != s.tissue)
         tell_(s.tick, EventName::neighbourTouched, "");
     lastTissue_ = s.tissue;
+    tellOnce(s, messages::kCutsGingiva, EventName::gingivaCut);
+    tellOnce(s, messages::kShankTouches | messages::kHeadTouches | messages::kHandleTouches, EventName::headTouched);
     tellOnce(s, messages::kStalled, EventName::stall);
     tellOnce(s, messages::kForceLimited, EventName::forceLimit);
     tellOnce(s, messages::kFault, EventName::fault);

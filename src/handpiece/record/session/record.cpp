@@ -103,7 +103,8 @@ std::string_view nameOf(EventName name) noexcept {
     static constexpr std::array<std::string_view, kEventNameCount> kNames{
         "stroke begin", "stroke end",  "bur change", "first dentine", "pulp exposure", "neighbour touched",
         "stall",        "force limit", "undo",       "redo",          "reset",         "parameter change",
-        "fault",        "key frame",   "end",        "resume",        "scheduling"};
+        "fault",        "key frame",   "end",        "resume",        "scheduling",    "gingiva cut",
+        "head touched"};
     return kNames[static_cast<std::size_t>(name)];
 }
 

@@ -80,10 +80,12 @@ enum class EventName : std::uint8_t {
     fault,
     keyFrame,
     end,
-    resume,     ///< after a pause or a crash: what follows was done by a new loop on the tooth of the key frame there
-    scheduling  ///< what real time the tick has from here on
+    resume,      ///< after a pause or a crash: what follows was done by a new loop on the tooth of the key frame there
+    scheduling,  ///< what real time the tick has from here on
+    gingivaCut,
+    headTouched  ///< shank, head or handle met a tooth
 };
-inline constexpr std::size_t kEventNameCount = 17;
+inline constexpr std::size_t kEventNameCount = 19;
 /// "stroke begin", as in the file.
 [[nodiscard]] std::string_view nameOf(EventName name) noexcept;
 

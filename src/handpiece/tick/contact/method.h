@@ -83,6 +83,17 @@ struct Constraint {
 inline constexpr std::size_t kMaxConstraints = 96;
 using ConstraintSet = core::FixedVector<Constraint, kMaxConstraints>;
 
+/// Where something that yields (gingiva) is pressed in by a piece of the instrument.
+struct SoftTouch {
+    core::Vec3 normal = core::Vec3::Zero();   ///< unit, out of it
+    double depthMm = 0.0;                     ///< positive
+    core::Vec3 pointMm = core::Vec3::Zero();  ///< on its surface
+    cases::Tissue tissue = cases::Tissue::none;
+    Piece piece = Piece::bur;
+};
+inline constexpr std::size_t kMaxSoft = 8;
+using SoftSet = core::FixedVector<SoftTouch, kMaxSoft>;
+
 /// How the bur bears on the tooth when it is pushed along a direction: sums over its surface points that face that way
 /// and are in contact, by tissue. a: area, w: 1 in contact, falling to 0 at kContactMarginMm above the surface, c:
 /// cosine between the bur's outward normal and the direction, rho: distance from the bur's axis, at least
@@ -122,6 +133,9 @@ class Method {
     /// touches. The default gives the one of depth().
     virtual Status constraints(const core::Pose& burInTooth, double reachMm,
                                ConstraintSet& out) noexcept HANDPIECE_REALTIME;
+
+    /// What yields to the instrument there: it holds nothing off, and pushes back. The default knows of none.
+    virtual void yielding(const core::Pose& /*burInTooth*/, SoftSet& out) noexcept HANDPIECE_REALTIME { out.clear(); }
 
     /// How the bur bears on the tooth when pushed along `direction` (unit, tooth frame); its points count as if it were
     /// `leadMm` farther along it. The default knows nothing of surfaces and reports none.

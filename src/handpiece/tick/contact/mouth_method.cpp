@@ -70,13 +70,13 @@ class MouthMethod final : public Method {
   public:
     MouthMethod(std::vector<PlacedMethod> placed, double reachMm) : reachMm_(reachMm) {
         pairs_.reserve(placed.size());
+        soft_.reserve(placed.size());
         for (PlacedMethod& p : placed) {
             if (!p.method || !p.solid || !p.pieceInBur.isValid() || !p.toothInScene.isValid() ||
                 p.toothInScene.positionMm.norm() > kFarthestToothMm)
                 throw core::Error("a tooth of the mouth stands nowhere", "contact",
                                   "give it a rigid pose near the others");
-            pairs_.emplace_back(std::move(p));
-            const Pair& pair = pairs_.back();
+            Pair& pair = p.isYielding ? soft_.emplace_back(std::move(p)) : pairs_.emplace_back(std::move(p));
             farthestMm_ = std::max(farthestMm_, pair.pieceInBur.positionMm.norm() +
                                                     std::hypot(pair.solid->lengthMm(), pair.solid->maxRadiusMm()));
         }
@@ -179,6 +179,18 @@ class MouthMethod final : public Method {
         return status;
     }
 
+    void yielding(const Pose& bur, SoftSet& out) noexcept override {
+        out.clear();
+        if (!bur.isValid()) return;
+        for (Pair& pair : soft_) {
+            const Pose local = pair.localOf(bur);
+            if (pair.gapMm(local) > 0.0) continue;
+            const Depth d = pair.method->depth(local);
+            if (d.status == Status::ok && d.depthMm > 0.0)
+                out.pushBack({pair.direction(d.normal), d.depthMm, pair.place(d.toothPointMm), d.tissue, pair.piece});
+        }
+    }
+
     void bearing(const Pose& bur, const Vec3& direction, double leadMm, double leastRadiusMm,
                  Bearing& out) noexcept override {
         out = Bearing{};
@@ -235,6 +247,8 @@ class MouthMethod final : public Method {
             pair.method->reset();
             pair.wasAsked = false;
         }
+        for (Pair& pair : soft_)
+            pair.method->reset();
         hasLooked_ = false;
     }
 
@@ -325,7 +339,7 @@ class MouthMethod final : public Method {
     }
 
     double reachMm_, farthestMm_ = 0.0;
-    std::vector<Pair> pairs_;
+    std::vector<Pair> pairs_, soft_;
     std::array<std::uint16_t, kMaxPlaced> near_{};
     std::size_t nearCount_ = 0;
     Pose lookedAt_;

@@ -11,7 +11,7 @@
 
 namespace handpiece::contact {
 
-/// One convex piece of the instrument at one tooth.
+/// One convex piece of the instrument at one tooth, or at what yields.
 struct PlacedMethod {
     std::unique_ptr<Method> method;                ///< of piece and tooth, in their own frames
     std::shared_ptr<const instrument::Bur> solid;  ///< the piece, a solid of revolution
@@ -20,7 +20,8 @@ struct PlacedMethod {
     core::Box toothBoxMm;     ///< of the tooth's surface, its own frame
     std::uint16_t tooth = 0;  ///< as answers name it
     Piece piece = Piece::bur;
-    bool isCuttable = true;  ///< the tooth is: else the bur has patches on it, and no bearing
+    bool isYielding = false;  ///< no tooth but what gives way (gingiva): it holds nothing off
+    bool isCuttable = true;   ///< the tooth is: else the bur has patches on it, and no bearing
 };
 
 /// Feels them as one; poses and answers are in the scene's frame, which is that of the case's own tooth. A pair is

@@ -51,6 +51,7 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     touch_.isHeldOnly = false;
     touch_.behind = contact::Piece::bur;
     touch_.patches = contact::PatchSet{};
+    touch_.soft.clear();
     if (fresh && (released || touch_.depth.depthMm > kDeepStartMm)) guard_.fadeIn();
     updateVelocity(touch_.deviceInTooth.positionMm, fresh, periodS);
     if (fresh) law_->reset();
@@ -69,6 +70,7 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     touch_.proxyInTooth = proxy_.pose();
     touch_.touching = proxy_.touching();
     touch_.passes = proxy_.passes();
+    method.yielding(touch_.proxyInTooth, touch_.soft);
     touch_.tissue = proxy_.strongestTissue();
     if (touch_.touching && proxy_.isHeldOnly()) {
         touch_.isHeldOnly = true;
@@ -136,6 +138,15 @@ Vec3 ForceModel::frictionForce(const Touch& touch, const Vec3& pressN, const Tur
     return -kv.stiffnessNPerMm * bristleMm_;
 }
 
+Vec3 ForceModel::softN(const contact::SoftTouch& soft) const noexcept {
+    const TissueFeel& feel = parameters_.tissues[static_cast<std::size_t>(soft.tissue)];
+    const double k =
+        std::min(1.0, feel.stiffnessFraction * parameters_.stiffnessMultiplier) * limits_.maxStiffnessNPerMm;
+    const double b = std::min(feel.dampingNSPerMm * parameters_.dampingMultiplier, limits_.maxDampingNSPerMm);
+    // It pushes and never pulls.
+    return std::max(0.0, k * soft.depthMm - b * velocityMmS_.dot(soft.normal)) * soft.normal;
+}
+
 Vec3 ForceModel::torqueAboutGrip(const Touch& touch, const Vec3& forceN) const noexcept {
     const Vec3 grip = touch.proxyInTooth.apply(parameters_.gripMm);
     if (touch.behindShare > 0.0) {
@@ -162,9 +173,21 @@ Vec3 ForceModel::torqueAboutGrip(const Touch& touch, const Vec3& forceN) const n
     return torque;
 }
 
+/// Of what yields by itself, of the rest as the teeth hold it.
+Vec3 ForceModel::torqueOf(const Touch& touch) const noexcept {
+    if (touch.soft.empty()) return torqueAboutGrip(touch, command_.forceN);
+    const double gain = guard_.gain();
+    const Vec3 grip = touch.proxyInTooth.apply(parameters_.gripMm);
+    Vec3 torque = torqueAboutGrip(touch, command_.forceN - gain * softN_);
+    for (const contact::SoftTouch& soft : touch.soft)
+        torque += (soft.pointMm - grip).cross(gain * softN(soft));
+    return torque;
+}
+
 const ForceCommand& ForceModel::compute(const Touch& touch, double periodS, const Turning& turning) noexcept {
     const Vec3 last = command_.forceN;
     Vec3 wanted = Vec3::Zero();
+    softN_.setZero();
     command_.forceLimited = command_.slopeLimited = false;
     command_.loadN.setZero();
     if (guard_.faulted()) {
@@ -188,6 +211,9 @@ const ForceCommand& ForceModel::compute(const Touch& touch, double periodS, cons
                 ? Vec3(tangentialN_ + periodS / (kTangentialTauS + periodS) * (turning.tangentialN - tangentialN_))
                 : Vec3(Vec3::Zero());
         wanted += parameters_.cuttingForceMultiplier * tangentialN_;
+        for (const contact::SoftTouch& soft : touch.soft)
+            softN_ += softN(soft);
+        if (!touch.soft.empty()) wanted += softN_;
         const double size = wanted.norm();
         command_.forceLimited = size > limits_.maxForceN;
         if (command_.forceLimited) wanted *= limits_.maxForceN / size;
@@ -198,7 +224,7 @@ const ForceCommand& ForceModel::compute(const Touch& touch, double periodS, cons
     const double most = limits_.maxForceSlopeNPerS * periodS;
     command_.slopeLimited = change.norm() > most;
     command_.forceN = command_.slopeLimited ? Vec3(last + change * (most / change.norm())) : wanted;
-    command_.fullTorqueNmm = guard_.faulted() ? Vec3(Vec3::Zero()) : torqueAboutGrip(touch, command_.forceN);
+    command_.fullTorqueNmm = guard_.faulted() ? Vec3(Vec3::Zero()) : torqueOf(touch);
     const double torque = command_.fullTorqueNmm.norm();
     command_.torqueNmm = torque > limits_.maxTorqueNmm ? Vec3(command_.fullTorqueNmm * (limits_.maxTorqueNmm / torque))
                                                        : command_.fullTorqueNmm;

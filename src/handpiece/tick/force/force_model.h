@@ -63,6 +63,8 @@ class ForceModel {
     [[nodiscard]] LawInput inputOf(const Touch& touch) const noexcept {
         return {touch, velocityMmS_, parameters_, limits_};
     }
+    [[nodiscard]] core::Vec3 softN(const contact::SoftTouch& soft) const noexcept;
+    [[nodiscard]] core::Vec3 torqueOf(const Touch& touch) const noexcept;
     void smoothShares(bool isCutNear, double periodS) noexcept;
     void updateVelocity(const core::Vec3& positionMm, bool fresh, double periodS) noexcept;
     [[nodiscard]] core::Vec3 frictionForce(const Touch& touch, const core::Vec3& pressN,
@@ -77,6 +79,7 @@ class ForceModel {
     Proxy proxy_;
     Touch touch_;
     ForceCommand command_;
+    core::Vec3 softN_ = core::Vec3::Zero();  // of what yields, in this tick
     core::Vec3 velocityMmS_ = core::Vec3::Zero(), lastPositionMm_ = core::Vec3::Zero();
     core::Vec3 heldForceN_ = core::Vec3::Zero();                                    // when the fault began
     core::Vec3 bristleMm_ = core::Vec3::Zero(), lastProxyMm_ = core::Vec3::Zero();  // of friction

@@ -50,8 +50,8 @@ double Proxy::evaluate(contact::Method& method) noexcept {
         c.gapMm += depth.slackMm;
     clearanceMm_ = depth.slackMm - depth.depthMm;
     const bool near = depth.status == contact::Status::ok && clearanceMm_ <= reach;
-    const contact::Constraint exact{depth.normal, clearanceMm_, depth.toothPointMm,
-                                    depth.tissue, depth.tooth, depth.piece, depth.isHeldOnly};
+    const contact::Constraint exact{depth.normal, clearanceMm_, depth.toothPointMm, depth.tissue,
+                                    depth.tooth,  depth.piece,  depth.isHeldOnly};
     if (near) {
         // A full set keeps its most important first: the last make room.
         const std::size_t room = contact::kMaxConstraints - 1 - memory_.size();

@@ -16,6 +16,7 @@ struct Touch {
     contact::Depth depth;                           ///< at the device's pose
     core::Pose proxyInTooth;                        ///< the device's pose under a law that knows no proxy
     contact::PatchSet patches;                      ///< at the proxy; empty when it does not touch, or there is none
+    contact::SoftSet soft;                          ///< what yields at the proxy
     bool touching = false;                          ///< the proxy is held by the tooth
     cases::Tissue tissue = cases::Tissue::none;     ///< that carries most of the pressure
     std::uint16_t tooth = 0;                        ///< that tissue's

@@ -47,6 +47,19 @@ std::uint32_t behindFlag(const force::Touch& touch) noexcept {
     return 0;
 }
 
+/// So deep the turning bur has torn the gingiva, not only pushed it aside [a judgement].
+constexpr double kTornMm = 0.1;
+
+std::uint32_t gingivaFlags(const force::Touch& touch, double speedRpm) noexcept {
+    std::uint32_t flags = 0;
+    for (const contact::SoftTouch& soft : touch.soft) {
+        flags |= messages::kPressesGingiva;
+        if (soft.piece == contact::Piece::bur && soft.depthMm > kTornMm && speedRpm > 0.0)
+            flags |= messages::kCutsGingiva;
+    }
+    return flags;
+}
+
 }  // namespace
 
 void HapticLoop::tick(const rt::Beat& beat) noexcept {
@@ -200,7 +213,7 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
                    (command.slopeLimited || eventForce_.slopeLimited() ? messages::kSlopeLimited : 0u) |
                    (force_.guard().invalidNow() ? messages::kInvalidPose : 0u) |
                    (force_.guard().faulted() ? messages::kFault : 0u) | (force_.waiting() ? messages::kWaiting : 0u) |
-                   behindFlag(touch);
+                   behindFlag(touch) | gingivaFlags(touch, rotor_.speedRpm());
     sample.workUs = static_cast<float>(static_cast<double>(workNs) * 1e-3);
     sample.lateUs = static_cast<float>(static_cast<double>(beat.lateNs) * 1e-3);
     sample.cutUs = static_cast<float>(static_cast<double>(cutNs) * 1e-3);

@@ -242,7 +242,7 @@ class OutlineQuery {
                 const double er = p.to[0] - p.from[0], ez = p.to[1] - p.from[1];
                 const double dr = rho - p.from[0], dz = z - p.from[1];
                 const double along = dr * er + dz * ez;
-                if (along > 0.0 && along < er * er + ez * ez) {
+                if (along >= 0.0 && along <= er * er + ez * ez) {  // its end on the axis belongs to it
                     const double d = p.normalFrom[0] * dr + p.normalFrom[1] * dz;
                     offer(d < 0.0 ? -d : d, p.normalFrom[0], p.normalFrom[1]);
                     continue;

@@ -345,7 +345,8 @@ void addCaseCommand(Command& app) {
     addUnitOptions(make, o.unit);
     make.option("--outer", o.outer, "mesh of the whole tooth [default: the only part]");
     make.option("--part", o.parts, "TISSUE=FILE or TISSUE:PRIORITY=FILE, in mm; as often as there are parts").takeAll();
-    make.option("--scenery", o.scenery, "TISSUE=FILE around the tooth: neighbours, gum, bone").takeAll();
+    make.option("--scenery", o.scenery, "TISSUE=FILE around the tooth: adjacent teeth (neighbour), gingiva (gum), bone")
+        .takeAll();
     make.option("--name", o.name, "name of the case [default: of the folder]");
     make.option("--kind", o.kind, "kind of tooth, as lower-first-molar");
     make.option("--fdi", o.fdi, "FDI number of the tooth, 11 to 48 or 51 to 85")

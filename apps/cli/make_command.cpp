@@ -107,7 +107,7 @@ void addMakeCommand(Command& app) {
     tooth.option("--faces", o.faces, "triangles of the outer surface").showDefault();
     tooth.option("--part-faces", o.partFaces, "triangles of each tissue's surface; 0: as fine as the outer one")
         .showDefault();
-    tooth.flag("--scene", o.scene, "also the neighbours, the gum and the bone");
+    tooth.flag("--scene", o.scene, "also the adjacent teeth, gingiva and bone");
     tooth.option("--lesion", o.lesions,
                  "SURFACE:DEPTH,...: caries and what else is found, instead of the tooth's own lesion; surfaces: " +
                      listed(lesion::kSurfaces, [](auto s) { return s; }) +

@@ -174,7 +174,7 @@ void addMakeScanCommand(Command& make) {
     scan.option("--ring", s.ring, "rings about the scan's axis, in the unit of --noise").showDefault();
     scan.option("--metal", s.metal, "puts a filling in, with streaks, in the unit of --noise").showDefault();
     scan.option("--margin", s.marginMm, "air around it [mm]").showDefault();
-    scan.flag("--scenery", s.scenery, "neighbours, gum and bone too");
+    scan.flag("--scenery", s.scenery, "adjacent teeth, gingiva and bone too");
     scan.option("--turn", o.turnDeg, "of the tooth in the scanner, about x, then y, then z [degrees]")
         .expected(3)
         .delimiter(',');

@@ -309,12 +309,12 @@ void printLesions(const std::vector<studies::LesionPlan>& lesions, const std::ve
     }
 }
 
-/// How much is left over the pulp, and whether that is little: of every cut, not only an excavation.
+/// How much dentine remains over the pulp, and whether that is little: of every cut, not only an excavation.
 void printPulp(const studies::CutOutcome& outcome) {
     if (outcome.summary.removedMm3[static_cast<std::size_t>(cases::Tissue::pulp)] > 0.0)
-        printRow("pulp", "OPENED");
+        printRow("pulp", "EXPOSED");
     else if (outcome.leftOverPulpMm)
-        printRow("pulp", fmt::format("{:.2f} mm left over it{}", *outcome.leftOverPulpMm,
+        printRow("pulp", fmt::format("{:.2f} mm of dentine remain over it{}", *outcome.leftOverPulpMm,
                                      *outcome.leftOverPulpMm < studies::kPulpGuardMm ? ": NEAR" : ""));
 }
 
@@ -448,7 +448,7 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
         for (const studies::LesionPlan& l : lesions)
             plannedMm3 += l.reachedMm3;
         constexpr double kKeptUp = 0.8;
-        printRow("decay",
+        printRow("caries",
                  fmt::format("{:.2f} mm3 taken ({:.0f} %), {:.2f} mm3 left; {:.2f} mm3 of sound tissue taken{}", gone,
                              all > 0.0 ? 100.0 * gone / all : 0.0, remaining, soundMm3,
                              gone < kKeptUp * plannedMm3
@@ -600,7 +600,7 @@ void addRunCommand(Command& app, const MethodRegistry& methods) {
         "  handpiece run --tooth molar --motion drop --out drop\n"
         "  handpiece run --tooth molar --bur round-4 --motion drag --rate 4000 --real-time --out drag\n"
         "  handpiece run --case molar --bur 330 --motion class-one --out cavity\n"
-        "  handpiece run --case molar --bur round-4 --motion excavate --drive low-speed --out decay\n"
+        "  handpiece run --case molar --bur round-4 --motion excavate --drive low-speed --out excavated\n"
         "  handpiece run --case molar --bur mine.stl --motion path.csv --full-removal --out swept\n"
         "  handpiece run --case molar --device openhaptics --scale 2 --out practice\n"
         "  handpiece run --case molar --motion class-one --inject random:100 --out faults\n"

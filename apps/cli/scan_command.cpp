@@ -466,7 +466,7 @@ void addJobOptions(Command& command, ScanOptions& o) {
     command.option("--spacing", o.spacing, "millimetres between voxels, one number or X,Y,Z; wins over the file's");
     command.flag("--labels", o.labels,
                  "the scan is labels: 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 restoration, "
-                 "6 bone, 7 gum");
+                 "6 bone, 7 gingiva");
     command.option("--label-order", o.labelOrder, "what the file's labels 0, 1, 2, ... mean, in those numbers");
     command.option("--at", o.at, "X,Y,Z of a place in the tooth wanted [mm, the scan's frame]; else the largest");
     command.option("--threshold", o.threshold, "tooth=VALUE,enamel=VALUE: grey values from which on they begin");

@@ -146,7 +146,7 @@ const std::vector<BuiltInMotion>& cuttingMotions() {
         {"plunge", "straight down into the tooth, stay, and out"},
         {"class-one", "a class I cavity: strokes along the central fissure, deeper each time"},
         {"crown-shoulder", "laps round the crown, farther in each time"},
-        {"excavate", "through the decay, lesion by lesion and layer by layer, not into the pulp"},
+        {"excavate", "through the carious tissue, lesion by lesion and layer by layer, not into the pulp"},
     };
     return list;
 }

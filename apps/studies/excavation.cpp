@@ -536,9 +536,10 @@ void goRound(Path& path, const Vec3& middle, const Vec3& to, const Quat& turn) {
 
 Excavation planExcavation(const CuttingScene& scene, const CuttingOptions& o) {
     validate(o);
-    if (!o.offsetMm.isZero()) throw core::Error("excavation goes where the decay is", "--at", "leave it out");
+    if (!o.offsetMm.isZero()) throw core::Error("excavation goes where the carious tissue is", "--at", "leave it out");
     if (scene.decay.empty())
-        throw core::Error("this tooth has no decay", "excavate", "take a case with a caries part, or another motion");
+        throw core::Error("this tooth has no carious tissue", "excavate",
+                          "take a case with a caries part, or another motion");
     Path path(o.pedal);
     std::vector<LesionPlan> lesions;
     for (const geometry::TriangleMesh& lesion : lesionsOf(scene.decay)) {
@@ -589,7 +590,7 @@ Excavation planExcavation(const CuttingScene& scene, const CuttingOptions& o) {
         path.pedal(false);
     }
     if (path.isEmpty())
-        throw core::Error("the bur cannot come to any of the decay", "excavate",
+        throw core::Error("the bur cannot come to any of the carious tissue", "excavate",
                           "take a smaller bur, or a smaller --pulp-guard");
     return {path.finish(), std::move(lesions)};
 }

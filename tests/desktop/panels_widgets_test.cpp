@@ -264,6 +264,27 @@ class PanelsWidgetsTest : public QObject {
         gauge.setForce(0.5, 1.0);
         QCOMPARE(gauge.peakN(), 3.2);
         QCOMPARE(gauge.words(), QString("Light"));
+        // About a newton is as usual for a turbine; what is firm there is as usual for a speed-increasing handpiece,
+        // whatever the device can give.
+        for (const double limitN : {0.9, 3.3, 9.0}) {
+            gauge.setLimit(limitN);
+            gauge.setPressLimits(instrument::pressLimitsOf("turbine"));
+            gauge.setForce(1.0, 1.1);
+            QCOMPARE(gauge.words(), QString("As usual"));
+            QCOMPARE(gauge.zone(), ForceGauge::Zone::gentle);
+            gauge.setForce(1.4, 1.1);
+            QCOMPARE(gauge.words(), QString("Firm"));
+            QCOMPARE(gauge.zone(), ForceGauge::Zone::firm);
+            gauge.setForce(2.1, 1.1);
+            QCOMPARE(gauge.zone(), ForceGauge::Zone::hard);
+            gauge.setPressLimits(instrument::pressLimitsOf("speed-increasing"));
+            gauge.setForce(1.4, 1.1);
+            QCOMPARE(gauge.words(), QString("As usual"));
+            gauge.setForce(2.1, 1.1);
+            QCOMPARE(gauge.words(), QString("Firm"));
+        }
+        gauge.setLimit(3.3);
+        gauge.setPressLimits(instrument::pressLimitsOf("turbine"));
         gauge.setForce(0.5, 2.5);
         QCOMPARE(gauge.peakN(), 0.5);
         gauge.setForce(0.5, 2.6, true);
@@ -273,10 +294,13 @@ class PanelsWidgetsTest : public QObject {
     }
     void gaugeAndLoadSpeakTheSameWords() {
         // Whatever the device can give: the same newtons, the same words.
-        for (const double limitN : {3.3, 9.0}) {
+        for (const auto& [limitN, drive] :
+             {std::pair(3.3, "turbine"), {9.0, "turbine"}, {3.3, "low-speed"}, {0.9, "speed-increasing"}}) {
             ForceGauge gauge;
             gauge.setLimit(limitN);
+            gauge.setPressLimits(instrument::pressLimitsOf(drive));
             MeasureBox box;
+            box.setPressLimits(instrument::pressLimitsOf(drive));
             for (const double loadN : {0.2, 0.6, 1.0, 1.5, 2.3, 2.5, 3.0}) {
                 gauge.setForce(loadN, 0.0);
                 box.setLoad(loadN);

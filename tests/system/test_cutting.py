@@ -284,7 +284,7 @@ class Cutting(SystemTest):
         bad("--method", "hull", mentions=["hull"])
         bad("--code", "Jane Doe", mentions=["code"])
         bad("--bur", "round-8", motion="class-one", mentions=["2.30 mm"])
-        bad(motion="excavate", mentions=["no decay"])
+        bad(motion="excavate", mentions=["no carious tissue"])
         self.assertEqual(run("run", "--case", self.block, "--motion", "plunge", "--pedal", "2", "--out",
                              self.folder / "result").returncode, 2)
 

@@ -10,6 +10,7 @@
 #include "desktop/features/files/recovery_feature.h"
 #include "desktop/features/files/starter_feature.h"
 #include "desktop/features/measure/measure_feature.h"
+#include "desktop/features/radiograph/radiograph_feature.h"
 #include "desktop/features/replay/replay_feature.h"
 #include "desktop/features/scan/scan_feature.h"
 #include "desktop/features/sound/sound_feature.h"
@@ -36,6 +37,7 @@ void installFeatures(const FeatureContext& context) {
     add(new SoundFeature(context));
     add(new DeviceFeature(context));
     add(new ScanFeature(context));
+    add(new RadiographFeature(context));
     add(new FilesFeature(context));  // it opens whatever the others leave
     const auto refresh = [&window, &simulator] { window.refresh(simulator.permissions()); };
     const auto showTick = [features, refresh] {

@@ -74,7 +74,7 @@ constexpr Row kRows[] = {
      QT_TRANSLATE_NOOP("Notices", "With the convex hull the bur touches and does not cut.")},
     {Notice::refused, "refused", Kind::warning, QT_TRANSLATE_NOOP("Notices", "This could not be done: %1")},
     {Notice::neighbourTouched, "neighbour-touched", Kind::warning,
-     QT_TRANSLATE_NOOP("Notices", "The neighbouring tooth was touched."), End::toothOpened | End::toothWhole},
+     QT_TRANSLATE_NOOP("Notices", "The adjacent tooth was touched."), End::toothOpened | End::toothWhole},
     {Notice::firstDentine, "first-dentine", Kind::hint, QT_TRANSLATE_NOOP("Notices", "The bur has reached dentine.")},
     {Notice::hullNeedsWholeTooth, "hull-needs-whole-tooth", Kind::warning,
      QT_TRANSLATE_NOOP("Notices",

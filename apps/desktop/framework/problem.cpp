@@ -96,7 +96,7 @@ constexpr std::array kEntries = {
     Entry{"sound-unfit", QT_TRANSLATE_NOOP("Problem", "The rate of this recording cannot be used."),
           QT_TRANSLATE_NOOP("Problem", "Record with 48,000 samples a second.")},
     Entry{"sound-too-long", QT_TRANSLATE_NOOP("Problem", "The recording is too long."),
-          QT_TRANSLATE_NOOP("Problem", "Cut out up to a minute in which the drill runs evenly.")},
+          QT_TRANSLATE_NOOP("Problem", "Cut out up to a minute in which the handpiece runs evenly.")},
     Entry{"sound-too-short", QT_TRANSLATE_NOOP("Problem", "The recording is too short."),
           QT_TRANSLATE_NOOP("Problem", "A tenth of a second is the least.")},
     Entry{"sound-silent", QT_TRANSLATE_NOOP("Problem", "The recording is silent."),

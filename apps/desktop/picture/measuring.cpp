@@ -26,7 +26,7 @@ QString Measurement::text() const {
                        ? Texts::tr("%1 deep, %2 along the bur").arg(millimetres(valueMm), millimetres(*alongAxisMm))
                        : Texts::tr("%1 deep").arg(millimetres(valueMm));
         case Kind::pulp:
-            return Texts::tr("%1 over the pulp").arg(millimetres(valueMm));
+            return Texts::tr("%1 of dentine to the pulp").arg(millimetres(valueMm));
     }
     return millimetres(valueMm);
 }
@@ -79,11 +79,11 @@ QString tissueText(cases::Tissue tissue) {
         case cases::Tissue::cementum:
             return Texts::tr("Cementum");
         case cases::Tissue::gum:
-            return Texts::tr("Gum");
+            return Texts::tr("Gingiva");
         case cases::Tissue::bone:
             return Texts::tr("Bone");
         case cases::Tissue::neighbour:
-            return Texts::tr("Neighbour");
+            return Texts::tr("Adjacent tooth");
         case cases::Tissue::restoration:
             return Texts::tr("Restoration");
         case cases::Tissue::demineralisedEnamel:

@@ -266,7 +266,7 @@ QString ViewWidget::State::hint() const {
             return ViewWidget::tr("Point at the cavity's floor; a click or %1 keeps the reading")
                 .arg(bindings.text(Action::cutKey));
         case Tool::pulp:
-            return ViewWidget::tr("Point at the cavity's floor; a click or %1 keeps what is left over the pulp")
+            return ViewWidget::tr("Point at the cavity's floor; a click or %1 keeps the remaining dentine thickness")
                 .arg(bindings.text(Action::cutKey));
         case Tool::section:
             return ViewWidget::tr("Drag, turn the wheel or use the arrow keys to move the section");

@@ -120,48 +120,48 @@
         <translation>咬合面</translation>
     </message>
     <message>
-        <source>Look onto the chewing surface (key 1)</source>
-        <translation>咬合面を見ます（1 キー）</translation>
+        <source>Occlusal view (key 1)</source>
+        <translation>咬合面観（1 キー）</translation>
     </message>
     <message>
         <source>Buccal</source>
         <translation>頬側</translation>
     </message>
     <message>
-        <source>Look from the cheek (key 2)</source>
-        <translation>頬側から見ます（2 キー）</translation>
+        <source>Buccal view (key 2)</source>
+        <translation>頬側面観（2 キー）</translation>
     </message>
     <message>
         <source>Lingual</source>
         <translation>舌側</translation>
     </message>
     <message>
-        <source>Look from the tongue (key 3)</source>
-        <translation>舌側から見ます（3 キー）</translation>
+        <source>Lingual view (key 3)</source>
+        <translation>舌側面観（3 キー）</translation>
     </message>
     <message>
         <source>Mesial</source>
         <translation>近心</translation>
     </message>
     <message>
-        <source>Look from the front of the arch (key 4)</source>
-        <translation>近心側から見ます（4 キー）</translation>
+        <source>Mesial view (key 4)</source>
+        <translation>近心面観（4 キー）</translation>
     </message>
     <message>
         <source>Distal</source>
         <translation>遠心</translation>
     </message>
     <message>
-        <source>Look from the back of the arch (key 5)</source>
-        <translation>遠心側から見ます（5 キー）</translation>
+        <source>Distal view (key 5)</source>
+        <translation>遠心面観（5 キー）</translation>
     </message>
     <message>
         <source>Oblique</source>
         <translation>斜め</translation>
     </message>
     <message>
-        <source>Look from above and the cheek (key 6)</source>
-        <translation>頬側の斜め上から見ます（6 キー）</translation>
+        <source>Oblique view, occlusal and buccal (key 6)</source>
+        <translation>斜め（咬合面・頬側）から見ます（6 キー）</translation>
     </message>
     <message>
         <source>Whole tooth</source>
@@ -288,8 +288,8 @@
         <translation>歯髄までを測る</translation>
     </message>
     <message>
-        <source>Click a cut place: how much dentine is left over the pulp</source>
-        <translation>削った場所をクリックすると、歯髄までに残る象牙質の厚さを示します</translation>
+        <source>Click a cut place: remaining dentine thickness over the pulp</source>
+        <translation>削った場所をクリックすると、歯髄までの残存象牙質の厚さを示します</translation>
     </message>
     <message>
         <source>Section</source>
@@ -526,6 +526,14 @@
     <message>
         <source>Locked by this exercise.</source>
         <translation>この課題ではロックされています。</translation>
+    </message>
+    <message>
+        <source>Radiograph...</source>
+        <translation>X 線画像...</translation>
+    </message>
+    <message>
+        <source>A simulated bitewing or periapical radiograph of the tooth that is open</source>
+        <translation>開いている歯の咬翼法・根尖投影（デンタル）の模擬 X 線画像</translation>
     </message>
 </context>
 <context>
@@ -1023,8 +1031,8 @@
         <translation>深さ %1</translation>
     </message>
     <message>
-        <source>%1 over the pulp</source>
-        <translation>歯髄まで %1</translation>
+        <source>%1 of dentine to the pulp</source>
+        <translation>歯髄まで象牙質 %1</translation>
     </message>
     <message>
         <source>Bucco-lingual</source>
@@ -1063,7 +1071,7 @@
         <translation>セメント質</translation>
     </message>
     <message>
-        <source>Gum</source>
+        <source>Gingiva</source>
         <translation>歯肉</translation>
     </message>
     <message>
@@ -1071,7 +1079,7 @@
         <translation>骨</translation>
     </message>
     <message>
-        <source>Neighbour</source>
+        <source>Adjacent tooth</source>
         <translation>隣在歯</translation>
     </message>
     <message>
@@ -1280,7 +1288,7 @@
         <translation>実行できませんでした：%1</translation>
     </message>
     <message>
-        <source>The neighbouring tooth was touched.</source>
+        <source>The adjacent tooth was touched.</source>
         <translation>隣在歯に触れました。</translation>
     </message>
     <message>
@@ -1813,8 +1821,8 @@
         <translation>録音が長すぎます。</translation>
     </message>
     <message>
-        <source>Cut out up to a minute in which the drill runs evenly.</source>
-        <translation>ドリルが一定に回っている部分を 1 分以内で切り出してください。</translation>
+        <source>Cut out up to a minute in which the handpiece runs evenly.</source>
+        <translation>ハンドピースが一定に回っている部分を、1 分以内で切り出してください。</translation>
     </message>
     <message>
         <source>The recording is too short.</source>
@@ -2366,7 +2374,7 @@
         <translation>セメント質</translation>
     </message>
     <message>
-        <source>Gum</source>
+        <source>Gingiva</source>
         <translation>歯肉</translation>
     </message>
     <message>
@@ -2374,7 +2382,7 @@
         <translation>骨</translation>
     </message>
     <message>
-        <source>Neighbour tooth</source>
+        <source>Adjacent tooth</source>
         <translation>隣在歯</translation>
     </message>
     <message>
@@ -2756,10 +2764,6 @@
         <translation>高速（弱いエア）</translation>
     </message>
     <message>
-        <source>Drill</source>
-        <translation>ドリル</translation>
-    </message>
-    <message>
         <source>Bur in hand</source>
         <translation>使用中のバー</translation>
     </message>
@@ -2816,8 +2820,8 @@
         <translation>ペダルを踏み、バーが何にも触れていないときの回転数です（+ と -）</translation>
     </message>
     <message>
-        <source>Set speed in turns a minute</source>
-        <translation>毎分の設定回転数</translation>
+        <source>Set speed in rpm</source>
+        <translation>設定回転数（rpm）</translation>
     </message>
     <message>
         <source> rpm</source>
@@ -2852,8 +2856,8 @@
         <translation>ISO %1</translation>
     </message>
     <message>
-        <source>Up to %1 turns a minute</source>
-        <translation>最高 %1 回転/分</translation>
+        <source>Up to %1 rpm</source>
+        <translation>最高 %1 rpm</translation>
     </message>
     <message>
         <source>The bur has stopped: press less hard.</source>
@@ -2868,8 +2872,8 @@
         <translation>低速</translation>
     </message>
     <message>
-        <source>Red ring (speed-increasing)</source>
-        <translation>赤リング（増速）</translation>
+        <source>Red band 1:5 (speed-increasing)</source>
+        <translation>5 倍速コントラ（赤帯 1:5）</translation>
     </message>
 </context>
 <context>
@@ -3713,8 +3717,8 @@ openhaptics:Left Arm, or forcedimension:2</source>
 <context>
     <name>handpiece::desktop::DrillFeature</name>
     <message>
-        <source>Drill</source>
-        <translation>ドリル</translation>
+        <source>Handpiece</source>
+        <translation>ハンドピース</translation>
     </message>
     <message>
         <source>Pressure</source>
@@ -3843,7 +3847,7 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>Handpiece について</translation>
     </message>
     <message>
-        <source>&lt;h3&gt;Handpiece %1&lt;/h3&gt;&lt;p&gt;An open dental surgery simulator: touch a tooth and drill it.&lt;/p&gt;</source>
+        <source>&lt;h3&gt;Handpiece %1&lt;/h3&gt;&lt;p&gt;An open dental surgery simulator: touch a tooth and cut it.&lt;/p&gt;</source>
         <translation>&lt;h3&gt;Handpiece %1&lt;/h3&gt;&lt;p&gt;オープンな歯科手術シミュレーターです。歯に触れ、削ることができます。&lt;/p&gt;</translation>
     </message>
     <message>
@@ -3918,6 +3922,76 @@ openhaptics:Left Arm, or forcedimension:2</source>
     </message>
 </context>
 <context>
+    <name>handpiece::desktop::RadiographDialog</name>
+    <message>
+        <source>View</source>
+        <translation>撮影法</translation>
+    </message>
+    <message>
+        <source>Tooth</source>
+        <translation>歯</translation>
+    </message>
+    <message>
+        <source>FDI number of the tooth in the middle</source>
+        <translation>中央に置く歯の FDI 番号</translation>
+    </message>
+    <message>
+        <source>Radiograph</source>
+        <translation>X 線画像</translation>
+    </message>
+    <message>
+        <source>About the radiograph</source>
+        <translation>X 線画像について</translation>
+    </message>
+    <message>
+        <source>Taking the radiograph</source>
+        <translation>X 線画像を計算しています</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>キャンセル</translation>
+    </message>
+    <message>
+        <source>Save...</source>
+        <translation>保存...</translation>
+    </message>
+    <message>
+        <source>Write the radiograph as PNG or DICOM, marked as simulated</source>
+        <translation>PNG または DICOM として保存します（模擬画像と明記）</translation>
+    </message>
+    <message>
+        <source>Radiograph (simulated)</source>
+        <translation>X 線画像（模擬）</translation>
+    </message>
+    <message>
+        <source>Bitewing</source>
+        <translation>咬翼法（バイトウィング）</translation>
+    </message>
+    <message>
+        <source>Periapical</source>
+        <translation>根尖投影法（デンタル）</translation>
+    </message>
+    <message>
+        <source>Cancelled. Choose a view to take it again.</source>
+        <translation>中止しました。撮影法を選ぶと撮り直します。</translation>
+    </message>
+    <message>
+        <source>Computed from the case, uncut: for learning, not for diagnosis.</source>
+        <translation>症例（切削前）から計算した画像です。学習用であり、診断用ではありません。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::RadiographFeature</name>
+    <message>
+        <source>Save the radiograph</source>
+        <translation>X 線画像を保存</translation>
+    </message>
+    <message>
+        <source>PNG (*.png);;DICOM (*.dcm)</source>
+        <translation>PNG (*.png);;DICOM (*.dcm)</translation>
+    </message>
+</context>
+<context>
     <name>handpiece::desktop::ReplayFeature</name>
     <message>
         <source>Open recording</source>
@@ -3952,11 +4026,11 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>象牙質に到達</translation>
     </message>
     <message>
-        <source>Pulp opened</source>
+        <source>Pulp exposed</source>
         <translation>露髄</translation>
     </message>
     <message>
-        <source>Neighbour touched</source>
+        <source>Adjacent tooth touched</source>
         <translation>隣在歯に接触</translation>
     </message>
     <message>
@@ -4074,8 +4148,8 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>切削</translation>
     </message>
     <message>
-        <source>Sound of a real drill</source>
-        <translation>実際のドリルの音</translation>
+        <source>Sound of a real handpiece</source>
+        <translation>実際のハンドピースの音</translation>
     </message>
     <message>
         <source>Sound (*.wav)</source>
@@ -4191,16 +4265,16 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>ノギスの 2 点間の距離です</translation>
     </message>
     <message>
-        <source>Dentine over the pulp</source>
-        <translation>歯髄までの象牙質</translation>
+        <source>Remaining dentine thickness</source>
+        <translation>残存象牙質の厚さ</translation>
     </message>
     <message>
-        <source>What is left between the bur and the pulp</source>
-        <translation>バーと歯髄の間に残る厚さです</translation>
+        <source>Remaining dentine thickness between the bur and the pulp</source>
+        <translation>バーと歯髄の間の残存象牙質の厚さです</translation>
     </message>
     <message>
-        <source>Dentine over the pulp, in words</source>
-        <translation>歯髄までの象牙質の目安</translation>
+        <source>Remaining dentine thickness, in words</source>
+        <translation>残存象牙質の厚さの目安</translation>
     </message>
     <message>
         <source>This exercise hides the depths.</source>
@@ -4848,8 +4922,8 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>深さ [mm]</translation>
     </message>
     <message>
-        <source>Speed [1000 turns a minute]</source>
-        <translation>回転数 [1000 回転/分]</translation>
+        <source>Speed [1000 rpm]</source>
+        <translation>回転数 [1000 rpm]</translation>
     </message>
     <message>
         <source>Rotor speed [1000 rpm]</source>
@@ -4872,8 +4946,8 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>%1 秒</translation>
     </message>
     <message>
-        <source>%1 s: depth %2 mm, %3 turns a minute</source>
-        <translation>%1 秒：深さ %2 mm、%3 回転/分</translation>
+        <source>%1 s: depth %2 mm, %3 rpm</source>
+        <translation>%1 秒：深さ %2 mm、%3 rpm</translation>
     </message>
     <message>
         <source>%1 s: %2 N, %3 mm, %4 rpm</source>
@@ -5200,7 +5274,7 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>最大 %1</translation>
     </message>
     <message>
-        <source>Over the pulp, in the crown</source>
+        <source>Dentine over the pulp, in the crown</source>
         <translation>歯冠部の歯髄を覆う厚さ</translation>
     </message>
     <message>
@@ -5308,7 +5382,7 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>およそ %1 より薄いもの：微小な亀裂、細い根管、エナメル質の薄い縁。</translation>
     </message>
     <message>
-        <source>Cementum: it is taken for dentine. Gum and ligament: X-rays pass them.</source>
+        <source>Cementum: it is taken for dentine. Gingiva and periodontal ligament: X-rays pass them.</source>
         <translation>セメント質：象牙質として扱われます。歯肉と歯根膜：X 線が透過します。</translation>
     </message>
     <message>
@@ -5832,12 +5906,12 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>現在のバーの回転数です。縁の印は設定回転数を示します。</translation>
     </message>
     <message>
-        <source>%1 turns a minute</source>
-        <translation>%1 回転/分</translation>
+        <source>%1 rpm</source>
+        <translation>%1 rpm</translation>
     </message>
     <message>
-        <source>turns a minute</source>
-        <translation>回転/分</translation>
+        <source>rpm</source>
+        <translation>rpm</translation>
     </message>
     <message>
         <source>× 1000</source>
@@ -6034,12 +6108,12 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>歯を縮めずにボクセルの段差を取り除きます</translation>
     </message>
     <message>
-        <source>Neighbours and bone around it, to look at</source>
-        <translation>周りの歯と骨も表示する</translation>
+        <source>Adjacent teeth and bone around it, to look at</source>
+        <translation>隣在歯と骨も表示する</translation>
     </message>
     <message>
-        <source>Neighbours and bone around it</source>
-        <translation>周りの歯と骨</translation>
+        <source>Adjacent teeth and bone around it</source>
+        <translation>隣在歯と周囲の骨</translation>
     </message>
     <message>
         <source>What stands around the tooth in the scan</source>
@@ -6532,40 +6606,40 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>咬合面</translation>
     </message>
     <message>
-        <source>Onto the chewing surface (1)</source>
-        <translation>咬合面を見ます（1）</translation>
+        <source>Occlusal view (1)</source>
+        <translation>咬合面観（1）</translation>
     </message>
     <message>
         <source>Buccal</source>
         <translation>頬側</translation>
     </message>
     <message>
-        <source>From the cheek (2)</source>
-        <translation>頬側から見ます（2）</translation>
+        <source>Buccal view (2)</source>
+        <translation>頬側面観（2）</translation>
     </message>
     <message>
         <source>Lingual</source>
         <translation>舌側</translation>
     </message>
     <message>
-        <source>From the tongue (3)</source>
-        <translation>舌側から見ます（3）</translation>
+        <source>Lingual view (3)</source>
+        <translation>舌側面観（3）</translation>
     </message>
     <message>
-        <source>From the front of the arch (4)</source>
-        <translation>歯列の前方から見ます（4）</translation>
+        <source>Mesial view (4)</source>
+        <translation>近心面観（4）</translation>
     </message>
     <message>
-        <source>From the back of the arch (5)</source>
-        <translation>歯列の後方から見ます（5）</translation>
+        <source>Distal view (5)</source>
+        <translation>遠心面観（5）</translation>
     </message>
     <message>
         <source>Oblique</source>
         <translation>斜め</translation>
     </message>
     <message>
-        <source>From above and the cheek (6)</source>
-        <translation>頬側の斜め上から見ます（6）</translation>
+        <source>Oblique view, occlusal and buccal (6)</source>
+        <translation>斜め（咬合面・頬側）から見ます（6）</translation>
     </message>
 </context>
 <context>
@@ -6635,8 +6709,8 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>窩底を指してください。クリックまたは %1 で値を残します</translation>
     </message>
     <message>
-        <source>Point at the cavity&apos;s floor; a click or %1 keeps what is left over the pulp</source>
-        <translation>窩底を指してください。クリックまたは %1 で歯髄上の残りの厚さを残します</translation>
+        <source>Point at the cavity&apos;s floor; a click or %1 keeps the remaining dentine thickness</source>
+        <translation>窩底を指してください。クリックまたは %1 で残存象牙質の厚さを残します</translation>
     </message>
 </context>
 <context>

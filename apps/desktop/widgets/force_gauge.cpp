@@ -31,6 +31,11 @@ void ForceGauge::setLimit(double limitN) {
     update();
 }
 
+void ForceGauge::setPressLimits(const instrument::PressLimits& limits) {
+    press_ = limits;
+    update();
+}
+
 void ForceGauge::setForce(double forceN, double timeS, bool limited) {
     forceN_ = std::isfinite(forceN) ? std::max(0.0, forceN) : 0.0;
     limited_ = limited;
@@ -53,12 +58,12 @@ void ForceGauge::setHeadingShown(bool shown) {
 }
 
 ForceGauge::Zone ForceGauge::zone() const {
-    return limited_ || forceN_ >= kHardN ? Zone::hard : forceN_ >= kFirmN ? Zone::firm : Zone::gentle;
+    return limited_ || forceN_ >= press_.hardN ? Zone::hard : forceN_ >= press_.firmN ? Zone::firm : Zone::gentle;
 }
 
 QString ForceGauge::words() const {
     if (limited_) return detail_ == Detail::practice ? tr("More than the device gives") : tr("At the limit");
-    return pressWords(forceN_);
+    return pressWords(forceN_, press_);
 }
 
 QSize ForceGauge::sizeHint() const {
@@ -96,7 +101,7 @@ void ForceGauge::paintEvent(QPaintEvent* event) {
     painter.setClipPath(round);
     painter.fillRect(bar, tones.line);
     // The zones show faintly, so that one sees where it gets hard.
-    const double edges[] = {0.0, kFirmN, kHardN, std::max(kHardN, limitN_)};
+    const double edges[] = {0.0, press_.firmN, press_.hardN, std::max(press_.hardN, limitN_)};
     for (int i = 0; i < 3; ++i) {
         QColor faint = colours[i];
         faint.setAlphaF(0.22f);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// How hard the bur presses, up to what the device can give.
+/// How hard the bur presses: graded by fixed newtons of the drive, shown up to what the device can give.
 
 #include <QWidget>
 
 #include "desktop/widgets/detail.h"
+#include "handpiece/model/instrument/press.h"
 
 namespace handpiece::desktop {
 
@@ -18,6 +19,8 @@ class ForceGauge : public QWidget {
     explicit ForceGauge(QWidget* parent = nullptr);
 
     void setLimit(double limitN);
+    /// What is light and what is hard: the drive's, whatever the device can give.
+    void setPressLimits(const instrument::PressLimits& limits);
     /// A force at a time of the session. `limited`: the device was asked for more than it can give.
     void setForce(double forceN, double timeS, bool limited = false);
     void setDetail(Detail detail);
@@ -36,6 +39,7 @@ class ForceGauge : public QWidget {
     void paintEvent(QPaintEvent* event) override;
 
   private:
+    instrument::PressLimits press_ = instrument::pressLimitsOf("turbine");
     double limitN_ = 3.3, forceN_ = 0.0, peakN_ = 0.0, peakTimeS_ = 0.0;
     bool limited_ = false, headingShown_ = true;
     Detail detail_ = Detail::practice;

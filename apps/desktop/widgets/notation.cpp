@@ -178,11 +178,11 @@ QString tissueName(cases::Tissue tissue) {
         case Tissue::cementum:
             return text(QT_TRANSLATE_NOOP("Tissue", "Cementum"));
         case Tissue::gum:
-            return text(QT_TRANSLATE_NOOP("Tissue", "Gum"));
+            return text(QT_TRANSLATE_NOOP("Tissue", "Gingiva"));
         case Tissue::bone:
             return text(QT_TRANSLATE_NOOP("Tissue", "Bone"));
         case Tissue::neighbour:
-            return text(QT_TRANSLATE_NOOP("Tissue", "Neighbour tooth"));
+            return text(QT_TRANSLATE_NOOP("Tissue", "Adjacent tooth"));
         case Tissue::restoration:
             return text(QT_TRANSLATE_NOOP("Tissue", "Filling"));
         case Tissue::demineralisedEnamel:

@@ -178,7 +178,7 @@ TEST(Registration, TheNumberSaysWhichSideIsTheLonger) {
 
 TEST(Registration, RefusesSenselessHints) {
     const surfacing::Surfaces& scan = surfacesOf(ToothKind::upperIncisor);
-    EXPECT_THAT(errorOf([&] { (void)place(scan, {Vec3::Zero(), std::nullopt, 0}); }), HasSubstr("chewing surface"));
+    EXPECT_THAT(errorOf([&] { (void)place(scan, {Vec3::Zero(), std::nullopt, 0}); }), HasSubstr("occlusal surface"));
     EXPECT_THAT(errorOf([&] { (void)place(scan, {Vec3::UnitZ(), Vec3(0, 0.01, -1), 0}); }), HasSubstr("the same way"));
     EXPECT_THAT(errorOf([&] { (void)place({}, {}); }), HasSubstr("no surface"));
 }

@@ -50,7 +50,7 @@ QString driveName(const QString& name) {
     if (name == "turbine") return DrillBar::tr("High speed (air turbine)");
     if (name == "weak-turbine") return DrillBar::tr("High speed, weak air");
     if (name == "low-speed") return DrillBar::tr("Low speed");
-    if (name == "speed-increasing") return DrillBar::tr("Red ring (speed-increasing)");
+    if (name == "speed-increasing") return DrillBar::tr("Red band 1:5 (speed-increasing)");
     return name;
 }
 
@@ -62,7 +62,7 @@ double speedStep(double freeRpm) {
 
 DrillBar::DrillBar(QWidget* parent) : QWidget(parent) {
     setObjectName("drillBar");
-    setAccessibleName(tr("Drill"));
+    setAccessibleName(tr("Handpiece"));
     auto* column = new QVBoxLayout(this);
     column->setSpacing(6);
 
@@ -140,7 +140,7 @@ DrillBar::DrillBar(QWidget* parent) : QWidget(parent) {
     speedCaption_ = new QLabel(tr("Speed"), this);
     slider_ = named(new QSlider(Qt::Horizontal, this), "speedSlider", tr("Set speed"),
                     tr("Set speed, with the pedal down and the bur in the air (+ and -)"));
-    spin_ = named(new QSpinBox(this), "speedSpin", tr("Set speed in turns a minute"));
+    spin_ = named(new QSpinBox(this), "speedSpin", tr("Set speed in rpm"));
     spin_->setGroupSeparatorShown(true);
     spin_->setSuffix(tr(" rpm"));
     spin_->setKeyboardTracking(false);
@@ -295,7 +295,7 @@ void DrillBar::setDrives(const std::vector<instrument::Drive>& drives) {
         auto* button = new QRadioButton(driveName(name), this);
         button->setObjectName("drive_" + name);
         button->setAccessibleName(driveName(name));
-        button->setToolTip(tr("Up to %1 turns a minute").arg(rpmText(drive.freeSpeedRpm)));
+        button->setToolTip(tr("Up to %1 rpm").arg(rpmText(drive.freeSpeedRpm)));
         driveButtons_->addButton(button, static_cast<int>(i));
         driveRows_->addWidget(button);
     }

@@ -73,7 +73,7 @@ DrillFeature::DrillFeature(const FeatureContext& context)
 void DrillFeature::addDocks() {
     Docks& docks = window_.docks();
     docks.add({"drillDock",
-               tr("Drill"),
+               tr("Handpiece"),
                20,
                {{Detail::practice, Qt::LeftDockWidgetArea, 20, 510},
                 {Detail::laboratory, Qt::LeftDockWidgetArea, 20, 510},
@@ -242,6 +242,7 @@ void DrillFeature::showSettings() {
     if (simulator_.bur()) bar_->addOwnBur(simulator_.burName(), *simulator_.bur(), simulator_.burCuttingParameters());
     bar_->setBur(simulator_.burName());
     bar_->setDrive(simulator_.driveName());
+    gauge_->setPressLimits(instrument::pressLimitsOf(simulator_.driveName().toStdString()));
     bar_->setSpeed(simulator_.setSpeedRpm());
     const force::Parameters& p = simulator_.parameters();
     parameters_->setMultipliers({p.stiffnessMultiplier, p.dampingMultiplier, p.frictionMultiplier});

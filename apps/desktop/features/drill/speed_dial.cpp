@@ -39,7 +39,7 @@ void SpeedDial::setSpeed(double rpm, bool stalled) {
     if (stalled == stalled_ && std::abs(rpm - rpm_) < freeRpm_ * 5e-4 && !(rpm == 0 && rpm_ != 0)) return;
     rpm_ = rpm;
     stalled_ = stalled;
-    setAccessibleDescription(tr("%1 turns a minute").arg(rpmText(rpm_)));
+    setAccessibleDescription(tr("%1 rpm").arg(rpmText(rpm_)));
     update();
 }
 
@@ -103,7 +103,7 @@ void SpeedDial::paintEvent(QPaintEvent* event) {
     painter.drawText(QRectF(0, centre.y() - big * 0.62, width(), big), Qt::AlignCenter, rpmText(rpm_));
     painter.setPen(tones.quiet);
     painter.setFont(scaledFont(font(), 0.8));
-    painter.drawText(QRectF(0, centre.y() + big * 0.36, width(), 18), Qt::AlignCenter, tr("turns a minute"));
+    painter.drawText(QRectF(0, centre.y() + big * 0.36, width(), 18), Qt::AlignCenter, tr("rpm"));
     painter.drawText(QRectF(0, centre.y() + radius * 0.66, width(), 18), Qt::AlignCenter, tr("× 1000"));
 }
 

@@ -75,12 +75,12 @@ MeasureBox::MeasureBox(QWidget* parent) : QWidget(parent) {
             depthCaption_, depth_);
     readout(1, tr("Distance measured"), "calliperReadout", tr("Between the two points of the calliper"),
             calliperCaption_, calliper_);
-    readout(2, tr("Dentine over the pulp"), "pulpReadout", tr("What is left between the bur and the pulp"),
-            leftCaption_, left_);
+    readout(2, tr("Remaining dentine thickness"), "pulpReadout",
+            tr("Remaining dentine thickness between the bur and the pulp"), leftCaption_, left_);
     column->addLayout(readouts);
     auto* lights = new QHBoxLayout;
     light_ = new TrafficLight(this);
-    leftWords_ = named(new QLabel(this), "pulpWords", tr("Dentine over the pulp, in words"));
+    leftWords_ = named(new QLabel(this), "pulpWords", tr("Remaining dentine thickness, in words"));
     lights->addWidget(light_);
     lights->addWidget(leftWords_, 1);
     column->addLayout(lights);
@@ -214,8 +214,13 @@ void MeasureBox::setLoad(double loadN) {
     showLoad();
 }
 
+void MeasureBox::setPressLimits(const instrument::PressLimits& limits) {
+    press_ = limits;
+    showLoad();
+}
+
 void MeasureBox::showLoad() {
-    const QString words = pressWords(loadN_);
+    const QString words = pressWords(loadN_, press_);
     loadValue_->setText(detail_ == Detail::practice ? words : quantity(loadN_, 1, tr("N")));
     load_->setAccessibleDescription(words);
 }
@@ -291,7 +296,7 @@ void MeasureBox::setDetail(Detail detail) {
     for (QLabel* label : {depth_, calliper_, left_})
         label->setFont(scaledFont(font(), practice ? 1.7 : 1.25, true));
     loadCaption_->setText(practice ? tr("Press") : tr("Load"));
-    loadValue_->setMinimumWidth(practice ? fontMetrics().horizontalAdvance(pressWords(0.4)) + 4
+    loadValue_->setMinimumWidth(practice ? fontMetrics().horizontalAdvance(pressWords(0.5 * press_.lightN, press_)) + 4
                                          : fontMetrics().horizontalAdvance("0.0 N") + 4);
     showLoad();
 }

@@ -8,6 +8,7 @@
 
 #include "desktop/widgets/detail.h"
 #include "handpiece/app/exercise/permissions.h"
+#include "handpiece/model/instrument/press.h"
 #include "handpiece/senses/measure/pulp_light.h"
 
 class QCheckBox;
@@ -42,6 +43,8 @@ class MeasureBox : public QWidget {
 
     // Controls; setters tell nobody.
     void setLoad(double loadN);
+    /// What is light and what is hard, by the drive.
+    void setPressLimits(const instrument::PressLimits& limits);
     /// 0: off.
     void setDepthStop(double stopMm);
     void setSection(bool on, MeasureBox::Orientation orientation, double offsetMm);
@@ -61,6 +64,7 @@ class MeasureBox : public QWidget {
 
   private:
     measure::PulpLimits pulpLimits_;
+    instrument::PressLimits press_ = instrument::pressLimitsOf("turbine");
     void showLoad();
     void tellSection();
 

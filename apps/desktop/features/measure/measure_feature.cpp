@@ -31,7 +31,7 @@ constexpr CommandOf<Command> kCommands[] = {
      "Ctrl+Shift+D", in(Shelf::tools, 11), in(Shelf::toolBar, 22), brief(QT_TRANSLATE_NOOP("Commands", "Depth")),
      kCheckable, Operation::depthTool},
     {Command::pulp, "actionPulp", QT_TRANSLATE_NOOP("Commands", "Measure to the pulp"),
-     QT_TRANSLATE_NOOP("Commands", "Click a cut place: how much dentine is left over the pulp"), "measure", "Ctrl+U",
+     QT_TRANSLATE_NOOP("Commands", "Click a cut place: remaining dentine thickness over the pulp"), "measure", "Ctrl+U",
      in(Shelf::tools, 12), in(Shelf::toolBar, 23), brief(QT_TRANSLATE_NOOP("Commands", "To pulp")), kCheckable,
      Operation::pulpTool},
     {Command::section, "actionSection", QT_TRANSLATE_NOOP("Commands", "Section"),
@@ -161,7 +161,9 @@ void MeasureFeature::connectPlots() {
     connect(plots_, &PlotPanel::saveRequested, this, &MeasureFeature::savePlot);
     const auto showLimits = [this] {
         plots_->setForceLimit(simulator_.capability().maxForceN);
-        plots_->setFreeSpeed(instrument::driveByName(simulator_.driveName().toStdString()).freeSpeedRpm);
+        const std::string drive = simulator_.driveName().toStdString();
+        plots_->setFreeSpeed(instrument::driveByName(drive).freeSpeedRpm);
+        box_->setPressLimits(instrument::pressLimitsOf(drive));
     };
     connect(&simulator_, &Simulator::settingsChanged, this, showLimits);
     connect(&simulator_.hands(), &DeviceManager::changed, this, showLimits);

@@ -184,7 +184,7 @@ void PlotView::drawAxes(QPainter& painter, const QSize& size) const {
     const Tones tones = tonesOf(palette());
     painter.fillRect(QRect(QPoint(), size), palette().color(QPalette::Base));
     const QString titles[] = {practice_ ? tr("Pressure") : tr("Force [N]"), tr("Depth [mm]"),
-                              practice_ ? tr("Speed [1000 turns a minute]") : tr("Rotor speed [1000 rpm]")};
+                              practice_ ? tr("Speed [1000 rpm]") : tr("Rotor speed [1000 rpm]")};
     const QColor colours[] = {tones.force, tones.depth, tones.speed};
     const QFont small = scaledFont(font(), 0.85), bold = scaledFont(font(), 0.88, true);
     for (int plot = 0; plot < kPlots; ++plot) {
@@ -329,7 +329,7 @@ void PlotView::setHover(double timeS) {
     auto at = std::lower_bound(shown.begin(), shown.end(), timeS,
                                [](const simulation::PlotPoint& point, double t) { return point.timeS < t; });
     if (at == shown.end()) --at;
-    QString text = practice_ ? tr("%1 s: depth %2 mm, %3 turns a minute")
+    QString text = practice_ ? tr("%1 s: depth %2 mm, %3 rpm")
                                    .arg(QLocale().toString(at->timeS, 'f', 2), QLocale().toString(at->depthMm, 'f', 2),
                                         rpmText(at->speedRpm))
                              : tr("%1 s: %2 N, %3 mm, %4 rpm")

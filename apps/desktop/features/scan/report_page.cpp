@@ -233,7 +233,7 @@ QString ReportPage::reportHtml() const {
         line(tr("Enamel over dentine"), tr("%1 in the middle").arg(mm(f.enamel.medianMm)),
              tr("at most %1").arg(mm(f.enamel.mostMm)));
     if (f.overPulp.isKnown)
-        line(tr("Over the pulp, in the crown"), tr("at least %1").arg(mm(f.overPulp.leastMm)),
+        line(tr("Dentine over the pulp, in the crown"), tr("at least %1").arg(mm(f.overPulp.leastMm)),
              tr("%1 in the middle").arg(mm(f.overPulp.medianMm)));
     end();
 
@@ -284,7 +284,7 @@ QString ReportPage::reportHtml() const {
     QStringList limits{
         tr("Anything thinner than about %1: hairline cracks, narrow canals, the thin edge of the enamel.")
             .arg(mm(finest)),
-        tr("Cementum: it is taken for dentine. Gum and ligament: X-rays pass them."),
+        tr("Cementum: it is taken for dentine. Gingiva and periodontal ligament: X-rays pass them."),
         tr("Early caries: only what has lost enough mineral is darker. How soft it is, is not seen at all.")};
     for (const segmentation::Solid& solid : r.region->solids)
         if (solid.isAuthored) limits << tr("The authored lesion is the teacher's: no patient had it.");

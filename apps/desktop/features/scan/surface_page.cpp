@@ -79,8 +79,8 @@ SurfacePage::SurfacePage(ScanModel& model, ScanQuestions& questions, QWidget* pa
     smooth_ = named(new QCheckBox(tr("Smooth (volumes are kept)"), left), "scanSmooth", tr("Smooth"),
                     tr("Takes away the steps of voxels without shrinking the tooth"));
     column->addWidget(smooth_);
-    scenery_ = named(new QCheckBox(tr("Neighbours and bone around it, to look at"), left), "scanScenery",
-                     tr("Neighbours and bone around it"), tr("What stands around the tooth in the scan"));
+    scenery_ = named(new QCheckBox(tr("Adjacent teeth and bone around it, to look at"), left), "scanScenery",
+                     tr("Adjacent teeth and bone around it"), tr("What stands around the tooth in the scan"));
     column->addWidget(scenery_);
 
     column->addSpacing(10);

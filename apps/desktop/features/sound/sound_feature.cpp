@@ -115,7 +115,7 @@ void SoundFeature::connectRecordings() {
     connect(control_, &SoundControl::synthesisChosen, this,
             [this](SoundControl::Channel channel) { takeRecording(channel, {}); });
     connect(control_, &SoundControl::recordingFileRequested, this, [this](SoundControl::Channel channel) {
-        const QString file = window_.questions.open(tr("Sound of a real drill"), tr("Sound (*.wav)"));
+        const QString file = window_.questions.open(tr("Sound of a real handpiece"), tr("Sound (*.wav)"));
         file.isEmpty() ? show() : takeRecording(channel, file);
     });
     connect(control_, &SoundControl::microphoneToggled, this, &SoundFeature::toggleMicrophone);

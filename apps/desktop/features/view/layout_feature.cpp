@@ -104,7 +104,7 @@ void LayoutFeature::showAbout() {
     box.setWindowTitle(tr("About Handpiece"));
     box.setIconPixmap(window_.windowIcon().pixmap(64));
     box.setTextFormat(Qt::RichText);
-    box.setText(tr("<h3>Handpiece %1</h3><p>An open dental surgery simulator: touch a tooth and drill it.</p>")
+    box.setText(tr("<h3>Handpiece %1</h3><p>An open dental surgery simulator: touch a tooth and cut it.</p>")
                     .arg(QStringLiteral(HANDPIECE_VERSION)));
     box.setInformativeText(
         tr("<p>Licensed under the Apache License 2.0. For teaching; no medical device.</p>"

@@ -20,24 +20,25 @@ struct ViewButton {
     view::StandardView view;
     const char *icon, *object, *text, *tip;
 };
-const ViewButton kViews[] = {{view::StandardView::occlusal, "view-occlusal", "viewOcclusal",
-                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Occlusal"),
-                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Onto the chewing surface (1)")},
-                             {view::StandardView::buccal, "view-buccal", "viewBuccal",
-                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Buccal"),
-                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "From the cheek (2)")},
-                             {view::StandardView::lingual, "view-lingual", "viewLingual",
-                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Lingual"),
-                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "From the tongue (3)")},
-                             {view::StandardView::mesial, "view-mesial", "viewMesial",
-                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Mesial"),
-                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "From the front of the arch (4)")},
-                             {view::StandardView::distal, "view-distal", "viewDistal",
-                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Distal"),
-                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "From the back of the arch (5)")},
-                             {view::StandardView::oblique, "view-oblique", "viewOblique",
-                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Oblique"),
-                              QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "From above and the cheek (6)")}};
+const ViewButton kViews[] = {
+    {view::StandardView::occlusal, "view-occlusal", "viewOcclusal",
+     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Occlusal"),
+     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Occlusal view (1)")},
+    {view::StandardView::buccal, "view-buccal", "viewBuccal",
+     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Buccal"),
+     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Buccal view (2)")},
+    {view::StandardView::lingual, "view-lingual", "viewLingual",
+     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Lingual"),
+     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Lingual view (3)")},
+    {view::StandardView::mesial, "view-mesial", "viewMesial",
+     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Mesial"),
+     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Mesial view (4)")},
+    {view::StandardView::distal, "view-distal", "viewDistal",
+     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Distal"),
+     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Distal view (5)")},
+    {view::StandardView::oblique, "view-oblique", "viewOblique",
+     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Oblique"),
+     QT_TRANSLATE_NOOP("handpiece::desktop::ViewBar", "Oblique view, occlusal and buccal (6)")}};
 
 }  // namespace
 

@@ -21,8 +21,8 @@ const std::vector<Drive>& drives() {
     static const std::vector<Drive> all = {
         {"turbine", "high-speed air turbine", 400000, 1.2, 1e-5, 0.2},
         {"weak-turbine", "air turbine with worn bearings or too little air", 400000, 0.45, 1e-5, 0.075},
-        {"low-speed", "contra-angle 1:1 on an electric motor (blue ring)", 40000, 30.0, 2.5e-4, 5.0},
-        {"speed-increasing", "contra-angle 1:5 on an electric motor (red ring)", 200000, 6.0, 2e-5, 1.0},
+        {"low-speed", "contra-angle 1:1 on an electric motor (blue band)", 40000, 30.0, 2.5e-4, 5.0},
+        {"speed-increasing", "contra-angle 1:5 on an electric motor (red band)", 200000, 6.0, 2e-5, 1.0},
     };
     return all;
 }

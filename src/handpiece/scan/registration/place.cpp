@@ -267,7 +267,7 @@ Placed place(const surfacing::Surfaces& surfaces, const Hints& hints) {
     Vec3 occlusal;
     double confidence = 1.0;
     if (hints.occlusal) {
-        occlusal = unit(*hints.occlusal, "to the chewing surface");
+        occlusal = unit(*hints.occlusal, "to the occlusal surface");
     } else if (crown.isFound()) {
         const Vec3 towards = (crown.enamel.mean - crown.rest.mean).normalized();
         // The long axis of the whole; a stump or a crown alone has none, then the plane of the neck decides.
@@ -278,7 +278,7 @@ Placed place(const surfacing::Surfaces& surfaces, const Hints& hints) {
         const bool isLong = nearest == 0 && axes.spread[0] > 1.5 * axes.spread[1];
         occlusal = isLong ? Vec3(axes.vectors.col(0)) : Vec3(principalAxes(crown.neck.covariance).vectors.col(2));
         if (occlusal.dot(towards) < 0.0) occlusal = -occlusal;
-        if (!isLong) placed.notes.emplace_back("the tooth has no clear long axis: the plane of its neck was taken");
+        if (!isLong) placed.notes.emplace_back("the tooth has no clear long axis: the plane of its cervix was taken");
         confidence = std::clamp(occlusal.dot(towards), 0.0, 1.0);
     } else {
         occlusal = axes.vectors.col(0);
@@ -306,12 +306,12 @@ Placed place(const surfacing::Surfaces& surfaces, const Hints& hints) {
         // Crowns are about two fifths of a tooth's length.
         neckAt = high - 0.4 * (high - low);
         centre = whole.mean;
-        placed.notes.emplace_back("the neck was put at three fifths of the length: z = 0 is a guess");
+        placed.notes.emplace_back("the cervix was put at three fifths of the length: z = 0 is a guess");
     }
     placed.confidence = confidence;
     if (confidence < 0.6)
         placed.notes.emplace_back(
-            fmt::format("the direction of the chewing surface is uncertain (confidence {:.2f})", confidence));
+            fmt::format("the direction of the occlusal surface is uncertain (confidence {:.2f})", confidence));
 
     Vec3 mesial;
     if (hints.mesial) {

@@ -142,7 +142,7 @@ Region segment(const volume::Volume& volume, const Settings& settings, const cor
     const CoarseTeeth teeth = partTeeth(volume, work.levels, core::part(progress, 0.08, 0.15));
     const std::size_t chosen = choose(teeth, volume.grid, settings);
     if (teeth.hasNeighbour[chosen])
-        work.notes.emplace_back("the tooth touches a neighbour; it was parted where the two are narrowest");
+        work.notes.emplace_back("the tooth touches an adjacent one; it was parted where the two are narrowest");
     const double h =
         settings.spacingMm > 0 ? settings.spacingMm : std::max(kFinestMm, volume.grid.spacingMm.minCoeff());
     const core::Box& bounds = teeth.teeth[chosen].boundsMm;

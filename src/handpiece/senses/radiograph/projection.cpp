@@ -42,7 +42,7 @@ Scene::Scene(const cases::Case& toothCase) {
         // What is only seen need be no solid.
         if (!part.isFelt && !geometry::inspect(part.mesh).closed()) continue;
         // A tooth in soft tissue and bone, however they were meshed.
-        const int tooth = part.tissue == Tissue::neighbour ? 1000 : 0;
+        const int tooth = part.tissue != Tissue::gum && part.tissue != Tissue::bone ? 1000 : 0;
         surfaces.push_back({part.name, part.tissue, part.priority + tooth, Role::scenery, 0});
         bodies_.push_back({&part.mesh, {}});
     }

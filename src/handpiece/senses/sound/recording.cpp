@@ -133,7 +133,7 @@ std::shared_ptr<const Loop> makeLoop(const Wav& wav, double recordedAtRpm, const
     const double lastsS = static_cast<double>(mono.size()) / wav.rateHz;
     if (lastsS > kLongestRecordingS)
         throw core::Error(fmt::format("the recording lasts {:.0f} s", lastsS), where,
-                          "cut out up to a minute in which the drill runs evenly")
+                          "cut out up to a minute in which the handpiece runs evenly")
             .as("sound-too-long");
     if (lastsS < kShortestRecordingS)
         throw core::Error(fmt::format("the recording lasts {:.3f} s", lastsS), where,

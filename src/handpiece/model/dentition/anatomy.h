@@ -34,6 +34,8 @@ struct Crest {
     double round = 0.8;       ///< the larger, the broader its back [mm]
     double slope = 0.95;      ///< of its flanks
     bool isRim = false;       ///< one of the ring of cusp and marginal ridges, which pass into each other
+    std::string name{};       ///< those with a name become landmarks
+    bool isMarginal = false;
 };
 
 /// A groove cut into the finished surface along a line seen from above: points are x, y and depth. V-shaped with
@@ -49,6 +51,7 @@ struct Groove {
 struct Hollow {
     core::Vec3 centre, radii;
     double depth;
+    std::string pit{};  ///< its name when it is a pit: those become landmarks
 };
 
 struct Cusp {
@@ -65,6 +68,9 @@ struct Root {
     double waist = 0.0;              ///< concavity of the mesial and distal sides, share of the half width
     core::Vec2 taper = {0.8, 0.45};  ///< widths half-way and nine tenths down, shares of those at z = 0
 };
+
+/// Where a root's middle runs, at this share of the way from the cervix to the apex.
+[[nodiscard]] core::Vec2 rootCentre(const Root& root, double share);
 
 struct Canal {
     std::string name;
@@ -102,9 +108,11 @@ struct Spec {
     std::vector<Root> roots;
     double trunk = 0.0;  ///< from the cervix to the furcation; 0 with one root
     double rootBlend = 1.4;
-    double enamelCusp = 2.3, enamelFossa = 1.3, enamelSide = 1.2;
+    double enamelCusp = 2.0, enamelFossa = 0.75, enamelSide = 1.05;  ///< thicknesses
     std::vector<Section> chamber;
-    double roofZ = 0.8, floorZ = -1.0;
+    double roofZ = 0.8, floorZ = -1.0;     ///< of the chamber; with one root the roof alone
+    double pulpSpread = 0.0;               ///< how much wider it is towards an incisal edge
+    std::vector<std::string> twoCanals{};  ///< roots with two
     std::vector<Horn> horns;
     std::vector<Canal> canals;
 };

@@ -5,13 +5,13 @@ namespace handpiece::dentition {
 using core::Vec2;
 using core::Vec3;
 
-void anterior(Spec& s, bool upper, int place, const Patient& patient) {
+void anterior(Spec& s, bool upper, int place) {
     const Sizes& z = s.sizes;
     const double buccalZ = -0.25 * (z.curveMesial + z.curveDistal), top = z.crown + buccalZ;
     const double half = 0.5 * z.mesiodistal, depth = 0.5 * z.buccolingual;
     const bool canine = place == 3, lateral = place == 2;
     // Upper incisal edges stand over the root's axis or labial of it, lower ones lingual of it.
-    const double edge = upper ? -0.25 : 0.3, thick = canine ? 0.6 : upper ? 0.6 : 0.5;
+    const double edge = upper ? -0.25 : 0.3, thick = canine ? 0.45 : upper ? 0.55 : 0.45;
     const auto at = [&](double share) { return buccalZ + share * z.crown; };
     // Contacts: incisal third, distal ones lower; the rounder the angle, the lower.
     const double mesial = canine    ? 0.70
@@ -24,7 +24,7 @@ void anterior(Spec& s, bool upper, int place, const Patient& patient) {
                                     : 0.72;
     s.mesial = {at(mesial), at(0.97), (canine ? 0.86 : 0.97) * half, at(1.08), 0.8 * half};
     s.distal = {at(distal), at(0.95), (canine ? 0.82 : 0.94) * half, at(1.08), 0.75 * half};
-    s.buccal = {at(0.2), at(0.55), 0.9 * depth - 0.5 * edge, at(1.02), thick - edge, 0.05};
+    s.buccal = {at(0.2), at(0.5), 0.9 * depth - 0.5 * edge, at(1.02), thick - edge, 0.05};
     s.lingual = {at(upper ? 0.17 : 0.14), at(0.55), (upper ? 0.5 : 0.5) * depth + 0.8 * edge, at(1.02), thick + edge};
     s.lean = upper ? -0.22 : -0.15;
     s.cervixSquare = 0.15, s.contourSquare = canine ? 0.35 : 0.5, s.rimSquare = canine ? 0.5 : 0.85;
@@ -34,9 +34,9 @@ void anterior(Spec& s, bool upper, int place, const Patient& patient) {
         s.cusps = {{"cusp", Vec3(tip, edge, top)}};
         // The mesial slope is the shorter.
         s.crests = {{Vec3(tip, edge, top), Vec3(0.5 * half, edge, top - 0.6), Vec3(0.95 * half, edge, top - 1.8), 0.7,
-                     1.0, true},
+                     1.0, true, "cusp ridge"},
                     {Vec3(tip, edge, top), Vec3(-0.4 * half, edge, top - 0.85), Vec3(-0.98 * half, edge, top - 2.7),
-                     0.7, 1.0, true}};
+                     0.7, 1.0, true, "cusp ridge"}};
         s.hollows = {{Vec3(0.2, -1.05 * depth, at(0.6)), Vec3(1.6, 2.0, 0.6 * z.crown), -0.25},
                      {Vec3(0.42 * half, 0.35 * depth + edge, at(0.6)), Vec3(0.46 * half, 1.6, 0.33 * z.crown),
                       upper ? 0.32 : 0.18},
@@ -48,9 +48,9 @@ void anterior(Spec& s, bool upper, int place, const Patient& patient) {
         const double round = upper ? lateral ? 1.5 : 1.0 : lateral ? 0.5 : 0.25;
         s.cusps = {{"incisal edge", Vec3(0.2 * half, edge, top)}};
         s.crests = {{Vec3(0.93 * half, edge, top - 0.12 * round), Vec3(0.2 * half, edge, top + 0.04),
-                     Vec3(-0.4 * half, edge, top - 0.08 * round), 0.8, 1.0, true},
+                     Vec3(-0.4 * half, edge, top - 0.08 * round), 0.8, 1.0, true, "incisal edge"},
                     {Vec3(-0.4 * half, edge, top - 0.08 * round), Vec3(-0.8 * half, edge, top - 0.25 * round),
-                     Vec3(-0.97 * half, edge, top - 1.1 * round), 0.8, 1.0, true}};
+                     Vec3(-0.97 * half, edge, top - 1.1 * round), 0.8, 1.0, true, "incisal edge"}};
         // The fossa between the marginal ridges, over the cingulum.
         const double deep = upper ? lateral ? 0.6 : 0.5 : 0.15;
         s.hollows = {
@@ -61,14 +61,15 @@ void anterior(Spec& s, bool upper, int place, const Patient& patient) {
             s.hollows.push_back(
                 {Vec3(x * half, -0.7 * depth, at(0.84)), Vec3(0.32 * half, 1.8, 0.5 * z.crown), upper ? 0.1 : 0.04});
         // The lingual pit of the lateral incisor, where the fossa meets the cingulum.
-        if (upper && lateral) s.hollows.push_back({Vec3(0.0, 0.72 * depth, at(0.36)), Vec3(0.4, 0.8, 0.5), 0.3});
+        if (upper && lateral)
+            s.hollows.push_back({Vec3(0.0, 0.72 * depth, at(0.36)), Vec3(0.5, 1.0, 0.6), 0.3, "lingual"});
     }
     s.roots = {{"root", Vec2(0, 0), Vec3(0.05, 0.0, -0.5 * z.root),
                 Vec3(lateral || canine ? -0.9 : -0.3, 0.1, buccalZ - z.root),
                 Vec2(0.49 * z.mesiodistalCervix, 0.49 * z.buccolingualCervix), 0.1, upper ? 0.0 : 0.14,
                 Vec2(0.82, 0.44)}};
-    s.enamelCusp = 2.0, s.enamelSide = 0.9, s.enamelFossa = 0.9;
-    singleRootPulp(s, patient.ageYears, 0.5 * top, canine ? 0.0 : 0.5);
+    s.enamelCusp = canine ? 1.8 : 2.1, s.enamelSide = canine ? 0.85 : 0.65;
+    s.roofZ = 0.5 * top, s.pulpSpread = canine ? 0.0 : 0.4;
 }
 
 }  // namespace handpiece::dentition

@@ -5,18 +5,10 @@ namespace handpiece::dentition {
 using core::Vec2;
 using core::Vec3;
 
-void lowerMolar(Spec& s, int place, const Patient& patient) {
-    const Sizes sizes = s.sizes;
-    // Outlines: contact in the occlusal third; buccal contour in the cervical third, lingual in the middle third; the
-    // crown leans lingually.
-    s.mesial = {4.6, 6.0, 4.75, 7.6, 3.7, 0.05};
-    s.distal = {4.3, 5.8, 4.65, 7.4, 3.4};
-    s.buccal = {2.2, 6.2, 3.95, 7.6, 2.7, 0.05};
-    s.lingual = {3.6, 6.7, 4.05, 7.8, 3.0};
-    s.lean = -0.05, s.wedge = 0.04;
-    s.cervixSquare = 0.5, s.contourSquare = 0.7, s.rimSquare = 0.65;
-    s.rimRound = 0.9;
-    s.groundZ = 4.55;
+namespace {
+
+/// Five cusps; the grooves make a Y.
+void fiveCusps(Spec& s) {
     OcclusalPlan plan;
     plan.buccal = {{"mesiobuccal", Vec3(2.6, -2.9, 6.75), Vec3(1.7, -0.35, 5.0), 0.62, 1.1, 0.15},
                    {"distobuccal", Vec3(-0.85, -3.05, 6.55), Vec3(-0.4, -0.2, 4.95), 0.6, 1.1},
@@ -62,21 +54,119 @@ void lowerMolar(Spec& s, int place, const Patient& patient) {
     s.hollows.push_back({Vec3(-3.0, -5.0, 5.6), Vec3(1.5, 2.5, 2.8), 0.42});
     s.hollows.push_back({Vec3(0.25, 5.6, 5.8), Vec3(1.7, 2.8, 3.0), 0.5});
     // The mesiobuccal groove ends in a pit in the middle third.
-    s.hollows.push_back({Vec3(0.86, -5.15, 3.35), Vec3(0.42, 0.6, 0.48), 0.25});
+    s.hollows.push_back({Vec3(0.86, -5.15, 3.35), Vec3(0.42, 0.6, 0.48), 0.25, "buccal"});
     // Pits.
-    s.hollows.push_back({Vec3(0.2, 0.12, 4.75), Vec3(0.35, 0.35, 0.8), 0.2});
-    s.hollows.push_back({Vec3(3.35, 0.15, 4.8), Vec3(0.35, 0.35, 0.8), 0.2});
-    s.hollows.push_back({Vec3(-3.3, 0.35, 4.8), Vec3(0.35, 0.35, 0.8), 0.18});
-    s.trunk = 3.2;
-    s.roots = {{"mesial", Vec2(2.15, 0.0), Vec3(3.0, 0.0, -7.0), Vec3(1.6, 0.1, -14.2), Vec2(2.05, 3.85), 0.4, 0.22,
+    s.hollows.push_back({Vec3(0.2, 0.12, 4.75), Vec3(0.35, 0.35, 0.8), 0.2, "central"});
+    s.hollows.push_back({Vec3(3.35, 0.15, 4.8), Vec3(0.35, 0.35, 0.8), 0.2, "mesial"});
+    s.hollows.push_back({Vec3(-3.3, 0.35, 4.8), Vec3(0.35, 0.35, 0.8), 0.18, "distal"});
+}
+
+/// Four cusps; the grooves make a +. Wrinkled: more supplemental grooves, as third molars have.
+void fourCusps(Spec& s, bool isWrinkled) {
+    OcclusalPlan plan;
+    plan.buccal = {{"mesiobuccal", Vec3(2.5, -2.95, 6.75), Vec3(1.35, -0.35, 5.0), 0.62, 1.1, 0.15},
+                   {"distobuccal", Vec3(-2.05, -2.85, 6.55), Vec3(-1.2, -0.35, 4.95), 0.62, 1.1, -0.1}};
+    plan.lingual = {{"mesiolingual", Vec3(2.35, 3.0, 7.25), Vec3(1.3, 0.45, 5.05), 0.65, 1.15, 0.1},
+                    {"distolingual", Vec3(-2.05, 2.9, 7.0), Vec3(-1.2, 0.5, 5.0), 0.65, 1.15, -0.1}};
+    plan.buccalNotch = {Vec3(0.3, -3.2, 5.75)};
+    plan.lingualNotch = {Vec3(0.25, 3.15, 6.0)};
+    plan.mesial = {Vec3(4.05, -2.0, 5.95), Vec3(4.35, 0.1, 5.7), Vec3(3.9, 2.1, 6.1)};
+    plan.distal = {Vec3(-3.95, -1.75, 5.75), Vec3(-4.35, 0.1, 5.5), Vec3(-3.75, 1.9, 5.85)};
+    occlusalSurface(s, plan);
+    s.grooves.push_back({"central",
+                         {Vec3(3.3, 0.1, 0.35), Vec3(2.3, 0.0, 0.3), Vec3(1.2, 0.12, 0.3), Vec3(0.25, 0.08, 0.45),
+                          Vec3(-1.0, 0.02, 0.3), Vec3(-2.2, 0.15, 0.3), Vec3(-3.25, 0.1, 0.35)},
+                         0.3,
+                         3.0,
+                         4.0});
+    s.grooves.push_back({"buccal",
+                         {Vec3(0.25, 0.08, 0.4), Vec3(0.35, -1.0, 0.3), Vec3(0.25, -2.1, 0.25), Vec3(0.3, -3.1, 0.22),
+                          Vec3(0.3, -5.5, 0.12)},
+                         0.3,
+                         3.0,
+                         4.4});
+    s.grooves.push_back({"lingual",
+                         {Vec3(0.25, 0.08, 0.4), Vec3(0.35, 1.0, 0.3), Vec3(0.25, 2.1, 0.25), Vec3(0.25, 3.1, 0.2),
+                          Vec3(0.25, 5.4, 0.1)},
+                         0.3,
+                         3.6,
+                         5.4});
+    for (const double side : {1.0, -1.0}) {
+        s.grooves.push_back({"",
+                             {Vec3(3.28 * side, 0.1, 0.25), Vec3(3.65 * side, -0.6, 0.15), Vec3(3.8 * side, -1.2, 0.0)},
+                             0.25,
+                             3.0,
+                             4.0});
+        s.grooves.push_back({"",
+                             {Vec3(3.28 * side, 0.1, 0.25), Vec3(3.6 * side, 0.8, 0.15), Vec3(3.7 * side, 1.4, 0.0)},
+                             0.25,
+                             3.0,
+                             4.0});
+        if (!isWrinkled) continue;
+        s.grooves.push_back({"",
+                             {Vec3(1.2 * side, 0.1, 0.25), Vec3(1.7 * side, 1.0, 0.2), Vec3(1.5 * side, 2.0, 0.0)},
+                             0.26,
+                             3.0,
+                             4.0});
+        s.grooves.push_back({"",
+                             {Vec3(0.9 * side, 0.0, 0.25), Vec3(1.0 * side, -1.0, 0.2), Vec3(1.6 * side, -1.9, 0.0)},
+                             0.26,
+                             3.0,
+                             4.0});
+        s.grooves.push_back({"",
+                             {Vec3(2.3 * side, 0.0, 0.2), Vec3(2.5 * side, -0.9, 0.16), Vec3(3.1 * side, -1.5, 0.0)},
+                             0.26,
+                             3.0,
+                             4.0});
+    }
+    s.hollows.push_back({Vec3(0.3, -5.6, 5.4), Vec3(1.7, 2.8, 3.0), 0.48});
+    s.hollows.push_back({Vec3(0.25, 5.6, 5.8), Vec3(1.7, 2.8, 3.0), 0.48});
+    s.hollows.push_back({Vec3(0.25, 0.08, 4.75), Vec3(0.35, 0.35, 0.8), 0.2, "central"});
+    s.hollows.push_back({Vec3(3.3, 0.1, 4.8), Vec3(0.33, 0.33, 0.8), 0.18, "mesial"});
+    s.hollows.push_back({Vec3(-3.25, 0.1, 4.8), Vec3(0.33, 0.33, 0.8), 0.18, "distal"});
+}
+
+}  // namespace
+
+void lowerMolar(Spec& s, int place) {
+    const Sizes sizes = s.sizes;
+    // Outlines: contact in the occlusal third; buccal contour in the cervical third, lingual in the middle third; the
+    // crown leans lingually.
+    s.mesial = {4.6, 6.0, 4.75, 7.6, 3.7, 0.05};
+    s.distal = {4.3, 5.8, 4.65, 7.4, 3.4};
+    s.buccal = {2.2, 6.2, 3.95, 7.6, 2.7, 0.05};
+    s.lingual = {3.6, 6.7, 4.05, 7.8, 3.0};
+    s.lean = -0.05, s.wedge = 0.04;
+    s.cervixSquare = 0.5, s.contourSquare = 0.7, s.rimSquare = 0.65;
+    s.rimRound = 0.9;
+    s.groundZ = 4.55;
+    if (place == 6)
+        fiveCusps(s);
+    else
+        fourCusps(s, place == 8);
+    s.trunk = 3.6;
+    s.roots = {{"mesial", Vec2(2.05, 0.0), Vec3(3.0, 0.0, -7.0), Vec3(1.6, 0.1, -14.2), Vec2(2.0, 3.85), 0.4, 0.22,
                 Vec2(0.78, 0.5)},
-               {"distal", Vec2(-2.15, 0.0), Vec3(-2.9, 0.0, -6.6), Vec3(-3.6, 0.1, -13.2), Vec2(2.0, 3.65), 0.35, 0.1,
+               {"distal", Vec2(-2.05, 0.0), Vec3(-2.9, 0.0, -6.6), Vec3(-3.5, 0.1, -13.2), Vec2(1.95, 3.65), 0.35, 0.1,
                 Vec2(0.75, 0.46)}};
-    s.roofZ = 0.6, s.floorZ = -1.0;
-    if (place == 7) scale(s, 10.5 / 11.0, 10.0 / 10.5, 7.0 / 7.5, 13.0 / 14.0);
-    if (place == 8) scale(s, 10.0 / 11.0, 9.5 / 10.5, 7.0 / 7.5, 11.0 / 14.0);
+    s.roofZ = 0.4, s.floorZ = -1.15;
+    if (place == 7) {
+        // Straighter roots, closer together.
+        s.roots[0].middle.x() = 2.7, s.roots[0].apex.x() = 1.2;
+        s.roots[1].middle.x() = -2.6, s.roots[1].apex.x() = -3.2;
+        s.distal.rim = 3.5, s.wedge = 0.05;
+        scale(s, 10.5 / 11.0, 10.0 / 10.5, 7.0 / 7.5, 13.0 / 14.0);
+    }
+    if (place == 8) {
+        // Short roots, often grown together for most of their length and bent to distal.
+        s.trunk = 6.0;
+        s.roots[0].middle.x() = 1.7, s.roots[0].apex.x() = -0.9;
+        s.roots[1].middle.x() = -2.5, s.roots[1].apex.x() = -4.0;
+        s.contourSquare = 0.5, s.rimSquare = 0.45, s.wedge = 0.07;
+        scale(s, 10.0 / 11.0, 9.5 / 10.5, 7.0 / 7.5, 11.0 / 14.0);
+    }
     s.sizes = sizes;
-    pulpOf(s, patient.ageYears, {"mesial"});
+    s.twoCanals = {"mesial"};
 }
 
 }  // namespace handpiece::dentition

@@ -5,7 +5,7 @@ namespace handpiece::dentition {
 using core::Vec2;
 using core::Vec3;
 
-void upperPremolar(Spec& s, int place, const Patient& patient) {
+void upperPremolar(Spec& s, int place) {
     const bool first = place == 4;
     s.mesial = {4.9, 6.6, 2.85, 8.4, 2.2};
     s.distal = {4.6, 6.4, 2.75, 8.2, 2.1};
@@ -53,7 +53,7 @@ void upperPremolar(Spec& s, int place, const Patient& patient) {
                              0.22,
                              3.5,
                              4.5});
-        s.hollows.push_back({Vec3(x, 0.4, 5.5), Vec3(0.35, 0.35, 0.8), 0.18});
+        s.hollows.push_back({Vec3(x, 0.4, 5.5), Vec3(0.35, 0.35, 0.8), 0.18, side > 0.0 ? "mesial" : "distal"});
         if (!first) {  // wrinkled, as second premolars are
             s.grooves.push_back(
                 {"",
@@ -70,7 +70,7 @@ void upperPremolar(Spec& s, int place, const Patient& patient) {
         // Buccal furrows beside the buccal ridge.
         s.hollows.push_back({Vec3(1.75 * side, -4.3, 6.0), Vec3(1.1, 1.9, 2.6), 0.22});
     }
-    s.enamelCusp = 2.2, s.enamelSide = 1.15;
+    s.enamelCusp = 1.7, s.enamelSide = 0.95, s.enamelFossa = 0.65;
     if (first) {
         s.trunk = 7.0;
         s.roots = {{"buccal", Vec2(0, -1.75), Vec3(0.1, -2.1, -7.0), Vec3(-0.6, -2.4, -14.2), Vec2(2.1, 2.0), 0.2, 0.0,
@@ -78,15 +78,14 @@ void upperPremolar(Spec& s, int place, const Patient& patient) {
                    {"palatal", Vec2(0, 1.75), Vec3(0.1, 2.1, -7.0), Vec3(-0.5, 2.5, -13.6), Vec2(2.05, 2.0), 0.2, 0.0,
                     Vec2(0.8, 0.46)}};
         s.roofZ = 1.4, s.floorZ = -2.5;
-        pulpOf(s, patient.ageYears, {});
     } else {
         s.roots = {{"root", Vec2(0, 0), Vec3(0.1, 0.0, -7.0), Vec3(-0.6, 0.1, -14.2), Vec2(2.5, 4.0), 0.3, 0.16,
                     Vec2(0.82, 0.48)}};
-        singleRootPulp(s, patient.ageYears, 3.0, 0.1);
+        s.roofZ = 3.0;
     }
 }
 
-void lowerPremolar(Spec& s, int place, const Patient& patient) {
+void lowerPremolar(Spec& s, int place) {
     const bool first = place == 4;
     s.mesial = {4.6, 6.0, 3.0, 8.2, 2.1};
     s.distal = {4.4, 5.8, 3.05, 8.0, 2.1};
@@ -95,7 +94,7 @@ void lowerPremolar(Spec& s, int place, const Patient& patient) {
     s.lean = first ? -0.1 : 0.0;
     s.cervixSquare = 0.35, s.contourSquare = 0.5, s.rimSquare = 0.5;
     s.rimRound = 0.8;
-    s.enamelCusp = 2.1, s.enamelSide = 1.1;
+    s.enamelCusp = 1.8, s.enamelSide = 0.95, s.enamelFossa = 0.55;
     OcclusalPlan plan;
     if (first) {
         s.groundZ = 4.75;
@@ -123,7 +122,7 @@ void lowerPremolar(Spec& s, int place, const Patient& patient) {
                              4.8});
         s.hollows.push_back({Vec3(2.1, 3.2, 5.2), Vec3(1.0, 1.4, 2.2), 0.25});
         for (const double x : {1.7, -1.75})
-            s.hollows.push_back({Vec3(x, 0.97, 5.0), Vec3(0.5, 0.5, 0.9), 0.2});
+            s.hollows.push_back({Vec3(x, 0.97, 5.0), Vec3(0.5, 0.5, 0.9), 0.2, x > 0.0 ? "mesial" : "distal"});
     } else {
         s.groundZ = 4.7;
         // Three cusps: the grooves make a Y. Fewer people have two.
@@ -146,7 +145,7 @@ void lowerPremolar(Spec& s, int place, const Patient& patient) {
              5.2});
         s.hollows.push_back({Vec3(-0.42, 4.0, 5.6), Vec3(1.1, 1.8, 2.0), 0.28});
         for (const double x : {1.85, -1.9}) {
-            s.hollows.push_back({Vec3(x, 0.6, 4.9), Vec3(0.35, 0.35, 0.8), 0.18});
+            s.hollows.push_back({Vec3(x, 0.6, 4.9), Vec3(0.35, 0.35, 0.8), 0.18, x > 0.0 ? "mesial" : "distal"});
             s.grooves.push_back(
                 {"", {Vec3(x, 0.6, 0.28), Vec3(1.15 * x, 0.0, 0.15), Vec3(1.22 * x, -0.5, 0.0)}, 0.22, 3.2, 4.2});
             s.grooves.push_back(
@@ -157,7 +156,7 @@ void lowerPremolar(Spec& s, int place, const Patient& patient) {
         s.hollows.push_back({Vec3(1.8 * side, -3.6, 6.0), Vec3(1.1, 1.9, 2.6), 0.22});
     s.roots = {{"root", Vec2(0, 0), Vec3(0.1, 0.0, -7.0), Vec3(-0.7, 0.1, -s.sizes.root - 0.25), Vec2(2.5, 3.25), 0.2,
                 0.1, Vec2(0.82, 0.46)}};
-    singleRootPulp(s, patient.ageYears, 3.0, 0.0);
+    s.roofZ = 3.0;
 }
 
 }  // namespace handpiece::dentition

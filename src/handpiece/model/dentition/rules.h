@@ -27,20 +27,18 @@ struct OcclusalPlan {
 
 /// Cusp ridges, triangular ridges, marginal ridges and supplemental grooves.
 void occlusalSurface(Spec& spec, const OcclusalPlan& plan);
-/// A chamber in the shape of the cervix with a horn under each cusp, canals down the middle of the roots (two side by
-/// side in those named), narrower with age.
-void pulpOf(Spec& spec, double ageYears, const std::vector<std::string>& twoCanals);
-/// Of a tooth with one root: one cavity, flat as the root is, with its horns towards the incisal edge or cusps.
-void singleRootPulp(Spec& spec, double ageYears, double hornZ, double spread);
+/// The pulp, narrower with age. With several roots a chamber in the shape of the cervix with a horn under each cusp and
+/// canals down the middle of the roots; with one root one cavity, flat as the root is.
+void addPulp(Spec& spec, double ageYears);
 /// Cusp tips wear flat.
 void wear(Spec& spec, double byMm);
 /// The specification in another size: shares of width, depth, crown and root.
 void scale(Spec& spec, double x, double y, double crown, double root);
 
-void lowerMolar(Spec& spec, int place, const Patient& patient);
+void lowerMolar(Spec& spec, int place);
 void upperMolar(Spec& spec, int place, const Patient& patient);
-void upperPremolar(Spec& spec, int place, const Patient& patient);
-void lowerPremolar(Spec& spec, int place, const Patient& patient);
-void anterior(Spec& spec, bool upper, int place, const Patient& patient);
+void upperPremolar(Spec& spec, int place);
+void lowerPremolar(Spec& spec, int place);
+void anterior(Spec& spec, bool upper, int place);
 
 }  // namespace handpiece::dentition

@@ -23,11 +23,11 @@ Spec specOf(bool upper, int place, const Patient& patient) {
     Spec spec;
     spec.sizes = (upper ? kUpper : kLower)[place - 1];
     if (place <= 3)
-        anterior(spec, upper, place, patient);
+        anterior(spec, upper, place);
     else if (place <= 5)
-        upper ? upperPremolar(spec, place, patient) : lowerPremolar(spec, place, patient);
+        upper ? upperPremolar(spec, place) : lowerPremolar(spec, place);
     else
-        upper ? upperMolar(spec, place, patient) : lowerMolar(spec, place, patient);
+        upper ? upperMolar(spec, place, patient) : lowerMolar(spec, place);
     return spec;
 }
 

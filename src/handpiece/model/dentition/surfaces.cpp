@@ -17,7 +17,8 @@ constexpr double kHeightToDistance = 0.75;
 constexpr double kStepMm = 0.08, kStepHeightMm = 0.3;
 /// Thickness that the enamel ends with, so that its edge is no razor.
 constexpr double kCervicalEnamelMm = 0.06;
-constexpr double kMinDentineOverPulpMm = 0.8;
+/// Dentine left everywhere over the pulp, in the crown and at the apex.
+constexpr double kCrownDentineMm = 1.0, kApicalDentineMm = 0.25;
 /// Flanks of two crests meet in a valley as sharp as this [mm]; the ridges of the rim pass into each other softly.
 constexpr double kValleyMm = 0.10, kRimMm = 0.45;
 /// Incisal edges slope towards lingual.
@@ -28,20 +29,6 @@ constexpr int kCurvePieces = 6;
 
 double gauss(double t) {
     return core::exp(-0.5 * t * t);
-}
-
-/// A line with its corners cut, twice (Chaikin); the ends stay.
-std::vector<Vec3> rounded(std::vector<Vec3> points) {
-    for (int round = 0; round < 2; ++round) {
-        std::vector<Vec3> next = {points.front()};
-        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-            if (i > 0) next.push_back(0.75 * points[i] + 0.25 * points[i + 1]);
-            if (i + 2 < points.size()) next.push_back(0.25 * points[i] + 0.75 * points[i + 1]);
-        }
-        next.push_back(points.back());
-        points = std::move(next);
-    }
-    return points;
 }
 
 /// Distance to a chain of balls whose radius runs evenly from the first to the last point.
@@ -55,14 +42,6 @@ double chainValue(const std::vector<Vec3>& points, double from, double to, const
         best = std::min(best, (p - points[i] - t * d).norm() - radius);
     }
     return best;
-}
-
-Vec2 rootCentre(const Root& r, double t) {
-    // Through its middle: a quadratic in the height.
-    const double tm = r.middle.z() / r.apex.z();
-    const Vec2 chord = r.cervix + tm * (r.apex.head<2>() - r.cervix);
-    const Vec2 bow = (r.middle.head<2>() - chord) / (tm * (1.0 - tm));
-    return r.cervix + t * (r.apex.head<2>() - r.cervix) + t * (1.0 - t) * bow;
 }
 
 /// Cross-sections of a root from its end up to the cervix.
@@ -88,7 +67,7 @@ Loft crownOf(const Spec& s) {
     const Sizes& z = s.sizes;
     const double halfX = 0.5 * z.mesiodistalCervix, halfY = 0.5 * z.buccolingualCervix;
     std::vector<Section> below;
-    Loft::Ends ends{-0.2 * s.trunk, 0.85 * s.trunk};
+    Loft::Ends ends{-0.45 * s.trunk, 0.57 * s.trunk};
     if (s.roots.size() == 1)
         below = sectionsOf(s.roots.front()), below.pop_back(), ends = apexOf(s.roots.front());
     else
@@ -139,6 +118,19 @@ Profile profileOf(const std::vector<Section>& sections, double (*of)(const Secti
 double smoothStep(double from, double to, double x) {
     const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
+}
+
+std::vector<Vec3> rounded(std::vector<Vec3> points) {
+    for (int round = 0; round < 2; ++round) {
+        std::vector<Vec3> next = {points.front()};
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+            if (i > 0) next.push_back(0.75 * points[i] + 0.25 * points[i + 1]);
+            if (i + 2 < points.size()) next.push_back(0.25 * points[i] + 0.75 * points[i + 1]);
+        }
+        next.push_back(points.back());
+        points = std::move(next);
+    }
+    return points;
 }
 
 Profile::Profile(std::vector<Knot> knots) : knots_(std::move(knots)) {
@@ -240,7 +232,9 @@ Anatomy::Anatomy(Spec spec) : spec_(std::move(spec)), crown_(crownOf(spec_)) {
         lines_.push_back(line);
     }
     if (!spec_.chamber.empty())
-        chamber_.emplace_back(spec_.chamber, Loft::Ends{spec_.floorZ + 0.5, 0.5, spec_.roofZ - 0.6, 0.6});
+        chamber_.emplace_back(spec_.chamber, spec_.roots.size() == 1
+                                                 ? Loft::Ends{spec_.floorZ + 0.4, 0.4, spec_.roofZ - 0.5, 0.5}
+                                                 : Loft::Ends{spec_.floorZ + 0.45, 0.45, spec_.roofZ - 0.45, 0.45});
     measure();
 }
 
@@ -344,10 +338,12 @@ double Anatomy::outer(const Vec3& p) const {
 double Anatomy::core(const Vec3& p, double bodyValue) const {
     const double above = aboveCervix(p);
     if (above < -0.5) return bodyValue;
-    const double side = spec_.enamelSide * smoothStep(-0.6, 0.55 * spec_.sizes.crown, above);
-    const double fossaZ = spec_.groundZ > 0.0 ? spec_.groundZ : 0.6 * topZ_;
-    double top = (spec_.enamelCusp - spec_.enamelSide) *
-                 smoothStep(fossaZ - spec_.enamelFossa, topZ_ - 0.6 - spec_.enamelCusp, p.z());
+    // Thinner under the fossae than on the sides, thicker on cusps and edges.
+    const double deep =
+        spec_.isEdge ? 0.0 : (spec_.enamelSide - spec_.enamelFossa) * smoothStep(1.4, 2.6, -crown_.value(p));
+    const double side = (spec_.enamelSide - deep) * smoothStep(-0.6, 0.55 * spec_.sizes.crown, above);
+    const double fromZ = spec_.isEdge ? topZ_ - 2.8 : spec_.groundZ - spec_.enamelFossa;
+    const double top = (spec_.enamelCusp - spec_.enamelSide) * smoothStep(fromZ, topZ_ - 0.6 - spec_.enamelCusp, p.z());
     return bodyValue + kCervicalEnamelMm * smoothStep(-0.5, 0.5, above) + side + top;
 }
 
@@ -367,10 +363,12 @@ double Anatomy::pulp(const Vec3& p) const {
     for (const Loft& c : chamber_)
         value = c.value(p);
     for (const Canal& c : spec_.canals)
-        value = smoothMin(value, chainValue(c.points, c.orificeRadius, c.apexRadius, p), 0.3);
+        value = smoothMin(value, chainValue(c.points, c.orificeRadius, c.apexRadius, p), 0.5);
     for (const Horn& h : spec_.horns)
-        value = smoothMin(value, chainValue({h.base, h.tip}, h.baseRadius, h.tipRadius, p), 0.3);
-    return smoothMax(value, core(p, body(p)) + kMinDentineOverPulpMm, 0.2);
+        value = smoothMin(value, chainValue({h.base, h.tip}, h.baseRadius, h.tipRadius, p), 0.8);
+    return smoothMax(
+        value,
+        core(p, body(p)) + kApicalDentineMm + (kCrownDentineMm - kApicalDentineMm) * smoothStep(-5.0, 0.0, p.z()), 0.2);
 }
 
 double Anatomy::cementum(const Vec3& p) const {
@@ -380,32 +378,32 @@ double Anatomy::cementum(const Vec3& p) const {
 }
 
 bool Anatomy::surfaceAlong(const Vec3& from, const Vec3& direction, Vec3& found) const {
-    double t = 0.0;
-    for (int i = 0; i < 400; ++i) {
-        const Vec3 p = from + t * direction;
-        const double value = outer(p);
-        if (value < 1e-7) {
-            found = p;
+    double before = 0.0, t = 0.0;
+    while (t < 4.0 * reach_ + 30.0) {
+        const double value = outer(from + t * direction);
+        if (value <= 0.0) {
+            for (int i = 0; i < 40 && t - before > 1e-9; ++i) {
+                const double middle = 0.5 * (before + t);
+                (outer(from + middle * direction) > 0.0 ? before : t) = middle;
+            }
+            found = from + t * direction;
             return true;
         }
-        t += std::max(value / 2.0, 1e-7);
-        if (t > 4.0 * reach_ + 30.0) return false;
+        before = t;
+        t += std::clamp(0.5 * value, 1e-3, 2.0);
     }
     return false;
 }
 
-Vec3 Anatomy::onSurface(Vec3 p) const {
-    for (int i = 0; i < 30; ++i) {
-        const double value = outer(p);
-        if (std::abs(value) < 1e-9) break;
-        constexpr double kH = 1e-5;
-        Vec3 gradient;
-        for (int axis = 0; axis < 3; ++axis) {
-            Vec3 e = Vec3::Zero();
-            e[axis] = kH;
-            gradient[axis] = (outer(p + e) - outer(p - e)) / (2.0 * kH);
+Vec3 Anatomy::climbed(Vec3 p) const {
+    for (double step = 0.2; step > 1e-3;) {
+        bool moved = false;
+        for (const Vec3& way : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
+            Vec3 next;
+            const Vec3 from(p.x() + step * way.x(), p.y() + step * way.y(), topZ_);
+            if (surfaceAlong(from, -Vec3::UnitZ(), next) && next.z() > p.z() + 1e-9) p = next, moved = true;
         }
-        p -= std::clamp(value / std::max(gradient.squaredNorm(), 0.05), -0.3, 0.3) * gradient;
+        if (!moved) step *= 0.5;
     }
     return p;
 }

@@ -18,6 +18,8 @@ namespace handpiece::dentition {
     return -smoothMax(-a, -b, width);
 }
 [[nodiscard]] double smoothStep(double from, double to, double x);
+/// A line with its corners cut, twice (Chaikin); the ends stay.
+[[nodiscard]] std::vector<core::Vec3> rounded(std::vector<core::Vec3> points);
 
 /// A smooth curve through values at heights, which never swings beyond them (Fritsch and Carlson).
 class Profile {
@@ -72,8 +74,8 @@ class Anatomy {
     /// The point of the surface where the way from `from` along `direction` first leaves the tooth, looked for from
     /// outside; false when it misses.
     [[nodiscard]] bool surfaceAlong(const core::Vec3& from, const core::Vec3& direction, core::Vec3& found) const;
-    /// The point of the surface nearest by Newton steps.
-    [[nodiscard]] core::Vec3 onSurface(core::Vec3 p) const;
+    /// The highest point of the surface near one of it: up the slope in small steps.
+    [[nodiscard]] core::Vec3 climbed(core::Vec3 p) const;
     /// The outermost point of the surface in a direction, by climbing from the one seen from `start`.
     [[nodiscard]] core::Vec3 outermost(const core::Vec3& direction, const core::Vec3& start) const;
 

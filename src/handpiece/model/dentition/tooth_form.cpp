@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/model/dentition/landmarks.h"
 #include "handpiece/model/dentition/rules.h"
 #include "handpiece/model/dentition/surfaces.h"
 
@@ -24,15 +25,16 @@ void checkTooth(int fdi, const Patient& patient) {
 /// Numbers of a seed, the same everywhere.
 class Draws {
   public:
-    explicit Draws(std::uint64_t seed) : state_(seed) {}
+    Draws(std::uint64_t seed, bool isAverage) : state_(seed), isAverage_(isAverage) {}
     double uniform() {  // splitmix64
         std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ull);
         z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
         z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
         return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
     }
-    /// About normal, of unit spread, never beyond 2.
+    /// About normal, of unit spread, never beyond 2; nothing for seed 0, the average patient.
     double normal() {
+        if (isAverage_) return 0.0;
         double sum = -6.0;
         for (int i = 0; i < 12; ++i)
             sum += uniform();
@@ -41,17 +43,28 @@ class Draws {
 
   private:
     std::uint64_t state_;
+    bool isAverage_;
 };
 
 Spec specFor(int fdi, const Patient& patient) {
     const bool upper = fdi < 30;
     Spec spec = specOf(upper, fdi % 10, patient);
     // Sizes of one mouth go together; each tooth has some play of its own.
-    Draws mouth(patient.seed), tooth(patient.seed * 1000003 + static_cast<std::uint64_t>(fdi % 10 + (upper ? 0 : 8)));
+    const bool isAverage = patient.seed == 0;
+    Draws mouth(patient.seed, isAverage);
+    Draws tooth(patient.seed * 1000003 + static_cast<std::uint64_t>(fdi % 10 + (upper ? 0 : 8)), isAverage);
     const double all = 1.0 + 0.035 * mouth.normal();
     const double x = all * (1.0 + 0.02 * tooth.normal()), y = all * (1.0 + 0.02 * tooth.normal());
     const double crown = all * (1.0 + 0.02 * tooth.normal()), root = all * (1.0 + 0.04 * tooth.normal());
     scale(spec, x, y, crown, root);
+    // No two mouths have the same wrinkles or the same bends of the roots.
+    for (Groove& g : spec.grooves)
+        for (std::size_t i = 1; i + 1 < g.points.size(); ++i)
+            g.points[i] += Vec3(0.05 * tooth.normal(), 0.05 * tooth.normal(), 0.02 * tooth.normal());
+    for (Hollow& h : spec.hollows)
+        h.depth *= 1.0 + 0.1 * tooth.normal();
+    for (Root& r : spec.roots)
+        r.middle.x() += 0.12 * tooth.normal(), r.apex.x() += 0.3 * tooth.normal(), r.apex.y() += 0.2 * tooth.normal();
     // Edges are rounded, ridges pass into each other: what is measured is brought to what is asked.
     const Sizes asked = spec.sizes;
     for (int i = 0; i < 2; ++i) {
@@ -65,6 +78,7 @@ Spec specFor(int fdi, const Patient& patient) {
         spec.sizes.mesiodistal += asked.mesiodistal - wide, spec.sizes.buccolingual += asked.buccolingual - deep;
     }
     wear(spec, (fdi % 10 >= 6 ? 0.012 : 0.008) * std::max(patient.ageYears - 12.0, 0.0));
+    addPulp(spec, patient.ageYears);
     return spec;
 }
 
@@ -125,17 +139,10 @@ Vec3 ToothForm::distalContactMm() const {
 }
 
 std::vector<cases::Landmark> ToothForm::landmarks() const {
-    std::vector<cases::Landmark> marks;
-    const auto add = [&](cases::LandmarkKind kind, std::string name, std::vector<Vec3> points) {
-        for (Vec3& p : points)
+    std::vector<cases::Landmark> marks = landmarksOf(*anatomy_);
+    for (cases::Landmark& mark : marks)
+        for (Vec3& p : mark.pointsMm)
             p = turned(p, buccalSign_);
-        marks.push_back({kind, std::move(name), std::move(points), cases::LandmarkSource::generated});
-    };
-    const Anatomy& a = *anatomy_;
-    for (const Cusp& c : a.spec().cusps)
-        add(cases::LandmarkKind::cuspTip, c.name, {a.outermost(Vec3::UnitZ(), c.tip)});
-    add(cases::LandmarkKind::contact, "mesial", {a.mesialContact});
-    add(cases::LandmarkKind::contact, "distal", {a.distalContact});
     return marks;
 }
 

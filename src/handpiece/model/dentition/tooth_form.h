@@ -13,7 +13,8 @@
 
 namespace handpiece::dentition {
 
-/// Who the teeth are of: the seed makes sizes and shapes within published spreads, the age moves pulp and wear.
+/// Who the teeth are of: the seed makes sizes and shapes within published spreads (0: the average of all), the age
+/// moves pulp and wear.
 struct Patient {
     std::uint64_t seed = 1;
     double ageYears = 25.0;

@@ -1,9 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "handpiece/model/dentition/rules.h"
 
 namespace handpiece::dentition {
 using core::Vec2;
 using core::Vec3;
+
+namespace {
+/// 0 in about a third of all seeds, up to 1.
+double traitOf(const Patient& patient) {
+    const std::uint64_t mixed = (patient.seed + 0x5DEECE66Dull) * 0x9E3779B97F4A7C15ull;
+    return std::max(static_cast<double>(mixed >> 11) * 0x1p-53 * 1.5 - 0.5, 0.0);
+}
+}  // namespace
 
 void upperMolar(Spec& s, int place, const Patient& patient) {
     const Sizes sizes = s.sizes;
@@ -24,10 +34,19 @@ void upperMolar(Spec& s, int place, const Patient& patient) {
     plan.lingualNotch = {Vec3(-1.35, 3.3, 5.3)};
     plan.mesial = {Vec3(4.15, -2.2, 5.85), Vec3(4.15, 0.0, 5.55), Vec3(3.3, 2.3, 5.95)};
     plan.distal = {Vec3(-3.3, -2.2, 5.6), Vec3(-3.85, 0.1, 5.25), Vec3(-4.0, 1.8, 5.3)};
+    if (place >= 7) {
+        // The distopalatal cusp grows less from the first to the third.
+        const double less = place == 7 ? 0.45 : 1.1;
+        plan.lingual[1].tip.z() -= less, plan.lingual[1].tip.x() += 0.15, plan.distal.lingual.z() -= 0.6 * less;
+        plan.buccal[1].tip.z() -= 0.15 * (place - 6), plan.distal.middle.z() -= 0.2 * less;
+        s.skew = place == 7 ? -0.18 : -0.1;
+    }
     occlusalSurface(s, plan);
     // The oblique ridge: from the mesiopalatal to the distobuccal cusp, lowest in the middle.
-    s.crests.push_back({Vec3(1.35, 2.75, 7.25), Vec3(0.2, 1.4, 5.6), Vec3(-0.45, -0.35, 5.45), 0.65, 1.05});
-    s.crests.push_back({Vec3(-0.45, -0.35, 5.45), Vec3(-0.8, -1.3, 5.35), Vec3(-1.55, -3.15, 6.5), 0.65, 1.05});
+    s.crests.push_back(
+        {Vec3(1.35, 2.75, 7.25), Vec3(0.2, 1.4, 5.6), Vec3(-0.45, -0.35, 5.45), 0.65, 1.05, false, "oblique mesial"});
+    s.crests.push_back({Vec3(-0.45, -0.35, 5.45), Vec3(-0.8, -1.3, 5.35), Vec3(-1.55, -3.15, 6.5), 0.65, 1.05, false,
+                        "oblique distal"});
     s.grooves.push_back({"central",
                          {Vec3(3.2, -0.15, 0.35), Vec3(2.3, -0.4, 0.3), Vec3(1.4, -0.45, 0.3), Vec3(0.5, -0.9, 0.45)},
                          0.28,
@@ -58,21 +77,37 @@ void upperMolar(Spec& s, int place, const Patient& patient) {
     s.hollows.push_back({Vec3(0.5, -5.8, 5.4), Vec3(1.7, 2.9, 3.2), 0.5});
     s.hollows.push_back({Vec3(-0.9, 5.8, 5.0), Vec3(1.8, 3.0, 3.6), 0.55});
     // Pits.
-    s.hollows.push_back({Vec3(0.5, -0.9, 4.75), Vec3(0.38, 0.38, 0.8), 0.22});
-    s.hollows.push_back({Vec3(3.2, -0.15, 4.8), Vec3(0.33, 0.33, 0.8), 0.18});
-    s.hollows.push_back({Vec3(-3.1, -0.35, 4.7), Vec3(0.33, 0.33, 0.8), 0.18});
-    s.trunk = 4.0;
+    s.hollows.push_back({Vec3(0.5, -0.9, 4.75), Vec3(0.38, 0.38, 0.8), 0.22, "central"});
+    s.hollows.push_back({Vec3(3.2, -0.15, 4.8), Vec3(0.33, 0.33, 0.8), 0.18, "mesial"});
+    s.hollows.push_back({Vec3(-3.1, -0.35, 4.7), Vec3(0.33, 0.33, 0.8), 0.18, "distal"});
+    s.trunk = 5.3;
     s.roots = {{"mesiobuccal", Vec2(2.15, -2.2), Vec3(2.9, -3.1, -6.5), Vec3(1.9, -3.3, -12.3), Vec2(1.65, 2.2), 0.4,
                 0.12, Vec2(0.84, 0.5)},
                {"distobuccal", Vec2(-1.65, -2.4), Vec3(-2.6, -3.1, -6.2), Vec3(-3.2, -3.0, -11.8), Vec2(1.6, 1.95), 0.3,
                 0.0, Vec2(0.8, 0.48)},
                {"palatal", Vec2(-0.2, 2.3), Vec3(-0.3, 4.3, -6.5), Vec3(-0.4, 4.9, -13.3), Vec2(2.7, 2.2), 0.2, 0.0,
                 Vec2(0.76, 0.48)}};
-    s.roofZ = 0.8, s.floorZ = -1.0;
-    if (place == 7) scale(s, 9.0 / 10.0, 1.0, 7.0 / 7.5, 12.0 / 13.0);
-    if (place == 8) scale(s, 8.5 / 10.0, 10.0 / 11.0, 6.5 / 7.5, 11.0 / 13.0);
+    s.roofZ = 0.6, s.floorZ = -1.25;
+    // Carabelli's trait on the mesiopalatal cusp, in some more, in some less.
+    if (const double carabelli = traitOf(patient); place == 6 && carabelli > 0.0)
+        s.hollows.push_back({Vec3(1.7, 5.4, 3.7), Vec3(1.5, 1.3, 1.5), -0.55 * carabelli});
+    if (place == 7) {
+        s.roots[0].middle.x() = 2.4, s.roots[0].apex.x() = 1.2, s.roots[1].middle.x() = -2.2,
+        s.roots[1].apex.x() = -2.6;
+        s.roots[2].middle.y() = 3.7, s.roots[2].apex.y() = 4.0;
+        scale(s, 9.0 / 10.0, 1.0, 7.0 / 7.5, 12.0 / 13.0);
+    }
+    if (place == 8) {
+        s.trunk = 6.0;
+        s.roots[0].middle.x() = 1.9, s.roots[0].apex.x() = 0.3, s.roots[1].middle.x() = -1.9,
+        s.roots[1].apex.x() = -2.4;
+        s.roots[2].middle.y() = 3.0, s.roots[2].apex.y() = 2.9, s.roots[0].middle.y() = s.roots[1].middle.y() = -2.4;
+        s.roots[0].apex.y() = s.roots[1].apex.y() = -2.3;
+        s.rimSquare = 0.5, s.contourSquare = 0.55, s.lean = -0.06;
+        scale(s, 8.5 / 10.0, 10.0 / 11.0, 6.5 / 7.5, 11.0 / 13.0);
+    }
     s.sizes = sizes;
-    pulpOf(s, patient.ageYears, {"mesiobuccal"});
+    s.twoCanals = {"mesiobuccal"};
 }
 
 }  // namespace handpiece::dentition

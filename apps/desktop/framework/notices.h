@@ -36,6 +36,8 @@ enum class Notice {
     hullOnlyTouches,
     refused,
     neighbourTouched,
+    gingivaCut,
+    headTouched,
     firstDentine,
     hullNeedsWholeTooth,
     settingsBroken,

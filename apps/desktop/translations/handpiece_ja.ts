@@ -1292,6 +1292,14 @@
         <translation>隣在歯に触れました。</translation>
     </message>
     <message>
+        <source>The bur is in the gingiva.</source>
+        <translation>バーが歯肉に入っています。</translation>
+    </message>
+    <message>
+        <source>The handpiece rests on a tooth: the bur is held off.</source>
+        <translation>ハンドピースが歯に当たっており、バーが届きません。</translation>
+    </message>
+    <message>
         <source>The bur has reached dentine.</source>
         <translation>バーが象牙質に達しました。</translation>
     </message>
@@ -4032,6 +4040,14 @@ openhaptics:Left Arm, or forcedimension:2</source>
     <message>
         <source>Adjacent tooth touched</source>
         <translation>隣在歯に接触</translation>
+    </message>
+    <message>
+        <source>Gingiva cut</source>
+        <translation>歯肉損傷</translation>
+    </message>
+    <message>
+        <source>Handpiece on a tooth</source>
+        <translation>ハンドピースが歯に接触</translation>
     </message>
     <message>
         <source>Bur stalled</source>

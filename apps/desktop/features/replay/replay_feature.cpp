@@ -88,6 +88,7 @@ void ReplayFeature::showMarks() {
             kind = Kind::change;
         if (event.name == session::nameOf(session::EventName::pulpExposure) ||
             event.name == session::nameOf(session::EventName::neighbourTouched) ||
+            event.name == session::nameOf(session::EventName::gingivaCut) ||
             event.name == session::nameOf(session::EventName::fault))
             kind = Kind::warning;
         marks.push_back({static_cast<double>(event.tick) / driver.rateHz(), kind, eventText(event.name)});
@@ -123,6 +124,8 @@ QString ReplayFeature::eventText(const std::string& name) {
                                                    {EventName::firstDentine, tr("Dentine reached")},
                                                    {EventName::pulpExposure, tr("Pulp exposed")},
                                                    {EventName::neighbourTouched, tr("Adjacent tooth touched")},
+                                                   {EventName::gingivaCut, tr("Gingiva cut")},
+                                                   {EventName::headTouched, tr("Handpiece on a tooth")},
                                                    {EventName::stall, tr("Bur stalled")},
                                                    {EventName::forceLimit, tr("Pressed too hard")},
                                                    {EventName::undo, tr("Undo")},

@@ -59,6 +59,8 @@ bool anythingRemoved(const tooth::TissueVolumes& mm3) {
 const char* noticeOf(EventName name) {
     if (name == EventName::pulpExposure) return "pulp-exposed";
     if (name == EventName::neighbourTouched) return "neighbour-touched";
+    if (name == EventName::gingivaCut) return "gingiva-cut";
+    if (name == EventName::headTouched) return "head-touched";
     if (name == EventName::stall) return "stalled";
     if (name == EventName::forceLimit) return "force-limited";
     if (name == EventName::fault) return "device-fault";

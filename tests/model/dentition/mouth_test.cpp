@@ -65,6 +65,7 @@ std::vector<cases::Tooth> coarseTeeth(const Patient& patient) {
             teeth[i].fdiNumber = form.fdi();
             teeth[i].buccalSign = form.buccalSign();
             teeth[i].landmarks = form.landmarks();
+            if (!hasJunction(teeth[i])) teeth[i].landmarks.push_back(junctionOf(form));
         }
     });
     return teeth;
@@ -199,6 +200,134 @@ TEST_P(Mouths, LowerCuspsLieInTheCurvesOfSpeeAndWilson) {
             const double slope = (buccal.z() - lingual.z()) / std::abs(buccal.x() - lingual.x());
             EXPECT_NEAR(slope, std::abs(buccal.x()) / kWilsonRadiusMm, 0.08) << "Wilson, " << quadrant + place;
         }
+    }
+}
+
+/// Height of a point over the cemento-enamel junction near it, in the tooth's frame.
+double overJunction(const cases::Tooth& tooth, const Vec3& p) {
+    double nearest = 1e9, height = 0.0;
+    for (const cases::Landmark& mark : tooth.landmarks)
+        if (mark.kind == LandmarkKind::cementoEnamelJunction)
+            for (const Vec3& q : mark.pointsMm)
+                if (const double away = (q - p).head<2>().norm(); away < nearest)
+                    nearest = away, height = p.z() - q.z();
+    return height;
+}
+
+/// Gingiva and bone of one arch, coarse.
+struct Held {
+    std::vector<std::size_t> order;
+    Periodontium tissues;
+};
+const Held& held(bool upper) {
+    static std::map<bool, Held> made;
+    if (const auto found = made.find(upper); found != made.end()) return found->second;
+    const Mouth& m = mouth(1);
+    Held& h = made[upper];
+    std::vector<ArchTooth> arch;
+    for (std::size_t k = 0; k < 16; ++k) {
+        h.order.push_back(k < 8 ? (upper ? 7 : 31) - k : (upper ? 8 : 16) + k - 8);
+        arch.push_back({&m.teeth[h.order.back()], m.arches.toothInMouth[h.order.back()]});
+    }
+    h.tissues = makePeriodontium(arch, {.spacingMm = 0.4, .gingivaFaces = 80000, .boneFaces = 60000});
+    return h;
+}
+
+class Periodontia : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Arches, Periodontia, testing::Bool());
+
+TEST_P(Periodontia, AreSolids) {
+    for (const TriangleMesh* mesh : {&held(GetParam()).tissues.gingiva, &held(GetParam()).tissues.bone}) {
+        const geometry::MeshReport report = geometry::inspect(*mesh);
+        EXPECT_TRUE(report.closed());
+        EXPECT_TRUE(report.oriented());
+        EXPECT_EQ(report.shells, 1u);
+        EXPECT_EQ(report.nonManifoldVertices, 0u);
+        EXPECT_GT(report.volumeMm3, 8000.0);
+        EXPECT_TRUE(geometry::selfIntersections(*mesh, 1).empty());
+    }
+    EXPECT_LE(held(GetParam()).tissues.gingiva.triangles.size(), 80000u);
+    EXPECT_LE(held(GetParam()).tissues.bone.triangles.size(), 60000u);
+}
+
+TEST_P(Periodontia, LigamentIsAsWideAsItIs) {
+    const Mouth& m = mouth(1);
+    const TriangleTree bone(held(GetParam()).tissues.bone);
+    for (const std::size_t i : held(GetParam()).order) {
+        SCOPED_TRACE(fdiOf(i));
+        const double apex = m.teeth[i].outer.bounds().min.z();
+        std::vector<double> widths;
+        for (const Vec3& own : m.teeth[i].outer.vertices) {
+            if (own.z() > 0.35 * apex || own.z() < 0.8 * apex) continue;
+            widths.push_back(bone.signedDistance(m.arches.toothInMouth[i].apply(own)));
+            EXPECT_GT(widths.back(), 0.08) << "root in the bone";
+        }
+        std::sort(widths.begin(), widths.end());
+        EXPECT_GT(widths[widths.size() / 20], 0.13);
+        EXPECT_GT(widths[widths.size() / 2], 0.15);
+        EXPECT_LT(widths[widths.size() / 2], 0.38);
+    }
+}
+
+TEST_P(Periodontia, CrestLiesUnderTheJunction) {
+    const Mouth& m = mouth(1);
+    const Held& h = held(GetParam());
+    const TriangleTree bone(h.tissues.bone);
+    for (const std::size_t i : h.order) {
+        // Straight out of the root at its buccal and lingual middle: where bone begins.
+        const Pose& pose = m.arches.toothInMouth[i];
+        for (const double side : {1.0, -1.0}) {
+            double under = 0.0;
+            for (const Vec3& own : m.teeth[i].outer.vertices) {
+                const double over = overJunction(m.teeth[i], own);
+                if (std::abs(own.x()) > 0.5 || own.y() * side < 1.0 || over > -0.5 || over < -5.0) continue;
+                if (bone.nearest(pose.apply(own), 0.6).triangle != geometry::kNoTriangle)
+                    under = under == 0.0 ? over : std::max(under, over);
+            }
+            EXPECT_LT(under, -0.9) << fdiOf(i);
+            EXPECT_GT(under, -3.0) << fdiOf(i);
+        }
+    }
+}
+
+TEST_P(Periodontia, MarginFollowsTheJunctionAndPapillaeEndBelowTheContacts) {
+    const Mouth& m = mouth(1);
+    const Held& h = held(GetParam());
+    const TriangleTree gingiva(h.tissues.gingiva);
+    for (const std::size_t i : h.order) {
+        SCOPED_TRACE(fdiOf(i));
+        for (const double side : {1.0, -1.0}) {
+            // Seen in the middle of either face: the highest place of the tooth that the gingiva covers.
+            double margin = -10.0;
+            for (const Vec3& own : m.teeth[i].outer.vertices) {
+                if (std::abs(own.x()) > 0.6 || own.y() * side < 1.0 || own.z() > 5.0) continue;
+                if (gingiva.signedDistance(m.arches.toothInMouth[i].apply(own)) < -0.05 ||
+                    gingiva.nearest(m.arches.toothInMouth[i].apply(own), 0.1).triangle != geometry::kNoTriangle)
+                    margin = std::max(margin, overJunction(m.teeth[i], own));
+            }
+            EXPECT_GT(margin, 0.2);
+            EXPECT_LT(margin, 1.4);
+        }
+        for (const Vec3& p : m.teeth[i].outer.vertices)
+            if (p.z() > m.teeth[i].outer.bounds().max.z() - 1.0) {
+                ASSERT_GT(gingiva.signedDistance(m.arches.toothInMouth[i].apply(p)), 0.3) << "crown covered";
+            }
+    }
+    for (std::size_t k = 1; k < h.order.size(); ++k) {
+        const std::size_t a = h.order[k - 1], b = h.order[k];
+        if (a % 8 == 7 || b % 8 == 7) continue;  // third molars stand as they can
+        Vec3 contact = Vec3::Zero();
+        (void)gapOf(m, a, b, 0.3, &contact);
+        const Vec3 axis = ((m.arches.toothInMouth[a].orientation * Vec3::UnitZ()) +
+                           (m.arches.toothInMouth[b].orientation * Vec3::UnitZ()))
+                              .normalized();
+        double tip = -10.0;
+        for (const Vec3& p : h.tissues.gingiva.vertices) {
+            const Vec3 d = p - contact;
+            if ((d - d.dot(axis) * axis).norm() < 1.5) tip = std::max(tip, d.dot(axis));
+        }
+        EXPECT_LT(tip, -0.3) << "papilla between " << fdiOf(a) << " and " << fdiOf(b);
+        EXPECT_GT(tip, -3.5) << "papilla between " << fdiOf(a) << " and " << fdiOf(b);
     }
 }
 

@@ -46,7 +46,9 @@ constexpr double kOcclusalGapMm = 0.008, kToleranceMm = 0.003;
 constexpr double kLookMm = 4.0;  ///< teeth farther apart are brought closer unseen
 
 // How far an upper tooth may leave its place to settle, and what that costs against depth [mm for 1 mm, for 1 degree].
-constexpr double kMostAsideMm = 0.8, kMostTiltDeg = 5.0, kCostOfAside = 0.25, kCostOfTilt = 0.004;
+constexpr double kMostAsideMm = 0.8, kMostTiltDeg = 5.0, kCostOfAside = 0.15, kCostOfTilt = 0.003;
+// Adjacent teeth meet this far over the cervix or higher, else they are tilted by so much more until they do.
+constexpr double kCrownFromMm = 1.5, kClearRootsDeg = 2.5;
 
 /// The lower arch's line, seen from above, by its length from the midline.
 class ArchLine {
@@ -156,6 +158,7 @@ struct Place {
     double asideMm = 0.0;  ///< outwards from it
     double upMm = 0.0;
     double mesialDeg = 0.0, buccalDeg = 0.0;  ///< tilted further than its inclination
+    double leastMesialDeg = -kMostTiltDeg;    ///< so that its roots clear those of the tooth before it
 };
 
 /// The highest of the lower teeth over each place of the occlusal plane.
@@ -343,9 +346,15 @@ class Arranger {
         if (!isUpper(i)) {
             close(at.s, kContactGapMm, toNeighbour);
         } else {
-            for (int round = 0; round < 4; ++round) {
-                stopOnLower(i, round < 2);
+            for (int round = 0, free = 4; round <= free; ++round) {
+                stopOnLower(i, round < free);
                 close(at.s, kContactGapMm, toNeighbour);
+                const Vec3 touches = poseOf(i).applyInverse(
+                    gapBetween(bodies_[i], poseOf(i), bodies_[i - 1], poseOf(i - 1), kLookMm).pointMm);
+                if (touches.z() > kCrownFromMm || i % 8 == 7 || free > 7) continue;
+                ++free;
+                at.leastMesialDeg = std::max(at.mesialDeg, at.leastMesialDeg) + kClearRootsDeg;
+                at.mesialDeg = at.leastMesialDeg;
             }
             stopOnLower(i, false);
         }
@@ -382,19 +391,19 @@ class Arranger {
         };
         double best = cost(at);
         double asideStep = 0.4, tiltStep = 2.0;
-        for (int halving = 0; halving < 5; ++halving, asideStep *= 0.5, tiltStep *= 0.5)
+        for (int halving = 0; halving < 7; ++halving, asideStep *= 0.5, tiltStep *= 0.5)
             for (bool better = true; better;) {
                 better = false;
-                for (int which = 0; which < 6; ++which) {
+                for (int which = 0; which < 27; ++which) {
                     Place tried = at;
-                    const double sign = which % 2 == 0 ? 1.0 : -1.0;
-                    if (which / 2 == 0) tried.asideMm += sign * asideStep;
-                    if (which / 2 == 1) tried.mesialDeg += sign * tiltStep;
-                    if (which / 2 == 2) tried.buccalDeg += sign * tiltStep;
-                    if (std::abs(tried.asideMm) > kMostAsideMm || std::abs(tried.mesialDeg) > kMostTiltDeg ||
+                    tried.asideMm += (which % 3 - 1) * asideStep;
+                    tried.mesialDeg += (which / 3 % 3 - 1) * tiltStep;
+                    tried.buccalDeg += (which / 9 - 1) * tiltStep;
+                    if (std::abs(tried.asideMm) > kMostAsideMm || tried.mesialDeg < at.leastMesialDeg ||
+                        tried.mesialDeg > std::max(kMostTiltDeg, at.leastMesialDeg) ||
                         std::abs(tried.buccalDeg) > kMostTiltDeg)
                         continue;
-                    if (const double value = cost(tried); value < best - 1e-4) best = value, at = tried, better = true;
+                    if (const double value = cost(tried); value < best - 1e-5) best = value, at = tried, better = true;
                 }
             }
     }

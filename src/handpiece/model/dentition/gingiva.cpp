@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/geometry/decimate.h"
 #include "handpiece/base/geometry/isosurface.h"
+#include "handpiece/base/geometry/self_intersection.h"
 #include "handpiece/model/dentition/surfaces.h"
 #include "handpiece/model/dentition/tooth_body.h"
 
@@ -204,7 +206,7 @@ class Arch {
                                               {0.7, 0.0}, {1.3, -0.55}, {4.3, -2.5}};
         static constexpr double kPlate[][2] = {{-14, 1.8},   {-8, 1.4},   {-4, 1.0},
                                                {-2.2, 0.55}, {-1.5, 0.0}, {1.5, -3.0}};
-        constexpr double kRollCap = kFarMm - 1.3, kPlateCap = kFarMm - 1.8, kWidestPapilla = 1.3;
+        constexpr double kRollCap = kFarMm - 1.3, kPlateCap = kFarMm - 1.8, kWidestPapilla = 1.25;
         double nearest = kFarMm, second = kFarMm, roll = kRollCap, plate = kPlateCap, papilla = kFarMm - kWidestPapilla;
         double ligament = kLigamentMm;
         Stander::Seen before{kFarMm, 0.0};
@@ -225,7 +227,7 @@ class Arch {
             if (i > 0 && std::min(seen.distance, before.distance) < kFarMm) {
                 const Vec3 axis = (standers_[i - 1].axis() + s.axis()).normalized();
                 const double under = (contacts_[i - 1] - p).dot(axis) - kPapillaBelowContactMm;
-                const double wide = std::min(0.75 * under, kWidestPapilla);
+                const double wide = under < 0.0 ? under : kWidestPapilla * under / (under + kWidestPapilla);
                 papilla = std::min(papilla, 0.5 * (seen.distance + before.distance) - wide);
             }
             before = seen;
@@ -301,18 +303,56 @@ TriangleMesh largestShell(const TriangleMesh& mesh) {
     return kept;
 }
 
+/// Where thin edges have come to cross while faces were thinned out, other samples do not: tried a few times, then left
+/// as it was sampled.
 TriangleMesh solidOf(const Box& box, const geometry::ScalarFunction& f, double spacingMm, std::size_t faces,
                      const core::Progress& progress) {
     geometry::IsosurfaceSettings settings;
-    settings.spacingMm = spacingMm;
     settings.lipschitz = kSteepest;
-    settings.relaxations = 1;
-    const TriangleMesh fine = largestShell(geometry::isosurface(box, f, settings, core::part(progress, 0.0, 0.7)));
-    if (fine.triangles.size() <= faces) return fine;
-    return geometry::decimate(fine, faces, core::part(progress, 0.7, 1.0)).mesh;
+    settings.relaxations = 0;
+    settings.project = false;  // between the nodes: sharp edges are planed off, not folded
+    constexpr int kTries = 4;
+    TriangleMesh fine;
+    for (int i = 0; i < kTries; ++i) {
+        const double begun = static_cast<double>(i) / kTries, tried = static_cast<double>(i + 1) / kTries;
+        const core::Progress share = core::part(progress, begun, tried);
+        settings.spacingMm = spacingMm * (1.0 - 0.03 * i);
+        fine = largestShell(geometry::isosurface(box, f, settings, core::part(share, 0.0, 0.5)));
+        TriangleMesh thinned =
+            fine.triangles.size() <= faces ? fine : geometry::decimate(fine, faces, core::part(share, 0.5, 1.0)).mesh;
+        if (geometry::selfIntersections(thinned, 1).empty()) return thinned;
+    }
+    return fine;
 }
 
 }  // namespace
+
+bool hasJunction(const cases::Tooth& tooth) {
+    return std::any_of(tooth.landmarks.begin(), tooth.landmarks.end(), [](const cases::Landmark& landmark) {
+        return landmark.kind == cases::LandmarkKind::cementoEnamelJunction;
+    });
+}
+
+cases::Landmark junctionOf(const ToothForm& form) {
+    cases::Landmark ring{cases::LandmarkKind::cementoEnamelJunction, "", {}, cases::LandmarkSource::generated};
+    constexpr int kPoints = 32, kSteps = 20;
+    for (int i = 0; i < kPoints; ++i) {
+        const double rad = 2.0 * std::numbers::pi * i / kPoints;
+        const Vec3 out(core::cos(rad), core::sin(rad), 0.0);
+        Vec3 p = Vec3::Zero();
+        for (int step = 0; step < kSteps; ++step) {
+            double inside = 0.0, outside = 10.0;
+            while (outside - inside > 1e-6) {
+                const double middle = 0.5 * (inside + outside);
+                (form.outer(middle * out + Vec3(0.0, 0.0, p.z())) < 0.0 ? inside : outside) = middle;
+            }
+            p = inside * out + Vec3(0.0, 0.0, p.z());
+            p.z() -= 0.7 * form.aboveCervix(p);
+        }
+        ring.pointsMm.push_back(p);
+    }
+    return ring;
+}
 
 Periodontium makePeriodontium(std::span<const ArchTooth> teeth, const PeriodontiumOptions& options,
                               const core::Progress& progress) {

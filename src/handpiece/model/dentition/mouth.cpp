@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <numbers>
 #include <vector>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
-#include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/dentition/tooth_body.h"
 
 namespace handpiece::dentition {
@@ -39,30 +37,6 @@ Pose after(const Pose& outer, const Pose& inner) {
     return {outer.apply(inner.positionMm), (outer.orientation * inner.orientation).normalized()};
 }
 
-/// The cemento-enamel junction, where the teeth's maker does not tell it.
-void addJunction(cases::Tooth& tooth, const ToothForm& form) {
-    for (const cases::Landmark& landmark : tooth.landmarks)
-        if (landmark.kind == cases::LandmarkKind::cementoEnamelJunction) return;
-    cases::Landmark ring{cases::LandmarkKind::cementoEnamelJunction, "", {}, cases::LandmarkSource::generated};
-    constexpr int kPoints = 32;
-    for (int i = 0; i < kPoints; ++i) {
-        const double rad = 2.0 * std::numbers::pi * i / kPoints;
-        const core::Vec3 out(core::cos(rad), core::sin(rad), 0.0);
-        core::Vec3 p = core::Vec3::Zero();
-        for (int step = 0; step < 20; ++step) {
-            double inside = 0.0, outside = 10.0;
-            while (outside - inside > 1e-6) {
-                const double middle = 0.5 * (inside + outside);
-                (form.outer(middle * out + core::Vec3(0.0, 0.0, p.z())) < 0.0 ? inside : outside) = middle;
-            }
-            p = inside * out + core::Vec3(0.0, 0.0, p.z());
-            p.z() -= 0.7 * form.aboveCervix(p);
-        }
-        ring.pointsMm.push_back(p);
-    }
-    tooth.landmarks.push_back(std::move(ring));
-}
-
 }  // namespace
 
 double mouthBytes(const MouthOptions& options) {
@@ -88,7 +62,7 @@ cases::Case makeMouth(const Patient& patient, const MouthOptions& options, const
             const core::Progress share = core::part(progress, 0.0, kTeethShare);
             teeth[i] = makeTooth(fdiOf(i), patient, {options.faces, 0},
                                  [&](double) { return !share || share(done / static_cast<double>(kToothCount)); });
-            addJunction(teeth[i], ToothForm(fdiOf(i), patient));
+            if (!hasJunction(teeth[i])) teeth[i].landmarks.push_back(junctionOf(ToothForm(fdiOf(i), patient)));
             ++done;
         }
     });

@@ -5,7 +5,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -326,33 +325,6 @@ TriangleMesh solidOf(const Box& box, const geometry::ScalarFunction& f, double s
 }
 
 }  // namespace
-
-bool hasJunction(const cases::Tooth& tooth) {
-    return std::any_of(tooth.landmarks.begin(), tooth.landmarks.end(), [](const cases::Landmark& landmark) {
-        return landmark.kind == cases::LandmarkKind::cementoEnamelJunction;
-    });
-}
-
-cases::Landmark junctionOf(const ToothForm& form) {
-    cases::Landmark ring{cases::LandmarkKind::cementoEnamelJunction, "", {}, cases::LandmarkSource::generated};
-    constexpr int kPoints = 32, kSteps = 20;
-    for (int i = 0; i < kPoints; ++i) {
-        const double rad = 2.0 * std::numbers::pi * i / kPoints;
-        const Vec3 out(core::cos(rad), core::sin(rad), 0.0);
-        Vec3 p = Vec3::Zero();
-        for (int step = 0; step < kSteps; ++step) {
-            double inside = 0.0, outside = 10.0;
-            while (outside - inside > 1e-6) {
-                const double middle = 0.5 * (inside + outside);
-                (form.outer(middle * out + Vec3(0.0, 0.0, p.z())) < 0.0 ? inside : outside) = middle;
-            }
-            p = inside * out + Vec3(0.0, 0.0, p.z());
-            p.z() -= 0.7 * form.aboveCervix(p);
-        }
-        ring.pointsMm.push_back(p);
-    }
-    return ring;
-}
 
 Periodontium makePeriodontium(std::span<const ArchTooth> teeth, const PeriodontiumOptions& options,
                               const core::Progress& progress) {

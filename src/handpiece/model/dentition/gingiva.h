@@ -11,7 +11,6 @@
 #include "handpiece/base/core/vec.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
 #include "handpiece/model/case/case.h"
-#include "handpiece/model/dentition/tooth_form.h"
 
 namespace handpiece::dentition {
 
@@ -22,10 +21,6 @@ inline constexpr double kCrestUnderCervixMm = 1.5;     ///< bone's crest: 1 to 2
 inline constexpr double kLigamentMm = 0.20;            ///< half-way down the root; 0.15 to 0.38
 inline constexpr double kLigamentAtEndsMm = 0.30;      ///< at crest and apex
 inline constexpr double kGingivaThicknessMm = 1.2;
-
-[[nodiscard]] bool hasJunction(const cases::Tooth& tooth);
-/// The ring of a tooth's cemento-enamel junction, looked for on its surface.
-[[nodiscard]] cases::Landmark junctionOf(const ToothForm& form);
 
 struct ArchTooth {
     const cases::Tooth* tooth;  ///< outer surface and its cemento-enamel junction

@@ -62,7 +62,6 @@ cases::Case makeMouth(const Patient& patient, const MouthOptions& options, const
             const core::Progress share = core::part(progress, 0.0, kTeethShare);
             teeth[i] = makeTooth(fdiOf(i), patient, {options.faces, 0},
                                  [&](double) { return !share || share(done / static_cast<double>(kToothCount)); });
-            if (!hasJunction(teeth[i])) teeth[i].landmarks.push_back(junctionOf(ToothForm(fdiOf(i), patient)));
             ++done;
         }
     });

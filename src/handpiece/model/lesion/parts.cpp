@@ -157,9 +157,11 @@ std::vector<cases::Part> cariesOf(const Surfaces& surfaces, const Ways& ways, co
     const Sizes& sizes = kSizes[static_cast<std::size_t>(lesion.finding)];
     const double scale = surfaces.scale() * dice.between(0.88, 1.12);
     const double most = dice.between(sizes.least, sizes.most);
-    const double wide = scale * sizes.surfaceMm, along = scale * sizes.junctionMm, open = scale * sizes.openMm;
+    const double wide = scale * sizes.surfaceMm, open = scale * sizes.openMm;
     const bool inDentine = sizes.junctionMm > 0.0, inEnamel = lesion.surface != Surface::root,
                fromFissure = lesion.surface == Surface::occlusal;
+    // A fissure's lesion is long already.
+    const double along = (fromFissure ? 0.75 : 1.0) * scale * sizes.junctionMm;
     const Waves broad(dice, 2.5), fine(dice, 9.0);
     std::vector<Solid> solids;
     if (inEnamel) solids.push_back({Tissue::demineralisedEnamel, {}});
@@ -171,10 +173,12 @@ std::vector<cases::Part> cariesOf(const Surfaces& surfaces, const Ways& ways, co
     fill(grid, solids, [&](const Vec3& p, double* out) {
         const double way = distanceMm(ways, p);
         if (way > reach) return;
-        const double outer = surfaces.outer(p), dentine = surfaces.dentine(p);
+        // Deep in the dentine the outside decides nothing.
+        const double dentine = surfaces.dentine(p), outer = dentine < -0.25 ? dentine : surfaces.outer(p);
         if (outer > 0.5) return;
         const double wave = broad.at(p), ragged = 1.0 + kRagged * wave;
-        const double aside = way * (1.0 + kRaggedAside * wave + kFrayed * fine.at(p));
+        // Frayed where it is seen; in the dentine less, or crumbs would come off its edge.
+        const double aside = way * (1.0 + kRaggedAside * wave + (dentine < 0.0 ? 0.3 : 1.0) * kFrayed * fine.at(p));
         const double inward = shareOf(-outer, dentine) * ragged;  // of the enamel
         if (inEnamel) {
             double value;
@@ -190,7 +194,7 @@ std::vector<cases::Part> cariesOf(const Surfaces& surfaces, const Ways& ways, co
             *out++ = std::max({value, outer - kProudMm, -dentine - 0.1});
         }
         if (!inDentine) return;
-        const double deep = shareOf(-dentine, surfaces.pulp(p)) * ragged;
+        const double deep = aside < 1.2 * along ? shareOf(-dentine, surfaces.pulp(p)) * ragged : 0.0;
         const double cone = coneOf(aside, along, deep, most);
         for (std::size_t k = 0; k < levels.size(); ++k) {
             const double nest = kNestMm * static_cast<double>(k), share = levels[k].share;

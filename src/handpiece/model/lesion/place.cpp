@@ -192,10 +192,14 @@ std::vector<Vec3> entries(const Surfaces& surfaces, const cases::Tooth& tooth, S
         if (const int place = tooth.fdiNumber % 10; place >= 1 && place <= 3)
             throw core::Error("incisors and canines have no occlusal surface with a fissure", tooth.name,
                               "choose another surface");
-        // The first fissure is the main one by the makers of landmarks; without one, a pit; without both, the shape.
+        // The central fissure, else the first; without one, a pit; without both, the shape.
         std::vector<Vec3> line;
-        for (const cases::Landmark& l : tooth.landmarks)
-            if (l.kind == cases::LandmarkKind::fissure && line.empty()) line = l.pointsMm;
+        bool isCentral = false;
+        for (const cases::Landmark& l : tooth.landmarks) {
+            if (l.kind != cases::LandmarkKind::fissure || isCentral) continue;
+            isCentral = l.name.find("central") != std::string::npos;
+            if (isCentral || line.empty()) line = l.pointsMm;
+        }
         for (const cases::Landmark& l : tooth.landmarks)
             if (l.kind == cases::LandmarkKind::pit && line.empty()) line = l.pointsMm;
         if (line.empty()) line = fissureOf(surfaces, tooth);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/tick/contact/bur_frame.h"
 
 namespace handpiece::contact {
@@ -78,7 +79,7 @@ class MouthMethod final : public Method {
                                   "give it a rigid pose near the others");
             Pair& pair = p.isYielding ? soft_.emplace_back(std::move(p)) : pairs_.emplace_back(std::move(p));
             farthestMm_ = std::max(farthestMm_, pair.pieceInBur.positionMm.norm() +
-                                                    std::hypot(pair.solid->lengthMm(), pair.solid->maxRadiusMm()));
+                                                    core::hypot(pair.solid->lengthMm(), pair.solid->maxRadiusMm()));
         }
     }
 

@@ -19,7 +19,8 @@ const QColor kGround(18, 21, 26, 190), kEdge(255, 255, 255, 36), kText(238, 240,
     kLine(255, 214, 90), kSectionLine(110, 200, 255);
 constexpr double kMargin = 12.0, kPad = 8.0, kRound = 6.0, kLeashPixels = 6.0, kDepthScaleWidth = 90.0;
 // Of the picture's height at most: else it hides more than it tells. And what a fitted tooth leaves free above it.
-constexpr double kLegendShare = 0.4, kHalfLegendShare = 0.25, kFittedMargin = 0.095, kRowPixels = 54.0;
+constexpr double kLegendShare = 0.4, kHalfLegendShare = 0.25, kLegendWidthShare = 0.09, kFittedMargin = 0.095,
+                 kRowPixels = 54.0;
 
 struct Texts {
     Q_DECLARE_TR_FUNCTIONS(Overlay)
@@ -141,6 +142,7 @@ void legend(QPainter& p, const QRectF& area, const OverlayState& state) {
     double width = 0.0;
     for (const view::LegendEntry& entry : state.legend)
         width = std::max(width, metrics.horizontalAdvance(tissueText(entry.tissue)));
+    width = std::min(width, kLegendWidthShare * area.width());  // long names are cut in a small window
     const double row = metrics.height() + 4;
     const double height = row * static_cast<double>(state.legend.size()) + 2 * kPad - 4;
     if (height > (state.compare ? kHalfLegendShare : kLegendShare) * area.height()) return p.restore();
@@ -154,7 +156,8 @@ void legend(QPainter& p, const QRectF& area, const OverlayState& state) {
         p.setBrush(QColor(entry.colour[0], entry.colour[1], entry.colour[2]));
         p.drawRoundedRect(patch, 2.5, 2.5);
         p.setPen(kText);
-        p.drawText(QRectF(patch.right() + 8, y, width + 2, row - 4), Qt::AlignVCenter, tissueText(entry.tissue));
+        p.drawText(QRectF(patch.right() + 8, y, width + 2, row - 4), Qt::AlignVCenter,
+                   metrics.elidedText(tissueText(entry.tissue), Qt::ElideRight, width + 1));
         y += row;
     }
     p.restore();

@@ -2812,6 +2812,10 @@
         <translation>ハンドピース</translation>
     </message>
     <message>
+        <source>Drive</source>
+        <translation>駆動方式</translation>
+    </message>
+    <message>
         <source>The bur has stopped</source>
         <translation>バーが止まりました</translation>
     </message>

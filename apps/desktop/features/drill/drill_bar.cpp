@@ -119,7 +119,7 @@ DrillBar::DrillBar(QWidget* parent) : QWidget(parent) {
                  tr("Use a bur of your own from an STL file"));
     column->addWidget(own_);
 
-    auto* handpieceTitle = heading(tr("Handpiece"), this);
+    auto* handpieceTitle = heading(tr("Drive"), this);
     column->addWidget(handpieceTitle);
     driveRows_ = new QVBoxLayout;
     driveRows_->setSpacing(2);

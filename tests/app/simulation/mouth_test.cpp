@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/model/case/case_bytes.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/instrument/turbine.h"
 #include "handpiece/tick/device/simulated_device.h"
@@ -134,6 +135,19 @@ TEST(Mouth, GingivaYieldsPushesBackAndIsTornByTheBur) {
     EXPECT_NEAR(still.proxyPositionMm[2], -1.4, 1e-6) << "it holds nothing off";
     EXPECT_TRUE((last.flags & messages::kCutsGingiva) != 0);
     EXPECT_EQ(removedOf(last), 0.0);
+}
+
+TEST(Mouth, ASessionCarriesAllThatWasFelt) {
+    cases::Case made = mouth();
+    made.scenery = {{"gingiva", cases::Tissue::gum, 0, test::boxMesh(Vec3(-6, -8, -6), Vec3(6, -3, -1)), true}};
+    const SimulationSetup before = setupOf(made), after = setupOf(cases::decodeCase(cases::encodeCase(made), "test"));
+    const std::vector<device::TimedPose> path{at(0.0, 1.2, -2.6, 1.0, 0), at(0.3, 1.2, -2.7, -1.2, 1),
+                                              at(0.8, 1.9, -2.4, -1.4, 1)};
+    std::vector<std::array<double, 3>> forces[2];
+    for (int i = 0; i < 2; ++i)
+        run(i == 0 ? before : after, path, [&](const HapticSample& s) { forces[i].push_back(s.forceN); });
+    EXPECT_EQ(forces[0], forces[1]);
+    EXPECT_GT(forces[0].size(), 500u);
 }
 
 }  // namespace

@@ -59,6 +59,10 @@ Case three() {
     other.parts.clear();
     other.isCuttable = false;
     made.others.push_back(other);
+    made.scenery = made.parts;
+    made.scenery.push_back(made.parts.front());
+    made.scenery.back().tissue = Tissue::gum;
+    made.scenery.back().isFelt = true;
     return made;
 }
 
@@ -69,6 +73,9 @@ TEST(CaseBytes, givesTheOthersBack) {
     EXPECT_EQ(caseKey(back), caseKey(three()));
     EXPECT_EQ(back.others[0].fdiNumber, 45);
     EXPECT_FALSE(back.others[1].isCuttable);
+    ASSERT_EQ(back.scenery.size(), 1u) << "what is felt";
+    EXPECT_TRUE(back.scenery[0].isFelt);
+    EXPECT_EQ(back.scenery[0].tissue, Tissue::gum);
     EXPECT_EQ(encodeCase(back), bytes);
     std::mt19937_64 random(test::seed());
     for (int i = 0; i < 100; ++i) {

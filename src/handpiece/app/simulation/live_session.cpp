@@ -84,11 +84,10 @@ std::unique_ptr<session::Recorder> recorderFor(const SimulationSetup& station, c
     info.version = HANDPIECE_VERSION;
     info.settings = settingsJson(station.settings);
     info.tooth = cases::encodeCase(toothCase);
-    if (!toothCase.scenery.empty()) {
-        cases::Case around;
-        around.parts = toothCase.scenery;
-        info.scenery = cases::encodeCase(around);
-    }
+    cases::Case around;
+    for (const cases::Part& part : toothCase.scenery)
+        if (!part.isFelt) around.parts.push_back(part);
+    if (!around.parts.empty()) info.scenery = cases::encodeCase(around);
     info.history = settings.history.bytes;
     return std::make_unique<session::Recorder>(settings.sessionFile, info);
 }

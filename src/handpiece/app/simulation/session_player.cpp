@@ -116,7 +116,10 @@ struct SessionPlayer::State {
             throw core::Error("the session has no ticks", where, "it ended before the first second was over")
                 .as("session-empty");
         toothCase = cases::decodeCase(reader.info().tooth, where);
-        if (!reader.info().scenery.empty()) toothCase.scenery = cases::decodeCase(reader.info().scenery, where).parts;
+        if (!reader.info().scenery.empty()) {
+            const cases::Case around = cases::decodeCase(reader.info().scenery, where);
+            toothCase.scenery.insert(toothCase.scenery.end(), around.parts.begin(), around.parts.end());
+        }
         first = settingsFromJson(reader.info().settings, where);
         seams = seamsOf(reader, events, first.rateHz, where);
         if (settings.field) {

@@ -33,19 +33,32 @@ void append(std::vector<std::byte>& bytes, double value) {
     append(bytes, static_cast<std::uint32_t>(bits));
     append(bytes, static_cast<std::uint32_t>(bits >> 32));
 }
+void append(std::vector<std::byte>& bytes, const std::vector<const Part*>& parts) {
+    append(bytes, static_cast<std::uint32_t>(parts.size()));
+    for (const Part* part : parts) {
+        append(bytes, part->name);
+        append(bytes, static_cast<std::uint32_t>(part->tissue));
+        append(bytes, static_cast<std::uint32_t>(part->priority));
+        geometry::appendMesh(bytes, part->mesh);
+    }
+}
+/// Of scenery what is felt: it decides what the hand does.
+std::vector<const Part*> feltOf(const Case& toothCase) {
+    std::vector<const Part*> felt;
+    for (const Part& part : toothCase.scenery)
+        if (part.isFelt) felt.push_back(&part);
+    return felt;
+}
 void append(std::vector<std::byte>& bytes, const Tooth& tooth) {
     append(bytes, tooth.name);
     append(bytes, tooth.kind);
     append(bytes, static_cast<std::uint32_t>(tooth.fdiNumber));
     append(bytes, static_cast<std::uint32_t>(tooth.buccalSign + 1));
     geometry::appendMesh(bytes, tooth.outer);
-    append(bytes, static_cast<std::uint32_t>(tooth.parts.size()));
-    for (const Part& part : tooth.parts) {
-        append(bytes, part.name);
-        append(bytes, static_cast<std::uint32_t>(part.tissue));
-        append(bytes, static_cast<std::uint32_t>(part.priority));
-        geometry::appendMesh(bytes, part.mesh);
-    }
+    std::vector<const Part*> parts;
+    for (const Part& part : tooth.parts)
+        parts.push_back(&part);
+    append(bytes, parts);
 }
 
 class Reader {
@@ -77,6 +90,21 @@ class Reader {
         const std::uint64_t low = number(), high = number();
         return std::bit_cast<double>(high << 32 | low);
     }
+    std::vector<Part> parts() {
+        const std::uint32_t count = number();
+        if (count > kMaxParts) refuse(fmt::format("the tooth inside claims {} parts", count));
+        std::vector<Part> made;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            Part& part = made.emplace_back();
+            part.name = text();
+            const std::uint32_t tissue = number();
+            if (tissue == 0 || tissue >= kTissueCount) refuse(fmt::format("there is no tissue {}", tissue));
+            part.tissue = static_cast<Tissue>(tissue);
+            part.priority = static_cast<int>(number());
+            part.mesh = mesh();
+        }
+        return made;
+    }
     void tooth(Tooth& made) {
         made.name = text();
         made.kind = text();
@@ -85,18 +113,7 @@ class Reader {
         if (buccal > 2) refuse("the tooth inside has no such side");
         made.buccalSign = static_cast<int>(buccal) - 1;
         made.outer = mesh();
-        const std::uint32_t parts = number();
-        if (parts > kMaxParts) refuse(fmt::format("the tooth inside claims {} parts", parts));
-        for (std::uint32_t i = 0; i < parts; ++i) {
-            Part part;
-            part.name = text();
-            const std::uint32_t tissue = number();
-            if (tissue == 0 || tissue >= kTissueCount) refuse(fmt::format("there is no tissue {}", tissue));
-            part.tissue = static_cast<Tissue>(tissue);
-            part.priority = static_cast<int>(number());
-            part.mesh = mesh();
-            made.parts.push_back(std::move(part));
-        }
+        made.parts = parts();
         if (made.outer.triangles.empty() && made.parts.empty()) refuse("the tooth inside has no surface");
     }
     core::Pose pose() {
@@ -122,9 +139,11 @@ std::vector<std::byte> encodeCase(const Case& toothCase) {
     std::vector<std::byte> bytes;
     for (const char c : kMagic)
         bytes.push_back(static_cast<std::byte>(c));
-    append(bytes, toothCase.others.empty() ? kAlone : kWithOthers);
+    const std::vector<const Part*> felt = feltOf(toothCase);
+    const bool isAlone = toothCase.others.empty() && felt.empty();
+    append(bytes, isAlone ? kAlone : kWithOthers);
     append(bytes, static_cast<const Tooth&>(toothCase));
-    if (toothCase.others.empty()) return bytes;
+    if (isAlone) return bytes;
     append(bytes, static_cast<std::uint32_t>(toothCase.others.size()));
     for (const PlacedTooth& other : toothCase.others) {
         append(bytes, static_cast<const Tooth&>(other));
@@ -134,6 +153,7 @@ std::vector<std::byte> encodeCase(const Case& toothCase) {
             append(bytes, other.inCase.orientation.coeffs()[k]);
         append(bytes, static_cast<std::uint32_t>(other.isCuttable));
     }
+    append(bytes, felt);
     return bytes;
 }
 
@@ -157,6 +177,9 @@ Case decodeCase(std::span<const std::byte> bytes, const std::string& where) {
         if (cuttable > 1) reader.refuse("a tooth inside is neither to be cut nor not");
         other.isCuttable = cuttable == 1;
     }
+    if (version == kWithOthers) made.scenery = reader.parts();
+    for (Part& part : made.scenery)
+        part.isFelt = true;
     if (!reader.isAtEnd()) reader.refuse("the tooth inside goes on after its end");
     return made;
 }

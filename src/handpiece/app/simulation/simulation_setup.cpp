@@ -469,8 +469,13 @@ SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings 
         const double done = static_cast<double>(station.others.size());
         const core::Progress share =
             core::part(progress, own + (1.0 - own) * done / count, own + (1.0 - own) * (done + 1.0) / count);
-        station.others.push_back({tooth::loadModel(alone, {fieldSettingsAt(kStandingVoxelMm), {}, useCache}, share), at,
-                                  fdiNumber, surface.tissue == cases::Tissue::gum});
+        try {
+            station.others.push_back({tooth::loadModel(alone, {fieldSettingsAt(kStandingVoxelMm), {}, useCache}, share),
+                                      at, fdiNumber, surface.tissue == cases::Tissue::gum});
+        } catch (const core::Error& e) {
+            throw core::Error(fmt::format("{}: {}", name, e.problem()), e.where(), e.remedy())
+                .as(e.id(), e.arguments());
+        }
     };
     for (const cases::PlacedTooth& other : toothCase.others)
         stand(other.name, {other.name, cases::Tissue::neighbour, 0, other.surface()}, other.inCase, other.fdiNumber);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/split_mix.h"
 #include "handpiece/model/dentition/landmarks.h"
 #include "handpiece/model/dentition/rules.h"
 #include "handpiece/model/dentition/surfaces.h"
@@ -26,12 +27,7 @@ void checkTooth(int fdi, const Patient& patient) {
 class Draws {
   public:
     Draws(std::uint64_t seed, bool isAverage) : state_(seed), isAverage_(isAverage) {}
-    double uniform() {  // splitmix64
-        std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ull);
-        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-        z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-        return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
-    }
+    double uniform() { return core::unitOf(core::nextSplitMix(state_)); }
     /// About normal, of unit spread, never beyond 2; nothing for seed 0, the average patient.
     double normal() {
         if (isAverage_) return 0.0;

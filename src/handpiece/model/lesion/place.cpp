@@ -8,6 +8,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/split_mix.h"
 
 namespace handpiece::lesion {
 
@@ -138,11 +139,7 @@ double toSegment(const Vec3& a, const Vec3& b, const Vec3& p) {
 }  // namespace
 
 double Dice::between(double low, double high) {
-    // splitmix64
-    std::uint64_t z = state_ += 0x9E3779B97F4A7C15ull;
-    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9ull;
-    z = (z ^ z >> 27) * 0x94D049BB133111EBull;
-    return low + (high - low) * static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-53;
+    return low + (high - low) * core::unitOf(core::nextSplitMix(state_));
 }
 
 Surfaces::Surfaces(const cases::Tooth& tooth) : tooth_(tooth) {

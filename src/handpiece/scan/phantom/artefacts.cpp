@@ -8,18 +8,11 @@
 
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/split_mix.h"
 #include "handpiece/scan/phantom/phantom.h"
 
 namespace handpiece::phantom {
 namespace {
-
-/// Bits of a counter, as good as random (splitmix64, Steele, Lea & Flood 2014).
-std::uint64_t mixed(std::uint64_t x) {
-    x += 0x9E3779B97F4A7C15ull;
-    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ull;
-    x = (x ^ (x >> 27)) * 0x94D049BB133111EBull;
-    return x ^ (x >> 31);
-}
 
 /// In (0, 1).
 double uniform(std::uint32_t bits) {
@@ -28,9 +21,9 @@ double uniform(std::uint32_t bits) {
 
 /// Normal numbers of a slice: pairs by Box and Muller from one counter a pair.
 void normalSlice(std::uint64_t seed, std::size_t slice, std::span<float> out) {
-    const std::uint64_t first = mixed(mixed(seed) ^ (slice + 1));
+    const std::uint64_t first = core::splitMix(core::splitMix(seed) ^ (slice + 1));
     for (std::size_t n = 0; n < out.size(); n += 2) {
-        const std::uint64_t bits = mixed(first + n);
+        const std::uint64_t bits = core::splitMix(first + n);
         const double radius = std::sqrt(-2.0 * core::log(uniform(static_cast<std::uint32_t>(bits >> 32))));
         const double angle = 2.0 * std::numbers::pi * uniform(static_cast<std::uint32_t>(bits));
         out[n] = static_cast<float>(radius * core::cos(angle));
@@ -65,8 +58,9 @@ std::vector<float> streakPattern(std::uint64_t seed, std::size_t directions) {
         const double angle = 2.0 * std::numbers::pi * static_cast<double>(d) / static_cast<double>(directions);
         double sum = 0.0;
         for (const int waves : {2, 5, 9, 14, 23}) {
-            const double phase = 2.0 * std::numbers::pi *
-                                 uniform(static_cast<std::uint32_t>(mixed(seed + static_cast<unsigned>(waves))));
+            const double phase =
+                2.0 * std::numbers::pi *
+                uniform(static_cast<std::uint32_t>(core::splitMix(seed + static_cast<unsigned>(waves))));
             sum += core::cos(waves * angle + phase);
         }
         pattern[d] = static_cast<float>(sum);
@@ -80,7 +74,7 @@ std::vector<float> streakPattern(std::uint64_t seed, std::size_t directions) {
 
 /// What a detector's faulty elements leave: one offset a ring, most of them none.
 float ringOf(std::uint64_t seed, int ring) {
-    const std::uint64_t bits = mixed(mixed(seed ^ 0x52494E47ull) + static_cast<std::uint64_t>(ring));
+    const std::uint64_t bits = core::splitMix(core::splitMix(seed ^ 0x52494E47ull) + static_cast<std::uint64_t>(ring));
     if (bits >> 62 != 0) return 0.0f;
     return (bits & 1u) != 0 ? 1.0f : -1.0f;
 }

@@ -12,6 +12,7 @@
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/core/rotation.h"
+#include "handpiece/base/core/split_mix.h"
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/scan/registration/features.h"
 #include "handpiece/scan/registration/registration.h"
@@ -36,16 +37,9 @@ Pose compose(const Pose& outer, const Pose& inner) {
     return {outer.apply(inner.positionMm), (outer.orientation * inner.orientation).normalized()};
 }
 
-/// splitmix64: the same numbers everywhere.
 struct Random {
     std::uint64_t state;
-    std::uint64_t next() {
-        std::uint64_t z = (state += 0x9E3779B97F4A7C15ull);
-        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-        z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-        return z ^ (z >> 31);
-    }
-    std::size_t below(std::size_t n) { return static_cast<std::size_t>(next() % n); }
+    std::size_t below(std::size_t n) { return static_cast<std::size_t>(core::nextSplitMix(state) % n); }
 };
 
 /// The rigid motion that takes points onto others (Kabsch).

@@ -6,18 +6,11 @@
 
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/split_mix.h"
 #include "handpiece/senses/radiograph/radiograph.h"
 
 namespace handpiece::radiograph {
 namespace {
-
-/// Bits of a counter, as good as random (splitmix64, Steele, Lea & Flood 2014).
-std::uint64_t mixed(std::uint64_t x) {
-    x += 0x9E3779B97F4A7C15ull;
-    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ull;
-    x = (x ^ (x >> 27)) * 0x94D049BB133111EBull;
-    return x ^ (x >> 31);
-}
 
 /// In (0, 1).
 double uniform(std::uint64_t bits) {
@@ -32,12 +25,12 @@ double poisson(double mean, std::uint64_t key) {
         const double limit = core::exp(-mean);
         double product = 1.0;
         for (std::uint64_t n = 0;; ++n) {
-            product *= uniform(mixed(key + n));
+            product *= uniform(core::splitMix(key + n));
             if (product <= limit) return static_cast<double>(n);
         }
     }
-    const double radius = std::sqrt(-2.0 * core::log(uniform(mixed(key))));
-    const double normal = radius * core::cos(2.0 * std::numbers::pi * uniform(mixed(key + 1)));
+    const double radius = std::sqrt(-2.0 * core::log(uniform(core::splitMix(key))));
+    const double normal = radius * core::cos(2.0 * std::numbers::pi * uniform(core::splitMix(key + 1)));
     return std::max(0.0, std::floor(mean + std::sqrt(mean) * normal + 0.5));
 }
 
@@ -67,11 +60,11 @@ void blurLines(std::vector<float>& signal, std::size_t lines, std::size_t count,
 void detect(Exposure& exposure, const Settings& settings) {
     check(settings);
     if (settings.quanta > 0.0) {
-        const std::uint64_t seed = mixed(settings.seed);
+        const std::uint64_t seed = core::splitMix(settings.seed);
         core::parallelFor(exposure.signal.size(), 4096, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p)
                 exposure.signal[p] = static_cast<float>(
-                    poisson(settings.quanta * static_cast<double>(exposure.signal[p]), mixed(seed ^ (p + 1))) /
+                    poisson(settings.quanta * static_cast<double>(exposure.signal[p]), core::splitMix(seed ^ (p + 1))) /
                     settings.quanta);
         });
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "handpiece/base/core/split_mix.h"
 #include "handpiece/model/instrument/turbine.h"
 #include "handpiece/senses/view/renderer.h"
 
@@ -31,9 +32,9 @@ constexpr double kJetShare = 0.6;   // of the way to the tip
 class Dice {
   public:
     Dice(std::uint64_t seed, std::int64_t step)
-        : state_(seed * 0x9E3779B97F4A7C15ull + static_cast<std::uint64_t>(step)) {}
+        : state_(seed * core::kSplitMixStep + static_cast<std::uint64_t>(step)) {}
     /// 0..1
-    double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+    double unit() { return core::unitOf(core::nextSplitMix(state_)); }
     double between(double a, double b) { return a + (b - a) * unit(); }
     /// A direction of the upper half about an axis, towards it.
     Vec3 around(const Vec3& axis) {
@@ -43,12 +44,6 @@ class Dice {
     }
 
   private:
-    std::uint64_t next() {  // splitmix64
-        std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ull);
-        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-        z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-        return z ^ (z >> 31);
-    }
     std::uint64_t state_;
 };
 

@@ -31,6 +31,12 @@ struct Pose {
 
     [[nodiscard]] Vec3 apply(const Vec3& p) const { return orientation * p + positionMm; }
     [[nodiscard]] Vec3 applyInverse(const Vec3& p) const { return orientation.conjugate() * (p - positionMm); }
+    [[nodiscard]] Pose inverse() const { return {orientation.conjugate() * -positionMm, orientation.conjugate()}; }
+    [[nodiscard]] Pose normalised() const { return {positionMm, orientation.normalized()}; }
+    /// `inner` in the frame that this pose stands in; the product of long chains needs normalised().
+    [[nodiscard]] Pose operator*(const Pose& inner) const {
+        return {apply(inner.positionMm), orientation * inner.orientation};
+    }
     /// True when every number is finite and the quaternion is of unit length within 1e-6.
     [[nodiscard]] bool isValid() const {
         return positionMm.allFinite() && orientation.coeffs().allFinite() &&

@@ -33,10 +33,6 @@ std::vector<std::size_t> alongArch(bool upper) {
     return order;
 }
 
-Pose after(const Pose& outer, const Pose& inner) {
-    return {outer.apply(inner.positionMm), (outer.orientation * inner.orientation).normalized()};
-}
-
 }  // namespace
 
 double mouthBytes(const MouthOptions& options) {
@@ -70,9 +66,9 @@ cases::Case makeMouth(const Patient& patient, const MouthOptions& options, const
     const Pose mandible = opened(arches, options.openingMm);
     std::array<Pose, kToothCount> inMouth = arches.toothInMouth;
     for (std::size_t i = 16; i < kToothCount; ++i)
-        inMouth[i] = after(mandible, inMouth[i]);
+        inMouth[i] = (mandible * inMouth[i]).normalised();
     const Pose caseFrame = inMouth[own];
-    const Pose mouthInCase{caseFrame.applyInverse(core::Vec3::Zero()), caseFrame.orientation.conjugate()};
+    const Pose mouthInCase = caseFrame.inverse();
 
     std::array<Periodontium, 2> periodontia;
     for (const bool upper : {true, false}) {
@@ -94,7 +90,7 @@ cases::Case makeMouth(const Patient& patient, const MouthOptions& options, const
         if (i == own) continue;
         cases::PlacedTooth other;
         static_cast<cases::Tooth&>(other) = std::move(teeth[i]);
-        other.inCase = after(mouthInCase, inMouth[i]);
+        other.inCase = (mouthInCase * inMouth[i]).normalised();
         const bool isAdjacent = (at != order.begin() && *(at - 1) == i) || (at + 1 != order.end() && *(at + 1) == i);
         other.isCuttable = isAdjacent || (isUpper(i) != isUpper(own) &&
                                           gapBetween(ownBody, arches.toothInMouth[own], ToothBody(other.outer),
@@ -107,7 +103,7 @@ cases::Case makeMouth(const Patient& patient, const MouthOptions& options, const
                                 tissue == cases::Tissue::bone ? kBonePriority : cases::properties(tissue).priority,
                                 geometry::transformed(std::move(mesh), inCase), true});
     };
-    const std::array<Pose, 2> jaws{mouthInCase, after(mouthInCase, mandible)};
+    const std::array<Pose, 2> jaws{mouthInCase, (mouthInCase * mandible).normalised()};
     add("upper-gingiva", cases::Tissue::gum, std::move(periodontia[0].gingiva), jaws[0]);
     add("lower-gingiva", cases::Tissue::gum, std::move(periodontia[1].gingiva), jaws[1]);
     add("upper-bone", cases::Tissue::bone, std::move(periodontia[0].bone), jaws[0]);

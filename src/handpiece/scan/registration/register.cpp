@@ -33,10 +33,6 @@ constexpr std::size_t kTrials = 400'000, kTrialBlock = 2000;
 constexpr std::size_t kMinPoints = 60;
 constexpr double kMaxRmsMm = 0.3;
 
-Pose compose(const Pose& outer, const Pose& inner) {
-    return {outer.apply(inner.positionMm), (outer.orientation * inner.orientation).normalized()};
-}
-
 struct Random {
     std::uint64_t state;
     std::size_t below(std::size_t n) { return static_cast<std::size_t>(core::nextSplitMix(state) % n); }
@@ -160,7 +156,7 @@ Refined refine(const Fixed& fixed, const Points& points, std::size_t step, Pose 
         Pose step1;
         if (angle > 1e-15) step1.orientation = core::rotationAbout(x.head<3>() / angle, std::min(angle, 0.3));
         step1.positionMm = about - step1.orientation * about + x.tail<3>();
-        pose = compose(step1, pose);
+        pose = (step1 * pose).normalised();
         core::report(progress, static_cast<double>(round + 1) / rounds);
         if (angle < 1e-7 && x.tail<3>().norm() < 1e-7) break;
     }

@@ -18,12 +18,6 @@ using core::Vec3;
 constexpr double kNearSlackMm = 1.0;
 constexpr double kFarthestToothMm = 200.0;
 
-Pose inverse(const Pose& pose) {
-    return {pose.orientation.conjugate() * -pose.positionMm, pose.orientation.conjugate()};
-}
-Pose product(const Pose& a, const Pose& b) noexcept {
-    return {a.apply(b.positionMm), a.orientation * b.orientation};
-}
 bool isSame(const Pose& a, const Pose& b) noexcept {
     return a.positionMm == b.positionMm && a.orientation.coeffs() == b.orientation.coeffs();
 }
@@ -35,14 +29,14 @@ bool isIdentity(const Pose& pose) noexcept {
 struct Pair : PlacedMethod {
     explicit Pair(PlacedMethod placed)
         : PlacedMethod(std::move(placed)),
-          sceneInTooth(inverse(toothInScene)),
+          sceneInTooth(toothInScene.inverse()),
           moves(!isIdentity(pieceInBur)),
           turns(!isIdentity(toothInScene)) {}
 
     /// The piece in the tooth's frame. Where nothing is moved nothing is rounded.
     [[nodiscard]] Pose localOf(const Pose& bur) const noexcept {
-        const Pose own = moves ? product(bur, pieceInBur) : bur;
-        return turns ? product(sceneInTooth, own) : own;
+        const Pose own = moves ? bur * pieceInBur : bur;
+        return turns ? sceneInTooth * own : own;
     }
     [[nodiscard]] Vec3 direction(const Vec3& inTooth) const noexcept {
         return turns ? Vec3(toothInScene.orientation * inTooth) : inTooth;

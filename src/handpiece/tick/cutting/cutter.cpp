@@ -31,8 +31,7 @@ struct Swept {
           sweeper(*field, bur, core::simdLevel()),
           reach(core::Vec3(bur.maxRadiusMm(), bur.maxRadiusMm(), bur.lengthMm()).norm() + kNearMm),
           bounds(field->model().outer.bounds()),
-          sceneInTooth{tooth.inScene.orientation.conjugate() * -tooth.inScene.positionMm,
-                       tooth.inScene.orientation.conjugate()},
+          sceneInTooth(tooth.inScene.inverse()),
           turns(tooth.inScene.positionMm != Vec3::Zero() ||
                 tooth.inScene.orientation.coeffs() != core::Quat::Identity().coeffs()) {}
 
@@ -40,8 +39,7 @@ struct Swept {
         core::Pose cutter = cutterInScene;
         if (turns) {
             // Far off there is nothing to sweep, nor on the way from there: the bur comes by steps.
-            cutter = {sceneInTooth.apply(cutterInScene.positionMm),
-                      sceneInTooth.orientation * cutterInScene.orientation};
+            cutter = sceneInTooth * cutterInScene;
             const Vec3 out = (cutter.positionMm - bounds.max).cwiseMax(bounds.min - cutter.positionMm).cwiseMax(0.0);
             if (out.norm() > reach) {
                 if (sweeper.hasPose()) sweeper.settle();

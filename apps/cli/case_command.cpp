@@ -17,6 +17,7 @@
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/case.h"
 #include "handpiece/model/case/case_check.h"
+#include "handpiece/model/case/work_on.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "studies/progress_bar.h"
 
@@ -260,6 +261,19 @@ void makeNew(const NewOptions& o) {
         fmt::print("  note: {}{}\n", f.part.empty() ? "" : f.part + ": ", f.what);
 }
 
+struct WorkOnOptions {
+    std::string in, out;
+    int fdi = 0;
+};
+
+void workOnAnother(const WorkOnOptions& o) {
+    const Case made = cases::workOn(cases::readCase(o.in), o.fdi);
+    cases::writeCase(made, o.out);
+    const auto cuttable = std::count_if(made.others.begin(), made.others.end(),
+                                        [](const cases::PlacedTooth& other) { return other.isCuttable; });
+    fmt::print("{}: {}\n  {} others, {} of them to be cut too\n", o.out, made.name, made.others.size(), cuttable);
+}
+
 struct PackOptions {
     std::string in, out, student;
     bool handIn = false;
@@ -357,6 +371,19 @@ void addCaseCommand(Command& app) {
     make.footer(
         "Example:\n  handpiece case new --out mine --outer whole.stl --part enamel=e.stl --part caries:70=c.stl");
     make.callback([options] { makeNew(*options); });
+
+    const auto other = std::make_shared<WorkOnOptions>();
+    Command working = command.subcommand("work-on", "Make the case of another tooth of the same mouth");
+    working.option("CASE", other->in, "case folder or .handpiece file of several teeth").required();
+    working.option("--fdi", other->fdi, "FDI number of the tooth that is worked on from now on")
+        .check(range(11, 85))
+        .typeName("NUMBER")
+        .required();
+    working.option("--out", other->out, "folder or .handpiece file to write").required();
+    working.footer(
+        "Adjacent teeth and antagonists of that tooth can be cut too, the others are felt. An exercise is of its tooth "
+        "and goes.\nExample:\n  handpiece case work-on mouth --fdi 16 --out upper");
+    working.callback([other] { workOnAnother(*other); });
 
     const auto packed = std::make_shared<PackOptions>();
     Command packing =

@@ -185,9 +185,11 @@ TEST_F(CaseTest, AMouthComesBackAsItWasWritten) {
         EXPECT_EQ(caseKey(read), caseKey(written));
         EXPECT_EQ(surroundings(read).size(), 3u);
     }
-    // The key is that of the teeth and where they stand; without others that of the tooth alone.
+    // The key is that of the teeth and where they stand, to a nanometre; without others that of the tooth alone.
     Case moved = written;
-    moved.others[1].inCase.positionMm.y() += 1e-9;
+    moved.others[1].inCase.positionMm.y() += 1e-10;
+    EXPECT_EQ(caseKey(moved), caseKey(written));
+    moved.others[1].inCase.positionMm.y() += 2e-6;
     EXPECT_NE(caseKey(moved), caseKey(written));
     EXPECT_EQ(contentKey(moved), contentKey(written));
     moved.others.clear();

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <system_error>
 
@@ -110,16 +111,18 @@ void readTooth(const Table& table, const Reading& reading, Tooth& tooth) {
     if (reading.hasOthers()) tooth.landmarks = readLandmarks(table);
 }
 
-core::Pose readPose(const Table& table) {
+core::Pose readPose(const Table& table, std::string_view what) {
     const std::vector<double> at = table.numbers("position_mm"), turn = table.numbers("orientation");
-    if (at.size() != 3) table.fail("a tooth without three numbers that say where it stands", kRemedy, "position_mm");
+    if (at.size() != 3)
+        table.fail(fmt::format("{} without three numbers that say where", what), kRemedy, "position_mm");
     if (turn.size() != 4)
-        table.fail("a tooth without the four numbers of its turn (w, x, y, z)", kRemedy, "orientation");
+        table.fail(fmt::format("{} without the four numbers of its turn (w, x, y, z)", what), kRemedy, "orientation");
     const core::Pose pose{{at[0], at[1], at[2]}, {turn[0], turn[1], turn[2], turn[3]}};
     if (!pose.isValid())
-        table.fail("the turn of a tooth is no unit quaternion", "write w, x, y, z of length 1", "orientation");
+        table.fail(fmt::format("the turn of {} is no unit quaternion", what), "write w, x, y, z of length 1",
+                   "orientation");
     if (pose.positionMm.norm() > kFarthestToothMm)
-        table.fail(fmt::format("a tooth stands {:.0f} mm off", pose.positionMm.norm()),
+        table.fail(fmt::format("{} stands {:.0f} mm off", what, pose.positionMm.norm()),
                    fmt::format("a mouth is {:.0f} mm wide at most", kFarthestToothMm), "position_mm");
     return pose;
 }
@@ -136,7 +139,7 @@ std::vector<PlacedTooth> readOthers(const Table& root, const Reading& reading) {
         PlacedTooth& tooth = others.emplace_back();
         readTooth(table, reading, tooth);
         tooth.name = table.text("name").value_or(tooth.kind);
-        tooth.inCase = readPose(table);
+        tooth.inCase = readPose(table, "a tooth");
         tooth.isCuttable = table.flag("cuttable").value_or(true);
         if (tooth.outer.triangles.empty() && tooth.parts.size() != 1)
             table.fail("a tooth of several parts or none, without an outer surface",
@@ -208,7 +211,7 @@ Case readCaseFiles(const CaseFiles& files) {
                   version > kNewestFormat ? "use a newer Handpiece" : "add the line: format = 1", "format");
     if (version >= 3)
         root.allowOnly({"format", "name", "kind", "fdi", "buccal", "outer", "tissues", "part", "scenery", "exercise",
-                        "landmark", "tooth"});
+                        "landmark", "tooth", "opening"});
     else if (version == 2)
         root.allowOnly({"format", "name", "kind", "fdi", "buccal", "outer", "tissues", "part", "scenery", "exercise"});
     Case made;
@@ -221,6 +224,10 @@ Case readCaseFiles(const CaseFiles& files) {
     readTooth(root, reading, made);
     made.scenery = readParts(root, "scenery", reading);
     if (reading.hasOthers()) made.others = readOthers(root, reading);
+    if (const auto opening = root.table("opening"); opening && reading.hasOthers()) {
+        opening->allowOnly({"position_mm", "orientation"});
+        made.opening = readPose(*opening, "the lower jaw");
+    }
     if (const auto exercise = root.table("exercise")) made.exercise = readExercise(*exercise);
     if (made.outer.triangles.empty() && made.parts.empty())
         throw core::Error("the case has neither an outer surface nor a part", root.where(), kRemedy)
@@ -284,6 +291,8 @@ std::uint64_t contentKey(const Tooth& tooth) {
 
 std::uint64_t caseKey(const Case& toothCase) {
     if (toothCase.others.empty()) return contentKey(toothCase);
+    // To a nanometre: a mouth is the same after another of its teeth was worked on, which rounds where they stand.
+    const auto rounded = [](double x) { return static_cast<std::int64_t>(std::llround(1e6 * x)); };
     core::Hasher hasher;
     hasher.add(std::string_view("handpiece mouth"));
     hasher.add(contentKey(toothCase));
@@ -291,9 +300,9 @@ std::uint64_t caseKey(const Case& toothCase) {
         hasher.add(contentKey(tooth));
         hasher.add(tooth.isCuttable);
         for (int k = 0; k < 3; ++k)
-            hasher.add(tooth.inCase.positionMm[k]);
+            hasher.add(rounded(tooth.inCase.positionMm[k]));
         for (int k = 0; k < 4; ++k)
-            hasher.add(tooth.inCase.orientation.coeffs()[k]);
+            hasher.add(rounded(tooth.inCase.orientation.coeffs()[k]));
     }
     return hasher.value();
 }

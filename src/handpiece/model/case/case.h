@@ -53,6 +53,7 @@ struct Case : Tooth {
     std::filesystem::path source;            ///< folder or file, for messages and for the cache beside it
     std::vector<PlacedTooth> others{};       ///< adjacent teeth, antagonists: felt
     std::vector<Part> scenery{};             ///< gum, bone and what is only seen, in the case's frame
+    core::Pose opening{};                    ///< what moved the lower jaw out of occlusion, in the case's frame
     TissueTable tissues = builtInTissues();  ///< with what the case changes
     std::string tissuesToml;                 ///< the text of what it changes; empty when it changes nothing
     std::optional<Exercise> exercise;

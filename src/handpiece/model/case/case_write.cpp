@@ -57,15 +57,23 @@ std::string toothKeys(const Tooth& tooth, const std::string& outerFile, PackageF
     return toml + fmt::format("outer = \"{}\"\n", outerFile);
 }
 
+std::string poseToml(const core::Pose& pose) {
+    const core::Vec3& at = pose.positionMm;
+    const core::Quat& turn = pose.orientation;
+    return fmt::format("position_mm = [{}, {}, {}]\norientation = [{}, {}, {}, {}]\n", tomlNumber(at.x()),
+                       tomlNumber(at.y()), tomlNumber(at.z()), tomlNumber(turn.w()), tomlNumber(turn.x()),
+                       tomlNumber(turn.y()), tomlNumber(turn.z()));
+}
+
+bool isClosed(const Case& c) {
+    return c.opening.positionMm.isZero(1e-9) && c.opening.orientation.vec().isZero(1e-9);
+}
+
 void addOther(const PlacedTooth& tooth, std::size_t index, PackageFiles& files, std::string& toml) {
     const std::string prefix =
         tooth.fdiNumber != 0 ? fmt::format("{}-", tooth.fdiNumber) : fmt::format("tooth{}-", index + 1);
     toml += "\n[[tooth]]\n" + toothKeys(tooth, prefix + "outer.stl", files);
-    const core::Vec3& at = tooth.inCase.positionMm;
-    const core::Quat& turn = tooth.inCase.orientation;
-    toml += fmt::format("position_mm = [{}, {}, {}]\norientation = [{}, {}, {}, {}]\ncuttable = {}\n",
-                        tomlNumber(at.x()), tomlNumber(at.y()), tomlNumber(at.z()), tomlNumber(turn.w()),
-                        tomlNumber(turn.x()), tomlNumber(turn.y()), tomlNumber(turn.z()), tooth.isCuttable);
+    toml += poseToml(tooth.inCase) + fmt::format("cuttable = {}\n", tooth.isCuttable);
     addParts(tooth.parts, "tooth.part", prefix, files, toml);
     toml += landmarksToml(tooth.landmarks, "tooth.landmark");
 }
@@ -73,7 +81,9 @@ void addOther(const PlacedTooth& tooth, std::size_t index, PackageFiles& files, 
 /// The oldest format that can hold it.
 int formatOf(const Case& c) {
     const auto isFelt = [](const Part& part) { return part.isFelt; };
-    if (!c.others.empty() || !c.landmarks.empty() || std::any_of(c.scenery.begin(), c.scenery.end(), isFelt)) return 3;
+    if (!c.others.empty() || !c.landmarks.empty() || !isClosed(c) ||
+        std::any_of(c.scenery.begin(), c.scenery.end(), isFelt))
+        return 3;
     return c.exercise || !c.tissuesToml.empty() ? 2 : 1;
 }
 
@@ -92,6 +102,7 @@ PackageFiles caseFiles(const Case& toothCase) {
     addParts(toothCase.scenery, "scenery", "scene-", files, toml);
     for (std::size_t i = 0; i < toothCase.others.size(); ++i)
         addOther(toothCase.others[i], i, files, toml);
+    if (!isClosed(toothCase)) toml += "\n[opening]\n" + poseToml(toothCase.opening);
     if (toothCase.exercise) toml += "\n[exercise]\n" + exerciseToml(*toothCase.exercise);
     files[kCaseFile] = bytesOf(toml);
     return files;

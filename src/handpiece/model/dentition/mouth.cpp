@@ -3,14 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <vector>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
-#include "handpiece/model/dentition/tooth_body.h"
+#include "handpiece/model/case/work_on.h"
 
 namespace handpiece::dentition {
 namespace {
@@ -18,8 +17,6 @@ namespace {
 using core::Pose;
 
 constexpr double kWidestOpeningMm = 60.0;
-/// Teeth of the other arch nearer than this in occlusion are antagonists.
-constexpr double kAntagonistMm = 0.3;
 /// The gingiva's solid goes on through the bone.
 constexpr int kBonePriority = 6;
 
@@ -82,22 +79,15 @@ cases::Case makeMouth(const Patient& patient, const MouthOptions& options, const
 
     cases::Case made;
     static_cast<cases::Tooth&>(made) = teeth[own];
-    made.name = fmt::format("{} in the mouth of patient {}", made.name, patient.seed);
-    const ToothBody ownBody(teeth[own].outer);
-    const std::vector<std::size_t> order = alongArch(isUpper(own));
-    const auto at = std::find(order.begin(), order.end(), own);
     for (std::size_t i = 0; i < kToothCount; ++i) {
         if (i == own) continue;
         cases::PlacedTooth other;
         static_cast<cases::Tooth&>(other) = std::move(teeth[i]);
         other.inCase = (mouthInCase * inMouth[i]).normalised();
-        const bool isAdjacent = (at != order.begin() && *(at - 1) == i) || (at + 1 != order.end() && *(at + 1) == i);
-        other.isCuttable = isAdjacent || (isUpper(i) != isUpper(own) &&
-                                          gapBetween(ownBody, arches.toothInMouth[own], ToothBody(other.outer),
-                                                     arches.toothInMouth[i], 2.0 * kAntagonistMm)
-                                                  .distanceMm < kAntagonistMm);
         made.others.push_back(std::move(other));
     }
+    if (options.openingMm > 0.0) made.opening = (mouthInCase * mandible * caseFrame).normalised();
+    cases::chooseCuttable(made);
     const auto add = [&](const char* name, cases::Tissue tissue, geometry::TriangleMesh mesh, const Pose& inCase) {
         made.scenery.push_back({name, tissue,
                                 tissue == cases::Tissue::bone ? kBonePriority : cases::properties(tissue).priority,

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Which tooth of a mouth is worked on, and which others its bur may nick.
+
+#include "handpiece/model/case/case.h"
+
+namespace handpiece::cases {
+
+/// The same mouth with another of its teeth as the one worked on: its frame becomes the case's, what stood in the old
+/// one is moved along, and which others are cuttable is decided anew. An exercise is of its tooth and goes. Throws
+/// core::Error when the case has no tooth of that number; as it is when that one is worked on already.
+[[nodiscard]] Case workOn(Case toothCase, int fdi);
+
+/// Of the others, those next to the tooth in its arch and those that come within 0.3 mm of it with the jaws closed can
+/// be cut; the rest is only felt.
+void chooseCuttable(Case& toothCase);
+
+}  // namespace handpiece::cases

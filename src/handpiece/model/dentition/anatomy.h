@@ -21,10 +21,11 @@ struct Sizes {
 /// An outline of the crown seen from a side: how far it stands out at the cervix, at the height of contour, at the rim
 /// of the occlusal surface and above.
 struct Outline {
-    double contourZ;     ///< height of contour
-    double rimZ, rim;    ///< at the rim
-    double topZ, top;    ///< at the height of the highest cusp, beyond the surface
-    double shift = 0.0;  ///< moves the contour outwards [mm], its opposite side follows
+    double contourZ;      ///< height of contour
+    double rimZ, rim;     ///< at the rim
+    double topZ, top;     ///< at the height of the highest cusp, beyond the surface
+    double shift = 0.0;   ///< moves the contour outwards [mm], its opposite side follows
+    double belly = 0.64;  ///< share of the way out that is gone half-way up from the cervix to the contour
 };
 
 /// A crest of the crown: cusp, triangular, oblique or marginal ridge, incisal edge. Convex across; where the flanks of

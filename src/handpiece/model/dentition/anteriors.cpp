@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+
 #include "handpiece/model/dentition/rules.h"
 
 namespace handpiece::dentition {
@@ -22,13 +24,14 @@ void anterior(Spec& s, bool upper, int place) {
                           : !upper  ? 0.84
                           : lateral ? 0.66
                                     : 0.72;
-    s.mesial = {at(mesial), at(0.97), (canine ? 0.86 : 0.97) * half, at(1.08), 0.8 * half};
-    s.distal = {at(distal), at(0.95), (canine ? 0.82 : 0.94) * half, at(1.08), 0.75 * half};
-    s.buccal = {at(0.2), at(0.5), 0.9 * depth - 0.5 * edge, at(1.02), thick - edge, 0.05};
-    s.lingual = {at(upper ? 0.17 : 0.14), at(0.55), (upper ? 0.5 : 0.5) * depth + 0.8 * edge, at(1.02), thick + edge};
-    s.lean = upper ? -0.22 : -0.15;
-    s.cervixSquare = 0.15, s.contourSquare = canine ? 0.35 : 0.5, s.rimSquare = canine ? 0.5 : 0.85;
-    s.rimRound = 0.6, s.isEdge = true;
+    s.mesial = {at(mesial), at(0.95), (canine ? 0.84 : 0.90) * half, at(1.05), 0.72 * half};
+    s.distal = {at(distal), at(0.93), (canine ? 0.76 : 0.87) * half, at(1.05), 0.64 * half};
+    s.mesial.belly = s.distal.belly = upper ? 0.68 : 0.56;
+    s.buccal = {at(0.2), at(0.55), 0.88 * depth - 0.55 * edge, at(1.02), thick - edge, 0.05};
+    s.lingual = {at(upper ? 0.2 : 0.15), at(0.62), 0.42 * depth + 0.9 * edge, at(1.02), thick + edge};
+    s.lean = upper ? -0.26 : -0.18;
+    s.cervixSquare = 0.15, s.contourSquare = canine ? 0.4 : 0.75, s.rimSquare = canine ? 0.5 : 0.85;
+    s.rimRound = 0.4, s.isEdge = true;
     if (canine) {
         const double tip = 0.12 * half;
         s.cusps = {{"cusp", Vec3(tip, edge, top)}};
@@ -44,25 +47,29 @@ void anterior(Spec& s, bool upper, int place) {
                       upper ? 0.32 : 0.18},
                      {Vec3(0.0, 0.95 * depth, at(0.2)), Vec3(2.0, 1.8, 0.3 * z.crown), upper ? -0.2 : -0.08}};
     } else {
-        // A sharp mesial and a rounded distal incisal angle.
-        const double round = upper ? lateral ? 1.5 : 1.0 : lateral ? 0.5 : 0.25;
+        // A sharp mesial and a rounded distal incisal angle; what is left of three mamelons.
+        const double round = upper ? lateral ? 1.5 : 1.0 : lateral ? 0.5 : 0.25, lobe = upper ? 0.1 : 0.05;
         s.cusps = {{"incisal edge", Vec3(0.2 * half, edge, top)}};
-        s.crests = {{Vec3(0.93 * half, edge, top - 0.12 * round), Vec3(0.2 * half, edge, top + 0.04),
-                     Vec3(-0.4 * half, edge, top - 0.08 * round), 0.8, 1.0, true, "incisal edge"},
-                    {Vec3(-0.4 * half, edge, top - 0.08 * round), Vec3(-0.8 * half, edge, top - 0.25 * round),
-                     Vec3(-0.97 * half, edge, top - 1.1 * round), 0.8, 1.0, true, "incisal edge"}};
+        const Vec3 corner(0.9 * half, edge, top - 0.14 * round), one(0.3 * half, edge, top - 0.4 * lobe),
+            two(-0.27 * half, edge, top - 0.08 * round - 0.4 * lobe), end(-0.95 * half, edge, top - 1.05 * round);
+        for (const auto& [from, by, to] : {std::array{corner, Vec3(0.6 * half, edge, top + lobe), one},
+                                           {one, Vec3(0.02 * half, edge, top + lobe), two},
+                                           {two, Vec3(-0.7 * half, edge, top - 0.14 * round + lobe), end}})
+            s.crests.push_back({from, by, to, 0.7, 1.0, true, "incisal edge"});
         // The fossa between the marginal ridges, over the cingulum.
-        const double deep = upper ? lateral ? 0.6 : 0.5 : 0.15;
+        const double deep = upper ? lateral ? 0.8 : 0.7 : 0.2, ridge = upper ? lateral ? -0.45 : -0.38 : -0.07;
         s.hollows = {
-            {Vec3(0.03 * half, 0.42 * depth + edge, at(0.62)), Vec3(0.72 * half, 1.6, 0.33 * z.crown), deep},
-            {Vec3(-0.08 * half, 0.95 * depth, at(0.2)), Vec3(0.75 * half, 1.8, 0.3 * z.crown), upper ? -0.18 : -0.06}};
+            {Vec3(0.03 * half, 0.42 * depth + edge, at(0.6)), Vec3(0.62 * half, 1.6, 0.34 * z.crown), deep},
+            {Vec3(-0.08 * half, 0.85 * depth, at(0.23)), Vec3(0.7 * half, 2.0, 0.27 * z.crown), upper ? -0.16 : -0.05},
+            {Vec3(0.7 * half, 0.35 * depth + edge, at(0.6)), Vec3(0.3 * half, 1.5, 0.42 * z.crown), ridge},
+            {Vec3(-0.7 * half, 0.35 * depth + edge, at(0.55)), Vec3(0.3 * half, 1.5, 0.4 * z.crown), ridge}};
         // Between the three lobes of the labial side.
         for (const double x : {0.3, -0.3})
             s.hollows.push_back(
-                {Vec3(x * half, -0.7 * depth, at(0.84)), Vec3(0.32 * half, 1.8, 0.5 * z.crown), upper ? 0.1 : 0.04});
+                {Vec3(x * half, -0.6 * depth, at(0.88)), Vec3(0.26 * half, 1.8, 0.45 * z.crown), upper ? 0.15 : 0.05});
         // The lingual pit of the lateral incisor, where the fossa meets the cingulum.
         if (upper && lateral)
-            s.hollows.push_back({Vec3(0.0, 0.72 * depth, at(0.36)), Vec3(0.5, 1.0, 0.6), 0.3, "lingual"});
+            s.hollows.push_back({Vec3(0.0, 0.72 * depth, at(0.36)), Vec3(0.55, 1.2, 0.75), 0.25, "lingual"});
     }
     s.roots = {{"root", Vec2(0, 0), Vec3(0.05, 0.0, -0.5 * z.root),
                 Vec3(lateral || canine ? -0.9 : -0.3, 0.1, buccalZ - z.root),

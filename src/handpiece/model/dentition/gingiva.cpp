@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -227,7 +228,11 @@ class Arch {
                 const Vec3 axis = (standers_[i - 1].axis() + s.axis()).normalized();
                 const double under = (contacts_[i - 1] - p).dot(axis) - kPapillaBelowContactMm;
                 const double wide = under < 0.0 ? under : kWidestPapilla * under / (under + kWidestPapilla);
-                papilla = std::min(papilla, 0.5 * (seen.distance + before.distance) - wide);
+                // Between two teeth, not over the faces of narrow ones: the farther of the two counts more.
+                const double one = seen.distance, two = before.distance;
+                const double between = core::hypot(std::max(one, 0.0), std::max(two, 0.0)) / std::numbers::sqrt2 +
+                                       0.5 * std::min({one, two, 0.0});
+                papilla = std::min(papilla, between - wide);
             }
             before = seen;
         }

@@ -94,7 +94,7 @@ void lowerPremolar(Spec& s, int place) {
     s.lean = first ? -0.1 : 0.0;
     s.cervixSquare = 0.35, s.contourSquare = 0.5, s.rimSquare = 0.5;
     s.rimRound = 0.8;
-    s.enamelCusp = 1.8, s.enamelSide = 0.95, s.enamelFossa = 0.55;
+    s.enamelCusp = 1.8, s.enamelSide = 0.95, s.enamelFossa = 0.42;
     OcclusalPlan plan;
     if (first) {
         s.groundZ = 4.75;
@@ -136,7 +136,7 @@ void lowerPremolar(Spec& s, int place) {
         s.grooves.push_back(
             {"mesial", {Vec3(1.85, 0.7, 0.35), Vec3(1.0, 0.55, 0.3), Vec3(-0.1, 0.75, 0.4)}, 0.27, 3.2, 4.2});
         s.grooves.push_back(
-            {"distal", {Vec3(-0.1, 0.75, 0.4), Vec3(-0.9, 0.35, 0.3), Vec3(-1.9, 0.5, 0.35)}, 0.27, 3.2, 4.2});
+            {"distal", {Vec3(-0.1, 0.75, 0.4), Vec3(-0.9, 0.4, 0.25), Vec3(-1.9, 0.5, 0.25)}, 0.27, 3.2, 4.2});
         s.grooves.push_back(
             {"lingual",
              {Vec3(-0.1, 0.75, 0.4), Vec3(-0.25, 1.7, 0.3), Vec3(-0.4, 2.9, 0.22), Vec3(-0.45, 4.2, 0.1)},
@@ -147,9 +147,9 @@ void lowerPremolar(Spec& s, int place) {
         for (const double x : {1.85, -1.9}) {
             s.hollows.push_back({Vec3(x, 0.6, 4.9), Vec3(0.35, 0.35, 0.8), 0.18, x > 0.0 ? "mesial" : "distal"});
             s.grooves.push_back(
-                {"", {Vec3(x, 0.6, 0.28), Vec3(1.15 * x, 0.0, 0.15), Vec3(1.22 * x, -0.5, 0.0)}, 0.22, 3.2, 4.2});
+                {"", {Vec3(x, 0.6, 0.2), Vec3(1.15 * x, 0.0, 0.15), Vec3(1.22 * x, -0.5, 0.0)}, 0.22, 3.2, 4.2});
             s.grooves.push_back(
-                {"", {Vec3(x, 0.6, 0.28), Vec3(1.1 * x, 1.2, 0.15), Vec3(1.05 * x, 1.6, 0.0)}, 0.22, 3.2, 4.2});
+                {"", {Vec3(x, 0.6, 0.2), Vec3(1.1 * x, 1.2, 0.15), Vec3(1.05 * x, 1.6, 0.0)}, 0.22, 3.2, 4.2});
         }
     }
     for (const double side : {1.0, -1.0})

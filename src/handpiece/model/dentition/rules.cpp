@@ -18,8 +18,8 @@ Vec3 between(const Vec3& a, const Vec3& b, double t) {
 Crest cuspRidge(const Vec3& tip, const Vec3& end, double side) {
     Vec3 by = between(tip, end, 0.5);
     by.y() += 0.15 * side;
-    by.z() += 0.15 * (tip.z() - end.z());
-    return {tip, by, end, 0.55, 1.0, true};
+    by.z() += 0.25 * (tip.z() - end.z());
+    return {tip, by, end, 0.9, 1.0, true};
 }
 
 }  // namespace
@@ -44,22 +44,16 @@ void occlusalSurface(Spec& spec, const OcclusalPlan& plan) {
             const Vec3 distal = i + 1 < cusps.size() ? notches[i] : isBuccal ? plan.distal.buccal : plan.distal.lingual;
             Vec3 by = between(c.tip, c.inner, 0.5);
             by.x() += c.bow;
-            by.z() += 0.12 * (c.tip.z() - c.inner.z());
-            spec.crests.push_back({c.tip, by, c.inner, c.round, c.slope, false, std::string("triangular ") + c.name});
+            by.z() += 0.24 * (c.tip.z() - c.inner.z());
+            spec.crests.push_back(
+                {c.tip, by, c.inner, 1.8 * c.round, c.slope, false, std::string("triangular ") + c.name});
             spec.crests.push_back(cuspRidge(c.tip, mesial, side));
             spec.crests.push_back(cuspRidge(c.tip, distal, side));
-            // Between the triangular ridge and the rim a lower secondary ridge: supplemental grooves run on both sides.
             for (const Vec3& rim : {mesial, distal}) {
-                Vec3 from = between(c.tip, rim, 0.62), to = between(c.inner, rim, 0.3);
-                from.z() -= 0.12, to.z() = c.inner.z() + 0.1;
-                Vec3 half = between(between(from, to, 0.5), c.tip, -0.08);
-                half.z() -= 0.05 * (from.z() - to.z());
-                spec.crests.push_back({from, half, to, 0.35, 1.1});
-                // The groove beside the triangular ridge is cut a little sharper than the valley it lies in.
                 const Vec3 a = between(c.inner, rim, 0.14), e = between(between(c.tip, rim, 0.42), c.inner, 0.25);
                 const Vec3 m = between(between(a, e, 0.5), rim, -0.04);
                 spec.grooves.push_back(
-                    {"", {Vec3(a.x(), a.y(), 0.03), Vec3(m.x(), m.y(), 0.09), Vec3(e.x(), e.y(), 0.0)}, 0.2, 2.0, 3.5});
+                    {"", {Vec3(a.x(), a.y(), 0.03), Vec3(m.x(), m.y(), 0.12), Vec3(e.x(), e.y(), 0.0)}, 0.3, 2.0, 3.5});
             }
         }
     }

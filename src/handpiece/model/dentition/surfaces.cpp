@@ -49,7 +49,7 @@ std::vector<Section> sectionsOf(const Root& r) {
     const double a = r.taper.x(), b = r.taper.y();
     std::vector<Section> sections;
     for (const auto& [t, wide] :
-         {std::pair{0.92, b}, {0.72, 0.52 * a + 0.48 * b}, {0.5, a}, {0.25, 0.4 + 0.6 * a}, {0.0, 1.0}}) {
+         {std::pair{1.0, b}, {0.75, 0.62 * a + 0.38 * b}, {0.5, a}, {0.25, 0.4 + 0.6 * a}, {0.0, 1.0}}) {
         const Vec2 c = rootCentre(r, t);
         sections.push_back({t * r.apex.z(), c.x(), c.y(), r.half.x() * wide, r.half.y() * wide, r.square,
                             r.waist * smoothStep(0.0, 0.3, t)});
@@ -77,7 +77,10 @@ Loft crownOf(const Spec& s) {
         std::vector<Profile::Knot> knots;
         for (const Section& b : below)
             knots.push_back({b.z, root(b)});
-        knots.insert(knots.end(), {{cervixZ, cervix}, {o.contourZ, contour}, {o.rimZ, o.rim}, {o.topZ, o.top}});
+        knots.push_back({cervixZ, cervix});
+        if (o.contourZ > cervixZ + 2.0)
+            knots.push_back({0.5 * (cervixZ + o.contourZ), cervix + o.belly * (contour - cervix)});
+        knots.insert(knots.end(), {{o.contourZ, contour}, {o.rimZ, o.rim}, {o.topZ, o.top}});
         return Profile(knots);
     };
     std::vector<Profile::Knot> square, waist;
@@ -121,16 +124,13 @@ double smoothStep(double from, double to, double x) {
 }
 
 std::vector<Vec3> rounded(std::vector<Vec3> points) {
-    for (int round = 0; round < 2; ++round) {
-        std::vector<Vec3> next = {points.front()};
-        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-            if (i > 0) next.push_back(0.75 * points[i] + 0.25 * points[i + 1]);
-            if (i + 2 < points.size()) next.push_back(0.25 * points[i] + 0.75 * points[i + 1]);
-        }
-        next.push_back(points.back());
-        points = std::move(next);
+    std::vector<Vec3> next = {points.front()};
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        if (i > 0) next.push_back(0.75 * points[i] + 0.25 * points[i + 1]);
+        if (i + 2 < points.size()) next.push_back(0.25 * points[i] + 0.75 * points[i + 1]);
     }
-    return points;
+    next.push_back(points.back());
+    return next;
 }
 
 Profile::Profile(std::vector<Knot> knots) : knots_(std::move(knots)) {
@@ -221,6 +221,7 @@ Anatomy::Anatomy(Spec spec) : spec_(std::move(spec)), crown_(crownOf(spec_)) {
         topZ_ = std::max(topZ_, curve.topZ + 0.3);
         (c.isRim ? rim_ : curves_).push_back(curve);
     }
+    settleGrooves();
     for (const Groove& g : spec_.grooves) {
         Line line{rounded(g.points), kShoulders * g.halfWidth, g.fromZ, g.toZ, Vec2::Zero(), 0.0};
         core::Box box;
@@ -236,6 +237,40 @@ Anatomy::Anatomy(Spec spec) : spec_(std::move(spec)), crown_(crownOf(spec_)) {
                                                  ? Loft::Ends{spec_.floorZ + 0.4, 0.4, spec_.roofZ - 0.5, 0.5}
                                                  : Loft::Ends{spec_.floorZ + 0.45, 0.45, spec_.roofZ - 0.45, 0.45});
     measure();
+}
+
+void Anatomy::settleGrooves() {
+    // Fissures run where lobes have met: along the valleys that the crests leave, pits where those are deepest.
+    const auto settled = [&](const Vec2& from, const Vec2& across, double reach) {
+        Vec2 best = from;
+        double lowest = std::numeric_limits<double>::infinity();
+        const bool isLine = across.squaredNorm() > 0.0;
+        for (int i = -5; i <= 5; ++i)
+            for (int j = isLine ? 0 : -5; j <= (isLine ? 0 : 5); ++j) {
+                const Vec2 off = reach / 5.0 * (isLine ? Vec2(i * across) : Vec2(i, j));
+                const double height = occlusalHeight(from.x() + off.x(), from.y() + off.y()) + 0.3 * off.squaredNorm();
+                if (height < lowest) lowest = height, best = from + off;
+            }
+        return best;
+    };
+    const auto isInside = [&](const Vec2& p) { return crown_.value(Vec3(p.x(), p.y(), spec_.groundZ)) < -1.6; };
+    for (Hollow& h : spec_.hollows)
+        if (!h.pit.empty() && !spec_.isEdge && isInside(h.centre.head<2>()))
+            h.centre.head<2>() = settled(h.centre.head<2>(), Vec2::Zero(), 0.3);
+    for (Groove& g : spec_.grooves) {
+        if (g.name.empty()) continue;
+        const std::vector<Vec3> before = g.points;
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            const Vec2 at = before[i].head<2>();
+            if (!isInside(at)) continue;
+            const bool isEnd = i == 0 || i + 1 == before.size();
+            const Vec2 way = isEnd ? Vec2::Zero() : Vec2((before[i + 1] - before[i - 1]).head<2>().normalized());
+            g.points[i].head<2>() = settled(at, Vec2(-way.y(), way.x()), 0.3);
+        }
+        const std::vector<Vec3> rough = g.points;
+        for (std::size_t i = 1; i + 1 < rough.size(); ++i)
+            g.points[i] = 0.25 * rough[i - 1] + 0.5 * rough[i] + 0.25 * rough[i + 1];
+    }
 }
 
 core::Box Anatomy::bounds() const {
@@ -289,7 +324,7 @@ double Anatomy::grooveDepth(const Vec3& p) const {
             const double dx = b.x() - a.x(), dy = b.y() - a.y();
             const double t = std::clamp(((p.x() - a.x()) * dx + (p.y() - a.y()) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
             const double ex = p.x() - a.x() - t * dx, ey = p.y() - a.y() - t * dy;
-            constexpr double kFloor = 0.06;
+            constexpr double kFloor = 0.08;
             const double d = (std::sqrt(ex * ex + ey * ey + kFloor * kFloor) - kFloor) / g.halfWidth;
             if (d < 1.0) here = std::max(here, (a.z() + t * (b.z() - a.z())) * (1.0 - d) * (1.0 - d));
         }

@@ -18,7 +18,7 @@ namespace handpiece::dentition {
     return -smoothMax(-a, -b, width);
 }
 [[nodiscard]] double smoothStep(double from, double to, double x);
-/// A line with its corners cut, twice (Chaikin); the ends stay.
+/// A line with its corners cut (Chaikin); the ends stay.
 [[nodiscard]] std::vector<core::Vec3> rounded(std::vector<core::Vec3> points);
 
 /// A smooth curve through values at heights, which never swings beyond them (Fritsch and Carlson).
@@ -101,6 +101,7 @@ class Anatomy {
     [[nodiscard]] double body(const core::Vec3& p) const;  ///< without grooves and the step at the cervix
     [[nodiscard]] double step(double above) const;
     [[nodiscard]] double core(const core::Vec3& p, double bodyValue) const;
+    void settleGrooves();
     void measure();
 
     Spec spec_;

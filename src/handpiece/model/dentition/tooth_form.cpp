@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <numbers>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/core/split_mix.h"
 #include "handpiece/model/dentition/landmarks.h"
 #include "handpiece/model/dentition/rules.h"
@@ -42,6 +45,62 @@ class Draws {
     bool isAverage_;
 };
 
+/// A smooth field of small shifts: no cusp stands, no groove runs as on a drawing.
+class Wander {
+  public:
+    explicit Wander(std::uint64_t seed) {
+        Draws draws(seed, false);
+        for (Wave& w : waves_) {
+            const double turn = 2.0 * std::numbers::pi * draws.uniform();
+            w = {core::cos(turn), core::sin(turn), 2.0 * std::numbers::pi * draws.uniform()};
+        }
+    }
+    /// At a place, of waves this long [mm].
+    [[nodiscard]] Vec3 at(const Vec3& p, double lengthMm) const {
+        Vec3 shift = Vec3::Zero();
+        const double k = 2.0 * std::numbers::pi / lengthMm;
+        for (std::size_t i = 0; i < waves_.size(); ++i) {
+            const Wave& w = waves_[i];
+            shift[static_cast<int>(i % 3)] += core::sin(k * (w.x * p.x() + w.y * p.y()) + w.phase);
+        }
+        return shift;
+    }
+
+  private:
+    struct Wave {
+        double x = 0.0, y = 0.0, phase = 0.0;
+    };
+    std::array<Wave, 6> waves_;
+};
+
+void wander(Spec& spec, const Wander& field) {
+    const auto moved = [&](Vec3& p, double up) {
+        const Vec3 shift = field.at(p, 6.0);
+        p += Vec3(0.09 * shift.x(), 0.09 * shift.y(), up * shift.z());
+    };
+    for (Crest& c : spec.crests)
+        moved(c.from, 0.0), moved(c.by, 0.08), moved(c.to, 0.04);
+    for (Cusp& c : spec.cusps)
+        moved(c.tip, 0.0);
+    for (Hollow& h : spec.hollows)
+        moved(h.centre, 0.0);
+    for (Groove& g : spec.grooves) {
+        std::vector<Vec3> points;
+        for (std::size_t i = 0; i < g.points.size(); ++i) {
+            if (i > 0) points.push_back(0.5 * (g.points[i - 1] + g.points[i]));
+            points.push_back(g.points[i]);
+        }
+        for (Vec3& p : points) {
+            const double depth = p.z();
+            moved(p, 0.0);
+            const Vec3 bend = field.at(p, 2.2);
+            p += Vec3(0.05 * bend.x(), 0.05 * bend.y(), 0.0);
+            p.z() = depth * (0.85 + 0.07 * bend.z());
+        }
+        g.points = std::move(points);
+    }
+}
+
 Spec specFor(int fdi, const Patient& patient) {
     const bool upper = fdi < 30;
     Spec spec = specOf(upper, fdi % 10, patient);
@@ -53,14 +112,15 @@ Spec specFor(int fdi, const Patient& patient) {
     const double x = all * (1.0 + 0.02 * tooth.normal()), y = all * (1.0 + 0.02 * tooth.normal());
     const double crown = all * (1.0 + 0.02 * tooth.normal()), root = all * (1.0 + 0.04 * tooth.normal());
     scale(spec, x, y, crown, root);
-    // No two mouths have the same wrinkles or the same bends of the roots.
-    for (Groove& g : spec.grooves)
-        for (std::size_t i = 1; i + 1 < g.points.size(); ++i)
-            g.points[i] += Vec3(0.05 * tooth.normal(), 0.05 * tooth.normal(), 0.02 * tooth.normal());
+    // No two mouths have the same wrinkles or the same bends of the roots; the average one has wrinkles too.
+    wander(spec, Wander(patient.seed * 9176263 + static_cast<std::uint64_t>(fdi % 10 + (upper ? 0 : 8))));
     for (Hollow& h : spec.hollows)
         h.depth *= 1.0 + 0.1 * tooth.normal();
+    // Those of third molars stand so close that they would grow together.
+    const double play = fdi % 10 == 8 ? 0.4 : 1.0;
     for (Root& r : spec.roots)
-        r.middle.x() += 0.12 * tooth.normal(), r.apex.x() += 0.3 * tooth.normal(), r.apex.y() += 0.2 * tooth.normal();
+        r.middle.x() += 0.12 * play * tooth.normal(), r.apex.x() += 0.3 * play * tooth.normal(),
+            r.apex.y() += 0.2 * play * tooth.normal();
     // Edges are rounded, ridges pass into each other: what is measured is brought to what is asked.
     const Sizes asked = spec.sizes;
     for (int i = 0; i < 2; ++i) {

@@ -13,6 +13,7 @@
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
+#include "handpiece/app/input/working_position.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
@@ -42,6 +43,7 @@ struct PictureOptions {
     MeshUnit unit;           ///< of a tooth that is a mesh file
     std::vector<std::string> hide;
     double atS = -1.0, voxelUm = 50.0;
+    int position = 0;  // 0: none
     std::size_t threads = 0;
     bool atGiven = false, grid = false, noBur = false, noScenery = false, mirror = false, arrows = false,
          scaleBar = false, noCache = false;
@@ -152,6 +154,11 @@ Asked read(const PictureOptions& o) {
     if (asked.targetMm && !asked.eyeMm) throw core::Error("a target needs an eye", "--target", "give --eye as well");
     if (asked.targetMm && (*asked.targetMm - *asked.eyeMm).norm() < 1e-3)
         throw core::Error("the eye is where it looks at", "--eye", "give two different points");
+    if (o.position != 0 && !input::isOperatorsHour(o.position))
+        throw core::Error(fmt::format("nobody works from {} o'clock", o.position), "--position",
+                          "8 to 12 (right-handed), 12 to 4 (left-handed)");
+    if (o.position != 0 && asked.eyeMm)
+        throw core::Error("an eye and a position", "--position", "give one of --eye and --position");
     if (!o.section.empty()) asked.section = sectionOf(o.section);
     const fs::path out(o.out);
     if (out.extension() != ".png") throw core::Error("pictures are written as .png", o.out, "name the output so");
@@ -176,14 +183,21 @@ struct Subject {
     std::shared_ptr<const instrument::Bur> bur;  ///< null: none is shown
     view::BurFinish finish = view::BurFinish::diamond;
     view::Moment moment;
+    std::optional<input::WorkingPosition> position;
     std::unique_ptr<simulation::SessionPlayer> session;  ///< owns `live` where it came from there
 };
 
-void takeCase(Subject& subject, const cases::Case& toothCase) {
+void takeCase(Subject& subject, const cases::Case& toothCase, int hour) {
     subject.buccalSign = toothCase.buccalSign;
     subject.scenery = cases::surroundings(toothCase);
     subject.parts = toothCase.parts;
     subject.bounds = subject.live->model().outer.bounds();
+    if (hour == 0) return;
+    const std::optional<core::Quat> head = input::headInCase(toothCase);
+    if (!head)
+        throw core::Error("where the head lies is not known: no tooth of the case has a number", "--position",
+                          "give the tooth its FDI number in case.toml, or leave --position out");
+    subject.position = input::workingPosition(*head, toothCase.fdiNumber < 30, hour);
 }
 
 Subject openSession(const PictureOptions& o) {
@@ -209,7 +223,7 @@ Subject openSession(const PictureOptions& o) {
     subject.live = player.tooth();
     subject.bur = player.station().settings.bur;
     subject.finish = view::finishOf(*subject.bur, player.station().settings.cuttingParameters.name);
-    takeCase(subject, player.toothCase());
+    takeCase(subject, player.toothCase(), o.position);
     view::Moment& m = subject.moment;
     m.timeS = s.timeS;
     m.burInTooth.positionMm = {s.proxyPositionMm[0], s.proxyPositionMm[1], s.proxyPositionMm[2]};
@@ -233,6 +247,7 @@ void restBur(Subject& subject, const simulation::SimulationSetup& station, const
     subject.finish = view::finishOf(*instrument.bur, instrument.cuttingParameters.name);
     const auto method = contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(station.field), subject.bur);
     core::Pose& pose = subject.moment.burInTooth;
+    if (subject.position) pose.orientation = input::handleTowards(pose.orientation, subject.position->toHand);
     const Vec3 middle = subject.bounds.centre();
     pose.positionMm = {middle.x(), middle.y(), subject.bounds.max.z() + 2.0};
     const double reach = subject.bounds.size().z() + 4.0;
@@ -265,7 +280,7 @@ Subject openCase(const PictureOptions& o, const Asked& asked) {
     }
     subject.live = std::make_shared<simulation::LiveTooth>(station.tooth, state, core::part(bar.listener(), 0.7, 1.0));
     bar.finish();
-    takeCase(subject, toothCase);
+    takeCase(subject, toothCase, o.position);
     if (asked.bur) restBur(subject, station, *asked.bur);
     return subject;
 }
@@ -280,7 +295,8 @@ Subject openMesh(const PictureOptions& o) {
 Subject open(const PictureOptions& o, const Asked& asked) {
     if (fs::path(o.what).extension() == ".h5") return openSession(o);
     // A mesh that only has to be looked at need not be a solid.
-    if (geometry::meshFormatOf(o.what) != geometry::MeshFormat::unknown && !asked.bur && !asked.section) {
+    if (geometry::meshFormatOf(o.what) != geometry::MeshFormat::unknown && !asked.bur && !asked.section &&
+        o.position == 0) {
         if (o.look != "now")
             throw core::Error("a mesh has not been cut", "--look", "give an attempt or a session, or --look now");
         return openMesh(o);
@@ -313,6 +329,7 @@ view::MirrorPose mirrorFor(const Subject& subject, const view::Camera& camera) {
 view::Camera cameraFor(const Asked& asked, const Subject& subject, const view::Viewport& each, bool withMirror,
                        std::optional<view::MirrorPose>& mirror) {
     view::Camera camera = view::standardView(asked.view, subject.bounds, subject.buccalSign, each);
+    if (subject.position) camera = input::seenFrom(*subject.position, subject.bounds, each);
     if (asked.eyeMm) {
         camera.eyeMm = *asked.eyeMm;
         camera.targetMm = asked.targetMm.value_or(subject.bounds.centre());
@@ -396,6 +413,8 @@ void addPictureCommand(Command& app) {
     command.option("--view", o.view, "from where: " + views).showDefault();
     command.option("--eye", o.eye, "X,Y,Z of the eye instead [mm, tooth frame]");
     command.option("--target", o.target, "X,Y,Z that it looks at [default: the middle of the tooth]");
+    command.option("--position", o.position,
+                   "as the operator sees it who sits there: 8 to 12 o'clock, 1 to 4 left-handed");
     command.option("--size", o.size, "WIDTHxHEIGHT in pixels, 16 to 8192 a side").showDefault();
     command.option("--at", o.atS, "second of the session [default: its end]");
     command.option("--look", o.look, "now, before (any cut), ghost (what was cut away as glass), removed-depth")

@@ -10,6 +10,7 @@
 #include "desktop/features/files/recovery_feature.h"
 #include "desktop/features/files/starter_feature.h"
 #include "desktop/features/measure/measure_feature.h"
+#include "desktop/features/position/position_feature.h"
 #include "desktop/features/radiograph/radiograph_feature.h"
 #include "desktop/features/replay/replay_feature.h"
 #include "desktop/features/scan/scan_feature.h"
@@ -29,6 +30,7 @@ void installFeatures(const FeatureContext& context) {
     add(new StarterFeature(context));
     add(new RecoveryFeature(context));
     add(new ViewFeature(context));
+    add(new PositionFeature(context));
     add(new ExerciseFeature(context));
     add(new LayoutFeature(context));
     add(new ReplayFeature(context));

@@ -394,6 +394,13 @@ void onTooth(QPainter& p, const Area& area) {
         if (from) dot(p, *from, kLine);
     }
     if (state.reading) measurement(p, area, *state.reading, true);
+    if (state.restMm)
+        if (const auto at = area.at(*state.restMm)) {
+            p.setPen(QPen(kLine, 2));
+            p.drawEllipse(*at, 7, 7);
+            dot(p, *at, kLine, 2.5);
+            label(p, area, *at, Texts::tr("Finger rest"), nullptr);
+        }
 }
 
 /// From the bur to the pointer, where it has run ahead: tissue holds the bur back, and there it strains to.

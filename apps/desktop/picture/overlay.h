@@ -38,6 +38,8 @@ struct OverlayState {
     std::optional<QPointF> pointer;
     std::optional<QPointF> cross;         ///< that keys move in the pointer's place
     std::optional<core::Vec3> burTipMm;   ///< as drawn
+    std::optional<core::Vec3> restMm;     ///< where a finger rests
+    bool mirrorView = false;              ///< only a mirror's picture is seen
     std::optional<Measurement> thinnest;  ///< over the pulp
     measure::PulpLimits pulpLimits;
     std::optional<SectionPlace> section;

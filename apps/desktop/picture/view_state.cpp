@@ -72,6 +72,12 @@ core::Vec2 ViewWidget::State::pixel(const QPointF& position) const {
     return {x, position.y()};
 }
 
+view::Camera ViewWidget::State::handsEye() const {
+    view::Camera own = camera;
+    own.mirrored = false;
+    return own;
+}
+
 std::optional<measure::Hit> ViewWidget::State::hitAt(const QPointF& position) const {
     if (!tooth) return std::nullopt;
     const view::Ray ray = view::rayThrough(camera, viewport(), pixel(position));
@@ -162,7 +168,8 @@ void ViewWidget::State::wish() {
 }
 
 void ViewWidget::State::eyeMoved() {
-    if (hand) hand->setEye(camera, viewport());
+    camera.mirrored = mirrorView;
+    if (hand) hand->setEye(handsEye(), viewport());
     if (drag == Drag::none) hoverAgain();
     if (cross) read(*cross);
     wish();
@@ -318,6 +325,10 @@ OverlayState ViewWidget::State::overlay() const {
         });
     if (!kept) state.reading = reading;
     state.pointer = pointer;
+    // Where the hand is on its way to is seen there.
+    if (pointer && mirrorView && !compare && tool == Tool::drill) state.pointer->setX(viewport().width - pointer->x());
+    state.restMm = hand ? hand->rest() : std::nullopt;
+    state.mirrorView = mirrorView;
     state.cross = cross;
     if (thinnest && !isHidden(thinnest->fromMm)) state.thinnest = thinnest;
     state.pulpLimits = pulpLimits;

@@ -50,7 +50,8 @@ struct ViewWidget::State {
     std::optional<SectionPlace> section;
     SectionPlace lastSection;
     bool sectionPlaced = false;
-    std::optional<core::Vec3> mirrorCentreMm;
+    std::optional<core::Vec3> mirrorCentreMm, restMm;
+    bool mirrorView = false;
     std::vector<Measurement> measurements;
     std::optional<core::Vec3> calliperStartMm, pointerMm;
     std::optional<Measurement> reading, thinnest;
@@ -82,6 +83,8 @@ struct ViewWidget::State {
     // Where things are.
     [[nodiscard]] view::Viewport viewport() const;  // of one picture
     [[nodiscard]] core::Vec2 pixel(const QPointF& position) const;
+    /// As the hand has it: no mirror turns that over.
+    [[nodiscard]] view::Camera handsEye() const;
     [[nodiscard]] std::optional<measure::Hit> hitAt(const QPointF& position) const;
     /// Behind tooth that is shown.
     [[nodiscard]] bool isHidden(const core::Vec3& pointMm) const;

@@ -102,6 +102,7 @@ void ViewWidget::clearTooth() {
     setPointer(nullptr, {});
     setSection(std::nullopt);
     setMirrorShown(false);
+    setRest(std::nullopt);
     setCompare(false);
     setTool(Tool::drill);
     clearMeasurements();
@@ -133,7 +134,8 @@ void ViewWidget::setPointer(std::shared_ptr<device::PointerMailbox> mailbox, con
             return tooth->withProbe(
                 [&](const measure::ToothProbe& probe) { return probe.cast(ray.originMm, ray.direction); });
         });
-    s.hand->setEye(s.camera, s.viewport());
+    s.hand->setEye(s.handsEye(), s.viewport());
+    s.hand->setRest(s.restMm);
     s.feelUncut();
     if (s.tool != Tool::drill) s.hand->freeze(true);
     update();
@@ -183,6 +185,33 @@ const view::Camera& ViewWidget::camera() const {
 void ViewWidget::showStandardView(view::StandardView standardView) {
     const view::Viewport port = state_->viewport();
     setCamera(clearOfWriting(view::standardView(standardView, state_->eyeBounds, state_->buccalSign, port), port));
+}
+
+void ViewWidget::sitAt(const input::WorkingPosition& position) {
+    const view::Viewport port = state_->viewport();
+    if (state_->hand) state_->hand->turnHandle(position.toHand);
+    setCamera(clearOfWriting(input::seenFrom(position, state_->eyeBounds, port), port));
+}
+
+void ViewWidget::setMirrorView(bool on) {
+    State& s = *state_;
+    if (on == s.mirrorView) return;
+    s.end();
+    s.mirrorView = on;
+    s.eyeMoved();
+    emit mirrorViewChanged(on);
+}
+bool ViewWidget::isMirrorView() const {
+    return state_->mirrorView;
+}
+
+void ViewWidget::setRest(std::optional<core::Vec3> pointMm) {
+    State& s = *state_;
+    if (pointMm.has_value() == s.restMm.has_value() && pointMm == s.restMm) return;
+    s.restMm = pointMm;
+    if (s.hand) s.hand->setRest(pointMm);
+    update();
+    emit restChanged(pointMm.has_value());
 }
 
 void ViewWidget::fitTooth() {
@@ -330,7 +359,7 @@ void ViewWidget::paintEvent(QPaintEvent*) {
 
 void ViewWidget::resizeEvent(QResizeEvent*) {
     State& s = *state_;
-    if (s.hand) s.hand->setEye(s.camera, s.viewport());
+    if (s.hand) s.hand->setEye(s.handsEye(), s.viewport());
     s.layOut();
     s.wish();
 }

@@ -17,6 +17,7 @@
 #include "desktop/picture/overlay.h"
 #include "handpiece/app/exercise/permissions.h"
 #include "handpiece/app/input/pointer_controller.h"
+#include "handpiece/app/input/working_position.h"
 #include "handpiece/app/simulation/live_session.h"
 #include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/base/messages/haptic_sample.h"
@@ -68,6 +69,13 @@ class ViewWidget : public QWidget {
     void setCamera(const view::Camera& camera);
     [[nodiscard]] const view::Camera& camera() const;
     void showStandardView(view::StandardView standardView);
+    /// As the operator sees it there; the handle turns to the hand.
+    void sitAt(const input::WorkingPosition& position);
+    /// Only a mirror's picture is seen, left and right changed over; the hand moves as it does.
+    void setMirrorView(bool on);
+    [[nodiscard]] bool isMirrorView() const;
+    /// A finger finds support there; none: nowhere.
+    void setRest(std::optional<core::Vec3> pointMm);
     void fitTooth();
     /// The same direction, near the bur.
     void goToBur();
@@ -142,6 +150,8 @@ class ViewWidget : public QWidget {
     void compareChanged(bool compare);
     void sectionChanged(bool shown);  ///< it came, went or was moved
     void mirrorChanged(bool shown);
+    void mirrorViewChanged(bool on);
+    void restChanged(bool there);
     void refused(handpiece::exercise::Operation operation);  ///< the exercise locks it
 
   protected:

@@ -4,6 +4,22 @@
 <context>
     <name>Commands</name>
     <message>
+        <source>Work by mirror</source>
+        <translation>ミラーテクニックで作業</translation>
+    </message>
+    <message>
+        <source>See only the mirror&apos;s picture: left and right are changed over, the hand is not</source>
+        <translation>ミラー像だけを見ます。左右は入れ替わりますが、手の動きはそのままです</translation>
+    </message>
+    <message>
+        <source>Finger rest</source>
+        <translation>フィンガーレスト</translation>
+    </message>
+    <message>
+        <source>Support the hand on the nearest other tooth: it moves less and turns about there</source>
+        <translation>最も近い別の歯に指を固定します。動きが小さくなり、そこを支点に回ります</translation>
+    </message>
+    <message>
         <source>Open case...</source>
         <translation>症例を開く...</translation>
     </message>
@@ -1445,6 +1461,10 @@
     <message>
         <source>off</source>
         <translation>なし</translation>
+    </message>
+    <message>
+        <source>Finger rest</source>
+        <translation>フィンガーレスト</translation>
     </message>
     <message>
         <source>Thinnest: %1</source>
@@ -4006,6 +4026,10 @@ openhaptics:Left Arm, or forcedimension:2</source>
 <context>
     <name>handpiece::desktop::ReplayFeature</name>
     <message>
+        <source>Another way of working</source>
+        <translation>作業方法の変更</translation>
+    </message>
+    <message>
         <source>Open recording</source>
         <translation>記録を開く</translation>
     </message>
@@ -4972,6 +4996,69 @@ openhaptics:Left Arm, or forcedimension:2</source>
     <message>
         <source>%1 s: %2 N, %3 mm, %4 rpm</source>
         <translation>%1 秒：%2 N、%3 mm、%4 rpm</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::PositionClock</name>
+    <message>
+        <source>Where the operator sits</source>
+        <translation>術者の位置</translation>
+    </message>
+    <message>
+        <source>The patient&apos;s head from above, 12 o&apos;clock behind it: left and right arrow go from hour to hour</source>
+        <translation>上から見た患者の頭部。頭頂側が 12 時です。左右の矢印キーで隣の時刻に移ります</translation>
+    </message>
+    <message>
+        <source>%1 o&apos;clock</source>
+        <translation>%1 時</translation>
+    </message>
+    <message>
+        <source>Sit at %1 o&apos;clock</source>
+        <translation>%1 時の位置に座ります</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::PositionFeature</name>
+    <message>
+        <source>Working position</source>
+        <translation>術者の位置</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::PositionPanel</name>
+    <message>
+        <source>Working position</source>
+        <translation>術者の位置</translation>
+    </message>
+    <message>
+        <source>Left-handed</source>
+        <translation>左利き</translation>
+    </message>
+    <message>
+        <source>What is usual for a left-handed operator</source>
+        <translation>左利きの術者に一般的な位置を示します</translation>
+    </message>
+    <message>
+        <source>Where the head lies is not known: the tooth has no number.</source>
+        <translation>歯の番号がないため、頭部の向きが分かりません。</translation>
+    </message>
+    <message>
+        <source>%1 o&apos;clock, by mirror</source>
+        <translation>%1 時、ミラー像で</translation>
+    </message>
+    <message>
+        <source>%1 o&apos;clock, seen directly</source>
+        <translation>%1 時、直視で</translation>
+    </message>
+    <message>
+        <source>Usual for tooth %1 (habits, no rule):
+occlusal: %2
+buccal: %3
+lingual: %4</source>
+        <translation>歯 %1 で一般的な位置（習慣であり、規則ではありません）：
+咬合面：%2
+頬側：%3
+舌側：%4</translation>
     </message>
 </context>
 <context>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "desktop/work/simulator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <tuple>
@@ -398,6 +400,12 @@ void Simulator::setHullMethod(bool hull) {
         liveSession_->setHullMethod(hull);
     }
     emit settingsChanged();
+}
+
+void Simulator::noteWorkingWay(int hour, bool mirrorOnly, bool fingerRest) {
+    if (mode_ != Mode::liveSession || !liveSession_) return;
+    liveSession_->noteWorkingWay(
+        fmt::format(R"({{"position": {}, "mirror_only": {}, "finger_rest": {}}})", hour, mirrorOnly, fingerRest));
 }
 
 void Simulator::setForceMode(force::LawId mode) {

@@ -157,6 +157,8 @@ class Simulator : public QObject {
     void setSpeed(double rpm);
     void setMultipliers(double stiffness, double damping, double friction);
     void setHullMethod(bool hull);
+    /// From where and how one works from now on, for the record: an hour or 0, by mirror only, with a finger rest.
+    void noteWorkingWay(int hour, bool mirrorOnly, bool fingerRest);
     /// The paper's penalty force instead of the proxy's.
     void setForceMode(force::LawId mode);
     /// A knock at each touch; the hum of the bur. Both off where nothing can be felt anyway: the mouse.

@@ -477,6 +477,43 @@ TEST(PointerController, theHandleBeginsOutOfTheMouth) {
     EXPECT_NEAR((molar.orientation * Vec3::UnitZ()).z(), 1.0, 1e-12);
 }
 
+TEST(PointerController, withAFingerRestItGoesHalfAsFarAndTurnsAboutTheRest) {
+    const Vec3 rest(-9, 2, 1);
+    Scene s(planeMm);
+    const Vec2 start = s.pixel(Vec3(0, 0, 1));
+    s.hand.move(start);
+    const Vec3 before = s.tip() - rest;
+    const Quat held = s.turn();
+    s.hand.setRest(rest);
+    EXPECT_EQ(s.hand.rest(), rest);
+    // In many small steps: what each turns adds up to no more than the way from the first to the last.
+    for (int i = 1; i <= 60; ++i)
+        s.hand.move(start + Vec2(i, 0.5 * i));
+    EXPECT_LT(s.besides(start + kRestFactor * Vec2(60, 30), s.tip()), 0.05);
+    EXPECT_NEAR(s.clearMm(planeMm), kHoverMm, 0.002);
+    const Vec3 after = s.tip() - rest;
+    const double turned = held.angularDistance(s.turn());
+    const double swung = std::acos(before.normalized().dot(after.normalized()));
+    EXPECT_GT(swung, 0.05);
+    EXPECT_NEAR(turned, swung, 0.1 * swung);
+    EXPECT_LT((s.turn() * held.conjugate() * before.normalized() - after.normalized()).norm(), 0.1 * swung);
+    // Off again it is where the pointer is, and turns no more.
+    s.hand.setRest({});
+    const Quat last = s.turn();
+    s.hand.move(start);
+    EXPECT_LT(s.besides(start, s.tip()), 1e-6);
+    EXPECT_EQ(s.turn().coeffs(), last.coeffs());
+}
+
+TEST(PointerController, theHandleTurnsToTheHandAndTheBurStaysWhereItIs) {
+    Scene s(planeMm);
+    const Vec3 tip = s.tip(), axis = s.axis();
+    s.hand.turnHandle(Vec3(0, -1, 0));
+    EXPECT_EQ(s.tip(), tip);
+    EXPECT_LT((s.axis() - axis).norm(), 1e-12);
+    EXPECT_LT((s.turn() * Vec3::UnitX() - Vec3(0, -1, 0)).norm(), 1e-9);
+}
+
 TEST(PointerController, whatMakesNoSenseChangesNothing) {
     EXPECT_THROW(PointerController(nullptr, {}, plane), core::Error);
     EXPECT_THROW(PointerController(std::make_shared<device::PointerMailbox>(), {}, {}), core::Error);

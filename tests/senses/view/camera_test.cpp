@@ -207,5 +207,29 @@ TEST(Camera, StandardViewsLookFromTheirSide) {
     EXPECT_NE(error.find("occlusal, buccal, lingual, mesial, distal, oblique"), std::string::npos);
 }
 
+TEST(Camera, InAMirrorLeftAndRightChangePlacesAndTheHandTurnsWhatItSees) {
+    Camera plain;
+    plain.eyeMm = {20, -40, 30};
+    plain.targetMm = {1, 2, 3};
+    Camera mirrored = plain;
+    mirrored.mirrored = true;
+    const double width = kViewport.width;
+    for (const Vec3& p : {Vec3(0, 0, 0), Vec3(5, -3, 2), Vec3(-4, 4, -6)}) {
+        const Vec2 a = pixelOf(plain, kViewport, p).value(), b = pixelOf(mirrored, kViewport, p).value();
+        EXPECT_NEAR(b.x(), width - a.x(), 1e-9);
+        EXPECT_NEAR(b.y(), a.y(), 1e-9);
+        // As a glass would show it: the reflection in the plane through eye and target that holds up, seen plainly.
+        const Vec3 r = plain.right(), turned = p - 2.0 * r.dot(p - plain.eyeMm) * r;
+        EXPECT_LT((pixelOf(plain, kViewport, turned).value() - b).norm(), 1e-9);
+        EXPECT_GT(rayThrough(mirrored, kViewport, b).direction.dot((p - plain.eyeMm).normalized()), 1.0 - 1e-12);
+        // What is dragged goes with the pointer.
+        const Vec3 near = plain.targetMm - 4.0 * plain.forward();
+        const Vec2 at = pixelOf(mirrored, kViewport, near).value();
+        EXPECT_GT(pixelOf(orbited(mirrored, 0.1, 0.0), kViewport, near).value().x(), at.x() + 1.0);
+        EXPECT_LT(pixelOf(orbited(mirrored, 0.0, 0.1), kViewport, near).value().y(), at.y() - 1.0);
+        EXPECT_GT(pixelOf(panned(mirrored, kViewport, {10, 0}), kViewport, p).value().x(), b.x() + 5.0);
+    }
+}
+
 }  // namespace
 }  // namespace handpiece::view

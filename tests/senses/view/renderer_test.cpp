@@ -182,6 +182,30 @@ TEST(Renderer, TheTopOfThePictureIsItsFirstRow) {
     EXPECT_EQ(lower, 0);
 }
 
+TEST(Renderer, AMirroredPictureIsThePlainOneTurnedOver) {
+    Renderer renderer;
+    renderer.setTooth(box(4, -1, 1));
+    renderer.updateBricks(table(), true);
+    renderer.setBur(rod(0.4, 5.0), 1.0, 0.4);
+    Moment moment;
+    moment.burInTooth.positionMm = {2.0, 0.5, 0.2};
+    Camera camera = above();
+    Image plain, mirrored;
+    renderer.draw(camera, kSize, plainLook(), moment, plain);
+    camera.mirrored = true;
+    renderer.draw(camera, kSize, plainLook(), moment, mirrored);
+    int differ = 0;
+    double apart = 0.0;
+    for (int y = 0; y < kSize.height; ++y)
+        for (int x = 0; x < kSize.width; ++x) {
+            const std::uint8_t *a = plain.at(x, y), *b = mirrored.at(kSize.width - 1 - x, y), *c = mirrored.at(x, y);
+            differ += std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]) > 12 ? 1 : 0;
+            apart += std::abs(a[0] - c[0]);
+        }
+    EXPECT_LT(differ, kSize.width * kSize.height / 100);
+    EXPECT_GT(apart / (kSize.width * kSize.height), 2.0) << "and another than that";
+}
+
 TEST(Renderer, TheNearerSurfaceHides) {
     Renderer renderer;
     renderer.setTooth(box(4.0, -1.0, 3.0));

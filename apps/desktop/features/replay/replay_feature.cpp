@@ -126,6 +126,7 @@ QString ReplayFeature::eventText(const std::string& name) {
                                                    {EventName::neighbourTouched, tr("Adjacent tooth touched")},
                                                    {EventName::gingivaCut, tr("Gingiva cut")},
                                                    {EventName::headTouched, tr("Handpiece on a tooth")},
+                                                   {EventName::workingWay, tr("Another way of working")},
                                                    {EventName::stall, tr("Bur stalled")},
                                                    {EventName::forceLimit, tr("Pressed too hard")},
                                                    {EventName::undo, tr("Undo")},

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "handpiece/app/input/working_position.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/rotation.h"
 #include "handpiece/tick/contact/field_method.h"
@@ -25,6 +26,7 @@ constexpr double kJumpMm = 0.5;    // nearer by so much within kJumpPixels: anot
 constexpr double kJumpPixels = 4.0;
 constexpr double kMaxNudgeMm = 0.5;  // into the tooth
 constexpr double kPivotRadPerPixel = 0.005;
+constexpr double kLeastLeverMm = 1.0;  // of a rest: nearer to the tip nothing turns about it
 constexpr double kStartAboveMm = 6.0;
 constexpr double kThereMm = 0.2;     // as near as that a bur has come to where it was to go
 constexpr int kMaxPictures = 30;     // about a second: then another way out is tried
@@ -91,7 +93,9 @@ struct PointerController::State {
     int idlePictures = 0;
     bool waits = false, stalled = false;
 
-    bool slow = false, rebase = false;
+    bool rebase = false;
+    double pace = 1.0;  // of the pointer's
+    std::optional<Vec3> restMm;
     std::optional<Vec2> lastPixel;  // as given
     Vec2 slowFromPixel = Vec2::Zero(), slowFromLag = Vec2::Zero();
     Vec2 lagPixels = Vec2::Zero();  // by which the bur stays behind the pointer
@@ -100,7 +104,8 @@ struct PointerController::State {
     [[nodiscard]] Vec3 place() const { return proxyMm.value_or(tipMm); }
     [[nodiscard]] bool presses() const { return pressed && !lifting && !crossing && sight && sight->touchAt; }
     void send();
-    [[nodiscard]] Vec2 slowed(const Vec2& pixel, bool slowNow);
+    [[nodiscard]] Vec2 slowed(const Vec2& pixel, double paceNow);
+    bool swing(const Vec3& fromMm);
     [[nodiscard]] double clearMm(const Vec3& tip) const;
     [[nodiscard]] std::optional<double> meet(const Sight& sight, double fromMm, double offMm) const;
     [[nodiscard]] double wayOut(const Vec3& tip, const Vec3& direction, double offMm) const;
@@ -140,15 +145,24 @@ void PointerController::State::send() {
     mailbox->write(target);
 }
 
-Vec2 PointerController::State::slowed(const Vec2& pixel, bool slowNow) {
-    if (slowNow && !slow) {
+Vec2 PointerController::State::slowed(const Vec2& pixel, double paceNow) {
+    if (paceNow != pace) {
         slowFromPixel = lastPixel.value_or(pixel);
         slowFromLag = lagPixels;
     }
-    slow = slowNow;
+    pace = paceNow;
     lastPixel = pixel;
-    if (slow) lagPixels = slowFromLag + (1.0 - kSlowFactor) * (pixel - slowFromPixel);
+    if (pace < 1.0) lagPixels = slowFromLag + (1.0 - pace) * (pixel - slowFromPixel);
     return pixel - lagPixels;
+}
+
+/// As the tip has gone, the handpiece turns about the finger's rest.
+bool PointerController::State::swing(const Vec3& fromMm) {
+    if (!restMm) return false;
+    const Vec3 before = fromMm - *restMm, after = tipMm - *restMm;
+    if (before.norm() < kLeastLeverMm || after.norm() < kLeastLeverMm) return false;
+    orientation = normalised(core::rotationBetween(before, after) * orientation);
+    return true;
 }
 
 /// Of the whole bur, from the uncut tooth; negative in it. At least.
@@ -363,9 +377,10 @@ void PointerController::move(const Vec2& pixel, bool slow) {
         s.send();
         return;
     }
-    if (!s.pressed && !slow) s.lagPixels.setZero();
+    if (!s.pressed && !slow && !s.restMm) s.lagPixels.setZero();
     const Vec2 from = s.lastPixel.value_or(pixel) - s.lagPixels;
-    Vec2 at = s.slowed(pixel, slow);
+    const Vec3 tipBefore = s.tipMm;
+    Vec2 at = s.slowed(pixel, slow ? kSlowFactor : s.restMm ? kRestFactor : 1.0);
     if (std::exchange(s.rebase, false)) {
         // The eye has moved: from where the bur is now.
         if (const std::optional<Vec2> there = view::pixelOf(s.camera, s.viewport, s.place())) {
@@ -383,6 +398,7 @@ void PointerController::move(const Vec2& pixel, bool slow) {
     } else if (!s.sight) {
         s.sight.emplace();
     }
+    if (s.swing(tipBefore) && !s.lifting) s.aim(at);
     s.send();
 }
 
@@ -396,7 +412,7 @@ void PointerController::press(const Vec2& pixel, bool turning) {
             if (pixel.allFinite()) s.aim(pixel);
         } else if (pixel.allFinite() && !s.lifting) {
             // Where the bur is, or is on its way to: nothing jumps.
-            Vec2 at = s.slowed(pixel, s.slow);
+            Vec2 at = s.slowed(pixel, s.pace);
             if (const std::optional<Vec2> there = view::pixelOf(s.camera, s.viewport, s.tipMm))
                 if ((*there - at).norm() > 0.5) {
                     s.lagPixels += at - *there;
@@ -490,6 +506,18 @@ void PointerController::alignToTooth() {
     state_->send();
 }
 
+void PointerController::turnHandle(const Vec3& toHand) {
+    State& s = *state_;
+    if (!toHand.allFinite()) return;
+    s.orientation = handleTowards(s.orientation, toHand);
+    s.send();
+}
+
+void PointerController::setRest(std::optional<Vec3> pointMm) {
+    if (pointMm && !pointMm->allFinite()) return;
+    state_->restMm = pointMm;
+}
+
 void PointerController::setLoad(double loadN) {
     if (!std::isfinite(loadN)) return;
     state_->loadN = std::clamp(loadN, kMinLoadN, kMaxLoadN);
@@ -552,6 +580,9 @@ bool PointerController::pedalLatched() const noexcept {
 }
 bool PointerController::isAway() const noexcept {
     return state_->away;
+}
+std::optional<Vec3> PointerController::rest() const noexcept {
+    return state_->restMm;
 }
 const device::PointerTarget& PointerController::target() const noexcept {
     return state_->target;

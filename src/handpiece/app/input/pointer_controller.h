@@ -33,6 +33,7 @@ namespace handpiece::input {
 
 inline constexpr double kHoverMm = 0.5, kMinLoadN = 0.1, kMaxLoadN = 3.0, kFirstLoadN = 1.0;
 inline constexpr double kNudgeMm = 0.1, kFineNudgeMm = 0.02, kSlowFactor = 0.2, kStopStepMm = 0.1;
+inline constexpr double kRestFactor = 0.5;  ///< of the pointer's way, with a finger rest [a judgement]
 
 /// Where a hand begins: the bur along the tooth's long axis some millimetres above its box, the handle out of the
 /// mouth: to mesial and a little to the cheek for a back tooth, to the lips for a front one (`fdiNumber` 0: as a back
@@ -75,6 +76,11 @@ class PointerController {
     /// The bur's axis along the surface normal under the tip; along the tooth's long axis.
     void alignToNormal();
     void alignToTooth();
+    /// About the bur's axis, so that the handle points to the hand (working_position.h).
+    void turnHandle(const core::Vec3& toHand);
+    /// A finger rests there: the bur goes kRestFactor of the pointer's way, and the handpiece turns about the rest as
+    /// it goes. None: no rest.
+    void setRest(std::optional<core::Vec3> pointMm);
     void setLoad(double loadN);  ///< held between kMinLoadN and kMaxLoadN
     /// How far beyond its first touch of the uncut tooth the bur goes: no place of its end lies deeper, along the bur,
     /// or, where it works with its side, along the line of sight. None: off.
@@ -100,6 +106,7 @@ class PointerController {
     [[nodiscard]] std::optional<double> stopMm() const noexcept;
     [[nodiscard]] bool isPressed() const noexcept;
     [[nodiscard]] bool pedalLatched() const noexcept;
+    [[nodiscard]] std::optional<core::Vec3> rest() const noexcept;
     [[nodiscard]] bool isAway() const noexcept;
     [[nodiscard]] const device::PointerTarget& target() const noexcept;
 

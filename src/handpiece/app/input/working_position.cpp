@@ -151,6 +151,30 @@ Quat handleTowards(const Quat& burInTooth, const Vec3& toHand) {
     return (burInTooth * Quat(turn)).normalized();
 }
 
+std::optional<Vec3> fingerRest(const cases::Case& toothCase) {
+    const core::Box own = toothCase.surface().bounds();
+    if (own.isEmpty()) return std::nullopt;
+    std::optional<Vec3> best;
+    double leastMm = 0.0;
+    const auto offer = [&](const geometry::TriangleMesh& mesh, const core::Pose& inCase) {
+        if (mesh.vertices.empty()) return;
+        Vec3 top = inCase.apply(mesh.vertices.front());
+        for (const Vec3& v : mesh.vertices)
+            if (const Vec3 p = inCase.apply(v); p.z() > top.z()) top = p;
+        const double awayMm = core::hypot(top.x() - own.centre().x(), top.y() - own.centre().y());
+        if (best && awayMm >= leastMm) return;
+        best = top;
+        leastMm = awayMm;
+    };
+    for (const cases::PlacedTooth& other : toothCase.others)
+        if (isPermanent(other.fdiNumber) && isPermanent(toothCase.fdiNumber) &&
+            isUpperTooth(other.fdiNumber) == isUpperTooth(toothCase.fdiNumber))
+            offer(other.surface(), other.inCase);
+    for (const cases::Part& part : toothCase.scenery)
+        if (part.tissue == cases::Tissue::neighbour) offer(part.mesh, {});
+    return best;
+}
+
 UsualPosition usualPosition(int fdiNumber, Surface surface, bool isLeftHanded) {
     if (!isPermanent(fdiNumber))
         throw core::Error(fmt::format("there is no tooth {}", fdiNumber), "working position", "give 11 to 48");

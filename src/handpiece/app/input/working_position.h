@@ -43,6 +43,10 @@ struct WorkingPosition {
 /// The bur's orientation turned about its axis, so that its handle points to the hand as nearly as can be.
 [[nodiscard]] core::Quat handleTowards(const core::Quat& burInTooth, const core::Vec3& toHand);
 
+/// Where a finger finds support: the highest place of the nearest other tooth of the same arch, nothing where there is
+/// none.
+[[nodiscard]] std::optional<core::Vec3> fingerRest(const cases::Case& toothCase);
+
 /// From which a tooth is worked on; occlusal: of a front tooth its incisal edge, and what is beside an adjacent tooth.
 enum class Surface { occlusal, buccal, lingual };
 inline constexpr std::array<std::string_view, 3> kSurfaces = {"occlusal", "buccal", "lingual"};

@@ -50,7 +50,10 @@ struct ChangeParameters {
 struct ChangeMethod {
     bool hull;
 };
-using Request = std::variant<TakeStep, ChangeBur, ChangeDrive, ChangeParameters, ChangeMethod>;
+struct WorkingWay {
+    std::string json;
+};
+using Request = std::variant<TakeStep, ChangeBur, ChangeDrive, ChangeParameters, ChangeMethod, WorkingWay>;
 
 bool anythingRemoved(const tooth::TissueVolumes& mm3) {
     return std::any_of(mm3.begin(), mm3.end(), [](double v) { return v > 0.0; });
@@ -169,7 +172,8 @@ struct LiveSession::State {
         const std::lock_guard lock(mutex);
         if (ended) return;
         const bool replaces = !requests.empty() && requests.back().index() == request.index() &&
-                              !std::holds_alternative<TakeStep>(request);
+                              !std::holds_alternative<TakeStep>(request) &&
+                              !std::holds_alternative<WorkingWay>(request);
         if (replaces) requests.pop_back();
         requests.push_back(std::move(request));
     }
@@ -309,6 +313,9 @@ struct LiveSession::State {
             notice(request.step == Step::undo   ? "nothing-to-undo"
                    : request.step == Step::redo ? "nothing-to-redo"
                                                 : "nothing-to-reset");
+    }
+    void serve(const WorkingWay& request) {
+        if (recorder) recorder->event(last.tick, EventName::workingWay, request.json);
     }
     void serve(const ChangeBur& request) {
         SimulationSetup next = inForce;
@@ -457,6 +464,10 @@ void LiveSession::setHullMethod(bool hull) {
         state_->asked.hull = hull;
     }
     state_->post(ChangeMethod{hull});
+}
+
+void LiveSession::noteWorkingWay(std::string json) {
+    state_->post(WorkingWay{std::move(json)});
 }
 
 std::shared_ptr<SampleFeed> LiveSession::subscribe() {

@@ -120,6 +120,9 @@ class LiveSession {
     void setBur(std::shared_ptr<const instrument::Bur> bur, const instrument::CuttingParameters& cuttingParameters);
     void setDrive(const instrument::Drive& drive);
     void setParameters(const force::Parameters& parameters);
+    /// Writes into the record from where and how one works from now on, as JSON (docs/session-format.md). A replay only
+    /// tells it.
+    void noteWorkingWay(std::string json);
     /// The paper's hulls instead of the field: touching only. Refused (a Notice "hull-needs-whole-tooth") once cut.
     /// The bur's is that of its outline, which is what sessions keep.
     void setHullMethod(bool hull);

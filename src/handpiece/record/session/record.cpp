@@ -104,7 +104,7 @@ std::string_view nameOf(EventName name) noexcept {
         "stroke begin", "stroke end",  "bur change", "first dentine", "pulp exposure", "neighbour touched",
         "stall",        "force limit", "undo",       "redo",          "reset",         "parameter change",
         "fault",        "key frame",   "end",        "resume",        "scheduling",    "gingiva cut",
-        "head touched"};
+        "head touched", "working way"};
     return kNames[static_cast<std::size_t>(name)];
 }
 

@@ -83,9 +83,10 @@ enum class EventName : std::uint8_t {
     resume,      ///< after a pause or a crash: what follows was done by a new loop on the tooth of the key frame there
     scheduling,  ///< what real time the tick has from here on
     gingivaCut,
-    headTouched  ///< shank, head or handle met a tooth
+    headTouched,  ///< shank, head or handle met a tooth
+    workingWay    ///< from where, by mirror or not, with a finger rest or not: from here on
 };
-inline constexpr std::size_t kEventNameCount = 19;
+inline constexpr std::size_t kEventNameCount = 20;
 /// "stroke begin", as in the file.
 [[nodiscard]] std::string_view nameOf(EventName name) noexcept;
 

@@ -59,8 +59,9 @@ double mmPerPixel(const Camera& camera, const Viewport& viewport, const Vec3& po
 Camera orbited(const Camera& camera, double rightRad, double upRad) {
     const double angle = std::hypot(rightRad, upRad);
     if (!(angle > 0.0)) return camera;
-    // The eye goes the other way round than what it looks at.
-    const Vec3 axis = (-rightRad * camera.upward() + upRad * camera.right()) / angle;
+    // The eye goes the other way round than what it looks at; turns are seen the other way round in a mirror.
+    const double way = camera.mirrored ? -1.0 : 1.0;
+    const Vec3 axis = way * (-rightRad * camera.upward() + upRad * camera.right()) / angle;
     const Eigen::AngleAxisd turn(angle, axis);
     Camera out = camera;
     out.eyeMm = camera.targetMm + turn * (camera.eyeMm - camera.targetMm);

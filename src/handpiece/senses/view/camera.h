@@ -16,10 +16,15 @@ struct Camera {
     core::Vec3 eyeMm{0, -60, 40}, targetMm = core::Vec3::Zero();
     core::Vec3 up = core::Vec3::UnitZ();  ///< unit; made perpendicular to the line of sight where it is used
     double fieldOfViewRad = 0.42;         ///< of the picture's height
+    bool mirrored = false;                ///< what is seen is a mirror's picture: left and right have changed places
 
     [[nodiscard]] core::Vec3 forward() const { return (targetMm - eyeMm).normalized(); }
-    [[nodiscard]] core::Vec3 right() const { return forward().cross(up).normalized(); }
-    [[nodiscard]] core::Vec3 upward() const { return right().cross(forward()); }
+    /// In the picture.
+    [[nodiscard]] core::Vec3 right() const {
+        const core::Vec3 plain = forward().cross(up).normalized();
+        return mirrored ? core::Vec3(-plain) : plain;
+    }
+    [[nodiscard]] core::Vec3 upward() const { return (forward().cross(up).normalized()).cross(forward()); }
     [[nodiscard]] double distanceMm() const { return (targetMm - eyeMm).norm(); }
 };
 struct Viewport {

@@ -16,6 +16,7 @@ Eye eyeOf(const Camera& camera, const Viewport& viewport) {
     eye.view.topLeftCorner<3, 3>() = turn.cast<float>();
     eye.view.topRightCorner<3, 1>() = (-(turn * camera.eyeMm)).cast<float>();
     eye.positionMm = camera.eyeMm.cast<float>();
+    eye.mirrored = camera.mirrored;
 
     const double distance = camera.distanceMm();
     const double nearMm = std::max(0.3, 0.05 * distance), farMm = distance + std::max(150.0, distance);

@@ -32,7 +32,8 @@ double nowMs() {
 }
 
 bool sameCamera(const Camera& a, const Camera& b) {
-    return a.eyeMm == b.eyeMm && a.targetMm == b.targetMm && a.up == b.up && a.fieldOfViewRad == b.fieldOfViewRad;
+    return a.eyeMm == b.eyeMm && a.targetMm == b.targetMm && a.up == b.up && a.fieldOfViewRad == b.fieldOfViewRad &&
+           a.mirrored == b.mirrored;
 }
 
 /// Whose plane a section's face is: the numbers may have gone through a file.

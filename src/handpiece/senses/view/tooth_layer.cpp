@@ -104,7 +104,8 @@ std::array<Vec3f, kKinds> palette(Palette which) {
 }  // namespace
 
 Lighting lightingOf(const Camera& camera) {
-    const core::Vec3 back = -camera.forward(), up = camera.upward(), right = camera.right();
+    // The lamp stands where it stands, mirror or not.
+    const core::Vec3 back = -camera.forward(), up = camera.upward(), right = back.cross(-up);
     return {(0.80 * back + 0.52 * up - 0.42 * right).normalized().cast<float>(), up.cast<float>(), right.cast<float>()};
 }
 
@@ -251,8 +252,8 @@ std::size_t ToothLayer::drawSurface(Shaders& shaders, Scene& scene, const Sectio
         glCullFace(GL_BACK);
     }
     const Culler culler(wants.eye, wants.viewport, rect, !open);
-    std::size_t triangles = scene.draw(scene.visible(
-        look, wants.detail, culler, wants.eye.mirrored ? std::nullopt : std::optional(wants.eye.positionMm)));
+    std::size_t triangles = scene.draw(
+        scene.visible(look, wants.detail, culler, wants.eye.clip ? std::nullopt : std::optional(wants.eye.positionMm)));
     glDisable(GL_CULL_FACE);
     glDisable(GL_CLIP_DISTANCE0);
     glDisable(GL_CLIP_DISTANCE1);

@@ -275,10 +275,10 @@ Subject openCase(const PictureOptions& o, const Asked& asked) {
         toothCase, std::move(settings), prepare.useCache, core::part(bar.listener(), 0.0, 0.7));
     tooth::StateDelta state;
     if (attempt) {
-        state = tooth::decodeState(attempt->attempt.state, *station.tooth, o.what);
+        state = tooth::decodeState(attempt->attempt.state, station.teeth(), o.what);
         station.resume(state);
     }
-    subject.live = std::make_shared<simulation::LiveTooth>(station.tooth, state, core::part(bar.listener(), 0.7, 1.0));
+    subject.live = std::make_shared<simulation::LiveTooth>(station, state, core::part(bar.listener(), 0.7, 1.0));
     bar.finish();
     takeCase(subject, toothCase, o.position);
     if (asked.bur) restBur(subject, station, *asked.bur);
@@ -369,10 +369,8 @@ void picture(const PictureOptions& o) {
     if (subject.live) {
         renderer.setTooth(subject.bounds);
         renderer.updateBricks(subject.live->uncutSurface(), true);
-        if (look.removedDepthColours) {
-            subject.live->wantRemovedDepths(true);
-            subject.live->refresh();
-        }
+        if (look.removedDepthColours) subject.live->wantRemovedDepths(true);
+        subject.live->settle();
         renderer.updateBricks(subject.live->takeNews());
         renderer.setParts(subject.parts);
         if (!o.noScenery) renderer.setScenery(subject.scenery);

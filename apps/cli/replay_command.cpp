@@ -29,14 +29,20 @@ void replay(const ReplayOptions& o) {
     studies::ProgressBar bar("cutting again");
     const simulation::Verdict v = player.compareAll(bar.listener());
     bar.finish();
+    const std::vector<simulation::NickedTooth> nicked =
+        simulation::nickedTeeth(player.station(), player.state().removedMm3);
     if (o.json) {
         nlohmann::ordered_json out{
             {"state_hash", v.hash}, {"recorded_hash", v.recorded},         {"matches", v.matches},
             {"ticks", v.ticks},     {"differing_ticks", v.differingTicks}, {"complete", v.complete},
             {"seams", v.seams},     {"broken_seams", v.brokenSeams},       {"engine_revision", v.engineRevision}};
+        if (!player.toothCase().others.empty())
+            out["other_teeth"] = nlohmann::ordered_json::parse(simulation::nickedJson(nicked));
         fmt::print("{}\n", out.dump(2));
     } else {
         fmt::print("state_hash {}\nmatches {}\n", v.hash, v.matches);
+        for (const simulation::NickedTooth& tooth : nicked)
+            fmt::print("nicked {}: {:.4f} mm3\n", tooth.name, tooth::sumOf(tooth.removedMm3));
         if (v.differingTicks > 0)
             fmt::print("{} ticks differ, the first is {}\n", v.differingTicks, v.firstDifferingTick);
         if (v.seams > 0)

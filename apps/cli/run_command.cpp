@@ -357,7 +357,7 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
     simulation::SimulationSetup station =
         simulation::makeSimulation(toothCase, std::move(stationSettings), prepare.useCache, preparing.listener());
     preparing.finish();
-    if (before) station.resume(tooth::decodeState(before->attempt.state, *station.tooth, o.inputs.tooth));
+    if (before) station.resume(tooth::decodeState(before->attempt.state, station.teeth(), o.inputs.tooth));
     settings.parameters = station.settings.parameters;
     std::vector<studies::LesionPlan> lesions;
     device::Motion motion = isReal(o.device) ? noMotion() : cutMotionOf(o, settings, toothCase, station, lesions);
@@ -403,6 +403,7 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
     json["drive"] = station.settings.drive.name;
     json["removed_mm3"] = removed;
     json["left_mm3"] = left;
+    if (!toothCase.others.empty()) json["other_teeth"] = Json::parse(simulation::nickedJson(outcome.nicked));
     const std::vector<studies::LesionOutcome> outcomes = studies::lesionOutcomes(
         lesions, station.tooth->outer.bounds(), [&](const core::Vec3& p) { return station.tooth->field.distance(p); },
         [&](const core::Vec3& p) { return station.field->field().distance(p); });
@@ -434,6 +435,8 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
         if (mm3.get<double>() > 0.0)
             volumes += fmt::format("{}{} {:.4f}", volumes.empty() ? "" : ", ", name, mm3.get<double>());
     printRow("removed", volumes.empty() ? "nothing" : volumes + " mm3");
+    for (const simulation::NickedTooth& tooth : outcome.nicked)
+        printRow("nicked", fmt::format("{}: {:.4f} mm3", tooth.name, tooth::sumOf(tooth.removedMm3)));
     if (!lesions.empty()) {
         double soundMm3 = 0.0, gone = 0.0, remaining = 0.0;
         for (std::size_t t = 0; t < cases::kTissueCount; ++t) {

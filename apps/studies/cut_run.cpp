@@ -68,9 +68,9 @@ void writeAttempt(const simulation::SimulationSetup& station, const cases::Case&
     attempt.caseFile = core::wholePath(options.casePath);
     attempt.caseKey = cases::contentKey(toothCase);
     attempt.caseName = toothCase.name;
-    attempt.state = tooth::encodeState(state, station.tooth->identity);
+    attempt.state = tooth::encodeState(state, station.identity());
     attempt.voxelMm = station.settings.field.voxelMm;
-    attempt.removedMm3 = state.removedMm3;
+    attempt.removedMm3 = state.removedMm3.own;
     attempt.bur = station.settings.bur->name();
     attempt.cuttingParameters = station.settings.cuttingParameters.name;
     attempt.drive = station.settings.drive.name;
@@ -172,8 +172,9 @@ CutOutcome runCut(const simulation::SimulationSetup& station, const cases::Case&
         },
         [&](const tooth::BrickSnapshot& brick) { session.hear(brick); });
     bar.finish();
-    const tooth::StateDelta state = station.field->state();
+    const tooth::StateDelta state = station.state();
     outcome.stateHash = tooth::stateHash(state);
+    outcome.nicked = simulation::nickedTeeth(station, state.removedMm3);
     outcome.leftMm3 = station.field->volumesMm3();
     session.finish(state, lastTick);
     outcome.recording = recorder.close();

@@ -27,6 +27,7 @@ struct CutOutcome {
     RunSummary summary;
     std::uint64_t stateHash = 0;
     tooth::TissueVolumes leftMm3{};
+    std::vector<simulation::NickedTooth> nicked{};  ///< beside the tooth worked on
     session::RecorderStatus recording;
     std::size_t undoSteps = 0;             ///< strokes that could still be undone
     std::size_t undone = 0;                ///< steps taken back or forth

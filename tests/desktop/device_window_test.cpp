@@ -170,7 +170,7 @@ TEST_F(DeviceWindowTest, CutsUntilItIsUnpluggedThenTheMouseGoesOnAndNothingIsLos
     const auto end = std::find_if(events.rbegin(), events.rend(),
                                   [](const auto& e) { return e.name == session::nameOf(session::EventName::end); });
     ASSERT_TRUE(end != events.rend());
-    const tooth::StateDelta now = simulator().tooth()->state(simulator().sample().removedMm3);
+    const tooth::StateDelta now = simulator().tooth()->state({simulator().sample().removedMm3, {}});
     EXPECT_NE(end->text.find(simulation::hashText(tooth::stateHash(now))), std::string::npos) << end->text;
     EXPECT_GT(removedMm3(), 0.05);
     EXPECT_TRUE(simulator().isUnsaved());

@@ -13,11 +13,11 @@ using namespace handpiece;
 void tryOut(std::span<const std::byte> data, const std::shared_ptr<const tooth::ToothModel>& base) {
     tooth::StateDelta state;
     try {
-        state = tooth::decodeState(data, *base);
+        state = tooth::decodeState(data, {base});
     } catch (const core::Error&) {
         return;
     }
-    const tooth::StateDelta again = tooth::decodeState(tooth::encodeState(state, base->identity), *base);
+    const tooth::StateDelta again = tooth::decodeState(tooth::encodeState(state, base->identity), {base});
     if (tooth::stateHash(again) != tooth::stateHash(state)) std::abort();
     tooth::ToothState field(base);
     if (field.restore(state, 0, state.bricks.size()) != state.bricks.size()) std::abort();

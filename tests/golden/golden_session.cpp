@@ -93,7 +93,7 @@ void cut(const std::string& prefix, const std::shared_ptr<const tooth::ToothMode
     loop::HapticLoop haptic({}, std::make_unique<device::SimulatedDevice>(arm, device::Motion(std::move(poses))),
                             std::move(work), force::defaultParameters());
     core::Hasher samples;
-    tooth::ToothMirror mirror(uncut);
+    tooth::MouthMirror mirror({uncut});
     history::History strokes;
     strokes.start(field->state());
     const std::uint64_t whole = field->stateHash();
@@ -109,7 +109,7 @@ void cut(const std::string& prefix, const std::shared_ptr<const tooth::ToothMode
             },
             [&](const tooth::BrickSnapshot& brick) {
                 mirror.apply(brick);
-                strokes.noteTouched(brick.dense);
+                strokes.noteTouched(brick.id);
             });
         return field->stateHash();
     };

@@ -75,6 +75,8 @@ constexpr Row kRows[] = {
     {Notice::refused, "refused", Kind::warning, QT_TRANSLATE_NOOP("Notices", "This could not be done: %1")},
     {Notice::neighbourTouched, "neighbour-touched", Kind::warning,
      QT_TRANSLATE_NOOP("Notices", "The adjacent tooth was touched."), End::toothOpened | End::toothWhole},
+    {Notice::neighbourCut, "neighbour-cut", Kind::warning, QT_TRANSLATE_NOOP("Notices", "The adjacent tooth was cut."),
+     End::toothOpened | End::toothWhole},
     {Notice::gingivaCut, "gingiva-cut", Kind::warning, QT_TRANSLATE_NOOP("Notices", "The bur is in the gingiva."),
      End::toothOpened | End::toothWhole},
     {Notice::headTouched, "head-touched", Kind::hint,

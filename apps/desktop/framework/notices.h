@@ -36,6 +36,7 @@ enum class Notice {
     hullOnlyTouches,
     refused,
     neighbourTouched,
+    neighbourCut,
     gingivaCut,
     headTouched,
     firstDentine,

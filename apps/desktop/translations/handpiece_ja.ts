@@ -1308,6 +1308,10 @@
         <translation>隣在歯に触れました。</translation>
     </message>
     <message>
+        <source>The adjacent tooth was cut.</source>
+        <translation>隣在歯が切削されました。</translation>
+    </message>
+    <message>
         <source>The bur is in the gingiva.</source>
         <translation>バーが歯肉に入っています。</translation>
     </message>
@@ -4068,6 +4072,10 @@ openhaptics:Left Arm, or forcedimension:2</source>
     <message>
         <source>Adjacent tooth touched</source>
         <translation>隣在歯に接触</translation>
+    </message>
+    <message>
+        <source>Adjacent tooth cut</source>
+        <translation>隣在歯を切削</translation>
     </message>
     <message>
         <source>Gingiva cut</source>

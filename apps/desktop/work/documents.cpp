@@ -218,13 +218,13 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
         return !preparing || preparing(fraction);
     };
     loaded.station = simulation::makeSimulation(*loaded.toothCase, std::move(settings), request.useCache, stepwise);
-    if (attempt) loaded.state = tooth::decodeState(attempt->state, *loaded.station.tooth, request.path.string());
+    if (attempt) loaded.state = tooth::decodeState(attempt->state, loaded.station.teeth(), request.path.string());
     if (recovered) loaded.state = std::move(recovered->state);
     if (attempt || recovered) loaded.station.resume(loaded.state);
     if (recovered) loaded.history = simulation::keepHistory(recovered->history, loaded.state, loaded.station);
     tell(listener, LoadStep::surface);
     loaded.liveTooth =
-        std::make_shared<simulation::LiveTooth>(loaded.station.tooth, loaded.state, core::part(progress, 0.8, 1.0));
+        std::make_shared<simulation::LiveTooth>(loaded.station, loaded.state, core::part(progress, 0.8, 1.0));
     return loaded;
 }
 

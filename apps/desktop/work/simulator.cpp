@@ -94,9 +94,11 @@ void Simulator::sit(LoadedTooth loaded) {
     voxelUm_ = static_cast<int>(std::lround(1e3 * settings_.field.voxelMm));
     hull_ = false;
     sample_ = {};
-    sample_.removedMm3 = loaded.state.removedMm3;
+    sample_.removedMm3 = loaded.state.removedMm3.own;
+    sample_.removedOthersMm3 = loaded.state.removedMm3.sumOfOthers();
     status_ = {};
-    savedMm3_ = loaded.state.removedMm3;
+    savedMm3_ = loaded.state.removedMm3.own;
+    savedOthersMm3_ = sample_.removedOthersMm3;
     unsaved_ = false;
 
     simulation::LiveSessionSettings liveSession;
@@ -276,7 +278,7 @@ void Simulator::poll() {
     const bool fine = status_.fault.empty();
     sample_ = pollFeed_->read();
     status_ = liveSession_->status();
-    if (sample_.tick > 0 && (sample_.flags & messages::kRestoring) == 0) markUnsaved(sample_.removedMm3 != savedMm3_);
+    if (sample_.tick > 0 && (sample_.flags & messages::kRestoring) == 0) markUnsaved(isCutSinceSaved());
     if (fine && !status_.fault.empty())
         emit failed(problemById(QStringLiteral("sitting-ended"), {QString::fromStdString(status_.fault)}));
     emit plotted(liveSession_->takePlot());

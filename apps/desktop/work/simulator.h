@@ -241,6 +241,9 @@ class Simulator : public QObject {
     void stopLiveSession(bool keepMarker);
     void poll();
     void markUnsaved(bool unsaved, bool inAnyCase = false);
+    [[nodiscard]] bool isCutSinceSaved() const {
+        return sample_.removedMm3 != savedMm3_ || sample_.removedOthersMm3 != savedOthersMm3_;
+    }
     [[nodiscard]] SessionNote noteNow() const;
     [[nodiscard]] LoadRequest request() const;
     [[nodiscard]] bool mayWork();
@@ -271,6 +274,7 @@ class Simulator : public QObject {
     std::shared_ptr<Left> leftFor_;  ///< what replayThis() left
     std::shared_ptr<Reviewed> reviewed_;
     tooth::TissueVolumes savedMm3_{};  ///< removed when it was last saved or opened
+    double savedOthersMm3_ = 0.0;      ///< of the teeth around it
     bool unsaved_ = false;
     sound::Mix mix_;
     std::unique_ptr<sound::Player> player_;

@@ -228,10 +228,10 @@ void Simulator::comeBack(const std::shared_ptr<Left>& left, std::function<void()
         tr("Bringing the tooth back"),
         [left, loaded](const core::Progress& progress) {
             // A field of its own: what the old loop had yet to hand over is in the state.
-            loaded->station.field = std::make_shared<tooth::ToothState>(loaded->station.tooth);
+            loaded->station.renewFields();
             loaded->station.resume(loaded->state);
             loaded->history = simulation::keepHistory(left->history, loaded->state, loaded->station);
-            loaded->liveTooth = std::make_shared<simulation::LiveTooth>(loaded->station.tooth, loaded->state, progress);
+            loaded->liveTooth = std::make_shared<simulation::LiveTooth>(loaded->station, loaded->state, progress);
         },
         [this, left, loaded, then = std::move(then)] {
             leftFor_.reset();
@@ -245,6 +245,7 @@ void Simulator::comeBack(const std::shared_ptr<Left>& left, std::function<void()
 void Simulator::takeOver(const Crashed& file) {
     if (file.note.unsaved) {
         savedMm3_ = {};
+        savedOthersMm3_ = 0.0;
         markUnsaved(true);
     }
     if (file.session != shelf_.current()) shelf_.settle(file.session);
@@ -335,6 +336,7 @@ void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
     }
     const auto attempt = std::make_shared<cases::Attempt>(attemptNow(false));
     const tooth::TissueVolumes removedMm3 = attempt->removedMm3;
+    const double othersMm3 = sample_.removedOthersMm3;
     start(
         tr("Saving"),
         [attempt, packed, path, toothCase = toothCase_, recordings = document_.recordings](const core::Progress& p) {
@@ -343,13 +345,14 @@ void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
             cases::writeAttempt(*attempt, path, packed ? toothCase.get() : nullptr,
                                 recordingBytes(recordings, true, leftOut, p));
         },
-        [this, path, removedMm3, vanished, then = std::move(then)] {
+        [this, path, removedMm3, othersMm3, vanished, then = std::move(then)] {
             document_.attemptFile = path;
             document_.name = path.stem().string();
             for (RecordingPlace& recording : document_.recordings)
                 if (recording.packed) recording.in = path;
             savedMm3_ = removedMm3;
-            markUnsaved(sample_.removedMm3 != savedMm3_, true);  // its place has changed in any case
+            savedOthersMm3_ = othersMm3;
+            markUnsaved(isCutSinceSaved(), true);  // its place has changed in any case
             emit saved(toQString(path));
             if (vanished) emit noticed(QStringLiteral("case-vanished"), {toQString(document_.caseFile)});
             if (then) then();
@@ -365,7 +368,7 @@ using Export = std::function<void(const std::shared_ptr<const tooth::ToothModel>
 Job::Work exporting(const std::shared_ptr<simulation::LiveTooth>& tooth, const messages::HapticSample& sample,
                     Export to) {
     return [tooth, removedMm3 = sample.removedMm3, to = std::move(to)](const core::Progress& progress) {
-        to(tooth->modelShared(), tooth->state(removedMm3), progress);
+        to(tooth->modelShared(), tooth->state({removedMm3, {}}), progress);
     };
 }
 
@@ -460,8 +463,8 @@ void Simulator::setVoxel(int um) {
             loaded->session = simulation::LiveSessionSettings::Session::anew;
             loaded->state = std::move(recut.state);
             loaded->history = simulation::keepHistory(recut.history, loaded->state, loaded->station);
-            loaded->liveTooth = std::make_shared<simulation::LiveTooth>(loaded->station.tooth, loaded->state,
-                                                                        core::part(progress, 0.8, 1.0));
+            loaded->liveTooth =
+                std::make_shared<simulation::LiveTooth>(loaded->station, loaded->state, core::part(progress, 0.8, 1.0));
         },
         [this, loaded, left] {
             sit(std::move(*loaded));

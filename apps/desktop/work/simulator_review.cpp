@@ -115,7 +115,8 @@ void Simulator::showReviewed() {
     status_ = {};
     // The bur rests over the tooth; what is gone is told.
     sample_ = {};
-    sample_.removedMm3 = tooth.state.removedMm3;
+    sample_.removedMm3 = tooth.state.removedMm3.own;
+    sample_.removedOthersMm3 = tooth.state.removedMm3.sumOfOthers();
     const core::Box box = tooth_->model().outer.bounds();
     startPose_ = {{box.centre().x(), box.centre().y(), box.max.z() + kRestsOverMm}, core::Quat::Identity()};
     for (std::size_t axis = 0; axis < 3; ++axis)

@@ -31,7 +31,7 @@ bool isTold(LiveSession& liveSession, const char* id) {
 
 double removed(const tooth::StateDelta& state) {
     double sum = 0.0;
-    for (const double v : state.removedMm3)
+    for (const double v : state.removedMm3.own)
         sum += v;
     return sum;
 }
@@ -81,13 +81,13 @@ TEST(LiveSession, tellsWhatIsCutAndWhatIsShownIsWhatIsLeft) {
     fine.build();
     std::vector<std::shared_ptr<const surface::BrickMesh>> shown(source.grid().count());
     for (const surface::BrickUpdate& update : live->uncutSurface())
-        shown[update.dense] = update.mesh;
+        shown[update.id] = update.mesh;
     std::set<std::uint32_t> seen;
     const std::vector<surface::BrickUpdate> news = live->takeNews();
     EXPECT_FALSE(news.empty());
     for (const surface::BrickUpdate& update : news) {
-        EXPECT_TRUE(seen.insert(update.dense).second) << "told twice";
-        shown[update.dense] = update.mesh;
+        EXPECT_TRUE(seen.insert(update.id).second) << "told twice";
+        shown[update.id] = update.mesh;
     }
     for (std::uint32_t dense = 0; dense < shown.size(); ++dense) {
         const auto expected = fine.mesh(dense);
@@ -100,9 +100,9 @@ TEST(LiveSession, tellsWhatIsCutAndWhatIsShownIsWhatIsLeft) {
     // Another window over the same tooth shows the same.
     shown.assign(shown.size(), nullptr);
     for (const surface::BrickUpdate& update : live->uncutSurface())
-        shown[update.dense] = update.mesh;
+        shown[update.id] = update.mesh;
     for (const surface::BrickUpdate& update : live->takeNews())
-        shown[update.dense] = update.mesh;
+        shown[update.id] = update.mesh;
     for (std::uint32_t dense = 0; dense < shown.size(); ++dense) {
         const auto expected = fine.mesh(dense);
         ASSERT_EQ(expected == nullptr, shown[dense] == nullptr) << dense;

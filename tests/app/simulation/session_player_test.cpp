@@ -148,8 +148,8 @@ TEST(SessionPlayer, jumpsAnywhereAndGivesTheSameEachTime) {
         EXPECT_EQ(tooth::stateHash(player.state()), tooth::stateHash(once)) << "depends on where it came from";
         SessionPlayer played(recorded().file(), kUnseen);
         played.advance(timeS);
-        EXPECT_NEAR(removed(once.removedMm3), removed(played.state().removedMm3),
-                    0.02 * removed(played.state().removedMm3) + 1e-3);
+        EXPECT_NEAR(removed(once.removedMm3.own), removed(played.state().removedMm3.own),
+                    0.02 * removed(played.state().removedMm3.own) + 1e-3);
         // Its speed goes on from the key frame's own record.
         EXPECT_NEAR(player.sample().speedRpm, played.sample().speedRpm, 0.005 * played.sample().speedRpm + 50);
     }
@@ -183,7 +183,7 @@ TEST(SessionPlayer, plotsWhatWasRecorded) {
     EXPECT_FLOAT_EQ(most, expected);
     EXPECT_EQ(points.size(), stretches.size());
     EXPECT_GT(points.size(), 3u);
-    EXPECT_NEAR(static_cast<double>(points.back().removedMm3[2]), recorded().state.removedMm3[2], 1e-3);
+    EXPECT_NEAR(static_cast<double>(points.back().removedMm3[2]), recorded().state.removedMm3.own[2], 1e-3);
 }
 
 TEST(SessionPlayer, aSessionThatWasNeverClosedGivesTheToothBack) {
@@ -195,9 +195,9 @@ TEST(SessionPlayer, aSessionThatWasNeverClosedGivesTheToothBack) {
     SessionPlayer played(recorded().cutOff(), kUnseen);
     played.advance(played.durationS());
     EXPECT_EQ(played.differingTicks(), 0u);
-    const double expected = removed(played.state().removedMm3);
+    const double expected = removed(played.state().removedMm3.own);
     EXPECT_GT(expected, 0.05);
-    EXPECT_NEAR(removed(recovered.state.removedMm3), expected, 0.02 * expected);
+    EXPECT_NEAR(removed(recovered.state.removedMm3.own), expected, 0.02 * expected);
     EXPECT_FALSE(played.compareAll().complete);
 
     const Recovered whole = recover(recorded().file());
@@ -211,11 +211,11 @@ TEST(SessionPlayer, theSameHandInAnotherFieldCutsAsMuch) {
     EXPECT_EQ(recut.station.settings.field.voxelMm, 0.05);
     EXPECT_EQ(recut.skippedSteps, 0u);
     EXPECT_EQ(recut.station.field->stateHash(), tooth::stateHash(recut.state));
-    EXPECT_NEAR(removed(recut.state.removedMm3), removed(recorded().state.removedMm3),
-                0.1 * removed(recorded().state.removedMm3));
+    EXPECT_NEAR(removed(recut.state.removedMm3.own), removed(recorded().state.removedMm3.own),
+                0.1 * removed(recorded().state.removedMm3.own));
     // A state of that station: it can be packed and put in place.
     const auto bytes = tooth::encodeState(recut.state, recut.station.tooth->identity);
-    EXPECT_NO_THROW((void)tooth::decodeState(bytes, *recut.station.tooth));
+    EXPECT_NO_THROW((void)tooth::decodeState(bytes, recut.station.teeth()));
 }
 
 /// Undoes all there is at a tooth in this state, in a sitting of its own that is recorded to `file`.
@@ -237,11 +237,11 @@ void undoAll(const SimulationSetup& begun, const tooth::StateDelta& state, const
         liveSession.undo();
     EXPECT_TRUE(waitUntilTaken(*feed, steps));
     EXPECT_TRUE(waitUntilTrue([&] { return liveSession.state().bricks.empty(); }));
-    EXPECT_EQ(removed(liveSession.state().removedMm3), 0.0);
+    EXPECT_EQ(removed(liveSession.state().removedMm3.own), 0.0);
     EXPECT_EQ(liveSession.status().redoSteps, steps);
     liveSession.redo();
     EXPECT_TRUE(waitUntilTaken(*feed, steps + 1));
-    EXPECT_GT(removed(liveSession.state().removedMm3), 0.05);
+    EXPECT_GT(removed(liveSession.state().removedMm3.own), 0.05);
     EXPECT_TRUE(waitUntilTrue([&] { return liveSession.status().recording.writtenRecords > 0; }));
     liveSession.stop();
     EXPECT_EQ(liveSession.history().undoSteps(), 1u);
@@ -348,7 +348,7 @@ TEST(SessionPlayer, hullAndFieldInOneSession) {
     const Verdict verdict = player.compareAll();
     EXPECT_TRUE(verdict.matches);
     EXPECT_EQ(verdict.differingTicks, 0u) << verdict.firstDifferingTick;
-    EXPECT_GT(removed(player.state().removedMm3), 0.05);
+    EXPECT_GT(removed(player.state().removedMm3.own), 0.05);
 }
 
 TEST(SessionPlayer, aSessionWithoutTicksOrToothIsOneError) {

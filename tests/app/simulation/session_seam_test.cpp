@@ -98,7 +98,7 @@ TEST(SessionSeam, workBeforeAKillIsInTheSessionThatGoesOn) {
 
     const Recovered recovered = recover(file);
     const SimulationSetup station = makeSimulation(recovered.toothCase, recovered.settings, false);
-    ASSERT_GT(removed(recovered.state.removedMm3), 0.2);
+    ASSERT_GT(removed(recovered.state.removedMm3.own), 0.2);
     // Undone is also what was cut before the kill: the stroke under way then, and this one's first.
     const tooth::StateDelta end =
         goOn(file, station, recovered.state, recovered.history, LiveSessionSettings::Session::recovered, 2);
@@ -107,7 +107,7 @@ TEST(SessionSeam, workBeforeAKillIsInTheSessionThatGoesOn) {
     const report::SessionFigures after = report::figuresOf(session::SessionReader(file));
     EXPECT_GT(after.pedalS, before.pedalS + 1.5);
     EXPECT_GT(after.cuttingS, before.cuttingS);
-    EXPECT_NEAR(removed(after.removedMm3), removed(end.removedMm3), 1e-3);
+    EXPECT_NEAR(removed(after.removedMm3), removed(end.removedMm3.own), 1e-3);
     // Marks for the time line, from before and after.
     const SessionPlayer player(file, kUnseen);
     const auto begins = [&](double fromS, double toS) {
@@ -147,11 +147,11 @@ TEST(SessionSeam, aSecondKillAndAPauseLoseNothingEither) {
          {frames.size() - 1, std::size_t{0}, frames.size() / 2, std::size_t{1}, frames.size() - 2}) {
         player.seek(static_cast<double>(frames[f]) / 1000);
         const session::KeyFrame frame = player.reader().keyFrame(f);
-        const tooth::StateDelta there = tooth::decodeState(frame.state, *player.station().tooth, "frame");
+        const tooth::StateDelta there = tooth::decodeState(frame.state, player.station().teeth(), "frame");
         EXPECT_EQ(player.sample().tick, frames[f]);
-        EXPECT_NEAR(removed(player.state().removedMm3), removed(there.removedMm3), 1e-4) << f;
+        EXPECT_NEAR(removed(player.state().removedMm3.own), removed(there.removedMm3.own), 1e-4) << f;
         const auto& told = player.sample().removedMm3;
-        EXPECT_NEAR(std::accumulate(told.begin(), told.end(), 0.0), removed(there.removedMm3), 1e-4) << f;
+        EXPECT_NEAR(std::accumulate(told.begin(), told.end(), 0.0), removed(there.removedMm3.own), 1e-4) << f;
     }
 }
 
@@ -169,8 +169,8 @@ TEST(SessionSeam, aSeamThatDoesNotFitIsTold) {
     mirror.apply(state);
     mirror.apply(*undo);
     history::History none;
-    none.start(mirror.state(undo->removedMm3));
-    (void)goOn(file, station, mirror.state(undo->removedMm3), none, LiveSessionSettings::Session::recovered, 1);
+    none.start(mirror.state(undo->removedMm3.own));
+    (void)goOn(file, station, mirror.state(undo->removedMm3.own), none, LiveSessionSettings::Session::recovered, 1);
     SessionPlayer player(file, {false, true, {}});
     const std::string page = report::sessionReport(player, {false, 64, 48});
     EXPECT_NE(page.find("on another tooth than was left"), std::string::npos);

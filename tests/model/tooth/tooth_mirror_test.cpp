@@ -27,14 +27,14 @@ TEST(ToothMirror, FollowsTheField) {
         cutAway(field, [&](const Vec3& p) { return test::ball(p - centre, 0.3); });
         (void)field.handOver(7, [&](const BrickSnapshot& s) {
             mirror.apply(s);
-            touched.push_back(s.dense);
+            touched.push_back(s.id);
             return true;
         });
     }
     while (field.waitingBricks() > 0)
         (void)field.handOver(1000, [&](const BrickSnapshot& s) {
             mirror.apply(s);
-            touched.push_back(s.dense);
+            touched.push_back(s.id);
             return true;
         });
     EXPECT_EQ(stateHash(mirror.state({})), field.stateHash());
@@ -56,10 +56,10 @@ TEST(ToothMirror, FollowsTheField) {
     EXPECT_EQ(stateHash(mirror.state({})), stateHash(cut));
     mirror.apply(undo);
     EXPECT_TRUE(mirror.state({}).bricks.empty());
-    EXPECT_FALSE(mirror.isChanged(cut.bricks[0].dense));
+    EXPECT_FALSE(mirror.isChanged(cut.bricks[0].id));
     std::array<float, field::kBrickValues> scratch, wanted;
-    base->uncutBrick(cut.bricks[0].dense, wanted.data());
-    const float* values = mirror.values(cut.bricks[0].dense, scratch.data());
+    base->uncutBrick(cut.bricks[0].id, wanted.data());
+    const float* values = mirror.values(cut.bricks[0].id, scratch.data());
     EXPECT_TRUE(std::equal(wanted.begin(), wanted.end(), values));
 }
 
@@ -73,7 +73,7 @@ TEST(StateDelta, ChangesLeadFromAnyStateToAnyOther) {
     std::size_t uncut = 0;
     for (std::size_t i = 0; i < change.bricks.size(); ++i) {
         uncut += change.bricks[i].uncut;
-        EXPECT_TRUE(i == 0 || change.bricks[i - 1].dense < change.bricks[i].dense);
+        EXPECT_TRUE(i == 0 || change.bricks[i - 1].id < change.bricks[i].id);
     }
     EXPECT_GT(uncut, 0u);
     EXPECT_LT(uncut, change.bricks.size());

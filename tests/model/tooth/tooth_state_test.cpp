@@ -145,7 +145,7 @@ TEST(ToothState, RestoresInPiecesWithoutATear) {
         if (change.bricks.empty()) (void)field.restore(change, 0, most);
         EXPECT_EQ(test::tornNodes(field), 0u);
         EXPECT_EQ(field.stateHash(), stateHash(target));
-        EXPECT_EQ(field.removedMm3(), target.removedMm3);
+        EXPECT_EQ(field.removedMm3(), target.removedMm3.own);
     }
 }
 
@@ -204,7 +204,7 @@ TEST(ToothState, SaysWhereItIsCut) {
         const double half = handpiece::test::uniform(generator, 0.0, 0.7);
         bool wanted = false;
         for (const StateDelta::Brick& brick : state.bricks) {
-            const auto index = field::brickAt(view.bricks, brick.dense);
+            const auto index = field::brickAt(view.bricks, brick.id);
             bool overlaps = true;
             for (int k = 0; k < 3; ++k) {
                 const double low = view.originMm[k] + 8 * view.voxelMm * index[static_cast<std::size_t>(k)];
@@ -231,7 +231,7 @@ TEST(ToothState, HandsOverEveryChangeOnceInTurn) {
     EXPECT_EQ(field.waitingBricks(), waiting);
     std::vector<std::uint32_t> seen;
     const auto take = [&](const BrickSnapshot& s) {
-        seen.push_back(s.dense);
+        seen.push_back(s.id);
         return true;
     };
     EXPECT_EQ(field.handOver(5, take), 5u);

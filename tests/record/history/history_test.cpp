@@ -21,9 +21,9 @@ class FakeMirror final : public history::BrickSource {
     void apply(const tooth::StateDelta& change) {
         for (const auto& brick : change.bricks) {
             if (brick.uncut) {
-                bricks.erase(brick.dense);
+                bricks.erase(brick.id);
             } else {
-                bricks[brick.dense] = brick.values;
+                bricks[brick.id] = brick.values;
             }
         }
         removed = change.removedMm3;
@@ -31,23 +31,27 @@ class FakeMirror final : public history::BrickSource {
     bool operator==(const FakeMirror& other) const { return bricks == other.bricks && removed == other.removed; }
 
     std::map<std::uint32_t, Values> bricks;
-    tooth::TissueVolumes removed{};
+    tooth::RemovedMm3 removed{};
 };
 
-/// Random cuts: what the tick would do to bricks that it then hands over.
+/// Random cuts of three teeth: what the tick would do to bricks that it then hands over.
 class HistoryTest : public testing::Test {
   protected:
     void cut(history::History& history, std::size_t bricks) {
         for (std::size_t i = 0; i < bricks; ++i) {
-            const auto dense = static_cast<std::uint32_t>(generator() % 200);
+            const auto tooth = static_cast<std::uint16_t>(generator() % 3);
+            const tooth::BrickId dense = tooth::brickId(tooth, static_cast<std::uint32_t>(generator() % 70));
             Values& v = mirror.bricks.try_emplace(dense, uncut(dense)).first->second;
             for (int k = 0; k < 50; ++k)
                 v[generator() % v.size()] += static_cast<float>(test::uniform(generator, 0, 0.01));
-            mirror.removed[1 + dense % 3] += 0.001;
+            tooth::TissueVolumes mm3 = mirror.removed.of(tooth);
+            mm3[1 + dense % 3] += 0.001;
+            mirror.removed.set(tooth, mm3);
             history.noteTouched(dense);
         }
     }
-    static Values uncut(std::uint32_t dense) {
+    static Values uncut(tooth::BrickId id) {
+        const double dense = 100.0 * tooth::toothOf(id) + tooth::denseOf(id);
         Values v;
         for (std::size_t i = 0; i < v.size(); ++i)
             v[i] = static_cast<float>(static_cast<double>(i) * 1e-3 - dense * 1e-2);
@@ -74,7 +78,7 @@ TEST_F(HistoryTest, SixtyStrokesBackAndForthAreTheSameBits) {
         const auto change = history.undo();
         ASSERT_TRUE(change);
         ASSERT_TRUE(std::is_sorted(change->bricks.begin(), change->bricks.end(),
-                                   [](const auto& a, const auto& b) { return a.dense < b.dense; }));
+                                   [](const auto& a, const auto& b) { return a.id < b.id; }));
         mirror.apply(*change);
         ASSERT_TRUE(mirror == states[at]) << at;
     }
@@ -122,7 +126,7 @@ TEST_F(HistoryTest, EchoesOfAnUndoTakeNoStepAndKeepTheRedo) {
     const auto change = history.undo();
     mirror.apply(*change);
     for (const auto& brick : change->bricks)
-        history.noteTouched(brick.dense);  // the tick hands over what it has put back
+        history.noteTouched(brick.id);  // the tick hands over what it has put back
     EXPECT_FALSE(history.endStroke(mirror, mirror.removed));
     EXPECT_EQ(history.redoSteps(), 1u);
 }
@@ -146,7 +150,7 @@ TEST_F(HistoryTest, ResetMakesItWholeAndCanBeUndone) {
     const FakeMirror cutTooth = mirror;
     mirror.apply(*history.reset());
     EXPECT_TRUE(mirror.bricks.empty());
-    EXPECT_EQ(mirror.removed, tooth::TissueVolumes{});
+    EXPECT_EQ(mirror.removed, tooth::RemovedMm3{});
     EXPECT_FALSE(history.reset());
     mirror.apply(*history.undo());
     EXPECT_TRUE(mirror == cutTooth);
@@ -157,7 +161,7 @@ TEST_F(HistoryTest, ResetMakesItWholeAndCanBeUndone) {
 TEST_F(HistoryTest, AResumedToothCannotBeUndoneButResetIsWhole) {
     history::History history;
     tooth::StateDelta resumed;
-    resumed.removedMm3[1] = 2;
+    resumed.removedMm3.own[1] = 2;
     resumed.bricks.push_back({17, false, uncut(3)});
     mirror.apply(resumed);
     history.start(resumed);
@@ -221,7 +225,7 @@ TEST_F(HistoryTest, PutTogetherAgainItTakesTheSameSteps) {
     for (int i = 0; i < 6; ++i)
         both(history.undo(), again.undo());
     EXPECT_TRUE(other.bricks.empty());
-    EXPECT_EQ(other.removed, tooth::TissueVolumes{});
+    EXPECT_EQ(other.removed, tooth::RemovedMm3{});
 }
 
 }  // namespace

@@ -220,7 +220,7 @@ TEST(CuttingLoop, undoPutsTheToothBackAndNoForceRoundTheBur) {
     EXPECT_TRUE(felt);
     EXPECT_NEAR(last, 0.5 * 0.6, 0.01);  // the whole surface, felt again
     EXPECT_EQ(bench.field->stateHash(), uncutHash);
-    EXPECT_EQ(bench.field->removedMm3(), uncut.removedMm3);
+    EXPECT_EQ(bench.field->removedMm3(), uncut.removedMm3.own);
 }
 
 TEST(CuttingLoop, theForceIsSmoothWhileCutting) {

@@ -88,6 +88,7 @@ void ReplayFeature::showMarks() {
             kind = Kind::change;
         if (event.name == session::nameOf(session::EventName::pulpExposure) ||
             event.name == session::nameOf(session::EventName::neighbourTouched) ||
+            event.name == session::nameOf(session::EventName::neighbourCut) ||
             event.name == session::nameOf(session::EventName::gingivaCut) ||
             event.name == session::nameOf(session::EventName::fault))
             kind = Kind::warning;
@@ -124,6 +125,7 @@ QString ReplayFeature::eventText(const std::string& name) {
                                                    {EventName::firstDentine, tr("Dentine reached")},
                                                    {EventName::pulpExposure, tr("Pulp exposed")},
                                                    {EventName::neighbourTouched, tr("Adjacent tooth touched")},
+                                                   {EventName::neighbourCut, tr("Adjacent tooth cut")},
                                                    {EventName::gingivaCut, tr("Gingiva cut")},
                                                    {EventName::headTouched, tr("Handpiece on a tooth")},
                                                    {EventName::workingWay, tr("Another way of working")},

@@ -41,7 +41,7 @@ struct Deepest {
 Deepest deepestOf(const std::vector<surface::BrickUpdate>& updates) {
     Deepest deepest;
     for (const surface::BrickUpdate& update : updates) {
-        if (!update.removedDepthMm || !update.mesh) continue;
+        if (!update.removedDepthMm || !update.mesh || tooth::toothOf(update.id) != 0) continue;
         for (std::size_t i = 0; i < update.removedDepthMm->size(); ++i) {
             const double depth = static_cast<double>((*update.removedDepthMm)[i]);
             if (depth <= deepest.depthMm) continue;
@@ -149,6 +149,14 @@ void addVolumes(HtmlReport& page, const simulation::SessionPlayer& player, const
     page.table({words()("report.tissue"), words()("session.before-mm3"), words()("session.removed-mm3"),
                 words()("session.left-mm3"), words()("session.removed-percent")},
                rows);
+    rows.clear();
+    for (const simulation::NickedTooth& tooth : simulation::nickedTeeth(player.station(), player.state().removedMm3))
+        for (const cases::Tissue tissue : player.station().others[tooth.number - 1u].model->tissues.tissues())
+            if (const double gone = tooth.removedMm3[static_cast<std::size_t>(tissue)]; gone > 0.0)
+                rows.push_back({tooth.name, nameOf(tissue), fmt::format("{:.3f}", gone)});
+    if (rows.empty()) return;
+    page.heading(words()("session.other-teeth"));
+    page.table({words()("session.tooth"), words()("report.tissue"), words()("session.removed-mm3")}, rows);
 }
 
 /// A line plot of one member of the points over time, with marks at the events.
@@ -250,7 +258,7 @@ std::string sessionReport(simulation::SessionPlayer& player, const ReportSetting
         player.plot(std::max(simulation::kPlotStepS, player.durationS() / 2000.0));
     simulation::LiveTooth& live = *player.tooth();
     live.wantRemovedDepths(true);
-    live.refresh();
+    live.settle();
     const std::vector<surface::BrickUpdate> news = live.takeNews();
     const Deepest deepest = deepestOf(news);
     const auto thinnest = live.withProbe([](const measure::ToothProbe& probe) { return probe.thinnestOverPulp(); });

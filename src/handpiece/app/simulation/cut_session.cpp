@@ -16,6 +16,13 @@ using session::EventName;
 constexpr double kKeyFrameEveryS = 10.0;
 constexpr double kKeyFrameFirstBytes = 4e6, kKeyFrameBytesPerS = 8e3;
 
+std::vector<int> fdiNumbersOf(const SimulationSetup& station) {
+    std::vector<int> numbers;
+    for (const StandingTooth& other : station.others)
+        numbers.push_back(other.fdiNumber);
+    return numbers;
+}
+
 }  // namespace
 
 std::string hashText(std::uint64_t stateHash) {
@@ -24,22 +31,21 @@ std::string hashText(std::uint64_t stateHash) {
 
 CutSession::CutSession(const SimulationSetup& station, session::Recorder* recorder, bool mayWait,
                        const history::History* before)
-    : station_(station),
-      recorder_(recorder),
+    : recorder_(recorder),
       mayWait_(mayWait),
-      mirror_(station.tooth),
+      identity_(station.identity()),
+      mirror_(station.teeth()),
       source_(mirror_),
-      watch_([this](std::uint64_t tick, EventName name, std::string_view text) { tell(tick, name, text); }) {
-    const tooth::StateDelta state = station.field->state();
+      watch_([this](std::uint64_t tick, EventName name, std::string_view text) { tell(tick, name, text); },
+             fdiNumbersOf(station)) {
+    const tooth::StateDelta state = station.state();
     mirror_.apply(state);
-    (void)mirror_.takeTouched();
     if (before != nullptr)
         history_ = *before;
     else
         history_.start(state);
     removedMm3_ = state.removedMm3;
-    if (recorder_ != nullptr && station.settings.resumed)
-        recorder_->keyFrame(0, tooth::encodeState(state, station_.tooth->identity));
+    if (recorder_ != nullptr && station.settings.resumed) recorder_->keyFrame(0, tooth::encodeState(state, identity_));
 }
 
 void CutSession::tell(std::uint64_t tick, EventName name, std::string_view text) {
@@ -52,10 +58,10 @@ void CutSession::tellWhenTaken(std::uint64_t command, EventName name, std::strin
 }
 
 void CutSession::correct(const tooth::StateDelta& state) {
-    const tooth::StateDelta change = tooth::changeBetween(mirror_.state({}), state);
+    const tooth::StateDelta change = tooth::changeBetween(mirror_.state(), state);
     mirror_.apply(change);
     for (const tooth::StateDelta::Brick& brick : change.bricks)
-        history_.noteTouched(brick.dense);
+        history_.noteTouched(brick.id);
     removedMm3_ = state.removedMm3;
 }
 
@@ -67,14 +73,15 @@ void CutSession::settle(const tooth::StateDelta& state) {
 
 void CutSession::hear(const tooth::BrickSnapshot& brick) {
     mirror_.apply(brick);
-    history_.noteTouched(brick.dense);
+    history_.noteTouched(brick.id);
+    if (const std::uint16_t tooth = tooth::toothOf(brick.id); tooth > 0) removedMm3_.set(tooth, brick.removedMm3);
 }
 
 void CutSession::hear(const messages::HapticSample& sample) {
     for (; !pending_.empty() && pending_.front().command <= sample.lastCommand; pending_.pop_front())
         tell(sample.tick, pending_.front().name, pending_.front().text);
     watch_.look(sample);
-    removedMm3_ = sample.removedMm3;
+    removedMm3_.own = sample.removedMm3;
     hasRestored_ = hasRestored_ || (sample.flags & messages::kRestoring) != 0;
     if (recorder_ != nullptr) {
         const session::Record record = session::recordOf(sample);
@@ -85,7 +92,7 @@ void CutSession::hear(const messages::HapticSample& sample) {
     }
     if (watch_.strokes() != strokes_) {
         strokes_ = watch_.strokes();
-        history_.endStroke(source_, sample.removedMm3);
+        history_.endStroke(source_, removedMm3_);
         keepKeyFrame(sample);
     } else if (hasRestored_ && (sample.flags & messages::kRestoring) == 0 && sample.waitingBricks == 0) {
         // A jump past this step finds the tooth here, whatever was done before it.
@@ -100,7 +107,7 @@ void CutSession::keepKeyFrame(const messages::HapticSample& sample) {
     if (recorder_ == nullptr) return;
     if (keyFrameBytes_ > kKeyFrameFirstBytes + kKeyFrameBytesPerS * sample.timeS) return;
     lastKeyFrameS_ = sample.timeS;
-    std::vector<std::byte> bytes = tooth::encodeState(mirror_.state(sample.removedMm3), station_.tooth->identity);
+    std::vector<std::byte> bytes = tooth::encodeState(state(), identity_);
     keyFrameBytes_ += static_cast<double>(bytes.size());
     recorder_->keyFrame(sample.tick, std::move(bytes));
 }
@@ -114,6 +121,7 @@ bool CutSession::takeAgain(Step step, loop::HapticLoop& loop) {
     auto change = step == Step::undo ? history_.undo() : step == Step::redo ? history_.redo() : history_.reset();
     if (!change) return false;
     mirror_.apply(*change);
+    removedMm3_.others = change->removedMm3.others;
     const std::uint64_t command = loop.restore(std::move(*change));
     tellWhenTaken(command,
                   step == Step::undo   ? EventName::undo
@@ -125,7 +133,7 @@ bool CutSession::takeAgain(Step step, loop::HapticLoop& loop) {
 
 void CutSession::finish(const tooth::StateDelta& state, std::uint64_t tick) {
     if (recorder_ == nullptr) return;
-    recorder_->keyFrame(tick, tooth::encodeState(state, station_.tooth->identity));
+    recorder_->keyFrame(tick, tooth::encodeState(state, identity_));
     recorder_->event(tick, EventName::end,
                      fmt::format("{{\"state_hash\": \"{}\"}}", hashText(tooth::stateHash(state))));
 }

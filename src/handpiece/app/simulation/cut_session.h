@@ -49,7 +49,7 @@ class CutSession {
     [[nodiscard]] const history::History& history() const noexcept { return history_; }
     [[nodiscard]] bool inStroke() const noexcept { return watch_.inStroke(); }
     [[nodiscard]] std::uint64_t strokes() const noexcept { return watch_.strokes(); }
-    /// The tooth as its listeners have heard of it by now.
+    /// The teeth as their listeners have heard of them by now.
     [[nodiscard]] tooth::StateDelta state() const { return mirror_.state(removedMm3_); }
 
     /// The last key frame and the state's hash, when the loop has ended.
@@ -59,15 +59,15 @@ class CutSession {
     void keepKeyFrame(const messages::HapticSample& sample);
     void tell(std::uint64_t tick, session::EventName name, std::string_view text);
 
-    const SimulationSetup& station_;
     session::Recorder* recorder_;
     bool mayWait_;
-    tooth::ToothMirror mirror_;
+    std::uint64_t identity_;  ///< of the teeth
+    tooth::MouthMirror mirror_;
     history::MirrorSource source_;
     history::History history_;
     session::EventWatch watch_;
     EventListener listener_;
-    tooth::TissueVolumes removedMm3_{};
+    tooth::RemovedMm3 removedMm3_{};
     bool hasRestored_ = false;  ///< since the last key frame
     std::uint64_t strokes_ = 0;
     struct Pending {

@@ -51,9 +51,10 @@ KeptHistory keepHistory(const history::History& history, const tooth::StateDelta
     std::size_t done = history.undoSteps(), count = done + history.redoSteps();
     if (count == 0) return {};
     std::vector<std::vector<std::byte>> steps;
+    const std::uint64_t identity = station.identity();
     std::size_t size = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        steps.push_back(tooth::encodeState(history.step(i), station.tooth->identity));
+        steps.push_back(tooth::encodeState(history.step(i), identity));
         size += steps.back().size() + 8;
     }
     constexpr std::size_t kRoom = session::kMaxHistoryBytes - 64;
@@ -90,8 +91,9 @@ history::History decodeHistory(std::span<const std::byte> bytes, const tooth::St
     if (count > kMaxSteps || done > count) reader.refuse();
     history::History history;
     history.start(now);
+    const tooth::Teeth teeth = station.teeth();
     for (std::uint64_t i = 0; i < count; ++i)
-        history.append(tooth::decodeState(reader.take(reader.number()), *station.tooth, where), i < done);
+        history.append(tooth::decodeState(reader.take(reader.number()), teeth, where), i < done);
     if (!reader.isAtEnd()) reader.refuse();
     return history;
 }

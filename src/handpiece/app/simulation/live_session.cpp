@@ -62,6 +62,7 @@ bool anythingRemoved(const tooth::TissueVolumes& mm3) {
 const char* noticeOf(EventName name) {
     if (name == EventName::pulpExposure) return "pulp-exposed";
     if (name == EventName::neighbourTouched) return "neighbour-touched";
+    if (name == EventName::neighbourCut) return "neighbour-cut";
     if (name == EventName::gingivaCut) return "gingiva-cut";
     if (name == EventName::headTouched) return "head-touched";
     if (name == EventName::stall) return "stalled";
@@ -77,7 +78,7 @@ std::unique_ptr<session::Recorder> recorderFor(const SimulationSetup& station, c
         auto recorder = std::make_unique<session::Recorder>(settings.sessionFile);
         // The key frame with the tooth as it is comes first of all that follows (CutSession).
         recorder->event(0, EventName::resume,
-                        resumptionJson({station.settings, hashText(station.field->stateHash()),
+                        resumptionJson({station.settings, hashText(station.stateHash()),
                                         settings.session == LiveSessionSettings::Session::recovered}));
         return recorder;
     }
@@ -237,7 +238,7 @@ struct LiveSession::State {
         now.strokes = cutting.strokes();
         now.inStroke = cutting.inStroke();
         now.restoring = (last.flags & messages::kRestoring) != 0;
-        now.cut = anythingRemoved(last.removedMm3);
+        now.cut = anythingRemoved(last.removedMm3) || last.removedOthersMm3 > 0.0;
         now.hull = inForce.settings.hull;
     }
 
@@ -374,7 +375,7 @@ struct LiveSession::State {
 
     /// The loop has ended: field and queues are this thread's now.
     void finish() {
-        tooth::StateDelta state = station.field->state();
+        tooth::StateDelta state = station.state();
         {
             const std::lock_guard lock(mutex);
             finalState = state;
@@ -544,9 +545,9 @@ cases::Attempt LiveSession::attempt(const std::filesystem::path& caseFile) const
     attempt.caseFile = core::wholePath(caseFile);
     attempt.caseKey = state_->caseKey;
     attempt.caseName = state_->caseName;
-    attempt.state = tooth::encodeState(now, state_->station.tooth->identity);
+    attempt.state = tooth::encodeState(now, state_->station.identity());
     attempt.voxelMm = chosen.field.voxelMm;
-    attempt.removedMm3 = now.removedMm3;
+    attempt.removedMm3 = now.removedMm3.own;
     attempt.bur = chosen.bur->name();
     attempt.cuttingParameters = chosen.cuttingParameters.name;
     attempt.drive = chosen.drive.name;

@@ -87,10 +87,10 @@ struct LiveSessionStatus {
 /// What changed, in words and numbers that a window can translate: an id and its arguments.
 ///
 /// Of the record: "recording-stopped" (why), "recording-incomplete" (ticks lost). Of the work: "pulp-exposed",
-/// "neighbour-touched", "gingiva-cut", "head-touched", "stalled", "force-limited", "device-fault", "out-of-bricks". Of
-/// requests that were refused: "nothing-to-undo", "nothing-to-redo", "nothing-to-reset", "not-while-cutting",
-/// "hull-needs-whole-tooth", "hull-only-touches", "refused" (why). "samples-lost" (how many): the listener's thread was
-/// too slow.
+/// "neighbour-touched", "neighbour-cut", "gingiva-cut", "head-touched", "stalled", "force-limited", "device-fault",
+/// "out-of-bricks". Of requests that were refused: "nothing-to-undo", "nothing-to-redo", "nothing-to-reset",
+/// "not-while-cutting", "hull-needs-whole-tooth", "hull-only-touches", "refused" (why). "samples-lost" (how many): the
+/// listener's thread was too slow.
 struct Notice {
     std::string id;
     std::vector<std::string> arguments;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The tooth as its listeners see it: mirror, surface and probe, kept up by one thread, read by others.
+/// The tooth worked on, and those around it that have been cut, as their listeners see them: mirror, surface and probe,
+/// kept up by one thread, read by others.
 
 #include <atomic>
 #include <memory>
@@ -15,6 +16,9 @@
 
 namespace handpiece::simulation {
 
+struct SimulationSetup;
+struct StandingTooth;
+
 /// Fed by one thread (never the tick's); the rest from any thread. Meshes are made without holding anybody up: who
 /// measures waits for the copying of changed bricks only, and for removed depths where they are wanted. News hold one
 /// entry a brick, whoever reads them or not.
@@ -23,6 +27,9 @@ class LiveTooth {
     /// Builds the surface of the uncut tooth, then puts `state` in place. Throws core::Error when cancelled.
     LiveTooth(std::shared_ptr<const tooth::ToothModel> model, const tooth::StateDelta& state,
               const core::Progress& progress = {});
+    /// With the teeth around it. Their surfaces are made when they are first cut, on a thread of their own, and then
+    /// come as news.
+    LiveTooth(const SimulationSetup& station, const tooth::StateDelta& state, const core::Progress& progress = {});
     ~LiveTooth();
 
     [[nodiscard]] const tooth::ToothModel& model() const noexcept { return *model_; }
@@ -53,18 +60,28 @@ class LiveTooth {
         const std::lock_guard lock(mutex_);
         return f(*probe_);
     }
-    [[nodiscard]] tooth::StateDelta state(const tooth::TissueVolumes& removedMm3) const;
+    /// Of the mouth, as far as it is kept up.
+    [[nodiscard]] tooth::StateDelta state(const tooth::RemovedMm3& removedMm3) const;
+    /// Waits for surfaces that are being made and brings all up to date: for pictures that are drawn once.
+    void settle();
 
   private:
+    LiveTooth(const StandingTooth& standing, const tooth::StateDelta& state);
+    void build(const tooth::StateDelta& state, const core::Progress& progress);
     void takeUpPending();
+    void tellWhetherNews();
     void shape(std::unique_lock<std::mutex> lock);
     [[nodiscard]] bool isNearCut(std::uint32_t dense) const;
 
     struct Parts;
+    class Neighbours;
     std::shared_ptr<const tooth::ToothModel> model_;
+    std::uint16_t number_ = 0;
+    core::Pose inScene_;
     mutable std::mutex mutex_;
     std::unique_ptr<Parts> parts_;
     std::unique_ptr<measure::ToothProbe> probe_;
+    std::unique_ptr<Neighbours> neighbours_;  ///< null without any
     std::atomic<bool> hasNews_{false};
 };
 

@@ -141,7 +141,7 @@ struct SessionPlayer::State {
         lastTick = reader.records(reader.size() - 1, 1).front().tick;
         begin();
         if (settings.isSeen)
-            live = std::make_shared<LiveTooth>(station.tooth, station.field->state(), core::part(progress, 0.5, 1.0));
+            live = std::make_shared<LiveTooth>(station, station.state(), core::part(progress, 0.5, 1.0));
         playOne();
     }
 
@@ -181,7 +181,7 @@ struct SessionPlayer::State {
     }
 
     [[nodiscard]] tooth::StateDelta stateOf(const session::KeyFrame& frame) const {
-        return tooth::decodeState(frame.state, *station.tooth, where);
+        return tooth::decodeState(frame.state, station.teeth(), where);
     }
 
     /// A tooth in this state and a loop that begins with record `index`. The field is a new one: what follows does not
@@ -189,7 +189,7 @@ struct SessionPlayer::State {
     void startAt(std::uint64_t index, const tooth::StateDelta& state, const history::History* strokes = nullptr) {
         loop.reset();
         cutting.reset();
-        station.field = std::make_shared<tooth::ToothState>(station.tooth);
+        station.renewFields();
         if (!state.bricks.empty()) station.resume(state);
         station.settings = first;
         next = index;
@@ -302,15 +302,13 @@ struct SessionPlayer::State {
     }
 
     void put(const tooth::StateDelta& state) {
-        const tooth::StateDelta change = tooth::changeBetween(station.field->state(), state);
-        for (std::size_t i = 0; i < change.bricks.size();)
-            i = station.field->restore(change, i, change.bricks.size());
-        sample.removedMm3 = state.removedMm3;
+        station.put(tooth::changeBetween(station.state(), state));
+        sample.removedMm3 = state.removedMm3.own;
     }
 
     /// The tooth is the recorded one again; its bricks come to the listeners with the next ticks.
     void correct(const tooth::StateDelta& state) {
-        if (tooth::stateHash(state) == station.field->stateHash()) return;
+        if (tooth::stateHash(state) == station.stateHash()) return;
         put(state);
         cutting->correct(state);
     }
@@ -376,7 +374,7 @@ struct SessionPlayer::State {
         }
         isRunningUp = false;
         put(state);
-        discardBricks();
+        station.discardBricks();
         cutting = std::make_unique<CutSession>(station, nullptr, false);
         differs = firstDiffering = 0;
         return state;
@@ -395,7 +393,7 @@ struct SessionPlayer::State {
         const bool wasExact = isExact;
         KeptHistory strokes;
         if (wasExact) {
-            const tooth::StateDelta done = station.field->state();
+            const tooth::StateDelta done = station.state();
             const std::uint64_t before = tooth::stateHash(done);
             if (!seam.resumption.isRecovered) {
                 cutting->settle(done);
@@ -426,7 +424,7 @@ struct SessionPlayer::State {
         jumpTo(static_cast<std::size_t>(after - frames.begin() - 1));
         playTo(timeOf(last), {});
         live = seen;
-        return station.field->stateHash();
+        return station.stateHash();
     }
 
     /// The first record from which on none is missing up to a tick.
@@ -443,17 +441,10 @@ struct SessionPlayer::State {
         if (live) live->apply(tooth::changeBetween(live->state({}), start));
     }
 
-    /// What is on its way to listeners who begin with the state as it is.
-    void discardBricks() {
-        while (station.field->handOver(station.field->waitingBricks(),
-                                       [](const tooth::BrickSnapshot&) { return true; }) > 0) {
-        }
-    }
-
     /// As the session's first segments leave it, this one the last.
     [[nodiscard]] history::History historyByKeyFrames(const tooth::StateDelta& end, std::size_t lastSegment) const {
         const std::uint64_t last = reader.records(endOf(lastSegment) - 1, 1).front().tick;
-        tooth::ToothMirror mirror(station.tooth);
+        tooth::MouthMirror mirror(station.teeth());
         const history::MirrorSource source(mirror);
         history::History history;
         mirror.apply(start);
@@ -463,10 +454,10 @@ struct SessionPlayer::State {
             history.start(start);
         const auto cutTo = [&](const tooth::StateDelta& state) {
             if (state.removedMm3 == history.removedMm3()) return;
-            const tooth::StateDelta change = tooth::changeBetween(mirror.state({}), state);
+            const tooth::StateDelta change = tooth::changeBetween(mirror.state(), state);
             mirror.apply(change);
             for (const tooth::StateDelta::Brick& brick : change.bricks)
-                history.noteTouched(brick.dense);
+                history.noteTouched(brick.id);
             history.endStroke(source, state.removedMm3);
         };
         bool inStroke = false;
@@ -568,7 +559,7 @@ std::vector<PlotPoint> SessionPlayer::plot(double stepS) const {
 }
 
 tooth::StateDelta SessionPlayer::state() const {
-    return state_->station.field->state();
+    return state_->station.state();
 }
 
 const history::History& SessionPlayer::endHistory() {
@@ -604,7 +595,7 @@ Verdict SessionPlayer::compareAll(const core::Progress& progress) {
     verdict.ticks = s.reader.size();
     s.begin();
     s.showWhole();
-    const auto hashNow = [&s] { return hashText(s.station.field->stateHash()); };
+    const auto hashNow = [&s] { return hashText(s.station.stateHash()); };
     if (told && told->tick <= s.lastTick) {
         const double share = static_cast<double>(told->tick + 1) / static_cast<double>(s.lastTick + 1);
         s.playTo(s.timeOf(told->tick) + 0.5 / s.first.rateHz, core::part(progress, 0.0, share));
@@ -639,9 +630,7 @@ Recut recutAt(const std::filesystem::path& session, const field::FieldSettings& 
     player.advance(player.durationS(), core::part(progress, 0.3, 1.0));
     Recut recut{player.station(), player.state(), player.durationS(), player.endHistory(), player.skippedSteps()};
     // What the loop had not handed over: whoever listens next begins with this state.
-    while (recut.station.field->handOver(recut.station.field->waitingBricks(),
-                                         [](const tooth::BrickSnapshot&) { return true; }) > 0) {
-    }
+    recut.station.discardBricks();
     return recut;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <concepts>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -406,12 +407,54 @@ SimulationSettings settingsFromJson(const std::string& text, const std::string& 
     return s;
 }
 
+tooth::Teeth SimulationSetup::teeth() const {
+    tooth::Teeth teeth{tooth};
+    for (std::size_t i = 0; i < others.size(); ++i)
+        if (others[i].field) {
+            teeth.resize(i + 2);
+            teeth.back() = others[i].model;
+        }
+    return teeth;
+}
+
+tooth::StateDelta SimulationSetup::state() const {
+    tooth::StateDelta state = field->state();
+    for (const StandingTooth& other : others)
+        if (other.field) state.append(other.field->state());
+    return state;
+}
+
+void SimulationSetup::renewFields() {
+    field = std::make_shared<tooth::ToothState>(tooth);
+    for (StandingTooth& other : others)
+        if (other.field) other.field = std::make_shared<tooth::ToothState>(other.model, other.field->toothNumber());
+}
+
+void SimulationSetup::put(const tooth::StateDelta& change) const {
+    const auto putInto = [&change](tooth::ToothState& into) {
+        const auto first = std::partition_point(
+            change.bricks.begin(), change.bricks.end(),
+            [&into](const tooth::StateDelta::Brick& b) { return tooth::toothOf(b.id) < into.toothNumber(); });
+        (void)into.restore(change, static_cast<std::size_t>(first - change.bricks.begin()), change.bricks.size() + 1);
+    };
+    putInto(*field);
+    for (const StandingTooth& other : others)
+        if (other.field) putInto(*other.field);
+}
+
 void SimulationSetup::resume(const tooth::StateDelta& state) const {
-    for (std::size_t next = 0; next < state.bricks.size();)
-        next = field->restore(state, next, state.bricks.size());
-    while (field->handOver(state.bricks.size(), [](const tooth::BrickSnapshot&) { return true; }) > 0) {
-        // Whoever listens begins with this state.
-    }
+    put(state);
+    discardBricks();
+}
+
+void SimulationSetup::discardBricks() const {
+    const auto discard = [](tooth::ToothState& of) {
+        while (of.handOver(of.waitingBricks(), [](const tooth::BrickSnapshot&) { return true; }) > 0) {
+        }
+    };
+    discard(*field);
+    for (const StandingTooth& other : others)
+        if (other.field) discard(*other.field);
 }
 
 loop::Work SimulationSetup::work() const {
@@ -420,15 +463,20 @@ loop::Work SimulationSetup::work() const {
         const instrument::Bur bur(settings.bur->name(), settings.bur->profile());
         return {contact::makeHullMethod(tooth->outer, bur.mesh()), nullptr};
     }
-    auto cutter = std::make_unique<cutting::Cutter>(field, settings.bur, settings.cuttingParameters, settings.tissues,
-                                                    cutting::Cutter::Settings{settings.fullRemoval});
+    std::vector<cutting::CutTooth> cut{{field, {}}};
+    for (const StandingTooth& other : others)
+        if (other.field) cut.push_back({other.field, other.inCase});
+    auto cutter = std::make_unique<cutting::Cutter>(std::move(cut), settings.bur, settings.cuttingParameters,
+                                                    settings.tissues, cutting::Cutter::Settings{settings.fullRemoval});
     const std::shared_ptr<const tooth::ToothState> own(field);
     if (others.empty()) return {contact::makeFieldMethod(own, settings.bur), std::move(cutter)};
     std::vector<contact::PlacedMethod> placed;
     const std::vector<instrument::BodyPiece> body = instrument::bodyPieces(*settings.bur);
+    contact::FieldMethodSettings bodyOnly;
+    bodyOnly.depthOnly = true;
     std::uint16_t index = 0;
-    const auto add = [&](const auto& model, const core::Pose& at, const core::Box& bounds, bool isYielding) {
-        const bool isCuttable = index == 0;
+    const auto add = [&](const auto& model, const core::Pose& at, const core::Box& bounds, bool isYielding,
+                         bool isCuttable) {
         placed.push_back({contact::makeFieldMethod(model, settings.bur),
                           settings.bur,
                           {},
@@ -439,14 +487,41 @@ loop::Work SimulationSetup::work() const {
                           isYielding,
                           isCuttable});
         for (const instrument::BodyPiece& piece : body)
-            placed.push_back({contact::makeFieldMethod(model, piece.solid), piece.solid, piece.inBur, at, bounds, index,
-                              piece.part, isYielding, isCuttable});
+            placed.push_back({contact::makeFieldMethod(model, piece.solid, bodyOnly), piece.solid, piece.inBur, at,
+                              bounds, index, piece.part, isYielding, isCuttable});
         ++index;
     };
-    add(own, {}, tooth->outer.bounds(), false);
+    add(own, {}, tooth->outer.bounds(), false, true);
     for (const StandingTooth& other : others)
-        add(other.model, other.inCase, other.model->outer.bounds(), other.isYielding);
+        if (other.field)
+            add(std::shared_ptr<const tooth::ToothState>(other.field), other.inCase, other.model->outer.bounds(), false,
+                true);
+        else
+            add(other.model, other.inCase, other.model->outer.bounds(), other.isYielding, false);
     return {contact::makeMouthMethod(std::move(placed)), std::move(cutter)};
+}
+
+std::vector<NickedTooth> nickedTeeth(const SimulationSetup& station, const tooth::RemovedMm3& removedMm3) {
+    std::vector<NickedTooth> nicked;
+    for (std::uint16_t number = 1; number <= station.others.size(); ++number) {
+        const tooth::TissueVolumes& mm3 = removedMm3.of(number);
+        const StandingTooth& other = station.others[number - 1u];
+        if (tooth::sumOf(mm3) > 0.0) nicked.push_back({number, other.fdiNumber, other.model->name, mm3});
+    }
+    return nicked;
+}
+
+std::string nickedJson(const std::vector<NickedTooth>& nicked) {
+    Json list = Json::array();
+    for (const NickedTooth& tooth : nicked) {
+        Json removed = Json::object();
+        for (std::size_t t = 0; t < cases::kTissueCount; ++t)
+            if (tooth.removedMm3[t] > 0.0)
+                removed[std::string(cases::properties(static_cast<cases::Tissue>(t)).name)] = tooth.removedMm3[t];
+        list.push_back(
+            {{"tooth", tooth.number}, {"fdi", tooth.fdiNumber}, {"name", tooth.name}, {"removed_mm3", removed}});
+    }
+    return textOf(list);
 }
 
 SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings settings, bool useCache,
@@ -461,26 +536,42 @@ SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings 
     for (const cases::Part& part : toothCase.scenery)
         if (part.isFelt && part.tissue == cases::Tissue::gum) yielding.push_back(part);
     const auto count = static_cast<double>(toothCase.others.size() + yielding.size());
-    const auto stand = [&](const std::string& name, const cases::Part& surface, const core::Pose& at, int fdiNumber) {
-        cases::Case alone;
-        alone.name = name;
+    const auto stand = [&](cases::Case alone, const core::Pose& at, bool isCut) {
         alone.source = toothCase.source;
-        alone.parts.push_back(surface);
+        const bool isYielding = !isCut && alone.parts.front().tissue == cases::Tissue::gum;
+        const tooth::LoadSettings loading =
+            isCut ? tooth::LoadSettings{station.settings.field,
+                                        {station.settings.cut.bandMm, kStandingReserveBricks},
+                                        useCache}
+                  : tooth::LoadSettings{fieldSettingsAt(kStandingVoxelMm), {}, useCache};
         const double done = static_cast<double>(station.others.size());
         const core::Progress share =
             core::part(progress, own + (1.0 - own) * done / count, own + (1.0 - own) * (done + 1.0) / count);
         try {
-            station.others.push_back({tooth::loadModel(alone, {fieldSettingsAt(kStandingVoxelMm), {}, useCache}, share),
-                                      at, fdiNumber, surface.tissue == cases::Tissue::gum});
+            station.others.push_back({tooth::loadModel(alone, loading, share), at, alone.fdiNumber, isYielding});
+            StandingTooth& made = station.others.back();
+            const auto number = static_cast<std::uint16_t>(station.others.size());
+            if (isCut) made.field = std::make_shared<tooth::ToothState>(made.model, number);
         } catch (const core::Error& e) {
-            throw core::Error(fmt::format("{}: {}", name, e.problem()), e.where(), e.remedy())
+            throw core::Error(fmt::format("{}: {}", alone.name, e.problem()), e.where(), e.remedy())
                 .as(e.id(), e.arguments());
         }
     };
-    for (const cases::PlacedTooth& other : toothCase.others)
-        stand(other.name, {other.name, cases::Tissue::neighbour, 0, other.surface()}, other.inCase, other.fdiNumber);
-    for (const cases::Part& part : yielding)
-        stand(part.name, part, {}, 0);
+    for (const cases::PlacedTooth& other : toothCase.others) {
+        cases::Case alone;
+        static_cast<cases::Tooth&>(alone) = other;
+        if (!other.isCuttable) {
+            alone.outer = {};
+            alone.parts = {{other.name, cases::Tissue::neighbour, 0, other.surface()}};
+        }
+        stand(std::move(alone), other.inCase, other.isCuttable);
+    }
+    for (const cases::Part& part : yielding) {
+        cases::Case alone;
+        alone.name = part.name;
+        alone.parts.push_back(part);
+        stand(std::move(alone), {}, false);
+    }
     return station;
 }
 

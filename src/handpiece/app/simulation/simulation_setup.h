@@ -10,6 +10,7 @@
 
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/model/instrument/rotor.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
 #include "handpiece/model/tooth/tooth_state.h"
 #include "handpiece/tick/cutting/cutter.h"
 #include "handpiece/tick/device/device.h"
@@ -66,27 +67,53 @@ Changed applyChange(const std::string& json, SimulationSettings& settings, const
 
 /// A tooth that stands around the one that is cut, or gingiva: felt by the bur and by the handpiece's body.
 struct StandingTooth {
-    std::shared_ptr<const tooth::ToothModel> model;  ///< in its own frame, all of it Tissue::neighbour
+    std::shared_ptr<const tooth::ToothModel> model;  ///< in its own frame; Tissue::neighbour unless it is cut
     core::Pose inCase;
     int fdiNumber = 0;
-    bool isYielding = false;  ///< no tooth but gingiva; then of its own tissue
+    bool isYielding = false;                     ///< no tooth but gingiva; then of its own tissue
+    std::shared_ptr<tooth::ToothState> field{};  ///< null: it is not cut
 };
-/// Voxel of their fields, which only say where a bur bears on them.
+/// Voxel of the fields that are not cut: they only say where a bur bears on them.
 inline constexpr double kStandingVoxelMm = 0.1;
+/// Bricks kept ready for the inside of a tooth beside the one worked on: at 50 um some 250 mm3.
+inline constexpr std::size_t kStandingReserveBricks = 4096;
 
-/// One tooth under one bur, and those that stand around it. The field is cut by the loop that gets the work.
+/// One tooth under one bur, and those that stand around it, numbered from 1 on. The fields are cut by the loop that
+/// gets the work.
 struct SimulationSetup {
     std::shared_ptr<const tooth::ToothModel> tooth;
     std::shared_ptr<tooth::ToothState> field;
     std::vector<StandingTooth> others{};
     SimulationSettings settings;
 
-    /// Puts a tooth in place that was cut before. Not while a loop runs.
+    /// Of all teeth that can be cut, by their numbers: for mirrors and files.
+    [[nodiscard]] tooth::Teeth teeth() const;
+    [[nodiscard]] std::uint64_t identity() const { return tooth::identityOf(teeth()); }
+    /// As they are now. While no loop runs.
+    [[nodiscard]] tooth::StateDelta state() const;
+    [[nodiscard]] std::uint64_t stateHash() const { return tooth::stateHash(state()); }
+    /// Uncut fields in place of these, which somebody else may go on with.
+    void renewFields();
+    /// Puts bricks of the teeth in place. Not while a loop runs.
+    void put(const tooth::StateDelta& change) const;
+    /// Teeth that were cut before: whoever listens begins with them so. Not while a loop runs.
     void resume(const tooth::StateDelta& state) const;
+    /// What is on its way to listeners who begin with the state as it is. Not while a loop runs.
+    void discardBricks() const;
     /// A method and a cutter on the field, for a loop; of hulls a method alone. One loop at a time; while it runs
     /// another may be made for it, on another thread. Throws core::Error for what has no hull.
     [[nodiscard]] loop::Work work() const;
 };
+/// A tooth beside the one worked on that has been cut.
+struct NickedTooth {
+    std::uint16_t number = 0;
+    int fdiNumber = 0;  ///< 0 where it is unknown
+    std::string name;
+    tooth::TissueVolumes removedMm3{};
+};
+[[nodiscard]] std::vector<NickedTooth> nickedTeeth(const SimulationSetup& station, const tooth::RemovedMm3& removedMm3);
+/// [{"tooth": 1, "fdi": 46, "name": "...", "removed_mm3": {"enamel": 0.012}}]
+[[nodiscard]] std::string nickedJson(const std::vector<NickedTooth>& nicked);
 /// A loaded tooth, yet uncut, and a state of it to cut; with what stands around it. Throws core::Error.
 [[nodiscard]] SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings settings, bool useCache,
                                              const core::Progress& progress = {});

@@ -72,7 +72,7 @@ ToothOfFile toothOf(const fs::path& path, double voxelMm, bool useCache, const c
         settings.field.voxelMm = open.attempt.voxelMm;
         const auto saved = [&] {
             const SimulationSetup station = makeSimulation(open.toothCase, settings, useCache, progress);
-            return ToothOfFile{station.tooth, tooth::decodeState(open.attempt.state, *station.tooth, path.string())};
+            return ToothOfFile{station.tooth, tooth::decodeState(open.attempt.state, station.teeth(), path.string())};
         };
         // It does not tell its bands: the command line never makes them thinner than a few voxels, the window keeps
         // them.

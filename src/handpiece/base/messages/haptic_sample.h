@@ -38,21 +38,24 @@ struct HapticSample {
     std::uint8_t tissue = 0;         ///< cases::Tissue that carries most of the pressure
     std::uint8_t contactStatus = 0;  ///< contact::Status
     std::uint16_t patchCount = 0;
-    std::uint16_t tooth = 0;  ///< index of the tooth that `tissue` is of; not in session files, which hold one tooth
-    std::uint32_t flags = 0;  ///< SampleFlag bits
-    float workUs = 0.0f;      ///< from reading the pose to having the force
-    float lateUs = 0.0f;      ///< start of the tick after its nominal time
-    float cutUs = 0.0f;       ///< after the force was sent: cutting and handing over
-    float feedMmS = 0.0f;     ///< speed at which the bur eats into the tooth
-    std::int32_t elapsedPeriods = 1;            ///< since the tick before
-    std::uint32_t buttons = 0;                  ///< bit 0: the upper one
-    std::uint32_t waitingBricks = 0;            ///< changed bricks not handed over yet
-    std::uint64_t handedBricks = 0;             ///< changed bricks handed over so far: those before this sample
-    std::uint64_t lastCommand = 0;              ///< number of the newest staged command that has taken effect
-    double pedal = 0.0;                         ///< 0..1
-    double speedRpm = 0.0;                      ///< of the bur
-    double loadTorqueNmm = 0.0;                 ///< with which the tooth held the bur back in the tick before
-    std::array<double, kTissues> removedMm3{};  ///< by cases::Tissue, since the tooth was whole
+    std::uint16_t tooth = 0;  ///< that `tissue` is of: 0 the one worked on, else its number among those around it
+    std::uint16_t touchedNeighbour = 0;  ///< of the teeth around that the bur touches the one it bears on most; 0: none
+    std::uint16_t cutNeighbour = 0;      ///< that has lost most; 0: none has
+    std::uint32_t flags = 0;             ///< SampleFlag bits
+    float workUs = 0.0f;                 ///< from reading the pose to having the force
+    float lateUs = 0.0f;                 ///< start of the tick after its nominal time
+    float cutUs = 0.0f;                  ///< after the force was sent: cutting and handing over
+    float feedMmS = 0.0f;                ///< speed at which the bur eats into the tooth
+    std::int32_t elapsedPeriods = 1;     ///< since the tick before
+    std::uint32_t buttons = 0;           ///< bit 0: the upper one
+    std::uint32_t waitingBricks = 0;     ///< changed bricks not handed over yet
+    std::uint64_t handedBricks = 0;      ///< changed bricks handed over so far: those before this sample
+    std::uint64_t lastCommand = 0;       ///< number of the newest staged command that has taken effect
+    double pedal = 0.0;                  ///< 0..1
+    double speedRpm = 0.0;               ///< of the bur
+    double loadTorqueNmm = 0.0;          ///< with which the tooth held the bur back in the tick before
+    std::array<double, kTissues> removedMm3{};  ///< of the tooth worked on by cases::Tissue, since it was whole
+    double removedOthersMm3 = 0.0;              ///< of all other teeth
 };
 
 enum SampleFlag : std::uint32_t {

@@ -262,10 +262,11 @@ Case readCase(const fs::path& path) {
 }
 
 std::vector<Part> surroundings(const Case& toothCase) {
-    std::vector<Part> all = toothCase.scenery;
+    std::vector<Part> all;
     for (const PlacedTooth& other : toothCase.others)
         all.push_back({other.name, Tissue::neighbour, properties(Tissue::neighbour).priority,
                        geometry::transformed(other.surface(), other.inCase), true});
+    all.insert(all.end(), toothCase.scenery.begin(), toothCase.scenery.end());
     return all;
 }
 

@@ -71,8 +71,8 @@ void writeCase(const Case& toothCase, const std::filesystem::path& path);
 /// Of all teeth of a case and where they stand; contentKey() of its tooth when it has no others.
 [[nodiscard]] std::uint64_t caseKey(const Case& toothCase);
 
-/// All that is to be seen around the tooth that is worked on, in the case's frame: scenery, and the surfaces of the
-/// other teeth as Tissue::neighbour.
+/// All that is to be seen around the tooth that is worked on, in the case's frame: the surfaces of the other teeth as
+/// Tissue::neighbour, in their order, then the scenery.
 [[nodiscard]] std::vector<Part> surroundings(const Case& toothCase);
 
 /// Why a surface cannot be felt, or that it can: closed, oriented, sane in size, not crossing itself.

@@ -15,7 +15,7 @@
 namespace handpiece::tooth {
 namespace {
 
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::uint32_t kByteOrder = 0x01020304;
 constexpr char kMagic[8] = {'H', 'P', 'S', 'T', 'A', 'T', 'E', '\n'};
 constexpr std::size_t kPieceBricks = 64;  ///< compressed together, beside the other pieces
@@ -102,7 +102,7 @@ std::vector<std::uint8_t> packed(std::span<const StateDelta::Brick> bricks) {
     const std::size_t plane = cut * field::kBrickValues;
     std::vector<std::uint8_t> raw(bricks.size() * 5 + plane * 4);
     for (std::size_t i = 0; i < bricks.size(); ++i) {
-        std::memcpy(&raw[4 * i], &bricks[i].dense, 4);
+        std::memcpy(&raw[4 * i], &bricks[i].id, 4);
         raw[4 * bricks.size() + i] = bricks[i].uncut;
     }
     std::uint8_t* out = raw.data() + bricks.size() * 5;
@@ -124,7 +124,7 @@ bool unpack(std::span<const std::uint8_t> raw, std::span<StateDelta::Brick> bric
     std::size_t cut = 0;
     if (raw.size() < bricks.size() * 5) return false;
     for (std::size_t i = 0; i < bricks.size(); ++i) {
-        std::memcpy(&bricks[i].dense, &raw[4 * i], 4);
+        std::memcpy(&bricks[i].id, &raw[4 * i], 4);
         const std::uint8_t uncut = raw[4 * bricks.size() + i];
         if (uncut > 1) return false;
         bricks[i].uncut = uncut != 0;
@@ -157,20 +157,25 @@ std::vector<std::uint8_t> compressed(const std::vector<std::uint8_t>& raw) {
     return out;
 }
 
-/// Everything that a field could not hold. True when all is well.
-bool fits(const StateDelta& state, const ToothModel& model) {
-    const field::FieldStorage& field = model.field.storage();
-    const auto low = static_cast<float>(-model.settings.bandMm), high = static_cast<float>(model.bandOutMm);
+/// Everything that the fields could not hold. True when all is well.
+bool fits(const StateDelta& state, const Teeth& teeth) {
+    const auto isThere = [&](std::size_t tooth) { return tooth < teeth.size() && teeth[tooth] != nullptr; };
     for (std::size_t i = 0; i < state.bricks.size(); ++i) {
         const StateDelta::Brick& brick = state.bricks[i];
-        if (brick.dense >= field.coarse.size() || (i > 0 && brick.dense <= state.bricks[i - 1].dense)) return false;
-        if (field.brickIndex[brick.dense] < 0 && field.coarse[brick.dense] >= 0.0f) return false;
+        if (!isThere(toothOf(brick.id)) || (i > 0 && brick.id <= state.bricks[i - 1].id)) return false;
+        const ToothModel& model = *teeth[toothOf(brick.id)];
+        const field::FieldStorage& field = model.field.storage();
+        const std::uint32_t dense = denseOf(brick.id);
+        if (dense >= field.coarse.size()) return false;
+        if (field.brickIndex[dense] < 0 && field.coarse[dense] >= 0.0f) return false;
         if (brick.uncut) continue;
+        const auto low = static_cast<float>(-model.settings.bandMm), high = static_cast<float>(model.bandOutMm);
         for (const float value : brick.values)
             if (!(value >= low && value <= high)) return false;
     }
-    for (const double mm3 : state.removedMm3)
-        if (!std::isfinite(mm3)) return false;
+    for (std::uint16_t tooth = 0; tooth <= state.removedMm3.others.size(); ++tooth)
+        for (const double mm3 : state.removedMm3.of(tooth))
+            if (!std::isfinite(mm3) || (mm3 != 0.0 && !isThere(tooth))) return false;
     return true;
 }
 
@@ -191,6 +196,9 @@ std::vector<std::byte> encodeState(const StateDelta& state, std::uint64_t identi
         const auto* first = static_cast<const std::byte*>(from);
         data.insert(data.end(), first, first + bytes);
     };
+    const auto others = static_cast<std::uint32_t>(state.removedMm3.others.size());
+    append(&others, sizeof others);
+    append(state.removedMm3.others.data(), others * sizeof(TissueVolumes));
     for (const std::vector<std::uint8_t>& piece : pieces) {
         const auto size = static_cast<std::uint32_t>(piece.size());
         append(&size, sizeof size);
@@ -204,14 +212,14 @@ std::vector<std::byte> encodeState(const StateDelta& state, std::uint64_t identi
     header.key = identity;
     header.bricks = count;
     header.payloadBytes = data.size() - sizeof header;
-    std::copy(state.removedMm3.begin(), state.removedMm3.end(), header.removedMm3);
+    std::copy(state.removedMm3.own.begin(), state.removedMm3.own.end(), header.removedMm3);
     header.payloadHash = field::hashOf(std::span(data).subspan(sizeof header));
     header.headerHash = headerHashOf(header);
     std::memcpy(data.data(), &header, sizeof header);
     return data;
 }
 
-StateDelta decodeState(std::span<const std::byte> data, const ToothModel& model, const std::string& where) {
+StateDelta decodeState(std::span<const std::byte> data, const Teeth& teeth, const std::string& where) {
     Header header;
     const auto cutShort = [&] { return core::Error("the cut state is cut short", where, "take an older copy"); };
     const auto damaged = [&] { return core::Error("the cut state is damaged", where, "take an older copy"); };
@@ -236,14 +244,29 @@ StateDelta decodeState(std::span<const std::byte> data, const ToothModel& model,
             "use a newer Handpiece");
     if (data.size() < headerBytes) throw cutShort();
     if (header.version == 0 || header.headerHash != headerHashOf(header)) throw damaged();
-    if (header.key != model.identity)
-        throw core::Error("the cut state belongs to another tooth, another voxel or band, or an earlier Handpiece",
-                          where, "open it with the case and the settings that it was saved with");
-    const std::span<const std::byte> payload = data.subspan(headerBytes);
+    if (header.key != identityOf(teeth))
+        throw core::Error(
+            "the cut state belongs to another tooth or mouth, another voxel or band, or an earlier Handpiece", where,
+            "open it with the case and the settings that it was saved with");
+    std::span<const std::byte> payload = data.subspan(headerBytes);
     if (payload.size() < header.payloadBytes) throw cutShort();
     if (payload.size() > header.payloadBytes || field::hashOf(payload) != header.payloadHash) throw damaged();
 
-    if (header.bricks > model.field.storage().coarse.size()) throw damaged();
+    std::size_t most = 0;
+    for (const auto& tooth : teeth)
+        if (tooth) most += tooth->field.storage().coarse.size();
+    if (header.bricks > most) throw damaged();
+    StateDelta state;
+    if (header.version >= 3) {
+        std::uint32_t others = 0;
+        if (payload.size() < sizeof others) throw damaged();
+        std::memcpy(&others, payload.data(), sizeof others);
+        payload = payload.subspan(sizeof others);
+        if (others >= kMaxTeeth || payload.size() < others * sizeof(TissueVolumes)) throw damaged();
+        state.removedMm3.others.resize(others);
+        std::memcpy(state.removedMm3.others.data(), payload.data(), others * sizeof(TissueVolumes));
+        payload = payload.subspan(others * sizeof(TissueVolumes));
+    }
     const std::size_t count = header.bricks, pieces = piecesOf(count);
     if (payload.size() < pieces * sizeof(std::uint32_t)) throw damaged();
     std::vector<std::size_t> start(pieces + 1, pieces * sizeof(std::uint32_t));
@@ -254,8 +277,7 @@ StateDelta decodeState(std::span<const std::byte> data, const ToothModel& model,
     }
     if (start[pieces] != payload.size()) throw damaged();
 
-    StateDelta state;
-    std::copy(std::begin(header.removedMm3), std::end(header.removedMm3), state.removedMm3.begin());
+    std::copy(std::begin(header.removedMm3), std::end(header.removedMm3), state.removedMm3.own.begin());
     state.bricks.resize(count);
     core::parallelFor(pieces, 1, [&](std::size_t begin, std::size_t end) {
         // No piece is larger than this, whatever it says: nothing swells beyond it.
@@ -270,7 +292,7 @@ StateDelta decodeState(std::span<const std::byte> data, const ToothModel& model,
                 throw damaged();
         }
     });
-    if (!fits(state, model)) throw damaged();
+    if (!fits(state, teeth)) throw damaged();
     return state;
 }
 

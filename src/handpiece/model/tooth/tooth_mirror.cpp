@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cstring>
 
+#include "handpiece/base/core/hash.h"
+
 namespace handpiece::tooth {
 
-ToothMirror::ToothMirror(std::shared_ptr<const ToothModel> model) : model_(std::move(model)) {
+ToothMirror::ToothMirror(std::shared_ptr<const ToothModel> model, std::uint16_t tooth)
+    : model_(std::move(model)), tooth_(tooth) {
     const std::size_t dense = model_->field.storage().coarse.size();
     bricks_.resize(dense);
     isTouched_.assign(dense, false);
@@ -26,12 +29,12 @@ void ToothMirror::put(std::uint32_t dense, const float* values) {
 }
 
 void ToothMirror::apply(const BrickSnapshot& snapshot) {
-    put(snapshot.dense, snapshot.values);
+    put(denseOf(snapshot.id), snapshot.values);
 }
 
 void ToothMirror::apply(const StateDelta& change) {
     for (const StateDelta::Brick& brick : change.bricks)
-        put(brick.dense, brick.uncut ? nullptr : brick.values.data());
+        if (toothOf(brick.id) == tooth_) put(denseOf(brick.id), brick.uncut ? nullptr : brick.values.data());
 }
 
 const float* ToothMirror::values(std::uint32_t dense, float* scratch) const {
@@ -55,15 +58,58 @@ std::vector<std::uint32_t> ToothMirror::takeTouched() {
 
 StateDelta ToothMirror::state(const TissueVolumes& removedMm3) const {
     StateDelta state;
-    state.removedMm3 = removedMm3;
+    state.removedMm3.set(tooth_, removedMm3);
     std::array<float, field::kBrickValues> uncut;
     for (std::uint32_t dense = 0; dense < bricks_.size(); ++dense) {
         if (!bricks_[dense]) continue;
         // A brick that was restored comes as a snapshot like any other.
         model_->uncutBrick(dense, uncut.data());
         if (std::memcmp(uncut.data(), bricks_[dense]->data(), kBrickBytes) == 0) continue;
-        state.bricks.push_back({dense, false, *bricks_[dense]});
+        state.bricks.push_back({brickId(tooth_, dense), false, *bricks_[dense]});
     }
+    return state;
+}
+
+std::uint64_t identityOf(const Teeth& teeth) {
+    std::size_t cut = 0;
+    for (const auto& tooth : teeth)
+        cut += tooth != nullptr;
+    if (cut == 1 && teeth.front()) return teeth.front()->identity;
+    core::Hasher hasher;
+    for (const auto& tooth : teeth)
+        hasher.add(tooth ? tooth->identity : 0);
+    return hasher.value();
+}
+
+MouthMirror::MouthMirror(const Teeth& teeth) {
+    for (const auto& tooth : teeth)
+        teeth_.push_back(tooth ? std::make_unique<ToothMirror>(tooth, static_cast<std::uint16_t>(teeth_.size()))
+                               : nullptr);
+}
+
+void MouthMirror::apply(const BrickSnapshot& snapshot) {
+    const std::size_t tooth = toothOf(snapshot.id);
+    if (tooth < teeth_.size() && teeth_[tooth]) teeth_[tooth]->apply(snapshot);
+}
+
+void MouthMirror::apply(const StateDelta& change) {
+    for (const auto& tooth : teeth_)
+        if (tooth) tooth->apply(change);
+}
+
+const float* MouthMirror::values(BrickId id, float* scratch) const {
+    return teeth_[toothOf(id)]->values(denseOf(id), scratch);
+}
+
+bool MouthMirror::isChanged(BrickId id) const {
+    return teeth_[toothOf(id)]->isChanged(denseOf(id));
+}
+
+StateDelta MouthMirror::state(const RemovedMm3& removedMm3) const {
+    StateDelta state;
+    for (const auto& tooth : teeth_)
+        if (tooth) state.append(tooth->state({}));
+    state.removedMm3 = removedMm3;
     return state;
 }
 

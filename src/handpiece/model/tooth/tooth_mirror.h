@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// A tooth that is being cut, as it is known off the tick.
+/// Teeth that are being cut, as they are known off the tick.
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "handpiece/model/tooth/state_delta.h"
@@ -15,10 +16,12 @@ namespace handpiece::tooth {
 /// An off-tick copy of what has been cut, kept up by snapshots: for the surface, for undo, for files. One thread.
 class ToothMirror {
   public:
-    explicit ToothMirror(std::shared_ptr<const ToothModel> model);
+    explicit ToothMirror(std::shared_ptr<const ToothModel> model, std::uint16_t tooth = 0);
 
     [[nodiscard]] const ToothModel& model() const noexcept { return *model_; }
+    [[nodiscard]] std::uint16_t toothNumber() const noexcept { return tooth_; }
     void apply(const BrickSnapshot& snapshot);
+    /// What it says of other teeth is left alone.
     void apply(const StateDelta& change);
     /// Values of a brick now; `scratch` (kBrickValues) is used when it is still uncut.
     [[nodiscard]] const float* values(std::uint32_t dense, float* scratch) const;
@@ -31,9 +34,32 @@ class ToothMirror {
     void put(std::uint32_t dense, const float* values);
 
     std::shared_ptr<const ToothModel> model_;
+    std::uint16_t tooth_;
     std::vector<std::unique_ptr<std::array<float, field::kBrickValues>>> bricks_;  ///< by dense brick; null: uncut
     std::vector<std::uint32_t> touched_;
     std::vector<bool> isTouched_;
+};
+
+/// The teeth of a mouth that can be cut, by their numbers: null where one cannot. The first is the one worked on.
+using Teeth = std::vector<std::shared_ptr<const ToothModel>>;
+/// Two mouths share it only when a state of one is a state of the other; of a lone tooth it is the tooth's.
+[[nodiscard]] std::uint64_t identityOf(const Teeth& teeth);
+
+/// The mirrors of a mouth's teeth.
+class MouthMirror {
+  public:
+    explicit MouthMirror(const Teeth& teeth);
+
+    /// Of teeth that it does not have nothing is taken.
+    void apply(const BrickSnapshot& snapshot);
+    void apply(const StateDelta& change);
+    [[nodiscard]] const float* values(BrickId id, float* scratch) const;
+    [[nodiscard]] bool isChanged(BrickId id) const;
+    [[nodiscard]] StateDelta state(const RemovedMm3& removedMm3) const;
+    [[nodiscard]] StateDelta state() const { return state({}); }
+
+  private:
+    std::vector<std::unique_ptr<ToothMirror>> teeth_;  ///< null where one cannot be cut
 };
 
 }  // namespace handpiece::tooth

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "handpiece/base/core/error.h"
+
 #include "handpiece/model/field/brick_index.h"
 
 namespace handpiece::tooth {
@@ -36,8 +38,10 @@ field::DistanceField withRoom(const ToothModel& model) {
 
 }  // namespace
 
-ToothState::ToothState(std::shared_ptr<const ToothModel> model)
-    : model_(std::move(model)), field_(withRoom(*model_)), dirty_(storage().coarse.size(), 0) {
+ToothState::ToothState(std::shared_ptr<const ToothModel> model, std::uint16_t tooth)
+    : model_(std::move(model)), tooth_(tooth), field_(withRoom(*model_)), dirty_(storage().coarse.size(), 0) {
+    if (dirty_.size() > kMaxBricks || tooth_ >= kMaxTeeth)
+        throw core::Error("a field this large cannot be cut", model_->name, "choose a larger voxel");
     storedCount_ = static_cast<std::int32_t>(model_->field.brickCount());
     storedRoom_ = static_cast<std::int32_t>(field_.brickCount());
     flags_.assign(dirty_.size() + sizeof(std::uint64_t), 0);
@@ -133,7 +137,8 @@ void ToothState::addRemoved(const TissueVolumes& mm3) noexcept {
 
 BrickSnapshot& ToothState::snapshotOfFirstDirty() noexcept {
     const std::uint32_t dense = dirty_[firstDirty_ % dirty_.size()];
-    snapshot_.dense = dense;
+    snapshot_.id = brickId(tooth_, dense);
+    snapshot_.removedMm3 = removedMm3_;
     snapshot_.shows = (flags_[dense] & kShows) != 0;
     std::memcpy(snapshot_.values, values(field_.storage().brickIndex[dense]), kBrickBytes);
     return snapshot_;
@@ -180,24 +185,26 @@ void ToothState::shareFaces(std::uint32_t dense, std::int32_t stored) noexcept {
 
 std::size_t ToothState::restore(const StateDelta& change, std::size_t from, std::size_t most) noexcept {
     const std::size_t count = change.bricks.size();
-    for (; from < count && most > 0; ++from, --most) {
+    const auto isMine = [&] { return from < count && toothOf(change.bricks[from].id) == tooth_; };
+    for (; isMine() && most > 0; ++from, --most) {
         const StateDelta::Brick& brick = change.bricks[from];
-        if (brick.uncut && field_.storage().brickIndex[brick.dense] < 0) continue;
-        const std::int32_t stored = storeBrick(brick.dense);
+        const std::uint32_t dense = denseOf(brick.id);
+        if (dense >= dirty_.size() || (brick.uncut && field_.storage().brickIndex[dense] < 0)) continue;
+        const std::int32_t stored = storeBrick(dense);
         if (stored < 0) continue;
         if (brick.uncut) {
-            model_->uncutBrick(brick.dense, values(stored));
-            noteUncut(brick.dense);
+            model_->uncutBrick(dense, values(stored));
+            noteUncut(dense);
         } else {
             std::memcpy(values(stored), brick.values.data(), kBrickBytes);
-            noteChanged(brick.dense, true);
-            raiseAround(brick.dense, values(stored));
+            noteChanged(dense, true);
+            raiseAround(dense, values(stored));
         }
         // Its neighbours follow at once, also those whose turn is yet to come: the field is never torn.
-        shareFaces(brick.dense, stored);
+        shareFaces(dense, stored);
     }
-    if (from == count) {
-        removedMm3_ = change.removedMm3;
+    if (!isMine()) {
+        removedMm3_ = change.removedMm3.of(tooth_);
         if (changedCount_ == 0) resetCoarse();
     }
     return from;
@@ -246,14 +253,14 @@ void ToothState::raiseAround(std::uint32_t dense, const float* values) noexcept 
 
 StateDelta ToothState::state() const {
     StateDelta state;
-    state.removedMm3 = removedMm3_;
+    state.removedMm3.set(tooth_, removedMm3_);
     std::array<float, field::kBrickValues> uncut;
     for (std::uint32_t dense = 0; dense < dirty_.size(); ++dense) {
         if ((flags_[dense] & kChanged) == 0) continue;
         const float* now = &field_.storage().values[valueIndex(field_.storage().brickIndex[dense])];
         model_->uncutBrick(dense, uncut.data());
         if (std::memcmp(now, uncut.data(), kBrickBytes) == 0) continue;
-        StateDelta::Brick& brick = state.bricks.emplace_back(StateDelta::Brick{dense, false, {}});
+        StateDelta::Brick& brick = state.bricks.emplace_back(StateDelta::Brick{brickId(tooth_, dense), false, {}});
         std::memcpy(brick.values.data(), now, kBrickBytes);
     }
     return state;

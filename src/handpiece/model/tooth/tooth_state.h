@@ -21,10 +21,12 @@ inline constexpr float kCoarseDepthMm = 2.0f;
 /// What the tick cuts and feels. All memory is taken at construction. One thread: the tick's.
 class ToothState {
   public:
-    explicit ToothState(std::shared_ptr<const ToothModel> model);
+    /// `tooth`: its number in the mouth.
+    explicit ToothState(std::shared_ptr<const ToothModel> model, std::uint16_t tooth = 0);
 
     [[nodiscard]] const ToothModel& model() const noexcept { return *model_; }
     [[nodiscard]] const std::shared_ptr<const ToothModel>& modelShared() const noexcept { return model_; }
+    [[nodiscard]] std::uint16_t toothNumber() const noexcept { return tooth_; }
     /// As it is now, for lookups and for contact; its arrays never move.
     [[nodiscard]] const field::DistanceField& field() const noexcept { return field_; }
     /// True when a brick that overlaps the box (tooth frame, mm) may differ from the uncut tooth.
@@ -59,9 +61,10 @@ class ToothState {
     }
     [[nodiscard]] std::size_t waitingBricks() const noexcept { return nextDirty_ - firstDirty_; }
 
-    /// Puts bricks `from` .. of a change in place, at most `most` of them; returns the next `from`. With the last one
-    /// the removed volumes become those of the change. After every call bricks agree on the nodes they share, and the
-    /// bounds elsewhere hold; they are as tight as at first again only when nothing is cut any more.
+    /// Puts bricks `from` .. of a change in place, at most `most` of them and no other tooth's; returns the next
+    /// `from`. With the last one of this tooth its removed volumes become those of the change. After every call bricks
+    /// agree on the nodes they share, and the bounds elsewhere hold; they are as tight as at first again only when
+    /// nothing is cut any more.
     std::size_t restore(const StateDelta& change, std::size_t from, std::size_t most) noexcept HANDPIECE_REALTIME;
 
     // Off the tick, while it rests.
@@ -85,6 +88,7 @@ class ToothState {
     void resetCoarse() noexcept;
 
     std::shared_ptr<const ToothModel> model_;
+    std::uint16_t tooth_;
     field::DistanceField field_;  ///< its values have room for the reserve
     std::int32_t storedCount_ = 0, storedRoom_ = 0;
     TissueVolumes removedMm3_{};

@@ -51,7 +51,7 @@ void unpack(const std::vector<std::byte>& packed, float* values) {
 
 std::size_t History::bytesOf(const Step& step) {
     std::size_t bytes = sizeof(Step);
-    for (const auto& [dense, packed] : step.bricks)
+    for (const auto& [id, packed] : step.bricks)
         bytes += packed.capacity() + kNodeBytes;
     return bytes;
 }
@@ -64,22 +64,22 @@ void History::start(const tooth::StateDelta& state) {
     removedMm3_ = state.removedMm3;
     for (const tooth::StateDelta::Brick& brick : state.bricks) {
         if (brick.uncut) continue;
-        const auto& packed = now_[brick.dense] = pack(brick.values.data());
+        const auto& packed = now_[brick.id] = pack(brick.values.data());
         memoryBytes_ += packed.capacity() + kNodeBytes;
     }
 }
 
-bool History::endStroke(const BrickSource& source, const tooth::TissueVolumes& removedMm3) {
+bool History::endStroke(const BrickSource& source, const tooth::RemovedMm3& removedMm3) {
     Step step;
     std::array<float, field::kBrickValues> scratch;
-    for (const std::uint32_t dense : touched_) {
+    for (const tooth::BrickId id : touched_) {
         Packed after;
-        if (source.isChanged(dense)) after = pack(source.values(dense, scratch.data()));
-        const auto found = now_.find(dense);
+        if (source.isChanged(id)) after = pack(source.values(id, scratch.data()));
+        const auto found = now_.find(id);
         if (found == now_.end() ? after.empty() : found->second == after) continue;
-        Packed& now = now_[dense];
+        Packed& now = now_[id];
         memoryBytes_ += after.capacity() - now.capacity() + (found == now_.end() ? kNodeBytes : 0);
-        step.bricks[dense] = std::exchange(now, std::move(after));
+        step.bricks[id] = std::exchange(now, std::move(after));
     }
     touched_.clear();
     step.removedMm3 = std::exchange(removedMm3_, removedMm3);
@@ -107,9 +107,9 @@ tooth::StateDelta History::unpacked(const Step& step) {
     tooth::StateDelta change;
     change.bricks.resize(step.bricks.size());
     std::size_t i = 0;
-    for (const auto& [dense, packed] : step.bricks) {
+    for (const auto& [id, packed] : step.bricks) {
         tooth::StateDelta::Brick& brick = change.bricks[i++];
-        brick.dense = dense;
+        brick.id = id;
         brick.uncut = packed.empty();
         if (brick.uncut) {
             brick.values.fill(0.0f);
@@ -128,7 +128,7 @@ tooth::StateDelta History::step(std::size_t index) const {
 void History::append(const tooth::StateDelta& otherSide, bool isDone) {
     Step step;
     for (const tooth::StateDelta::Brick& brick : otherSide.bricks)
-        step.bricks[brick.dense] = brick.uncut ? Packed{} : pack(brick.values.data());
+        step.bricks[brick.id] = brick.uncut ? Packed{} : pack(brick.values.data());
     step.removedMm3 = otherSide.removedMm3;
     memoryBytes_ += bytesOf(step);
     steps_.push_back(std::move(step));
@@ -138,8 +138,8 @@ void History::append(const tooth::StateDelta& otherSide, bool isDone) {
 /// Goes to the other side of a step, which then leads back.
 tooth::StateDelta History::exchange(Step& step) {
     tooth::StateDelta change = unpacked(step);
-    for (auto& [dense, packed] : step.bricks)
-        std::swap(packed, now_[dense]);
+    for (auto& [id, packed] : step.bricks)
+        std::swap(packed, now_[id]);
     std::swap(step.removedMm3, removedMm3_);
     return change;
 }
@@ -156,11 +156,11 @@ std::optional<tooth::StateDelta> History::redo() {
 
 std::optional<tooth::StateDelta> History::reset() {
     Step step;
-    for (const auto& [dense, packed] : now_)
-        if (!packed.empty()) step.bricks[dense];  // the other side: uncut
+    for (const auto& [id, packed] : now_)
+        if (!packed.empty()) step.bricks[id];  // the other side: uncut
     if (step.bricks.empty()) return std::nullopt;
     tooth::StateDelta change = exchange(step);
-    for (const auto& [dense, packed] : step.bricks)
+    for (const auto& [id, packed] : step.bricks)
         memoryBytes_ -= packed.capacity();  // moved from now_ into the step, where add() counts it
     add(std::move(step));
     return change;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Undo and redo of strokes on a tooth that is being cut.
+/// Undo and redo of strokes on teeth that are being cut.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,22 +20,22 @@ class BrickSource {
   public:
     virtual ~BrickSource() = default;
     /// False when the brick is as before any cut.
-    [[nodiscard]] virtual bool isChanged(std::uint32_t dense) const = 0;
+    [[nodiscard]] virtual bool isChanged(tooth::BrickId id) const = 0;
     /// kBrickValues values of a changed brick; `scratch` has room for them.
-    [[nodiscard]] virtual const float* values(std::uint32_t dense, float* scratch) const = 0;
+    [[nodiscard]] virtual const float* values(tooth::BrickId id, float* scratch) const = 0;
 };
 
-/// The mirror as a source.
+/// The mirrors of a mouth as a source.
 class MirrorSource final : public BrickSource {
   public:
-    explicit MirrorSource(const tooth::ToothMirror& mirror) : mirror_(mirror) {}
-    [[nodiscard]] bool isChanged(std::uint32_t dense) const override { return mirror_.isChanged(dense); }
-    [[nodiscard]] const float* values(std::uint32_t dense, float* scratch) const override {
-        return mirror_.values(dense, scratch);
+    explicit MirrorSource(const tooth::MouthMirror& mirror) : mirror_(mirror) {}
+    [[nodiscard]] bool isChanged(tooth::BrickId id) const override { return mirror_.isChanged(id); }
+    [[nodiscard]] const float* values(tooth::BrickId id, float* scratch) const override {
+        return mirror_.values(id, scratch);
     }
 
   private:
-    const tooth::ToothMirror& mirror_;
+    const tooth::MouthMirror& mirror_;
 };
 
 struct HistorySettings {
@@ -43,7 +43,7 @@ struct HistorySettings {
     std::size_t memoryBytes = std::size_t{256} << 20;  ///< beyond the least, the oldest steps go when more is used
 };
 
-/// Steps back and forth through the strokes of a tooth. Off the tick, one thread.
+/// Steps back and forth through the strokes at the teeth of a mouth. Off the tick, one thread.
 ///
 /// It keeps, packed, the tooth as it was after the last stroke and what each step changed. What undo() gives depends
 /// on the strokes alone, never on how far the source has come, so any number of steps can be asked for at once and
@@ -56,9 +56,9 @@ class History {
     /// Begins anew on a tooth in this state; nothing to undo.
     void start(const tooth::StateDelta& state);
     /// A brick was handed over: it may have changed in the stroke under way.
-    void noteTouched(std::uint32_t dense) { touched_.insert(dense); }
+    void noteTouched(tooth::BrickId id) { touched_.insert(id); }
     /// Ends a stroke. True when it removed something: then there is one more step to undo and none to redo.
-    bool endStroke(const BrickSource& source, const tooth::TissueVolumes& removedMm3);
+    bool endStroke(const BrickSource& source, const tooth::RemovedMm3& removedMm3);
 
     [[nodiscard]] std::size_t undoSteps() const noexcept { return done_; }
     [[nodiscard]] std::size_t redoSteps() const noexcept { return steps_.size() - done_; }
@@ -77,7 +77,7 @@ class History {
     void append(const tooth::StateDelta& otherSide, bool isDone);
 
     /// Of the tooth where the steps have led.
-    [[nodiscard]] const tooth::TissueVolumes& removedMm3() const noexcept { return removedMm3_; }
+    [[nodiscard]] const tooth::RemovedMm3& removedMm3() const noexcept { return removedMm3_; }
     /// Of all that is kept.
     [[nodiscard]] std::size_t memoryBytes() const noexcept { return memoryBytes_; }
 
@@ -85,8 +85,9 @@ class History {
     /// A brick, packed; empty: as before any cut.
     using Packed = std::vector<std::byte>;
     struct Step {
-        std::map<std::uint32_t, Packed> bricks;  ///< the other side of the step: before it when done, after it when not
-        tooth::TissueVolumes removedMm3{};
+        std::map<tooth::BrickId, Packed>
+            bricks;  ///< the other side of the step: before it when done, after it when not
+        tooth::RemovedMm3 removedMm3{};
     };
     void add(Step&& step);
     static tooth::StateDelta unpacked(const Step& step);
@@ -94,11 +95,11 @@ class History {
     static std::size_t bytesOf(const Step& step);
 
     HistorySettings settings_;
-    std::map<std::uint32_t, Packed> now_;  ///< bricks that differ from the uncut tooth, after the last step done
-    tooth::TissueVolumes removedMm3_{};
+    std::map<tooth::BrickId, Packed> now_;  ///< bricks that differ from the uncut tooth, after the last step done
+    tooth::RemovedMm3 removedMm3_{};
     std::deque<Step> steps_;  ///< done ones first
     std::size_t done_ = 0, memoryBytes_ = 0;
-    std::set<std::uint32_t> touched_;
+    std::set<tooth::BrickId> touched_;
 };
 
 }  // namespace handpiece::history

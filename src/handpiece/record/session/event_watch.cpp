@@ -16,6 +16,13 @@ void EventWatch::tellOnce(const HapticSample& s, std::uint32_t flag, EventName n
     tell_(s.tick, name, "");
 }
 
+std::string EventWatch::nameOf(std::uint16_t tooth) const {
+    if (tooth == 0) return {};
+    const int fdi = tooth <= fdiNumbers_.size() ? fdiNumbers_[tooth - 1u] : 0;
+    return fdi > 0 ? fmt::format(R"({{"tooth": {}, "fdi": {}}})", tooth, fdi)
+                   : fmt::format(R"({{"tooth": {}}})", tooth);
+}
+
 void EventWatch::look(const HapticSample& s) {
     if (first_) toldAtS_.fill(0.0);
     first_ = false;
@@ -40,9 +47,15 @@ void EventWatch::look(const HapticSample& s) {
     };
     reach(Tissue::dentine, EventName::firstDentine);
     reach(Tissue::pulp, EventName::pulpExposure);
-    if (s.tissue == static_cast<std::uint8_t>(Tissue::neighbour) && lastTissue_ != s.tissue)
-        tell_(s.tick, EventName::neighbourTouched, "");
-    lastTissue_ = s.tissue;
+    // A part of the one surface in cases of a single tooth, and a tooth of its own in a mouth.
+    const bool isPart = s.tooth == 0 && s.tissue == static_cast<std::uint8_t>(Tissue::neighbour);
+    const int neighbour = isPart ? 0 : s.touchedNeighbour > 0 ? s.touchedNeighbour : kNoNeighbour;
+    if (neighbour != kNoNeighbour && lastNeighbour_ != neighbour)
+        tell_(s.tick, EventName::neighbourTouched, nameOf(s.touchedNeighbour));
+    lastNeighbour_ = neighbour;
+    const bool hasCut = s.removedOthersMm3 > kTellMm3;
+    if (hasCut && !hasCutNeighbour_) tell_(s.tick, EventName::neighbourCut, nameOf(s.cutNeighbour));
+    hasCutNeighbour_ = hasCut;
     tellOnce(s, messages::kCutsGingiva, EventName::gingivaCut);
     tellOnce(s, messages::kShankTouches | messages::kHeadTouches | messages::kHandleTouches, EventName::headTouched);
     tellOnce(s, messages::kStalled, EventName::stall);

@@ -6,7 +6,10 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "handpiece/base/messages/haptic_sample.h"
 #include "handpiece/record/session/record.h"
@@ -17,7 +20,9 @@ namespace handpiece::session {
 class EventWatch {
   public:
     using Teller = std::function<void(std::uint64_t tick, EventName name, std::string_view text)>;
-    explicit EventWatch(Teller teller) : tell_(std::move(teller)) {}
+    /// `fdiNumbers` of the teeth that stand around the one worked on, from number 1 on; 0 where one is unknown.
+    explicit EventWatch(Teller teller, std::vector<int> fdiNumbers = {})
+        : tell_(std::move(teller)), fdiNumbers_(std::move(fdiNumbers)) {}
 
     void look(const messages::HapticSample& sample);
     /// True from the pedal going down until it is up and every changed brick has been handed over.
@@ -30,12 +35,16 @@ class EventWatch {
 
   private:
     void tellOnce(const messages::HapticSample& sample, std::uint32_t flag, EventName name);
+    [[nodiscard]] std::string nameOf(std::uint16_t tooth) const;
 
     Teller tell_;
     bool inStroke_ = false, first_ = true;
     std::uint64_t strokes_ = 0;
     std::uint32_t lastFlags_ = 0;
-    std::uint8_t lastTissue_ = 0;
+    std::vector<int> fdiNumbers_;
+    static constexpr int kNoNeighbour = -1;
+    int lastNeighbour_ = kNoNeighbour;
+    bool hasCutNeighbour_ = false;
     std::array<bool, cases::kTissueCount> reached_{};
     std::array<double, cases::kTissueCount> strokeStartMm3_{};
     std::array<double, kEventNameCount> toldAtS_{};

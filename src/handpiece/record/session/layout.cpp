@@ -55,11 +55,16 @@ std::span<const Column> columns() noexcept {
          "8 neighbour, 9 restoration, 10 demineralised enamel, 11 to 16 carious dentine from soft over leathery (13) "
          "to "
          "firm (15) and nearly hard, 17 stained enamel, 18 calculus"},
+        {"tooth", u8, 1, offsetof(Record, tooth), "tooth",
+         "that this tissue is of: 0 the one worked on, else the number of one that stands around it", 3},
         {"removed", f64, cases::kTissueCount, offsetof(Record, removedMm3), "mm3",
-         "by tissue (see tissue) since the tooth was whole"},
+         "of the tooth worked on, by tissue (see tissue), since it was whole"},
+        {"removed_others", f64, 1, offsetof(Record, removedOthersMm3), "mm3",
+         "of all teeth around it since they were whole", 3},
         {"flags", u32, 1, offsetof(Record, flags), "bits",
          "1 force limited, 2 slope limited, 4 invalid pose, 8 fault, 16 waiting for the bur to be clear, 32 cutting, "
-         "64 stalled, 128 restoring, 256 out of memory for cuts"},
+         "64 stalled, 128 restoring, 256 out of memory for cuts, 512 shank, 1024 head or 2048 handle bears most, 4096 "
+         "presses on gingiva, 8192 the bur is in it"},
         {"tick", u64, 1, offsetof(Record, tick), "count", "number of the tick; its nominal time is tick / rate_hz [s]"},
     };
     return kColumns;

@@ -13,7 +13,7 @@
 namespace handpiece::session {
 
 inline constexpr std::string_view kFormatName = "handpiece-session";
-inline constexpr std::int32_t kFormatVersion = 2;  // 1: without the tissues after restoration
+inline constexpr std::int32_t kFormatVersion = 3;  // 2: one tooth; 1: without the tissues after restoration
 
 enum class NumberType : std::uint8_t { u8, u16, u32, i32, u64, i64, f32, f64 };
 [[nodiscard]] std::size_t bytesOf(NumberType type) noexcept;
@@ -26,6 +26,7 @@ struct Column {
     std::size_t offset;  ///< in Record
     const char* unit;
     const char* description;
+    std::int32_t since = 1;  ///< the format that brought it
 };
 /// In the order they are written; "tick" is last, so what it counts is there in all others.
 [[nodiscard]] std::span<const Column> columns() noexcept;

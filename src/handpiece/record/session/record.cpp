@@ -66,6 +66,7 @@ Record recordOf(const messages::HapticSample& s) noexcept {
     static_assert(std::tuple_size_v<decltype(s.removedMm3)> == cases::kTissueCount);
     for (std::size_t i = 0; i < r.removedMm3.size(); ++i)
         r.removedMm3[i] = std::nearbyint(s.removedMm3[i] / kVolumeStep) * kVolumeStep;
+    r.removedOthersMm3 = std::nearbyint(s.removedOthersMm3 / kVolumeStep) * kVolumeStep;
     for (std::size_t i = 0; i < 3; ++i) {
         r.position[i] = stepsOf(s.positionMm[i], kPositionStepMm);
         r.velocityMmS[i] = rounded(s.velocityMmS[i], kVelocityStep);
@@ -84,6 +85,7 @@ Record recordOf(const messages::HapticSample& s) noexcept {
     r.flags = s.flags;
     r.elapsedPeriods = static_cast<std::uint16_t>(std::clamp(s.elapsedPeriods, 0, 65535));
     r.tissue = s.tissue;
+    r.tooth = static_cast<std::uint8_t>(s.tooth);
     return r;
 }
 
@@ -101,10 +103,10 @@ Inputs inputsOf(const Record& r) noexcept {
 
 std::string_view nameOf(EventName name) noexcept {
     static constexpr std::array<std::string_view, kEventNameCount> kNames{
-        "stroke begin", "stroke end",  "bur change", "first dentine", "pulp exposure", "neighbour touched",
-        "stall",        "force limit", "undo",       "redo",          "reset",         "parameter change",
-        "fault",        "key frame",   "end",        "resume",        "scheduling",    "gingiva cut",
-        "head touched", "working way"};
+        "stroke begin", "stroke end",  "bur change",   "first dentine", "pulp exposure", "neighbour touched",
+        "stall",        "force limit", "undo",         "redo",          "reset",         "parameter change",
+        "fault",        "key frame",   "end",          "resume",        "scheduling",    "gingiva cut",
+        "head touched", "working way", "neighbour cut"};
     return kNames[static_cast<std::size_t>(name)];
 }
 

@@ -29,6 +29,7 @@ struct Record {
     std::uint64_t tick = 0;
     std::uint64_t lastCommand = 0;  ///< newest staged command that has taken effect
     std::array<double, cases::kTissueCount> removedMm3{};
+    double removedOthersMm3 = 0.0;              ///< of the teeth around the one worked on
     std::array<std::int32_t, 3> position{};     ///< of the bur's tip, in kPositionStepMm
     std::array<std::int32_t, 3> orientation{};  ///< x y z of the quaternion, bur in tooth, in kOrientationStep
     std::int32_t orientationW = 0;  ///< its w, by what it differs from sqrt(1 - x2 - y2 - z2): see wCodeOf()
@@ -40,6 +41,7 @@ struct Record {
     std::uint32_t buttons = 0, flags = 0;  ///< flags: messages::SampleFlag
     std::uint16_t elapsedPeriods = 1;
     std::uint8_t tissue = 0;  ///< cases::Tissue that carries most of the pressure
+    std::uint8_t tooth = 0;   ///< that it is of: 0 the one worked on, else its number among those around it
 
     bool operator==(const Record&) const = default;
 };
@@ -84,9 +86,10 @@ enum class EventName : std::uint8_t {
     scheduling,  ///< what real time the tick has from here on
     gingivaCut,
     headTouched,  ///< shank, head or handle met a tooth
-    workingWay    ///< from where, by mirror or not, with a finger rest or not: from here on
+    workingWay,   ///< from where, by mirror or not, with a finger rest or not: from here on
+    neighbourCut  ///< the bur has taken something off a tooth beside the one worked on
 };
-inline constexpr std::size_t kEventNameCount = 20;
+inline constexpr std::size_t kEventNameCount = 21;
 /// "stroke begin", as in the file.
 [[nodiscard]] std::string_view nameOf(EventName name) noexcept;
 

@@ -228,6 +228,10 @@ void SessionReader::State::openTables() {
                      frames = source.open(file.id(), "key_frames", H5I_GROUP);
     size = kMaxRows;
     for (const Column& column : session::columns()) {
+        if (version < column.since) {
+            columns.emplace_back();  // zeros
+            continue;
+        }
         const bool isShort = version == 1 && column.width == cases::kTissueCount;
         columns.emplace_back(source, samples.id(), column.name, fileType(column.type),
                              isShort ? cases::kFirstTissueCount : column.width, kMaxRows);
@@ -317,6 +321,9 @@ const SessionInfo& SessionReader::info() const noexcept {
 bool SessionReader::isComplete() const noexcept {
     return state_->complete;
 }
+std::int32_t SessionReader::formatVersion() const noexcept {
+    return state_->version;
+}
 std::uint64_t SessionReader::size() const noexcept {
     return state_->size;
 }
@@ -329,6 +336,7 @@ std::vector<Record> SessionReader::records(std::uint64_t first, std::size_t coun
     std::vector<std::byte> buffer;
     const auto all = columns();
     for (std::size_t c = 0; c < all.size(); ++c) {
+        if (s.version < all[c].since) continue;
         const std::size_t bytes = s.columns[c].width() * bytesOf(all[c].type);
         buffer.resize(rows * bytes);
         s.columns[c].read(first, rows, memoryType(all[c].type), buffer.data());

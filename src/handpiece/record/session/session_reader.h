@@ -29,6 +29,7 @@ class SessionReader {
     SessionReader& operator=(const SessionReader&) = delete;
 
     [[nodiscard]] const SessionInfo& info() const noexcept;
+    [[nodiscard]] std::int32_t formatVersion() const noexcept;
     /// True when the recorder closed it; false after a kill, a full disk, or while it is written.
     [[nodiscard]] bool isComplete() const noexcept;
     /// Ticks recorded.

@@ -107,6 +107,7 @@ class Growing {
         return g;
     }
     void append(hid_t type, const void* data, std::size_t count) {
+        if (!dataset_) return;  // a file of an older format is without it
         const hsize_t start[2] = {rows_, 0}, extent[2] = {count, width_}, size[2] = {rows_ + count, width_};
         const int rank = width_ > 1 ? 2 : 1;
         if (H5Dset_extent(dataset_.id(), size) < 0) made(-1, "room for more rows");
@@ -234,9 +235,14 @@ SessionWriter::SessionWriter(const std::filesystem::path& path, Observer observe
     State& s = *state_;
     double rateHz = 0.0;
     std::uint64_t rows = 0;
+    std::int32_t version = 0;
     {
         // It looks at all that the file says about itself, and is closed before the file is opened to write.
         const SessionReader reader(path);
+        version = reader.formatVersion();
+        if (version == 1)
+            throw core::Error("this session is of format 1, in which no newer program can go on", path.string(),
+                              "begin a new session");
         rateHz = reader.info().rateHz;
         rows = reader.size();
         s.firstTick = reader.endTick();
@@ -256,7 +262,8 @@ SessionWriter::SessionWriter(const std::filesystem::path& path, Observer observe
         return static_cast<std::uint64_t>(H5Sget_simple_extent_npoints(space.id()));
     };
     for (const Column& column : columns())
-        s.columns.push_back(Growing::there(samples.id(), column.name, column.width, rows));
+        s.columns.push_back(version < column.since ? Growing()
+                                                   : Growing::there(samples.id(), column.name, column.width, rows));
     s.events = Growing::there(file, "events", 1, rowsOf(file, "events"));
     s.keyFrameIndex = Growing::there(keyFrames.id(), "index", 1, rowsOf(keyFrames.id(), "index"));
     s.keyFrameData = Growing::there(keyFrames.id(), "data", 1, rowsOf(keyFrames.id(), "data"));

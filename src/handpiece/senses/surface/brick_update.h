@@ -11,9 +11,11 @@
 
 namespace handpiece::surface {
 
-/// The triangles of one brick, as handed over. A null mesh: the brick has none (any more).
+/// The triangles of one brick, as handed over, in the frame of the tooth worked on. A null mesh: the brick has none
+/// (any more).
 struct BrickUpdate {
-    std::uint32_t dense = 0;
+    std::uint32_t id = 0;                                      ///< tooth::BrickId: which brick of which tooth
+    bool isUncut = false;                                      ///< it is as before any cut
     std::shared_ptr<const BrickMesh> mesh;                     ///< full detail
     std::shared_ptr<const BrickMesh> coarse;                   ///< level 2, for an eye in motion; null: none
     std::shared_ptr<const std::vector<float>> removedDepthMm;  ///< by vertex of `mesh`; null: not asked for

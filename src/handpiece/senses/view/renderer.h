@@ -97,6 +97,7 @@ class Renderer {
     void updateBricks(std::span<const surface::BrickUpdate> bricks, bool before = false);
     /// A tooth that is one mesh and is not cut (an STL to look at); `tissue` colours it.
     void setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue);
+    /// cases::surroundings(): tooth number n is the part n - 1, and drawn no more once bricks of it have come.
     void setScenery(std::span<const cases::Part> parts);
     /// The tissues of the tooth under its surface, uncut: seen where Look::visible leaves out one of them. Forgotten by
     /// setTooth() and setMesh().

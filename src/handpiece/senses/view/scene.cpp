@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "handpiece/model/tooth/state_delta.h"
 #include "handpiece/senses/view/mesh_pieces.h"
 #include "handpiece/senses/view/simplify.h"
 
@@ -58,6 +59,7 @@ void Scene::setTooth(const core::Box& bounds) {
     sorted_ = true;
     coarseCount_ = cutCount_ = 0;
     hasBefore_ = false;
+    teethInBricks_.clear();
     drop(mesh_);
     drop(parts_);
     toothBounds_ = bounds;
@@ -67,16 +69,29 @@ void Scene::setTooth(const core::Box& bounds) {
 
 void Scene::updateBricks(std::span<const surface::BrickUpdate> bricks, bool before) {
     hasBefore_ = hasBefore_ || before;
-    for (const surface::BrickUpdate& update : bricks)
-        put(update, before);
+    for (const surface::BrickUpdate& update : bricks) {
+        if (const std::uint16_t tooth = tooth::toothOf(update.id); tooth > 0) showTooth(tooth);
+        put(update, before || update.isUncut);
+    }
+}
+
+/// In bricks from now on, and no more as a part of the scenery.
+void Scene::showTooth(std::uint16_t number) {
+    if (!teethInBricks_.insert(number).second) return;
+    std::erase_if(scenery_, [&](const Static& piece) {
+        const bool isIt = piece.part + 1 == number;
+        if (isIt) pool_.remove(piece.mesh);
+        return isIt;
+    });
+    changeAll();
 }
 
 void Scene::put(const surface::BrickUpdate& update, bool before) {
-    const auto [found, isNew] = slot_.try_emplace(update.dense, static_cast<std::uint32_t>(bricks_.size()));
+    const auto [found, isNew] = slot_.try_emplace(update.id, static_cast<std::uint32_t>(bricks_.size()));
     if (isNew) {
-        if (!bricks_.empty() && bricks_.back().dense > update.dense) sorted_ = false;
+        if (!bricks_.empty() && bricks_.back().id > update.id) sorted_ = false;
         bricks_.push_back({});
-        bricks_.back().dense = update.dense;
+        bricks_.back().id = update.id;
     }
     Brick& brick = bricks_[found->second];
     const PooledMesh now =
@@ -126,7 +141,7 @@ void Scene::putInPatch(Brick& brick) {
         const auto [found, isNew] = patchAt_.try_emplace(at, static_cast<std::uint32_t>(patches_.size()));
         if (isNew) patches_.emplace_back();
         brick.patch = found->second;
-        patches_[brick.patch].bricks.push_back(brick.dense);
+        patches_[brick.patch].bricks.push_back(brick.id);
     }
     Patch& patch = patches_[brick.patch];
     if (patch.isStale) return;
@@ -142,8 +157,8 @@ void Scene::simplifySome() {
         Patch& patch = patches_[stale_.back()];
         stale_.pop_back();
         std::vector<std::shared_ptr<const surface::BrickMesh>> meshes;
-        for (const std::uint32_t dense : patch.bricks)
-            if (const auto& mesh = bricks_[slot_.at(dense)].mesh) {
+        for (const std::uint32_t id : patch.bricks)
+            if (const auto& mesh = bricks_[slot_.at(id)].mesh) {
                 meshes.push_back(mesh);
                 triangles += mesh->triangles.size();
             }
@@ -158,13 +173,13 @@ void Scene::drop(std::vector<Static>& meshes) {
     meshes.clear();
 }
 
-void Scene::add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cases::Tissue tissue) {
+void Scene::add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cases::Tissue tissue, std::size_t part) {
     const core::Box box = mesh.bounds();
     if (box.isEmpty()) return;
     // Small pieces: little is drawn beside the bur while a cut redraws its rectangle.
     const double cells = std::max(1.0, static_cast<double>(mesh.triangles.size()) / kPieceTriangles);
     for (const MeshPiece& piece : piecesOf(mesh, tissue, kCreaseRad, box.size().maxCoeff() / std::sqrt(cells)))
-        to.push_back({tissue, pool_.add(piece), box});
+        to.push_back({tissue, pool_.add(piece), box, part});
 }
 
 void Scene::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue) {
@@ -175,8 +190,9 @@ void Scene::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue) {
 
 void Scene::setScenery(std::span<const cases::Part> parts) {
     drop(scenery_);
-    for (const cases::Part& part : parts)
-        add(scenery_, part.mesh, part.tissue);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (!teethInBricks_.contains(static_cast<std::uint16_t>(i + 1)))
+            add(scenery_, parts[i].mesh, parts[i].tissue, i);
     measure();
     changeAll();
 }
@@ -211,9 +227,9 @@ bool leadsThrough(const core::Box& box, const core::Vec3& from, const core::Vec3
 const std::vector<const PooledMesh*>& Scene::visible(const Look& look, Detail detail, const Culler& culler,
                                                      const std::optional<gl::Vec3f>& eyeMm) {
     if (!sorted_) {
-        std::sort(bricks_.begin(), bricks_.end(), [](const Brick& a, const Brick& b) { return a.dense < b.dense; });
+        std::sort(bricks_.begin(), bricks_.end(), [](const Brick& a, const Brick& b) { return a.id < b.id; });
         for (std::uint32_t i = 0; i < bricks_.size(); ++i)
-            slot_[bricks_[i].dense] = i;
+            slot_[bricks_[i].id] = i;
         sorted_ = true;
     }
     visible_.clear();

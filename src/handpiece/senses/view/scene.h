@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -65,7 +66,7 @@ class Scene {
 
   private:
     struct Brick {
-        std::uint32_t dense = 0;
+        std::uint32_t id = 0;  ///< as in surface::BrickUpdate
         PooledMesh now, coarse, before, beforeCoarse;
         bool hasCoarse = false, beforeHasCoarse = false;
         bool isCut = false;                              ///< `now` is not `before`, which then owns its own range
@@ -75,26 +76,28 @@ class Scene {
     /// Bricks that are simplified together: of those alone most points lie on the rim, and stay.
     static constexpr std::uint32_t kNoPatch = 0xffffffffu;
     struct Patch {
-        std::vector<std::uint32_t> bricks;  ///< their dense numbers
+        std::vector<std::uint32_t> bricks;  ///< their ids
         PooledMesh near;
         bool isStale = false;
     };
     struct Static {
         cases::Tissue tissue;
         PooledMesh mesh;
-        core::Box wholeMm;  ///< of the part that it is a piece of
+        core::Box wholeMm;     ///< of the part that it is a piece of
+        std::size_t part = 0;  ///< its number
     };
     void put(const surface::BrickUpdate& update, bool before);
     void drop(std::vector<Static>& meshes);
-    void add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cases::Tissue tissue);
+    void add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cases::Tissue tissue, std::size_t part = 0);
+    void showTooth(std::uint16_t number);
     void note(const PooledMesh& mesh);
     void putInPatch(Brick& brick);
     void changeAll();
     void measure();
 
     MeshPool pool_;
-    std::vector<Brick> bricks_;                              ///< by rising dense
-    std::unordered_map<std::uint32_t, std::uint32_t> slot_;  ///< dense -> place in bricks_ (sorted only when asked)
+    std::vector<Brick> bricks_;                              ///< by rising id
+    std::unordered_map<std::uint32_t, std::uint32_t> slot_;  ///< id -> place in bricks_ (sorted only when asked)
     bool sorted_ = true;
     std::vector<Static> mesh_, scenery_, parts_;
     core::Box toothBounds_, bounds_;
@@ -103,6 +106,7 @@ class Scene {
     std::vector<std::uint32_t> stale_;  ///< patches that are to be simplified (again)
     std::size_t coarseCount_ = 0, cutCount_ = 0;
     bool hasBefore_ = false;
+    std::set<std::uint16_t> teethInBricks_;  ///< of those around the one worked on
     std::uint64_t epoch_ = 1;
     std::vector<Change> changes_;
     std::vector<const PooledMesh*> visible_, cut_;

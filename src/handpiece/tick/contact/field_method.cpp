@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/portable_math.h"
@@ -40,13 +41,11 @@ class FieldMethod final : public Method {
           outline_(*bur_, core::simdLevel()),
           axis_(*bur_),
           sheets_(*bur_, tooth_->field, core::simdLevel()),
-          known_(live_, *bur_, core::simdLevel()),
-          rings_(known_, *bur_, core::simdLevel()),
-          field_(known_, *bur_, core::simdLevel()),
           slackMm_(cut_ ? std::max(kMinSlackMm, kSlackShare * live_.settings().voxelMm * live_.settings().voxelMm /
                                                     (0.5 * bur_->maxRadiusMm()))
                         : 0.0),
           farthestMm_(core::hypot(bur_->lengthMm(), bur_->maxRadiusMm())) {
+        if (!settings_.depthOnly || cut_) points_.emplace(live_, *bur_);
         for (const instrument::MedialCurve& curve : bur_->medialAxis()) {
             for (const instrument::MedialBall& ball : curve.balls)
                 mostRadiusMm_ = std::max(mostRadiusMm_, ball.radiusMm);
@@ -67,7 +66,7 @@ class FieldMethod final : public Method {
         }
         if (isStillFar(burInTooth)) return result;
         clearMm_ = 0.0;
-        if (settings_.depthSource == DepthSource::field || isCutNear(burInTooth))
+        if (points_ && (settings_.depthSource == DepthSource::field || isCutNear(burInTooth)))
             depthInField(burInTooth, result);
         else
             depthOfUncut(burInTooth, result);
@@ -93,21 +92,30 @@ class FieldMethod final : public Method {
         return depth(burInTooth);
     }
 
-    void patches(const core::Pose& burInTooth, PatchSet& out) noexcept override { rings_.patches(burInTooth, out); }
+    void patches(const core::Pose& burInTooth, PatchSet& out) noexcept override {
+        if (points_)
+            points_->rings.patches(burInTooth, out);
+        else
+            Method::patches(burInTooth, out);
+    }
 
     Status constraints(const core::Pose& burInTooth, double reachMm, ConstraintSet& out) noexcept override {
-        return rings_.constraints(burInTooth, reachMm, out);
+        return points_ ? points_->rings.constraints(burInTooth, reachMm, out)
+                       : Method::constraints(burInTooth, reachMm, out);
     }
 
     void bearing(const core::Pose& burInTooth, const Vec3& direction, double leadMm, double leastRadiusMm,
                  Bearing& out) noexcept override {
-        rings_.bearing(burInTooth, direction, leadMm, leastRadiusMm, out);
+        if (points_)
+            points_->rings.bearing(burInTooth, direction, leadMm, leastRadiusMm, out);
+        else
+            Method::bearing(burInTooth, direction, leadMm, leastRadiusMm, out);
     }
 
     void noteCut(const core::Pose& burInTooth) noexcept override {
         if (!cut_) return;
-        known_.noteCut(burInTooth);
-        rings_.senseAnew();
+        points_->known.noteCut(burInTooth);
+        points_->rings.senseAnew();
     }
 
     [[nodiscard]] std::uint64_t toothVersion() const noexcept override { return live_.version(); }
@@ -121,7 +129,7 @@ class FieldMethod final : public Method {
     void reset() noexcept override {
         outline_.reset();
         axis_.reset();
-        known_.forget();
+        if (points_) points_->known.forget();
         clearMm_ = 0.0;
     }
 
@@ -185,11 +193,11 @@ class FieldMethod final : public Method {
             setFar(burInTooth, clear);
             return;
         }
-        const FieldTouch found = field_.search(burInTooth, rings_);
+        const FieldTouch found = points_->field.search(burInTooth, points_->rings);
         result.slackMm = slackMm_;
         result.depthMm = std::max(found.depthMm, -settings_.reachMm);
         if (!(found.depthMm >= -settings_.reachMm)) {
-            result.depthMm = std::max(-field_.clearMm(), -settings_.reachMm);
+            result.depthMm = std::max(-points_->field.clearMm(), -settings_.reachMm);
             return;
         }
         result.status = Status::ok;
@@ -206,9 +214,17 @@ class FieldMethod final : public Method {
     OutlineSearch outline_;
     AxisSearch axis_;
     OffAxisMedialSearch sheets_;
-    KnownSurface known_;
-    SurfaceSampler rings_;
-    FieldDepth field_;
+    /// What looks at points of the bur's surface in the field.
+    struct Points {
+        Points(const field::DistanceField& live, const instrument::Bur& bur)
+            : known(live, bur, core::simdLevel()),
+              rings(known, bur, core::simdLevel()),
+              field(known, bur, core::simdLevel()) {}
+        KnownSurface known;
+        SurfaceSampler rings;
+        FieldDepth field;
+    };
+    std::optional<Points> points_;
     std::vector<instrument::MedialBall> spine_;  ///< some balls of the bur's axis
     double slackMm_;                             ///< of the bur in its own cavity
     double farthestMm_, mostRadiusMm_ = 0.0;     ///< of the bur's points from its tip; of its medial balls

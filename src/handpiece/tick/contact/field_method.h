@@ -19,6 +19,9 @@ enum class DepthSource : std::uint8_t {
 };
 
 struct FieldMethodSettings {
+    /// For solids that are only kept out, of a tooth that is not cut: depth() alone, without the points of the solid's
+    /// surface, which for a whole handpiece would be half a million.
+    bool depthOnly = false;
     DepthSource depthSource = DepthSource::exact;
     double reachMm = 5.0;  ///< farther apart than this is "beyond reach"
 };

@@ -233,6 +233,12 @@ const tooth::ToothState& Cutter::field(std::size_t tooth) const noexcept {
     return *state_->teeth[tooth]->field;
 }
 
+tooth::ToothState* Cutter::fieldOf(std::uint16_t toothNumber) noexcept {
+    for (const std::unique_ptr<Swept>& tooth : state_->teeth)
+        if (tooth->field->toothNumber() == toothNumber) return tooth->field.get();
+    return nullptr;
+}
+
 double Cutter::largestRadiusMm() const noexcept {
     return state_->bur->maxRadiusMm();
 }

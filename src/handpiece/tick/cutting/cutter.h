@@ -68,6 +68,8 @@ class Cutter {
     [[nodiscard]] std::size_t toothCount() const noexcept;
     [[nodiscard]] tooth::ToothState& field(std::size_t tooth = 0) noexcept;
     [[nodiscard]] const tooth::ToothState& field(std::size_t tooth = 0) const noexcept;
+    /// By its number in the mouth; null where that tooth is not cut.
+    [[nodiscard]] tooth::ToothState* fieldOf(std::uint16_t toothNumber) noexcept;
     [[nodiscard]] double largestRadiusMm() const noexcept;  ///< of the bur
 
   private:

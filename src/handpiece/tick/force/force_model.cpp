@@ -46,6 +46,7 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     touch_.touching = touch_.depth.depthMm > 0.0;
     touch_.tissue = touch_.touching ? touch_.depth.tissue : cases::Tissue::none;
     touch_.tooth = touch_.depth.tooth;
+    touch_.neighbour = 0;
     touch_.passes = 0;
     touch_.behindShare = 0.0;
     touch_.isHeldOnly = false;
@@ -82,7 +83,9 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     if (touch_.touching) {
         method.patches(touch_.proxyInTooth, touch_.patches);
         smoothShares(method.isCutNear(touch_.proxyInTooth), periodS);
-        if (!touch_.patches.patches.empty()) touch_.tooth = touch_.patches.patches[0].tooth;
+        if (!touch_.patches.patches.empty()) touch_.tooth = touch_.patches.patches[0].tooth;  // bears most
+        for (const contact::Patch& patch : touch_.patches.patches)
+            if (touch_.neighbour == 0) touch_.neighbour = patch.tooth;
         double most = 0.0;
         for (std::size_t i = 0; i < cases::kTissueCount; ++i) {
             if (touch_.patches.tissueShare[i] > most) {

@@ -20,6 +20,7 @@ struct Touch {
     bool touching = false;                          ///< the proxy is held by the tooth
     cases::Tissue tissue = cases::Tissue::none;     ///< that carries most of the pressure
     std::uint16_t tooth = 0;                        ///< that tissue's
+    std::uint16_t neighbour = 0;                    ///< of those around that the bur bears on most; 0: none
     bool isHeldOnly = false;                        ///< part of the force is held by what takes no cut
     core::Vec3 cutShare = core::Vec3::Zero();       ///< then: along which the rest pushes, 1 long when it is all
     double behindShare = 0.0;                       ///< of the force, that bears on shank, head or handle: 0 to 1

@@ -166,10 +166,8 @@ void HapticLoop::handOver() noexcept {
     for (std::size_t i = 0; i < cutter.toothCount(); ++i) {
         tooth::ToothState& field = cutter.field(i);
         if (field.outOfBricks()) cutFlags_ |= messages::kOutOfBricks;
-        handedBricks_ += field.handOver(kBricksPerTick, [this, i](tooth::BrickSnapshot& brick) noexcept {
-            brick.tooth = static_cast<std::uint16_t>(i);
-            return bricks_.tryPush(brick);
-        });
+        handedBricks_ += field.handOver(
+            kBricksPerTick, [this](const tooth::BrickSnapshot& brick) noexcept { return bricks_.tryPush(brick); });
     }
 }
 
@@ -179,11 +177,16 @@ void HapticLoop::restoreSome() noexcept {
     cutFlags_ |= messages::kRestoring;
     force_.waitUntilClear();  // until the last brick is in place
     // The same share of a period at every rate.
-    const auto most = static_cast<std::size_t>(1e3 * periodS_ * static_cast<double>(kRestoredPerMs));
-    const bool isThere = restore.tooth < cutter.toothCount();
-    if (isThere)
-        restore.next = cutter.field(restore.tooth).restore(restore.change, restore.next, std::max(most, kMinRestored));
-    isRestoring_ = isThere && restore.next < restore.change.bricks.size();
+    auto left = std::max(static_cast<std::size_t>(1e3 * periodS_ * static_cast<double>(kRestoredPerMs)), kMinRestored);
+    const std::vector<tooth::StateDelta::Brick>& bricks = restore.change.bricks;
+    do {
+        // Without bricks it still has volumes, of the tooth worked on.
+        tooth::ToothState* const field = cutter.fieldOf(bricks.empty() ? 0 : tooth::toothOf(bricks[restore.next].id));
+        const std::size_t next = field != nullptr ? field->restore(restore.change, restore.next, left) : bricks.size();
+        left -= std::min(left, next - restore.next);
+        restore.next = next;
+    } while (restore.next < bricks.size() && left > 0);
+    isRestoring_ = restore.next < bricks.size();
     if (!isRestoring_) restoring_.store(false, std::memory_order_release);
 }
 
@@ -207,6 +210,7 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     tellContact(touch, sample);
     sample.tissue = static_cast<std::uint8_t>(touch.tissue);
     sample.tooth = touch.tooth;
+    sample.touchedNeighbour = touch.neighbour;
     sample.contactStatus = static_cast<std::uint8_t>(touch.depth.status);
     sample.patchCount = static_cast<std::uint16_t>(touch.patches.patches.size());
     sample.flags = cutFlags_ | (command.forceLimited || eventForce_.forceLimited() ? messages::kForceLimited : 0u) |
@@ -225,11 +229,19 @@ void HapticLoop::publish(const device::Reading& reading, const force::Touch& tou
     sample.pedal = reading.pedal;
     sample.speedRpm = rotor_.speedRpm();
     sample.loadTorqueNmm = cut_.loadTorqueNmm;
+    double most = 0.0;
     if (const cutting::Cutter* const cutter = work_.current()->value.cutter.get(); cutter != nullptr)
         for (std::size_t i = 0; i < cutter->toothCount(); ++i) {
-            const tooth::TissueVolumes& removed = cutter->field(i).removedMm3();
-            for (std::size_t t = 0; t < removed.size(); ++t)
-                sample.removedMm3[t] += removed[t];
+            const tooth::ToothState& field = cutter->field(i);
+            const double removed = tooth::sumOf(field.removedMm3());
+            if (field.toothNumber() == 0)
+                sample.removedMm3 = field.removedMm3();
+            else
+                sample.removedOthersMm3 += removed;
+            if (field.toothNumber() > 0 && removed > most) {
+                most = removed;
+                sample.cutNeighbour = field.toothNumber();
+            }
             sample.waitingBricks += static_cast<std::uint32_t>(cutter->field(i).waitingBricks());
         }
     samples_.tryPush(sample);

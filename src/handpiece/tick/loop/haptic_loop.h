@@ -74,9 +74,9 @@ class HapticLoop {
     /// Another tooth or another bur: no force until the bur is clear of it, then it fades in.
     std::uint64_t setWork(Work work);
     std::uint64_t setMethod(std::unique_ptr<contact::Method> method);
-    /// Undo, redo, reset: puts bricks of the tooth in place, some a tick; no force until that is done and the bur is
+    /// Undo, redo, reset: puts bricks of the teeth in place, some a tick; no force until that is done and the bur is
     /// clear. Throws core::Error while an earlier change is still being put in place, and when no tooth can be cut.
-    std::uint64_t restore(tooth::StateDelta change, std::uint16_t toothIndex = 0);
+    std::uint64_t restore(tooth::StateDelta change);
     [[nodiscard]] bool restoring() const noexcept { return restoring_.load(std::memory_order_acquire); }
 
     /// Gives what the tick has told since the last call, in its order: each sample after the bricks that were handed
@@ -110,7 +110,6 @@ class HapticLoop {
     };
     struct Restore {
         tooth::StateDelta change;
-        std::uint16_t tooth = 0;
         std::size_t next = 0;
     };
     void takeStagedCommands() noexcept;

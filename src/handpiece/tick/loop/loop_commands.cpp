@@ -82,12 +82,11 @@ std::uint64_t HapticLoop::setMethod(std::unique_ptr<contact::Method> method) {
     return setWork(Work{std::move(method), nullptr});
 }
 
-std::uint64_t HapticLoop::restore(tooth::StateDelta change, std::uint16_t toothIndex) {
+std::uint64_t HapticLoop::restore(tooth::StateDelta change) {
     if (restoring())
         throw core::Error("an earlier undo is still being put in place", "haptic loop", "wait until it is done");
     restoring_.store(true, std::memory_order_release);
-    restore_.stage(
-        std::make_unique<Command<Restore>>(Command<Restore>{{std::move(change), toothIndex, 0}, ++commands_}));
+    restore_.stage(std::make_unique<Command<Restore>>(Command<Restore>{{std::move(change), 0}, ++commands_}));
     return commands_;
 }
 

@@ -105,7 +105,9 @@ void addMakeCommand(Command& app) {
     tooth.option("--age", o.patient.ageYears, "with --fdi: of the patient [years]; wear and the pulp's size")
         .showDefault();
     tooth.option("--faces", o.faces, "triangles of the outer surface").showDefault();
-    tooth.option("--part-faces", o.partFaces, "triangles of each tissue's surface; 0: as fine as the outer one")
+    tooth
+        .option("--part-faces", o.partFaces,
+                "triangles of each tissue's surface; 0: as fine as the outer one, with --fdi half as fine")
         .showDefault();
     tooth.flag("--scene", o.scene, "also the adjacent teeth, gingiva and bone");
     tooth.option("--lesion", o.lesions,

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cmath>
 #include <cstring>
 
 #include "handpiece/base/core/error.h"
@@ -124,6 +126,31 @@ TEST(Isosurface, LipschitzSkippingLosesNothing) {
     blind.lipschitz = 1e9;  // nothing can be skipped
     const core::Box box{{-6, -6, -2}, {6, 6, 2}};
     EXPECT_TRUE(sameBytes(isosurface(box, torus, sharp), isosurface(box, torus, blind)));
+}
+
+TEST(Isosurface, FollowsASurfaceThatIsSteeperThanUsual) {
+    // A tube that winds: four times as steep as a distance in one half of space, a third as steep in the other.
+    const auto tube = [](const Vec3& p) {
+        const double ring = std::hypot(std::hypot(p.x(), p.y()) - 3.0, p.z()) - 0.9;
+        return (p.x() > 0.0 ? 4.0 : 1.0 / 3.0) * ring;
+    };
+    IsosurfaceSettings byBound, guessed;
+    byBound.spacingMm = guessed.spacingMm = 0.07;
+    byBound.lipschitz = guessed.lipschitz = 4.0;
+    guessed.usualSlope = 0.5;
+    std::atomic<long> asked{0};
+    const auto counted = [&](const Vec3& p) {
+        ++asked;
+        return tube(p);
+    };
+    const core::Box box{Vec3::Constant(-4.5), Vec3::Constant(4.5)};
+    const TriangleMesh full = isosurface(box, counted, byBound);
+    const long askedByBound = asked.exchange(0);
+    const TriangleMesh quick = isosurface(box, counted, guessed);
+    EXPECT_LT(asked, askedByBound / 2);
+    EXPECT_EQ(quick.triangles.size(), full.triangles.size());
+    EXPECT_NEAR(enclosedVolumeMm3(quick), enclosedVolumeMm3(full), 1e-9);
+    EXPECT_TRUE(inspect(quick).closed());
 }
 
 TEST(Isosurface, CutsOffAtTheBox) {

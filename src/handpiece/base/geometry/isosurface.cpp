@@ -111,6 +111,7 @@ constexpr int nodeIndex(int x, int y, int z) {
 
 struct Block {
     std::array<std::int32_t, 3> at{};
+    bool isByBound = false;  ///< looked at by the bound, not by the usual slope
     std::bitset<kNodes * kNodes * kNodes> inside;
     std::vector<Vec3> vertices;
     std::vector<std::int16_t> edgeVertex;  ///< 3 per own node; -1 none. Empty when the block has no vertex on an edge
@@ -129,7 +130,12 @@ class Marcher {
   public:
     Marcher(const core::Box& box, const ScalarFunction& f, const IsosurfaceSettings& settings,
             const core::Progress& progress)
-        : f_(f), h_(settings.spacingMm), lipschitz_(settings.lipschitz), progress_(progress), origin_(box.min) {
+        : f_(f),
+          h_(settings.spacingMm),
+          lipschitz_(settings.lipschitz),
+          usualSlope_(settings.usualSlope > 0.0 ? std::min(settings.usualSlope, lipschitz_) : lipschitz_),
+          progress_(progress),
+          origin_(box.min) {
         layOut(box);
     }
 
@@ -139,6 +145,7 @@ class Marcher {
         : f_(noFunction()),
           h_(grid.spacingMm),
           lipschitz_(0.0),
+          usualSlope_(0.0),
           progress_(progress),
           origin_(grid.originMm - Vec3::Constant(grid.spacingMm)),
           grid_(&grid) {
@@ -160,6 +167,7 @@ class Marcher {
                 sample(active_[i]);
         });
         core::report(progress_, 0.5);
+        repair();
         TriangleMesh mesh = assemble();
         core::report(progress_, 0.6);
         return mesh;
@@ -199,7 +207,7 @@ class Marcher {
                 const auto index = static_cast<std::int64_t>(g);
                 const std::int64_t first[3] = {index % groups[0] * kGroup, index / groups[0] % groups[1] * kGroup,
                                                index / (groups[0] * groups[1]) * kGroup};
-                const double reach = lipschitz_ * kGroup * diagonal * margin;
+                const double reach = usualSlope_ * kGroup * diagonal * margin;
                 const std::int64_t half = kGroup * kCells / 2;
                 if (!(std::abs(f_(nodeMm(first[0] * kCells + half, first[1] * kCells + half,
                                          first[2] * kCells + half))) <= reach) &&
@@ -212,8 +220,8 @@ class Marcher {
                             const double value =
                                 f_(nodeMm(x * kCells + kCells / 2, y * kCells + kCells / 2, z * kCells + kCells / 2));
                             // At the border the solid may be cut off: nodes are outside there by decree.
-                            const bool cut = touchesBorder(at, 1) && !(value > lipschitz_ * diagonal * margin);
-                            if (cut || !(std::abs(value) > lipschitz_ * diagonal * margin))
+                            const bool cut = touchesBorder(at, 1) && !(value > usualSlope_ * diagonal * margin);
+                            if (cut || !(std::abs(value) > usualSlope_ * diagonal * margin))
                                 found[g].push_back({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
                                                     static_cast<std::int32_t>(z)});
                         }
@@ -285,6 +293,7 @@ class Marcher {
     // Values on the nodes, coarse to fine: where a coarser value proves that no edge of a node can cross, its sign is
     // enough and f is not asked.
     void evaluate(const Block& block, double* values) const {
+        std::bitset<kNodes * kNodes * kNodes> isGuess;
         if (grid_) {
             for (int z = 0; z < kNodes; ++z)
                 for (int y = 0; y < kNodes; ++y)
@@ -293,6 +302,7 @@ class Marcher {
                                               block.at[2] * kCells + z - 1);
             return;
         }
+        const double slope = block.isByBound ? lipschitz_ : usualSlope_;
         for (int stride = kCells; stride >= 1; stride /= 2)
             for (int z = 0; z < kNodes; z += stride)
                 for (int y = 0; y < kNodes; y += stride)
@@ -307,15 +317,113 @@ class Marcher {
                             const double v =
                                 std::abs(values[below]) > std::abs(values[above]) ? values[below] : values[above];
                             const double odd = ((x & coarse) != 0) + ((y & coarse) != 0) + ((z & coarse) != 0);
-                            const double left = std::abs(v) - lipschitz_ * h_ * stride * std::sqrt(odd);
-                            if (left > 1.01 * lipschitz_ * h_) {
+                            const double left = std::abs(v) - slope * h_ * stride * std::sqrt(odd);
+                            if (left > 1.01 * slope * h_) {
                                 value = v > 0.0 ? left : -left;
+                                isGuess[static_cast<std::size_t>(nodeIndex(x, y, z))] = true;
                                 continue;
                             }
                         }
-                        value =
-                            f_(nodeMm(block.at[0] * kCells + x, block.at[1] * kCells + y, block.at[2] * kCells + z));
+                        value = valueAt(block, x, y, z);
                     }
+        if (isGuess.any()) followSurface(block, values, isGuess);
+    }
+
+    [[nodiscard]] double valueAt(const Block& block, int x, int y, int z) const {
+        return f_(nodeMm(block.at[0] * kCells + x, block.at[1] * kCells + y, block.at[2] * kCells + z));
+    }
+
+    /// Asks wherever the sign changes next to a guess, until it does so nowhere.
+    void followSurface(const Block& block, double* values, std::bitset<kNodes * kNodes * kNodes>& isGuess) const {
+        const int step[3] = {1, kNodes, kNodes * kNodes};
+        for (bool changed = true; changed;) {
+            changed = false;
+            for (int z = 0; z < kNodes; ++z)
+                for (int y = 0; y < kNodes; ++y)
+                    for (int x = 0; x < kNodes; ++x) {
+                        const int at[3] = {x, y, z}, n = nodeIndex(x, y, z);
+                        for (int axis = 0; axis < 3; ++axis) {
+                            if (at[axis] == kCells) continue;
+                            const int m = n + step[axis];
+                            if ((values[n] < 0.0) == (values[m] < 0.0)) continue;
+                            for (const int node : {n, m})
+                                if (isGuess[static_cast<std::size_t>(node)]) {
+                                    isGuess[static_cast<std::size_t>(node)] = false;
+                                    values[node] =
+                                        valueAt(block, node % kNodes, node / kNodes % kNodes, node / (kNodes * kNodes));
+                                    changed = true;
+                                }
+                        }
+                    }
+        }
+    }
+
+    /// Where blocks disagree on nodes they share they are asked again by the bound, and where the surface passes into a
+    /// block that was not looked at, that one is.
+    void repair() {
+        for (;;) {
+            std::vector<std::size_t> again;
+            std::vector<std::array<std::int32_t, 3>> missed;
+            for (std::size_t i = 0; i < active_.size(); ++i)
+                for (int axis = 0; axis < 3; ++axis)
+                    for (const int side : {0, 1}) {
+                        std::array<std::int32_t, 3> at = active_[i].at;
+                        at[axis] += side == 1 ? 1 : -1;
+                        if (at[axis] < 0 || at[axis] >= blocks_[axis]) continue;
+                        const std::int32_t beyond = blockAt_[denseIndex(at[0], at[1], at[2])];
+                        if (beyond < 0 && !isFaceAlike(active_[i], axis, side))
+                            missed.push_back(at);
+                        else if (beyond >= 0 && side == 1 &&
+                                 !agree(active_[i], active_[static_cast<std::size_t>(beyond)], axis))
+                            again.insert(again.end(), {i, static_cast<std::size_t>(beyond)});
+                    }
+            if (again.empty() && missed.empty()) return;
+            if (usualSlope_ >= lipschitz_) throw tooSteep();
+            std::sort(again.begin(), again.end());
+            again.erase(std::unique(again.begin(), again.end()), again.end());
+            again.erase(std::remove_if(again.begin(), again.end(), [&](std::size_t i) { return active_[i].isByBound; }),
+                        again.end());
+            for (const auto& at : missed)
+                if (std::int32_t& index = blockAt_[denseIndex(at[0], at[1], at[2])]; index < 0) {
+                    index = static_cast<std::int32_t>(active_.size());
+                    again.push_back(active_.size());
+                    active_.emplace_back().at = at;
+                }
+            if (again.empty()) throw tooSteep();
+            // Marked first: the work below is left out where the tasks around it were cancelled.
+            for (const std::size_t i : again) {
+                Block asked;
+                asked.at = active_[i].at, asked.isByBound = true;
+                active_[i] = std::move(asked);
+            }
+            core::parallelFor(again.size(), 8, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i)
+                    sample(active_[again[i]]);
+            });
+        }
+    }
+
+    static int faceNode(int axis, int side, int u, int v) {
+        int node[3];
+        node[axis] = side * kCells, node[(axis + 1) % 3] = u, node[(axis + 2) % 3] = v;
+        return nodeIndex(node[0], node[1], node[2]);
+    }
+    static bool isFaceAlike(const Block& block, int axis, int side) {
+        for (int u = 0; u < kNodes; ++u)
+            for (int v = 0; v < kNodes; ++v)
+                if (block.inside[faceNode(axis, side, u, v)] != block.inside[faceNode(axis, side, 0, 0)]) return false;
+        return true;
+    }
+    static bool agree(const Block& block, const Block& next, int axis) {
+        for (int u = 0; u < kNodes; ++u)
+            for (int v = 0; v < kNodes; ++v)
+                if (block.inside[faceNode(axis, 1, u, v)] != next.inside[faceNode(axis, 0, u, v)]) return false;
+        return true;
+    }
+
+    static core::Error tooSteep() {
+        return core::Error("the function changes faster than its Lipschitz bound allows", "isosurface",
+                           "give a larger bound");
     }
 
     [[nodiscard]] double gridValue(std::int64_t x, std::int64_t y, std::int64_t z) const {
@@ -438,14 +546,12 @@ class Marcher {
         const std::int16_t local = owner && !owner->edgeVertex.empty()
                                        ? owner->edgeVertex[ownEdge(x % kCells, y % kCells, z % kCells, axis)]
                                        : std::int16_t{-1};
-        if (local < 0)
-            throw core::Error("the function changes faster than its Lipschitz bound allows", "isosurface",
-                              "give a larger bound");
+        if (local < 0) throw tooSteep();
         return owner->firstVertex + static_cast<std::uint32_t>(local);
     }
 
     const ScalarFunction& f_;
-    double h_, lipschitz_;
+    double h_, lipschitz_, usualSlope_;
     const core::Progress& progress_;
     Vec3 origin_;
     std::array<std::int64_t, 3> cells_{}, blocks_{};
@@ -467,10 +573,10 @@ class Polisher {
     Polisher(TriangleMesh& mesh, const ScalarFunction& f, const IsosurfaceSettings& settings)
         : mesh_(mesh), f_(f), h_(settings.spacingMm), gradients_(mesh.vertices.size(), Vec3::Zero()) {
         if (settings.relaxations > 0) findNeighbours();
-        project();
+        project(false);
         for (int i = 0; i < settings.relaxations; ++i) {
             relax();
-            project();
+            project(settings.keepGradients);
         }
     }
 
@@ -489,11 +595,12 @@ class Polisher {
                 following_[fill[t[c]]++] = t[(c + 1) % 3];
     }
 
-    void project() {
+    void project(bool keepGradients) {
         core::parallelFor(mesh_.vertices.size(), 512, [&](std::size_t begin, std::size_t end) {
             for (std::size_t v = begin; v < end; ++v) {
                 Vec3& p = mesh_.vertices[v];
-                const auto [value, gradient] = valueAndGradient(f_, p, 0.02 * h_);
+                const auto [value, gradient] =
+                    keepGradients ? std::pair(f_(p), gradients_[v]) : valueAndGradient(f_, p, 0.02 * h_);
                 gradients_[v] = gradient;
                 const double squared = gradient.squaredNorm();
                 if (!(squared > 1e-6)) continue;

@@ -29,8 +29,9 @@ using geometry::TriangleMesh;
 
 constexpr double kFarMm = 3.5;   ///< distances to teeth are told up to here
 constexpr double kSeenMm = 6.0;  ///< farther inside a tooth than any place of it
-/// Distances to a tooth are looked up between nodes this far apart: an error of some microns.
-constexpr double kNodeMm = 0.4;
+/// Distances to a tooth are looked up between nodes this far apart, an error of some microns; farther off than
+/// kNearMm every other node is between its neighbours.
+constexpr double kNodeMm = 0.4, kNearMm = 1.0;
 /// The gingiva reaches so far into a tooth: the edge of its socket, as jagged as its triangles are large, lies unseen,
 /// and its margin is where its own smooth surface meets the tooth.
 constexpr double kIntoToothMm = 0.3;
@@ -63,24 +64,10 @@ class DistanceGrid {
     explicit DistanceGrid(const ToothBody& body) : from_(body.box.grown(kFarMm + kNodeMm).min) {
         const Vec3 size = body.box.grown(kFarMm + kNodeMm).size();
         for (int axis = 0; axis < 3; ++axis)
-            count_[axis] = 2 + static_cast<std::size_t>(size[axis] / kNodeMm);
+            count_[axis] = 3 + 2 * static_cast<std::size_t>(0.5 * size[axis] / kNodeMm);
         values_.resize(count_[0] * count_[1] * count_[2]);
-        core::parallelFor(count_[2], 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k)
-                for (std::size_t j = 0; j < count_[1]; ++j) {
-                    std::uint32_t seed = geometry::kNoTriangle;
-                    for (std::size_t i = 0; i < count_[0]; ++i) {
-                        const Vec3 p = from_ + kNodeMm * Vec3(static_cast<double>(i), static_cast<double>(j),
-                                                              static_cast<double>(k));
-                        const geometry::NearestPoint n = body.tree.nearest(p, kSeenMm, seed);
-                        seed = n.triangle;
-                        double distance = kFarMm;
-                        if (seed != geometry::kNoTriangle)
-                            distance = std::clamp(body.tree.side(p, n) * n.distanceMm, -kFarMm, kFarMm);
-                        values_[(k * count_[1] + j) * count_[0] + i] = static_cast<float>(distance);
-                    }
-                }
-        });
+        measure(body, 2);
+        measure(body, 1);
     }
     [[nodiscard]] double at(const Vec3& p) const {
         const Vec3 u = (p - from_) / kNodeMm;
@@ -102,6 +89,41 @@ class DistanceGrid {
     }
 
   private:
+    [[nodiscard]] float& node(std::size_t i, std::size_t j, std::size_t k) {
+        return values_[(k * count_[1] + j) * count_[0] + i];
+    }
+    /// Every `stride`-th node; those of 1 that lie between nodes of 2, by these where they are far off.
+    void measure(const ToothBody& body, std::size_t stride) {
+        core::parallelFor((count_[2] + stride - 1) / stride, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin * stride; k < end * stride; k += stride)
+                for (std::size_t j = 0; j < count_[1]; j += stride) {
+                    std::uint32_t seed = geometry::kNoTriangle;
+                    for (std::size_t i = 0; i < count_[0]; i += stride) {
+                        const std::size_t oddI = i % 2, oddJ = j % 2, oddK = k % 2;
+                        if (stride == 1) {
+                            if (oddI + oddJ + oddK == 0) continue;
+                            float sum = 0.0f;
+                            for (std::size_t corner = 0; corner < 8; ++corner)
+                                sum += node(corner & 1 ? i + oddI : i - oddI, corner & 2 ? j + oddJ : j - oddJ,
+                                            corner & 4 ? k + oddK : k - oddK);
+                            if (std::abs(sum) > 8.0f * static_cast<float>(kNearMm)) {
+                                node(i, j, k) = 0.125f * sum;
+                                continue;
+                            }
+                        }
+                        const Vec3 p = from_ + kNodeMm * Vec3(static_cast<double>(i), static_cast<double>(j),
+                                                              static_cast<double>(k));
+                        const geometry::NearestPoint n = body.tree.nearest(p, kSeenMm, seed);
+                        seed = n.triangle;
+                        double distance = kFarMm;
+                        if (seed != geometry::kNoTriangle)
+                            distance = std::clamp(body.tree.side(p, n) * n.distanceMm, -kFarMm, kFarMm);
+                        node(i, j, k) = static_cast<float>(distance);
+                    }
+                }
+        });
+    }
+
     Vec3 from_;
     std::size_t count_[3];
     std::vector<float> values_;
@@ -111,7 +133,11 @@ class DistanceGrid {
 class Stander {
   public:
     explicit Stander(const ArchTooth& t)
-        : body_(t.tooth->outer), grid_(body_), pose_(t.inArch), turn_(t.inArch.orientation.toRotationMatrix()) {
+        : body_(t.tooth->outer),
+          grid_(body_),
+          pose_(t.inArch),
+          turn_(t.inArch.orientation.toRotationMatrix()),
+          axis_(turn_.col(2)) {
         const cases::Landmark* ring = nullptr;
         for (const cases::Landmark& landmark : t.tooth->landmarks)
             if (landmark.kind == cases::LandmarkKind::cementoEnamelJunction) ring = &landmark;
@@ -141,7 +167,7 @@ class Stander {
     [[nodiscard]] const ToothBody& body() const { return body_; }
     [[nodiscard]] const Pose& pose() const { return pose_; }
     [[nodiscard]] const Box& near() const { return near_; }
-    [[nodiscard]] Vec3 axis() const { return pose_.orientation * Vec3::UnitZ(); }
+    [[nodiscard]] const Vec3& axis() const { return axis_; }
     [[nodiscard]] double rootMm() const { return rootMm_; }
 
     struct Seen {
@@ -168,6 +194,7 @@ class Stander {
     DistanceGrid grid_;
     Pose pose_;
     core::Mat3 turn_;
+    Vec3 axis_;
     Box near_;
     Eigen::Matrix<double, 6, 1> junction_;
     double reach_ = 0.0, rootMm_ = 0.0;
@@ -183,6 +210,8 @@ class Arch {
             contacts_.push_back(gapBetween(standers_[i - 1].body(), standers_[i - 1].pose(), standers_[i].body(),
                                            standers_[i].pose(), kFarMm)
                                     .pointMm);
+        for (std::size_t i = 1; i < teeth.size(); ++i)
+            papillaAxes_.push_back((standers_[i - 1].axis() + standers_[i].axis()).normalized());
         up_ = standers_[teeth.size() / 2].axis().z() > 0.0 ? 1.0 : -1.0;
         for (const Stander& s : standers_) {
             for (const double z : {s.body().box.min.z(), 0.0})
@@ -225,8 +254,7 @@ class Arch {
                 plate = blend(plate, seen.distance - through(kPlate, seen.aboveCervix), 2.0, kPlateCap);
             }
             if (i > 0 && std::min(seen.distance, before.distance) < kFarMm) {
-                const Vec3 axis = (standers_[i - 1].axis() + s.axis()).normalized();
-                const double under = (contacts_[i - 1] - p).dot(axis) - kPapillaBelowContactMm;
+                const double under = (contacts_[i - 1] - p).dot(papillaAxes_[i - 1]) - kPapillaBelowContactMm;
                 const double wide = under < 0.0 ? under : kWidestPapilla * under / (under + kWidestPapilla);
                 // Between two teeth, not over the faces of narrow ones: the farther of the two counts more.
                 const double one = seen.distance, two = before.distance;
@@ -274,7 +302,7 @@ class Arch {
     }
 
     std::vector<Stander> standers_;
-    std::vector<Vec3> contacts_;
+    std::vector<Vec3> contacts_, papillaAxes_;
     Box box_;
     double up_ = 1.0, base_ = 1e9;
 };
@@ -313,6 +341,7 @@ TriangleMesh solidOf(const Box& box, const geometry::ScalarFunction& f, double s
                      const core::Progress& progress) {
     geometry::IsosurfaceSettings settings;
     settings.lipschitz = kSteepest;
+    settings.usualSlope = 1.0;
     settings.relaxations = 0;
     settings.project = false;  // between the nodes: sharp edges are planed off, not folded
     constexpr int kTries = 4;

@@ -19,17 +19,23 @@ using core::Progress;
 using geometry::TriangleMesh;
 
 /// Finer than this is always sampled, so that a fissure keeps its shape in a coarse mesh too.
-constexpr double kCoarsestSpacingMm = 0.085;
+constexpr double kCoarsestSpacingMm = 0.1, kCoarsestPartSpacingMm = 0.13;
 /// Faces sampled for each face kept, and those that marching cubes puts on a square of one spacing, on average.
 constexpr double kOversampling = 1.5, kFacesPerCell = 3.0;
+/// Tissues are hidden and mostly smooth: so many faces for one of the outer surface on the same area.
+constexpr double kPartDensity = 0.5;
+constexpr double kUsualSlope = 1.0;
 constexpr std::size_t kMaxPartFaces = 120000, kFewestPartFaces = 2000;
 
 TriangleMesh sampled(const core::Box& box, const geometry::ScalarFunction& f, double spacingMm, int relaxations,
                      const Progress& progress = {}) {
     geometry::IsosurfaceSettings settings;
     settings.lipschitz = ToothForm::kLipschitz;
+    settings.usualSlope = kUsualSlope;
     settings.spacingMm = spacingMm;
     settings.relaxations = relaxations;
+    settings.project = relaxations > 0;
+    settings.keepGradients = true;
     return geometry::isosurface(box, f, settings, progress);
 }
 
@@ -80,11 +86,10 @@ cases::Tooth makeTooth(int fdi, const Patient& patient, const ToothOptions& opti
         for (std::size_t i = begin; i < end; ++i)
             areaMm2[i] = geometry::surfaceAreaMm2(sampled(form.bounds(), of(i), 0.3, 0));
     });
-    // As fine as the outer surface, where nothing else was asked for.
     const auto facesOf = [&](std::size_t i) {
         if (i == 0) return options.faces;
         if (options.partFaces > 0) return options.partFaces;
-        const double density = static_cast<double>(options.faces) / areaMm2[0];
+        const double density = kPartDensity * static_cast<double>(options.faces) / areaMm2[0];
         return std::clamp(static_cast<std::size_t>(std::lround(density * areaMm2[i])), kFewestPartFaces, kMaxPartFaces);
     };
     // Surfaces side by side: each is thinned out by one thread.
@@ -93,7 +98,7 @@ cases::Tooth makeTooth(int fdi, const Patient& patient, const ToothOptions& opti
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t faces = facesOf(i);
             const double spacing =
-                std::min(kCoarsestSpacingMm,
+                std::min(i == 0 ? kCoarsestSpacingMm : kCoarsestPartSpacingMm,
                          std::sqrt(kFacesPerCell * areaMm2[i] / (kOversampling * static_cast<double>(faces))));
             const TriangleMesh fine = sampled(form.bounds(), of(i), spacing, 2, told(i, 0.0, 0.5));
             meshes[i] = geometry::decimate(fine, faces, told(i, 0.5, 1.0)).mesh;

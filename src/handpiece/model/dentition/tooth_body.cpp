@@ -15,29 +15,66 @@ constexpr double kDepthSeenMm = 1.5;
 void closest(const ToothBody& of, const Pose& ofPose, const ToothBody& to, const Pose& toPose, Gap& best) {
     const core::Mat3 turn = (toPose.orientation.conjugate() * ofPose.orientation).toRotationMatrix();
     const Vec3 shift = toPose.applyInverse(ofPose.positionMm);
-    for (const Vec3& point : of.points) {
-        const Vec3 p = turn * point + shift;
-        const double bound = std::max(best.distanceMm, 0.0);
-        if (((p - to.box.max).array() > bound).any() || ((to.box.min - p).array() > bound).any()) continue;
-        const geometry::NearestPoint n = to.tree.nearest(p, std::max(bound, kDepthSeenMm));
-        if (n.triangle == geometry::kNoTriangle) continue;
-        const double distance = to.tree.side(p, n) * n.distanceMm;
-        if (distance < best.distanceMm) best = {distance, toPose.apply(0.5 * (p + n.pointMm))};
+    const auto isBeyond = [&](const Vec3& p, double bound) {
+        return ((p - to.box.max).array() > bound).any() || ((to.box.min - p).array() > bound).any();
+    };
+    for (const ToothBody::Cluster& c : of.clusters) {
+        // No point of it is nearer, or deeper, than its middle less its radius.
+        const Vec3 centre = turn * c.centre + shift;
+        const double reach = std::max(best.distanceMm, 0.0) + c.radiusMm;
+        if (isBeyond(centre, reach)) continue;
+        const geometry::NearestPoint middle = to.tree.nearest(centre, std::max(reach, kDepthSeenMm + c.radiusMm));
+        if (middle.triangle == geometry::kNoTriangle ||
+            to.tree.side(centre, middle) * middle.distanceMm - c.radiusMm > best.distanceMm)
+            continue;
+        for (std::size_t i = c.begin; i < c.end; ++i) {
+            const Vec3 p = turn * of.points[i] + shift;
+            const double bound = std::max(best.distanceMm, 0.0);
+            if (isBeyond(p, bound)) continue;
+            const geometry::NearestPoint n = to.tree.nearest(p, std::max(bound, kDepthSeenMm), middle.triangle);
+            if (n.triangle == geometry::kNoTriangle) continue;
+            const double distance = to.tree.side(p, n) * n.distanceMm;
+            if (distance < best.distanceMm) best = {distance, toPose.apply(0.5 * (p + n.pointMm))};
+        }
     }
 }
 
 /// Fewer faces than this are larger than what a contact is measured by.
 constexpr std::size_t kFineFaces = 50000;
+constexpr std::size_t kInCluster = 48;
+
+void addClusters(std::vector<Vec3>& points, std::size_t begin, std::size_t end,
+                 std::vector<ToothBody::Cluster>& clusters) {
+    core::Box box;
+    for (std::size_t i = begin; i < end; ++i)
+        box.extend(points[i]);
+    if (end - begin > kInCluster) {
+        int axis = 0;
+        box.size().maxCoeff(&axis);
+        const std::size_t middle = begin + (end - begin) / 2;
+        const auto at = [&](std::size_t i) { return points.begin() + static_cast<std::ptrdiff_t>(i); };
+        std::nth_element(at(begin), at(middle), at(end),
+                         [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+        addClusters(points, begin, middle, clusters);
+        addClusters(points, middle, end, clusters);
+        return;
+    }
+    ToothBody::Cluster c{begin, end, box.centre(), 0.0};
+    for (std::size_t i = begin; i < end; ++i)
+        c.radiusMm = std::max(c.radiusMm, (points[i] - c.centre).norm());
+    clusters.push_back(c);
+}
 
 }  // namespace
 
 ToothBody::ToothBody(const geometry::TriangleMesh& outer)
     : mesh(outer), tree(outer), box(outer.bounds()), points(outer.vertices) {
-    if (outer.triangles.size() >= kFineFaces) return;
-    for (const geometry::Triangle& t : outer.triangles)
-        for (std::size_t e = 0; e < 3; ++e)
-            if (const std::uint32_t a = t[e], b = t[(e + 1) % 3]; a < b)
-                points.push_back(0.5 * (outer.vertices[a] + outer.vertices[b]));
+    if (outer.triangles.size() < kFineFaces)
+        for (const geometry::Triangle& t : outer.triangles)
+            for (std::size_t e = 0; e < 3; ++e)
+                if (const std::uint32_t a = t[e], b = t[(e + 1) % 3]; a < b)
+                    points.push_back(0.5 * (outer.vertices[a] + outer.vertices[b]));
+    addClusters(points, 0, points.size(), clusters);
 }
 
 Gap gapBetween(const ToothBody& a, const Pose& aPose, const ToothBody& b, const Pose& bPose, double boundMm) {

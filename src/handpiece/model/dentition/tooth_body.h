@@ -15,7 +15,14 @@ struct ToothBody {
     const geometry::TriangleMesh& mesh;
     geometry::TriangleTree tree;
     core::Box box;
-    std::vector<core::Vec3> points;  ///< vertices, and where those lie far apart the edges' middles
+    std::vector<core::Vec3> points;  ///< vertices, and where those lie far apart the edges' middles; cluster by cluster
+    /// Points close together, each in the ball.
+    struct Cluster {
+        std::size_t begin, end;
+        core::Vec3 centre;
+        double radiusMm;
+    };
+    std::vector<Cluster> clusters;
 };
 
 /// How far apart two surfaces are where they come closest; negative: how deep one is in the other.

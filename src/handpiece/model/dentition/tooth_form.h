@@ -64,7 +64,7 @@ class ToothForm {
 
 struct ToothOptions {
     std::size_t faces = 68151;  ///< of the outer surface; an odd count becomes the even one above
-    std::size_t partFaces = 0;  ///< of each tissue's surface; 0: as fine as the outer surface, at most 120,000
+    std::size_t partFaces = 0;  ///< of each tissue's surface; 0: half as fine as the outer surface, at most 120,000
 };
 
 inline constexpr std::size_t kMinFaces = 2000, kMaxFaces = 2000000;

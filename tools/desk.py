@@ -24,7 +24,7 @@ def missing():
 
 class Desk:
     """`build`: a folder under build/, or the program itself. `home`: settings, recordings and what goes with them; its
-    own by default. The starter tooth is taken from (and left in) the caller's cache."""
+    own by default. The teeth are taken from (and left in) the caller's cache."""
 
     def __init__(self, arguments=(), size="1440x900", display=None, build="release", home=None, environment=()):
         self.folder = pathlib.Path(home or tempfile.mkdtemp(prefix="handpiece-desk-"))

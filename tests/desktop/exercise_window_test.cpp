@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 class ExerciseTest : public ShellTest {
   protected:
     fs::path makeCase(const char* name, const std::vector<std::string>& locked) {
-        cases::Case made = eggTooth(starter::ToothKind::lowerFirstMolar);
+        cases::Case made = eggTooth(46);
         made.name = name;
         made.exercise.emplace();
         made.exercise->title = {{"en", "Class <b>I</b> cavity"}, {"ja", "I級窩洞"}};
@@ -109,8 +109,8 @@ TEST_F(ExerciseTest, TitleAndInstructionsStandInTheWindowInItsLanguageAsPlainTex
     EXPECT_FALSE(dock->isHidden());
     QCoreApplication::processEvents();
     EXPECT_EQ(view()->size(), picture);
-    openStarter({starter::ToothKind::upperIncisor, 4000});
-    ASSERT_TRUE(waitFor([&] { return simulator().toothCase()->kind == "upper-incisor"; }));
+    openTooth(11);
+    ASSERT_TRUE(waitFor([&] { return simulator().toothCase()->kind == "upper-central-incisor"; }));
     EXPECT_TRUE(dock->isHidden());
 }
 

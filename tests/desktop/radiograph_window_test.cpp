@@ -89,7 +89,7 @@ TEST_F(RadiographTest, IsSavedAsPngAndDicomMarkedAsSimulated) {
 TEST_F(RadiographTest, FollowsTheToothThatIsOpen) {
     openDialog();
     EXPECT_EQ(dialog().taken()->fdiNumber, 46);
-    openStarter({starter::ToothKind::upperIncisor, 4000});
+    openTooth(11);
     ASSERT_TRUE(waitFor([this] { return dialog().taken().has_value() && dialog().taken()->fdiNumber == 11; }));
 }
 

@@ -590,7 +590,7 @@ TEST_F(ScanInWindowTest, AFolderOfSlicesDroppedOnTheWindowOpensTheWizard) {
     EXPECT_EQ(window().findChildren<ScanWizard*>().size(), 1);
     // "Try it now" is the window's matter.
     const fs::path place = toPath(own_.filePath(QStringLiteral("egg.handpiece")));
-    cases::writeCase(eggTooth(starter::ToothKind::lowerFirstMolar), place);
+    cases::writeCase(eggTooth(46), place);
     emit wizard->tryNow(toQString(place));
     ASSERT_TRUE(waitFor([&] {
         return !simulator().isBusy() && simulator().mode() == Simulator::Mode::liveSession &&
@@ -602,7 +602,7 @@ TEST_F(ScanInWindowTest, AFolderOfSlicesDroppedOnTheWindowOpensTheWizard) {
 TEST_F(ScanInWindowTest, CasesAndMeshesAreNoScans) {
     startWithTooth();
     const fs::path folder = toPath(own_.filePath(QStringLiteral("case")));
-    cases::writeCase(eggTooth(starter::ToothKind::lowerFirstMolar), folder);
+    cases::writeCase(eggTooth(46), folder);
     drop(toQString(folder));
     EXPECT_FALSE(window().findChild<ScanWizard*>());
     ASSERT_TRUE(waitFor([&] {

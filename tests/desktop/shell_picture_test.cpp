@@ -127,8 +127,8 @@ TEST_F(PictureTest, AToothThatWasResetHasNoOpenPulp) {
     ASSERT_TRUE(waitFor([&] { return pulpMm3() > 1e-5; }));
     EXPECT_TRUE(waitFor([&] { return notices()->current() == QLatin1String("pulp-exposed"); }));
     // Another tooth has nothing of it.
-    openStarter({starter::ToothKind::upperIncisor, 4000});
-    ASSERT_TRUE(waitFor([&] { return simulator().toothCase()->kind == "upper-incisor"; }));
+    openTooth(11);
+    ASSERT_TRUE(waitFor([&] { return simulator().toothCase()->kind == "upper-central-incisor"; }));
     EXPECT_NE(notices()->current(), QLatin1String("pulp-exposed"));
 }
 
@@ -161,7 +161,7 @@ TEST_F(PictureTest, AViewHasOneName) {
 }
 
 TEST_F(PictureTest, AnOpenSurfaceIsMendedWhenAskedAndWrittenWhereOneSays) {
-    geometry::TriangleMesh open = eggTooth(starter::ToothKind::lowerFirstMolar).outer;
+    geometry::TriangleMesh open = eggTooth(46).outer;
     open.triangles.pop_back();
     geometry::writeStl(at("open.stl"), open);
     const auto size = fs::file_size(at("open.stl"));

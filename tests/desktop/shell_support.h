@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The whole program under the offscreen platform, with folders of its own. The starter teeth that it finds in its
-/// cache are put there by the test: an egg of enamel about dentine and pulp, beside a gum. Making real ones takes a
-/// quarter of a minute; one test does.
+/// The whole program under the offscreen platform, with folders of its own. The teeth that it finds in its cache are
+/// put there by the test: an egg of enamel about dentine and pulp, beside a gum, each alone. Making real ones takes
+/// seconds; one test does.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -32,18 +32,22 @@ inline bool waitFor(const std::function<bool()>& what) {
     return QTest::qWaitFor(what, 300000);
 }
 
-inline cases::Case eggTooth(starter::ToothKind kind) {
-    const starter::ToothKindInfo& info = starter::infoOf(kind);
+/// One that is kept, or made, without a mouth around it.
+inline Starter aloneTooth(int fdi) {
+    return {fdi, {}, 4000, false};
+}
+
+inline cases::Case eggTooth(int fdi) {
     const auto egg = [](int level, double scale) {
         return test::icosphere(level, [scale](const core::Vec3& v) {
             return core::Vec3(scale * 4.5 * v.x(), scale * 4.0 * v.y(), scale * 6.0 * v.z());
         });
     };
     cases::Case made;
-    made.name = std::string(info.name) + " (egg)";
-    made.kind = info.name;
-    made.fdiNumber = info.fdiNumber;
-    made.buccalSign = info.buccalSign;
+    made.kind = dentition::toothKindName(fdi);
+    made.name = made.kind + " (egg)";
+    made.fdiNumber = fdi;
+    made.buccalSign = dentition::ToothForm(fdi, {}).buccalSign();
     made.outer = egg(4, 1.0);
     const auto part = [](const char* name, cases::Tissue tissue, int priority, geometry::TriangleMesh mesh) {
         return cases::Part{name, tissue, priority, std::move(mesh)};
@@ -62,11 +66,9 @@ class ShellTest : public ::testing::Test {
     static QTemporaryDir& shared() {
         static QTemporaryDir folder;
         static const bool made = [] {
-            for (const starter::ToothKind kind :
-                 {starter::ToothKind::lowerFirstMolar, starter::ToothKind::upperIncisor})
-                cases::writeCase(eggTooth(kind),
-                                 toPath(folder.filePath("starter")) /
-                                     (std::string(starter::infoOf(kind).name) + "-4000-" HANDPIECE_VERSION));
+            for (const int fdi : {46, 11})
+                cases::writeCase(eggTooth(fdi), toPath(folder.filePath("teeth")) /
+                                                    ("tooth-1-25-" + std::to_string(fdi) + "-4000-" HANDPIECE_VERSION));
             return true;
         }();
         static_cast<void>(made);
@@ -78,8 +80,8 @@ class ShellTest : public ::testing::Test {
 
     [[nodiscard]] virtual Simulator::Options options() const {
         Simulator::Options options;
-        options.folders = {at("config/handpiece.ini"), at("data/sessions"), toPath(shared().filePath("starter"))};
-        options.starter = {starter::ToothKind::lowerFirstMolar, 4000};
+        options.folders = {at("config/handpiece.ini"), at("data/sessions"), toPath(shared().filePath("teeth"))};
+        options.starter = aloneTooth(46);
         options.sound = false;
         options.realTime = false;
         options.voxelUm = 100;
@@ -104,7 +106,7 @@ class ShellTest : public ::testing::Test {
     }
     [[nodiscard]] MainWindow& window() { return host_->window(); }
     [[nodiscard]] Simulator& simulator() { return host_->simulator(); }
-    void openStarter(const Starter& starter) { window().findChild<StarterFeature*>()->open(starter); }
+    void openTooth(int fdi) { window().findChild<StarterFeature*>()->open(aloneTooth(fdi)); }
     [[nodiscard]] ViewWidget* view() { return window().view(); }
     [[nodiscard]] QAction* action(const char* name) { return window().findChild<QAction*>(QLatin1String(name)); }
     [[nodiscard]] double removedMm3() {

@@ -24,6 +24,7 @@
 #include "cli/cli.h"
 #include "desktop/features/drill/drill_bar.h"
 #include "desktop/features/drill/parameter_box.h"
+#include "desktop/features/files/chart_dialog.h"
 #include "desktop/features/measure/measure_box.h"
 #include "desktop/features/measure/volume_bars.h"
 #include "desktop/features/replay/replay_bar.h"
@@ -81,8 +82,7 @@ TEST_F(ShellTest, EveryCommandHasANameATooltipAKeyAndAPlaceInTheMenus) {
         EXPECT_FALSE(names.contains(action->objectName()));
         names.insert(action->objectName());
     }
-    for (const char* name : {"actionStarter_lower-first-molar_6", "actionStarter_lower-first-molar_100",
-                             "actionStarter_upper-incisor_25", "actionLanguage_ja"})
+    for (const char* name : {"actionResolution_6", "actionResolution_100", "actionLanguage_ja"})
         EXPECT_NE(window().findChild<QAction*>(name), nullptr) << name;
 }
 
@@ -102,8 +102,8 @@ TEST_F(ShellTest, CutsUndoesSavesAndResumes) {
     ASSERT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !simulator().isUnsaved(); }));
     EXPECT_EQ(asked_, 0);
     // Another tooth in between: nothing is unsaved, so nobody asks.
-    openStarter({starter::ToothKind::upperIncisor, 4000});
-    ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "upper-incisor"; }));
+    openTooth(11);
+    ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "upper-central-incisor"; }));
     action("actionResume")->trigger();
     ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "lower-first-molar"; }));
     EXPECT_EQ(asked_, 0);
@@ -139,12 +139,12 @@ TEST_F(ShellTest, AsksBeforeUnsavedWorkGoes) {
 TEST_F(ShellTest, WhatIsOpenedWhileAnotherToothIsOpeningIsNotLost) {
     const fs::path first = at("first"), last = at("last");
     for (const fs::path& place : {first, last}) {
-        cases::Case made = eggTooth(starter::ToothKind::lowerFirstMolar);
+        cases::Case made = eggTooth(46);
         made.name = place.filename().string();
         cases::writeCase(made, place);
     }
     startWithTooth();
-    openStarter({starter::ToothKind::upperIncisor, 4000});
+    openTooth(11);
     ASSERT_TRUE(simulator().isBusy());
     window().openFile(toQString(first));
     window().openFile(toQString(last));
@@ -200,7 +200,7 @@ TEST_F(ShellTest, AFullDiskLosesNothing) {
 }
 
 TEST_F(ShellTest, ACaseThatVanishesIsSavedWithTheAttempt) {
-    const cases::Case made = eggTooth(starter::ToothKind::lowerFirstMolar);
+    const cases::Case made = eggTooth(46);
     cases::writeCase(made, at("case"));
     CommandLine line;
     line.file = own_.filePath("case");
@@ -429,17 +429,17 @@ TEST_F(ShellTest, AFileThatCannotBeOpenedIsToldOfAndThereIsAToothAllTheSame) {
 
 TEST_F(ShellTest, ACaseASurfaceAndARecordingAreOpenedByDroppingThem) {
     startWithTooth();
-    const cases::Case made = eggTooth(starter::ToothKind::upperIncisor);
+    const cases::Case made = eggTooth(11);
     cases::writeCase(made, at("incisor"));
     drop(own_.filePath("incisor"));
-    ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "upper-incisor"; }));
+    ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "upper-central-incisor"; }));
     geometry::writeMesh(at("outer.stl"), made.outer);
     drop(own_.filePath("outer.stl"));
     ASSERT_TRUE(waitFor([this] { return simulator().document().name == "outer" && !simulator().isBusy(); }))
         << simulator().document().name;
     const QString recording = toQString(simulator().recording());
     ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 100; }));
-    simulator().openStarter({starter::ToothKind::lowerFirstMolar, 4000});
+    simulator().openStarter(aloneTooth(46));
     ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "lower-first-molar"; }));
     drop(recording);
     EXPECT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
@@ -463,7 +463,7 @@ TEST_F(ShellTest, ARecordingOfAnotherEngineIsToldToBeApproximate) {
     drop(own_.filePath("older.h5"));
     ASSERT_TRUE(waitFor([&] { return notices->current() == "other-engine"; })) << notices->current().toStdString();
     EXPECT_EQ(simulator().document().name, "older.h5");
-    simulator().openStarter({starter::ToothKind::upperIncisor, 4000});
+    simulator().openStarter(aloneTooth(11));
     EXPECT_TRUE(waitFor([&] { return notices->current().isEmpty(); })) << notices->current().toStdString();
 }
 
@@ -473,13 +473,13 @@ TEST_F(ShellTest, AsksForWorkThatWaitsBehindAReplay) {
     action("actionReplay")->trigger();
     ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
     answer_ = Questions::Unsaved::cancel;
-    openStarter({starter::ToothKind::upperIncisor, 4000});
+    openTooth(11);
     EXPECT_EQ(asked_, 1);
     EXPECT_EQ(simulator().mode(), Simulator::Mode::replay);
     answer_ = Questions::Unsaved::save;
     file_ = own_.filePath("behind.handpiece");
-    openStarter({starter::ToothKind::upperIncisor, 4000});
-    ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "upper-incisor"; }));
+    openTooth(11);
+    ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->kind == "upper-central-incisor"; }));
     EXPECT_TRUE(fs::exists(toPath(file_)));
     EXPECT_EQ(asked_, 2);
 }
@@ -568,7 +568,7 @@ TEST_F(ShellTest, ARunIsToldInFigures) {
 TEST_F(ShellTest, AStarterToothIsMadeAtTheFirstStartAndKept) {
     Simulator::Options mine = options();
     mine.folders.starters = at("fresh");
-    mine.starter = {starter::ToothKind::upperIncisor, 4000};
+    mine.starter = aloneTooth(11);
     fs::file_time_type made;
     for (const bool first : {true, false}) {
         host_ = std::make_unique<Host>(*qApp, CommandLine{}, mine);
@@ -585,9 +585,9 @@ TEST_F(ShellTest, AStarterToothIsMadeAtTheFirstStartAndKept) {
         ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
         EXPECT_FALSE(view()->hasSketch());
         EXPECT_EQ(steps.size(), first ? 5 : 4) << steps.join(", ").toStdString();
-        EXPECT_EQ(simulator().toothCase()->kind, "upper-incisor");
+        EXPECT_EQ(simulator().toothCase()->kind, "upper-central-incisor");
         EXPECT_EQ(simulator().toothCase()->outer.triangles.size(), 4000u);
-        EXPECT_GT(simulator().toothCase()->scenery.size(), 1u);
+        EXPECT_FALSE(simulator().toothCase()->landmarks.empty());
         const fs::file_time_type now = fs::last_write_time(simulator().document().caseFile / "case.toml");
         if (first) {
             made = now;
@@ -598,10 +598,93 @@ TEST_F(ShellTest, AStarterToothIsMadeAtTheFirstStartAndKept) {
     }
 }
 
+/// Eggs in a row for a mouth: 32 teeth, and what it takes to be found in the cache.
+cases::Case eggMouth() {
+    cases::Case mouth = eggTooth(46);
+    mouth.scenery.clear();
+    double atMm = 12.0;
+    for (int quadrant = 1; quadrant <= 4; ++quadrant)
+        for (int place = 1; place <= 8; ++place) {
+            const int fdi = 10 * quadrant + place;
+            if (fdi == 46) continue;
+            cases::PlacedTooth other;
+            static_cast<cases::Tooth&>(other) = eggTooth(fdi);
+            other.parts.clear();
+            other.outer = test::icosphere(1, [](const core::Vec3& v) -> core::Vec3 { return 3.0 * v; });
+            other.inCase.positionMm = {0.0, (quadrant > 2 ? 1.0 : -1.0) * atMm, 0.0};
+            atMm += 7.0 / 2.0;
+            mouth.others.push_back(std::move(other));
+        }
+    return mouth;
+}
+
+TEST_F(ShellTest, TheChartOpensAnyToothOfTheMouthAndSaysWhatWasMadeAnew) {
+    const fs::path cache = at("mouths");
+    cases::writeCase(eggMouth(), cache / "mouth-1-25-8000-" HANDPIECE_VERSION);
+    for (const int fdi : {46, 23})
+        cases::writeCase(eggTooth(fdi), cache / ("tooth-1-25-" + std::to_string(fdi) + "-4000-" HANDPIECE_VERSION));
+    Simulator::Options mine = options();
+    mine.folders.starters = cache;
+    mine.starter = {46, {}, 4000, true};
+    host_ = std::make_unique<Host>(*qApp, CommandLine{}, mine);
+    window().resize(1000, 700);
+    host_->start();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
+    EXPECT_EQ(simulator().toothCase()->others.size(), 31u);
+    // By a click on the chart.
+    action("actionChooseTooth")->trigger();
+    auto* chart = window().findChild<ToothChart*>();
+    ASSERT_NE(chart, nullptr);
+    EXPECT_EQ(chart->chosen(), 46);
+    QTest::mouseClick(chart, Qt::LeftButton, {}, chart->centreOf(23).toPoint());
+    ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->fdiNumber == 23; }));
+    EXPECT_EQ(simulator().toothCase()->others.size(), 31u);
+    EXPECT_EQ(simulator().toothCase()->outer.triangles.size(), 5120u) << "the fine one, not that of the mouth";
+    ASSERT_TRUE(idle());
+    // A kept tooth that is damaged is made anew, and that is told; the one that is open stays until then.
+    fs::remove(cache / ("tooth-1-25-46-4000-" HANDPIECE_VERSION) / "outer.stl");
+    simulator().openStarter({46, {}, 4000, true});
+    EXPECT_TRUE(waitFor([this] { return window().findChild<NoticeBar*>()->current() == "cache-renewed"; }));
+    simulator().cancelJob();
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(simulator().toothCase()->fdiNumber, 23);
+}
+
+TEST_F(ShellTest, TheChartShowsTheCasesOfAFolderAtTheirTeeth) {
+    cases::Case school = eggTooth(16);
+    school.name = "A school's molar";
+    cases::writeCase(school, at("school") / "molar");
+    Simulator::Options mine = options();
+    mine.casesFolder = at("school");
+    host_ = std::make_unique<Host>(*qApp, CommandLine{}, mine);
+    window().resize(1000, 700);
+    host_->start();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
+    action("actionChooseTooth")->trigger();
+    auto* dialog = window().findChild<ChartDialog*>();
+    auto* mouths = dialog->findChild<QComboBox*>("chartMouth");
+    ASSERT_TRUE(waitFor([&] { return mouths->count() == 2; }));
+    EXPECT_TRUE(mouths->itemText(1).contains("A school's molar"));
+    // At its tooth there is a choice.
+    QTest::mouseClick(dialog->chart(), Qt::LeftButton, {}, dialog->chart()->centreOf(16).toPoint());
+    auto* choice = dialog->findChild<QMenu*>("chartChoice");
+    ASSERT_NE(choice, nullptr);
+    ASSERT_EQ(choice->actions().size(), 2);
+    choice->close();
+    // Its own chart has that tooth and no other.
+    mouths->setCurrentIndex(1);
+    EXPECT_EQ(dialog->chart()->chosen(), 16);
+    QTest::mouseClick(dialog->chart(), Qt::LeftButton, {}, dialog->chart()->centreOf(46).toPoint());
+    EXPECT_TRUE(dialog->isVisible());
+    QTest::mouseClick(dialog->chart(), Qt::LeftButton, {}, dialog->chart()->centreOf(16).toPoint());
+    ASSERT_TRUE(waitFor([this] { return simulator().toothCase()->fdiNumber == 16; }));
+    EXPECT_EQ(simulator().document().caseFile, at("school") / "molar");
+}
+
 TEST_F(ShellTest, TheFirstOpeningCanBeCancelled) {
     Simulator::Options mine = options();
     mine.folders.starters = at("fresh");
-    mine.starter = {starter::ToothKind::lowerFirstMolar, 68151};
+    mine.starter = {46, {}, 68151, true};
     host_ = std::make_unique<Host>(*qApp, CommandLine{}, mine);
     host_->start();
     ASSERT_TRUE(waitFor([this] { return view()->hasSketch(); }));
@@ -646,7 +729,7 @@ TEST_F(ShellTest, ThePapersForceAndHullAreChosenInItsLayout) {
     EXPECT_EQ(simulator().parameters().law, force::LawId::penalty);
     ASSERT_TRUE(waitFor([&] { return simulator().sample().lastCommand > 0; }));
     // Another tooth is felt the same way, and a reset of the multipliers leaves it.
-    simulator().openStarter({starter::ToothKind::upperIncisor, 4000});
+    simulator().openStarter(aloneTooth(11));
     ASSERT_TRUE(idle());
     EXPECT_EQ(simulator().parameters().law, force::LawId::penalty);
     EXPECT_EQ(force->currentIndex(), 1);
@@ -732,7 +815,7 @@ TEST_F(ShellTest, AfterACrashTheToothComesBack) {
     QProcess child;
     QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
     environment.insert("HANDPIECE_TEST_FOLDER", own_.path());
-    environment.insert("HANDPIECE_TEST_STARTER", shared().filePath("starter"));
+    environment.insert("HANDPIECE_TEST_STARTER", shared().filePath("teeth"));
     child.setProcessEnvironment(environment);
     child.start(QCoreApplication::applicationFilePath(),
                 {"--gtest_also_run_disabled_tests", "--gtest_filter=*DISABLED_CutsUntilItIsKilled"});

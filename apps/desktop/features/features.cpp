@@ -9,6 +9,7 @@
 #include "desktop/features/files/files_feature.h"
 #include "desktop/features/files/recovery_feature.h"
 #include "desktop/features/files/starter_feature.h"
+#include "desktop/features/landmarks/landmarks_feature.h"
 #include "desktop/features/measure/measure_feature.h"
 #include "desktop/features/position/position_feature.h"
 #include "desktop/features/radiograph/radiograph_feature.h"
@@ -40,7 +41,8 @@ void installFeatures(const FeatureContext& context) {
     add(new DeviceFeature(context));
     add(new ScanFeature(context));
     add(new RadiographFeature(context));
-    add(new FilesFeature(context));  // it opens whatever the others leave
+    add(new FilesFeature(context));      // it opens whatever the others leave
+    add(new LandmarksFeature(context));  // once it is known what may be left
     const auto refresh = [&window, &simulator] { window.refresh(simulator.permissions()); };
     const auto showTick = [features, refresh] {
         for (Feature* feature : features)

@@ -113,6 +113,8 @@ constexpr Row kRows[] = {
     {Notice::caseVanished, "case-vanished", Kind::warning,
      QT_TRANSLATE_NOOP("Notices", "The tooth you opened is no longer at %1. It was saved together with the attempt."),
      0, QT_TRANSLATE_NOOP("Notices", "Save as...")},
+    {Notice::cacheRenewed, "cache-renewed", Kind::hint,
+     QT_TRANSLATE_NOOP("Notices", "What was kept at %1 could not be used: it is made anew.")},
     {Notice::saved, "saved", Kind::hint, QT_TRANSLATE_NOOP("Notices", "Saved: %1")},
     {Notice::translationMissing, "translation-missing", Kind::warning,
      QT_TRANSLATE_NOOP("Notices", "There is no translation into this language: the window speaks English.")},

@@ -51,6 +51,7 @@ enum class Notice {
     handedInPart,
     otherEngine,
     caseVanished,
+    cacheRenewed,
     saved,
     translationMissing,
     openGlMissing

@@ -7,6 +7,7 @@
 #include <array>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "handpiece/base/core/vec.h"
 #include "handpiece/model/case/tissue.h"
@@ -16,7 +17,7 @@
 namespace handpiece::desktop {
 
 /// What the left button does in the picture.
-enum class Tool { drill, calliper, depth, pulp, section, mirror };
+enum class Tool { drill, calliper, depth, pulp, section, mirror, landmarks };
 
 /// How a remaining dentine thickness is to be taken.
 using Light = measure::PulpLight;
@@ -46,6 +47,20 @@ struct SectionPlace {
 /// A bucco-lingual section shows the tooth cut from cheek to tongue: its plane stands across x. Mesio-distal: across y.
 [[nodiscard]] view::Plane planeOf(const SectionPlace& place);
 [[nodiscard]] QString directionName(SectionPlace::Direction direction);
+
+/// A landmark as it is drawn, tooth frame: a point, or a line of them.
+struct ShownLandmark {
+    std::vector<core::Vec3> pointsMm;
+    QString name;
+    bool isRing = false;    ///< closed from the last point to the first
+    bool isInside = false;  ///< of the tooth: drawn through it
+    bool isSelected = false;
+    std::vector<bool> hidden{};  ///< by the tooth, point by point; the picture's own
+};
+/// One point of one of them.
+struct LandmarkPoint {
+    std::size_t landmark = 0, point = 0;
+};
 
 /// A tissue's name for a legend, translated.
 [[nodiscard]] QString tissueText(cases::Tissue tissue);

@@ -16,7 +16,7 @@ namespace {
 
 // The overlay lies on a picture, not on a window: it brings its own ground with it.
 const QColor kGround(18, 21, 26, 190), kEdge(255, 255, 255, 36), kText(238, 240, 243), kFaint(170, 178, 188),
-    kLine(255, 214, 90), kSectionLine(110, 200, 255);
+    kLine(255, 214, 90), kSectionLine(110, 200, 255), kLandmark(120, 235, 170), kInside(255, 150, 190);
 constexpr double kMargin = 12.0, kPad = 8.0, kRound = 6.0, kLeashPixels = 6.0, kDepthScaleWidth = 90.0;
 // Of the picture's height at most: else it hides more than it tells. And what a fitted tooth leaves free above it.
 constexpr double kLegendShare = 0.4, kHalfLegendShare = 0.25, kLegendWidthShare = 0.085, kFittedMargin = 0.095,
@@ -84,6 +84,15 @@ void dot(QPainter& p, const QPointF& at, const QColor& colour, double radius = 4
     p.setBrush(colour);
     p.drawEllipse(at, radius, radius);
     p.setBrush(Qt::NoBrush);
+}
+
+/// A word on the picture itself.
+void haloText(QPainter& p, const QPointF& at, const QString& text) {
+    QPainterPath path;
+    path.addText(at, p.font(), text);
+    p.setPen(QPen(QColor(0, 0, 0, 190), 3.0, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+    p.drawPath(path);
+    p.fillPath(path, kText);
 }
 
 /// A small label beside a point, kept inside the area. `lamp`: a coloured light before the text.
@@ -365,9 +374,46 @@ void message(QPainter& p, const QRectF& area, const OverlayState& state) {
                state.remedy);
 }
 
+void landmark(QPainter& p, const Area& area, const ShownLandmark& one, std::optional<std::size_t> grabbed) {
+    const QColor colour = one.isSelected ? kLine : one.isInside ? kInside : kLandmark;
+    const std::size_t count = one.pointsMm.size();
+    const auto seen = [&](std::size_t i) -> std::optional<QPointF> {
+        return i < one.hidden.size() && one.hidden[i] ? std::nullopt : area.at(one.pointsMm[i]);
+    };
+    for (std::size_t i = 0; count > 1 && i < (one.isRing ? count : count - 1); ++i)
+        if (const auto a = seen(i), b = seen((i + 1) % count); a && b)
+            haloLine(p, *a, *b, colour, one.isSelected ? 2.2 : 1.3);
+    if (count == 1)
+        if (const auto at = seen(0)) dot(p, *at, colour, one.isSelected ? 4.5 : 3.2);
+    if (grabbed)
+        if (const auto at = seen(*grabbed)) dot(p, *at, kLine, 5.0);
+    // Beside the middle of what is seen of it.
+    std::vector<std::size_t> left;
+    for (std::size_t i = 0; i < count; ++i)
+        if (seen(i)) left.push_back(i);
+    if (left.empty()) return;
+    const QPointF at = *seen(left[left.size() / 2]);
+    if (one.isSelected)
+        label(p, area, at, one.name);
+    else
+        haloText(p, at + QPointF(6, -5), one.name);
+}
+
+void landmarks(QPainter& p, const Area& area) {
+    p.save();
+    p.setFont(smaller(p.font(), 1.5));
+    for (std::size_t i = 0; i < area.state.landmarks.size(); ++i) {
+        const auto& grabbed = area.state.grabbed;
+        landmark(p, area, area.state.landmarks[i],
+                 grabbed && grabbed->landmark == i ? std::optional(grabbed->point) : std::nullopt);
+    }
+    p.restore();
+}
+
 void onTooth(QPainter& p, const Area& area) {
     const OverlayState& state = area.state;
     sectionFrame(p, area);
+    landmarks(p, area);
     // Who cuts on wants to see the cavity, and its readings are no longer true.
     for (const Measurement& one : state.pressed ? std::vector<Measurement>{} : state.measurements)
         measurement(p, area, one, false);

@@ -42,6 +42,8 @@ struct OverlayState {
     bool mirrorView = false;              ///< only a mirror's picture is seen
     std::optional<Measurement> thinnest;  ///< over the pulp
     measure::PulpLimits pulpLimits;
+    std::vector<ShownLandmark> landmarks;
+    std::optional<LandmarkPoint> grabbed;  ///< of them, that is moved
     std::optional<SectionPlace> section;
     core::Box bounds;  ///< of the tooth
     QString hint;      ///< one line, what to do

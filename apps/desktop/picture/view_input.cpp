@@ -64,6 +64,7 @@ void ViewWidget::State::end() {
         hand->freeze(tool != Tool::drill);
         hoverAgain();
     }
+    if (was == Drag::landmark) emit widget->landmarkDropped();
     updateCursor();
     widget->update();
 }
@@ -76,8 +77,8 @@ void ViewWidget::State::updateCursor() {
         shape = Qt::SizeAllCursor;
     else if (tool == Tool::section)
         shape = Qt::SizeHorCursor;
-    else if (tool == Tool::mirror)
-        shape = Qt::OpenHandCursor;
+    else if (tool == Tool::mirror || tool == Tool::landmarks)
+        shape = drag == Drag::landmark ? Qt::ClosedHandCursor : Qt::OpenHandCursor;
     widget->setCursor(shape);
 }
 
@@ -188,6 +189,9 @@ void ViewWidget::State::moveTo(const QPointF& position, Qt::KeyboardModifiers mo
         case Drag::mirror:
             dragMirror(from, position);
             return;
+        case Drag::landmark:
+            dragLandmark(position);
+            return;
         case Drag::press:
             if (dragKind == Binding::Kind::key) return;  // pressed from the keyboard: the mouse does not push it
             break;
@@ -291,6 +295,14 @@ void ViewWidget::mousePressEvent(QMouseEvent* event) {
         s.begin(s.tool == Tool::section ? Drag::section : Drag::mirror, binding);
         return;
     }
+    if (s.tool == Tool::landmarks) {
+        s.grabbed = s.landmarkAt(event->position());
+        update();
+        if (!s.grabbed) return;
+        s.begin(Drag::landmark, binding);
+        emit landmarkGrabbed(s.grabbed->landmark);
+        return;
+    }
     if (s.tool != Tool::drill) {
         s.pressTool(event->position());
         return;
@@ -385,6 +397,7 @@ void ViewWidget::wheelEvent(QWheelEvent* event) {
 }
 
 bool ViewWidget::State::stepTool(Action action, bool slow) {
+    if (stepLandmark(action, slow)) return true;
     const double step = slow ? kFineSectionStepMm : kSectionStepMm;
     if (tool == Tool::section) {
         if (action == Action::moveRight || action == Action::moveUp) return moveSection(step), true;

@@ -169,6 +169,7 @@ void ViewWidget::State::wish() {
 
 void ViewWidget::State::eyeMoved() {
     camera.mirrored = mirrorView;
+    hideLandmarks();
     if (hand) hand->setEye(handsEye(), viewport());
     if (drag == Drag::none) hoverAgain();
     if (cross) read(*cross);
@@ -279,6 +280,8 @@ QString ViewWidget::State::hint() const {
             return ViewWidget::tr("Drag, turn the wheel or use the arrow keys to move the section");
         case Tool::mirror:
             return ViewWidget::tr("Drag the mirror; the wheel moves it nearer or farther");
+        case Tool::landmarks:
+            return ViewWidget::tr("Drag a landmark over the tooth, or move the one chosen with the arrow keys");
     }
     return {};
 }
@@ -332,6 +335,8 @@ OverlayState ViewWidget::State::overlay() const {
     state.cross = cross;
     if (thinnest && !isHidden(thinnest->fromMm)) state.thinnest = thinnest;
     state.pulpLimits = pulpLimits;
+    if (!state.pressed) state.landmarks = landmarks;
+    if (tool == Tool::landmarks) state.grabbed = grabbed;
     state.section = section;
     state.bounds = bounds;
     state.hint = hint();

@@ -18,7 +18,7 @@
 namespace handpiece::desktop {
 
 /// What a held button or key makes of the pointer's moves.
-enum class Drag { none, press, orbit, pan, pivot, section, mirror };
+enum class Drag { none, press, orbit, pan, pivot, section, mirror, landmark };
 
 struct ViewWidget::State {
     explicit State(ViewWidget* of);
@@ -52,6 +52,8 @@ struct ViewWidget::State {
     bool sectionPlaced = false;
     std::optional<core::Vec3> mirrorCentreMm, restMm;
     bool mirrorView = false;
+    std::vector<ShownLandmark> landmarks;
+    std::optional<LandmarkPoint> grabbed;
     std::vector<Measurement> measurements;
     std::optional<core::Vec3> calliperStartMm, pointerMm;
     std::optional<Measurement> reading, thinnest;
@@ -128,6 +130,10 @@ struct ViewWidget::State {
     void moveSection(double byMm);
     void dragSection(const QPointF& from, const QPointF& to);
     void dragMirror(const QPointF& from, const QPointF& to);
+    void hideLandmarks();  // those behind the tooth
+    [[nodiscard]] std::optional<LandmarkPoint> landmarkAt(const QPointF& position) const;
+    void dragLandmark(const QPointF& to);
+    bool stepLandmark(Action action, bool slow);
     void updateCursor();
 };
 

@@ -132,6 +132,89 @@ void ViewWidget::clearMeasurements() {
     update();
 }
 
+void ViewWidget::setLandmarks(std::vector<ShownLandmark> landmarks) {
+    State& s = *state_;
+    s.landmarks = std::move(landmarks);
+    if (s.grabbed && (s.grabbed->landmark >= s.landmarks.size() ||
+                      s.grabbed->point >= s.landmarks[s.grabbed->landmark].pointsMm.size()))
+        s.grabbed.reset();
+    s.hideLandmarks();
+    update();
+}
+const std::vector<ShownLandmark>& ViewWidget::landmarks() const {
+    return state_->landmarks;
+}
+
+void ViewWidget::grabLandmark(std::optional<LandmarkPoint> at) {
+    state_->grabbed = at;
+    update();
+}
+
+std::optional<LandmarkPoint> ViewWidget::grabbedLandmark() const {
+    return state_->grabbed;
+}
+
+void ViewWidget::State::hideLandmarks() {
+    for (ShownLandmark& one : landmarks) {
+        one.hidden.assign(one.pointsMm.size(), false);
+        if (one.isInside) continue;
+        // A long line's points stand in for those beside them: each asks the tooth.
+        constexpr std::size_t kMostAsked = 24;
+        const std::size_t step = 1 + one.pointsMm.size() / kMostAsked;
+        for (std::size_t i = 0; i < one.pointsMm.size(); i += step) {
+            const bool isGone = isHidden(one.pointsMm[i]);
+            for (std::size_t k = i; k < std::min(i + step, one.pointsMm.size()); ++k)
+                one.hidden[k] = isGone;
+        }
+    }
+}
+
+std::optional<LandmarkPoint> ViewWidget::State::landmarkAt(const QPointF& position) const {
+    constexpr double kReachPixels = 14.0;
+    std::optional<LandmarkPoint> found;
+    double least = kReachPixels;
+    const core::Vec2 at = pixel(position);
+    for (std::size_t i = 0; i < landmarks.size(); ++i)
+        for (std::size_t k = 0; k < landmarks[i].pointsMm.size(); ++k) {
+            if (k < landmarks[i].hidden.size() && landmarks[i].hidden[k]) continue;
+            const auto seen = view::pixelOf(camera, viewport(), landmarks[i].pointsMm[k]);
+            if (!seen || !((*seen - at).norm() < least)) continue;
+            least = (*seen - at).norm();
+            found = {i, k};
+        }
+    return found;
+}
+
+void ViewWidget::State::dragLandmark(const QPointF& to) {
+    if (!grabbed || grabbed->landmark >= landmarks.size()) return;
+    const ShownLandmark& one = landmarks[grabbed->landmark];
+    if (!one.isInside) {
+        if (const auto hit = hitAt(to)) emit widget->landmarkDragged(*grabbed, hit->pointMm);
+        return;
+    }
+    const view::Ray ray = view::rayThrough(camera, viewport(), pixel(to));
+    const double along = ray.direction.dot(camera.forward());
+    const double depth = (one.pointsMm[grabbed->point] - ray.originMm).dot(camera.forward());
+    if (along > 1e-6) emit widget->landmarkDragged(*grabbed, ray.originMm + ray.direction * (depth / along));
+}
+
+/// The one that is chosen, by the arrow keys.
+bool ViewWidget::State::stepLandmark(Action action, bool slow) {
+    constexpr double kPixels = 6.0, kFinePixels = 1.0;
+    if (tool != Tool::landmarks || !grabbed || grabbed->landmark >= landmarks.size()) return false;
+    const double step = slow ? kFinePixels : kPixels;
+    QPointF by;
+    if (action == Action::moveLeft) by = {-step, 0};
+    if (action == Action::moveRight) by = {step, 0};
+    if (action == Action::moveUp) by = {0, -step};
+    if (action == Action::moveDown) by = {0, step};
+    const auto at = view::pixelOf(camera, viewport(), landmarks[grabbed->landmark].pointsMm[grabbed->point]);
+    if (by.isNull() || !at) return false;
+    dragLandmark(QPointF(at->x(), at->y()) + by);
+    emit widget->landmarkDropped();
+    return true;
+}
+
 void ViewWidget::setPulpLimits(const measure::PulpLimits& limits) {
     state_->pulpLimits = limits;
     update();

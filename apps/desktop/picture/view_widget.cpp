@@ -79,7 +79,8 @@ void ViewWidget::showSketch(const cases::Case& sketch) {
     if (!sketch.outer.triangles.empty()) bounds = sketch.outer.bounds();
     if (shown.empty()) shown = {{"tooth", cases::Tissue::enamel, 0, sketch.outer}};
     if (shown.front().mesh.triangles.empty()) return;
-    shown.insert(shown.end(), sketch.scenery.begin(), sketch.scenery.end());
+    for (cases::Part& part : cases::surroundings(sketch))
+        shown.push_back(std::move(part));
     s.isSketch = true;
     s.take(sketch, bounds);
     s.render->setTooth(nullptr, {}, std::move(shown), nullptr);
@@ -106,6 +107,7 @@ void ViewWidget::clearTooth() {
     setCompare(false);
     setTool(Tool::drill);
     clearMeasurements();
+    setLandmarks({});
     s.thinnest.reset();
     s.sectionPlaced = false;
     s.frame.reset();

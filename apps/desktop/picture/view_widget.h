@@ -94,6 +94,12 @@ class ViewWidget : public QWidget {
     void setMirrorShown(bool shown);
     [[nodiscard]] bool isMirrorShown() const;
     void clearMeasurements();
+    /// Landmarks over the picture; with Tool::landmarks one is moved by pressing on it, or by the arrow keys.
+    void setLandmarks(std::vector<ShownLandmark> landmarks);
+    [[nodiscard]] const std::vector<ShownLandmark>& landmarks() const;
+    /// That the keys move; none: they move nothing.
+    void grabLandmark(std::optional<LandmarkPoint> at);
+    [[nodiscard]] std::optional<LandmarkPoint> grabbedLandmark() const;
     /// From which thickness over the pulp on a reading is green, and under which it is red.
     void setPulpLimits(const measure::PulpLimits& limits);
     /// All that is written and drawn on the picture now.
@@ -152,6 +158,10 @@ class ViewWidget : public QWidget {
     void mirrorChanged(bool shown);
     void mirrorViewChanged(bool on);
     void restChanged(bool there);
+    void landmarkGrabbed(std::size_t landmark);
+    /// To this place: of the surface under the pointer; for what lies inside as far from the eye as it was.
+    void landmarkDragged(handpiece::desktop::LandmarkPoint at, const handpiece::core::Vec3& toMm);
+    void landmarkDropped();
     void refused(handpiece::exercise::Operation operation);  ///< the exercise locks it
 
   protected:

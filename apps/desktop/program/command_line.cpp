@@ -85,8 +85,8 @@ CommandLine parseCommandLine(const QStringList& arguments) {
 QString usage() {
     return QStringLiteral(
         "Usage: handpiece-desktop [CASE] [options]\n"
-        "Opens a case, an attempt (.handpiece), an STL file or a recorded session (.h5); without one the starter "
-        "tooth.\n"
+        "Opens a case, an attempt (.handpiece), an STL file or a recorded session (.h5); without one a lower "
+        "first molar in the mouth.\n"
         "\n"
         "  --layout practice|laboratory|paper   which panels are shown\n"
         "  --language en|ja                     the language of this start\n"

@@ -10,7 +10,7 @@
 namespace handpiece::desktop {
 
 struct CommandLine {
-    QString file;      ///< case, attempt, STL or session to open; empty: the starter tooth
+    QString file;      ///< case, attempt, STL or session to open; empty: a tooth in the mouth
     QString layout;    ///< "practice", "laboratory", "paper"; empty: as it was
     QString language;  ///< "en", "ja"; empty: as it was
     QString device;    ///< that holds the handpiece: a driver's name, "mouse"; empty: as it was

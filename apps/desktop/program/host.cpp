@@ -23,6 +23,7 @@ Simulator::Options asAsked(Simulator::Options options, const CommandLine& line,
     options.hands.leftHanded = school.leftHanded;
     options.hands.scale = school.scale;
     if (school.sessionsFolder) options.folders.sessions = *school.sessionsFolder;
+    if (school.casesFolder) options.casesFolder = *school.casesFolder;
     if (school.record) options.record = *school.record;
     if (school.voxelUm) options.voxelUm = static_cast<int>(std::lround(*school.voxelUm));
     // One of the two alone must not turn them round.

@@ -48,10 +48,6 @@
         <translation>歯を選ぶ...</translation>
     </message>
     <message>
-        <source>Choose a tooth on the chart of the mouth</source>
-        <translation>歯列図から歯を選びます</translation>
-    </message>
-    <message>
         <source>Resume last attempt</source>
         <translation>前回の続き</translation>
     </message>
@@ -550,6 +546,26 @@
     <message>
         <source>A simulated bitewing or periapical radiograph of the tooth that is open</source>
         <translation>開いている歯の咬翼法・根尖投影（デンタル）の模擬 X 線画像</translation>
+    </message>
+    <message>
+        <source>Choose a tooth, and whose, on the chart of the mouth</source>
+        <translation>歯列の図で、だれのどの歯かを選びます</translation>
+    </message>
+    <message>
+        <source>Landmarks</source>
+        <translation>解剖学的指標点</translation>
+    </message>
+    <message>
+        <source>Cusp tips, fissures, ridges, contacts and the like over the tooth, and their list</source>
+        <translation>咬頭頂、裂溝、隆線、接触点などを歯の上に示し、一覧を開きます</translation>
+    </message>
+    <message>
+        <source>Move landmarks</source>
+        <translation>指標点を動かす</translation>
+    </message>
+    <message>
+        <source>For teachers: drag a landmark over the tooth</source>
+        <translation>指導者用：指標点を歯の上でドラッグします</translation>
     </message>
 </context>
 <context>
@@ -1426,6 +1442,10 @@
     <message>
         <source>Save as...</source>
         <translation>名前を付けて保存...</translation>
+    </message>
+    <message>
+        <source>What was kept at %1 could not be used: it is made anew.</source>
+        <translation>%1 に保存されていたものは使えないため、作り直します。</translation>
     </message>
 </context>
 <context>
@@ -4231,52 +4251,24 @@ openhaptics:Left Arm, or forcedimension:2</source>
 <context>
     <name>handpiece::desktop::StarterFeature</name>
     <message>
-        <source>Starter tooth</source>
-        <translation>練習用の歯</translation>
-    </message>
-    <message>
         <source>%1 % · %2 faces</source>
         <translation>%1 % · %2 面</translation>
     </message>
     <message>
-        <source>Open this starter tooth</source>
-        <translation>この練習用の歯を開きます</translation>
+        <source>Resolution of the tooth</source>
+        <translation>歯の解像度</translation>
     </message>
     <message>
-        <source>Starter tooth&apos;s resolution</source>
-        <translation>練習用の歯の解像度</translation>
+        <source>Make the tooth that is open anew with so many faces</source>
+        <translation>開いている歯をこの面数で作り直します</translation>
     </message>
     <message>
-        <source>The starter tooth at one of the five resolutions of the paper&apos;s Table II</source>
-        <translation>練習用の歯を、論文の表 II にある 5 つの解像度から選んで開きます</translation>
+        <source>A tooth of the program at one of the five resolutions of the paper&apos;s Table II</source>
+        <translation>プログラムの歯を、論文の表 II の五つの解像度のいずれかで開きます</translation>
     </message>
     <message>
-        <source>Choose a tooth</source>
-        <translation>歯を選ぶ</translation>
-    </message>
-    <message>
-        <source>Notation</source>
-        <translation>歯式</translation>
-    </message>
-    <message>
-        <source>How teeth are numbered</source>
-        <translation>歯の番号の付け方を選びます</translation>
-    </message>
-    <message>
-        <source>FDI (ISO 3950)</source>
-        <translation>FDI (ISO 3950)</translation>
-    </message>
-    <message>
-        <source>Universal</source>
-        <translation>ユニバーサル</translation>
-    </message>
-    <message>
-        <source>Palmer</source>
-        <translation>パーマー（ジグモンディ）</translation>
-    </message>
-    <message>
-        <source>The teeth in full colour come with the program. Others are opened as cases.</source>
-        <translation>灰色でない歯はプログラムに付属しています。ほかの歯は症例として開いてください。</translation>
+        <source>Resolution</source>
+        <translation>解像度</translation>
     </message>
 </context>
 <context>
@@ -5804,6 +5796,10 @@ lingual: %4</source>
         <source>Simulated device</source>
         <translation>模擬デバイス</translation>
     </message>
+    <message>
+        <source>making the mouth around it (the first time only)</source>
+        <translation>周りの口腔を作成中（初回のみ）</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::SliceView</name>
@@ -6827,6 +6823,10 @@ lingual: %4</source>
         <source>Point at the cavity&apos;s floor; a click or %1 keeps the remaining dentine thickness</source>
         <translation>窩底を指してください。クリックまたは %1 で残存象牙質の厚さを残します</translation>
     </message>
+    <message>
+        <source>Drag a landmark over the tooth, or move the one chosen with the arrow keys</source>
+        <translation>指標点を歯の上でドラッグするか、選んだものを矢印キーで動かします</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::VolumeBars</name>
@@ -6904,6 +6904,358 @@ lingual: %4</source>
     <message>
         <source>%1 of %2</source>
         <translation>%1 / %2</translation>
+    </message>
+</context>
+<context>
+    <name>Landmarks</name>
+    <message>
+        <source>Cusp tip</source>
+        <translation>咬頭頂</translation>
+    </message>
+    <message>
+        <source>Pit</source>
+        <translation>小窩</translation>
+    </message>
+    <message>
+        <source>Contact</source>
+        <translation>接触点</translation>
+    </message>
+    <message>
+        <source>Pulp horn</source>
+        <translation>髄角</translation>
+    </message>
+    <message>
+        <source>Orifice</source>
+        <translation>根管口</translation>
+    </message>
+    <message>
+        <source>Furcation</source>
+        <translation>根分岐部</translation>
+    </message>
+    <message>
+        <source>Apex</source>
+        <translation>根尖</translation>
+    </message>
+    <message>
+        <source>Fissure</source>
+        <translation>裂溝</translation>
+    </message>
+    <message>
+        <source>Marginal ridge</source>
+        <translation>辺縁隆線</translation>
+    </message>
+    <message>
+        <source>Ridge</source>
+        <translation>隆線</translation>
+    </message>
+    <message>
+        <source>Height of contour</source>
+        <translation>最大豊隆部</translation>
+    </message>
+    <message>
+        <source>Cemento-enamel junction</source>
+        <translation>セメント・エナメル境</translation>
+    </message>
+    <message>
+        <source>Long axis</source>
+        <translation>歯軸</translation>
+    </message>
+    <message>
+        <source>Path of insertion</source>
+        <translation>着脱方向</translation>
+    </message>
+    <message>
+        <source>generated</source>
+        <translation>生成</translation>
+    </message>
+    <message>
+        <source>found</source>
+        <translation>検出</translation>
+    </message>
+    <message>
+        <source>set by hand</source>
+        <translation>手動で設定</translation>
+    </message>
+    <message>
+        <source>mesiobuccal</source>
+        <translation>近心頬側</translation>
+    </message>
+    <message>
+        <source>distobuccal</source>
+        <translation>遠心頬側</translation>
+    </message>
+    <message>
+        <source>mesiolingual</source>
+        <translation>近心舌側</translation>
+    </message>
+    <message>
+        <source>distolingual</source>
+        <translation>遠心舌側</translation>
+    </message>
+    <message>
+        <source>mesiopalatal</source>
+        <translation>近心口蓋側</translation>
+    </message>
+    <message>
+        <source>distopalatal</source>
+        <translation>遠心口蓋側</translation>
+    </message>
+    <message>
+        <source>mesial</source>
+        <translation>近心</translation>
+    </message>
+    <message>
+        <source>distal</source>
+        <translation>遠心</translation>
+    </message>
+    <message>
+        <source>buccal</source>
+        <translation>頬側</translation>
+    </message>
+    <message>
+        <source>lingual</source>
+        <translation>舌側</translation>
+    </message>
+    <message>
+        <source>palatal</source>
+        <translation>口蓋側</translation>
+    </message>
+    <message>
+        <source>labial</source>
+        <translation>唇側</translation>
+    </message>
+    <message>
+        <source>central</source>
+        <translation>中心</translation>
+    </message>
+    <message>
+        <source>second</source>
+        <translation>第二</translation>
+    </message>
+    <message>
+        <source>triangular</source>
+        <translation>三角</translation>
+    </message>
+    <message>
+        <source>transverse</source>
+        <translation>横走</translation>
+    </message>
+    <message>
+        <source>oblique</source>
+        <translation>斜走</translation>
+    </message>
+    <message>
+        <source>marginal</source>
+        <translation>辺縁</translation>
+    </message>
+    <message>
+        <source>incisal</source>
+        <translation>切縁</translation>
+    </message>
+    <message>
+        <source>edge</source>
+        <translation>縁</translation>
+    </message>
+    <message>
+        <source>cusp</source>
+        <translation>咬頭</translation>
+    </message>
+    <message>
+        <source>ridge</source>
+        <translation>隆線</translation>
+    </message>
+    <message>
+        <source>%1, %2</source>
+        <translation>%1、%2</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ChartDialog</name>
+    <message>
+        <source>Mouth</source>
+        <translation>口腔</translation>
+    </message>
+    <message>
+        <source>A patient that the program makes, or a case from the folders of your cases</source>
+        <translation>プログラムが作る患者、または症例フォルダーにある症例</translation>
+    </message>
+    <message>
+        <source>Notation</source>
+        <translation>歯式</translation>
+    </message>
+    <message>
+        <source>How teeth are numbered</source>
+        <translation>歯の番号の付け方を選びます</translation>
+    </message>
+    <message>
+        <source>Patient&apos;s number</source>
+        <translation>患者の番号</translation>
+    </message>
+    <message>
+        <source>Another number is another patient; 0 is the average of all</source>
+        <translation>番号を変えると別の患者になります。0 は全体の平均です</translation>
+    </message>
+    <message>
+        <source>Patient&apos;s age</source>
+        <translation>患者の年齢</translation>
+    </message>
+    <message>
+        <source>With age the pulp shrinks and cusps wear</source>
+        <translation>年齢とともに歯髄は狭くなり、咬頭は咬耗します</translation>
+    </message>
+    <message>
+        <source>In the whole mouth</source>
+        <translation>口腔全体で</translation>
+    </message>
+    <message>
+        <source>With the other teeth, gingiva and bone; otherwise the tooth stands alone</source>
+        <translation>ほかの歯、歯肉、骨と一緒に。外すと歯だけになります</translation>
+    </message>
+    <message>
+        <source>Choose a tooth</source>
+        <translation>歯を選ぶ</translation>
+    </message>
+    <message>
+        <source>A patient of the program</source>
+        <translation>プログラムの患者</translation>
+    </message>
+    <message>
+        <source>FDI (ISO 3950)</source>
+        <translation>FDI (ISO 3950)</translation>
+    </message>
+    <message>
+        <source>Universal</source>
+        <translation>ユニバーサル</translation>
+    </message>
+    <message>
+        <source>Palmer</source>
+        <translation>パーマー（ジグモンディ）</translation>
+    </message>
+    <message>
+        <source> years</source>
+        <translation> 歳</translation>
+    </message>
+    <message>
+        <source>Patient</source>
+        <translation>患者</translation>
+    </message>
+    <message>
+        <source>Age</source>
+        <translation>年齢</translation>
+    </message>
+    <message>
+        <source>Reading cases</source>
+        <translation>症例を読み込み中</translation>
+    </message>
+    <message>
+        <source>%1 (%2)</source>
+        <translation>%1（%2）</translation>
+    </message>
+    <message>
+        <source>The teeth of this case, as they are. Any of them can be the one worked on.</source>
+        <translation>この症例の歯をそのままの形で示します。どの歯でも処置できます。</translation>
+    </message>
+    <message>
+        <source>Case: %1</source>
+        <translation>症例：%1</translation>
+    </message>
+    <message>
+        <source>The first tooth of a new patient takes a while: the whole mouth is made.</source>
+        <translation>新しい患者の最初の歯には時間がかかります。口腔全体を作るためです。</translation>
+    </message>
+    <message>
+        <source>Of teeth with a dot there are cases as well.</source>
+        <translation>点の付いた歯には症例もあります。</translation>
+    </message>
+    <message>
+        <source>This patient&apos;s tooth</source>
+        <translation>この患者の歯</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::LandmarksFeature</name>
+    <message>
+        <source>Save the landmarks?</source>
+        <translation>指標点を保存しますか？</translation>
+    </message>
+    <message>
+        <source>Landmarks were moved, and no case holds that yet.</source>
+        <translation>指標点が動かされましたが、まだどの症例にも保存されていません。</translation>
+    </message>
+    <message>
+        <source>Landmarks</source>
+        <translation>解剖学的指標点</translation>
+    </message>
+    <message>
+        <source>In an exercise landmarks are read only.</source>
+        <translation>課題では指標点は見るだけです。</translation>
+    </message>
+    <message>
+        <source>What is only watched is read only.</source>
+        <translation>再生や閲覧中は見るだけです。</translation>
+    </message>
+    <message>
+        <source>Moved, and not saved yet.</source>
+        <translation>動かしましたが、まだ保存していません。</translation>
+    </message>
+    <message>
+        <source>Save as a case with these landmarks</source>
+        <translation>この指標点を持つ症例として保存</translation>
+    </message>
+    <message>
+        <source>Case (*.handpiece)</source>
+        <translation>症例 (*.handpiece)</translation>
+    </message>
+    <message>
+        <source>Saving the landmarks</source>
+        <translation>指標点を保存中</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::LandmarksPanel</name>
+    <message>
+        <source>Landmarks</source>
+        <translation>解剖学的指標点</translation>
+    </message>
+    <message>
+        <source>What is ticked is shown over the tooth; the one chosen is moved by the arrow keys</source>
+        <translation>チェックしたものを歯の上に示します。選んだものは矢印キーで動かせます</translation>
+    </message>
+    <message>
+        <source>Undo</source>
+        <translation>元に戻す</translation>
+    </message>
+    <message>
+        <source>Take the last move back</source>
+        <translation>最後の移動を取り消します</translation>
+    </message>
+    <message>
+        <source>Put back</source>
+        <translation>元の位置へ</translation>
+    </message>
+    <message>
+        <source>The one chosen, or all when none is, back to where the case had it</source>
+        <translation>選んだもの、選んでいなければすべてを、症例にあった位置へ戻します</translation>
+    </message>
+    <message>
+        <source>Save...</source>
+        <translation>保存...</translation>
+    </message>
+    <message>
+        <source>Save the landmarks</source>
+        <translation>指標点を保存</translation>
+    </message>
+    <message>
+        <source>Keep the landmarks in the case; a tooth of the program becomes a case of your own</source>
+        <translation>指標点を症例に保存します。プログラムの歯は自分の症例になります</translation>
+    </message>
+    <message>
+        <source>Landmark</source>
+        <translation>指標点</translation>
+    </message>
+    <message>
+        <source>Source</source>
+        <translation>由来</translation>
     </message>
 </context>
 </TS>

@@ -93,6 +93,17 @@ void ToothChart::setAvailable(const std::set<int>& teeth) {
     update();
 }
 
+void ToothChart::setDrawings(std::map<int, ToothDrawing> drawings) {
+    drawings_ = std::move(drawings);
+    layOut();
+    update();
+}
+
+void ToothChart::setMarks(std::map<int, QString> marks) {
+    marks_ = std::move(marks);
+    update();
+}
+
 void ToothChart::setChosen(int fdi) {
     chosen_ = focused_ = fdi;
     setAccessibleDescription(toothName(fdi));
@@ -158,12 +169,25 @@ void ToothChart::layOut() {
                 transform.translate(centre.x(), centre.y());
                 transform.rotateRadians(std::atan2(normal.x(), -normal.y()));
                 const double size = scale * 0.93;
-                transform.scale(wide * size, std::min(deep, wide * 1.35) * size);
-                QPainterPath grooves;
+                QPainterPath outline, grooves;
                 const int number = static_cast<int>(i) + 1;
-                const QPainterPath outline = crown(number, primary, grooves);
                 const int fdi = teeth[left ? half + i : half - 1 - i];
-                const double reach = std::min(deep, wide * 1.35) * size / 2 + line * 0.62;
+                const double most = std::min(deep, wide * 1.35);
+                if (const auto own = drawings_.find(fdi); own != drawings_.end()) {
+                    const QRectF box = own->second.outline.boundingRect();
+                    const double fits = std::min({1.0, 1.08 * wide / box.width(), 1.08 * most / box.height()}) * size;
+                    // Buccal is out of the arch, mesial towards its middle.
+                    transform.scale(left == upper ? -fits : fits, -fits);
+                    transform.translate(-box.center().x(), -box.center().y());
+                    outline.addPolygon(own->second.outline);
+                    outline.closeSubpath();
+                    for (const QPolygonF& line : own->second.grooves)
+                        grooves.addPolygon(line);
+                } else {
+                    transform.scale(wide * size, most * size);
+                    outline = crown(number, primary, grooves);
+                }
+                const double reach = most * size / 2 + line * 0.62;
                 places_.push_back({fdi, centre, transform.map(outline), transform.map(grooves),
                                    primary ? centre - normal * reach : centre + normal * reach});
             }
@@ -264,6 +288,7 @@ bool ToothChart::event(QEvent* event) {
                                 .arg(toothName(place->fdi), toothLabel(place->fdi, Notation::fdi),
                                      toothLabel(place->fdi, Notation::universal));
             if (!available_.contains(place->fdi)) words += "\n" + tr("There is no such tooth to open.");
+            if (const auto mark = marks_.find(place->fdi); mark != marks_.end()) words += "\n" + mark->second;
             QToolTip::showText(help->globalPos(), words);
         } else {
             QToolTip::hideText();
@@ -299,13 +324,13 @@ void ToothChart::paintEvent(QPaintEvent* event) {
     }
     for (const Place& place : places_) {
         const bool free = available_.contains(place.fdi), chosen = place.fdi == chosen_, over = place.fdi == hovered_;
-        QColor fill = free ? ivory : mixed(window, textColour, dark ? 0.1 : 0.06);
+        QColor fill = free ? ivory : QColor(Qt::transparent);
         if (free && over) fill = mixed(ivory, accent, 0.35);
         if (chosen) fill = accent;
         painter.setPen(QPen(chosen ? accent.darker(130)
                             : free ? accent
                                    : mixed(window, textColour, 0.3),
-                            chosen || free ? 1.8 : 1.0));
+                            chosen || free ? 1.8 : 1.0, chosen || free ? Qt::SolidLine : Qt::DotLine));
         painter.setBrush(fill);
         painter.drawPath(place.outline);
         painter.setBrush(Qt::NoBrush);
@@ -313,7 +338,13 @@ void ToothChart::paintEvent(QPaintEvent* event) {
                             : free ? QColor(0x8a8270)
                                    : mixed(window, textColour, 0.25),
                             1.0));
-        painter.drawPath(place.grooves);
+        if (free || chosen) painter.drawPath(place.grooves);
+        if (marks_.contains(place.fdi)) {  // there is more
+            painter.setPen(QPen(window, 1.2));
+            painter.setBrush(accent);
+            painter.drawEllipse(place.centre, 3.6, 3.6);
+            painter.setBrush(Qt::NoBrush);
+        }
         if (hasFocus() && place.fdi == focused_) {
             painter.setPen(QPen(textColour, 1.2, Qt::DotLine));
             QTransform wider;

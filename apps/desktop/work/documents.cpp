@@ -11,6 +11,8 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/model/case/work_on.h"
+#include "handpiece/model/dentition/mouth.h"
 #include "handpiece/model/tooth/state_file.h"
 #include "handpiece/senses/surface/brick_source.h"
 #include "handpiece/senses/surface/closed_surface.h"
@@ -129,26 +131,76 @@ FileKind fileKindOf(const fs::path& path) {
     return FileKind::unknown;
 }
 
-cases::Case starterCase(const Starter& starter, const fs::path& folder, const core::Progress& progress,
-                        const LoadListener& listener) {
-    const starter::ToothKindInfo& info = starter::infoOf(starter.kind);
-    // The version stands in the name: a later one may make another tooth of the same rules.
-    const fs::path place = folder / fmt::format("{}-{}-{}", info.name, starter.faces, HANDPIECE_VERSION);
+namespace {
+
+/// A case of the cache, or made and put there. What lies in its place and is not it is made anew.
+cases::Case kept(const fs::path& place, const std::function<bool(const cases::Case&)>& isIt,
+                 const std::function<cases::Case()>& make, const LoadListener& listener) {
     std::error_code error;
-    if (fs::exists(place / "case.toml", error)) {
+    if (fs::exists(fs::symlink_status(place, error))) {
         try {
-            return cases::readCase(place);
-        } catch (const core::Error&) {
-            fs::remove_all(place, error);  // damaged: it is made again
+            cases::Case found = cases::readCase(place);
+            if (isIt(found)) return found;
+        } catch (const core::Error&) {  // damaged
         }
+        if (listener.renewed) listener.renewed(place);
+        fs::remove_all(place, error);
     }
-    tell(listener, LoadStep::shaping);
-    if (listener.sketch) listener.sketch(std::make_shared<const cases::Case>(starter::makeSketch(starter.kind)));
-    const cases::Case made = starter::makeTooth(starter.kind, {starter.faces, 0, true}, progress);
-    fs::create_directories(folder, error);
+    const cases::Case made = make();
+    fs::create_directories(place.parent_path(), error);
     cases::writeCase(made, place);
     // As read back: an STL holds less than a double, and the cache beside it belongs to what it holds.
     return cases::readCase(place);
+}
+
+std::string patientName(const dentition::Patient& patient) {
+    return fmt::format("{}-{:g}", patient.seed, patient.ageYears);
+}
+
+/// The version stands in the names: a later one may make other teeth of the same rules.
+fs::path starterPlace(const Starter& starter, const fs::path& folder) {
+    return folder / fmt::format("tooth-{}-{}-{}-{}", patientName(starter.patient), starter.fdi, starter.faces,
+                                HANDPIECE_VERSION);
+}
+
+}  // namespace
+
+cases::Case starterCase(const Starter& starter, const fs::path& folder, const core::Progress& progress,
+                        const LoadListener& listener) {
+    const std::string patient = patientName(starter.patient);
+    const fs::path toothPlace = starterPlace(starter, folder);
+    const fs::path mouthPlace = folder / fmt::format("mouth-{}-{}-{}", patient, kMouthFaces, HANDPIECE_VERSION);
+    const double toothShare = starter.inMouth ? 0.2 : 1.0;
+    cases::Case tooth = kept(
+        toothPlace, [&](const cases::Case& c) { return c.fdiNumber == starter.fdi; },
+        [&] {
+            tell(listener, LoadStep::shaping);
+            const auto show = [&](cases::Tooth shown) {
+                auto sketch = std::make_shared<cases::Case>();
+                static_cast<cases::Tooth&>(*sketch) = std::move(shown);
+                if (listener.sketch) listener.sketch(std::move(sketch));
+            };
+            show(dentition::makeSketch(starter.fdi, starter.patient));
+            cases::Case made;
+            static_cast<cases::Tooth&>(made) = dentition::makeTooth(starter.fdi, starter.patient, {starter.faces, 0},
+                                                                    core::part(progress, 0.0, toothShare));
+            if (starter.inMouth) show(made);
+            return made;
+        },
+        listener);
+    if (!starter.inMouth) return tooth;
+    cases::Case mouth = kept(
+        mouthPlace, [](const cases::Case& c) { return c.others.size() + 1 == dentition::kToothCount; },
+        [&] {
+            tell(listener, LoadStep::mouth);
+            return dentition::makeMouth(starter.patient, {46, kMouthFaces}, core::part(progress, toothShare, 1.0));
+        },
+        listener);
+    // The mouth's own teeth are coarser: the one that is worked on stands in for its like, in the same frame.
+    mouth = cases::workOn(std::move(mouth), starter.fdi);
+    // What is kept beside the mouth, the fields of all that stands there, serves each of its teeth.
+    static_cast<cases::Tooth&>(mouth) = std::move(static_cast<cases::Tooth&>(tooth));
+    return mouth;
 }
 
 instrument::Drive driveAt(const std::string& name, double speedRpm) {
@@ -181,7 +233,7 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
         loaded.speedRpm = settings.drive.freeSpeedRpm;
     } else if (request.starter) {
         cases::Case made = starterCase(*request.starter, request.starterFolder, reading, listener);
-        loaded.document.caseFile = made.source;
+        loaded.document.caseFile = starterPlace(*request.starter, request.starterFolder);
         loaded.document.starter = request.starter;
         loaded.document.name = made.name;
         loaded.toothCase = std::make_shared<const cases::Case>(std::move(made));
@@ -200,6 +252,10 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
     } else {
         const fs::path path = request.path.extension() == ".toml" ? request.path.parent_path() : request.path;
         cases::Case read = cases::readCase(path);
+        if (request.fdi != 0 && request.fdi != read.fdiNumber) {
+            read = cases::workOn(std::move(read), request.fdi);
+            loaded.document.workedOn = request.fdi;
+        }
         loaded.document.caseFile = core::wholePath(path);
         loaded.document.name = read.name;
         loaded.toothCase = std::make_shared<const cases::Case>(std::move(read));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// From a file's name, or a starter tooth's, to a tooth ready to be cut. No widgets, any thread.
+/// From a file's name, or a tooth of a patient that the program makes, to a tooth ready to be cut. No widgets, any
+/// thread.
 
 #include <array>
 #include <filesystem>
@@ -18,14 +19,16 @@
 #include "handpiece/base/core/progress.h"
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/case.h"
-#include "handpiece/model/starter/starter.h"
+#include "handpiece/model/dentition/tooth_form.h"
 
 namespace handpiece::desktop {
 
-/// A starter tooth at one of the five resolutions of the paper's Table II.
+/// A tooth that the program makes: one of the 32 of a patient.
 struct Starter {
-    starter::ToothKind kind = starter::ToothKind::lowerFirstMolar;
-    std::size_t faces = 68151;
+    int fdi = 46;
+    dentition::Patient patient{};
+    std::size_t faces = 68151;  ///< of its surface: one of the five resolutions of the paper's Table II
+    bool inMouth = true;        ///< with the patient's other teeth, gingiva and bone; else alone
     friend bool operator==(const Starter&, const Starter&) = default;
 };
 struct Resolution {
@@ -49,6 +52,7 @@ struct RecordingPlace {
 /// What is open.
 struct Document {
     std::filesystem::path caseFile;     ///< of the tooth; of a starter tooth its place in the cache
+    int workedOn = 0;                   ///< another tooth of that case than its own; 0: its own
     std::filesystem::path attemptFile;  ///< where it was saved or read; empty: nowhere yet
     std::optional<Starter> starter;
     std::string name;  ///< for the title: the file's, or the tooth's
@@ -58,17 +62,20 @@ struct Document {
 };
 
 /// What is being done for a tooth that opens, for people.
-enum class LoadStep { reading, recovering, shaping, distances, tissues, surface };
+enum class LoadStep { reading, recovering, shaping, mouth, distances, tissues, surface };
 /// Hears of it on the thread that loads.
 struct LoadListener {
     std::function<void(LoadStep step)> step;
     /// Something to look at before there is anything to feel: its parts and what stands around them.
     std::function<void(std::shared_ptr<const cases::Case> sketch)> sketch;
+    /// What was kept at `place` is damaged or not what its name says: it is made anew.
+    std::function<void(const std::filesystem::path& place)> renewed;
 };
 
 /// What to open, and with what in hand.
 struct LoadRequest {
     std::filesystem::path path;  ///< case, attempt or mesh; a session to be recovered from
+    int fdi = 0;                 ///< the tooth of a case to work on; 0: its own
     std::optional<Starter> starter;
     bool recover = false;
     Document recovered;  ///< with `recover`: what its marker says
@@ -105,7 +112,11 @@ struct LoadedTooth {
 [[nodiscard]] cases::PackageFiles recordingBytes(const std::vector<RecordingPlace>& places, bool packedOnly,
                                                  std::size_t& leftOut, const core::Progress& progress);
 
-/// The case of a starter tooth, out of its folder in the cache; made and put there the first time.
+/// Faces of each tooth around a starter tooth, which are seen and felt at arm's length.
+inline constexpr std::size_t kMouthFaces = 8000;
+
+/// The case of a starter tooth: it and its patient's mouth out of their folders in the cache, made and put there the
+/// first time.
 [[nodiscard]] cases::Case starterCase(const Starter& starter, const std::filesystem::path& folder,
                                       const core::Progress& progress, const LoadListener& listener = {});
 

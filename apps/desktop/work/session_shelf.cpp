@@ -36,10 +36,16 @@ std::optional<SessionNote> readNote(const fs::path& session) {
     if (!file.open(QIODevice::ReadOnly)) return std::nullopt;
     const QJsonObject o = QJsonDocument::fromJson(file.readAll()).object();
     // A marker cut short by the crash itself still marks.
-    SessionNote note{
-        o[QStringLiteral("case")].toString(),    o[QStringLiteral("title")].toString(),
-        o[QStringLiteral("attempt")].toString(), o[QStringLiteral("unsaved")].toBool(true),
-        o[QStringLiteral("starter")].toString(), static_cast<std::size_t>(o[QStringLiteral("faces")].toInteger())};
+    SessionNote note{o[QStringLiteral("case")].toString(), o[QStringLiteral("title")].toString(),
+                     o[QStringLiteral("attempt")].toString(), o[QStringLiteral("unsaved")].toBool(true)};
+    // Markers of before name a kind of tooth that is no longer made: its recording has the tooth itself.
+    if (const QJsonObject s = o[QStringLiteral("patient")].toObject(); !s.isEmpty())
+        note.starter = Starter{s[QStringLiteral("fdi")].toInt(46),
+                               {static_cast<std::uint64_t>(s[QStringLiteral("seed")].toInteger(1)),
+                                s[QStringLiteral("age")].toDouble(dentition::Patient{}.ageYears)},
+                               static_cast<std::size_t>(s[QStringLiteral("faces")].toInteger()),
+                               s[QStringLiteral("mouth")].toBool(true)};
+    note.workedOn = o[QStringLiteral("tooth")].toInt();
     note.exercise = o[QStringLiteral("exercise")].toString();
     for (const QJsonValue& name : o[QStringLiteral("recordings")].toArray())
         note.recordings << name.toString();
@@ -52,10 +58,13 @@ void writeNote(const fs::path& session, const SessionNote& note) {
     o[QStringLiteral("title")] = note.title;
     o[QStringLiteral("attempt")] = note.attemptFile;
     o[QStringLiteral("unsaved")] = note.unsaved;
-    if (!note.starter.isEmpty()) {
-        o[QStringLiteral("starter")] = note.starter;
-        o[QStringLiteral("faces")] = static_cast<qint64>(note.faces);
-    }
+    if (const auto& s = note.starter)
+        o[QStringLiteral("patient")] = QJsonObject{{QStringLiteral("fdi"), s->fdi},
+                                                   {QStringLiteral("seed"), static_cast<qint64>(s->patient.seed)},
+                                                   {QStringLiteral("age"), s->patient.ageYears},
+                                                   {QStringLiteral("faces"), static_cast<qint64>(s->faces)},
+                                                   {QStringLiteral("mouth"), s->inMouth}};
+    if (note.workedOn != 0) o[QStringLiteral("tooth")] = note.workedOn;
     if (!note.exercise.isEmpty()) o[QStringLiteral("exercise")] = note.exercise;
     if (!note.recordings.isEmpty()) o[QStringLiteral("recordings")] = QJsonArray::fromStringList(note.recordings);
     core::writeFile(beside(session, ".json"), QJsonDocument(o).toJson().toStdString(),

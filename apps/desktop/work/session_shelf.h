@@ -12,18 +12,20 @@
 #include <optional>
 #include <vector>
 
+#include "desktop/work/documents.h"
+
 namespace handpiece::desktop {
 
 /// What a marker beside a recording says.
 struct SessionNote {
-    QString caseFile;      ///< the tooth's place
-    QString title;         ///< as shown
-    QString attemptFile;   ///< where it was saved last; may be empty
-    bool unsaved = false;  ///< something was cut that no file holds
-    QString starter = {};  ///< kind of a starter tooth; empty for others
-    std::size_t faces = 0;
-    QString exercise = {};        ///< cases::exerciseText(): what was locked stays locked
-    QStringList recordings = {};  ///< of the same attempt, before this one
+    QString caseFile;                     ///< the tooth's place
+    QString title;                        ///< as shown
+    QString attemptFile;                  ///< where it was saved last; may be empty
+    bool unsaved = false;                 ///< something was cut that no file holds
+    std::optional<Starter> starter = {};  ///< that the program makes
+    int workedOn = 0;                     ///< the tooth of the case, when it is not its own
+    QString exercise = {};                ///< cases::exerciseText(): what was locked stays locked
+    QStringList recordings = {};          ///< of the same attempt, before this one
 };
 
 /// A recording whose program ended without a word.

@@ -73,11 +73,8 @@ SessionNote Simulator::noteNow() const {
         note.exercise = QString::fromStdString(cases::exerciseText(*toothCase_->exercise));
     for (const RecordingPlace& recording : document_.recordings)
         note.recordings << QString::fromStdString(recording.name);
-    if (document_.starter) {
-        const std::string_view name = starter::infoOf(document_.starter->kind).name;
-        note.starter = QString::fromUtf8(name.data(), static_cast<qsizetype>(name.size()));
-        note.faces = document_.starter->faces;
-    }
+    note.starter = document_.starter;
+    note.workedOn = document_.workedOn;
     return note;
 }
 

@@ -39,7 +39,8 @@ class Simulator : public QObject {
     struct Options {
         Folders folders = Folders::standard();
         SessionShelf::Limits shelf;
-        Starter starter;  ///< that an empty start opens
+        Starter starter;                    ///< that an empty start opens
+        std::filesystem::path casesFolder;  ///< a school's; may be empty
         bool sound = true, realTime = true, record = true;
         double rateHz = 1000.0;  ///< of the tick, of teeth that are opened; a session has its own
         int voxelUm = 50;
@@ -52,6 +53,9 @@ class Simulator : public QObject {
 
     /// Of the lamps that tell what is left over the pulp: the teacher's.
     [[nodiscard]] const measure::PulpLimits& pulpLimits() const noexcept { return options_.pulpLimits; }
+
+    [[nodiscard]] const Starter& firstStarter() const noexcept { return options_.starter; }
+    [[nodiscard]] const std::filesystem::path& casesFolder() const noexcept { return options_.casesFolder; }
 
     // What is open.
 
@@ -95,8 +99,8 @@ class Simulator : public QObject {
 
     void openStarter(const Starter& starter);
     void openFirst() { openStarter(options_.starter); }
-    /// A case, an attempt, a mesh or a session, whatever the file is.
-    void open(const std::filesystem::path& path);
+    /// A case, an attempt, a mesh or a session, whatever the file is; of a case the tooth `fdi` (0: its own).
+    void open(const std::filesystem::path& path, int fdi = 0);
     void recover(const Crashed& crashed, std::function<void()> then = {});
     /// Gives up what a crash left behind; the recording itself stays for a while.
     void forget(const Crashed& crashed) { shelf_.settle(crashed.session); }

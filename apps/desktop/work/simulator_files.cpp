@@ -7,18 +7,7 @@
 #include "handpiece/model/case/attempt.h"
 
 namespace handpiece::desktop {
-namespace {
-
 namespace fs = std::filesystem;
-
-std::optional<Starter> starterOf(const SessionNote& note) {
-    for (const starter::ToothKindInfo& info : starter::toothKinds())
-        if (note.starter == QLatin1String(info.name.data(), static_cast<qsizetype>(info.name.size())))
-            return Starter{info.kind, note.faces};
-    return std::nullopt;
-}
-
-}  // namespace
 
 void Simulator::start(const QString& title, Job::Work work, std::function<void()> done,
                       std::function<void()> otherwise) {
@@ -116,6 +105,9 @@ LoadListener Simulator::loadListener() {
     };
     LoadListener listener;
     listener.step = [this, tell](LoadStep step) { tell([this, step] { emit jobStepped(stepText(step)); }); };
+    listener.renewed = [this, tell](const fs::path& place) {
+        tell([this, place] { emit noticed(QStringLiteral("cache-renewed"), {toQString(place)}); });
+    };
     listener.sketch = [this, tell](std::shared_ptr<const cases::Case> sketch) {
         tell([this, sketch = std::move(sketch)] {
             if (mode_ == Mode::empty) emit sketched(sketch);
@@ -132,6 +124,8 @@ QString Simulator::stepText(LoadStep step) {
             return tr("cutting again what was recorded");
         case LoadStep::shaping:
             return tr("shaping it (the first time only)");
+        case LoadStep::mouth:
+            return tr("making the mouth around it (the first time only)");
         case LoadStep::distances:
             return tr("measuring distances");
         case LoadStep::tissues:
@@ -148,7 +142,7 @@ void Simulator::openStarter(const Starter& starter) {
     load(std::move(wanted), tr("Preparing the tooth"));
 }
 
-void Simulator::open(const fs::path& path) {
+void Simulator::open(const fs::path& path, int fdi) {
     FileKind kind = FileKind::unknown;
     try {
         kind = fileKindOf(path);
@@ -169,6 +163,7 @@ void Simulator::open(const fs::path& path) {
     }
     LoadRequest wanted = request();
     wanted.path = path;
+    wanted.fdi = fdi;
     load(std::move(wanted), tr("Opening %1").arg(toQString(path.filename())));
 }
 
@@ -292,6 +287,7 @@ void Simulator::setCode(const QString& asked) {
         LoadRequest wanted = request();
         wanted.starter = document_.starter;
         wanted.path = document_.caseFile;
+        wanted.fdi = document_.workedOn;
         load(std::move(wanted), tr("Preparing the tooth"));
     } else {
         emit noticed(QStringLiteral("code-later"), {code});
@@ -305,7 +301,8 @@ void Simulator::recover(const Crashed& crashed, std::function<void()> then) {
     wanted.recovered.caseFile = toPath(crashed.note.caseFile);
     wanted.recovered.attemptFile = toPath(crashed.note.attemptFile);
     wanted.recovered.name = crashed.note.title.toStdString();
-    wanted.recovered.starter = starterOf(crashed.note);
+    wanted.recovered.starter = crashed.note.starter;
+    wanted.recovered.workedOn = crashed.note.workedOn;
     for (const QString& name : crashed.note.recordings)
         wanted.recovered.recordings.push_back({name.toStdString(), shelf_.folder() / name.toStdString(), false});
     wanted.recovered.recordings.push_back({crashed.session.filename().string(), crashed.session, false});
@@ -441,6 +438,7 @@ void Simulator::setVoxel(int um) {
         LoadRequest wanted = request();
         wanted.starter = document_.starter;
         wanted.path = document_.caseFile;
+        wanted.fdi = document_.workedOn;
         load(std::move(wanted), tr("Preparing the tooth"));
         return;
     }

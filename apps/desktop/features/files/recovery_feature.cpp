@@ -24,11 +24,7 @@ constexpr CommandOf<Command> kCommands[] = {
 };
 
 QString titleOf(const SessionNote& note) {
-    if (note.attemptFile.isEmpty())
-        for (const starter::ToothKindInfo& info : starter::toothKinds())
-            if (note.starter == QLatin1String(info.name.data(), static_cast<qsizetype>(info.name.size())))
-                return toothName(info.fdiNumber);
-    return note.title;
+    return note.attemptFile.isEmpty() && note.starter ? toothName(note.starter->fdi) : note.title;
 }
 
 }  // namespace

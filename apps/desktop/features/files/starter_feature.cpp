@@ -2,17 +2,10 @@
 #include "desktop/features/files/starter_feature.h"
 
 #include <QComboBox>
-#include <QDialog>
-#include <QDialogButtonBox>
-#include <QHBoxLayout>
-#include <QLabel>
 #include <QLocale>
 #include <QMenu>
-#include <QVBoxLayout>
-#include <set>
 
-#include "desktop/widgets/notation.h"
-#include "desktop/widgets/tooth_chart.h"
+#include "desktop/features/files/chart_dialog.h"
 #include "desktop/work/simulator.h"
 
 namespace handpiece::desktop {
@@ -23,8 +16,8 @@ using exercise::Operation;
 using Command = StarterFeature::Command;
 constexpr CommandOf<Command> kCommands[] = {
     {Command::choose, "actionChooseTooth", QT_TRANSLATE_NOOP("Commands", "Choose tooth..."),
-     QT_TRANSLATE_NOOP("Commands", "Choose a tooth on the chart of the mouth"), "chart", "Ctrl+T", in(Shelf::file, 4),
-     in(Shelf::fileBar, 2), brief(QT_TRANSLATE_NOOP("Commands", "Teeth")), Operation::chart},
+     QT_TRANSLATE_NOOP("Commands", "Choose a tooth, and whose, on the chart of the mouth"), "chart", "Ctrl+T",
+     in(Shelf::file, 4), in(Shelf::fileBar, 2), brief(QT_TRANSLATE_NOOP("Commands", "Teeth")), Operation::chart},
 };
 
 }  // namespace
@@ -41,41 +34,43 @@ void StarterFeature::open(const Starter& starter) {
     window_.whenMayLeave([this, starter] { simulator_.openStarter(starter); });
 }
 
+/// That is open, or that an empty start opens.
+Starter StarterFeature::now() const {
+    return simulator_.document().starter.value_or(simulator_.firstStarter());
+}
+
+QString StarterFeature::resolutionText(const Resolution& resolution) {
+    return tr("%1 % · %2 faces").arg(resolution.percent).arg(QLocale().toString(qulonglong{resolution.faces}));
+}
+
+void StarterFeature::openAt(std::size_t faces) {
+    Starter starter = now();
+    starter.faces = faces;
+    open(starter);
+}
+
 void StarterFeature::fillMenu() {
-    auto* menu = new QMenu(tr("Starter tooth"), window_.shelves().menu(Shelf::file));
-    menu->setObjectName(QStringLiteral("menuStarter"));
+    auto* menu = new QMenu(tr("Resolution of the tooth"), window_.shelves().menu(Shelf::file));
+    menu->setObjectName(QStringLiteral("menuResolution"));
     window_.commands().place(in(Shelf::file, 3), menu->menuAction());
-    for (const starter::ToothKindInfo& info : starter::toothKinds()) {
-        QMenu* kind = menu->addMenu(toothName(info.fdiNumber));
-        kind->setObjectName(QStringLiteral("menuStarter_") +
-                            QLatin1String(info.name.data(), qsizetype(info.name.size())));
-        for (const Resolution& r : kResolutions) {
-            QAction* entry =
-                kind->addAction(tr("%1 % · %2 faces").arg(r.percent).arg(QLocale().toString(qulonglong{r.faces})));
-            entry->setObjectName(QStringLiteral("actionStarter_%1_%2")
-                                     .arg(QLatin1String(info.name.data(), qsizetype(info.name.size())))
-                                     .arg(r.percent));
-            entry->setToolTip(tr("Open this starter tooth"));
-            connect(entry, &QAction::triggered, this, [this, kind = info.kind, faces = r.faces] {
-                open({kind, faces});
-            });
-        }
+    for (const Resolution& r : kResolutions) {
+        QAction* entry = menu->addAction(resolutionText(r));
+        entry->setObjectName(QStringLiteral("actionResolution_%1").arg(r.percent));
+        entry->setToolTip(tr("Make the tooth that is open anew with so many faces"));
+        connect(entry, &QAction::triggered, this, [this, faces = r.faces] { openAt(faces); });
     }
 }
 
 void StarterFeature::addResolutions() {
     resolution_ = new QComboBox;
     resolution_->setObjectName(QStringLiteral("resolutionBox"));
-    resolution_->setAccessibleName(tr("Starter tooth's resolution"));
-    resolution_->setToolTip(tr("The starter tooth at one of the five resolutions of the paper's Table II"));
-    resolution_->addItem(tr("Starter tooth"));
+    resolution_->setAccessibleName(tr("Resolution of the tooth"));
+    resolution_->setToolTip(tr("A tooth of the program at one of the five resolutions of the paper's Table II"));
+    resolution_->addItem(tr("Resolution"));
     for (const Resolution& r : kResolutions)
-        resolution_->addItem(tr("%1 % · %2 faces").arg(r.percent).arg(QLocale().toString(qulonglong{r.faces})),
-                             qulonglong{r.faces});
+        resolution_->addItem(resolutionText(r), qulonglong{r.faces});
     connect(resolution_, &QComboBox::activated, this, [this](int index) {
-        const auto kind =
-            simulator_.document().starter ? simulator_.document().starter->kind : starter::ToothKind::lowerFirstMolar;
-        if (index > 0) open({kind, static_cast<std::size_t>(resolution_->itemData(index).toULongLong())});
+        if (index > 0) openAt(static_cast<std::size_t>(resolution_->itemData(index).toULongLong()));
     });
 
     QAction* action = window_.commands().placeWidget(in(Shelf::fileBar, 1), resolution_);
@@ -90,49 +85,25 @@ void StarterFeature::addResolutions() {
 }
 
 void StarterFeature::choose() {
-    auto* dialog = new QDialog(&window_);
-    dialog->setObjectName(QStringLiteral("toothDialog"));
+    ChartDialog::Setting setting;
+    setting.starter = now();
+    setting.isStarterOpen = simulator_.document().starter.has_value();
+    setting.openCase = simulator_.toothCase();
+    if (setting.openCase) setting.openTooth = setting.openCase->fdiNumber;
+    setting.places.push_back(simulator_.casesFolder());
+    setting.places.push_back(toPath(settings_.value(QStringLiteral("files/folder")).toString()));
+    for (const QString& file : settings_.recentFiles())
+        setting.places.push_back(toPath(file));
+    setting.notation = static_cast<Notation>(settings_.number(QStringLiteral("window/notation"), 0.0, 0.0, 2.0));
+    auto* dialog = new ChartDialog(std::move(setting), &window_);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
-    dialog->setWindowTitle(tr("Choose a tooth"));
-    auto* column = new QVBoxLayout(dialog);
-    auto* row = new QHBoxLayout;
-    auto* notation = new QComboBox;
-    notation->setObjectName(QStringLiteral("notationBox"));
-    notation->setAccessibleName(tr("Notation"));
-    notation->setToolTip(tr("How teeth are numbered"));
-    notation->addItems({tr("FDI (ISO 3950)"), tr("Universal"), tr("Palmer")});
-    notation->setCurrentIndex(static_cast<int>(settings_.number(QStringLiteral("window/notation"), 0.0, 0.0, 2.0)));
-    row->addWidget(new QLabel(tr("Notation")));
-    row->addWidget(notation);
-    row->addStretch();
-    column->addLayout(row);
-    auto* chart = new ToothChart;
-    chart->setNotation(static_cast<Notation>(notation->currentIndex()));
-    std::set<int> available;
-    for (const starter::ToothKindInfo& info : starter::toothKinds())
-        available.insert(info.fdiNumber);
-    chart->setAvailable(available);
-    if (simulator_.toothCase()) chart->setChosen(simulator_.toothCase()->fdiNumber);
-    column->addWidget(chart, 1);
-    auto* note = new QLabel(tr("The teeth in full colour come with the program. Others are opened as cases."));
-    note->setWordWrap(true);
-    column->addWidget(note);
-    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Cancel);
-    column->addWidget(buttons);
-    connect(buttons, &QDialogButtonBox::rejected, dialog, &QDialog::reject);
-    connect(notation, &QComboBox::activated, dialog, [this, chart](int index) {
-        chart->setNotation(static_cast<Notation>(index));
-        settings_.set(QStringLiteral("window/notation"), index);
-    });
-    connect(chart, &ToothChart::toothChosen, dialog, [this, dialog](int fdi) {
-        for (const starter::ToothKindInfo& info : starter::toothKinds()) {
-            if (info.fdiNumber != fdi) continue;
-            dialog->accept();
-            open({info.kind, simulator_.document().starter ? simulator_.document().starter->faces : Starter{}.faces});
-        }
+    connect(dialog, &ChartDialog::notationChosen, this,
+            [this](int notation) { settings_.set(QStringLiteral("window/notation"), notation); });
+    connect(dialog, &ChartDialog::starterChosen, this, &StarterFeature::open);
+    connect(dialog, &ChartDialog::caseChosen, this, [this](const QString& path, int fdi) {
+        window_.whenMayLeave([this, path, fdi] { simulator_.open(toPath(path), fdi); });
     });
     dialog->open();
-    chart->setFocus();
 }
 
 }  // namespace handpiece::desktop

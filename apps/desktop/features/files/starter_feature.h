@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The starter teeth: by the menu, by the chart of the mouth, by resolution.
+/// The teeth that the program makes: by the chart of the mouth, by resolution; cases by the chart.
 
 #include "desktop/framework/feature.h"
 #include "desktop/work/documents.h"
@@ -19,6 +19,9 @@ class StarterFeature : public Feature {
     void open(const Starter& starter);
 
   private:
+    [[nodiscard]] Starter now() const;
+    [[nodiscard]] static QString resolutionText(const Resolution& resolution);
+    void openAt(std::size_t faces);
     void fillMenu();
     void addResolutions();
     void choose();

@@ -18,6 +18,7 @@ namespace handpiece::dentition {
 struct Patient {
     std::uint64_t seed = 1;
     double ageYears = 25.0;
+    friend bool operator==(const Patient&, const Patient&) = default;
 };
 
 class Anatomy;
@@ -74,6 +75,10 @@ inline constexpr std::size_t kMinFaces = 2000, kMaxFaces = 2000000;
 /// does.
 [[nodiscard]] cases::Tooth makeTooth(int fdi, const Patient& patient, const ToothOptions& options = {},
                                      const core::Progress& progress = {});
+
+/// Its enamel and dentine roughly, to be looked at while the tooth itself is made: a fraction of a second. Throws as
+/// ToothForm does.
+[[nodiscard]] cases::Tooth makeSketch(int fdi, const Patient& patient);
 
 /// "upper right first molar"
 [[nodiscard]] std::string toothName(int fdi);

@@ -201,6 +201,7 @@ void OffAxisMedialSearch::addGrid(Sheet& sheet) const {
             row.first = static_cast<std::uint32_t>(total);
             row.count = 8 * static_cast<std::uint32_t>(std::max(1.0, std::ceil(2.0 * kPi * row.rho / spacing / 8.0)));
             total += row.count;
+            if (total > kMaxGrid) break;
             for (std::uint32_t j = 0; j < row.count; ++j) {
                 sheet.cosine.push_back(core::cos(2.0 * kPi * j / row.count));
                 sheet.sine.push_back(core::sin(2.0 * kPi * j / row.count));
@@ -212,9 +213,10 @@ void OffAxisMedialSearch::addGrid(Sheet& sheet) const {
             }
             sheet.rows.push_back(row);
         }
+        if (total > kMaxGrid) continue;
         sheet.spacingMm = spacing;
         addCells(sheet, spacing);
-        if (total <= kMaxGrid && sheet.cellU.size() <= kMaxGrid) return;
+        if (sheet.cellU.size() <= kMaxGrid) return;
     }
 }
 

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Landmarks in the person's language.
+
+#include <QString>
+
+#include "handpiece/model/case/landmark.h"
+
+namespace handpiece::desktop {
+
+[[nodiscard]] QString kindText(cases::LandmarkKind kind);
+[[nodiscard]] QString sourceText(cases::LandmarkSource source);
+/// "Cusp tip, mesiobuccal": the name as the case has it, in the words known here.
+[[nodiscard]] QString landmarkText(const cases::Landmark& mark);
+
+}  // namespace handpiece::desktop

@@ -374,6 +374,19 @@ void message(QPainter& p, const QRectF& area, const OverlayState& state) {
                state.remedy);
 }
 
+/// Above or below its place, or not at all where others stand already: the list has it.
+void landmarkName(QPainter& p, const Area& area, const QPointF& at, const QString& name) {
+    const QFontMetricsF metrics(p.font());
+    for (const QPointF by : {QPointF(6, -5), QPointF(6, 5 + metrics.ascent())}) {
+        const QRectF box(at + by - QPointF(0, metrics.ascent()),
+                         QSizeF(metrics.horizontalAdvance(name), metrics.height()));
+        if (std::any_of(area.labels.begin(), area.labels.end(), [&](const QRectF& o) { return o.intersects(box); }))
+            continue;
+        area.labels.push_back(box);
+        return haloText(p, at + by, name);
+    }
+}
+
 void landmark(QPainter& p, const Area& area, const ShownLandmark& one, std::optional<std::size_t> grabbed) {
     const QColor colour = one.isSelected ? kLine : one.isInside ? kInside : kLandmark;
     const std::size_t count = one.pointsMm.size();
@@ -396,7 +409,7 @@ void landmark(QPainter& p, const Area& area, const ShownLandmark& one, std::opti
     if (one.isSelected)
         label(p, area, at, one.name);
     else
-        haloText(p, at + QPointF(6, -5), one.name);
+        landmarkName(p, area, at, one.name);
 }
 
 void landmarks(QPainter& p, const Area& area) {

@@ -9,9 +9,9 @@
 #include <map>
 #include <vector>
 
+#include "desktop/features/files/tooth_drawing.h"
 #include "desktop/framework/job.h"
 #include "desktop/work/documents.h"
-#include "desktop/work/tooth_drawing.h"
 
 class QCheckBox;
 class QComboBox;

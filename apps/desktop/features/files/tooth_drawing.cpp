@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "desktop/work/tooth_drawing.h"
+#include "desktop/features/files/tooth_drawing.h"
 
 #include <algorithm>
 

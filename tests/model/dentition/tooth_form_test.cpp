@@ -240,6 +240,84 @@ TEST(ToothForm, CuspsStandInTheirOrder) {
     }
 }
 
+/// What each kind has, from its landmarks; docs/anatomy.md shows what this prints. Left teeth are these in the mirror.
+TEST(ToothForm, TableOfFeatures) {
+    struct Asked {
+        int fdi;
+        std::vector<std::string> cusps, grooves;  ///< cusps from the highest down
+        double trunk, trunkSpread;                ///< mean of the furcations; 0: no figure asked
+    };
+    const std::vector<std::string> lowerFour{"mesiolingual", "distolingual", "mesiobuccal", "distobuccal"},
+        upperFour{"mesiopalatal", "mesiobuccal", "distobuccal", "distopalatal"}, plus{"buccal", "central", "lingual"},
+        oblique{"buccal", "central", "distopalatal", "transverse"};
+    const Asked kAsked[] = {{11, {}, {}, 0, 0},
+                            {12, {}, {}, 0, 0},
+                            {13, {"cusp"}, {}, 0, 0},
+                            {14, {"buccal", "palatal"}, {"central", "mesial marginal"}, 6.7, 1.0},
+                            {15, {"buccal", "palatal"}, {"central"}, 0, 0},
+                            {16, upperFour, oblique, 4.2, 0.8},
+                            {17, upperFour, oblique, 0, 0},
+                            {18, upperFour, oblique, 0, 0},
+                            {41, {}, {}, 0, 0},
+                            {42, {}, {}, 0, 0},
+                            {43, {"cusp"}, {}, 0, 0},
+                            {44, {"buccal", "lingual"}, {"distal", "mesial", "mesiolingual"}, 0, 0},
+                            {45, {"buccal", "mesiolingual", "distolingual"}, {"distal", "lingual", "mesial"}, 0, 0},
+                            {46,
+                             {"mesiolingual", "distolingual", "mesiobuccal", "distobuccal", "distal"},
+                             {"central", "distobuccal", "lingual", "mesiobuccal"},
+                             3.3,
+                             0.8},
+                            {47, lowerFour, plus, 0, 0},
+                            {48, lowerFour, plus, 0, 0}};
+    fmt::print("| tooth | cusps, over the highest contact [mm] | grooves | ridges | highest horn | trunk [mm] |\n");
+    for (const Asked& asked : kAsked) {
+        SCOPED_TRACE(asked.fdi);
+        const ToothForm form(asked.fdi, kAverage);
+        const std::vector<Landmark> marks = form.landmarks();
+        std::string cusps, grooves;
+        std::vector<std::string> order, lines;
+        std::vector<Landmark> tips = of(LandmarkKind::cuspTip, marks);
+        std::sort(tips.begin(), tips.end(),
+                  [](const Landmark& a, const Landmark& b) { return a.pointsMm[0].z() > b.pointsMm[0].z(); });
+        const double contact = std::max(form.mesialContactMm().z(), form.distalContactMm().z());
+        for (const Landmark& m : tips) {
+            order.push_back(m.name);
+            cusps += fmt::format("{}{} {:.1f}", cusps.empty() ? "" : ", ", m.name, m.pointsMm[0].z() - contact);
+        }
+        for (const Landmark& m : of(LandmarkKind::fissure, marks))
+            lines.push_back(m.name);
+        std::sort(lines.begin(), lines.end());
+        for (const std::string& name : lines)
+            grooves += (grooves.empty() ? "" : ", ") + name;
+        EXPECT_EQ(order, asked.cusps);
+        EXPECT_EQ(lines, asked.grooves);
+        Landmark horn = of(LandmarkKind::pulpHorn, marks).at(0);
+        for (const Landmark& m : of(LandmarkKind::pulpHorn, marks))
+            if (m.pointsMm[0].z() > horn.pointsMm[0].z()) horn = m;
+        if (asked.fdi % 10 >= 6) {
+            EXPECT_EQ(horn.name, "mesiobuccal");
+        }
+        double trunk = 0.0;
+        const std::vector<Landmark> furcations = of(LandmarkKind::furcation, marks);
+        for (const Landmark& m : furcations)
+            trunk += (-0.25 - m.pointsMm[0].z()) / static_cast<double>(furcations.size());
+        if (asked.trunk > 0.0) {
+            EXPECT_NEAR(trunk, asked.trunk, asked.trunkSpread);
+        }
+        const auto start = [&](const char* name) { return named(LandmarkKind::fissure, name, marks).x(); };
+        if (asked.fdi == 46) {  // a Y: the lingual groove begins between the two buccal ones
+            EXPECT_LT(start("lingual"), start("mesiobuccal") - 0.3);
+            EXPECT_GT(start("lingual"), start("distobuccal") + 0.3);
+        } else if (asked.fdi == 47) {  // a +: one goes on as the other
+            EXPECT_NEAR(start("lingual"), start("buccal"), 0.3);
+        }
+        fmt::print("| {} | {} | {} | {} | {} | {} |\n", asked.fdi, cusps, grooves,
+                   of(LandmarkKind::ridge, marks).size() + of(LandmarkKind::marginalRidge, marks).size(), horn.name,
+                   trunk > 0.0 ? fmt::format("{:.1f}", trunk) : "");
+    }
+}
+
 TEST(ToothForm, FeaturesOfTheReference) {
     // The first lower molar's mesiobuccal groove ends in a pit in the middle third.
     const ToothForm molar(46, kAverage);
@@ -268,17 +346,6 @@ TEST(ToothForm, FeaturesOfTheReference) {
     // The canine's mesial slope is the shorter: its tip stands mesial of the middle.
     const ToothForm canine(13, kAverage);
     EXPECT_GT(named(LandmarkKind::cuspTip, "cusp", canine.landmarks()).x(), 0.1);
-    // Trunks.
-    const auto trunk = [](int fdi) {
-        double sum = 0.0, n = 0.0;
-        for (const Landmark& m : of(LandmarkKind::furcation, ToothForm(fdi, kAverage).landmarks()))
-            sum += -0.25 - m.pointsMm[0].z(), n += 1.0;
-        return sum / n;
-    };
-    fmt::print("trunk 46 {:.2f}, 16 {:.2f}, 14 {:.2f}\n", trunk(46), trunk(16), trunk(14));
-    EXPECT_NEAR(trunk(46), 3.3, 0.7);
-    EXPECT_NEAR(trunk(16), 4.0, 1.0);
-    EXPECT_NEAR(trunk(14), 7.0, 1.5);
     // The oblique ridge is higher all along than the fossae on its two sides.
     const ToothForm upper(16, kAverage);
     double lowest = 1e9;

@@ -138,7 +138,7 @@ void lowerMolar(Spec& s, int place) {
     s.lingual = {3.6, 6.7, 4.05, 7.8, 3.0};
     s.lean = -0.05, s.wedge = 0.04;
     s.cervixSquare = 0.5, s.contourSquare = 0.7, s.rimSquare = 0.65;
-    s.rimRound = 0.9;
+    s.rimRound = 1.2;
     s.groundZ = 4.55;
     if (place == 6)
         fiveCusps(s);

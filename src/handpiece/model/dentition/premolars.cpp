@@ -97,12 +97,12 @@ void lowerPremolar(Spec& s, int place) {
     s.enamelCusp = 1.8, s.enamelSide = 0.95, s.enamelFossa = 0.42;
     OcclusalPlan plan;
     if (first) {
-        s.groundZ = 4.75;
+        s.groundZ = 4.4;
         // The buccal cusp stands over the root's axis; the transverse ridge crosses the crown to the small lingual one.
-        plan.buccal = {{"buccal", Vec3(0.15, -1.0, 8.25), Vec3(0.15, 1.25, 5.75), 0.6, 1.2}};
-        plan.lingual = {{"lingual", Vec3(0.05, 2.6, 5.85), Vec3(0.1, 1.2, 5.6), 0.5, 1.1}};
-        plan.mesial = {Vec3(2.65, -0.55, 6.1), Vec3(2.7, 0.9, 5.55), Vec3(1.6, 2.2, 5.35)};
-        plan.distal = {Vec3(-2.65, -0.55, 6.2), Vec3(-2.75, 0.9, 5.75), Vec3(-1.7, 2.3, 5.6)};
+        plan.buccal = {{"buccal", Vec3(0.15, -1.0, 8.25), Vec3(0.15, 0.9, 5.0), 0.45, 1.6}};
+        plan.lingual = {{"lingual", Vec3(0.05, 2.5, 5.75), Vec3(0.1, 1.6, 4.9), 0.4, 1.15}};
+        plan.mesial = {Vec3(2.65, -0.55, 5.9), Vec3(2.7, 0.9, 5.2), Vec3(1.6, 2.2, 4.9)};
+        plan.distal = {Vec3(-2.65, -0.55, 6.0), Vec3(-2.75, 0.9, 5.4), Vec3(-1.7, 2.3, 5.1)};
         occlusalSurface(s, plan);
         s.grooves.push_back({"mesial",
                              {Vec3(1.7, 1.0, 0.3), Vec3(1.5, 0.6, 0.2), Vec3(1.55, 0.1, 0.1), Vec3(1.7, -0.3, 0.0)},

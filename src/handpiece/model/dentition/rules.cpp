@@ -15,11 +15,11 @@ Vec3 between(const Vec3& a, const Vec3& b, double t) {
 }
 
 /// From a tip down to a notch or corner of the rim: falls slowly at first, bulges outwards.
-Crest cuspRidge(const Vec3& tip, const Vec3& end, double side) {
+Crest cuspRidge(const Vec3& tip, const Vec3& end, double side, double slope) {
     Vec3 by = between(tip, end, 0.5);
     by.y() += 0.15 * side;
     by.z() += 0.25 * (tip.z() - end.z());
-    return {tip, by, end, 0.9, 1.0, true};
+    return {tip, by, end, 0.9, std::max(1.0, slope - 0.25), true};
 }
 
 }  // namespace
@@ -47,8 +47,8 @@ void occlusalSurface(Spec& spec, const OcclusalPlan& plan) {
             by.z() += 0.24 * (c.tip.z() - c.inner.z());
             spec.crests.push_back(
                 {c.tip, by, c.inner, 1.8 * c.round, c.slope, false, std::string("triangular ") + c.name});
-            spec.crests.push_back(cuspRidge(c.tip, mesial, side));
-            spec.crests.push_back(cuspRidge(c.tip, distal, side));
+            spec.crests.push_back(cuspRidge(c.tip, mesial, side, c.slope));
+            spec.crests.push_back(cuspRidge(c.tip, distal, side, c.slope));
             for (const Vec3& rim : {mesial, distal}) {
                 const Vec3 a = between(c.inner, rim, 0.14), e = between(between(c.tip, rim, 0.42), c.inner, 0.25);
                 const Vec3 m = between(between(a, e, 0.5), rim, -0.04);
@@ -62,9 +62,9 @@ void occlusalSurface(Spec& spec, const OcclusalPlan& plan) {
         const Vec3 out(outwards, 0, 0);
         const char* name = m == &plan.mesial ? "mesial" : "distal";
         spec.crests.push_back(
-            {m->buccal, between(m->buccal, m->middle, 0.5) + out, m->middle, m->round, 1.0, true, name, true});
+            {m->buccal, between(m->buccal, m->middle, 0.5) + out, m->middle, 1.5 * m->round, 1.0, true, name, true});
         spec.crests.push_back(
-            {m->middle, between(m->middle, m->lingual, 0.5) + out, m->lingual, m->round, 1.0, true, name, true});
+            {m->middle, between(m->middle, m->lingual, 0.5) + out, m->lingual, 1.5 * m->round, 1.0, true, name, true});
     }
 }
 

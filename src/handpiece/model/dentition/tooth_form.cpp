@@ -101,6 +101,31 @@ void wander(Spec& spec, const Wander& field) {
     }
 }
 
+/// Lobes swell between what has a name: ridges carry knobs, the sides are a little uneven.
+void undulate(Spec& spec, std::uint64_t seed) {
+    Draws draws(seed, false);
+    const auto knob = [&](const Vec3& at, const Vec3& radii, double depth) {
+        spec.hollows.push_back({at + 0.25 * Vec3(draws.normal(), draws.normal(), 0.0), radii, depth});
+    };
+    for (const Crest& c : spec.crests) {
+        const double t = 0.45 + 0.2 * draws.uniform(), u = 1.0 - t;
+        const Vec3 at = u * u * c.from + 2.0 * u * t * c.by + t * t * c.to;
+        const double round = 1.1 + 0.5 * draws.uniform();
+        if (c.isMarginal)
+            knob(at, Vec3(round, round, 1.1), 0.16 * (draws.uniform() - 0.6));
+        else if (!c.isRim && !spec.isEdge)
+            knob(at, Vec3(round, round, 1.1), -(0.05 + 0.14 * draws.uniform()) * std::min(1.0, c.round * c.round));
+    }
+    const Sizes& z = spec.sizes;
+    constexpr int kSides = 6;
+    for (int i = 0; i < kSides; ++i) {
+        const double turn = 2.0 * std::numbers::pi * (i + 0.5 * draws.uniform()) / kSides;
+        knob(Vec3(0.5 * z.mesiodistal * core::cos(turn), 0.5 * z.buccolingual * core::sin(turn),
+                  z.crown * (0.35 + 0.3 * draws.uniform())),
+             Vec3(1.9, 1.9, 2.2), 0.16 * (draws.uniform() - 0.5));
+    }
+}
+
 Spec specFor(int fdi, const Patient& patient) {
     const bool upper = fdi < 30;
     Spec spec = specOf(upper, fdi % 10, patient);
@@ -113,7 +138,9 @@ Spec specFor(int fdi, const Patient& patient) {
     const double crown = all * (1.0 + 0.02 * tooth.normal()), root = all * (1.0 + 0.04 * tooth.normal());
     scale(spec, x, y, crown, root);
     // No two mouths have the same wrinkles or the same bends of the roots; the average one has wrinkles too.
-    wander(spec, Wander(patient.seed * 9176263 + static_cast<std::uint64_t>(fdi % 10 + (upper ? 0 : 8))));
+    const std::uint64_t own = patient.seed * 9176263 + static_cast<std::uint64_t>(fdi % 10 + (upper ? 0 : 8));
+    wander(spec, Wander(own));
+    undulate(spec, own + 1);
     for (Hollow& h : spec.hollows)
         h.depth *= 1.0 + 0.1 * tooth.normal();
     // Those of third molars stand so close that they would grow together.

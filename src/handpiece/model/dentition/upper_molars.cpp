@@ -23,7 +23,7 @@ void upperMolar(Spec& s, int place, const Patient& patient) {
     s.lingual = {3.6, 6.5, 4.4, 7.8, 3.4};
     s.lean = 0.03, s.wedge = 0.03, s.skew = -0.13;
     s.cervixSquare = 0.5, s.contourSquare = 0.72, s.rimSquare = 0.68;
-    s.rimRound = 0.9;
+    s.rimRound = 1.2;
     s.groundZ = 4.4;
     OcclusalPlan plan;
     plan.buccal = {{"mesiobuccal", Vec3(2.75, -3.35, 6.85), Vec3(1.1, -0.75, 4.9), 0.62, 1.1, 0.15},
@@ -80,7 +80,7 @@ void upperMolar(Spec& s, int place, const Patient& patient) {
     s.hollows.push_back({Vec3(0.5, -0.9, 4.75), Vec3(0.38, 0.38, 0.8), 0.22, "central"});
     s.hollows.push_back({Vec3(3.2, -0.15, 4.8), Vec3(0.33, 0.33, 0.8), 0.18, "mesial"});
     s.hollows.push_back({Vec3(-3.1, -0.35, 4.7), Vec3(0.33, 0.33, 0.8), 0.18, "distal"});
-    s.trunk = 5.3;
+    s.trunk = 6.4;
     s.roots = {{"mesiobuccal", Vec2(2.15, -2.2), Vec3(2.9, -3.1, -6.5), Vec3(1.9, -3.3, -12.3), Vec2(1.65, 2.2), 0.4,
                 0.12, Vec2(0.84, 0.5)},
                {"distobuccal", Vec2(-1.65, -2.4), Vec3(-2.6, -3.1, -6.2), Vec3(-3.2, -3.0, -11.8), Vec2(1.6, 1.95), 0.3,

@@ -94,7 +94,7 @@ void lowerPremolar(Spec& s, int place) {
     s.lean = first ? -0.1 : 0.0;
     s.cervixSquare = 0.35, s.contourSquare = 0.5, s.rimSquare = 0.5;
     s.rimRound = 0.8;
-    s.enamelCusp = 1.8, s.enamelSide = 0.95, s.enamelFossa = 0.42;
+    s.enamelCusp = 1.8, s.enamelSide = 0.95, s.enamelFossa = 0.55;
     OcclusalPlan plan;
     if (first) {
         s.groundZ = 4.4;

@@ -16,7 +16,7 @@ constexpr double kHeightToDistance = 0.75;
 /// Enamel stands this far proud of the root at the cervix: the edge one feels with a probe.
 constexpr double kStepMm = 0.08, kStepHeightMm = 0.3;
 /// Thickness that the enamel ends with, so that its edge is no razor.
-constexpr double kCervicalEnamelMm = 0.06;
+constexpr double kCervicalEnamelMm = 0.10;
 /// Dentine left everywhere over the pulp, in the crown and at the apex.
 constexpr double kCrownDentineMm = 1.0, kApicalDentineMm = 0.25;
 /// Flanks of two crests meet in a valley as sharp as this [mm]; the ridges of the rim pass into each other softly.
@@ -389,7 +389,7 @@ double Anatomy::dentine(const Vec3& p) const {
 double Anatomy::enamel(const Vec3& p) const {
     const double above = aboveCervix(p), bodyValue = body(p);
     // Half of the step lies below the line: there the cap ends, blunt.
-    const double cap = smoothMax(-core(p, bodyValue), -above - 0.1, 0.08);
+    const double cap = smoothMax(-core(p, bodyValue), -above - 0.1, 0.05);
     return smoothMax(bodyValue - step(above) + grooveDepth(p), cap, 0.08);
 }
 

@@ -92,13 +92,13 @@ void stabilityMap(const PassivityOptions& o) {
                                             [&](studies::LoopMotion m) { return studies::nameOf(m) == name; });
             if (found == sweep.motions.end())
                 throw core::Error(fmt::format("no motion is called \"{}\"", name), "--motion",
-                                  "there are touch, slide, cut and wedge");
+                                  "there are touch, slide, cut, wedge, between and head");
             chosen.push_back(*found);
         }
         sweep.motions = chosen;
     }
     core::prepareOutputFolder(o.out);
-    studies::ProgressBar bar("touching, sliding, cutting, wedged");
+    studies::ProgressBar bar("touching, sliding, cutting, wedged, between two teeth, head and bur");
     const std::vector<studies::StabilityRow> rows = studies::stabilityMap(sweep, bar.listener());
     bar.finish();
     const std::filesystem::path out(o.out);

@@ -15,8 +15,10 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/instrument/shapes.h"
+#include "handpiece/model/instrument/turbine.h"
 #include "handpiece/model/starter/starter.h"
 #include "handpiece/tick/contact/field_method.h"
+#include "handpiece/tick/contact/mouth_method.h"
 #include "handpiece/tick/loop/loop_run.h"
 #include "studies/built_in_motion.h"
 #include "studies/plane_method.h"
@@ -35,7 +37,7 @@ constexpr double kPullMm = 0.3;   // sideways, in the fissure
 constexpr double kCrownMm = 8.0;  // no deeper into the molar: a softer tissue is met with less load
 constexpr double kRoundingNmm = 1e-9;
 
-/// The starter molar in one tissue at a time, a bur, and where it meets cusp and fissure.
+/// The starter molar in one tissue at a time, a bur, and where it meets cusp, fissure and a second such molar beside.
 class Molar {
   public:
     explicit Molar(const core::Progress& progress)
@@ -49,22 +51,64 @@ class Molar {
         settings.useCache = false;
         molar_ = tooth::loadModel(molar, settings, core::part(progress, 0.3, 1.0));
         findPlaces();
+        findSecond();
     }
     void use(cases::Tissue tissue) {
         base_ = tooth::withTissues(*molar_, field::TissueMap::uniform(molar_->field, tissue));
         uncut_ = std::make_shared<const tooth::ToothState>(base_);
     }
-    [[nodiscard]] loop::Work work(bool cutting) const {
-        if (!cutting) return {contact::makeFieldMethod(uncut_, bur_), nullptr};
+    [[nodiscard]] loop::Work work(LoopMotion motion) const {
+        if (motion == LoopMotion::between) return {besideAnother(uncut_, beside_), nullptr};
+        if (motion == LoopMotion::head) return {besideAnother(uncut_, underHead_), nullptr};
+        if (motion != LoopMotion::cut) return {contact::makeFieldMethod(uncut_, bur_), nullptr};
         const auto field = std::make_shared<tooth::ToothState>(base_);
         return {contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(field), bur_),
                 std::make_unique<cutting::Cutter>(field, bur_, instrument::CuttingParameters{}, cases::builtInTissues(),
                                                   cutting::Cutter::Settings{})};
     }
-    [[nodiscard]] const Vec3& cusp() const { return cusp_; }
-    [[nodiscard]] const Vec3& fissure() const { return fissure_; }
+    /// Where the bur first touches.
+    [[nodiscard]] const Vec3& place(LoopMotion motion) const {
+        return motion == LoopMotion::wedge ? fissure_ : motion == LoopMotion::between ? between_ : cusp_;
+    }
 
   private:
+    /// The molar and a second one there, felt by bur and handpiece.
+    template <class Tooth>
+    [[nodiscard]] std::unique_ptr<contact::Method> besideAnother(const Tooth& tooth, const Vec3& there) const {
+        std::vector<contact::PlacedMethod> placed;
+        const core::Box box = molar_->outer.bounds();
+        for (std::uint16_t i = 0; i < 2; ++i) {
+            const core::Pose pose{i == 0 ? Vec3(Vec3::Zero()) : there, core::Quat::Identity()};
+            placed.push_back({contact::makeFieldMethod(tooth, bur_), bur_, {}, pose, box, i, contact::Piece::bur});
+            for (const instrument::BodyPiece& piece : instrument::bodyPieces(*bur_))
+                placed.push_back(
+                    {contact::makeFieldMethod(tooth, piece.solid), piece.solid, piece.inBur, pose, box, i, piece.part});
+        }
+        return contact::makeMouthMethod(std::move(placed));
+    }
+    /// Beside the molar: in contact with it, and so high that the head comes to rest on it with the bur on the cusp.
+    void findSecond() {
+        const core::Box box = molar_->outer.bounds();
+        beside_ = Vec3(box.size().x(), 0.0, 0.0);
+        const auto both = besideAnother(molar_, beside_);
+        const auto touch =
+            firstTouch(*both, {Vec3(box.max.x(), box.centre().y(), box.max.z() + 1.0), core::Quat::Identity()},
+                       -Vec3::UnitZ(), box.size().z());
+        if (!touch) throw core::Error("the bur finds no place between two teeth", "stability map");
+        between_ = touch->positionMm;
+        // Clear of bur and shank, under the head.
+        constexpr double kClearMm = 1.2;
+        underHead_ = Vec3(cusp_.x() - box.min.x() + kClearMm, 0.0, 0.0);
+        for (const instrument::BodyPiece& piece : instrument::bodyPieces(*bur_)) {
+            if (piece.part != contact::Piece::head) continue;
+            const auto head = contact::makeFieldMethod(molar_, piece.solid);
+            for (int i = 0; i < 30; ++i) {
+                const core::Pose at = core::Pose{cusp_ - underHead_, core::Quat::Identity()} * piece.inBur;
+                underHead_.z() -= head->depth(at).depthMm;
+            }
+        }
+    }
+
     /// The highest place that the bur rests at, and the lowest between the cusps on the way across the middle.
     void findPlaces() {
         const auto method = contact::makeFieldMethod(molar_, bur_);
@@ -93,7 +137,8 @@ class Molar {
     std::shared_ptr<const tooth::ToothModel> molar_;
     std::shared_ptr<const tooth::ToothModel> base_;
     std::shared_ptr<const tooth::ToothState> uncut_;
-    Vec3 cusp_ = Vec3::Zero(), fissure_ = Vec3::Zero();
+    Vec3 cusp_ = Vec3::Zero(), fissure_ = Vec3::Zero(), between_ = Vec3::Zero();
+    Vec3 beside_ = Vec3::Zero(), underHead_ = Vec3::Zero();  ///< of a second molar
 };
 
 /// What the hand intends, and when it rests.
@@ -130,9 +175,7 @@ Path pathOf(const StabilityRow& row, const device::Hand& hand, const Molar* mola
     // Hand and tooth are two springs in series: this far in they meet at the load.
     const double most = row.motion == LoopMotion::touch ? std::numeric_limits<double>::infinity() : kCrownMm;
     const double depth = loadN / hand.stiffnessNPerMm + std::min(loadN / row.stiffnessNPerMm, most);
-    const Vec3 touch = row.motion == LoopMotion::touch   ? Vec3(Vec3::Zero())
-                       : row.motion == LoopMotion::wedge ? molar->fissure()
-                                                         : molar->cusp();
+    const Vec3 touch = row.motion == LoopMotion::touch ? Vec3(Vec3::Zero()) : molar->place(row.motion);
     const Vec3 above = touch + kAboveMm * Vec3::UnitZ(), pressed = touch - depth * Vec3::UnitZ();
     PathMaker hands(above, row.motion == LoopMotion::cut ? 1.0 : 0.0);
     hands.go(pressed, kFastMmS);
@@ -142,7 +185,7 @@ Path pathOf(const StabilityRow& row, const device::Hand& hand, const Molar* mola
     if (row.motion == LoopMotion::slide || row.motion == LoopMotion::cut) {
         last = pressed + Vec3(1.5, -1.5, 0.0);
         hands.go(last, kSlowMmS);
-    } else if (row.motion == LoopMotion::wedge) {
+    } else if (row.motion != LoopMotion::touch) {
         // As far as the hand's own spring must give for a quarter of the load, both ways.
         const Vec3 pull(0.0, kPullMm + 0.25 * loadN / hand.stiffnessNPerMm, 0.0);
         hands.go(pressed + pull, kFastMmS);
@@ -180,7 +223,7 @@ StabilityRow::Outcome simulate(const StabilitySweep& sweep, const StabilityRow& 
     loopSettings.rateHz = row.rateHz;
     loopSettings.queueCapacity = 16;
     loop::Work work = row.motion == LoopMotion::touch ? loop::Work(std::make_unique<PlaneMethod>(row.tissue))
-                                                      : molar->work(row.motion == LoopMotion::cut);
+                                                      : molar->work(row.motion);
     loop::HapticLoop loop(loopSettings, std::move(shaped), std::move(work), parameters);
 
     const double period = loop.periodS(), delta = settings.capability.encoderStepMm;
@@ -235,6 +278,10 @@ std::string_view nameOf(LoopMotion motion) {
             return "cut";
         case LoopMotion::wedge:
             return "wedge";
+        case LoopMotion::between:
+            return "between";
+        case LoopMotion::head:
+            return "head";
     }
     return "";
 }

@@ -17,11 +17,13 @@ namespace handpiece::studies {
 
 /// Touch: the tip taps a plane and rests. The others on the starter molar, its real field: slide over a cusp, cut into
 /// it and along, wedge in the fissure and pull sideways.
-enum class LoopMotion : std::uint8_t { touch, slide, cut, wedge };
+/// `between`: wedged between two teeth; `head`: on a cusp while the handpiece's head rests on the tooth beside.
+enum class LoopMotion : std::uint8_t { touch, slide, cut, wedge, between, head };
 [[nodiscard]] std::string_view nameOf(LoopMotion motion);
 
 struct StabilitySweep {
-    std::vector<LoopMotion> motions{LoopMotion::touch, LoopMotion::slide, LoopMotion::cut, LoopMotion::wedge};
+    std::vector<LoopMotion> motions{LoopMotion::touch, LoopMotion::slide,   LoopMotion::cut,
+                                    LoopMotion::wedge, LoopMotion::between, LoopMotion::head};
     /// Of enamel, the hardest, as the force model renders it; a tissue has its share of it.
     std::vector<double> stiffnessNPerMm{0.1, 0.25, 0.5, 1, 2, 5};
     std::vector<device::Hand> hands = device::hands();

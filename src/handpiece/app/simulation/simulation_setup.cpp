@@ -472,12 +472,18 @@ loop::Work SimulationSetup::work() const {
     if (others.empty()) return {contact::makeFieldMethod(own, settings.bur), std::move(cutter)};
     std::vector<contact::PlacedMethod> placed;
     const std::vector<instrument::BodyPiece> body = instrument::bodyPieces(*settings.bur);
-    contact::FieldMethodSettings bodyOnly;
-    bodyOnly.depthOnly = true;
+    contact::FieldMethodSettings ofBur;
+    ofBur.sheets = contact::makeMedialSheets(*settings.bur);
+    std::vector<contact::FieldMethodSettings> ofPiece(body.size());
+    for (std::size_t i = 0; i < body.size(); ++i) {
+        ofPiece[i].depthOnly = true;
+        ofPiece[i].sheets = contact::makeMedialSheets(*body[i].solid);
+    }
     std::uint16_t index = 0;
     const auto add = [&](const auto& model, const core::Pose& at, const core::Box& bounds, bool isYielding,
                          bool isCuttable) {
-        placed.push_back({contact::makeFieldMethod(model, settings.bur),
+        ofBur.depthOnly = isYielding;
+        placed.push_back({contact::makeFieldMethod(model, settings.bur, ofBur),
                           settings.bur,
                           {},
                           at,
@@ -486,9 +492,9 @@ loop::Work SimulationSetup::work() const {
                           contact::Piece::bur,
                           isYielding,
                           isCuttable});
-        for (const instrument::BodyPiece& piece : body)
-            placed.push_back({contact::makeFieldMethod(model, piece.solid, bodyOnly), piece.solid, piece.inBur, at,
-                              bounds, index, piece.part, isYielding, isCuttable});
+        for (std::size_t i = 0; i < body.size(); ++i)
+            placed.push_back({contact::makeFieldMethod(model, body[i].solid, ofPiece[i]), body[i].solid, body[i].inBur,
+                              at, bounds, index, body[i].part, isYielding, isCuttable});
         ++index;
     };
     add(own, {}, tooth->outer.bounds(), false, true);

@@ -40,7 +40,7 @@ class FieldMethod final : public Method {
           surface_(tooth_->tree, tooth_->field, core::simdLevel()),
           outline_(*bur_, core::simdLevel()),
           axis_(*bur_),
-          sheets_(*bur_, tooth_->field, core::simdLevel()),
+          sheets_(settings_.sheets ? settings_.sheets : makeMedialSheets(*bur_), tooth_->field, core::simdLevel()),
           slackMm_(cut_ ? std::max(kMinSlackMm, kSlackShare * live_.settings().voxelMm * live_.settings().voxelMm /
                                                     (0.5 * bur_->maxRadiusMm()))
                         : 0.0),
@@ -239,6 +239,10 @@ void check(bool isThere, const FieldMethodSettings& settings) {
 }
 
 }  // namespace
+
+std::shared_ptr<const MedialSheets> makeMedialSheets(const instrument::Bur& bur) {
+    return std::make_shared<const MedialSheets>(bur);
+}
 
 std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::ToothModel> tooth,
                                         std::shared_ptr<const instrument::Bur> bur,

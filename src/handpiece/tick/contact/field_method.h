@@ -18,12 +18,17 @@ enum class DepthSource : std::uint8_t {
     field,  ///< the distance field alone, as after a cut; sees no farther out than the field's band
 };
 
+class MedialSheets;
+/// What the methods of several teeth can share of one bur.
+[[nodiscard]] std::shared_ptr<const MedialSheets> makeMedialSheets(const instrument::Bur& bur);
+
 struct FieldMethodSettings {
+    DepthSource depthSource = DepthSource::exact;
+    double reachMm = 5.0;  ///< farther apart than this is "beyond reach"
     /// For solids that are only kept out, of a tooth that is not cut: depth() alone, without the points of the solid's
     /// surface, which for a whole handpiece would be half a million.
     bool depthOnly = false;
-    DepthSource depthSource = DepthSource::exact;
-    double reachMm = 5.0;  ///< farther apart than this is "beyond reach"
+    std::shared_ptr<const MedialSheets> sheets{};  ///< of this very bur; null: the method makes its own
 };
 
 [[nodiscard]] std::unique_ptr<Method> makeFieldMethod(std::shared_ptr<const tooth::ToothModel> tooth,

@@ -33,22 +33,27 @@ struct Pair : PlacedMethod {
           moves(!isIdentity(pieceInBur)),
           turns(!isIdentity(toothInScene)) {}
 
-    /// The piece in the tooth's frame. Where nothing is moved nothing is rounded.
-    [[nodiscard]] Pose localOf(const Pose& bur) const noexcept {
-        const Pose own = moves ? bur * pieceInBur : bur;
-        return turns ? sceneInTooth * own : own;
+    /// The piece in the tooth's frame and no more than the distance between the two, for the pose that all ask about in
+    /// turn. Where nothing is moved nothing is rounded.
+    struct Place {
+        Pose local;
+        double gapMm = 0.0;
+    };
+    [[nodiscard]] const Place& at(const Pose& bur) const noexcept {
+        if (!isPlaced_ || !isSame(bur, placedFor_)) {
+            const Pose own = moves ? bur * pieceInBur : bur;
+            place_.local = turns ? sceneInTooth * own : own;
+            place_.gapMm = gapOf(place_.local);
+            placedFor_ = bur;
+            isPlaced_ = true;
+        }
+        return place_;
     }
     [[nodiscard]] Vec3 direction(const Vec3& inTooth) const noexcept {
         return turns ? Vec3(toothInScene.orientation * inTooth) : inTooth;
     }
     [[nodiscard]] Vec3 place(const Vec3& inTooth) const noexcept {
         return turns ? toothInScene.apply(inTooth) : inTooth;
-    }
-    /// No more than the distance between the two.
-    [[nodiscard]] double gapMm(const Pose& local) const noexcept {
-        const core::Box box = BurFrame(local).boxAround(solid->lengthMm(), solid->maxRadiusMm(), 0.0);
-        const Vec3 apart = (box.min - toothBoxMm.max).cwiseMax(toothBoxMm.min - box.max).cwiseMax(0.0);
-        return apart.norm();
     }
     [[nodiscard]] bool isBur() const noexcept { return piece == Piece::bur; }
     [[nodiscard]] bool cuts() const noexcept { return isBur() && isCuttable; }
@@ -59,6 +64,16 @@ struct Pair : PlacedMethod {
     std::uint64_t askedVersion = 0;
     bool wasAsked = false;
     Depth answer;
+
+  private:
+    [[nodiscard]] double gapOf(const Pose& local) const noexcept {
+        const core::Box box = BurFrame(local).boxAround(solid->lengthMm(), solid->maxRadiusMm(), 0.0);
+        const Vec3 apart = (box.min - toothBoxMm.max).cwiseMax(toothBoxMm.min - box.max).cwiseMax(0.0);
+        return apart.norm();
+    }
+    mutable Place place_;
+    mutable Pose placedFor_;
+    mutable bool isPlaced_ = false;
 };
 
 class MouthMethod final : public Method {
@@ -72,6 +87,7 @@ class MouthMethod final : public Method {
                 throw core::Error("a tooth of the mouth stands nowhere", "contact",
                                   "give it a rigid pose near the others");
             Pair& pair = p.isYielding ? soft_.emplace_back(std::move(p)) : pairs_.emplace_back(std::move(p));
+            if (!pair.isYielding && pair.cuts()) cutting_.push_back(static_cast<std::uint16_t>(pairs_.size() - 1));
             farthestMm_ = std::max(farthestMm_, pair.pieceInBur.positionMm.norm() +
                                                     core::hypot(pair.solid->lengthMm(), pair.solid->maxRadiusMm()));
         }
@@ -95,12 +111,12 @@ class MouthMethod final : public Method {
         std::size_t count = 0;
         for (std::size_t n = 0; n < nearCount_; ++n) {
             Pair& pair = pairs_[near_[n]];
-            if (!pair.isBur() || pair.gapMm(pair.localOf(bur)) > kContactMarginMm) continue;
+            if (!pair.isBur() || pair.at(bur).gapMm > kContactMarginMm) continue;
             if (count == kMaxSets) out.status = Status::truncated;
             if (count < kMaxSets) touched[count++] = &pair;
         }
         if (count == 1) {
-            touched[0]->method->patches(touched[0]->localOf(bur), out);
+            touched[0]->method->patches(touched[0]->at(bur).local, out);
             for (Patch& p : out.patches)
                 p = inScene(*touched[0], p);
             return;
@@ -108,7 +124,7 @@ class MouthMethod final : public Method {
         merged_.clear();
         for (std::size_t n = 0; n < count; ++n) {
             Pair& pair = *touched[n];
-            pair.method->patches(pair.localOf(bur), scratchPatches_);
+            pair.method->patches(pair.at(bur).local, scratchPatches_);
             const PatchSet& own = scratchPatches_;
             if (out.status == Status::ok) out.status = own.status;
             out.areaMm2 += own.areaMm2;
@@ -141,8 +157,8 @@ class MouthMethod final : public Method {
         std::size_t sets = 0;
         for (std::size_t n = 0; n < nearCount_; ++n) {
             Pair& pair = pairs_[near_[n]];
-            const Pose local = pair.localOf(bur);
-            if (pair.gapMm(local) > reachMm) continue;
+            const auto& [local, gapMm] = pair.at(bur);
+            if (gapMm > reachMm) continue;
             if (sets == kMaxSets) {
                 status = Status::truncated;
                 break;
@@ -178,8 +194,8 @@ class MouthMethod final : public Method {
         out.clear();
         if (!bur.isValid()) return;
         for (Pair& pair : soft_) {
-            const Pose local = pair.localOf(bur);
-            if (pair.gapMm(local) > 0.0) continue;
+            const auto& [local, gapMm] = pair.at(bur);
+            if (gapMm > 0.0) continue;
             const Depth d = pair.method->depth(local);
             if (d.status == Status::ok && d.depthMm > 0.0)
                 out.pushBack({pair.direction(d.normal), d.depthMm, pair.place(d.toothPointMm), d.tissue, pair.piece});
@@ -199,8 +215,9 @@ class MouthMethod final : public Method {
         const double withinMm = kContactMarginMm + std::max(leadMm, 0.0);
         for (std::size_t n = 0; n < nearCount_; ++n) {
             Pair& pair = pairs_[near_[n]];
-            const Pose local = pair.localOf(bur);
-            if (!pair.cuts() || pair.gapMm(local) > withinMm) continue;
+            if (!pair.cuts()) continue;
+            const auto& [local, gapMm] = pair.at(bur);
+            if (gapMm > withinMm) continue;
             const Vec3 along = pair.turns ? Vec3(pair.sceneInTooth.orientation * direction) : direction;
             Bearing own;
             pair.method->bearing(local, along, leadMm, leastRadiusMm, own);
@@ -215,27 +232,26 @@ class MouthMethod final : public Method {
 
     [[nodiscard]] std::uint64_t toothVersion() const noexcept override {
         std::uint64_t sum = 0;
-        for (const Pair& pair : pairs_)
-            if (pair.isBur()) sum += pair.method->toothVersion();
+        for (const std::uint16_t i : cutting_)
+            sum += pairs_[i].method->toothVersion();
         return sum;
     }
     [[nodiscard]] double slackMm() const noexcept override {
         double most = 0.0;
-        for (const Pair& pair : pairs_)
-            if (pair.isBur()) most = std::max(most, pair.method->slackMm());
+        for (const std::uint16_t i : cutting_)
+            most = std::max(most, pairs_[i].method->slackMm());
         return most;
     }
     [[nodiscard]] bool isCutNear(const Pose& bur) const noexcept override {
         if (!bur.isValid()) return false;
-        return std::any_of(pairs_.begin(), pairs_.end(), [&bur](const Pair& pair) {
-            if (!pair.isBur()) return false;
-            const Pose local = pair.localOf(bur);
-            return pair.gapMm(local) <= kNearSlackMm && pair.method->isCutNear(local);
+        return std::any_of(cutting_.begin(), cutting_.end(), [&](std::uint16_t i) {
+            const auto& [local, gapMm] = pairs_[i].at(bur);
+            return gapMm <= kNearSlackMm && pairs_[i].method->isCutNear(local);
         });
     }
     void noteCut(const Pose& bur) noexcept override {
-        for (Pair& pair : pairs_)
-            if (pair.isBur()) pair.method->noteCut(pair.localOf(bur));
+        for (const std::uint16_t i : cutting_)
+            if (pairs_[i].at(bur).gapMm <= kNearSlackMm) pairs_[i].method->noteCut(pairs_[i].at(bur).local);
     }
     void reset() noexcept override {
         for (Pair& pair : pairs_) {
@@ -266,8 +282,7 @@ class MouthMethod final : public Method {
         }
         nearCount_ = 0;
         for (std::size_t i = 0; i < pairs_.size(); ++i)
-            if (pairs_[i].gapMm(pairs_[i].localOf(bur)) <= reachMm_ + kNearSlackMm)
-                near_[nearCount_++] = static_cast<std::uint16_t>(i);
+            if (pairs_[i].at(bur).gapMm <= reachMm_ + kNearSlackMm) near_[nearCount_++] = static_cast<std::uint16_t>(i);
         lookedAt_ = bur;
         hasLooked_ = true;
     }
@@ -307,8 +322,7 @@ class MouthMethod final : public Method {
         std::array<Candidate, kMaxPlaced> order;
         std::size_t count = 0;
         for (std::size_t n = 0; n < nearCount_; ++n) {
-            const Pair& pair = pairs_[near_[n]];
-            const double gap = pair.gapMm(pair.localOf(bur));
+            const double gap = pairs_[near_[n]].at(bur).gapMm;
             if (gap <= reachMm_) order[count++] = {gap, near_[n]};
         }
         std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
@@ -318,7 +332,7 @@ class MouthMethod final : public Method {
         const Pair* decides = nullptr;
         for (std::size_t n = 0; n < count && !(decides != nullptr && order[n].gapMm > -best.depthMm); ++n) {
             Pair& pair = pairs_[order[n].pair];
-            const Pose local = pair.localOf(bur);
+            const Pose& local = pair.at(bur).local;
             const Depth found = enoughMm != nullptr ? pair.method->depthUpTo(*enoughMm, local) : depthOf(pair, local);
             if (decides != nullptr && !(found.depthMm > best.depthMm)) continue;
             best = found;
@@ -335,6 +349,7 @@ class MouthMethod final : public Method {
 
     double reachMm_, farthestMm_ = 0.0;
     std::vector<Pair> pairs_, soft_;
+    std::vector<std::uint16_t> cutting_;  ///< pairs of the bur with teeth that it cuts
     std::array<std::uint16_t, kMaxPlaced> near_{};
     std::size_t nearCount_ = 0;
     Pose lookedAt_;

@@ -114,21 +114,13 @@ bool isCovered(const instrument::MedialCurve& sheet, const std::vector<instrumen
 
 }  // namespace
 
-OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field::DistanceField& field,
-                                         core::SimdLevel level)
-    : field_(field.view()),
-      lookup_(HANDPIECE_AT_SIMD_LEVEL(level, fieldLookup)()),
-      lowerCells_(HANDPIECE_AT_SIMD_LEVEL(level, lowerCells)()),
-      bandOutMm_(static_cast<float>(field.settings().bandOutMm)),
-      bandInMm_(static_cast<float>(field.settings().bandInMm)),
-      errorMm_(kFieldErrorVoxels * field.settings().voxelMm),
-      brickDiagonalMm_(std::numbers::sqrt3 * field::kBrickCells * field.settings().voxelMm) {
+MedialSheets::MedialSheets(const instrument::Bur& bur) {
     std::vector<instrument::MedialBall> kept;
     for (const instrument::MedialCurve& curve : bur.medialAxis()) {
         if (curve.balls.empty()) continue;
         const bool searchedHere = !curve.onAxis && !isCovered(curve, kept);
         if (curve.onAxis || searchedHere) kept.insert(kept.end(), curve.balls.begin(), curve.balls.end());
-        if (!curve.onAxis && !searchedHere) covered_.insert(covered_.end(), curve.balls.begin(), curve.balls.end());
+        if (!curve.onAxis && !searchedHere) covered.insert(covered.end(), curve.balls.begin(), curve.balls.end());
         if (!searchedHere) continue;
         Sheet sheet;
         for (const instrument::MedialBall& ball : curve.balls) {
@@ -166,8 +158,20 @@ OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field
             sheet.promiseMm = std::max(sheet.promiseMm, sheet.radius[i] - away);
         }
         addGrid(sheet);
-        sheets_.push_back(std::move(sheet));
+        searched.push_back(std::move(sheet));
     }
+}
+
+OffAxisMedialSearch::OffAxisMedialSearch(std::shared_ptr<const MedialSheets> sheets, const field::DistanceField& field,
+                                         core::SimdLevel level)
+    : sheets_(std::move(sheets)),
+      field_(field.view()),
+      lookup_(HANDPIECE_AT_SIMD_LEVEL(level, fieldLookup)()),
+      lowerCells_(HANDPIECE_AT_SIMD_LEVEL(level, lowerCells)()),
+      bandOutMm_(static_cast<float>(field.settings().bandOutMm)),
+      bandInMm_(static_cast<float>(field.settings().bandInMm)),
+      errorMm_(kFieldErrorVoxels * field.settings().voxelMm),
+      brickDiagonalMm_(std::numbers::sqrt3 * field::kBrickCells * field.settings().voxelMm) {
     grid_.resize(kMaxGrid);
     for (std::vector<float>& corner : corner_)
         corner.resize(kMaxGrid);
@@ -177,7 +181,7 @@ OffAxisMedialSearch::OffAxisMedialSearch(const instrument::Bur& bur, const field
 
 /// Balls of the sheet about kSpacingMm apart along the curve and around, in circles of whole eights; farther apart
 /// where there would be more than kMaxGrid.
-void OffAxisMedialSearch::addGrid(Sheet& sheet) const {
+void MedialSheets::addGrid(Sheet& sheet) {
     const double length = sheet.u.back();
     for (double spacing = kSpacingMm;; spacing *= 1.2) {
         sheet.rows.clear();
@@ -223,7 +227,7 @@ void OffAxisMedialSearch::addGrid(Sheet& sheet) const {
 /// Flat cells between the grid's circles. A circle is off its polygon by no more than r (1 - cos h) / (1 + cos h), with
 /// half a side's angle h and the corners as far without as the sides' middles are within; the curve is off its chord
 /// where it bends. Both are added to the radius.
-void OffAxisMedialSearch::addCells(Sheet& sheet, double spacing) const {
+void MedialSheets::addCells(Sheet& sheet, double spacing) {
     for (auto* each : {&sheet.cellX, &sheet.cellY, &sheet.cellZ})
         for (std::vector<float>& v : *each)
             v.clear();
@@ -262,7 +266,7 @@ void OffAxisMedialSearch::addCells(Sheet& sheet, double spacing) const {
 }
 
 bool OffAxisMedialSearch::isDeep(const ExactSurface& surface, const BurFrame& frame, double depthMm) const noexcept {
-    return std::any_of(sheets_.begin(), sheets_.end(), [&](const Sheet& sheet) {
+    return std::any_of(sheets_->searched.begin(), sheets_->searched.end(), [&](const Sheet& sheet) {
         return sheet.promiseMm - surface.farBound(frame.onAxis(sheet.centreZ)) - surface.sureMm() >= depthMm;
     });
 }
@@ -272,7 +276,7 @@ bool OffAxisMedialSearch::isDeep(const ExactSurface& surface, const BurFrame& fr
 /// reach.
 void OffAxisMedialSearch::search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown, BallDepth& best,
                                  double& mostMm) noexcept {
-    for (const Sheet& sheet : sheets_) {
+    for (const Sheet& sheet : sheets_->searched) {
         const Vec3 centre = frame.onAxis(sheet.centreZ);
         const double far = surface.farBound(centre);
         if (far > 0.0 && (outsideKnown ? far > sheet.centresMm : sheet.reachMm - far <= best.depthMm)) continue;
@@ -291,14 +295,14 @@ void OffAxisMedialSearch::search(const ExactSurface& surface, const BurFrame& fr
     }
     // Twice: a deeper ball has its own nearest place.
     if (askCovered(surface, frame, best)) askCovered(surface, frame, best);
-    if (!covered_.empty()) mostMm = std::max(mostMm, best.depthMm) + kCoveredMm;
+    if (!sheets_->covered.empty()) mostMm = std::max(mostMm, best.depthMm) + kCoveredMm;
 }
 
 /// Of a sheet that is not searched, the balls at the angle of the one that was found: R + |c - q| bounds each from
 /// above, with q the tooth's place, and the few that could be deeper are measured.
 bool OffAxisMedialSearch::askCovered(const ExactSurface& surface, const BurFrame& frame,
                                      BallDepth& best) const noexcept {
-    if (covered_.empty() || best.triangle == geometry::kNoTriangle || best.depthMm <= 0.0) return false;
+    if (sheets_->covered.empty() || best.triangle == geometry::kNoTriangle || best.depthMm <= 0.0) return false;
     // The ball's meridian is the touched place's where that lies in a triangle, and right where several decide.
     double along = 0.0, across = 0.0, rho = 0.0;
     for (const Vec3* place : {&best.centreMm, &best.surfaceMm}) {
@@ -311,7 +315,7 @@ bool OffAxisMedialSearch::askCovered(const ExactSurface& surface, const BurFrame
     if (rho < kOnAxisMm) return false;
     bool deeper = false;
     const Vec3 outward = (along * frame.x + across * frame.y) / rho;
-    for (const instrument::MedialBall& ball : covered_) {
+    for (const instrument::MedialBall& ball : sheets_->covered) {
         const Vec3 centre = frame.tip + ball.rhoMm * outward + ball.zMm * frame.z;
         // Inside the tooth the nearest point is no farther than the one known.
         if (ball.radiusMm + (centre - best.surfaceMm).norm() <= best.depthMm) continue;

@@ -5,6 +5,7 @@
 /// Private to this room.
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "handpiece/base/core/vec.h"
@@ -16,21 +17,12 @@
 
 namespace handpiece::contact {
 
-/// Finds the deepest ball of the sheets: looked for on a grid of balls in the field, eight at a time, then climbed
-/// against the triangles. Where the field holds no distance, balls are measured exactly until the Lipschitz bound drops
-/// the rest. Keeps nothing between queries: the answer does not depend on the last one.
-class OffAxisMedialSearch {
+/// What is known of a bur's off-axis medial sheets before any tooth: megabytes for a handpiece's head, so the methods
+/// of all teeth share it.
+class MedialSheets {
   public:
-    OffAxisMedialSearch(const instrument::Bur& bur, const field::DistanceField& field, core::SimdLevel level);
+    explicit MedialSheets(const instrument::Bur& bur);
 
-    /// Whether a ball of a sheet is that deep for sure: a lookup each.
-    [[nodiscard]] bool isDeep(const ExactSurface& surface, const BurFrame& frame, double depthMm) const noexcept;
-    /// Raises `best` to the deepest ball of all sheets; with `outsideKnown` at least to the deepest of those with their
-    /// centres in the tooth. A sheet that cannot beat `best` costs one or two lookups.
-    void search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown, BallDepth& best,
-                double& mostMm) noexcept;
-
-  private:
     /// A circle of the grid's balls.
     struct Row {
         double u, rho, z, radius;
@@ -52,6 +44,34 @@ class OffAxisMedialSearch {
         std::vector<float> cellLowRadius, cellHighRadius;
         std::vector<double> cellU, cellAngle;
     };
+    std::vector<Sheet> searched;
+    std::vector<instrument::MedialBall> covered;  ///< balls of sheets that are not searched
+
+    static constexpr std::size_t kMaxGrid = 2048;
+
+  private:
+    static void addGrid(Sheet& sheet);
+    static void addCells(Sheet& sheet, double spacing);
+};
+
+/// Finds the deepest ball of the sheets: looked for on a grid of balls in the field, eight at a time, then climbed
+/// against the triangles. Where the field holds no distance, balls are measured exactly until the Lipschitz bound drops
+/// the rest. Keeps nothing between queries: the answer does not depend on the last one.
+class OffAxisMedialSearch {
+  public:
+    OffAxisMedialSearch(std::shared_ptr<const MedialSheets> sheets, const field::DistanceField& field,
+                        core::SimdLevel level);
+
+    /// Whether a ball of a sheet is that deep for sure: a lookup each.
+    [[nodiscard]] bool isDeep(const ExactSurface& surface, const BurFrame& frame, double depthMm) const noexcept;
+    /// Raises `best` to the deepest ball of all sheets; with `outsideKnown` at least to the deepest of those with their
+    /// centres in the tooth. A sheet that cannot beat `best` costs one or two lookups.
+    void search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown, BallDepth& best,
+                double& mostMm) noexcept;
+
+  private:
+    using Row = MedialSheets::Row;
+    using Sheet = MedialSheets::Sheet;
     /// A ball of a sheet and how its centre and radius change along u and along the arc.
     struct Spot {
         core::Vec3 centre, alongU, alongArc;
@@ -67,7 +87,7 @@ class OffAxisMedialSearch {
         double radius, upper, u, angle;
         bool outside;
     };
-    static constexpr std::size_t kMaxGrid = 2048, kMaxCandidates = 48;
+    static constexpr std::size_t kMaxGrid = MedialSheets::kMaxGrid, kMaxCandidates = 48;
     static constexpr int kMaxClimbs = 6, kMaxMeasured = 24, kMaxKnown = 16;
     /// A triangle near the ball being climbed: what it says of the depth there and how that changes.
     struct Support {
@@ -84,7 +104,6 @@ class OffAxisMedialSearch {
         double u, angle, endU, endAngle;
     };
 
-    void addGrid(Sheet& sheet) const;
     void scan(const Sheet& sheet, const BurFrame& frame, double atLeast) noexcept;
     [[nodiscard]] Candidate highestOfGrid(const Sheet& sheet) const noexcept;
     void collect(const Sheet& sheet, const BurFrame& frame, double atLeast) noexcept;
@@ -110,13 +129,11 @@ class OffAxisMedialSearch {
     [[nodiscard]] HighestCell lower(const Sheet& sheet, const BurFrame& frame, const core::Vec3& place, double freeMm,
                                     double floorMm) noexcept;
     [[nodiscard]] HighestCell highest(const Sheet& sheet) const noexcept;
-    void addCells(Sheet& sheet, double spacing) const;
 
     /// True when one of the balls not searched is deeper there.
     bool askCovered(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) const noexcept;
 
-    std::vector<Sheet> sheets_;
-    std::vector<instrument::MedialBall> covered_;  ///< balls of sheets that are not searched
+    std::shared_ptr<const MedialSheets> sheets_;
     field::FieldView field_;
     FieldLookup lookup_;
     LowerCells lowerCells_;

@@ -59,6 +59,7 @@ std::vector<cases::Tooth> coarseTeeth(const Patient& patient) {
             geometry::IsosurfaceSettings settings;
             settings.spacingMm = 0.3;
             settings.lipschitz = ToothForm::kLipschitz;
+            settings.usualSlope = 1.0;
             settings.relaxations = 0;
             teeth[i].outer = geometry::isosurface(
                 form.bounds(), [&](const Vec3& p) { return form.outer(p); }, settings);

@@ -48,6 +48,8 @@ TriangleMesh surfaceOf(const ToothForm& form, double (ToothForm::*f)(const Vec3&
     geometry::IsosurfaceSettings settings;
     settings.spacingMm = spacingMm;
     settings.lipschitz = ToothForm::kLipschitz;
+    settings.usualSlope = 1.0;
+    settings.keepGradients = true;
     return geometry::isosurface(
         form.bounds(), [&](const Vec3& p) { return (form.*f)(p); }, settings);
 }

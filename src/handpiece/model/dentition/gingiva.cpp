@@ -6,7 +6,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <numbers>
-#include <numeric>
 #include <vector>
 
 #include "handpiece/base/core/error.h"
@@ -306,34 +305,6 @@ class Arch {
     Box box_;
     double up_ = 1.0, base_ = 1e9;
 };
-
-/// The shell of the largest area: crumbs between roots and closed-in hollows go.
-TriangleMesh largestShell(const TriangleMesh& mesh) {
-    std::vector<std::uint32_t> parent(mesh.vertices.size());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto root = [&](std::uint32_t v) {
-        while (parent[v] != v)
-            v = parent[v] = parent[parent[v]];
-        return v;
-    };
-    for (const geometry::Triangle& t : mesh.triangles)
-        for (const std::uint32_t v : {t[1], t[2]})
-            parent[root(v)] = root(t[0]);
-    std::vector<std::size_t> faces(mesh.vertices.size(), 0);
-    for (const geometry::Triangle& t : mesh.triangles)
-        ++faces[root(t[0])];
-    const auto largest = static_cast<std::uint32_t>(std::max_element(faces.begin(), faces.end()) - faces.begin());
-    TriangleMesh kept;
-    std::vector<std::uint32_t> index(mesh.vertices.size(), 0);
-    for (std::uint32_t v = 0; v < index.size(); ++v)
-        if (root(v) == largest) {
-            index[v] = static_cast<std::uint32_t>(kept.vertices.size());
-            kept.vertices.push_back(mesh.vertices[v]);
-        }
-    for (const geometry::Triangle& t : mesh.triangles)
-        if (root(t[0]) == largest) kept.triangles.push_back({index[t[0]], index[t[1]], index[t[2]]});
-    return kept;
-}
 
 /// Where thin edges have come to cross while faces were thinned out, other samples do not: tried a few times, then left
 /// as it was sampled.

@@ -11,6 +11,8 @@
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/decimate.h"
 #include "handpiece/base/geometry/isosurface.h"
+#include "handpiece/base/geometry/self_intersection.h"
+#include "handpiece/model/dentition/tooth_body.h"
 #include "handpiece/model/dentition/tooth_form.h"
 
 namespace handpiece::dentition {
@@ -18,8 +20,6 @@ namespace {
 using core::Progress;
 using geometry::TriangleMesh;
 
-/// Finer than this is always sampled, so that a fissure keeps its shape in a coarse mesh too.
-constexpr double kCoarsestSpacingMm = 0.1, kCoarsestPartSpacingMm = 0.13;
 /// Faces sampled for each face kept, and those that marching cubes puts on a square of one spacing, on average.
 constexpr double kOversampling = 1.5, kFacesPerCell = 3.0;
 /// Tissues are hidden and mostly smooth: so many faces for one of the outer surface on the same area.
@@ -61,12 +61,13 @@ cases::Tooth makeTooth(int fdi, const Patient& patient, const ToothOptions& opti
         const char* name;
         cases::Tissue tissue;
         double (ToothForm::*function)(const core::Vec3&) const;
-        double share;  ///< of the work
+        double share;       ///< of the work
+        double coarsestMm;  ///< spacing: fissures keep their shape in a coarse mesh too, and thin enamel stays whole
     };
-    static constexpr Layer kLayers[] = {{"", cases::Tissue::none, &ToothForm::outer, 0.4},
-                                        {"enamel", cases::Tissue::enamel, &ToothForm::enamel, 0.3},
-                                        {"dentine", cases::Tissue::dentine, &ToothForm::dentine, 0.25},
-                                        {"pulp", cases::Tissue::pulp, &ToothForm::pulp, 0.05}};
+    static constexpr Layer kLayers[] = {{"", cases::Tissue::none, &ToothForm::outer, 0.4, 0.1},
+                                        {"enamel", cases::Tissue::enamel, &ToothForm::enamel, 0.3, 0.085},
+                                        {"dentine", cases::Tissue::dentine, &ToothForm::dentine, 0.25, 0.13},
+                                        {"pulp", cases::Tissue::pulp, &ToothForm::pulp, 0.05, 0.13}};
     constexpr std::size_t kCount = std::size(kLayers);
     std::array<double, kCount> done{};
     std::mutex mutex;
@@ -98,10 +99,20 @@ cases::Tooth makeTooth(int fdi, const Patient& patient, const ToothOptions& opti
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t faces = facesOf(i);
             const double spacing =
-                std::min(i == 0 ? kCoarsestSpacingMm : kCoarsestPartSpacingMm,
+                std::min(kLayers[i].coarsestMm,
                          std::sqrt(kFacesPerCell * areaMm2[i] / (kOversampling * static_cast<double>(faces))));
-            const TriangleMesh fine = sampled(form.bounds(), of(i), spacing, 2, told(i, 0.0, 0.5));
-            meshes[i] = geometry::decimate(fine, faces, told(i, 0.5, 1.0)).mesh;
+            // Where thin edges have come to cross or are pierced, other samples are not.
+            constexpr int kTries = 5;
+            for (int attempt = 0; attempt < kTries; ++attempt) {
+                const TriangleMesh fine =
+                    largestShell(sampled(form.bounds(), of(i), spacing * (1.0 - 0.04 * attempt), 2, told(i, 0.0, 0.5)));
+                meshes[i] = geometry::decimate(fine, faces, told(i, 0.5, 1.0)).mesh;
+                // Two canals of a root may meet again; nothing else has a hole.
+                const bool isBall = 2 * meshes[i].vertices.size() == meshes[i].triangles.size() + 4;
+                if ((isBall || kLayers[i].tissue == cases::Tissue::pulp) &&
+                    geometry::selfIntersections(meshes[i], 1).empty())
+                    break;
+            }
         }
     });
     made.outer = std::move(meshes[0]);

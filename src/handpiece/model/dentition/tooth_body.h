@@ -36,4 +36,7 @@ struct Gap {
 [[nodiscard]] Gap gapBetween(const ToothBody& a, const core::Pose& aPose, const ToothBody& b, const core::Pose& bPose,
                              double boundMm);
 
+/// The shell of the most faces: crumbs and closed-in hollows go.
+[[nodiscard]] geometry::TriangleMesh largestShell(const geometry::TriangleMesh& mesh);
+
 }  // namespace handpiece::dentition

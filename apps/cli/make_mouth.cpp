@@ -116,6 +116,7 @@ void addMakeMouthCommand(Command& make) {
     mouth.option("--fdi", o.mouth.fdi, "the tooth that is worked on, 11 to 48").showDefault();
     mouth.option("--faces", o.mouth.faces, "triangles of each tooth's outer surface").showDefault();
     mouth.option("--opening", o.mouth.openingMm, "between the incisal edges [mm]; 0: in occlusion").showDefault();
+    mouth.flag("--cheeks", o.mouth.cheeks, "lips and cheeks too: felt, and held aside in pictures");
     mouth.option("--threads", o.threads, "0: all; the mouth is the same at any number").showDefault();
     mouth.flag("--json", o.json, "what was made, and where each tooth stands, for programs");
     mouth.footer(

@@ -45,8 +45,8 @@ struct PictureOptions {
     double atS = -1.0, voxelUm = 50.0;
     int position = 0;  // 0: none
     std::size_t threads = 0;
-    bool atGiven = false, grid = false, noBur = false, noScenery = false, mirror = false, arrows = false,
-         scaleBar = false, noCache = false;
+    bool atGiven = false, grid = false, noBur = false, noScenery = false, cheeks = false, mirror = false,
+         arrows = false, scaleBar = false, noCache = false;
 };
 
 std::vector<double> numbers(const std::string& text, std::size_t count, const std::string& option,
@@ -108,6 +108,7 @@ view::Look lookOf(const PictureOptions& o) {
     look.sectionGrid = o.grid;
     look.contactArrow = look.forceArrow = o.arrows;
     look.scaleBar = o.scaleBar;
+    look.cheeks = o.cheeks;
     return look;
 }
 
@@ -422,6 +423,7 @@ void addPictureCommand(Command& app) {
     command.flag("--grid", o.grid, "millimetre lines on the section");
     command.option("--hide", o.hide, "tissues not to show, by name").delimiter(',');
     command.flag("--no-scenery", o.noScenery, "without other teeth, gingiva and bone");
+    command.flag("--cheeks", o.cheeks, "with the lips and cheeks of the case; else they are held aside");
     command.option("--bur", o.bur.name, "this bur in its handpiece, resting on the middle of the crown");
     addLengthUnit(command, "--bur-unit", o.bur.unit, "unit of a bur that is a mesh file");
     addUnitOptions(command, o.unit, false);

@@ -19,6 +19,7 @@ constexpr auto kFramePeriod = std::chrono::microseconds(16667);
 // after an undo, are looked for this often.
 constexpr auto kPoll = std::chrono::milliseconds(15);
 constexpr double kDebrisS = 1.5;                        // particles fly on for about this long
+constexpr double kBleedsApartMm = 0.5;                  // nearer it is the same place
 constexpr double kHeadHides = 0.82, kHeadClear = 0.78;  // cosines of bur's axis and line of sight, either way round
 constexpr double kMaxSoftwarePixels = 1.6e6;            // more would be seen later than they are seen sharper
 
@@ -102,7 +103,7 @@ struct RenderThread::Shared {
     std::shared_ptr<const geometry::TriangleMesh> turbine;
     std::optional<view::SectionFace> face;
     std::optional<messages::HapticSample> given;  ///< by setSample()
-    bool newTooth = false, newBur = false, newTurbine = false, newFace = false, newRequest = false;
+    bool newTooth = false, newBur = false, newTurbine = false, newFace = false, newRequest = false, stanched = false;
 
     messages::HapticSample sample;  ///< the newest seen
     std::optional<Frame> ready;
@@ -135,6 +136,7 @@ struct RenderThread::Worker {
     RenderRequest renderRequest;
     std::optional<view::Plane> cutPlane;
     messages::HapticSample sample, drawn;
+    std::vector<core::Vec3> bleedingMm;
     Clock::time_point seen{};
     bool headInTheWay = false, missing = false, dirty = true, beforeDirty = true, wantsDepths = false;
     double removalMm3S = 0.0;
@@ -172,8 +174,19 @@ struct RenderThread::Worker {
         headInTheWay = towardsEye > (headInTheWay ? kHeadClear : kHeadHides);
     }
 
+    void bleed(const messages::HapticSample& earlier) {
+        if (sample.timeS < earlier.timeS) bleedingMm.clear();  // a replay that goes back
+        if ((sample.flags & messages::kCutsGingiva) == 0 || bleedingMm.size() >= view::kMostBleeding) return;
+        const core::Vec3 tip = proxyPose(sample).positionMm;
+        for (const core::Vec3& place : bleedingMm)
+            if ((place - tip).norm() < kBleedsApartMm) return;
+        bleedingMm.push_back(tip);
+        dirty = true;
+    }
+
     [[nodiscard]] view::Look lookNow() const {
         view::Look look = renderRequest.look;
+        look.bleedingMm = bleedingMm;
         look.scaleBar = false;  // the window writes its own, with its label
         if (cutPlane) look.cutAway = cutPlane;
         if (headInTheWay) look.turbine = false;
@@ -234,6 +247,7 @@ Frame RenderThread::Worker::draw() {
     if (beforeDirty) {
         view::Look look = lookNow();
         look.bur = look.turbine = look.removedDepthColours = false;
+        look.bleedingMm.clear();
         look.tooth = view::ToothShown::now;
         look.cutAway.reset();
         view::Moment still;
@@ -335,7 +349,12 @@ void RenderThread::run() {
                 worker.scenery = shared_->scenery;
                 worker.sample = shared_->sample;
                 worker.wantsDepths = false;
+                worker.bleedingMm.clear();
                 newTooth = true;
+            }
+            if (std::exchange(shared_->stanched, false) && !worker.bleedingMm.empty()) {
+                worker.bleedingMm.clear();
+                worker.dirty = true;
             }
             newBur = std::exchange(shared_->newBur, false);
             worker.bur = shared_->bur;
@@ -353,6 +372,7 @@ void RenderThread::run() {
                 worker.seen = Clock::now();
                 shared_->sample = worker.sample;
                 const double dt = worker.sample.timeS - earlier.timeS;
+                worker.bleed(earlier);
                 worker.removalMm3S =
                     dt > 0.0 ? std::max(0.0, removedMm3(worker.sample) - removedMm3(earlier)) / dt : 0.0;
             }
@@ -470,6 +490,10 @@ void RenderThread::setSample(const messages::HapticSample& sample) {
         s.given = sample;
         s.sample = sample;
     });
+}
+
+void RenderThread::clearBlood() {
+    tell(*shared_, [](Shared& s) { s.stanched = true; });
 }
 
 void RenderThread::setRequest(const RenderRequest& renderRequest) {

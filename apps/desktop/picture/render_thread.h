@@ -66,6 +66,8 @@ class RenderThread {
     void setBur(std::shared_ptr<const instrument::Bur> bur);
     void setTurbine(geometry::TriangleMesh mesh);
     void setSample(const messages::HapticSample& sample);
+    /// Gingiva that was cut bleeds in the picture until then.
+    void clearBlood();
     void setRequest(const RenderRequest& renderRequest);
     /// The section that is shown; its plane is the cut-away's. Any thread.
     void setSectionFace(std::optional<view::SectionFace> face);

@@ -150,6 +150,9 @@ input::PointerController* ViewWidget::hand() const {
 void ViewWidget::setSample(const messages::HapticSample& sample) {
     state_->render->setSample(sample);
 }
+void ViewWidget::clearBlood() {
+    state_->render->clearBlood();
+}
 messages::HapticSample ViewWidget::sample() const {
     return state_->render->sample();
 }

@@ -58,6 +58,8 @@ class ViewWidget : public QWidget {
     /// For load, stop and pedal; null without a pointer. Prefer setLoad() and setStop(), which tell listeners.
     [[nodiscard]] input::PointerController* hand() const;
     void setSample(const messages::HapticSample& sample);
+    /// Gingiva that was cut bleeds in the picture until then, or until another tooth.
+    void clearBlood();
     /// The newest sample this widget has seen.
     [[nodiscard]] messages::HapticSample sample() const;
     void setBur(std::shared_ptr<const instrument::Bur> bur);

@@ -6521,6 +6521,14 @@ lingual: %4</source>
 <context>
     <name>handpiece::desktop::ViewBar</name>
     <message>
+        <source>Lips and cheeks</source>
+        <translation>口唇と頬</translation>
+    </message>
+    <message>
+        <source>Those of the case; else they are held aside</source>
+        <translation>症例の口唇と頬を表示します。オフのときは排除されています</translation>
+    </message>
+    <message>
         <source>Views and look</source>
         <translation>視点と表示</translation>
     </message>

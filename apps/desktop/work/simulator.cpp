@@ -321,7 +321,9 @@ void Simulator::redo() {
 }
 
 void Simulator::reset() {
-    if (mayWork() && may(exercise::Operation::reset)) liveSession_->reset();
+    if (!mayWork() || !may(exercise::Operation::reset)) return;
+    liveSession_->reset();
+    emit wasReset();
 }
 
 void Simulator::tellDrill() {

@@ -211,6 +211,8 @@ class Simulator : public QObject {
     void ticked();
     void plotted(const std::vector<handpiece::simulation::PlotPoint>& points);
     void noticed(const QString& id, const QStringList& arguments);
+    /// What was done to the tooth is to be undone, all of it.
+    void wasReset();
     /// The exercise locks it.
     void refused(handpiece::exercise::Operation operation);
 

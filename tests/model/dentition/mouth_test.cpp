@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/model/dentition/mouth.h"
+#include "handpiece/model/dentition/cheeks.h"
+#include "handpiece/model/instrument/catalogue.h"
+#include "handpiece/model/instrument/turbine.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,6 +17,9 @@
 #include "handpiece/base/geometry/isosurface.h"
 #include "handpiece/base/geometry/self_intersection.h"
 #include "handpiece/base/geometry/triangle_tree.h"
+#include "handpiece/model/dentition/cheeks.h"
+#include "handpiece/model/instrument/catalogue.h"
+#include "handpiece/model/instrument/turbine.h"
 
 namespace handpiece::dentition {
 namespace {
@@ -348,6 +354,77 @@ TEST(Mouth, MandibleOpensAboutItsHinge) {
         EXPECT_GT(deg, 18.0);
         EXPECT_LT(deg, 35.0);
     }
+}
+
+/// As they stand when the mouth is opened.
+std::vector<TriangleMesh> openedTeeth(const Mouth& m, double openingMm) {
+    std::vector<TriangleMesh> teeth = m.placed;
+    for (std::size_t i = 0; i < kToothCount; ++i)
+        if (!isUpper(i)) teeth[i] = geometry::transformed(std::move(teeth[i]), opened(m.arches, openingMm));
+    return teeth;
+}
+
+/// How deep head, neck and handle are in the other arch, the tip of a bur in the middle of a tooth's crown, upright,
+/// the handle to mesial; negative: apart.
+double handpieceInOtherArchMm(const Mouth& m, int fdi, double openingMm) {
+    const std::size_t own = indexOf(fdi);
+    const core::Box box = m.teeth[own].outer.bounds();
+    const Pose bur{{box.centre().x(), box.centre().y(), box.max.z() - 1.5}, core::Quat::Identity()};
+    const Pose jaw = isUpper(own) ? Pose{} : opened(m.arches, openingMm);
+    const std::vector<TriangleMesh> teeth = openedTeeth(m, openingMm);
+    double deepest = -1e9;
+    for (const instrument::BodyPiece& piece : instrument::bodyPieces(*instrument::makeInstrument("330").bur)) {
+        const Pose at = jaw * m.arches.toothInMouth[own] * bur * piece.inBur;
+        for (std::size_t i = 0; i < kToothCount; ++i)
+            if (isUpper(i) != isUpper(own))
+                for (const Vec3& v : teeth[i].vertices)
+                    deepest = std::max(deepest, -piece.solid->signedDistance(at.applyInverse(v)));
+    }
+    return deepest;
+}
+
+TEST(Mouth, AtSecondMolarsTheHandpieceHasRoomAt45MillimetresAndNoneAt25) {
+    for (const int fdi : {17, 27, 37, 47}) {
+        const double at25 = handpieceInOtherArchMm(mouth(1), fdi, 25.0),
+                     at45 = handpieceInOtherArchMm(mouth(1), fdi, 45.0);
+        std::printf("[ tooth %d ] in the other arch by %.1f mm at 25 mm, %.1f at 45\n", fdi, at25, at45);
+        EXPECT_GT(at25, 0.5) << fdi;
+        EXPECT_LT(at45, 0.0) << fdi;
+    }
+}
+
+TEST(Mouth, LipsAndCheeksLeaveTheTeethFreeAndTheMouthOpen) {
+    const Mouth& m = mouth(1);
+    for (const double openingMm : {25.0, 40.0, 55.0}) {
+        const std::vector<TriangleMesh> teeth = openedTeeth(m, openingMm);
+        const Cheeks made = makeCheeks(teeth);
+        for (const TriangleMesh* part : {&made.left, &made.right, &made.upperLip, &made.lowerLip}) {
+            EXPECT_TRUE(geometry::inspect(*part).closed());
+            EXPECT_GT(geometry::enclosedVolumeMm3(*part), 1000.0);
+            EXPECT_LT(part->triangles.size(), 100u);
+            const TriangleTree tree(*part);
+            double nearest = 1e9;
+            for (const TriangleMesh& tooth : teeth)
+                for (const Vec3& v : tooth.vertices)
+                    nearest = std::min(nearest, tree.signedDistance(v));
+            EXPECT_GT(nearest, 1.0) << openingMm;
+        }
+        const core::Box upper = made.upperLip.bounds(), lower = made.lowerLip.bounds();
+        // The lower edges go backwards too as the mouth opens.
+        const double high =
+            m.arches.upperIncisalMm.z() - opened(m.arches, openingMm).apply(m.arches.lowerIncisalMm).z();
+        EXPECT_NEAR(upper.min.z() - lower.max.z(), high - 2.0 * kLipOverEdgeMm, 2.5) << "between the lips";
+        const double width = upper.size().x();
+        EXPECT_GT(width, 40.0);
+        EXPECT_LT(width, 65.0);
+        // Straight in between the lips one comes to the throat and meets nothing.
+        for (double y = upper.min.y() - 5.0; y < 40.0; y += 1.0) {
+            const Vec3 p(0.0, y, 0.5 * (upper.min.z() + lower.max.z()));
+            for (const TriangleMesh* part : {&made.left, &made.right, &made.upperLip, &made.lowerLip})
+                EXPECT_GT(TriangleTree(*part).signedDistance(p), 3.0);
+        }
+    }
+    EXPECT_THROW((void)makeCheeks(std::vector<TriangleMesh>(3)), core::Error);
 }
 
 TEST(Mouth, ArchesAreTheSameAtAnyThreadCount) {

@@ -13,6 +13,7 @@
 #include <random>
 
 #include "handpiece/model/instrument/catalogue.h"
+#include "support/closed_meshes.h"
 #include "support/error_of.h"
 #include "support/random.h"
 
@@ -45,7 +46,7 @@ std::shared_ptr<BrickMesh> square(double x, double y, double sideMm, double zMm,
 }
 
 BrickUpdate brick(std::uint32_t dense, std::shared_ptr<const BrickMesh> mesh) {
-    return {dense, std::move(mesh), nullptr, nullptr};
+    return {dense, false, std::move(mesh), nullptr, nullptr};
 }
 
 /// A table of 8 x 8 squares of 1 mm: enamel for x < 0, dentine beyond, one of caries at (1..2, 1..2).
@@ -471,6 +472,50 @@ TEST(Renderer, BeforeAndGhostShowWhatWasCutAway) {
     const Image ghost = picture(renderer, camera, look, withoutBur());
     EXPECT_GT(brightness(at(ghost, camera, hole)), brightness(at(cut, camera, hole)) + 20);
     EXPECT_LT(brightness(at(ghost, camera, hole)), brightness(at(uncut, camera, hole)) - 20);
+}
+
+TEST(Renderer, GingivaBleedsWhereItIsCutAndNothingElseDoes) {
+    Renderer renderer;
+    renderer.setTooth(box(1, -1, 1));
+    renderer.setScenery(
+        std::vector<cases::Part>{{"gingiva", Tissue::gum, 0, test::boxMesh({-6, -4, -2}, {0, 4, 0})},
+                                 {"other", Tissue::neighbour, 0, test::boxMesh({0, -4, -2}, {6, 4, 0})}});
+    Look look = plainLook();
+    Image before, after;
+    renderer.draw(above(), kSize, look, {}, before);
+    look.bleedingMm = {Vec3(-2.0, 1.0, -0.3), Vec3(2.0, 1.0, -0.3)};  // in it, as a bur's tip is
+    renderer.draw(above(), kSize, look, {}, after);
+    const Vec3 cut(-2.0, 1.0, 0.0), beside(-5.0, -2.0, 0.0), tooth(2.0, 1.0, 0.0);
+    // Blood takes green and blue away, and most of the light.
+    const Rgb dry = at(before, above(), cut), wet = at(after, above(), cut);
+    std::printf("[ gingiva ] %d %d %d, bleeding %d %d %d\n", dry.r, dry.g, dry.b, wet.r, wet.g, wet.b);
+    EXPECT_LT(wet.g + wet.b, 0.7 * (dry.g + dry.b));
+    EXPECT_GT(wet.r, wet.g + 30);
+    for (const Vec3& p : {beside, tooth})
+        EXPECT_EQ(brightness(at(after, above(), p)), brightness(at(before, above(), p)));
+    // More places than can be drawn are no error, and it is dry again without any.
+    look.bleedingMm.resize(3 * kMostBleeding, Vec3(-2.0, 1.0, 0.0));
+    renderer.draw(above(), kSize, look, {}, after);
+    look.bleedingMm.clear();
+    renderer.draw(above(), kSize, look, {}, after);
+    EXPECT_EQ(after.rgba, before.rgba);
+}
+
+TEST(Renderer, LipsAndCheeksAreHeldAsideUnlessAskedFor) {
+    Renderer renderer;
+    renderer.setTooth(box(4, -1, 1));
+    renderer.updateBricks(table(), true);
+    const Vec3 middle(1.5, 1.5, 0.0);
+    Image without, held, seen;
+    renderer.draw(above(), kSize, plainLook(), {}, without);
+    renderer.setScenery(
+        std::vector<cases::Part>{{"left-cheek", Tissue::gum, 0, test::boxMesh({-4, -4, 4}, {4, 4, 5}), true}});
+    renderer.draw(above(), kSize, plainLook(), {}, held);
+    EXPECT_EQ(brightness(at(held, above(), middle)), brightness(at(without, above(), middle)));
+    Look look = plainLook();
+    look.cheeks = true;
+    renderer.draw(above(), kSize, look, {}, seen);
+    EXPECT_NE(brightness(at(seen, above(), middle)), brightness(at(without, above(), middle)));
 }
 
 TEST(Renderer, ATissueThatIsNotVisibleIsNotDrawn) {

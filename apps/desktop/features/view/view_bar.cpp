@@ -122,6 +122,8 @@ ViewBar::ViewBar(QWidget* parent) : QWidget(parent) {
                    [](view::Look& l, bool on) { l.shadows = on; });
     turbine_ = box(tr("Handpiece"), "showTurbine", tr("The handpiece that holds the bur"),
                    [](view::Look& l, bool on) { l.turbine = on; });
+    cheeks_ = box(tr("Lips and cheeks"), "showCheeks", tr("Those of the case; else they are held aside"),
+                  [](view::Look& l, bool on) { l.cheeks = on; });
     contact_ = box(tr("Contact arrow"), "showContact", tr("Where the bur touches"),
                    [](view::Look& l, bool on) { l.contactArrow = on; });
     force_ = box(tr("Force arrow"), "showForce", tr("The force on the hand"),
@@ -184,6 +186,7 @@ void ViewBar::showLook() {
     check(debris_, look_.debris);
     check(shadows_, look_.shadows);
     check(turbine_, look_.turbine);
+    check(cheeks_, look_.cheeks);
     check(contact_, look_.contactArrow);
     check(force_, look_.forceArrow);
     for (const auto& [tissue, box] : tissueBoxes_)
@@ -237,7 +240,7 @@ void ViewBar::setDetail(Detail detail) {
     detail_ = detail;
     const bool more = detail == Detail::laboratory;
     for (QWidget* w : std::initializer_list<QWidget*>{contact_, force_, qualityName_, quality_, stereoName_, stereo_,
-                                                      shadows_, turbine_})
+                                                      shadows_, turbine_, cheeks_})
         w->setVisible(more || (detail == Detail::practice && (w == qualityName_ || w == quality_)));
 }
 

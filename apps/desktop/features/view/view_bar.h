@@ -50,7 +50,7 @@ class ViewBar : public QWidget {
     std::array<QToolButton*, 6> views_{};
     QToolButton* fit_;
     QComboBox *palette_, *quality_, *shown_, *stereo_;
-    QCheckBox *removed_, *wet_, *debris_, *spray_, *shadows_, *scaleBar_, *contact_, *force_, *turbine_;
+    QCheckBox *removed_, *wet_, *debris_, *spray_, *shadows_, *scaleBar_, *contact_, *force_, *turbine_, *cheeks_;
     QLabel *stereoName_, *qualityName_, *tissuesName_;
     QGridLayout* tissueGrid_;
     std::vector<std::pair<cases::Tissue, QCheckBox*>> tissueBoxes_;

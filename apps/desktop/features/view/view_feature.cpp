@@ -94,6 +94,7 @@ ViewFeature::ViewFeature(const FeatureContext& context)
     const auto isOpen = [this] { return simulator_.mode() != Simulator::Mode::empty; };
     for (const Command command : {Command::fit, Command::goToBur, Command::mirror, Command::compare})
         window_.commands().enableWhile(commands_[command], isOpen);
+    connect(&simulator_, &Simulator::wasReset, &view_, &ViewWidget::clearBlood);
     connect(&view_, &ViewWidget::helpRequested, &view_, &ViewWidget::toggleHelpCard);
     on(commands_[Command::help], [this] { view_.toggleHelpCard(); });
     connect(&view_, &ViewWidget::openGlMissing, this,

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/model/case/held_aside.h"
 #include "handpiece/model/instrument/turbine.h"
 #include "handpiece/model/tooth/state_file.h"
 #include "handpiece/tick/contact/field_method.h"
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMaxPieces = 1000;
+constexpr double kCheekVoxelMm = 0.5;  // of lips and cheeks, which are plain and large
 constexpr double kMaxBandMm = 5.0, kMaxReserveBricks = 3e6;
 
 // What a session keeps of each thing, named once: Write puts the members into JSON, Read takes them out.
@@ -545,11 +547,12 @@ SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings 
     const auto stand = [&](cases::Case alone, const core::Pose& at, bool isCut) {
         alone.source = toothCase.source;
         const bool isYielding = !isCut && alone.parts.front().tissue == cases::Tissue::gum;
+        const bool isPlain = !alone.parts.empty() && cases::isHeldAside(alone.parts.front());
         const tooth::LoadSettings loading =
             isCut ? tooth::LoadSettings{station.settings.field,
                                         {station.settings.cut.bandMm, kStandingReserveBricks},
                                         useCache}
-                  : tooth::LoadSettings{fieldSettingsAt(kStandingVoxelMm), {}, useCache};
+                  : tooth::LoadSettings{fieldSettingsAt(isPlain ? kCheekVoxelMm : kStandingVoxelMm), {}, useCache};
         const double done = static_cast<double>(station.others.size());
         const core::Progress share =
             core::part(progress, own + (1.0 - own) * done / count, own + (1.0 - own) * (done + 1.0) / count);

@@ -10,6 +10,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/case/work_on.h"
+#include "handpiece/model/dentition/cheeks.h"
 
 namespace handpiece::dentition {
 namespace {
@@ -77,6 +78,13 @@ cases::Case makeMouth(const Patient& patient, const MouthOptions& options, const
                                                       core::part(progress, begun, begun + 0.5 * (1.0 - kArchesShare)));
     }
 
+    Cheeks cheeks;
+    if (options.cheeks) {
+        std::vector<geometry::TriangleMesh> standing;
+        for (std::size_t i = 0; i < kToothCount; ++i)
+            standing.push_back(geometry::transformed(teeth[i].outer, inMouth[i]));
+        cheeks = makeCheeks(standing);
+    }
     cases::Case made;
     static_cast<cases::Tooth&>(made) = teeth[own];
     for (std::size_t i = 0; i < kToothCount; ++i) {
@@ -98,6 +106,12 @@ cases::Case makeMouth(const Patient& patient, const MouthOptions& options, const
     add("lower-gingiva", cases::Tissue::gum, std::move(periodontia[1].gingiva), jaws[1]);
     add("upper-bone", cases::Tissue::bone, std::move(periodontia[0].bone), jaws[0]);
     add("lower-bone", cases::Tissue::bone, std::move(periodontia[1].bone), jaws[1]);
+    if (options.cheeks) {
+        add("left-cheek", cases::Tissue::gum, std::move(cheeks.left), mouthInCase);
+        add("right-cheek", cases::Tissue::gum, std::move(cheeks.right), mouthInCase);
+        add("upper-lip", cases::Tissue::gum, std::move(cheeks.upperLip), mouthInCase);
+        add("lower-lip", cases::Tissue::gum, std::move(cheeks.lowerLip), mouthInCase);
+    }
     core::report(progress, 1.0);
     return made;
 }

@@ -17,6 +17,7 @@ struct MouthOptions {
     int fdi = 46;                   ///< the tooth that is worked on: its frame is the case's
     std::size_t faces = 70000;      ///< of each tooth's outer surface
     double openingMm = kOpeningMm;  ///< between the incisal edges; 0: in occlusion
+    bool cheeks = false;            ///< lips and cheeks too, held off the teeth as by a retractor
     PeriodontiumOptions periodontium{};
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "handpiece/model/case/held_aside.h"
 #include "handpiece/model/tooth/state_delta.h"
 #include "handpiece/senses/view/mesh_pieces.h"
 #include "handpiece/senses/view/simplify.h"
@@ -179,7 +180,7 @@ void Scene::add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cas
     // Small pieces: little is drawn beside the bur while a cut redraws its rectangle.
     const double cells = std::max(1.0, static_cast<double>(mesh.triangles.size()) / kPieceTriangles);
     for (const MeshPiece& piece : piecesOf(mesh, tissue, kCreaseRad, box.size().maxCoeff() / std::sqrt(cells)))
-        to.push_back({tissue, pool_.add(piece), box, part});
+        to.push_back({tissue, pool_.add(piece), box, part, false});
 }
 
 void Scene::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue) {
@@ -190,9 +191,13 @@ void Scene::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue) {
 
 void Scene::setScenery(std::span<const cases::Part> parts) {
     drop(scenery_);
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        if (!teethInBricks_.contains(static_cast<std::uint16_t>(i + 1)))
-            add(scenery_, parts[i].mesh, parts[i].tissue, i);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (teethInBricks_.contains(static_cast<std::uint16_t>(i + 1))) continue;
+        const std::size_t before = scenery_.size();
+        add(scenery_, parts[i].mesh, parts[i].tissue, i);
+        for (std::size_t k = before; k < scenery_.size(); ++k)
+            scenery_[k].isHeldAside = cases::isHeldAside(parts[i]);
+    }
     measure();
     changeAll();
 }
@@ -265,7 +270,7 @@ const std::vector<const PooledMesh*>& Scene::visible(const Look& look, Detail de
     for (const Static& s : scenery_) {
         const bool inTheWay = eyeMm && !toothBounds_.isEmpty() && s.tissue == cases::Tissue::neighbour &&
                               leadsThrough(s.wholeMm, eyeMm->cast<double>(), crown);
-        if (isVisible(s.tissue) && !inTheWay) offer(s.mesh);
+        if (isVisible(s.tissue) && !inTheWay && (look.cheeks || !s.isHeldAside)) offer(s.mesh);
     }
     return visible_;
 }

@@ -85,6 +85,7 @@ class Scene {
         PooledMesh mesh;
         core::Box wholeMm;     ///< of the part that it is a piece of
         std::size_t part = 0;  ///< its number
+        bool isHeldAside = false;
     };
     void put(const surface::BrickUpdate& update, bool before);
     void drop(std::vector<Static>& meshes);

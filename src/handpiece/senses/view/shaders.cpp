@@ -222,6 +222,8 @@ uniform int natural;
 uniform vec2 crown;         // where it begins and ends along z
 uniform int removedColours;
 uniform float removedMost;
+uniform int bleedings;
+uniform vec3 bleeding[24];
 #ifdef SHADOWS
 uniform sampler2DShadow shadowMap;
 uniform mat4 toShadow;
@@ -312,6 +314,14 @@ void main() {
     }
     if (removedColours != 0 && kind != 6 && kind != 7 && kind != 8 && kind != 29)
         albedo = texture(depthScale, vec2((code - float(kind) * 2048.0) * 0.01 / removedMost, 0.5)).rgb;
+
+    if (kind == 6 && bleedings > 0) {
+        float nearest = 1e6;
+        for (int i = 0; i < bleedings; ++i) nearest = min(nearest, distance(at, bleeding[i]));
+        float dry = smoothstep(0.9, 1.5, nearest);
+        albedo = mix(vec3(0.26, 0.004, 0.006), albedo, dry);
+        m.yw *= mix(0.2, 1.0, dry);
+    }
 
     // Light goes into tissue and comes out beside: red farther than blue.
     float nl = dot(n, lamp);

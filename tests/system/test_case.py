@@ -2,6 +2,7 @@
 """Cases: looked into, checked, made, packed."""
 
 import json
+import re
 import unittest
 import zipfile
 
@@ -60,6 +61,93 @@ class Case(SystemTest):
         toml.write_text(toml.read_text().replace("format = 1", "format = 2") + '\n[exercise]\nbur = "excalibur"\n')
         done = self.refused("case", "check", self.folder / "good", mentions=["excalibur"])
         self.assertNotIn("sticks", done)
+
+    OTHER = """
+[[tooth]]
+fdi = 45
+outer = "45.stl"
+position_mm = [8.0, 0, 0]
+orientation = [1, 0, 0, 0]
+[[landmark]]
+kind = "cusp-tip"
+points_mm = [1, 1, 6]
+"""
+
+    def mouth(self):
+        """A tooth of boxes at the place of 46 and one beside it."""
+        self.parts()
+        self.ok(*self.new("mouth", "--fdi", "46"))
+        folder = self.folder / "mouth"
+        write_stl(folder / "45.stl", box((-3.5, -4, -8), (4, 4, 6)))
+        toml = (folder / "case.toml").read_text()
+        text = re.sub("format = [0-9]", "format = 3", toml) + self.OTHER
+        (folder / "case.toml").write_text(text)
+        return folder, text
+
+    def test_a_mutilated_mouth_is_told_in_one_line(self):
+        folder, good = self.mouth()
+        self.ok("case", "check", folder)
+        stl = (folder / "45.stl").read_bytes()
+        turned = "orientation = [1, 0, 0, 0]"
+
+        def cut(old, new, *mentions):
+            self.assertIn(old, good)
+            return good.replace(old, new, 1), stl, mentions
+
+        mutilated = [
+            cut("fdi = 45", "fdi = 46", "46", "twice"),
+            cut("fdi = 45", "fdi = 99", "99"),
+            cut("fdi = 45", 'fdi = "molar"', "fdi"),
+            cut('outer = "45.stl"', "", "outer"),
+            cut('outer = "45.stl"', 'outer = "gone.stl"', "gone.stl"),
+            cut('outer = "45.stl"', 'outer = "../outer.stl"', "inside the case"),
+            cut('outer = "45.stl"', 'outer = "/etc/passwd"', "passwd"),
+            cut('outer = "45.stl"', "outer = 45", "outer"),
+            cut("position_mm = [8.0, 0, 0]", "position_mm = [8.0, 0]", "position_mm"),
+            cut("position_mm = [8.0, 0, 0]", "position_mm = [nan, 0, 0]", "position_mm"),
+            cut("position_mm = [8.0, 0, 0]", "position_mm = [1e9, 0, 0]", "mm off"),
+            cut("position_mm = [8.0, 0, 0]", "", "position_mm"),
+            cut("position_mm = [8.0, 0, 0]", "position_mm = [6.5, 0, 0]", "cross"),
+            cut("position_mm = [8.0, 0, 0]", "position_mm = [0, 0, 0]", "cross"),
+            cut(turned, "orientation = [0, 0, 0, 0]", "unit quaternion"),
+            cut(turned, "orientation = [1, 0, 0]", "orientation"),
+            cut(turned, turned + "\ncuttable = 3", "cuttable"),
+            cut(turned, turned + "\ncolour = 3", "colour"),
+            cut('kind = "cusp-tip"', 'kind = "nose"', "nose"),
+            cut("points_mm = [1, 1, 6]", "points_mm = [1, 1]", "2 numbers"),
+            cut("points_mm = [1, 1, 6]", "points_mm = [1, 1, inf]", "points_mm"),
+            cut("format = 3", "format = 4", "newer"),
+            cut("format = 3", "format = 2", "tooth"),
+            (good[:len(good) // 2], stl, ()),
+            (good, stl[:-40], ("45.stl",)),
+            (good, stl[:84] + bytes(len(stl) - 84), ("45",)),
+            (good, b"", ("45.stl",)),
+        ]
+        for i, (text, mesh, mentions) in enumerate(mutilated):
+            with self.subTest(number=i, mentions=mentions):
+                (folder / "case.toml").write_text(text)
+                (folder / "45.stl").write_bytes(mesh)
+                line = self.refused("case", "check", folder, mentions=mentions)
+                self.assertLess(len(line), 400)
+        (folder / "case.toml").write_text(good)
+        (folder / "45.stl").write_bytes(stl)
+        self.ok("case", "check", folder)
+
+    def test_a_tooth_beside_is_nicked_and_counted(self):
+        folder, _ = self.mouth()
+        # The neighbour's wall stands at x = 4.5, 0.5 mm off: the bur's edge goes 0.1 mm into it, its tip 1 mm deep.
+        (self.folder / "along.csv").write_text("t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz\n0,4.1,-5,7,1,0,0,0\n"
+                                               "0.2,4.1,-5,5,1,0,0,0\n1.2,4.1,5,5,1,0,0,0\n1.4,4.1,5,7,1,0,0,0\n")
+        out = self.folder / "cut"
+        summary = json.loads(self.ok("run", "--case", folder, "--bur", "cylinder-flat:1.0x3.0", "--full-removal", "--motion",
+                                     self.folder / "along.csv", "--no-cache", "--json", "--out", out).stdout)
+        (tooth,) = summary["other_teeth"]
+        self.assertEqual(tooth["fdi"], 45)
+        # 0.1 mm deep, 8 mm long, 1 mm high.
+        self.assertAlmostEqual(sum(tooth["removed_mm3"].values()), 0.8, delta=0.008)
+        again = json.loads(self.ok("replay", out / "session.h5", "--no-cache", "--json").stdout)
+        self.assertTrue(again["matches"])
+        self.assertEqual(again["other_teeth"], summary["other_teeth"])
 
     def test_hostile_packages_are_refused(self):
         for name, mentions in (("../evil", "leads outside"), ("/tmp/evil", "absolute")):

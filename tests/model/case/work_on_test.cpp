@@ -120,6 +120,36 @@ TEST(WorkOn, NeighboursAndAntagonistsAreCuttable) {
     EXPECT_THAT(cuttable(workOn(asOpened, 16)), ElementsAre(15, 17)) << "the jaws are apart";
 }
 
+TEST(WorkOn, TheJawsCloseAgain) {
+    const std::uint64_t seed = test::seed();
+    SCOPED_TRACE(seed);
+    const Blocks blocks(seed);
+    const auto closed = [&](int fdi) {
+        return fdi > 30 ? blocks.mandible.inverse() * blocks.inMouth.at(fdi) : blocks.inMouth.at(fdi);
+    };
+    for (const int fdi : {46, 16}) {
+        const Case c = inOcclusion(workOn(blocks.toothCase, fdi));
+        for (const PlacedTooth& other : c.others)
+            EXPECT_LT(apart(closed(fdi) * other.inCase, closed(other.fdiNumber)), 1e-9) << other.fdiNumber;
+        EXPECT_LT(apart(c.opening, {}), 1e-12);
+    }
+    // What stands around goes with its arch.
+    Case two;
+    two.fdiNumber = 46;
+    two.opening = {{0, 3, -40}, core::Quat(0.9, 0.1, 0.2, 0).normalized()};
+    two.others.resize(1);
+    two.others[0].fdiNumber = 16;
+    two.others[0].inCase = two.opening.inverse() * Pose{{0, 0, 15}, core::Quat::Identity()};
+    const geometry::TriangleMesh below = test::boxMesh({-9, -9, -9}, {9, 9, -1}),
+                                 above = test::boxMesh({-9, -9, 16}, {9, 9, 24});
+    two.scenery = {{"lower", Tissue::gum, 5, below},
+                   {"upper", Tissue::gum, 5, geometry::transformed(above, two.opening.inverse())}};
+    const Case shut = inOcclusion(two);
+    EXPECT_EQ(shut.scenery[0].mesh.vertices, below.vertices);
+    for (std::size_t v = 0; v < above.vertices.size(); ++v)
+        EXPECT_LT((shut.scenery[1].mesh.vertices[v] - above.vertices[v]).norm(), 1e-9);
+}
+
 TEST(WorkOn, SaysWhichTeethThereAre) {
     Case c = Blocks(1).toothCase;
     c.source = "some/mouth";

@@ -4,13 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <concepts>
+#include <exception>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 #include <utility>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/parallel.h"
 #include "handpiece/model/case/held_aside.h"
 #include "handpiece/model/instrument/turbine.h"
 #include "handpiece/model/tooth/state_file.h"
@@ -543,44 +546,53 @@ SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings 
     std::vector<cases::Part> yielding;  // bone lies under it
     for (const cases::Part& part : toothCase.scenery)
         if (part.isFelt && part.tissue == cases::Tissue::gum) yielding.push_back(part);
-    const auto count = static_cast<double>(toothCase.others.size() + yielding.size());
-    const auto stand = [&](cases::Case alone, const core::Pose& at, bool isCut) {
+    const std::size_t teeth = toothCase.others.size(), count = teeth + yielding.size();
+    station.others.resize(count);
+    std::vector<std::exception_ptr> failures(count);
+    std::atomic<std::size_t> done{0};
+    const auto stand = [&](std::size_t i) {
+        const cases::PlacedTooth* const other = i < teeth ? &toothCase.others[i] : nullptr;
+        cases::Case alone;
+        if (other != nullptr) static_cast<cases::Tooth&>(alone) = *other;
+        const bool isCut = other != nullptr && other->isCuttable;
+        if (!isCut) {
+            const cases::Part surface = other != nullptr
+                                            ? cases::Part{other->name, cases::Tissue::neighbour, 0, other->surface()}
+                                            : yielding[i - teeth];
+            alone.outer = {};
+            alone.parts = {surface};
+            alone.name = surface.name;
+        }
         alone.source = toothCase.source;
-        const bool isYielding = !isCut && alone.parts.front().tissue == cases::Tissue::gum;
-        const bool isPlain = !alone.parts.empty() && cases::isHeldAside(alone.parts.front());
+        const bool isPlain = !isCut && cases::isHeldAside(alone.parts.front());
         const tooth::LoadSettings loading =
             isCut ? tooth::LoadSettings{station.settings.field,
                                         {station.settings.cut.bandMm, kStandingReserveBricks},
                                         useCache}
                   : tooth::LoadSettings{fieldSettingsAt(isPlain ? kCheekVoxelMm : kStandingVoxelMm), {}, useCache};
-        const double done = static_cast<double>(station.others.size());
-        const core::Progress share =
-            core::part(progress, own + (1.0 - own) * done / count, own + (1.0 - own) * (done + 1.0) / count);
+        const core::Progress share = [&](double) {
+            return !progress || progress(own + (1.0 - own) * static_cast<double>(done) / static_cast<double>(count));
+        };
         try {
-            station.others.push_back({tooth::loadModel(alone, loading, share), at, alone.fdiNumber, isYielding});
-            StandingTooth& made = station.others.back();
-            const auto number = static_cast<std::uint16_t>(station.others.size());
-            if (isCut) made.field = std::make_shared<tooth::ToothState>(made.model, number);
+            StandingTooth& made = station.others[i];
+            made = {tooth::loadModel(alone, loading, share), other != nullptr ? other->inCase : core::Pose{},
+                    alone.fdiNumber, other == nullptr};
+            if (isCut) made.field = std::make_shared<tooth::ToothState>(made.model, static_cast<std::uint16_t>(i + 1));
         } catch (const core::Error& e) {
-            throw core::Error(fmt::format("{}: {}", alone.name, e.problem()), e.where(), e.remedy())
-                .as(e.id(), e.arguments());
+            failures[i] = std::make_exception_ptr(
+                core::Error(fmt::format("{}: {}", alone.name, e.problem()), e.where(), e.remedy())
+                    .as(e.id(), e.arguments()));
         }
+        ++done;
     };
-    for (const cases::PlacedTooth& other : toothCase.others) {
-        cases::Case alone;
-        static_cast<cases::Tooth&>(alone) = other;
-        if (!other.isCuttable) {
-            alone.outer = {};
-            alone.parts = {{other.name, cases::Tissue::neighbour, 0, other.surface()}};
-        }
-        stand(std::move(alone), other.inCase, other.isCuttable);
-    }
-    for (const cases::Part& part : yielding) {
-        cases::Case alone;
-        alone.name = part.name;
-        alone.parts.push_back(part);
-        stand(std::move(alone), {}, false);
-    }
+    core::parallelFor(count, 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i)
+            stand(i);
+    });
+    core::report(progress, 1.0);  // cancelled
+    // The same one is told whoever was first.
+    for (const std::exception_ptr& failure : failures)
+        if (failure) std::rethrow_exception(failure);
     return station;
 }
 

@@ -108,15 +108,22 @@ void checkOthers(const Case& toothCase, const std::shared_ptr<const TriangleTree
                  std::vector<CaseFinding>& findings) {
     struct Standing {
         std::string name;
-        std::vector<Vec3> points;  ///< in the case's frame
+        std::vector<Vec3> points;  ///< of its surface, in the case's frame
         std::shared_ptr<const TriangleTree> tree;
     };
+    // Corners alone may all lie outside where triangles are large.
+    const auto pointsOf = [](const geometry::TriangleMesh& mesh) {
+        std::vector<Vec3> points = mesh.vertices;
+        for (const geometry::Triangle& t : mesh.triangles)
+            points.push_back((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0);
+        return points;
+    };
     std::vector<Standing> teeth;
-    if (own) teeth.push_back({"the case's own tooth", toothCase.surface().vertices, own});
+    if (own) teeth.push_back({"the case's own tooth", pointsOf(toothCase.surface()), own});
     for (const PlacedTooth& other : toothCase.others) {
         const std::string name = other.fdiNumber != 0 ? fmt::format("tooth {}", other.fdiNumber) : other.name;
         const geometry::TriangleMesh placed = geometry::transformed(other.surface(), other.inCase);
-        teeth.push_back({name, placed.vertices, solidTree(placed, name, findings)});
+        teeth.push_back({name, pointsOf(placed), solidTree(placed, name, findings)});
     }
     for (std::size_t i = 0; i < teeth.size(); ++i)
         for (std::size_t j = i + 1; j < teeth.size(); ++j) {

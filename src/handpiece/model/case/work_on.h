@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Which tooth of a mouth is worked on, and which others its bur may nick.
+/// Which tooth of a mouth is worked on, which others its bur may nick, and its jaws closed.
 
 #include "handpiece/model/case/case.h"
 
@@ -15,5 +15,9 @@ namespace handpiece::cases {
 /// Of the others, those next to the tooth in its arch and those that come within 0.3 mm of it with the jaws closed can
 /// be cut; the rest is only felt.
 void chooseCuttable(Case& toothCase);
+
+/// The same mouth with its jaws closed, in the frame of its own tooth; what stands around goes with the arch whose
+/// teeth it is nearer to. As it is when nothing says how it was opened.
+[[nodiscard]] Case inOcclusion(Case toothCase);
 
 }  // namespace handpiece::cases

@@ -8,6 +8,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/portable_math.h"
+#include "handpiece/model/case/work_on.h"
 #include "handpiece/senses/radiograph/burned_text.h"
 #include "handpiece/senses/radiograph/projection.h"
 
@@ -78,6 +79,10 @@ Picture develop(const Exposure& exposure) {
 }
 
 Radiograph take(const cases::Case& toothCase, const Settings& settings, const core::Progress& progress) {
+    // The patient bites on the holder's wing.
+    const bool isOpen = toothCase.opening.positionMm != core::Vec3::Zero() ||
+                        toothCase.opening.orientation.coeffs() != core::Quat::Identity().coeffs();
+    if (settings.view == View::bitewing && isOpen) return take(cases::inOcclusion(toothCase), settings, progress);
     Radiograph r;
     r.settings = settings;
     r.fdiNumber = settings.fdiNumber != 0 ? settings.fdiNumber : toothCase.fdiNumber;

@@ -24,6 +24,8 @@ constexpr std::array kEntries = {
           QT_TRANSLATE_NOOP("Problem", "Choose a folder with case.toml, a .handpiece file or an STL file.")},
     Entry{"case-without-surface", QT_TRANSLATE_NOOP("Problem", "This case names no surface of a whole tooth."),
           QT_TRANSLATE_NOOP("Problem", "Name the tooth in case.toml: outer.stl, or one part.")},
+    Entry{"no-such-tooth", QT_TRANSLATE_NOOP("Problem", "The mouth has no tooth %1."),
+          QT_TRANSLATE_NOOP("Problem", "Choose one of the teeth that the chart shows.")},
     Entry{"not-an-attempt", QT_TRANSLATE_NOOP("Problem", "This is no attempt that was saved."),
           QT_TRANSLATE_NOOP("Problem", "Choose the folder or .handpiece file that was saved.")},
     Entry{"attempt-damaged",

@@ -1545,6 +1545,14 @@
 <context>
     <name>Problem</name>
     <message>
+        <source>The mouth has no tooth %1.</source>
+        <translation>この口腔に歯 %1 はありません。</translation>
+    </message>
+    <message>
+        <source>Choose one of the teeth that the chart shows.</source>
+        <translation>チャートに表示されている歯を選択してください。</translation>
+    </message>
+    <message>
         <source>There is no such file.</source>
         <translation>ファイルが見つかりません。</translation>
     </message>

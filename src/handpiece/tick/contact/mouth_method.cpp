@@ -55,6 +55,15 @@ struct Pair : PlacedMethod {
     [[nodiscard]] Vec3 place(const Vec3& inTooth) const noexcept {
         return turns ? toothInScene.apply(inTooth) : inTooth;
     }
+    /// No less than the distance by what was last answered: no point of the piece has moved farther since. Only of
+    /// pieces behind the bur, whose answers are kept.
+    [[nodiscard]] double clearMm(const Pose& local) const noexcept {
+        if (!wasAsked || method->toothVersion() != askedVersion) return 0.0;
+        const double cosine = local.orientation.coeffs().dot(askedAt.orientation.coeffs());
+        const double turn = 2.0 * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));  // chord of a unit arm
+        const double arm = core::hypot(solid->lengthMm(), solid->maxRadiusMm());
+        return -answer.depthMm - (local.positionMm - askedAt.positionMm).norm() - turn * arm;
+    }
     [[nodiscard]] bool isBur() const noexcept { return piece == Piece::bur; }
     [[nodiscard]] bool cuts() const noexcept { return isBur() && isCuttable; }
 
@@ -158,7 +167,7 @@ class MouthMethod final : public Method {
         for (std::size_t n = 0; n < nearCount_; ++n) {
             Pair& pair = pairs_[near_[n]];
             const auto& [local, gapMm] = pair.at(bur);
-            if (gapMm > reachMm) continue;
+            if (gapMm > reachMm || (!pair.isBur() && pair.clearMm(local) > reachMm)) continue;
             if (sets == kMaxSets) {
                 status = Status::truncated;
                 break;
@@ -333,6 +342,7 @@ class MouthMethod final : public Method {
         for (std::size_t n = 0; n < count && !(decides != nullptr && order[n].gapMm > -best.depthMm); ++n) {
             Pair& pair = pairs_[order[n].pair];
             const Pose& local = pair.at(bur).local;
+            if (decides != nullptr && !pair.isBur() && pair.clearMm(local) > -best.depthMm) continue;
             const Depth found = enoughMm != nullptr ? pair.method->depthUpTo(*enoughMm, local) : depthOf(pair, local);
             if (decides != nullptr && !(found.depthMm > best.depthMm)) continue;
             best = found;

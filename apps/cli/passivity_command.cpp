@@ -162,7 +162,8 @@ void addPassivityCommand(Command& app) {
                               "the whole stability map instead: contacts of 0.1 to 5 N/mm touched, slid over, cut and "
                               "wedged, with the passivity controller off and on (minutes)");
     Option quick = command.flag("--quick", options->quick, "a small part of that map (seconds)");
-    command.option("--motion", options->motions, "of the map: touch, slide, cut, wedge, between, head; several allowed");
+    command.option("--motion", options->motions,
+                   "of the map: touch, slide, cut, wedge, between, head; several allowed");
     command.option("--assume-delay", options->assumedDelayMs,
                    "of the map: the longest delay [ms] the controller is told; left out: the true one");
     for (const char* name : {"--stiffness", "--damping", "--stiffness-limit"}) {

@@ -155,9 +155,7 @@ Asked read(const PictureOptions& o) {
     if (asked.targetMm && !asked.eyeMm) throw core::Error("a target needs an eye", "--target", "give --eye as well");
     if (asked.targetMm && (*asked.targetMm - *asked.eyeMm).norm() < 1e-3)
         throw core::Error("the eye is where it looks at", "--eye", "give two different points");
-    if (o.position != 0 && !input::isOperatorsHour(o.position))
-        throw core::Error(fmt::format("nobody works from {} o'clock", o.position), "--position",
-                          "8 to 12 (right-handed), 12 to 4 (left-handed)");
+    if (o.position != 0) input::requireOperatorsHour(o.position, "--position");
     if (o.position != 0 && asked.eyeMm)
         throw core::Error("an eye and a position", "--position", "give one of --eye and --position");
     if (!o.section.empty()) asked.section = sectionOf(o.section);

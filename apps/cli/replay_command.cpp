@@ -29,8 +29,7 @@ void replay(const ReplayOptions& o) {
     studies::ProgressBar bar("cutting again");
     const simulation::Verdict v = player.compareAll(bar.listener());
     bar.finish();
-    const std::vector<simulation::NickedTooth> nicked =
-        simulation::nickedTeeth(player.station(), player.state().removedMm3);
+    const std::vector<simulation::NickedTooth> nicked = simulation::nickedTeeth(player.station());
     if (o.json) {
         nlohmann::ordered_json out{
             {"state_hash", v.hash}, {"recorded_hash", v.recorded},         {"matches", v.matches},

@@ -174,7 +174,7 @@ CutOutcome runCut(const simulation::SimulationSetup& station, const cases::Case&
     bar.finish();
     const tooth::StateDelta state = station.state();
     outcome.stateHash = tooth::stateHash(state);
-    outcome.nicked = simulation::nickedTeeth(station, state.removedMm3);
+    outcome.nicked = simulation::nickedTeeth(station);
     outcome.leftMm3 = station.field->volumesMm3();
     session.finish(state, lastTick);
     outcome.recording = recorder.close();

@@ -41,7 +41,7 @@ constexpr double kRoundingNmm = 1e-9;
 class Molar {
   public:
     explicit Molar(const core::Progress& progress)
-        : bur_(std::make_shared<const instrument::Bur>(instrument::makeBur("cylinder-round:1.0x4.0"))) {
+        : bur_(std::make_shared<const instrument::Bur>(instrument::makeBur("cylinder-round:1.0x4.0"))), felt_(bur_) {
         cases::Case molar;
         molar.name = "molar";
         molar.outer =
@@ -76,14 +76,8 @@ class Molar {
     template <class Tooth>
     [[nodiscard]] std::unique_ptr<contact::Method> besideAnother(const Tooth& tooth, const Vec3& there) const {
         std::vector<contact::PlacedMethod> placed;
-        const core::Box box = molar_->outer.bounds();
-        for (std::uint16_t i = 0; i < 2; ++i) {
-            const core::Pose pose{i == 0 ? Vec3(Vec3::Zero()) : there, core::Quat::Identity()};
-            placed.push_back({contact::makeFieldMethod(tooth, bur_), bur_, {}, pose, box, i, contact::Piece::bur});
-            for (const instrument::BodyPiece& piece : instrument::bodyPieces(*bur_))
-                placed.push_back(
-                    {contact::makeFieldMethod(tooth, piece.solid), piece.solid, piece.inBur, pose, box, i, piece.part});
-        }
+        felt_.place(tooth, {}, placed);
+        felt_.place(tooth, {{there, core::Quat::Identity()}, 1}, placed);
         return contact::makeMouthMethod(std::move(placed));
     }
     /// Beside the molar: in contact with it, and so high that the head comes to rest on it with the bur on the cusp.
@@ -134,6 +128,7 @@ class Molar {
     }
 
     std::shared_ptr<const instrument::Bur> bur_;
+    contact::FeltInstrument felt_;
     std::shared_ptr<const tooth::ToothModel> molar_;
     std::shared_ptr<const tooth::ToothModel> base_;
     std::shared_ptr<const tooth::ToothState> uncut_;

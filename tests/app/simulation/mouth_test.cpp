@@ -124,11 +124,11 @@ TEST(Mouth, AToothBesideIsNickedWhereTheBurReachesItAndCounted) {
         run(apart, alongTheGap(0.2), [&](const HapticSample& s) { last = s; });
         EXPECT_GT(removedOf(last), 0.5) << "the box is cut";
         EXPECT_EQ(last.removedOthersMm3, 0.0);
-        EXPECT_TRUE(nickedTeeth(apart, apart.state().removedMm3).empty());
+        EXPECT_TRUE(nickedTeeth(apart).empty());
 
         const SimulationSetup nicked = setupOf(c, true);
         run(nicked, alongTheGap(-0.1), [&](const HapticSample& s) { last = s; });
-        const std::vector<NickedTooth> teeth = nickedTeeth(nicked, nicked.state().removedMm3);
+        const std::vector<NickedTooth> teeth = nickedTeeth(nicked);
         ASSERT_EQ(teeth.size(), 1u);
         EXPECT_EQ(teeth[0].fdiNumber, 45);
         EXPECT_EQ(last.cutNeighbour, 1);

@@ -9,10 +9,12 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/core/rotation.h"
+#include "handpiece/model/case/fdi.h"
 
 namespace handpiece::input {
 namespace {
 
+using cases::isRightTooth, cases::isUpperTooth;
 using core::Mat3;
 using core::Quat;
 using core::Vec3;
@@ -52,17 +54,11 @@ const Stands kStands[2][8] = {{{{0.98, -0.19, 0.06}, {-0.05, -0.51, -0.86}},
 bool isPermanent(int fdi) {
     return fdi >= 11 && fdi <= 48 && fdi % 10 >= 1 && fdi % 10 <= 8;
 }
-bool isUpperTooth(int fdi) {
-    return fdi < 30;
-}
-bool isRightSide(int fdi) {
-    return fdi / 10 == 1 || fdi / 10 == 4;
-}
 
 /// A lower one with the mouth open for work.
 Quat toothInMouth(int fdi) {
     const Stands& right = kStands[isUpperTooth(fdi) ? 0 : 1][fdi % 10 - 1];
-    const Vec3 side(isRightSide(fdi) ? 1.0 : -1.0, 1.0, 1.0);
+    const Vec3 side(isRightTooth(fdi) ? 1.0 : -1.0, 1.0, 1.0);
     Mat3 axes;
     axes.col(2) = right.crown.cwiseProduct(side).normalized();
     const Vec3 mesial = right.mesial.cwiseProduct(side);
@@ -74,7 +70,7 @@ Quat toothInMouth(int fdi) {
 /// The usual places of a right-handed operator; [R], after the habits of operative dentistry's textbooks. The head is
 /// not turned to the side here: what one sees where it is turned needs the mirror.
 UsualPosition rightHanded(int fdi, Surface surface) {
-    const bool isFront = fdi % 10 <= 3, isRight = isRightSide(fdi);
+    const bool isFront = fdi % 10 <= 3, isRight = isRightTooth(fdi);
     if (isUpperTooth(fdi)) {
         if (surface == Surface::buccal && (isFront || isRight)) return {9, false};
         if (surface == Surface::lingual && !isFront && !isRight) return {9, false};
@@ -115,10 +111,14 @@ std::optional<Quat> headInCase(const cases::Case& toothCase) {
     return std::nullopt;
 }
 
-WorkingPosition workingPosition(const Quat& headInCase, bool isUpper, int hour) {
+void requireOperatorsHour(int hour, const std::string& where) {
     if (!isOperatorsHour(hour))
-        throw core::Error(fmt::format("nobody works from {} o'clock", hour), "position",
+        throw core::Error(fmt::format("nobody works from {} o'clock", hour), where,
                           "8 to 12 (right-handed), 12 to 4 (left-handed)");
+}
+
+WorkingPosition workingPosition(const Quat& headInCase, bool isUpper, int hour) {
+    requireOperatorsHour(hour);
     // The patient lies on the back: away from the floor is out of the face, and 12 where the top of the head points,
     // both turned by the head's tilt.
     const double tilt = isUpper ? kBackForUpperRad : -kForwardForLowerRad;

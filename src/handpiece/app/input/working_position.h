@@ -6,6 +6,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "handpiece/base/core/vec.h"
@@ -19,6 +20,8 @@ namespace handpiece::input {
 inline constexpr std::array<int, 5> kRightHandedHours = {8, 9, 10, 11, 12};
 inline constexpr std::array<int, 5> kLeftHandedHours = {12, 1, 2, 3, 4};
 [[nodiscard]] bool isOperatorsHour(int hour);
+/// Throws core::Error naming `where` when it is none.
+void requireOperatorsHour(int hour, const std::string& where = "position");
 /// The same seat for the other hand: 9 for 3.
 [[nodiscard]] constexpr int mirroredHour(int hour) {
     return hour == 12 ? 12 : 12 - hour;

@@ -150,7 +150,7 @@ void addVolumes(HtmlReport& page, const simulation::SessionPlayer& player, const
                 words()("session.left-mm3"), words()("session.removed-percent")},
                rows);
     rows.clear();
-    for (const simulation::NickedTooth& tooth : simulation::nickedTeeth(player.station(), player.state().removedMm3))
+    for (const simulation::NickedTooth& tooth : simulation::nickedTeeth(player.station()))
         for (const cases::Tissue tissue : player.station().others[tooth.number - 1u].model->tissues.tissues())
             if (const double gone = tooth.removedMm3[static_cast<std::size_t>(tissue)]; gone > 0.0)
                 rows.push_back({tooth.name, nameOf(tissue), fmt::format("{:.3f}", gone)});

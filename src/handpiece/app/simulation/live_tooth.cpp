@@ -24,8 +24,7 @@ struct LiveTooth::Parts {
           const core::Pose& toothInScene)
         : number(toothNumber),
           inScene(toothInScene),
-          turns(inScene.positionMm != core::Vec3::Zero() ||
-                inScene.orientation.coeffs() != core::Quat::Identity().coeffs()),
+          turns(!inScene.isIdentity()),
           mirror(model, number),
           source(mirror),
           fine(source, &model->tissues),

@@ -15,7 +15,6 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/case/held_aside.h"
-#include "handpiece/model/instrument/turbine.h"
 #include "handpiece/model/tooth/state_file.h"
 #include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/contact/hull/hull_method.h"
@@ -476,49 +475,26 @@ loop::Work SimulationSetup::work() const {
     const std::shared_ptr<const tooth::ToothState> own(field);
     if (others.empty()) return {contact::makeFieldMethod(own, settings.bur), std::move(cutter)};
     std::vector<contact::PlacedMethod> placed;
-    const std::vector<instrument::BodyPiece> body = instrument::bodyPieces(*settings.bur);
-    contact::FieldMethodSettings ofBur;
-    ofBur.sheets = contact::makeMedialSheets(*settings.bur);
-    std::vector<contact::FieldMethodSettings> ofPiece(body.size());
-    for (std::size_t i = 0; i < body.size(); ++i) {
-        ofPiece[i].depthOnly = true;
-        ofPiece[i].sheets = contact::makeMedialSheets(*body[i].solid);
-    }
-    std::uint16_t index = 0;
-    const auto add = [&](const auto& model, const core::Pose& at, const core::Box& bounds, bool isYielding,
-                         bool isCuttable) {
-        ofBur.depthOnly = isYielding;
-        placed.push_back({contact::makeFieldMethod(model, settings.bur, ofBur),
-                          settings.bur,
-                          {},
-                          at,
-                          bounds,
-                          index,
-                          contact::Piece::bur,
-                          isYielding,
-                          isCuttable});
-        for (std::size_t i = 0; i < body.size(); ++i)
-            placed.push_back({contact::makeFieldMethod(model, body[i].solid, ofPiece[i]), body[i].solid, body[i].inBur,
-                              at, bounds, index, body[i].part, isYielding, isCuttable});
-        ++index;
-    };
-    add(own, {}, tooth->outer.bounds(), false, true);
-    for (const StandingTooth& other : others)
+    const contact::FeltInstrument felt(settings.bur);
+    felt.place(own, {}, placed);
+    for (std::size_t i = 0; i < others.size(); ++i) {
+        const StandingTooth& other = others[i];
+        const contact::FeltInstrument::Standing standing{other.inCase, static_cast<std::uint16_t>(i + 1),
+                                                         other.isYielding, other.field != nullptr};
         if (other.field)
-            add(std::shared_ptr<const tooth::ToothState>(other.field), other.inCase, other.model->outer.bounds(), false,
-                true);
+            felt.place(std::shared_ptr<const tooth::ToothState>(other.field), standing, placed);
         else
-            add(other.model, other.inCase, other.model->outer.bounds(), other.isYielding, false);
+            felt.place(other.model, standing, placed);
+    }
     return {contact::makeMouthMethod(std::move(placed)), std::move(cutter)};
 }
 
-std::vector<NickedTooth> nickedTeeth(const SimulationSetup& station, const tooth::RemovedMm3& removedMm3) {
+std::vector<NickedTooth> nickedTeeth(const SimulationSetup& station) {
     std::vector<NickedTooth> nicked;
-    for (std::uint16_t number = 1; number <= station.others.size(); ++number) {
-        const tooth::TissueVolumes& mm3 = removedMm3.of(number);
-        const StandingTooth& other = station.others[number - 1u];
-        if (tooth::sumOf(mm3) > 0.0) nicked.push_back({number, other.fdiNumber, other.model->name, mm3});
-    }
+    for (const StandingTooth& other : station.others)
+        if (other.field && tooth::sumOf(other.field->removedMm3()) > 0.0)
+            nicked.push_back(
+                {other.field->toothNumber(), other.fdiNumber, other.model->name, other.field->removedMm3()});
     return nicked;
 }
 
@@ -552,16 +528,14 @@ SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings 
     std::atomic<std::size_t> done{0};
     const auto stand = [&](std::size_t i) {
         const cases::PlacedTooth* const other = i < teeth ? &toothCase.others[i] : nullptr;
-        cases::Case alone;
-        if (other != nullptr) static_cast<cases::Tooth&>(alone) = *other;
         const bool isCut = other != nullptr && other->isCuttable;
-        if (!isCut) {
-            const cases::Part surface = other != nullptr
-                                            ? cases::Part{other->name, cases::Tissue::neighbour, 0, other->surface()}
-                                            : yielding[i - teeth];
-            alone.outer = {};
-            alone.parts = {surface};
-            alone.name = surface.name;
+        cases::Case alone;
+        if (isCut) {
+            static_cast<cases::Tooth&>(alone) = *other;
+        } else {
+            alone.parts = {other != nullptr ? cases::Part{other->name, cases::Tissue::neighbour, 0, other->surface()}
+                                            : yielding[i - teeth]};
+            alone.name = alone.parts.front().name;
         }
         alone.source = toothCase.source;
         const bool isPlain = !isCut && cases::isHeldAside(alone.parts.front());
@@ -576,7 +550,7 @@ SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings 
         try {
             StandingTooth& made = station.others[i];
             made = {tooth::loadModel(alone, loading, share), other != nullptr ? other->inCase : core::Pose{},
-                    alone.fdiNumber, other == nullptr};
+                    other != nullptr ? other->fdiNumber : 0, other == nullptr};
             if (isCut) made.field = std::make_shared<tooth::ToothState>(made.model, static_cast<std::uint16_t>(i + 1));
         } catch (const core::Error& e) {
             failures[i] = std::make_exception_ptr(

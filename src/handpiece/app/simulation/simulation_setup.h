@@ -111,7 +111,8 @@ struct NickedTooth {
     std::string name;
     tooth::TissueVolumes removedMm3{};
 };
-[[nodiscard]] std::vector<NickedTooth> nickedTeeth(const SimulationSetup& station, const tooth::RemovedMm3& removedMm3);
+/// As they are now. While no loop runs.
+[[nodiscard]] std::vector<NickedTooth> nickedTeeth(const SimulationSetup& station);
 /// [{"tooth": 1, "fdi": 46, "name": "...", "removed_mm3": {"enamel": 0.012}}]
 [[nodiscard]] std::string nickedJson(const std::vector<NickedTooth>& nicked);
 /// A loaded tooth, yet uncut, and a state of it to cut; with what stands around it. Throws core::Error.

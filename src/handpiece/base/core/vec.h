@@ -32,6 +32,10 @@ struct Pose {
     [[nodiscard]] Vec3 apply(const Vec3& p) const { return orientation * p + positionMm; }
     [[nodiscard]] Vec3 applyInverse(const Vec3& p) const { return orientation.conjugate() * (p - positionMm); }
     [[nodiscard]] Pose inverse() const { return {orientation.conjugate() * -positionMm, orientation.conjugate()}; }
+    /// To the bit.
+    [[nodiscard]] bool isIdentity() const {
+        return positionMm == Vec3::Zero() && orientation.coeffs() == Quat::Identity().coeffs();
+    }
     [[nodiscard]] Pose normalised() const { return {positionMm, orientation.normalized()}; }
     /// `inner` in the frame that this pose stands in; the product of long chains needs normalised().
     [[nodiscard]] Pose operator*(const Pose& inner) const {

@@ -10,6 +10,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/triangle_tree.h"
+#include "handpiece/model/case/fdi.h"
 
 namespace handpiece::cases {
 namespace {
@@ -20,19 +21,13 @@ using core::Vec3;
 /// Teeth that come nearer than this with the jaws closed are antagonists (or adjacent, whatever their numbers say).
 constexpr double kAntagonistMm = 0.3;
 
-bool isLower(int fdi) {
-    const int quadrant = fdi / 10;
-    return quadrant == 3 || quadrant == 4 || quadrant == 7 || quadrant == 8;
-}
-
 /// Where a number stands along its arch, from the right to the left.
 int alongArch(int fdi) {
-    const int quadrant = fdi / 10, place = fdi % 10;
-    return quadrant == 1 || quadrant == 4 || quadrant == 5 || quadrant == 8 ? -place : place - 1;
+    return isRightTooth(fdi) ? -(fdi % 10) : fdi % 10 - 1;
 }
 
 bool areAdjacent(int a, int b) {
-    return a != 0 && b != 0 && isLower(a) == isLower(b) && (a < 50) == (b < 50) &&
+    return a != 0 && b != 0 && isLowerTooth(a) == isLowerTooth(b) && (a < 50) == (b < 50) &&
            std::abs(alongArch(a) - alongArch(b)) == 1;
 }
 
@@ -59,7 +54,7 @@ void chooseCuttable(Case& c) {
     if (c.others.empty() || c.surface().triangles.empty()) return;
     const geometry::TriangleTree own(c.surface());
     const Pose closing = c.opening.inverse();
-    const auto closed = [&](int fdi, const Pose& inCase) { return isLower(fdi) ? closing * inCase : inCase; };
+    const auto closed = [&](int fdi, const Pose& inCase) { return isLowerTooth(fdi) ? closing * inCase : inCase; };
     const Pose toOwn = closed(c.fdiNumber, {}).inverse();
     for (PlacedTooth& other : c.others)
         other.isCuttable = areAdjacent(c.fdiNumber, other.fdiNumber) ||
@@ -68,8 +63,8 @@ void chooseCuttable(Case& c) {
 
 Case inOcclusion(Case c) {
     // Of the other arch than the own tooth's; its own stays where it is.
-    const Pose moved = isLower(c.fdiNumber) ? c.opening : c.opening.inverse();
-    const auto isOther = [&](int fdi) { return fdi != 0 && isLower(fdi) != isLower(c.fdiNumber); };
+    const Pose moved = isLowerTooth(c.fdiNumber) ? c.opening : c.opening.inverse();
+    const auto isOther = [&](int fdi) { return fdi != 0 && isLowerTooth(fdi) != isLowerTooth(c.fdiNumber); };
     Vec3 middle[2] = {Vec3::Zero(), Vec3::Zero()};  // of this arch's teeth, of the other's
     double count[2] = {1.0, 0.0};
     for (const PlacedTooth& other : c.others) {

@@ -2,7 +2,8 @@
 #include "handpiece/model/dentition/tooth_body.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "handpiece/base/geometry/mesh_edges.h"
 
 namespace handpiece::dentition {
 namespace {
@@ -86,29 +87,23 @@ Gap gapBetween(const ToothBody& a, const Pose& aPose, const ToothBody& b, const 
 }
 
 geometry::TriangleMesh largestShell(const geometry::TriangleMesh& mesh) {
-    std::vector<std::uint32_t> parent(mesh.vertices.size());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto root = [&](std::uint32_t v) {
-        while (parent[v] != v)
-            v = parent[v] = parent[parent[v]];
-        return v;
-    };
+    geometry::DisjointSets shells(mesh.vertices.size());
     for (const geometry::Triangle& t : mesh.triangles)
         for (const std::uint32_t v : {t[1], t[2]})
-            parent[root(v)] = root(t[0]);
+            shells.join(t[0], v);
     std::vector<std::size_t> faces(mesh.vertices.size(), 0);
     for (const geometry::Triangle& t : mesh.triangles)
-        ++faces[root(t[0])];
+        ++faces[shells.find(t[0])];
     const auto largest = static_cast<std::uint32_t>(std::max_element(faces.begin(), faces.end()) - faces.begin());
     geometry::TriangleMesh kept;
     std::vector<std::uint32_t> index(mesh.vertices.size(), 0);
     for (std::uint32_t v = 0; v < index.size(); ++v)
-        if (root(v) == largest) {
+        if (shells.find(v) == largest) {
             index[v] = static_cast<std::uint32_t>(kept.vertices.size());
             kept.vertices.push_back(mesh.vertices[v]);
         }
     for (const geometry::Triangle& t : mesh.triangles)
-        if (root(t[0]) == largest) kept.triangles.push_back({index[t[0]], index[t[1]], index[t[2]]});
+        if (shells.find(t[0]) == largest) kept.triangles.push_back({index[t[0]], index[t[1]], index[t[2]]});
     return kept;
 }
 

@@ -80,9 +80,8 @@ Picture develop(const Exposure& exposure) {
 
 Radiograph take(const cases::Case& toothCase, const Settings& settings, const core::Progress& progress) {
     // The patient bites on the holder's wing.
-    const bool isOpen = toothCase.opening.positionMm != core::Vec3::Zero() ||
-                        toothCase.opening.orientation.coeffs() != core::Quat::Identity().coeffs();
-    if (settings.view == View::bitewing && isOpen) return take(cases::inOcclusion(toothCase), settings, progress);
+    if (settings.view == View::bitewing && !toothCase.opening.isIdentity())
+        return take(cases::inOcclusion(toothCase), settings, progress);
     Radiograph r;
     r.settings = settings;
     r.fdiNumber = settings.fdiNumber != 0 ? settings.fdiNumber : toothCase.fdiNumber;

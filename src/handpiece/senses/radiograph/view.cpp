@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/model/case/fdi.h"
 #include "handpiece/senses/radiograph/radiograph.h"
 
 namespace handpiece::radiograph {
@@ -26,11 +27,6 @@ void require(double value, double least, double most, const char* what, const ch
     if (!(value >= least && value <= most))
         throw core::Error(fmt::format("{} of {:g} is not possible", what, value), where,
                           fmt::format("give {:g} to {:g}", least, most));
-}
-
-bool isUpper(int fdi) {
-    const int quadrant = fdi / 10;
-    return quadrant == 1 || quadrant == 2 || quadrant == 5 || quadrant == 6;
 }
 
 /// Of any mesh of a tooth, in the case's frame.
@@ -123,7 +119,7 @@ Projection project(const cases::Case& toothCase, const Settings& settings) {
     // Crowns of upper teeth point down in the picture, as they do in the mouth.
     const Vec3 towardsCrown = chosen.inCase.orientation * axis;
     Projection p;
-    p.up = isUpper(tooth.fdiNumber) ? Vec3(-towardsCrown) : towardsCrown;
+    p.up = cases::isUpperTooth(tooth.fdiNumber) ? Vec3(-towardsCrown) : towardsCrown;
     const Vec3 normal = chosen.inCase.orientation * buccal;
     p.right = p.up.cross(normal).normalized();
     p.up = normal.cross(p.right).normalized();

@@ -8,6 +8,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/rotation.h"
 #include "handpiece/tick/contact/exact/exact_depth.h"
 #include "handpiece/tick/contact/exact/off_axis_medial_search.h"
 #include "handpiece/tick/contact/exact/outline_search.h"
@@ -137,10 +138,7 @@ class FieldMethod final : public Method {
     /// No point of the bur has moved as far as there was room for, beyond the reach. Cutting only makes more room.
     [[nodiscard]] bool isStillFar(const core::Pose& pose) const noexcept {
         if (clearMm_ <= settings_.reachMm) return false;
-        const double cosine = pose.orientation.coeffs().dot(farPose_.orientation.coeffs());
-        const double turn = 2.0 * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));  // chord of a unit arm
-        const double moved = (pose.positionMm - farPose_.positionMm).norm() + turn * farthestMm_;
-        return clearMm_ - moved > settings_.reachMm;
+        return clearMm_ - core::mostMovedMm(farPose_, pose, farthestMm_) > settings_.reachMm;
     }
     void setFar(const core::Pose& pose, double clearMm) noexcept {
         farPose_ = pose;

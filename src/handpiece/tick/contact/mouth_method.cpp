@@ -6,6 +6,8 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/rotation.h"
+#include "handpiece/model/instrument/turbine.h"
 #include "handpiece/tick/contact/bur_frame.h"
 
 namespace handpiece::contact {
@@ -21,17 +23,14 @@ constexpr double kFarthestToothMm = 200.0;
 bool isSame(const Pose& a, const Pose& b) noexcept {
     return a.positionMm == b.positionMm && a.orientation.coeffs() == b.orientation.coeffs();
 }
-bool isIdentity(const Pose& pose) noexcept {
-    return isSame(pose, Pose{});
-}
 
 /// A pair, with what is known of it between calls.
 struct Pair : PlacedMethod {
     explicit Pair(PlacedMethod placed)
         : PlacedMethod(std::move(placed)),
           sceneInTooth(toothInScene.inverse()),
-          moves(!isIdentity(pieceInBur)),
-          turns(!isIdentity(toothInScene)) {}
+          moves(!pieceInBur.isIdentity()),
+          turns(!toothInScene.isIdentity()) {}
 
     /// The piece in the tooth's frame and no more than the distance between the two, for the pose that all ask about in
     /// turn. Where nothing is moved nothing is rounded.
@@ -59,10 +58,8 @@ struct Pair : PlacedMethod {
     /// pieces behind the bur, whose answers are kept.
     [[nodiscard]] double clearMm(const Pose& local) const noexcept {
         if (!wasAsked || method->toothVersion() != askedVersion) return 0.0;
-        const double cosine = local.orientation.coeffs().dot(askedAt.orientation.coeffs());
-        const double turn = 2.0 * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));  // chord of a unit arm
-        const double arm = core::hypot(solid->lengthMm(), solid->maxRadiusMm());
-        return -answer.depthMm - (local.positionMm - askedAt.positionMm).norm() - turn * arm;
+        const double armMm = core::hypot(solid->lengthMm(), solid->maxRadiusMm());
+        return -answer.depthMm - core::mostMovedMm(askedAt, local, armMm);
     }
     [[nodiscard]] bool isBur() const noexcept { return piece == Piece::bur; }
     [[nodiscard]] bool cuts() const noexcept { return isBur() && isCuttable; }
@@ -284,11 +281,7 @@ class MouthMethod final : public Method {
 
     /// Which pairs can touch from here, until the instrument has moved by kNearSlackMm.
     void lookAround(const Pose& bur) noexcept {
-        if (hasLooked_) {
-            const double cosine = bur.orientation.coeffs().dot(lookedAt_.orientation.coeffs());
-            const double turn = 2.0 * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));  // chord of a unit arm
-            if ((bur.positionMm - lookedAt_.positionMm).norm() + turn * farthestMm_ <= kNearSlackMm) return;
-        }
+        if (hasLooked_ && core::mostMovedMm(lookedAt_, bur, farthestMm_) <= kNearSlackMm) return;
         nearCount_ = 0;
         for (std::size_t i = 0; i < pairs_.size(); ++i)
             if (pairs_[i].at(bur).gapMm <= reachMm_ + kNearSlackMm) near_[nearCount_++] = static_cast<std::uint16_t>(i);
@@ -371,6 +364,39 @@ class MouthMethod final : public Method {
 };
 
 }  // namespace
+
+FeltInstrument::FeltInstrument(std::shared_ptr<const instrument::Bur> bur) {
+    const std::vector<instrument::BodyPiece> body = instrument::bodyPieces(*bur);
+    const auto add = [this](std::shared_ptr<const instrument::Bur> solid, const Pose& inBur, contact::Piece part) {
+        std::shared_ptr<const MedialSheets> sheets = makeMedialSheets(*solid);
+        pieces_.push_back({std::move(solid), inBur, part, std::move(sheets)});
+    };
+    add(std::move(bur), {}, contact::Piece::bur);
+    for (const instrument::BodyPiece& piece : body)
+        add(piece.solid, piece.inBur, piece.part);
+}
+
+template <class Tooth>
+void FeltInstrument::placeAll(const std::shared_ptr<const Tooth>& tooth, const core::Box& box, const Standing& standing,
+                              std::vector<PlacedMethod>& to) const {
+    for (const Piece& piece : pieces_) {
+        FieldMethodSettings settings;
+        settings.depthOnly = standing.isYielding || piece.part != contact::Piece::bur;
+        settings.sheets = piece.sheets;
+        to.push_back({makeFieldMethod(tooth, piece.solid, settings), piece.solid, piece.inBur, standing.inScene, box,
+                      standing.tooth, piece.part, standing.isYielding, standing.isCuttable});
+    }
+}
+
+void FeltInstrument::place(const std::shared_ptr<const tooth::ToothModel>& tooth, const Standing& standing,
+                           std::vector<PlacedMethod>& to) const {
+    placeAll(tooth, tooth->outer.bounds(), standing, to);
+}
+
+void FeltInstrument::place(const std::shared_ptr<const tooth::ToothState>& tooth, const Standing& standing,
+                           std::vector<PlacedMethod>& to) const {
+    placeAll(tooth, tooth->model().outer.bounds(), standing, to);
+}
 
 std::unique_ptr<Method> makeMouthMethod(std::vector<PlacedMethod> placed, double reachMm) {
     if (placed.empty() || placed.size() > kMaxPlaced)

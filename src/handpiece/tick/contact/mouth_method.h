@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "handpiece/model/instrument/bur.h"
+#include "handpiece/tick/contact/field_method.h"
 #include "handpiece/tick/contact/method.h"
 
 namespace handpiece::contact {
@@ -22,6 +23,36 @@ struct PlacedMethod {
     Piece piece = Piece::bur;
     bool isYielding = false;  ///< no tooth but what gives way (gingiva): it holds nothing off
     bool isCuttable = true;   ///< the tooth is: else the bur has patches on it, and no bearing
+};
+
+/// Bur and handpiece as pieces to be felt, with what the methods of all teeth share of them.
+class FeltInstrument {
+  public:
+    explicit FeltInstrument(std::shared_ptr<const instrument::Bur> bur);
+
+    /// Where a tooth stands, and what it is: as in PlacedMethod.
+    struct Standing {
+        core::Pose inScene;
+        std::uint16_t tooth = 0;
+        bool isYielding = false, isCuttable = true;
+    };
+    /// Adds a pair for each piece.
+    void place(const std::shared_ptr<const tooth::ToothModel>& tooth, const Standing& standing,
+               std::vector<PlacedMethod>& to) const;
+    void place(const std::shared_ptr<const tooth::ToothState>& tooth, const Standing& standing,
+               std::vector<PlacedMethod>& to) const;
+
+  private:
+    struct Piece {
+        std::shared_ptr<const instrument::Bur> solid;
+        core::Pose inBur;
+        contact::Piece part;
+        std::shared_ptr<const MedialSheets> sheets;
+    };
+    template <class Tooth>
+    void placeAll(const std::shared_ptr<const Tooth>& tooth, const core::Box& box, const Standing& standing,
+                  std::vector<PlacedMethod>& to) const;
+    std::vector<Piece> pieces_;
 };
 
 /// Feels them as one; poses and answers are in the scene's frame, which is that of the case's own tooth. A pair is

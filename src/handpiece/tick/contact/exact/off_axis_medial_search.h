@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The part of the medial region off the bur's axis: sheets, turned about the axis, under sharp rims and corners.
-/// Private to this room.
+/// The deepest place of a bur's medial sheets in a tooth. Private to this room.
 
 #include <array>
 #include <memory>
@@ -12,47 +11,11 @@
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/tick/contact/bur_frame.h"
 #include "handpiece/tick/contact/exact/exact_depth.h"
+#include "handpiece/tick/contact/exact/medial_sheets.h"
 #include "handpiece/tick/contact/exact/sheet_kernels.h"
 #include "handpiece/tick/contact/sampled/field_row.h"
 
 namespace handpiece::contact {
-
-/// What is known of a bur's off-axis medial sheets before any tooth: megabytes for a handpiece's head, so the methods
-/// of all teeth share it.
-class MedialSheets {
-  public:
-    explicit MedialSheets(const instrument::Bur& bur);
-
-    /// A circle of the grid's balls.
-    struct Row {
-        double u, rho, z, radius;
-        std::uint32_t first, count;  ///< count is a multiple of 8
-        std::uint32_t firstMiddle;   ///< of the middles of its eights
-    };
-    struct Sheet {
-        std::vector<double> u, rho, z, radius;  ///< by ball; u is the length along the curve
-        double maxRho = 0.0, maxRadius = 0.0;
-        double centreZ = 0.0, reachMm = 0.0;  ///< its balls lie in the ball of reach about the axis at centreZ
-        double centresMm = 0.0;               ///< their centres in the ball of this radius
-        double promiseMm = 0.0;               ///< one of them is at least so much deeper than the tooth is at centreZ
-        double spacingMm = 0.0;               ///< of the grid's balls, at most
-        std::vector<Row> rows;
-        std::vector<double> cosine, sine;              ///< by ball of the grid
-        std::vector<double> middleCosine, middleSine;  ///< by eight of them; each row's padded to eight middles
-        /// Of its cells: as SheetCells has them, and the middle of each on the curve and around.
-        std::array<std::vector<float>, 4> cellX, cellY, cellZ;
-        std::vector<float> cellLowRadius, cellHighRadius;
-        std::vector<double> cellU, cellAngle;
-    };
-    std::vector<Sheet> searched;
-    std::vector<instrument::MedialBall> covered;  ///< balls of sheets that are not searched
-
-    static constexpr std::size_t kMaxGrid = 2048;
-
-  private:
-    static void addGrid(Sheet& sheet);
-    static void addCells(Sheet& sheet, double spacing);
-};
 
 /// Finds the deepest ball of the sheets: looked for on a grid of balls in the field, eight at a time, then climbed
 /// against the triangles. Where the field holds no distance, balls are measured exactly until the Lipschitz bound drops

@@ -19,6 +19,7 @@
 #include "handpiece/model/case/case_check.h"
 #include "handpiece/model/case/work_on.h"
 #include "handpiece/model/instrument/shapes.h"
+#include "handpiece/scan/landmarks/find_landmarks.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::cli {
@@ -274,6 +275,46 @@ void workOnAnother(const WorkOnOptions& o) {
     fmt::print("{}: {}\n  {} others, {} of them to be cut too\n", o.out, made.name, made.others.size(), cuttable);
 }
 
+struct LandmarkOptions {
+    std::string place, out;
+    bool json = false, find = false;
+};
+
+void listLandmarks(const LandmarkOptions& o) {
+    if (o.find == o.out.empty())
+        throw core::Error("what is found is written beside what was read", o.find ? "--find" : "--out",
+                          "give --find and --out, or neither");
+    Case c = cases::readCase(o.place);
+    if (o.find) {
+        studies::ProgressBar bar("finding landmarks");
+        c.landmarks = landmarks::withFound(c.landmarks, landmarks::findLandmarks(c, bar.listener()));
+        bar.finish();
+        cases::writeCase(c, o.out);
+    }
+    if (o.json) {
+        Json list = Json::array();
+        for (const cases::Landmark& mark : c.landmarks) {
+            Json points = Json::array();
+            for (const core::Vec3& p : mark.pointsMm)
+                points.push_back(toJson(p));
+            list.push_back({{"kind", cases::kLandmarkKinds[static_cast<std::size_t>(mark.kind)]},
+                            {"name", mark.name},
+                            {"source", cases::kLandmarkSources[static_cast<std::size_t>(mark.source)]},
+                            {"points_mm", std::move(points)}});
+        }
+        return print({{"case", o.find ? o.out : o.place}, {"landmarks", std::move(list)}});
+    }
+    for (const cases::Landmark& mark : c.landmarks) {
+        const core::Vec3& p = mark.pointsMm.front();
+        const std::string place = mark.pointsMm.size() == 1
+                                      ? fmt::format("{:7.2f} {:7.2f} {:7.2f} mm", p.x(), p.y(), p.z())
+                                      : fmt::format("{} points", mark.pointsMm.size());
+        fmt::print("  {:<24} {:<24} {:<10} {}\n", cases::kLandmarkKinds[static_cast<std::size_t>(mark.kind)], mark.name,
+                   cases::kLandmarkSources[static_cast<std::size_t>(mark.source)], place);
+    }
+    fmt::print("{}: {} landmarks\n", o.find ? o.out : o.place, c.landmarks.size());
+}
+
 struct PackOptions {
     std::string in, out, student;
     bool handIn = false;
@@ -351,6 +392,15 @@ void addCaseCommand(Command& app) {
     looking("info", "Name the parts of a case, its tissues and its exercise", "print JSON instead of a table", info);
     looking("check", "Tell what is missing, crossing or sticking out; exit code 1 when it cannot be cut",
             "print JSON instead of lines", check);
+
+    const auto marks = std::make_shared<LandmarkOptions>();
+    Command listing = command.subcommand("landmarks", "List the landmarks of the tooth, or find them by its shape");
+    listing.option("CASE", marks->place, "case folder or .handpiece file").required();
+    listing.flag("--json", marks->json, "print JSON with all points instead of a table");
+    listing.flag("--find", marks->find, "find them on the surfaces; those generated or set by hand stay");
+    listing.option("--out", marks->out, "with --find: folder or .handpiece file to write");
+    listing.footer("Example:\n  handpiece case landmarks scanned --find --out marked");
+    listing.callback([marks] { listLandmarks(*marks); });
 
     const auto options = std::make_shared<NewOptions>();
     NewOptions& o = *options;

@@ -16,6 +16,7 @@
 #include "handpiece/model/case/case.h"
 #include "handpiece/model/case/package.h"
 #include "handpiece/model/dentition/mouth.h"
+#include "handpiece/model/lesion/lesion.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::cli {
@@ -24,7 +25,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct MakeMouthOptions {
-    std::string out;
+    std::string out, lesions;  // lesions: FDI:SURFACE:DEPTH,...
     dentition::Patient patient;
     dentition::MouthOptions mouth;
     std::size_t threads = 0;
@@ -81,10 +82,12 @@ void makeMouthCase(const MakeMouthOptions& o) {
     if (o.out.empty()) throw core::Error("a mouth needs a folder", "--out", "name one");
     if (!cases::isPackageName(o.out)) core::requireReplaceable(o.out, "case.toml");
     core::setThreadCount(o.threads);
+    const lesion::MouthLesions lesions = lesion::mouthLesionsByName(o.lesions);
     requireMemory(o.mouth);
     const auto begun = std::chrono::steady_clock::now();
     studies::ProgressBar bar("making the mouth");
-    const cases::Case made = dentition::makeMouth(o.patient, o.mouth, bar.listener());
+    cases::Case made = dentition::makeMouth(o.patient, o.mouth, core::part(bar.listener(), 0.0, 0.9));
+    lesion::addLesions(made, lesions, {.seed = o.patient.seed}, core::part(bar.listener(), 0.9, 1.0));
     bar.finish();
     const double tookS = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     cases::writeCase(made, o.out);
@@ -116,12 +119,17 @@ void addMakeMouthCommand(Command& make) {
     mouth.option("--fdi", o.mouth.fdi, "the tooth that is worked on, 11 to 48").showDefault();
     mouth.option("--faces", o.mouth.faces, "triangles of each tooth's outer surface").showDefault();
     mouth.option("--opening", o.mouth.openingMm, "between the incisal edges [mm]; 0: in occlusion").showDefault();
+    mouth.option("--lesion", o.lesions,
+                 "FDI:SURFACE:DEPTH,...: caries and what else is found, as 46:mesial:D2,36:occlusal:filling; surfaces "
+                 "and depths as in make tooth");
     mouth.flag("--cheeks", o.mouth.cheeks, "lips and cheeks too: felt, and held aside in pictures");
     mouth.option("--threads", o.threads, "0: all; the mouth is the same at any number").showDefault();
     mouth.flag("--json", o.json, "what was made, and where each tooth stands, for programs");
     mouth.footer(
         "Adjacent teeth and antagonists of the tooth can be cut too, the others are felt.\n"
-        "Example:\n  handpiece make mouth --seed 7 --age 40 --fdi 16 --out mouth");
+        "Examples:\n  handpiece make mouth --seed 7 --age 40 --fdi 16 --out mouth\n"
+        "  handpiece make mouth --lesion 46:mesial:D2,45:distal:E2,36:occlusal:filling,41:lingual:calculus --out "
+        "mouth");
     mouth.callback([options] { makeMouthCase(*options); });
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "desktop/work/simulator.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <tuple>
@@ -405,8 +403,7 @@ void Simulator::setHullMethod(bool hull) {
 
 void Simulator::noteWorkingWay(int hour, bool mirrorOnly, bool fingerRest) {
     if (mode_ != Mode::liveSession || !liveSession_) return;
-    liveSession_->noteWorkingWay(
-        fmt::format(R"({{"position": {}, "mirror_only": {}, "finger_rest": {}}})", hour, mirrorOnly, fingerRest));
+    liveSession_->noteWorkingWay({hour, mirrorOnly, fingerRest});
 }
 
 void Simulator::setForceMode(force::LawId mode) {

@@ -255,6 +255,28 @@ TEST(Mouth, GingivaYieldsPushesBackAndIsTornByTheBur) {
     EXPECT_EQ(removedOf(last), 0.0);
 }
 
+TEST(Mouth, BoneUnderTheGingivaHoldsTheBurOffAndIsNoTooth) {
+    cases::Case made = mouth();
+    made.scenery = {{"gingiva", cases::Tissue::gum, 0, test::boxMesh(Vec3(-6, -8, -6), Vec3(6, -3, -1)), true},
+                    {"bone", cases::Tissue::bone, 1, test::boxMesh(Vec3(-6, -8, -6), Vec3(6, -3.5, -2)), true}};
+    const SimulationSetup setup = setupOf(made);
+    HapticSample last;
+    bool touchedTooth = false;
+    run(setup, {at(0.0, 0, -5.5, 0.5, 0), at(0.6, 0, -5.5, -2.3, 0), at(1.2, 0.4, -5.5, -2.3, 1)},
+        [&](const HapticSample& s) {
+            touchedTooth = touchedTooth || s.touchedNeighbour != 0;
+            last = s;
+        });
+    EXPECT_NEAR(last.proxyPositionMm[2], -2.0, 1e-3) << "through the gingiva and no farther";
+    EXPECT_EQ(last.tissue, static_cast<std::uint8_t>(cases::Tissue::bone));
+    EXPECT_TRUE((last.flags & messages::kPressesGingiva) != 0);
+    const double gumN =
+        cases::properties(cases::Tissue::gum).stiffnessFraction * device::Capability{}.maxStiffnessNPerMm * 1.0;
+    EXPECT_GT(last.forceN[2], 2.0 * gumN) << "bone is harder";
+    EXPECT_FALSE(touchedTooth);
+    EXPECT_EQ(removedOf(last), 0.0) << "bone takes no cut";
+}
+
 TEST(Mouth, ASessionCarriesAllThatWasFelt) {
     cases::Case made = mouth();
     made.scenery = {{"gingiva", cases::Tissue::gum, 0, test::boxMesh(Vec3(-6, -8, -6), Vec3(6, -3, -1)), true}};

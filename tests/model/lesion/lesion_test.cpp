@@ -8,6 +8,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/geometry/points_beyond.h"
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/model/case/case_check.h"
 #include "handpiece/model/field/part_tissues.h"
@@ -74,6 +75,27 @@ TEST(Lesion, NamesSayWhereAndHowDeep) {
     EXPECT_NE(test::errorOf([] { (void)lesionsByName("top:D2"); }).find("lingual"), std::string::npos);
 }
 
+TEST(Lesion, OfAMouthGoIntoTheTeethThatAreNamed) {
+    const MouthLesions lesions = mouthLesionsByName("46:mesial:E1,46:root:D1,45:distal:E2");
+    ASSERT_EQ(lesions.size(), 2u);
+    EXPECT_EQ(lesions.at(46).size(), 2u);
+    EXPECT_EQ(lesions.at(45).front().finding, Finding::e2);
+    for (const char* wrong : {"mesial:E1", "46", "46:", ":mesial:E1", "46mesial:E1", "46:mesial", "46:root:E1"})
+        EXPECT_THROW((void)mouthLesionsByName(wrong), core::Error) << wrong;
+    cases::Case mouth = soundTooth(ToothKind::lowerFirstMolar);
+    mouth.fdiNumber = 46;
+    cases::PlacedTooth beside;
+    static_cast<cases::Tooth&>(beside) = soundTooth(ToothKind::lowerFirstMolar);
+    beside.fdiNumber = 45;
+    mouth.others.push_back(beside);
+    const std::size_t sound = mouth.parts.size();
+    addLesions(mouth, mouthLesionsByName("45:mesial:E1"), {.spacingMm = 0.12});
+    EXPECT_EQ(mouth.parts.size(), sound);
+    EXPECT_EQ(mouth.others.front().parts.size(), sound + 1);
+    EXPECT_NE(test::errorOf([&] { addLesions(mouth, mouthLesionsByName("44:mesial:E1")); }).find("44"),
+              std::string::npos);
+}
+
 TEST(Lesion, EachReachesAsDeepAsItsClassInAnyToothAndStaysInIt) {
     std::mt19937_64 generator(test::seed());
     constexpr std::array kKinds{ToothKind::lowerFirstMolar, ToothKind::upperPremolar, ToothKind::upperIncisor};
@@ -99,10 +121,9 @@ TEST(Lesion, EachReachesAsDeepAsItsClassInAnyToothAndStaysInIt) {
             if (part.tissue == Tissue::demineralisedEnamel) enamelParts.push_back(&part);
             if (cases::isCarious(part.tissue)) levels.push_back(&part);
             if (part.tissue != Tissue::demineralisedEnamel && !cases::isCarious(part.tissue)) continue;
-            for (const Vec3& v : part.mesh.vertices) {
-                ASSERT_LT(outer.signedDistance(v), cases::kCaseToleranceMm) << part.name;
-                ASSERT_GT(pulp.signedDistance(v), 0.0) << part.name;
-            }
+            ASSERT_TRUE(geometry::pointsBeyond(outer, part.mesh.vertices, cases::kCaseToleranceMm).empty())
+                << part.name;
+            ASSERT_TRUE(geometry::pointsBeyond(pulp, part.mesh.vertices, 0.0, -1.0).empty()) << part.name;
         }
         const DepthClass depth = depthClassOf(static_cast<Finding>(number));
         ASSERT_EQ(levels.empty(), !depth.inDentine);
@@ -116,10 +137,11 @@ TEST(Lesion, EachReachesAsDeepAsItsClassInAnyToothAndStaysInIt) {
         for (std::size_t k = 1; k < levels.size(); ++k) {
             const TriangleTree around(levels[k - 1]->mesh);
             EXPECT_GT(levels[k]->priority, levels[k - 1]->priority);
-            for (const Vec3& v : levels[k]->mesh.vertices)
-                ASSERT_LT(around.signedDistance(v), 0.0) << levels[k]->name;
+            ASSERT_TRUE(geometry::pointsBeyond(around, levels[k]->mesh.vertices, 0.0, 1.0).empty()) << levels[k]->name;
         }
-        EXPECT_EQ(levels.size(), number < 2 ? 0u : number == 2 ? 4u : cases::kCariousLevels.size());
+        // The softest level of a small tooth's D1 may be too small to be there.
+        EXPECT_LE(levels.size(), number < 2 ? 0u : number == 2 ? 4u : cases::kCariousLevels.size());
+        EXPECT_GE(levels.size(), number < 2 ? 0u : number == 2 ? 3u : cases::kCariousLevels.size());
     }
     for (std::size_t f = 0; f < seen.size(); ++f)
         EXPECT_GT(seen[f], 2) << kFindings[f];
@@ -168,9 +190,8 @@ TEST(Lesion, SpreadsAlongTheDentineAndNarrowsTowardsThePulp) {
 }
 
 TEST(Lesion, SeveralAtOnceTakeTheSpaceThatTheirSurfacesEnclose) {
-    const cases::Case tooth =
-        with(ToothKind::lowerFirstMolar,
-             "occlusal:D2,mesial:D3,distal:E2,buccal:E1,cervical:D1,root:D1,lingual:filling", 7, 0.07);
+    const cases::Case tooth = with(ToothKind::lowerFirstMolar,
+                                   "occlusal:D2,mesial:D3,distal:E2,buccal:E1,cervical:D1,root:D1,lingual:filling", 7);
     cases::requireCase(tooth);
     std::vector<TriangleTree> trees;
     trees.reserve(tooth.parts.size());

@@ -51,10 +51,6 @@ const Stands kStands[2][8] = {{{{0.98, -0.19, 0.06}, {-0.05, -0.51, -0.86}},
                                {{0.16, -0.98, -0.16}, {0.37, -0.09, 0.92}},
                                {{0.09, -0.97, -0.24}, {0.38, -0.19, 0.90}}}};
 
-bool isPermanent(int fdi) {
-    return fdi >= 11 && fdi <= 48 && fdi % 10 >= 1 && fdi % 10 <= 8;
-}
-
 /// A lower one with the mouth open for work.
 Quat toothInMouth(int fdi) {
     const Stands& right = kStands[isUpperTooth(fdi) ? 0 : 1][fdi % 10 - 1];
@@ -98,7 +94,7 @@ bool isOperatorsHour(int hour) {
 std::optional<Quat> headInCase(const cases::Case& toothCase) {
     Eigen::Vector4d sum[2] = {Eigen::Vector4d::Zero(), Eigen::Vector4d::Zero()};
     const auto take = [&sum](int fdi, const Quat& toothInCase) {
-        if (!isPermanent(fdi)) return;
+        if (!cases::isPermanentTooth(fdi)) return;
         Eigen::Vector4d& of = sum[isUpperTooth(fdi) ? 0 : 1];
         const Eigen::Vector4d one = (toothInCase * toothInMouth(fdi).conjugate()).coeffs();
         of += of.dot(one) < 0.0 ? Eigen::Vector4d(-one) : one;
@@ -167,7 +163,7 @@ std::optional<Vec3> fingerRest(const cases::Case& toothCase) {
         leastMm = awayMm;
     };
     for (const cases::PlacedTooth& other : toothCase.others)
-        if (isPermanent(other.fdiNumber) && isPermanent(toothCase.fdiNumber) &&
+        if (cases::isPermanentTooth(other.fdiNumber) && cases::isPermanentTooth(toothCase.fdiNumber) &&
             isUpperTooth(other.fdiNumber) == isUpperTooth(toothCase.fdiNumber))
             offer(other.surface(), other.inCase);
     for (const cases::Part& part : toothCase.scenery)
@@ -176,7 +172,7 @@ std::optional<Vec3> fingerRest(const cases::Case& toothCase) {
 }
 
 UsualPosition usualPosition(int fdiNumber, Surface surface, bool isLeftHanded) {
-    if (!isPermanent(fdiNumber))
+    if (!cases::isPermanentTooth(fdiNumber))
         throw core::Error(fmt::format("there is no tooth {}", fdiNumber), "working position", "give 11 to 48");
     if (!isLeftHanded) return rightHanded(fdiNumber, surface);
     // As in a mirror: the other side's tooth from the other side.

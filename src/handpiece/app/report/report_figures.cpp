@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "handpiece/app/simulation/working_way.h"
+
 namespace handpiece::report {
 namespace {
 
@@ -20,6 +22,10 @@ SessionFigures figuresOf(const session::SessionReader& reader) {
     std::vector<std::uint64_t> bins(kBins, 0);
     std::uint64_t contact = 0, limited = 0, cutting = 0;
     double forceSum = 0.0, rpmSum = 0.0;
+    std::vector<session::Event> ways = reader.events();
+    std::erase_if(ways, [](const auto& e) { return e.name != nameOf(session::EventName::workingWay); });
+    auto next = ways.cbegin();
+    simulation::WorkingWay way;
     for (std::uint64_t first = 0; first < reader.size(); first += kStretch)
         for (const session::Record& r : reader.records(first, kStretch)) {
             const double lasts = period * r.elapsedPeriods;
@@ -27,6 +33,12 @@ SessionFigures figuresOf(const session::SessionReader& reader) {
             f.missedPeriods += r.elapsedPeriods - 1u;
             f.totalS = period * static_cast<double>(r.tick);
             if (r.pedal > 0) f.pedalS += lasts;
+            // An event bears the number of the last tick that went before it.
+            for (; next != ways.cend() && next->tick < r.tick; ++next)
+                way = simulation::workingWayFromJson(next->text);
+            if (way.mirrorOnly) f.byMirrorS += lasts;
+            if (way.fingerRest) f.fingerRestS += lasts;
+            if (way.hour > 0) f.atHourS[way.hour] += lasts;
             // A file may say anything: what is no number counts for nothing.
             const double rpm = std::isfinite(r.speedRpm) ? static_cast<double>(r.speedRpm) : 0.0;
             f.mostRpm = std::max(f.mostRpm, rpm);

@@ -280,10 +280,15 @@ std::string sessionReport(simulation::SessionPlayer& player, const ReportSetting
                 {words()("session.deepest"), fmt::format("{:.2f} mm", deepest.depthMm)},
                 {words()("session.least-over-pulp"),
                  thinnest ? fmt::format("{:.2f} mm", thinnest->leftMm) : words()("session.no-cut-over-pulp")}});
-    page.facts(words()("session.times"), {{words()("session.total"), clock(f.totalS)},
-                                          {words()("session.pedal-down"), clock(f.pedalS)},
-                                          {words()("session.in-contact"), clock(f.contactS)},
-                                          {words()("session.cutting"), clock(f.cuttingS)}});
+    Facts times{{words()("session.total"), clock(f.totalS)},
+                {words()("session.pedal-down"), clock(f.pedalS)},
+                {words()("session.in-contact"), clock(f.contactS)},
+                {words()("session.cutting"), clock(f.cuttingS)}};
+    if (f.byMirrorS > 0.0) times.emplace_back(words()("session.by-mirror"), clock(f.byMirrorS));
+    if (f.fingerRestS > 0.0) times.emplace_back(words()("session.finger-rest"), clock(f.fingerRestS));
+    for (const auto& [hour, seconds] : f.atHourS)
+        times.emplace_back(words()("session.at-hour", hour), clock(seconds));
+    page.facts(words()("session.times"), times);
     page.facts(words()("session.force-and-speed"),
                {{words()("session.mean-force"), fmt::format("{:.3f} N", f.meanForceN)},
                 {words()("session.p95-force"), fmt::format("{:.3f} N", f.p95ForceN)},

@@ -50,9 +50,6 @@ struct ChangeParameters {
 struct ChangeMethod {
     bool hull;
 };
-struct WorkingWay {
-    std::string json;
-};
 using Request = std::variant<TakeStep, ChangeBur, ChangeDrive, ChangeParameters, ChangeMethod, WorkingWay>;
 
 bool anythingRemoved(const tooth::TissueVolumes& mm3) {
@@ -316,7 +313,7 @@ struct LiveSession::State {
                                                 : "nothing-to-reset");
     }
     void serve(const WorkingWay& request) {
-        if (recorder) recorder->event(last.tick, EventName::workingWay, request.json);
+        if (recorder) recorder->event(last.tick, EventName::workingWay, workingWayJson(request));
     }
     void serve(const ChangeBur& request) {
         SimulationSetup next = inForce;
@@ -467,8 +464,8 @@ void LiveSession::setHullMethod(bool hull) {
     state_->post(ChangeMethod{hull});
 }
 
-void LiveSession::noteWorkingWay(std::string json) {
-    state_->post(WorkingWay{std::move(json)});
+void LiveSession::noteWorkingWay(const WorkingWay& way) {
+    state_->post(way);
 }
 
 std::shared_ptr<SampleFeed> LiveSession::subscribe() {

@@ -18,6 +18,7 @@
 #include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/app/simulation/plot_points.h"
 #include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/app/simulation/working_way.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/rt/triple_buffer.h"
 #include "handpiece/model/case/attempt.h"
@@ -120,9 +121,8 @@ class LiveSession {
     void setBur(std::shared_ptr<const instrument::Bur> bur, const instrument::CuttingParameters& cuttingParameters);
     void setDrive(const instrument::Drive& drive);
     void setParameters(const force::Parameters& parameters);
-    /// Writes into the record from where and how one works from now on, as JSON (docs/session-format.md). A replay only
-    /// tells it.
-    void noteWorkingWay(std::string json);
+    /// Writes into the record from where and how one works from now on. A replay only tells it.
+    void noteWorkingWay(const WorkingWay& way);
     /// The paper's hulls instead of the field: touching only. Refused (a Notice "hull-needs-whole-tooth") once cut.
     /// The bur's is that of its outline, which is what sessions keep.
     void setHullMethod(bool hull);

@@ -480,7 +480,7 @@ loop::Work SimulationSetup::work() const {
     for (std::size_t i = 0; i < others.size(); ++i) {
         const StandingTooth& other = others[i];
         const contact::FeltInstrument::Standing standing{other.inCase, static_cast<std::uint16_t>(i + 1),
-                                                         other.isYielding, other.field != nullptr};
+                                                         other.isYielding, other.isBone, other.field != nullptr};
         if (other.field)
             felt.place(std::shared_ptr<const tooth::ToothState>(other.field), standing, placed);
         else
@@ -519,38 +519,48 @@ SimulationSetup makeSimulation(const cases::Case& toothCase, SimulationSettings 
         tooth::loadModel(toothCase, {settings.field, settings.cut, useCache}, core::part(progress, 0.0, own));
     station.field = std::make_shared<tooth::ToothState>(station.tooth);
     station.settings = std::move(settings);
-    std::vector<cases::Part> yielding;  // bone lies under it
+    std::vector<const cases::Part*> periodontium;
     for (const cases::Part& part : toothCase.scenery)
-        if (part.isFelt && part.tissue == cases::Tissue::gum) yielding.push_back(part);
-    const std::size_t teeth = toothCase.others.size(), count = teeth + yielding.size();
+        if (part.isFelt && (part.tissue == cases::Tissue::gum || part.tissue == cases::Tissue::bone))
+            periodontium.push_back(&part);
+    const std::size_t teeth = toothCase.others.size(), count = teeth + periodontium.size();
     station.others.resize(count);
     std::vector<std::exception_ptr> failures(count);
     std::atomic<std::size_t> done{0};
     const auto stand = [&](std::size_t i) {
         const cases::PlacedTooth* const other = i < teeth ? &toothCase.others[i] : nullptr;
+        const cases::Part* const plain = other == nullptr ? periodontium[i - teeth] : nullptr;
         const bool isCut = other != nullptr && other->isCuttable;
         cases::Case alone;
         if (isCut) {
             static_cast<cases::Tooth&>(alone) = *other;
         } else {
             alone.parts = {other != nullptr ? cases::Part{other->name, cases::Tissue::neighbour, 0, other->surface()}
-                                            : yielding[i - teeth]};
+                                            : *plain};
             alone.name = alone.parts.front().name;
         }
         alone.source = toothCase.source;
-        const bool isPlain = !isCut && cases::isHeldAside(alone.parts.front());
+        const double voxelMm = plain == nullptr             ? kStandingVoxelMm
+                               : cases::isHeldAside(*plain) ? kCheekVoxelMm
+                                                            : kPlainVoxelMm;
         const tooth::LoadSettings loading =
             isCut ? tooth::LoadSettings{station.settings.field,
                                         {station.settings.cut.bandMm, kStandingReserveBricks},
                                         useCache}
-                  : tooth::LoadSettings{fieldSettingsAt(isPlain ? kCheekVoxelMm : kStandingVoxelMm), {}, useCache};
+                  : tooth::LoadSettings{fieldSettingsAt(voxelMm), {}, useCache};
         const core::Progress share = [&](double) {
             return !progress || progress(own + (1.0 - own) * static_cast<double>(done) / static_cast<double>(count));
         };
         try {
             StandingTooth& made = station.others[i];
-            made = {tooth::loadModel(alone, loading, share), other != nullptr ? other->inCase : core::Pose{},
-                    other != nullptr ? other->fdiNumber : 0, other == nullptr};
+            made.model = tooth::loadModel(alone, loading, share);
+            if (plain == nullptr) {
+                made.inCase = other->inCase;
+                made.fdiNumber = other->fdiNumber;
+            } else {
+                made.isYielding = plain->tissue == cases::Tissue::gum;
+                made.isBone = !made.isYielding;
+            }
             if (isCut) made.field = std::make_shared<tooth::ToothState>(made.model, static_cast<std::uint16_t>(i + 1));
         } catch (const core::Error& e) {
             failures[i] = std::make_exception_ptr(

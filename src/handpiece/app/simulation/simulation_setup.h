@@ -65,16 +65,17 @@ struct Changed {
 /// Puts a change into `settings`. Throws core::Error naming `where`.
 Changed applyChange(const std::string& json, SimulationSettings& settings, const std::string& where);
 
-/// A tooth that stands around the one that is cut, or gingiva: felt by the bur and by the handpiece's body.
+/// A tooth that stands around the one that is cut, or gingiva or bone: felt by the bur and by the handpiece's body.
 struct StandingTooth {
     std::shared_ptr<const tooth::ToothModel> model;  ///< in its own frame; Tissue::neighbour unless it is cut
     core::Pose inCase;
     int fdiNumber = 0;
-    bool isYielding = false;                     ///< no tooth but gingiva; then of its own tissue
+    bool isYielding = false, isBone = false;     ///< no tooth but gingiva, or bone; then of its own tissue
     std::shared_ptr<tooth::ToothState> field{};  ///< null: it is not cut
 };
-/// Voxel of the fields that are not cut: they only say where a bur bears on them.
-inline constexpr double kStandingVoxelMm = 0.1;
+/// Voxel of the fields of teeth that are not cut: they only say where a bur bears on them; and of gingiva and bone,
+/// which are only asked how deep something is: that is known from their triangles.
+inline constexpr double kStandingVoxelMm = 0.1, kPlainVoxelMm = 0.25;
 /// Bricks kept ready for the inside of a tooth beside the one worked on: at 50 um some 250 mm3.
 inline constexpr std::size_t kStandingReserveBricks = 4096;
 

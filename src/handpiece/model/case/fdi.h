@@ -19,4 +19,15 @@ namespace handpiece::cases {
     return quadrant == 1 || quadrant == 4 || quadrant == 5 || quadrant == 8;
 }
 
+[[nodiscard]] constexpr bool isPermanentTooth(int fdi) noexcept {
+    return fdi >= 11 && fdi <= 48 && fdi % 10 >= 1 && fdi % 10 <= 8;
+}
+/// Beside each other in one arch, both permanent or both deciduous; the central incisors are.
+[[nodiscard]] constexpr bool areAdjacentTeeth(int a, int b) noexcept {
+    const auto alongArch = [](int fdi) { return isRightTooth(fdi) ? -(fdi % 10) : fdi % 10 - 1; };
+    const int apart = alongArch(a) - alongArch(b);
+    return a != 0 && b != 0 && isLowerTooth(a) == isLowerTooth(b) && (a < 50) == (b < 50) &&
+           (apart == 1 || apart == -1);
+}
+
 }  // namespace handpiece::cases

@@ -21,16 +21,6 @@ using core::Vec3;
 /// Teeth that come nearer than this with the jaws closed are antagonists (or adjacent, whatever their numbers say).
 constexpr double kAntagonistMm = 0.3;
 
-/// Where a number stands along its arch, from the right to the left.
-int alongArch(int fdi) {
-    return isRightTooth(fdi) ? -(fdi % 10) : fdi % 10 - 1;
-}
-
-bool areAdjacent(int a, int b) {
-    return a != 0 && b != 0 && isLowerTooth(a) == isLowerTooth(b) && (a < 50) == (b < 50) &&
-           std::abs(alongArch(a) - alongArch(b)) == 1;
-}
-
 /// Whether a point of `other`, or the middle of one of its edges, comes near the surface.
 bool comesNear(const geometry::TriangleTree& tree, const geometry::TriangleMesh& other, const Pose& otherInTree) {
     const core::Mat3 turn = otherInTree.orientation.toRotationMatrix();
@@ -57,7 +47,7 @@ void chooseCuttable(Case& c) {
     const auto closed = [&](int fdi, const Pose& inCase) { return isLowerTooth(fdi) ? closing * inCase : inCase; };
     const Pose toOwn = closed(c.fdiNumber, {}).inverse();
     for (PlacedTooth& other : c.others)
-        other.isCuttable = areAdjacent(c.fdiNumber, other.fdiNumber) ||
+        other.isCuttable = areAdjacentTeeth(c.fdiNumber, other.fdiNumber) ||
                            comesNear(own, other.surface(), toOwn * closed(other.fdiNumber, other.inCase));
 }
 

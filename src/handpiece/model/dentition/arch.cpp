@@ -12,6 +12,8 @@
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/core/rotation.h"
+#include "handpiece/base/geometry/height_raster.h"
+#include "handpiece/model/case/fdi.h"
 #include "handpiece/model/dentition/tooth_body.h"
 
 namespace handpiece::dentition {
@@ -174,20 +176,10 @@ class HeightMap {
                 (turn * v + pose.positionMm - Vec3(kFromX, kFromY, 0.0)).cwiseProduct(Vec3(kPerMm, kPerMm, 1.0)));
         for (const geometry::Triangle& t : mesh.triangles) {
             const Vec3 &a = moved[t[0]], &b = moved[t[1]], &c = moved[t[2]];
-            const double area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-            if (area < 1e-9) continue;  // looks down
-            const int x0 = std::max(0, static_cast<int>(std::ceil(std::min({a.x(), b.x(), c.x()})))),
-                      x1 = std::min(kWide - 1, static_cast<int>(std::floor(std::max({a.x(), b.x(), c.x()})))),
-                      y0 = std::max(0, static_cast<int>(std::ceil(std::min({a.y(), b.y(), c.y()})))),
-                      y1 = std::min(kDeep - 1, static_cast<int>(std::floor(std::max({a.y(), b.y(), c.y()}))));
-            for (int y = y0; y <= y1; ++y)
-                for (int x = x0; x <= x1; ++x) {
-                    const double u = ((b.x() - x) * (c.y() - y) - (b.y() - y) * (c.x() - x)) / area,
-                                 v = ((c.x() - x) * (a.y() - y) - (c.y() - y) * (a.x() - x)) / area;
-                    if (u < -1e-9 || v < -1e-9 || u + v > 1.0 + 1e-9) continue;
-                    double& z = z_[static_cast<std::size_t>(y * kWide + x)];
-                    z = std::max(z, u * a.z() + v * b.z() + (1.0 - u - v) * c.z());
-                }
+            geometry::heightsUnder(a, b, c, kWide, kDeep, [&](int x, int y, double height) {
+                double& z = z_[static_cast<std::size_t>(y * kWide + x)];
+                z = std::max(z, height);
+            });
         }
     }
     [[nodiscard]] double at(double x, double y) const {
@@ -420,11 +412,10 @@ class Arranger {
 }  // namespace
 
 std::size_t indexOf(int fdi) {
-    const int quadrant = fdi / 10, place = fdi % 10;
-    if (fdi < 0 || quadrant < 1 || quadrant > 4 || place < 1 || place > 8)
+    if (!cases::isPermanentTooth(fdi))
         throw core::Error(fmt::format("{} is no permanent tooth", fdi), "--fdi",
                           "give 11 to 18, 21 to 28, 31 to 38 or 41 to 48");
-    return static_cast<std::size_t>(8 * (quadrant - 1) + place - 1);
+    return static_cast<std::size_t>(8 * (fdi / 10 - 1) + fdi % 10 - 1);
 }
 
 Arrangement arrange(std::span<const cases::Tooth> teeth, const core::Progress& progress) {

@@ -10,6 +10,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/core/split_mix.h"
+#include "handpiece/model/case/fdi.h"
 #include "handpiece/model/dentition/landmarks.h"
 #include "handpiece/model/dentition/rules.h"
 #include "handpiece/model/dentition/surfaces.h"
@@ -19,7 +20,7 @@ namespace {
 using core::Vec3;
 
 void checkTooth(int fdi, const Patient& patient) {
-    if (fdi / 10 < 1 || fdi / 10 > 4 || fdi % 10 < 1 || fdi % 10 > 8)
+    if (!cases::isPermanentTooth(fdi))
         throw core::Error(fmt::format("{} is no permanent tooth", fdi), "--fdi",
                           "give a number of two digits: quadrant 1 to 4, then 1 (central incisor) to 8 (third molar)");
     if (!(patient.ageYears >= 6.0 && patient.ageYears <= 110.0))

@@ -396,7 +396,13 @@ void gatherValues(const FieldView& field, const std::int32_t (&cell)[3], float f
             const float *first = values[inZ][inY][0], *second = values[inZ][inY][1];
             const Eight a = first != nullptr ? load<Eight>(first + row + begin) : Eight{} + far[inZ][inY][0];
             const Eight b = second != nullptr ? load<Eight>(second + row + 1) : Eight{} + far[inZ][inY][1];
+#if defined(__clang__)  // of the fuzzers; it has no shuffle by a variable
+            Eight nodes{};
+            for (int x = 0; x < kSharpStride; ++x)
+                nodes[x] = which[x] < kSharpStride ? a[which[x]] : b[which[x] - kSharpStride];
+#else
             const Eight nodes = __builtin_shuffle(a, b, which);
+#endif
             store(block[z][y], isNode ? nodes : Eight{});
         }
 }

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/decimate.h"
 #include "handpiece/base/geometry/isosurface.h"
+#include "handpiece/model/case/fdi.h"
 #include "handpiece/model/lesion/parts.h"
 
 namespace handpiece::lesion {
@@ -45,23 +47,49 @@ geometry::TriangleMesh thickened(const Surfaces& surfaces, const cases::Tooth& t
         .mesh;
 }
 
+/// Each of a list with commas.
+template <class Visit>
+void eachOf(std::string_view text, const Visit& visit) {
+    while (!text.empty()) {
+        const std::string_view one = text.substr(0, text.find(','));
+        visit(one);
+        text.remove_prefix(std::min(text.size(), one.size() + 1));
+    }
+}
+
+Lesion lesionByName(std::string_view one) {
+    const std::size_t colon = one.find(':');
+    if (colon == std::string_view::npos)
+        throw core::Error(fmt::format("\"{}\" is no lesion", one.substr(0, 60)), "--lesion",
+                          "give SURFACE:DEPTH, as occlusal:D2");
+    const Lesion lesion{byName<Surface>(one.substr(0, colon), kSurfaces, "surface"),
+                        byName<Finding>(one.substr(colon + 1), kFindings, "depth or finding")};
+    if (lesion.surface == Surface::root && lesion.finding <= Finding::e2)
+        throw core::Error("a root has no enamel", "--lesion", "give D1, D2 or D3");
+    return lesion;
+}
+
 }  // namespace
 
 std::vector<Lesion> lesionsByName(std::string_view text) {
     std::vector<Lesion> lesions;
-    while (!text.empty()) {
-        const std::string_view one = text.substr(0, text.find(','));
-        const std::size_t colon = one.find(':');
-        if (colon == std::string_view::npos)
-            throw core::Error(fmt::format("\"{}\" is no lesion", one), "--lesion",
-                              "give SURFACE:DEPTH, as occlusal:D2");
-        const Lesion lesion{byName<Surface>(one.substr(0, colon), kSurfaces, "surface"),
-                            byName<Finding>(one.substr(colon + 1), kFindings, "depth or finding")};
-        if (lesion.surface == Surface::root && lesion.finding <= Finding::e2)
-            throw core::Error("a root has no enamel", "--lesion", "give D1, D2 or D3");
-        lesions.push_back(lesion);
-        text.remove_prefix(std::min(text.size(), one.size() + 1));
-    }
+    eachOf(text, [&](std::string_view one) { lesions.push_back(lesionByName(one)); });
+    return lesions;
+}
+
+MouthLesions mouthLesionsByName(std::string_view text) {
+    MouthLesions lesions;
+    eachOf(text, [&](std::string_view one) {
+        int fdi = 0;
+        const char* const end = one.data() + one.size();
+        const auto [colon, problem] = std::from_chars(one.data(), end, fdi);
+        if (problem != std::errc() || colon == end || *colon != ':')
+            throw core::Error(fmt::format("\"{}\" is no lesion of a tooth", one.substr(0, 60)), "--lesion",
+                              "give FDI:SURFACE:DEPTH, as 46:occlusal:D2");
+        if (!cases::isPermanentTooth(fdi))
+            throw core::Error(fmt::format("{} is no permanent tooth", fdi), "--lesion", "give 11 to 48");
+        lesions[fdi].push_back(lesionByName(one.substr(static_cast<std::size_t>(colon - one.data()) + 1)));
+    });
     return lesions;
 }
 
@@ -96,6 +124,26 @@ void addLesions(cases::Tooth& tooth, std::span<const Lesion> lesions, const Opti
     if (!deposits.empty()) tooth.outer = std::move(outer);
     std::move(added.begin(), added.end(), std::back_inserter(tooth.parts));
     core::report(progress, 1.0);
+}
+
+void addLesions(cases::Case& mouth, const MouthLesions& lesions, const Options& options,
+                const core::Progress& progress) {
+    std::vector<std::pair<cases::Tooth*, const std::vector<Lesion>*>> teeth;
+    for (const auto& [fdi, found] : lesions) {
+        cases::Tooth* tooth = mouth.fdiNumber == fdi ? &mouth : nullptr;
+        for (cases::PlacedTooth& other : mouth.others)
+            if (other.fdiNumber == fdi) tooth = &other;
+        if (tooth == nullptr)
+            throw core::Error(fmt::format("the mouth has no tooth {}", fdi), "--lesion", "give one of its FDI numbers");
+        teeth.emplace_back(tooth, &found);
+    }
+    for (std::size_t i = 0; i < teeth.size(); ++i) {
+        Options own = options;
+        own.seed = options.seed * 100 + static_cast<std::uint64_t>(teeth[i].first->fdiNumber);
+        const auto count = static_cast<double>(teeth.size());
+        addLesions(*teeth[i].first, *teeth[i].second, own,
+                   core::part(progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
+    }
 }
 
 }  // namespace handpiece::lesion

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,11 @@ struct Lesion {
 /// "occlusal:D2,mesial:E2"; throws core::Error naming what there is.
 [[nodiscard]] std::vector<Lesion> lesionsByName(std::string_view text);
 
+/// What is found on the teeth of a mouth, by their FDI numbers.
+using MouthLesions = std::map<int, std::vector<Lesion>>;
+/// "46:mesial:D2,36:occlusal:D3"; throws core::Error likewise.
+[[nodiscard]] MouthLesions mouthLesionsByName(std::string_view text);
+
 /// How deep caries reaches: shares of the enamel's thickness at the place (0 outside, 1 at the dentine), or of the
 /// dentine's (0 at the enamel or the root's surface, 1 at the pulp).
 struct DepthClass {
@@ -52,6 +58,9 @@ struct Options {
 /// Needs the outer surface and parts of enamel, dentine and pulp; throws core::Error naming what is missing, and where
 /// a tooth has no such place (a fissure of an incisor).
 void addLesions(cases::Tooth& tooth, std::span<const Lesion> lesions, const Options& options = {},
+                const core::Progress& progress = {});
+/// The same for the teeth of a mouth, each with a seed of its own. Throws core::Error for a tooth that it lacks.
+void addLesions(cases::Case& mouth, const MouthLesions& lesions, const Options& options = {},
                 const core::Progress& progress = {});
 
 }  // namespace handpiece::lesion

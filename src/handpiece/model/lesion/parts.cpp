@@ -21,6 +21,7 @@ namespace {
 
 /// Over the surface, so that what is felt there is the lesion.
 constexpr double kProudMm = 0.03;
+constexpr double kLeastSolidMm = 0.55;  ///< across; cases::requireSolid asks for 0.5
 /// Each level's flat sides lie so much within those of the next harder one.
 constexpr double kNestMm = 0.006;
 /// Up and down, of shares (the classes leave room for it) and of radii: lesions are no cones turned on a lathe.
@@ -73,7 +74,8 @@ std::vector<cases::Part> partsOf(const Grid& grid, const std::vector<Solid>& sol
     for (const Solid& s : solids) {
         geometry::TriangleMesh mesh =
             geometry::isosurface(geometry::ScalarGrid{grid.origin, grid.spacing, grid.nodes, s.values});
-        if (mesh.triangles.empty()) continue;
+        // A level too small for a case to hold is of the next harder one.
+        if (mesh.triangles.empty() || mesh.bounds().size().norm() < kLeastSolidMm) continue;
         const cases::TissueProperties& tissue = cases::properties(s.tissue);
         parts.push_back({solids.size() > 1 ? fmt::format("{} {}", name, tissue.name) : name, s.tissue, tissue.priority,
                          std::move(mesh)});
@@ -125,6 +127,7 @@ constexpr std::array<Sizes, 5> kSizes = {{{0.25, 0.45, 0.8, 0, 0},
                                           {0.14, 0.30, 1.2, 1.0, 0},
                                           {0.42, 0.60, 1.3, 1.5, 0.35},
                                           {0.74, 0.86, 1.5, 2.1, 0.6}}};
+constexpr double kProximalWidth = 1.5;
 /// How far out each level reaches, of the whole lesion: what is shallow is hardly softened.
 struct Reach {
     Tissue tissue;
@@ -169,9 +172,17 @@ std::vector<cases::Part> cariesOf(const Surfaces& surfaces, const Ways& ways, co
     for (const Reach& level : levels)
         solids.push_back({level.tissue, {}});
     const double reach = 1.4 * std::max(wide, along);
-    const Grid grid(boxAbout(ways, reach), options.spacingMm);
+    // Under a contact they lie along the gingiva: wider than high.
+    const bool isProximal = lesion.surface == Surface::mesial || lesion.surface == Surface::distal;
+    const Vec3 stretched(1.0, isProximal ? kProximalWidth : 1.0, 1.0);
+    Ways round = ways;
+    for (std::vector<Vec3>& way : round)
+        for (Vec3& p : way)
+            p = p.cwiseQuotient(stretched);
+    core::Box box = boxAbout(round, reach);
+    const Grid grid({box.min.cwiseProduct(stretched), box.max.cwiseProduct(stretched)}, options.spacingMm);
     fill(grid, solids, [&](const Vec3& p, double* out) {
-        const double way = distanceMm(ways, p);
+        const double way = distanceMm(round, p.cwiseQuotient(stretched));
         if (way > reach) return;
         // Deep in the dentine the outside decides nothing.
         const double dentine = surfaces.dentine(p), outer = dentine < -0.25 ? dentine : surfaces.outer(p);

@@ -100,10 +100,9 @@ constexpr double kEnamelGCm3 = 2.95, kDentineGCm3 = 2.14, kCementumGCm3 = 2.03;
 constexpr double kEnamelMineral = 0.96, kDentineMineral = 0.70, kCementumMineral = 0.61;  // of the weight
 /// Mineral that carious tissue has lost, water in its place: caries as one tissue, then the levels in their order, soft
 /// first; and enamel whose surface stands.
-constexpr double kCariesLost = 0.5, kEnamelLost = 0.25;
+constexpr double kCariesLost = 0.5, kEnamelLost = 0.35;
 constexpr std::array<double, cases::kCariousLevels.size()> kLevelLost = {0.80, 0.65, 0.50, 0.35, 0.20, 0.10};
 constexpr double kCalculusGCm3 = 2.0, kCalculusMineral = 0.75;
-constexpr double kBoneCortical = 0.3;     ///< of the volume of the jaw's bone; the rest is marrow
 constexpr double kNeighbourEnamel = 0.3;  ///< of the volume of an adjacent tooth that is one surface
 constexpr double kCompositeMmAl = 2.5;    ///< aluminium that 1 mm of composite equals
 
@@ -152,7 +151,7 @@ Table makeTable() {
     at(Tissue::stainedEnamel) = at(Tissue::enamel);
     at(Tissue::calculus) = hard(kCalculusMineral, 0.10, kCalculusGCm3);
     at(Tissue::pulp) = at(Tissue::gum) = perMm(kSoft, 1.06);
-    at(Tissue::bone) = blend(kBoneCortical, perMm(kCortical, 1.92), 1.0 - kBoneCortical, perMm(kSoft, 1.0));
+    at(Tissue::bone) = perMm(kCortical, 1.92);
     at(Tissue::neighbour) = blend(kNeighbourEnamel, at(Tissue::enamel), 1.0 - kNeighbourEnamel, at(Tissue::dentine));
     at(Tissue::restoration) = perMm(kAmalgam, 11.0);
     t.aluminium = perMm(kAluminium, 2.699);

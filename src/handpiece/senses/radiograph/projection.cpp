@@ -9,6 +9,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/inspect.h"
+#include "handpiece/senses/radiograph/bone.h"
 
 namespace handpiece::radiograph {
 namespace {
@@ -83,8 +84,9 @@ Tissue Scene::nearestPart(std::uint32_t tooth, const Vec3& p) const {
     return tissue;
 }
 
-Shadow::Shadow(const Scene& scene, const Projection& projection, const core::Vec2& spotMm, const core::Vec2& offset)
-    : scene_(scene), projection_(projection) {
+Shadow::Shadow(const Scene& scene, const Bone& bone, const Projection& projection, const core::Vec2& spotMm,
+               const core::Vec2& offset)
+    : scene_(scene), bone_(bone), projection_(projection) {
     const Vec3 normal = projection.normal();
     spotMm_ =
         projection.centreMm + projection.sourceMm * normal + spotMm.x() * projection.right + spotMm.y() * projection.up;
@@ -185,8 +187,18 @@ void Shadow::row(int y, Work& work, const Visit& visit) const {
             work.tissues, work.stretches);
         Paths paths{};
         // What lies behind the detector throws no shadow on it.
-        for (const RayStretch& s : work.stretches)
-            if (s.from < 1.0) paths[static_cast<std::size_t>(s.tissue)] += (std::min(s.to, 1.0) - s.from) * lengthMm;
+        for (const RayStretch& s : work.stretches) {
+            if (!(s.from < 1.0)) continue;
+            const double until = std::min(s.to, 1.0), pathMm = (until - s.from) * lengthMm;
+            if (s.tissue != Tissue::bone) {
+                paths[static_cast<std::size_t>(s.tissue)] += pathMm;
+                continue;
+            }
+            // Compact bone and marrow, which is soft tissue.
+            const double share = bone_.meanShare(spotMm_ + s.from * along, spotMm_ + until * along);
+            paths[static_cast<std::size_t>(Tissue::bone)] += share * pathMm;
+            paths[static_cast<std::size_t>(Tissue::gum)] += (1.0 - share) * pathMm;
+        }
         visit(static_cast<int>(column), paths);
     }
 }

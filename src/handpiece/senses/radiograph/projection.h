@@ -45,12 +45,15 @@ class Scene {
     std::unique_ptr<cases::RayTissues> tissues_;
 };
 
+class Bone;
+
 /// One point of the spot. Where a corner is seen on the detector, and how near to the spot: a triangle's plane is flat
 /// in (1 / depth) there, so that rays through the spot are parallel ones.
 class Shadow {
   public:
     /// `spotMm`: the point, right and up from the spot's middle; `offset`: of the rays in their pixels, -0.5..0.5.
-    Shadow(const Scene& scene, const Projection& projection, const core::Vec2& spotMm, const core::Vec2& offset);
+    Shadow(const Scene& scene, const Bone& bone, const Projection& projection, const core::Vec2& spotMm,
+           const core::Vec2& offset);
 
     /// Path lengths [mm] of row y from the top; visit(column, paths) for each ray that meets anything.
     struct Work {
@@ -71,6 +74,7 @@ class Shadow {
                  const cases::RayStretch* after, std::vector<cases::RayStretch>& out) const;
 
     const Scene& scene_;
+    const Bone& bone_;
     const Projection& projection_;
     core::Vec3 spotMm_;  ///< case frame
     std::int64_t shift_[2];

@@ -9,6 +9,7 @@
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/model/case/work_on.h"
+#include "handpiece/senses/radiograph/bone.h"
 #include "handpiece/senses/radiograph/burned_text.h"
 #include "handpiece/senses/radiograph/projection.h"
 
@@ -16,7 +17,7 @@ namespace handpiece::radiograph {
 namespace {
 
 constexpr double kLeastWhite = 1.5, kMostWhite = 4.0;
-constexpr double kAboveWhite = 0.005;  ///< of the picture
+constexpr double kAboveWhite = 0.01;  ///< of the picture: where enamel lies over enamel
 /// Darkest that is told apart: what no quantum passes has no logarithm.
 constexpr double kLeastSignal = 1e-4;
 
@@ -27,6 +28,7 @@ Exposure expose(const cases::Case& toothCase, const Projection& projection, cons
     check(settings);
     const Beam beam(settings.kv, settings.filtrationMm, settings.cheekMm, settings.filling);
     const Scene scene(toothCase);
+    const Bone bone(scene, projection);
     Exposure exposure{projection.width, projection.height, {}};
     const auto width = static_cast<std::size_t>(projection.width), height = static_cast<std::size_t>(projection.height);
     std::vector<double> sum(width * height, 0.0);
@@ -36,7 +38,7 @@ Exposure expose(const cases::Case& toothCase, const Projection& projection, cons
         // and columns of the pixel change places, so that the two do not move together.
         const int i = n % each, j = n / each;
         const auto share = [&](int k) { return (2 * k + 1.0) / (2 * each) - 0.5; };
-        const Shadow shadow(scene, projection, core::Vec2(share(i), share(j)) * settings.focalSpotMm,
+        const Shadow shadow(scene, bone, projection, core::Vec2(share(i), share(j)) * settings.focalSpotMm,
                             core::Vec2(share(j), share(each - 1 - i)));
         const core::Progress part =
             core::part(progress, static_cast<double>(n) / points, static_cast<double>(n + 1) / points);

@@ -45,7 +45,7 @@ struct Settings {
     double sourceMm = 300.0;
     double focalSpotMm = 0.7;  ///< a square
     int spotPoints = 2;        ///< by as many
-    double quanta = 8000.0;    ///< a pixel detects in the open beam; 0: no noise
+    double quanta = 1500.0;    ///< a pixel detects in the open beam; 0: no noise
     double blurUm = 40.0;      ///< standard deviation of the detector's spread
     std::uint64_t seed = 1;
 };
@@ -77,7 +77,7 @@ struct Picture {
     std::vector<std::uint16_t> grey;
     double whiteAt = 0.0;  ///< attenuation of 65535
 };
-/// White is what 0.5 % of the picture lie above, between 1.5 and 4; SIMULATED stands in a corner.
+/// White is what 1 % of the picture lie above, between 1.5 and 4; SIMULATED stands in a corner.
 [[nodiscard]] Picture develop(const Exposure& exposure);
 
 /// All of it.

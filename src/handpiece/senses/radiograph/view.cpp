@@ -135,8 +135,8 @@ Projection project(const cases::Case& toothCase, const Settings& settings) {
         right = std::max(right, v.dot(p.right));
         lingual = std::min(lingual, v.dot(normal));
     });
-    // 0.1 more than the gap magnifies.
-    const double need = (crown - root + kBeyondApexMm + 1.0) * 1.1;
+    // Some of it for the gap, which magnifies.
+    const double need = (crown - root + kBeyondApexMm + 0.5) * 1.05;
     const bool isUpright = settings.view == View::periapical && need > kSensorMm[1];
     p.width =
         settings.width != 0 ? settings.width : static_cast<int>(std::lround(kSensorMm[isUpright ? 1 : 0] / p.pixelMm));
@@ -165,7 +165,7 @@ Projection project(const cases::Case& toothCase, const Settings& settings) {
     if (settings.view == View::periapical) {
         // From beyond the apex; a picture with room to spare shows it around the tooth.
         const double spare = std::max(0.0, 2.0 * halfHeight - (crown - root + kBeyondApexMm + 1.0));
-        along = root - kBeyondApexMm - 0.3 * spare + halfHeight;
+        along = root - kBeyondApexMm - 0.5 * spare + halfHeight;
     }
     p.centreMm = middle * p.right + along * towardsCrown + detector * normal;
     return p;

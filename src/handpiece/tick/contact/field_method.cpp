@@ -158,11 +158,11 @@ class FieldMethod final : public Method {
         double mostMm = -std::numeric_limits<double>::infinity();
         // Deeper than its radius no ball is with its centre outside.
         const bool isDeep = sheets_.isDeep(surface_, frame, mostRadiusMm_), outsideKnown = isDeep || outline_.isFit();
-        const bool apart = !isDeep && outsideKnown && outline_.search(surface_, frame, best);
-        if (!apart) {
-            if (!outsideKnown || axis_.mayEnter(surface_, frame)) axis_.search(surface_, frame, best, mostMm);
-            sheets_.search(surface_, frame, outsideKnown, best, mostMm);
-        }
+        const double largestMm =
+            !isDeep && outsideKnown ? outline_.search(surface_, frame, best) : std::numeric_limits<double>::infinity();
+        if (!outsideKnown || (axis_.leastRadiusMm() <= largestMm && axis_.mayEnter(surface_, frame)))
+            axis_.search(surface_, frame, best, mostMm);
+        if (largestMm > 0.0) sheets_.search(surface_, frame, outsideKnown, largestMm, best, mostMm);
         if (!(best.depthMm >= -settings_.reachMm)) {
             setFar(burInTooth, std::isfinite(best.depthMm) ? -best.depthMm : 0.0);
             return;

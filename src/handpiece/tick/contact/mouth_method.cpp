@@ -54,19 +54,20 @@ struct Pair : PlacedMethod {
     [[nodiscard]] Vec3 place(const Vec3& inTooth) const noexcept {
         return turns ? toothInScene.apply(inTooth) : inTooth;
     }
-    /// No less than the distance by what was last answered: no point of the piece has moved farther since. Only of
-    /// pieces behind the bur, whose answers are kept.
+    /// No less than the distance by what was last answered: no point of the piece has moved farther since. Of what is
+    /// not cut, whose answers are kept.
     [[nodiscard]] double clearMm(const Pose& local) const noexcept {
-        if (!wasAsked || method->toothVersion() != askedVersion) return 0.0;
+        if (cuts() || !wasAsked || method->toothVersion() != askedVersion) return 0.0;
         const double armMm = core::hypot(solid->lengthMm(), solid->maxRadiusMm());
         return -answer.depthMm - core::mostMovedMm(askedAt, local, armMm);
     }
     [[nodiscard]] bool isBur() const noexcept { return piece == Piece::bur; }
     [[nodiscard]] bool cuts() const noexcept { return isBur() && isCuttable; }
+    [[nodiscard]] bool hasPoints() const noexcept { return isBur() && !isPlain; }
 
     Pose sceneInTooth;
     bool moves, turns;
-    Pose askedAt;  // of a piece that is asked for depth and for constraints at one pose
+    Pose askedAt;  // many ask for depth at one pose
     std::uint64_t askedVersion = 0;
     bool wasAsked = false;
     Depth answer;
@@ -117,7 +118,7 @@ class MouthMethod final : public Method {
         std::size_t count = 0;
         for (std::size_t n = 0; n < nearCount_; ++n) {
             Pair& pair = pairs_[near_[n]];
-            if (!pair.isBur() || pair.at(bur).gapMm > kContactMarginMm) continue;
+            if (!pair.hasPoints() || pair.at(bur).gapMm > kContactMarginMm) continue;
             if (count == kMaxSets) out.status = Status::truncated;
             if (count < kMaxSets) touched[count++] = &pair;
         }
@@ -164,14 +165,14 @@ class MouthMethod final : public Method {
         for (std::size_t n = 0; n < nearCount_; ++n) {
             Pair& pair = pairs_[near_[n]];
             const auto& [local, gapMm] = pair.at(bur);
-            if (gapMm > reachMm || (!pair.isBur() && pair.clearMm(local) > reachMm)) continue;
+            if (gapMm > reachMm || pair.clearMm(local) > reachMm) continue;
             if (sets == kMaxSets) {
                 status = Status::truncated;
                 break;
             }
             ConstraintSet& own = sets_[sets];
             const Status said =
-                pair.isBur() ? pair.method->constraints(local, reachMm, own) : ofPiece(pair, local, reachMm, own);
+                pair.hasPoints() ? pair.method->constraints(local, reachMm, own) : ofPiece(pair, local, reachMm, own);
             if (said == Status::truncated) status = said;
             if (own.empty()) continue;
             setOf_[sets++] = &pair;
@@ -289,10 +290,10 @@ class MouthMethod final : public Method {
         hasLooked_ = true;
     }
 
-    /// Of a piece behind the bur one depth serves all who ask at a pose.
+    /// Of what is not cut one depth serves all who ask at a pose.
     [[nodiscard]] const Depth& depthOf(Pair& pair, const Pose& local) noexcept {
         const std::uint64_t version = pair.method->toothVersion();
-        if (!pair.wasAsked || pair.isBur() || version != pair.askedVersion || !isSame(local, pair.askedAt)) {
+        if (!pair.wasAsked || pair.cuts() || version != pair.askedVersion || !isSame(local, pair.askedAt)) {
             pair.answer = pair.method->depth(local);
             pair.askedAt = local;
             pair.askedVersion = version;
@@ -316,26 +317,27 @@ class MouthMethod final : public Method {
             return best;
         }
         lookAround(bur);
-        // Nearest boxes first: whoever's box is farther than what was found cannot be deeper.
+        // The nearest first, by their boxes or by what was last answered: whoever is farther than what was found cannot
+        // be deeper.
         struct Candidate {
-            double gapMm;
+            double atLeastMm;
             std::uint16_t pair;
         };
         std::array<Candidate, kMaxPlaced> order;
         std::size_t count = 0;
         for (std::size_t n = 0; n < nearCount_; ++n) {
-            const double gap = pairs_[near_[n]].at(bur).gapMm;
-            if (gap <= reachMm_) order[count++] = {gap, near_[n]};
+            const auto& [local, gapMm] = pairs_[near_[n]].at(bur);
+            const double atLeastMm = std::max(gapMm, pairs_[near_[n]].clearMm(local));
+            if (atLeastMm <= reachMm_) order[count++] = {atLeastMm, near_[n]};
         }
         std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
                   [](const Candidate& a, const Candidate& b) {
-                      return a.gapMm != b.gapMm ? a.gapMm < b.gapMm : a.pair < b.pair;
+                      return a.atLeastMm != b.atLeastMm ? a.atLeastMm < b.atLeastMm : a.pair < b.pair;
                   });
         const Pair* decides = nullptr;
-        for (std::size_t n = 0; n < count && !(decides != nullptr && order[n].gapMm > -best.depthMm); ++n) {
+        for (std::size_t n = 0; n < count && !(decides != nullptr && order[n].atLeastMm > -best.depthMm); ++n) {
             Pair& pair = pairs_[order[n].pair];
             const Pose& local = pair.at(bur).local;
-            if (decides != nullptr && !pair.isBur() && pair.clearMm(local) > -best.depthMm) continue;
             const Depth found = enoughMm != nullptr ? pair.method->depthUpTo(*enoughMm, local) : depthOf(pair, local);
             if (decides != nullptr && !(found.depthMm > best.depthMm)) continue;
             best = found;
@@ -381,10 +383,10 @@ void FeltInstrument::placeAll(const std::shared_ptr<const Tooth>& tooth, const c
                               std::vector<PlacedMethod>& to) const {
     for (const Piece& piece : pieces_) {
         FieldMethodSettings settings;
-        settings.depthOnly = standing.isYielding || piece.part != contact::Piece::bur;
+        settings.depthOnly = standing.isYielding || standing.isPlain || piece.part != contact::Piece::bur;
         settings.sheets = piece.sheets;
         to.push_back({makeFieldMethod(tooth, piece.solid, settings), piece.solid, piece.inBur, standing.inScene, box,
-                      standing.tooth, piece.part, standing.isYielding, standing.isCuttable});
+                      standing.tooth, piece.part, standing.isYielding, standing.isPlain, standing.isCuttable});
     }
 }
 

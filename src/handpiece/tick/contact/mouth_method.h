@@ -22,6 +22,7 @@ struct PlacedMethod {
     std::uint16_t tooth = 0;  ///< as answers name it
     Piece piece = Piece::bur;
     bool isYielding = false;  ///< no tooth but what gives way (gingiva): it holds nothing off
+    bool isPlain = false;     ///< no tooth but what is only hard (bone): held off by its depth, the bur has no patches
     bool isCuttable = true;   ///< the tooth is: else the bur has patches on it, and no bearing
 };
 
@@ -34,7 +35,7 @@ class FeltInstrument {
     struct Standing {
         core::Pose inScene;
         std::uint16_t tooth = 0;
-        bool isYielding = false, isCuttable = true;
+        bool isYielding = false, isPlain = false, isCuttable = true;
     };
     /// Adds a pair for each piece.
     void place(const std::shared_ptr<const tooth::ToothModel>& tooth, const Standing& standing,

@@ -122,6 +122,7 @@ void AxisSearch::addRun(const std::vector<MedialBall>& balls) {
     run.plain.count = static_cast<std::int32_t>(run.z.size());
     run.plain.constant = run.constant;
     const double maxRadius = *std::max_element(run.radius.begin(), run.radius.end());
+    leastRadiusMm_ = std::min(leastRadiusMm_, *std::min_element(run.radius.begin(), run.radius.end()));
     run.plain.maxRadius = static_cast<float>(maxRadius);
     if (!run.constant) {
         // The piece's own lines lie above a concave radius; a few of them hug it well enough for bounds.

@@ -65,6 +65,7 @@ class AxisSearch {
     void search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best, double& mostMm) noexcept;
     /// False when all of its balls have their centres outside the tooth.
     [[nodiscard]] bool mayEnter(const ExactSurface& surface, const BurFrame& frame) const noexcept;
+    [[nodiscard]] double leastRadiusMm() const noexcept { return leastRadiusMm_; }
     void reset() noexcept { seeds_.fill(geometry::kNoTriangle); }
 
     static constexpr int kMaxCuts = 48, kMaxLooks = 64, kFineCuts = 12;
@@ -84,6 +85,7 @@ class AxisSearch {
     std::vector<Run> runs_;
     static constexpr std::size_t kMaxSeeds = 8;
     std::array<std::uint32_t, kMaxSeeds> seeds_;
+    double leastRadiusMm_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace handpiece::contact

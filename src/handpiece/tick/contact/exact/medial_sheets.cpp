@@ -46,6 +46,7 @@ MedialSheets::MedialSheets(const instrument::Bur& bur) {
             sheet.z.push_back(ball.zMm);
             sheet.radius.push_back(ball.radiusMm);
             sheet.maxRho = std::max(sheet.maxRho, ball.rhoMm);
+            sheet.minRadius = sheet.u.size() == 1 ? ball.radiusMm : std::min(sheet.minRadius, ball.radiusMm);
             sheet.maxRadius = std::max(sheet.maxRadius, ball.radiusMm);
         }
         const auto reachFrom = [&](double z) {

@@ -26,7 +26,7 @@ class MedialSheets {
     };
     struct Sheet {
         std::vector<double> u, rho, z, radius;  ///< by ball; u is the length along the curve
-        double maxRho = 0.0, maxRadius = 0.0;
+        double maxRho = 0.0, maxRadius = 0.0, minRadius = 0.0;
         double centreZ = 0.0, reachMm = 0.0;  ///< its balls lie in the ball of reach about the axis at centreZ
         double centresMm = 0.0;               ///< their centres in the ball of this radius
         double promiseMm = 0.0;               ///< one of them is at least so much deeper than the tooth is at centreZ

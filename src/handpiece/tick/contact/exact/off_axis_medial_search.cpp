@@ -28,6 +28,8 @@ constexpr double kFieldErrorVoxels = 0.2;
 constexpr double kOnAxisMm = 1e-9;
 // From any place of a sheet to the nearest ball of its grid, in spacings.
 constexpr double kToGrid = 0.75;
+// A radius changes by no more than the way along the curve: so many spacings farther on are still looked at.
+constexpr double kRadiusSpacings = 2.0;
 constexpr double kSameTopMm = 0.05;
 constexpr float kDropped = 1e9f;
 constexpr float kKnownMm = 0.5f * kBoundMm;  // distances are less, bounds more
@@ -106,11 +108,17 @@ OffAxisMedialSearch::OffAxisMedialSearch(std::shared_ptr<const MedialSheets> she
       bandInMm_(static_cast<float>(field.settings().bandInMm)),
       errorMm_(kFieldErrorVoxels * field.settings().voxelMm),
       brickDiagonalMm_(std::numbers::sqrt3 * field::kBrickCells * field.settings().voxelMm) {
-    grid_.resize(kMaxGrid);
+    // Hundreds of these stand round a mouth: no more room than the largest sheet takes.
+    std::size_t balls = 0, cells = 0;
+    for (const Sheet& sheet : sheets_->searched) {
+        balls = std::max(balls, sheet.cosine.size());
+        cells = std::max(cells, sheet.cellU.size());
+    }
+    grid_.resize(balls);
     for (std::vector<float>& corner : corner_)
-        corner.resize(kMaxGrid);
-    upper_.resize(kMaxGrid);
-    unknown_.resize(kMaxGrid);
+        corner.resize(cells);
+    upper_.resize(cells);
+    unknown_.resize(balls);
 }
 
 bool OffAxisMedialSearch::isDeep(const ExactSurface& surface, const BurFrame& frame, double depthMm) const noexcept {
@@ -122,9 +130,10 @@ bool OffAxisMedialSearch::isDeep(const ExactSurface& surface, const BurFrame& fr
 /// A distance is 1-Lipschitz: at phiT(m) outside, with m the middle of the ball of reach about all of a sheet's, none
 /// of them is deeper than reach - phiT(m); and none has its centre in the tooth when phiT(m) is more than the centres'
 /// reach.
-void OffAxisMedialSearch::search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown, BallDepth& best,
-                                 double& mostMm) noexcept {
+void OffAxisMedialSearch::search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown,
+                                 double largestMm, BallDepth& best, double& mostMm) noexcept {
     for (const Sheet& sheet : sheets_->searched) {
+        if (sheet.minRadius > largestMm) continue;
         const Vec3 centre = frame.onAxis(sheet.centreZ);
         const double far = surface.farBound(centre);
         if (far > 0.0 && (outsideKnown ? far > sheet.centresMm : sheet.reachMm - far <= best.depthMm)) continue;
@@ -138,6 +147,7 @@ void OffAxisMedialSearch::search(const ExactSurface& surface, const BurFrame& fr
             searchDeep(surface, sheet, frame, seed, best, mostMm);
             continue;
         }
+        mostRadiusMm_ = largestMm + kRadiusSpacings * sheet.spacingMm;
         mostOutsideMm_ = outsideKnown ? kToGrid * sheet.spacingMm + errorMm_ : std::numeric_limits<double>::infinity();
         searchSheet(surface, sheet, frame, seed, best, mostMm);
     }
@@ -208,6 +218,10 @@ OffAxisMedialSearch::Spot OffAxisMedialSearch::spotAt(const Sheet& sheet, const 
 /// up.
 void OffAxisMedialSearch::scan(const Sheet& sheet, const BurFrame& frame, double atLeast) noexcept {
     for (const Row& r : sheet.rows) {
+        if (r.radius > mostRadiusMm_) {
+            std::fill_n(&grid_[r.first], r.count, kDropped);
+            continue;
+        }
         FieldRow row;
         for (int k = 0; k < 3; ++k) {
             row.centre[k] = frame.tip[k] + r.z * frame.z[k];
@@ -242,7 +256,7 @@ void OffAxisMedialSearch::scan(const Sheet& sheet, const BurFrame& frame, double
 OffAxisMedialSearch::Candidate OffAxisMedialSearch::highestOfGrid(const Sheet& sheet) const noexcept {
     Candidate highest{-std::numeric_limits<double>::infinity(), 0.0, 0.0};
     for (const Row& r : sheet.rows)
-        for (std::uint32_t j = 0; j < r.count; ++j)
+        for (std::uint32_t j = 0; r.radius <= mostRadiusMm_ && j < r.count; ++j)
             if (const double value = r.radius - distanceOf(grid_[r.first + j]); value > highest.value)
                 highest = {value, r.u, 2.0 * kPi * j / r.count};
     return highest;
@@ -254,11 +268,12 @@ void OffAxisMedialSearch::collect(const Sheet& sheet, const BurFrame& frame, dou
     candidateCount_ = unknownCount_ = 0;
     double least = atLeast;
     for (const Row& r : sheet.rows)
-        for (std::uint32_t j = 0; j < r.count; ++j)
+        for (std::uint32_t j = 0; r.radius <= mostRadiusMm_ && j < r.count; ++j)
             if (const float d = grid_[r.first + j]; isFine(d))
                 least = std::max(least, r.radius - static_cast<double>(d) - errorMm_);
     for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
         const Row& r = sheet.rows[i];
+        if (r.radius > mostRadiusMm_) continue;
         const bool onAxis = r.rho < kOnAxisMm;  // one ball, many angles
         for (std::uint32_t j = 0; j < (onAxis ? 1 : r.count); ++j) {
             const float d = grid_[r.first + j];

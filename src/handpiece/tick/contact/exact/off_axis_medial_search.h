@@ -28,9 +28,10 @@ class OffAxisMedialSearch {
     /// Whether a ball of a sheet is that deep for sure: a lookup each.
     [[nodiscard]] bool isDeep(const ExactSurface& surface, const BurFrame& frame, double depthMm) const noexcept;
     /// Raises `best` to the deepest ball of all sheets; with `outsideKnown` at least to the deepest of those with their
-    /// centres in the tooth. A sheet that cannot beat `best` costs one or two lookups.
-    void search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown, BallDepth& best,
-                double& mostMm) noexcept;
+    /// centres in the tooth, none of which is larger than `largestMm`. A sheet that cannot beat `best` costs one or two
+    /// lookups.
+    void search(const ExactSurface& surface, const BurFrame& frame, bool outsideKnown, double largestMm,
+                BallDepth& best, double& mostMm) noexcept;
 
   private:
     using Row = MedialSheets::Row;
@@ -50,7 +51,7 @@ class OffAxisMedialSearch {
         double radius, upper, u, angle;
         bool outside;
     };
-    static constexpr std::size_t kMaxGrid = MedialSheets::kMaxGrid, kMaxCandidates = 48;
+    static constexpr std::size_t kMaxCandidates = 48;
     static constexpr int kMaxClimbs = 6, kMaxMeasured = 24, kMaxKnown = 16;
     /// A triangle near the ball being climbed: what it says of the depth there and how that changes.
     struct Support {
@@ -102,6 +103,7 @@ class OffAxisMedialSearch {
     LowerCells lowerCells_;
     float bandOutMm_, bandInMm_;
     double errorMm_, brickDiagonalMm_;
+    double mostRadiusMm_ = 0.0;   ///< of balls that this search looks at
     double mostOutsideMm_ = 0.0;  ///< balls with their centres farther outside are no concern of this search
     std::vector<float> grid_;     ///< signed distance by ball of the grid; of fixed size, filled anew by each search
     std::array<std::vector<float>, 4> corner_;  ///< how deep a ball could be, by cell: at its corners and anywhere

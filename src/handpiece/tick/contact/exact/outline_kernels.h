@@ -27,7 +27,8 @@ struct Outline {
     OutlinePiece pieces[kMaxOutlinePieces];
     OutlineTangent tangents[kMaxOutlineTangents];
     std::int32_t pieceCount = 0, tangentCount = 0;
-    double middleZ = 0.0;  ///< on the axis, inside the bur
+    double middleZ = 0.0;        ///< on the axis, inside the bur
+    double middleDepthMm = 0.0;  ///< - phiB there
 };
 
 /// The place of the surface that is nearest to the bur, or deepest in it.

@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kTangents = 17;  // from -z over rho to +z, beside those of the pieces' ends
 constexpr double kStraightMm = 1e-9;
+constexpr double kUnsureMm = 1e-5;  // more than a hit falls short of the least
 
 void store(double (&to)[2], const Vec2& v) {
     to[0] = v.x();
@@ -82,6 +83,7 @@ std::unique_ptr<const Outline> outlineOf(const instrument::Bur& bur) {
         if (p.isArc) addTangent(last);
     }
     outline->middleZ = 0.5 * bur.lengthMm();
+    outline->middleDepthMm = -bur.signedDistance({0.0, 0.0, outline->middleZ});
     return outline;
 }
 
@@ -90,12 +92,13 @@ std::unique_ptr<const Outline> outlineOf(const instrument::Bur& bur) {
 OutlineSearch::OutlineSearch(const instrument::Bur& bur, core::SimdLevel level)
     : outline_(outlineOf(bur)), nearest_(HANDPIECE_AT_SIMD_LEVEL(level, nearestToOutline)()) {}
 
-bool OutlineSearch::search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) noexcept {
+double OutlineSearch::search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) noexcept {
     OutlineHit hit;
     hit.distance = std::numeric_limits<double>::infinity();
     hit.triangle = seed_;
     nearest_(surface.view(), *outline_, frame.tip.data(), frame.z.data(), hit);
-    if (hit.triangle == geometry::kNoTriangle) return false;
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    if (hit.triangle == geometry::kNoTriangle) return kAny;
     seed_ = hit.triangle;
     best.depthMm = -hit.distance;
     best.surfaceMm = Vec3(hit.point[0], hit.point[1], hit.point[2]);
@@ -103,8 +106,11 @@ bool OutlineSearch::search(const ExactSurface& surface, const BurFrame& frame, B
     best.centreMm = best.surfaceMm + Vec3(hit.inwards[0], hit.inwards[1], hit.inwards[2]);
     best.triangle = hit.triangle;
     best.inside = false;
-    // A bur that lies in the tooth without meeting its surface is apart from that only.
-    return hit.distance > 0.0 && surface.farBound(frame.onAxis(outline_->middleZ)) > surface.sureMm();
+    // A bur that lies in the tooth may meet little of its surface, or none.
+    if (!(surface.farBound(frame.onAxis(outline_->middleZ)) > surface.sureMm())) return kAny;
+    if (hit.distance > 0.0) return 0.0;
+    const double largest = kUnsureMm - hit.distance;
+    return largest < outline_->middleDepthMm ? largest : kAny;
 }
 
 }  // namespace handpiece::contact

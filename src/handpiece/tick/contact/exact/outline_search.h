@@ -17,7 +17,9 @@ namespace handpiece::contact {
 /// Of a medial ball (c, R) with its centre outside the tooth, and the tooth's nearest place q, phiB(q) <= |c - q| - R:
 /// so none of those balls is deeper than - min of phiB over the tooth's surface, and that is never deeper than the
 /// depth. For a convex bur phiB is convex, and tangents bound it over boxes and triangles. What is left to the axis and
-/// the sheets are the balls with their centres in the tooth: none while the two are apart.
+/// the sheets are the balls with their centres in the tooth. Those are small where a deeper place m of the bur lies
+/// outside: on the way from c to m phiB is -R at most, and where that way leaves the tooth it is no less than the
+/// least found. While the two are apart there are none.
 ///
 /// The answer does not depend on the last one; its triangle only saves time.
 class OutlineSearch {
@@ -26,8 +28,9 @@ class OutlineSearch {
 
     /// Whether this bur can be searched for so: convex, of few pieces, and with sheets worth sparing.
     [[nodiscard]] bool isFit() const noexcept { return outline_ != nullptr; }
-    /// Sets `best` to - min of phiB over the surface, and returns whether bur and tooth are apart: then it is all.
-    [[nodiscard]] bool search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) noexcept;
+    /// Sets `best` to - min of phiB over the surface, and returns how large a ball with its centre in the tooth can be
+    /// [mm]: 0 where the two are apart, for then this is all; infinity where that is not known.
+    [[nodiscard]] double search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) noexcept;
     void reset() noexcept { seed_ = geometry::kNoTriangle; }
 
   private:

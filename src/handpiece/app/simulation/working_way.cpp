@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/app/simulation/working_way.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+
+namespace handpiece::simulation {
+
+std::string workingWayJson(const WorkingWay& way) {
+    return fmt::format(R"({{"position": {}, "mirror_only": {}, "finger_rest": {}}})", way.hour, way.mirrorOnly,
+                       way.fingerRest);
+}
+
+WorkingWay workingWayFromJson(const std::string& text) {
+    const auto json = nlohmann::json::parse(text, nullptr, false);
+    if (!json.is_object()) return {};
+    const auto says = [&](const char* key) {
+        return json.contains(key) && json[key].is_boolean() && json[key].get<bool>();
+    };
+    WorkingWay way{0, says("mirror_only"), says("finger_rest")};
+    if (json.contains("position") && json["position"].is_number_integer())
+        if (const auto hour = json["position"].get<std::int64_t>(); hour >= 1 && hour <= 12)
+            way.hour = static_cast<int>(hour);
+    return way;
+}
+
+}  // namespace handpiece::simulation

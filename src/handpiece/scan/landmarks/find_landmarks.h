@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Landmarks found on a tooth's surfaces by their shape, where it shows them.
+
+#include <vector>
+
+#include "handpiece/base/core/progress.h"
+#include "handpiece/model/case/case.h"
+
+namespace handpiece::landmarks {
+
+/// In the tooth's own frame, with the source `found`. What a tooth of this FDI number has and where about comes from
+/// the dentition's average tooth, laid over this one; where it is, from this surface alone, and what the surface does
+/// not show (worn, smooth, noisy, open) is left out. Of a tooth without the number of a permanent one only what goes
+/// around it. The cemento-enamel junction needs a dentine part, pulp horns a pulp part. `adjacent`: teeth in the same
+/// frame; a contact is where this one comes nearest to them, if it comes near. Deterministic.
+[[nodiscard]] std::vector<cases::Landmark> findLandmarks(const cases::Tooth& tooth,
+                                                         const std::vector<geometry::TriangleMesh>& adjacent = {},
+                                                         const core::Progress& progress = {});
+/// Of the tooth that is worked on, beside its adjacent teeth.
+[[nodiscard]] std::vector<cases::Landmark> findLandmarks(const cases::Case& toothCase,
+                                                         const core::Progress& progress = {});
+
+/// `own` with what was found: what a person set and what is known stays, and what was found before goes.
+[[nodiscard]] std::vector<cases::Landmark> withFound(const std::vector<cases::Landmark>& own,
+                                                     const std::vector<cases::Landmark>& found);
+
+}  // namespace handpiece::landmarks

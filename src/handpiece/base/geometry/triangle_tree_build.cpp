@@ -19,20 +19,30 @@ constexpr int kSahDepth = 16;                      // below it halves by count, 
 constexpr std::uint32_t kTaskTriangles = 1 << 15;  // subtrees of this size are built side by side
 constexpr double kThin = 1e-3;                     // height over longest edge of a sliver
 
+/// x, y, z and one more that is never asked: so that a processor takes all at once.
+using Lanes __attribute__((vector_size(16))) = float;
+constexpr Lanes lanes(float all) {
+    return Lanes{all, all, all, all};
+}
+Lanes least(Lanes a, Lanes b) {
+    return b < a ? b : a;
+}
+Lanes most(Lanes a, Lanes b) {
+    return a < b ? b : a;
+}
+
 struct FloatBox {
-    float min[3] = {INFINITY, INFINITY, INFINITY};
-    float max[3] = {-INFINITY, -INFINITY, -INFINITY};
+    Lanes min = lanes(INFINITY), max = lanes(-INFINITY);
 
     void extend(const FloatBox& b) {
-        for (int k = 0; k < 3; ++k) {
-            min[k] = std::min(min[k], b.min[k]);
-            max[k] = std::max(max[k], b.max[k]);
-        }
+        min = least(min, b.min);
+        max = most(max, b.max);
     }
     [[nodiscard]] float halfArea() const {
         const float x = max[0] - min[0], y = max[1] - min[1], z = max[2] - min[2];
         return x < 0.0f ? 0.0f : x * y + y * z + z * x;
     }
+    [[nodiscard]] Lanes centre() const { return lanes(0.5f) * (min + max); }
     [[nodiscard]] float centre(int axis) const { return 0.5f * (min[axis] + max[axis]); }
 };
 
@@ -102,13 +112,12 @@ class Builder {
     }
 
     std::array<Range, 2> split(const Range& r, bool byCount) {
-        float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-        for (std::uint32_t i = r.begin; i < r.end; ++i)
-            for (int k = 0; k < 3; ++k) {
-                const float c = items_[i].box.centre(k);
-                low[k] = std::min(low[k], c);
-                high[k] = std::max(high[k], c);
-            }
+        Lanes low = lanes(INFINITY), high = lanes(-INFINITY);
+        for (std::uint32_t i = r.begin; i < r.end; ++i) {
+            const Lanes c = items_[i].box.centre();
+            low = least(low, c);
+            high = most(high, c);
+        }
         int widest = 0;
         for (int k = 1; k < 3; ++k)
             if (high[k] - low[k] > high[widest] - low[widest]) widest = k;
@@ -119,18 +128,18 @@ class Builder {
             std::uint32_t count = 0;
         };
         Bin bins[3][kBins];
-        float scale[3];
+        Lanes scale = lanes(0.0f);
         for (int k = 0; k < 3; ++k)
             scale[k] = high[k] > low[k] ? kBins * (1.0f - 1e-5f) / (high[k] - low[k]) : 0.0f;
-        const auto binOf = [&](const Item& item, int k) {
-            return std::clamp(static_cast<int>((item.box.centre(k) - low[k]) * scale[k]), 0, kBins - 1);
-        };
-        for (std::uint32_t i = r.begin; i < r.end; ++i)
+        const auto binAt = [](float place) { return std::clamp(static_cast<int>(place), 0, kBins - 1); };
+        for (std::uint32_t i = r.begin; i < r.end; ++i) {
+            const Lanes place = (items_[i].box.centre() - low) * scale;
             for (int k = 0; k < 3; ++k) {
-                Bin& bin = bins[k][binOf(items_[i], k)];
+                Bin& bin = bins[k][binAt(place[k])];
                 bin.box.extend(items_[i].box);
                 ++bin.count;
             }
+        }
         float bestCost = INFINITY;
         int bestAxis = -1, bestCut = 0;
         for (int k = 0; k < 3; ++k) {
@@ -157,8 +166,10 @@ class Builder {
             }
         }
         if (bestAxis < 0) return halve(r, widest);
-        const auto middle = std::partition(items_.begin() + r.begin, items_.begin() + r.end,
-                                           [&](const Item& item) { return binOf(item, bestAxis) < bestCut; });
+        const auto middle = std::partition(items_.begin() + r.begin, items_.begin() + r.end, [&](const Item& item) {
+            const float c = item.box.centre(bestAxis);
+            return binAt((c - low[bestAxis]) * scale[bestAxis]) < bestCut;
+        });
         const auto at = static_cast<std::uint32_t>(middle - items_.begin());
         if (at == r.begin || at == r.end) return halve(r, widest);
         Range left{r.begin, at, {}}, right{at, r.end, {}};
@@ -385,6 +396,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) : bounds_(checkedBounds(mes
                 items[f].box.min[k] = std::nextafterf(static_cast<float>(box.min[k] - margin), -INFINITY);
                 items[f].box.max[k] = std::nextafterf(static_cast<float>(box.max[k] + margin), INFINITY);
             }
+            items[f].box.min[3] = items[f].box.max[3] = 0.0f;
             items[f].triangle = static_cast<std::uint32_t>(f);
         }
     });

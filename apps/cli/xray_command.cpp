@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// handpiece xray: a bitewing or periapical radiograph of a case.
+// handpiece xray: a bitewing or periapical radiograph of a case, an attempt or a moment of a session.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "handpiece/app/simulation/tissue_export.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
@@ -25,8 +26,9 @@ using Json = nlohmann::ordered_json;
 struct XrayOptions {
     std::string caseFile, view = "bitewing", out, size, noise = "on", filling = "amalgam", bits = "16";
     radiograph::Settings settings;
+    double atS = 0.0;
     std::size_t threads = 0;
-    bool json = false;
+    bool atGiven = false, noCache = false, json = false;
 };
 
 void readSize(const std::string& text, radiograph::Settings& settings) {
@@ -56,9 +58,14 @@ void xray(XrayOptions& o) {
         throw core::Error("there is no such folder", folder.string(), "make it first");
     core::setThreadCount(o.threads);
 
-    const cases::Case toothCase = cases::readCase(o.caseFile);
+    if (o.atGiven && fs::path(o.caseFile).extension() != ".h5")
+        throw core::Error("only a session has a time", "--at", "give a session file (.h5), or leave --at out");
+    if (o.atGiven && !(o.atS >= 0.0))
+        throw core::Error(fmt::format("the session has no second {:.3f}", o.atS), "--at", "give seconds from 0 on");
     studies::ProgressBar bar("taking the radiograph");
-    const radiograph::Radiograph taken = radiograph::take(toothCase, s, bar.listener());
+    const cases::Case toothCase =
+        simulation::readAsCut(o.caseFile, o.atGiven ? o.atS : -1.0, !o.noCache, core::part(bar.listener(), 0.0, 0.5));
+    const radiograph::Radiograph taken = radiograph::take(toothCase, s, core::part(bar.listener(), 0.5, 1.0));
     bar.finish();
     const radiograph::Picture& picture = taken.picture;
     volume::writeRadiograph({picture.width, picture.height, picture.grey, taken.projection.pixelMm, o.view,
@@ -92,11 +99,12 @@ void xray(XrayOptions& o) {
 }  // namespace
 
 void addXrayCommand(Command& app) {
-    Command command = app.subcommand("xray", "A simulated bitewing or periapical radiograph of a case");
+    Command command =
+        app.subcommand("xray", "A simulated bitewing or periapical radiograph of a case, an attempt or a session");
     const auto options = std::make_shared<XrayOptions>();
     XrayOptions& o = *options;
     radiograph::Settings& s = o.settings;
-    command.option("case", o.caseFile, "case folder, .handpiece file or mesh").required();
+    command.option("case", o.caseFile, "case folder, .handpiece file, mesh, attempt or session (.h5)").required();
     command.option("--view", o.view, "bitewing or periapical").showDefault();
     command.option("--fdi", s.fdiNumber, "FDI number of the tooth in the middle; else the case's own tooth");
     command.option("--out", o.out, ".png or .dcm (DICOM) to write; else the view's name in this folder");
@@ -111,13 +119,19 @@ void addXrayCommand(Command& app) {
     command.option("--quanta", s.quanta, "that a pixel counts in the open beam").showDefault();
     command.option("--seed", s.seed, "of the noise").showDefault();
     command.option("--filling", o.filling, "what restorations are made of: amalgam or composite").showDefault();
+    command.option("--at", o.atS, "second of a session [default: its end]");
+    command.flag("--no-cache", o.noCache, "build fields anew and keep nothing");
     command.option("--threads", o.threads, "0: all; the picture is the same at any number").showDefault();
     command.flag("--json", o.json, "tell about it as JSON");
     command.footer(
-        "Teeth are imaged as the case has them, uncut; docs/radiographs.md tells how.\n\n"
+        "Teeth are imaged as they are: of a case uncut, of an attempt or a session cut; docs/radiographs.md tells "
+        "how.\n\n"
         "Examples:\n  handpiece xray molar --view periapical --out molar.png\n"
         "  handpiece xray mouth --view bitewing --fdi 46 --out bitewing.dcm");
-    command.callback([options] { xray(*options); });
+    command.callback([options, command] {
+        options->atGiven = command.isGiven("--at");
+        xray(*options);
+    });
 }
 
 }  // namespace handpiece::cli

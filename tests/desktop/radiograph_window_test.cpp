@@ -86,6 +86,15 @@ TEST_F(RadiographTest, IsSavedAsPngAndDicomMarkedAsSimulated) {
     EXPECT_TRUE(dialog().taken().has_value());
 }
 
+TEST_F(RadiographTest, ShowsTheToothAsItIsCut) {
+    openDialog();
+    const auto uncut = dialog().taken()->picture.grey;
+    ASSERT_TRUE(cut());
+    QTest::mouseClick(part<QPushButton>("radiographAgain"), Qt::LeftButton);
+    ASSERT_TRUE(waitFor([this] { return dialog().taken().has_value(); }));
+    EXPECT_NE(dialog().taken()->picture.grey, uncut);
+}
+
 TEST_F(RadiographTest, FollowsTheToothThatIsOpen) {
     openDialog();
     EXPECT_EQ(dialog().taken()->fdiNumber, 46);

@@ -4040,8 +4040,16 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>中止しました。撮影法を選ぶと撮り直します。</translation>
     </message>
     <message>
-        <source>Computed from the case, uncut: for learning, not for diagnosis.</source>
-        <translation>症例（切削前）から計算した画像です。学習用であり、診断用ではありません。</translation>
+        <source>Computed from the teeth as they are cut now: for learning, not for diagnosis.</source>
+        <translation>現在の切削状態の歯から計算した画像です。学習用であり、診断用ではありません。</translation>
+    </message>
+    <message>
+        <source>Take again</source>
+        <translation>撮り直す</translation>
+    </message>
+    <message>
+        <source>Of the teeth as they are cut now</source>
+        <translation>現在の切削状態の歯を撮影します</translation>
     </message>
 </context>
 <context>

@@ -11,6 +11,7 @@
 #include <algorithm>
 
 #include "desktop/widgets/parts.h"
+#include "handpiece/app/simulation/tissue_export.h"
 
 namespace handpiece::desktop {
 
@@ -24,6 +25,8 @@ RadiographDialog::RadiographDialog(QWidget* parent)
       note_(named(new QLabel(this), "radiographNote", tr("About the radiograph"))),
       progress_(named(new QProgressBar(this), "radiographProgress", tr("Taking the radiograph"))),
       cancel_(named(new QPushButton(tr("Cancel"), this), "radiographCancel", tr("Cancel"))),
+      again_(named(new QPushButton(tr("Take again"), this), "radiographAgain", tr("Take again"),
+                   tr("Of the teeth as they are cut now"))),
       save_(named(new QPushButton(tr("Save..."), this), "radiographSave", tr("Save..."),
                   tr("Write the radiograph as PNG or DICOM, marked as simulated"))) {
     setObjectName(QStringLiteral("radiographDialog"));
@@ -41,6 +44,7 @@ RadiographDialog::RadiographDialog(QWidget* parent)
     above->addWidget(view_);
     above->addWidget(tooth_);
     above->addStretch();
+    above->addWidget(again_);
     above->addWidget(save_);
     auto* below = new QHBoxLayout;
     below->addWidget(progress_);
@@ -54,15 +58,18 @@ RadiographDialog::RadiographDialog(QWidget* parent)
 
     connect(view_, &QComboBox::activated, this, &RadiographDialog::take);
     connect(tooth_, &QComboBox::activated, this, &RadiographDialog::take);
+    connect(again_, &QPushButton::clicked, this, &RadiographDialog::take);
     connect(cancel_, &QPushButton::clicked, this, [this] { stop(tr("Cancelled. Choose a view to take it again.")); });
     connect(save_, &QPushButton::clicked, this, &RadiographDialog::saveRequested);
     stop({});
 }
 
-void RadiographDialog::setCase(std::shared_ptr<const cases::Case> toothCase) {
-    if (toothCase == toothCase_) return;
+void RadiographDialog::setTooth(std::shared_ptr<const cases::Case> toothCase,
+                                std::shared_ptr<const simulation::LiveTooth> live) {
+    if (toothCase == toothCase_ && live == live_) return;
     stop({});
     toothCase_ = std::move(toothCase);
+    live_ = std::move(live);
     tooth_->clear();
     if (toothCase_ != nullptr) {
         const auto add = [this](int fdi) {
@@ -85,14 +92,21 @@ void RadiographDialog::take() {
     const auto made = std::make_shared<std::optional<radiograph::Radiograph>>();
     job_ = new Job(
         tr("Taking the radiograph"),
-        [of = toothCase_, settings, made](const core::Progress& p) { *made = radiograph::take(*of, settings, p); },
+        [of = toothCase_, live = live_, settings, made](const core::Progress& p) {
+            const core::Progress whole = core::part(p, 0.3, 1.0);
+            *made =
+                live == nullptr
+                    ? radiograph::take(*of, settings, whole)
+                    : radiograph::take(simulation::asCut(*of, live->teeth(), live->state({}), core::part(p, 0.0, 0.3)),
+                                       settings, whole);
+        },
         this);
     for (const auto ends : {&Job::done, &Job::cancelled})
         connect(job_, ends, job_, &QObject::deleteLater);
     connect(job_, &Job::failed, job_, &QObject::deleteLater);
     connect(job_, &Job::progressed, this, [this](double share) { progress_->setValue(qRound(1000.0 * share)); });
     connect(job_, &Job::done, this, [this, made] {
-        stop(tr("Computed from the case, uncut: for learning, not for diagnosis."));
+        stop(tr("Computed from the teeth as they are cut now: for learning, not for diagnosis."));
         taken_ = std::move(*made);
         save_->setEnabled(true);
         showPicture();
@@ -137,7 +151,7 @@ void RadiographDialog::showPicture() {
 
 void RadiographDialog::showEvent(QShowEvent* event) {
     QDialog::showEvent(event);
-    if (!taken_ && job_ == nullptr) take();
+    take();  // the teeth may have been cut since
 }
 
 void RadiographDialog::hideEvent(QHideEvent* event) {

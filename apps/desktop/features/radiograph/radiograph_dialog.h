@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// A radiograph of the tooth that is open: which view, the picture, where it is saved.
+/// A radiograph of the tooth that is open, as it is cut: which view, the picture, where it is saved.
 
 #include <QDialog>
 #include <memory>
 #include <optional>
 
 #include "desktop/framework/job.h"
+#include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/senses/radiograph/radiograph.h"
 
 class QComboBox;
@@ -23,8 +24,8 @@ class RadiographDialog : public QDialog {
   public:
     explicit RadiographDialog(QWidget* parent);
 
-    /// Null: no tooth is open. Takes the picture while the dialog is shown.
-    void setCase(std::shared_ptr<const cases::Case> toothCase);
+    /// Null: no tooth is open. Takes the picture while the dialog is shown. `live`: how the teeth are cut.
+    void setTooth(std::shared_ptr<const cases::Case> toothCase, std::shared_ptr<const simulation::LiveTooth> live);
     /// What is shown; none while it is being taken.
     [[nodiscard]] const std::optional<radiograph::Radiograph>& taken() const noexcept { return taken_; }
 
@@ -42,12 +43,13 @@ class RadiographDialog : public QDialog {
     void showPicture();
 
     std::shared_ptr<const cases::Case> toothCase_;
+    std::shared_ptr<const simulation::LiveTooth> live_;
     std::optional<radiograph::Radiograph> taken_;
     Job* job_ = nullptr;  ///< under way
     QComboBox *view_, *tooth_;
     QLabel *picture_, *note_;
     QProgressBar* progress_;
-    QPushButton *cancel_, *save_;
+    QPushButton *cancel_, *again_, *save_;
 };
 
 }  // namespace handpiece::desktop

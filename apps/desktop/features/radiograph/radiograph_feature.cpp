@@ -30,7 +30,7 @@ RadiographFeature::RadiographFeature(const FeatureContext& context)
 }
 
 void RadiographFeature::showDocument() {
-    dialog_->setCase(simulator_.toothCase());
+    dialog_->setTooth(simulator_.toothCase(), simulator_.tooth());
 }
 
 void RadiographFeature::save() {

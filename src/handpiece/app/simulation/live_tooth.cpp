@@ -127,6 +127,13 @@ class LiveTooth::Neighbours {
             if (tooth.live) tooth.live->refresh();
         }
     }
+    void append(tooth::Teeth& teeth) const {
+        for (const Tooth& tooth : teeth_) {
+            const std::size_t number = tooth.standing.field->toothNumber();
+            teeth.resize(std::max(teeth.size(), number + 1));
+            teeth[number] = tooth.standing.model;
+        }
+    }
     void append(tooth::StateDelta& state) const {
         const std::lock_guard lock(mutex_);
         for (const Tooth& tooth : teeth_)
@@ -238,6 +245,12 @@ void LiveTooth::build(const tooth::StateDelta& state, const core::Progress& prog
 }
 
 LiveTooth::~LiveTooth() = default;
+
+tooth::Teeth LiveTooth::teeth() const {
+    tooth::Teeth teeth{model_};
+    if (neighbours_) neighbours_->append(teeth);
+    return teeth;
+}
 
 void LiveTooth::hear(const tooth::BrickSnapshot& brick) {
     if (tooth::toothOf(brick.id) != number_) {

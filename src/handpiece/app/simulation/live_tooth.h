@@ -35,6 +35,9 @@ class LiveTooth {
     [[nodiscard]] const tooth::ToothModel& model() const noexcept { return *model_; }
     [[nodiscard]] const std::shared_ptr<const tooth::ToothModel>& modelShared() const noexcept { return model_; }
 
+    /// Of all teeth that can be cut, by their numbers.
+    [[nodiscard]] tooth::Teeth teeth() const;
+
     // The feeder.
     void hear(const tooth::BrickSnapshot& brick);
     void apply(const tooth::StateDelta& change);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/app/simulation/tissue_export.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -58,35 +60,90 @@ std::vector<fs::path> exportTissues(const std::shared_ptr<const tooth::ToothMode
     return written;
 }
 
-ToothOfFile toothOf(const fs::path& path, double voxelMm, bool useCache, const core::Progress& progress) {
+namespace {
+
+bool isSession(const fs::path& path) {
     std::error_code error;
-    if (path.extension() == ".h5" && !fs::is_directory(path, error)) {
+    return path.extension() == ".h5" && !fs::is_directory(path, error);
+}
+
+struct AttemptTeeth {
+    cases::Case toothCase;
+    tooth::Teeth teeth;
+    tooth::StateDelta state;
+};
+AttemptTeeth openTeeth(const fs::path& path, bool useCache, const core::Progress& progress) {
+    cases::OpenAttempt open = cases::openAttempt(path);
+    SimulationSettings settings;
+    settings.field.voxelMm = open.attempt.voxelMm;
+    const auto saved = [&] {
+        tooth::Teeth teeth = makeSimulation(open.toothCase, settings, useCache, progress).teeth();
+        tooth::StateDelta state = tooth::decodeState(open.attempt.state, teeth, path.string());
+        return AttemptTeeth{std::move(open.toothCase), std::move(teeth), std::move(state)};
+    };
+    // It does not tell its bands: the command line never makes them thinner than a few voxels, the window keeps
+    // them.
+    const field::FieldSettings kept = settings.field;
+    settings.field.bandOutMm = std::max(kept.bandOutMm, 2.0 * kept.voxelMm);
+    settings.field.bandInMm = std::max(kept.bandInMm, 4.0 * kept.voxelMm);
+    if (settings.field.bandOutMm == kept.bandOutMm && settings.field.bandInMm == kept.bandInMm) return saved();
+    try {
+        return saved();
+    } catch (const core::Error&) {  // what is wrong beside the bands is told by the second reading
+        settings.field = kept;
+        return saved();
+    }
+}
+
+}  // namespace
+
+cases::Case asCut(cases::Case toothCase, const tooth::Teeth& teeth, const tooth::StateDelta& state,
+                  const core::Progress& progress) {
+    for (std::size_t number = 0; number < teeth.size() && number <= toothCase.others.size(); ++number) {
+        const bool isCut =
+            std::any_of(state.bricks.begin(), state.bricks.end(),
+                        [&](const tooth::StateDelta::Brick& b) { return !b.uncut && tooth::toothOf(b.id) == number; });
+        if (!isCut || teeth[number] == nullptr) continue;
+        tooth::ToothMirror mirror(teeth[number], static_cast<std::uint16_t>(number));
+        mirror.apply(state);
+        cases::Tooth& tooth = number == 0 ? static_cast<cases::Tooth&>(toothCase) : toothCase.others[number - 1];
+        tooth.outer =
+            surface::closedSurface(surface::MirrorSource(mirror),
+                                   core::part(progress, static_cast<double>(number) / static_cast<double>(teeth.size()),
+                                              static_cast<double>(number + 1) / static_cast<double>(teeth.size())));
+    }
+    return toothCase;
+}
+
+cases::Case readAsCut(const fs::path& path, double atS, bool useCache, const core::Progress& progress) {
+    const core::Progress opening = core::part(progress, 0.0, 0.6), shaping = core::part(progress, 0.6, 1.0);
+    if (isSession(path)) {
+        SessionPlayer player(path, {useCache, false, {}}, core::part(progress, 0.0, 0.3));
+        if (atS > player.durationS())
+            throw core::Error(fmt::format("the session has no second {:.3f}", atS), path.string(),
+                              fmt::format("it is {:.3f} s long", player.durationS()));
+        player.seek(atS < 0.0 ? player.durationS() : atS, core::part(progress, 0.3, 0.6));
+        return asCut(player.toothCase(), player.station().teeth(), player.state(), shaping);
+    }
+    std::error_code error;
+    if (!fs::exists(path, error) || !cases::isAttempt(path)) return cases::readCase(path);
+    AttemptTeeth open = openTeeth(path, useCache, opening);
+    return asCut(std::move(open.toothCase), open.teeth, open.state, shaping);
+}
+
+ToothOfFile toothOf(const fs::path& path, double voxelMm, bool useCache, const core::Progress& progress) {
+    if (isSession(path)) {
         SessionPlayer player(path, {useCache, false, {}}, core::part(progress, 0.0, 0.5));
         player.seek(player.durationS(), core::part(progress, 0.5, 1.0));
         return {player.station().tooth, player.state()};
     }
+    std::error_code error;
+    if (fs::exists(path, error) && cases::isAttempt(path)) {
+        AttemptTeeth open = openTeeth(path, useCache, progress);
+        return {std::move(open.teeth.front()), std::move(open.state)};
+    }
     SimulationSettings settings;
     settings.field.voxelMm = voxelMm;
-    if (fs::exists(path, error) && cases::isAttempt(path)) {
-        const cases::OpenAttempt open = cases::openAttempt(path);
-        settings.field.voxelMm = open.attempt.voxelMm;
-        const auto saved = [&] {
-            const SimulationSetup station = makeSimulation(open.toothCase, settings, useCache, progress);
-            return ToothOfFile{station.tooth, tooth::decodeState(open.attempt.state, station.teeth(), path.string())};
-        };
-        // It does not tell its bands: the command line never makes them thinner than a few voxels, the window keeps
-        // them.
-        const field::FieldSettings kept = settings.field;
-        settings.field.bandOutMm = std::max(kept.bandOutMm, 2.0 * kept.voxelMm);
-        settings.field.bandInMm = std::max(kept.bandInMm, 4.0 * kept.voxelMm);
-        if (settings.field.bandOutMm == kept.bandOutMm && settings.field.bandInMm == kept.bandInMm) return saved();
-        try {
-            return saved();
-        } catch (const core::Error&) {  // what is wrong beside the bands is told by the second reading
-            settings.field = kept;
-            return saved();
-        }
-    }
     return {makeSimulation(cases::readCase(path), settings, useCache, progress).tooth, {}};
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// What is left of a tooth as surfaces for other programs: of the whole, and of each tissue.
+/// What is left of a tooth as surfaces: of the whole and of each tissue for other programs, and in its case.
 
 #include <filesystem>
 #include <memory>
@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "handpiece/base/core/progress.h"
+#include "handpiece/model/case/case.h"
 #include "handpiece/model/tooth/state_delta.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
 #include "handpiece/model/tooth/tooth_model.h"
 
 namespace handpiece::simulation {
@@ -24,6 +26,15 @@ void exportStl(const std::shared_ptr<const tooth::ToothModel>& base, const tooth
 std::vector<std::filesystem::path> exportTissues(const std::shared_ptr<const tooth::ToothModel>& base,
                                                  const tooth::StateDelta& state, const std::filesystem::path& folder,
                                                  const core::Progress& progress = {});
+
+/// The case with its teeth as they are cut: each that was is bounded by what is left of it, and its parts end there
+/// (docs/case-format.md). `teeth` and `state` are of this case. Throws core::Error when cancelled.
+[[nodiscard]] cases::Case asCut(cases::Case toothCase, const tooth::Teeth& teeth, const tooth::StateDelta& state,
+                                const core::Progress& progress = {});
+/// What a case or a mesh holds, an attempt as it was saved, a session as it was at `atS` seconds (below 0: as it
+/// ended), teeth as they are cut. Throws core::Error.
+[[nodiscard]] cases::Case readAsCut(const std::filesystem::path& path, double atS, bool useCache,
+                                    const core::Progress& progress = {});
 
 /// A tooth out of a file: a case or a mesh as it is, an attempt as it was saved, a session as it ended.
 struct ToothOfFile {

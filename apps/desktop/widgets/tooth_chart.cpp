@@ -190,8 +190,8 @@ void ToothChart::layOut() {
                     outline = crown(number, primary, grooves);
                 }
                 // Clear of the ring round the tooth that has the keyboard.
-                const double reach = most * size / 2 * kRing + 2 +
-                                     std::abs(normal.x()) * 0.43 * fontMetrics().horizontalAdvance("46") +
+                const double reach = most * size / 2 * kRing + 4 +
+                                     std::abs(normal.x()) * 0.5 * fontMetrics().horizontalAdvance("46") +
                                      std::abs(normal.y()) * 0.35 * line;
                 places_.push_back({fdi, centre, transform.map(outline), transform.map(grooves),
                                    primary ? centre - normal * reach : centre + normal * reach});

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "handpiece/app/report/report_figures.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
@@ -30,6 +31,7 @@ void replay(const ReplayOptions& o) {
     const simulation::Verdict v = player.compareAll(bar.listener());
     bar.finish();
     const std::vector<simulation::NickedTooth> nicked = simulation::nickedTeeth(player.station());
+    const report::SessionFigures figures = report::figuresOf(player.reader());
     if (o.json) {
         nlohmann::ordered_json out{
             {"state_hash", v.hash}, {"recorded_hash", v.recorded},         {"matches", v.matches},
@@ -37,11 +39,21 @@ void replay(const ReplayOptions& o) {
             {"seams", v.seams},     {"broken_seams", v.brokenSeams},       {"engine_revision", v.engineRevision}};
         if (!player.toothCase().others.empty())
             out["other_teeth"] = nlohmann::ordered_json::parse(simulation::nickedJson(nicked));
+        nlohmann::ordered_json hours = nlohmann::ordered_json::object();
+        for (const auto& [hour, seconds] : figures.atHourS)
+            hours[std::to_string(hour)] = seconds;
+        out["time_s"] = {{"total", figures.totalS},
+                         {"by_mirror", figures.byMirrorS},
+                         {"finger_rest", figures.fingerRestS},
+                         {"at_hour", hours}};
         fmt::print("{}\n", out.dump(2));
     } else {
         fmt::print("state_hash {}\nmatches {}\n", v.hash, v.matches);
         for (const simulation::NickedTooth& tooth : nicked)
             fmt::print("nicked {}: {:.4f} mm3\n", tooth.name, tooth::sumOf(tooth.removedMm3));
+        if (figures.byMirrorS > 0.0 || figures.fingerRestS > 0.0)
+            fmt::print("by mirror {:.1f} s, with a finger rest {:.1f} s, of {:.1f} s\n", figures.byMirrorS,
+                       figures.fingerRestS, figures.totalS);
         if (v.differingTicks > 0)
             fmt::print("{} ticks differ, the first is {}\n", v.differingTicks, v.firstDifferingTick);
         if (v.seams > 0)

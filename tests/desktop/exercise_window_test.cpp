@@ -124,6 +124,31 @@ TEST_F(ExerciseTest, SpeaksJapaneseWhereTheWindowDoes) {
     EXPECT_TRUE(language.use(QStringLiteral("en")));
 }
 
+TEST_F(ExerciseTest, ForWorkByMirrorShowsNothingElseAndEachRecordingSaysSo) {
+    startWith({"direct-view"});
+    std::vector<fs::path> recordings{simulator().recording()};
+    EXPECT_TRUE(view()->camera().mirrored);
+    EXPECT_TRUE(action("actionMirrorView")->isChecked());
+    EXPECT_FALSE(action("actionMirrorView")->isEnabled());
+    EXPECT_TRUE(action("actionMirrorView")->toolTip().contains("Locked"));
+    EXPECT_TRUE(part<QLabel>("exerciseLocked")->text().contains("by mirror"));
+    openCase(makeCase("another", {"direct-view"}));
+    recordings.push_back(simulator().recording());
+    EXPECT_TRUE(view()->camera().mirrored);
+    openCase(makeCase("free", {}));
+    EXPECT_FALSE(view()->camera().mirrored);
+    EXPECT_TRUE(action("actionMirrorView")->isEnabled());
+    for (const fs::path& recording : recordings) {
+        const session::SessionReader reader(recording);
+        const auto& events = reader.events();
+        const auto way =
+            std::find_if(events.begin(), events.end(), [](const auto& e) { return e.name == "working way"; });
+        ASSERT_NE(way, events.end()) << recording;
+        EXPECT_LT(way->tick, 200u);
+        EXPECT_NE(way->text.find(R"("mirror_only": true)"), std::string::npos) << way->text;
+    }
+}
+
 /// Tries everything a person can reach, and notes what came about that a lock should have kept away.
 class LockTest : public ExerciseTest {
   protected:
@@ -176,6 +201,7 @@ class LockTest : public ExerciseTest {
         note("scale-bar", written.scaleBar);
         note("calliper", tool == Tool::calliper || !part<QLabel>("calliperReadout")->isHidden());
         note("compare", view()->isComparing());
+        note("direct-view", !view()->isMirrorView());
         for (const ToothChart* chart : window().findChildren<ToothChart*>())
             note("chart", chart->isVisible());
     }

@@ -22,6 +22,7 @@ constexpr std::array<const char*, cases::kHelps.size()> kHelpWords{
     QT_TRANSLATE_NOOP("Exercise", "Chart of the mouth"),
     QT_TRANSLATE_NOOP("Exercise", "Calliper"),
     QT_TRANSLATE_NOOP("Exercise", "Before and after"),
+    QT_TRANSLATE_NOOP("Exercise", "Direct view: work by mirror"),
 };
 
 // In the order of exercise::Operation.
@@ -40,6 +41,8 @@ constexpr std::array<const char*, exercise::kOperationCount> kOperationWords{
     QT_TRANSLATE_NOOP("Exercise", "hidden tissues"),
     QT_TRANSLATE_NOOP("Exercise", "before and after"),
     QT_TRANSLATE_NOOP("Exercise", "mouth mirror"),
+    QT_TRANSLATE_NOOP("Exercise", "direct view"),
+    QT_TRANSLATE_NOOP("Exercise", "change between direct view and mirror"),
     QT_TRANSLATE_NOOP("Exercise", "scale bar"),
     QT_TRANSLATE_NOOP("Exercise", "chart of the mouth"),
     QT_TRANSLATE_NOOP("Exercise", "hints"),

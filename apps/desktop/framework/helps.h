@@ -25,10 +25,10 @@ enum class Help {
     scaleBar,
     chart,
     calliper,
-    compare
-
+    compare,
+    directView
 };
-static_assert(static_cast<std::size_t>(Help::compare) + 1 == cases::kHelps.size());
+static_assert(static_cast<std::size_t>(Help::directView) + 1 == cases::kHelps.size());
 
 /// By its name in a case.
 [[nodiscard]] std::optional<Help> helpOf(std::string_view name);

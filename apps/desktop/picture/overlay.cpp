@@ -2,8 +2,10 @@
 #include "desktop/picture/overlay.h"
 
 #include <QCoreApplication>
+#include <QLineF>
 #include <QLocale>
 #include <QPainterPath>
+#include <QPolygonF>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,7 +21,7 @@ const QColor kGround(18, 21, 26, 190), kEdge(255, 255, 255, 36), kText(238, 240,
     kLine(255, 214, 90), kSectionLine(110, 200, 255), kLandmark(120, 235, 170), kInside(255, 150, 190);
 constexpr double kMargin = 12.0, kPad = 8.0, kRound = 6.0, kLeashPixels = 6.0, kDepthScaleWidth = 90.0;
 // Of the picture's height at most: else it hides more than it tells. And what a fitted tooth leaves free above it.
-constexpr double kLegendShare = 0.4, kHalfLegendShare = 0.25, kLegendWidthShare = 0.085, kFittedMargin = 0.095,
+constexpr double kLegendShare = 0.4, kHalfLegendShare = 0.25, kLegendWidthShare = 0.13, kFittedMargin = 0.095,
                  kRowPixels = 54.0;
 
 struct Texts {
@@ -374,28 +376,49 @@ void message(QPainter& p, const QRectF& area, const OverlayState& state) {
                state.remedy);
 }
 
-/// Above or below its place, or not at all where others stand already: the list has it.
-void landmarkName(QPainter& p, const Area& area, const QPointF& at, const QString& name) {
-    const QFontMetricsF metrics(p.font());
-    for (const QPointF by : {QPointF(6, -5), QPointF(6, 5 + metrics.ascent())}) {
-        const QRectF box(at + by - QPointF(0, metrics.ascent()),
-                         QSizeF(metrics.horizontalAdvance(name), metrics.height()));
-        if (std::any_of(area.labels.begin(), area.labels.end(), [&](const QRectF& o) { return o.intersects(box); }))
-            continue;
-        area.labels.push_back(box);
-        return haloText(p, at + by, name);
-    }
+bool crosses(const QLineF& line, const QRectF& box) {
+    if (box.contains(line.p1()) || box.contains(line.p2())) return true;
+    const QPolygonF round(box);  // closed
+    for (qsizetype i = 0; i + 1 < round.size(); ++i)
+        if (line.intersects(QLineF(round[i], round[i + 1]), nullptr) == QLineF::BoundedIntersection) return true;
+    return false;
 }
 
-void landmark(QPainter& p, const Area& area, const ShownLandmark& one, std::optional<std::size_t> grabbed) {
+/// Beside its place, best where no line runs through it; not at all where others stand already: the list has it.
+void landmarkName(QPainter& p, const Area& area, const QPointF& at, const QString& name,
+                  const std::vector<QLineF>& lines) {
+    const QFontMetricsF metrics(p.font());
+    const double width = metrics.horizontalAdvance(name), up = -5, down = 5 + metrics.ascent();
+    std::optional<QPointF> best;
+    std::ptrdiff_t fewest = 0;
+    for (const QPointF by : {QPointF(6, up), QPointF(6, down), QPointF(-6 - width, up), QPointF(-6 - width, down)}) {
+        const QRectF box(at + by - QPointF(0, metrics.ascent()), QSizeF(width, metrics.height()));
+        if (std::any_of(area.labels.begin(), area.labels.end(), [&](const QRectF& o) { return o.intersects(box); }))
+            continue;
+        const auto through =
+            std::count_if(lines.begin(), lines.end(), [&](const QLineF& line) { return crosses(line, box); });
+        if (best && through >= fewest) continue;
+        best = by;
+        fewest = through;
+    }
+    if (!best) return;
+    area.labels.emplace_back(at + *best - QPointF(0, metrics.ascent()), QSizeF(width, metrics.height()));
+    haloText(p, at + *best, name);
+}
+
+/// Its points and lines; what was drawn goes to `lines`. The place for its name, when something of it is seen.
+std::optional<QPointF> landmark(QPainter& p, const Area& area, const ShownLandmark& one,
+                                std::optional<std::size_t> grabbed, std::vector<QLineF>& lines) {
     const QColor colour = one.isSelected ? kLine : one.isInside ? kInside : kLandmark;
     const std::size_t count = one.pointsMm.size();
     const auto seen = [&](std::size_t i) -> std::optional<QPointF> {
         return i < one.hidden.size() && one.hidden[i] ? std::nullopt : area.at(one.pointsMm[i]);
     };
     for (std::size_t i = 0; count > 1 && i < (one.isRing ? count : count - 1); ++i)
-        if (const auto a = seen(i), b = seen((i + 1) % count); a && b)
+        if (const auto a = seen(i), b = seen((i + 1) % count); a && b) {
             haloLine(p, *a, *b, colour, one.isSelected ? 2.2 : 1.3);
+            lines.emplace_back(*a, *b);
+        }
     if (count == 1)
         if (const auto at = seen(0)) dot(p, *at, colour, one.isSelected ? 4.5 : 3.2);
     if (grabbed)
@@ -404,22 +427,26 @@ void landmark(QPainter& p, const Area& area, const ShownLandmark& one, std::opti
     std::vector<std::size_t> left;
     for (std::size_t i = 0; i < count; ++i)
         if (seen(i)) left.push_back(i);
-    if (left.empty()) return;
-    const QPointF at = *seen(left[left.size() / 2]);
-    if (one.isSelected)
-        label(p, area, at, one.name);
-    else
-        landmarkName(p, area, at, one.name);
+    return left.empty() ? std::nullopt : seen(left[left.size() / 2]);
 }
 
 void landmarks(QPainter& p, const Area& area) {
     p.save();
     p.setFont(smaller(p.font(), 1.5));
-    for (std::size_t i = 0; i < area.state.landmarks.size(); ++i) {
+    // What a strip covers nobody could read. Names stand over all lines, and the chosen one has its place first.
+    const auto& all = area.state.landmarks;
+    area.labels.insert(area.labels.end(), area.state.covered.begin(), area.state.covered.end());
+    std::vector<QLineF> lines;
+    std::vector<std::optional<QPointF>> places;
+    for (std::size_t i = 0; i < all.size(); ++i) {
         const auto& grabbed = area.state.grabbed;
-        landmark(p, area, area.state.landmarks[i],
-                 grabbed && grabbed->landmark == i ? std::optional(grabbed->point) : std::nullopt);
+        places.push_back(landmark(
+            p, area, all[i], grabbed && grabbed->landmark == i ? std::optional(grabbed->point) : std::nullopt, lines));
     }
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (places[i] && all[i].isSelected) label(p, area, *places[i], all[i].name);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (places[i] && !all[i].isSelected) landmarkName(p, area, *places[i], all[i].name, lines);
     p.restore();
 }
 

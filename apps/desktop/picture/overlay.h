@@ -23,6 +23,7 @@ struct OverlayState {
     Tool tool = Tool::drill;
     std::vector<view::LegendEntry> legend;  ///< empty: none
     bool scaleBar = false;
+    std::vector<QRectF> covered;               ///< where strips lie over the picture: names keep off
     std::optional<double> removedDepthMostMm;  ///< the end of that scale where it is shown
 
     // The hand; without one nothing of it is shown.

@@ -36,6 +36,13 @@ void StripStack::setTop(int pixels) {
     place();
 }
 
+std::vector<QRectF> StripStack::covered() const {
+    std::vector<QRectF> places;
+    for (const QWidget* strip : strips_)
+        if (!strip->isHidden()) places.emplace_back(strip->geometry());
+    return places;
+}
+
 bool StripStack::eventFilter(QObject* watched, QEvent* event) {
     switch (event->type()) {
         case QEvent::Resize:

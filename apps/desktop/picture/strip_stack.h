@@ -5,6 +5,8 @@
 
 #include <QList>
 #include <QObject>
+#include <QRectF>
+#include <vector>
 
 class QWidget;
 
@@ -20,6 +22,8 @@ class StripStack : public QObject {
     void add(QWidget* strip);
     /// Pixels that stay free above them.
     void setTop(int pixels);
+    /// Where in the picture those that are shown lie.
+    [[nodiscard]] std::vector<QRectF> covered() const;
 
   protected:
     bool eventFilter(QObject* watched, QEvent* event) override;

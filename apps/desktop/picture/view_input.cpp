@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <QApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QWheelEvent>
@@ -322,6 +323,8 @@ void ViewWidget::mouseDoubleClickEvent(QMouseEvent* event) {
 }
 
 void ViewWidget::mouseMoveEvent(QMouseEvent* event) {
+    // It comes in unseen where a strip over the picture was closed under it.
+    if (!hasFocus() && isActiveWindow() && !isAncestorOf(QApplication::focusWidget())) setFocus(Qt::OtherFocusReason);
     state_->moveTo(event->position(), event->modifiers());
 }
 

@@ -300,6 +300,7 @@ OverlayState ViewWidget::State::overlay() const {
     state.camera = frame ? frame->camera : camera;
     state.compare = compare;
     state.tool = tool;
+    state.covered = strips->covered();
     if (legendShown && allows(Operation::tissueColours)) {
         std::vector<cases::Tissue> shown;
         for (const cases::Tissue tissue : tissues)

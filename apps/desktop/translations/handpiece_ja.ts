@@ -722,6 +722,10 @@
         <translation>前後の比較</translation>
     </message>
     <message>
+        <source>Direct view: work by mirror</source>
+        <translation>直視（ミラー視で作業します）</translation>
+    </message>
+    <message>
         <source>undo</source>
         <translation>元に戻す</translation>
     </message>
@@ -776,6 +780,14 @@
     <message>
         <source>mouth mirror</source>
         <translation>デンタルミラー</translation>
+    </message>
+    <message>
+        <source>direct view</source>
+        <translation>直視</translation>
+    </message>
+    <message>
+        <source>change between direct view and mirror</source>
+        <translation>直視とミラー視の切り替え</translation>
     </message>
     <message>
         <source>scale bar</source>

@@ -15,6 +15,8 @@ namespace handpiece::desktop {
 
 namespace {
 
+/// How much wider than its tooth the ring is that shows where the keyboard is.
+constexpr double kRing = 1.16;
 /// Sizes along and across the arch [mm], by place from the midline: usual crown sizes, rounded, for a drawing only.
 constexpr double kAlong[2][8] = {{8.5, 6.5, 7.5, 7.0, 6.8, 10.2, 9.8, 8.8},
                                  {5.3, 5.8, 6.8, 7.0, 7.1, 11.2, 10.6, 10.0}};
@@ -187,7 +189,10 @@ void ToothChart::layOut() {
                     transform.scale(wide * size, most * size);
                     outline = crown(number, primary, grooves);
                 }
-                const double reach = most * size / 2 + line * 0.62;
+                // Clear of the ring round the tooth that has the keyboard.
+                const double reach = most * size / 2 * kRing + 4 +
+                                     std::abs(normal.x()) * 0.5 * fontMetrics().horizontalAdvance("46") +
+                                     std::abs(normal.y()) * 0.35 * line;
                 places_.push_back({fdi, centre, transform.map(outline), transform.map(grooves),
                                    primary ? centre - normal * reach : centre + normal * reach});
             }
@@ -349,7 +354,7 @@ void ToothChart::paintEvent(QPaintEvent* event) {
             painter.setPen(QPen(textColour, 1.2, Qt::DotLine));
             QTransform wider;
             wider.translate(place.centre.x(), place.centre.y());
-            wider.scale(1.16, 1.16);
+            wider.scale(kRing, kRing);
             wider.translate(-place.centre.x(), -place.centre.y());
             painter.drawPath(wider.map(place.outline));
         }

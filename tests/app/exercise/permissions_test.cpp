@@ -34,11 +34,12 @@ TEST(Permissions, EachLockTakesWhatItSaysAndNothingElse) {
         {"transparency", {transparency, compare}},
         {"guide", {guidance, depthStop}},
         {"score", {volumes, report}},
-        {"mirror", {mirror}},
+        {"mirror", {mirror, mirrorView}},
         {"scale-bar", {scaleBar}},
         {"chart", {chart}},
         {"calliper", {calliper}},
-        {"compare", {compare}}};
+        {"compare", {compare}},
+        {"direct-view", {directView, mirrorView}}};
     ASSERT_EQ(expected.size(), cases::kHelps.size());
     for (const std::string_view help : cases::kHelps)
         EXPECT_EQ(locked({std::string(help)}), expected.at(std::string(help))) << help;

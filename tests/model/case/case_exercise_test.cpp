@@ -70,7 +70,7 @@ TEST(CaseExercise, KnowsEveryLockAndGoesIntoATextAndBack) {
     e.title = {{"en", "Class I"}};
     e.allowedBurs = {"330"};
     e.lockedHelps.assign(kHelps.begin(), kHelps.end());
-    for (const char* help : {"mirror", "scale-bar", "chart", "calliper", "compare"})
+    for (const char* help : {"mirror", "scale-bar", "chart", "calliper", "compare", "direct-view"})
         EXPECT_THAT(e.lockedHelps, testing::Contains(help));
     const Exercise back = parseExercise(exerciseText(e), "here");
     EXPECT_EQ(back.lockedHelps, e.lockedHelps);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "desktop/features/landmarks/landmarks_feature.h"
 
+#include <QDockWidget>
 #include <QMessageBox>
 #include <algorithm>
 
@@ -39,19 +40,23 @@ LandmarksFeature::LandmarksFeature(const FeatureContext& context)
                : answer == QMessageBox::Discard ? Questions::Unsaved::discard
                                                 : Questions::Unsaved::cancel;
     };
-    window_.docks().add(
-        {"landmarksDock",
-         tr("Landmarks"),
-         65,
-         {{Detail::practice, Qt::RightDockWidgetArea, 70, 260}, {Detail::laboratory, Qt::RightDockWidgetArea, 70, 260}},
-         [this] { return commands_[Command::show]->isChecked(); }},
-        panel_);
+    QDockWidget* dock = window_.docks().add({"landmarksDock",
+                                             tr("Landmarks"),
+                                             65,
+                                             {{Detail::practice, Qt::RightDockWidgetArea, 70, 260, "soundDock"},
+                                              {Detail::laboratory, Qt::RightDockWidgetArea, 70, 260}},
+                                             [this] { return commands_[Command::show]->isChecked(); }},
+                                            panel_);
     const auto hasMarks = [this] { return simulator_.mode() != Simulator::Mode::empty && !marks_.empty(); };
     window_.commands().enableWhile(commands_[Command::show], hasMarks);
     window_.commands().enableWhile(commands_[Command::move], [this, hasMarks] { return hasMarks() && mayMove(); });
-    on(commands_[Command::show], [this](bool isOn) {
+    on(commands_[Command::show], [this, dock](bool isOn) {
         if (!isOn && view_.tool() == Tool::landmarks) view_.setTool(Tool::drill);
         window_.docks().showWanted();
+        if (isOn) {
+            dock->raise();
+            window_.resizeDocks({dock}, {260}, Qt::Vertical);
+        }
         showMarks();
     });
     on(commands_[Command::move], [this](bool isOn) {

@@ -12,7 +12,7 @@ using Command = PositionFeature::Command;
 constexpr CommandOf<Command> kCommands[] = {
     {Command::mirrorView, "actionMirrorView", QT_TRANSLATE_NOOP("Commands", "Work by mirror"),
      QT_TRANSLATE_NOOP("Commands", "See only the mirror's picture: left and right are changed over, the hand is not"),
-     "mirror", "Ctrl+Shift+V", in(Shelf::tools, 16), kCheckable, exercise::Operation::mirror},
+     "mirror", "Ctrl+Shift+V", in(Shelf::tools, 16), kCheckable, exercise::Operation::mirrorView},
     {Command::fingerRest, "actionFingerRest", QT_TRANSLATE_NOOP("Commands", "Finger rest"),
      QT_TRANSLATE_NOOP("Commands", "Support the hand on the nearest other tooth: it moves less and turns about there"),
      "touch", "Ctrl+Shift+F", in(Shelf::tools, 17), kCheckable},
@@ -49,13 +49,16 @@ PositionFeature::PositionFeature(const FeatureContext& context)
 void PositionFeature::showDocument() {
     hour_ = 0;
     panel_->setHour(0);
-    view_.setMirrorView(false);
+    // An exercise may be for work by mirror; each recording says so from its beginning.
+    view_.setMirrorView(simulator_.permissions().locks(exercise::Operation::directView));
+    commands_[Command::mirrorView]->setChecked(view_.isMirrorView());
     const auto& toothCase = simulator_.toothCase();
     restMm_ = toothCase ? input::fingerRest(*toothCase) : std::nullopt;
     if (toothCase)
         panel_->setTooth(toothCase->fdiNumber, input::headInCase(*toothCase).has_value());
     else
         panel_->setTooth(0, false);
+    if (view_.isMirrorView()) tellRecord();
 }
 
 void PositionFeature::sit(int hour) {

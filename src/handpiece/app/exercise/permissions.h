@@ -33,6 +33,8 @@ enum class Operation {
     transparency,  ///< the removed part as glass, the tooth before, hidden tissues
     compare,
     mirror,
+    directView,  ///< locked: only the mirror's picture is seen
+    mirrorView,  ///< to choose between the two
     scaleBar,
     chart,     ///< of the mouth
     guidance,  ///< first steps, and hints in the picture
@@ -59,11 +61,12 @@ inline constexpr std::array<Lock, cases::kHelps.size()> kLocks{{
     {"transparency", {Operation::transparency, Operation::compare}, 2},
     {"guide", {Operation::guidance, Operation::depthStop}, 2},
     {"score", {Operation::volumes, Operation::report}, 2},
-    {"mirror", {Operation::mirror}, 1},
+    {"mirror", {Operation::mirror, Operation::mirrorView}, 2},
     {"scale-bar", {Operation::scaleBar}, 1},
     {"chart", {Operation::chart}, 1},
     {"calliper", {Operation::calliper}, 1},
     {"compare", {Operation::compare}, 1},
+    {"direct-view", {Operation::directView, Operation::mirrorView}, 2},
 }};
 static_assert(std::equal(kLocks.begin(), kLocks.end(), cases::kHelps.begin(),
                          [](const Lock& lock, std::string_view help) { return lock.help == help; }),

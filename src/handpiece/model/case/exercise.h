@@ -26,9 +26,9 @@ struct View {
 };
 
 /// Helps that a teacher can lock; what each takes away: docs/case-format.md.
-inline constexpr std::array<std::string_view, 13> kHelps = {
+inline constexpr std::array<std::string_view, 14> kHelps = {
     "undo",  "reset",  "depth",     "tissue-colours", "cross-section", "transparency", "guide",
-    "score", "mirror", "scale-bar", "chart",          "calliper",      "compare"};
+    "score", "mirror", "scale-bar", "chart",          "calliper",      "compare",      "direct-view"};
 
 /// `[exercise]` of case.toml.
 struct Exercise {

@@ -99,8 +99,13 @@ std::map<LandmarkKind, Tally> tallied(const char* what, const Change& change) {
         change(changed);
         const std::vector<Landmark> truth = std::move(changed.landmarks);
         const std::vector<Landmark> found = findLandmarks(changed);
-        for (const Landmark& mark : truth)
+        for (const Landmark& mark : truth) {
             ++tallies[mark.kind].known;
+            if (mark.kind == LandmarkKind::cuspTip && std::none_of(found.begin(), found.end(), [&](const Landmark& f) {
+                    return f.kind == mark.kind && f.name == mark.name;
+                }))
+                fmt::print("  {} cusp-tip {}: not found\n", tooth.fdiNumber, mark.name);
+        }
         for (const Landmark& mark : found) {
             Tally& tally = tallies[mark.kind];
             ++tally.found;

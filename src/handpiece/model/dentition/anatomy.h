@@ -5,6 +5,7 @@
 /// room. Frame of these: +x mesial, +y lingual, +z occlusal [mm], so that left and right share one description.
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -40,12 +41,13 @@ struct Crest {
 };
 
 /// A groove cut into the finished surface along a line seen from above: points are x, y and depth. V-shaped with
-/// rounded shoulders.
+/// rounded shoulders; it widens and narrows on its way.
 struct Groove {
     std::string name;  ///< developmental grooves have one and become landmarks
     std::vector<core::Vec3> points;
     double halfWidth = 0.4;
     double fromZ = 2.5, toZ = 4.0;  ///< it fades in over this height, where it runs down a side
+    std::vector<double> widths{};   ///< shares of halfWidth, one a point; none: the same all along
 };
 
 /// A round hollow, or with a negative depth a swelling: pit, fossa, concavity, cingulum, lobe, Carabelli's cusp.
@@ -58,6 +60,11 @@ struct Hollow {
 struct Cusp {
     std::string name;
     core::Vec3 tip;
+};
+
+/// Where antagonists have ground a cusp flat.
+struct Facet {
+    core::Vec3 at, normal;
 };
 
 struct Root {
@@ -106,6 +113,9 @@ struct Spec {
     std::vector<Crest> crests;
     std::vector<Groove> grooves;
     std::vector<Hollow> hollows;
+    std::vector<Facet> facets;
+    std::uint64_t unevenSeed = 0;
+    double uneven = 0.0;  ///< no wall of a tooth is as smooth as its outlines: spread of this [mm]
     std::vector<Root> roots;
     double trunk = 0.0;  ///< from the cervix to the furcation; 0 with one root
     double rootBlend = 1.4;

@@ -80,7 +80,7 @@ class Finder {
     /// The outermost point of the surface at a height, in a direction from the tooth's axis.
     Vec3 side(const Vec3& out, double z) const {
         Vec3 found(0, 0, z);
-        (void)a_.surfaceAlong(Vec3(s_.centreX, 0, z) + 20.0 * out, -out, found);
+        (void)a_.surfaceAlong(Vec3(s_.centreX, 0, z) + (a_.bounds().size().head<2>().maxCoeff()) * out, -out, found);
         return found;
     }
 
@@ -92,18 +92,22 @@ class Finder {
             const double rad = 2.0 * std::numbers::pi * i / kPoints;
             const Vec3 out(core::cos(rad), core::sin(rad), 0.0);
             double z = 0.0;
-            for (int step = 0; step < 40; ++step)
-                z -= 0.5 * a_.aboveCervix(side(out, z));
+            for (int step = 0; step < 40; ++step) {
+                const double above = a_.aboveCervix(side(out, z));
+                z -= 0.7 * above;
+                if (std::abs(above) < 1e-7) break;
+            }
             junction.push_back(side(out, z));
             // Height of contour: the widest, by golden section around the best of some heights.
             const auto wide = [&](double h) { return side(out, h).dot(out); };
             double best = z, widest = -1.0;
-            for (double h = z + 0.3; h < 0.85 * top; h += 0.25)
+            for (double h = z + 0.3; h < 0.85 * top; h += 0.5)
                 if (const double w = wide(h); w > widest) widest = w, best = h;
-            double low = best - 0.25, high = best + 0.25;
-            for (int step = 0; step < 20; ++step) {
+            double low = best - 0.5, high = best + 0.5;
+            for (int step = 0; step < 11; ++step) {
                 const double c = high - 0.618 * (high - low), d = low + 0.618 * (high - low);
-                (wide(c) > wide(d) ? high : low) = wide(c) > wide(d) ? d : c;
+                const bool isLow = wide(c) > wide(d);
+                (isLow ? high : low) = isLow ? d : c;
             }
             contour.push_back(side(out, 0.5 * (low + high)));
         }

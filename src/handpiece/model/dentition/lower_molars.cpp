@@ -54,11 +54,11 @@ void fiveCusps(Spec& s) {
     s.hollows.push_back({Vec3(-3.0, -5.0, 5.6), Vec3(1.5, 2.5, 2.8), 0.42});
     s.hollows.push_back({Vec3(0.25, 5.6, 5.8), Vec3(1.7, 2.8, 3.0), 0.5});
     // The mesiobuccal groove ends in a pit in the middle third.
-    s.hollows.push_back({Vec3(0.86, -5.15, 3.35), Vec3(0.42, 0.6, 0.48), 0.25, "buccal"});
+    s.hollows.push_back({Vec3(0.86, -5.15, 3.35), Vec3(0.65, 0.8, 0.8), 0.2, "buccal"});
     // Pits.
-    s.hollows.push_back({Vec3(0.2, 0.12, 4.75), Vec3(0.35, 0.35, 0.8), 0.2, "central"});
-    s.hollows.push_back({Vec3(3.35, 0.15, 4.8), Vec3(0.35, 0.35, 0.8), 0.2, "mesial"});
-    s.hollows.push_back({Vec3(-3.3, 0.35, 4.8), Vec3(0.35, 0.35, 0.8), 0.18, "distal"});
+    s.hollows.push_back({Vec3(0.2, 0.12, 4.75), Vec3(0.6, 0.6, 0.9), 0.2, "central"});
+    s.hollows.push_back({Vec3(3.35, 0.15, 4.8), Vec3(0.65, 0.65, 0.9), 0.17, "mesial"});
+    s.hollows.push_back({Vec3(-3.3, 0.35, 4.8), Vec3(0.65, 0.65, 0.9), 0.15, "distal"});
 }
 
 /// Four cusps; the grooves make a +. Wrinkled: more supplemental grooves, as third molars have.
@@ -121,9 +121,9 @@ void fourCusps(Spec& s, bool isWrinkled) {
     }
     s.hollows.push_back({Vec3(0.3, -5.6, 5.4), Vec3(1.7, 2.8, 3.0), 0.48});
     s.hollows.push_back({Vec3(0.25, 5.6, 5.8), Vec3(1.7, 2.8, 3.0), 0.48});
-    s.hollows.push_back({Vec3(0.25, 0.08, 4.75), Vec3(0.35, 0.35, 0.8), 0.2, "central"});
-    s.hollows.push_back({Vec3(3.3, 0.1, 4.8), Vec3(0.33, 0.33, 0.8), 0.18, "mesial"});
-    s.hollows.push_back({Vec3(-3.25, 0.1, 4.8), Vec3(0.33, 0.33, 0.8), 0.18, "distal"});
+    s.hollows.push_back({Vec3(0.25, 0.08, 4.75), Vec3(0.6, 0.6, 0.9), 0.2, "central"});
+    s.hollows.push_back({Vec3(3.3, 0.1, 4.8), Vec3(0.6, 0.6, 0.9), 0.16, "mesial"});
+    s.hollows.push_back({Vec3(-3.25, 0.1, 4.8), Vec3(0.6, 0.6, 0.9), 0.15, "distal"});
 }
 
 }  // namespace
@@ -136,8 +136,10 @@ void lowerMolar(Spec& s, int place) {
     s.distal = {4.3, 5.8, 4.65, 7.4, 3.4};
     s.buccal = {2.2, 6.2, 3.95, 7.6, 2.7, 0.05};
     s.lingual = {3.6, 6.7, 4.05, 7.8, 3.0};
-    s.lean = -0.05, s.wedge = 0.04;
-    s.cervixSquare = 0.5, s.contourSquare = 0.7, s.rimSquare = 0.65;
+    s.lean = -0.06, s.wedge = 0.05;
+    s.cervixSquare = 0.5, s.contourSquare = 0.56, s.rimSquare = 0.5;
+    s.mesial.belly = s.distal.belly = 0.76, s.buccal.belly = 0.74, s.lingual.belly = 0.74;
+    s.enamelFossa = 0.62;
     s.rimRound = 1.2;
     s.groundZ = 4.55;
     if (place == 6)
@@ -149,6 +151,10 @@ void lowerMolar(Spec& s, int place) {
                 Vec2(0.78, 0.5)},
                {"distal", Vec2(-2.05, 0.0), Vec3(-2.9, 0.0, -6.6), Vec3(-3.5, 0.1, -13.2), Vec2(1.95, 3.65), 0.35, 0.1,
                 Vec2(0.75, 0.46)}};
+    // The trunk is fluted towards the furcation, buccally more than lingually: there the trunk is the longer.
+    s.hollows.push_back({Vec3(0.1, -5.0, -1.6), Vec3(1.9, 2.0, 3.4), 0.4});
+    s.hollows.push_back({Vec3(0.0, 5.0, -1.4), Vec3(1.9, 2.0, 3.2), 0.32});
+    s.hollows.push_back({Vec3(0.0, 2.9, -3.6), Vec3(1.6, 2.2, 1.4), -0.6});
     s.roofZ = 0.4, s.floorZ = -1.15;
     if (place == 7) {
         // Straighter roots, closer together.

@@ -99,8 +99,8 @@ void lowerPremolar(Spec& s, int place) {
     if (first) {
         s.groundZ = 4.4;
         // The buccal cusp stands over the root's axis; the transverse ridge crosses the crown to the small lingual one.
-        plan.buccal = {{"buccal", Vec3(0.15, -1.0, 8.25), Vec3(0.15, 0.9, 5.0), 0.45, 1.6}};
-        plan.lingual = {{"lingual", Vec3(0.05, 2.5, 5.75), Vec3(0.1, 1.6, 4.9), 0.4, 1.15}};
+        plan.buccal = {{"buccal", Vec3(0.15, -1.0, 8.25), Vec3(0.15, 0.9, 5.0), 0.62, 1.6}};
+        plan.lingual = {{"lingual", Vec3(0.05, 2.5, 5.75), Vec3(0.1, 1.6, 4.9), 0.55, 1.15}};
         plan.mesial = {Vec3(2.65, -0.55, 5.9), Vec3(2.7, 0.9, 5.2), Vec3(1.6, 2.2, 4.9)};
         plan.distal = {Vec3(-2.65, -0.55, 6.0), Vec3(-2.75, 0.9, 5.4), Vec3(-1.7, 2.3, 5.1)};
         occlusalSurface(s, plan);

@@ -46,7 +46,7 @@ void occlusalSurface(Spec& spec, const OcclusalPlan& plan) {
             by.x() += c.bow;
             by.z() += 0.24 * (c.tip.z() - c.inner.z());
             spec.crests.push_back(
-                {c.tip, by, c.inner, 1.8 * c.round, c.slope, false, std::string("triangular ") + c.name});
+                {c.tip, by, c.inner, 1.3 * c.round, c.slope, false, std::string("triangular ") + c.name});
             spec.crests.push_back(cuspRidge(c.tip, mesial, side, c.slope));
             spec.crests.push_back(cuspRidge(c.tip, distal, side, c.slope));
             for (const Vec3& rim : {mesial, distal}) {
@@ -80,9 +80,10 @@ void chamberAndCanals(Spec& spec, double ageYears) {
     spec.roofZ -= 0.35 * (1.0 - young), spec.floorZ += 0.35 * (1.0 - young);
     const double halfX = 0.25 * spec.sizes.mesiodistalCervix * young,
                  halfY = 0.22 * spec.sizes.buccolingualCervix * young;
-    spec.chamber = {{spec.floorZ - 0.2, spec.centreX, 0.0, 0.9 * halfX, 0.9 * halfY, 0.6},
-                    {0.5 * (spec.floorZ + spec.roofZ), spec.centreX, 0.0, halfX, halfY, 0.6},
-                    {spec.roofZ + 0.2, spec.centreX, 0.0, 0.95 * halfX, 0.95 * halfY, 0.6}};
+    // Its walls are hollow: wide towards the horns and the orifices, narrow between.
+    spec.chamber = {{spec.floorZ - 0.2, spec.centreX, 0.0, 0.92 * halfX, 0.92 * halfY, 0.4},
+                    {0.5 * (spec.floorZ + spec.roofZ), spec.centreX, 0.0, 0.86 * halfX, 0.88 * halfY, 0.3},
+                    {spec.roofZ + 0.2, spec.centreX, 0.0, halfX, halfY, 0.4}};
     for (const Cusp& c : spec.cusps) {
         // The mesiobuccal one is the highest.
         const double up = (&c == &spec.cusps.front() ? 1.7 : 1.25) * young;

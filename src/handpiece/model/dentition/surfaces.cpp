@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/split_mix.h"
 
 namespace handpiece::dentition {
 namespace {
@@ -14,7 +15,7 @@ using core::Vec3;
 /// Turns a height over the occlusal surface into about a distance: its flanks slope by some 40 degrees.
 constexpr double kHeightToDistance = 0.75;
 /// Enamel stands this far proud of the root at the cervix: the edge one feels with a probe.
-constexpr double kStepMm = 0.08, kStepHeightMm = 0.3;
+constexpr double kStepMm = 0.06, kStepHeightMm = 0.6;
 /// Thickness that the enamel ends with, so that its edge is no razor.
 constexpr double kCervicalEnamelMm = 0.10;
 /// Dentine left everywhere over the pulp, in the crown and at the apex.
@@ -26,6 +27,10 @@ constexpr double kEdgeBevel = 0.2;
 /// A groove's shoulders reach this much farther than where one sees it end.
 constexpr double kShoulders = 1.12;
 constexpr int kCurvePieces = 6;
+/// Between the nodes of a field of unevenness; every second one has the longer waves.
+constexpr double kNodesMm = 1.0;
+/// How far from a cusp's tip a facet may reach, and how softly it ends.
+constexpr double kFacetReachMm = 0.7, kFacetSlope = 0.6, kFacetEdgeMm = 0.2;
 
 double gauss(double t) {
     return core::exp(-0.5 * t * t);
@@ -195,6 +200,57 @@ double Loft::value(const Vec3& p) const {
     return std::max((g - 1.0) / std::max(steep, 1e-3), -1.2 * std::min(halfX, halfY));
 }
 
+Unevenness::Unevenness(std::uint64_t seed, const core::Box& box)
+    : origin_(box.min - core::Vec3::Constant(2.0 * kNodesMm)) {
+    for (int axis = 0; axis < 3; ++axis)
+        size_[axis] = static_cast<int>(box.size()[axis] / kNodesMm) + 6;
+    nodes_.resize(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
+                  static_cast<std::size_t>(size_[2]));
+    const auto node = [&](int i, int j, int k) -> double& {
+        return nodes_[(static_cast<std::size_t>(k) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(j)) *
+                          static_cast<std::size_t>(size_[0]) +
+                      static_cast<std::size_t>(i)];
+    };
+    // White noise once more on a grid half as fine, then what is between.
+    std::uint64_t state = seed;
+    const auto draw = [&] { return 2.0 * core::unitOf(core::nextSplitMix(state)) - 1.0; };
+    for (double& value : nodes_)
+        value = 1.9 * draw();
+    for (int k = 0; k < size_[2]; k += 2)
+        for (int j = 0; j < size_[1]; j += 2)
+            for (int i = 0; i < size_[0]; i += 2) {
+                const double tall = 3.6 * draw();
+                for (int c = -1; c <= 1; ++c)
+                    for (int b = -1; b <= 1; ++b)
+                        for (int a = -1; a <= 1; ++a)
+                            if (i + a >= 0 && j + b >= 0 && k + c >= 0 && i + a < size_[0] && j + b < size_[1] &&
+                                k + c < size_[2])
+                                node(i + a, j + b, k + c) += tall * (a ? 0.5 : 1.0) * (b ? 0.5 : 1.0) * (c ? 0.5 : 1.0);
+            }
+}
+
+double Unevenness::at(const Vec3& p) const {
+    // Quadratic B-splines: smooth, and three nodes a side.
+    int from[3];
+    double w[3][3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const double at = std::clamp((p[axis] - origin_[axis]) / kNodesMm, 1.0, size_[axis] - 2.5);
+        from[axis] = static_cast<int>(at + 0.5) - 1;
+        const double t = at - (from[axis] + 1);
+        w[axis][0] = 0.5 * (0.5 - t) * (0.5 - t), w[axis][1] = 0.75 - t * t, w[axis][2] = 0.5 * (0.5 + t) * (0.5 + t);
+    }
+    double sum = 0.0;
+    for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < 3; ++j) {
+            const double* row = &nodes_[(static_cast<std::size_t>(from[2] + k) * static_cast<std::size_t>(size_[1]) +
+                                         static_cast<std::size_t>(from[1] + j)) *
+                                            static_cast<std::size_t>(size_[0]) +
+                                        static_cast<std::size_t>(from[0])];
+            sum += w[2][k] * w[1][j] * (w[0][0] * row[0] + w[0][1] * row[1] + w[0][2] * row[2]);
+        }
+    return sum;
+}
+
 Anatomy::Anatomy(Spec spec) : spec_(std::move(spec)), crown_(crownOf(spec_)) {
     const Sizes& z = spec_.sizes;
     const double buccal = -0.25 * (z.curveMesial + z.curveDistal);
@@ -223,15 +279,24 @@ Anatomy::Anatomy(Spec spec) : spec_(std::move(spec)), crown_(crownOf(spec_)) {
     }
     settleGrooves();
     for (const Groove& g : spec_.grooves) {
-        Line line{rounded(g.points), kShoulders * g.halfWidth, g.fromZ, g.toZ, Vec2::Zero(), 0.0};
+        Line line{rounded(g.points), {}, kShoulders * g.halfWidth, g.fromZ, g.toZ, Vec2::Zero(), 0.0};
+        std::vector<Vec3> widths;
+        for (std::size_t i = 0; i < g.points.size(); ++i)
+            widths.push_back(Vec3(g.widths.empty() ? 1.0 : g.widths[i], 0.0, 0.0));
+        double widest = 0.0;
+        for (const Vec3& w : rounded(widths))
+            line.widths.push_back(w.x()), widest = std::max(widest, w.x());
         core::Box box;
         for (const Vec3& p : line.points)
             box.extend(p);
         line.middle = box.centre().head<2>();
         for (const Vec3& p : line.points)
-            line.reach = std::max(line.reach, (p.head<2>() - line.middle).norm() + line.halfWidth + 0.06);
+            line.reach = std::max(line.reach, (p.head<2>() - line.middle).norm() + widest * line.halfWidth + 0.1);
         lines_.push_back(line);
     }
+    for (const Hollow& h : spec_.hollows)
+        bumps_.push_back({h.centre, h.radii.cwiseInverse(), h.depth});
+    if (spec_.uneven > 0.0) uneven_ = Unevenness(spec_.unevenSeed, bounds());
     if (!spec_.chamber.empty())
         chamber_.emplace_back(spec_.chamber, spec_.roots.size() == 1
                                                  ? Loft::Ends{spec_.floorZ + 0.4, 0.4, spec_.roofZ - 0.5, 0.5}
@@ -265,7 +330,7 @@ void Anatomy::settleGrooves() {
             if (!isInside(at)) continue;
             const bool isEnd = i == 0 || i + 1 == before.size();
             const Vec2 way = isEnd ? Vec2::Zero() : Vec2((before[i + 1] - before[i - 1]).head<2>().normalized());
-            g.points[i].head<2>() = settled(at, Vec2(-way.y(), way.x()), 0.3);
+            g.points[i].head<2>() = settled(at, Vec2(-way.y(), way.x()), i == 0 ? 0.12 : 0.3);
         }
         const std::vector<Vec3> rough = g.points;
         for (std::size_t i = 1; i + 1 < rough.size(); ++i)
@@ -325,7 +390,8 @@ double Anatomy::grooveDepth(const Vec3& p) const {
             const double t = std::clamp(((p.x() - a.x()) * dx + (p.y() - a.y()) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
             const double ex = p.x() - a.x() - t * dx, ey = p.y() - a.y() - t * dy;
             constexpr double kFloor = 0.08;
-            const double d = (std::sqrt(ex * ex + ey * ey + kFloor * kFloor) - kFloor) / g.halfWidth;
+            const double width = g.halfWidth * (g.widths[i] + t * (g.widths[i + 1] - g.widths[i]));
+            const double d = (std::sqrt(ex * ex + ey * ey + kFloor * kFloor) - kFloor) / width;
             if (d < 1.0) here = std::max(here, (a.z() + t * (b.z() - a.z())) * (1.0 - d) * (1.0 - d));
         }
         if (here > deepest) deepest = std::max(deepest, here * smoothStep(g.fromZ, g.toZ, p.z()));
@@ -345,9 +411,18 @@ double Anatomy::body(const Vec3& p) const {
         for (const Loft& root : roots_)
             value = smoothMin(value, root.value(p), blend);
     }
-    for (const Hollow& h : spec_.hollows) {
-        const double q = (p - h.centre).cwiseQuotient(h.radii).squaredNorm();
-        if (q < 1.0) value += h.depth * (1.0 - q) * (1.0 - q);
+    for (const Bump& b : bumps_) {
+        const double q = (p - b.centre).cwiseProduct(b.inverseRadii).squaredNorm();
+        if (q < 1.0) value += b.depth * (1.0 - q) * (1.0 - q);
+    }
+    // Cusps keep their order: they are the least uneven.
+    if (spec_.uneven > 0.0 && value < 1.5)
+        value += spec_.uneven * (1.0 - 0.75 * smoothStep(topZ_ - 2.4, topZ_ - 1.2, p.z())) * uneven_.at(p);
+    for (const Facet& f : spec_.facets) {
+        const double away = (p - f.at).head<2>().norm() - kFacetReachMm;
+        if (away > 2.0) continue;
+        const double limit = std::max(away, 0.0) * (kFacetSlope + 0.8 * std::max(away, 0.0));
+        value = smoothMax(value, f.normal.dot(p - f.at) - limit, kFacetEdgeMm);
     }
     return value;
 }
@@ -413,19 +488,36 @@ double Anatomy::cementum(const Vec3& p) const {
 }
 
 bool Anatomy::surfaceAlong(const Vec3& from, const Vec3& direction, Vec3& found) const {
-    double before = 0.0, t = 0.0;
+    double before = 0.0, t = 0.0, last = 1.0;
     while (t < 4.0 * reach_ + 30.0) {
         const double value = outer(from + t * direction);
         if (value <= 0.0) {
-            for (int i = 0; i < 40 && t - before > 1e-9; ++i) {
-                const double middle = 0.5 * (before + t);
-                (outer(from + middle * direction) > 0.0 ? before : t) = middle;
+            // False position, where the end that stays counts half (Illinois).
+            double outside = last, inside = value;
+            int stayed = 0;
+            for (int i = 0; i < 60 && t - before > 1e-9; ++i) {
+                const double between =
+                    before + std::clamp(outside / (outside - inside), 1e-3, 1.0 - 1e-3) * (t - before);
+                const double here = outer(from + between * direction);
+                if (std::abs(here) < 1e-10) {
+                    t = between;
+                    break;
+                }
+                if (here > 0.0) {
+                    before = between, outside = here;
+                    if (stayed++ > 0) inside *= 0.5;
+                    if (stayed < 1) stayed = 1;
+                } else {
+                    t = between, inside = here;
+                    if (stayed-- < 0) outside *= 0.5;
+                    if (stayed > -1) stayed = -1;
+                }
             }
             found = from + t * direction;
             return true;
         }
-        before = t;
-        t += std::clamp(0.5 * value, 1e-3, 2.0);
+        before = t, last = value;
+        t += std::clamp(0.5 * value, 0.01, 2.0);
     }
     return false;
 }
@@ -466,10 +558,20 @@ Vec3 Anatomy::outermost(const Vec3& direction, const Vec3& start) const {
 
 void Anatomy::measure() {
     const Spec& s = spec_;
-    mesialContact = outermost(Vec3::UnitX(), Vec3(0, 0, s.mesial.contourZ));
-    distalContact = outermost(-Vec3::UnitX(), Vec3(0, 0, s.distal.contourZ));
-    buccalContour = outermost(-Vec3::UnitY(), Vec3(0, 0, s.buccal.contourZ));
-    lingualContour = outermost(Vec3::UnitY(), Vec3(0, 0, s.lingual.contourZ));
+    // A side has a lobe for each cusp: the outermost of what is found from more than one place.
+    const auto widest = [&](const Vec3& way, double z) {
+        const Vec3 aside = 0.2 * s.sizes.mesiodistal * Vec3(way.y(), way.x(), 0.0);
+        Vec3 best = outermost(way, Vec3(0, 0, z));
+        if (s.cusps.size() < 4) return best;
+        for (const double side : {1.0, -1.0})
+            if (const Vec3 other = outermost(way, side * aside + Vec3(0, 0, z)); other.dot(way) > best.dot(way))
+                best = other;
+        return best;
+    };
+    mesialContact = widest(Vec3::UnitX(), s.mesial.contourZ);
+    distalContact = widest(-Vec3::UnitX(), s.distal.contourZ);
+    buccalContour = widest(-Vec3::UnitY(), s.buccal.contourZ);
+    lingualContour = widest(Vec3::UnitY(), s.lingual.contourZ);
     highest = Vec3(0, 0, -1e9);
     for (const Cusp& c : s.cusps) {
         const Vec3 top = outermost(Vec3::UnitZ(), c.tip);

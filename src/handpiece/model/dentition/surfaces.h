@@ -57,6 +57,19 @@ class Loft {
     double lean_, wedge_, skew_;  ///< of the crown: they fade out below the cervix
 };
 
+/// A smooth field of random heights, about normal with a spread of 1, of waves some 2 to 5 mm long.
+class Unevenness {
+  public:
+    Unevenness() = default;
+    Unevenness(std::uint64_t seed, const core::Box& box);
+    [[nodiscard]] double at(const core::Vec3& p) const;
+
+  private:
+    core::Vec3 origin_ = core::Vec3::Zero();
+    int size_[3] = {0, 0, 0};
+    std::vector<double> nodes_;
+};
+
 /// One tooth in the frame of anatomy.h.
 class Anatomy {
   public:
@@ -89,8 +102,13 @@ class Anatomy {
         double round, slope, reach, topZ;
         core::Vec2 middle;
     };
+    struct Bump {
+        core::Vec3 centre, inverseRadii;
+        double depth;
+    };
     struct Line {
         std::vector<core::Vec3> points;
+        std::vector<double> widths;  ///< shares of halfWidth, one a point
         double halfWidth, fromZ, toZ;
         core::Vec2 middle;
         double reach;
@@ -110,6 +128,8 @@ class Anatomy {
     std::vector<Loft> chamber_;
     std::vector<Curve> rim_, curves_;
     std::vector<Line> lines_;
+    std::vector<Bump> bumps_;
+    Unevenness uneven_;
     double cervix_[4];  ///< heights of the cemento-enamel junction: mesial, distal, buccal, lingual
     double topZ_, apexZ_, reach_;
 };

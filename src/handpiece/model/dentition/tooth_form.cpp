@@ -77,7 +77,7 @@ class Wander {
 void wander(Spec& spec, const Wander& field) {
     const auto moved = [&](Vec3& p, double up) {
         const Vec3 shift = field.at(p, 6.0);
-        p += Vec3(0.09 * shift.x(), 0.09 * shift.y(), up * shift.z());
+        p += Vec3(0.10 * shift.x(), 0.10 * shift.y(), up * shift.z());
     };
     for (Crest& c : spec.crests)
         moved(c.from, 0.0), moved(c.by, 0.08), moved(c.to, 0.04);
@@ -91,12 +91,19 @@ void wander(Spec& spec, const Wander& field) {
             if (i > 0) points.push_back(0.5 * (g.points[i - 1] + g.points[i]));
             points.push_back(g.points[i]);
         }
+        // Fissures are no engraver's work: steep and narrow here, hardly more than where two slopes meet there; down a
+        // side they fade away.
+        if (!g.name.empty() && g.name != "central") points.back().z() = 0.0;
+        g.widths.clear();
         for (Vec3& p : points) {
             const double depth = p.z();
-            moved(p, 0.0);
-            const Vec3 bend = field.at(p, 2.2);
-            p += Vec3(0.05 * bend.x(), 0.05 * bend.y(), 0.0);
-            p.z() = depth * (0.85 + 0.07 * bend.z());
+            // Where one begins says how they meet: there they keep their places.
+            const bool isStart = !g.name.empty() && &p == &points.front();
+            if (!isStart) moved(p, 0.0);
+            const Vec3 bend = field.at(p, 2.2), change = field.at(p, 3.1);
+            if (!isStart) p += Vec3(0.09 * bend.x(), 0.09 * bend.y(), 0.0);
+            p.z() = depth * std::max(0.62 + 0.26 * change.z(), 0.12);
+            g.widths.push_back(std::clamp(1.55 - 0.35 * change.z() + 0.2 * bend.z(), 0.9, 2.4));
         }
         g.points = std::move(points);
     }
@@ -118,12 +125,55 @@ void undulate(Spec& spec, std::uint64_t seed) {
             knob(at, Vec3(round, round, 1.1), -(0.05 + 0.14 * draws.uniform()) * std::min(1.0, c.round * c.round));
     }
     const Sizes& z = spec.sizes;
+    if (spec.cusps.size() >= 4)  // each cusp is a lobe of the outline too
+        for (const Cusp& c : spec.cusps)
+            knob(Vec3(1.3 * c.tip.x(), 1.45 * c.tip.y(), (0.5 + 0.08 * draws.uniform()) * z.crown), Vec3(2.1, 2.1, 2.9),
+                 -(0.14 + 0.2 * draws.uniform()));
     constexpr int kSides = 6;
     for (int i = 0; i < kSides; ++i) {
         const double turn = 2.0 * std::numbers::pi * (i + 0.5 * draws.uniform()) / kSides;
         knob(Vec3(0.5 * z.mesiodistal * core::cos(turn), 0.5 * z.buccolingual * core::sin(turn),
                   z.crown * (0.35 + 0.3 * draws.uniform())),
              Vec3(1.9, 1.9, 2.2), 0.16 * (draws.uniform() - 0.5));
+    }
+}
+
+/// Lesser ridges branch from the triangular ones down into the fossae; supplemental grooves are the valleys between.
+void branch(Spec& spec, std::uint64_t seed) {
+    Draws draws(seed, false);
+    const std::size_t count = spec.crests.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const Crest main = spec.crests[i];
+        if (!main.name.starts_with("triangular")) continue;
+        const Vec3 way = main.to - main.from;
+        const double length = way.head<2>().norm();
+        const Vec3 aside = Vec3(-way.y(), way.x(), 0.0) / length;
+        for (const double side : {1.0, -1.0}) {
+            const double t = 0.12 + 0.3 * draws.uniform(), u = 1.0 - t, far = 0.55 + 0.3 * draws.uniform(),
+                         out = (0.38 + 0.22 * draws.uniform()) * length, bow = 0.25 * draws.normal(),
+                         low = 0.1 + 0.25 * draws.uniform(), round = 0.3 + 0.35 * draws.uniform();
+            if (draws.uniform() < 0.2) continue;
+            const Vec3 from = u * u * main.from + 2.0 * u * t * main.by + t * t * main.to - Vec3(0, 0, 0.12);
+            Vec3 to = main.from + far * way + side * out * aside;
+            to.z() = main.to.z() + low;
+            Vec3 by = 0.5 * (from + to) + side * bow * aside;
+            by.z() += 0.1 * (from.z() - to.z());
+            spec.crests.push_back({from, by, to, round, 1.1});
+        }
+    }
+}
+
+/// Antagonists grind planes onto the cusps, as the years pass.
+void addFacets(Spec& spec, std::uint64_t seed, double ageYears) {
+    if (spec.isEdge) return;
+    Draws draws(seed, false);
+    const double years = std::max(ageYears - 12.0, 0.0);
+    for (const Cusp& c : spec.cusps) {
+        const double depth = 0.0035 * years * (0.4 + 0.8 * draws.uniform());
+        const double side = (c.tip.y() < 0.0 ? -1.0 : 1.0) * (draws.uniform() < 0.5 ? -1.0 : 1.0);
+        const Vec3 normal =
+            Vec3(0.7 * (draws.uniform() - 0.5), side * (0.35 + 0.25 * draws.uniform()), 1.0).normalized();
+        if (depth > 0.0) spec.facets.push_back({c.tip - depth * normal, normal});
     }
 }
 
@@ -142,6 +192,12 @@ Spec specFor(int fdi, const Patient& patient) {
     const std::uint64_t own = patient.seed * 9176263 + static_cast<std::uint64_t>(fdi % 10 + (upper ? 0 : 8));
     wander(spec, Wander(own));
     undulate(spec, own + 1);
+    // The first lower premolar has hardly a table; third molars are wrinkled as they are.
+    if (!spec.isEdge && fdi % 10 != 8 && (upper || fdi % 10 != 4)) branch(spec, own + 2);
+    spec.unevenSeed = own + 3, spec.uneven = spec.isEdge ? 0.02 : fdi % 10 >= 6 ? 0.055 : 0.03;
+    if (fdi % 10 >= 6)
+        spec.skew += 0.025 * tooth.normal(), spec.lean += 0.015 * tooth.normal(), spec.wedge += 0.015 * tooth.normal(),
+            spec.contourSquare += 0.06 * tooth.normal();
     for (Hollow& h : spec.hollows)
         h.depth *= 1.0 + 0.1 * tooth.normal();
     // Those of third molars stand so close that they would grow together.
@@ -162,6 +218,7 @@ Spec specFor(int fdi, const Patient& patient) {
         spec.sizes.mesiodistal += asked.mesiodistal - wide, spec.sizes.buccolingual += asked.buccolingual - deep;
     }
     wear(spec, (fdi % 10 >= 6 ? 0.012 : 0.008) * std::max(patient.ageYears - 12.0, 0.0));
+    addFacets(spec, own + 4, patient.ageYears);
     addPulp(spec, patient.ageYears);
     return spec;
 }

@@ -21,19 +21,21 @@ void upperMolar(Spec& s, int place, const Patient& patient) {
     s.distal = {4.2, 5.7, 4.3, 7.4, 3.2};
     s.buccal = {2.0, 6.4, 4.6, 7.8, 3.6, 0.0};
     s.lingual = {3.6, 6.5, 4.4, 7.8, 3.4};
-    s.lean = 0.03, s.wedge = 0.03, s.skew = -0.13;
-    s.cervixSquare = 0.5, s.contourSquare = 0.72, s.rimSquare = 0.68;
+    s.lean = 0.02, s.wedge = 0.04, s.skew = -0.13;
+    s.cervixSquare = 0.45, s.contourSquare = 0.52, s.rimSquare = 0.48;
+    s.mesial.belly = s.distal.belly = 0.76, s.buccal.belly = 0.74, s.lingual.belly = 0.76;
+    s.enamelFossa = 0.5;
     s.rimRound = 1.2;
     s.groundZ = 4.4;
     OcclusalPlan plan;
     plan.buccal = {{"mesiobuccal", Vec3(2.75, -3.35, 6.85), Vec3(1.1, -0.75, 4.9), 0.62, 1.1, 0.15},
                    {"distobuccal", Vec3(-1.55, -3.15, 6.5), Vec3(-0.75, -1.0, 5.45), 0.6, 1.05}};
     plan.lingual = {{"mesiopalatal", Vec3(1.35, 2.75, 7.25), Vec3(1.3, -0.35, 5.0), 0.75, 1.05, 0.2},
-                    {"distopalatal", Vec3(-2.8, 2.95, 5.85), Vec3(-2.6, 0.75, 4.8), 0.65, 1.05}};
+                    {"distopalatal", Vec3(-2.8, 2.95, 6.0), Vec3(-2.6, 0.75, 4.8), 0.65, 1.05}};
     plan.buccalNotch = {Vec3(0.55, -3.5, 5.6)};
     plan.lingualNotch = {Vec3(-1.35, 3.3, 5.3)};
     plan.mesial = {Vec3(4.15, -2.2, 5.85), Vec3(4.15, 0.0, 5.55), Vec3(3.3, 2.3, 5.95)};
-    plan.distal = {Vec3(-3.3, -2.2, 5.6), Vec3(-3.85, 0.1, 5.25), Vec3(-4.0, 1.8, 5.3)};
+    plan.distal = {Vec3(-3.3, -2.2, 5.6), Vec3(-3.85, 0.1, 5.25), Vec3(-4.0, 1.8, 5.15)};
     if (place >= 7) {
         // The distopalatal cusp grows less from the first to the third.
         const double less = place == 7 ? 0.45 : 1.1;
@@ -77,9 +79,13 @@ void upperMolar(Spec& s, int place, const Patient& patient) {
     s.hollows.push_back({Vec3(0.5, -5.8, 5.4), Vec3(1.7, 2.9, 3.2), 0.5});
     s.hollows.push_back({Vec3(-0.9, 5.8, 5.0), Vec3(1.8, 3.0, 3.6), 0.55});
     // Pits.
-    s.hollows.push_back({Vec3(0.5, -0.9, 4.75), Vec3(0.38, 0.38, 0.8), 0.22, "central"});
-    s.hollows.push_back({Vec3(3.2, -0.15, 4.8), Vec3(0.33, 0.33, 0.8), 0.18, "mesial"});
-    s.hollows.push_back({Vec3(-3.1, -0.35, 4.7), Vec3(0.33, 0.33, 0.8), 0.18, "distal"});
+    s.hollows.push_back({Vec3(0.5, -0.9, 4.75), Vec3(0.65, 0.65, 0.9), 0.22, "central"});
+    s.hollows.push_back({Vec3(3.2, -0.15, 4.8), Vec3(0.6, 0.6, 0.9), 0.16, "mesial"});
+    s.hollows.push_back({Vec3(-3.1, -0.35, 4.7), Vec3(0.6, 0.6, 0.9), 0.16, "distal"});
+    // The trunk is fluted towards the furcations.
+    s.hollows.push_back({Vec3(0.3, -5.3, -0.8), Vec3(1.7, 1.9, 2.6), 0.35});
+    s.hollows.push_back({Vec3(4.3, 0.4, -0.8), Vec3(1.6, 1.9, 2.6), 0.25});
+    s.hollows.push_back({Vec3(-4.2, -0.2, -0.8), Vec3(1.6, 1.9, 2.6), 0.25});
     s.trunk = 6.4;
     s.roots = {{"mesiobuccal", Vec2(2.15, -2.2), Vec3(2.9, -3.1, -6.5), Vec3(1.9, -3.3, -12.3), Vec2(1.65, 2.2), 0.4,
                 0.12, Vec2(0.84, 0.5)},

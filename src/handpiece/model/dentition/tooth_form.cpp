@@ -169,10 +169,10 @@ void addFacets(Spec& spec, std::uint64_t seed, double ageYears) {
     Draws draws(seed, false);
     const double years = std::max(ageYears - 12.0, 0.0);
     for (const Cusp& c : spec.cusps) {
-        const double depth = 0.0035 * years * (0.4 + 0.8 * draws.uniform());
+        const double depth = 0.0022 * years * (0.3 + 0.9 * draws.uniform());
         const double side = (c.tip.y() < 0.0 ? -1.0 : 1.0) * (draws.uniform() < 0.5 ? -1.0 : 1.0);
         const Vec3 normal =
-            Vec3(0.7 * (draws.uniform() - 0.5), side * (0.35 + 0.25 * draws.uniform()), 1.0).normalized();
+            Vec3(0.4 * (draws.uniform() - 0.5), side * (0.08 + 0.22 * draws.uniform()), 1.0).normalized();
         if (depth > 0.0) spec.facets.push_back({c.tip - depth * normal, normal});
     }
 }

@@ -9,11 +9,14 @@
 #include "handpiece/app/simulation/live_session.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/app/simulation/tissue_export.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
 #include "handpiece/model/case/case_bytes.h"
+#include "handpiece/model/field/brick_index.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/instrument/turbine.h"
 #include "handpiece/model/tooth/state_file.h"
+#include "handpiece/senses/radiograph/radiograph.h"
 #include "handpiece/tick/device/simulated_device.h"
 #include "handpiece/tick/loop/loop_run.h"
 #include "support/closed_meshes.h"
@@ -85,6 +88,57 @@ double removedOf(const HapticSample& s) {
     for (const double mm3 : s.removedMm3)
         sum += mm3;
     return sum;
+}
+
+/// What is left of a tooth of which a box was taken away, as a state that somebody else might have cut.
+tooth::StateDelta without(const tooth::ToothModel& model, std::uint16_t number, const core::Box& gone) {
+    const field::FieldView view = model.field.view();
+    tooth::StateDelta state;
+    const auto count = static_cast<std::uint32_t>(view.bricks[0] * view.bricks[1] * view.bricks[2]);
+    for (std::uint32_t dense = 0; dense < count; ++dense) {
+        tooth::StateDelta::Brick brick{tooth::brickId(number, dense), false, {}};
+        model.uncutBrick(dense, brick.values.data());
+        const std::array<std::int32_t, 3> at = field::brickAt(view.bricks, dense);
+        bool isCut = false;
+        for (int i = 0; i < field::kBrickValues; ++i) {
+            const int node[3] = {i % field::kBrickNodes, i / field::kBrickNodes % field::kBrickNodes,
+                                 i / field::kBrickNodes / field::kBrickNodes};
+            double outsideMm = -1e9;
+            for (int k = 0; k < 3; ++k) {
+                const double x = view.originMm[k] + view.voxelMm * (field::kBrickCells * at[k] + node[k]);
+                outsideMm = std::max({outsideMm, gone.min[k] - x, x - gone.max[k]});
+            }
+            float& value = brick.values[i];
+            const auto left = static_cast<float>(std::min(-outsideMm, model.bandOutMm));
+            isCut = isCut || left > value;
+            value = std::max(value, left);
+        }
+        if (isCut) state.bricks.push_back(brick);
+    }
+    return state;
+}
+
+TEST(Mouth, ARadiographShowsWhatIsLeft) {
+    const cases::Case whole = mouth();
+    const SimulationSetup setup = setupOf(whole);
+    // The beam goes along y, through 3.5 mm of the block, of which 1.25 are taken away in the middle.
+    const tooth::StateDelta state = without(*setup.tooth, 0, {Vec3(-1, 0.75, -3), Vec3(1, 3, -1)});
+    ASSERT_FALSE(state.bricks.empty());
+    const cases::Case cut = asCut(whole, setup.teeth(), state);
+    EXPECT_EQ(cut.others.front().outer.triangles.size(), whole.others.front().outer.triangles.size());
+    radiograph::Projection from;
+    from.centreMm = Vec3(0, 10, -2);
+    from.width = from.height = 101;
+    from.pixelMm = 0.1;
+    const auto attenuationAt = [&](const cases::Case& c, int x, int y) {
+        return -std::log(radiograph::expose(c, from, {}).at(x, y));
+    };
+    cases::Case thin = whole, thick = whole;
+    thin.outer = thin.parts.front().mesh = test::boxMesh(Vec3(-2, -1.5, -4), Vec3(2, 0.75, 0));
+    // The middle of the cavity, and beside it.
+    EXPECT_NEAR(attenuationAt(cut, 50, 50) / attenuationAt(thin, 50, 50), 1.0, 0.02);
+    EXPECT_NEAR(attenuationAt(cut, 65, 50) / attenuationAt(thick, 65, 50), 1.0, 0.02);
+    EXPECT_LT(attenuationAt(cut, 50, 50), 0.8 * attenuationAt(thick, 50, 50));
 }
 
 TEST(Mouth, TheToothBesideHoldsTheBurAndIsNotCut) {

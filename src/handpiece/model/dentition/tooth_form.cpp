@@ -167,9 +167,9 @@ void branch(Spec& spec, std::uint64_t seed) {
 void addFacets(Spec& spec, std::uint64_t seed, double ageYears) {
     if (spec.isEdge) return;
     Draws draws(seed, false);
-    const double years = std::max(ageYears - 12.0, 0.0);
+    const double years = std::max(ageYears - 25.0, 0.0);  // before, they are hardly seen
     for (const Cusp& c : spec.cusps) {
-        const double depth = 0.0022 * years * (0.3 + 0.9 * draws.uniform());
+        const double depth = 0.004 * years * (0.3 + 0.9 * draws.uniform());
         const double side = (c.tip.y() < 0.0 ? -1.0 : 1.0) * (draws.uniform() < 0.5 ? -1.0 : 1.0);
         const Vec3 normal =
             Vec3(0.4 * (draws.uniform() - 0.5), side * (0.08 + 0.22 * draws.uniform()), 1.0).normalized();

@@ -21,7 +21,7 @@ const QColor kGround(18, 21, 26, 190), kEdge(255, 255, 255, 36), kText(238, 240,
     kLine(255, 214, 90), kSectionLine(110, 200, 255), kLandmark(120, 235, 170), kInside(255, 150, 190);
 constexpr double kMargin = 12.0, kPad = 8.0, kRound = 6.0, kLeashPixels = 6.0, kDepthScaleWidth = 90.0;
 // Of the picture's height at most: else it hides more than it tells. And what a fitted tooth leaves free above it.
-constexpr double kLegendShare = 0.4, kHalfLegendShare = 0.25, kLegendWidthShare = 0.13, kFittedMargin = 0.095,
+constexpr double kLegendShare = 0.4, kHalfLegendShare = 0.25, kLegendWidthShare = 0.085, kFittedMargin = 0.095,
                  kRowPixels = 54.0;
 
 struct Texts {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.h"
 #include "handpiece/app/simulation/tissue_export.h"
@@ -63,8 +64,8 @@ void xray(XrayOptions& o) {
     if (o.atGiven && !(o.atS >= 0.0))
         throw core::Error(fmt::format("the session has no second {:.3f}", o.atS), "--at", "give seconds from 0 on");
     studies::ProgressBar bar("taking the radiograph");
-    const cases::Case toothCase =
-        simulation::readAsCut(o.caseFile, o.atGiven ? o.atS : -1.0, !o.noCache, core::part(bar.listener(), 0.0, 0.5));
+    const cases::Case toothCase = simulation::readAsCut(o.caseFile, o.atGiven ? std::optional(o.atS) : std::nullopt,
+                                                        !o.noCache, core::part(bar.listener(), 0.0, 0.5));
     const radiograph::Radiograph taken = radiograph::take(toothCase, s, core::part(bar.listener(), 0.5, 1.0));
     bar.finish();
     const radiograph::Picture& picture = taken.picture;

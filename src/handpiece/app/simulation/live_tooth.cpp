@@ -127,13 +127,6 @@ class LiveTooth::Neighbours {
             if (tooth.live) tooth.live->refresh();
         }
     }
-    void append(tooth::Teeth& teeth) const {
-        for (const Tooth& tooth : teeth_) {
-            const std::size_t number = tooth.standing.field->toothNumber();
-            teeth.resize(std::max(teeth.size(), number + 1));
-            teeth[number] = tooth.standing.model;
-        }
-    }
     void append(tooth::StateDelta& state) const {
         const std::lock_guard lock(mutex_);
         for (const Tooth& tooth : teeth_)
@@ -203,12 +196,12 @@ class LiveTooth::Neighbours {
 
 LiveTooth::LiveTooth(std::shared_ptr<const tooth::ToothModel> model, const tooth::StateDelta& state,
                      const core::Progress& progress)
-    : model_(std::move(model)), parts_(std::make_unique<Parts>(model_, number_, inScene_)) {
+    : model_(std::move(model)), teeth_{model_}, parts_(std::make_unique<Parts>(model_, number_, inScene_)) {
     build(state, progress);
 }
 
 LiveTooth::LiveTooth(const SimulationSetup& station, const tooth::StateDelta& state, const core::Progress& progress)
-    : model_(station.tooth), parts_(std::make_unique<Parts>(model_, number_, inScene_)) {
+    : model_(station.tooth), teeth_(station.teeth()), parts_(std::make_unique<Parts>(model_, number_, inScene_)) {
     if (!station.others.empty()) neighbours_ = std::make_unique<Neighbours>(station);
     build(state, progress);
 }
@@ -245,12 +238,6 @@ void LiveTooth::build(const tooth::StateDelta& state, const core::Progress& prog
 }
 
 LiveTooth::~LiveTooth() = default;
-
-tooth::Teeth LiveTooth::teeth() const {
-    tooth::Teeth teeth{model_};
-    if (neighbours_) neighbours_->append(teeth);
-    return teeth;
-}
 
 void LiveTooth::hear(const tooth::BrickSnapshot& brick) {
     if (tooth::toothOf(brick.id) != number_) {

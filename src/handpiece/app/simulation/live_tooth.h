@@ -36,7 +36,7 @@ class LiveTooth {
     [[nodiscard]] const std::shared_ptr<const tooth::ToothModel>& modelShared() const noexcept { return model_; }
 
     /// Of all teeth that can be cut, by their numbers.
-    [[nodiscard]] tooth::Teeth teeth() const;
+    [[nodiscard]] const tooth::Teeth& teeth() const noexcept { return teeth_; }
 
     // The feeder.
     void hear(const tooth::BrickSnapshot& brick);
@@ -79,6 +79,7 @@ class LiveTooth {
     struct Parts;
     class Neighbours;
     std::shared_ptr<const tooth::ToothModel> model_;
+    tooth::Teeth teeth_;  ///< one of a neighbour has none
     std::uint16_t number_ = 0;
     core::Pose inScene_;
     mutable std::mutex mutex_;

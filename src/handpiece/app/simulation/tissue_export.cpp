@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "handpiece/app/simulation/session_player.h"
@@ -62,24 +63,30 @@ std::vector<fs::path> exportTissues(const std::shared_ptr<const tooth::ToothMode
 
 namespace {
 
-bool isSession(const fs::path& path) {
-    std::error_code error;
-    return path.extension() == ".h5" && !fs::is_directory(path, error);
-}
-
-struct AttemptTeeth {
+struct CutTeeth {
     cases::Case toothCase;
     tooth::Teeth teeth;
     tooth::StateDelta state;
 };
-AttemptTeeth openTeeth(const fs::path& path, bool useCache, const core::Progress& progress) {
+
+CutTeeth teethOfSession(const fs::path& path, std::optional<double> atS, bool useCache,
+                        const core::Progress& progress) {
+    SessionPlayer player(path, {useCache, false, {}}, core::part(progress, 0.0, 0.5));
+    if (atS && *atS > player.durationS())
+        throw core::Error(fmt::format("the session has no second {:.3f}", *atS), path.string(),
+                          fmt::format("it is {:.3f} s long", player.durationS()));
+    player.seek(atS.value_or(player.durationS()), core::part(progress, 0.5, 1.0));
+    return {player.toothCase(), player.station().teeth(), player.state()};
+}
+
+CutTeeth teethOfAttempt(const fs::path& path, bool useCache, const core::Progress& progress) {
     cases::OpenAttempt open = cases::openAttempt(path);
     SimulationSettings settings;
     settings.field.voxelMm = open.attempt.voxelMm;
     const auto saved = [&] {
         tooth::Teeth teeth = makeSimulation(open.toothCase, settings, useCache, progress).teeth();
         tooth::StateDelta state = tooth::decodeState(open.attempt.state, teeth, path.string());
-        return AttemptTeeth{std::move(open.toothCase), std::move(teeth), std::move(state)};
+        return CutTeeth{std::move(open.toothCase), std::move(teeth), std::move(state)};
     };
     // It does not tell its bands: the command line never makes them thinner than a few voxels, the window keeps
     // them.
@@ -93,6 +100,16 @@ AttemptTeeth openTeeth(const fs::path& path, bool useCache, const core::Progress
         settings.field = kept;
         return saved();
     }
+}
+
+/// None: nothing of it can have been cut.
+std::optional<CutTeeth> cutTeethOf(const fs::path& path, std::optional<double> atS, bool useCache,
+                                   const core::Progress& progress) {
+    std::error_code error;
+    if (path.extension() == ".h5" && !fs::is_directory(path, error))
+        return teethOfSession(path, atS, useCache, progress);
+    if (fs::exists(path, error) && cases::isAttempt(path)) return teethOfAttempt(path, useCache, progress);
+    return std::nullopt;
 }
 
 }  // namespace
@@ -115,33 +132,15 @@ cases::Case asCut(cases::Case toothCase, const tooth::Teeth& teeth, const tooth:
     return toothCase;
 }
 
-cases::Case readAsCut(const fs::path& path, double atS, bool useCache, const core::Progress& progress) {
-    const core::Progress opening = core::part(progress, 0.0, 0.6), shaping = core::part(progress, 0.6, 1.0);
-    if (isSession(path)) {
-        SessionPlayer player(path, {useCache, false, {}}, core::part(progress, 0.0, 0.3));
-        if (atS > player.durationS())
-            throw core::Error(fmt::format("the session has no second {:.3f}", atS), path.string(),
-                              fmt::format("it is {:.3f} s long", player.durationS()));
-        player.seek(atS < 0.0 ? player.durationS() : atS, core::part(progress, 0.3, 0.6));
-        return asCut(player.toothCase(), player.station().teeth(), player.state(), shaping);
-    }
-    std::error_code error;
-    if (!fs::exists(path, error) || !cases::isAttempt(path)) return cases::readCase(path);
-    AttemptTeeth open = openTeeth(path, useCache, opening);
-    return asCut(std::move(open.toothCase), open.teeth, open.state, shaping);
+cases::Case readAsCut(const fs::path& path, std::optional<double> atS, bool useCache, const core::Progress& progress) {
+    std::optional<CutTeeth> cut = cutTeethOf(path, atS, useCache, core::part(progress, 0.0, 0.6));
+    if (!cut) return cases::readCase(path);
+    return asCut(std::move(cut->toothCase), cut->teeth, cut->state, core::part(progress, 0.6, 1.0));
 }
 
 ToothOfFile toothOf(const fs::path& path, double voxelMm, bool useCache, const core::Progress& progress) {
-    if (isSession(path)) {
-        SessionPlayer player(path, {useCache, false, {}}, core::part(progress, 0.0, 0.5));
-        player.seek(player.durationS(), core::part(progress, 0.5, 1.0));
-        return {player.station().tooth, player.state()};
-    }
-    std::error_code error;
-    if (fs::exists(path, error) && cases::isAttempt(path)) {
-        AttemptTeeth open = openTeeth(path, useCache, progress);
-        return {std::move(open.teeth.front()), std::move(open.state)};
-    }
+    if (std::optional<CutTeeth> cut = cutTeethOf(path, {}, useCache, progress))
+        return {std::move(cut->teeth.front()), std::move(cut->state)};
     SimulationSettings settings;
     settings.field.voxelMm = voxelMm;
     return {makeSimulation(cases::readCase(path), settings, useCache, progress).tooth, {}};

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,9 +32,9 @@ std::vector<std::filesystem::path> exportTissues(const std::shared_ptr<const too
 /// (docs/case-format.md). `teeth` and `state` are of this case. Throws core::Error when cancelled.
 [[nodiscard]] cases::Case asCut(cases::Case toothCase, const tooth::Teeth& teeth, const tooth::StateDelta& state,
                                 const core::Progress& progress = {});
-/// What a case or a mesh holds, an attempt as it was saved, a session as it was at `atS` seconds (below 0: as it
+/// What a case or a mesh holds, an attempt as it was saved, a session as it was at `atS` seconds (none: as it
 /// ended), teeth as they are cut. Throws core::Error.
-[[nodiscard]] cases::Case readAsCut(const std::filesystem::path& path, double atS, bool useCache,
+[[nodiscard]] cases::Case readAsCut(const std::filesystem::path& path, std::optional<double> atS, bool useCache,
                                     const core::Progress& progress = {});
 
 /// A tooth out of a file: a case or a mesh as it is, an attempt as it was saved, a session as it ended.

@@ -24,10 +24,10 @@ void parallelFor(std::size_t count, std::size_t grain, const std::function<void(
     std::thread other([&] { body(count / 2, count); });
     body(0, count / 2);
     other.join();
-    return;
-#endif
+#else
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain == 0 ? 1 : grain),
                       [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
+#endif
 }
 
 std::size_t threadCount() {

@@ -43,7 +43,6 @@ struct FloatBox {
         return x < 0.0f ? 0.0f : x * y + y * z + z * x;
     }
     [[nodiscard]] Lanes centre() const { return lanes(0.5f) * (min + max); }
-    [[nodiscard]] float centre(int axis) const { return 0.5f * (min[axis] + max[axis]); }
 };
 
 struct Item {
@@ -105,7 +104,7 @@ class Builder {
         const std::uint32_t middle = r.begin + r.size() / 2;
         std::nth_element(items_.begin() + r.begin, items_.begin() + middle, items_.begin() + r.end,
                          [axis](const Item& a, const Item& b) {
-                             const float ca = a.box.centre(axis), cb = b.box.centre(axis);
+                             const float ca = a.box.centre()[axis], cb = b.box.centre()[axis];
                              return ca != cb ? ca < cb : a.triangle < b.triangle;
                          });
         return {rangeOf(r.begin, middle), rangeOf(middle, r.end)};
@@ -131,9 +130,10 @@ class Builder {
         Lanes scale = lanes(0.0f);
         for (int k = 0; k < 3; ++k)
             scale[k] = high[k] > low[k] ? kBins * (1.0f - 1e-5f) / (high[k] - low[k]) : 0.0f;
+        const auto placeOf = [&](const Item& item) { return (item.box.centre() - low) * scale; };
         const auto binAt = [](float place) { return std::clamp(static_cast<int>(place), 0, kBins - 1); };
         for (std::uint32_t i = r.begin; i < r.end; ++i) {
-            const Lanes place = (items_[i].box.centre() - low) * scale;
+            const Lanes place = placeOf(items_[i]);
             for (int k = 0; k < 3; ++k) {
                 Bin& bin = bins[k][binAt(place[k])];
                 bin.box.extend(items_[i].box);
@@ -166,10 +166,8 @@ class Builder {
             }
         }
         if (bestAxis < 0) return halve(r, widest);
-        const auto middle = std::partition(items_.begin() + r.begin, items_.begin() + r.end, [&](const Item& item) {
-            const float c = item.box.centre(bestAxis);
-            return binAt((c - low[bestAxis]) * scale[bestAxis]) < bestCut;
-        });
+        const auto middle = std::partition(items_.begin() + r.begin, items_.begin() + r.end,
+                                           [&](const Item& item) { return binAt(placeOf(item)[bestAxis]) < bestCut; });
         const auto at = static_cast<std::uint32_t>(middle - items_.begin());
         if (at == r.begin || at == r.end) return halve(r, widest);
         Range left{r.begin, at, {}}, right{at, r.end, {}};

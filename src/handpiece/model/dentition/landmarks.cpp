@@ -80,7 +80,7 @@ class Finder {
     /// The outermost point of the surface at a height, in a direction from the tooth's axis.
     Vec3 side(const Vec3& out, double z) const {
         Vec3 found(0, 0, z);
-        (void)a_.surfaceAlong(Vec3(s_.centreX, 0, z) + (a_.bounds().size().head<2>().maxCoeff()) * out, -out, found);
+        (void)a_.surfaceAlong(Vec3(s_.centreX, 0, z) + a_.bounds().size().head<2>().maxCoeff() * out, -out, found);
         return found;
     }
 

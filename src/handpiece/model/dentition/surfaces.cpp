@@ -206,11 +206,6 @@ Unevenness::Unevenness(std::uint64_t seed, const core::Box& box)
         size_[axis] = static_cast<int>(box.size()[axis] / kNodesMm) + 6;
     nodes_.resize(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
                   static_cast<std::size_t>(size_[2]));
-    const auto node = [&](int i, int j, int k) -> double& {
-        return nodes_[(static_cast<std::size_t>(k) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(j)) *
-                          static_cast<std::size_t>(size_[0]) +
-                      static_cast<std::size_t>(i)];
-    };
     // White noise once more on a grid half as fine, then what is between.
     std::uint64_t state = seed;
     const auto draw = [&] { return 2.0 * core::unitOf(core::nextSplitMix(state)) - 1.0; };
@@ -225,7 +220,8 @@ Unevenness::Unevenness(std::uint64_t seed, const core::Box& box)
                         for (int a = -1; a <= 1; ++a)
                             if (i + a >= 0 && j + b >= 0 && k + c >= 0 && i + a < size_[0] && j + b < size_[1] &&
                                 k + c < size_[2])
-                                node(i + a, j + b, k + c) += tall * (a ? 0.5 : 1.0) * (b ? 0.5 : 1.0) * (c ? 0.5 : 1.0);
+                                nodes_[index(i + a, j + b, k + c)] +=
+                                    tall * (a ? 0.5 : 1.0) * (b ? 0.5 : 1.0) * (c ? 0.5 : 1.0);
             }
 }
 
@@ -242,10 +238,7 @@ double Unevenness::at(const Vec3& p) const {
     double sum = 0.0;
     for (int k = 0; k < 3; ++k)
         for (int j = 0; j < 3; ++j) {
-            const double* row = &nodes_[(static_cast<std::size_t>(from[2] + k) * static_cast<std::size_t>(size_[1]) +
-                                         static_cast<std::size_t>(from[1] + j)) *
-                                            static_cast<std::size_t>(size_[0]) +
-                                        static_cast<std::size_t>(from[0])];
+            const double* row = &nodes_[index(from[0], from[1] + j, from[2] + k)];
             sum += w[2][k] * w[1][j] * (w[0][0] * row[0] + w[0][1] * row[1] + w[0][2] * row[2]);
         }
     return sum;
@@ -494,7 +487,7 @@ bool Anatomy::surfaceAlong(const Vec3& from, const Vec3& direction, Vec3& found)
         if (value <= 0.0) {
             // False position, where the end that stays counts half (Illinois).
             double outside = last, inside = value;
-            int stayed = 0;
+            int moved = 0;  // last: +1 the end outside, -1 the one inside
             for (int i = 0; i < 60 && t - before > 1e-9; ++i) {
                 const double between =
                     before + std::clamp(outside / (outside - inside), 1e-3, 1.0 - 1e-3) * (t - before);
@@ -505,12 +498,12 @@ bool Anatomy::surfaceAlong(const Vec3& from, const Vec3& direction, Vec3& found)
                 }
                 if (here > 0.0) {
                     before = between, outside = here;
-                    if (stayed++ > 0) inside *= 0.5;
-                    if (stayed < 1) stayed = 1;
+                    if (moved == 1) inside *= 0.5;
+                    moved = 1;
                 } else {
                     t = between, inside = here;
-                    if (stayed-- < 0) outside *= 0.5;
-                    if (stayed > -1) stayed = -1;
+                    if (moved == -1) outside *= 0.5;
+                    moved = -1;
                 }
             }
             found = from + t * direction;

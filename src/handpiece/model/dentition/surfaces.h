@@ -65,6 +65,12 @@ class Unevenness {
     [[nodiscard]] double at(const core::Vec3& p) const;
 
   private:
+    [[nodiscard]] std::size_t index(int i, int j, int k) const {
+        return (static_cast<std::size_t>(k) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(j)) *
+                   static_cast<std::size_t>(size_[0]) +
+               static_cast<std::size_t>(i);
+    }
+
     core::Vec3 origin_ = core::Vec3::Zero();
     int size_[3] = {0, 0, 0};
     std::vector<double> nodes_;

@@ -83,6 +83,10 @@ void upperPremolar(Spec& s, int place) {
                     Vec2(0.82, 0.48)}};
         s.roofZ = 3.0;
     }
+    // Drawn 7 mm wide. Narrower, its neck and roots stay.
+    const Spec drawn = s;
+    scale(s, drawn.sizes.mesiodistal / 7.0, 1.0, 1.0, 1.0);
+    s.sizes = drawn.sizes, s.roots = drawn.roots;
 }
 
 void lowerPremolar(Spec& s, int place) {

@@ -99,12 +99,12 @@ TEST(PublishedSizes, PatientsSpreadAsPeopleDo) {
 
     // Teeth of one mouth go together: of the same people r is 0.53 between mesiodistal widths (0.32 to 0.82), 0.58 between
     // buccolingual ones.
-    for (const auto& [widths, published] : {std::pair{&md, 0.53}, std::pair{&bl, 0.58}}) {
+    for (const auto& [kind, published] : {std::pair{&md, 0.53}, std::pair{&bl, 0.58}}) {
         double sum = 0.0;
         int pairs = 0;
-        for (std::size_t i = 0; i < widths->size(); ++i)
+        for (std::size_t i = 0; i < kind->size(); ++i)
             for (std::size_t j = 0; j < i; ++j)
-                sum += correlation((*widths)[i], (*widths)[j]), ++pairs;
+                sum += correlation((*kind)[i], (*kind)[j]), ++pairs;
         fmt::print("correlation between teeth {:.2f}, people {:.2f}\n", sum / pairs, published);
         EXPECT_NEAR(sum / pairs, published, 0.15);
     }
@@ -158,9 +158,9 @@ TEST(PublishedSizes, EnamelOfLowerMolarsBesideSections) {
         int fdi;
         Held areaMm2, junctionMm, cervixMm;
     };
-    for (const Row& r : {Row{46, {19.99, 3.63, 1.0}, {19.87, 1.16, 3.0}, {8.60, 0.52, 1.0}},
-                         Row{47, {19.85, 2.23, 1.0}, {18.35, 1.25, 3.0}, {9.18, 0.73, 2.0}},
-                         Row{48, {21.55, 4.55, 1.0}, {17.74, 2.01, 2.0}, {8.65, 1.43, 1.0}}}) {
+    for (const Row& r : {Row{46, {19.99, 3.66, 1.0}, {19.87, 1.18, 3.0}, {8.60, 0.52, 1.0}},
+                         Row{47, {19.85, 2.29, 1.0}, {18.35, 1.29, 3.0}, {9.18, 0.73, 2.0}},
+                         Row{48, {21.55, 4.58, 1.0}, {17.74, 2.03, 2.0}, {8.65, 1.43, 1.0}}}) {
         const Section s = mesialSection(r.fdi);
         fmt::print("{}: enamel {:.2f} mm2, junction {:.2f} mm, thickness {:.2f} mm, neck {:.2f} mm; deviations", r.fdi,
                    s.enamelMm2, s.junctionMm, s.enamelMm2 / s.junctionMm, s.cervixMm);

@@ -50,8 +50,8 @@ TEST(PublishedSizes, AverageTeethLieWithinOneStandardDeviation) {
     for (const Published& p : kPublished) {
         const double ours = of(ToothForm(p.fdi, kAverage), p.width);
         EXPECT_NEAR(ours, p.meanMm, p.sdMm) << p.fdi << " " << p.source;
-        fmt::print("| {} | {} | {:.2f} | {:.2f} ± {:.2f} | {:+.1f} | [{}] |\n", p.fdi, p.width == kMd ? "MD" : "BL", ours,
-                   p.meanMm, p.sdMm, (ours - p.meanMm) / p.sdMm, p.source);
+        fmt::print("| {} | {} | {:.2f} | {:.2f} ± {:.2f} | {:+.1f} | [{}] |\n", p.fdi, p.width == kMd ? "MD" : "BL",
+                   ours, p.meanMm, p.sdMm, (ours - p.meanMm) / p.sdMm, p.source);
     }
 }
 
@@ -97,8 +97,8 @@ TEST(PublishedSizes, PatientsSpreadAsPeopleDo) {
     EXPECT_NEAR(all / count, 0.0, 0.1);
     fmt::print("spreads over those of people, mean {:.2f}\n", std::exp(all / count));
 
-    // Teeth of one mouth go together: of the same people r is 0.53 between mesiodistal widths (0.32 to 0.82), 0.58 between
-    // buccolingual ones.
+    // Teeth of one mouth go together: of the same people r is 0.53 between mesiodistal widths (0.32 to 0.82), 0.58
+    // between buccolingual ones.
     for (const auto& [kind, published] : {std::pair{&md, 0.53}, std::pair{&bl, 0.58}}) {
         double sum = 0.0;
         int pairs = 0;
@@ -147,9 +147,9 @@ Section mesialSection(int fdi) {
     return s;
 }
 
-/// Skinner et al. 2015, sections of lower molars of Homo sapiens: means and standard deviations over 9, 14 and 7 teeth. As
-/// much enamel as theirs lies on a shorter junction, so it is thicker on average: dentine's horns are lower here than in
-/// people. Known and held where it stands, so that it grows no worse.
+/// Skinner et al. 2015, sections of lower molars of Homo sapiens: means and standard deviations over 9, 14 and 7 teeth.
+/// As much enamel as theirs lies on a shorter junction, so it is thicker on average: dentine's horns are lower here
+/// than in people. Known and held where it stands, so that it grows no worse.
 TEST(PublishedSizes, EnamelOfLowerMolarsBesideSections) {
     struct Held {
         double mean, sd, within;
@@ -164,8 +164,8 @@ TEST(PublishedSizes, EnamelOfLowerMolarsBesideSections) {
         const Section s = mesialSection(r.fdi);
         fmt::print("{}: enamel {:.2f} mm2, junction {:.2f} mm, thickness {:.2f} mm, neck {:.2f} mm; deviations", r.fdi,
                    s.enamelMm2, s.junctionMm, s.enamelMm2 / s.junctionMm, s.cervixMm);
-        for (const auto& [ours, held] :
-             {std::pair{s.enamelMm2, r.areaMm2}, std::pair{s.junctionMm, r.junctionMm}, std::pair{s.cervixMm, r.cervixMm}}) {
+        for (const auto& [ours, held] : {std::pair{s.enamelMm2, r.areaMm2}, std::pair{s.junctionMm, r.junctionMm},
+                                         std::pair{s.cervixMm, r.cervixMm}}) {
             EXPECT_NEAR(ours, held.mean, held.within * held.sd) << r.fdi;
             fmt::print(" {:+.1f}", (ours - held.mean) / held.sd);
         }
@@ -174,15 +174,16 @@ TEST(PublishedSizes, EnamelOfLowerMolarsBesideSections) {
 }
 
 /// Chambers of first molars in CBCT (316 teeth of 87 people): mean areas at 11 to 28, 34 to 59 and 60 to 74 years fall
-/// as 10.5 : 6.7 : 3.7 mm2 in lower ones, 8.4 : 4.4 : 2.9 in upper ones. What plane was measured is not said in what was read:
-/// held is the fall of the mesiodistal section, within the standard deviations of the older groups over the first's mean.
+/// as 10.5 : 6.7 : 3.7 mm2 in lower ones, 8.4 : 4.4 : 2.9 in upper ones. What plane was measured is not said in what
+/// was read: held is the fall of the mesiodistal section, within the standard deviations of the older groups over the
+/// first's mean.
 TEST(PublishedSizes, ChambersShrinkWithAge) {
     struct Row {
         int fdi;
         double middle, middleSd, old, oldSd;
     };
-    for (const Row& r :
-         {Row{46, 6.7 / 10.5, 2.2 / 10.5, 3.7 / 10.5, 1.5 / 10.5}, Row{16, 4.4 / 8.4, 1.7 / 8.4, 2.9 / 8.4, 0.9 / 8.4}}) {
+    for (const Row& r : {Row{46, 6.7 / 10.5, 2.2 / 10.5, 3.7 / 10.5, 1.5 / 10.5},
+                         Row{16, 4.4 / 8.4, 1.7 / 8.4, 2.9 / 8.4, 0.9 / 8.4}}) {
         const auto area = [&](double ageYears) {
             const ToothForm form(r.fdi, {0, ageYears});
             constexpr double kStepMm = 0.04;

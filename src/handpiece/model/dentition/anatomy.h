@@ -19,6 +19,11 @@ struct Sizes {
     double crown, root, mesiodistal, mesiodistalCervix, buccolingual, buccolingualCervix, curveMesial, curveDistal;
 };
 
+/// How far people differ in the crown's widths: standard deviations, shares of the mean.
+struct Spreads {
+    double mesiodistal, buccolingual;
+};
+
 /// An outline of the crown seen from a side: how far it stands out at the cervix, at the height of contour, at the rim
 /// of the occlusal surface and above.
 struct Outline {
@@ -100,6 +105,7 @@ struct Section {
 
 struct Spec {
     Sizes sizes{};
+    Spreads spreads{};
     Outline mesial{}, distal{}, buccal{}, lingual{};
     double centreX = 0.0;  ///< of the cervix
     double cervixSquare = 0.5, contourSquare = 0.7, rimSquare = 0.7;

@@ -5,6 +5,15 @@ namespace handpiece::dentition {
 using core::Vec2;
 using core::Vec3;
 
+namespace {
+/// Premolars are drawn 7 mm wide. In a narrower one neck and roots stay as they are.
+void narrow(Spec& s) {
+    const Spec drawn = s;
+    scale(s, drawn.sizes.mesiodistal / 7.0, 1.0, 1.0, 1.0);
+    s.sizes = drawn.sizes, s.roots = drawn.roots;
+}
+}  // namespace
+
 void upperPremolar(Spec& s, int place) {
     const bool first = place == 4;
     s.mesial = {4.9, 6.6, 2.85, 8.4, 2.2};
@@ -83,6 +92,7 @@ void upperPremolar(Spec& s, int place) {
                     Vec2(0.82, 0.48)}};
         s.roofZ = 3.0;
     }
+    narrow(s);
 }
 
 void lowerPremolar(Spec& s, int place) {
@@ -157,6 +167,7 @@ void lowerPremolar(Spec& s, int place) {
     s.roots = {{"root", Vec2(0, 0), Vec3(0.1, 0.0, -7.0), Vec3(-0.7, 0.1, -s.sizes.root - 0.25), Vec2(2.5, 3.25), 0.2,
                 0.1, Vec2(0.82, 0.46)}};
     s.roofZ = 3.0;
+    narrow(s);
 }
 
 }  // namespace handpiece::dentition

@@ -76,8 +76,8 @@ double youth(double ageYears) {
 
 void chamberAndCanals(Spec& spec, double ageYears) {
     const double young = youth(ageYears);
-    // The roof sinks and the floor rises a little with the years.
-    spec.roofZ -= 0.35 * (1.0 - young), spec.floorZ += 0.35 * (1.0 - young);
+    // The roof sinks and the floor rises with the years: the chamber grows lower as it grows narrower.
+    spec.roofZ -= 0.8 * (1.0 - young), spec.floorZ += 0.8 * (1.0 - young);
     const double halfX = 0.25 * spec.sizes.mesiodistalCervix * young,
                  halfY = 0.22 * spec.sizes.buccolingualCervix * young;
     // Its walls are hollow: wide towards the horns and the orifices, narrow between.

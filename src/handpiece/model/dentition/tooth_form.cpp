@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 
 #include "handpiece/base/core/error.h"
@@ -184,9 +185,14 @@ Spec specFor(int fdi, const Patient& patient) {
     const bool isAverage = patient.seed == 0;
     Draws mouth(patient.seed, isAverage);
     Draws tooth(patient.seed * 1000003 + static_cast<std::uint64_t>(fdi % 10 + (upper ? 0 : 8)), isAverage);
-    const double all = 1.0 + 0.035 * mouth.normal();
-    const double x = all * (1.0 + 0.02 * tooth.normal()), y = all * (1.0 + 0.02 * tooth.normal());
-    const double crown = all * (1.0 + 0.02 * tooth.normal()), root = all * (1.0 + 0.04 * tooth.normal());
+    // Widths of two teeth of a mouth: r about 0.5; roots go their own way (docs/anatomy.md, Held against people).
+    constexpr double kMouth = 0.045, kClipped = 1.04;  // a draw beyond 2 is 2, which narrows the spread
+    const double all = 1.0 + kClipped * kMouth * mouth.normal(), longer = 1.0 + 0.045 * mouth.normal();
+    const auto ofItsOwn = [&](double spread) {
+        return 1.0 + kClipped * std::sqrt(spread * spread - kMouth * kMouth) * tooth.normal();
+    };
+    const double x = all * ofItsOwn(spec.spreads.mesiodistal), y = all * ofItsOwn(spec.spreads.buccolingual);
+    const double crown = all * (1.0 + 0.02 * tooth.normal()), root = longer * (1.0 + 0.04 * tooth.normal());
     scale(spec, x, y, crown, root);
     // No two mouths have the same wrinkles or the same bends of the roots; the average one has wrinkles too.
     const std::uint64_t own = patient.seed * 9176263 + static_cast<std::uint64_t>(fdi % 10 + (upper ? 0 : 8));

@@ -21,13 +21,15 @@ constexpr Sizes kLower[8] = {{9.0, 12.5, 5.0, 3.5, 6.0, 5.3, 3.0, 2.0},   {9.5, 
 
 Spec specOf(bool upper, int place, const Patient& patient) {
     Spec spec;
+    // Plans of a seed, far from the numbers that tooth_form.cpp draws.
+    Draws draws(patient.seed * 9176263 + static_cast<std::uint64_t>(1000 + place + (upper ? 0 : 8)), patient.seed == 0);
     spec.sizes = (upper ? kUpper : kLower)[place - 1];
     if (place <= 3)
         anterior(spec, upper, place);
     else if (place <= 5)
-        upper ? upperPremolar(spec, place) : lowerPremolar(spec, place);
+        upper ? upperPremolar(spec, place, draws) : lowerPremolar(spec, place, draws);
     else
-        upper ? upperMolar(spec, place, patient) : lowerMolar(spec, place);
+        upper ? upperMolar(spec, place, patient, draws) : lowerMolar(spec, place, draws);
     return spec;
 }
 

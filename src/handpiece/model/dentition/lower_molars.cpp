@@ -21,7 +21,7 @@ void fiveCusps(Spec& s, Draws& draws) {
     plan.distal = {Vec3(-4.3, -0.6, 5.5), Vec3(-4.35, 0.75, 5.3), Vec3(-3.7, 2.0, 5.75)};
     vary(plan, draws);
     occlusalSurface(s, plan);
-    const auto at = [&](double x, double y, double depth) { return Vec3(x, y, depth) + draws.shift(0.18, 0.16, 0.0); };
+    const auto at = [&](double x, double y, double depth) -> Vec3 { return Vec3(x, y, depth) + draws.shift(0.18, 0.16, 0.0); };
     const auto outwards = [](std::vector<Vec3> points, const Vec3& end) {
         points.push_back(end);
         return points;
@@ -78,7 +78,7 @@ void fourCusps(Spec& s, bool isWrinkled, Draws& draws) {
     plan.distal = {Vec3(-3.95, -1.75, 5.65), Vec3(-4.35, 0.1, 5.35), Vec3(-3.75, 1.9, 5.75)};
     vary(plan, draws);
     occlusalSurface(s, plan);
-    const auto at = [&](double x, double y, double depth) { return Vec3(x, y, depth) + draws.shift(0.18, 0.16, 0.0); };
+    const auto at = [&](double x, double y, double depth) -> Vec3 { return Vec3(x, y, depth) + draws.shift(0.18, 0.16, 0.0); };
     const auto outwards = [](std::vector<Vec3> points, const Vec3& end) {
         points.push_back(end);
         return points;

@@ -32,7 +32,7 @@ constexpr double kNodesMm = 1.0;
 /// Beyond this from the surface what is carved into it counts no more.
 constexpr double kFarMm = 1.6;
 /// Spread and waves of the finer unevenness [mm]: as on two real molars (docs/anatomy.md). It runs around the crown.
-constexpr double kFineUnevenMm = 0.008, kFineAcrossMm = 0.36, kFineUpMm = 0.24;
+constexpr double kFineUnevenMm = 0.006, kFineAcrossMm = 0.34, kFineUpMm = 0.22;
 /// How far from a cusp's tip a facet may reach, and how softly it ends.
 constexpr double kFacetReachMm = 0.7, kFacetSlope = 0.6, kFacetEdgeMm = 0.06;
 

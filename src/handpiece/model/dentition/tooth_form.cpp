@@ -121,9 +121,9 @@ void undulate(Spec& spec, std::uint64_t seed) {
 /// No two molars have one outline: rhombic or square, round or angular, straight or bellied.
 void outline(Spec& spec, Draws& draws) {
     spec.skew += 0.05 * draws.normal(), spec.lean += 0.025 * draws.normal(), spec.wedge += 0.025 * draws.normal();
-    spec.contourSquare += 0.09 * draws.normal(), spec.rimSquare += 0.07 * draws.normal();
+    spec.contourSquare += 0.05 * draws.normal(), spec.rimSquare += 0.07 * draws.normal();
     for (Outline* o : {&spec.mesial, &spec.distal, &spec.buccal, &spec.lingual}) {
-        o->belly += 0.04 * draws.normal(), o->contourZ += 0.15 * draws.normal();
+        o->belly += 0.04 * draws.normal(), o->contourZ += 0.08 * draws.normal();
         o->rim *= 1.0 + 0.015 * draws.normal(), o->top *= 1.0 + 0.03 * draws.normal();
     }
 }

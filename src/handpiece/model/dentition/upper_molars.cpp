@@ -53,9 +53,9 @@ void upperMolar(Spec& s, int place, const Patient& patient, Draws& draws) {
     plan.distal = {Vec3(-3.3, -2.2, 5.5), Vec3(-3.85, 0.1, 5.05), Vec3(-4.0, 1.8, 5.1)};
     if (place >= 7) {
         // The distopalatal cusp grows less from the first to the third.
-        const double less = place == 7 ? draws.between(0.25, 0.55) : 1.1;
+        const double less = place == 7 ? draws.between(0.2, 0.5) : 1.1;
         plan.lingual[1].tip.z() -= less, plan.lingual[1].tip.x() += 0.15, plan.distal.lingual.z() -= 0.6 * less;
-        plan.lingualNotch[0].z() -= 0.5 * less;
+        plan.lingualNotch[0].z() -= 0.6 * less, plan.lingual[1].slope += 0.15;
         plan.buccal[1].tip.z() -= 0.15 * (place - 6), plan.distal.middle.z() -= 0.2 * less;
         s.skew = place == 7 ? -0.18 : -0.1;
     }
@@ -68,7 +68,7 @@ void upperMolar(Spec& s, int place, const Patient& patient, Draws& draws) {
     s.crests.push_back({palatal, Vec3(0.2, 1.4, 5.6) + bow, low, 0.65, 1.05, false, "oblique mesial"});
     s.crests.push_back({low, Vec3(-0.8, -1.3, 5.35) - bow, buccal, 0.65, 1.05, false, "oblique distal"});
     // Where the grooves meet: their depths, for the x and y of a pit.
-    const auto at = [&](double x, double y, double depth) { return Vec3(x, y, depth) + draws.shift(0.2, 0.2, 0.0); };
+    const auto at = [&](double x, double y, double depth) -> Vec3 { return Vec3(x, y, depth) + draws.shift(0.2, 0.2, 0.0); };
     const Vec3 central = at(0.5, -0.9, 0.4), mesial = at(3.2, -0.15, 0.3), distal = at(-3.1, -0.35, 0.3);
     const Vec3 buccalNotch(plan.buccalNotch[0].x(), plan.buccalNotch[0].y(), 0.25),
         palatalNotch(plan.lingualNotch[0].x(), plan.lingualNotch[0].y(), 0.28);

@@ -67,9 +67,10 @@ struct Cusp {
     core::Vec3 tip;
 };
 
-/// Where antagonists have ground a cusp flat.
+/// Where antagonists have ground a cusp flat: along the surface as it was at this place, so deep.
 struct Facet {
-    core::Vec3 at, normal;
+    core::Vec2 place;
+    double depth;
 };
 
 struct Root {

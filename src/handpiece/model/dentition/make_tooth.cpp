@@ -107,11 +107,8 @@ cases::Tooth makeTooth(int fdi, const Patient& patient, const ToothOptions& opti
                 const TriangleMesh fine =
                     largestShell(sampled(form.bounds(), of(i), spacing * (1.0 - 0.04 * attempt), 2, told(i, 0.0, 0.5)));
                 meshes[i] = geometry::decimate(fine, faces, told(i, 0.5, 1.0)).mesh;
-                // Two canals of a root may meet again; nothing else has a hole.
                 const bool isBall = 2 * meshes[i].vertices.size() == meshes[i].triangles.size() + 4;
-                if ((isBall || kLayers[i].tissue == cases::Tissue::pulp) &&
-                    geometry::selfIntersections(meshes[i], 1).empty())
-                    break;
+                if (isBall && geometry::selfIntersections(meshes[i], 1).empty()) break;
             }
         }
     });

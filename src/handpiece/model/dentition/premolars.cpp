@@ -14,7 +14,7 @@ void narrow(Spec& s) {
 }
 }  // namespace
 
-void upperPremolar(Spec& s, int place) {
+void upperPremolar(Spec& s, int place, Draws& draws) {
     const bool first = place == 4;
     s.mesial = {4.9, 6.6, 2.85, 8.4, 2.2};
     s.distal = {4.6, 6.4, 2.75, 8.2, 2.1};
@@ -49,19 +49,8 @@ void upperPremolar(Spec& s, int place) {
         // The concavity of the mesial side, across the cervix.
         s.hollows.push_back({Vec3(3.0, 0.2, -0.5), Vec3(1.7, 2.2, 4.2), 0.4});
     }
-    // Grooves from the pits to the corners of the triangular fossae.
     for (const double side : {1.0, -1.0}) {
         const double x = side > 0.0 ? m : -d;
-        s.grooves.push_back({"",
-                             {Vec3(x, 0.4, 0.28), Vec3(x + 0.35 * side, -0.35, 0.2), Vec3(x + 0.6 * side, -1.1, 0.0)},
-                             0.24,
-                             3.5,
-                             4.5});
-        s.grooves.push_back({"",
-                             {Vec3(x, 0.4, 0.28), Vec3(x + 0.25 * side, 0.95, 0.16), Vec3(x + 0.2 * side, 1.4, 0.0)},
-                             0.22,
-                             3.5,
-                             4.5});
         s.hollows.push_back({Vec3(x, 0.4, 5.5), Vec3(0.35, 0.35, 0.8), 0.18, side > 0.0 ? "mesial" : "distal"});
         if (!first) {  // wrinkled, as second premolars are
             s.grooves.push_back(
@@ -79,6 +68,7 @@ void upperPremolar(Spec& s, int place) {
         // Buccal furrows beside the buccal ridge.
         s.hollows.push_back({Vec3(1.75 * side, -4.3, 6.0), Vec3(1.1, 1.9, 2.6), 0.22});
     }
+    supplementalGrooves(s, plan, draws);
     s.enamelCusp = 1.7, s.enamelSide = 0.95, s.enamelFossa = 0.65;
     if (first) {
         s.trunk = 7.0;
@@ -95,7 +85,7 @@ void upperPremolar(Spec& s, int place) {
     narrow(s);
 }
 
-void lowerPremolar(Spec& s, int place) {
+void lowerPremolar(Spec& s, int place, Draws& draws) {
     const bool first = place == 4;
     s.mesial = {4.6, 6.0, 3.0, 8.2, 2.1};
     s.distal = {4.4, 5.8, 3.05, 8.0, 2.1};
@@ -104,13 +94,13 @@ void lowerPremolar(Spec& s, int place) {
     s.lean = first ? -0.1 : 0.0;
     s.cervixSquare = 0.35, s.contourSquare = 0.5, s.rimSquare = 0.5;
     s.rimRound = 0.8;
-    s.enamelCusp = 1.8, s.enamelSide = 0.95, s.enamelFossa = 0.55;
+    s.enamelCusp = 1.8, s.enamelSide = 1.05, s.enamelFossa = 0.55;
     OcclusalPlan plan;
     if (first) {
         s.groundZ = 4.4;
         // The buccal cusp stands over the root's axis; the transverse ridge crosses the crown to the small lingual one.
         plan.buccal = {{"buccal", Vec3(0.15, -1.0, 8.25), Vec3(0.15, 0.9, 5.0), 0.62, 1.6}};
-        plan.lingual = {{"lingual", Vec3(0.05, 2.5, 5.75), Vec3(0.1, 1.6, 4.9), 0.55, 1.15}};
+        plan.lingual = {{"lingual", Vec3(0.05, 2.45, 5.95), Vec3(0.1, 1.5, 4.85), 0.4, 1.3}};
         plan.mesial = {Vec3(2.65, -0.55, 5.9), Vec3(2.7, 0.9, 5.2), Vec3(1.6, 2.2, 4.9)};
         plan.distal = {Vec3(-2.65, -0.55, 6.0), Vec3(-2.75, 0.9, 5.4), Vec3(-1.7, 2.3, 5.1)};
         occlusalSurface(s, plan);
@@ -156,12 +146,9 @@ void lowerPremolar(Spec& s, int place) {
         s.hollows.push_back({Vec3(-0.42, 4.0, 5.6), Vec3(1.1, 1.8, 2.0), 0.28});
         for (const double x : {1.85, -1.9}) {
             s.hollows.push_back({Vec3(x, 0.6, 4.9), Vec3(0.35, 0.35, 0.8), 0.18, x > 0.0 ? "mesial" : "distal"});
-            s.grooves.push_back(
-                {"", {Vec3(x, 0.6, 0.2), Vec3(1.15 * x, 0.0, 0.15), Vec3(1.22 * x, -0.5, 0.0)}, 0.22, 3.2, 4.2});
-            s.grooves.push_back(
-                {"", {Vec3(x, 0.6, 0.2), Vec3(1.1 * x, 1.2, 0.15), Vec3(1.05 * x, 1.6, 0.0)}, 0.22, 3.2, 4.2});
         }
     }
+    supplementalGrooves(s, plan, draws);
     for (const double side : {1.0, -1.0})
         s.hollows.push_back({Vec3(1.8 * side, -3.6, 6.0), Vec3(1.1, 1.9, 2.6), 0.22});
     s.roots = {{"root", Vec2(0, 0), Vec3(0.1, 0.0, -7.0), Vec3(-0.7, 0.1, -s.sizes.root - 0.25), Vec2(2.5, 3.25), 0.2,

@@ -2,6 +2,7 @@
 #include "handpiece/model/dentition/rules.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "handpiece/base/core/portable_math.h"
 
@@ -32,6 +33,72 @@ Vec2 rootCentre(const Root& r, double t) {
     return r.cervix + t * (r.apex.head<2>() - r.cervix) + t * (1.0 - t) * bow;
 }
 
+void vary(OcclusalPlan& plan, Draws& draws) {
+    for (std::vector<CuspPlan>* side : {&plan.buccal, &plan.lingual})
+        for (CuspPlan& c : *side) {
+            c.tip += draws.shift(0.2, 0.14, 0.05);
+            c.inner += draws.shift(0.2, 0.2, 0.1);
+            c.round *= 1.0 + 0.12 * draws.normal(), c.slope *= 1.0 + 0.04 * draws.normal();
+            c.bow += 0.2 * draws.normal();
+        }
+    for (std::vector<Vec3>* side : {&plan.buccalNotch, &plan.lingualNotch})
+        for (Vec3& notch : *side)
+            notch += draws.shift(0.2, 0.08, 0.12);
+    for (MarginalPlan* m : {&plan.mesial, &plan.distal}) {
+        m->buccal += draws.shift(0.08, 0.15, 0.08), m->lingual += draws.shift(0.08, 0.15, 0.08);
+        m->middle += draws.shift(0.08, 0.25, 0.12);
+        m->round *= 1.0 + 0.15 * draws.normal();
+    }
+}
+
+std::vector<Vec3> bent(const Vec3& from, const Vec3& to, Draws& draws) {
+    const Vec3 way = to - from, across(-way.y(), way.x(), 0.0);
+    const double one = 0.12 * draws.normal(), two = 0.7 * one + 0.09 * draws.normal();
+    return {from, between(from, to, 0.35) + one * across, between(from, to, 0.68) + two * across, to};
+}
+
+namespace {
+/// From a point towards an angle, curving, fading out; some fork on their way.
+void twig(Spec& spec, const Vec3& from, double rad, double length, Draws& draws, int forks = 1) {
+    const auto on = [](const Vec3& p, double angle, double by, double depth) {
+        return Vec3(p.x() + by * core::cos(angle), p.y() + by * core::sin(angle), depth);
+    };
+    const double bend = 0.35 * draws.normal();
+    const Vec3 middle = on(from, rad, 0.5 * length, 0.7 * from.z()), end = on(middle, rad + bend, 0.5 * length, 0.0);
+    spec.grooves.push_back({"", {from, middle, end}, 0.2 + 0.07 * draws.uniform(), spec.groundZ + 0.1, spec.groundZ + 0.8});
+    if (forks > 0 && draws.uniform() < 0.35)
+        twig(spec, middle, rad + (draws.uniform() < 0.5 ? -0.8 : 0.8) - bend, 0.6 * length, draws, forks - 1);
+}
+}  // namespace
+
+void supplementalGrooves(Spec& spec, const OcclusalPlan& plan, Draws& draws) {
+    for (const std::vector<CuspPlan>* side : {&plan.buccal, &plan.lingual})
+        for (const CuspPlan& c : *side)
+            for (const double turn : {1.0, -1.0}) {
+                if (draws.uniform() < 0.3) continue;
+                // Beside the triangular ridge, up the cusp's slope.
+                const Vec3 up = c.tip - c.inner;
+                const double rad = core::atan2(up.y(), up.x()) + turn * (0.35 + 0.5 * draws.uniform());
+                const double start = 0.1 + 0.5 * draws.uniform();
+                Vec3 from = c.inner + Vec3(start * core::cos(rad), start * core::sin(rad), 0.0);
+                from.z() = 0.06 + 0.12 * draws.uniform();
+                twig(spec, from, rad - 0.3 * turn, (0.45 + 0.3 * draws.uniform()) * up.head<2>().norm(), draws);
+            }
+    for (const Hollow& pit : std::vector<Hollow>(spec.hollows)) {
+        if (pit.pit != "mesial" && pit.pit != "distal") continue;
+        const double out = pit.pit == "mesial" ? 1.0 : -1.0;
+        // To the corners of the triangular fossa, now and then over the marginal ridge.
+        for (const double side : {-1.0, 0.0, 1.0}) {
+            const double chance = draws.uniform(), deep = draws.uniform(),
+                         length = (side == 0.0 ? 0.7 : 0.9) + 0.8 * draws.uniform();
+            if (chance < (side == 0.0 ? 0.7 : 0.12)) continue;
+            const double turn = side * (0.65 + 0.6 * draws.uniform()), angle = turn + 0.2 * draws.normal();
+            twig(spec, Vec3(pit.centre.x(), pit.centre.y(), side == 0.0 ? 0.08 + 0.08 * deep : 0.18 + 0.14 * deep),
+                 out > 0.0 ? angle : std::numbers::pi - angle, length, draws);
+        }
+    }
+}
+
 void occlusalSurface(Spec& spec, const OcclusalPlan& plan) {
     for (const bool isBuccal : {true, false}) {
         const std::vector<CuspPlan>& cusps = isBuccal ? plan.buccal : plan.lingual;
@@ -49,12 +116,6 @@ void occlusalSurface(Spec& spec, const OcclusalPlan& plan) {
                 {c.tip, by, c.inner, 1.3 * c.round, c.slope, false, std::string("triangular ") + c.name});
             spec.crests.push_back(cuspRidge(c.tip, mesial, side, c.slope));
             spec.crests.push_back(cuspRidge(c.tip, distal, side, c.slope));
-            for (const Vec3& rim : {mesial, distal}) {
-                const Vec3 a = between(c.inner, rim, 0.14), e = between(between(c.tip, rim, 0.42), c.inner, 0.25);
-                const Vec3 m = between(between(a, e, 0.5), rim, -0.04);
-                spec.grooves.push_back(
-                    {"", {Vec3(a.x(), a.y(), 0.03), Vec3(m.x(), m.y(), 0.12), Vec3(e.x(), e.y(), 0.0)}, 0.3, 2.0, 3.5});
-            }
         }
     }
     for (const MarginalPlan* m : {&plan.mesial, &plan.distal}) {
@@ -81,17 +142,17 @@ void chamberAndCanals(Spec& spec, double ageYears) {
     const double halfX = 0.25 * spec.sizes.mesiodistalCervix * young,
                  halfY = 0.22 * spec.sizes.buccolingualCervix * young;
     // Its walls are hollow: wide towards the horns and the orifices, narrow between.
-    spec.chamber = {{spec.floorZ - 0.2, spec.centreX, 0.0, 0.92 * halfX, 0.92 * halfY, 0.4},
-                    {0.5 * (spec.floorZ + spec.roofZ), spec.centreX, 0.0, 0.86 * halfX, 0.88 * halfY, 0.3},
-                    {spec.roofZ + 0.2, spec.centreX, 0.0, halfX, halfY, 0.4}};
+    spec.chamber = {{spec.floorZ - 0.2, spec.centreX, 0.0, 0.95 * halfX, 0.95 * halfY, 0.3},
+                    {0.5 * (spec.floorZ + spec.roofZ), spec.centreX, 0.0, 0.9 * halfX, 0.92 * halfY, 0.25},
+                    {spec.roofZ + 0.2, spec.centreX, 0.0, 1.03 * halfX, 1.03 * halfY, 0.3}};
     for (const Cusp& c : spec.cusps) {
         // The mesiobuccal one is the highest.
         const double up = (&c == &spec.cusps.front() ? 1.7 : 1.25) * young;
         const Vec2 at(std::clamp(spec.centreX + 0.62 * (c.tip.x() - spec.centreX), spec.centreX - 0.85 * halfX,
                                  spec.centreX + 0.85 * halfX),
                       std::clamp(0.55 * c.tip.y(), -0.85 * halfY, 0.85 * halfY));
-        spec.horns.push_back({c.name, Vec3(0.85 * at.x(), 0.85 * at.y(), spec.roofZ - 0.45),
-                              Vec3(at.x(), at.y(), spec.roofZ + up - 0.15), 0.5 * young, 0.15});
+        spec.horns.push_back({c.name, Vec3(0.8 * at.x(), 0.8 * at.y(), spec.roofZ - 0.6),
+                              Vec3(at.x(), at.y(), spec.roofZ + up - 0.15), 0.62 * young, 0.15});
     }
     for (const Root& r : spec.roots) {
         const bool isTwo = std::find(spec.twoCanals.begin(), spec.twoCanals.end(), r.name) != spec.twoCanals.end();
@@ -112,7 +173,7 @@ void chamberAndCanals(Spec& spec, double ageYears) {
             if (isTwo && r.name == "mesiobuccal")
                 canal.name = side < 0.0 ? "mesiobuccal" : "second mesiobuccal",
                 canal.orificeRadius *= side < 0.0 ? 1.1 : 0.8;
-            for (const auto& [t, share] : {std::pair{0.3, 1.0}, {0.5, 0.9}, {0.7, 0.65}, {0.85, 0.45}, {end, 0.3}}) {
+            for (const auto& [t, share] : {std::pair{0.3, 1.0}, {0.5, 0.9}, {0.7, 0.72}, {0.85, 0.62}, {end, 0.55}}) {
                 const Vec2 c = centre(t);
                 canal.points.push_back(Vec3(c.x(), c.y() + off * share, t * r.apex.z()));
             }
@@ -149,7 +210,7 @@ void oneCavity(Spec& spec, double ageYears) {
             const double up = (c.tip.z() / spec.cusps.front().tip.z() > 0.9 || spec.isEdge ? 0.75 : 0.3) * young;
             spec.horns.push_back({spread > 0.0 ? x > 0.0 ? "mesial" : "distal" : c.name,
                                   Vec3(at.x() + 0.8 * side, 0.7 * at.y(), 0.6 * top),
-                                  Vec3(at.x() + side, at.y(), top + up - 0.15), 0.28 * young, 0.15});
+                                  Vec3(at.x() + side, at.y(), top + up - 0.15 - (x < 0.0 ? 0.2 : 0.0)), 0.28 * young, 0.15});
         }
     }
 }

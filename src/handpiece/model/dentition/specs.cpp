@@ -30,14 +30,16 @@ constexpr Spreads kLowerSpreads[8] = {{0.054, 0.066}, {0.065, 0.061}, {0.062, 0.
 
 Spec specOf(bool upper, int place, const Patient& patient) {
     Spec spec;
+    // Plans of a seed, far from the numbers that tooth_form.cpp draws.
+    Draws draws(patient.seed * 9176263 + static_cast<std::uint64_t>(1000 + place + (upper ? 0 : 8)), patient.seed == 0);
     spec.sizes = (upper ? kUpper : kLower)[place - 1];
     spec.spreads = (upper ? kUpperSpreads : kLowerSpreads)[place - 1];
     if (place <= 3)
         anterior(spec, upper, place);
     else if (place <= 5)
-        upper ? upperPremolar(spec, place) : lowerPremolar(spec, place);
+        upper ? upperPremolar(spec, place, draws) : lowerPremolar(spec, place, draws);
     else
-        upper ? upperMolar(spec, place, patient) : lowerMolar(spec, place);
+        upper ? upperMolar(spec, place, patient, draws) : lowerMolar(spec, place, draws);
     return spec;
 }
 

@@ -29,8 +29,12 @@ constexpr double kShoulders = 1.12;
 constexpr int kCurvePieces = 6;
 /// Between the nodes of a field of unevenness; every second one has the longer waves.
 constexpr double kNodesMm = 1.0;
+/// Beyond this from the surface what is carved into it counts no more.
+constexpr double kFarMm = 1.6;
+/// Spread and waves of the finer unevenness [mm]: as on two real molars (docs/anatomy.md). It runs around the crown.
+constexpr double kFineUnevenMm = 0.006, kFineAcrossMm = 0.34, kFineUpMm = 0.22;
 /// How far from a cusp's tip a facet may reach, and how softly it ends.
-constexpr double kFacetReachMm = 0.7, kFacetSlope = 0.6, kFacetEdgeMm = 0.2;
+constexpr double kFacetReachMm = 0.7, kFacetSlope = 0.6, kFacetEdgeMm = 0.06;
 
 double gauss(double t) {
     return core::exp(-0.5 * t * t);
@@ -244,6 +248,17 @@ double Unevenness::at(const Vec3& p) const {
     return sum;
 }
 
+Vec3 Unevenness::folded(const Vec3& p) const {
+    Vec3 to;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double wide = (size_[axis] - 4) * kNodesMm, at = p[axis] / (axis == 2 ? kFineUpMm : kFineAcrossMm);
+        // Back and forth, so that it stays smooth.
+        const double turn = at / wide - 2.0 * std::floor(0.5 * at / wide);
+        to[axis] = origin_[axis] + kNodesMm + wide * (turn < 1.0 ? turn : 2.0 - turn);
+    }
+    return to;
+}
+
 Anatomy::Anatomy(Spec spec) : spec_(std::move(spec)), crown_(crownOf(spec_)) {
     const Sizes& z = spec_.sizes;
     const double buccal = -0.25 * (z.curveMesial + z.curveDistal);
@@ -290,11 +305,28 @@ Anatomy::Anatomy(Spec spec) : spec_(std::move(spec)), crown_(crownOf(spec_)) {
     for (const Hollow& h : spec_.hollows)
         bumps_.push_back({h.centre, h.radii.cwiseInverse(), h.depth});
     if (spec_.uneven > 0.0) uneven_ = Unevenness(spec_.unevenSeed, bounds());
-    if (!spec_.chamber.empty())
+    if (!spec_.chamber.empty()) {
+        // No box: roof and floor pass into the walls.
+        const double round = 0.42 * (spec_.roofZ - spec_.floorZ);
         chamber_.emplace_back(spec_.chamber, spec_.roots.size() == 1
                                                  ? Loft::Ends{spec_.floorZ + 0.4, 0.4, spec_.roofZ - 0.5, 0.5}
-                                                 : Loft::Ends{spec_.floorZ + 0.45, 0.45, spec_.roofZ - 0.45, 0.45});
+                                                 : Loft::Ends{spec_.floorZ + round, round, spec_.roofZ - round, round});
+    }
+    grind();
     measure();
+}
+
+void Anatomy::grind() {
+    for (const Facet& f : spec_.facets) {
+        Vec3 at;
+        if (!surfaceAlong(Vec3(f.place.x(), f.place.y(), topZ_), -Vec3::UnitZ(), at)) continue;
+        constexpr double kNear = 0.15;
+        Vec3 normal;
+        for (int axis = 0; axis < 3; ++axis)
+            normal[axis] = body(at + kNear * Vec3::Unit(axis)) - body(at - kNear * Vec3::Unit(axis));
+        normal.normalize();
+        facets_.push_back({at - f.depth * normal, normal});
+    }
 }
 
 void Anatomy::settleGrooves() {
@@ -323,11 +355,22 @@ void Anatomy::settleGrooves() {
             if (!isInside(at)) continue;
             const bool isEnd = i == 0 || i + 1 == before.size();
             const Vec2 way = isEnd ? Vec2::Zero() : Vec2((before[i + 1] - before[i - 1]).head<2>().normalized());
-            g.points[i].head<2>() = settled(at, Vec2(-way.y(), way.x()), i == 0 ? 0.12 : 0.3);
+            g.points[i].head<2>() = settled(at, Vec2(-way.y(), way.x()), isEnd ? 0.2 : 0.35);
         }
         const std::vector<Vec3> rough = g.points;
         for (std::size_t i = 1; i + 1 < rough.size(); ++i)
             g.points[i] = 0.25 * rough[i - 1] + 0.5 * rough[i] + 0.25 * rough[i + 1];
+    }
+    // A pit is where grooves meet.
+    for (Hollow& h : spec_.hollows) {
+        if (h.pit.empty() || !isInside(h.centre.head<2>())) continue;
+        double nearest = 0.6;
+        Vec2 place = h.centre.head<2>();
+        for (const Groove& g : spec_.grooves)
+            for (const Vec3& end : {g.points.front(), g.points.back()})
+                if (const double away = (end.head<2>() - h.centre.head<2>()).norm(); !g.name.empty() && away < nearest)
+                    nearest = away, place = end.head<2>();
+        h.centre.head<2>() = place;
     }
 }
 
@@ -409,9 +452,11 @@ double Anatomy::body(const Vec3& p) const {
         if (q < 1.0) value += b.depth * (1.0 - q) * (1.0 - q);
     }
     // Cusps keep their order: they are the least uneven.
-    if (spec_.uneven > 0.0 && value < 1.5)
-        value += spec_.uneven * (1.0 - 0.75 * smoothStep(topZ_ - 2.4, topZ_ - 1.2, p.z())) * uneven_.at(p);
-    for (const Facet& f : spec_.facets) {
+    if (spec_.uneven > 0.0 && std::abs(value) < 1.5) {
+        const double wall = 1.0 - 0.75 * smoothStep(topZ_ - 2.4, topZ_ - 1.2, p.z());
+        value += wall * (spec_.uneven * uneven_.at(p) + kFineUnevenMm * uneven_.at(uneven_.folded(p)));
+    }
+    for (const Plane& f : facets_) {
         const double away = (p - f.at).head<2>().norm() - kFacetReachMm;
         if (away > 2.0) continue;
         const double limit = std::max(away, 0.0) * (kFacetSlope + 0.8 * std::max(away, 0.0));
@@ -435,7 +480,9 @@ double Anatomy::step(double above) const {
 }
 
 double Anatomy::outer(const Vec3& p) const {
-    return body(p) - step(aboveCervix(p)) + grooveDepth(p);
+    const double value = body(p);
+    // Far from the surface grooves move nothing.
+    return value - step(aboveCervix(p)) + (std::abs(value) < kFarMm ? grooveDepth(p) : 0.0);
 }
 
 double Anatomy::core(const Vec3& p, double bodyValue) const {
@@ -462,11 +509,15 @@ double Anatomy::enamel(const Vec3& p) const {
 }
 
 double Anatomy::pulp(const Vec3& p) const {
-    double value = std::numeric_limits<double>::infinity();
+    double cavity = std::numeric_limits<double>::infinity();
     for (const Loft& c : chamber_)
-        value = c.value(p);
-    for (const Canal& c : spec_.canals)
-        value = smoothMin(value, chainValue(c.points, c.orificeRadius, c.apexRadius, p), 0.5);
+        cavity = c.value(p);
+    // Canals flow into the chamber, not into each other: two of a root stay two.
+    double value = cavity;
+    for (const Canal& c : spec_.canals) {
+        const double canal = chainValue(c.points, c.orificeRadius, c.apexRadius, p);
+        value = std::min(value, std::isfinite(cavity) ? smoothMin(cavity, canal, 0.5) : canal);
+    }
     for (const Horn& h : spec_.horns)
         value = smoothMin(value, chainValue({h.base, h.tip}, h.baseRadius, h.tipRadius, p), 0.8);
     return smoothMax(

@@ -63,6 +63,8 @@ class Unevenness {
     Unevenness() = default;
     Unevenness(std::uint64_t seed, const core::Box& box);
     [[nodiscard]] double at(const core::Vec3& p) const;
+    /// A place in it for finer waves: the same field, smaller, folded over and over.
+    [[nodiscard]] core::Vec3 folded(const core::Vec3& p) const;
 
   private:
     [[nodiscard]] std::size_t index(int i, int j, int k) const {
@@ -112,6 +114,9 @@ class Anatomy {
         core::Vec3 centre, inverseRadii;
         double depth;
     };
+    struct Plane {
+        core::Vec3 at, normal;
+    };
     struct Line {
         std::vector<core::Vec3> points;
         std::vector<double> widths;  ///< shares of halfWidth, one a point
@@ -126,6 +131,7 @@ class Anatomy {
     [[nodiscard]] double step(double above) const;
     [[nodiscard]] double core(const core::Vec3& p, double bodyValue) const;
     void settleGrooves();
+    void grind();
     void measure();
 
     Spec spec_;
@@ -135,6 +141,7 @@ class Anatomy {
     std::vector<Curve> rim_, curves_;
     std::vector<Line> lines_;
     std::vector<Bump> bumps_;
+    std::vector<Plane> facets_;
     Unevenness uneven_;
     double cervix_[4];  ///< heights of the cemento-enamel junction: mesial, distal, buccal, lingual
     double topZ_, apexZ_, reach_;

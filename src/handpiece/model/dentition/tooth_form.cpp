@@ -28,25 +28,6 @@ void checkTooth(int fdi, const Patient& patient) {
         throw core::Error(fmt::format("an age of {} years", patient.ageYears), "--age", "give 6 to 110");
 }
 
-/// Numbers of a seed, the same everywhere.
-class Draws {
-  public:
-    Draws(std::uint64_t seed, bool isAverage) : state_(seed), isAverage_(isAverage) {}
-    double uniform() { return core::unitOf(core::nextSplitMix(state_)); }
-    /// About normal, of unit spread, never beyond 2; nothing for seed 0, the average patient.
-    double normal() {
-        if (isAverage_) return 0.0;
-        double sum = -6.0;
-        for (int i = 0; i < 12; ++i)
-            sum += uniform();
-        return std::clamp(sum, -2.0, 2.0);
-    }
-
-  private:
-    std::uint64_t state_;
-    bool isAverage_;
-};
-
 /// A smooth field of small shifts: no cusp stands, no groove runs as on a drawing.
 class Wander {
   public:
@@ -98,11 +79,10 @@ void wander(Spec& spec, const Wander& field) {
         g.widths.clear();
         for (Vec3& p : points) {
             const double depth = p.z();
-            // Where one begins says how they meet: there they keep their places.
-            const bool isStart = !g.name.empty() && &p == &points.front();
-            if (!isStart) moved(p, 0.0);
+            // A field: what meets goes on meeting.
+            moved(p, 0.0);
             const Vec3 bend = field.at(p, 2.2), change = field.at(p, 3.1);
-            if (!isStart) p += Vec3(0.09 * bend.x(), 0.09 * bend.y(), 0.0);
+            p += Vec3(0.07 * bend.x(), 0.07 * bend.y(), 0.0);
             p.z() = depth * std::max(0.62 + 0.26 * change.z(), 0.12);
             g.widths.push_back(std::clamp(1.55 - 0.35 * change.z() + 0.2 * bend.z(), 0.9, 2.4));
         }
@@ -123,19 +103,29 @@ void undulate(Spec& spec, std::uint64_t seed) {
         if (c.isMarginal)
             knob(at, Vec3(round, round, 1.1), 0.16 * (draws.uniform() - 0.6));
         else if (!c.isRim && !spec.isEdge)
-            knob(at, Vec3(round, round, 1.1), -(0.05 + 0.14 * draws.uniform()) * std::min(1.0, c.round * c.round));
+            knob(at, Vec3(round, round, 1.1), -(0.02 + 0.12 * draws.uniform()) * std::min(1.0, c.round * c.round));
     }
     const Sizes& z = spec.sizes;
     if (spec.cusps.size() >= 4)  // each cusp is a lobe of the outline too
         for (const Cusp& c : spec.cusps)
             knob(Vec3(1.3 * c.tip.x(), 1.45 * c.tip.y(), (0.5 + 0.08 * draws.uniform()) * z.crown), Vec3(2.1, 2.1, 2.9),
-                 -(0.14 + 0.2 * draws.uniform()));
-    constexpr int kSides = 6;
+                 -(0.08 + 0.2 * draws.uniform()));
+    constexpr int kSides = 5;
     for (int i = 0; i < kSides; ++i) {
         const double turn = 2.0 * std::numbers::pi * (i + 0.5 * draws.uniform()) / kSides;
         knob(Vec3(0.5 * z.mesiodistal * core::cos(turn), 0.5 * z.buccolingual * core::sin(turn),
                   z.crown * (0.35 + 0.3 * draws.uniform())),
-             Vec3(1.9, 1.9, 2.2), 0.16 * (draws.uniform() - 0.5));
+             Vec3(2.2, 2.2, 2.4), 0.14 * (draws.uniform() - 0.5));
+    }
+}
+
+/// No two molars have one outline: rhombic or square, round or angular, straight or bellied.
+void outline(Spec& spec, Draws& draws) {
+    spec.skew += 0.05 * draws.normal(), spec.lean += 0.025 * draws.normal(), spec.wedge += 0.025 * draws.normal();
+    spec.contourSquare += 0.05 * draws.normal(), spec.rimSquare += 0.07 * draws.normal();
+    for (Outline* o : {&spec.mesial, &spec.distal, &spec.buccal, &spec.lingual}) {
+        o->belly += 0.04 * draws.normal(), o->contourZ += 0.08 * draws.normal();
+        o->rim *= 1.0 + 0.015 * draws.normal(), o->top *= 1.0 + 0.03 * draws.normal();
     }
 }
 
@@ -172,9 +162,8 @@ void addFacets(Spec& spec, std::uint64_t seed, double ageYears) {
     for (const Cusp& c : spec.cusps) {
         const double depth = 0.004 * years * (0.3 + 0.9 * draws.uniform());
         const double side = (c.tip.y() < 0.0 ? -1.0 : 1.0) * (draws.uniform() < 0.5 ? -1.0 : 1.0);
-        const Vec3 normal =
-            Vec3(0.4 * (draws.uniform() - 0.5), side * (0.08 + 0.22 * draws.uniform()), 1.0).normalized();
-        if (depth > 0.0) spec.facets.push_back({c.tip - depth * normal, normal});
+        const double along = 0.8 * (draws.uniform() - 0.5), aside = side * (0.15 + 0.45 * draws.uniform());
+        if (depth > 0.0) spec.facets.push_back({core::Vec2(c.tip.x() + along, c.tip.y() + aside), depth});
     }
 }
 
@@ -200,10 +189,9 @@ Spec specFor(int fdi, const Patient& patient) {
     undulate(spec, own + 1);
     // The first lower premolar has hardly a table; third molars are wrinkled as they are.
     if (!spec.isEdge && fdi % 10 != 8 && (upper || fdi % 10 != 4)) branch(spec, own + 2);
-    spec.unevenSeed = own + 3, spec.uneven = spec.isEdge ? 0.02 : fdi % 10 >= 6 ? 0.055 : 0.03;
+    spec.unevenSeed = own + 3, spec.uneven = spec.isEdge ? 0.02 : fdi % 10 >= 6 ? 0.045 : 0.03;
     if (fdi % 10 >= 6)
-        spec.skew += 0.025 * tooth.normal(), spec.lean += 0.015 * tooth.normal(), spec.wedge += 0.015 * tooth.normal(),
-            spec.contourSquare += 0.06 * tooth.normal();
+        outline(spec, tooth);
     for (Hollow& h : spec.hollows)
         h.depth *= 1.0 + 0.1 * tooth.normal();
     // Those of third molars stand so close that they would grow together.

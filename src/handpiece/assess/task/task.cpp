@@ -9,6 +9,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
+#include "handpiece/model/case/exercise_table.h"
 
 namespace handpiece::tasks {
 namespace {

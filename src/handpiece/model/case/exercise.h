@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "handpiece/base/config/table.h"
 #include "handpiece/base/core/vec.h"
 
 namespace handpiece::cases {
@@ -42,7 +41,6 @@ struct Exercise {
 
 /// `[exercise]` of case.toml as text, and back. Throws core::Error naming `where`.
 [[nodiscard]] std::string exerciseText(const Exercise& exercise);
-[[nodiscard]] Exercise readExercise(const config::Table& exercise);
 [[nodiscard]] Exercise parseExercise(std::string_view text, const std::string& where);
 
 }  // namespace handpiece::cases

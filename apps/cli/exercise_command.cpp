@@ -12,7 +12,11 @@
 #include "handpiece/assess/task/task.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/model/case/attempt.h"
 #include "handpiece/model/starter/block.h"
+#include "handpiece/model/tooth/state_file.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
+#include "studies/progress_bar.h"
 
 namespace handpiece::cli {
 namespace {
@@ -152,6 +156,35 @@ void check(const ExerciseOptions& o) {
     if (!wrong.empty()) throw core::Error(fmt::format("{} found", wrong.size()), o.path, "mend them");
 }
 
+/// The tooth as it should be, as an attempt of the exercise's case.
+void ideal(const ExerciseOptions& o) {
+    const tasks::Task task = tasks::readTask(o.path);
+    if (!task.preparation)
+        throw core::Error("this exercise asks for no preparation", o.path, "add [preparation] to exercise.toml");
+    tooth::LoadSettings settings;
+    settings.field.voxelMm = task.voxelMm;
+    studies::ProgressBar bar("making the tooth");
+    const auto model = tooth::loadModel(task.toothCase, settings, bar.listener());
+    bar.finish();
+    const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
+    const tooth::StateDelta state = zones::idealState(*laid.zones, model);
+    cases::Attempt attempt;
+    std::error_code ec;
+    const fs::path path(o.path);
+    attempt.caseFile = fs::absolute(fs::is_directory(path, ec) ? path / "case" : path);
+    attempt.caseKey = cases::caseKey(task.toothCase);
+    attempt.caseName = task.toothCase.name;
+    attempt.state = tooth::encodeState(state, tooth::identityOf({model}));
+    attempt.voxelMm = task.voxelMm;
+    attempt.removedMm3 = state.removedMm3.own;
+    attempt.bur =
+        task.toothCase.exercise && !task.toothCase.exercise->bur.empty() ? task.toothCase.exercise->bur : "330";
+    attempt.cuttingParameters = "carbide";
+    attempt.drive = "turbine";
+    cases::writeAttempt(attempt, o.out);
+    fmt::print("{}: {:.2f} mm3 gone\n", o.out, tooth::sumOf(state.removedMm3.own));
+}
+
 void makeBlock(const ExerciseOptions& o) {
     // The stricter a level, the less may go beside the target; a judgement of the project, not a standard.
     constexpr double kLeewayMm[] = {0.5, 0.35, 0.2};
@@ -214,6 +247,11 @@ void addExerciseCommand(Command& app) {
     checking.option("EXERCISE", o.path, "folder or .handpiece file").required();
     checking.flag("--json", o.json, "as JSON");
     checking.callback([options] { check(*options); });
+
+    Command asked = exercise.subcommand("ideal", "The tooth as the exercise asks for it, as an attempt to look at");
+    asked.option("EXERCISE", o.path, "folder or .handpiece file").required();
+    asked.option("--out", o.out, "folder").required();
+    asked.callback([options] { ideal(*options); });
 
     Command pack = exercise.subcommand("pack", "An exercise as one file, or back into a folder");
     pack.option("EXERCISE", o.path, "folder or .handpiece file").required();

@@ -41,6 +41,10 @@ class Exercise(SystemTest):
         self.ok(*new, "--preparation", "class-two", "--side", "mesial", "--set", "axial_mm=1.5")
         second = json.loads(self.ok("exercise", "check", self.folder / "two", "--json").stdout)
         self.assertNotEqual(first["hash"], second["hash"])
+        gone = self.ok("exercise", "ideal", self.folder / "two", "--out", self.folder / "ideal").stdout
+        self.assertGreater(float(gone.split()[1]), 10.0)
+        self.ok("case", "info", self.folder / "two" / "case")
+        self.ok("picture", self.folder / "ideal", "--size", "64x48", "--out", self.folder / "ideal.png")
 
     def test_what_is_wrong_is_told_in_one_line_and_nothing_is_written(self):
         block = self.block("--kind", "line")

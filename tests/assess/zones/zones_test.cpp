@@ -89,6 +89,13 @@ TEST_P(VolumesByZone, AreThoseOfTheClosedForm) {
         const double enamel = v.removed[0][static_cast<std::size_t>(cases::Tissue::enamel)];
         EXPECT_NEAR(enamel, areaOf(0.6) * 1.0, areaOf(0.6) * 0.51 * GetParam()) << "a node is of one tissue";
     }
+    {  // The ideal, as the product makes it, is that very cut.
+        const tooth::StateDelta ideal = idealState(zones, model);
+        tooth::ToothState by(model);
+        tooth::test::cutAway(by, [&](const Vec3& p) { return distanceTo(target, p); });
+        EXPECT_EQ(tooth::stateHash(ideal), by.stateHash());
+        EXPECT_NEAR(tooth::sumOf(ideal.removedMm3.own), whole, 0.005 * whole);
+    }
     {  // Wider by less than the leeway, deeper by more.
         const Cavity larger = groove(0.7, 2.0);
         const tooth::ToothMirror mirror = cut(model, [&](const Vec3& p) { return distanceTo(larger, p); });

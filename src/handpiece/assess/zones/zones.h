@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string_view>
 
 #include "handpiece/base/core/vec.h"
@@ -89,5 +90,9 @@ struct ZoneVolumes {
 /// What `cut` has lost, by zone. A voxel through which both the cut and a zone's border pass is shared as the distance
 /// to both says; shares of a voxel sum to what it has lost. In parallel, the same bits at any thread count.
 [[nodiscard]] ZoneVolumes zoneVolumes(const Zones& zones, const tooth::ToothMirror& cut);
+
+/// The tooth with all of the target taken away that is not protected, and nothing else: how it should be. As attempts
+/// and key frames hold a cut. Throws core::Error when the tooth's memory for cuts does not suffice.
+[[nodiscard]] tooth::StateDelta idealState(const Zones& zones, std::shared_ptr<const tooth::ToothModel> whole);
 
 }  // namespace handpiece::zones

@@ -72,6 +72,17 @@ Zones::Distances Zones::distancesMm(const Vec3& p) const {
     return {past.distanceMm(), past.wallMm, allowedMm(past), protectedMm(p)};
 }
 
+std::optional<double> Zones::distanceMm(std::string_view zone, const Vec3& p) const {
+    const Distances d = distancesMm(p);
+    const double free = -d.kept;
+    if (zone == "target") return std::max(d.target, free);
+    if (zone == "leeway-side") return std::max({d.allowed, -d.target, -d.wall, free});
+    if (zone == "leeway-floor") return std::max({d.allowed, -d.target, d.wall, free});
+    if (zone == "protected") return d.kept;
+    if (zone == "container") return std::max(-d.allowed, free);
+    return std::nullopt;
+}
+
 double ZoneVolumes::removedMm3(Zone zone) const {
     const tooth::TissueVolumes& volumes = removed[static_cast<std::size_t>(zone)];
     return std::accumulate(volumes.begin(), volumes.end(), 0.0);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "handpiece/base/core/vec.h"
@@ -69,6 +70,8 @@ class Zones {
         double target, wall, allowed, kept;
     };
     [[nodiscard]] Distances distancesMm(const core::Vec3& p) const;
+    /// Signed distance to a zone by its name; none where there is no such zone.
+    [[nodiscard]] std::optional<double> distanceMm(std::string_view zone, const core::Vec3& p) const;
 
   private:
     [[nodiscard]] double allowedMm(const PastTarget& past) const;

@@ -39,6 +39,7 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods, c
     addReportCommand(top);
     addPictureCommand(top);
     addXrayCommand(top);
+    addExerciseCommand(top);
     addReproduceCommand(top);
     addBenchCommand(top);
     addPassivityCommand(top);

@@ -11,6 +11,7 @@ namespace handpiece::cli {
 void addMakeCommand(Command& app);
 void addMakeScanCommand(Command& make);
 void addMakeMouthCommand(Command& make);
+void addMakeBlockCommand(Command& make);
 void addMeshCommand(Command& app);
 void addCaseCommand(Command& app);
 void addProbeCommand(Command& app, const MethodRegistry& methods);
@@ -25,5 +26,6 @@ void addDeviceCommand(Command& app);
 void addPictureCommand(Command& app);
 void addScanCommand(Command& app);
 void addXrayCommand(Command& app);
+void addExerciseCommand(Command& app);
 
 }  // namespace handpiece::cli

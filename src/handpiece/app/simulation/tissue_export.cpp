@@ -63,12 +63,6 @@ std::vector<fs::path> exportTissues(const std::shared_ptr<const tooth::ToothMode
 
 namespace {
 
-struct CutTeeth {
-    cases::Case toothCase;
-    tooth::Teeth teeth;
-    tooth::StateDelta state;
-};
-
 CutTeeth teethOfSession(const fs::path& path, std::optional<double> atS, bool useCache,
                         const core::Progress& progress) {
     SessionPlayer player(path, {useCache, false, {}}, core::part(progress, 0.0, 0.5));
@@ -102,17 +96,16 @@ CutTeeth teethOfAttempt(const fs::path& path, bool useCache, const core::Progres
     }
 }
 
-/// None: nothing of it can have been cut.
-std::optional<CutTeeth> cutTeethOf(const fs::path& path, std::optional<double> atS, bool useCache,
-                                   const core::Progress& progress) {
+}  // namespace
+
+std::optional<CutTeeth> readCutTeeth(const fs::path& path, std::optional<double> atS, bool useCache,
+                                     const core::Progress& progress) {
     std::error_code error;
     if (path.extension() == ".h5" && !fs::is_directory(path, error))
         return teethOfSession(path, atS, useCache, progress);
     if (fs::exists(path, error) && cases::isAttempt(path)) return teethOfAttempt(path, useCache, progress);
     return std::nullopt;
 }
-
-}  // namespace
 
 cases::Case asCut(cases::Case toothCase, const tooth::Teeth& teeth, const tooth::StateDelta& state,
                   const core::Progress& progress) {
@@ -133,13 +126,13 @@ cases::Case asCut(cases::Case toothCase, const tooth::Teeth& teeth, const tooth:
 }
 
 cases::Case readAsCut(const fs::path& path, std::optional<double> atS, bool useCache, const core::Progress& progress) {
-    std::optional<CutTeeth> cut = cutTeethOf(path, atS, useCache, core::part(progress, 0.0, 0.6));
+    std::optional<CutTeeth> cut = readCutTeeth(path, atS, useCache, core::part(progress, 0.0, 0.6));
     if (!cut) return cases::readCase(path);
     return asCut(std::move(cut->toothCase), cut->teeth, cut->state, core::part(progress, 0.6, 1.0));
 }
 
 ToothOfFile toothOf(const fs::path& path, double voxelMm, bool useCache, const core::Progress& progress) {
-    if (std::optional<CutTeeth> cut = cutTeethOf(path, {}, useCache, progress))
+    if (std::optional<CutTeeth> cut = readCutTeeth(path, {}, useCache, progress))
         return {std::move(cut->teeth.front()), std::move(cut->state)};
     SimulationSettings settings;
     settings.field.voxelMm = voxelMm;

@@ -32,6 +32,16 @@ std::vector<std::filesystem::path> exportTissues(const std::shared_ptr<const too
 /// (docs/case-format.md). `teeth` and `state` are of this case. Throws core::Error when cancelled.
 [[nodiscard]] cases::Case asCut(cases::Case toothCase, const tooth::Teeth& teeth, const tooth::StateDelta& state,
                                 const core::Progress& progress = {});
+/// Teeth out of a file, and what was cut of them.
+struct CutTeeth {
+    cases::Case toothCase;
+    tooth::Teeth teeth;
+    tooth::StateDelta state;
+};
+/// Of an attempt as it was saved, of a session as it was at `atS` seconds (none: as it ended). None: the file is of
+/// another kind, nothing of which can have been cut. Throws core::Error.
+[[nodiscard]] std::optional<CutTeeth> readCutTeeth(const std::filesystem::path& path, std::optional<double> atS,
+                                                   bool useCache, const core::Progress& progress = {});
 /// What a case or a mesh holds, an attempt as it was saved, a session as it was at `atS` seconds (none: as it
 /// ended), teeth as they are cut. Throws core::Error.
 [[nodiscard]] cases::Case readAsCut(const std::filesystem::path& path, std::optional<double> atS, bool useCache,

@@ -14,6 +14,7 @@
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/case.h"
 #include "handpiece/model/case/case_files.h"
+#include "handpiece/model/case/exercise_table.h"
 
 namespace handpiece::cases {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/case/case_files.h"
+#include "handpiece/model/case/exercise_table.h"
 #include "handpiece/model/case/toml_text.h"
 
 namespace handpiece::cases {

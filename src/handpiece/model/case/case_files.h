@@ -37,13 +37,10 @@ struct CaseFiles {
 [[nodiscard]] std::string tomlIn(const CaseFiles& files, const std::string& name);
 /// The case in these files. Throws core::Error.
 [[nodiscard]] Case readCaseFiles(const CaseFiles& files);
-/// case.toml and all that it names.
-[[nodiscard]] PackageFiles caseFiles(const Case& toothCase);
 
 /// Throws core::Error unless `name` is a file below the folder of the file that names it.
 void requireInside(const config::Table& table, const std::string& name, std::string_view key);
 
-[[nodiscard]] Exercise readExercise(const config::Table& table);
 /// As it stands in case.toml, without the heading.
 [[nodiscard]] std::string exerciseToml(const Exercise& exercise);
 

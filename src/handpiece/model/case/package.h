@@ -14,6 +14,8 @@
 
 namespace handpiece::cases {
 
+struct Case;
+
 /// Content by name; names are relative, with '/' between folders.
 using PackageFiles = std::map<std::string, std::vector<std::byte>>;
 
@@ -41,6 +43,9 @@ struct PackageLimits {
 /// Written beside its place and renamed into it. The same files give the same bytes. Recordings (.h5) are packed in
 /// themselves and stored as they are.
 void writePackage(const std::filesystem::path& file, const PackageFiles& files);
+
+/// case.toml and all that it names, as writeCase() writes them.
+[[nodiscard]] PackageFiles caseFiles(const Case& toothCase);
 
 /// Writes the files into a folder, which must be new, empty, or hold `marker` (then it is replaced whole). They are
 /// written into a folder beside it, which is renamed: after an error the old folder still stands.

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+// handpiece exercise: tasks as files. handpiece make block: tasks for the hand alone.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "handpiece/assess/task/task.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/model/case/attempt.h"
+#include "handpiece/model/starter/block.h"
+#include "handpiece/model/tooth/state_file.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
+#include "studies/progress_bar.h"
+
+namespace handpiece::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct ExerciseOptions {
+    std::string path, out, caseFile, preparation, side, rubric, id, title, instructions, bur;
+    std::vector<std::string> set;  // NAME=NUMBER
+    double voxelUm = 50.0, sideMm = 0.2, floorMm = 0.2, minutes = 0.0;
+    std::string kind, layers = "hard";
+    int level = 1;
+    bool json = false;
+};
+
+std::string listed(const std::vector<std::string>& names) {
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+std::vector<std::string> preparationNames(bool ofBlocks) {
+    std::vector<std::string> names;
+    for (const preparation::Template& t : preparation::templates())
+        if (t.isBlock == ofBlocks) names.emplace_back(ofBlocks ? t.id.substr(6) : t.id);
+    return names;
+}
+
+std::string text(const std::string& file) {
+    const std::vector<std::byte> bytes = core::readFile(file, config::Table::kMaxBytes);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// As [preparation] of a file would have it, so that it is checked by the same rules.
+preparation::Recipe recipeOf(const ExerciseOptions& o, const std::string& id) {
+    std::string toml = fmt::format("[preparation]\ntemplate = \"{}\"\nleeway_side_mm = {}\nleeway_floor_mm = {}\n", id,
+                                   o.sideMm, o.floorMm);
+    if (!o.side.empty()) toml += fmt::format("side = \"{}\"\n", o.side);
+    for (const std::string& pair : o.set) {
+        const std::size_t equals = pair.find('=');
+        double value = 0.0;
+        const char* end = pair.data() + pair.size();
+        if (equals == std::string::npos ||
+            std::from_chars(pair.data() + equals + 1, end, value) != std::from_chars_result{end, std::errc{}})
+            throw core::Error(fmt::format("\"{}\" is no NAME=NUMBER", pair), "--set", "as in --set depth_mm=1.8");
+        toml += fmt::format("\"{}\" = {}\n", pair.substr(0, equals), value);
+    }
+    return preparation::readRecipe(*config::Table::parse(toml, "the command line").table("preparation"));
+}
+
+Json toJson(const tasks::Task& task) {
+    Json json{{"id", task.id},
+              {"version", task.version},
+              {"hash", fmt::format("{:016x}", tasks::contentHash(task))},
+              {"case", task.toothCase.name},
+              {"fdi", task.toothCase.fdiNumber},
+              {"voxel_um", 1e3 * task.voxelMm},
+              {"minutes", nullptr},
+              {"preparation", nullptr},
+              {"rubric", !task.rubric.empty()},
+              {"title", nullptr}};
+    if (task.minutes) json["minutes"] = *task.minutes;
+    if (task.preparation) json["preparation"] = task.preparation->preparation;
+    if (task.toothCase.exercise) json["title"] = task.toothCase.exercise->title;
+    return json;
+}
+
+void print(const Json& json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+void list(const ExerciseOptions& o) {
+    std::error_code ec;
+    if (!fs::is_directory(o.path, ec))
+        throw core::Error("there is no such folder", o.path, "name one with exercises in it");
+    std::vector<fs::path> found;
+    for (const fs::directory_entry& entry : fs::directory_iterator(o.path))
+        if (entry.is_directory() || cases::isPackageName(entry.path())) found.push_back(entry.path());
+    std::sort(found.begin(), found.end());
+    Json all = Json::array();
+    for (const fs::path& path : found) {
+        try {
+            if (!tasks::isTask(path)) continue;
+            Json one = toJson(tasks::readTask(path));
+            one["file"] = path.filename().string();
+            all.push_back(one);
+        } catch (const core::Error& error) {
+            // One bad file hides no other; it is told in its place.
+            all.push_back({{"file", path.filename().string()}, {"error", error.what()}});
+        }
+    }
+    if (o.json) return print(all);
+    for (const Json& one : all)
+        if (one.contains("error"))
+            fmt::print("{}: {}\n", one["file"].get<std::string>(), one["error"].get<std::string>());
+        else
+            fmt::print("{}: {} version {}, {}{}\n", one["file"].get<std::string>(), one["id"].get<std::string>(),
+                       one["version"].get<std::int64_t>(), one["case"].get<std::string>(),
+                       one["preparation"].is_null() ? "" : ", " + one["preparation"].get<std::string>());
+    if (all.empty()) fmt::print("{}: no exercises\n", o.path);
+}
+
+void write(const tasks::Task& task, const std::string& out) {
+    const std::vector<std::string> wrong = tasks::problems(task);
+    if (!wrong.empty()) throw core::Error(wrong.front(), out, "nothing was written");
+    tasks::writeTask(task, out);
+    fmt::print("{}: exercise {} version {}, {}, hash {:016x}\n", out, task.id, task.version, task.toothCase.name,
+               tasks::contentHash(task));
+}
+
+void makeNew(const ExerciseOptions& o) {
+    tasks::Task task;
+    task.id = o.id;
+    task.toothCase = cases::readCase(o.caseFile);
+    cases::Exercise exercise = task.toothCase.exercise.value_or(cases::Exercise{});
+    if (!o.title.empty()) exercise.title["en"] = o.title;
+    if (!o.instructions.empty()) exercise.instructions["en"] = o.instructions;
+    if (!o.bur.empty()) exercise.bur = o.bur;
+    task.toothCase.exercise = exercise;
+    task.voxelMm = 1e-3 * o.voxelUm;
+    if (o.minutes > 0.0) task.minutes = o.minutes;
+    task.preparation = recipeOf(o, o.preparation);
+    if (!o.rubric.empty()) task.rubric = text(o.rubric);
+    write(task, o.out);
+}
+
+void check(const ExerciseOptions& o) {
+    const tasks::Task task = tasks::readTask(o.path);
+    const std::vector<std::string> wrong = tasks::problems(task);
+    if (o.json) {
+        Json json = toJson(task);
+        json["problems"] = wrong;
+        print(json);
+    } else {
+        for (const std::string& problem : wrong)
+            fmt::print("{}\n", problem);
+        if (wrong.empty()) fmt::print("{}: nothing is wrong\n", o.path);
+    }
+    if (!wrong.empty()) throw core::Error(fmt::format("{} found", wrong.size()), o.path, "mend them");
+}
+
+/// The tooth as it should be, as an attempt of the exercise's case.
+void ideal(const ExerciseOptions& o) {
+    const tasks::Task task = tasks::readTask(o.path);
+    if (!task.preparation)
+        throw core::Error("this exercise asks for no preparation", o.path, "add [preparation] to exercise.toml");
+    tooth::LoadSettings settings;
+    settings.field.voxelMm = task.voxelMm;
+    studies::ProgressBar bar("making the tooth");
+    const auto model = tooth::loadModel(task.toothCase, settings, bar.listener());
+    bar.finish();
+    const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
+    const tooth::StateDelta state = zones::idealState(*laid.zones, model);
+    cases::Attempt attempt;
+    std::error_code ec;
+    const fs::path path(o.path);
+    attempt.caseFile = fs::absolute(fs::is_directory(path, ec) ? path / "case" : path);
+    attempt.caseKey = cases::caseKey(task.toothCase);
+    attempt.caseName = task.toothCase.name;
+    attempt.state = tooth::encodeState(state, tooth::identityOf({model}));
+    attempt.voxelMm = task.voxelMm;
+    attempt.removedMm3 = state.removedMm3.own;
+    attempt.bur =
+        task.toothCase.exercise && !task.toothCase.exercise->bur.empty() ? task.toothCase.exercise->bur : "330";
+    attempt.cuttingParameters = "carbide";
+    attempt.drive = "turbine";
+    cases::writeAttempt(attempt, o.out);
+    fmt::print("{}: {:.2f} mm3 gone\n", o.out, tooth::sumOf(state.removedMm3.own));
+}
+
+void makeBlock(const ExerciseOptions& o) {
+    // The stricter a level, the less may go beside the target; a judgement of the project, not a standard.
+    constexpr double kLeewayMm[] = {0.5, 0.35, 0.2};
+    ExerciseOptions with = o;
+    with.sideMm = with.floorMm = kLeewayMm[o.level - 1];
+    tasks::Task task;
+    task.id = fmt::format("block-{}-{}", o.kind, o.level);
+    if (o.layers != "hard") task.id += "-" + o.layers;
+    const auto layers = std::find(starter::kBlockLayers.begin(), starter::kBlockLayers.end(), o.layers);
+    task.toothCase = starter::makeBlock(static_cast<starter::BlockLayers>(layers - starter::kBlockLayers.begin()));
+    task.preparation = recipeOf(with, "block-" + o.kind);
+    cases::Exercise exercise;
+    exercise.title = {{"en", fmt::format("Block: {}, level {}", o.kind, o.level)}};
+    exercise.bur = "330";
+    cases::View view;
+    view.eyeMm = core::Vec3(0.0, -18.0, 30.0);
+    exercise.view = view;
+    task.toothCase.exercise = exercise;
+    if (!o.rubric.empty()) task.rubric = text(o.rubric);
+    write(task, o.out);
+}
+
+}  // namespace
+
+void addExerciseCommand(Command& app) {
+    Command exercise = app.subcommand("exercise", "Exercises: a case, what is to be done with it, how it is judged");
+    exercise.requireSubcommand();
+    exercise.footer(
+        "Examples:\n  handpiece exercise new --case molar --preparation class-one --id class-one-46 --out class-one\n"
+        "  handpiece exercise check class-one\n  handpiece exercise pack class-one class-one.handpiece");
+    const auto options = std::make_shared<ExerciseOptions>();
+    ExerciseOptions& o = *options;
+
+    Command listing = exercise.subcommand("list", "The exercises of a folder");
+    listing.option("FOLDER", o.path, "with folders and .handpiece files in it").required();
+    listing.flag("--json", o.json, "as JSON");
+    listing.callback([options] { list(*options); });
+
+    Command make = exercise.subcommand("new", "An exercise of a case and a preparation laid onto its tooth");
+    make.option("--case", o.caseFile, "the case, with its landmarks").required();
+    make.option("--preparation", o.preparation, "one of: " + listed(preparationNames(false)))
+        .required()
+        .check(oneOf(preparationNames(false)));
+    make.option("--side", o.side, "mesial or distal, where the preparation has a side");
+    make.option("--set", o.set, "NAME=NUMBER: a size of the preparation, such as depth_mm=1.8; several times")
+        .takeAll();
+    make.option("--leeway-side", o.sideMm, "what may go beside the target [mm]").showDefault();
+    make.option("--leeway-floor", o.floorMm, "what may go under it [mm]").showDefault();
+    make.option("--rubric", o.rubric, "how it is judged: a file");
+    make.option("--id", o.id, "small letters, digits, '-'").required();
+    make.option("--title", o.title, "in English");
+    make.option("--instructions", o.instructions, "in English");
+    make.option("--bur", o.bur, "to start with");
+    make.option("--minutes", o.minutes, "that it may take").check(nonNegative());
+    make.option("--voxel", o.voxelUm, "of the tooth [um]").check(range(20.0, 400.0)).showDefault();
+    make.option("--out", o.out, "folder, or file that ends in .handpiece").required();
+    make.callback([options] { makeNew(*options); });
+
+    Command checking = exercise.subcommand("check", "What is wrong with an exercise; exit code 1 if anything is");
+    checking.option("EXERCISE", o.path, "folder or .handpiece file").required();
+    checking.flag("--json", o.json, "as JSON");
+    checking.callback([options] { check(*options); });
+
+    Command asked = exercise.subcommand("ideal", "The tooth as the exercise asks for it, as an attempt to look at");
+    asked.option("EXERCISE", o.path, "folder or .handpiece file").required();
+    asked.option("--out", o.out, "folder").required();
+    asked.callback([options] { ideal(*options); });
+
+    Command pack = exercise.subcommand("pack", "An exercise as one file, or back into a folder");
+    pack.option("EXERCISE", o.path, "folder or .handpiece file").required();
+    pack.option("OUT", o.out, "file that ends in .handpiece, or folder").required();
+    pack.callback([options] { write(tasks::readTask(options->path), options->out); });
+}
+
+void addMakeBlockCommand(Command& make) {
+    Command block = make.subcommand("block", "An exercise for the hand alone: a figure in a block as hard as a tooth");
+    const auto options = std::make_shared<ExerciseOptions>();
+    ExerciseOptions& o = *options;
+    block.option("--kind", o.kind, "one of: " + listed(preparationNames(true)))
+        .required()
+        .check(oneOf(preparationNames(true)));
+    block.option("--level", o.level, "1 to 3: the higher, the less may go beside the figure")
+        .check(range(1, 3))
+        .showDefault();
+    block.option("--layers", o.layers, "hard, layered (enamel on dentine) or carious")
+        .check(oneOf({starter::kBlockLayers.begin(), starter::kBlockLayers.end()}))
+        .showDefault();
+    block.option("--set", o.set, "NAME=NUMBER: a size of the figure, such as depth_mm=2; several times").takeAll();
+    block.option("--rubric", o.rubric, "how it is judged: a file");
+    block.option("--out", o.out, "folder, or file that ends in .handpiece").required();
+    block.footer("Example:\n  handpiece make block --kind cross --level 2 --out cross");
+    block.callback([options] { makeBlock(*options); });
+}
+
+}  // namespace handpiece::cli

@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: Apache-2.0
+// Templates laid onto a tooth. A cavity's frame has its +z along the path of draw; its floor is where the outline
+// stands.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "handpiece/assess/preparation/preparation.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/core/rotation.h"
+
+namespace handpiece::preparation {
+namespace {
+
+using cases::LandmarkKind;
+using core::Vec2;
+using core::Vec3;
+using zones::Cavity;
+using zones::Floor;
+using zones::Outline;
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+using zones::kFarMm;
+/// How far targets go on into the air.
+constexpr double kAboveMm = 12.0;
+
+/// How far the tooth goes on from a place inside it, in a direction; 0 from outside.
+double insideOf(const geometry::TriangleTree& tree, const Vec3& from, const Vec3& way) {
+    if (tree.signedDistance(from) >= 0.0) return 0.0;
+    const geometry::RayMeeting out = tree.firstMeeting(from, way);
+    return out.triangle == geometry::kNoTriangle ? 0.0 : out.distanceMm;
+}
+
+class Site {
+  public:
+    Site(const cases::Tooth& tooth, const Recipe& recipe)
+        : tooth_(tooth), recipe_(recipe), tree_(std::make_shared<geometry::TriangleTree>(surfaceOf(tooth))) {}
+
+    Laid laid() {
+        Laid laid;
+        laid.whole = tree_;
+        core::Box box;
+        zones::TargetFunction target;
+        const std::string& id = recipe_.preparation;
+        if (id == "lesion") {
+            target = lesion(box);
+        } else if (id == "crown") {
+            target = crown(box);
+        } else {
+            if (id.starts_with("block-"))
+                block();
+            else if (id == "class-one")
+                classOne(false);
+            else if (id == "class-two")
+                classOne(true), box_();
+            else if (id == "class-three")
+                classThree();
+            else if (id == "class-five")
+                classFive();
+            else
+                access();
+            laid.cavities = cavities_;
+            laid.draw = cavities_.front().inTooth.orientation * Vec3::UnitZ();
+            box = zones::boundsOf(cavities_, kAboveMm);
+            target = zones::targetOf(cavities_, tree_.get());
+            // The function asks the tree for as long as it lives.
+            target = [target, tree = tree_](const Vec3& p) { return target(p); };
+        }
+        // Beyond the tooth there is nothing to take.
+        const core::Box& whole = tree_->bounds();
+        box.min = box.min.cwiseMax(whole.min), box.max = box.max.cwiseMin(whole.max);
+        if (box.isEmpty()) fail("the preparation lies outside the tooth", "give other sizes");
+        laid.zones = std::make_shared<zones::Zones>(std::move(target), box, recipe_.leeway, guarded());
+        return laid;
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
+        throw core::Error(fmt::format("{}: {}", recipe_.preparation, what),
+                          tooth_.name.empty() ? "the tooth" : tooth_.name, remedy);
+    }
+    static const geometry::TriangleMesh& surfaceOf(const cases::Tooth& tooth) {
+        if (tooth.surface().triangles.empty())
+            throw core::Error("the tooth has no surface as a whole", tooth.name,
+                              "name outer.stl in case.toml: the whole tooth as one closed surface");
+        return tooth.surface();
+    }
+    [[nodiscard]] double number(std::string_view name) const { return recipe_.number(name); }
+
+    [[nodiscard]] std::vector<const cases::Landmark*> marks(LandmarkKind kind) const {
+        std::vector<const cases::Landmark*> found;
+        for (const cases::Landmark& mark : tooth_.landmarks)
+            if (mark.kind == kind) found.push_back(&mark);
+        return found;
+    }
+    [[nodiscard]] std::vector<const cases::Landmark*> need(LandmarkKind kind) const {
+        auto found = marks(kind);
+        if (found.empty())
+            fail(fmt::format("the tooth has no landmark \"{}\"", cases::kLandmarkKinds[static_cast<std::size_t>(kind)]),
+                 "find or set it in the window (Ctrl+J), or handpiece case landmarks --find");
+        return found;
+    }
+    [[nodiscard]] Vec3 contact(const std::string& side) const {
+        for (const cases::Landmark* mark : need(LandmarkKind::contact))
+            if (mark->name == side) return mark->pointsMm.front();
+        fail(fmt::format("the tooth has no {} contact", side), "set it in the window (Ctrl+Shift+J)");
+    }
+    /// +1 where buccal is +y.
+    [[nodiscard]] double buccal() const {
+        if (tooth_.buccalSign == 0) fail("the case does not say which side is buccal", "add buccal = \"+y\" or \"-y\"");
+        return tooth_.buccalSign;
+    }
+    [[nodiscard]] double inside(const Vec3& from, const Vec3& way) const { return insideOf(*tree_, from, way); }
+
+    // ------------------------------------------------------------------ cavities
+
+    void block() {
+        const std::string_view kind = std::string_view(recipe_.preparation).substr(6);
+        const double top = tree_->bounds().max.z(), depth = number("depth_mm");
+        const core::Box& whole = tree_->bounds();
+        const Vec2 middle = whole.centre().head<2>();
+        const auto add = [&](Outline outline, double deep) {
+            cavities_.push_back({{}, std::move(outline), {Floor::Kind::flat, top - deep, 0.0}, 0.0});
+        };
+        const auto groove = [&](const Vec2& way) {
+            const double half = 0.5 * (number("length_mm") - number("width_mm"));
+            if (half < 0.0) fail("it is wider than long", "give a greater length");
+            return Outline::Stroke{{middle - half * way, middle + half * way}, 0.5 * number("width_mm")};
+        };
+        Outline outline;
+        if (kind == "line" || kind == "channel") {
+            outline.strokes = {groove(Vec2::UnitX())};
+        } else if (kind == "cross") {
+            outline.strokes = {groove(Vec2::UnitX()), groove(Vec2::UnitY())};
+        } else if (kind == "circle") {
+            outline.areas = {zones::circle(middle, 0.5 * number("diameter_mm"))};
+        } else if (kind == "hollow-circle") {
+            if (number("inner_mm") >= number("diameter_mm"))
+                fail("the island is as wide as the figure", "make it less");
+            outline.areas = {zones::circle(middle, 0.5 * number("diameter_mm"))};
+            outline.holes = {zones::circle(middle, 0.5 * number("inner_mm"))};
+        } else if (kind == "d-circle") {
+            outline.areas = {
+                zones::arc(middle, 0.5 * number("diameter_mm"), -0.5 * std::numbers::pi, 0.5 * std::numbers::pi)};
+        } else {
+            const double third = number("length_mm") / 3.0, half = 0.5 * number("width_mm");
+            for (int i = 0; i < 3; ++i) {
+                const double from = middle.x() + (i - 1.5) * third, to = from + third;
+                Outline step;
+                step.areas = {{Vec2(from, middle.y() - half), Vec2(to, middle.y() - half), Vec2(to, middle.y() + half),
+                               Vec2(from, middle.y() + half)}};
+                add(std::move(step), (i + 1) * depth);
+            }
+            return;
+        }
+        add(std::move(outline), depth);
+    }
+
+    /// Along the fissures, as far as ridges and walls keep their thickness at the floor; of a class II not on the side
+    /// of its box.
+    void classOne(bool hasBox) {
+        const double half = 0.5 * number("width_mm"), ridge = number("ridge_mm");
+        double height = 0.0;
+        std::size_t count = 0;
+        const auto fissures = need(LandmarkKind::fissure);
+        for (const cases::Landmark* fissure : fissures)
+            for (const Vec3& p : fissure->pointsMm)
+                if (isOnTop(p)) height += p.z(), ++count;
+        if (count == 0) fail("no fissure lies on the occlusal surface", "set it in the window (Ctrl+Shift+J)");
+        const double floor = height / static_cast<double>(count) - number("depth_mm");
+        const double open = !hasBox ? 0.0 : recipe_.side == "mesial" ? 1.0 : -1.0;
+        const auto isRoom = [&](const Vec3& p) {
+            const Vec3 at(p.x(), p.y(), floor);
+            constexpr int kWays = 16;
+            for (int i = 0; i < kWays; ++i) {
+                const double rad = 2.0 * std::numbers::pi * i / kWays;
+                const Vec3 way(core::cos(rad), core::sin(rad), 0.0);
+                // Towards the box the ridge goes.
+                if (open * way.x() > 0.7) continue;
+                if (inside(at, way) < ridge + half) return false;
+            }
+            return true;
+        };
+        Outline outline;
+        for (const cases::Landmark* fissure : fissures) {
+            std::vector<Vec2> run;
+            const auto end = [&] {
+                if (!run.empty()) outline.strokes.push_back({std::move(run), half});
+                run.clear();
+            };
+            for (std::size_t i = 0; i + 1 < fissure->pointsMm.size(); ++i) {
+                const Vec3 &a = fissure->pointsMm[i], &b = fissure->pointsMm[i + 1];
+                const int pieces = std::max(1, static_cast<int>(std::ceil((b - a).norm() / 0.05)));
+                for (int k = i == 0 ? 0 : 1; k <= pieces; ++k) {
+                    const Vec3 p = a + (b - a) * (static_cast<double>(k) / pieces);
+                    if (isOnTop(p) && isRoom(p))
+                        run.push_back(p.head<2>());
+                    else
+                        end();
+                }
+            }
+            end();
+        }
+        if (outline.isEmpty())
+            fail("there is no room along the fissures", "give a thinner ridge, or a lesser width or depth");
+        cavities_.push_back({{}, std::move(outline), {Floor::Kind::flat, floor, 0.0}, number("wall_deg") * kRadPerDeg});
+    }
+    /// Fissures run over onto the sides; those are not followed.
+    [[nodiscard]] bool isOnTop(const Vec3& p) const {
+        const geometry::NearestPoint near = tree_->nearest(p);
+        if (near.triangle == geometry::kNoTriangle) return false;
+        const float* normal = &tree_->pseudonormals()[std::size_t{near.triangle} * 21];
+        return normal[2] > 0.35f;
+    }
+
+    /// The proximal box of a class II, and the way to it.
+    void box_() {
+        const double sign = recipe_.side == "mesial" ? 1.0 : -1.0;
+        const Vec3 at = contact(recipe_.side);
+        const double half = 0.5 * number("box_width_mm"), wall = number("wall_deg") * kRadPerDeg;
+        const double axial = at.x() - sign * number("axial_mm"), beyond = at.x() + sign * 3.0;
+        const auto rectangle = [](double x0, double x1, double y0, double y1) {
+            return std::vector<Vec2>{
+                {std::min(x0, x1), y0}, {std::max(x0, x1), y0}, {std::max(x0, x1), y1}, {std::min(x0, x1), y1}};
+        };
+        const Cavity occlusal = cavities_.front();
+        // From the end of the occlusal part, on its floor, into the box.
+        double end = -sign * kFarMm, along = at.y();
+        for (const Outline::Stroke& stroke : occlusal.outline.strokes)
+            for (const Vec2& p : stroke.points)
+                if (sign * p.x() > sign * end) end = p.x(), along = p.y();
+        if (sign * end < sign * axial) {
+            Outline way;
+            way.strokes = {{{Vec2(end, along), Vec2(axial, at.y())}, 0.5 * number("width_mm")}};
+            cavities_.push_back({{}, std::move(way), occlusal.floor, wall});
+        }
+        Outline outline;
+        outline.areas = {rectangle(axial, beyond, at.y() - half, at.y() + half)};
+        cavities_.push_back(
+            {{}, std::move(outline), {Floor::Kind::flat, at.z() - number("under_contact_mm"), 0.0}, wall});
+    }
+
+    void classThree() {
+        const double sign = recipe_.side == "mesial" ? 1.0 : -1.0;
+        // Caries of that kind begins under the contact.
+        const Vec3 at = contact(recipe_.side) - 0.3 * number("height_mm") * Vec3::UnitZ();
+        // Out to the palatal (lingual) side: x mesial stays, y of the frame is up.
+        const Vec3 draw(0.0, -buccal(), 0.0), up = Vec3::UnitZ();
+        const core::Pose pose = facing(draw, up, at);
+        const double half = 0.5 * number("height_mm"), corner = std::min(number("corner_mm"), 0.99 * half);
+        const Vec3 mesial = pose.orientation.conjugate() * (sign * Vec3::UnitX());
+        const double inwards = mesial.x() > 0.0 ? 1.0 : -1.0;
+        Outline outline;
+        outline.areas = {roundRectangle(Vec2(inwards * (1.5 - 0.5 * number("axial_mm")), 0.0),
+                                        Vec2(0.5 * number("axial_mm") + 1.5, half), corner)};
+        // Depth counts from the palatal surface beside the contact.
+        const Vec3 within = at - sign * Vec3::UnitX() * (0.5 * number("axial_mm"));
+        const double toSurface = inside(within, draw);
+        if (!(toSurface > 0.0)) fail("the contact does not lie on the tooth", "set it in the window (Ctrl+Shift+J)");
+        cavities_.push_back({pose, std::move(outline), {Floor::Kind::flat, toSurface - number("depth_mm"), 0.0}, 0.0});
+    }
+
+    void classFive() {
+        const double sign = buccal();
+        const Vec3 draw(0.0, sign, 0.0);
+        const auto junction = need(LandmarkKind::cementoEnamelJunction).front();
+        // Its lowest place on that side, in the middle.
+        const double middle = tree_->bounds().centre().x();
+        const Vec3* cervix = nullptr;
+        for (const Vec3& p : junction->pointsMm)
+            if (sign * p.y() > 0.0 && (cervix == nullptr || std::abs(p.x() - middle) < std::abs(cervix->x() - middle)))
+                cervix = &p;
+        if (cervix == nullptr) fail("the cemento-enamel junction does not reach the buccal side", "set it anew");
+        const double half = 0.5 * number("height_mm");
+        const Vec3 at(cervix->x(), cervix->y(), cervix->z() + number("over_cervix_mm") + half);
+        Outline outline;
+        outline.areas = {roundRectangle(Vec2::Zero(), Vec2(0.5 * number("width_mm"), half),
+                                        std::min({number("corner_mm"), 0.49 * number("width_mm"), 0.98 * half}))};
+        // Not as deep as the tooth's other side.
+        cavities_.push_back({facing(draw, Vec3::UnitZ(), at),
+                             std::move(outline),
+                             {Floor::Kind::near, -number("axial_mm") - 1.5, number("axial_mm")},
+                             0.0});
+    }
+
+    void access() {
+        Outline outline;
+        std::vector<Vec2> points;
+        double floor = 0.0;
+        const auto orifices = need(LandmarkKind::orifice);
+        const double round = number("round_mm");
+        for (const cases::Landmark* orifice : orifices) {
+            floor += orifice->pointsMm.front().z() / static_cast<double>(orifices.size());
+            for (const Vec2& p : zones::circle(orifice->pointsMm.front().head<2>(), round))
+                points.push_back(p);
+        }
+        for (const cases::Landmark* horn : marks(LandmarkKind::pulpHorn))
+            for (const Vec2& p : zones::circle(horn->pointsMm.front().head<2>(), round))
+                points.push_back(p);
+        outline.areas = {zones::convexOutline(std::move(points))};
+        cavities_.push_back({{}, std::move(outline), {Floor::Kind::flat, floor, 0.0}, number("wall_deg") * kRadPerDeg});
+    }
+
+    /// A frame at a place whose +z is `out` and whose +y is `up` as far as that goes.
+    static core::Pose facing(const Vec3& out, const Vec3& up, const Vec3& at) {
+        core::Mat3 axes;
+        axes.col(2) = out.normalized();
+        axes.col(0) = up.cross(axes.col(2)).normalized();
+        axes.col(1) = axes.col(2).cross(axes.col(0));
+        return {at, core::Quat(axes).normalized()};
+    }
+    static std::vector<Vec2> roundRectangle(const Vec2& middle, const Vec2& half, double corner) {
+        std::vector<Vec2> points;
+        for (int i = 0; i < 4; ++i) {
+            const Vec2 sign(i == 0 || i == 3 ? 1.0 : -1.0, i < 2 ? 1.0 : -1.0);
+            const Vec2 centre = middle + sign.cwiseProduct(half - Vec2::Constant(corner));
+            const double from = 0.5 * std::numbers::pi * i;
+            for (const Vec2& p : zones::arc(centre, corner, from, from + 0.5 * std::numbers::pi))
+                points.push_back(p);
+        }
+        return points;
+    }
+
+    // ------------------------------------------------------------------ what is no cavity
+
+    /// Outside of a core: its outline at the margin, less the margin's width, tapers towards occlusal and ends under
+    /// the uncut top.
+    zones::TargetFunction crown(core::Box& box) {
+        const auto junction = need(LandmarkKind::cementoEnamelJunction).front();
+        const double margin = number("margin_mm");
+        // A margin that follows the junction: its height by the angle about the middle.
+        const Vec3 middle = tree_->bounds().centre();
+        struct Place {
+            double rad, heightMm;
+            Vec2 at;
+        };
+        std::vector<Place> ring;
+        for (const Vec3& p : junction->pointsMm) {
+            const double height = p.z() + number("over_cervix_mm");
+            const Vec2 way = (p - middle).head<2>().normalized();
+            const Vec3 from(middle.x(), middle.y(), height);
+            const double out = inside(from, Vec3(way.x(), way.y(), 0.0));
+            if (!(out > margin)) fail("the margin does not lie on the tooth", "give another height over the cervix");
+            ring.push_back({core::atan2(way.y(), way.x()), height, middle.head<2>() + (out - margin) * way});
+        }
+        std::sort(ring.begin(), ring.end(), [](const Place& a, const Place& b) { return a.rad < b.rad; });
+        Outline core_;
+        core_.areas.emplace_back();
+        double low = kFarMm;
+        for (const Place& place : ring)
+            core_.areas.front().push_back(place.at), low = std::min(low, place.heightMm);
+        const double taper = 0.5 * number("convergence_deg") * kRadPerDeg, occlusal = number("occlusal_mm");
+        const double tangent = core::tan(taper), cosine = core::cos(taper);
+        box = tree_->bounds();
+        box.min.z() = low;
+        return [ring = std::move(ring), outline = std::move(core_), tangent, cosine, occlusal, middle,
+                tree = tree_](const Vec3& p) {
+            // The margin's height here, between its places.
+            const Vec2 way = (p - middle).head<2>();
+            const double rad = core::atan2(way.y(), way.x());
+            const auto next = std::lower_bound(ring.begin(), ring.end(), rad,
+                                               [](const Place& place, double r) { return place.rad < r; });
+            const Place &b = next == ring.end() ? ring.front() : *next,
+                        &a = next == ring.begin() ? ring.back() : *(next - 1);
+            double span = b.rad - a.rad, share = rad - a.rad;
+            if (span <= 0.0) span += 2.0 * std::numbers::pi;
+            if (share < 0.0) share += 2.0 * std::numbers::pi;
+            const double height = a.heightMm + (b.heightMm - a.heightMm) * std::clamp(share / span, 0.0, 1.0);
+            // Into the core: through its side, or through its top.
+            const double side = -(outline.distanceMm(way + middle.head<2>()) + (p.z() - height) * tangent) * cosine;
+            const double top = insideOf(*tree, p, Vec3::UnitZ()) - occlusal;
+            return zones::PastTarget{std::min(side, top), height - p.z()};
+        };
+    }
+
+    zones::TargetFunction lesion(core::Box& box) {
+        std::vector<std::shared_ptr<geometry::TriangleTree>> carious;
+        for (const cases::Part& part : tooth_.parts)
+            if (cases::isCarious(part.tissue)) {
+                carious.push_back(std::make_shared<geometry::TriangleTree>(part.mesh));
+                const core::Box& bounds = carious.back()->bounds();
+                box.extend(bounds.min), box.extend(bounds.max);
+            }
+        if (carious.empty()) fail("the tooth has no carious tissue", "make it with --lesion, or choose another task");
+        const auto pulp = pulpMm();
+        return [carious = std::move(carious), pulp, over = number("over_pulp_mm")](const Vec3& p) {
+            double least = kFarMm;
+            for (const auto& tree : carious)
+                least = std::min(least, tree->signedDistance(p));
+            if (pulp) least = std::max(least, over - pulp(p));
+            return zones::PastTarget{least, -kFarMm};
+        };
+    }
+
+    /// Signed distance to the pulp; none where the case has none.
+    [[nodiscard]] geometry::ScalarFunction pulpMm() const {
+        std::vector<std::shared_ptr<geometry::TriangleTree>> trees;
+        for (const cases::Part& part : tooth_.parts)
+            if (part.tissue == cases::Tissue::pulp)
+                trees.push_back(std::make_shared<geometry::TriangleTree>(part.mesh));
+        if (trees.empty()) return {};
+        return [trees](const Vec3& p) {
+            double least = kFarMm;
+            for (const auto& tree : trees)
+                least = std::min(least, tree->signedDistance(p));
+            return least;
+        };
+    }
+    /// What must stay: the pulp and what lies round it; of an access, that takes the pulp, nothing.
+    [[nodiscard]] geometry::ScalarFunction guarded() const {
+        if (recipe_.preparation == "access") return {};
+        auto pulp = pulpMm();
+        if (!pulp) return {};
+        return [pulp, round = recipe_.pulpMm](const Vec3& p) { return pulp(p) - round; };
+    }
+
+    const cases::Tooth& tooth_;
+    const Recipe& recipe_;
+    std::shared_ptr<geometry::TriangleTree> tree_;
+    std::vector<Cavity> cavities_;
+};
+
+}  // namespace
+
+Laid layOn(const cases::Tooth& tooth, const Recipe& recipe) {
+    if (findTemplate(recipe.preparation) == nullptr)
+        throw core::Error(fmt::format("there is no preparation \"{}\"", recipe.preparation), "preparation", "");
+    return Site(tooth, recipe).laid();
+}
+
+}  // namespace handpiece::preparation

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/assess/task/task.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/base/core/hash.h"
+#include "handpiece/model/case/exercise_table.h"
+
+namespace handpiece::tasks {
+namespace {
+
+namespace fs = std::filesystem;
+using config::Table;
+
+constexpr std::int64_t kFormatVersion = 1;
+constexpr const char* kCasePrefix = "case/";
+constexpr double kLeastVoxelUm = 20.0, kMostVoxelUm = 400.0;
+
+bool isId(std::string_view id) {
+    return !id.empty() && id.size() <= 64 && std::all_of(id.begin(), id.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
+    });
+}
+
+std::string textOf(const std::vector<std::byte>& bytes, const std::string& where) {
+    if (bytes.size() > Table::kMaxBytes)
+        throw core::Error("this text is too long", where, "an exercise's texts have at most 1 MB");
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::vector<std::byte> bytesOf(std::string_view text) {
+    const auto bytes = std::as_bytes(std::span(text));
+    return {bytes.begin(), bytes.end()};
+}
+
+/// What exercise.toml says, but for case and rubric.
+Task parse(std::string_view text, const std::string& where) {
+    const Table root = Table::parse(text, where);
+    root.allowOnly({"format", "type", "id", "version", "voxel_um", "minutes", "rubric", "exercise", "preparation"});
+    const std::int64_t format = root.integer("format").value_or(0);
+    if (format != kFormatVersion)
+        root.fail(fmt::format("this exercise is of format {}", format),
+                  format > kFormatVersion ? "it needs a newer program" : "format = 1", "format");
+    if (root.text("type").value_or("exercise") != "exercise")
+        root.fail("this is no exercise", "type = \"exercise\"", "type");
+    Task task;
+    task.id = root.text("id").value_or("");
+    if (!isId(task.id))
+        root.fail(fmt::format("\"{}\" is no id", task.id), "1 to 64 small letters, digits and '-'", "id");
+    task.version = root.integer("version").value_or(1);
+    if (task.version < 1) root.fail("a version is 1 or more", {}, "version");
+    const double voxelUm = root.number("voxel_um").value_or(50.0);
+    if (!(voxelUm >= kLeastVoxelUm && voxelUm <= kMostVoxelUm))
+        root.fail(fmt::format("a voxel of {} um", voxelUm),
+                  fmt::format("give {} to {} um", kLeastVoxelUm, kMostVoxelUm), "voxel_um");
+    task.voxelMm = 1e-3 * voxelUm;
+    task.minutes = root.number("minutes");
+    if (task.minutes && !(*task.minutes > 0.0 && *task.minutes <= 24 * 60))
+        root.fail(fmt::format("{} minutes", *task.minutes), "give more than 0, a day at most", "minutes");
+    if (const auto rubric = root.text("rubric"); rubric && *rubric != kRubricFile)
+        root.fail(fmt::format("the rubric is \"{}\"", *rubric), fmt::format("call the file {}", kRubricFile), "rubric");
+    if (const auto exercise = root.table("exercise")) task.toothCase.exercise = cases::readExercise(*exercise);
+    if (const auto recipe = root.table("preparation")) task.preparation = preparation::readRecipe(*recipe);
+    return task;
+}
+
+std::string tomlOf(const Task& task) {
+    std::string out = fmt::format("format = {}\ntype = \"exercise\"\nid = \"{}\"\nversion = {}\nvoxel_um = {}\n",
+                                  kFormatVersion, task.id, task.version, 1e3 * task.voxelMm);
+    if (task.minutes) out += fmt::format("minutes = {}\n", *task.minutes);
+    if (!task.rubric.empty()) out += fmt::format("rubric = \"{}\"\n", kRubricFile);
+    if (task.preparation) out += "\n" + preparation::recipeToml(*task.preparation);
+    if (task.toothCase.exercise) out += "\n" + cases::exerciseText(*task.toothCase.exercise);
+    return out;
+}
+
+/// Of a case's own `[exercise]`.
+Task ofCase(const fs::path& path) {
+    Task task;
+    task.toothCase = cases::readCase(path);
+    if (!task.toothCase.exercise)
+        throw core::Error("this is no exercise", path.string(),
+                          fmt::format("name a folder or a .handpiece file with {}", kTaskFile));
+    task.id = "case";
+    return task;
+}
+
+}  // namespace
+
+bool isTask(const fs::path& path) {
+    std::error_code ec;
+    if (fs::is_directory(path, ec)) return fs::exists(path / kTaskFile, ec);
+    if (!cases::isPackageName(path) || !fs::exists(path, ec)) return false;
+    return cases::readPackage(path, [](const std::string&) { return false; }).count(kTaskFile) != 0;
+}
+
+Task readTask(const fs::path& path) {
+    std::error_code ec;
+    if (!fs::exists(path, ec))
+        throw core::Error("there is no such exercise", path.string(), "name a folder or a .handpiece file");
+    if (!isTask(path)) return ofCase(path);
+    const bool isFolder = fs::is_directory(path, ec);
+    cases::PackageFiles content;
+    if (isFolder) {
+        content[kTaskFile] = core::readFile(path / kTaskFile, Table::kMaxBytes);
+        if (fs::exists(path / kRubricFile, ec))
+            content[kRubricFile] = core::readFile(path / kRubricFile, Table::kMaxBytes);
+    } else {
+        content =
+            cases::readPackage(path, [](const std::string& name) { return name == kTaskFile || name == kRubricFile; });
+    }
+    const auto where = [&](const char* name) {
+        return isFolder ? (path / name).string() : fmt::format("{} in {}", name, path.string());
+    };
+    Task task = parse(textOf(content.at(kTaskFile), where(kTaskFile)), where(kTaskFile));
+    if (const auto rubric = content.find(kRubricFile); rubric != content.end())
+        task.rubric = textOf(rubric->second, where(kRubricFile));
+    auto exercise = std::move(task.toothCase.exercise);
+    task.toothCase = cases::readCase(isFolder ? path / "case" : path);
+    if (exercise) task.toothCase.exercise = std::move(exercise);
+    return task;
+}
+
+void writeTask(const Task& task, const fs::path& path) {
+    if (!isId(task.id))
+        throw core::Error(fmt::format("\"{}\" is no id", task.id), "the exercise",
+                          "1 to 64 small letters, digits and '-'");
+    cases::PackageFiles files;
+    cases::Case plain = task.toothCase;
+    plain.exercise.reset();
+    for (auto& [name, data] : cases::caseFiles(plain))
+        files[kCasePrefix + name] = std::move(data);
+    files[kTaskFile] = bytesOf(tomlOf(task));
+    if (!task.rubric.empty()) files[kRubricFile] = bytesOf(task.rubric);
+    if (cases::isPackageName(path))
+        cases::writePackage(path, files);
+    else
+        cases::writeFolder(path, files, kTaskFile);
+}
+
+std::uint64_t contentHash(const Task& task) {
+    core::Hasher hasher;
+    hasher.add(std::string_view("handpiece exercise"));
+    hasher.add(cases::caseKey(task.toothCase));
+    hasher.add(task.voxelMm);
+    if (task.preparation) {
+        // As written, with every number that is as usual: a template whose usual numbers change is another task.
+        preparation::Recipe full = *task.preparation;
+        for (const preparation::Parameter& p : preparation::findTemplate(full.preparation)->parameters)
+            full.numbers.emplace(p.name, full.number(p.name));
+        hasher.add(std::string_view(preparation::recipeToml(full)));
+        // Where it lies comes from the landmarks.
+        for (const cases::Landmark& mark : task.toothCase.landmarks) {
+            hasher.add(mark.kind);
+            hasher.add(std::string_view(mark.name));
+            for (const core::Vec3& p : mark.pointsMm)
+                for (int k = 0; k < 3; ++k)
+                    hasher.add(static_cast<std::int64_t>(std::llround(1e5 * p[k])));  // as files keep them
+        }
+    }
+    return hasher.value();
+}
+
+std::vector<std::string> problems(const Task& task) {
+    std::vector<std::string> found;
+    if (!task.preparation) return found;
+    try {
+        const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
+        // Is there tooth in the target at all?
+        const core::Box& box = laid.zones->box();
+        std::size_t inTarget = 0;
+        constexpr int kSteps = 40;
+        for (int z = 0; z < kSteps; ++z)
+            for (int y = 0; y < kSteps; ++y)
+                for (int x = 0; x < kSteps; ++x) {
+                    const core::Vec3 p =
+                        box.min + box.size().cwiseProduct((core::Vec3(x, y, z).array() + 0.5).matrix()) / kSteps;
+                    inTarget += laid.zones->at(p) == zones::Zone::target && laid.whole->signedDistance(p) < 0.0;
+                }
+        if (inTarget == 0) found.push_back("the target holds nothing of the tooth: give other numbers or landmarks");
+    } catch (const core::Error& error) {
+        found.push_back(error.what());
+    }
+    return found;
+}
+
+}  // namespace handpiece::tasks

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// An exercise as a file: a case, what is to be done with it, how it is judged. docs/formats/exercise.md.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "handpiece/assess/preparation/preparation.h"
+#include "handpiece/model/case/case.h"
+#include "handpiece/model/case/package.h"
+
+namespace handpiece::tasks {
+
+inline constexpr const char* kTaskFile = "exercise.toml";
+inline constexpr const char* kRubricFile = "rubric.toml";
+
+struct Task {
+    std::string id;                                  ///< small letters, digits, '-'; 1 to 64 of them
+    std::int64_t version = 1;                        ///< raised with each change that people shall tell apart
+    cases::Case toothCase;                           ///< its `exercise` has texts, burs, locks, view
+    double voxelMm = 0.05;                           ///< of the tooth: a score never hangs on a student's setting
+    std::optional<double> minutes;                   ///< that it may take
+    std::optional<preparation::Recipe> preparation;  ///< what is to be cut; none: nothing is asked
+    std::string rubric;                              ///< how it is judged, as its TOML text; empty: it is not
+};
+
+/// True for a folder with exercise.toml and for a .handpiece file that holds one. Throws core::Error for a .handpiece
+/// file that cannot be read.
+[[nodiscard]] bool isTask(const std::filesystem::path& path);
+/// A folder or a .handpiece file; also a case with `[exercise]` in its case.toml, which then is a task without
+/// preparation and rubric. Throws core::Error (what, where with line, remedy).
+[[nodiscard]] Task readTask(const std::filesystem::path& path);
+/// Into a folder, or as one .handpiece file; whole or not at all.
+void writeTask(const Task& task, const std::filesystem::path& path);
+
+/// What a score rests on: the case's surfaces and tissues, voxel, preparation. Not the texts, nor the rubric, which has
+/// a hash of its own.
+[[nodiscard]] std::uint64_t contentHash(const Task& task);
+
+/// What is wrong with it that can be told without working it: the preparation does not lie on the tooth, or leaves
+/// nothing to do; burs that are too wide for its narrowest place. One sentence each; empty: nothing.
+[[nodiscard]] std::vector<std::string> problems(const Task& task);
+
+}  // namespace handpiece::tasks

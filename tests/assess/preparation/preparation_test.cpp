@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+// Preparations laid onto generated teeth and blocks: where they lie, what they leave, what is refused.
+#include "handpiece/assess/preparation/preparation.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "handpiece/model/dentition/tooth_form.h"
+#include "handpiece/model/lesion/lesion.h"
+#include "handpiece/model/starter/block.h"
+#include "support/error_of.h"
+#include "support/random.h"
+
+namespace handpiece::preparation {
+namespace {
+
+using core::Vec3;
+
+const cases::Tooth& toothOf(int fdi) {
+    static std::map<int, cases::Tooth> made;
+    const auto [at, isNew] = made.try_emplace(fdi);
+    if (isNew) at->second = dentition::makeTooth(fdi, {1, 25.0}, {6000, 3000});
+    return at->second;
+}
+
+Recipe recipeOf(const std::string& preparation, const std::string& side = {}) {
+    Recipe recipe;
+    recipe.preparation = preparation;
+    recipe.side = side;
+    return recipe;
+}
+
+/// The target's share of the tooth, by sampling at `step`.
+struct Sampled {
+    double targetMm3 = 0.0;
+    core::Box box;                ///< of the places in the target
+    double leastOutsideMm = 1e9;  ///< least distance, across, from a place of the lower half of it to the outside
+};
+Sampled sampled(const Laid& laid, double step) {
+    Sampled s;
+    const core::Box box = laid.zones->box();
+    std::vector<Vec3> places;
+    for (double z = box.min.z() + 0.5 * step; z < box.max.z(); z += step)
+        for (double y = box.min.y() + 0.5 * step; y < box.max.y(); y += step)
+            for (double x = box.min.x() + 0.5 * step; x < box.max.x(); x += step) {
+                const Vec3 p(x, y, z);
+                if (laid.zones->targetMm(p) >= 0.0 || laid.whole->signedDistance(p) >= 0.0) continue;
+                s.targetMm3 += step * step * step;
+                s.box.extend(p);
+                places.push_back(p);
+            }
+    for (const Vec3& p : places)
+        if (p.z() < s.box.min.z() + 0.2)
+            for (int i = 0; i < 16; ++i) {
+                const double rad = 2.0 * std::numbers::pi * i / 16;
+                const geometry::RayMeeting out = laid.whole->firstMeeting(p, Vec3(std::cos(rad), std::sin(rad), 0.0));
+                s.leastOutsideMm = std::min(s.leastOutsideMm, out.distanceMm);
+            }
+    return s;
+}
+
+TEST(Preparation, ClassOneFollowsTheFissuresAndLeavesTheRidges) {
+    for (const int fdi : {16, 46, 45}) {
+        Recipe recipe = recipeOf("class-one");
+        if (fdi == 45) recipe.numbers = {{"ridge_mm", 1.6}, {"width_mm", 1.0}};
+        const cases::Tooth& tooth = toothOf(fdi);
+        const Laid laid = layOn(tooth, recipe);
+        const Sampled s = sampled(laid, 0.15);
+        EXPECT_GT(s.targetMm3, 5.0) << fdi;
+        EXPECT_GE(s.leastOutsideMm, recipe.number("ridge_mm") - 0.1) << fdi;
+        // The floor lies as deep as asked under the fissures, on average.
+        const double floor = laid.cavities.front().floor.heightMm;
+        double sum = 0.0;
+        int count = 0;
+        for (const cases::Landmark& mark : tooth.landmarks)
+            if (mark.kind == cases::LandmarkKind::fissure)
+                for (const Vec3& p : mark.pointsMm)
+                    if (laid.zones->targetMm(Vec3(p.x(), p.y(), floor + 0.01)) < 0.0) sum += p.z() - floor, ++count;
+        ASSERT_GT(count, 3) << fdi;
+        EXPECT_NEAR(sum / count, 1.5, 0.35) << fdi;
+        fmt::print("class I of {}: {:.1f} mm3, ridge {:.2f} mm, {} strokes\n", fdi, s.targetMm3, s.leastOutsideMm,
+                   laid.cavities.front().outline.strokes.size());
+    }
+}
+
+TEST(Preparation, LeftIsRightInTheMirror) {
+    const Laid right = layOn(toothOf(46), recipeOf("class-two", "mesial")),
+               left = layOn(toothOf(36), recipeOf("class-two", "mesial"));
+    std::mt19937_64 random(test::seed(3));
+    const core::Box box = right.zones->box();
+    for (int i = 0; i < 5000; ++i) {
+        const Vec3 p(test::uniform(random, box.min.x(), box.max.x()), test::uniform(random, box.min.y(), box.max.y()),
+                     test::uniform(random, box.min.z(), box.max.z()));
+        EXPECT_NEAR(right.zones->targetMm(p), left.zones->targetMm(Vec3(p.x(), -p.y(), p.z())), 0.08)
+            << "meshes are not each other's mirror; a stroke ends within its pieces of 0.05 mm";
+    }
+}
+
+TEST(Preparation, ClassTwoBreaksTheContactAndReachesUnderIt) {
+    for (const char* side : {"mesial", "distal"}) {
+        const cases::Tooth& tooth = toothOf(46);
+        const Laid laid = layOn(tooth, recipeOf("class-two", side));
+        for (const cases::Landmark& mark : tooth.landmarks)
+            if (mark.kind == cases::LandmarkKind::contact) {
+                const Vec3 inside = mark.pointsMm.front() + Vec3(mark.name == "mesial" ? -0.3 : 0.3, 0, 0);
+                EXPECT_EQ(laid.zones->at(inside) == zones::Zone::target, mark.name == side) << mark.name;
+                EXPECT_EQ(laid.zones->at(inside - Vec3(0, 0, 0.9)) == zones::Zone::target, mark.name == side);
+                EXPECT_NE(laid.zones->at(inside - Vec3(0, 0, 1.1)), zones::Zone::target);
+            }
+        // All of one piece: what the box holds and what the fissures hold touch.
+        const Sampled s = sampled(laid, 0.2);
+        EXPECT_GT(s.targetMm3, sampled(layOn(tooth, recipeOf("class-one")), 0.2).targetMm3 + 4.0);
+    }
+}
+
+TEST(Preparation, ClassThreeAndFiveAndAccessAndCrownLieWhereTheyShould) {
+    {
+        const cases::Tooth& tooth = toothOf(11);
+        const Laid laid = layOn(tooth, recipeOf("class-three", "mesial"));
+        const Sampled s = sampled(laid, 0.08);
+        EXPECT_GT(s.targetMm3, 1.0);
+        EXPECT_LT(s.targetMm3, 12.0);
+        EXPECT_GT(s.box.min.x(), 0.0) << "on the mesial side";
+        // Labial enamel is left.
+        const double labial = tooth.buccalSign * (tooth.buccalSign > 0 ? s.box.max.y() : s.box.min.y());
+        EXPECT_LT(labial, tooth.buccalSign *
+                                  (tooth.buccalSign > 0 ? laid.whole->bounds().max.y() : laid.whole->bounds().min.y()) -
+                              0.8);
+        EXPECT_NEAR(s.box.size().z(), 2.5, 0.2);
+    }
+    {
+        const cases::Tooth& tooth = toothOf(33);
+        const Laid laid = layOn(tooth, recipeOf("class-five"));
+        const Sampled s = sampled(laid, 0.08);
+        EXPECT_NEAR(s.targetMm3, 4.5 * 2.5 * 1.0, 2.5);
+        EXPECT_GT(tooth.buccalSign * s.box.centre().y(), 1.0) << "labial only";
+        std::mt19937_64 random(test::seed(4));
+        for (int i = 0; i < 2000; ++i) {
+            const Vec3 p(test::uniform(random, s.box.min.x(), s.box.max.x()),
+                         test::uniform(random, s.box.min.y(), s.box.max.y()),
+                         test::uniform(random, s.box.min.z(), s.box.max.z()));
+            EXPECT_TRUE(laid.zones->targetMm(p) >= 0.0 || -laid.whole->signedDistance(p) <= 1.0 + 1e-9);
+        }
+    }
+    {
+        const cases::Tooth& tooth = toothOf(46);
+        const Laid laid = layOn(tooth, recipeOf("access"));
+        for (const cases::Landmark& mark : tooth.landmarks) {
+            if (mark.kind != cases::LandmarkKind::orifice && mark.kind != cases::LandmarkKind::pulpHorn) continue;
+            EXPECT_LT(laid.zones->targetMm(mark.pointsMm.front() + Vec3(0, 0, 0.6)), 0.0) << mark.name;
+        }
+    }
+    {
+        const cases::Tooth& tooth = toothOf(46);
+        const Laid laid = layOn(tooth, recipeOf("crown"));
+        const double step = 0.15;
+        const Sampled s = sampled(laid, step);
+        EXPECT_GT(s.targetMm3, 80.0);
+        EXPECT_LT(s.targetMm3, 400.0);
+        // What is left over the margin can be drawn off: it never grows wider towards occlusal.
+        const core::Box& box = laid.whole->bounds();
+        int pairs = 0;
+        for (double x = box.min.x(); x < box.max.x(); x += step)
+            for (double y = box.min.y(); y < box.max.y(); y += step) {
+                bool wasAir = false;
+                for (double z = s.box.min.z() + 1.3; z < box.max.z(); z += step) {
+                    const Vec3 p(x, y, z);
+                    const bool isLeft = laid.whole->signedDistance(p) < 0.0 && laid.zones->targetMm(p) >= 0.0;
+                    EXPECT_FALSE(isLeft && wasAir) << p.transpose();
+                    wasAir = wasAir || !isLeft;
+                    pairs += isLeft;
+                }
+            }
+        EXPECT_GT(pairs, 1000);
+        // On top as much is gone as asked.
+        for (const cases::Landmark& mark : tooth.landmarks)
+            if (mark.kind == cases::LandmarkKind::pit && mark.name == "central") {
+                EXPECT_EQ(laid.zones->at(mark.pointsMm.front() - Vec3(0, 0, 1.3)), zones::Zone::target);
+                EXPECT_NE(laid.zones->at(mark.pointsMm.front() - Vec3(0, 0, 1.9)), zones::Zone::target);
+            }
+    }
+}
+
+TEST(Preparation, LesionIsTheCariousTissueShortOfThePulp) {
+    cases::Case toothCase = starter::makeBlock(starter::BlockLayers::carious);
+    const Laid laid = layOn(toothCase, recipeOf("lesion"));
+    const double half = 2.0 / 3.0 * std::numbers::pi * 3.0 * 2.5 * 3.0;
+    EXPECT_NEAR(sampled(laid, 0.1).targetMm3, half, 0.02 * half);
+    EXPECT_NE(test::errorOf([] { (void)layOn(toothOf(46), recipeOf("lesion")); }), "");
+}
+
+TEST(Preparation, BlocksAreTheirClosedForms) {
+    const cases::Case block = starter::makeBlock(starter::BlockLayers::hard);
+    const double pi = std::numbers::pi;
+    const std::map<std::string, double> areas = {{"block-line", 6.8 * 1.2 + pi * 0.36},
+                                                 {"block-channel", 6.8 * 1.2 + pi * 0.36},
+                                                 {"block-cross", 2.0 * (6.8 * 1.2 + pi * 0.36) - 1.44},
+                                                 {"block-circle", pi * 6.25},
+                                                 {"block-hollow-circle", pi * (9.0 - 2.25)},
+                                                 {"block-d-circle", 0.5 * pi * 6.25}};
+    for (const auto& [id, area] : areas) {
+        const Laid laid = layOn(block, recipeOf(id));
+        EXPECT_NEAR(sampled(laid, 0.1).targetMm3, 1.5 * area, 0.02 * 1.5 * area) << id;
+    }
+    EXPECT_NEAR(sampled(layOn(block, recipeOf("block-steps")), 0.05).targetMm3, 3.0 * 3.0 * (1 + 2 + 3), 0.9);
+    EXPECT_NEAR(geometry::enclosedVolumeMm3(block.outer), 16.0 * 12.0 * 8.0, 1e-6);
+    for (const auto layers : {starter::BlockLayers::hard, starter::BlockLayers::layered, starter::BlockLayers::carious})
+        for (const cases::Part& part : starter::makeBlock(layers).parts)
+            EXPECT_NO_THROW(cases::requireSolid(part.mesh, part.name));
+}
+
+TEST(Preparation, RecipesComeBackFromText) {
+    for (const Template& t : templates()) {
+        Recipe recipe = recipeOf(std::string(t.id), t.hasSide ? "distal" : "");
+        for (const Parameter& p : t.parameters) {
+            EXPECT_LE(p.least, p.usual) << p.name;
+            EXPECT_GE(p.most, p.usual) << p.name;
+            recipe.numbers.emplace(p.name, p.usual + 0.25 * (p.most - p.usual));
+        }
+        recipe.leeway = {0.15, 0.35};
+        recipe.pulpMm = 0.5;
+        const config::Table root = config::Table::parse(recipeToml(recipe), "recipe");
+        EXPECT_EQ(readRecipe(*root.table("preparation")), recipe) << t.id;
+    }
+}
+
+TEST(Preparation, BadRecipesAreToldWithTheirLine) {
+    const auto errorOf = [](const std::string& text) {
+        return test::errorOf(
+            [&] { (void)readRecipe(*config::Table::parse("[preparation]\n" + text, "x.toml").table("preparation")); });
+    };
+    EXPECT_NE(errorOf("").find("no template"), std::string::npos);
+    EXPECT_NE(errorOf("template = \"class-nine\"").find("class-nine"), std::string::npos);
+    EXPECT_NE(errorOf("template = \"class-two\"").find("side"), std::string::npos);
+    EXPECT_NE(errorOf("template = \"class-one\"\nside = \"mesial\"").find("side"), std::string::npos);
+    EXPECT_NE(errorOf("template = \"class-one\"\ndepth_mm = 40").find("0.5 to 4"), std::string::npos);
+    EXPECT_NE(errorOf("template = \"class-one\"\ndepht_mm = 1").find("depht_mm"), std::string::npos);
+    EXPECT_NE(errorOf("template = \"class-one\"\nleeway_side_mm = -1"), "");
+    EXPECT_NE(errorOf("template = \"class-one\"\ndepth_mm = \"deep\""), "");
+}
+
+TEST(Preparation, WhatATeethLacksIsToldWithTheRemedy) {
+    cases::Tooth bare = toothOf(46);
+    bare.landmarks.clear();
+    for (const char* id : {"class-one", "class-five", "access", "crown"}) {
+        const std::string error = test::errorOf([&] { (void)layOn(bare, recipeOf(id)); });
+        EXPECT_NE(error.find("landmark"), std::string::npos) << error;
+    }
+    Recipe wide = recipeOf("class-one");
+    wide.numbers = {{"width_mm", 5.0}, {"ridge_mm", 4.0}};
+    EXPECT_NE(test::errorOf([&] { (void)layOn(toothOf(46), wide); }).find("no room"), std::string::npos);
+    cases::Tooth unknown = toothOf(11);
+    unknown.buccalSign = 0;
+    EXPECT_NE(test::errorOf([&] { (void)layOn(unknown, recipeOf("class-three", "mesial")); }).find("buccal"),
+              std::string::npos);
+    EXPECT_NE(test::errorOf([] { (void)layOn(cases::Tooth{}, recipeOf("class-one")); }), "");
+}
+
+}  // namespace
+}  // namespace handpiece::preparation

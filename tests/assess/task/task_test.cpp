@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Exercises as files: round trips, what is refused, what a hash rests on.
+#include "handpiece/assess/task/task.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "handpiece/model/starter/block.h"
+#include "support/error_of.h"
+
+namespace handpiece::tasks {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TaskFile : public testing::Test {
+  protected:
+    fs::path folder_ = fs::temp_directory_path() / fmt::format("handpiece-task-{}", ::getpid());
+    void SetUp() override { fs::create_directories(folder_); }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    static Task block() {
+        Task task;
+        task.id = "block-line-1";
+        task.version = 3;
+        task.toothCase = starter::makeBlock(starter::BlockLayers::layered);
+        task.voxelMm = 0.04;
+        task.minutes = 7.5;
+        task.preparation = preparation::Recipe{"block-line", "", {{"depth_mm", 1.25}}, {0.3, 0.2}, 0.0};
+        task.rubric = "format = 1\n# kept as it stands\n";
+        cases::Exercise exercise;
+        exercise.title = {{"en", "A \"line\""}, {"ja", "線"}};
+        exercise.instructions = {{"en", "1.25 mm deep."}};
+        exercise.bur = "330";
+        exercise.lockedHelps = {"undo"};
+        task.toothCase.exercise = exercise;
+        return task;
+    }
+    void change(const fs::path& task, const std::string& from, const std::string& to) const {
+        std::ifstream in(task / kTaskFile);
+        std::string text{std::istreambuf_iterator<char>(in), {}};
+        const std::size_t at = text.find(from);
+        ASSERT_NE(at, std::string::npos) << from;
+        text.replace(at, from.size(), to);
+        std::ofstream(task / kTaskFile) << text;
+    }
+};
+
+TEST_F(TaskFile, ComesBackFromFolderAndPackage) {
+    const Task task = block();
+    for (const char* name : {"task", "task.handpiece"}) {
+        const fs::path path = folder_ / name;
+        writeTask(task, path);
+        writeTask(task, path);  // once more, over it
+        ASSERT_TRUE(isTask(path));
+        const Task back = readTask(path);
+        EXPECT_EQ(back.id, task.id);
+        EXPECT_EQ(back.version, 3);
+        EXPECT_DOUBLE_EQ(back.voxelMm, 0.04);
+        EXPECT_EQ(back.minutes, 7.5);
+        EXPECT_EQ(*back.preparation, *task.preparation);
+        EXPECT_EQ(back.rubric, task.rubric);
+        EXPECT_EQ(back.toothCase.exercise->title, task.toothCase.exercise->title);
+        EXPECT_EQ(back.toothCase.exercise->lockedHelps, task.toothCase.exercise->lockedHelps);
+        EXPECT_EQ(contentHash(back), contentHash(task));
+        EXPECT_TRUE(problems(back).empty());
+    }
+}
+
+TEST_F(TaskFile, HashRestsOnWhatIsAskedAndNotOnWords) {
+    const Task task = block();
+    Task words = task, deeper = task, finer = task, other = task;
+    words.toothCase.exercise->title["en"] = "Another";
+    words.rubric += "# more\n";
+    EXPECT_EQ(contentHash(words), contentHash(task));
+    deeper.preparation->numbers["depth_mm"] = 1.3;
+    EXPECT_NE(contentHash(deeper), contentHash(task));
+    finer.voxelMm = 0.05;
+    EXPECT_NE(contentHash(finer), contentHash(task));
+    other.toothCase = starter::makeBlock(starter::BlockLayers::hard);
+    EXPECT_NE(contentHash(other), contentHash(task));
+    // A usual number that is written down is the same number.
+    Task spelt = task;
+    spelt.preparation->numbers["width_mm"] = 1.2;
+    EXPECT_EQ(contentHash(spelt), contentHash(task));
+}
+
+TEST_F(TaskFile, AnExerciseInACaseIsReadAndMovedOver) {
+    cases::Case old = block().toothCase;
+    const fs::path path = folder_ / "case";
+    cases::writeCase(old, path);
+    Task task = readTask(path);
+    EXPECT_EQ(task.toothCase.exercise->bur, "330");
+    EXPECT_FALSE(task.preparation);
+    task.id = "old";
+    writeTask(task, folder_ / "moved");
+    EXPECT_EQ(readTask(folder_ / "moved").toothCase.exercise->bur, "330");
+    EXPECT_FALSE(cases::readCase(folder_ / "moved" / "case").exercise) << "it stands in exercise.toml now";
+}
+
+TEST_F(TaskFile, BadOnesAreToldInOneLineEach) {
+    const fs::path path = folder_ / "bad";
+    const auto errorAfter = [&](const std::string& from, const std::string& to) {
+        writeTask(block(), path);
+        change(path, from, to);
+        const std::string error = test::errorOf([&] { (void)readTask(path); });
+        EXPECT_NE(error.find("exercise.toml"), std::string::npos) << error;
+        return error;
+    };
+    EXPECT_NE(errorAfter("format = 1", "format = 9").find("newer"), std::string::npos);
+    EXPECT_NE(errorAfter("block-line-1", "Block Line").find("no id"), std::string::npos);
+    EXPECT_NE(errorAfter("version = 3", "version = 0").find("version"), std::string::npos);
+    EXPECT_NE(errorAfter("voxel_um = 40", "voxel_um = 1").find("20 to 400"), std::string::npos);
+    EXPECT_NE(errorAfter("minutes = 7.5", "minutes = -1").find("minutes"), std::string::npos);
+    EXPECT_NE(errorAfter("minutes", "minuets").find("minuets"), std::string::npos);
+    EXPECT_NE(errorAfter("depth_mm = 1.25", "depth_mm = 99").find("depth_mm"), std::string::npos);
+    EXPECT_NE(errorAfter("rubric.toml", "../rubric.toml").find("rubric"), std::string::npos);
+    EXPECT_NE(errorAfter("\"undo\"", "\"undone\"").find("undone"), std::string::npos);
+    EXPECT_NE(errorAfter("type = \"exercise\"", "type = \"attempt\"").find("no exercise"), std::string::npos);
+
+    EXPECT_NE(test::errorOf([&] { (void)readTask(folder_ / "nowhere"); }).find("no such"), std::string::npos);
+    writeTask(block(), path);
+    fs::remove_all(path / "case");
+    EXPECT_NE(test::errorOf([&] { (void)readTask(path); }), "");
+    cases::writeCase(starter::makeBlock(starter::BlockLayers::hard), folder_ / "plain");
+    EXPECT_NE(test::errorOf([&] { (void)readTask(folder_ / "plain"); }).find("no exercise"), std::string::npos);
+    std::ofstream(folder_ / "x.handpiece") << "no zip";
+    EXPECT_NE(test::errorOf([&] { (void)readTask(folder_ / "x.handpiece"); }), "");
+}
+
+TEST_F(TaskFile, ATargetBesideTheToothIsTold) {
+    Task task = block();
+    task.preparation = preparation::Recipe{"class-one", "", {}, {}, 0.0};
+    ASSERT_EQ(problems(task).size(), 1u);
+    EXPECT_NE(problems(task).front().find("landmark"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace handpiece::tasks

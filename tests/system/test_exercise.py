@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Exercises as files, by the command line: made, checked, packed, worked on, refused."""
+
+import json
+import unittest
+
+from support import SystemTest
+
+
+class Exercise(SystemTest):
+    def block(self, *arguments, name="block"):
+        self.ok("make", "block", "--out", self.folder / name, *arguments)
+        return self.folder / name
+
+    def test_blocks_of_every_kind_check_pack_and_list(self):
+        for kind in ("line", "channel", "cross", "circle", "hollow-circle", "d-circle", "steps"):
+            block = self.block("--kind", kind, "--level", 2, name=kind)
+            told = json.loads(self.ok("exercise", "check", block, "--json").stdout)
+            self.assertEqual((told["id"], told["problems"]), (f"block-{kind}-2", []))
+            self.ok("exercise", "pack", block, self.folder / f"{kind}.handpiece")
+            packed = json.loads(self.ok("exercise", "check", self.folder / f"{kind}.handpiece", "--json").stdout)
+            self.assertEqual(packed, told)
+        (self.folder / "broken.handpiece").write_text("no zip")
+        rows = json.loads(self.ok("exercise", "list", self.folder, "--json").stdout)
+        self.assertEqual(len(rows), 15)
+        self.assertEqual([row["file"] for row in rows if "error" in row], ["broken.handpiece"])
+
+    def test_its_case_is_worked_on(self):
+        block = self.block("--kind", "line", "--layers", "layered", "--set", "depth_mm=0.8")
+        self.ok("run", "--case", block / "case", "--bur", "330", "--motion", "plunge", "--depth", 0.4,
+                "--duration", 1, "--voxel", 100, "--out", self.folder / "run")
+        self.assertTrue((self.folder / "run" / "session.h5").is_file())
+
+    def test_a_preparation_on_a_tooth(self):
+        self.ok("make", "tooth", "--fdi", 46, "--faces", 4000, "--out", self.folder / "molar")
+        new = ("exercise", "new", "--case", self.folder / "molar", "--id", "two-46", "--out", self.folder / "two")
+        self.refused(*new, "--preparation", "class-two", mentions=("side",))
+        self.ok(*new, "--preparation", "class-two", "--side", "mesial", "--title", "Class II MO", "--minutes", 45)
+        first = json.loads(self.ok("exercise", "check", self.folder / "two", "--json").stdout)
+        self.assertEqual((first["fdi"], first["minutes"], first["title"]), (46, 45, {"en": "Class II MO"}))
+        self.ok(*new, "--preparation", "class-two", "--side", "mesial", "--set", "axial_mm=1.5")
+        second = json.loads(self.ok("exercise", "check", self.folder / "two", "--json").stdout)
+        self.assertNotEqual(first["hash"], second["hash"])
+        gone = self.ok("exercise", "ideal", self.folder / "two", "--out", self.folder / "ideal").stdout
+        self.assertGreater(float(gone.split()[1]), 10.0)
+        self.ok("case", "info", self.folder / "two" / "case")
+        self.ok("picture", self.folder / "ideal", "--size", "64x48", "--out", self.folder / "ideal.png")
+
+    def test_what_is_wrong_is_told_in_one_line_and_nothing_is_written(self):
+        block = self.block("--kind", "line")
+        new = ("exercise", "new", "--case", block / "case", "--id", "x", "--out", self.folder / "x")
+        for arguments, word in ((("--preparation", "class-one"), "landmark"),
+                                (("--preparation", "class-one", "--set", "depth_mm=99"), "0.5 to 4"),
+                                (("--preparation", "class-one", "--set", "depth"), "NAME=NUMBER"),
+                                (("--preparation", "class-one", "--set", "deep_mm=1"), "deep_mm"),
+                                (("--preparation", "lesion"), "no carious tissue")):
+            self.refused(*new, *arguments, mentions=(word,))
+        self.refused("exercise", "check", self.folder / "nothing", mentions=("no such",))
+        (block / "exercise.toml").write_text("format = 1\nid = 'a b'\n")
+        self.refused("exercise", "check", block, mentions=("exercise.toml",))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -285,11 +285,13 @@ void listLandmarks(const LandmarkOptions& o) {
         throw core::Error("what is found is written beside what was read", o.find ? "--find" : "--out",
                           "give --find and --out, or neither");
     Case c = cases::readCase(o.place);
+    std::vector<cases::Landmark> lacked;
     if (o.find) {
         studies::ProgressBar bar("finding landmarks");
         c.landmarks = landmarks::withFound(c.landmarks, landmarks::findLandmarks(c, bar.listener()));
         bar.finish();
         cases::writeCase(c, o.out);
+        lacked = landmarks::lackedLandmarks(landmarks::expectedLandmarks(c.fdiNumber), c.landmarks);
     }
     if (o.json) {
         Json list = Json::array();
@@ -302,7 +304,14 @@ void listLandmarks(const LandmarkOptions& o) {
                             {"source", cases::kLandmarkSources[static_cast<std::size_t>(mark.source)]},
                             {"points_mm", std::move(points)}});
         }
-        return print({{"case", o.find ? o.out : o.place}, {"landmarks", std::move(list)}});
+        Json made = {{"case", o.find ? o.out : o.place}, {"landmarks", std::move(list)}};
+        if (o.find) {
+            made["not_found"] = Json::array();
+            for (const cases::Landmark& mark : lacked)
+                made["not_found"].push_back(
+                    {{"kind", cases::kLandmarkKinds[static_cast<std::size_t>(mark.kind)]}, {"name", mark.name}});
+        }
+        return print(made);
     }
     for (const cases::Landmark& mark : c.landmarks) {
         const core::Vec3& p = mark.pointsMm.front();
@@ -313,6 +322,8 @@ void listLandmarks(const LandmarkOptions& o) {
                    cases::kLandmarkSources[static_cast<std::size_t>(mark.source)], place);
     }
     fmt::print("{}: {} landmarks\n", o.find ? o.out : o.place, c.landmarks.size());
+    for (const cases::Landmark& mark : lacked)
+        fmt::print("  not found: {} {}\n", cases::kLandmarkKinds[static_cast<std::size_t>(mark.kind)], mark.name);
 }
 
 struct PackOptions {

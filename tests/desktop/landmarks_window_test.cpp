@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Landmarks in the window: shown, moved by the mouse and by keys, taken back, saved, read only in an exercise.
+// Landmarks in the window: shown, found, set and moved by the mouse and by keys, taken back, saved, read only in an
+// exercise.
+#include <QComboBox>
 #include <QDockWidget>
+#include <QLabel>
 #include <QPushButton>
 #include <QTreeWidget>
 
 #include "desktop/features/landmarks/landmarks_feature.h"
+#include "handpiece/scan/landmarks/find_landmarks.h"
 #include "handpiece/senses/view/camera.h"
 #include "shell_support.h"
 
@@ -134,6 +138,134 @@ TEST_F(LandmarksTest, AreAskedAboutBeforeAnotherToothAndMakeACaseOfATooth) {
     EXPECT_FALSE(action("actionMoveLandmarks")->isEnabled());
 }
 
+TEST_F(LandmarksTest, AreFoundByShapeBesideWhatAPersonSet) {
+    // A real tooth of the rules without its landmarks, but for one that a person set elsewhere.
+    cases::Case bare;
+    static_cast<cases::Tooth&>(bare) = dentition::makeTooth(46, {}, {12000, 0});
+    const std::vector<cases::Landmark> truth = bare.landmarks;
+    const Vec3 own(0.0, 0.0, 1.0);
+    bare.landmarks = {{LandmarkKind::cuspTip, "mesiobuccal", {own}, LandmarkSource::set}};
+    cases::writeCase(bare, at("bare"));
+    CommandLine line;
+    line.file = own_.filePath("bare");
+    startWithTooth(line);
+    action("actionLandmarks")->trigger();
+    // Cancelled, it changes nothing.
+    press("landmarkFind");
+    ASSERT_TRUE(feature().isFinding());
+    press("landmarkFind");
+    ASSERT_TRUE(waitFor([this] { return !feature().isFinding(); }));
+    EXPECT_EQ(feature().marks().size(), 1u);
+    EXPECT_FALSE(feature().isUnsaved());
+
+    press("landmarkFind");
+    ASSERT_TRUE(waitFor([this] { return !feature().isFinding(); }));
+    const std::vector<cases::Landmark> found = landmarks::findLandmarks(*simulator().toothCase());
+    EXPECT_GT(found.size(), 5u);
+    EXPECT_EQ(feature().marks().size(), landmarks::withFound(bare.landmarks, found).size());
+    EXPECT_EQ(feature().marks()[0].pointsMm[0], own);
+    EXPECT_EQ(feature().marks()[0].source, LandmarkSource::set);
+    for (std::size_t i = 1; i < feature().marks().size(); ++i) {
+        EXPECT_EQ(feature().marks()[i].source, LandmarkSource::found);
+        EXPECT_EQ(list()->topLevelItem(static_cast<int>(i))->text(1), "found");
+    }
+    EXPECT_TRUE(feature().isUnsaved());
+    const QString note = window().findChild<QLabel*>("landmarkNote")->text();
+    EXPECT_TRUE(note.contains("Not found") == (truth.size() > feature().marks().size())) << note.toStdString();
+    press("landmarkUndo");
+    EXPECT_EQ(feature().marks().size(), 1u);
+    EXPECT_EQ(list()->topLevelItemCount(), 1);
+    press("landmarkFind");
+    ASSERT_TRUE(waitFor([this] { return !feature().isFinding(); }));
+    press("landmarkSave");
+    ASSERT_TRUE(waitFor([this] { return !feature().isUnsaved(); }));
+    const cases::Case saved = cases::readCase(at("bare"));
+    ASSERT_EQ(saved.landmarks.size(), feature().marks().size());
+    EXPECT_EQ(saved.landmarks[0].source, LandmarkSource::set);
+    EXPECT_EQ(saved.landmarks[1].source, LandmarkSource::found);
+}
+
+TEST_F(LandmarksTest, AreSetByClicksAndDeleted) {
+    openMarked();
+    action("actionLandmarks")->trigger();
+    auto* kind = window().findChild<QComboBox*>("landmarkKind");
+    auto* name = window().findChild<QComboBox*>("landmarkName");
+    const auto choose = [&](LandmarkKind what) { kind->setCurrentIndex(static_cast<int>(what)); };
+    const auto click = [&](const Vec3& p) {
+        QTest::mouseClick(view(), Qt::LeftButton, Qt::NoModifier,
+                          seen(geometry::TriangleTree(simulator().toothCase()->surface()).nearest(p).pointMm));
+    };
+    // A point: one click. The tooth of this number has a distobuccal cusp, this one lacks it.
+    choose(LandmarkKind::cuspTip);
+    EXPECT_EQ(name->findText("mesiobuccal"), -1) << "it is there";
+    ASSERT_GE(name->findText("distobuccal"), 0);
+    name->setCurrentIndex(name->findText("distobuccal"));
+    press("landmarkSet");
+    EXPECT_EQ(view()->tool(), Tool::landmarks);
+    const Vec3 wanted(-1.5, 1.0, 6.0);
+    click(wanted);
+    ASSERT_EQ(feature().marks().size(), 3u);
+    EXPECT_FALSE(feature().isPlacing());
+    const cases::Landmark tip = feature().marks()[2];
+    EXPECT_EQ(tip.name, "distobuccal");
+    EXPECT_EQ(tip.source, LandmarkSource::set);
+    EXPECT_LT(offSurfaceMm(tip.pointsMm[0]), 1e-9);
+    EXPECT_LT(
+        (tip.pointsMm[0] - geometry::TriangleTree(simulator().toothCase()->surface()).nearest(wanted).pointMm).norm(),
+        0.1);
+    EXPECT_EQ(list()->topLevelItem(2)->text(1), "set by hand");
+    EXPECT_EQ(removedMm3(), 0.0) << "nothing is cut";
+    // A line, point by point; a click too many is taken back.
+    choose(LandmarkKind::fissure);
+    name->setEditText("of mine");
+    press("landmarkSet");
+    for (const double x : {-2.0, 0.0, 2.0, 2.4})
+        click(Vec3(x, 0.5, 6.0));
+    const std::size_t four = feature().marks()[3].pointsMm.size();
+    press("landmarkUndo");
+    EXPECT_LT(feature().marks()[3].pointsMm.size(), four);
+    press("landmarkSet");
+    ASSERT_EQ(feature().marks().size(), 4u);
+    const cases::Landmark groove = feature().marks()[3];
+    EXPECT_EQ(groove.name, "of mine");
+    EXPECT_GT(groove.pointsMm.size(), 8u);
+    EXPECT_NEAR(groove.pointsMm.front().x(), -2.0, 0.2);
+    EXPECT_NEAR(groove.pointsMm.back().x(), 2.0, 0.2);
+    for (const Vec3& p : groove.pointsMm)
+        EXPECT_LT(offSurfaceMm(p), 1e-9);
+    // Too few clicks for a ring: nothing.
+    choose(LandmarkKind::heightOfContour);
+    press("landmarkSet");
+    click(Vec3(1, 1, 6));
+    EXPECT_EQ(feature().marks().size(), 5u);
+    press("landmarkSet");
+    EXPECT_EQ(feature().marks().size(), 4u);
+    // An axis goes upwards, whichever end is clicked first.
+    choose(LandmarkKind::longAxis);
+    press("landmarkSet");
+    click(Vec3(0.0, 0.0, 6.0));
+    click(Vec3(3.0, 1.0, 4.0));
+    ASSERT_EQ(feature().marks().size(), 5u);
+    EXPECT_FALSE(feature().isPlacing());
+    EXPECT_LT(feature().marks()[4].pointsMm[0].z(), feature().marks()[4].pointsMm[1].z());
+    // What is deleted comes back.
+    list()->setCurrentItem(list()->topLevelItem(3));
+    press("landmarkDelete");
+    ASSERT_EQ(feature().marks().size(), 4u);
+    EXPECT_EQ(list()->topLevelItemCount(), 4);
+    press("landmarkUndo");
+    ASSERT_EQ(feature().marks().size(), 5u);
+    EXPECT_EQ(feature().marks()[3].pointsMm, groove.pointsMm);
+    press("landmarkSave");
+    ASSERT_TRUE(waitFor([this] { return !feature().isUnsaved(); }));
+    EXPECT_EQ(cases::readCase(at("marked")).landmarks.size(), 5u);
+    // One step of undo for each that was set.
+    for (std::size_t left : {4u, 3u, 2u}) {
+        press("landmarkUndo");
+        EXPECT_EQ(feature().marks().size(), left);
+    }
+}
+
 TEST_F(LandmarksTest, AreReadOnlyInAnExercise) {
     cases::Case given = marked();
     given.exercise.emplace();
@@ -144,7 +276,8 @@ TEST_F(LandmarksTest, AreReadOnlyInAnExercise) {
     action("actionLandmarks")->trigger();
     EXPECT_EQ(view()->landmarks().size(), 1u);
     ASSERT_TRUE(waitFor([this] { return !action("actionMoveLandmarks")->isEnabled(); }));
-    EXPECT_FALSE(window().findChild<QPushButton*>("landmarkSave")->isEnabled());
+    for (const char* button : {"landmarkSave", "landmarkFind", "landmarkSet", "landmarkDelete", "landmarkUndo"})
+        EXPECT_FALSE(window().findChild<QPushButton*>(button)->isEnabled()) << button;
     view()->setTool(Tool::landmarks);
     const Vec3 top = feature().marks()[0].pointsMm[0];
     drag(seen(top), seen(top) + QPoint(60, 0));

@@ -160,7 +160,7 @@ class Session(SystemTest):
             readme = file["README"][()].decode()
             self.assertIn("h5py.File", readme)
             self.assertEqual(file.attrs["format"].decode(), "handpiece-session")
-            self.assertEqual(int(file.attrs["format_version"]), 3)
+            self.assertEqual(int(file.attrs["format_version"]), 4)
             self.assertEqual(file.attrs["code"].decode(), "child")
             n = len(file["samples/tick"])
             x = file["samples/position"][:n] * 2.0**-20

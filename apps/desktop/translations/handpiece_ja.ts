@@ -7215,8 +7215,8 @@ lingual: %4</source>
         <translation>指標点を保存しますか？</translation>
     </message>
     <message>
-        <source>Landmarks were moved, and no case holds that yet.</source>
-        <translation>指標点が動かされましたが、まだどの症例にも保存されていません。</translation>
+        <source>Landmarks were changed, and no case holds that yet.</source>
+        <translation>指標点が変更されましたが、まだどの症例にも保存されていません。</translation>
     </message>
     <message>
         <source>Landmarks</source>
@@ -7231,8 +7231,32 @@ lingual: %4</source>
         <translation>再生や閲覧中は見るだけです。</translation>
     </message>
     <message>
-        <source>Moved, and not saved yet.</source>
-        <translation>動かしましたが、まだ保存していません。</translation>
+        <source>Looking for landmarks...</source>
+        <translation>指標点を検出しています...</translation>
+    </message>
+    <message>
+        <source>Click the tooth where it is to be. Undo takes the last click back.</source>
+        <translation>歯の上の置きたい位置をクリックしてください。「元に戻す」で最後のクリックを取り消します。</translation>
+    </message>
+    <message>
+        <source>Changed, and not saved yet.</source>
+        <translation>変更しましたが、まだ保存していません。</translation>
+    </message>
+    <message>
+        <source>Finding landmarks</source>
+        <translation>指標点の検出</translation>
+    </message>
+    <message>
+        <source>Found by shape: %1.</source>
+        <translation>形態から検出: %1。</translation>
+    </message>
+    <message>
+        <source>Not found: %1.</source>
+        <translation>検出できなかったもの: %1。</translation>
+    </message>
+    <message>
+        <source>This tooth has no number of a permanent tooth: only what goes around it.</source>
+        <translation>永久歯の歯番がないため、歯を一周するものだけを検出しました。</translation>
     </message>
     <message>
         <source>Save as a case with these landmarks</source>
@@ -7262,8 +7286,64 @@ lingual: %4</source>
         <translation>元に戻す</translation>
     </message>
     <message>
-        <source>Take the last move back</source>
-        <translation>最後の移動を取り消します</translation>
+        <source>Take the last change back</source>
+        <translation>最後の変更を取り消します</translation>
+    </message>
+    <message>
+        <source>Find</source>
+        <translation>検出</translation>
+    </message>
+    <message>
+        <source>Find landmarks</source>
+        <translation>指標点を検出</translation>
+    </message>
+    <message>
+        <source>Look for landmarks by the tooth&apos;s shape; what was set by hand stays</source>
+        <translation>歯の形態から指標点を探します。手で設定したものは残ります</translation>
+    </message>
+    <message>
+        <source>Finding landmarks</source>
+        <translation>指標点の検出</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>キャンセル</translation>
+    </message>
+    <message>
+        <source>Kind of the landmark to set</source>
+        <translation>設定する指標点の種類</translation>
+    </message>
+    <message>
+        <source>Name of the landmark to set</source>
+        <translation>設定する指標点の名前</translation>
+    </message>
+    <message>
+        <source>One that this tooth lacks, or another name</source>
+        <translation>この歯にまだないもの、または別の名前</translation>
+    </message>
+    <message>
+        <source>Set</source>
+        <translation>設定</translation>
+    </message>
+    <message>
+        <source>Done</source>
+        <translation>完了</translation>
+    </message>
+    <message>
+        <source>Set by hand</source>
+        <translation>手で設定</translation>
+    </message>
+    <message>
+        <source>Click the tooth where it is to be: a line or ring point by point, then press again</source>
+        <translation>歯の上の位置をクリックします。線や輪は一点ずつクリックし、最後にもう一度押します</translation>
+    </message>
+    <message>
+        <source>Delete</source>
+        <translation>削除</translation>
+    </message>
+    <message>
+        <source>Remove the one chosen</source>
+        <translation>選んだものを削除します</translation>
     </message>
     <message>
         <source>Put back</source>

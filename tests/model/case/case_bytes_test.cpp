@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "handpiece/base/core/error.h"
@@ -84,6 +85,52 @@ TEST(CaseBytes, givesTheOthersBack) {
     }
 }
 
+TEST(CaseBytes, givesTheLandmarksBack) {
+    const auto mark = [](LandmarkKind kind, const char* name, int points, LandmarkSource source) {
+        Landmark made{kind, name, {}, source};
+        for (int i = 0; i < points; ++i)
+            made.pointsMm.emplace_back(1.0 / 3.0 + i, -0.1 * i, 2.0);
+        return made;
+    };
+    Case alone = ballInBall(), many = three();
+    alone.landmarks = {mark(LandmarkKind::longAxis, "", 2, LandmarkSource::set),
+                       mark(LandmarkKind::cementoEnamelJunction, "", 48, LandmarkSource::found)};
+    many.others[1].landmarks = {mark(LandmarkKind::cuspTip, "mesiobuccal", 1, LandmarkSource::generated)};
+    for (const Case& given : {alone, many}) {
+        const std::vector<std::byte> bytes = encodeCase(given);
+        const Case back = decodeCase(bytes, "test");
+        const auto expectSame = [](const Tooth& one, const Tooth& other) {
+            ASSERT_EQ(one.landmarks.size(), other.landmarks.size());
+            for (std::size_t i = 0; i < one.landmarks.size(); ++i) {
+                EXPECT_EQ(one.landmarks[i].kind, other.landmarks[i].kind);
+                EXPECT_EQ(one.landmarks[i].name, other.landmarks[i].name);
+                EXPECT_EQ(one.landmarks[i].source, other.landmarks[i].source);
+                EXPECT_EQ(one.landmarks[i].pointsMm, other.landmarks[i].pointsMm) << "bit for bit";
+            }
+        };
+        expectSame(back, given);
+        ASSERT_EQ(back.others.size(), given.others.size());
+        for (std::size_t i = 0; i < given.others.size(); ++i)
+            expectSame(back.others[i], given.others[i]);
+        EXPECT_EQ(encodeCase(back), bytes);
+        EXPECT_EQ(caseKey(back), caseKey(given));
+        for (std::size_t kept = 0; kept < bytes.size(); kept += 97)
+            EXPECT_THROW((void)decodeCase(std::span(bytes).first(kept), "test"), core::Error) << kept;
+    }
+    // What no case may say is not believed here either.
+    alone.landmarks = {mark(LandmarkKind::longAxis, "", 3, LandmarkSource::set)};
+    EXPECT_THROW((void)decodeCase(encodeCase(alone), "test"), core::Error);
+    alone.landmarks = {mark(LandmarkKind::pit, "", 1, LandmarkSource::set)};
+    alone.landmarks[0].pointsMm[0].z() = std::nan("");
+    EXPECT_THROW((void)decodeCase(encodeCase(alone), "test"), core::Error);
+}
+
+TEST(CaseBytes, WithoutLandmarksAreAsTheyWere) {
+    const auto versionOf = [](const Case& c) { return std::to_integer<int>(encodeCase(c).at(4)); };
+    EXPECT_EQ(versionOf(ballInBall()), 1);
+    EXPECT_EQ(versionOf(three()), 2);
+}
+
 TEST(CaseBytes, refusesWhatIsCutOffOrDamaged) {
     const std::vector<std::byte> bytes = encodeCase(ballInBall());
     std::mt19937_64 random(test::seed());
@@ -105,6 +152,8 @@ TEST(CaseBytes, refusesWhatIsCutOffOrDamaged) {
     EXPECT_GT(refused, 0);
     std::vector<std::byte> newer = bytes;
     newer[4] = std::byte{2};
+    EXPECT_THROW((void)decodeCase(newer, "test"), core::Error);
+    newer[4] = std::byte{9};
     EXPECT_THROW((void)decodeCase(newer, "test"), core::Error);
 }
 

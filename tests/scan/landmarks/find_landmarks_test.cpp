@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <random>
@@ -22,6 +23,7 @@ using cases::LandmarkKind;
 using core::Vec3;
 
 constexpr double kElsewhereMm = 1.0;  ///< farther from its landmark than this it is another place
+constexpr double kElsewhereDegrees = 10.0;
 
 /// As rough as marching cubes leave them: finer ones cost, and find no better.
 cases::Tooth roughTooth(int fdi, std::uint64_t seed) {
@@ -58,7 +60,8 @@ const std::vector<cases::Tooth>& teeth() {
 
 struct Tally {
     int known = 0, found = 0, elsewhere = 0;
-    std::vector<double> errorsMm;
+    std::vector<double> errorsMm;  ///< of axes degrees
+    double covered = 0.0;          ///< of a line's length, what was found of it, summed
     [[nodiscard]] double at(double share) {
         std::sort(errorsMm.begin(), errorsMm.end());
         return errorsMm.empty()
@@ -81,13 +84,33 @@ double distanceMm(const Vec3& p, const Landmark& truth) {
     return least;
 }
 
-/// A line's error is that of nine tenths of its points.
+bool isAxis(LandmarkKind kind) {
+    return cases::shapeOf(kind).least == 2 && cases::shapeOf(kind).most == 2;
+}
+
+/// A line's error is that of nine tenths of its points, an axis's the angle between the two [degrees].
 double errorMm(const Landmark& found, const Landmark& truth) {
+    if (isAxis(found.kind)) {
+        const Vec3 one = (found.pointsMm[1] - found.pointsMm[0]).normalized(),
+                   other = (truth.pointsMm[1] - truth.pointsMm[0]).normalized();
+        return std::acos(std::clamp(one.dot(other), -1.0, 1.0)) * 180.0 / std::numbers::pi;
+    }
     std::vector<double> all;
     for (const Vec3& p : found.pointsMm)
         all.push_back(distanceMm(p, truth));
     std::sort(all.begin(), all.end());
     return all[static_cast<std::size_t>(0.9 * (static_cast<double>(all.size()) - 1))];
+}
+
+/// The share of a line that what was found runs along.
+double coveredShare(const Landmark& found, const Landmark& truth) {
+    constexpr double kNearMm = 0.6;
+    int near = 0, all = 0;
+    for (std::size_t i = 0; i + 1 < truth.pointsMm.size(); ++i)
+        for (int k = 0; k < 4; ++k, ++all)
+            near += distanceMm(truth.pointsMm[i] + (truth.pointsMm[i + 1] - truth.pointsMm[i]) * (k / 4.0), found) <
+                    kNearMm;
+    return all > 0 ? static_cast<double>(near) / all : 1.0;
 }
 
 /// Of each tooth, done to as `change` says; its truth is changed with it.
@@ -115,20 +138,21 @@ std::map<LandmarkKind, Tally> tallied(const char* what, const Change& change) {
             });
             const double error = known == truth.end() ? 99.0 : errorMm(mark, *known);
             tally.errorsMm.push_back(error);
-            if (error > kElsewhereMm) {
+            if (known != truth.end() && !isAxis(mark.kind)) tally.covered += coveredShare(mark, *known);
+            if (error > (isAxis(mark.kind) ? kElsewhereDegrees : kElsewhereMm)) {
                 ++tally.elsewhere;
                 fmt::print("  {} {} {}: {:.2f} mm off\n", tooth.fdiNumber,
                            cases::kLandmarkKinds[static_cast<std::size_t>(mark.kind)], mark.name, error);
             }
         }
     }
-    fmt::print("{}\n  {:<24} {:>6} {:>6} {:>7} {:>6} {:>6} {:>10}\n", what, "kind", "known", "found", "recall", "p50",
-               "p90", "elsewhere");
+    fmt::print("{}\n  {:<24} {:>6} {:>6} {:>7} {:>6} {:>6} {:>10} {:>8}\n", what, "kind", "known", "found", "recall",
+               "p50", "p90", "elsewhere", "covered");
     for (auto& [kind, tally] : tallies)
         if (tally.found > 0)
-            fmt::print("  {:<24} {:>6} {:>6} {:>7.2f} {:>6.2f} {:>6.2f} {:>10}\n",
+            fmt::print("  {:<24} {:>6} {:>6} {:>7.2f} {:>6.2f} {:>6.2f} {:>10} {:>8.2f}\n",
                        cases::kLandmarkKinds[static_cast<std::size_t>(kind)], tally.known, tally.found, tally.recall(),
-                       tally.at(0.5), tally.at(0.9), tally.elsewhere);
+                       tally.at(0.5), tally.at(0.9), tally.elsewhere, tally.covered / tally.found);
     return tallies;
 }
 
@@ -195,6 +219,29 @@ TEST(FindLandmarks, AFrameFiveDegreesOffMovesThemLittle) {
                            {LandmarkKind::pulpHorn, 0.9, 0.1, 0.3, 0},
                            {LandmarkKind::heightOfContour, 0.5, 0.35, 0.55, 0},
                            {LandmarkKind::cementoEnamelJunction, 0.95, 0.2, 0.25, 0}});
+}
+
+// As a scan of one tooth leaves it: which way it looks is a guess.
+TEST(FindLandmarks, ACrownThatIsTurnedIsSeen) {
+    std::mt19937_64 generator(test::seed());
+    int molars = 0, molarsSeen = 0, others = 0, othersSeen = 0;
+    for (const cases::Tooth& tooth : teeth()) {
+        EXPECT_EQ(turnOfCrown(tooth), 0.0) << tooth.fdiNumber << " stands as it should";
+        const double degrees = test::uniform(generator, 40.0, 320.0), rad = degrees * std::numbers::pi / 180.0;
+        cases::Tooth turned = tooth;
+        const core::Quat turn(Eigen::AngleAxisd(rad, Vec3::UnitZ()));
+        for (Vec3& v : turned.outer.vertices)
+            v = turn * v;
+        const double off =
+            std::abs(std::remainder(turnOfCrown(turned) - rad, 2.0 * std::numbers::pi)) * 180.0 / std::numbers::pi;
+        const bool isSeen = off < 15.0;
+        const bool isMolar = tooth.fdiNumber % 10 >= 6;
+        ++(isMolar ? molars : others);
+        (isMolar ? molarsSeen : othersSeen) += isSeen;
+        fmt::print("  {} turned by {:.0f} degrees: {:.0f} off\n", tooth.fdiNumber, degrees, off);
+    }
+    fmt::print("  seen: {} of {} molars, {} of {} others\n", molarsSeen, molars, othersSeen, others);
+    EXPECT_EQ(molarsSeen, molars);
 }
 
 TEST(FindLandmarks, WhatAPersonSetStays) {

@@ -59,16 +59,19 @@ QString sourceText(cases::LandmarkSource source) {
     return Texts::tr(kSources[static_cast<std::size_t>(source)]);
 }
 
-QString landmarkText(const cases::Landmark& mark) {
-    if (mark.name.empty()) return kindText(mark.kind);
-    QStringList words = QString::fromStdString(mark.name).split(QLatin1Char(' '));
+QString nameText(const std::string& name) {
+    QStringList words = QString::fromStdString(name).split(QLatin1Char(' '));
     for (QString& word : words) {
         const auto* known =
             std::find_if(std::begin(kWords), std::end(kWords), [&](const char* w) { return word == QLatin1String(w); });
         if (known != std::end(kWords)) word = Texts::tr(*known);
     }
-    const QString name = words.join(QLatin1Char(' '));
-    return Texts::tr("%1, %2").arg(kindText(mark.kind), name);
+    return words.join(QLatin1Char(' '));
+}
+
+QString landmarkText(const cases::Landmark& mark) {
+    if (mark.name.empty()) return kindText(mark.kind);
+    return Texts::tr("%1, %2").arg(kindText(mark.kind), nameText(mark.name));
 }
 
 }  // namespace handpiece::desktop

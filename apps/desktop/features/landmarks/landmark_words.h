@@ -4,6 +4,7 @@
 /// Landmarks in the person's language.
 
 #include <QString>
+#include <string>
 
 #include "handpiece/model/case/landmark.h"
 
@@ -11,7 +12,9 @@ namespace handpiece::desktop {
 
 [[nodiscard]] QString kindText(cases::LandmarkKind kind);
 [[nodiscard]] QString sourceText(cases::LandmarkSource source);
-/// "Cusp tip, mesiobuccal": the name as the case has it, in the words known here.
+/// A landmark's name as the case has it, in the words known here.
+[[nodiscard]] QString nameText(const std::string& name);
+/// "Cusp tip, mesiobuccal".
 [[nodiscard]] QString landmarkText(const cases::Landmark& mark);
 
 }  // namespace handpiece::desktop

@@ -12,11 +12,13 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/memory.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/case_check.h"
 #include "handpiece/model/case/package.h"
 #include "handpiece/model/field/distance_field.h"
+#include "handpiece/scan/landmarks/find_landmarks.h"
 
 namespace handpiece::scan_case {
 namespace {
@@ -102,9 +104,26 @@ void surface(ScanResult& result, const core::Progress& progress) {
     core::report(progress, 1.0);
 }
 
+/// Mesial was guessed by the crown's width: another way where its shape, beside the average one's, says so.
+void turnByShape(ScanResult& result) {
+    cases::Tooth tooth;
+    tooth.fdiNumber = result.job.placing.fdiNumber;
+    tooth.outer = geometry::transformed(result.full->outer.mesh, result.placed.scanInTooth);
+    const double rad = landmarks::turnOfCrown(tooth);
+    if (rad == 0.0) return;
+    registration::Hints hints = result.job.placing;
+    hints.mesial = result.placed.scanInTooth.orientation.conjugate() * core::Vec3(core::cos(rad), core::sin(rad), 0.0);
+    result.placed = registration::place(*result.full, hints);
+    result.placed.isMesialGuessed = true;
+    result.placed.notes.push_back(
+        "mesial is a guess by the crown's shape, which is laid over the average tooth of its number: look at it, and "
+        "turn the tooth by hand where it matters");
+}
+
 void place(ScanResult& result, const core::Progress& progress) {
     const ScanJob& job = result.job;
     result.placed = registration::place(*result.full, job.placing);
+    if (!job.placing.mesial) turnByShape(result);
     core::report(progress, 0.2);
     result.scenery.clear();
     result.ownNotes.clear();

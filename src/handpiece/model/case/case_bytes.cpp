@@ -3,18 +3,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/mesh_bytes.h"
+#include "handpiece/model/case/case_files.h"
 
 namespace handpiece::cases {
 namespace {
 
 constexpr char kMagic[4] = {'H', 'P', 'C', 'S'};
-constexpr std::uint32_t kAlone = 1, kWithOthers = 2;  // versions
+constexpr std::uint32_t kAlone = 1, kWithOthers = 2, kWithLandmarks = 3;  // versions
 constexpr std::uint32_t kMaxParts = 64, kMaxName = 4096, kMaxOthers = 64;
 
 void append(std::vector<std::byte>& bytes, std::uint32_t value) {
@@ -59,6 +61,18 @@ void append(std::vector<std::byte>& bytes, const Tooth& tooth) {
     for (const Part& part : tooth.parts)
         parts.push_back(&part);
     append(bytes, parts);
+}
+void append(std::vector<std::byte>& bytes, const std::vector<Landmark>& marks) {
+    append(bytes, static_cast<std::uint32_t>(marks.size()));
+    for (const Landmark& mark : marks) {
+        append(bytes, static_cast<std::uint32_t>(mark.kind));
+        append(bytes, mark.name);
+        append(bytes, static_cast<std::uint32_t>(mark.source));
+        append(bytes, static_cast<std::uint32_t>(mark.pointsMm.size()));
+        for (const core::Vec3& p : mark.pointsMm)
+            for (int k = 0; k < 3; ++k)
+                append(bytes, p[k]);
+    }
 }
 
 class Reader {
@@ -116,6 +130,31 @@ class Reader {
         made.parts = parts();
         if (made.outer.triangles.empty() && made.parts.empty()) refuse("the tooth inside has no surface");
     }
+    std::vector<Landmark> landmarks() {
+        const std::uint32_t count = number();
+        std::vector<Landmark> made;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            Landmark& mark = made.emplace_back();
+            const std::uint32_t kind = number();
+            if (kind >= kLandmarkKindCount) refuse(fmt::format("there is no landmark of kind {}", kind));
+            mark.kind = static_cast<LandmarkKind>(kind);
+            mark.name = text();
+            const std::uint32_t source = number();
+            if (source >= kLandmarkSources.size()) refuse(fmt::format("a landmark inside has the source {}", source));
+            mark.source = static_cast<LandmarkSource>(source);
+            const std::uint32_t points = number();
+            const LandmarkShape shape = shapeOf(mark.kind);
+            if (points < shape.least || points > shape.most)
+                refuse(fmt::format("a {} inside has {} points", kLandmarkKinds[kind], points));
+            for (std::uint32_t k = 0; k < points; ++k) {
+                const double x = real(), y = real(), z = real();
+                const core::Vec3 p(x, y, z);
+                if (!(p.norm() <= kFarthestLandmarkMm)) refuse("a landmark inside lies nowhere near its tooth");
+                mark.pointsMm.push_back(p);
+            }
+        }
+        return made;
+    }
     core::Pose pose() {
         core::Pose pose;
         for (int k = 0; k < 3; ++k)
@@ -141,12 +180,19 @@ std::vector<std::byte> encodeCase(const Case& toothCase) {
         bytes.push_back(static_cast<std::byte>(c));
     const std::vector<const Part*> felt = feltOf(toothCase);
     const bool isAlone = toothCase.others.empty() && felt.empty();
-    append(bytes, isAlone ? kAlone : kWithOthers);
+    const bool hasLandmarks =
+        !toothCase.landmarks.empty() || std::any_of(toothCase.others.begin(), toothCase.others.end(),
+                                                    [](const PlacedTooth& o) { return !o.landmarks.empty(); });
+    append(bytes, hasLandmarks ? kWithLandmarks : isAlone ? kAlone : kWithOthers);
     append(bytes, static_cast<const Tooth&>(toothCase));
-    if (isAlone) return bytes;
+    if (hasLandmarks)
+        append(bytes, toothCase.landmarks);
+    else if (isAlone)
+        return bytes;
     append(bytes, static_cast<std::uint32_t>(toothCase.others.size()));
     for (const PlacedTooth& other : toothCase.others) {
         append(bytes, static_cast<const Tooth&>(other));
+        if (hasLandmarks) append(bytes, other.landmarks);
         for (int k = 0; k < 3; ++k)
             append(bytes, other.inCase.positionMm[k]);
         for (int k = 0; k < 4; ++k)
@@ -161,23 +207,26 @@ Case decodeCase(std::span<const std::byte> bytes, const std::string& where) {
     Reader reader(bytes, where);
     if (std::memcmp(reader.take(4).data(), kMagic, 4) != 0) reader.refuse("there is no tooth inside");
     const std::uint32_t version = reader.number();
-    if (version != kAlone && version != kWithOthers)
-        reader.refuse(fmt::format("the tooth inside is of version {}, this program reads {} and {}", version, kAlone,
-                                  kWithOthers),
+    if (version < kAlone || version > kWithLandmarks)
+        reader.refuse(fmt::format("the tooth inside is of version {}, this program reads {} to {}", version, kAlone,
+                                  kWithLandmarks),
                       "use a newer Handpiece");
+    const bool hasLandmarks = version >= kWithLandmarks;
     Case made;
     reader.tooth(made);
-    const std::uint32_t others = version == kWithOthers ? reader.number() : 0;
+    if (hasLandmarks) made.landmarks = reader.landmarks();
+    const std::uint32_t others = version >= kWithOthers ? reader.number() : 0;
     if (others > kMaxOthers) reader.refuse(fmt::format("the tooth inside claims {} others", others));
     for (std::uint32_t i = 0; i < others; ++i) {
         PlacedTooth& other = made.others.emplace_back();
         reader.tooth(other);
+        if (hasLandmarks) other.landmarks = reader.landmarks();
         other.inCase = reader.pose();
         const std::uint32_t cuttable = reader.number();
         if (cuttable > 1) reader.refuse("a tooth inside is neither to be cut nor not");
         other.isCuttable = cuttable == 1;
     }
-    if (version == kWithOthers) made.scenery = reader.parts();
+    if (version >= kWithOthers) made.scenery = reader.parts();
     for (Part& part : made.scenery)
         part.isFelt = true;
     if (!reader.isAtEnd()) reader.refuse("the tooth inside goes on after its end");

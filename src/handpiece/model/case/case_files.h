@@ -44,6 +44,8 @@ void requireInside(const config::Table& table, const std::string& name, std::str
 /// As it stands in case.toml, without the heading.
 [[nodiscard]] std::string exerciseToml(const Exercise& exercise);
 
+/// A landmark from the tooth's origin: no tooth is as large.
+inline constexpr double kFarthestLandmarkMm = 200.0;
 /// The `landmark` tables of a tooth's table. Throws core::Error.
 [[nodiscard]] std::vector<Landmark> readLandmarks(const config::Table& tooth);
 /// As tables `key` ("landmark", "tooth.landmark"), to 10 nm.

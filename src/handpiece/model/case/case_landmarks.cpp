@@ -14,7 +14,6 @@ namespace {
 using config::Table;
 
 constexpr std::size_t kMostPoints = 4096;  // of a line
-constexpr double kFarthestMm = 200.0;      // from the tooth's origin: no tooth is as large
 
 template <class Names>
 std::size_t indexOf(const Names& names, std::string_view name) {
@@ -43,7 +42,7 @@ Landmark readLandmark(const Table& table) {
                    "points_mm");
     for (std::size_t i = 0; i < numbers.size(); i += 3) {
         const core::Vec3 p(numbers[i], numbers[i + 1], numbers[i + 2]);
-        if (p.norm() > kFarthestMm)
+        if (p.norm() > kFarthestLandmarkMm)
             table.fail(fmt::format("a {} lies {:.0f} mm off the tooth's origin", kind, p.norm()),
                        "landmarks are in the tooth's own frame, in millimetres", "points_mm");
         mark.pointsMm.push_back(p);

@@ -84,6 +84,36 @@ Landmark moved(const Landmark& mark, std::size_t which, const core::Vec3& toMm, 
     return made;
 }
 
+Landmark drawn(LandmarkKind kind, const std::string& name, const std::vector<core::Vec3>& placesMm,
+               const geometry::TriangleTree& surface) {
+    const LandmarkShape shape = shapeOf(kind);
+    Landmark made{kind, name, placesMm, LandmarkSource::set};
+    if (made.pointsMm.size() > shape.most) made.pointsMm.resize(shape.most);
+    if (shape.most == 2 && made.pointsMm.size() == 2 && made.pointsMm[0].z() > made.pointsMm[1].z())
+        std::swap(made.pointsMm[0], made.pointsMm[1]);
+    if (!liesOnSurface(kind)) return made;
+    std::vector<core::Vec3> given = std::move(made.pointsMm);
+    for (core::Vec3& p : given)
+        p = surface.nearest(p).pointMm;
+    const bool isClosed = shape.isRing && given.size() >= shape.least;
+    const std::size_t legs = given.empty() ? 0 : isClosed ? given.size() : given.size() - 1;
+    double length = 0.0;
+    for (std::size_t i = 0; i < legs; ++i)
+        length += (given[(i + 1) % given.size()] - given[i]).norm();
+    const auto fill = static_cast<double>(shape.most - std::min(shape.most, given.size()));
+    const double step = std::max(kLandmarkStepMm, length / std::max(fill, 1.0));
+    made.pointsMm.clear();
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        made.pointsMm.push_back(given[i]);
+        if (i >= legs) continue;
+        const core::Vec3 way = given[(i + 1) % given.size()] - given[i];
+        const int parts = static_cast<int>(way.norm() / step);
+        for (int k = 1; k < parts; ++k)
+            made.pointsMm.push_back(surface.nearest(given[i] + way * (static_cast<double>(k) / parts)).pointMm);
+    }
+    return made;
+}
+
 void writeLandmarks(const fs::path& casePath, const std::vector<Landmark>& marks) {
     const auto refuse = [&](const std::string& what) {
         return core::Error(what, casePath.string(), "save it as a case of its own");

@@ -23,6 +23,15 @@ inline constexpr double kLandmarkReachMm = 1.5;
 [[nodiscard]] Landmark moved(const Landmark& mark, std::size_t which, const core::Vec3& toMm,
                              const geometry::TriangleTree& surface);
 
+/// Between the places that a person gave for a line or ring [mm].
+inline constexpr double kLandmarkStepMm = 0.4;
+
+/// One set by hand at these places, in their order: where its kind lies on the surface, at the nearest ones there,
+/// those of a line or ring with points of the surface between them. Two points are an axis and go upwards. Of fewer
+/// places than its kind needs it is what it is so far.
+[[nodiscard]] Landmark drawn(LandmarkKind kind, const std::string& name, const std::vector<core::Vec3>& placesMm,
+                             const geometry::TriangleTree& surface);
+
 /// Puts `marks` in place of the landmarks of the case's own tooth, in its case.toml or .handpiece file; all else in it
 /// stays byte for byte. Whole or not at all. Throws core::Error, also for what is no case: a mesh, an attempt.
 void writeLandmarks(const std::filesystem::path& casePath, const std::vector<Landmark>& marks);

@@ -13,7 +13,8 @@
 namespace handpiece::session {
 
 inline constexpr std::string_view kFormatName = "handpiece-session";
-inline constexpr std::int32_t kFormatVersion = 3;  // 2: one tooth; 1: without the tissues after restoration
+inline constexpr std::int32_t kFormatVersion =
+    4;  // 3: no landmarks; 2: one tooth; 1: without the tissues after restoration
 
 enum class NumberType : std::uint8_t { u8, u16, u32, i32, u64, i64, f32, f64 };
 [[nodiscard]] std::size_t bytesOf(NumberType type) noexcept;

@@ -18,6 +18,10 @@ namespace handpiece::landmarks {
 [[nodiscard]] std::vector<cases::Landmark> findLandmarks(const cases::Tooth& tooth,
                                                          const std::vector<geometry::TriangleMesh>& adjacent = {},
                                                          const core::Progress& progress = {});
+/// How far [rad] a permanent tooth's crown is turned about z, anticlockwise from above, from how one of its FDI number
+/// stands in its own frame, by its shape; 0 where it may as well stand as it should. Landmarks of a turned crown are
+/// found, and named, as it is turned.
+[[nodiscard]] double turnOfCrown(const cases::Tooth& tooth);
 /// Of the tooth that is worked on, beside its adjacent teeth.
 [[nodiscard]] std::vector<cases::Landmark> findLandmarks(const cases::Case& toothCase,
                                                          const core::Progress& progress = {});
@@ -25,5 +29,11 @@ namespace handpiece::landmarks {
 /// `own` with what was found: what a person set and what is known stays, and what was found before goes.
 [[nodiscard]] std::vector<cases::Landmark> withFound(const std::vector<cases::Landmark>& own,
                                                      const std::vector<cases::Landmark>& found);
+
+/// What the average tooth of a permanent one's FDI number has, where it has them. Of other teeth nothing is known.
+[[nodiscard]] std::vector<cases::Landmark> expectedLandmarks(int fdiNumber);
+/// Of `expected` those of which `own` has none of the same kind and name.
+[[nodiscard]] std::vector<cases::Landmark> lackedLandmarks(const std::vector<cases::Landmark>& expected,
+                                                           const std::vector<cases::Landmark>& own);
 
 }  // namespace handpiece::landmarks

@@ -8,13 +8,30 @@
 
 #include "handpiece/base/geometry/triangle_mesh.h"
 #include "handpiece/base/geometry/triangle_tree.h"
+#include "handpiece/scan/landmarks/relief.h"
 
 namespace handpiece::landmarks {
+
+inline constexpr double kAverageAgeYears = 25.0;
 
 /// The best pairs of expected and found places: as many as lie within reach of each other, then the nearest.
 /// For each expected one the index of the found one, or -1.
 [[nodiscard]] std::vector<int> paired(const std::vector<core::Vec2>& expected, const std::vector<core::Vec2>& found,
                                       double reachMm);
+
+/// How far a crown is turned about z from where the average one of its FDI number stands, by their shapes from above.
+struct Turn {
+    double rad = 0.0;        ///< anticlockwise, from above; 0 as long as the crown may as well stand as it should
+    double misfitMm = 0.0;   ///< mean difference of heights there
+    double asGivenMm = 0.0;  ///< the same as the crown stands
+};
+[[nodiscard]] Turn turnOf(int fdiNumber, const geometry::TriangleMesh& outer);
+
+/// A valley or crest of a surface seen from above that runs about where `expected` does: its places in the same order,
+/// as far as it shows; empty where less than most of it does.
+enum class LineOf { valley, crest };
+[[nodiscard]] std::vector<core::Vec2> lineAlong(const Relief& relief, const std::vector<core::Vec2>& expected,
+                                                LineOf what);
 
 /// The outermost points of the surface around an axis along z.
 class Around {

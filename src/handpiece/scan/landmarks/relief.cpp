@@ -85,6 +85,33 @@ void Relief::blur(double blurMm) {
     }
 }
 
+std::optional<double> Relief::heightAt(const Vec2& p) const {
+    const Vec2 in = (p - from_) / kStepMm + Vec2::Constant(0.5);
+    const double i = std::floor(in.x()), j = std::floor(in.y());
+    if (!(i >= 0.0 && j >= 0.0 && i < columns_ && j < rows_)) return std::nullopt;
+    const std::size_t node = at(static_cast<int>(i), static_cast<int>(j));
+    if (!isThere(node)) return std::nullopt;
+    return height_[node];
+}
+
+std::vector<Vec3> Relief::hollows(double leastProminenceMm) const {
+    Relief turned = *this;
+    for (double& z : turned.height_)
+        z = -z;
+    std::vector<Vec3> found;
+    const auto isAtEdge = [&](const Vec3& p) {
+        for (const double dx : {-0.2, 0.0, 0.2})
+            for (const double dy : {-0.2, 0.0, 0.2})
+                if (!heightAt(p.head<2>() + Vec2(dx, dy))) return true;
+        return false;
+    };
+    for (Vec3& p : turned.peaks(leastProminenceMm)) {
+        p.z() = -p.z();
+        if (!isAtEdge(p)) found.push_back(p);
+    }
+    return found;
+}
+
 std::vector<Vec3> Relief::peaks(double leastProminenceMm) const {
     std::vector<std::size_t> order;
     for (std::size_t n = 0; n < size(); ++n)

@@ -3,6 +3,7 @@
 /// @file
 /// A surface seen from above: heights on a square grid. Private to this room.
 
+#include <optional>
 #include <vector>
 
 #include "handpiece/base/core/vec.h"
@@ -16,9 +17,14 @@ class Relief {
     /// Seen along z, from above. `blurMm`: standard deviation.
     Relief(const geometry::TriangleMesh& mesh, double blurMm);
 
+    /// At a place of the mesh's frame, by the node next to it; none where nothing is seen.
+    [[nodiscard]] std::optional<double> heightAt(const core::Vec2& p) const;
+
     /// Tops of the blurred heights that stand so far above the highest saddle towards a higher one, by falling height:
     /// places in the mesh's frame, between the nodes. Edges of what is seen count too.
     [[nodiscard]] std::vector<core::Vec3> peaks(double leastProminenceMm) const;
+    /// The same of what lies low; where nothing is seen all runs off.
+    [[nodiscard]] std::vector<core::Vec3> hollows(double leastProminenceMm) const;
 
   private:
     static constexpr double kStepMm = 0.1;

@@ -93,7 +93,8 @@ void xray(XrayOptions& o) {
                        {"detector_centre_mm", toJson(p.centreMm)},
                        {"right", toJson(p.right)},
                        {"up", toJson(p.up)},
-                       {"white_at_attenuation", picture.whiteAt}};
+                       {"window_centre_attenuation", picture.windowCentre},
+                       {"window_width_attenuation", picture.windowWidth}};
     fmt::print("{}\n", told.dump(2));
 }
 

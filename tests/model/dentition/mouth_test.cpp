@@ -296,6 +296,57 @@ TEST_P(Periodontia, CrestLiesUnderTheJunction) {
     }
 }
 
+TEST_P(Periodontia, CrestsBetweenTeethRunLevelFromJunctionToJunction) {
+    const Mouth& m = mouth(1);
+    const Held& h = held(GetParam());
+    const TriangleTree bone(h.tissues.bone);
+    const auto ringOf = [&](std::size_t i) {
+        std::vector<Vec3> ring;
+        for (const cases::Landmark& mark : m.teeth[i].landmarks)
+            if (mark.kind == LandmarkKind::cementoEnamelJunction)
+                for (const Vec3& p : mark.pointsMm)
+                    ring.push_back(m.arches.toothInMouth[i].apply(p));
+        return ring;
+    };
+    std::vector<double> middles;
+    for (std::size_t k = 1; k < h.order.size(); ++k) {
+        const std::size_t a = h.order[k - 1], b = h.order[k];
+        if (a % 8 == 7 || b % 8 == 7) continue;  // third molars stand as they can
+        SCOPED_TRACE(testing::Message() << fdiOf(a) << " and " << fdiOf(b));
+        // From the one's junction to the other's, where they are nearest to each other.
+        Vec3 from = Vec3::Zero(), to = Vec3::Zero();
+        double nearest = 1e9;
+        for (const Vec3& p : ringOf(a))
+            for (const Vec3& q : ringOf(b))
+                if ((p - q).norm() < nearest) nearest = (p - q).norm(), from = p, to = q;
+        const Vec3 up = ((m.arches.toothInMouth[a].orientation * Vec3::UnitZ()) +
+                         (m.arches.toothInMouth[b].orientation * Vec3::UnitZ()))
+                            .normalized();
+        const Vec3 aside = up.cross(to - from).normalized();
+        // As a beam across sees it: the highest bone within a millimetre to either side.
+        const auto underMm = [&](double share) {
+            for (double down = -1.5; down < 6.0; down += 0.05)
+                for (double y = -1.0; y <= 1.0; y += 0.25)
+                    if (bone.signedDistance(from + share * (to - from) - down * up + y * aside) < 0.0) return down;
+            return 6.0;
+        };
+        const double middle = underMm(0.5);
+        fmt::print("{} to {}: junctions {:.2f} mm apart, crest {:.2f} {:.2f} {:.2f} {:.2f} {:.2f} under their line\n",
+                   fdiOf(a), fdiOf(b), nearest, underMm(0.3), underMm(0.4), middle, underMm(0.6), underMm(0.7));
+        middles.push_back(middle);
+        // Thinner than septa are made, at the upper central incisors, the crest is lower.
+        if (nearest < 0.6) continue;
+        for (const double share : {0.3, 0.4, 0.5, 0.6, 0.7}) {
+            EXPECT_GT(underMm(share), 0.9);
+            EXPECT_LT(underMm(share), 2.0);
+            EXPECT_NEAR(underMm(share), middle, 0.25) << "level";
+        }
+    }
+    std::sort(middles.begin(), middles.end());
+    fmt::print("{}: crest under the line between junctions {:.2f} to {:.2f} mm, median {:.2f}\n",
+               GetParam() ? "upper" : "lower", middles.front(), middles.back(), middles[middles.size() / 2]);
+}
+
 TEST_P(Periodontia, MarginFollowsTheJunctionAndPapillaeEndBelowTheContacts) {
     const Mouth& m = mouth(1);
     const Held& h = held(GetParam());

@@ -366,7 +366,8 @@ TEST(Radiograph, TheSameBitsAtAnyNumberOfThreadsAndAnotherNoiseForAnotherSeed) {
     const Radiograph two = take(onion(), s);
     core::setThreadCount(0);
     EXPECT_EQ(one.picture.grey, two.picture.grey);
-    EXPECT_EQ(one.picture.whiteAt, two.picture.whiteAt);
+    EXPECT_EQ(one.picture.windowCentre, two.picture.windowCentre);
+    EXPECT_EQ(one.picture.windowWidth, two.picture.windowWidth);
     s.seed = 2;
     EXPECT_NE(take(onion(), s).picture.grey, one.picture.grey);
 }
@@ -379,12 +380,18 @@ TEST(Radiograph, GreysGrowWithAttenuationAndSayThatTheyAreSimulated) {
     const Projection p = project(onion(), s);
     const Exposure seen = expose(onion(), p, s);
     const Picture picture = develop(seen);
-    EXPECT_GE(picture.whiteAt, 1.5);
+    EXPECT_GE(picture.windowWidth, 0.8);
+    EXPECT_LE(picture.windowWidth, 2.0);
+    // The SIGMOID VOI LUT function of DICOM PS3.3 [R], with the open beam at black.
+    const auto sigmoid = [&](double a) {
+        return 1.0 / (1.0 + std::exp(-4.0 * (a - picture.windowCentre) / picture.windowWidth));
+    };
     int white = 0;
     for (int y = 0; y < picture.height; ++y)
         for (int x = 0; x < picture.width; ++x) {
             const std::uint16_t grey = picture.grey[static_cast<std::size_t>(y * picture.width + x)];
-            const double known = -std::log(static_cast<double>(seen.at(x, y))) / picture.whiteAt * 65535.0;
+            const double known = 65535.0 * (sigmoid(-std::log(static_cast<double>(seen.at(x, y)))) - sigmoid(0.0)) /
+                                 (1.0 - sigmoid(0.0));
             if (std::abs(grey - std::clamp(known, 0.0, 65535.0)) > 1.0) {
                 // Only the words in the corner are no part of the picture.
                 ASSERT_LT(x, 150);

@@ -35,6 +35,7 @@ constexpr double kNodeMm = 0.4, kNearMm = 1.0;
 /// and its margin is where its own smooth surface meets the tooth.
 constexpr double kIntoToothMm = 0.3;
 constexpr double kThinnestSeptumMm = 0.4;  ///< between two roots; thinner bone is left out
+constexpr double kWidestSeptum = 2.1;
 constexpr double kBaseUnderApexMm = 2.0, kBoneOutOfBaseMm = 1.0;
 constexpr double kSteepest = 4.0;  ///< Lipschitz bound of all that follows
 
@@ -211,6 +212,8 @@ class Arch {
                                     .pointMm);
         for (std::size_t i = 1; i < teeth.size(); ++i)
             papillaAxes_.push_back((standers_[i - 1].axis() + standers_[i].axis()).normalized());
+        for (std::size_t i = 1; i < teeth.size(); ++i)
+            septumWidths_.push_back(std::clamp(0.7 * roomAtCrestMm(i) + 0.3, 0.8, kWidestSeptum));
         up_ = standers_[teeth.size() / 2].axis().z() > 0.0 ? 1.0 : -1.0;
         for (const Stander& s : standers_) {
             for (const double z : {s.body().box.min.z(), 0.0})
@@ -235,8 +238,10 @@ class Arch {
         static constexpr double kPlate[][2] = {{-14, 1.8},   {-8, 1.4},   {-4, 1.0},
                                                {-2.2, 0.55}, {-1.5, 0.0}, {1.5, -3.0}};
         constexpr double kRollCap = kFarMm - 1.3, kPlateCap = kFarMm - 1.8, kWidestPapilla = 1.25;
+        // Where a tooth comes into sight a septum is no nearer than what bounds the plate, and fades in from there.
+        constexpr double kFadeMm = 0.8;
         double nearest = kFarMm, second = kFarMm, roll = kRollCap, plate = kPlateCap, papilla = kFarMm - kWidestPapilla;
-        double ligament = kLigamentMm;
+        double ligament = kLigamentMm, septum = kPlateCap;
         Stander::Seen before{kFarMm, 0.0};
         for (std::size_t i = 0; i < standers_.size(); ++i) {
             const Stander& s = standers_[i];
@@ -260,10 +265,19 @@ class Arch {
                 const double between = core::hypot(std::max(one, 0.0), std::max(two, 0.0)) / std::numbers::sqrt2 +
                                        0.5 * std::min({one, two, 0.0});
                 papilla = std::min(papilla, between - wide);
+                // The crest between two teeth runs level, from under the one's junction to under the other's.
+                if (std::max(one, two) < kFarMm) {
+                    const double toOne = std::max(one, 0.01), toTwo = std::max(two, 0.01);
+                    const double above = (toTwo * seen.aboveCervix + toOne * before.aboveCervix) / (toOne + toTwo);
+                    const double aside = between - septumWidths_[i - 1];
+                    const double fade = std::max(0.0, (std::max(one, two) - kFarMm) / kFadeMm + 1.0);
+                    septum = std::min(septum, smoothMax(above + kCrestUnderCervixMm, aside, 0.4) + fade * kPlateCap);
+                }
             }
             before = seen;
         }
         const double base = base_ - up_ * p.z();
+        plate = std::min(plate, septum);
         const double hull = smoothMax(smoothMin(plate, band(p), 2.0), base, 0.8);
         const double sockets = std::max(ligament - nearest, kThinnestSeptumMm + 2.0 * ligament - nearest - second);
         double gingiva = smoothMin(smoothMin(roll, papilla, 0.8), hull - kGingivaThicknessMm, 1.0);
@@ -272,6 +286,22 @@ class Arch {
     }
 
   private:
+    /// Least way from tooth i - 1 over to tooth i at the crest's height, by steps from axis to axis.
+    [[nodiscard]] double roomAtCrestMm(std::size_t i) const {
+        const Stander &a = standers_[i - 1], &b = standers_[i];
+        const auto crestOf = [](const Stander& s) -> Vec3 {
+            return s.pose().positionMm - kCrestUnderCervixMm * s.axis();
+        };
+        double least = 2.0 * kFarMm;
+        constexpr int kSteps = 200;
+        for (int step = 0; step <= kSteps; ++step) {
+            const Vec3 p = crestOf(a) + static_cast<double>(step) / kSteps * (crestOf(b) - crestOf(a));
+            const double one = a.see(p).distance, two = b.see(p).distance;
+            if (one > 0.0 && two > 0.0) least = std::min(least, one + two);
+        }
+        return least;
+    }
+
     /// The jaw's ridge under the crest, along the roots.
     [[nodiscard]] double band(const Vec3& p) const {
         double least = 1e9;
@@ -302,6 +332,7 @@ class Arch {
 
     std::vector<Stander> standers_;
     std::vector<Vec3> contacts_, papillaAxes_;
+    std::vector<double> septumWidths_;  ///< of the bone's crest between two teeth, towards lip and tongue
     Box box_;
     double up_ = 1.0, base_ = 1e9;
 };

@@ -118,16 +118,16 @@ core::Box boxAbout(const Ways& ways, double byMm) {
 struct Sizes {
     double least, most;     ///< share of the enamel or dentine that it goes in
     double surfaceMm;       ///< radius in the enamel, where it is widest
+    double alongGingiva;    ///< so many times as wide as high under a contact
     double junctionMm = 0;  ///< radius along the dentine
     double openMm = 0;      ///< radius of the hole in the enamel, full of soft tissue; 0: none
 };
 // Of a molar; chosen, docs/lesions.md. Shares with the raggedness stay within the class.
-constexpr std::array<Sizes, 5> kSizes = {{{0.25, 0.45, 0.8, 0, 0},
-                                          {0.62, 0.92, 1.1, 0, 0},
-                                          {0.14, 0.30, 1.2, 1.0, 0},
-                                          {0.42, 0.60, 1.3, 1.5, 0.35},
-                                          {0.74, 0.86, 1.5, 2.1, 0.6}}};
-constexpr double kProximalWidth = 1.5;
+constexpr std::array<Sizes, 5> kSizes = {{{0.25, 0.45, 0.8, 1.5, 0, 0},
+                                          {0.62, 0.92, 1.1, 2.0, 0, 0},
+                                          {0.14, 0.30, 1.2, 2.1, 1.2, 0},
+                                          {0.42, 0.60, 1.3, 2.0, 1.7, 0.35},
+                                          {0.74, 0.86, 1.5, 1.7, 2.1, 0.6}}};
 /// How far out each level reaches, of the whole lesion: what is shallow is hardly softened.
 struct Reach {
     Tissue tissue;
@@ -136,12 +136,12 @@ struct Reach {
 std::vector<Reach> levelsOf(Finding finding) {
     using enum Tissue;
     if (finding == Finding::d1)
-        return {{cariesFirmToHard, 1.0}, {cariesFirm, 0.78}, {cariesLeatheryToFirm, 0.56}, {cariesLeathery, 0.34}};
+        return {{cariesFirmToHard, 1.0}, {cariesFirm, 0.84}, {cariesLeatheryToFirm, 0.68}, {cariesLeathery, 0.48}};
     if (finding == Finding::d2)
-        return {{cariesFirmToHard, 1.0}, {cariesFirm, 0.86},           {cariesLeatheryToFirm, 0.72},
-                {cariesLeathery, 0.58},  {cariesSoftToLeathery, 0.44}, {cariesSoft, 0.30}};
-    return {{cariesFirmToHard, 1.0}, {cariesFirm, 0.89},           {cariesLeatheryToFirm, 0.78},
-            {cariesLeathery, 0.67},  {cariesSoftToLeathery, 0.56}, {cariesSoft, 0.45}};
+        return {{cariesFirmToHard, 1.0}, {cariesFirm, 0.90},           {cariesLeatheryToFirm, 0.80},
+                {cariesLeathery, 0.69},  {cariesSoftToLeathery, 0.57}, {cariesSoft, 0.44}};
+    return {{cariesFirmToHard, 1.0}, {cariesFirm, 0.92},           {cariesLeatheryToFirm, 0.84},
+            {cariesLeathery, 0.75},  {cariesSoftToLeathery, 0.65}, {cariesSoft, 0.53}};
 }
 
 double shareOf(double in, double left) {
@@ -172,9 +172,9 @@ std::vector<cases::Part> cariesOf(const Surfaces& surfaces, const Ways& ways, co
     for (const Reach& level : levels)
         solids.push_back({level.tissue, {}});
     const double reach = 1.4 * std::max(wide, along);
-    // Under a contact they lie along the gingiva: wider than high.
+    // Between contact and gingiva, and along it, as plaque does: wider than high.
     const bool isProximal = lesion.surface == Surface::mesial || lesion.surface == Surface::distal;
-    const Vec3 stretched(1.0, isProximal ? kProximalWidth : 1.0, 1.0);
+    const Vec3 stretched(1.0, isProximal ? sizes.alongGingiva : 1.0, 1.0);
     Ways round = ways;
     for (std::vector<Vec3>& way : round)
         for (Vec3& p : way)

@@ -101,7 +101,7 @@ constexpr double kEnamelMineral = 0.96, kDentineMineral = 0.70, kCementumMineral
 /// Mineral that carious tissue has lost, water in its place: caries as one tissue, then the levels in their order, soft
 /// first; and enamel whose surface stands.
 constexpr double kCariesLost = 0.5, kEnamelLost = 0.35;
-constexpr std::array<double, cases::kCariousLevels.size()> kLevelLost = {0.80, 0.65, 0.50, 0.35, 0.20, 0.10};
+constexpr std::array<double, cases::kCariousLevels.size()> kLevelLost = {0.85, 0.70, 0.55, 0.42, 0.30, 0.20};
 constexpr double kCalculusGCm3 = 2.0, kCalculusMineral = 0.75;
 constexpr double kNeighbourEnamel = 0.3;  ///< of the volume of an adjacent tooth that is one surface
 constexpr double kCompositeMmAl = 2.5;    ///< aluminium that 1 mm of composite equals

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
@@ -16,8 +17,9 @@
 namespace handpiece::radiograph {
 namespace {
 
-constexpr double kLeastWhite = 1.5, kMostWhite = 4.0;
-constexpr double kAboveWhite = 0.01;  ///< of the picture: where enamel lies over enamel
+/// The window: from the first share to the second of what hard tissue takes, so wide at least and at most.
+constexpr double kHardFrom = 0.5;  ///< attenuation; cheek and gingiva take less
+constexpr double kWindowFrom = 0.1, kWindowTo = 0.95, kNarrowest = 0.8, kWidest = 2.0;
 /// Darkest that is told apart: what no quantum passes has no logarithm.
 constexpr double kLeastSignal = 1e-4;
 
@@ -60,22 +62,39 @@ Exposure expose(const cases::Case& toothCase, const Projection& projection, cons
     return exposure;
 }
 
+double greyOf(double attenuation, double windowCentre, double windowWidth) {
+    const auto sigmoid = [&](double a) { return 1.0 / (1.0 + core::exp(-4.0 * (a - windowCentre) / windowWidth)); };
+    const double black = sigmoid(0.0);
+    return std::clamp((sigmoid(attenuation) - black) / (1.0 - black), 0.0, 1.0);
+}
+
 Picture develop(const Exposure& exposure) {
-    Picture picture{exposure.width, exposure.height, {}, 0.0};
+    Picture picture{exposure.width, exposure.height, {}};
     std::vector<float> attenuation(exposure.signal.size());
     core::parallelFor(attenuation.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p)
             attenuation[p] =
                 static_cast<float>(-core::log(std::max(static_cast<double>(exposure.signal[p]), kLeastSignal)));
     });
-    std::vector<float> sorted = attenuation;
-    const auto rank = static_cast<std::ptrdiff_t>(static_cast<double>(sorted.size()) * (1.0 - kAboveWhite));
-    std::nth_element(sorted.begin(), sorted.begin() + rank, sorted.end());
-    picture.whiteAt = std::clamp(static_cast<double>(sorted[static_cast<std::size_t>(rank)]), kLeastWhite, kMostWhite);
+    std::vector<float> hard;
+    std::copy_if(attenuation.begin(), attenuation.end(), std::back_inserter(hard),
+                 [](float a) { return static_cast<double>(a) > kHardFrom; });
+    if (!hard.empty()) {
+        const auto atShare = [&](double share) {
+            const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(hard.size() - 1));
+            std::nth_element(hard.begin(), hard.begin() + rank, hard.end());
+            return static_cast<double>(hard[static_cast<std::size_t>(rank)]);
+        };
+        const double from = atShare(kWindowFrom), to = atShare(kWindowTo);
+        picture.windowCentre = 0.5 * (from + to);
+        picture.windowWidth = std::clamp(to - from, kNarrowest, kWidest);
+    }
     picture.grey.resize(attenuation.size());
-    for (std::size_t p = 0; p < attenuation.size(); ++p)
-        picture.grey[p] = static_cast<std::uint16_t>(
-            std::lround(65535.0 * std::clamp(static_cast<double>(attenuation[p]) / picture.whiteAt, 0.0, 1.0)));
+    core::parallelFor(attenuation.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p)
+            picture.grey[p] = static_cast<std::uint16_t>(std::lround(
+                65535.0 * greyOf(static_cast<double>(attenuation[p]), picture.windowCentre, picture.windowWidth)));
+    });
     burn(picture, "SIMULATED");
     return picture;
 }

@@ -70,14 +70,16 @@ struct Exposure {
 /// Quanta are counted, then spread.
 void detect(Exposure& exposure, const Settings& settings);
 
-/// Grey values as a sensor's program shows them: 0 black (open beam), 65535 white (dense), in proportion to the
-/// attenuation, -ln of the signal.
+/// Grey values as a sensor's program shows them: 0 black (open beam), 65535 white. Steepest where teeth are told from
+/// what is in them, as DICOM's sigmoid VOI function: nothing is cut off, so that all of it can be windowed anew.
 struct Picture {
     int width = 0, height = 0;
     std::vector<std::uint16_t> grey;
-    double whiteAt = 0.0;  ///< attenuation of 65535
+    double windowCentre = 1.5, windowWidth = 2.0;  ///< of attenuation, -ln of the signal
 };
-/// White is what 1 % of the picture lie above, between 1.5 and 4; SIMULATED stands in a corner.
+/// 0 to 1, by 1 / (1 + exp(-4 (attenuation - centre) / width)), with the open beam at 0.
+[[nodiscard]] double greyOf(double attenuation, double windowCentre, double windowWidth);
+/// The window is chosen by what hard tissue takes in this picture; SIMULATED stands in a corner.
 [[nodiscard]] Picture develop(const Exposure& exposure);
 
 /// All of it.

@@ -39,6 +39,8 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods, c
     addReportCommand(top);
     addPictureCommand(top);
     addXrayCommand(top);
+    addRubricCommand(top);
+    addAgreeCommand(top);
     addReproduceCommand(top);
     addBenchCommand(top);
     addPassivityCommand(top);

@@ -25,5 +25,7 @@ void addDeviceCommand(Command& app);
 void addPictureCommand(Command& app);
 void addScanCommand(Command& app);
 void addXrayCommand(Command& app);
+void addRubricCommand(Command& app);
+void addAgreeCommand(Command& app);
 
 }  // namespace handpiece::cli

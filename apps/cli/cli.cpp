@@ -40,6 +40,8 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods, c
     addPictureCommand(top);
     addXrayCommand(top);
     addExerciseCommand(top);
+    addRubricCommand(top);
+    addAgreeCommand(top);
     addReproduceCommand(top);
     addBenchCommand(top);
     addPassivityCommand(top);

@@ -27,5 +27,7 @@ void addPictureCommand(Command& app);
 void addScanCommand(Command& app);
 void addXrayCommand(Command& app);
 void addExerciseCommand(Command& app);
+void addRubricCommand(Command& app);
+void addAgreeCommand(Command& app);
 
 }  // namespace handpiece::cli

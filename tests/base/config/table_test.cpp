@@ -50,6 +50,17 @@ TEST(Table, GivesWhatIsThere) {
     EXPECT_THAT(Table::parse("b = 1\na = 2\n", "f").keys(), ElementsAre("a", "b"));
 }
 
+TEST(Table, GivesListsOfListsAndWhereTheyStand) {
+    const Table t = Table::parse("a = 1\nknots = [[1, 2.5], [3]]\nflat = [1]\nfar = [[1], [nan]]\n", "f");
+    EXPECT_THAT(t.numberRows("knots"), ElementsAre(ElementsAre(1.0, 2.5), ElementsAre(3.0)));
+    EXPECT_TRUE(t.numberRows("none").empty());
+    EXPECT_EQ(t.line("knots"), 2);
+    EXPECT_EQ(t.line(), 1);
+    EXPECT_THAT(errorOf([&] { (void)t.numberRows("flat"); }), HasSubstr("line 3"));
+    EXPECT_THAT(errorOf([&] { (void)t.numberRows("a"); }), HasSubstr("list of lists"));
+    EXPECT_THAT(errorOf([&] { (void)t.numberRows("far"); }), HasSubstr("finite"));
+}
+
 TEST(Table, OutlivesItsDocument) {
     std::vector<Table> rows;
     {

@@ -21,7 +21,7 @@ enum class Selector : unsigned { zone = 1, tissue = 2, side = 4, statistic = 8, 
 
 /// Narrows a measure down. Empty: all of it.
 struct Selection {
-    std::string zone;             ///< "target", "leeway-side", "leeway-floor", "protected", "container"
+    std::string zone;             ///< of kZones
     std::string tissue;           ///< a tissue's name as in case.toml
     std::string side;             ///< of kSides
     std::string statistic;        ///< of kStatistics
@@ -30,6 +30,8 @@ struct Selection {
     friend bool operator==(const Selection&, const Selection&) = default;
 };
 
+/// Of a task: what is to go, what may go beside and under it, what must stay, and all else.
+inline constexpr std::string_view kZones[] = {"target", "leeway-side", "leeway-floor", "protected", "container"};
 /// Towards which a wall, ridge or surface lies. "labial" and "palatal" are buccal and lingual of teeth that have them.
 inline constexpr std::string_view kSides[] = {"mesial", "distal", "buccal", "lingual", "occlusal", "gingival"};
 /// Of the samples that a measure is taken at; each kind has its own where none is named.

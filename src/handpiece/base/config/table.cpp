@@ -127,10 +127,14 @@ std::vector<std::string> Table::keys() const {
     return found;
 }
 
-void Table::fail(const std::string& problem, const std::string& remedy, std::string_view key) const {
+int Table::line(std::string_view key) const {
     const toml::node* at = key.empty() ? nullptr : tomlOf(node_).get(key);
-    const auto line = (at ? *at : static_cast<const toml::node&>(tomlOf(node_))).source().begin.line;
-    const std::string told = line > 0 ? fmt::format("{} (line {})", problem, line) : problem;
+    return static_cast<int>((at ? *at : static_cast<const toml::node&>(tomlOf(node_))).source().begin.line);
+}
+
+void Table::fail(const std::string& problem, const std::string& remedy, std::string_view key) const {
+    const int at = line(key);
+    const std::string told = at > 0 ? fmt::format("{} (line {})", problem, at) : problem;
     throw core::Error(told, where_, remedy).as("bad-text", {told});
 }
 
@@ -198,6 +202,20 @@ std::vector<double> Table::numbers(std::string_view key) const {
     for (const double value : list)
         if (!std::isfinite(value)) fail(fmt::format("\"{}\" holds {}", key, value), "give finite numbers", key);
     return list;
+}
+
+std::vector<std::vector<double>> Table::numberRows(std::string_view key) const {
+    std::vector<std::vector<double>> rows;
+    const toml::node* node = tomlOf(node_).get(key);
+    if (!node) return rows;
+    const toml::array* array = node->as_array();
+    if (!array) fail(fmt::format("\"{}\" is not a list of lists of numbers", key), {}, key);
+    for (const toml::node& row : *array) {
+        rows.push_back(listOf<double>(*this, &row, key, "lists of numbers"));
+        for (const double value : rows.back())
+            if (!std::isfinite(value)) fail(fmt::format("\"{}\" holds {}", key, value), "give finite numbers", key);
+    }
+    return rows;
 }
 
 void Table::allowOnly(std::initializer_list<std::string_view> known) const {

@@ -40,6 +40,11 @@ class Table {
     [[nodiscard]] std::vector<Table> tables(std::string_view key) const;
     [[nodiscard]] std::vector<std::string> texts(std::string_view key) const;
     [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
+    /// A list of lists of numbers.
+    [[nodiscard]] std::vector<std::vector<double>> numberRows(std::string_view key) const;
+
+    /// Where a key stands in the text, from 1 (the table itself when empty); 0 where nobody knows.
+    [[nodiscard]] int line(std::string_view key = {}) const;
 
     /// Throws for a key that is none of these: a misspelt one would be passed over in silence.
     void allowOnly(std::initializer_list<std::string_view> known) const;

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+
+#include "handpiece/assess/rubric/rubric.h"
+#include "handpiece/base/core/error.h"
+
+namespace handpiece::rubric {
+
+// data/rubrics, by name.
+#define HANDPIECE_RUBRICS(RUBRIC)                                      \
+    RUBRIC("11-class-iii", kRubric_11_class_iii)                       \
+    RUBRIC("33-class-v", kRubric_33_class_v)                           \
+    RUBRIC("46-access", kRubric_46_access)                             \
+    RUBRIC("46-class-i", kRubric_46_class_i)                           \
+    RUBRIC("46-class-ii-mo", kRubric_46_class_ii_mo)                   \
+    RUBRIC("46-crown", kRubric_46_crown)                               \
+    RUBRIC("46-deep-lesion", kRubric_46_deep_lesion)                   \
+    RUBRIC("block-caries", kRubric_block_caries)                       \
+    RUBRIC("block-channel", kRubric_block_channel)                     \
+    RUBRIC("block-cross-mirror", kRubric_block_cross_mirror)           \
+    RUBRIC("dexterity-channel", kRubric_dexterity_channel)             \
+    RUBRIC("dexterity-circle", kRubric_dexterity_circle)               \
+    RUBRIC("dexterity-cross", kRubric_dexterity_cross)                 \
+    RUBRIC("dexterity-d-circle", kRubric_dexterity_d_circle)           \
+    RUBRIC("dexterity-hollow-circle", kRubric_dexterity_hollow_circle) \
+    RUBRIC("dexterity-line", kRubric_dexterity_line)                   \
+    RUBRIC("dexterity-steps", kRubric_dexterity_steps)
+
+#define HANDPIECE_DECLARE(name, text) extern const char* const text;
+HANDPIECE_RUBRICS(HANDPIECE_DECLARE)
+#undef HANDPIECE_DECLARE
+
+namespace {
+
+struct Shipped {
+    std::string_view name;
+    const char* text;
+};
+const auto& all() {
+#define HANDPIECE_ENTRY(name, text) Shipped{name, text},
+    static const std::array list = {HANDPIECE_RUBRICS(HANDPIECE_ENTRY)};
+#undef HANDPIECE_ENTRY
+    return list;
+}
+
+}  // namespace
+
+std::vector<std::string> shippedRubrics() {
+    std::vector<std::string> names;
+    for (const Shipped& s : all())
+        names.emplace_back(s.name);
+    return names;
+}
+
+Rubric shippedRubric(std::string_view name) {
+    for (const Shipped& s : all())
+        if (s.name == name) return parseRubric(s.text, fmt::format("data/rubrics/{}.toml", name));
+    throw core::Error(fmt::format("there is no rubric \"{}\"", name.substr(0, 64)), {},
+                      fmt::format("give a file, or one of {}", fmt::join(shippedRubrics(), ", ")));
+}
+
+}  // namespace handpiece::rubric

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What was measured, judged by a rubric: points, bands, critical errors, and where the teacher has to decide.
+/// Definitions: docs/formats/rubric.md#the-score.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "handpiece/assess/measures/measure.h"
+#include "handpiece/assess/rubric/rubric.h"
+
+namespace handpiece::score {
+
+/// Under what it was done.
+struct Context {
+    std::string device;        ///< "pointer", or the driver's name
+    double motionScale = 1.0;  ///< millimetres of the hand for one of the bur
+};
+
+enum class Standing {
+    judged,       ///< its measure was taken
+    notMeasured,  ///< it was not: no points, and `reason` says why
+    leftOut,      ///< not valid for the device
+    voided,       ///< by another criterion that failed
+};
+[[nodiscard]] std::string_view nameOf(Standing standing);
+
+/// yes, no, or: within the uncertainty of what was measured.
+enum class Finding { no, borderline, yes };
+
+struct CriterionScore {
+    std::string id, measure, unit;
+    measures::Selection of;
+    Standing standing = Standing::judged;
+    std::string reason;  ///< of all but judged
+    std::optional<double> value;
+    double uncertainty = 0.0;                    ///< half-width, 95 %
+    std::string band;                            ///< empty: the criterion has none
+    std::vector<std::string> possibleBands;      ///< that value +- uncertainty reaches
+    std::optional<double> points;                ///< none: shown only, or not judged
+    double leastPoints = 0.0, mostPoints = 0.0;  ///< within the uncertainty
+    double maxPoints = 0.0;
+    Finding critical = Finding::no;
+    bool borderline = false;  ///< band or critical condition would change within the uncertainty
+    std::vector<measures::Evidence> evidence;
+};
+
+struct StepScore {
+    std::string id;
+    double points = 0.0, maxPoints = 0.0;
+    bool isWhole = true;  ///< all that it grades has points
+};
+
+struct RuleResult {
+    std::string id;
+    std::optional<bool> holds;  ///< none: hangs on the uncertainty, or on what was not measured
+};
+
+struct CriticalError {
+    std::string criterion;
+    bool borderline = false;  ///< it may be none
+};
+
+enum class Passed { yes, no, teacher };
+[[nodiscard]] std::string_view nameOf(Passed passed);
+
+struct Assessment {
+    std::string rubric, rubricVersion;
+    std::uint64_t rubricHash = 0;
+    Context context;
+    double score = 0.0;                        ///< of the criteria that have points, after the caps of rules
+    double maxScore = 0.0;                     ///< of the same criteria
+    double wholeScore = 0.0;                   ///< of all that the rubric grades on this device
+    double leastScore = 0.0, mostScore = 0.0;  ///< 95 %, errors of the measures taken as independent
+    Passed passed = Passed::teacher;
+    bool borderline = false;  ///< `passed` would change within the uncertainty
+    std::string why;          ///< of `passed`, in one sentence
+    std::vector<CriticalError> critical;
+    std::vector<CriterionScore> criteria;  ///< in the rubric's order
+    std::vector<StepScore> steps;
+    std::vector<RuleResult> rules;
+
+    [[nodiscard]] double percent() const { return maxScore > 0.0 ? 100.0 * score / maxScore : 0.0; }
+};
+
+/// Pure: same inputs, same bits, at any number of threads. What no measure can have and what is no number counts as not
+/// measured. Throws core::Error for a rubric that is not sound.
+[[nodiscard]] Assessment evaluate(const rubric::Rubric& rubric, std::span<const measures::Measured> measured,
+                                  const Context& context);
+
+// Several attempts at the same: how good, how even, how it went on. Nothing is predicted from them.
+
+/// After each attempt, of it and those before.
+struct CurvePoint {
+    double percent = 0.0;
+    double mean = 0.0;
+    std::optional<double> spread;  ///< sample standard deviation; none of a single one
+};
+
+struct Attempts {
+    std::size_t count = 0;
+    double mean = 0.0, least = 0.0, greatest = 0.0;  ///< [%]
+    std::optional<double> spread;
+    /// Mean of the last half less that of the first, the middle one of an odd number left out; none under four.
+    std::optional<double> change;
+    std::vector<CurvePoint> curve;  ///< in the order given
+};
+
+/// In the order in which they were made. Throws core::Error where they cannot be pooled: other rubrics, devices or
+/// motion scales, or one of which not all was measured.
+[[nodiscard]] Attempts attempts(std::span<const Assessment> all);
+
+/// Of what a result was made, beside the score.
+struct Identity {
+    std::string exercise, exerciseHash, caseKey, stateHash;
+    std::vector<std::string> sessionHashes;  ///< the chain, in order
+    bool proven = false;                     ///< all of it replayed to the same bits
+    std::int32_t engineRevision = 0;
+};
+
+}  // namespace handpiece::score

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// reduction, occlusal-convergence, margin-width, margin-continuity, margin-height, axial-depth
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "handpiece/assess/measures/take.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
+
+namespace handpiece::measures {
+namespace {
+using core::Vec3;
+
+constexpr double kFarMm = 10.0;
+constexpr double kCuspMm = 1.0;          // about a cusp's tip, square to the path of draw, is the cusp
+constexpr double kAxialSin = 0.5;        // an axial wall stands within 30 degrees of the path of draw
+constexpr double kMarginWidthMm = 0.1;   // less is no finish line
+constexpr std::size_t kLeastSections = 8;
+constexpr double kNone = std::numeric_limits<double>::infinity();
+const char* const kNoCrown = "it is taken of crown preparations; this is a cavity";
+
+/// At most so many of many, evenly.
+std::size_t strideFor(std::size_t count) {
+    return std::max<std::size_t>(1, (count + 5999) / 6000);
+}
+
+}  // namespace
+
+Taken takeReduction(CutTooth& tooth, const Selection& of) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    const Axes& axes = tooth.preparation().axes;
+    // Cut and uncut surface both face a side; or lie about a cusp, by its name.
+    std::function<bool(const Vec3& p, const Vec3& n)> isPart = [](const Vec3&, const Vec3&) { return true; };
+    if (of.side == "occlusal") {
+        isPart = [&](const Vec3&, const Vec3& n) { return n.dot(axes.longAxis) > kSin45; };
+    } else if (std::find(std::begin(kSides), std::end(kSides), of.side) != std::end(kSides)) {
+        const auto towards = sideDirection(axes, of.side);
+        if (!towards) return none("the path of draw runs along that side, or it is not known");
+        isPart = [&axes, side = *towards](const Vec3&, const Vec3& n) {
+            return n.dot(side) > kSin45 && std::abs(n.dot(axes.longAxis)) < kSin45;
+        };
+    } else if (!of.side.empty()) {
+        const cases::Landmark* cusp = nullptr;
+        for (const cases::Landmark& mark : tooth.preparation().landmarks)
+            if (mark.kind == cases::LandmarkKind::cuspTip && mark.name == of.side) cusp = &mark;
+        if (cusp == nullptr) return none("no side and no cusp of the case is called \"" + of.side + "\"");
+        isPart = [&axes, tip = cusp->pointsMm.front()](const Vec3& p, const Vec3& n) {
+            Vec3 off = p - tip;
+            off -= off.dot(axes.longAxis) * axes.longAxis;
+            return off.norm() < kCuspMm && n.dot(axes.longAxis) > 0.0;
+        };
+    }
+    std::vector<const SurfacePoint*> part;
+    for (const SurfacePoint& point : tooth.cutPoints())
+        if (isPart(point.p, point.n)) part.push_back(&point);
+    if (part.empty()) return none("nothing was cut there");
+    const std::size_t stride = strideFor(part.size());
+    std::vector<double> depth((part.size() + stride - 1) / stride, kNone);
+    core::parallelFor(depth.size(), 32, [&](std::size_t begin, std::size_t end) {
+        CutTooth::Look look(tooth);
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3& p = part[i * stride]->p;
+            // The shortest way ends square to the uncut surface.
+            geometry::NearestPoint nearest;
+            const double under = -tooth.whole().tree.signedDistance(p, &nearest);
+            if (isPart(nearest.pointMm, look.normalBefore(nearest.pointMm))) depth[i] = under;
+        }
+    });
+    Places places;
+    for (std::size_t i = 0; i < depth.size(); ++i)
+        if (depth[i] != kNone) places.add(depth[i], part[i * stride]->p);
+    if (places.values.empty()) return none("nothing was cut there");
+    return places.taken(of, "median", "reduced here");
+}
+
+Taken takeConvergence(CutTooth& tooth, const Selection& of) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    if (tooth.form() != Form::crown) return none(kNoCrown);
+    const std::vector<AxialStation>& walls = tooth.axialWalls();
+    Places places;
+    constexpr int kHalf = CutTooth::kAzimuths / 2;
+    std::size_t sections = 0;
+    for (int i = 0; i < kHalf; ++i) {
+        const AxialStation& one = walls[static_cast<std::size_t>(i)];
+        const AxialStation& other = walls[static_cast<std::size_t>(i + kHalf)];
+        if (!one.middle.isFound || !other.middle.isFound) continue;
+        ++sections;
+        if (!of.side.empty() && one.side != of.side && other.side != of.side) continue;
+        places.add(-kDegrees * (core::atan(one.middle.slope) + core::atan(other.middle.slope)),
+                   one.hasMargin ? one.marginMm : tooth.cutPoints().front().p);
+    }
+    if (sections < kLeastSections) return none("fewer than eight sections have two axial walls");
+    if (places.values.empty()) return none("no section there has two axial walls");
+    return places.taken(of, "mean", "section through here");
+}
+
+Taken takeMarginWidth(CutTooth& tooth, const Selection& of) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    if (tooth.form() != Form::crown) return none(kNoCrown);
+    Places places;
+    for (const AxialStation& station : tooth.axialWalls())
+        if (station.hasMargin && station.middle.isFound && (of.side.empty() || station.side == of.side))
+            places.add(std::max(0.0, station.widthMm), station.marginMm);
+    if (places.values.empty()) return none("no margin under an axial wall was found there");
+    return places.taken(of, "median", "finish line");
+}
+
+Taken takeMarginContinuity(CutTooth& tooth, const Selection&) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    if (tooth.form() != Form::crown) return none(kNoCrown);
+    std::size_t wide = 0;
+    Taken taken;
+    for (const AxialStation& station : tooth.axialWalls()) {
+        if (station.hasMargin && station.middle.isFound && station.widthMm >= kMarginWidthMm)
+            ++wide;
+        else if (station.hasMargin && taken.evidence.empty())
+            taken.evidence.push_back({{}, station.marginMm, {}, "no finish line here"});
+    }
+    if (wide == 0) return none("no finish line was found");
+    taken.value = 100.0 * static_cast<double>(wide) / CutTooth::kAzimuths;
+    return taken;
+}
+
+Taken takeMarginHeight(CutTooth& tooth, const Selection& of) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    const geometry::TriangleTree* gingiva = tooth.preparation().gingiva;
+    if (gingiva == nullptr) return none("the case has no gingiva");
+    if (tooth.form() != Form::crown) return none(kNoCrown);
+    const Vec3 up = tooth.preparation().axes.longAxis;
+    constexpr double kBesideMm = 0.1, kStepMm = 0.05, kSearchMm = 6.0;
+    Places places;
+    for (const AxialStation& station : tooth.axialWalls()) {
+        if (!station.hasMargin || !station.middle.isFound || !(of.side.empty() || station.side == of.side)) continue;
+        // The gingiva's edge: where, coming down along the uncut tooth a little beside it, one is in the gingiva.
+        const auto isIn = [&](double height) {
+            const Vec3 inner = station.marginMm + height * up;
+            const Vec3 from = inner + kFarMm * station.h;
+            const geometry::RayMeeting met = tooth.whole().tree.firstMeeting(from, -station.h, 2.0 * kFarMm);
+            if (met.triangle == geometry::kNoTriangle) return false;
+            return gingiva->signedDistance(from - (met.distanceMm - kBesideMm) * station.h) < 0.0;
+        };
+        double low = kSearchMm;
+        while (low > -kSearchMm && !isIn(low))
+            low -= kStepMm;
+        if (!(low > -kSearchMm) || low >= kSearchMm) continue;
+        double high = low + kStepMm;
+        for (int i = 0; i < 12; ++i)
+            (isIn(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
+        places.add(-low, station.marginMm);
+    }
+    if (places.values.empty()) return none("no margin there stands over an edge of the gingiva");
+    return places.taken(of, "mean", "margin over the gingiva");
+}
+
+Taken takeAxialDepth(CutTooth& tooth, const Selection& of) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    if (of.side.empty()) return none("axial depth is of one side: name it");
+    const auto towards = sideDirection(tooth.preparation().axes, of.side);
+    if (!towards) return none("the path of draw runs along that side, or it is not known");
+    const DrawFrame& frame = tooth.frame();
+    std::vector<const SurfacePoint*> part;
+    for (const SurfacePoint& point : tooth.cutPoints())
+        if (std::abs(point.n.dot(frame.w)) < kAxialSin && point.n.dot(*towards) > kSin45) part.push_back(&point);
+    const std::size_t stride = strideFor(part.size());
+    std::vector<double> depth(part.empty() ? 0 : (part.size() + stride - 1) / stride, kNone);
+    core::parallelFor(depth.size(), 32, [&](std::size_t begin, std::size_t end) {
+        CutTooth::Look look(tooth);
+        for (std::size_t i = begin; i < end; ++i) {
+            const SurfacePoint& point = *part[i * stride];
+            const geometry::RayMeeting met = tooth.whole().tree.firstMeeting(point.p, point.n, kFarMm);
+            if (met.triangle == geometry::kNoTriangle) continue;
+            // A wall that looks at another one is no axial wall.
+            const double off = 2.0 * tooth.voxelMm();
+            const auto wall = look.cast(point.p + off * point.n, point.n, met.distanceMm);
+            if (!wall || off + *wall > met.distanceMm - off) depth[i] = met.distanceMm;
+        }
+    });
+    Places places;
+    for (std::size_t i = 0; i < depth.size(); ++i)
+        if (depth[i] != kNone) places.add(depth[i], part[i * stride]->p);
+    if (places.values.empty()) return none("no axial wall faces that side");
+    return places.taken(of, "median", "axial wall");
+}
+
+}  // namespace handpiece::measures

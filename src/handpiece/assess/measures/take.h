@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// How measures are taken and registered: one function each, named in measure.cpp. Private to this room.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "handpiece/assess/measures/cut_tooth.h"
+
+namespace handpiece::measures {
+
+inline constexpr double kDegrees = 57.295779513082321;
+inline constexpr const char* kNothing = "nothing was cut";
+
+/// What a measure gives; measure() adds kind, selection and uncertainty.
+struct Taken {
+    std::optional<double> value;
+    std::string reason;
+    std::vector<Evidence> evidence{};
+    double residual = 0.0;  ///< what the surface's own unevenness makes uncertain, one standard deviation, in its unit
+};
+using Take = Taken (*)(CutTooth& tooth, const Selection& of);
+
+inline Taken none(std::string reason) {
+    return {{}, std::move(reason)};
+}
+inline Taken at(double value, const core::Vec3& placeMm, std::string text) {
+    return {value, {}, {Evidence{{}, placeMm, {}, std::move(text)}}};
+}
+
+/// Values at places, of which a statistic is asked.
+struct Places {
+    std::vector<double> values;
+    std::vector<core::Vec3> mm;
+    void add(double value, const core::Vec3& p) {
+        values.push_back(value);
+        mm.push_back(p);
+    }
+    [[nodiscard]] Taken taken(const Selection& of, std::string_view ownStatistic, const char* text) const {
+        std::size_t where = 0;
+        const double value = statisticOf(values, of.statistic.empty() ? ownStatistic : of.statistic, &where);
+        return at(value, mm[where], text);
+    }
+};
+
+Taken takeRemoved(CutTooth&, const Selection&);
+Taken takeRemovedShare(CutTooth&, const Selection&);
+Taken takeFloorDepth(CutTooth&, const Selection&);
+Taken takeFloorDepthShortest(CutTooth&, const Selection&);
+Taken takeFloorFlatness(CutTooth&, const Selection&);
+Taken takeFloorTilt(CutTooth&, const Selection&);
+Taken takeIsthmus(CutTooth&, const Selection&);
+Taken takeIsthmusShare(CutTooth&, const Selection&);
+Taken takeMarginalRidge(CutTooth&, const Selection&);
+Taken takeWallHeight(CutTooth&, const Selection&);
+Taken takeWallAngle(CutTooth&, const Selection&);
+Taken takeUndercutArea(CutTooth&, const Selection&);
+Taken takeUndercutDepth(CutTooth&, const Selection&);
+Taken takeRoughness(CutTooth&, const Selection&);
+Taken takeRemainingDentine(CutTooth&, const Selection&);
+Taken takePulpExposed(CutTooth&, const Selection&);
+Taken takeCavosurfaceAngle(CutTooth&, const Selection&);
+Taken takeReduction(CutTooth&, const Selection&);
+Taken takeConvergence(CutTooth&, const Selection&);
+Taken takeMarginWidth(CutTooth&, const Selection&);
+Taken takeMarginContinuity(CutTooth&, const Selection&);
+Taken takeMarginHeight(CutTooth&, const Selection&);
+Taken takeAxialDepth(CutTooth&, const Selection&);
+Taken takeCariesLeft(CutTooth&, const Selection&);
+Taken takeCariesLeftPeriphery(CutTooth&, const Selection&);
+Taken takeCariesLeftPulpal(CutTooth&, const Selection&);
+Taken takeUnsupportedEnamel(CutTooth&, const Selection&);
+Taken takeAdjacentDepth(CutTooth&, const Selection&);
+Taken takeAdjacentRemoved(CutTooth&, const Selection&);
+
+/// Unevenness is alike over this way [mm]: a mean over n such pieces is surer by the root of n.
+inline constexpr double kPieceMm = 0.3;
+[[nodiscard]] inline double meanOf(double rms, double piecesAlong, double piecesAcross = 1.0) {
+    return rms / std::sqrt(std::max(1.0, piecesAlong) * std::max(1.0, piecesAcross));
+}
+
+/// Half-width [the kind's unit] that covered the error in 93 to 98 % of random analytic preparations.
+[[nodiscard]] double uncertaintyOf(std::string_view kind, double voxelMm, double value, double residual);
+
+/// Sum over the nodes of a tooth of weight(place, tissue) times what was there and is gone, or is left [mm3].
+[[nodiscard]] double volumeOf(const tooth::ToothModel& whole, const tooth::ToothMirror& cut, bool ofRemoved,
+                              const std::function<double(const core::Vec3&, cases::Tissue)>& weight);
+/// True for a tissue's own name, and for any when none is asked.
+[[nodiscard]] bool isAsked(const Selection& of, cases::Tissue tissue);
+
+}  // namespace handpiece::measures

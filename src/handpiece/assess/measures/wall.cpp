@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// wall-height, wall-angle, undercut-area, undercut-depth, cavosurface-angle
+#include <algorithm>
+#include <cmath>
+
+#include "handpiece/assess/measures/take.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/portable_math.h"
+
+namespace handpiece::measures {
+namespace {
+using core::Vec3;
+
+constexpr double kLeastUndercutMm = 0.03;  // and thrice the wall's own roughness: less is none
+constexpr double kTopMm = 0.3;             // of wall and of uncut surface at a margin
+constexpr double kEdgeMm = 0.04;           // right at it nothing is taken
+
+
+bool isOn(const Selection& of, std::string_view side) {
+    return of.side.empty() || of.side == side;
+}
+
+std::string noWall(const Selection& of) {
+    return of.side.empty() ? "no wall rises from the floor" : "no " + of.side + " wall rises from the floor";
+}
+
+/// How deep a wall's profile lies behind what is above it, at worst, and how much of it does.
+struct Undercut {
+    double depthMm = 0.0, lengthMm = 0.0;
+    std::size_t deepest = 0;
+};
+Undercut undercutOf(const std::vector<WallStation::Sample>& samples, double outwards) {
+    Undercut found;
+    if (samples.size() < 2) return found;
+    double least = outwards * samples.back().r;
+    for (std::size_t i = samples.size(); i-- > 0;) {
+        const double r = outwards * samples[i].r;
+        least = std::min(least, r);
+        const double behind = r - least;
+        if (behind > found.depthMm) {
+            found.depthMm = behind;
+            found.deepest = i;
+        }
+        if (behind > 0.001 && i + 1 < samples.size())
+            found.lengthMm += core::hypot(samples[i + 1].w - samples[i].w, samples[i + 1].r - samples[i].r);
+    }
+    return found;
+}
+
+struct AllUndercuts {
+    double areaMm2 = 0.0, depthMm = 0.0;
+    Vec3 deepest = Vec3::Zero();
+    std::size_t asked = 0;
+};
+AllUndercuts undercuts(CutTooth& tooth, const Selection& of) {
+    AllUndercuts all;
+    const DrawFrame& frame = tooth.frame();
+    const auto add = [&](const Undercut& one, double rms, double spacingMm, const Vec3& place) {
+        ++all.asked;
+        if (one.depthMm <= std::max(kLeastUndercutMm, 3.0 * rms)) return;
+        all.areaMm2 += one.lengthMm * spacingMm;
+        if (one.depthMm > all.depthMm) {
+            all.depthMm = one.depthMm;
+            all.deepest = place;
+        }
+    };
+    if (tooth.form() == Form::cavity) {
+        for (const WallStation& wall : tooth.walls()) {
+            if (!isOn(of, wall.side)) continue;
+            const Undercut one = undercutOf(wall.samples, 1.0);
+            const WallStation::Sample& s = wall.samples[one.deepest];
+            add(one, wall.middle.rms, wall.spacingMm,
+                frame.from(wall.start) + (s.w - wall.start.z()) * frame.w + s.r * wall.h);
+        }
+        return all;
+    }
+    for (const AxialStation& wall : tooth.axialWalls()) {
+        if (!wall.middle.isFound || !isOn(of, wall.side)) continue;
+        // The margin's own ledge stands out, and is seen.
+        std::vector<WallStation::Sample> steep;
+        for (const WallStation::Sample& s : wall.samples)
+            if (s.n.dot(frame.w) < kSin45) steep.push_back(s);
+        const Undercut one = undercutOf(steep, -1.0);
+        if (steep.empty()) continue;
+        const double spacing = wall.middle.at * 6.283185307179586 / CutTooth::kAzimuths;
+        add(one, wall.middle.rms, spacing, wall.marginMm + (steep[one.deepest].w - wall.marginW) * frame.w);
+    }
+    return all;
+}
+
+}  // namespace
+
+Taken takeWallHeight(CutTooth& tooth, const Selection& of) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    Places places;
+    double residual = 0.0;
+    if (tooth.form() == Form::cavity) {
+        for (const WallStation& wall : tooth.walls())
+            if (wall.floor == 0 && isOn(of, wall.side)) places.add(wall.heightMm(), wall.marginMm);
+        if (!tooth.floors().empty()) residual = tooth.floors().front().plane.rms;
+        if (places.values.empty()) return none(noWall(of));
+    } else {
+        for (const AxialStation& wall : tooth.axialWalls())
+            if (wall.middle.isFound && wall.hasMargin && isOn(of, wall.side))
+                places.add(wall.topW - wall.marginW, wall.marginMm);
+        if (places.values.empty()) return none("no axial wall stands over a margin there");
+    }
+    Taken taken = places.taken(of, "median", "margin over this wall's foot");
+    taken.residual = meanOf(residual, static_cast<double>(places.values.size()) * kProbeMm / kPieceMm);
+    return taken;
+}
+
+Taken takeWallAngle(CutTooth& tooth, const Selection& of) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    Places places;
+    std::vector<double> scatter;  // of one station's slope
+    const auto degrees = [](double slope) { return kDegrees * core::atan(slope); };
+    if (tooth.form() == Form::cavity) {
+        for (const WallStation& wall : tooth.walls())
+            if (wall.floor == 0 && isOn(of, wall.side)) {
+                places.add(degrees(wall.middle.slope), wall.marginMm);
+                const double way = wall.middleToW - wall.middleFromW;
+                scatter.push_back(3.46 / way * meanOf(wall.middle.rms, way / kPieceMm));
+            }
+        if (places.values.empty()) return none(noWall(of));
+    } else {
+        for (const AxialStation& wall : tooth.axialWalls())
+            if (wall.middle.isFound && isOn(of, wall.side))
+                places.add(degrees(-wall.middle.slope), wall.marginMm);
+        if (places.values.empty()) return none("no axial wall stands there");
+    }
+    Taken taken = places.taken(of, "median", "wall against the path of draw");
+    const double way = static_cast<double>(places.values.size()) * kProbeMm;
+    taken.residual = kDegrees * meanOf(medianOf(std::move(scatter)), way / kPieceMm);
+    return taken;
+}
+
+Taken takeUndercutArea(CutTooth& tooth, const Selection& of) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    const AllUndercuts all = undercuts(tooth, of);
+    if (all.asked == 0) return none(noWall(of));
+    if (all.areaMm2 == 0.0) return {0.0, {}};
+    return at(all.areaMm2, all.deepest, "deepest undercut");
+}
+
+Taken takeUndercutDepth(CutTooth& tooth, const Selection& of) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    const AllUndercuts all = undercuts(tooth, of);
+    if (all.asked == 0) return none(noWall(of));
+    if (all.depthMm == 0.0) return {0.0, {}};
+    return at(all.depthMm, all.deepest, "deepest undercut");
+}
+
+Taken takeCavosurfaceAngle(CutTooth& tooth, const Selection& of) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    if (tooth.form() == Form::crown) return none("it is taken of cavities; a crown has a finish line");
+    const std::vector<WallStation>& walls = tooth.walls();
+    const DrawFrame& frame = tooth.frame();
+    std::vector<double> angles(walls.size(), -1.0);
+    core::parallelFor(walls.size(), 16, [&](std::size_t begin, std::size_t end) {
+        CutTooth::Look look(tooth);
+        for (std::size_t i = begin; i < end; ++i) {
+            const WallStation& wall = walls[i];
+            if (!wall.isCavosurface || !isOn(of, wall.side)) continue;
+            // The wall under its margin, and the uncut surface beyond, each by its mean normal.
+            Vec3 wallN = Vec3::Zero(), outerN = Vec3::Zero();
+            for (const WallStation::Sample& s : wall.samples)
+                if (s.w > wall.marginW - kTopMm && s.w < wall.marginW - kEdgeMm) wallN += s.n;
+            const Vec3 out = frame.from(wall.start) - wall.start.z() * frame.w;
+            const double r = wall.samples.back().r;
+            for (double beyond = kEdgeMm; beyond < kTopMm; beyond += kEdgeMm) {
+                const Vec3 from = out + (r + beyond) * wall.h + (wall.marginW + 1.0) * frame.w;
+                const geometry::RayMeeting met = tooth.whole().tree.firstMeeting(from, -frame.w, 2.0);
+                if (met.triangle == geometry::kNoTriangle) continue;
+                const Vec3 p = from - met.distanceMm * frame.w;
+                if (look.now(p) < tooth.cutMm()) outerN += look.normalBefore(p);
+            }
+            if (!(wallN.norm() > 0.5) || !(outerN.norm() > 0.5)) continue;
+            const double cosine = std::clamp(wallN.normalized().dot(outerN.normalized()), -1.0, 1.0);
+            angles[i] = 180.0 - kDegrees * core::acos(cosine);
+        }
+    });
+    Places places;
+    for (std::size_t i = 0; i < walls.size(); ++i)
+        if (angles[i] >= 0.0) places.add(angles[i], walls[i].marginMm);
+    if (places.values.empty()) return none("no wall there ends at the uncut surface");
+    Taken taken = places.taken(of, "median", "cavosurface margin");
+    std::vector<double> rms;
+    for (const WallStation& wall : walls)
+        if (isOn(of, wall.side)) rms.push_back(wall.middle.rms);
+    const double way = static_cast<double>(places.values.size()) * kProbeMm;
+    taken.residual = kDegrees * 3.46 / kTopMm * meanOf(medianOf(std::move(rms)), way / kPieceMm);
+    return taken;
+}
+
+}  // namespace handpiece::measures

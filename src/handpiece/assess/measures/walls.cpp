@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// The walls of a cavity, as a probe finds them that is led up along the path of draw.
+#include <algorithm>
+#include <cmath>
+
+#include "handpiece/assess/measures/cut_tooth.h"
+#include "handpiece/base/core/parallel.h"
+
+namespace handpiece::measures {
+namespace {
+using core::Vec3;
+
+constexpr double kWallLevelMm = 0.025;
+constexpr double kInsideMm = 0.1;      // of the floor's edge the probe stands
+constexpr double kReachMm = 1.5;       // beyond that edge a wall is looked for
+constexpr double kMostJumpMm = 0.3;    // from level to level
+constexpr double kWallEndMm = 0.002;    // nearer under the uncut surface a wall has ended
+constexpr double kLeastHeightMm = 0.15;
+constexpr double kRoundMm = 0.8;       // of floor about a wall's foot
+
+}  // namespace
+
+double CutTooth::floorAt(const Floor& floor, const Vec3& q) const {
+    if (!floor.plane.isFound) return q.z();
+    if (floor.plane.rms < 0.01) return floor.plane.of(q.x(), q.y());
+    const HeightMap& map = *heights_;
+    std::vector<Vec3> near;
+    for (const int node : floor.flat) {
+        const Vec3 p = map.drawOf(node);
+        const double du = p.x() - q.x(), dv = p.y() - q.y();
+        if (du * du + dv * dv < kRoundMm * kRoundMm) near.push_back(p);
+    }
+    if (near.size() < 12) return floor.plane.of(q.x(), q.y());
+    const Plane plane = planeThrough(near);
+    return plane.isFound ? plane.of(q.x(), q.y()) : floor.plane.of(q.x(), q.y());
+}
+
+bool CutTooth::probeWall(Look& look, WallStation& wall, double topW, double farMm, const Floor& floor) const {
+    const Vec3 start = frame_.from(wall.start);
+    const auto placeAt = [&](double w) { return Vec3(start + (w - wall.start.z()) * frame_.w); };
+    double last = -1.0;  // of the level below; none yet
+    bool endsUncut = false;
+    /// Where the wall is at a level; none above its end.
+    const auto meets = [&](double w) -> std::optional<double> {
+        const Vec3 from = placeAt(w);
+        const auto r = look.cast(from, wall.h, farMm);
+        if (!r || (last >= 0.0 && std::abs(*r - last) > kMostJumpMm)) {
+            endsUncut = !r;
+            return {};
+        }
+        if (look.before(from + *r * wall.h) > -kWallEndMm) {
+            endsUncut = true;
+            return {};
+        }
+        return r;
+    };
+    const Vec3 aim = wall.h;
+    for (int pass = 0; pass < 2; ++pass) {
+        wall.samples.clear();
+        last = -1.0;
+        double w = wall.start.z() + 0.02;
+        for (; w < topW; w += kWallLevelMm) {
+            const auto r = meets(w);
+            if (!r) break;
+            last = *r;
+            wall.samples.push_back({w, *r, look.normalNow(placeAt(w) + *r * wall.h)});
+        }
+        if (wall.samples.size() < 5) return false;
+        if (pass == 1) {
+            double low = wall.samples.back().w, high = std::min(w, topW);
+            for (int i = 0; i < 14; ++i) {
+                const double middle = 0.5 * (low + high);
+                (meets(middle) ? low : high) = middle;
+            }
+            (void)meets(high);
+            wall.marginW = low;
+            wall.isCavosurface = endsUncut;
+            break;
+        }
+        // Square to the wall, then, by its middle.
+        Vec3 normal = Vec3::Zero();
+        for (std::size_t i = wall.samples.size() * 2 / 5; i < (wall.samples.size() * 4 + 4) / 5; ++i)
+            normal += wall.samples[i].n;
+        normal -= normal.dot(frame_.w) * frame_.w;
+        if (!(normal.norm() > 1e-9)) return false;
+        wall.h = -normal.normalized();
+        if (wall.h.dot(aim) < kSin45) return false;
+    }
+    const Vec3 margin = placeAt(wall.marginW);
+    wall.marginMm = margin + wall.samples.back().r * wall.h;
+    // The floor's own height under it, where the wall's line comes down to it.
+    const auto standOn = [&](double r) {
+        wall.floorW = floorAt(floor, frame_.to(start + r * wall.h));
+        return wall.heightMm() > kLeastHeightMm;
+    };
+    if (!standOn(wall.samples[wall.samples.size() / 2].r)) return false;
+    // Its middle: above the corner with the floor, whose radius shows in what a line leaves over, and below the margin.
+    const auto fitFrom = [&](double share) {
+        std::vector<core::Vec2> points;
+        for (const WallStation::Sample& s : wall.samples)
+            if (s.w >= wall.floorW + share * wall.heightMm() && s.w <= wall.floorW + 0.85 * wall.heightMm())
+                points.emplace_back(s.w, s.r);
+        return robustLine(points);
+    };
+    constexpr double kShares[] = {0.30, 0.40, 0.50, 0.60};
+    const Line upper = fitFrom(kShares[3]);
+    wall.middle = upper;
+    for (const double share : kShares) {
+        const Line line = fitFrom(share);
+        if (!line.isFound || (upper.isFound && line.rms > 1.2 * upper.rms + 0.0005)) continue;
+        wall.middle = line;
+        wall.middleFromW = wall.floorW + share * wall.heightMm();
+        break;
+    }
+    if (!wall.middle.isFound || !standOn(wall.middle.of(wall.floorW))) return false;
+    if (wall.middleFromW == 0.0) wall.middleFromW = wall.floorW + kShares[3] * wall.heightMm();
+    wall.middleToW = wall.floorW + 0.85 * wall.heightMm();
+    return true;
+}
+
+void CutTooth::findWalls() {
+    const HeightMap& map = heights();
+    const std::vector<Floor>& all = floors();
+    std::vector<int> floorOf(map.nodes.size(), -1);
+    for (std::size_t f = 0; f < all.size(); ++f)
+        for (const int node : all[f].nodes)
+            floorOf[static_cast<std::size_t>(node)] = static_cast<int>(f);
+    // Every end of every run of a floor along the rows and columns of the map.
+    struct Plan {
+        WallStation station;
+        double topW, farMm;
+    };
+    std::vector<Plan> plans;
+    for (int direction = 0; direction < 4; ++direction) {
+        const bool alongU = direction < 2;
+        const Vec3 h = (direction % 2 == 0 ? 1.0 : -1.0) * (alongU ? frame_.u : frame_.v);
+        const std::string_view side = sideOf(p_.axes, h);
+        const int rows = alongU ? map.height : map.width, length = alongU ? map.width : map.height;
+        for (int row = 0; row < rows; ++row) {
+            const auto nodeAt = [&](int k) { return alongU ? map.at(k, row) : map.at(row, k); };
+            int run = 0;
+            for (int begin = 0; begin < length;) {
+                const int floor = floorOf[static_cast<std::size_t>(nodeAt(begin))];
+                int end = begin + 1;
+                while (end < length && floorOf[static_cast<std::size_t>(nodeAt(end))] == floor)
+                    ++end;
+                if (floor >= 0) {
+                    const int inside = std::min(static_cast<int>(std::lround(kInsideMm / kProbeMm)), (end - begin) / 2);
+                    const int from = direction % 2 == 0 ? end - 1 - inside : begin + inside;
+                    Plan plan;
+                    plan.station.side = side;
+                    plan.station.floor = floor;
+                    plan.station.row = row;
+                    plan.station.run = run++;
+                    plan.station.h = h;
+                    plan.station.start = map.drawOf(nodeAt(from));
+                    plan.topW = map.nodes[static_cast<std::size_t>(nodeAt(from))].before + 2.0;
+                    plan.farMm = kReachMm + kProbeMm * inside;
+                    plans.push_back(plan);
+                }
+                begin = end;
+            }
+        }
+    }
+    std::vector<char> isWall(plans.size(), 0);
+    core::parallelFor(plans.size(), 8, [&](std::size_t begin, std::size_t end) {
+        Look look(*this);
+        for (std::size_t i = begin; i < end; ++i) {
+            Plan& plan = plans[i];
+            const Vec3 aim = plan.station.h;
+            isWall[i] = probeWall(look, plan.station, plan.topW, plan.farMm,
+                                  all[static_cast<std::size_t>(plan.station.floor)]);
+            // Aslant a place of the row stands for more of the wall.
+            if (isWall[i] != 0) plan.station.spacingMm = kProbeMm / plan.station.h.dot(aim);
+        }
+    });
+    std::vector<WallStation> walls;
+    for (std::size_t i = 0; i < plans.size(); ++i)
+        if (isWall[i] != 0) walls.push_back(std::move(plans[i].station));
+    walls_ = std::move(walls);
+}
+
+}  // namespace handpiece::measures

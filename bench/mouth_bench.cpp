@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// mouth_bench CASE [--bur NAME]: what a tick's contact and force cost among all teeth of a case (handpiece make mouth)
-// and with its own tooth alone: on the crown, with the bur wedged between two teeth, with bur and head touching at
-// once. Each tick's best of three runs, so that the machine's own stalls do not count.
+// mouth_bench CASE [--bur NAME] [--only crown|wedged|head|both|pieces] [--ticks N]: what a tick's contact and force
+// cost among all teeth of a case (handpiece make mouth) and with its own tooth alone: on the crown, with the bur wedged
+// between two teeth, with bur and head touching at once, with the bur wedged and the head on another tooth. Each tick's
+// best of several runs, by turns with what it is held against, so that the machine's own stalls do not count. Beside
+// the lone tooth, which has half of a wedge's contact, stands each tooth that is touched by itself, and their sum.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -16,9 +20,11 @@
 
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/simd.h"
 #include "handpiece/model/instrument/shapes.h"
 #include "handpiece/model/instrument/turbine.h"
 #include "handpiece/tick/contact/field_method.h"
+#include "handpiece/tick/contact/mouth_method.h"
 #include "handpiece/tick/force/force_model.h"
 #include "support/random.h"
 
@@ -30,19 +36,29 @@ using core::Pose;
 using core::Vec3;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kTicks = 8000, kRuns = 3;
+constexpr int kRuns = 5;
+int ticksOf = 8000;
 constexpr double kPeriodS = 1e-3, kPressMm = 0.1, kSwingMm = 0.25;
 
 double microseconds(Clock::duration d) {
     return std::chrono::duration<double, std::micro>(d).count();
 }
 
-void print(const std::string& what, std::vector<double> us) {
+struct Spread {
+    double p50, p99, p999, most;
+};
+Spread spreadOf(std::vector<double> us) {
     std::sort(us.begin(), us.end());
     const auto at = [&](double share) {
         return us[static_cast<std::size_t>(share * static_cast<double>(us.size() - 1))];
     };
-    fmt::print("{:<44} {:>8.1f} {:>8.1f} {:>8.1f} {:>8.1f}\n", what, at(0.5), at(0.99), at(0.999), us.back());
+    return {at(0.5), at(0.99), at(0.999), us.back()};
+}
+void print(const std::string& what, const Spread& s) {
+    fmt::print("{:<48} {:>8.1f} {:>8.1f} {:>8.1f} {:>8.1f}\n", what, s.p50, s.p99, s.p999, s.most);
+}
+void printTimes(const std::string& what, const Spread& s, const Spread& of) {
+    fmt::print("{:<48} {:>8.2f} {:>8.2f} {:>8.2f}\n", what, s.p50 / of.p50, s.p99 / of.p99, s.p999 / of.p999);
 }
 
 /// From above down to this depth.
@@ -59,45 +75,63 @@ std::optional<Pose> lowered(Method& method, Pose pose, double fromZ, double toZ,
     return pose;
 }
 
-/// Ticks about a pose, the hand swinging along a slow curve; by tick the best of the runs.
-std::vector<double> ticks(Method& method, const Pose& about, const force::Limits& limits) {
-    std::vector<double> best(kTicks, 1e9);
-    for (int run = 0; run < kRuns; ++run) {
-        force::ForceModel model(limits, force::defaultParameters());
-        method.reset();
-        for (int i = 0; i < kTicks; ++i) {
-            Pose pose = about;
-            const double t = kPeriodS * i;
-            pose.positionMm += kSwingMm * Vec3(std::sin(7.0 * t), std::sin(11.0 * t), 0.3 * std::sin(5.0 * t));
-            const auto start = Clock::now();
-            const force::Touch& touch = model.feel(method, pose, false, kPeriodS);
-            (void)model.compute(touch, kPeriodS);
-            auto& mine = best[static_cast<std::size_t>(i)];
-            mine = std::min(mine, microseconds(Clock::now() - start));
+/// Ticks about a pose, the hand swinging along a slow curve, of each method in turn; by tick the best of the runs.
+std::vector<std::vector<double>> ticks(const std::vector<Method*>& methods, const Pose& about) {
+    std::vector<std::vector<double>> best(methods.size(), std::vector<double>(static_cast<std::size_t>(ticksOf), 1e9));
+    for (int run = 0; run < kRuns; ++run)
+        for (std::size_t m = 0; m < methods.size(); ++m) {
+            Method& method = *methods[m];
+            force::ForceModel model({}, force::defaultParameters());
+            method.reset();
+            for (int i = 0; i < ticksOf; ++i) {
+                Pose pose = about;
+                const double t = kPeriodS * i;
+                pose.positionMm += kSwingMm * Vec3(std::sin(7.0 * t), std::sin(11.0 * t), 0.3 * std::sin(5.0 * t));
+                const auto start = Clock::now();
+                const force::Touch& touch = model.feel(method, pose, false, kPeriodS);
+                (void)model.compute(touch, kPeriodS);
+                auto& mine = best[m][static_cast<std::size_t>(i)];
+                mine = std::min(mine, microseconds(Clock::now() - start));
+            }
         }
-    }
     return best;
 }
 
-/// How many teeth hold the bur there, and whether the head is held as well.
+/// Which teeth hold the bur there, and which the head.
 struct Held {
-    int teeth = 0;
-    bool head = false;
+    std::vector<std::uint16_t> bur, head;
 };
 Held heldAt(Method& method, const Pose& pose) {
     contact::ConstraintSet set;
     method.constraints(pose, 0.02, set);
-    std::vector<std::uint16_t> teeth;
     Held held;
-    for (const contact::Constraint& c : set) {
-        if (c.piece == contact::Piece::bur)
-            teeth.push_back(c.tooth);
-        else
-            held.head = held.head || c.piece == contact::Piece::head;
+    for (const contact::Constraint& c : set)
+        if (c.piece == contact::Piece::bur || c.piece == contact::Piece::head)
+            (c.piece == contact::Piece::bur ? held.bur : held.head).push_back(c.tooth);
+    for (std::vector<std::uint16_t>* teeth : {&held.bur, &held.head}) {
+        std::sort(teeth->begin(), teeth->end());
+        teeth->erase(std::unique(teeth->begin(), teeth->end()), teeth->end());
     }
-    std::sort(teeth.begin(), teeth.end());
-    held.teeth = static_cast<int>(std::unique(teeth.begin(), teeth.end()) - teeth.begin());
     return held;
+}
+
+/// One of a setup's teeth with the bur alone, where it stands.
+std::unique_ptr<Method> toothAlone(const simulation::SimulationSetup& mouth, std::uint16_t tooth) {
+    if (tooth == 0)
+        return contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(mouth.field), mouth.settings.bur);
+    const simulation::StandingTooth& other = mouth.others[tooth - 1u];
+    contact::PlacedMethod placed;
+    placed.method = other.field ? contact::makeFieldMethod(std::shared_ptr<const tooth::ToothState>(other.field),
+                                                           mouth.settings.bur)
+                                : contact::makeFieldMethod(other.model, mouth.settings.bur);
+    placed.solid = mouth.settings.bur;
+    placed.toothInScene = other.inCase;
+    placed.toothBoxMm = other.model->outer.bounds();
+    placed.tooth = tooth;
+    placed.isCuttable = other.field != nullptr;
+    std::vector<contact::PlacedMethod> one;
+    one.push_back(std::move(placed));
+    return contact::makeMouthMethod(std::move(one));
 }
 
 void pieces(const simulation::SimulationSetup& mouth, std::mt19937_64& g) {
@@ -128,48 +162,92 @@ void pieces(const simulation::SimulationSetup& mouth, std::mt19937_64& g) {
         }
         constexpr const char* kNames[] = {"bur", "shank", "head", "handle"};
         print(fmt::format("{} at one tooth, 1 mm clear to 0.5 mm deep", kNames[static_cast<std::size_t>(piece.part)]),
-              us);
+              spreadOf(std::move(us)));
     }
 }
 
 int run(int count, char** values) {
     if (count < 2)
         throw core::Error("no case was named", "mouth_bench", "handpiece make mouth --out mouth; mouth_bench mouth");
+    std::string burName = "330", only;
+    for (int i = 2; i + 1 < count; i += 2) {
+        const std::string option = values[i];
+        if (option == "--bur") burName = values[i + 1];
+        if (option == "--only") only = values[i + 1];
+        if (option == "--ticks") ticksOf = std::max(1, std::atoi(values[i + 1]));
+    }
+    const auto wants = [&only](const char* scene) { return only.empty() || only == scene; };
+    const auto begin = Clock::now();
     cases::Case mouthCase = cases::readCase(values[1]);
     simulation::SimulationSettings settings;
-    const std::string burName = count > 3 && std::string(values[2]) == "--bur" ? values[3] : "330";
     settings.bur = std::make_shared<const instrument::Bur>(instrument::makeBur(burName));
     const auto start = Clock::now();
     const simulation::SimulationSetup mouth = simulation::makeSimulation(mouthCase, settings, true);
-    fmt::print("{} teeth, loaded in {:.2f} s\n", mouth.others.size() + 1, 1e-6 * microseconds(Clock::now() - start));
+    const auto loaded = Clock::now();
+    fmt::print("{} teeth, read in {:.2f} s, loaded in {:.2f} s, ", mouth.others.size() + 1,
+               1e-6 * microseconds(start - begin), 1e-6 * microseconds(loaded - start));
     mouthCase.others.clear();
     const simulation::SimulationSetup lone = simulation::makeSimulation(mouthCase, settings, true);
-    const std::unique_ptr<Method> all = mouth.work().method, one = lone.work().method;
+    const auto again = Clock::now();
+    const std::unique_ptr<Method> all = mouth.work().method, one = lone.work().method, bare = toothAlone(lone, 0);
+    fmt::print("its own tooth again in {:.2f} s, methods in {:.2f} s; instructions: {}\n",
+               1e-6 * microseconds(again - loaded), 1e-6 * microseconds(Clock::now() - again),
+               std::array{"base", "", "AVX2", "AVX-512"}[static_cast<std::size_t>(core::simdLevel())]);
     std::mt19937_64 g(test::seed());
     const core::Box box = mouth.tooth->outer.bounds();
     const double topMm = box.max.z() + 0.5;
-    fmt::print("{:<44} {:>8} {:>8} {:>8} {:>8}\n", "us a tick", "p50", "p99", "p99.9", "worst");
+    fmt::print("{:<48} {:>8} {:>8} {:>8} {:>8}\n", "us a tick", "p50", "p99", "p99.9", "worst");
     const auto compare = [&](const char* what, const Pose& pose) {
-        print(fmt::format("{}: the tooth alone", what), ticks(*one, pose, {}));
-        print(fmt::format("{}: all teeth, whole handpiece", what), ticks(*all, pose, {}));
+        const Held held = heldAt(*all, pose);
+        std::vector<std::uint16_t> touched = held.bur;
+        touched.insert(touched.end(), held.head.begin(), held.head.end());
+        std::string names;
+        for (const std::uint16_t t : touched)
+            names += fmt::format(" {}", t == 0 ? mouthCase.fdiNumber : mouth.others[t - 1u].fdiNumber);
+        fmt::print("{}: bur and head on{}\n", what, names);
+        std::vector<std::unique_ptr<Method>> others;
+        std::vector<Method*> methods{bare.get(), one.get(), all.get()};
+        for (const std::uint16_t t : held.bur)
+            if (t != 0) methods.push_back(others.emplace_back(toothAlone(mouth, t)).get());
+        const std::vector<std::vector<double>> us = ticks(methods, pose);
+        const Spread whole = spreadOf(us[2]);
+        std::vector<double> sum = us[0];
+        print("  its own tooth alone, the bur", spreadOf(us[0]));
+        print("  its own tooth and gingiva, whole handpiece", spreadOf(us[1]));
+        for (std::size_t m = 3; m < us.size(); ++m) {
+            print("  the other tooth alone, the bur", spreadOf(us[m]));
+            for (std::size_t i = 0; i < sum.size(); ++i)
+                sum[i] += us[m][i];
+        }
+        print("  all teeth, whole handpiece", whole);
+        printTimes("  times its own tooth alone, the bur", whole, spreadOf(us[0]));
+        printTimes("  times its own tooth and gingiva", whole, spreadOf(us[1]));
+        if (us.size() > 3) printTimes("  times the touched teeth, each alone, together", whole, spreadOf(sum));
     };
     // On the crown, where nothing else is touched.
-    for (;;) {
+    for (bool isDone = !wants("crown"); !isDone;) {
         Pose pose{{test::uniform(g, -2, 2), test::uniform(g, -2, 2), 0}, core::Quat::Identity()};
         const auto found = lowered(*one, pose, topMm, 0.0, kPressMm);
         if (!found) continue;
         compare("crown", *found);
-        break;
+        isDone = true;
     }
-    bool wedged = false, headed = false;
-    for (int i = 0; i < 20000 && !(wedged && headed); ++i) {
+    struct Scene {
+        const char *name, *what;
+        bool isDone;
+    };
+    Scene wedged{"wedged", "wedged between two teeth", !wants("wedged")},
+        headed{"head", "bur and head at once", !wants("head")},
+        both{"both", "bur wedged between two teeth, head on another", !wants("both")};
+    for (int i = 0; i < 40000 && !(wedged.isDone && headed.isDone && both.isDone); ++i) {
         const double side = i % 2 == 0 ? box.max.x() : box.min.x();
         Pose pose{{side + test::uniform(g, -1.5, 1.5), test::uniform(g, -3, 3), 0}, core::Quat::Identity()};
-        if (!wedged) {
+        const Vec3 between = pose.positionMm;
+        if (!wedged.isDone) {
             const auto found = lowered(*all, pose, topMm, 0.0, kPressMm);
-            if (found && heldAt(*all, *found).teeth >= 2) {
-                compare("wedged between two teeth", *found);
-                wedged = true;
+            if (found && heldAt(*all, *found).bur.size() >= 2) {
+                compare(wedged.what, *found);
+                wedged.isDone = true;
             }
         }
         // The bur on the crown, tilted so far that the head comes down on something.
@@ -178,18 +256,31 @@ int run(int count, char** values) {
             core::Quat(Eigen::AngleAxisd(test::uniform(g, 0.3, 1.5), Vec3(std::cos(turn), std::sin(turn), 0))) *
             core::Quat(Eigen::AngleAxisd(test::uniform(g, 0, 6.28), Vec3::UnitZ()));
         pose.positionMm.x() *= test::uniform(g, 0, 1);
-        if (!headed) {
+        if (!headed.isDone) {
             const auto found = lowered(*all, pose, topMm, 0.0, kPressMm);
-            if (!found) continue;
-            const Held held = heldAt(*all, *found);
-            if (held.teeth < 1 || !held.head) continue;
-            compare("bur and head at once", *found);
-            headed = true;
+            if (found) {
+                const Held held = heldAt(*all, *found);
+                if (!held.bur.empty() && !held.head.empty()) {
+                    compare(headed.what, *found);
+                    headed.isDone = true;
+                }
+            }
+        }
+        if (!both.isDone) {
+            pose.positionMm = between;
+            const auto found = lowered(*all, pose, topMm, 0.0, kPressMm);
+            if (found) {
+                const Held held = heldAt(*all, *found);
+                if (held.bur.size() >= 2 && !held.head.empty()) {
+                    compare(both.what, *found);
+                    both.isDone = true;
+                }
+            }
         }
     }
-    if (!wedged) fmt::print("no place was found where the bur touches two teeth\n");
-    if (!headed) fmt::print("no pose was found where bur and head touch at once\n");
-    pieces(mouth, g);
+    for (const Scene& scene : {wedged, headed, both})
+        if (!scene.isDone) fmt::print("no pose was found: {}\n", scene.what);
+    if (wants("pieces")) pieces(mouth, g);
     return 0;
 }
 

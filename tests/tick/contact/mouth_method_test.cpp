@@ -174,6 +174,81 @@ TEST(MouthMethod, TellsTheDeepestOfBurShankHeadAndHandleAsBruteForceDoes) {
         EXPECT_GT(n, 1);
 }
 
+TEST(MouthMethod, AskedWhetherItIsDeeperAPieceTellsItsDepthOrThatItIsNot) {
+    const auto bur = burOf("330");
+    std::vector<std::shared_ptr<const Bur>> solids{bur, burOf("cylinder-flat:1.0x4.0"), burOf("inverted-cone:1.2x1.4")};
+    for (const instrument::BodyPiece& piece : instrument::bodyPieces(*bur))
+        solids.push_back(piece.solid);
+    std::mt19937_64 g(test::seed());
+    int told = 0, left = 0;
+    double worstMm = 0.0;
+    for (const std::shared_ptr<const Bur>& solid : solids) {
+        const auto asked = makeFieldMethod(ball(), solid), plain = makeFieldMethod(ball(), solid);
+        for (int i = 0; i < 150; ++i) {
+            // Some place of it near the surface, in or out.
+            Pose pose = turned({}, test::uniform(g, 0, 3.1), test::randomDirection(g));
+            const Vec3 on(0, 0, test::uniform(g, 0, solid->lengthMm()));
+            pose.positionMm = test::randomDirection(g) * test::uniform(g, 3.2, 6.0) - pose.orientation * on;
+            const Depth d = plain->depth(pose);
+            if (d.status != Status::ok) continue;
+            for (const double aboveMm : {-0.5, -0.02, -1e-4, 1e-4, 0.02, 0.5}) {
+                const double floorMm = d.depthMm + aboveMm;
+                const Depth found = asked->depthBeyond(floorMm, pose);
+                if (aboveMm < 0.0) {
+                    ASSERT_EQ(found.status, Status::ok) << solid->name() << " " << i << ": " << d.depthMm << " above "
+                                                        << floorMm << ", told " << found.depthMm;
+                    worstMm = std::max(worstMm, std::abs(found.depthMm - d.depthMm));
+                    ASSERT_NEAR(found.depthMm, d.depthMm, 1e-3 * kDepthToleranceMm + d.unseenMm) << solid->name() << i;
+                    ++told;
+                } else if (found.status == Status::ok) {
+                    ASSERT_NEAR(found.depthMm, d.depthMm, kDepthToleranceMm + d.unseenMm) << solid->name() << i;
+                } else {
+                    ASSERT_LE(found.depthMm, std::max(floorMm, -5.0)) << solid->name() << i;
+                    ASSERT_GE(found.depthMm, d.depthMm - kDepthToleranceMm) << solid->name() << i;
+                    ++left;
+                }
+            }
+        }
+    }
+    std::printf("  told %d times, left out %d; worst difference %.2e um\n", told, left, 1e3 * worstMm);
+    EXPECT_GT(told, 500);
+    EXPECT_GT(left, 200);
+}
+
+TEST(MouthMethod, WhatWasAskedBeforeMakesNoDifference) {
+    const auto bur = burOf("330");
+    const Mouth mouth;
+    const auto going = mouth.of(bur, true), fresh = mouth.of(bur, true);
+    std::mt19937_64 g(test::seed());
+    double worstMm = 0.0;
+    int touching = 0;
+    for (int walk = 0; walk < 30; ++walk) {
+        Pose pose = somewhere(g);
+        for (int step = 0; step < 30; ++step) {
+            pose.positionMm += test::uniform(g, 0.0, 0.1) * test::randomDirection(g);
+            const Pose turn = turned(Vec3::Zero(), 0.01, test::randomDirection(g));
+            pose.orientation = (turn.orientation * pose.orientation).normalized();
+            fresh->reset();
+            // Onto the teeth, and out of them where it is deep.
+            const Depth there = fresh->depth(pose);
+            pose.positionMm += (there.depthMm - test::uniform(g, -0.05, 0.1)) * there.normal;
+            ConstraintSet set, again;
+            going->constraints(pose, 0.1, set);
+            const Depth d = going->depth(pose);
+            fresh->reset();
+            const Depth told = fresh->depth(pose);
+            fresh->constraints(pose, 0.1, again);
+            if (told.unseenMm > kDepthToleranceMm || told.depthMm > 0.3) continue;
+            worstMm = std::max(worstMm, std::abs(d.depthMm - told.depthMm));
+            ASSERT_NEAR(d.depthMm, told.depthMm, 2.0 * kDepthToleranceMm) << walk << " " << step;
+            ASSERT_EQ(set.size(), again.size()) << walk << " " << step;
+            touching += told.depthMm > -0.1;
+        }
+    }
+    std::printf("  worst %.2e um; %d poses within 0.1 mm\n", 1e3 * worstMm, touching);
+    EXPECT_GT(touching, 30);
+}
+
 TEST(MouthMethod, AddsUpWhatEachToothFeels) {
     const auto bur = burOf("cylinder-round:1.0x4.0");
     // Two slabs with the bur wedged between them, the second turned about the bur's own axis.

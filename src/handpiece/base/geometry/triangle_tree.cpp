@@ -2,9 +2,6 @@
 #include "handpiece/base/geometry/triangle_tree.h"
 
 #include <cmath>
-#include <numbers>
-
-#include "handpiece/base/core/portable_math.h"
 
 namespace handpiece::geometry {
 namespace {
@@ -246,40 +243,6 @@ RayMeeting TriangleTree::firstMeeting(const Vec3& origin, const Vec3& direction,
         }
     }
     return first;
-}
-
-double TriangleTree::windingNumber(const Vec3& p) const noexcept {
-    // Farther than this many radii a subtree is one dipole: error below 1 % of its own solid angle.
-    constexpr double kFar = 2.3;
-    double solidAngle = 0.0;
-    std::int32_t stack[kStackSize];
-    int top = 0;
-    stack[top++] = 0;
-    while (top > 0) {
-        const auto index = static_cast<std::size_t>(stack[--top]);
-        const TreeNode& node = nodes_[index];
-        for (std::size_t lane = 0; lane < node.lanes; ++lane) {
-            const double* dipole = &dipoles_[8 * (8 * index + lane)];
-            const Vec3 away = Vec3(dipole[3], dipole[4], dipole[5]) - p;
-            const double distance = away.norm();
-            if (distance > kFar * dipole[6]) {
-                solidAngle += away.dot(Vec3(dipole[0], dipole[1], dipole[2])) / (distance * distance * distance);
-            } else if (node.child[lane] >= 0) {
-                stack[top++] = node.child[lane];
-            } else {
-                const auto first = static_cast<std::size_t>(~node.child[lane]);
-                for (std::size_t i = first; i < first + node.count[lane]; ++i) {
-                    // Van Oosterom & Strackee 1983.
-                    const Vec3 a = load(triangles_[i].a) - p;
-                    const Vec3 b = a + load(triangles_[i].ab), c = a + load(triangles_[i].ac);
-                    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-                    solidAngle += 2.0 * core::atan2(a.dot(b.cross(c)),
-                                                    la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-                }
-            }
-        }
-    }
-    return solidAngle / (4.0 * std::numbers::pi);
 }
 
 }  // namespace handpiece::geometry

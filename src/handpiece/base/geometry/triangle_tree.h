@@ -55,9 +55,6 @@ class TriangleTree {
     [[nodiscard]] RayMeeting firstMeeting(const core::Vec3& origin, const core::Vec3& direction,
                                           double farMm = std::numeric_limits<double>::infinity()) const noexcept;
 
-    /// Generalised winding number (Jacobson 2013; tree acceleration after Barill 2018): about 1 inside, 0 outside.
-    [[nodiscard]] double windingNumber(const core::Vec3& p) const noexcept;
-
     [[nodiscard]] std::span<const TreeNode> nodes() const noexcept { return nodes_; }  ///< node 0 is the root
     [[nodiscard]] std::span<const TreeTriangle> triangles() const noexcept { return triangles_; }
     [[nodiscard]] const core::Box& bounds() const noexcept { return bounds_; }
@@ -67,11 +64,9 @@ class TriangleTree {
 
   private:
     void fillTriangles(const TriangleMesh& mesh, std::span<const std::uint32_t> order);
-    void computeDipoles();
     std::vector<TreeNode> nodes_;
     std::vector<TreeTriangle> triangles_;
     std::vector<float> pseudonormals_;
-    std::vector<double> dipoles_;  ///< per node lane: area-weighted normal (3), centre (3), radius (1), area(1)
     core::Box bounds_;
 };
 

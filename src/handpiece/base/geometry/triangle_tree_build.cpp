@@ -403,7 +403,6 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) : bounds_(checkedBounds(mes
     for (std::size_t i = 0; i < faces; ++i)
         order[i] = items[i].triangle;
     fillTriangles(mesh, order);
-    computeDipoles();
 }
 
 void TriangleTree::fillTriangles(const TriangleMesh& mesh, std::span<const std::uint32_t> order) {
@@ -425,60 +424,6 @@ void TriangleTree::fillTriangles(const TriangleMesh& mesh, std::span<const std::
             out.thin = ab.cross(ac).norm() > kThin * longest2 ? 0u : 1u;
         }
     });
-}
-
-/// What a leaf's triangles, or a child's lanes, are from afar: normal (3), centre (3), radius (set by the caller),
-/// area.
-void TriangleTree::computeDipoles() {
-    dipoles_.assign(64 * nodes_.size(), 0.0);
-    const auto finish = [&](std::size_t i, std::size_t lane, const Vec3& normal, const Vec3& moment, double area) {
-        const TreeNode& node = nodes_[i];
-        const Vec3 low(node.minX[lane], node.minY[lane], node.minZ[lane]),
-            high(node.maxX[lane], node.maxY[lane], node.maxZ[lane]);
-        const Vec3 centre = area > 0.0 ? Vec3(moment / area) : Vec3(0.5 * (low + high));
-        double* d = &dipoles_[8 * (8 * i + lane)];
-        for (int k = 0; k < 3; ++k) {
-            d[k] = normal[k];
-            d[3 + k] = centre[k];
-        }
-        d[6] = (high - centre).cwiseMax(centre - low).norm();
-        d[7] = area;
-    };
-    core::parallelFor(nodes_.size(), 512, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            for (std::size_t lane = 0; lane < nodes_[i].lanes; ++lane) {
-                if (nodes_[i].child[lane] >= 0) continue;
-                Vec3 normal = Vec3::Zero(), moment = Vec3::Zero();
-                double area = 0.0;
-                const auto first = static_cast<std::size_t>(~nodes_[i].child[lane]);
-                for (std::size_t t = first; t < first + nodes_[i].count[lane]; ++t) {
-                    const TreeTriangle& tri = triangles_[t];
-                    const Vec3 a(tri.a[0], tri.a[1], tri.a[2]), ab(tri.ab[0], tri.ab[1], tri.ab[2]),
-                        ac(tri.ac[0], tri.ac[1], tri.ac[2]);
-                    const Vec3 n = 0.5 * ab.cross(ac);
-                    const double s = n.norm();
-                    normal += n;
-                    area += s;
-                    moment += s * (a + (ab + ac) / 3.0);
-                }
-                finish(i, lane, normal, moment, area);
-            }
-    });
-    // Children come after their parents: backwards, every child is ready before it is asked for.
-    for (std::size_t i = nodes_.size(); i-- > 0;)
-        for (std::size_t lane = 0; lane < nodes_[i].lanes; ++lane) {
-            if (nodes_[i].child[lane] < 0) continue;
-            const auto child = static_cast<std::size_t>(nodes_[i].child[lane]);
-            Vec3 normal = Vec3::Zero(), moment = Vec3::Zero();
-            double area = 0.0;
-            for (std::size_t k = 0; k < nodes_[child].lanes; ++k) {
-                const double* d = &dipoles_[8 * (8 * child + k)];
-                normal += Vec3(d[0], d[1], d[2]);
-                area += d[7];
-                moment += d[7] * Vec3(d[3], d[4], d[5]);
-            }
-            finish(i, lane, normal, moment, area);
-        }
 }
 
 }  // namespace handpiece::geometry

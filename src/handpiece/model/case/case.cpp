@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <string_view>
 #include <system_error>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
+#include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/case.h"
 #include "handpiece/model/case/case_files.h"
@@ -28,22 +30,17 @@ constexpr std::size_t kMostTeeth = 64;      // of a mouth: 32, and as many of an
 constexpr double kFarthestToothMm = 200.0;  // from the case's own tooth
 constexpr const char* kRemedy = "see docs/case-format.md";
 
-geometry::TriangleMesh meshOf(const CaseFiles& files, const std::string& name) {
-    return geometry::readMesh(files.read(name, geometry::kMaxMeshBytes), geometry::meshFormatOf(name),
-                              files.where(name));
-}
-
 /// What formats differ in.
 struct Reading {
     const CaseFiles& files;
     const TissueTable& tissues;
     std::int64_t format;
+    std::vector<std::string>& meshes;  ///< files named so far: each tooth's outer (empty: none), its parts
     [[nodiscard]] bool isStrict() const { return format >= 2; }
     [[nodiscard]] bool hasOthers() const { return format >= 3; }
 };
 
 Part readPart(const Table& entry, const Reading& reading, bool isScenery) {
-    const auto& [files, tissues, format] = reading;
     const bool mayBeFelt = isScenery && reading.hasOthers();
     if (mayBeFelt)
         entry.allowOnly({"name", "file", "tissue", "priority", "felt"});
@@ -57,7 +54,7 @@ Part readPart(const Table& entry, const Reading& reading, bool isScenery) {
     } catch (const core::Error& e) {
         entry.fail(e.problem(), e.remedy());
     }
-    const TissueProperties& row = tissues.of(part.tissue);
+    const TissueProperties& row = reading.tissues.of(part.tissue);
     part.name = entry.text("name").value_or(std::string(row.name));
     const std::int64_t priority = entry.integer("priority").value_or(row.priority);
     if (priority < -kMaxPriority || priority > kMaxPriority)
@@ -65,7 +62,7 @@ Part readPart(const Table& entry, const Reading& reading, bool isScenery) {
                    "priority");
     part.priority = static_cast<int>(priority);
     requireInside(entry, file, "file");
-    part.mesh = meshOf(files, file);
+    reading.meshes.push_back(file);
     if (mayBeFelt) part.isFelt = entry.flag("felt").value_or(false);
     return part;
 }
@@ -104,10 +101,9 @@ void readTooth(const Table& table, const Reading& reading, Tooth& tooth) {
     tooth.kind = table.text("kind").value_or("");
     tooth.fdiNumber = fdiNumberOf(table);
     tooth.buccalSign = buccalSignOf(table);
-    if (const std::string outer = table.text("outer").value_or(""); !outer.empty()) {
-        requireInside(table, outer, "outer");
-        tooth.outer = meshOf(reading.files, outer);
-    }
+    const std::string outer = table.text("outer").value_or("");
+    if (!outer.empty()) requireInside(table, outer, "outer");
+    reading.meshes.push_back(outer);
     tooth.parts = readParts(table, "part", reading);
     if (reading.hasOthers()) tooth.landmarks = readLandmarks(table);
 }
@@ -142,7 +138,7 @@ std::vector<PlacedTooth> readOthers(const Table& root, const Reading& reading) {
         tooth.name = table.text("name").value_or(tooth.kind);
         tooth.inCase = readPose(table, "a tooth");
         tooth.isCuttable = table.flag("cuttable").value_or(true);
-        if (tooth.outer.triangles.empty() && tooth.parts.size() != 1)
+        if (table.text("outer").value_or("").empty() && tooth.parts.size() != 1)
             table.fail("a tooth of several parts or none, without an outer surface",
                        "name its whole surface as \"outer\"");
         const bool isTwice = tooth.fdiNumber != 0 &&
@@ -153,6 +149,36 @@ std::vector<PlacedTooth> readOthers(const Table& root, const Reading& reading) {
                        "fdi");
     }
     return others;
+}
+
+/// All meshes of a case side by side: `names` as Reading::meshes. Of several that cannot be read the first is told.
+void readMeshes(const CaseFiles& files, const std::vector<std::string>& names, Case& made) {
+    std::vector<geometry::TriangleMesh*> meshes;
+    const auto addParts = [&meshes](std::vector<Part>& parts) {
+        for (Part& part : parts)
+            meshes.push_back(&part.mesh);
+    };
+    meshes.push_back(&made.outer);
+    addParts(made.parts);
+    addParts(made.scenery);
+    for (PlacedTooth& other : made.others) {
+        meshes.push_back(&other.outer);
+        addParts(other.parts);
+    }
+    std::vector<std::exception_ptr> failures(names.size());
+    core::parallelFor(names.size(), 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            if (names[i].empty()) continue;
+            try {
+                *meshes[i] = geometry::readMesh(files.read(names[i], geometry::kMaxMeshBytes),
+                                                geometry::meshFormatOf(names[i]), files.where(names[i]));
+            } catch (const core::Error&) {
+                failures[i] = std::current_exception();
+            }
+        }
+    });
+    for (const std::exception_ptr& failure : failures)
+        if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace
@@ -221,7 +247,8 @@ Case readCaseFiles(const CaseFiles& files) {
     const fs::path fallback = isPackageName(source) ? source.stem() : source.filename();
     made.name = root.text("name").value_or(fallback.string());
     readTissueTable(root, files, made);
-    const Reading reading{files, made.tissues, version};
+    std::vector<std::string> meshes;
+    const Reading reading{files, made.tissues, version, meshes};
     readTooth(root, reading, made);
     made.scenery = readParts(root, "scenery", reading);
     if (reading.hasOthers()) made.others = readOthers(root, reading);
@@ -230,9 +257,10 @@ Case readCaseFiles(const CaseFiles& files) {
         made.opening = readPose(*opening, "the lower jaw");
     }
     if (const auto exercise = root.table("exercise")) made.exercise = readExercise(*exercise);
-    if (made.outer.triangles.empty() && made.parts.empty())
+    if (meshes.front().empty() && made.parts.empty())
         throw core::Error("the case has neither an outer surface nor a part", root.where(), kRemedy)
             .as("case-without-surface");
+    readMeshes(files, meshes, made);
     return made;
 }
 

@@ -27,7 +27,8 @@ constexpr double kNoDirectionMm = 1e-9;
 /// and half as much again, or bumps of a micron would wedge it. r is taken as half the bur's radius.
 constexpr double kSlackShare = 1.5 / 8.0;
 constexpr double kMinSlackMm = 0.0015;  // a proxy rests up to a micron inside
-constexpr std::size_t kSpineBalls = 8;
+constexpr double kApartMm = 1e-9;
+constexpr std::size_t kSpineBalls = 8, kMostCover = 24;
 
 class FieldMethod final : public Method {
   public:
@@ -54,11 +55,21 @@ class FieldMethod final : public Method {
                 for (std::size_t i = 0; i < kSpineBalls; ++i)
                     spine_.push_back(curve.balls[i * (curve.balls.size() - 1) / (kSpineBalls - 1)]);
         }
+        const double across = bur_->maxRadiusMm();
+        const auto count = static_cast<std::size_t>(
+            std::clamp(std::ceil(bur_->lengthMm() / across), 1.0, static_cast<double>(kMostCover)));
+        const double half = 0.5 * bur_->lengthMm() / static_cast<double>(count);
+        for (std::size_t i = 0; i < count; ++i)
+            cover_.push_back({0.0, (2.0 * static_cast<double>(i) + 1.0) * half, core::hypot(half, across)});
     }
 
     [[nodiscard]] const char* name() const noexcept override { return "field"; }
 
     [[nodiscard]] Depth depth(const core::Pose& burInTooth) noexcept override {
+        return depthBeyond(-std::numeric_limits<double>::infinity(), burInTooth);
+    }
+
+    [[nodiscard]] Depth depthBeyond(double floorMm, const core::Pose& burInTooth) noexcept override {
         Depth result;
         result.depthMm = -settings_.reachMm;
         if (!burInTooth.isValid()) {
@@ -67,10 +78,15 @@ class FieldMethod final : public Method {
         }
         if (isStillFar(burInTooth)) return result;
         clearMm_ = 0.0;
+        if (std::isfinite(floorMm))
+            if (const double clearMm = clearByField(burInTooth, std::max(0.0, -floorMm)); clearMm >= -floorMm) {
+                result.depthMm = std::max(-clearMm, -settings_.reachMm);
+                return result;
+            }
         if (points_ && (settings_.depthSource == DepthSource::field || isCutNear(burInTooth)))
             depthInField(burInTooth, result);
         else
-            depthOfUncut(burInTooth, result);
+            depthOfUncut(burInTooth, floorMm, result);
         if (result.status == Status::ok)
             result.tissue = live_.tissueAt(result.toothPointMm - 0.5 * live_.settings().voxelMm * result.normal);
         return result;
@@ -150,10 +166,41 @@ class FieldMethod final : public Method {
         return frame.boxAround(bur_->lengthMm(), bur_->maxRadiusMm(), byMm);
     }
 
+    /// No more than the distance, if that is `enoughMm` by the field alone: a few lookups before any triangle is asked.
+    /// Else minus infinity.
+    [[nodiscard]] double clearByField(const core::Pose& burInTooth, double enoughMm) const noexcept {
+        double clearMm = std::numeric_limits<double>::infinity();
+        for (const instrument::MedialBall& ball : cover_) {
+            const Vec3 centre = burInTooth.apply(Vec3(0.0, 0.0, ball.zMm));
+            clearMm = std::min(clearMm, live_.distance(centre) - surface_.sureMm() - ball.radiusMm);
+            if (clearMm < enoughMm) return -std::numeric_limits<double>::infinity();
+        }
+        return clearMm;
+    }
+
+    /// By the searches that have a bound: of the outline where the two are apart, and of the axis where that is all.
+    [[nodiscard]] bool isNoDeeper(const BurFrame& frame, double floorMm) noexcept {
+        BallDepth best;
+        if (outline_.isFit()) {
+            // Of one that is not apart the outline does not tell all.
+            best.depthMm = std::min(floorMm, -kApartMm);
+            return outline_.search(surface_, frame, best) == 0.0 && best.triangle == geometry::kNoTriangle;
+        }
+        best.depthMm = floorMm;
+        if (sheets_.isAny() || axis_.mayEnter(surface_, frame)) return false;
+        double mostMm = floorMm;
+        axis_.search(surface_, frame, best, mostMm);
+        return best.triangle == geometry::kNoTriangle;
+    }
+
     /// From the triangles of the uncut tooth. Cutting takes away only: where a cut may change the answer it remains a
     /// bound.
-    void depthOfUncut(const core::Pose& burInTooth, Depth& result) noexcept {
+    void depthOfUncut(const core::Pose& burInTooth, double floorMm, Depth& result) noexcept {
         const BurFrame frame(burInTooth);
+        if (std::isfinite(floorMm) && isNoDeeper(frame, floorMm)) {
+            result.depthMm = std::max(floorMm, -settings_.reachMm);
+            return;
+        }
         BallDepth best;
         double mostMm = -std::numeric_limits<double>::infinity();
         // Deeper than its radius no ball is with its centre outside.
@@ -224,6 +271,7 @@ class FieldMethod final : public Method {
     };
     std::optional<Points> points_;
     std::vector<instrument::MedialBall> spine_;  ///< some balls of the bur's axis
+    std::vector<instrument::MedialBall> cover_;  ///< balls on the axis in which all of the bur lies
     double slackMm_;                             ///< of the bur in its own cavity
     double farthestMm_, mostRadiusMm_ = 0.0;     ///< of the bur's points from its tip; of its medial balls
     core::Pose farPose_;

@@ -126,6 +126,13 @@ class Method {
         return depth(burInTooth);
     }
 
+    /// For whoever wants the deepest of several: depth(), or, where that is surely no more than `floorMm`, beyondReach
+    /// with a depth that it surely does not exceed, at least -reach and no more than `floorMm` where that is more.
+    [[nodiscard]] virtual Depth depthBeyond(double /*floorMm*/,
+                                            const core::Pose& burInTooth) noexcept HANDPIECE_REALTIME {
+        return depth(burInTooth);
+    }
+
     /// Contact patches with area and tissue at a pose. A method that knows only depth reports one patch without area.
     virtual void patches(const core::Pose& burInTooth, PatchSet& out) noexcept HANDPIECE_REALTIME;
 

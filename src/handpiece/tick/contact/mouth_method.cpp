@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/portable_math.h"
@@ -54,10 +55,10 @@ struct Pair : PlacedMethod {
     [[nodiscard]] Vec3 place(const Vec3& inTooth) const noexcept {
         return turns ? toothInScene.apply(inTooth) : inTooth;
     }
-    /// No less than the distance by what was last answered: no point of the piece has moved farther since. Of what is
-    /// not cut, whose answers are kept.
+    /// No less than the distance by what was last answered: no point of the piece has moved farther since. Where the
+    /// answer came from a field that has been cut it is none too sure.
     [[nodiscard]] double clearMm(const Pose& local) const noexcept {
-        if (cuts() || !wasAsked || method->toothVersion() != askedVersion) return 0.0;
+        if (!wasAsked || answer.slackMm > 0.0 || method->toothVersion() != askedVersion) return 0.0;
         const double armMm = core::hypot(solid->lengthMm(), solid->maxRadiusMm());
         return -answer.depthMm - core::mostMovedMm(askedAt, local, armMm);
     }
@@ -68,9 +69,10 @@ struct Pair : PlacedMethod {
     Pose sceneInTooth;
     bool moves, turns;
     Pose askedAt;  // many ask for depth at one pose
+    double askedFloorMm = 0.0;
     std::uint64_t askedVersion = 0;
     bool wasAsked = false;
-    Depth answer;
+    Depth answer;  // Method::depthBeyond(askedFloorMm)
 
   private:
     [[nodiscard]] double gapOf(const Pose& local) const noexcept {
@@ -203,7 +205,7 @@ class MouthMethod final : public Method {
         for (Pair& pair : soft_) {
             const auto& [local, gapMm] = pair.at(bur);
             if (gapMm > 0.0) continue;
-            const Depth d = pair.method->depth(local);
+            const Depth d = pair.method->depthBeyond(0.0, local);
             if (d.status == Status::ok && d.depthMm > 0.0)
                 out.pushBack({pair.direction(d.normal), d.depthMm, pair.place(d.toothPointMm), d.tissue, pair.piece});
         }
@@ -268,6 +270,7 @@ class MouthMethod final : public Method {
         for (Pair& pair : soft_)
             pair.method->reset();
         hasLooked_ = false;
+        decided_ = kMaxPlaced;
     }
 
   private:
@@ -290,11 +293,15 @@ class MouthMethod final : public Method {
         hasLooked_ = true;
     }
 
-    /// Of what is not cut one depth serves all who ask at a pose.
-    [[nodiscard]] const Depth& depthOf(Pair& pair, const Pose& local) noexcept {
+    /// As Method::depthBeyond(). Of what is not cut one depth serves all who ask at a pose.
+    [[nodiscard]] const Depth& depthOf(Pair& pair, const Pose& local, double floorMm) noexcept {
         const std::uint64_t version = pair.method->toothVersion();
-        if (!pair.wasAsked || pair.cuts() || version != pair.askedVersion || !isSame(local, pair.askedAt)) {
-            pair.answer = pair.method->depth(local);
+        const bool isKnown =
+            pair.wasAsked && !pair.cuts() && version == pair.askedVersion && isSame(local, pair.askedAt) &&
+            (pair.answer.status == Status::ok || pair.askedFloorMm <= floorMm || pair.answer.depthMm <= floorMm);
+        if (!isKnown) {
+            pair.answer = pair.method->depthBeyond(floorMm, local);
+            pair.askedFloorMm = floorMm;
             pair.askedAt = local;
             pair.askedVersion = version;
             pair.wasAsked = true;
@@ -303,7 +310,7 @@ class MouthMethod final : public Method {
     }
     Status ofPiece(Pair& pair, const Pose& local, double reachMm, ConstraintSet& out) noexcept {
         out.clear();
-        const Depth& d = depthOf(pair, local);
+        const Depth& d = depthOf(pair, local, -reachMm);
         if (d.status != Status::ok) return d.status;
         if (-d.depthMm <= reachMm) out.pushBack({d.normal, -d.depthMm, d.toothPointMm, d.tissue});
         return Status::ok;
@@ -317,8 +324,8 @@ class MouthMethod final : public Method {
             return best;
         }
         lookAround(bur);
-        // The nearest first, by their boxes or by what was last answered: whoever is farther than what was found cannot
-        // be deeper.
+        // Who decided last is asked first, then the nearest, by their boxes or by what was last answered: whoever is
+        // farther than what was found cannot be deeper, and the others are only asked whether they are.
         struct Candidate {
             double atLeastMm;
             std::uint16_t pair;
@@ -331,17 +338,23 @@ class MouthMethod final : public Method {
             if (atLeastMm <= reachMm_) order[count++] = {atLeastMm, near_[n]};
         }
         std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
-                  [](const Candidate& a, const Candidate& b) {
+                  [this](const Candidate& a, const Candidate& b) {
+                      if (a.pair == decided_ || b.pair == decided_) return a.pair == decided_ && b.pair != decided_;
                       return a.atLeastMm != b.atLeastMm ? a.atLeastMm < b.atLeastMm : a.pair < b.pair;
                   });
         const Pair* decides = nullptr;
-        for (std::size_t n = 0; n < count && !(decides != nullptr && order[n].atLeastMm > -best.depthMm); ++n) {
+        for (std::size_t n = 0; n < count; ++n) {
+            // Boxes that meet say nothing.
+            if (decides != nullptr && order[n].atLeastMm > std::max(0.0, -best.depthMm)) break;
             Pair& pair = pairs_[order[n].pair];
             const Pose& local = pair.at(bur).local;
-            const Depth found = enoughMm != nullptr ? pair.method->depthUpTo(*enoughMm, local) : depthOf(pair, local);
+            const double floorMm = decides != nullptr ? best.depthMm : -std::numeric_limits<double>::infinity();
+            const Depth found =
+                enoughMm != nullptr ? pair.method->depthUpTo(*enoughMm, local) : depthOf(pair, local, floorMm);
             if (decides != nullptr && !(found.depthMm > best.depthMm)) continue;
             best = found;
             decides = &pair;
+            decided_ = order[n].pair;
         }
         if (decides == nullptr) return best;
         best.normal = decides->direction(best.normal);
@@ -357,6 +370,7 @@ class MouthMethod final : public Method {
     std::vector<std::uint16_t> cutting_;  ///< pairs of the bur with teeth that it cuts
     std::array<std::uint16_t, kMaxPlaced> near_{};
     std::size_t nearCount_ = 0;
+    std::size_t decided_ = kMaxPlaced;  ///< pair that was deepest when last asked
     Pose lookedAt_;
     bool hasLooked_ = false;
     std::array<ConstraintSet, kMaxSets> sets_;

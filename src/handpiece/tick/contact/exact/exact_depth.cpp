@@ -151,12 +151,17 @@ void AxisSearch::search(const ExactSurface& surface, const BurFrame& frame, Ball
         std::uint32_t& seed = seeds_[std::min(i, kMaxSeeds - 1)];
         SurfaceHit hit;
         // The bound is that of balls outside: an axis in the tooth must still find its nearest triangle.
-        hit.value = std::numeric_limits<double>::infinity();
+        const bool isOutside = std::isfinite(best.depthMm) && !mayEnter(surface, frame, run);
+        hit.value = isOutside ? -best.depthMm : std::numeric_limits<double>::infinity();
         hit.triangle = seed;
         surface.kernels().nearestToRun(surface.view(), run.plain, frame.tip.data(), frame.z.data(), hit);
         if (hit.triangle == kNoTriangle) continue;
         seed = hit.triangle;
         const Vec3 centre = frame.onAxis(hit.z), point = vectorOf(hit.point);
+        if (isOutside) {
+            if (-hit.value > best.depthMm) best = {-hit.value, centre, point, hit.triangle, hit.feature, false};
+            continue;
+        }
         const double distance = (centre - point).norm();
         bool mayEnter = distance < kSamePlaceMm;
         if (!mayEnter && !run.constant) {
@@ -183,15 +188,17 @@ void AxisSearch::search(const ExactSurface& surface, const BurFrame& frame, Ball
 }
 
 bool AxisSearch::mayEnter(const ExactSurface& surface, const BurFrame& frame) const noexcept {
-    return std::any_of(runs_.begin(), runs_.end(), [&](const Run& run) {
-        // A distance clears the axis that far on.
-        for (double z = run.z.front();;) {
-            const double clear = surface.farBound(frame.onAxis(z));
-            if (clear < surface.sureMm()) return true;
-            if (z + clear >= run.z.back()) return false;
-            z += clear;
-        }
-    });
+    return std::any_of(runs_.begin(), runs_.end(), [&](const Run& run) { return mayEnter(surface, frame, run); });
+}
+
+bool AxisSearch::mayEnter(const ExactSurface& surface, const BurFrame& frame, const Run& run) noexcept {
+    // A distance clears the axis that far on.
+    for (double z = run.z.front();;) {
+        const double clear = surface.farBound(frame.onAxis(z));
+        if (clear < surface.sureMm()) return true;
+        if (z + clear >= run.z.back()) return false;
+        z += clear;
+    }
 }
 
 namespace {

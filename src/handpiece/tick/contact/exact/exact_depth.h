@@ -60,7 +60,7 @@ class AxisSearch {
   public:
     explicit AxisSearch(const instrument::Bur& bur);
 
-    /// Raises `best` to the deepest ball of the axis, within kDepthToleranceMm; `mostMm` to what one that was not seen
+    /// Raises `best` to the deepest ball of the axis, within kDepthToleranceMm, if that is deeper; `mostMm` to what one that was not seen
     /// could have, where the work ended first. Seeds only save time.
     void search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best, double& mostMm) noexcept;
     /// False when all of its balls have their centres outside the tooth.
@@ -79,6 +79,7 @@ class AxisSearch {
         bool constant = false;
     };
     void addRun(const std::vector<instrument::MedialBall>& balls);
+    [[nodiscard]] static bool mayEnter(const ExactSurface& surface, const BurFrame& frame, const Run& run) noexcept;
     void searchInside(const ExactSurface& surface, const Run& run, const BurFrame& frame, const SurfaceHit& first,
                       BallDepth& best, double& mostMm) const noexcept;
 

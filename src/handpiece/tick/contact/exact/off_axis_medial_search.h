@@ -25,6 +25,8 @@ class OffAxisMedialSearch {
     OffAxisMedialSearch(std::shared_ptr<const MedialSheets> sheets, const field::DistanceField& field,
                         core::SimdLevel level);
 
+    /// False where the axis says all, to within kCoveredMm.
+    [[nodiscard]] bool isAny() const noexcept { return !sheets_->searched.empty(); }
     /// Whether a ball of a sheet is that deep for sure: a lookup each.
     [[nodiscard]] bool isDeep(const ExactSurface& surface, const BurFrame& frame, double depthMm) const noexcept;
     /// Raises `best` to the deepest ball of all sheets; with `outsideKnown` at least to the deepest of those with their

@@ -94,18 +94,19 @@ OutlineSearch::OutlineSearch(const instrument::Bur& bur, core::SimdLevel level)
 
 double OutlineSearch::search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) noexcept {
     OutlineHit hit;
-    hit.distance = std::numeric_limits<double>::infinity();
+    hit.distance = -best.depthMm;
     hit.triangle = seed_;
     nearest_(surface.view(), *outline_, frame.tip.data(), frame.z.data(), hit);
     constexpr double kAny = std::numeric_limits<double>::infinity();
-    if (hit.triangle == geometry::kNoTriangle) return kAny;
-    seed_ = hit.triangle;
-    best.depthMm = -hit.distance;
-    best.surfaceMm = Vec3(hit.point[0], hit.point[1], hit.point[2]);
-    // Somewhere on the way to the ball's centre: which of the balls there it is does not matter.
-    best.centreMm = best.surfaceMm + Vec3(hit.inwards[0], hit.inwards[1], hit.inwards[2]);
-    best.triangle = hit.triangle;
-    best.inside = false;
+    if (hit.triangle != geometry::kNoTriangle) {
+        seed_ = hit.triangle;
+        best.depthMm = -hit.distance;
+        best.surfaceMm = Vec3(hit.point[0], hit.point[1], hit.point[2]);
+        // Somewhere on the way to the ball's centre: which of the balls there it is does not matter.
+        best.centreMm = best.surfaceMm + Vec3(hit.inwards[0], hit.inwards[1], hit.inwards[2]);
+        best.triangle = hit.triangle;
+        best.inside = false;
+    }
     // A bur that lies in the tooth may meet little of its surface, or none.
     if (!(surface.farBound(frame.onAxis(outline_->middleZ)) > surface.sureMm())) return kAny;
     if (hit.distance > 0.0) return 0.0;

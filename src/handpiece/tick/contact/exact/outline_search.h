@@ -28,8 +28,8 @@ class OutlineSearch {
 
     /// Whether this bur can be searched for so: convex, of few pieces, and with sheets worth sparing.
     [[nodiscard]] bool isFit() const noexcept { return outline_ != nullptr; }
-    /// Sets `best` to - min of phiB over the surface, and returns how large a ball with its centre in the tooth can be
-    /// [mm]: 0 where the two are apart, for then this is all; infinity where that is not known.
+    /// Raises `best` to - min of phiB over the surface, and returns how large a ball with its centre in the tooth that
+    /// is deeper can be [mm]: 0 where the two are apart, for then this is all; infinity where that is not known.
     [[nodiscard]] double search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best) noexcept;
     void reset() noexcept { seed_ = geometry::kNoTriangle; }
 

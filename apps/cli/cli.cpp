@@ -41,6 +41,7 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods, c
     addXrayCommand(top);
     addExerciseCommand(top);
     addRubricCommand(top);
+    addScoreCommand(top);
     addAgreeCommand(top);
     addReproduceCommand(top);
     addBenchCommand(top);

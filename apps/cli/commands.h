@@ -28,6 +28,7 @@ void addScanCommand(Command& app);
 void addXrayCommand(Command& app);
 void addExerciseCommand(Command& app);
 void addRubricCommand(Command& app);
+void addScoreCommand(Command& app);
 void addAgreeCommand(Command& app);
 
 }  // namespace handpiece::cli

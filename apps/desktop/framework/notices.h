@@ -52,6 +52,7 @@ enum class Notice {
     otherEngine,
     caseVanished,
     cacheRenewed,
+    cacheNotKept,
     saved,
     translationMissing,
     openGlMissing

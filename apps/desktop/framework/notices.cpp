@@ -35,7 +35,7 @@ struct Row {
 // In the order of Notice.
 constexpr Row kRows[] = {
     {Notice::recordingStopped, "recording-stopped", Kind::error,
-     QT_TRANSLATE_NOOP("Notices", "This session is not being recorded: %1")},
+     QT_TRANSLATE_NOOP("Notices", "This session is not being recorded: %1"), only(End::recorded)},
     {Notice::pulpExposed, "pulp-exposed", Kind::error, QT_TRANSLATE_NOOP("Notices", "The pulp is exposed."),
      End::toothOpened | End::pulpHealed},
     {Notice::forceLimited, "force-limited", Kind::hint,

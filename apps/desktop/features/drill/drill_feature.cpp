@@ -79,12 +79,12 @@ void DrillFeature::addDocks() {
                 {Detail::laboratory, Qt::LeftDockWidgetArea, 20, 510},
                 {Detail::paper, Qt::LeftDockWidgetArea, 20, 510}}},
               bar_);
-    docks.add(
-        {"gaugeDock",
-         tr("Pressure"),
-         40,
-         {{Detail::practice, Qt::RightDockWidgetArea, 30, 84}, {Detail::laboratory, Qt::RightDockWidgetArea, 70, 110}}},
-        gauge_);
+    docks.add({"gaugeDock",
+               tr("Pressure"),
+               40,
+               {{Detail::practice, Qt::RightDockWidgetArea, 30, 0, nullptr, 0, false},
+                {Detail::laboratory, Qt::RightDockWidgetArea, 70, 0, nullptr, 0, false}}},
+              gauge_);
     docks.add(
         {"parameterDock",
          tr("Parameters"),

@@ -82,13 +82,13 @@ MeasureFeature::MeasureFeature(const FeatureContext& context)
     docks.add({"measureDock",
                tr("Measure"),
                50,
-               {{Detail::practice, Qt::RightDockWidgetArea, 40, 360},
+               {{Detail::practice, Qt::RightDockWidgetArea, 40, 0, nullptr, 0, false},
                 {Detail::laboratory, Qt::RightDockWidgetArea, 50, 480, "parameterDock"}}},
               box_);
     docks.add({"volumesDock",
                tr("Removed"),
                60,
-               {{Detail::practice, Qt::RightDockWidgetArea, 50, 160},
+               {{Detail::practice, Qt::RightDockWidgetArea, 50, 140},
                 {Detail::laboratory, Qt::BottomDockWidgetArea, 90, 290, nullptr, 230}}},
               volumes_);
     docks.add({"plotDock", tr("Plots"), 90, {{Detail::laboratory, Qt::BottomDockWidgetArea, 80, 290, nullptr, 620}}},

@@ -224,13 +224,20 @@ class Desk:
 
     # Seeing.
 
+    def pixels(self, name="view"):
+        x, y, width, height = map(round, self.widgets()[name])
+        return subprocess.run(["import", "-window", "root", "-crop", f"{width}x{height}+{x}+{y}", "-depth", "8", "rgb:-"],
+                              env=self.environment, check=True, capture_output=True).stdout
+
+    def changed(self, since, name="view"):
+        """Waits until a widget's picture is another than it was."""
+        self.until(lambda: self.pixels(name) != since, f"another picture in {name}")
+
     def still(self, name="view", seconds=20):
         """Waits until a widget's picture stays as it is: refined at rest."""
         before, deadline = None, time.monotonic() + seconds
         while time.monotonic() < deadline:
-            x, y, width, height = map(round, self.widgets()[name])
-            seen = subprocess.run(["import", "-window", "root", "-crop", f"{width}x{height}+{x}+{y}", "-depth", "8",
-                                   "rgb:-"], env=self.environment, check=True, capture_output=True).stdout
+            seen = self.pixels(name)
             if seen == before:
                 return
             before = seen

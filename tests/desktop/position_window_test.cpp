@@ -118,6 +118,28 @@ TEST_F(PositionTest, TheRecordSaysFromWhereAndHow) {
     }));
 }
 
+TEST_F(PositionTest, ARecordingThatGoesOnAfterAReplayDoesNotCountWhatWasBefore) {
+    openPanel();
+    click(11);
+    action("actionMirrorView")->trigger();
+    ASSERT_TRUE(waitFor([this] { return simulator().status().recording.writtenRecords > 0; }));
+    const std::filesystem::path recording = simulator().recording();
+    simulator().replayThis();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
+    simulator().closeReplay();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
+    ASSERT_EQ(simulator().recording(), recording);
+    EXPECT_FALSE(view()->isMirrorView());
+    ASSERT_TRUE(waitFor([&] {
+        QTest::qWait(300);
+        std::string last;
+        const session::SessionReader reader(recording);
+        for (const session::Event& event : reader.events())
+            if (event.name == "working way") last = event.text;
+        return last == R"({"position": 0, "mirror_only": false, "finger_rest": false})";
+    }));
+}
+
 TEST_F(PositionTest, AToothThatStandsAloneHasNoFingerRest) {
     startWithTooth();
     EXPECT_FALSE(action("actionFingerRest")->isEnabled());

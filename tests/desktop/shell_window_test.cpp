@@ -136,6 +136,18 @@ TEST_F(ShellTest, AsksBeforeUnsavedWorkGoes) {
     EXPECT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !window().isVisible(); }));
 }
 
+TEST_F(ShellTest, OneCloseClosesATooth) {
+    startWithTooth();
+    window().close();
+    EXPECT_FALSE(window().isVisible());
+    startWithTooth();
+    ASSERT_TRUE(cut());
+    answer_ = Questions::Unsaved::discard;
+    action("actionQuit")->trigger();
+    EXPECT_EQ(asked_, 1);
+    EXPECT_FALSE(window().isVisible());
+}
+
 TEST_F(ShellTest, WhatIsOpenedWhileAnotherToothIsOpeningIsNotLost) {
     const fs::path first = at("first"), last = at("last");
     for (const fs::path& place : {first, last}) {
@@ -648,6 +660,28 @@ TEST_F(ShellTest, TheChartOpensAnyToothOfTheMouthAndSaysWhatWasMadeAnew) {
     simulator().cancelJob();
     ASSERT_TRUE(idle());
     EXPECT_EQ(simulator().toothCase()->fdiNumber, 23);
+}
+
+TEST_F(ShellTest, AToothThatCannotBeKeptIsOpenedAllTheSameSavedAndReadBack) {
+    core::writeFile(at("file"), std::string("no folder"));
+    Simulator::Options mine = options();
+    mine.folders.starters = at("file") / "starter";
+    mine.starter = {11, {}, 4000, false};
+    host_ = std::make_unique<Host>(*qApp, CommandLine{}, mine);
+    host_->start();
+    QStringList told;
+    QObject::connect(&simulator(), &Simulator::noticed, [&](const QString& id) { told << id; });
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
+    EXPECT_EQ(told.count("cache-not-kept"), 1);
+    EXPECT_EQ(simulator().toothCase()->fdiNumber, 11);
+    // What is saved of it is the tooth that was open, bit for bit.
+    const std::uint64_t key = cases::contentKey(*simulator().toothCase());
+    simulator().saveAs(at("kept.handpiece"));
+    ASSERT_TRUE(idle());
+    simulator().open(at("kept.handpiece"));
+    ASSERT_TRUE(waitFor([&] { return simulator().document().attemptFile == at("kept.handpiece"); }));
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(cases::contentKey(*simulator().toothCase()), key);
 }
 
 TEST_F(ShellTest, TheChartShowsTheCasesOfAFolderAtTheirTeeth) {

@@ -789,6 +789,24 @@ TEST_F(ViewTest, TheCardOfKeysComesAndGoes) {
     EXPECT_TRUE(shown);
 }
 
+TEST_F(ViewTest, GingivaThatWasCutBleedsUntilItIsStanched) {
+    messages::HapticSample sample;
+    sample.timeS = 1.0;
+    view_.setSample(sample);
+    EXPECT_FALSE(view_.isBleeding());
+    sample.timeS = 2.0;
+    sample.flags = messages::kCutsGingiva;
+    view_.setSample(sample);
+    EXPECT_TRUE(QTest::qWaitFor([this] { return view_.isBleeding(); }));
+    sample.timeS = 3.0;
+    sample.flags = 0;
+    view_.setSample(sample);
+    QTest::qWait(50);
+    EXPECT_TRUE(view_.isBleeding());
+    view_.clearBlood();
+    EXPECT_TRUE(QTest::qWaitFor([this] { return !view_.isBleeding(); }));
+}
+
 TEST_F(ViewTest, InAReplayMouseAndKeysTurnTheViewOnly) {
     view_.setPointer(nullptr, {});
     EXPECT_EQ(view_.hand(), nullptr);

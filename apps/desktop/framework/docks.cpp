@@ -59,9 +59,11 @@ void Docks::arrange(Detail detail) {
             window_->tabifyDockWidget(byName(place.tabbedWith), dock);
         } else {
             untabbed << dock;
+            dock->setSizePolicy(QSizePolicy::Preferred, place.grows ? QSizePolicy::Preferred : QSizePolicy::Maximum);
+            const int size = place.size > 0 ? place.size : dock->sizeHint().height();
             // On a low screen the picture keeps its share.
             const bool isBelow = place.area == Qt::BottomDockWidgetArea;
-            heights << (isBelow ? std::min(place.size, window_->height() * 3 / 10) : place.size);
+            heights << (isBelow ? std::min(size, window_->height() * 3 / 10) : size);
         }
         if (place.width > 0) {
             below << dock;

@@ -18,9 +18,10 @@ struct DockPlace {
     Detail detail;
     Qt::DockWidgetArea area;
     int at;                            ///< in this order, from top to bottom
-    int size;                          ///< of its share of the area [pixels]
+    int size;                          ///< of its share of the area [pixels]; 0: what it needs
     const char* tabbedWith = nullptr;  ///< null: beside the others
     int width = 0;                     ///< of its share below the picture [pixels]; 0: as it comes
+    bool grows = true;                 ///< where the area is higher than all need
 };
 struct DockRow {
     const char* name;  ///< "drillDock"; docs/desktop-objects.md lists them

@@ -185,8 +185,9 @@ void MainWindow::closeEvent(QCloseEvent* event) {
         closing_ = true;
         rememberAll();
         closeWork();
-        close();
+        close();  // of use when something was saved or awaited first: within its own event Qt passes it over
     });
+    event->setAccepted(closing_);
 }
 
 void MainWindow::changeEvent(QEvent* event) {

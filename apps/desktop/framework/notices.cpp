@@ -35,7 +35,7 @@ struct Row {
 // In the order of Notice.
 constexpr Row kRows[] = {
     {Notice::recordingStopped, "recording-stopped", Kind::error,
-     QT_TRANSLATE_NOOP("Notices", "This session is not being recorded: %1")},
+     QT_TRANSLATE_NOOP("Notices", "This session is not being recorded: %1"), only(End::recorded)},
     {Notice::pulpExposed, "pulp-exposed", Kind::error, QT_TRANSLATE_NOOP("Notices", "The pulp is exposed."),
      End::toothOpened | End::pulpHealed},
     {Notice::forceLimited, "force-limited", Kind::hint,
@@ -115,6 +115,8 @@ constexpr Row kRows[] = {
      0, QT_TRANSLATE_NOOP("Notices", "Save as...")},
     {Notice::cacheRenewed, "cache-renewed", Kind::hint,
      QT_TRANSLATE_NOOP("Notices", "What was kept at %1 could not be used: it is made anew.")},
+    {Notice::cacheNotKept, "cache-not-kept", Kind::warning,
+     QT_TRANSLATE_NOOP("Notices", "The tooth cannot be kept in %1: the next start makes it again. %2")},
     {Notice::saved, "saved", Kind::hint, QT_TRANSLATE_NOOP("Notices", "Saved: %1")},
     {Notice::translationMissing, "translation-missing", Kind::warning,
      QT_TRANSLATE_NOOP("Notices", "There is no translation into this language: the window speaks English.")},
@@ -173,6 +175,7 @@ Notices::Notices(NoticeBar* bar) : QObject(bar), bar_(bar) {
 
 void Notices::tell(Notice notice, const QStringList& arguments) {
     const Row& row = rowOf(notice);
+    if (notice == Notice::neighbourCut) remove(Notice::neighbourTouched);  // that it was touched as well is no news
     bar_->add({idOf(notice), row.kind, noticeText(notice, arguments), words(row.remedy), words(row.later)});
     if (row.kind != Kind::hint) return;
     // A hint goes by itself: what was refused or saved a while ago is no news.

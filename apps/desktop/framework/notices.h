@@ -52,6 +52,7 @@ enum class Notice {
     otherEngine,
     caseVanished,
     cacheRenewed,
+    cacheNotKept,
     saved,
     translationMissing,
     openGlMissing
@@ -67,6 +68,7 @@ enum class End : unsigned {
     troubleOver = 32,
     pedalThere = 64,
     crashSettled = 128,
+    recorded = 256,  ///< again
 };
 
 /// Its name for scripts and for what a library tells: "device-lost".

@@ -21,8 +21,8 @@ const QColor kGround(18, 21, 26, 190), kEdge(255, 255, 255, 36), kText(238, 240,
     kLine(255, 214, 90), kSectionLine(110, 200, 255), kLandmark(120, 235, 170), kInside(255, 150, 190);
 constexpr double kMargin = 12.0, kPad = 8.0, kRound = 6.0, kLeashPixels = 6.0, kDepthScaleWidth = 90.0;
 // Of the picture's height at most: else it hides more than it tells. And what a fitted tooth leaves free above it.
-constexpr double kLegendShare = 0.4, kHalfLegendShare = 0.25, kLegendWidthShare = 0.085, kFittedMargin = 0.095,
-                 kRowPixels = 54.0;
+constexpr double kLegendShare = 0.4, kHalfLegendShare = 0.25, kLegendWidthShare = 0.142, kLegendNameShare = 0.085,
+                 kLegendLeast = 0.6, kFittedMargin = 0.095, kRowPixels = 54.0;
 
 struct Texts {
     Q_DECLARE_TR_FUNCTIONS(Overlay)
@@ -153,12 +153,14 @@ void legend(QPainter& p, const QRectF& area, const OverlayState& state) {
     double width = 0.0;
     for (const view::LegendEntry& entry : state.legend)
         width = std::max(width, metrics.horizontalAdvance(tissueText(entry.tissue)));
-    width = std::min(width, kLegendWidthShare * area.width());  // long names are cut in a small window
+    // Long names are cut in a small window; in one where little would be left of them there is none.
+    const double beside = 24 + 2 * kPad, whole = width;
+    width = std::min(width, std::max(kLegendNameShare * area.width(), kLegendWidthShare * area.width() - beside));
+    if (width < kLegendLeast * whole) return p.restore();
     const double row = metrics.height() + 4;
     const double height = row * static_cast<double>(state.legend.size()) + 2 * kPad - 4;
     if (height > (state.compare ? kHalfLegendShare : kLegendShare) * area.height()) return p.restore();
-    const QRectF box(area.right() - kMargin - width - 24 - 2 * kPad, area.bottom() - kMargin - height,
-                     width + 24 + 2 * kPad, height);
+    const QRectF box(area.right() - kMargin - width - beside, area.bottom() - kMargin - height, width + beside, height);
     paintPanel(p, box);
     double y = box.top() + kPad;
     for (const view::LegendEntry& entry : state.legend) {

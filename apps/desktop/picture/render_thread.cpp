@@ -106,6 +106,7 @@ struct RenderThread::Shared {
     bool newTooth = false, newBur = false, newTurbine = false, newFace = false, newRequest = false, stanched = false;
 
     messages::HapticSample sample;  ///< the newest seen
+    bool bleeding = false;          ///< the tooth that is shown now
     std::optional<Frame> ready;
     QString description;
 
@@ -229,6 +230,7 @@ Frame RenderThread::Worker::draw() {
     Frame frame;
     frame.camera = renderRequest.camera;
     frame.sample = sample;
+    frame.compare = renderRequest.compare;
     std::unique_ptr<view::Image> image = pictures->take();
     if (!renderRequest.compare) {
         frame.report = renderer->draw(renderRequest.camera, pixels(renderRequest.size), lookNow(), momentNow(), *image);
@@ -376,6 +378,7 @@ void RenderThread::run() {
                 worker.removalMm3S =
                     dt > 0.0 ? std::max(0.0, removedMm3(worker.sample) - removedMm3(earlier)) / dt : 0.0;
             }
+            shared_->bleeding = !worker.bleedingMm.empty();
         }
         const auto now = Clock::now();
         if (worker.feed && fresh) {
@@ -494,6 +497,11 @@ void RenderThread::setSample(const messages::HapticSample& sample) {
 
 void RenderThread::clearBlood() {
     tell(*shared_, [](Shared& s) { s.stanched = true; });
+}
+
+bool RenderThread::isBleeding() const {
+    const std::lock_guard lock(shared_->mutex);
+    return shared_->bleeding;
 }
 
 void RenderThread::setRequest(const RenderRequest& renderRequest) {

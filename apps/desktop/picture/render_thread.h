@@ -31,6 +31,7 @@ struct Frame {
     view::Camera camera;
     view::FrameReport report;
     messages::HapticSample sample;
+    bool compare = false;                                ///< before and now beside each other
     LatencyMeter::Clock::time_point seen, begun, drawn;  ///< the sample; the drawing's begin and end
 };
 
@@ -68,6 +69,7 @@ class RenderThread {
     void setSample(const messages::HapticSample& sample);
     /// Gingiva that was cut bleeds in the picture until then.
     void clearBlood();
+    [[nodiscard]] bool isBleeding() const;
     void setRequest(const RenderRequest& renderRequest);
     /// The section that is shown; its plane is the cut-away's. Any thread.
     void setSectionFace(std::optional<view::SectionFace> face);

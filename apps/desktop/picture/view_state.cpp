@@ -298,7 +298,8 @@ OverlayState ViewWidget::State::overlay() const {
         return state;
     }
     state.camera = frame ? frame->camera : camera;
-    state.compare = compare;
+    // What is written goes with the picture, which comes a while after it was asked for.
+    state.compare = frame ? frame->compare : compare;
     state.tool = tool;
     state.covered = strips->covered();
     if (legendShown && allows(Operation::tissueColours)) {

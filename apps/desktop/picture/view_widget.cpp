@@ -153,6 +153,9 @@ void ViewWidget::setSample(const messages::HapticSample& sample) {
 void ViewWidget::clearBlood() {
     state_->render->clearBlood();
 }
+bool ViewWidget::isBleeding() const {
+    return state_->render->isBleeding();
+}
 messages::HapticSample ViewWidget::sample() const {
     return state_->render->sample();
 }

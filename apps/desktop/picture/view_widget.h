@@ -60,6 +60,7 @@ class ViewWidget : public QWidget {
     void setSample(const messages::HapticSample& sample);
     /// Gingiva that was cut bleeds in the picture until then, or until another tooth.
     void clearBlood();
+    [[nodiscard]] bool isBleeding() const;
     /// The newest sample this widget has seen.
     [[nodiscard]] messages::HapticSample sample() const;
     void setBur(std::shared_ptr<const instrument::Bur> bur);

@@ -1459,6 +1459,10 @@
         <source>What was kept at %1 could not be used: it is made anew.</source>
         <translation>%1 に保存されていたものは使えないため、作り直します。</translation>
     </message>
+    <message>
+        <source>The tooth cannot be kept in %1: the next start makes it again. %2</source>
+        <translation>歯を %1 に保存できません。次に起動したときにもう一度作ります。%2</translation>
+    </message>
 </context>
 <context>
     <name>Overlay</name>
@@ -6555,6 +6559,10 @@ lingual: %4</source>
     <message>
         <source>Those of the case; else they are held aside</source>
         <translation>症例の口唇と頬を表示します。オフのときは排除されています</translation>
+    </message>
+    <message>
+        <source>This case has none</source>
+        <translation>この症例にはありません</translation>
     </message>
     <message>
         <source>Views and look</source>

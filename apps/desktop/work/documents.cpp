@@ -11,6 +11,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/model/case/as_written.h"
 #include "handpiece/model/case/work_on.h"
 #include "handpiece/model/dentition/mouth.h"
 #include "handpiece/model/tooth/state_file.h"
@@ -133,7 +134,8 @@ FileKind fileKindOf(const fs::path& path) {
 
 namespace {
 
-/// A case of the cache, or made and put there. What lies in its place and is not it is made anew.
+/// A case of the cache, or made and put there, where that can be done. What lies in its place and is not it is made
+/// anew.
 cases::Case kept(const fs::path& place, const std::function<bool(const cases::Case&)>& isIt,
                  const std::function<cases::Case()>& make, const LoadListener& listener) {
     std::error_code error;
@@ -147,10 +149,15 @@ cases::Case kept(const fs::path& place, const std::function<bool(const cases::Ca
         fs::remove_all(place, error);
     }
     const cases::Case made = make();
-    fs::create_directories(place.parent_path(), error);
-    cases::writeCase(made, place);
-    // As read back: an STL holds less than a double, and the cache beside it belongs to what it holds.
-    return cases::readCase(place);
+    try {
+        fs::create_directories(place.parent_path(), error);
+        cases::writeCase(made, place);
+        // As read back: an STL holds less than a double, and the cache beside it belongs to what it holds.
+        return cases::readCase(place);
+    } catch (const core::Error& why) {
+        if (listener.notKept) listener.notKept(place, why);
+        return cases::asWritten(made, place);
+    }
 }
 
 std::string patientName(const dentition::Patient& patient) {

@@ -70,6 +70,8 @@ struct LoadListener {
     std::function<void(std::shared_ptr<const cases::Case> sketch)> sketch;
     /// What was kept at `place` is damaged or not what its name says: it is made anew.
     std::function<void(const std::filesystem::path& place)> renewed;
+    /// What was made cannot be kept at `place`: a full disk, a folder that is read only.
+    std::function<void(const std::filesystem::path& place, const core::Error& why)> notKept;
 };
 
 /// What to open, and with what in hand.
@@ -116,7 +118,7 @@ struct LoadedTooth {
 inline constexpr std::size_t kMouthFaces = 8000;
 
 /// The case of a starter tooth: it and its patient's mouth out of their folders in the cache, made and put there the
-/// first time.
+/// first time. Where nothing can be put there it is opened all the same.
 [[nodiscard]] cases::Case starterCase(const Starter& starter, const std::filesystem::path& folder,
                                       const core::Progress& progress, const LoadListener& listener = {});
 

@@ -102,6 +102,7 @@ void Simulator::sit(LoadedTooth loaded) {
     liveSession.elapsedS = elapsedS_ = loaded.elapsedS;
     liveSession.history = std::move(loaded.history);
     liveSession.realTime = options_.realTime;
+    recordingGoesOn_ = !loaded.recording.empty();
     const cases::Exercise* exercise = toothCase_->exercise ? &*toothCase_->exercise : nullptr;
     liveSession.lowerButtonUndoes =
         exercise::permissionsOf(exercise, exercise::WorkMode::work).allows(exercise::Operation::undo);

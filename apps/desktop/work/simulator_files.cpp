@@ -108,6 +108,11 @@ LoadListener Simulator::loadListener() {
     listener.renewed = [this, tell](const fs::path& place) {
         tell([this, place] { emit noticed(QStringLiteral("cache-renewed"), {toQString(place)}); });
     };
+    listener.notKept = [this, tell](const fs::path& place, const core::Error& why) {
+        tell([this, place, what = problemOf(why).what] {
+            emit noticed(QStringLiteral("cache-not-kept"), {toQString(place.parent_path()), what});
+        });
+    };
     listener.sketch = [this, tell](std::shared_ptr<const cases::Case> sketch) {
         tell([this, sketch = std::move(sketch)] {
             if (mode_ == Mode::empty) emit sketched(sketch);
@@ -351,7 +356,9 @@ void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
             savedOthersMm3_ = othersMm3;
             markUnsaved(isCutSinceSaved(), true);  // its place has changed in any case
             emit saved(toQString(path));
-            if (vanished) emit noticed(QStringLiteral("case-vanished"), {toQString(document_.caseFile)});
+            // A tooth of the program is made again; that it could not be kept was told.
+            if (vanished && !document_.starter)
+                emit noticed(QStringLiteral("case-vanished"), {toQString(document_.caseFile)});
             if (then) then();
         });
 }

@@ -79,12 +79,12 @@ void DrillFeature::addDocks() {
                 {Detail::laboratory, Qt::LeftDockWidgetArea, 20, 510},
                 {Detail::paper, Qt::LeftDockWidgetArea, 20, 510}}},
               bar_);
-    docks.add(
-        {"gaugeDock",
-         tr("Pressure"),
-         40,
-         {{Detail::practice, Qt::RightDockWidgetArea, 30, 84}, {Detail::laboratory, Qt::RightDockWidgetArea, 70, 110}}},
-        gauge_);
+    docks.add({"gaugeDock",
+               tr("Pressure"),
+               40,
+               {{Detail::practice, Qt::RightDockWidgetArea, 30, 0, nullptr, 0, false},
+                {Detail::laboratory, Qt::RightDockWidgetArea, 70, 0, nullptr, 0, false}}},
+              gauge_);
     docks.add(
         {"parameterDock",
          tr("Parameters"),
@@ -102,7 +102,12 @@ void DrillFeature::connectCommands() {
         tellStep(WelcomeStrip::Step::undo);
     });
     on(commands_[Command::redo], [this] { simulator_.redo(); });
-    on(commands_[Command::reset], [this] { simulator_.reset(); });
+    on(commands_[Command::reset], [this] {
+        if (simulator_.status().cut) return simulator_.reset();
+        // Only gingiva was cut, which is a sign in the picture and nothing of the tooth.
+        view_.clearBlood();
+        window_.notices().takeBack(End::toothWhole);
+    });
     // Touch or cut with the left button: the two bindings change places.
     auto* hands = new QActionGroup(this);
     hands->addAction(commands_[Command::touch]);
@@ -123,7 +128,8 @@ void DrillFeature::connectCommands() {
     const auto isFree = [](const Status& status) { return !status.restoring && !status.inStroke; };
     enable(Command::undo, [isFree](const Status& status) { return isFree(status) && status.undoSteps > 0; });
     enable(Command::redo, [isFree](const Status& status) { return isFree(status) && status.redoSteps > 0; });
-    enable(Command::reset, [isFree](const Status& status) { return isFree(status) && status.cut; });
+    enable(Command::reset,
+           [this, isFree](const Status& status) { return isFree(status) && (status.cut || view_.isBleeding()); });
     enable(Command::pedal, [](const Status&) { return true; });
 }
 

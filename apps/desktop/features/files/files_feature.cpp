@@ -83,6 +83,7 @@ FilesFeature::FilesFeature(const FeatureContext& context)
 void FilesFeature::showDocument() {
     // What was told of the tooth before.
     window_.notices().takeBack(End::toothOpened);
+    if (!simulator_.recording().empty()) window_.notices().takeBack(End::recorded);
     showTitle();
 }
 

@@ -232,6 +232,10 @@ void MeasureBox::setDepthStop(double stopMm) {
     if (stopMm > 0) stop_->setValue(stopMm);
 }
 
+std::optional<double> MeasureBox::depthStopMm() const {
+    return stopOn_->isChecked() ? std::optional(stop_->value()) : std::nullopt;
+}
+
 void MeasureBox::setSectionRange(double leastMm, double mostMm) {
     const QSignalBlocker quietSlider(offset_), quietSpin(offsetValue_);
     offset_->setRange(qRound(leastMm / kOffsetStepMm), qRound(mostMm / kOffsetStepMm));

@@ -43,6 +43,8 @@ class MeasureBox : public QWidget {
 
     // Controls; setters tell nobody.
     void setLoad(double loadN);
+    [[nodiscard]] double loadN() const noexcept { return loadN_; }
+    [[nodiscard]] std::optional<double> depthStopMm() const;
     /// What is light and what is hard, by the drive.
     void setPressLimits(const instrument::PressLimits& limits);
     /// 0: off.

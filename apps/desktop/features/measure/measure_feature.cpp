@@ -82,13 +82,13 @@ MeasureFeature::MeasureFeature(const FeatureContext& context)
     docks.add({"measureDock",
                tr("Measure"),
                50,
-               {{Detail::practice, Qt::RightDockWidgetArea, 40, 360},
+               {{Detail::practice, Qt::RightDockWidgetArea, 40, 0, nullptr, 0, false},
                 {Detail::laboratory, Qt::RightDockWidgetArea, 50, 480, "parameterDock"}}},
               box_);
     docks.add({"volumesDock",
                tr("Removed"),
                60,
-               {{Detail::practice, Qt::RightDockWidgetArea, 50, 160},
+               {{Detail::practice, Qt::RightDockWidgetArea, 50, 140},
                 {Detail::laboratory, Qt::BottomDockWidgetArea, 90, 290, nullptr, 230}}},
               volumes_);
     docks.add({"plotDock", tr("Plots"), 90, {{Detail::laboratory, Qt::BottomDockWidgetArea, 80, 290, nullptr, 620}}},
@@ -128,7 +128,10 @@ void MeasureFeature::connectTools() {
     });
     connect(box_, &MeasureBox::calliperToggled, this,
             [this](bool isOn) { view_.setTool(isOn ? Tool::calliper : Tool::drill); });
-    on(commands_[Command::clear], [this] { view_.clearMeasurements(); });
+    on(commands_[Command::clear], [this] {
+        view_.clearMeasurements();
+        box_->setCalliper({});
+    });
     connect(&view_, &ViewWidget::measured, this, [this](const Measurement& m) {
         if (m.kind == Measurement::Kind::distance) box_->setCalliper(m.valueMm);
         window_.statusBar()->showMessage(m.text(), 8000);
@@ -181,6 +184,9 @@ void MeasureFeature::showDocument() {
         showLegend();
         takeSection();
         box_->setCalliper({});
+        // The hand that holds this tooth's bur presses and stops as the panel says.
+        view_.setLoad(box_->loadN());
+        view_.setStop(box_->depthStopMm());
         readouts_.start();
     }
 }

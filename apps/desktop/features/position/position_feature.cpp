@@ -58,7 +58,8 @@ void PositionFeature::showDocument() {
         panel_->setTooth(toothCase->fdiNumber, input::headInCase(*toothCase).has_value());
     else
         panel_->setTooth(0, false);
-    if (view_.isMirrorView()) tellRecord();
+    // One that goes on would count what it was told last.
+    if (view_.isMirrorView() || simulator_.recordingGoesOn()) tellRecord();
 }
 
 void PositionFeature::sit(int hour) {

@@ -42,7 +42,7 @@ SoundFeature::SoundFeature(const FeatureContext& context)
     window_.docks().add({"soundDock",
                          tr("Sound"),
                          70,
-                         {{Detail::practice, Qt::RightDockWidgetArea, 60, 150},
+                         {{Detail::practice, Qt::RightDockWidgetArea, 60, 260},
                           {Detail::laboratory, Qt::RightDockWidgetArea, 60, 480, "parameterDock"},
                           {Detail::paper, Qt::RightDockWidgetArea, 30, 240}}},
                         control_);

@@ -198,6 +198,11 @@ void ViewBar::setPresent(const std::vector<cases::Tissue>& tissues) {
     makeTissueBoxes();
 }
 
+void ViewBar::setCheeksThere(bool there) {
+    cheeks_->setEnabled(there);
+    cheeks_->setToolTip(there ? tr("Those of the case; else they are held aside") : tr("This case has none"));
+}
+
 void ViewBar::makeTissueBoxes() {
     for (const auto& entry : tissueBoxes_)
         delete entry.second;

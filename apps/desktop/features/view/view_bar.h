@@ -31,6 +31,8 @@ class ViewBar : public QWidget {
     [[nodiscard]] const view::Look& look() const { return look_; }
     /// The tissues with a box; all others have none.
     void setPresent(const std::vector<cases::Tissue>& tissues);
+    /// Whether the case has lips and cheeks.
+    void setCheeksThere(bool there);
     void setPermissions(const exercise::Permissions& permissions);
     void setDetail(Detail detail);
 

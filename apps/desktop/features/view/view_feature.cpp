@@ -5,11 +5,13 @@
 #include <QMenu>
 #include <QToolBar>
 #include <QToolButton>
+#include <algorithm>
 #include <cmath>
 
 #include "desktop/features/view/view_bar.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/work/simulator.h"
+#include "handpiece/model/case/held_aside.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -156,6 +158,7 @@ void ViewFeature::showDocument() {
     view_.setPermissions(simulator_.permissions());
     bar_->setPermissions(simulator_.permissions());
     bar_->setPresent(presentTissues(toothCase));
+    bar_->setCheeksThere(std::any_of(toothCase.scenery.begin(), toothCase.scenery.end(), cases::isHeldAside));
     recallEye();
     if (simulator_.mode() == Simulator::Mode::review) view_.setSample(simulator_.sample());
     view_.setFocus();

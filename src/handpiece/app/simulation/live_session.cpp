@@ -121,6 +121,8 @@ struct LiveSession::State {
           statistics(station.settings.rateHz),
           asked(station.settings) {
         cutting.setEventListener([this](std::uint64_t, EventName name) {
+            // With the pedal up the bur passes over the teeth around on its way; what it cuts even so is told.
+            if (name == EventName::neighbourTouched && last.pedal <= 0.0) return;
             if (const char* id = noticeOf(name)) notice(id);
         });
     }

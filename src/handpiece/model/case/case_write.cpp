@@ -7,6 +7,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/model/case/as_written.h"
 #include "handpiece/model/case/case.h"
 #include "handpiece/model/case/case_files.h"
 #include "handpiece/model/case/toml_text.h"
@@ -114,6 +115,11 @@ void writeCase(const Case& toothCase, const fs::path& path) {
         writePackage(path, caseFiles(toothCase));
     else
         writeFolder(path, caseFiles(toothCase), kCaseFile);
+}
+
+Case asWritten(const Case& toothCase, const fs::path& path) {
+    const PackageFiles files = caseFiles(toothCase);
+    return readCaseFiles(filesInPackage(path, files));
 }
 
 }  // namespace handpiece::cases

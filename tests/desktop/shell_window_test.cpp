@@ -351,6 +351,19 @@ TEST_F(ShellTest, ReplaysWhatWasDoneAndComesBack) {
     EXPECT_EQ(simulator().status().redoSteps, 2u);
 }
 
+TEST_F(ShellTest, LoadAndStopOfThePanelHoldForTheToothThatComesBack) {
+    startWithTooth();
+    view()->setLoad(1.7);
+    view()->setStop(1.2);
+    action("actionReplay")->trigger();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
+    simulator().closeReplay();
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession && view()->hand(); }));
+    EXPECT_DOUBLE_EQ(view()->hand()->loadN(), 1.7);
+    ASSERT_TRUE(view()->hand()->stopMm());
+    EXPECT_DOUBLE_EQ(*view()->hand()->stopMm(), 1.2);
+}
+
 TEST_F(ShellTest, PanelsFollowAReplayBackAndForth) {
     startWithTooth();
     ASSERT_TRUE(cut());
@@ -791,6 +804,21 @@ TEST_F(ShellTest, AHintGoesByItselfAndCoversNothing) {
     window().notices().tell(Notice::neighbourTouched);
     QTest::qWait(400);
     EXPECT_EQ(notices->current(), "neighbour-touched");
+    // The graver one takes its place.
+    window().notices().tell(Notice::neighbourCut);
+    EXPECT_EQ(notices->current(), "neighbour-cut");
+}
+
+TEST_F(ShellTest, PanelsThatNeedNoMoreLeaveNoGap) {
+    startWithTooth();
+    action("actionLayoutPractice")->trigger();
+    window().resize(1440, 1000);
+    QTest::qWait(50);
+    for (const char* name : {"gaugeDock", "measureDock"}) {
+        const auto* dock = window().findChild<QDockWidget*>(QLatin1String(name));
+        EXPECT_LE(dock->height(), dock->sizeHint().height()) << name;
+    }
+    EXPECT_GT(window().findChild<QDockWidget*>(QStringLiteral("soundDock"))->height(), 150);
 }
 
 TEST_F(ShellTest, EveryLayoutFitsASmallScreenAndSaysEachTitleOnce) {

@@ -11,6 +11,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 #include <cmath>
+#include <utility>
 
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/widgets/parts.h"
@@ -286,6 +287,11 @@ void MeasureBox::setPermissions(const exercise::Permissions& permissions) {
          tr("The bur goes no deeper than this (Ctrl and the wheel)"));
     take(sectionOn_, Operation::section, tr("This exercise has no sections."),
          tr("Cut the tooth open to look inside (X)"));
+    // A stop that was on waits while it may not be, in a replay for one.
+    if (!stopOn_->isEnabled())
+        stopWaits_ = stopWaits_ || stopOn_->isChecked();
+    else if (std::exchange(stopWaits_, false))
+        stopOn_->setChecked(true);
     for (QCheckBox* box : {stopOn_, sectionOn_})
         if (!box->isEnabled() && box->isChecked()) box->setChecked(false);
 }

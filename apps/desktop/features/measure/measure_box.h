@@ -85,6 +85,7 @@ class MeasureBox : public QWidget {
     QLabel* locked_;
     Detail detail_ = Detail::practice;
     double loadN_ = 1.0, offsetMm_ = 0.0;
+    bool stopWaits_ = false;
 };
 
 }  // namespace handpiece::desktop

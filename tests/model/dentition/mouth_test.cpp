@@ -59,8 +59,10 @@ struct Mouth {
 
 std::vector<cases::Tooth> coarseTeeth(const Patient& patient) {
     std::vector<cases::Tooth> teeth(kToothCount);
+    const auto isRight = [](std::size_t i) { return fdiOf(i) / 10 == 1 || fdiOf(i) / 10 == 4; };
     core::parallelFor(kToothCount, 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
+            if (!isRight(i)) continue;
             const ToothForm form(fdiOf(i), patient);
             geometry::IsosurfaceSettings settings;
             settings.spacingMm = 0.3;
@@ -74,6 +76,20 @@ std::vector<cases::Tooth> coarseTeeth(const Patient& patient) {
             teeth[i].landmarks = form.landmarks();
         }
     });
+    // Left teeth are these in the mirror, bit for bit (tooth_form_test).
+    for (std::size_t i = 0; i < kToothCount; ++i) {
+        if (isRight(i)) continue;
+        const int fdi = fdiOf(i);
+        cases::Tooth& left = teeth[i] = teeth[indexOf(fdi < 30 ? fdi - 10 : fdi + 10)];
+        left.fdiNumber = fdi, left.buccalSign = -left.buccalSign;
+        for (Vec3& v : left.outer.vertices)
+            v.y() = -v.y();
+        for (geometry::Triangle& t : left.outer.triangles)
+            std::swap(t[1], t[2]);
+        for (cases::Landmark& mark : left.landmarks)
+            for (Vec3& p : mark.pointsMm)
+                p.y() = -p.y();
+    }
     return teeth;
 }
 

@@ -435,22 +435,22 @@ TEST(ToothForm, EnamelAndPulpAreWhereTheyAre) {
 
 /// No tissue has a hole, whatever the seed and the age: where canals met again pulps had one.
 TEST(ToothForm, NoTissueHasAHole) {
-    struct Layer {
-        double (ToothForm::*function)(const Vec3&) const;
-        double spacingMm;
-        std::uint64_t seeds;
-    };
-    for (const Layer& layer : {Layer{&ToothForm::pulp, 0.14, 4}, {&ToothForm::outer, 0.3, 2},
-                               {&ToothForm::dentine, 0.2, 2}, {&ToothForm::enamel, 0.1, 1}})
-        for (const int fdi : {14, 16, 17, 18, 46, 47})
-            for (std::uint64_t seed = 1; seed <= layer.seeds; ++seed) {
-                SCOPED_TRACE(testing::Message() << fdi << ", seed " << seed);
-                const ToothForm form(fdi, {seed, 5.0 + 15.0 * static_cast<double>(seed)});
-                const geometry::MeshReport report =
-                    geometry::inspect(surfaceOf(form, layer.function, layer.spacingMm));
+    for (const int fdi : {16, 17, 18, 46, 47})
+        for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+            SCOPED_TRACE(testing::Message() << fdi << ", seed " << seed);
+            const ToothForm form(fdi, {seed, 5.0 + 15.0 * static_cast<double>(seed)});
+            const auto expectBall = [&](double (ToothForm::*surface)(const Vec3&) const, double spacingMm) {
+                const geometry::MeshReport report = geometry::inspect(surfaceOf(form, surface, spacingMm));
                 EXPECT_TRUE(report.closed());
                 EXPECT_EQ(report.genus, 0);
-            }
+            };
+            expectBall(&ToothForm::pulp, 0.15);
+            // The others are dearer: each seed has its tooth.
+            if (seed != static_cast<std::uint64_t>(fdi % 4 + 1)) continue;
+            expectBall(&ToothForm::outer, 0.3);
+            expectBall(&ToothForm::dentine, 0.25);
+            if (fdi == 16 || fdi == 47) expectBall(&ToothForm::enamel, 0.1);
+        }
 }
 
 /// Every point of the tooth is in one of its tissues.

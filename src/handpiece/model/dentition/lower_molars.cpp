@@ -21,7 +21,9 @@ void fiveCusps(Spec& s, Draws& draws) {
     plan.distal = {Vec3(-4.3, -0.6, 5.5), Vec3(-4.35, 0.75, 5.3), Vec3(-3.7, 2.0, 5.75)};
     vary(plan, draws);
     occlusalSurface(s, plan);
-    const auto at = [&](double x, double y, double depth) -> Vec3 { return Vec3(x, y, depth) + draws.shift(0.18, 0.16, 0.0); };
+    const auto at = [&](double x, double y, double depth) -> Vec3 {
+        return Vec3(x, y, depth) + draws.shift(0.18, 0.16, 0.0);
+    };
     const auto outwards = [](std::vector<Vec3> points, const Vec3& end) {
         points.push_back(end);
         return points;
@@ -39,23 +41,20 @@ void fiveCusps(Spec& s, Draws& draws) {
     s.grooves.push_back({"central", line, 0.26, 3.0, 4.0});
     s.grooves.push_back({"mesiobuccal",
                          outwards(bent(mesiobuccal, notch(plan.buccalNotch[0], 0.24), draws), Vec3(0.85, -5.5, 0.16)),
-                         0.28,
-                         2.8,
-                         4.2});
+                         0.28, 2.8, 4.2});
     s.grooves.push_back({"distobuccal",
                          outwards(bent(distobuccal, notch(plan.buccalNotch[1], 0.22), draws), Vec3(-3.4, -4.9, 0.1)),
-                         0.28,
-                         3.6,
-                         5.0});
+                         0.28, 3.6, 5.0});
     s.grooves.push_back({"lingual",
-                         outwards(bent(lingual, notch(plan.lingualNotch[0], 0.22), draws), Vec3(0.2, 5.4, 0.1)),
-                         0.28,
-                         3.6,
-                         5.4});
+                         outwards(bent(lingual, notch(plan.lingualNotch[0], 0.22), draws), Vec3(0.2, 5.4, 0.1)), 0.28,
+                         3.6, 5.4});
     // Lobes: the developmental grooves lie in broad furrows of the sides.
-    s.hollows.push_back({Vec3(0.9, -5.6, 5.4) + draws.shift(0.2, 0.0, 0.3), Vec3(1.6, 2.8, 3.0), draws.between(0.25, 0.55)});
-    s.hollows.push_back({Vec3(-3.0, -5.0, 5.6) + draws.shift(0.2, 0.0, 0.3), Vec3(1.5, 2.5, 2.8), draws.between(0.2, 0.5)});
-    s.hollows.push_back({Vec3(0.25, 5.6, 5.8) + draws.shift(0.2, 0.0, 0.3), Vec3(1.7, 2.8, 3.0), draws.between(0.25, 0.55)});
+    s.hollows.push_back(
+        {Vec3(0.9, -5.6, 5.4) + draws.shift(0.2, 0.0, 0.3), Vec3(1.6, 2.8, 3.0), draws.between(0.25, 0.55)});
+    s.hollows.push_back(
+        {Vec3(-3.0, -5.0, 5.6) + draws.shift(0.2, 0.0, 0.3), Vec3(1.5, 2.5, 2.8), draws.between(0.2, 0.5)});
+    s.hollows.push_back(
+        {Vec3(0.25, 5.6, 5.8) + draws.shift(0.2, 0.0, 0.3), Vec3(1.7, 2.8, 3.0), draws.between(0.25, 0.55)});
     // The mesiobuccal groove ends in a pit in the middle third.
     s.hollows.push_back({Vec3(0.86, -5.15, 3.35), Vec3(0.65, 0.8, 0.8), 0.16, "buccal"});
     // Pits are where grooves meet.
@@ -78,7 +77,9 @@ void fourCusps(Spec& s, bool isWrinkled, Draws& draws) {
     plan.distal = {Vec3(-3.95, -1.75, 5.65), Vec3(-4.35, 0.1, 5.35), Vec3(-3.75, 1.9, 5.75)};
     vary(plan, draws);
     occlusalSurface(s, plan);
-    const auto at = [&](double x, double y, double depth) -> Vec3 { return Vec3(x, y, depth) + draws.shift(0.18, 0.16, 0.0); };
+    const auto at = [&](double x, double y, double depth) -> Vec3 {
+        return Vec3(x, y, depth) + draws.shift(0.18, 0.16, 0.0);
+    };
     const auto outwards = [](std::vector<Vec3> points, const Vec3& end) {
         points.push_back(end);
         return points;
@@ -93,17 +94,15 @@ void fourCusps(Spec& s, bool isWrinkled, Draws& draws) {
     Vec3 lingual = central + draws.shift(0.25, 0.0, 0.0), buccal = central;
     lingual.z() = buccal.z() = 0.36;
     s.grooves.push_back({"buccal",
-                         outwards(bent(buccal, notch(plan.buccalNotch[0], 0.24), draws), Vec3(0.3, -5.5, 0.12)),
-                         0.28,
-                         3.0,
-                         4.4});
+                         outwards(bent(buccal, notch(plan.buccalNotch[0], 0.24), draws), Vec3(0.3, -5.5, 0.12)), 0.28,
+                         3.0, 4.4});
     s.grooves.push_back({"lingual",
-                         outwards(bent(lingual, notch(plan.lingualNotch[0], 0.22), draws), Vec3(0.25, 5.4, 0.1)),
-                         0.28,
-                         3.6,
-                         5.4});
-    s.hollows.push_back({Vec3(0.3, -5.6, 5.4) + draws.shift(0.2, 0.0, 0.3), Vec3(1.7, 2.8, 3.0), draws.between(0.25, 0.55)});
-    s.hollows.push_back({Vec3(0.25, 5.6, 5.8) + draws.shift(0.2, 0.0, 0.3), Vec3(1.7, 2.8, 3.0), draws.between(0.25, 0.55)});
+                         outwards(bent(lingual, notch(plan.lingualNotch[0], 0.22), draws), Vec3(0.25, 5.4, 0.1)), 0.28,
+                         3.6, 5.4});
+    s.hollows.push_back(
+        {Vec3(0.3, -5.6, 5.4) + draws.shift(0.2, 0.0, 0.3), Vec3(1.7, 2.8, 3.0), draws.between(0.25, 0.55)});
+    s.hollows.push_back(
+        {Vec3(0.25, 5.6, 5.8) + draws.shift(0.2, 0.0, 0.3), Vec3(1.7, 2.8, 3.0), draws.between(0.25, 0.55)});
     s.hollows.push_back({Vec3(central.x(), central.y(), 4.75), Vec3(0.8, 0.6, 0.9), 0.08, "central"});
     s.hollows.push_back({Vec3(mesial.x(), mesial.y(), 4.8), Vec3(0.7, 0.8, 0.9), 0.06, "mesial"});
     s.hollows.push_back({Vec3(distal.x(), distal.y(), 4.8), Vec3(0.7, 0.8, 0.9), 0.06, "distal"});
@@ -122,8 +121,8 @@ void lowerMolar(Spec& s, int place, Draws& draws) {
     s.buccal = {2.2, 6.2, 3.95, 7.6, 2.7, 0.05};
     s.lingual = {3.6, 6.7, 4.05, 7.8, 3.0};
     s.lean = -0.06, s.wedge = 0.05;
-    s.cervixSquare = 0.5, s.contourSquare = 0.56, s.rimSquare = 0.5;
-    s.mesial.belly = s.distal.belly = 0.76, s.buccal.belly = 0.74, s.lingual.belly = 0.74;
+    s.cervixSquare = 0.5, s.contourSquare = 0.5, s.rimSquare = 0.5;
+    s.mesial.belly = s.distal.belly = 0.7, s.buccal.belly = 0.73, s.lingual.belly = 0.72;
     s.enamelFossa = 0.55;
     s.rimRound = 1.2;
     s.groundZ = 4.55;

@@ -65,7 +65,8 @@ void twig(Spec& spec, const Vec3& from, double rad, double length, Draws& draws,
     };
     const double bend = 0.35 * draws.normal();
     const Vec3 middle = on(from, rad, 0.5 * length, 0.7 * from.z()), end = on(middle, rad + bend, 0.5 * length, 0.0);
-    spec.grooves.push_back({"", {from, middle, end}, 0.2 + 0.07 * draws.uniform(), spec.groundZ + 0.1, spec.groundZ + 0.8});
+    spec.grooves.push_back(
+        {"", {from, middle, end}, 0.2 + 0.07 * draws.uniform(), spec.groundZ + 0.1, spec.groundZ + 0.8});
     if (forks > 0 && draws.uniform() < 0.35)
         twig(spec, middle, rad + (draws.uniform() < 0.5 ? -0.8 : 0.8) - bend, 0.6 * length, draws, forks - 1);
 }
@@ -210,7 +211,8 @@ void oneCavity(Spec& spec, double ageYears) {
             const double up = (c.tip.z() / spec.cusps.front().tip.z() > 0.9 || spec.isEdge ? 0.75 : 0.3) * young;
             spec.horns.push_back({spread > 0.0 ? x > 0.0 ? "mesial" : "distal" : c.name,
                                   Vec3(at.x() + 0.8 * side, 0.7 * at.y(), 0.6 * top),
-                                  Vec3(at.x() + side, at.y(), top + up - 0.15 - (x < 0.0 ? 0.2 : 0.0)), 0.28 * young, 0.15});
+                                  Vec3(at.x() + side, at.y(), top + up - 0.15 - (x < 0.0 ? 0.2 : 0.0)), 0.28 * young,
+                                  0.15});
         }
     }
 }

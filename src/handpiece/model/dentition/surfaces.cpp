@@ -31,8 +31,9 @@ constexpr int kCurvePieces = 6;
 constexpr double kNodesMm = 1.0;
 /// Beyond this from the surface what is carved into it counts no more.
 constexpr double kFarMm = 1.6;
-/// Spread and waves of the finer unevenness [mm]: as on two real molars (docs/anatomy.md). It runs around the crown.
-constexpr double kFineUnevenMm = 0.006, kFineAcrossMm = 0.34, kFineUpMm = 0.22;
+/// The finer unevenness: its share of the other, and its waves [mm], as on two real molars (docs/anatomy.md). They run
+/// around the crown.
+constexpr double kFineShare = 0.14, kFineAcrossMm = 0.34, kFineUpMm = 0.22;
 /// How far from a cusp's tip a facet may reach, and how softly it ends.
 constexpr double kFacetReachMm = 0.7, kFacetSlope = 0.6, kFacetEdgeMm = 0.06;
 
@@ -454,7 +455,7 @@ double Anatomy::body(const Vec3& p) const {
     // Cusps keep their order: they are the least uneven.
     if (spec_.uneven > 0.0 && std::abs(value) < 1.5) {
         const double wall = 1.0 - 0.75 * smoothStep(topZ_ - 2.4, topZ_ - 1.2, p.z());
-        value += wall * (spec_.uneven * uneven_.at(p) + kFineUnevenMm * uneven_.at(uneven_.folded(p)));
+        value += wall * spec_.uneven * (uneven_.at(p) + kFineShare * uneven_.at(uneven_.folded(p)));
     }
     for (const Plane& f : facets_) {
         const double away = (p - f.at).head<2>().norm() - kFacetReachMm;

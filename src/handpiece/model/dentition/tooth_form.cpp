@@ -124,7 +124,7 @@ void outline(Spec& spec, Draws& draws) {
     spec.skew += 0.05 * draws.normal(), spec.lean += 0.025 * draws.normal(), spec.wedge += 0.025 * draws.normal();
     spec.contourSquare += 0.05 * draws.normal(), spec.rimSquare += 0.07 * draws.normal();
     for (Outline* o : {&spec.mesial, &spec.distal, &spec.buccal, &spec.lingual}) {
-        o->belly += 0.04 * draws.normal(), o->contourZ += 0.08 * draws.normal();
+        o->belly += 0.03 * draws.normal(), o->contourZ += 0.08 * draws.normal();
         o->rim *= 1.0 + 0.015 * draws.normal(), o->top *= 1.0 + 0.03 * draws.normal();
     }
 }
@@ -190,8 +190,7 @@ Spec specFor(int fdi, const Patient& patient) {
     // The first lower premolar has hardly a table; third molars are wrinkled as they are.
     if (!spec.isEdge && fdi % 10 != 8 && (upper || fdi % 10 != 4)) branch(spec, own + 2);
     spec.unevenSeed = own + 3, spec.uneven = spec.isEdge ? 0.02 : fdi % 10 >= 6 ? 0.045 : 0.03;
-    if (fdi % 10 >= 6)
-        outline(spec, tooth);
+    if (fdi % 10 >= 6) outline(spec, tooth);
     for (Hollow& h : spec.hollows)
         h.depth *= 1.0 + 0.1 * tooth.normal();
     // Those of third molars stand so close that they would grow together.

@@ -21,8 +21,11 @@ void carabelli(Spec& s, double trait, Draws& draws) {
         s.hollows.push_back({at + off, radii, -by});
     };
     // The furrow comes down from mesial and runs out towards distal.
-    for (const auto& [off, deep] : {std::pair{Vec3(1.0, -0.55, 0.5), 0.10}, {Vec3(0.35, -0.35, 0.95), 0.16},
-                                    {Vec3(-0.45, -0.3, 0.95), 0.16}, {Vec3(-1.1, -0.3, 0.35), 0.12}, {Vec3(-1.5, -0.3, -0.4), 0.07}})
+    for (const auto& [off, deep] : {std::pair{Vec3(1.0, -0.55, 0.5), 0.10},
+                                    {Vec3(0.35, -0.35, 0.95), 0.16},
+                                    {Vec3(-0.45, -0.3, 0.95), 0.16},
+                                    {Vec3(-1.1, -0.3, 0.35), 0.12},
+                                    {Vec3(-1.5, -0.3, -0.4), 0.07}})
         s.hollows.push_back({at + off, Vec3(0.65, 1.0, 0.5), deep * std::min(1.0, 0.5 + trait)});
     swell(Vec3(0.1, 0.0, -0.9), Vec3(1.5, 1.2, 2.0), 0.18 * trait);
     swell(Vec3(-0.25 + 0.2 * draws.normal(), 0.0, 0.1), Vec3(0.95, 1.0, 0.85), 0.22 * trait);
@@ -37,8 +40,8 @@ void upperMolar(Spec& s, int place, const Patient& patient, Draws& draws) {
     s.buccal = {2.0, 6.4, 4.6, 7.8, 3.6, 0.0};
     s.lingual = {3.6, 6.5, 4.4, 7.8, 3.4};
     s.lean = 0.02, s.wedge = 0.04, s.skew = -0.13;
-    s.cervixSquare = 0.45, s.contourSquare = 0.52, s.rimSquare = 0.48;
-    s.mesial.belly = s.distal.belly = 0.76, s.buccal.belly = 0.74, s.lingual.belly = 0.76;
+    s.cervixSquare = 0.45, s.contourSquare = 0.48, s.rimSquare = 0.48;
+    s.mesial.belly = s.distal.belly = 0.7, s.buccal.belly = 0.73, s.lingual.belly = 0.74;
     s.enamelFossa = 0.4, s.enamelCusp = 2.12;
     s.rimRound = 1.2;
     s.groundZ = 4.4;
@@ -68,7 +71,9 @@ void upperMolar(Spec& s, int place, const Patient& patient, Draws& draws) {
     s.crests.push_back({palatal, Vec3(0.2, 1.4, 5.6) + bow, low, 0.65, 1.05, false, "oblique mesial"});
     s.crests.push_back({low, Vec3(-0.8, -1.3, 5.35) - bow, buccal, 0.65, 1.05, false, "oblique distal"});
     // Where the grooves meet: their depths, for the x and y of a pit.
-    const auto at = [&](double x, double y, double depth) -> Vec3 { return Vec3(x, y, depth) + draws.shift(0.2, 0.2, 0.0); };
+    const auto at = [&](double x, double y, double depth) -> Vec3 {
+        return Vec3(x, y, depth) + draws.shift(0.2, 0.2, 0.0);
+    };
     const Vec3 central = at(0.5, -0.9, 0.4), mesial = at(3.2, -0.15, 0.3), distal = at(-3.1, -0.35, 0.3);
     const Vec3 buccalNotch(plan.buccalNotch[0].x(), plan.buccalNotch[0].y(), 0.25),
         palatalNotch(plan.lingualNotch[0].x(), plan.lingualNotch[0].y(), 0.28);
@@ -86,16 +91,18 @@ void upperMolar(Spec& s, int place, const Patient& patient, Draws& draws) {
         {"distopalatal", down(bent(distal, palatalNotch, draws), Vec3(-0.7, 5.9, 0.14)), 0.3, 2.9, 4.8});
     // Across the oblique ridge: deep in some, hardly there in most.
     const double across = draws.between(0.04, 0.2);
-    s.grooves.push_back({"transverse",
-                         {Vec3(central.x(), central.y(), 0.2), Vec3(low.x(), low.y() - 0.2, across),
-                          Vec3(0.5 * (low.x() + distal.x()), distal.y(), 1.2 * across),
-                          Vec3(distal.x(), distal.y(), 0.25)},
-                         0.25,
-                         3.0,
-                         4.0});
+    s.grooves.push_back(
+        {"transverse",
+         {Vec3(central.x(), central.y(), 0.2), Vec3(low.x(), low.y() - 0.2, across),
+          Vec3(0.5 * (low.x() + distal.x()), distal.y(), 1.2 * across), Vec3(distal.x(), distal.y(), 0.25)},
+         0.25,
+         3.0,
+         4.0});
     // Lobes: the developmental grooves lie in broad furrows of the sides.
-    s.hollows.push_back({Vec3(0.5, -5.8, 5.6) + draws.shift(0.25, 0.0, 0.3), Vec3(1.6, 2.7, 2.9), draws.between(0.2, 0.5)});
-    s.hollows.push_back({Vec3(-0.9, 5.8, 5.2) + draws.shift(0.25, 0.0, 0.3), Vec3(1.7, 2.8, 3.3), draws.between(0.25, 0.6)});
+    s.hollows.push_back(
+        {Vec3(0.5, -5.8, 5.6) + draws.shift(0.25, 0.0, 0.3), Vec3(1.6, 2.7, 2.9), draws.between(0.2, 0.5)});
+    s.hollows.push_back(
+        {Vec3(-0.9, 5.8, 5.2) + draws.shift(0.25, 0.0, 0.3), Vec3(1.7, 2.8, 3.3), draws.between(0.25, 0.6)});
     // Pits are where grooves meet.
     s.hollows.push_back({Vec3(central.x(), central.y(), 4.75), Vec3(0.8, 0.6, 0.9), 0.08, "central"});
     s.hollows.push_back({Vec3(mesial.x(), mesial.y(), 4.8), Vec3(0.7, 0.8, 0.9), 0.06, "mesial"});

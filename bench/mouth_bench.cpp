@@ -38,6 +38,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kRuns = 5;
 int ticksOf = 8000;
+std::array<double, 8> passesOf{};  // of all ticks of the last scene, by method
 constexpr double kPeriodS = 1e-3, kPressMm = 0.1, kSwingMm = 0.25;
 
 double microseconds(Clock::duration d) {
@@ -77,6 +78,7 @@ std::optional<Pose> lowered(Method& method, Pose pose, double fromZ, double toZ,
 
 /// Ticks about a pose, the hand swinging along a slow curve, of each method in turn; by tick the best of the runs.
 std::vector<std::vector<double>> ticks(const std::vector<Method*>& methods, const Pose& about) {
+    passesOf.fill(0.0);
     std::vector<std::vector<double>> best(methods.size(), std::vector<double>(static_cast<std::size_t>(ticksOf), 1e9));
     for (int run = 0; run < kRuns; ++run)
         for (std::size_t m = 0; m < methods.size(); ++m) {
@@ -90,6 +92,7 @@ std::vector<std::vector<double>> ticks(const std::vector<Method*>& methods, cons
                 const auto start = Clock::now();
                 const force::Touch& touch = model.feel(method, pose, false, kPeriodS);
                 (void)model.compute(touch, kPeriodS);
+                passesOf[m] += touch.passes;
                 auto& mine = best[m][static_cast<std::size_t>(i)];
                 mine = std::min(mine, microseconds(Clock::now() - start));
             }
@@ -220,6 +223,10 @@ int run(int count, char** values) {
                 sum[i] += us[m][i];
         }
         print("  all teeth, whole handpiece", whole);
+        fmt::print("  passes a tick of the proxy:");
+        for (std::size_t m = 0; m < us.size(); ++m)
+            fmt::print(" {:.2f}", passesOf.at(m) / (kRuns * static_cast<double>(ticksOf)));
+        fmt::print(" in this order\n");
         printTimes("  times its own tooth alone, the bur", whole, spreadOf(us[0]));
         printTimes("  times its own tooth and gingiva", whole, spreadOf(us[1]));
         if (us.size() > 3) printTimes("  times the touched teeth, each alone, together", whole, spreadOf(sum));

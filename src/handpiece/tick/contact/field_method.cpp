@@ -178,30 +178,26 @@ class FieldMethod final : public Method {
         return clearMm;
     }
 
-    /// By the searches that have a bound: of the outline where the two are apart, and of the axis where that is all.
-    [[nodiscard]] bool isNoDeeper(const BurFrame& frame, double floorMm) noexcept {
+    /// Apart, and by no less than -floorMm.
+    [[nodiscard]] bool isApart(const BurFrame& frame, double floorMm) noexcept {
+        if (!outline_.isFit()) return false;
         BallDepth best;
-        if (outline_.isFit()) {
-            // Of one that is not apart the outline does not tell all.
-            best.depthMm = std::min(floorMm, -kApartMm);
-            return outline_.search(surface_, frame, best) == 0.0 && best.triangle == geometry::kNoTriangle;
-        }
-        best.depthMm = floorMm;
-        if (sheets_.isAny() || axis_.mayEnter(surface_, frame)) return false;
-        double mostMm = floorMm;
-        axis_.search(surface_, frame, best, mostMm);
-        return best.triangle == geometry::kNoTriangle;
+        best.depthMm = std::min(floorMm, -kApartMm);
+        return outline_.search(surface_, frame, best) == 0.0 && best.triangle == geometry::kNoTriangle;
     }
 
     /// From the triangles of the uncut tooth. Cutting takes away only: where a cut may change the answer it remains a
     /// bound.
     void depthOfUncut(const core::Pose& burInTooth, double floorMm, Depth& result) noexcept {
         const BurFrame frame(burInTooth);
-        if (std::isfinite(floorMm) && isNoDeeper(frame, floorMm)) {
+        // The axis has a bound: where it is all it need only tell what is deeper.
+        const bool isAxisAll = !outline_.isFit() && !sheets_.isAny();
+        BallDepth best;
+        if (isAxisAll) best.depthMm = floorMm;
+        if (std::isfinite(floorMm) && !isAxisAll && isApart(frame, floorMm)) {
             result.depthMm = std::max(floorMm, -settings_.reachMm);
             return;
         }
-        BallDepth best;
         double mostMm = -std::numeric_limits<double>::infinity();
         // Deeper than its radius no ball is with its centre outside.
         const bool isDeep = sheets_.isDeep(surface_, frame, mostRadiusMm_), outsideKnown = isDeep || outline_.isFit();
@@ -210,6 +206,10 @@ class FieldMethod final : public Method {
         if (!outsideKnown || (axis_.leastRadiusMm() <= largestMm && axis_.mayEnter(surface_, frame)))
             axis_.search(surface_, frame, best, mostMm);
         if (largestMm > 0.0) sheets_.search(surface_, frame, outsideKnown, largestMm, best, mostMm);
+        if (isAxisAll && best.triangle == geometry::kNoTriangle && std::isfinite(floorMm)) {
+            result.depthMm = std::max(floorMm, -settings_.reachMm);
+            return;
+        }
         if (!(best.depthMm >= -settings_.reachMm)) {
             setFar(burInTooth, std::isfinite(best.depthMm) ? -best.depthMm : 0.0);
             return;

@@ -179,20 +179,24 @@ class MouthMethod final : public Method {
             if (own.empty()) continue;
             setOf_[sets++] = &pair;
         }
+        // Where several hold the bur the depth names but one: each adds its own, or the proxy would find them pass by
+        // pass. Of a field that has been cut the points say it as well.
+        const auto isOfBur = [](const Pair* pair) { return pair->hasPoints(); };
+        const auto setsEnd = setOf_.begin() + static_cast<std::ptrdiff_t>(sets);
+        if (std::count_if(setOf_.begin(), setsEnd, isOfBur) > 1)
+            for (auto pair = setOf_.begin(); pair != setsEnd; ++pair) {
+                if (!isOfBur(*pair)) continue;
+                const Depth& d = depthOf(**pair, (*pair)->at(bur).local, -reachMm);
+                if (d.status != Status::ok || d.slackMm > 0.0 || -d.depthMm > reachMm) continue;
+                out.pushBack(inScene(**pair, Constraint{d.normal, -d.depthMm, d.toothPointMm, d.tissue}));
+            }
         // The most important of each tooth first, turn by turn.
         for (std::size_t k = 0; k < kMaxConstraints; ++k) {
             bool any = false;
             for (std::size_t s = 0; s < sets; ++s) {
                 if (k >= sets_[s].size()) continue;
                 any = true;
-                const Pair& pair = *setOf_[s];
-                Constraint c = sets_[s][k];
-                c.normal = pair.direction(c.normal);
-                c.pointMm = pair.place(c.pointMm);
-                c.tooth = pair.tooth;
-                c.piece = pair.piece;
-                c.isHeldOnly = !pair.cuts();
-                if (!out.pushBack(c)) return Status::truncated;
+                if (!out.pushBack(inScene(*setOf_[s], sets_[s][k]))) return Status::truncated;
             }
             if (!any) break;
         }
@@ -283,6 +287,15 @@ class MouthMethod final : public Method {
         return p;
     }
 
+    [[nodiscard]] static Constraint inScene(const Pair& pair, Constraint c) noexcept {
+        c.normal = pair.direction(c.normal);
+        c.pointMm = pair.place(c.pointMm);
+        c.tooth = pair.tooth;
+        c.piece = pair.piece;
+        c.isHeldOnly = !pair.cuts();
+        return c;
+    }
+
     /// Which pairs can touch from here, until the instrument has moved by kNearSlackMm.
     void lookAround(const Pose& bur) noexcept {
         if (hasLooked_ && core::mostMovedMm(lookedAt_, bur, farthestMm_) <= kNearSlackMm) return;
@@ -293,11 +306,12 @@ class MouthMethod final : public Method {
         hasLooked_ = true;
     }
 
-    /// As Method::depthBeyond(). Of what is not cut one depth serves all who ask at a pose.
+    /// As Method::depthBeyond(). Where nothing is cut one depth serves all who ask at a pose.
     [[nodiscard]] const Depth& depthOf(Pair& pair, const Pose& local, double floorMm) noexcept {
         const std::uint64_t version = pair.method->toothVersion();
         const bool isKnown =
-            pair.wasAsked && !pair.cuts() && version == pair.askedVersion && isSame(local, pair.askedAt) &&
+            pair.wasAsked && !(pair.answer.slackMm > 0.0) && version == pair.askedVersion &&
+            isSame(local, pair.askedAt) &&
             (pair.answer.status == Status::ok || pair.askedFloorMm <= floorMm || pair.answer.depthMm <= floorMm);
         if (!isKnown) {
             pair.answer = pair.method->depthBeyond(floorMm, local);
@@ -374,7 +388,7 @@ class MouthMethod final : public Method {
     Pose lookedAt_;
     bool hasLooked_ = false;
     std::array<ConstraintSet, kMaxSets> sets_;
-    std::array<const Pair*, kMaxSets> setOf_{};
+    std::array<Pair*, kMaxSets> setOf_{};
     PatchSet scratchPatches_;
     core::FixedVector<Patch, kMaxSets * kMaxPatches> merged_;
 };

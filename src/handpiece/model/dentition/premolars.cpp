@@ -6,11 +6,12 @@ using core::Vec2;
 using core::Vec3;
 
 namespace {
-/// Premolars are drawn 7 mm wide. In a narrower one neck and roots stay as they are.
+/// Premolars are drawn 7 mm wide. In a narrower one all of it is narrower: between necks as wide as ever no bone would
+/// find room.
 void narrow(Spec& s) {
-    const Spec drawn = s;
-    scale(s, drawn.sizes.mesiodistal / 7.0, 1.0, 1.0, 1.0);
-    s.sizes = drawn.sizes, s.roots = drawn.roots;
+    const Sizes sizes = s.sizes;
+    scale(s, sizes.mesiodistal / 7.0, 1.0, 1.0, 1.0);
+    s.sizes = sizes;
 }
 }  // namespace
 

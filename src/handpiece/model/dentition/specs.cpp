@@ -9,13 +9,13 @@ namespace {
 /// Mean sizes [mm] as Wheeler's Dental Anatomy has them [R, recalled, unchecked]: crown, root, mesiodistal crown and
 /// cervix, buccolingual crown and cervix, curve of the cemento-enamel junction mesial and distal. Narrower than his,
 /// since what people's teeth were measured to have is about a standard deviation less (docs/anatomy.md, Held against
-/// people): 14, 15, 43 and 44 mesiodistally, 42 buccolingually.
+/// people): 14, 15, 43 and 44 mesiodistally, the premolars' necks with their crowns, 42 buccolingually.
 constexpr Sizes kUpper[8] = {{10.5, 13.0, 8.5, 7.0, 7.0, 6.0, 3.5, 2.5},  {9.0, 13.0, 6.5, 5.0, 6.0, 5.0, 3.0, 2.0},
-                             {10.0, 17.0, 7.5, 5.5, 8.0, 7.0, 2.5, 1.5},  {8.5, 14.0, 6.7, 5.0, 9.0, 8.0, 1.0, 0.0},
-                             {8.5, 14.0, 6.5, 5.0, 9.0, 8.0, 1.0, 0.0},   {7.5, 13.0, 10.0, 8.0, 11.0, 10.0, 1.0, 0.0},
+                             {10.0, 17.0, 7.5, 5.5, 8.0, 7.0, 2.5, 1.5},  {8.5, 14.0, 6.7, 4.8, 9.0, 8.0, 1.0, 0.0},
+                             {8.5, 14.0, 6.5, 4.65, 9.0, 8.0, 1.0, 0.0},   {7.5, 13.0, 10.0, 8.0, 11.0, 10.0, 1.0, 0.0},
                              {7.0, 12.0, 9.0, 7.0, 11.0, 10.0, 1.0, 0.0}, {6.5, 11.0, 8.5, 6.5, 10.0, 9.5, 1.0, 0.0}};
 constexpr Sizes kLower[8] = {{9.0, 12.5, 5.0, 3.5, 6.0, 5.3, 3.0, 2.0},   {9.5, 14.0, 5.5, 4.0, 6.2, 5.8, 3.0, 2.0},
-                             {11.0, 16.0, 6.7, 5.5, 7.5, 7.0, 2.5, 1.0},  {8.5, 14.0, 6.7, 5.0, 7.5, 6.5, 1.0, 0.0},
+                             {11.0, 16.0, 6.7, 5.5, 7.5, 7.0, 2.5, 1.0},  {8.5, 14.0, 6.7, 4.8, 7.5, 6.5, 1.0, 0.0},
                              {8.0, 14.5, 7.0, 5.0, 8.0, 7.0, 1.0, 0.0},   {7.5, 14.0, 11.0, 9.0, 10.5, 9.0, 1.0, 0.0},
                              {7.0, 13.0, 10.5, 8.0, 10.0, 9.0, 1.0, 0.0}, {7.0, 11.0, 10.0, 7.5, 9.5, 9.0, 1.0, 0.0}};
 

@@ -46,7 +46,8 @@ class RoundedSolid {
             mesh.vertices.push_back(a.inverse() * b);
             corners_.push_back(mesh.vertices.back());
         }
-        const std::uint32_t quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+        const std::uint32_t quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                           {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
         for (const auto& q : quads) {
             mesh.triangles.push_back({q[0], q[1], q[2]});
             mesh.triangles.push_back({q[0], q[2], q[3]});
@@ -71,8 +72,8 @@ struct BoxCavity {
     double radiusMm = 0.2;
 
     [[nodiscard]] Vec3 floorNormal() const {
-        return {std::sin(tiltDeg * kRad) * std::cos(tiltAzimuthRad), std::sin(tiltDeg * kRad) * std::sin(tiltAzimuthRad),
-                std::cos(tiltDeg * kRad)};
+        return {std::sin(tiltDeg * kRad) * std::cos(tiltAzimuthRad),
+                std::sin(tiltDeg * kRad) * std::sin(tiltAzimuthRad), std::cos(tiltDeg * kRad)};
     }
     [[nodiscard]] RoundedSolid solid() const {
         std::array<RoundedSolid::Plane, 6> planes;
@@ -121,7 +122,8 @@ inline geometry::TriangleMesh boxMesh(const Vec3& low, const Vec3& high) {
     for (int corner = 0; corner < 8; ++corner)
         mesh.vertices.emplace_back((corner & 1) != 0 ? high.x() : low.x(), (corner & 2) != 0 ? high.y() : low.y(),
                                    (corner & 4) != 0 ? high.z() : low.z());
-    const std::uint32_t quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    const std::uint32_t quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                       {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     for (const auto& q : quads) {
         mesh.triangles.push_back({q[0], q[1], q[2]});
         mesh.triangles.push_back({q[0], q[2], q[3]});

@@ -85,8 +85,9 @@ void print(const char* name, const Errors& errors) {
     }
     std::sort(size.begin(), size.end());
     const double n = static_cast<double>(size.size());
-    std::printf("  %-24s %4.0f rms %.4f p95 %.4f worst %.4f stated %.4f covered %.1f %%\n", name, n, std::sqrt(squares / n),
-                size[static_cast<std::size_t>(0.95 * (n - 1))], worst, stated / n, 100.0 * covered / n);
+    std::printf("  %-24s %4.0f rms %.4f p95 %.4f worst %.4f stated %.4f covered %.1f %%\n", name, n,
+                std::sqrt(squares / n), size[static_cast<std::size_t>(0.95 * (n - 1))], worst, stated / n,
+                100.0 * covered / n);
 }
 
 TEST(Crown, conesWithAChamferInTurnedGrids) {
@@ -95,7 +96,7 @@ TEST(Crown, conesWithAChamferInTurnedGrids) {
     const int each = asked != nullptr ? std::atoi(asked) : 1;
     for (const double voxel : {0.1, 0.05}) {
         const Body body = test::bodyOf(cylinder(), test::randomPose(random), voxel);
-        Errors convergence, width, occlusal, axial, height, angle;
+        Errors convergence, width, occlusal, angle;
         for (int i = 0; i < each; ++i) {
             Cone cone;
             cone.halfDeg = uniform(random, 1.0, 14.0);
@@ -123,8 +124,10 @@ TEST(Crown, conesWithAChamferInTurnedGrids) {
             add(convergence, got[0], 2.0 * cone.halfDeg);
             add(width, got[1], cone.widthMm);
             add(occlusal, got[2], cone.occlusalMm);
-            // The rays of the cone's normals meet the cylinder where the wall of the middle height tells.
+            // Between what is gone at the margin and at the wall's top.
             ASSERT_TRUE(got[3].value) << got[3].reason;
+            EXPECT_GT(*got[3].value, cone.widthMm - 0.05);
+            EXPECT_LT(*got[3].value, kRadius - cone.radiusAt(kTop - cone.occlusalMm) + 0.2);
             add(angle, got[5], cone.halfDeg);
             EXPECT_EQ(got[6].value, 100.0);
             EXPECT_EQ(got[7].value, 0.0);
@@ -136,6 +139,14 @@ TEST(Crown, conesWithAChamferInTurnedGrids) {
         print("margin-width mm", width);
         print("reduction occlusal mm", occlusal);
         print("wall-angle deg", angle);
+        const auto within = [](const Errors& errors, double bound) {
+            return std::all_of(errors.error.begin(), errors.error.end(),
+                               [&](double e) { return std::abs(e) <= bound; });
+        };
+        EXPECT_TRUE(within(convergence, 0.5));
+        EXPECT_TRUE(within(width, 0.05));
+        EXPECT_TRUE(within(occlusal, 0.03));
+        EXPECT_TRUE(within(angle, 0.5));
     }
 }
 

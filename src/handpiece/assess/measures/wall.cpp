@@ -12,9 +12,11 @@ namespace handpiece::measures {
 namespace {
 using core::Vec3;
 
-constexpr double kLeastUndercutMm = 0.03;  // and thrice the wall's own roughness: less is none
-constexpr double kTopMm = 0.3;             // of wall and of uncut surface at a margin
-constexpr double kEdgeMm = 0.04;           // right at it nothing is taken
+// Less is none: nor is what is less than thrice the wall's own roughness, or four tenths of a voxel, by which a coarse
+// field may make a mark too deep.
+constexpr double kLeastUndercutMm = 0.03, kLeastUndercutVoxels = 0.4;
+constexpr double kTopMm = 0.3;    // of wall and of uncut surface at a margin
+constexpr double kEdgeMm = 0.04;  // right at it nothing is taken
 
 bool isOn(const Selection& of, std::string_view side) {
     return of.side.empty() || of.side == side;
@@ -69,7 +71,9 @@ AllUndercuts undercuts(CutTooth& tooth, const Selection& of) {
     const auto add = [&](const Undercut& one, bool isCorner, double rms, double spacingMm, const Vec3& place) {
         ++all.asked;
         // Aslant in a corner marks look twice as deep.
-        if (one.depthMm <= (isCorner ? 2.0 : 1.0) * std::max(kLeastUndercutMm, 3.0 * rms)) return;
+        if (one.depthMm <=
+            (isCorner ? 2.0 : 1.0) * std::max({kLeastUndercutMm, kLeastUndercutVoxels * tooth.voxelMm(), 3.0 * rms}))
+            return;
         all.areaMm2 += one.lengthMm * spacingMm;
         if (one.depthMm > all.depthMm) {
             all.depthMm = one.depthMm;
@@ -144,7 +148,7 @@ Taken takeWallAngle(CutTooth& tooth, const Selection& of) {
             if (wall.middle.isFound && isOn(of, wall.side)) places.add(degrees(-wall.middle.slope), wall.marginMm);
         if (places.values.empty()) return none("no axial wall stands there");
     }
-    Taken taken = places.taken(of, "median", "wall against the path of draw");
+    Taken taken = places.taken(of, "mean", "wall against the path of draw");
     const double way = static_cast<double>(places.values.size()) * kProbeMm;
     taken.residual = kDegrees * meanOf(medianOf(std::move(scatter)), way / kPieceMm);
     return taken;

@@ -3,11 +3,17 @@
 /// @file
 /// Preparations with a closed form, carved exactly into a block or a tooth: max(field, -shape) at every node.
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <functional>
+#include <map>
 #include <memory>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -186,6 +192,50 @@ inline std::unique_ptr<tooth::ToothMirror> carved(const Body& body, const Shape&
     auto mirror = std::make_unique<tooth::ToothMirror>(body.model);
     mirror->apply(delta);
     return mirror;
+}
+
+inline Selection side(const char* name, const char* statistic = "") {
+    Selection of;
+    of.side = name;
+    of.statistic = statistic;
+    return of;
+}
+
+/// Errors of one kind of measure over many preparations, and how many the stated uncertainty covered.
+struct Errors {
+    std::vector<double> error, stated;
+    void add(const Measured& got, double truth) {
+        if (!got.value) {
+            ADD_FAILURE() << got.kind << " " << got.of.side << ": " << got.reason;
+            return;
+        }
+        error.push_back(*got.value - truth);
+        stated.push_back(got.uncertainty);
+    }
+};
+using Table = std::map<std::string, Errors>;
+
+inline void print(const Table& table) {
+    std::printf("  %-24s %5s %9s %9s %9s %9s %9s  %s\n", "measure", "n", "bias", "rms", "p95", "worst", "stated",
+                "covered");
+    for (const auto& [name, errors] : table) {
+        std::vector<double> size;
+        double bias = 0.0, squares = 0.0, stated = 0.0;
+        int covered = 0;
+        for (std::size_t i = 0; i < errors.error.size(); ++i) {
+            size.push_back(std::abs(errors.error[i]));
+            bias += errors.error[i];
+            squares += errors.error[i] * errors.error[i];
+            stated += errors.stated[i];
+            covered += size.back() <= errors.stated[i];
+        }
+        const double n = static_cast<double>(size.size());
+        std::sort(size.begin(), size.end());
+        std::printf("  %-24s %5.0f %+9.4f %9.4f %9.4f %9.4f %9.4f  %.1f %%\n", name.c_str(), n, bias / n,
+                    std::sqrt(squares / n), size[static_cast<std::size_t>(0.95 * (n - 1))], size.back(), stated / n,
+                    100.0 * covered / n);
+    }
+    std::fflush(stdout);
 }
 
 }  // namespace handpiece::measures::test

@@ -20,6 +20,8 @@ using test::Body;
 using test::BoxCavity;
 using test::Marks;
 using test::Shape;
+using test::side;
+using test::Table;
 using test::Vec3;
 
 const Vec3 kLow(-3, -2.2, -3.2), kHigh(3, 2.2, 0);
@@ -45,50 +47,6 @@ struct Taker {
         return of(std::vector<Request>{{kind, std::move(selection)}}).front();
     }
 };
-
-Selection side(const char* name, const char* statistic = "") {
-    Selection of;
-    of.side = name;
-    of.statistic = statistic;
-    return of;
-}
-
-/// Errors of one kind of measure over many preparations, and how many the stated uncertainty covered.
-struct Errors {
-    std::vector<double> error, stated;
-    void add(const Measured& got, double truth) {
-        if (!got.value) {
-            ADD_FAILURE() << got.kind << " " << got.of.side << ": " << got.reason;
-            return;
-        }
-        error.push_back(*got.value - truth);
-        stated.push_back(got.uncertainty);
-    }
-};
-using Table = std::map<std::string, Errors>;
-
-void print(const char* title, const Table& table) {
-    std::printf("%s\n  %-24s %5s %9s %9s %9s %9s %9s  %s\n", title, "measure", "n", "bias", "rms", "p95", "worst",
-                "stated", "covered");
-    for (const auto& [name, errors] : table) {
-        std::vector<double> size;
-        double bias = 0.0, squares = 0.0, stated = 0.0;
-        int covered = 0;
-        for (std::size_t i = 0; i < errors.error.size(); ++i) {
-            size.push_back(std::abs(errors.error[i]));
-            bias += errors.error[i];
-            squares += errors.error[i] * errors.error[i];
-            stated += errors.stated[i];
-            covered += size.back() <= errors.stated[i];
-        }
-        const double n = static_cast<double>(size.size());
-        std::sort(size.begin(), size.end());
-        std::printf("  %-24s %5.0f %+9.4f %9.4f %9.4f %9.4f %9.4f  %.1f %%\n", name.c_str(), n, bias / n,
-                    std::sqrt(squares / n), size[static_cast<std::size_t>(0.95 * (n - 1))], size.back(), stated / n,
-                    100.0 * covered / n);
-    }
-    std::fflush(stdout);
-}
 
 /// What is known of a box cavity in a block whose surface is z = 0.
 void judge(const BoxCavity& box, const Marks& marks, const Taker& taker, Table& table, double removedMm3) {
@@ -127,7 +85,7 @@ void judge(const BoxCavity& box, const Marks& marks, const Taker& taker, Table& 
     table["roughness um"].add(got[12], 1000.0 * marks.rmsMm());
     table["roughness um"].add(got[13], 1000.0 * marks.rmsMm());
     table["removed %"].add(got[14], removedMm3);
-    Errors& removed = table["removed %"];
+    test::Errors& removed = table["removed %"];
     removed.error.back() *= 100.0 / removedMm3;
     removed.stated.back() *= 100.0 / removedMm3;
 }
@@ -193,8 +151,8 @@ TEST(Cavity, boxesAtThreeVoxelsInTurnedGrids) {
     for (const double voxel : {0.1, 0.05, 0.025}) {
         if (voxel < 0.05 && count(0) == 0) continue;
         const Table table = sweep(voxel, voxel < 0.05 ? 1 : 2, voxel < 0.05 ? (count(1) + 3) / 4 : count(2), 17);
-        std::printf("voxel %.3f mm", voxel);
-        print("", table);
+        std::printf("voxel %.3f mm\n", voxel);
+        test::print(table);
         const std::map<std::string, double> most{{"floor-depth mm", 0.03},    {"floor-flatness mm", 0.03},
                                                  {"wall-height mm", 0.03},    {"isthmus mm", 0.05},
                                                  {"marginal-ridge mm", 0.05}, {"floor-tilt deg", 0.5},

@@ -20,16 +20,11 @@ using test::Body;
 using test::BoxCavity;
 using test::Marks;
 using test::Shape;
+using test::side;
 using test::Vec3;
 
 constexpr double kVoxel = 0.1;
 
-Selection side(const char* name, const char* statistic = "") {
-    Selection of;
-    of.side = name;
-    of.statistic = statistic;
-    return of;
-}
 Selection tissue(const char* name) {
     Selection of;
     of.tissue = name;
@@ -236,6 +231,16 @@ TEST_F(Block, whatCannotBeMeasuredSaysWhyAndIsNeverZero) {
     unknown.axes.buccal = Vec3::Zero();
     EXPECT_FALSE(sideDirection(unknown.axes, "buccal"));
     EXPECT_TRUE(sideDirection(unknown.axes, "mesial"));
+}
+
+TEST(Kinds, areSortedAndFoundById) {
+    const auto kinds = measureKinds();
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+        EXPECT_TRUE(i == 0 || kinds[i - 1].id < kinds[i].id) << kinds[i].id;
+        EXPECT_EQ(findMeasureKind(kinds[i].id), &kinds[i]);
+        EXPECT_LT(kinds[i].least, kinds[i].most);
+    }
+    EXPECT_EQ(findMeasureKind("beauty"), nullptr);
 }
 
 TEST(Molar, aCavityInAToothIsAsItWasCut) {

@@ -3,11 +3,17 @@
 /// @file
 /// Preparations with a closed form, carved exactly into a block or a tooth: max(field, -shape) at every node.
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <functional>
+#include <map>
 #include <memory>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -46,7 +52,8 @@ class RoundedSolid {
             mesh.vertices.push_back(a.inverse() * b);
             corners_.push_back(mesh.vertices.back());
         }
-        const std::uint32_t quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+        const std::uint32_t quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                           {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
         for (const auto& q : quads) {
             mesh.triangles.push_back({q[0], q[1], q[2]});
             mesh.triangles.push_back({q[0], q[2], q[3]});
@@ -71,8 +78,8 @@ struct BoxCavity {
     double radiusMm = 0.2;
 
     [[nodiscard]] Vec3 floorNormal() const {
-        return {std::sin(tiltDeg * kRad) * std::cos(tiltAzimuthRad), std::sin(tiltDeg * kRad) * std::sin(tiltAzimuthRad),
-                std::cos(tiltDeg * kRad)};
+        return {std::sin(tiltDeg * kRad) * std::cos(tiltAzimuthRad),
+                std::sin(tiltDeg * kRad) * std::sin(tiltAzimuthRad), std::cos(tiltDeg * kRad)};
     }
     [[nodiscard]] RoundedSolid solid() const {
         std::array<RoundedSolid::Plane, 6> planes;
@@ -121,7 +128,8 @@ inline geometry::TriangleMesh boxMesh(const Vec3& low, const Vec3& high) {
     for (int corner = 0; corner < 8; ++corner)
         mesh.vertices.emplace_back((corner & 1) != 0 ? high.x() : low.x(), (corner & 2) != 0 ? high.y() : low.y(),
                                    (corner & 4) != 0 ? high.z() : low.z());
-    const std::uint32_t quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    const std::uint32_t quads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                       {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     for (const auto& q : quads) {
         mesh.triangles.push_back({q[0], q[1], q[2]});
         mesh.triangles.push_back({q[0], q[2], q[3]});
@@ -184,6 +192,50 @@ inline std::unique_ptr<tooth::ToothMirror> carved(const Body& body, const Shape&
     auto mirror = std::make_unique<tooth::ToothMirror>(body.model);
     mirror->apply(delta);
     return mirror;
+}
+
+inline Selection side(const char* name, const char* statistic = "") {
+    Selection of;
+    of.side = name;
+    of.statistic = statistic;
+    return of;
+}
+
+/// Errors of one kind of measure over many preparations, and how many the stated uncertainty covered.
+struct Errors {
+    std::vector<double> error, stated;
+    void add(const Measured& got, double truth) {
+        if (!got.value) {
+            ADD_FAILURE() << got.kind << " " << got.of.side << ": " << got.reason;
+            return;
+        }
+        error.push_back(*got.value - truth);
+        stated.push_back(got.uncertainty);
+    }
+};
+using Table = std::map<std::string, Errors>;
+
+inline void print(const Table& table) {
+    std::printf("  %-24s %5s %9s %9s %9s %9s %9s  %s\n", "measure", "n", "bias", "rms", "p95", "worst", "stated",
+                "covered");
+    for (const auto& [name, errors] : table) {
+        std::vector<double> size;
+        double bias = 0.0, squares = 0.0, stated = 0.0;
+        int covered = 0;
+        for (std::size_t i = 0; i < errors.error.size(); ++i) {
+            size.push_back(std::abs(errors.error[i]));
+            bias += errors.error[i];
+            squares += errors.error[i] * errors.error[i];
+            stated += errors.stated[i];
+            covered += size.back() <= errors.stated[i];
+        }
+        const double n = static_cast<double>(size.size());
+        std::sort(size.begin(), size.end());
+        std::printf("  %-24s %5.0f %+9.4f %9.4f %9.4f %9.4f %9.4f  %.1f %%\n", name.c_str(), n, bias / n,
+                    std::sqrt(squares / n), size[static_cast<std::size_t>(0.95 * (n - 1))], size.back(), stated / n,
+                    100.0 * covered / n);
+    }
+    std::fflush(stdout);
 }
 
 }  // namespace handpiece::measures::test

@@ -105,8 +105,8 @@ AxialStation CutTooth::axialAt(Look& look, double azimuthRad, const Vec3& axis, 
         station.middle = robustLine(points);
         if (!station.middle.isFound || !station.hasMargin) continue;
         const double slope = station.middle.slope;
-        station.widthMm = (h.dot(station.marginMm - axis) - station.middle.of(station.marginW)) /
-                          std::sqrt(1.0 + slope * slope);
+        station.widthMm =
+            (h.dot(station.marginMm - axis) - station.middle.of(station.marginW)) / std::sqrt(1.0 + slope * slope);
         // Up to where the wall turns into the occlusal surface.
         double low = wHigh, high = highW;
         for (double w = wHigh; w < highW; w += kAxialLevelMm) {

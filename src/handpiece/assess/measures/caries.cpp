@@ -16,7 +16,7 @@ using cases::Tissue;
 using core::Vec3;
 
 constexpr double kPeripheryMm = 1.0;
-constexpr double kBeneathMm = 0.1;      // beneath the junction dentine has to be there
+constexpr double kBeneathMm = 0.1;  // beneath the junction dentine has to be there
 constexpr double kLongestPrismMm = 3.0;
 
 bool isEnamel(Tissue tissue) {
@@ -35,7 +35,7 @@ class Junction {
   public:
     struct Place {
         Vec3 p;
-        Vec3 inwards;  ///< unit, into the dentine
+        Vec3 inwards;  ///< unit, into the dentine, along the grid's edge
     };
     explicit Junction(const tooth::ToothModel& whole) {
         const field::FieldView view = whole.field.view();
@@ -56,8 +56,11 @@ class Junction {
                     for (int y = 0; y < 8; ++y)
                         for (int x = 0; x < 8; ++x)
                             for (int axis = 0; axis < 3; ++axis) {
-                                const int here = x + 9 * y + 81 * z, there = here + (axis == 0 ? 1 : axis == 1 ? 9 : 81);
-                                const auto a = static_cast<Tissue>(tissue[here]), b = static_cast<Tissue>(tissue[there]);
+                                const int here = x + 9 * y + 81 * z, there = here + (axis == 0   ? 1
+                                                                                     : axis == 1 ? 9
+                                                                                                 : 81);
+                                const auto a = static_cast<Tissue>(tissue[here]),
+                                           b = static_cast<Tissue>(tissue[there]);
                                 if (!((isEnamel(a) && isDentine(b)) || (isDentine(a) && isEnamel(b)))) continue;
                                 Vec3 from = placeOf(x, y, z), to = from;
                                 to[axis] += view.voxelMm;
@@ -77,6 +80,22 @@ class Junction {
             cells_[cellOf(places_[i].p)].push_back(i);
     }
     [[nodiscard]] const std::vector<Place>& places() const { return places_; }
+    /// Square to the junction, into the dentine: edges along an axis cross it as often as its normal says.
+    [[nodiscard]] Vec3 normalAt(std::size_t place) const {
+        constexpr double kRoundMm = 0.5;
+        const Vec3& p = places_[place].p;
+        const Cell middle = cellOf(p);
+        Vec3 sum = Vec3::Zero();
+        for (int dz = -1; dz <= 1; ++dz)
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dx = -1; dx <= 1; ++dx) {
+                    const auto cell = cells_.find({middle[0] + dx, middle[1] + dy, middle[2] + dz});
+                    if (cell == cells_.end()) continue;
+                    for (const std::size_t i : cell->second)
+                        if ((places_[i].p - p).squaredNorm() < kRoundMm * kRoundMm) sum += places_[i].inwards;
+                }
+        return sum.norm() > 0.0 ? Vec3(sum.normalized()) : places_[place].inwards;
+    }
     /// The nearest within a bound; none farther.
     [[nodiscard]] std::optional<std::size_t> nearest(const Vec3& p, double boundMm) const {
         std::optional<std::size_t> best;
@@ -173,12 +192,25 @@ Taken takeUnsupportedEnamel(CutTooth& tooth, const Selection&) {
     for (std::size_t i = 0; i < isLost.size(); ++i)
         if (isLost[i] != 0) near.extend(junction.places()[i].p);
     if (near.isEmpty()) return {0.0, {}};
+    std::vector<Vec3> normals(isLost.size(), Vec3::Zero());
+    core::parallelFor(isLost.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3& at = junction.places()[i].p;
+            const Vec3 off = (near.min - at).cwiseMax(at - near.max);
+            if (off.maxCoeff() < 2.0 * tooth.voxelMm()) normals[i] = junction.normalAt(i);
+        }
+    });
+    const double slack = 0.1 * tooth.voxelMm();
+    // A prism runs from a place in the enamel square to the junction: there dentine has to follow.
     const auto weight = [&](const Vec3& place, Tissue tissue) {
-        if (!isEnamel(tissue)) return 0.0;
+        if (!isEnamel(tissue) || tooth.nearlyNow(place) >= 0.0) return 0.0;
         const Vec3 off = (near.min - place).cwiseMax(place - near.max).cwiseMax(Vec3::Zero());
         if (off.norm() > kLongestPrismMm) return 0.0;
         const auto foot = junction.nearest(place, kLongestPrismMm);
-        return foot && isLost[*foot] != 0 ? 1.0 : 0.0;
+        if (!foot || normals[*foot].isZero()) return 0.0;
+        const Vec3& n = normals[*foot];
+        const Vec3 under = place + (n.dot(junction.places()[*foot].p - place) + kBeneathMm) * n;
+        return tooth.nearlyNow(under) >= slack || isSoft(p.whole->tissues.at(under)) ? 1.0 : 0.0;
     };
     return {volumeOf(*p.whole, *p.cut, false, weight), {}};
 }

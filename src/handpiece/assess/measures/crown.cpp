@@ -13,9 +13,9 @@ namespace {
 using core::Vec3;
 
 constexpr double kFarMm = 10.0;
-constexpr double kCuspMm = 1.0;          // about a cusp's tip, square to the path of draw, is the cusp
-constexpr double kAxialSin = 0.5;        // an axial wall stands within 30 degrees of the path of draw
-constexpr double kMarginWidthMm = 0.1;   // less is no finish line
+constexpr double kCuspMm = 1.0;         // about a cusp's tip, square to the path of draw, is the cusp
+constexpr double kAxialSin = 0.5;       // an axial wall stands within 30 degrees of the path of draw
+constexpr double kMarginWidthMm = 0.1;  // less is no finish line
 constexpr std::size_t kLeastSections = 8;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 const char* const kNoCrown = "it is taken of crown preparations; this is a cavity";

@@ -82,16 +82,24 @@ CutTooth::Look::Look(const CutTooth& tooth)
       before_(tooth.whole().field, core::simdLevel()),
       cutMm_(tooth.cutMm()) {}
 
-double CutTooth::Look::now(const Vec3& p) {
-    const field::FieldStorage& s = tooth_.now_->storage();
+bool CutTooth::isNearCut(const Vec3& p) const {
+    const field::FieldStorage& s = now_->storage();
     const double perBrick = 1.0 / (kBrickCells * s.settings.voxelMm);
     std::array<std::int32_t, 3> brick{};
     for (int k = 0; k < 3; ++k) {
         const double at = std::floor((p[k] - s.originMm[k]) * perBrick);
-        if (!(at >= 0.0 && at < s.bricks[k])) return tooth_.whole().field.distance(p);
+        if (!(at >= 0.0 && at < s.bricks[k])) return false;
         brick[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(at);
     }
-    return tooth_.isKept_[field::denseOf(s.bricks, brick)] ? now_.distance(p) : tooth_.whole().field.distance(p);
+    return isKept_[field::denseOf(s.bricks, brick)];
+}
+
+double CutTooth::nearlyNow(const Vec3& p) const {
+    return isNearCut(p) ? now_->distance(p) : whole().field.distance(p);
+}
+
+double CutTooth::Look::now(const Vec3& p) {
+    return tooth_.isNearCut(p) ? now_.distance(p) : tooth_.whole().field.distance(p);
 }
 
 std::optional<double> CutTooth::Look::cast(const Vec3& from, const Vec3& along, double farMm) {
@@ -132,18 +140,21 @@ const std::vector<SurfacePoint>& CutTooth::cutPoints() {
                     for (int x = 0; x < kBrickCells; ++x)
                         for (int axis = 0; axis < 3; ++axis) {
                             const int here = x + kBrickNodes * (y + kBrickNodes * z);
-                            const int there = here + (axis == 0 ? 1 : axis == 1 ? kBrickNodes : kBrickNodes * kBrickNodes);
+                            const int there = here + (axis == 0   ? 1
+                                                      : axis == 1 ? kBrickNodes
+                                                                  : kBrickNodes * kBrickNodes);
                             double low = 0.0, high = 1.0, atLow = static_cast<double>(values[here]),
                                    atHigh = static_cast<double>(values[there]);
                             if ((atLow < 0.0) == (atHigh < 0.0)) continue;
                             const int node[3] = {x, y, z};
                             Vec3 base;
                             for (int k = 0; k < 3; ++k)
-                                base[k] = s.originMm[k] +
-                                          h * (kBrickCells * brick[static_cast<std::size_t>(k)] + node[k]);
+                                base[k] =
+                                    s.originMm[k] + h * (kBrickCells * brick[static_cast<std::size_t>(k)] + node[k]);
                             Vec3 p = base;
                             for (int step = 0; step < 8 && high - low > 1e-6; ++step) {
-                                const double t = low + std::clamp(atLow / (atLow - atHigh), 0.001, 0.999) * (high - low);
+                                const double t =
+                                    low + std::clamp(atLow / (atLow - atHigh), 0.001, 0.999) * (high - low);
                                 p[axis] = base[axis] + t * h;
                                 const double value = look.now(p);
                                 if (std::abs(value) < 1e-7) break;

@@ -64,7 +64,7 @@ struct Floor {
 struct WallStation {
     std::string_view side;  ///< of kSides
     int floor = 0;
-    int row = 0, run = 0;  ///< of the height map; which of its runs over the floor, counted on
+    int row = 0, run = 0;                   ///< of the height map; which of its runs over the floor, counted on
     core::Vec3 h = core::Vec3::Zero();      ///< square to the path of draw, into the wall
     core::Vec3 start = core::Vec3::Zero();  ///< in the draw frame
     double spacingMm = kProbeMm;
@@ -75,8 +75,9 @@ struct WallStation {
     std::vector<Sample> samples;  ///< rising
     double floorW = 0.0, marginW = 0.0;
     core::Vec3 marginMm = core::Vec3::Zero();  ///< tooth frame
-    bool isCavosurface = false;     ///< it ends at the uncut surface, not at another floor
-    Line middle;          ///< r over w, of the middle part
+    bool isCorner = false;                     ///< the wall turns here, or ends
+    bool isCavosurface = false;                ///< it ends at the uncut surface, not at another floor
+    Line middle;                               ///< r over w, of the middle part
     double middleFromW = 0.0, middleToW = 0.0;
     [[nodiscard]] double heightMm() const { return marginW - floorW; }
 };
@@ -85,7 +86,7 @@ struct WallStation {
 struct AxialStation {
     double azimuthRad = 0.0;
     std::string_view side;
-    core::Vec3 h = core::Vec3::Zero();  ///< square to the path of draw, out of the tooth and square to the wall
+    core::Vec3 h = core::Vec3::Zero();         ///< square to the path of draw, out of the tooth and square to the wall
     std::vector<WallStation::Sample> samples;  ///< r along h from the axis; rising w; from the margin up
     bool hasMargin = false;
     double marginW = 0.0, topW = 0.0, widthMm = 0.0;
@@ -124,6 +125,8 @@ class CutTooth {
     /// Deeper than this under the uncut surface [mm] the surface counts as cut.
     [[nodiscard]] double cutMm() const { return 0.1 * voxelMm(); }
 
+    /// Signed distance to the tooth as it is, trilinear: any thread.
+    [[nodiscard]] double nearlyNow(const core::Vec3& p) const;
     /// Of the surface that was cut; empty when nothing was.
     [[nodiscard]] const std::vector<SurfacePoint>& cutPoints();
     [[nodiscard]] const HeightMap& heights();
@@ -141,6 +144,7 @@ class CutTooth {
     void findWalls();
     /// False where there is no wall.
     [[nodiscard]] bool probeWall(Look& look, WallStation& wall, double topW, double farMm, const Floor& floor) const;
+    [[nodiscard]] bool isNearCut(const core::Vec3& p) const;
     [[nodiscard]] double floorAt(const Floor& floor, const core::Vec3& q) const;
     [[nodiscard]] AxialStation axialAt(Look& look, double azimuthRad, const core::Vec3& axis, double lowW,
                                        double highW) const;

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "handpiece/base/core/vec.h"
 #include "handpiece/assess/measures/measure.h"
+#include "handpiece/base/core/vec.h"
 
 namespace handpiece::measures {
 

@@ -109,7 +109,8 @@ Taken takeFloorTilt(CutTooth& tooth, const Selection& of) {
     const Floor* floor = floorOf(tooth, of, reason);
     if (floor == nullptr) return none(reason);
     const Vec3 middle(floor->plane.middle.x(), floor->plane.middle.y(), floor->plane.at);
-    Taken taken = at(kDegrees * core::atan(floor->plane.slope.norm()), tooth.frame().from(middle), "middle of the floor");
+    Taken taken =
+        at(kDegrees * core::atan(floor->plane.slope.norm()), tooth.frame().from(middle), "middle of the floor");
     // Of a slope over a breadth b with n even pieces: root of 12 times their scatter over b root n.
     const double breadth = std::sqrt(flatAreaMm2(*floor));
     taken.residual = kDegrees * 3.46 / breadth * meanOf(floor->plane.rms, breadth / kPieceMm, breadth / kPieceMm);

@@ -49,7 +49,8 @@ Isthmus isthmusOf(CutTooth& tooth) {
         rms.push_back(core::hypot(wall.middle.rms, other.middle.rms));
     }
     if (found.widths.values.empty()) found.reason = "no buccal and lingual walls face one another";
-    found.residual = meanOf(medianOf(std::move(rms)), static_cast<double>(found.widths.values.size()) * kProbeMm / kPieceMm);
+    found.residual =
+        meanOf(medianOf(std::move(rms)), static_cast<double>(found.widths.values.size()) * kProbeMm / kPieceMm);
     return found;
 }
 

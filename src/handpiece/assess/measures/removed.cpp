@@ -79,7 +79,8 @@ double volumeOf(const tooth::ToothModel& whole, const tooth::ToothMirror& cut, b
             for (int z = 0; z < field::kBrickCells; ++z)
                 for (int y = 0; y < field::kBrickCells; ++y)
                     for (int x = 0; x < field::kBrickCells; ++x) {
-                        const std::size_t n = static_cast<std::size_t>(x + field::kBrickNodes * (y + field::kBrickNodes * z));
+                        const std::size_t n =
+                            static_cast<std::size_t>(x + field::kBrickNodes * (y + field::kBrickNodes * z));
                         const double left = static_cast<double>(tooth::occupancy(now[n], perVoxel));
                         const double amount =
                             ofRemoved ? static_cast<double>(tooth::occupancy(uncut[n], perVoxel)) - left : left;
@@ -88,7 +89,8 @@ double volumeOf(const tooth::ToothModel& whole, const tooth::ToothMirror& cut, b
                         const int node[3] = {x, y, z};
                         Vec3 p;
                         for (int k = 0; k < 3; ++k)
-                            p[k] = view.originMm[k] + view.voxelMm * (field::kBrickCells * brick[static_cast<std::size_t>(k)] + node[k]);
+                            p[k] = view.originMm[k] +
+                                   view.voxelMm * (field::kBrickCells * brick[static_cast<std::size_t>(k)] + node[k]);
                         sums[i] += amount * weight(p, tissue);
                     }
         }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // marginal-ridge-left
+#include <algorithm>
 #include <limits>
 
 #include "handpiece/assess/measures/take.h"
@@ -9,10 +10,10 @@ namespace handpiece::measures {
 namespace {
 using core::Vec3;
 
+constexpr int kMostCrossings = 8;
 constexpr double kUnderMm = 0.2;  // nearer under the uncut surface the margin's own edge is measured
-// Towards the side, and 15 and 30 degrees off.
-constexpr double kAways[5][2] = {
-    {1.0, 0.0}, {0.9659258, 0.2588190}, {0.9659258, -0.2588190}, {0.8660254, 0.5}, {0.8660254, -0.5}};
+// Towards the side, and 15 degrees off.
+constexpr double kAways[3][2] = {{1.0, 0.0}, {0.9659258, 0.2588190}, {0.9659258, -0.2588190}};
 
 }  // namespace
 
@@ -28,6 +29,7 @@ Taken takeMarginalRidge(CutTooth& tooth, const Selection& of) {
     constexpr double kFar = std::numeric_limits<double>::infinity();
     std::vector<double> left(points.size(), kFar);
     core::parallelFor(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+        CutTooth::Look look(tooth);
         for (std::size_t i = begin; i < end; ++i) {
             const SurfacePoint& point = points[i];
             // On a wall that lies towards this side.
@@ -35,8 +37,17 @@ Taken takeMarginalRidge(CutTooth& tooth, const Selection& of) {
             if (tooth.whole().tree.signedDistance(point.p) > -kUnderMm) continue;
             for (const auto& away : kAways) {
                 const Vec3 along = away[0] * *towards + away[1] * square;
-                const geometry::RayMeeting met = tooth.whole().tree.firstMeeting(point.p, along, left[i]);
-                if (met.triangle != geometry::kNoTriangle) left[i] = met.distanceMm;
+                // To the outside: a groove that is crossed on the way is none.
+                double out = 0.0;
+                for (int crossing = 0; crossing < kMostCrossings; ++crossing) {
+                    const geometry::RayMeeting met = tooth.whole().tree.firstMeeting(point.p + out * along, along);
+                    if (met.triangle == geometry::kNoTriangle) break;
+                    out += met.distanceMm + 1e-4;
+                }
+                out -= 1e-4;
+                // Through the ridge, not through a cusp's slope over it.
+                if (out > 0.0 && look.normalBefore(point.p + out * along).dot(along) > kSin45)
+                    left[i] = std::min(left[i], out);
             }
         }
     });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // roughness
 #include <cmath>
-#include <map>
 
 #include "handpiece/assess/measures/take.h"
 
@@ -9,8 +8,6 @@ namespace handpiece::measures {
 namespace {
 using core::Vec3;
 
-constexpr int kBeside = 5;                 // rows: a quarter of a millimetre
-constexpr double kStraightCos = 0.9659258;  // 15 degrees
 constexpr double kCutOffMm = 0.8;  // ISO 4288 [recalled]; the measure's own definition
 
 }  // namespace
@@ -46,16 +43,9 @@ Taken takeRoughness(CutTooth& tooth, const Selection& of) {
         place = p;
     };
     if (tooth.form() == Form::cavity) {
-        // Corners between two walls are no roughness: a wall goes on straight on both sides of a place that counts.
-        std::map<std::pair<int, int>, const WallStation*> byRow;
-        for (const WallStation& wall : tooth.walls())
-            if (wall.floor == 0 && wall.side == of.side) byRow[{wall.run, wall.row}] = &wall;
-        const auto goesOn = [&](const WallStation& wall, int rows) {
-            const auto other = byRow.find({wall.run, wall.row + rows});
-            return other != byRow.end() && other->second->h.dot(wall.h) > kStraightCos;
-        };
+        // A corner between two walls is no roughness.
         for (const WallStation& wall : tooth.walls()) {
-            if (wall.floor != 0 || wall.side != of.side || !goesOn(wall, kBeside) || !goesOn(wall, -kBeside)) continue;
+            if (wall.floor != 0 || wall.side != of.side || wall.isCorner) continue;
             for (const WallStation::Sample& s : wall.samples)
                 if (s.w > wall.middleFromW && s.w < wall.middleToW)
                     add(frame.from(wall.start) + (s.w - wall.start.z()) * frame.w + s.r * wall.h);

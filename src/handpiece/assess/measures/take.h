@@ -83,7 +83,7 @@ inline constexpr double kPieceMm = 0.3;
     return rms / std::sqrt(std::max(1.0, piecesAlong) * std::max(1.0, piecesAcross));
 }
 
-/// Half-width [the kind's unit] that covered the error in 93 to 98 % of random analytic preparations.
+/// Half-width of an interval about a value [the kind's unit]; docs/assessment.md says what each rests on.
 [[nodiscard]] double uncertaintyOf(std::string_view kind, double voxelMm, double value, double residual);
 
 /// Sum over the nodes of a tooth of weight(place, tissue) times what was there and is gone, or is left [mm3].

@@ -2,6 +2,7 @@
 // wall-height, wall-angle, undercut-area, undercut-depth, cavosurface-angle
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "handpiece/assess/measures/take.h"
 #include "handpiece/base/core/parallel.h"
@@ -11,13 +12,25 @@ namespace handpiece::measures {
 namespace {
 using core::Vec3;
 
-constexpr double kLeastUndercutMm = 0.03;  // and thrice the wall's own roughness: less is none
-constexpr double kTopMm = 0.3;             // of wall and of uncut surface at a margin
-constexpr double kEdgeMm = 0.04;           // right at it nothing is taken
-
+// Less is none: nor is what is less than thrice the wall's own roughness, or four tenths of a voxel, by which a coarse
+// field may make a mark too deep.
+constexpr double kLeastUndercutMm = 0.03, kLeastUndercutVoxels = 0.4;
+constexpr double kTopMm = 0.3;    // of wall and of uncut surface at a margin
+constexpr double kEdgeMm = 0.04;  // right at it nothing is taken
 
 bool isOn(const Selection& of, std::string_view side) {
     return of.side.empty() || of.side == side;
+}
+
+/// Walls of the floor, corners between two of them left out where there is anything else.
+std::vector<const WallStation*> straightWalls(CutTooth& tooth, const Selection& of) {
+    std::vector<const WallStation*> all, straight;
+    for (const WallStation& wall : tooth.walls()) {
+        if (!isOn(of, wall.side) || wall.floor != 0) continue;
+        all.push_back(&wall);
+        if (!wall.isCorner) straight.push_back(&wall);
+    }
+    return straight.empty() ? all : straight;
 }
 
 std::string noWall(const Selection& of) {
@@ -29,7 +42,7 @@ struct Undercut {
     double depthMm = 0.0, lengthMm = 0.0;
     std::size_t deepest = 0;
 };
-Undercut undercutOf(const std::vector<WallStation::Sample>& samples, double outwards) {
+Undercut undercutOf(std::span<const WallStation::Sample> samples, double outwards) {
     Undercut found;
     if (samples.size() < 2) return found;
     double least = outwards * samples.back().r;
@@ -55,9 +68,12 @@ struct AllUndercuts {
 AllUndercuts undercuts(CutTooth& tooth, const Selection& of) {
     AllUndercuts all;
     const DrawFrame& frame = tooth.frame();
-    const auto add = [&](const Undercut& one, double rms, double spacingMm, const Vec3& place) {
+    const auto add = [&](const Undercut& one, bool isCorner, double rms, double spacingMm, const Vec3& place) {
         ++all.asked;
-        if (one.depthMm <= std::max(kLeastUndercutMm, 3.0 * rms)) return;
+        // Aslant in a corner marks look twice as deep.
+        if (one.depthMm <=
+            (isCorner ? 2.0 : 1.0) * std::max({kLeastUndercutMm, kLeastUndercutVoxels * tooth.voxelMm(), 3.0 * rms}))
+            return;
         all.areaMm2 += one.lengthMm * spacingMm;
         if (one.depthMm > all.depthMm) {
             all.depthMm = one.depthMm;
@@ -67,9 +83,14 @@ AllUndercuts undercuts(CutTooth& tooth, const Selection& of) {
     if (tooth.form() == Form::cavity) {
         for (const WallStation& wall : tooth.walls()) {
             if (!isOn(of, wall.side)) continue;
-            const Undercut one = undercutOf(wall.samples, 1.0);
-            const WallStation::Sample& s = wall.samples[one.deepest];
-            add(one, wall.middle.rms, wall.spacingMm,
+            // Right at the margin's edge a coarse field rounds it off by some hundredths.
+            std::span<const WallStation::Sample> below = wall.samples;
+            while (!below.empty() && below.back().w > wall.marginW - std::max(kEdgeMm, tooth.voxelMm()))
+                below = below.first(below.size() - 1);
+            if (below.empty()) continue;
+            const Undercut one = undercutOf(below, 1.0);
+            const WallStation::Sample& s = below[one.deepest];
+            add(one, wall.isCorner, wall.middle.rms, wall.spacingMm,
                 frame.from(wall.start) + (s.w - wall.start.z()) * frame.w + s.r * wall.h);
         }
         return all;
@@ -83,7 +104,7 @@ AllUndercuts undercuts(CutTooth& tooth, const Selection& of) {
         const Undercut one = undercutOf(steep, -1.0);
         if (steep.empty()) continue;
         const double spacing = wall.middle.at * 6.283185307179586 / CutTooth::kAzimuths;
-        add(one, wall.middle.rms, spacing, wall.marginMm + (steep[one.deepest].w - wall.marginW) * frame.w);
+        add(one, false, wall.middle.rms, spacing, wall.marginMm + (steep[one.deepest].w - wall.marginW) * frame.w);
     }
     return all;
 }
@@ -116,20 +137,18 @@ Taken takeWallAngle(CutTooth& tooth, const Selection& of) {
     std::vector<double> scatter;  // of one station's slope
     const auto degrees = [](double slope) { return kDegrees * core::atan(slope); };
     if (tooth.form() == Form::cavity) {
-        for (const WallStation& wall : tooth.walls())
-            if (wall.floor == 0 && isOn(of, wall.side)) {
-                places.add(degrees(wall.middle.slope), wall.marginMm);
-                const double way = wall.middleToW - wall.middleFromW;
-                scatter.push_back(3.46 / way * meanOf(wall.middle.rms, way / kPieceMm));
-            }
+        for (const WallStation* wall : straightWalls(tooth, of)) {
+            places.add(degrees(wall->middle.slope), wall->marginMm);
+            const double way = wall->middleToW - wall->middleFromW;
+            scatter.push_back(3.46 / way * meanOf(wall->middle.rms, way / kPieceMm));
+        }
         if (places.values.empty()) return none(noWall(of));
     } else {
         for (const AxialStation& wall : tooth.axialWalls())
-            if (wall.middle.isFound && isOn(of, wall.side))
-                places.add(degrees(-wall.middle.slope), wall.marginMm);
+            if (wall.middle.isFound && isOn(of, wall.side)) places.add(degrees(-wall.middle.slope), wall.marginMm);
         if (places.values.empty()) return none("no axial wall stands there");
     }
-    Taken taken = places.taken(of, "median", "wall against the path of draw");
+    Taken taken = places.taken(of, "mean", "wall against the path of draw");
     const double way = static_cast<double>(places.values.size()) * kProbeMm;
     taken.residual = kDegrees * meanOf(medianOf(std::move(scatter)), way / kPieceMm);
     return taken;
@@ -161,7 +180,7 @@ Taken takeCavosurfaceAngle(CutTooth& tooth, const Selection& of) {
         CutTooth::Look look(tooth);
         for (std::size_t i = begin; i < end; ++i) {
             const WallStation& wall = walls[i];
-            if (!wall.isCavosurface || !isOn(of, wall.side)) continue;
+            if (!wall.isCavosurface || wall.isCorner || !isOn(of, wall.side)) continue;
             // The wall under its margin, and the uncut surface beyond, each by its mean normal.
             Vec3 wallN = Vec3::Zero(), outerN = Vec3::Zero();
             for (const WallStation::Sample& s : wall.samples)

@@ -2,6 +2,8 @@
 // The walls of a cavity, as a probe finds them that is led up along the path of draw.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "handpiece/assess/measures/cut_tooth.h"
 #include "handpiece/base/core/parallel.h"
@@ -11,12 +13,15 @@ namespace {
 using core::Vec3;
 
 constexpr double kWallLevelMm = 0.025;
-constexpr double kInsideMm = 0.1;      // of the floor's edge the probe stands
-constexpr double kReachMm = 1.5;       // beyond that edge a wall is looked for
-constexpr double kMostJumpMm = 0.3;    // from level to level
-constexpr double kWallEndMm = 0.002;    // nearer under the uncut surface a wall has ended
+constexpr double kInsideMm = 0.1;     // of the floor's edge the probe stands
+constexpr double kReachMm = 1.5;      // beyond that edge a wall is looked for
+constexpr double kMostJumpMm = 0.3;   // from level to level
+constexpr double kWallEndMm = 0.002;  // nearer under the uncut surface a wall has ended
 constexpr double kLeastHeightMm = 0.15;
-constexpr double kRoundMm = 0.8;       // of floor about a wall's foot
+constexpr int kGapPlaces = 6;
+constexpr int kBesideRows = 4;
+constexpr double kStraightCos = 0.9659258;  // 15 degrees
+constexpr double kRoundMm = 0.8;            // of floor about a wall's foot
 
 }  // namespace
 
@@ -141,9 +146,10 @@ void CutTooth::findWalls() {
             int run = 0;
             for (int begin = 0; begin < length;) {
                 const int floor = floorOf[static_cast<std::size_t>(nodeAt(begin))];
-                int end = begin + 1;
-                while (end < length && floorOf[static_cast<std::size_t>(nodeAt(end))] == floor)
-                    ++end;
+                int end = begin + 1, next = end;
+                // A gap of some places is a mark of the bur, not a wall.
+                for (; floor >= 0 && next < length && next - end < kGapPlaces; ++next)
+                    if (floorOf[static_cast<std::size_t>(nodeAt(next))] == floor) end = next + 1;
                 if (floor >= 0) {
                     const int inside = std::min(static_cast<int>(std::lround(kInsideMm / kProbeMm)), (end - begin) / 2);
                     const int from = direction % 2 == 0 ? end - 1 - inside : begin + inside;
@@ -168,8 +174,8 @@ void CutTooth::findWalls() {
         for (std::size_t i = begin; i < end; ++i) {
             Plan& plan = plans[i];
             const Vec3 aim = plan.station.h;
-            isWall[i] = probeWall(look, plan.station, plan.topW, plan.farMm,
-                                  all[static_cast<std::size_t>(plan.station.floor)]);
+            isWall[i] =
+                probeWall(look, plan.station, plan.topW, plan.farMm, all[static_cast<std::size_t>(plan.station.floor)]);
             // Aslant a place of the row stands for more of the wall.
             if (isWall[i] != 0) plan.station.spacingMm = kProbeMm / plan.station.h.dot(aim);
         }
@@ -177,6 +183,15 @@ void CutTooth::findWalls() {
     std::vector<WallStation> walls;
     for (std::size_t i = 0; i < plans.size(); ++i)
         if (isWall[i] != 0) walls.push_back(std::move(plans[i].station));
+    // A wall goes on straight on both sides of a place that is not in a corner.
+    std::map<std::tuple<int, int, std::string_view, int>, const WallStation*> byRow;
+    for (const WallStation& wall : walls)
+        byRow[{wall.floor, wall.run, wall.side, wall.row}] = &wall;
+    for (WallStation& wall : walls)
+        for (const int rows : {-kBesideRows, kBesideRows}) {
+            const auto other = byRow.find({wall.floor, wall.run, wall.side, wall.row + rows});
+            wall.isCorner = wall.isCorner || other == byRow.end() || other->second->h.dot(wall.h) < kStraightCos;
+        }
     walls_ = std::move(walls);
 }
 

@@ -24,8 +24,8 @@ void addSelection(Json& json, const measures::Selection& of) {
     if (of.limit) json["limit"] = *of.limit;
 }
 
-const char* nameOf(score::Finding finding) {
-    return finding == score::Finding::no ? "no" : finding == score::Finding::yes ? "yes" : "borderline";
+const char* nameOf(score::Verdict verdict) {
+    return verdict == score::Verdict::no ? "no" : verdict == score::Verdict::yes ? "yes" : "borderline";
 }
 
 Json toJson(const measures::Evidence& e) {

@@ -36,10 +36,11 @@ std::string_view nearest(std::string_view name, std::span<const MeasureKind> kin
     return best;
 }
 
-bool isTissue(const std::string& name) {
+std::vector<std::string_view> tissues() {
+    std::vector<std::string_view> names;
     for (std::size_t i = 1; i < cases::kTissueCount; ++i)
-        if (cases::properties(static_cast<cases::Tissue>(i)).name == name) return true;
-    return false;
+        names.push_back(cases::properties(static_cast<cases::Tissue>(i)).name);
+    return names;
 }
 
 template <class List>
@@ -159,27 +160,27 @@ void Linter::value(const Criterion& c, const MeasureKind* kind, double v, const 
 }
 
 void Linter::selection(const Criterion& c, const MeasureKind& kind) {
-    const auto part = [&](Selector selector, bool isGiven, bool isKnown, const char* key, const std::string& given,
-                          const std::string& known) {
-        if (!isGiven) return;
-        if ((kind.takes & static_cast<unsigned>(selector)) == 0)
+    const auto takes = [&](Selector selector, bool isGiven, const char* key) {
+        if (!isGiven) return false;
+        const bool isTaken = (kind.takes & static_cast<unsigned>(selector)) != 0;
+        if (!isTaken)
             tell(Severity::error, c, fmt::format("{} has no {}", kind.id, key), fmt::format("leave {} out", key));
-        else if (!isKnown)
-            tell(Severity::error, c, fmt::format("there is no {} \"{}\"", key, given.substr(0, 64)), "one of " + known);
+        return isTaken;
     };
-    const auto& of = c.of;
-    std::vector<std::string_view> tissues;
-    for (std::size_t i = 1; i < cases::kTissueCount; ++i)
-        tissues.push_back(cases::properties(static_cast<cases::Tissue>(i)).name);
-    part(Selector::zone, !of.zone.empty(), has(measures::kZones, of.zone), "zone", of.zone,
-         fmt::format("{}", fmt::join(measures::kZones, ", ")));
-    part(Selector::tissue, !of.tissue.empty(), isTissue(of.tissue), "tissue", of.tissue,
-         fmt::format("{}", fmt::join(tissues, ", ")));
-    part(Selector::side, !of.side.empty(), has(measures::kSides, of.side), "side", of.side,
-         fmt::format("{}", fmt::join(measures::kSides, ", ")));
-    part(Selector::statistic, !of.statistic.empty(), has(measures::kStatistics, of.statistic), "statistic",
-         of.statistic, fmt::format("{}", fmt::join(measures::kStatistics, ", ")));
-    part(Selector::limit, of.limit.has_value(), true, "limit", {}, {});
+    const auto unknown = [&](const char* key, const std::string& given, const auto& known) {
+        tell(Severity::error, c, fmt::format("there is no {} \"{}\"", key, given.substr(0, 64)),
+             fmt::format("one of {}", fmt::join(known, ", ")));
+    };
+    const measures::Selection& of = c.of;
+    if (takes(Selector::zone, !of.zone.empty(), "zone") && !has(measures::kZones, of.zone))
+        unknown("zone", of.zone, measures::kZones);
+    if (takes(Selector::tissue, !of.tissue.empty(), "tissue") && !has(tissues(), of.tissue))
+        unknown("tissue", of.tissue, tissues());
+    if (takes(Selector::side, !of.side.empty(), "side") && !has(measures::kSides, of.side))
+        unknown("side", of.side, measures::kSides);
+    if (takes(Selector::statistic, !of.statistic.empty(), "statistic") && !has(measures::kStatistics, of.statistic))
+        unknown("statistic", of.statistic, measures::kStatistics);
+    takes(Selector::limit, of.limit.has_value(), "limit");
     if ((kind.takes & static_cast<unsigned>(Selector::limit)) != 0 && !of.limit)
         tell(Severity::error, c, fmt::format("{} needs a limit", kind.id), "give limit = ...");
 }

@@ -67,16 +67,16 @@ double weighted(const Criterion& c, double points) {
     return points == 100.0 ? c.weight : std::min(c.weight, c.weight * points / 100.0);
 }
 
-Finding criticalIn(const Criterion& c, double value, const Interval& in) {
-    if (!c.critical) return Finding::no;
+Verdict criticalIn(const Criterion& c, double value, const Interval& in) {
+    if (!c.critical) return Verdict::no;
     const auto is = [&](double v) {
         return (c.critical->below && v < *c.critical->below) || (c.critical->above && v > *c.critical->above);
     };
-    if (!is(value)) return is(in.low) || is(in.high) ? Finding::borderline : Finding::no;
+    if (!is(value)) return is(in.low) || is(in.high) ? Verdict::borderline : Verdict::no;
     // Critical from one side only where the whole interval lies beyond that limit.
     const bool surely =
         (c.critical->below && in.high < *c.critical->below) || (c.critical->above && in.low > *c.critical->above);
-    return surely ? Finding::yes : Finding::borderline;
+    return surely ? Verdict::yes : Verdict::borderline;
 }
 
 CriterionScore judge(const Rubric& rubric, const Criterion& c, std::span<const Measured> measured,
@@ -115,7 +115,7 @@ CriterionScore judge(const Rubric& rubric, const Criterion& c, std::span<const M
     if (const Band* band = bandOf(c, value)) s.band = band->id;
     s.possibleBands = bandsIn(rubric, c, in);
     s.critical = criticalIn(c, value, in);
-    s.borderline = s.possibleBands.size() > 1 || s.critical == Finding::borderline;
+    s.borderline = s.possibleBands.size() > 1 || s.critical == Verdict::borderline;
     if (c.isGraded()) {
         const auto [least, most] = pointsIn(c, in);
         s.points = weighted(c, *pointsOf(c, value));
@@ -143,8 +143,8 @@ const CriterionScore* voidExcluded(const Rubric& rubric, std::vector<CriterionSc
             settle(by);
             const CriterionScore& other = scores[by];
             if (other.standing != Standing::judged || s.standing == Standing::leftOut) continue;
-            const bool fails = other.critical == Finding::yes || (other.points && other.mostPoints == 0.0);
-            const bool mayFail = other.critical != Finding::no || (other.points && other.leastPoints == 0.0);
+            const bool fails = other.critical == Verdict::yes || (other.points && other.mostPoints == 0.0);
+            const bool mayFail = other.critical != Verdict::no || (other.points && other.leastPoints == 0.0);
             if (!fails && mayFail) perhaps = &other;
             if (!fails) continue;
             s.standing = Standing::voided;
@@ -153,7 +153,7 @@ const CriterionScore* voidExcluded(const Rubric& rubric, std::vector<CriterionSc
             s.band.clear();
             s.possibleBands.clear();
             s.leastPoints = s.mostPoints = 0.0;
-            s.borderline = s.critical == Finding::borderline;
+            s.borderline = s.critical == Verdict::borderline;
             return;
         }
         if (perhaps && !unsure) unsure = perhaps;
@@ -252,7 +252,7 @@ Assessment evaluate(const Rubric& rubric, std::span<const Measured> measured, co
         const Criterion& c = rubric.criteria[i];
         if (s.standing == Standing::leftOut) continue;
         // What is void may still be a critical error.
-        if (s.critical != Finding::no) a.critical.push_back({s.id, s.critical == Finding::borderline});
+        if (s.critical != Verdict::no) a.critical.push_back({s.id, s.critical == Verdict::borderline});
         if (s.standing == Standing::voided) continue;
         a.wholeScore += s.maxPoints;
         if (s.standing == Standing::notMeasured &&

@@ -32,7 +32,7 @@ enum class Standing {
 [[nodiscard]] std::string_view nameOf(Standing standing);
 
 /// yes, no, or: within the uncertainty of what was measured.
-enum class Finding { no, borderline, yes };
+enum class Verdict { no, borderline, yes };
 
 struct CriterionScore {
     std::string id, measure, unit;
@@ -46,7 +46,7 @@ struct CriterionScore {
     std::optional<double> points;                ///< none: shown only, or not judged
     double leastPoints = 0.0, mostPoints = 0.0;  ///< within the uncertainty
     double maxPoints = 0.0;
-    Finding critical = Finding::no;
+    Verdict critical = Verdict::no;
     bool borderline = false;  ///< band or critical condition would change within the uncertainty
     std::vector<measures::Evidence> evidence;
 };

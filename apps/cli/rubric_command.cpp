@@ -50,6 +50,9 @@ void show(const std::string& name, bool json) {
 
 void diff(const std::string& before, const std::string& after) {
     const Rubric a = rubric::rubricByNameOrFile(before), b = rubric::rubricByNameOrFile(after);
+    // Of two criteria of one name nobody could say which has changed.
+    requireSound(a);
+    requireSound(b);
     const std::vector<std::string> all = rubric::differences(a, b);
     for (const std::string& sentence : all)
         fmt::print("{}\n", sentence);

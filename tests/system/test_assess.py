@@ -78,6 +78,7 @@ class Rubrics(SystemTest):
         told = self.ok("rubric", "diff", before, after).stdout
         self.assertEqual(told, "criterion depth: weight was 10, is 20\nscores may be others: the hash is another\n")
         self.assertIn("weight=10\n", self.ok("rubric", "hash", before, "--text").stdout)
+        self.refused("rubric", "diff", before, self.own(OWN.replace("floor-depth", "depth"), "wrong.toml"), mentions=("wrong.toml:11", "no measure"))
         self.assertIn("nothing differs", self.ok("rubric", "diff", before, before).stdout)
 
 

@@ -23,7 +23,7 @@ struct ScoreOptions {
 void tell(const assessment::Result& result) {
     const score::Assessment& a = result.assessment;
     for (const score::CriterionScore& c : a.criteria) {
-        const std::string of = fmt::format("{}{}{}", c.id, c.critical == score::Finding::yes ? " CRITICAL" : "",
+        const std::string of = fmt::format("{}{}{}", c.id, c.critical == score::Verdict::yes ? " CRITICAL" : "",
                                            c.borderline ? " (borderline: the teacher decides)" : "");
         if (c.standing == score::Standing::judged)
             fmt::print("  {:<44} {:>9.3f} +- {:<6.3f} {:<4}{:>14} {}\n", of, *c.value, c.uncertainty, c.unit, c.band,

@@ -157,17 +157,24 @@ TEST_F(Block, zonesCountersIsthmusAndANickedNeighbour) {
     BoxCavity box;
     const auto cut = test::carved(body_, box.solid());
     Preparation p = preparation(body_, *cut);
-    p.zone = [](std::string_view zone, const Vec3& q) -> std::optional<double> {
-        if (zone != "target") return {};
-        return body_.inGrid.applyInverse(q).x();
-    };
     Selection target;
     target.zone = "target";
+    EXPECT_FALSE(take(p, "removed", target).value);
+    EXPECT_NE(take(p, "removed", target).reason.find("target"), std::string::npos);
+    // A task that asks for one half of the block.
+    const zones::Zones half(
+        [](const Vec3& q) {
+            return zones::PastTarget{body_.inGrid.applyInverse(q).x(), -zones::kFarMm};
+        },
+        body_.model->tree.bounds().grown(20.0), {});
+    p.zones = &half;
     const double all = *take(p, "removed").value;
     EXPECT_NEAR(*take(p, "removed", target).value, 0.5 * all, 0.01 * all);
+    EXPECT_NEAR(*take(p, "removed-share", target).value, 100.0 * all / 2.0 / zones::zoneVolumes(half, *cut).targetMm3(),
+                0.5);
     target.zone = "container";
-    EXPECT_FALSE(take(p, "removed", target).value);
-    EXPECT_NE(take(p, "removed", target).reason.find("container"), std::string::npos);
+    EXPECT_NEAR(*take(p, "removed", target).value, 0.5 * all, 0.01 * all);
+    EXPECT_FALSE(take(p, "removed-share", target).value);
     p.removedMm3.emplace();
     (*p.removedMm3)[1] = 7.5;
     EXPECT_EQ(take(p, "removed").value, 7.5);

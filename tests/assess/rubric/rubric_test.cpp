@@ -140,7 +140,7 @@ TEST(Linter, FindsWhatMakesNoSense) {
         {kHead + kDepth + "critical = { above = 30 }\n", "critical above at 30 mm, which no measure can have"},
         {kHead + kDepth + "critical = { below = 3, above = 2 }\n", "every value is critical"},
         {kHead + kDepth + "critical = { above = 20 }\n", "no value can be critical"},
-        {kHead + kDepth + "side = \"mesial\"\n", "floor-depth has no side"},
+        {kHead + kWidth + "side = \"mesial\"\n", "isthmus has no side"},
         {kHead + replaced(kDepth, "floor-depth", "wall-height") + "side = \"up\"\n", "there is no side \"up\""},
         {kHead + kDepth + "statistic = \"mode\"\n", "there is no statistic \"mode\""},
         {kHead + "[[criterion]]\nid = \"c\"\ntitle = { en = \"c\" }\nmeasure = \"removed\"\nunit = \"mm3\"\nzone = "

@@ -70,11 +70,9 @@ LandmarksPanel::LandmarksPanel(QWidget* parent)
     };
     auto* column = new QVBoxLayout(this);
     column->addWidget(list_, 1);
-    QHBoxLayout* setting = inRow({kind_, name_, set_});
-    setting->setStretch(0, 1);
-    setting->setStretch(1, 1);
-    column->addLayout(setting);
-    for (QHBoxLayout* row : {inRow({find_, delete_, undo_}), inRow({reset_, save_})}) {
+    // No row wider than three buttons: the column on the right is as wide as its widest panel must be.
+    column->addLayout(inRow({kind_, name_}));
+    for (QHBoxLayout* row : {inRow({set_, find_, delete_}), inRow({undo_, reset_, save_})}) {
         row->addStretch();
         column->addLayout(row);
     }

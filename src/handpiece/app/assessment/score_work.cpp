@@ -128,10 +128,7 @@ Result scoreWork(const Work& work, const tasks::Task& task, const rubric::Rubric
         laid = preparation::layOn(toothCase, *task.preparation);
         preparation.axes.draw = laid->draw;
         if (task.preparation->preparation == "crown") preparation.form = measures::Form::crown;
-        preparation.zone = [&zones = *laid->zones](std::string_view zone,
-                                                   const core::Vec3& p) -> std::optional<double> {
-            return zones.distanceMm(zone, p);
-        };
+        preparation.zones = laid->zones.get();
     }
 
     std::vector<measures::Request> requests;

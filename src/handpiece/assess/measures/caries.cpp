@@ -145,7 +145,7 @@ Taken cariesLeft(CutTooth& tooth, const Selection& of, int where) {
     if (!hasCaries(*p.whole)) return none("the case has no carious dentine");
     if (!of.tissue.empty() && !cases::isCarious(cases::tissueByName(of.tissue)))
         return none(of.tissue + " is no carious dentine");
-    if (!of.zone.empty() && !(p.zone && p.zone(of.zone, Vec3::Zero())))
+    if (!of.zone.empty() && (p.zones == nullptr || !p.zones->distanceMm(of.zone, Vec3::Zero())))
         return none("the task has no zone \"" + of.zone + "\"");
     std::optional<Junction> junction;
     if (where != 0) {
@@ -156,7 +156,7 @@ Taken cariesLeft(CutTooth& tooth, const Selection& of, int where) {
     const auto weight = [&](const Vec3& place, Tissue tissue) {
         if (!cases::isCarious(tissue) || !isAsked(of, tissue)) return 0.0;
         if (where != 0 && junction->nearest(place, kPeripheryMm).has_value() != (where > 0)) return 0.0;
-        return of.zone.empty() ? 1.0 : std::clamp(0.5 - *p.zone(of.zone, place) / voxel, 0.0, 1.0);
+        return of.zone.empty() ? 1.0 : std::clamp(0.5 - *p.zones->distanceMm(of.zone, place) / voxel, 0.0, 1.0);
     };
     return {volumeOf(*p.whole, *p.cut, false, weight), {}};
 }

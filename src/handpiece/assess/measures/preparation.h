@@ -3,7 +3,6 @@
 /// @file
 /// A preparation to be measured, and the one way to its measures. docs/assessment.md defines each of them.
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "handpiece/assess/measures/measure.h"
+#include "handpiece/assess/zones/zones.h"
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/model/case/landmark.h"
 #include "handpiece/model/tooth/tooth_mirror.h"
@@ -53,8 +53,8 @@ struct Preparation {
     std::span<const Other> others{};  ///< teeth beside it
     /// Gingiva as a surface, tooth frame; null when the case has none.
     const geometry::TriangleTree* gingiva = nullptr;
-    /// Signed distance [mm] to a zone of the task; none when it has no such zone.
-    std::function<std::optional<double>(std::string_view zone, const core::Vec3& pMm)> zone{};
+    /// Of the task; null where it has none.
+    const zones::Zones* zones = nullptr;
 };
 
 struct Request {

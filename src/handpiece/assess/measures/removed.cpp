@@ -13,11 +13,6 @@ namespace {
 using cases::Tissue;
 using core::Vec3;
 
-/// How much of a node's voxel lies in a zone, as volumes count tissue.
-double shareOf(double zoneMm, double voxelMm) {
-    return std::clamp(0.5 - zoneMm / voxelMm, 0.0, 1.0);
-}
-
 struct Amount {
     double removed = 0.0, whole = 0.0;
     std::string reason;
@@ -25,31 +20,30 @@ struct Amount {
 Amount amountOf(CutTooth& tooth, const Selection& of, bool withWhole) {
     Amount amount;
     const Preparation& p = tooth.preparation();
-    const auto zoneAt = [&](const Vec3& place) -> std::optional<double> {
-        return p.zone ? p.zone(of.zone, place) : std::nullopt;
+    const auto sumOf = [&](const tooth::TissueVolumes& mm3) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < cases::kTissueCount; ++i)
+            if (isAsked(of, static_cast<Tissue>(i))) sum += mm3[i];
+        return sum;
     };
-    if (!of.zone.empty() && !zoneAt(Vec3::Zero())) return {0.0, 0.0, "the task has no zone \"" + of.zone + "\""};
-    if (of.zone.empty() && p.removedMm3) {
-        for (std::size_t i = 0; i < cases::kTissueCount; ++i)
-            if (isAsked(of, static_cast<Tissue>(i))) amount.removed += (*p.removedMm3)[i];
-    } else {
-        const double voxel = tooth.voxelMm();
-        amount.removed = volumeOf(*p.whole, *p.cut, true, [&](const Vec3& place, Tissue tissue) {
-            if (!isAsked(of, tissue)) return 0.0;
-            return of.zone.empty() ? 1.0 : shareOf(*zoneAt(place), voxel);
-        });
+    if (!of.zone.empty()) {
+        const auto name = std::find(zones::kZoneNames.begin(), zones::kZoneNames.end(), of.zone);
+        if (p.zones == nullptr || name == zones::kZoneNames.end())
+            return {0.0, 0.0, "the task has no zone \"" + of.zone + "\""};
+        const zones::ZoneVolumes volumes = zones::zoneVolumes(*p.zones, *p.cut);
+        amount.removed = sumOf(volumes.removed[static_cast<std::size_t>(name - zones::kZoneNames.begin())]);
+        if (!withWhole) return amount;
+        if (name != zones::kZoneNames.begin())
+            return {0.0, 0.0, "only of the target is it known how much there was: ask for mm3"};
+        amount.whole = sumOf(volumes.target);
+        return amount;
     }
-    if (!withWhole) return amount;
-    if (of.zone.empty()) {
-        for (std::size_t i = 0; i < cases::kTissueCount; ++i)
-            if (isAsked(of, static_cast<Tissue>(i))) amount.whole += p.whole->volumesMm3[i];
-    } else {
-        const tooth::ToothMirror uncut(p.whole);
-        const double voxel = tooth.voxelMm();
-        amount.whole = volumeOf(*p.whole, uncut, false, [&](const Vec3& place, Tissue tissue) {
-            return isAsked(of, tissue) ? shareOf(*zoneAt(place), voxel) : 0.0;
-        });
-    }
+    if (p.removedMm3)
+        amount.removed = sumOf(*p.removedMm3);
+    else
+        amount.removed = volumeOf(*p.whole, *p.cut, true,
+                                  [&](const Vec3&, Tissue tissue) { return isAsked(of, tissue) ? 1.0 : 0.0; });
+    if (withWhole) amount.whole = sumOf(p.whole->volumesMm3);
     return amount;
 }
 

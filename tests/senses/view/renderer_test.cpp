@@ -13,6 +13,7 @@
 #include <random>
 
 #include "handpiece/model/instrument/catalogue.h"
+#include "handpiece/model/tooth/state_delta.h"
 #include "support/closed_meshes.h"
 #include "support/error_of.h"
 #include "support/random.h"
@@ -516,6 +517,97 @@ TEST(Renderer, LipsAndCheeksAreHeldAsideUnlessAskedFor) {
     look.cheeks = true;
     renderer.draw(above(), kSize, look, {}, seen);
     EXPECT_NE(brightness(at(seen, above(), middle)), brightness(at(without, above(), middle)));
+}
+
+/// A tooth in bone and gingiva that is higher mesial of it than its crown's middle, with an adjacent tooth mesial.
+std::vector<cases::Part> mouthAround() {
+    return {{"other", Tissue::neighbour, 0, test::boxMesh({4.2, -3, -8}, {10, 3, 2})},
+            {"bone", Tissue::bone, 0, test::boxMesh({-20, -5, -12}, {20, 5, -4})},
+            {"gingiva", Tissue::gum, 0, test::boxMesh({-20, -6, -14}, {20, 6, -2})},
+            {"papilla", Tissue::gum, 0, test::boxMesh({6, -5, -3}, {12, 5, 1.5})}};
+}
+Camera fromMesial() {
+    Camera camera;
+    camera.eyeMm = {30.0, 0.0, 1.0};
+    camera.targetMm = {0.0, 0.0, -4.0};
+    return camera;
+}
+bool isRed(const Rgb& c) {
+    return c.r > c.g + 30 && c.r > c.b + 30;
+}
+
+TEST(Renderer, FromMesialWhatSurroundsAToothEndsBeforeItsProximalSide) {
+    Renderer renderer;
+    renderer.setMesh(test::boxMesh({-4, -4, -8}, {4, 4, 2}), Tissue::enamel);
+    renderer.setScenery(mouthAround());
+    renderer.setBur(rod(0.8, 4.0), 4.0, 0.8);
+    const Vec3 crown(4.0, 0.0, 0.0), gum(4.05, 5.5, -6.0), deeper(4.05, -5.5, -9.0), bone(4.05, 4.5, -6.0);
+    for (const Quality quality : {Quality::fast, Quality::fine, Quality::rich})
+        for (const bool mirrored : {false, true}) {
+            SCOPED_TRACE(static_cast<int>(quality) * 2 + (mirrored ? 1 : 0));
+            Look look;
+            look.quality = quality;
+            Camera camera = fromMesial();
+            camera.mirrored = mirrored;
+            const Image image = picture(renderer, camera, look, withoutBur());
+            const Rgb tooth = at(image, camera, crown), cut = at(image, camera, gum), cutBone = at(image, camera, bone);
+            std::printf("[ section ] tooth %d %d %d, gingiva %d %d %d, bone %d %d %d\n", tooth.r, tooth.g, tooth.b,
+                        cut.r, cut.g, cut.b, cutBone.r, cutBone.g, cutBone.b);
+            EXPECT_FALSE(isRed(tooth));
+            EXPECT_GT(brightness(tooth), 250);  // nothing that is left out throws a shadow on it
+            // One colour all over, whatever lies behind.
+            EXPECT_TRUE(isRed(cut));
+            const Rgb lower = at(image, camera, deeper);
+            EXPECT_EQ(brightness(cut), brightness(lower));
+            EXPECT_GT(cutBone.g, cut.g + 20);
+            // What is held before it stays.
+            Moment moment;
+            moment.burInTooth.positionMm = {9.0, 0.0, -2.0};
+            EXPECT_NE(brightness(at(picture(renderer, camera, look, moment), camera, {9.8, 0.0, 0.0})),
+                      brightness(at(image, camera, {9.8, 0.0, 0.0})));
+        }
+}
+
+TEST(Renderer, OnlyAnAdjacentToothInTheWayEndsWhatSurroundsATooth) {
+    Renderer renderer;
+    renderer.setMesh(test::boxMesh({-4, -4, -8}, {4, 4, 2}), Tissue::enamel);
+    renderer.setScenery(mouthAround());
+    const Look look = plainLook();
+    Camera distal = fromMesial(), buccal = fromMesial();
+    distal.eyeMm.x() = -30.0;
+    buccal.eyeMm = {0.0, -30.0, 8.0};
+    const Rgb papilla = at(picture(renderer, buccal, look, withoutBur()), buccal, {8.0, -5.0, 0.0});
+    EXPECT_TRUE(isRed(papilla));
+    // Distal there is none: the gingiva's end, lit as a surface is.
+    const Image whole = picture(renderer, distal, look, withoutBur());
+    std::vector<cases::Part> noOther = mouthAround();
+    noOther.erase(noOther.begin());
+    renderer.setScenery(noOther);
+    expectSame(picture(renderer, distal, look, withoutBur()), whole);
+    // Without the tooth, mesial gingiva hides the crown again.
+    EXPECT_TRUE(isRed(at(picture(renderer, fromMesial(), look, withoutBur()), fromMesial(), {4.0, 0.0, 0.0})));
+}
+
+TEST(Renderer, AnAdjacentToothThatWasCutIsLeftOutToo) {
+    Renderer renderer;
+    renderer.setTooth({{-4, -4, -8}, {4, 4, 2}});
+    std::vector<BrickUpdate> bricks = table();  // the crown's top at 0
+    renderer.updateBricks(bricks, true);
+    renderer.setScenery(mouthAround());
+    Camera camera = fromMesial();
+    camera.eyeMm.z() = 5.0;
+    const Look look = plainLook();
+    const Vec3 place(3.5, 0.0, 0.0);
+    const Image before = picture(renderer, camera, look, withoutBur());
+    EXPECT_FALSE(isRed(at(before, camera, place)));
+    EXPECT_GT(brightness(at(before, camera, place)), 300);
+    // From now on in bricks: a wall before the tooth.
+    BrickUpdate wall = brick((1u << tooth::kDenseBits) | 5u, square(4.5, -3.0, 6.0, 1.9, Tissue::enamel));
+    wall.isUncut = true;
+    BrickUpdate foot = brick((1u << tooth::kDenseBits) | 6u, square(4.5, -3.0, 6.0, -7.0, Tissue::enamel));
+    foot.isUncut = true;
+    renderer.updateBricks(std::vector<BrickUpdate>{wall, foot});
+    expectSame(picture(renderer, camera, look, withoutBur()), before);
 }
 
 TEST(Renderer, ATissueThatIsNotVisibleIsNotDrawn) {

@@ -187,7 +187,7 @@ LayerWants Renderer::State::wantsFor(const Eye& eye, const Viewport& size, const
 std::size_t Renderer::State::drawGhost(const Eye& eye, const Viewport& size, const PixelRect& rect, const Look& look,
                                        const Lighting& lighting) {
     const Culler culler(eye, size, rect, true);
-    const auto& meshes = scene.cutAway(culler);
+    const auto& meshes = scene.cutAway(culler, scene.inTheWay(eyeToSee(eye)));
     gl::Program& program = shaders.ghost;
     program.use();
     program.set("viewProjection", eye.viewProjection());

@@ -15,7 +15,8 @@ namespace {
 /// More than this, and drawing all is as quick as finding what changed.
 constexpr std::size_t kMaxChanges = 20000;
 constexpr double kCreaseRad = 0.9, kPieceTriangles = 200.0;
-constexpr double kCrownCentreMm = 3.0;  // under a crown's top
+constexpr double kCrownCentreMm = 3.0, kCrownMm = 7.0;  // under a crown's top: a first molar's is 7.5 mm high [R]
+constexpr double kBeforeProximalMm = 0.05;
 constexpr float kPatchMm = 2.0f;
 constexpr std::size_t kTrianglesACall = 6000;  // to be simplified: some milliseconds
 
@@ -136,7 +137,7 @@ void Scene::put(const surface::BrickUpdate& update, bool before) {
 void Scene::putInPatch(Brick& brick) {
     if (brick.patch == kNoPatch) {
         if (brick.mesh == nullptr) return;
-        std::array<int, 3> at{};
+        std::array<int, 4> at{0, 0, 0, tooth::toothOf(brick.id)};
         for (std::size_t k = 0; k < 3; ++k)
             at[k] = static_cast<int>(std::floor(brick.now.centreMm[static_cast<int>(k)] / kPatchMm));
         const auto [found, isNew] = patchAt_.try_emplace(at, static_cast<std::uint32_t>(patches_.size()));
@@ -229,29 +230,87 @@ bool leadsThrough(const core::Box& box, const core::Vec3& from, const core::Vec3
 
 }  // namespace
 
-const std::vector<const PooledMesh*>& Scene::visible(const Look& look, Detail detail, const Culler& culler,
-                                                     const std::optional<gl::Vec3f>& eyeMm) {
+Scene::InTheWay Scene::inTheWay(const std::optional<gl::Vec3f>& eyeMm) const {
+    InTheWay out;
+    if (!eyeMm || toothBounds_.isEmpty()) return out;
+    const core::Vec3 eye = eyeMm->cast<double>(), middle = toothBounds_.centre();
+    const double top = toothBounds_.max.z(), side = eye.x() < middle.x() ? -1.0 : 1.0;
+    const core::Vec3 to(middle.x(), middle.y(), top - std::min(kCrownCentreMm, 0.5 * toothBounds_.size().z()));
+    bool isBeside = false;  // one of the same jaw, on the eye's side
+    const auto ask = [&](std::uint16_t number, const core::Box& box) {
+        if (!leadsThrough(box, eye, to)) return;
+        out.teeth.insert(number);
+        isBeside = isBeside || (box.centre().z() < top && side * (box.centre().x() - middle.x()) > 0.0);
+    };
+    // Teeth as wholes, those in bricks as they were before they were cut.
+    const Static* last = nullptr;
+    for (const Static& s : scenery_) {
+        if (s.tissue == cases::Tissue::neighbour && (last == nullptr || last->part != s.part))
+            ask(static_cast<std::uint16_t>(s.part + 1), s.wholeMm);
+        last = &s;
+    }
+    std::map<std::uint16_t, core::Box> boxes;
+    const auto extend = [](core::Box& box, const Brick& brick) {
+        const PooledMesh& mesh = brick.isCut ? brick.before : brick.now;
+        if (mesh.indexCount == 0) return;
+        box.extend(mesh.minMm.cast<double>());
+        box.extend(mesh.maxMm.cast<double>());
+    };
+    if (!teethInBricks_.empty())
+        for (const Brick& brick : bricks_)
+            if (const std::uint16_t tooth = tooth::toothOf(brick.id); tooth > 0) extend(boxes[tooth], brick);
+    for (const auto& [number, box] : boxes)
+        if (!box.isEmpty()) ask(number, box);
+    if (!isBeside) return out;
+
+    core::Box crown;
+    for (const Brick& brick : bricks_)
+        if (const PooledMesh& mesh = brick.isCut ? brick.before : brick.now;
+            tooth::toothOf(brick.id) == 0 && mesh.minMm.z() > top - kCrownMm)
+            extend(crown, brick);
+    if (crown.isEmpty()) crown = toothBounds_;
+    const double endMm = (side < 0.0 ? -crown.min.x() : crown.max.x()) + kBeforeProximalMm;
+    if (side * eye.x() > endMm) out.plane = Plane{side * core::Vec3::UnitX(), endMm};
+    return out;
+}
+
+const Scene::Visible& Scene::visible(const Look& look, Detail detail, const Culler& culler, const InTheWay& out) {
     if (!sorted_) {
         std::sort(bricks_.begin(), bricks_.end(), [](const Brick& a, const Brick& b) { return a.id < b.id; });
         for (std::uint32_t i = 0; i < bricks_.size(); ++i)
             slot_[bricks_[i].id] = i;
         sorted_ = true;
     }
-    visible_.clear();
+    visible_.tooth.clear();
+    visible_.around.clear();
     const auto offer = [&](const PooledMesh& mesh) {
-        if (mesh.indexCount > 0 && culler.mayBeSeen(mesh)) visible_.push_back(&mesh);
+        if (mesh.indexCount > 0 && culler.mayBeSeen(mesh)) visible_.tooth.push_back(&mesh);
+    };
+    const auto offerAround = [&](const PooledMesh& mesh) {
+        if (mesh.indexCount == 0 || !culler.mayBeSeen(mesh)) return;
+        if (out.plane && out.plane->normal.cast<float>().dot(mesh.centreMm) >
+                             static_cast<float>(out.plane->offsetMm) + mesh.radiusMm)
+            return;
+        visible_.around.push_back(&mesh);
+    };
+    const auto offerOf = [&](std::uint32_t brick, const PooledMesh& mesh) {
+        const std::uint16_t tooth = tooth::toothOf(brick);
+        if (tooth == 0)
+            offer(mesh);
+        else if (!out.teeth.contains(tooth))
+            offerAround(mesh);
     };
     const bool asItWas = look.tooth == ToothShown::before, coarse = detail == Detail::coarse,
                near = detail == Detail::near && !asItWas;
     if (near)
         for (const Patch& patch : patches_)
-            offer(patch.near);
+            offerOf(patch.bricks.front(), patch.near);
     for (const Brick& brick : bricks_) {
         if (near && brick.patch != kNoPatch && patches_[brick.patch].near.indexCount > 0) continue;
         if (asItWas && brick.isCut)
-            offer(coarse && brick.beforeHasCoarse ? brick.beforeCoarse : brick.before);
+            offerOf(brick.id, coarse && brick.beforeHasCoarse ? brick.beforeCoarse : brick.before);
         else
-            offer(coarse && brick.hasCoarse ? brick.coarse : brick.now);
+            offerOf(brick.id, coarse && brick.hasCoarse ? brick.coarse : brick.now);
     }
     const auto isVisible = [&](cases::Tissue tissue) { return look.visible[static_cast<std::size_t>(tissue)]; };
     const auto offerAll = [&](const std::vector<Static>& meshes) {
@@ -262,23 +321,20 @@ const std::vector<const PooledMesh*>& Scene::visible(const Look& look, Detail de
     // Inner tissues lie under the surface; they matter only where one of those around them is left out.
     if (std::any_of(parts_.begin(), parts_.end(), [&](const Static& s) { return !isVisible(s.tissue); }))
         offerAll(parts_);
-    const core::Vec3 crown =
-        toothBounds_.isEmpty()
-            ? core::Vec3(core::Vec3::Zero())
-            : core::Vec3(toothBounds_.centre().x(), toothBounds_.centre().y(),
-                         toothBounds_.max.z() - std::min(kCrownCentreMm, 0.5 * toothBounds_.size().z()));
     for (const Static& s : scenery_) {
-        const bool inTheWay = eyeMm && !toothBounds_.isEmpty() && s.tissue == cases::Tissue::neighbour &&
-                              leadsThrough(s.wholeMm, eyeMm->cast<double>(), crown);
-        if (isVisible(s.tissue) && !inTheWay && (look.cheeks || !s.isHeldAside)) offer(s.mesh);
+        const bool isLeftOut =
+            s.tissue == cases::Tissue::neighbour && out.teeth.contains(static_cast<std::uint16_t>(s.part + 1));
+        if (isVisible(s.tissue) && !isLeftOut && (look.cheeks || !s.isHeldAside)) offerAround(s.mesh);
     }
     return visible_;
 }
 
-const std::vector<const PooledMesh*>& Scene::cutAway(const Culler& culler) {
+const std::vector<const PooledMesh*>& Scene::cutAway(const Culler& culler, const InTheWay& out) {
     cut_.clear();
     for (const Brick& brick : bricks_)
-        if (brick.isCut && brick.before.indexCount > 0 && culler.mayBeSeen(brick.before)) cut_.push_back(&brick.before);
+        if (brick.isCut && brick.before.indexCount > 0 && !out.teeth.contains(tooth::toothOf(brick.id)) &&
+            culler.mayBeSeen(brick.before))
+            cut_.push_back(&brick.before);
     return cut_;
 }
 

@@ -53,13 +53,22 @@ class Scene {
     };
     [[nodiscard]] const std::vector<Change>& changes() const noexcept { return changes_; }
 
+    /// Other teeth that would stand between an eye and the tooth's crown are left out, by their numbers: a look from
+    /// mesial or distal shows this tooth. Where adjacent teeth are, what surrounds the tooth ends at a plane before its
+    /// proximal side, or their empty sockets would hide it.
+    struct InTheWay {
+        std::set<std::uint16_t> teeth;
+        std::optional<Plane> plane;
+    };
+    /// Nothing without `eyeMm`.
+    [[nodiscard]] InTheWay inTheWay(const std::optional<gl::Vec3f>& eyeMm) const;
     /// What `look` and `culler` let through, in an order that does not depend on the rest. Good until the next change.
-    /// Seen from `eyeMm`, neighbours that would stand before the tooth's crown are left out: a look from mesial or
-    /// distal shows this tooth.
-    [[nodiscard]] const std::vector<const PooledMesh*>& visible(const Look& look, Detail detail, const Culler& culler,
-                                                                const std::optional<gl::Vec3f>& eyeMm = {});
-    /// The tooth as it was, where it is another now.
-    [[nodiscard]] const std::vector<const PooledMesh*>& cutAway(const Culler& culler);
+    struct Visible {
+        std::vector<const PooledMesh*> tooth, around;
+    };
+    [[nodiscard]] const Visible& visible(const Look& look, Detail detail, const Culler& culler, const InTheWay& out);
+    /// The teeth as they were, where they are others now.
+    [[nodiscard]] const std::vector<const PooledMesh*>& cutAway(const Culler& culler, const InTheWay& out);
     [[nodiscard]] bool isCut() const noexcept { return cutCount_ > 0; }
     [[nodiscard]] PixelRect rectOfCut(const Eye& eye, const Viewport& viewport) const;
     std::size_t draw(const std::vector<const PooledMesh*>& meshes) { return pool_.draw(meshes); }
@@ -76,7 +85,7 @@ class Scene {
     /// Bricks that are simplified together: of those alone most points lie on the rim, and stay.
     static constexpr std::uint32_t kNoPatch = 0xffffffffu;
     struct Patch {
-        std::vector<std::uint32_t> bricks;  ///< their ids
+        std::vector<std::uint32_t> bricks;  ///< their ids, all of one tooth
         PooledMesh near;
         bool isStale = false;
     };
@@ -103,14 +112,15 @@ class Scene {
     std::vector<Static> mesh_, scenery_, parts_;
     core::Box toothBounds_, bounds_;
     std::vector<Patch> patches_;
-    std::map<std::array<int, 3>, std::uint32_t> patchAt_;
-    std::vector<std::uint32_t> stale_;  ///< patches that are to be simplified (again)
+    std::map<std::array<int, 4>, std::uint32_t> patchAt_;  ///< by tooth and place
+    std::vector<std::uint32_t> stale_;                     ///< patches that are to be simplified (again)
     std::size_t coarseCount_ = 0, cutCount_ = 0;
     bool hasBefore_ = false;
     std::set<std::uint16_t> teethInBricks_;  ///< of those around the one worked on
     std::uint64_t epoch_ = 1;
     std::vector<Change> changes_;
-    std::vector<const PooledMesh*> visible_, cut_;
+    Visible visible_;
+    std::vector<const PooledMesh*> cut_;
 };
 
 }  // namespace handpiece::view

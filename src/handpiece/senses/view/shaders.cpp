@@ -19,7 +19,7 @@ uniform mat4 viewProjection;
 uniform int visibleTissues;
 #ifdef CLIPPED
 uniform vec4 clipPlane;
-uniform vec4 mirrorPlane;
+uniform vec4 endPlane;  // of a mirror, or before a proximal side
 out float gl_ClipDistance[2];
 #endif
 out vec3 normalOut;
@@ -32,7 +32,7 @@ void main() {
     gl_Position = shown ? viewProjection * at : vec4(0.0, 0.0, -2.0, 1.0);
 #ifdef CLIPPED
     gl_ClipDistance[0] = dot(clipPlane, at);
-    gl_ClipDistance[1] = dot(mirrorPlane, at);
+    gl_ClipDistance[1] = dot(endPlane, at);
 #endif
     normalOut = 0.5 * normal.xyz + 0.5;
     removedOut = removed;

@@ -109,6 +109,11 @@ Lighting lightingOf(const Camera& camera) {
     return {(0.80 * back + 0.52 * up - 0.42 * right).normalized().cast<float>(), up.cast<float>(), right.cast<float>()};
 }
 
+std::optional<Vec3f> eyeToSee(const Eye& eye) {
+    if (eye.clip) return std::nullopt;
+    return eye.positionMm;
+}
+
 Vec4f planeOf(const std::optional<Plane>& plane) {
     if (!plane) return {0.0f, 0.0f, 0.0f, 1.0f};
     const Vec3f normal = plane->normal.cast<float>();
@@ -228,35 +233,42 @@ void ToothLayer::redraw(Shaders& shaders, Scene& scene, const Section& section, 
 std::size_t ToothLayer::drawSurface(Shaders& shaders, Scene& scene, const Section& section, const LayerWants& wants,
                                     const PixelRect& rect) {
     const Look& look = wants.look;
-    const bool clipped = look.cutAway || wants.eye.clip;
     geometry_.bind();
     setScissor(rect);
     glEnable(GL_DEPTH_TEST);
     glClear(GL_DEPTH_BUFFER_BIT);
-    gl::Program& program = clipped ? shaders.clippedSurface : shaders.surface;
-    program.use();
-    program.set("viewProjection", wants.eye.viewProjection());
-    program.set("visibleTissues", visibleBits(look));
-    if (clipped) {
-        program.set("clipPlane", planeOf(look.cutAway));
-        program.set("mirrorPlane", planeOf(wants.eye.clip));
-        glEnable(GL_CLIP_DISTANCE0);
-        glEnable(GL_CLIP_DISTANCE1);
-    }
     // The inside can be seen where something is cut away or left out.
     const bool open = look.cutAway.has_value() || visibleBits(look) != (1 << cases::kTissueCount) - 1;
-    if (open) {
+    const Scene::InTheWay out = scene.inTheWay(eyeToSee(wants.eye));
+    const Culler culler(wants.eye, wants.viewport, rect, !open && !out.plane);
+    const Scene::Visible& visible = scene.visible(look, wants.detail, culler, out);
+    const auto draw = [&](const std::vector<const PooledMesh*>& meshes, const std::optional<Plane>& end) {
+        const bool clipped = look.cutAway || end;
+        gl::Program& program = clipped ? shaders.clippedSurface : shaders.surface;
+        program.use();
+        program.set("viewProjection", wants.eye.viewProjection());
+        program.set("visibleTissues", visibleBits(look));
+        if (clipped) {
+            program.set("clipPlane", planeOf(look.cutAway));
+            program.set("endPlane", planeOf(end));
+            glEnable(GL_CLIP_DISTANCE0);
+            glEnable(GL_CLIP_DISTANCE1);
+        }
+        if (open || (end && !wants.eye.clip)) {
+            glDisable(GL_CULL_FACE);
+        } else {
+            glEnable(GL_CULL_FACE);
+            glCullFace(GL_BACK);
+        }
+        const std::size_t drawn = scene.draw(meshes);
         glDisable(GL_CULL_FACE);
-    } else {
-        glEnable(GL_CULL_FACE);
-        glCullFace(GL_BACK);
-    }
-    const Culler culler(wants.eye, wants.viewport, rect, !open);
-    std::size_t triangles = scene.draw(
-        scene.visible(look, wants.detail, culler, wants.eye.clip ? std::nullopt : std::optional(wants.eye.positionMm)));
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_CLIP_DISTANCE0);
-    glDisable(GL_CLIP_DISTANCE1);
+        glDisable(GL_CLIP_DISTANCE0);
+        glDisable(GL_CLIP_DISTANCE1);
+        return drawn;
+    };
+    // A mirror's eye ends all at the mirror, another only what is in the way.
+    std::size_t triangles = draw(visible.tooth, wants.eye.clip);
+    triangles += draw(visible.around, out.plane ? out.plane : wants.eye.clip);
 
     if (wants.sectionSerial != 0 && look.cutAway) {
         const SectionFace& face = section.face;
@@ -347,22 +359,30 @@ std::size_t ToothLayer::drawShadowMap(Shaders& shaders, Scene& scene, const Laye
     glDisable(GL_CULL_FACE);
     Eye lamp;
     lamp.view = view;
-    const bool clipped = wants.look.cutAway.has_value();
-    gl::Program& program = clipped ? shaders.clippedSurface : shaders.surface;
-    program.use();
-    program.set("viewProjection", view);
-    program.set("visibleTissues", visibleBits(wants.look));
-    if (clipped) {
-        program.set("clipPlane", planeOf(wants.look.cutAway));
-        program.set("mirrorPlane", planeOf({}));
-        glEnable(GL_CLIP_DISTANCE0);
-    }
+    // What is left out of the picture throws no shadow.
+    const Scene::InTheWay out = scene.inTheWay(eyeToSee(wants.eye));
+    const Scene::Visible& visible = scene.visible(wants.look, wants.detail, Culler(lamp, viewport, rect, false), out);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1.5f, 4.0f);
-    const std::size_t triangles =
-        scene.draw(scene.visible(wants.look, wants.detail, Culler(lamp, viewport, rect, false)));
+    const auto draw = [&](const std::vector<const PooledMesh*>& meshes, const std::optional<Plane>& end) {
+        const bool clipped = wants.look.cutAway || end;
+        gl::Program& program = clipped ? shaders.clippedSurface : shaders.surface;
+        program.use();
+        program.set("viewProjection", view);
+        program.set("visibleTissues", visibleBits(wants.look));
+        if (clipped) {
+            program.set("clipPlane", planeOf(wants.look.cutAway));
+            program.set("endPlane", planeOf(end));
+            glEnable(GL_CLIP_DISTANCE0);
+            glEnable(GL_CLIP_DISTANCE1);
+        }
+        const std::size_t drawn = scene.draw(meshes);
+        glDisable(GL_CLIP_DISTANCE0);
+        glDisable(GL_CLIP_DISTANCE1);
+        return drawn;
+    };
+    const std::size_t triangles = draw(visible.tooth, {}) + draw(visible.around, out.plane);
     glDisable(GL_POLYGON_OFFSET_FILL);
-    glDisable(GL_CLIP_DISTANCE0);
     return triangles;
 }
 

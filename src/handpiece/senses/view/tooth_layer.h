@@ -21,6 +21,9 @@ struct Lighting {
 /// where it is seen.
 [[nodiscard]] Lighting lightingOf(const Camera& camera);
 
+/// From where teeth may be in the way (Scene::inTheWay): not from a mirror's, which shows the mouth as it is.
+[[nodiscard]] std::optional<gl::Vec3f> eyeToSee(const Eye& eye);
+
 /// Planes as shaders take them: dot(plane, (p, 1)) < 0 is left out.
 [[nodiscard]] gl::Vec4f planeOf(const std::optional<Plane>& plane);
 

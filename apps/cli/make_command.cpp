@@ -87,7 +87,8 @@ void makeBurFile(const MakeOptions& o) {
 }  // namespace
 
 void addMakeCommand(Command& app) {
-    Command make = app.subcommand("make", "Generate a tooth, a mouth, a block, a bur, a turbine, the paper's plane or a scan");
+    Command make =
+        app.subcommand("make", "Generate a tooth, a mouth, a block, a bur, a turbine, the paper's plane or a scan");
     make.requireSubcommand();
     make.footer(
         "Examples:\n  handpiece make tooth --kind lower-first-molar --faces 68150 --out molar\n"

@@ -35,7 +35,11 @@ struct Due {
 void writeCut(const simulation::SimulationSetup& station, const cases::Case& toothCase, const tooth::StateDelta& state,
               Outputs& outputs, CutOutcome& outcome) {
     ProgressBar bar("shaping the cut tooth");
-    const core::Progress progress = bar.listener();
+    // Ctrl-C has ended the cutting; what was cut is still written out. Pressed again it ends the program.
+    const core::Progress progress = [shown = bar.listener()](double fraction) {
+        (void)shown(fraction);
+        return true;
+    };
     tooth::ToothMirror mirror(station.tooth);
     mirror.apply(state);
     if (const auto thinnest = measure::ToothProbe(mirror).thinnestOverPulp()) outcome.leftOverPulpMm = thinnest->leftMm;

@@ -483,7 +483,7 @@ class Path {
     [[nodiscard]] bool isEmpty() const { return poses_.empty(); }
     [[nodiscard]] const core::Pose& last() const { return poses_.back().burInTooth; }
     void stay(double seconds) {
-        if (seconds > 0.0) poses_.push_back({poses_.back().timeS + seconds, last(), pedal_});
+        if (seconds > kLeastS) poses_.push_back({poses_.back().timeS + seconds, last(), pedal_});
     }
     void pedal(bool down) {
         pedal_ = down ? down_ : 0.0;
@@ -496,7 +496,7 @@ class Path {
         const double way =
             (to.positionMm - last().positionMm).norm() + core::angleBetween(last().orientation, to.orientation);
         const double seconds = std::max(way / speedMmS, leastS);
-        if (seconds > 1e-9) poses_.push_back({poses_.back().timeS + seconds, to, pedal_});
+        if (seconds > kLeastS) poses_.push_back({poses_.back().timeS + seconds, to, pedal_});
     }
     [[nodiscard]] device::Motion finish() {
         stay(0.2);
@@ -504,6 +504,7 @@ class Path {
     }
 
   private:
+    static constexpr double kLeastS = 1e-9;  // less may not show in a time of many minutes
     double down_, pedal_ = 0.0;
     std::vector<device::TimedPose> poses_;
 };

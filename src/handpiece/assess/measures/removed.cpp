@@ -13,6 +13,9 @@ namespace {
 using cases::Tissue;
 using core::Vec3;
 
+static_assert(std::equal(std::begin(kZones), std::end(kZones), zones::kZoneNames.begin(), zones::kZoneNames.end()),
+              "rubrics name the zones as tasks have them");
+
 struct Amount {
     double removed = 0.0, whole = 0.0;
     std::string reason;

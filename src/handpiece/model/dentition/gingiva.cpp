@@ -26,7 +26,7 @@ using core::Vec2;
 using core::Vec3;
 using geometry::TriangleMesh;
 
-constexpr double kFarMm = 3.5;   ///< distances to teeth are told up to here
+constexpr double kFarMm = 4.3;   ///< distances to teeth are told up to here
 constexpr double kSeenMm = 6.0;  ///< farther inside a tooth than any place of it
 /// Distances to a tooth are looked up between nodes this far apart, an error of some microns; farther off than
 /// kNearMm every other node is between its neighbours.
@@ -35,7 +35,9 @@ constexpr double kNodeMm = 0.4, kNearMm = 1.0;
 /// and its margin is where its own smooth surface meets the tooth.
 constexpr double kIntoToothMm = 0.3;
 constexpr double kThinnestSeptumMm = 0.4;  ///< between two roots; thinner bone is left out
-constexpr double kWidestSeptum = 2.1;
+constexpr double kWidestSeptum = 2.1, kWidestPapilla = 1.9;
+/// A papilla widens so much a millimetre down from its tip, as the embrasure does: less leaves a way through under it.
+constexpr double kPapillaWidens = 0.7;
 constexpr double kBaseUnderApexMm = 2.0, kBoneOutOfBaseMm = 1.0;
 constexpr double kSteepest = 4.0;  ///< Lipschitz bound of all that follows
 
@@ -212,8 +214,11 @@ class Arch {
                                     .pointMm);
         for (std::size_t i = 1; i < teeth.size(); ++i)
             papillaAxes_.push_back((standers_[i - 1].axis() + standers_[i].axis()).normalized());
-        for (std::size_t i = 1; i < teeth.size(); ++i)
-            septumWidths_.push_back(std::clamp(0.7 * roomAtCrestMm(i) + 0.3, 0.8, kWidestSeptum));
+        for (std::size_t i = 1; i < teeth.size(); ++i) {
+            const double room = roomAtCrestMm(i);
+            septumWidths_.push_back(std::clamp(0.7 * room + 0.3, 0.8, kWidestSeptum));
+            papillaWidths_.push_back(std::clamp(0.5 * room + 0.4, 0.9, kWidestPapilla));
+        }
         up_ = standers_[teeth.size() / 2].axis().z() > 0.0 ? 1.0 : -1.0;
         for (const Stander& s : standers_) {
             for (const double z : {s.body().box.min.z(), 0.0})
@@ -233,11 +238,11 @@ class Arch {
     /// Negative inside.
     [[nodiscard]] Values at(const Vec3& p) const {
         // Distances over the heights: a thickness that grows downwards from the margin or the crest.
-        static constexpr double kRoll[][2] = {{-8, 1.3},  {-3, 1.15},   {-1, 0.9},  {0.1, 0.55},
-                                              {0.7, 0.0}, {1.3, -0.55}, {4.3, -2.5}};
+        static constexpr double kRoll[][2] = {{-8, 1.3},  {-3, 1.15},   {-1, 0.9},  {0.0, 0.55},
+                                              {0.6, 0.0}, {1.2, -0.55}, {4.2, -2.5}};
         static constexpr double kPlate[][2] = {{-14, 1.8},   {-8, 1.4},   {-4, 1.0},
                                                {-2.2, 0.55}, {-1.5, 0.0}, {1.5, -3.0}};
-        constexpr double kRollCap = kFarMm - 1.3, kPlateCap = kFarMm - 1.8, kWidestPapilla = 1.25;
+        constexpr double kRollCap = 2.2, kPlateCap = 1.7;  // less than kFarMm less the thickest of each
         // Where a tooth comes into sight a septum is no nearer than what bounds the plate, and fades in from there.
         constexpr double kFadeMm = 0.8;
         double nearest = kFarMm, second = kFarMm, roll = kRollCap, plate = kPlateCap, papilla = kFarMm - kWidestPapilla;
@@ -259,7 +264,7 @@ class Arch {
             }
             if (i > 0 && std::min(seen.distance, before.distance) < kFarMm) {
                 const double under = (contacts_[i - 1] - p).dot(papillaAxes_[i - 1]) - kPapillaBelowContactMm;
-                const double wide = under < 0.0 ? under : kWidestPapilla * under / (under + kWidestPapilla);
+                const double wide = under < 0.0 ? under : smoothMin(kPapillaWidens * under, papillaWidths_[i - 1], 0.6);
                 // Between two teeth, not over the faces of narrow ones: the farther of the two counts more.
                 const double one = seen.distance, two = before.distance;
                 const double between = core::hypot(std::max(one, 0.0), std::max(two, 0.0)) / std::numbers::sqrt2 +
@@ -332,7 +337,8 @@ class Arch {
 
     std::vector<Stander> standers_;
     std::vector<Vec3> contacts_, papillaAxes_;
-    std::vector<double> septumWidths_;  ///< of the bone's crest between two teeth, towards lip and tongue
+    std::vector<double> septumWidths_;   ///< of the bone's crest between two teeth, towards lip and tongue
+    std::vector<double> papillaWidths_;  ///< of the gingiva between two teeth at its widest, from either
     Box box_;
     double up_ = 1.0, base_ = 1e9;
 };

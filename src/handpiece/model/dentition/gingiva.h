@@ -15,7 +15,7 @@
 namespace handpiece::dentition {
 
 // [R] recalled from textbooks, unchecked.
-inline constexpr double kMarginOverCervixMm = 0.7;     ///< gingival margin, young and healthy: 0.5 to 1
+inline constexpr double kMarginOverCervixMm = 0.6;     ///< gingival margin, young and healthy: 0.5 to 1
 inline constexpr double kPapillaBelowContactMm = 0.9;  ///< its tip under the contact
 inline constexpr double kCrestUnderCervixMm = 1.5;     ///< bone's crest: 1 to 2
 inline constexpr double kLigamentMm = 0.20;            ///< half-way down the root; 0.15 to 0.38

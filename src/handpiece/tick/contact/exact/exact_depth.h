@@ -60,8 +60,8 @@ class AxisSearch {
   public:
     explicit AxisSearch(const instrument::Bur& bur);
 
-    /// Raises `best` to the deepest ball of the axis, within kDepthToleranceMm, if that is deeper; `mostMm` to what one that was not seen
-    /// could have, where the work ended first. Seeds only save time.
+    /// Raises `best` to the deepest ball of the axis, within kDepthToleranceMm, if that is deeper; `mostMm` to what one
+    /// that was not seen could have, where the work ended first. Seeds only save time.
     void search(const ExactSurface& surface, const BurFrame& frame, BallDepth& best, double& mostMm) noexcept;
     /// False when all of its balls have their centres outside the tooth.
     [[nodiscard]] bool mayEnter(const ExactSurface& surface, const BurFrame& frame) const noexcept;

@@ -36,6 +36,8 @@ constexpr double kNodeMm = 0.4, kNearMm = 1.0;
 constexpr double kIntoToothMm = 0.3;
 constexpr double kThinnestSeptumMm = 0.4;  ///< between two roots; thinner bone is left out
 constexpr double kWidestSeptum = 2.1, kWidestPapilla = 1.9;
+/// Under it the gingiva between two teeth that stand apart widens on as their roots taper, or a pit is left there.
+constexpr double kWidensOn = 0.3, kNarrowPapilla = 1.2, kWidestBetween = 2.4;
 /// A papilla widens so much a millimetre down from its tip, as the embrasure does: less leaves a way through under it.
 constexpr double kPapillaWidens = 0.7;
 constexpr double kBaseUnderApexMm = 2.0, kBoneOutOfBaseMm = 1.0;
@@ -238,14 +240,14 @@ class Arch {
     /// Negative inside.
     [[nodiscard]] Values at(const Vec3& p) const {
         // Distances over the heights: a thickness that grows downwards from the margin or the crest.
-        static constexpr double kRoll[][2] = {{-8, 1.3},  {-3, 1.15},   {-1, 0.9},  {0.0, 0.55},
-                                              {0.6, 0.0}, {1.2, -0.55}, {4.2, -2.5}};
+        static constexpr double kRoll[][2] = {{-8, 1.3},   {-3, 1.15},   {-1, 0.9},  {-0.2, 0.55},
+                                              {0.42, 0.0}, {1.0, -0.55}, {4.0, -2.5}};
         static constexpr double kPlate[][2] = {{-14, 1.8},   {-8, 1.4},   {-4, 1.0},
                                                {-2.2, 0.55}, {-1.5, 0.0}, {1.5, -3.0}};
         constexpr double kRollCap = 2.2, kPlateCap = 1.7;  // less than kFarMm less the thickest of each
         // Where a tooth comes into sight a septum is no nearer than what bounds the plate, and fades in from there.
         constexpr double kFadeMm = 0.8;
-        double nearest = kFarMm, second = kFarMm, roll = kRollCap, plate = kPlateCap, papilla = kFarMm - kWidestPapilla;
+        double nearest = kFarMm, second = kFarMm, roll = kRollCap, plate = kPlateCap, papilla = kFarMm - kWidestBetween;
         double ligament = kLigamentMm, septum = kPlateCap;
         Stander::Seen before{kFarMm, 0.0};
         for (std::size_t i = 0; i < standers_.size(); ++i) {
@@ -264,7 +266,10 @@ class Arch {
             }
             if (i > 0 && std::min(seen.distance, before.distance) < kFarMm) {
                 const double under = (contacts_[i - 1] - p).dot(papillaAxes_[i - 1]) - kPapillaBelowContactMm;
-                const double wide = under < 0.0 ? under : smoothMin(kPapillaWidens * under, papillaWidths_[i - 1], 0.6);
+                const double width = papillaWidths_[i - 1],
+                             most = width + std::min(kWidensOn * std::max(under - 2.0, 0.0),
+                                                     0.7 * std::max(width - kNarrowPapilla, 0.0));
+                const double wide = under < 0.0 ? under : smoothMin(kPapillaWidens * under, most, 0.6);
                 // Between two teeth, not over the faces of narrow ones: the farther of the two counts more.
                 const double one = seen.distance, two = before.distance;
                 const double between = core::hypot(std::max(one, 0.0), std::max(two, 0.0)) / std::numbers::sqrt2 +
@@ -276,13 +281,13 @@ class Arch {
                     const double above = (toTwo * seen.aboveCervix + toOne * before.aboveCervix) / (toOne + toTwo);
                     const double aside = between - septumWidths_[i - 1];
                     const double fade = std::max(0.0, (std::max(one, two) - kFarMm) / kFadeMm + 1.0);
-                    septum = std::min(septum, smoothMax(above + kCrestUnderCervixMm, aside, 0.4) + fade * kPlateCap);
+                    septum = std::min(septum, smoothMax(above + kCrestUnderCervixMm, aside, 1.0) + fade * kPlateCap);
                 }
             }
             before = seen;
         }
         const double base = base_ - up_ * p.z();
-        plate = std::min(plate, septum);
+        plate = smoothMin(plate, septum, 1.0);
         const double hull = smoothMax(smoothMin(plate, band(p), 2.0), base, 0.8);
         const double sockets = std::max(ligament - nearest, kThinnestSeptumMm + 2.0 * ligament - nearest - second);
         double gingiva = smoothMin(smoothMin(roll, papilla, 0.8), hull - kGingivaThicknessMm, 1.0);

@@ -53,16 +53,19 @@ Work workOfSession(const fs::path& path, const tasks::Task& task, bool prove, co
                          : "cut again it leaves another tooth than it says";
     } else {
         work.proof = "not cut again";
+        player.seek(player.durationS(), core::part(progress, 0.2, 1.0));
     }
-    if (!work.isProven) {
-        // What the record itself says it came to.
+    const auto take = [&work](const simulation::SessionPlayer& from) {
+        work.teeth = from.station().teeth();
+        work.state = from.state();
+    };
+    if (prove && !work.isProven) {
+        // What the record itself says it came to, not what cutting it again did.
         simulation::SessionPlayer last(path, {true, false, {}});
         last.seek(last.durationS());
-        work.teeth = last.station().teeth();
-        work.state = last.state();
+        take(last);
     } else {
-        work.teeth = player.station().teeth();
-        work.state = player.state();
+        take(player);
     }
     return work;
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
@@ -84,12 +83,11 @@ std::optional<double> Zones::distanceMm(std::string_view zone, const Vec3& p) co
 }
 
 double ZoneVolumes::removedMm3(Zone zone) const {
-    const tooth::TissueVolumes& volumes = removed[static_cast<std::size_t>(zone)];
-    return std::accumulate(volumes.begin(), volumes.end(), 0.0);
+    return tooth::sumOf(removed[static_cast<std::size_t>(zone)]);
 }
 
 double ZoneVolumes::targetMm3() const {
-    return std::accumulate(target.begin(), target.end(), 0.0);
+    return tooth::sumOf(target);
 }
 
 ZoneVolumes zoneVolumes(const Zones& zones, const tooth::ToothMirror& cut) {
@@ -123,12 +121,11 @@ ZoneVolumes zoneVolumes(const Zones& zones, const tooth::ToothMirror& cut) {
                                 return static_cast<double>(
                                     tooth::occupancy(static_cast<float>(distanceMm), inverseVoxel));
                             };
-                            layers[layer].target[tissues[at]] +=
-                                share(std::max({whole, zones.targetMm(p), -zones.protectedMm(p)})) * voxelMm3;
+                            const Zones::Distances d = zones.distancesMm(p);
+                            layers[layer].target[tissues[at]] += share(std::max({whole, d.target, -d.kept})) * voxelMm3;
                             if (!(gone > 0.0f)) continue;
                             // Each of these holds the one before, so what lies between two of them is told right even
                             // where the cut runs along a border.
-                            const Zones::Distances d = zones.distancesMm(p);
                             const double removed = std::max(whole, -static_cast<double>(now[at]));
                             const double free = std::max(removed, -d.kept);
                             const double inTarget = share(std::max(free, d.target)),

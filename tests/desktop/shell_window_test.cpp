@@ -355,6 +355,10 @@ TEST_F(ShellTest, LoadAndStopOfThePanelHoldForTheToothThatComesBack) {
     startWithTooth();
     view()->setLoad(1.7);
     view()->setStop(1.2);
+    // Before the first tick there is nothing to replay, and the window says so.
+    if (simulator().sample().tick == 0) EXPECT_FALSE(action("actionReplay")->isEnabled());
+    ASSERT_TRUE(waitFor([this] { return action("actionReplay")->isEnabled(); }));
+    EXPECT_GT(simulator().sample().tick, 0u);
     action("actionReplay")->trigger();
     ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay; }));
     simulator().closeReplay();

@@ -116,6 +116,10 @@ class Simulator : public QObject {
     void giveUpBehindReplay();
     /// The recording under way; empty when there is none.
     [[nodiscard]] const std::filesystem::path& recording() const noexcept { return shelf_.current(); }
+    /// It holds a tick at least: before the first there is nothing to play or to keep.
+    [[nodiscard]] bool isRecorded() const noexcept {
+        return mode_ == Mode::liveSession && !shelf_.current().empty() && sample_.tick > 0;
+    }
     /// To `path` (.handpiece, or a folder); `then` runs once it is saved.
     void saveAs(const std::filesystem::path& path, std::function<void()> then = {});
     /// Saves it as one file for a teacher, with its tooth and its recordings; the work goes on at the same tooth.

@@ -257,7 +257,11 @@ void Simulator::replayThis() {
         for (std::size_t i = all.size(); i-- > 0;)
             if (all[i].packed) return watchRecording(i);
     }
-    if (job_ || mode_ != Mode::liveSession || shelf_.current().empty()) return;
+    if (job_ || mode_ != Mode::liveSession) return;
+    if (!isRecorded()) {
+        emit failed(problemById(QStringLiteral("no-recording")));
+        return;
+    }
     leftFor_ = std::make_shared<Left>(leaveLiveSession());
     openSession(leftFor_->file.session);
 }
@@ -425,7 +429,7 @@ void Simulator::writeReport(const fs::path& file) {
 }
 
 void Simulator::copyRecording(const fs::path& file) {
-    if (job_ || shelf_.current().empty()) return;
+    if (job_ || !isRecorded()) return;
     start(
         tr("Copying the recording"),
         [from = shelf_.current(), file](const core::Progress&) { core::writeFile(file, core::readFile(from)); },

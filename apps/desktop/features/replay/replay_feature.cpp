@@ -48,10 +48,7 @@ void ReplayFeature::connectCommands() {
     });
     on(commands_[Command::watch], [this] { simulator_.replayThis(); });
     on(commands_[Command::keep], [this] { keep(); });
-    const auto isRecorded = [this] {
-        return !simulator_.isBusy() && simulator_.mode() == Simulator::Mode::liveSession &&
-               !simulator_.recording().empty();
-    };
+    const auto isRecorded = [this] { return !simulator_.isBusy() && simulator_.isRecorded(); };
     Commands& commands = window_.commands();
     commands.enableWhile(commands_[Command::open], [this] { return !simulator_.isBusy(); });
     commands.enableWhile(commands_[Command::keep], isRecorded);
@@ -108,7 +105,7 @@ void ReplayFeature::showTick() {
 }
 
 void ReplayFeature::keep() {
-    if (simulator_.recording().empty()) {
+    if (!simulator_.isRecorded()) {
         window_.showProblem(problemById(QStringLiteral("no-recording")));
         return;
     }

@@ -31,6 +31,7 @@ const char* nameOf(score::Verdict verdict) {
 Json toJson(const measures::Evidence& e) {
     Json json = Json::object();
     json["t_s"] = orNull(e.timeS);
+    json["session"] = e.timeS ? Json(e.session) : Json(nullptr);
     json["xyz_mm"] = e.placeMm ? Json{e.placeMm->x(), e.placeMm->y(), e.placeMm->z()} : Json(nullptr);
     json["force_n"] = orNull(e.forceN);
     json["text"] = e.text;

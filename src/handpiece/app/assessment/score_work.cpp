@@ -31,19 +31,54 @@ void requireSame(const fs::path& path, std::uint64_t caseKey, double voxelMm, co
             fmt::format("exercise {} asks for {:g}: work on it as the exercise has it", task.id, 1e3 * task.voxelMm));
 }
 
-Work workOfSession(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress) {
-    Work work;
-    simulation::SessionPlayer player(path, {true, false, {}}, core::part(progress, 0.0, 0.2));
-    requireSame(path, cases::caseKey(player.toothCase()), player.station().settings.field.voxelMm, task);
+std::string hashOf(std::span<const std::byte> bytes) {
     core::Hasher hasher;
-    hasher.add(std::span<const std::byte>(core::readFile(path)));
-    work.sessionHashes = {rubric::hashText(hasher.value())};
-    work.context.device = player.station().settings.capability.name;
+    hasher.add(bytes);
+    return rubric::hashText(hasher.value());
+}
+
+Recording recordingAt(const fs::path& path) {
+    return {path, path.string(), hashOf(core::readFile(path)), {}};
+}
+
+/// Those that came along with an attempt, in its order.
+std::vector<Recording> recordingsIn(const fs::path& attempt, const std::vector<cases::Attempt::Recording>& named) {
+    const auto folder = std::make_shared<const core::PrivateFolder>();
+    std::vector<Recording> recordings;
+    for (const cases::Attempt::Recording& one : named) {
+        const std::vector<std::byte> bytes = cases::readRecording(attempt, one.name);
+        const fs::path place = folder->path() / one.name;
+        core::writeFile(place, bytes, {true, false});
+        recordings.push_back({place, fmt::format("{} of {}", one.name, attempt.string()), hashOf(bytes), folder});
+    }
+    return recordings;
+}
+
+/// A session by itself: from which tooth to which.
+struct Done {
+    Recording recording;
+    std::uint64_t startHash = 0, endHash = 0;
+    tooth::Teeth teeth;
+    tooth::StateDelta state;
+    std::string device, proof;
+    bool isProven = false;
+};
+
+constexpr const char* kProof = "cut again from its beginning, and the same tooth, bit for bit";
+
+Done doAgain(const Recording& recording, const tasks::Task& task, bool prove, const core::Progress& progress) {
+    Done done;
+    done.recording = recording;
+    const fs::path& path = recording.path;
+    simulation::SessionPlayer player(path, {true, false, {}}, core::part(progress, 0.0, 0.2));
+    requireSame(recording.name, cases::caseKey(player.toothCase()), player.station().settings.field.voxelMm, task);
+    done.device = player.station().settings.capability.name;
+    done.startHash = player.startHash();
     if (prove) {
         const simulation::Verdict verdict = player.compareAll(core::part(progress, 0.2, 1.0));
-        work.isProven =
+        done.isProven =
             verdict.matches && !verdict.isOtherEngine() && verdict.differingTicks == 0 && verdict.brokenSeams == 0;
-        work.proof = work.isProven ? "cut again from its beginning, and the same tooth, bit for bit"
+        done.proof = done.isProven ? kProof
                      : verdict.isOtherEngine()
                          ? fmt::format("recorded by engine {}, and this is {}: put right at each key frame",
                                        verdict.engineRevision, core::kEngineRevision)
@@ -52,14 +87,15 @@ Work workOfSession(const fs::path& path, const tasks::Task& task, bool prove, co
                          ? "where it goes on after a pause the tooth is not the one that was left"
                          : "cut again it leaves another tooth than it says";
     } else {
-        work.proof = "not cut again";
+        done.proof = "not cut again";
         player.seek(player.durationS(), core::part(progress, 0.2, 1.0));
     }
-    const auto take = [&work](const simulation::SessionPlayer& from) {
-        work.teeth = from.station().teeth();
-        work.state = from.state();
+    const auto take = [&done](const simulation::SessionPlayer& from) {
+        done.teeth = from.station().teeth();
+        done.state = from.state();
+        done.endHash = tooth::stateHash(done.state);
     };
-    if (prove && !work.isProven) {
+    if (prove && !done.isProven) {
         // What the record itself says it came to, not what cutting it again did.
         simulation::SessionPlayer last(path, {true, false, {}});
         last.seek(last.durationS());
@@ -67,39 +103,155 @@ Work workOfSession(const fs::path& path, const tasks::Task& task, bool prove, co
     } else {
         take(player);
     }
+    return done;
+}
+
+std::vector<Done> doAllAgain(std::span<const Recording> recordings, const tasks::Task& task, bool prove,
+                             const core::Progress& progress) {
+    std::vector<Done> all;
+    const auto share = [&](std::size_t i) { return static_cast<double>(i) / static_cast<double>(recordings.size()); };
+    for (std::size_t i = 0; i < recordings.size(); ++i)
+        all.push_back(doAgain(recordings[i], task, prove, core::part(progress, share(i), share(i + 1))));
+    return all;
+}
+
+/// A chain, in its order.
+Work workOf(std::vector<Done> chain) {
+    Work work;
+    work.context.device = chain.back().device;
+    work.isProven = true;
+    for (Done& one : chain) {
+        work.sessionHashes.push_back(one.recording.hash);
+        work.recordings.push_back(one.recording);
+        if (one.device != work.context.device)
+            throw core::Error(fmt::format("this was done with the device \"{}\", and {} with \"{}\"",
+                                          work.context.device, one.recording.name, one.device),
+                              chain.back().recording.name, "what is of the hand is never pooled over devices");
+        if (!one.isProven && work.isProven)
+            work.proof =
+                chain.size() > 1 ? fmt::format("{}: {}", one.recording.path.filename().string(), one.proof) : one.proof;
+        work.isProven = work.isProven && one.isProven;
+    }
+    if (work.isProven)
+        work.proof = chain.size() > 1 ? fmt::format(
+                                            "{} sessions, each going on from the tooth that the one before it "
+                                            "left, each {}",
+                                            chain.size(), kProof)
+                                      : kProof;
+    work.teeth = std::move(chain.back().teeth);
+    work.state = std::move(chain.back().state);
     return work;
 }
 
-/// What hands know: needs samples, which no tooth keeps.
-measures::Measured notOfTheTooth(const rubric::Criterion& criterion) {
-    measures::Measured measured;
-    measured.kind = criterion.measure;
-    measured.of = criterion.of;
-    measured.reason = "measures of the hand are not taken yet";
-    return measured;
+Work workOfSession(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress) {
+    const Recording recording = recordingAt(path);
+    std::vector<Done> done = doAllAgain(std::span(&recording, 1), task, prove, progress);
+    const bool isWhole = done.front().startHash == tooth::stateHash({});
+    Work work = workOf(std::move(done));
+    if (!isWhole) {
+        work.isProven = false;
+        work.proof = "it goes on from a tooth that was cut before: give the folder with all sessions of this work";
+        work.noHand = work.proof;
+        work.recordings.clear();
+    }
+    return work;
+}
+
+Work workOfFolder(const fs::path& folder, const tasks::Task& task, bool prove, const core::Progress& progress) {
+    std::vector<Recording> recordings;
+    for (const fs::path& path : sessionsIn(folder))
+        recordings.push_back(recordingAt(path));
+    std::vector<Done> waiting = doAllAgain(recordings, task, prove, progress), chain;
+    std::uint64_t left = tooth::stateHash({});
+    while (!waiting.empty()) {
+        const auto next =
+            std::find_if(waiting.begin(), waiting.end(), [&](const Done& d) { return d.startHash == left; });
+        if (next == waiting.end())
+            throw core::Error(fmt::format("{} goes on from a tooth that no other session here leaves",
+                                          waiting.front().recording.path.filename().string()),
+                              folder.string(),
+                              "put all sessions of this work into the folder, and no others: one is missing");
+        left = next->endHash;
+        chain.push_back(std::move(*next));
+        waiting.erase(next);
+    }
+    return workOf(std::move(chain));
+}
+
+Work workOfAttempt(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress) {
+    const cases::OpenAttempt open = cases::openAttempt(path);
+    requireSame(path, cases::caseKey(open.toothCase), open.attempt.voxelMm, task);
+    std::optional<simulation::CutTeeth> cut = simulation::readCutTeeth(path, {}, true, core::part(progress, 0.0, 0.1));
+    Work work;
+    const std::vector<cases::Attempt::Recording>& named = open.attempt.recordings;
+    const auto missing = std::find_if(named.begin(), named.end(), [](const auto& r) { return !r.packed; });
+    if (named.empty()) {
+        work.proof = "an attempt says what the tooth is like, not how it came to be so";
+        work.noHand = "an attempt alone keeps no samples of the hand";
+    } else if (missing != named.end()) {
+        work.proof = fmt::format("its session {} did not come along", missing->name);
+        work.noHand = work.proof;
+    } else {
+        std::vector<Done> chain = doAllAgain(recordingsIn(path, named), task, prove, core::part(progress, 0.1, 1.0));
+        std::uint64_t left = tooth::stateHash({});
+        std::string broken;
+        for (const Done& one : chain) {
+            if (one.startHash != left && broken.empty())
+                broken = fmt::format("its session {} goes on from another tooth than was left before it",
+                                     one.recording.path.filename().string());
+            left = one.endHash;
+        }
+        if (broken.empty() && left != tooth::stateHash(cut->state))
+            broken = "it is another tooth than its sessions leave";
+        work = workOf(std::move(chain));
+        if (!broken.empty()) {
+            work.isProven = false;
+            work.proof = work.noHand = broken;
+            work.recordings.clear();
+        }
+    }
+    work.teeth = std::move(cut->teeth);
+    work.state = std::move(cut->state);
+    return work;
 }
 
 }  // namespace
+
+std::vector<fs::path> sessionsIn(const fs::path& folder) {
+    std::vector<fs::path> sessions;
+    std::error_code ec;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ec))
+        if (entry.path().extension() == ".h5" && !fs::is_directory(entry.path(), ec)) sessions.push_back(entry.path());
+    std::sort(sessions.begin(), sessions.end());
+    return sessions;
+}
 
 Work readWork(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress) {
     std::error_code ec;
     if (!fs::exists(path, ec))
         throw core::Error("there is no such work", path.string(), "name a session (.h5) or an attempt");
-    if (path.extension() == ".h5" && !fs::is_directory(path, ec)) return workOfSession(path, task, prove, progress);
-    if (!cases::isAttempt(path))
-        throw core::Error("this is neither a session nor an attempt", path.string(),
-                          "name session.h5, an attempt's folder or a .handpiece file");
-    const cases::OpenAttempt open = cases::openAttempt(path);
-    requireSame(path, cases::caseKey(open.toothCase), open.attempt.voxelMm, task);
-    Work work;
-    std::optional<simulation::CutTeeth> cut = simulation::readCutTeeth(path, {}, true, progress);
-    work.teeth = std::move(cut->teeth);
-    work.state = std::move(cut->state);
-    work.proof = "an attempt says what the tooth is like, not how it came to be so";
-    return work;
+    const bool isFolder = fs::is_directory(path, ec);
+    if (path.extension() == ".h5" && !isFolder) return workOfSession(path, task, prove, progress);
+    if (cases::isAttempt(path)) return workOfAttempt(path, task, prove, progress);
+    if (isFolder && !sessionsIn(path).empty()) return workOfFolder(path, task, prove, progress);
+    throw core::Error("this is neither a session nor an attempt", path.string(),
+                      "name session.h5, a folder of sessions, an attempt's folder or a .handpiece file");
 }
 
-Result scoreWork(const Work& work, const tasks::Task& task, const rubric::Rubric& rubric) {
+std::vector<measures::Request> requestsOf(const rubric::Rubric& rubric) {
+    std::vector<measures::Request> requests;
+    for (const rubric::Criterion& criterion : rubric.criteria) {
+        const auto isThis = [&](const measures::Request& r) {
+            return r.kind == criterion.measure && r.of == criterion.of;
+        };
+        if (std::none_of(requests.begin(), requests.end(), isThis))
+            requests.push_back({criterion.measure, criterion.of});
+    }
+    return requests;
+}
+
+MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<const measures::Request> requests,
+                         const core::Progress& progress) {
     const cases::Case& toothCase = task.toothCase;
     std::vector<std::unique_ptr<tooth::ToothMirror>> mirrors;
     for (std::size_t number = 0; number < work.teeth.size(); ++number) {
@@ -134,20 +286,24 @@ Result scoreWork(const Work& work, const tasks::Task& task, const rubric::Rubric
         preparation.zones = laid->zones.get();
     }
 
-    std::vector<measures::Request> requests;
-    std::vector<measures::Measured> measured;
-    for (const rubric::Criterion& criterion : rubric.criteria) {
-        const measures::MeasureKind* kind = measures::findMeasureKind(criterion.measure);
-        if (kind != nullptr && kind->subject == measures::Subject::tooth)
-            requests.push_back({criterion.measure, criterion.of});
-        else
-            measured.push_back(notOfTheTooth(criterion));
+    std::vector<measures::Request> ofTooth, ofHand;
+    for (const measures::Request& request : requests)
+        (measures::requireKind(request).subject == measures::Subject::tooth ? ofTooth : ofHand).push_back(request);
+    MeasuredWork result;
+    result.measured = measures::measure(preparation, ofTooth);
+    core::report(progress, 0.4);
+    findTimes(work.recordings, result.measured, task.voxelMm, core::part(progress, 0.4, 0.6));
+    const hand::Against against{preparation.axes.longAxis, preparation.zones};
+    if (!work.recordings.empty()) {
+        for (measures::Measured& one :
+             ofHand.empty() ? std::vector<measures::Measured>{}
+                            : measureHand(work.recordings, ofHand, against, core::part(progress, 0.6, 1.0)))
+            result.measured.push_back(std::move(one));
+    } else {
+        for (const measures::Request& request : ofHand)
+            result.measured.push_back({request.kind, request.of, {}, 0.0, work.noHand, {}});
     }
-    for (measures::Measured& one : measures::measure(preparation, requests))
-        measured.push_back(std::move(one));
-
-    Result result;
-    result.assessment = score::evaluate(rubric, measured, work.context);
+    result.context = work.context;
     result.identity.exercise = task.id;
     result.identity.exerciseHash = rubric::hashText(tasks::contentHash(task));
     result.identity.caseKey = rubric::hashText(cases::caseKey(toothCase));
@@ -157,6 +313,15 @@ Result scoreWork(const Work& work, const tasks::Task& task, const rubric::Rubric
     result.identity.engineRevision = core::kEngineRevision;
     result.proof = work.proof;
     return result;
+}
+
+Result judge(const MeasuredWork& work, const rubric::Rubric& rubric) {
+    return {score::evaluate(rubric, work.measured, work.context), work.identity, work.proof};
+}
+
+Result scoreWork(const Work& work, const tasks::Task& task, const rubric::Rubric& rubric,
+                 const core::Progress& progress) {
+    return judge(measureWork(work, task, requestsOf(rubric), progress), rubric);
 }
 
 }  // namespace handpiece::assessment

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// From what somebody did to a score: a session or an attempt, held against its exercise, measured, judged.
+/// From what somebody did to a score: sessions or an attempt, held against their exercise, measured, judged.
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "handpiece/app/assessment/recording.h"
 #include "handpiece/assess/score/score.h"
 #include "handpiece/assess/task/task.h"
 #include "handpiece/base/core/progress.h"
@@ -18,24 +20,49 @@ namespace handpiece::assessment {
 struct Work {
     tooth::Teeth teeth;  ///< by their numbers in the exercise's case
     tooth::StateDelta state;
-    std::vector<std::string> sessionHashes;  ///< of the files; none of an attempt
+    std::vector<std::string> sessionHashes;  ///< of the files, in the order of the work; none of an attempt alone
     bool isProven = false;                   ///< cut again from its beginning it left this very tooth, bit for bit
     std::string proof;                       ///< in a sentence: that, or why not
     score::Context context;
+    std::vector<Recording> recordings{};  ///< whose samples tell of the hand, in the order of the work
+    std::string noHand{};                 ///< why there are none, where there are none
 };
 
-/// Of a session (.h5) or an attempt. A session is cut again unless `prove` is false; one that does not come to the same
-/// tooth, or is of another engine, is taken from its last key frame and says so. Throws core::Error: neither; work on
-/// another tooth than the exercise's, or in another voxel.
+/// Files of sessions (.h5) in a folder, by name.
+[[nodiscard]] std::vector<std::filesystem::path> sessionsIn(const std::filesystem::path& folder);
+
+/// Of a session (.h5), of a folder with all sessions of a chain, each of which goes on from the tooth that the one
+/// before it left, or of an attempt, with the sessions that came along. Sessions are cut again unless `prove` is false;
+/// one that does not come to the same tooth, or is of another engine, is taken from its last key frame and says so.
+/// An attempt of which not all sessions came along, or that is another tooth than they leave, is not proven and has no
+/// measures of the hand. Throws core::Error: none of these; work on another tooth than the exercise's, or in another
+/// voxel; a session of a folder that is missing (before which).
 [[nodiscard]] Work readWork(const std::filesystem::path& path, const tasks::Task& task, bool prove = true,
                             const core::Progress& progress = {});
+
+/// What was measured of a piece of work: all that a rubric needs to judge it.
+struct MeasuredWork {
+    std::vector<measures::Measured> measured;
+    score::Identity identity;
+    score::Context context;
+    std::string proof;
+};
+/// What a rubric asks for, each once.
+[[nodiscard]] std::vector<measures::Request> requestsOf(const rubric::Rubric& rubric);
+/// The same inputs, the same bits, at any thread count. Throws core::Error for what does not exist.
+[[nodiscard]] MeasuredWork measureWork(const Work& work, const tasks::Task& task,
+                                       std::span<const measures::Request> requests,
+                                       const core::Progress& progress = {});
 
 struct Result {
     score::Assessment assessment;
     score::Identity identity;
     std::string proof;
 };
-/// The same inputs, the same bits, at any thread count. Throws core::Error for a rubric that is not sound.
-[[nodiscard]] Result scoreWork(const Work& work, const tasks::Task& task, const rubric::Rubric& rubric);
+/// Throws core::Error for a rubric that is not sound.
+[[nodiscard]] Result judge(const MeasuredWork& work, const rubric::Rubric& rubric);
+/// measureWork() and judge().
+[[nodiscard]] Result scoreWork(const Work& work, const tasks::Task& task, const rubric::Rubric& rubric,
+                               const core::Progress& progress = {});
 
 }  // namespace handpiece::assessment

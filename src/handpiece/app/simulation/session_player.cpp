@@ -562,6 +562,10 @@ tooth::StateDelta SessionPlayer::state() const {
     return state_->station.state();
 }
 
+std::uint64_t SessionPlayer::startHash() const {
+    return tooth::stateHash(state_->start);
+}
+
 const history::History& SessionPlayer::endHistory() {
     state_->cutting->settle(state());
     return state_->cutting->history();

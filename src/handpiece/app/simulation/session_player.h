@@ -72,6 +72,8 @@ class SessionPlayer {
     /// The whole session for plots: recorded, not computed again.
     [[nodiscard]] std::vector<PlotPoint> plot(double stepS = kPlotStepS) const;
     [[nodiscard]] tooth::StateDelta state() const;
+    /// Of the tooth that the session began with (tooth::stateHash).
+    [[nodiscard]] std::uint64_t startHash() const;
     /// Undo and redo of what was played since the beginning; a stroke under way counts as done, so play no further.
     [[nodiscard]] const history::History& endHistory();
     /// Undo and redo of the whole session out of its key frames, none of it played, and of what leads to the state

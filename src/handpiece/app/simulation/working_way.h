@@ -3,6 +3,7 @@
 /// @file
 /// From where and how somebody works, as `working way` events tell it (docs/session-format.md).
 
+#include <optional>
 #include <string>
 
 namespace handpiece::simulation {
@@ -10,6 +11,7 @@ namespace handpiece::simulation {
 struct WorkingWay {
     int hour = 0;  ///< of the operator's clock, 1 to 12; 0: none was chosen
     bool mirrorOnly = false, fingerRest = false;
+    std::optional<bool> depthStop{};  ///< on or off; none: of a program that did not tell
 };
 
 [[nodiscard]] std::string workingWayJson(const WorkingWay& way);

@@ -44,24 +44,6 @@ constexpr Registered kRegistered[] = {
     {"adjacent-removed", takeAdjacentRemoved},
 };
 
-void validate(const MeasureKind& kind, const Selection& of) {
-    const auto refuse = [&](std::string_view what) {
-        throw core::Error("a " + std::string(what) + " says nothing to this measure", std::string(kind.id),
-                          "leave it out");
-    };
-    const auto takes = [&](Selector selector) { return (kind.takes & static_cast<unsigned>(selector)) != 0; };
-    if (!of.zone.empty() && !takes(Selector::zone)) refuse("zone");
-    if (!of.tissue.empty() && !takes(Selector::tissue)) refuse("tissue");
-    if (!of.side.empty() && !takes(Selector::side)) refuse("side");
-    if (!of.statistic.empty() && !takes(Selector::statistic)) refuse("statistic");
-    if (of.limit && !takes(Selector::limit)) refuse("limit");
-    if (!of.tissue.empty()) (void)cases::tissueByName(of.tissue);
-    if (!of.statistic.empty() &&
-        std::find(std::begin(kStatistics), std::end(kStatistics), of.statistic) == std::end(kStatistics))
-        throw core::Error("there is no statistic \"" + of.statistic + "\"", std::string(kind.id),
-                          "mean, median, least, greatest, p5 or p95");
-}
-
 }  // namespace
 
 std::vector<Measured> measure(const Preparation& preparation, std::span<const Request> requests) {
@@ -70,11 +52,7 @@ std::vector<Measured> measure(const Preparation& preparation, std::span<const Re
     CutTooth tooth(preparation);
     std::vector<Measured> results;
     for (const Request& request : requests) {
-        const MeasureKind* kind = findMeasureKind(request.kind);
-        if (kind == nullptr)
-            throw core::Error("there is no measure \"" + request.kind + "\"", "measure", "see docs/assessment.md");
-        validate(*kind, request.of);
-        if (kind->subject != Subject::tooth)
+        if (requireKind(request).subject != Subject::tooth)
             throw core::Error("this measure is of the hand", request.kind, "take it of a session's samples");
         Measured result{request.kind, request.of, {}, 0.0, {}, {}};
         const auto* registered = std::find_if(std::begin(kRegistered), std::end(kRegistered),

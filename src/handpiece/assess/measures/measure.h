@@ -3,6 +3,7 @@
 /// @file
 /// What can be measured of a preparation and of the hand that made it: the kinds, and a value with how sure it is.
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -57,7 +58,16 @@ struct Evidence {
     std::optional<core::Vec3> placeMm;  ///< tooth frame
     std::optional<double> forceN;       ///< on the bur, at that time
     std::string text;                   ///< in a few words
+    std::size_t session = 0;            ///< of the chain that the work is, the one that `timeS` is of
 };
+
+/// What is to be measured.
+struct Request {
+    std::string kind;
+    Selection of{};
+};
+/// The request's kind. Throws core::Error for one that does not exist or does not take what is selected.
+const MeasureKind& requireKind(const Request& request);
 
 /// What was measured; a measure that cannot be taken says why and has no value (never 0).
 struct Measured {

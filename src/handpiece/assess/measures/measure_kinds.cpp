@@ -3,6 +3,8 @@
 #include <array>
 
 #include "handpiece/assess/measures/measure.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/model/case/tissue.h"
 
 namespace handpiece::measures {
 namespace {
@@ -27,6 +29,7 @@ constexpr std::array kKinds{
                 "between wall and uncut surface, in the tooth"},
     MeasureKind{"depth-stop-share", "%", kHand, 0, 0, 100, "of the drill time with the depth stop on"},
     MeasureKind{"drill-time", "s", kHand, 0, 0, 1e7, "with the bur turning and tissue going"},
+    MeasureKind{"finger-rest-share", "%", kHand, 0, 0, 100, "of the drill time with a finger rest"},
     MeasureKind{"floor-depth", "mm", kTooth, kSide | kStat, 0, 20,
                 "from the uncut surface to the floor along the path of draw"},
     MeasureKind{"floor-depth-shortest", "mm", kTooth, kSide | kStat, 0, 20,
@@ -37,18 +40,20 @@ constexpr std::array kKinds{
     MeasureKind{"gouge-depth", "mm", kTooth, 0, 0, 20, "deepest cut into floor or walls of the pulp chamber"},
     MeasureKind{"idle-time", "s", kHand, 0, 0, 1e7, "pedal up and bur off the tooth"},
     MeasureKind{"impulse-on-protected", "N s", kHand, kTissue, 0, 1e6,
-                "force by time on the pulp, a protected zone or a tooth beside"},
+                "load by time on the pulp, a protected zone or a tooth beside"},
     MeasureKind{"isthmus", "mm", kTooth, kStat, 0, 20,
                 "width of the cavity between its buccal and lingual walls at half their height"},
     MeasureKind{"isthmus-share", "%", kTooth, 0, 0, 1000,
                 "narrowest isthmus over the distance of the buccal and lingual cusp tips"},
     MeasureKind{"load-over-limit", "s", kHand, kLimit, 0, 1e7, "time with more load than the limit [N]"},
+    MeasureKind{"load-over-limit-share", "%", kHand, kLimit, 0, 100,
+                "of the time in contact, with more load than the limit [N]"},
     MeasureKind{"margin-continuity", "%", kTooth, 0, 0, 100, "of the way round on which the margin has a width"},
     MeasureKind{"margin-height", "mm", kTooth, kSide | kStat, -20, 20, "of the margin over the gingiva's edge"},
     MeasureKind{"margin-width", "mm", kTooth, kSide | kStat, 0, 10, "of the finish line, square to the axial wall"},
     MeasureKind{"marginal-ridge-left", "mm", kTooth, kSide, 0, 20,
                 "least distance from the cavity to the outside of the ridge"},
-    MeasureKind{"mirror-share", "%", kHand, 0, 0, 100, "of the time worked by mirror alone"},
+    MeasureKind{"mirror-share", "%", kHand, 0, 0, 100, "of the drill time by mirror alone"},
     MeasureKind{"occlusal-convergence", "deg", kTooth, kSide | kStat, -90, 90,
                 "total, of opposite axial walls, their middle part, in eight sections or more"},
     MeasureKind{"orifices-reached", "%", kTooth, 0, 0, 100,
@@ -75,6 +80,7 @@ constexpr std::array kKinds{
     MeasureKind{"undercut-area", "mm2", kTooth, kSide, 0, 1e3,
                 "wall that the path of draw cannot see, deeper than its roughness"},
     MeasureKind{"undercut-depth", "mm", kTooth, kSide, 0, 10, "deepest undercut, square to the path of draw"},
+    MeasureKind{"undos", "", kHand, 0, 0, 1e6, "how often something was undone, redone or reset"},
     MeasureKind{"unsupported-enamel", "mm3", kTooth, 0, 0, 1e3,
                 "enamel with no dentine left under it along its prisms"},
     MeasureKind{"views", "", kHand, 0, 0, 1e6, "directions from which was worked"},
@@ -83,6 +89,25 @@ constexpr std::array kKinds{
     MeasureKind{"wall-height", "mm", kTooth, kSide | kStat, 0, 20,
                 "from floor to cavosurface, where a probe stands at the wall"},
 };
+
+void validate(const MeasureKind& kind, const Selection& of) {
+    const auto refuse = [&](std::string_view what) {
+        throw core::Error("a " + std::string(what) + " says nothing to this measure", std::string(kind.id),
+                          "leave it out");
+    };
+    const auto takes = [&](Selector selector) { return (kind.takes & static_cast<unsigned>(selector)) != 0; };
+    if (!of.zone.empty() && !takes(Selector::zone)) refuse("zone");
+    if (!of.tissue.empty() && !takes(Selector::tissue)) refuse("tissue");
+    if (!of.side.empty() && !takes(Selector::side)) refuse("side");
+    if (!of.statistic.empty() && !takes(Selector::statistic)) refuse("statistic");
+    if (of.limit && !takes(Selector::limit)) refuse("limit");
+    if (!of.tissue.empty()) (void)cases::tissueByName(of.tissue);
+    if (!of.statistic.empty() &&
+        std::find(std::begin(kStatistics), std::end(kStatistics), of.statistic) == std::end(kStatistics))
+        throw core::Error("there is no statistic \"" + of.statistic + "\"", std::string(kind.id),
+                          "mean, median, least, greatest, p5 or p95");
+}
+
 }  // namespace
 
 std::span<const MeasureKind> measureKinds() {
@@ -93,6 +118,14 @@ const MeasureKind* findMeasureKind(std::string_view id) {
     const auto at = std::lower_bound(kKinds.begin(), kKinds.end(), id,
                                      [](const MeasureKind& kind, std::string_view name) { return kind.id < name; });
     return at != kKinds.end() && at->id == id ? &*at : nullptr;
+}
+
+const MeasureKind& requireKind(const Request& request) {
+    const MeasureKind* kind = findMeasureKind(request.kind);
+    if (kind == nullptr)
+        throw core::Error("there is no measure \"" + request.kind + "\"", "measure", "see docs/assessment.md");
+    validate(*kind, request.of);
+    return *kind;
 }
 
 }  // namespace handpiece::measures

@@ -57,11 +57,6 @@ struct Preparation {
     const zones::Zones* zones = nullptr;
 };
 
-struct Request {
-    std::string kind;
-    Selection of{};
-};
-
 /// One value, or reason why there is none, a request, in their order. The same bits at any thread count. Throws
 /// core::Error for a kind that does not exist, is not of the tooth, or does not take what is selected.
 [[nodiscard]] std::vector<Measured> measure(const Preparation& preparation, std::span<const Request> requests);

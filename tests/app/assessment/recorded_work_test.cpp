@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+// What sessions tell of the hand and of when something was cut; sessions and attempts as work.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "app/simulation/live_session_fixture.h"
+#include "handpiece/app/assessment/score_work.h"
+#include "handpiece/app/simulation/working_way.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/model/case/attempt.h"
+#include "handpiece/model/tooth/state_file.h"
+#include "handpiece/record/session/recorder.h"
+#include "handpiece/record/session/session_reader.h"
+#include "support/error_of.h"
+
+namespace handpiece::assessment {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Vec3;
+using measures::Measured;
+using measures::Request;
+using testing::HasSubstr;
+
+/// A session of a hand that nobody had: `at` makes each tick's sample.
+Recording recorded(const fs::path& path, double lastsS, const std::function<void(double, messages::HapticSample&)>& at,
+                   const std::vector<session::Event>& events = {}) {
+    session::SessionInfo info;
+    info.settings = simulation::settingsJson(simulation::blockSettings());
+    session::Recorder recorder(path, info);
+    for (const session::Event& event : events)
+        for (std::size_t n = 0; n < session::kEventNameCount; ++n)
+            if (event.name == nameOf(static_cast<session::EventName>(n)))
+                recorder.event(event.tick, static_cast<session::EventName>(n), event.text);
+    for (std::uint64_t tick = 0; tick < static_cast<std::uint64_t>(lastsS * 1000); ++tick) {
+        messages::HapticSample s;
+        s.tick = tick;
+        s.pedal = 1.0;
+        s.speedRpm = 200000;
+        at(static_cast<double>(tick) * 1e-3, s);
+        recorder.pushWaiting(session::recordOf(s));
+    }
+    (void)recorder.close();
+    return {path, path.filename().string(), "h", {}};
+}
+
+TEST(Recording, TellsWhenAndWithWhatLoadAPlaceWasCut) {
+    const test::TemporaryFolder folder;
+    // A ball of 1 mm goes along x at 1 mm/s, comes back 0.6 mm beside, and once more over the first half. It is pushed
+    // 0.3 mm deeper than it is let.
+    const auto slide = [](double t, messages::HapticSample& s) {
+        const double x = t < 3 ? t : t < 6 ? 6 - t : t - 6;
+        s.positionMm = {x, t < 3 ? 0.0 : t < 6 ? 0.6 : 0.0, -0.3};
+        s.depthMm = 0.3;
+        s.forceN = {0, 0, t < 3 ? 1.0 : 2.0};
+        s.flags = messages::kCutting;
+        if (t > 7.5) s.flags = 0;  // it turns there, and takes nothing
+    };
+    const Recording session = recorded(folder.path() / "a.h5", 8.0, slide);
+    std::vector<Measured> measured(1);
+    const auto at = [](double x, double y, double z) {
+        measures::Evidence evidence;
+        evidence.placeMm = Vec3(x, y, z);
+        return evidence;
+    };
+    measured[0].evidence = {
+        at(2.5, 0, 0), at(0.5, 0, 0), at(2.0, 0.6, 0), at(1.0, -0.45, 0.28), at(1, 3, 0), at(1, 0, -0.2), {}};
+    findTimes(std::span(&session, 1), measured, 0.05);
+    const std::vector<measures::Evidence>& told = measured[0].evidence;
+    const auto is = [&](std::size_t i, double timeS, double forceN) {
+        ASSERT_TRUE(told[i].timeS) << i;
+        EXPECT_NEAR(*told[i].timeS, timeS, 0.0015) << i;
+        EXPECT_NEAR(*told[i].forceN, forceN, 0.001) << i;
+    };
+    is(0, 2.5, 1.0);
+    is(1, 6.5, 2.0);  // the last time
+    is(2, 4.0, 2.0);
+    is(3, 7.0, 2.0);
+    EXPECT_FALSE(told[4].timeS) << "no bur was there";
+    EXPECT_FALSE(told[5].timeS) << "under what was cut";
+    EXPECT_FALSE(told[6].timeS);
+    // As the second of two the session says which it is.
+    const std::vector<Recording> chain{recorded(folder.path() / "b.h5", 0.2, [](double, auto& s) { s.depthMm = -1; }),
+                                       session};
+    for (measures::Evidence& e : measured[0].evidence)
+        e.timeS.reset();
+    findTimes(chain, measured, 0.05);
+    is(0, 2.5, 1.0);
+    EXPECT_EQ(told[0].session, 1u);
+}
+
+TEST(Recording, TellsOfTheHand) {
+    const test::TemporaryFolder folder;
+    simulation::SimulationSettings other = simulation::blockSettings();
+    other.bur = simulation::burOf("pear:1.0x3");
+    const std::vector<session::Event> events{
+        {0, "working way", simulation::workingWayJson({9, false, true, true})},
+        {1000, "bur change", simulation::burChangeJson(simulation::blockSettings())},  // another ability, the same bur
+        {1999, "working way", simulation::workingWayJson({11, true, true, false})},
+        {2000, "bur change", simulation::burChangeJson(other)},
+        {3000, "undo", ""}};
+    const auto work = [](double t, messages::HapticSample& s) {
+        s.positionMm = {2 * std::cos(3 * t), 2 * std::sin(3 * t), 0};
+        s.forceN = {0, t < 2 ? 0.6 : 1.2, t < 2 ? 0.8 : 1.6};
+        s.depthMm = 0.1;
+        s.tissue = static_cast<std::uint8_t>(t < 3 ? cases::Tissue::enamel : cases::Tissue::pulp);
+        s.flags = messages::kCutting | (t > 1 && t < 1.5 ? messages::kStalled : 0u);
+    };
+    const std::vector<Recording> chain{recorded(folder.path() / "a.h5", 4.0, work, events),
+                                       recorded(folder.path() / "b.h5", 4.0, work, {})};
+    measures::Selection overOne;
+    overOne.limit = 1.5;
+    const std::vector<Request> asked{{"time"},        {"force"},        {"load-over-limit", overOne}, {"path-length"},
+                                     {"bur-changes"}, {"mirror-share"}, {"depth-stop-share"},         {"undos"},
+                                     {"views"},       {"stalls"},       {"impulse-on-protected"},     {"strokes"}};
+    const std::vector<Measured> told = measureHand(chain, asked, {}), again = measureHand(chain, asked, {});
+    const double truth[] = {8.0, 1.5, 4.0, 48.0, 2.0, 0, 0, 1.0, 2.0, 2.0, 4.0, 2.0};
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+        ASSERT_TRUE(told[i].value) << asked[i].kind << ": " << told[i].reason;
+        EXPECT_EQ(told[i].value, again[i].value) << asked[i].kind;
+        if (asked[i].kind == "force" || asked[i].kind == "mirror-share" || asked[i].kind == "depth-stop-share")
+            continue;
+        EXPECT_NEAR(*told[i].value, truth[i], told[i].uncertainty + 1e-9) << asked[i].kind;
+    }
+    // 1 N and 2 N for as long: the median lies between.
+    EXPECT_GE(*told[1].value, 1.0 - 0.002);
+    EXPECT_LE(*told[1].value, 2.0 + 0.002);
+    // The way holds in the next session until that tells another.
+    EXPECT_NEAR(*told[5].value, 75.0, 0.2);
+    EXPECT_NEAR(*told[6].value, 25.0, 0.2);
+    EXPECT_EQ(told[4].evidence.at(0).timeS, 2.0);
+    EXPECT_EQ(told[4].evidence.at(1).session, 1u) << "the next begins with the first bur again";
+    EXPECT_THAT(measureHand(std::span(chain).last(1), std::vector<Request>{{"mirror-share"}}, {}).front().reason,
+                HasSubstr("does not tell"));
+}
+
+tasks::Task blockTask() {
+    tasks::Task task;
+    task.id = "block";
+    task.toothCase = simulation::blockCase();
+    task.voxelMm = simulation::blockSettings().field.voxelMm;
+    return task;
+}
+
+TEST(ReadWork, OfAnAttemptAndItsSessionsIsTheSame) {
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "one.h5";
+    cases::Attempt attempt;
+    {
+        const simulation::SimulationSetup station = simulation::blockStation();
+        simulation::LiveSessionSettings settings;
+        settings.sessionFile = file;
+        const auto lead = std::make_shared<simulation::Lead>();
+        simulation::LiveSession sitting(station, simulation::blockCase(),
+                                        simulation::handOf(simulation::twoHoles(), lead), settings, nullptr);
+        ASSERT_TRUE(simulation::leadTo(sitting, *lead, 3.1));
+        sitting.stop();
+        attempt = sitting.attempt(folder.path() / "case");
+    }
+    const cases::Case block = simulation::blockCase();
+    attempt.recordings = {{"one.h5", true}};
+    const auto saved = [&](const char* name, const cases::Attempt& what, cases::PackageFiles with) {
+        const fs::path path = folder.path() / name;
+        cases::writeAttempt(what, path, &block, std::move(with));
+        return path;
+    };
+    const tasks::Task task = blockTask();
+    const Work session = readWork(file, task);
+    EXPECT_TRUE(session.isProven) << session.proof;
+    const fs::path whole = saved("whole.handpiece", attempt, {{"one.h5", core::readFile(file)}});
+    const Work of = readWork(whole, task);
+    EXPECT_TRUE(of.isProven) << of.proof;
+    EXPECT_EQ(of.sessionHashes, session.sessionHashes);
+
+    measures::Selection greatest;
+    greatest.statistic = "greatest";
+    const std::vector<Request> asked{{"floor-depth", greatest}, {"removed"}, {"time"},
+                                     {"path-length"},           {"force"},   {"strokes"}};
+    const MeasuredWork one = measureWork(session, task, asked), two = measureWork(of, task, asked);
+    EXPECT_EQ(one.identity.stateHash, two.identity.stateHash);
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+        EXPECT_TRUE(one.measured[i].value) << asked[i].kind << ": " << one.measured[i].reason;
+        EXPECT_EQ(one.measured[i].value, two.measured[i].value) << asked[i].kind;
+    }
+    // The deepest place lies in one of the holes, and was cut while the bur was in that.
+    const measures::Evidence& deepest = one.measured[0].evidence.at(0);
+    ASSERT_TRUE(deepest.placeMm && deepest.timeS);
+    const session::SessionReader reader(file);
+    const std::uint64_t index = reader.indexOfTick(static_cast<std::uint64_t>(std::lround(*deepest.timeS * 1000)));
+    const session::Record there = reader.records(index, 1).front();
+    EXPECT_NEAR(session::inputsOf(there).positionMm[0], deepest.placeMm->x(), 0.6);
+    EXPECT_NE(there.flags & messages::kCutting, 0u);
+    EXPECT_GT(*deepest.forceN, 0.0);
+    EXPECT_EQ(*one.measured[5].value, 2.0);
+
+    // Without its session, and without any account of sessions.
+    const Work bare = readWork(saved("bare.handpiece", attempt, {}), task);
+    EXPECT_FALSE(bare.isProven);
+    EXPECT_THAT(bare.proof, HasSubstr("one.h5 did not come along"));
+    cases::Attempt alone = attempt;
+    alone.recordings.clear();
+    const Work tooth = readWork(saved("alone.handpiece", alone, {}), task);
+    EXPECT_FALSE(tooth.isProven);
+    const MeasuredWork silent = measureWork(tooth, task, asked);
+    EXPECT_EQ(silent.measured[1].value, one.measured[1].value);
+    for (std::size_t i = 2; i < asked.size(); ++i) {
+        EXPECT_FALSE(silent.measured[i].value) << asked[i].kind;
+        EXPECT_THAT(silent.measured[i].reason, HasSubstr("no samples")) << asked[i].kind;
+    }
+    // Another tooth than its session leaves.
+    cases::Attempt other = attempt;
+    other.state = tooth::encodeState({}, tooth::identityOf(session.teeth));
+    const Work forged = readWork(saved("forged.handpiece", other, {{"one.h5", core::readFile(file)}}), task);
+    EXPECT_FALSE(forged.isProven);
+    EXPECT_THAT(forged.proof, HasSubstr("another tooth"));
+    EXPECT_TRUE(forged.recordings.empty());
+}
+
+}  // namespace
+}  // namespace handpiece::assessment

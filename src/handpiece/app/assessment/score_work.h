@@ -30,11 +30,7 @@ struct Work {
 [[nodiscard]] Work readWork(const std::filesystem::path& path, const tasks::Task& task, bool prove = true,
                             const core::Progress& progress = {});
 
-struct Result {
-    score::Assessment assessment;
-    score::Identity identity;
-    std::string proof;
-};
+using Result = score::Result;
 /// The same inputs, the same bits, at any thread count. Throws core::Error for a rubric that is not sound.
 [[nodiscard]] Result scoreWork(const Work& work, const tasks::Task& task, const rubric::Rubric& rubric);
 

@@ -124,4 +124,11 @@ struct Identity {
     std::int32_t engineRevision = 0;
 };
 
+/// A score, of what, and how sure that is.
+struct Result {
+    Assessment assessment;
+    Identity identity;
+    std::string proof;  ///< in a sentence: that it was cut again to the same tooth, or why not
+};
+
 }  // namespace handpiece::score

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "handpiece/app/assessment/scan_work.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/app/simulation/tissue_export.h"
 #include "handpiece/assess/measures/preparation.h"
@@ -71,11 +72,11 @@ Work workOfSession(const fs::path& path, const tasks::Task& task, bool prove, co
 }
 
 /// What hands know: needs samples, which no tooth keeps.
-measures::Measured notOfTheTooth(const rubric::Criterion& criterion) {
+measures::Measured notOfTheTooth(const rubric::Criterion& criterion, bool isScan) {
     measures::Measured measured;
     measured.kind = criterion.measure;
     measured.of = criterion.of;
-    measured.reason = "measures of the hand are not taken yet";
+    measured.reason = isScan ? "a scan says nothing of the hand" : "measures of the hand are not taken yet";
     return measured;
 }
 
@@ -141,10 +142,13 @@ Result scoreWork(const Work& work, const tasks::Task& task, const rubric::Rubric
         if (kind != nullptr && kind->subject == measures::Subject::tooth)
             requests.push_back({criterion.measure, criterion.of});
         else
-            measured.push_back(notOfTheTooth(criterion));
+            measured.push_back(notOfTheTooth(criterion, work.scan.has_value()));
     }
     for (measures::Measured& one : measures::measure(preparation, requests))
         measured.push_back(std::move(one));
+    if (work.scan)
+        for (measures::Measured& one : measured)
+            if (one.value) one.uncertainty = widened(one, *work.scan);
 
     Result result;
     result.assessment = score::evaluate(rubric, measured, work.context);
@@ -155,6 +159,7 @@ Result scoreWork(const Work& work, const tasks::Task& task, const rubric::Rubric
     result.identity.sessionHashes = work.sessionHashes;
     result.identity.proven = work.isProven;
     result.identity.engineRevision = core::kEngineRevision;
+    result.identity.scan = work.scan;
     result.proof = work.proof;
     return result;
 }

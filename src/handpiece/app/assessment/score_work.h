@@ -4,6 +4,7 @@
 /// From what somebody did to a score: a session or an attempt, held against its exercise, measured, judged.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct Work {
     bool isProven = false;                   ///< cut again from its beginning it left this very tooth, bit for bit
     std::string proof;                       ///< in a sentence: that, or why not
     score::Context context;
+    std::optional<score::ScanFit> scan{};  ///< of a scan; readScan() makes those
 };
 
 /// Of a session (.h5) or an attempt. A session is cut again unless `prove` is false; one that does not come to the same

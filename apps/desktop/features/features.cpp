@@ -6,6 +6,7 @@
 #include "desktop/features/device/device_feature.h"
 #include "desktop/features/drill/drill_feature.h"
 #include "desktop/features/exercise/exercise_feature.h"
+#include "desktop/features/exercise/practice_feature.h"
 #include "desktop/features/files/files_feature.h"
 #include "desktop/features/files/recovery_feature.h"
 #include "desktop/features/files/starter_feature.h"
@@ -33,6 +34,7 @@ void installFeatures(const FeatureContext& context) {
     add(new ViewFeature(context));
     add(new PositionFeature(context));
     add(new ExerciseFeature(context));
+    add(new PracticeFeature(context));
     add(new LayoutFeature(context));
     add(new ReplayFeature(context));
     add(new MeasureFeature(context));

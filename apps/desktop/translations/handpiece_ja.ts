@@ -3931,8 +3931,8 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>&lt;h3&gt;Handpiece %1&lt;/h3&gt;&lt;p&gt;オープンな歯科手術シミュレーターです。歯に触れ、削ることができます。&lt;/p&gt;</translation>
     </message>
     <message>
-        <source>&lt;p&gt;Licensed under the Apache License 2.0. For teaching; no medical device.&lt;/p&gt;&lt;p&gt;It stands on: Qt %1 (LGPL 3), OpenAL Soft (LGPL 2), Mesa (MIT), Eigen (MPL 2), fmt (MIT), oneTBB (Apache 2.0), Qhull (Qhull licence), HDF5 (BSD), libzip (BSD), zlib (zlib), libpng (libpng), toml++ (MIT), nlohmann-json (MIT), CLI11 (BSD).&lt;/p&gt;&lt;p&gt;Draws with: %2&lt;/p&gt;&lt;p&gt;Sound: %3&lt;/p&gt;</source>
-        <translation>&lt;p&gt;Apache License 2.0 で公開しています。教育用であり、医療機器ではありません。&lt;/p&gt;&lt;p&gt;使用しているソフトウェア：Qt %1 (LGPL 3)、OpenAL Soft (LGPL 2)、Mesa (MIT)、Eigen (MPL 2)、fmt (MIT)、oneTBB (Apache 2.0)、Qhull (Qhull licence)、HDF5 (BSD)、libzip (BSD)、zlib (zlib)、libpng (libpng)、toml++ (MIT)、nlohmann-json (MIT)、CLI11 (BSD)。&lt;/p&gt;&lt;p&gt;描画：%2&lt;/p&gt;&lt;p&gt;音：%3&lt;/p&gt;</translation>
+        <source>&lt;p&gt;Licensed under the Apache License 2.0. For teaching; no medical device.&lt;/p&gt;&lt;p&gt;It stands on: Qt %1 (LGPL 3), OpenAL Soft (LGPL 2), Mesa (MIT), Eigen (MPL 2), fmt (MIT), oneTBB (Apache 2.0), Qhull (Qhull licence), HDF5 (BSD), libzip (BSD), SQLite (public domain), zlib (zlib), libpng (libpng), toml++ (MIT), nlohmann-json (MIT), CLI11 (BSD).&lt;/p&gt;&lt;p&gt;Draws with: %2&lt;/p&gt;&lt;p&gt;Sound: %3&lt;/p&gt;</source>
+        <translation>&lt;p&gt;Apache License 2.0 で公開しています。教育用であり、医療機器ではありません。&lt;/p&gt;&lt;p&gt;使用しているソフトウェア：Qt %1 (LGPL 3)、OpenAL Soft (LGPL 2)、Mesa (MIT)、Eigen (MPL 2)、fmt (MIT)、oneTBB (Apache 2.0)、Qhull (Qhull licence)、HDF5 (BSD)、libzip (BSD)、SQLite (パブリックドメイン)、zlib (zlib)、libpng (libpng)、toml++ (MIT)、nlohmann-json (MIT)、CLI11 (BSD)。&lt;/p&gt;&lt;p&gt;描画：%2&lt;/p&gt;&lt;p&gt;音：%3&lt;/p&gt;</translation>
     </message>
     <message>
         <source>nothing yet</source>

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "handpiece/app/assessment/scan_work.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/app/simulation/tissue_export.h"
 #include "handpiece/assess/measures/preparation.h"
@@ -291,6 +292,9 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
         (measures::requireKind(request).subject == measures::Subject::tooth ? ofTooth : ofHand).push_back(request);
     MeasuredWork result;
     result.measured = measures::measure(preparation, ofTooth);
+    if (work.scan)
+        for (measures::Measured& one : result.measured)
+            if (one.value) one.uncertainty = widened(one, *work.scan);
     core::report(progress, 0.4);
     findTimes(work.recordings, result.measured, task.voxelMm, core::part(progress, 0.4, 0.6));
     const hand::Against against{preparation.axes.longAxis, preparation.zones};
@@ -311,6 +315,7 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
     result.identity.sessionHashes = work.sessionHashes;
     result.identity.proven = work.isProven;
     result.identity.engineRevision = core::kEngineRevision;
+    result.identity.scan = work.scan;
     result.proof = work.proof;
     return result;
 }

@@ -156,6 +156,8 @@ void requireSound(const Rubric& rubric);
 [[nodiscard]] std::vector<std::string> shippedRubrics();
 /// Throws core::Error naming them.
 [[nodiscard]] Rubric shippedRubric(std::string_view name);
+/// The file as it is; throws alike.
+[[nodiscard]] std::string_view shippedRubricText(std::string_view name);
 
 /// The band that has the value; null when none has.
 [[nodiscard]] const Band* bandOf(const Criterion& criterion, double value);

@@ -53,11 +53,15 @@ std::vector<std::string> shippedRubrics() {
     return names;
 }
 
-Rubric shippedRubric(std::string_view name) {
+std::string_view shippedRubricText(std::string_view name) {
     for (const Shipped& s : all())
-        if (s.name == name) return parseRubric(s.text, fmt::format("data/rubrics/{}.toml", name));
+        if (s.name == name) return s.text;
     throw core::Error(fmt::format("there is no rubric \"{}\"", name.substr(0, 64)), {},
                       fmt::format("give a file, or one of {}", fmt::join(shippedRubrics(), ", ")));
+}
+
+Rubric shippedRubric(std::string_view name) {
+    return parseRubric(shippedRubricText(name), fmt::format("data/rubrics/{}.toml", name));
 }
 
 }  // namespace handpiece::rubric

@@ -11,6 +11,7 @@
 #include "desktop/features/files/recovery_feature.h"
 #include "desktop/features/files/starter_feature.h"
 #include "desktop/features/landmarks/landmarks_feature.h"
+#include "desktop/features/marking/marking_feature.h"
 #include "desktop/features/measure/measure_feature.h"
 #include "desktop/features/position/position_feature.h"
 #include "desktop/features/radiograph/radiograph_feature.h"
@@ -41,6 +42,7 @@ void installFeatures(const FeatureContext& context) {
     add(new DrillFeature(context));
     add(new SoundFeature(context));
     add(new DeviceFeature(context));
+    add(new MarkingFeature(context));  // before scans: both look at folders
     add(new ScanFeature(context));
     add(new RadiographFeature(context));
     add(new FilesFeature(context));      // it opens whatever the others leave

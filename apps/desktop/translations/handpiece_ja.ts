@@ -567,6 +567,14 @@
         <source>For teachers: drag a landmark over the tooth</source>
         <translation>指導者用：指標点を歯の上でドラッグします</translation>
     </message>
+    <message>
+        <source>Marking desk...</source>
+        <translation>採点机...</translation>
+    </message>
+    <message>
+        <source>For teachers: score, look at and mark a folder of returned work</source>
+        <translation>教員用：提出物のフォルダーを採点し、見て、評価します</translation>
+    </message>
 </context>
 <context>
     <name>BurPicture</name>
@@ -2403,6 +2411,94 @@
     <message>
         <source>Mend it here, or with: handpiece mesh repair FILE MENDED.stl</source>
         <translation>ここで修復するか、次を実行してください：handpiece mesh repair FILE MENDED.stl</translation>
+    </message>
+    <message>
+        <source>This is the marking desk of %1.</source>
+        <translation>これは %1 の採点机です。</translation>
+    </message>
+    <message>
+        <source>Mark under another name.</source>
+        <translation>別の名前で採点してください。</translation>
+    </message>
+    <message>
+        <source>This marking desk was begun for another exercise, %1.</source>
+        <translation>この採点机は別の課題 %1 で始められました。</translation>
+    </message>
+    <message>
+        <source>Choose that exercise, or mark under another name.</source>
+        <translation>その課題を選ぶか、別の名前で採点してください。</translation>
+    </message>
+    <message>
+        <source>This desk marks blind by another rubric, %1.</source>
+        <translation>この採点机は別の評価表 %1 でブラインド採点をしています。</translation>
+    </message>
+    <message>
+        <source>Choose that rubric, or mark under another name.</source>
+        <translation>その評価表を選ぶか、別の名前で採点してください。</translation>
+    </message>
+    <message>
+        <source>This desk marks blind.</source>
+        <translation>この採点机はブラインド採点です。</translation>
+    </message>
+    <message>
+        <source>Tick &quot;Mark blind&quot; to go on, or mark under another name.</source>
+        <translation>「ブラインド採点」に印を付けて続けるか、別の名前で採点してください。</translation>
+    </message>
+    <message>
+        <source>This desk shows the machine&apos;s score.</source>
+        <translation>この採点机は機械の得点を表示しています。</translation>
+    </message>
+    <message>
+        <source>Untick &quot;Mark blind&quot; to go on, or mark under another name.</source>
+        <translation>「ブラインド採点」の印を外して続けるか、別の名前で採点してください。</translation>
+    </message>
+    <message>
+        <source>Somebody else marks at this desk; this change was not kept.</source>
+        <translation>別の場所でこの採点机が使われています。この変更は保存されませんでした。</translation>
+    </message>
+    <message>
+        <source>Begin again: what stands there now is taken up.</source>
+        <translation>もう一度始めてください。今の内容から続けられます。</translation>
+    </message>
+    <message>
+        <source>This marking desk cannot be read. Technical detail: %1</source>
+        <translation>この採点机は読めません。技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>Bring its file back from a copy, or mark under another name.</source>
+        <translation>控えからファイルを戻すか、別の名前で採点してください。</translation>
+    </message>
+    <message>
+        <source>This marking desk was made by a newer program.</source>
+        <translation>この採点机は新しいプログラムで作られました。</translation>
+    </message>
+    <message>
+        <source>Use the newer program.</source>
+        <translation>新しいプログラムを使ってください。</translation>
+    </message>
+    <message>
+        <source>Nobody can mark under this name.</source>
+        <translation>この名前では採点できません。</translation>
+    </message>
+    <message>
+        <source>Give a name or a code without / \ and quotes; &quot;machine&quot; is taken.</source>
+        <translation>/ \ と引用符を含まない名前かコードを入れてください。「machine」は使えません。</translation>
+    </message>
+    <message>
+        <source>There is no such folder.</source>
+        <translation>そのフォルダーはありません。</translation>
+    </message>
+    <message>
+        <source>Choose the folder with the returned work.</source>
+        <translation>提出物のフォルダーを選んでください。</translation>
+    </message>
+    <message>
+        <source>This exercise has no rubric.</source>
+        <translation>この課題には評価表がありません。</translation>
+    </message>
+    <message>
+        <source>Choose a rubric.</source>
+        <translation>評価表を選んでください。</translation>
     </message>
 </context>
 <context>
@@ -7380,6 +7476,753 @@ lingual: %4</source>
     <message>
         <source>Source</source>
         <translation>由来</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::AgreementPage</name>
+    <message>
+        <source>Agreement</source>
+        <translation>一致度</translation>
+    </message>
+    <message>
+        <source>Weighted kappa (linear), ICC(2,1), Krippendorff&apos;s alpha, bias and limits of agreement, with 95 % intervals</source>
+        <translation>重み付きカッパ（線形）、ICC(2,1)、Krippendorff のアルファ、偏りと一致の限界（95 % 区間付き）</translation>
+    </message>
+    <message>
+        <source>Of</source>
+        <translation>対象</translation>
+    </message>
+    <message>
+        <source>Works</source>
+        <translation>作品数</translation>
+    </message>
+    <message>
+        <source>Coefficient</source>
+        <translation>係数</translation>
+    </message>
+    <message>
+        <source>Value (95 %)</source>
+        <translation>値（95 %）</translation>
+    </message>
+    <message>
+        <source>Picture</source>
+        <translation>図</translation>
+    </message>
+    <message>
+        <source>Plot of the agreement</source>
+        <translation>一致度の図</translation>
+    </message>
+    <message>
+        <source>undefined: %1</source>
+        <translation>定義されません：%1</translation>
+    </message>
+    <message>
+        <source>%1 (%2 to %3)</source>
+        <translation>%1（%2 ～ %3）</translation>
+    </message>
+    <message>
+        <source>all points together</source>
+        <translation>総得点</translation>
+    </message>
+    <message>
+        <source>%1 and %2</source>
+        <translation>%1 と %2</translation>
+    </message>
+    <message>
+        <source>weighted kappa</source>
+        <translation>重み付きカッパ</translation>
+    </message>
+    <message>
+        <source>bias, limits of agreement</source>
+        <translation>偏り、一致の限界</translation>
+    </message>
+    <message>
+        <source>all raters</source>
+        <translation>全評価者</translation>
+    </message>
+    <message>
+        <source>Krippendorff&apos;s alpha</source>
+        <translation>Krippendorff のアルファ</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::DeskDialog</name>
+    <message>
+        <source>Marking desk</source>
+        <translation>採点机</translation>
+    </message>
+    <message>
+        <source>Pages of the marking desk</source>
+        <translation>採点机のページ</translation>
+    </message>
+    <message>
+        <source>What is marked</source>
+        <translation>採点の対象</translation>
+    </message>
+    <message>
+        <source>Works</source>
+        <translation>作品</translation>
+    </message>
+    <message>
+        <source>Agreement</source>
+        <translation>一致度</translation>
+    </message>
+    <message>
+        <source>How far it is</source>
+        <translation>進み具合</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>中止</translation>
+    </message>
+    <message>
+        <source>Stop; what has been scored so far stays</source>
+        <translation>止めます。ここまでの得点は残ります</translation>
+    </message>
+    <message>
+        <source>Folder of the returned work</source>
+        <translation>提出物のフォルダー</translation>
+    </message>
+    <message>
+        <source>Sessions, attempts, hand-ins; a folder can be dropped here</source>
+        <translation>記録、試行、提出ファイル。フォルダーをここへドロップできます</translation>
+    </message>
+    <message>
+        <source>Choose...</source>
+        <translation>選択...</translation>
+    </message>
+    <message>
+        <source>Choose the folder</source>
+        <translation>フォルダーを選ぶ</translation>
+    </message>
+    <message>
+        <source>Returned work</source>
+        <translation>提出物</translation>
+    </message>
+    <message>
+        <source>Exercise</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>The exercise that was worked on: its folder, or its .handpiece file</source>
+        <translation>行われた課題：そのフォルダーまたは .handpiece ファイル</translation>
+    </message>
+    <message>
+        <source>Choose the exercise</source>
+        <translation>課題を選ぶ</translation>
+    </message>
+    <message>
+        <source>Rubric</source>
+        <translation>評価表</translation>
+    </message>
+    <message>
+        <source>How the machine scores, and what is marked</source>
+        <translation>機械の採点の仕方と、評価する項目</translation>
+    </message>
+    <message>
+        <source>The exercise&apos;s own</source>
+        <translation>課題自身のもの</translation>
+    </message>
+    <message>
+        <source>File...</source>
+        <translation>ファイル...</translation>
+    </message>
+    <message>
+        <source>A rubric of your own</source>
+        <translation>自分の評価表</translation>
+    </message>
+    <message>
+        <source>Marker</source>
+        <translation>採点者</translation>
+    </message>
+    <message>
+        <source>Your name or code: each marker has a desk of their own in the folder</source>
+        <translation>名前またはコード。採点者ごとに、フォルダー内に自分の机があります</translation>
+    </message>
+    <message>
+        <source>Mark blind</source>
+        <translation>ブラインド採点</translation>
+    </message>
+    <message>
+        <source>Works come under codes in random order, a tenth of them twice; the machine&apos;s score is hidden until your own mark is in</source>
+        <translation>作品はコードで無作為の順に現れ、十分の一は二度現れます。自分の評価を出すまで機械の得点は隠されます</translation>
+    </message>
+    <message>
+        <source>Cut recordings again to prove them</source>
+        <translation>記録を切削し直して証明する</translation>
+    </message>
+    <message>
+        <source>Slower; without it every recording is unproven</source>
+        <translation>時間がかかります。しなければ記録はすべて未証明です</translation>
+    </message>
+    <message>
+        <source>Begin, or go on</source>
+        <translation>始める・続ける</translation>
+    </message>
+    <message>
+        <source>What this marker did in this folder before is taken up again</source>
+        <translation>この採点者がこのフォルダーで前にしたことを引き継ぎます</translation>
+    </message>
+    <message>
+        <source>Double click or Enter opens a work</source>
+        <translation>ダブルクリックか Enter で作品を開きます</translation>
+    </message>
+    <message>
+        <source>Critical errors</source>
+        <translation>重大な誤り</translation>
+    </message>
+    <message>
+        <source>Only works with a critical error</source>
+        <translation>重大な誤りのある作品だけ</translation>
+    </message>
+    <message>
+        <source>Borderline</source>
+        <translation>境界</translation>
+    </message>
+    <message>
+        <source>Only works where something lies within uncertainty</source>
+        <translation>不確かさの範囲に入るものがある作品だけ</translation>
+    </message>
+    <message>
+        <source>Unproven</source>
+        <translation>未証明</translation>
+    </message>
+    <message>
+        <source>Only works that were not cut again to the same tooth</source>
+        <translation>切削し直して同じ歯になっていない作品だけ</translation>
+    </message>
+    <message>
+        <source>Not scored</source>
+        <translation>採点不能</translation>
+    </message>
+    <message>
+        <source>Only works that could not be scored</source>
+        <translation>採点できなかった作品だけ</translation>
+    </message>
+    <message>
+        <source>How many works</source>
+        <translation>作品の数</translation>
+    </message>
+    <message>
+        <source>Open</source>
+        <translation>開く</translation>
+    </message>
+    <message>
+        <source>Open the work in the picture</source>
+        <translation>作品を画面に開く</translation>
+    </message>
+    <message>
+        <source>Score again</source>
+        <translation>再採点</translation>
+    </message>
+    <message>
+        <source>Look for work that has come since, and score what has no score</source>
+        <translation>後から届いた作品を探し、得点のないものを採点します</translation>
+    </message>
+    <message>
+        <source>Export</source>
+        <translation>書き出し</translation>
+    </message>
+    <message>
+        <source>Write tables for others</source>
+        <translation>ほかの人のための表を書き出します</translation>
+    </message>
+    <message>
+        <source>Results, codes only (CSV)...</source>
+        <translation>結果、コードのみ（CSV）...</translation>
+    </message>
+    <message>
+        <source>Results with file names (CSV)...</source>
+        <translation>結果、ファイル名付き（CSV）...</translation>
+    </message>
+    <message>
+        <source>Blind marks, for agreement (CSV)...</source>
+        <translation>ブラインド評価、一致度用（CSV）...</translation>
+    </message>
+    <message>
+        <source>Agreement with pictures (folder)...</source>
+        <translation>一致度と図（フォルダー）...</translation>
+    </message>
+    <message>
+        <source>Works: %1 of %2</source>
+        <translation>作品：%1 / %2</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::MarkingFeature</name>
+    <message>
+        <source>Marking</source>
+        <translation>採点</translation>
+    </message>
+    <message>
+        <source>Folder of the returned work</source>
+        <translation>提出物のフォルダー</translation>
+    </message>
+    <message>
+        <source>Exercise</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>Exercises (*.handpiece exercise.toml);;All files (*)</source>
+        <translation>課題 (*.handpiece exercise.toml);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Rubric</source>
+        <translation>評価表</translation>
+    </message>
+    <message>
+        <source>Rubrics (*.toml);;All files (*)</source>
+        <translation>評価表 (*.toml);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Cancelled. What has been scored stays; &quot;Score again&quot; goes on.</source>
+        <translation>中止しました。ここまでの得点は残ります。「再採点」で続けられます。</translation>
+    </message>
+    <message>
+        <source>Looking for work</source>
+        <translation>作品を探しています</translation>
+    </message>
+    <message>
+        <source>There is no returned work in this folder.</source>
+        <translation>このフォルダーに提出物はありません。</translation>
+    </message>
+    <message>
+        <source>Scoring</source>
+        <translation>採点中</translation>
+    </message>
+    <message>
+        <source>Opening %1</source>
+        <translation>%1 を開いています</translation>
+    </message>
+    <message>
+        <source>%1 of %2</source>
+        <translation>%1 / %2</translation>
+    </message>
+    <message>
+        <source>There is no tooth in the middle of the picture: the comment has no place.</source>
+        <translation>画面の中央に歯がないため、コメントに位置が付きません。</translation>
+    </message>
+    <message>
+        <source>Computing...</source>
+        <translation>計算中...</translation>
+    </message>
+    <message>
+        <source>Agreement</source>
+        <translation>一致度</translation>
+    </message>
+    <message>
+        <source>There is nothing to compare yet: marks count once they are in.</source>
+        <translation>まだ比べるものがありません。評価は出されてから数えられます。</translation>
+    </message>
+    <message>
+        <source>Marks that were given blind alone; works whose machine&apos;s score is hidden are left out.</source>
+        <translation>ブラインドで出された評価だけです。機械の得点が隠れている作品は除かれます。</translation>
+    </message>
+    <message>
+        <source>Folder for the agreement</source>
+        <translation>一致度のフォルダー</translation>
+    </message>
+    <message>
+        <source>Write the table</source>
+        <translation>表を書き出す</translation>
+    </message>
+    <message>
+        <source>Table (*.csv)</source>
+        <translation>表 (*.csv)</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::SheetPanel</name>
+    <message>
+        <source>Work that is marked</source>
+        <translation>採点中の作品</translation>
+    </message>
+    <message>
+        <source>Code of the work</source>
+        <translation>作品のコード</translation>
+    </message>
+    <message>
+        <source>Previous work</source>
+        <translation>前の作品</translation>
+    </message>
+    <message>
+        <source>Next work</source>
+        <translation>次の作品</translation>
+    </message>
+    <message>
+        <source>Back to the table</source>
+        <translation>表に戻る</translation>
+    </message>
+    <message>
+        <source>Criteria</source>
+        <translation>評価項目</translation>
+    </message>
+    <message>
+        <source>Choose one to judge it; a place below it turns the picture there</source>
+        <translation>選ぶと評価できます。下にある場所を選ぶと画面がそこへ向きます</translation>
+    </message>
+    <message>
+        <source>Criterion</source>
+        <translation>評価項目</translation>
+    </message>
+    <message>
+        <source>Your mark</source>
+        <translation>自分の評価</translation>
+    </message>
+    <message>
+        <source>Measured</source>
+        <translation>測定値</translation>
+    </message>
+    <message>
+        <source>Band</source>
+        <translation>段階</translation>
+    </message>
+    <message>
+        <source>Points</source>
+        <translation>得点</translation>
+    </message>
+    <message>
+        <source>Criterion that is judged</source>
+        <translation>評価中の項目</translation>
+    </message>
+    <message>
+        <source>Critical error</source>
+        <translation>重大な誤り</translation>
+    </message>
+    <message>
+        <source>Cannot be told</source>
+        <translation>判断できない</translation>
+    </message>
+    <message>
+        <source>Reason</source>
+        <translation>理由</translation>
+    </message>
+    <message>
+        <source>Why you judge otherwise: it is kept</source>
+        <translation>評価を変える理由。保存されます</translation>
+    </message>
+    <message>
+        <source>Reason, needed</source>
+        <translation>理由（必須）</translation>
+    </message>
+    <message>
+        <source>Judge</source>
+        <translation>評価する</translation>
+    </message>
+    <message>
+        <source>Take back</source>
+        <translation>取り消す</translation>
+    </message>
+    <message>
+        <source>The machine&apos;s judgement stands again</source>
+        <translation>機械の評価に戻します</translation>
+    </message>
+    <message>
+        <source>My marks are in</source>
+        <translation>評価を出す</translation>
+    </message>
+    <message>
+        <source>They are fixed then, and the machine&apos;s score is shown</source>
+        <translation>評価が確定し、機械の得点が表示されます</translation>
+    </message>
+    <message>
+        <source>Who passes</source>
+        <translation>合否</translation>
+    </message>
+    <message>
+        <source>as scored</source>
+        <translation>得点のとおり</translation>
+    </message>
+    <message>
+        <source>passed</source>
+        <translation>合格</translation>
+    </message>
+    <message>
+        <source>not passed</source>
+        <translation>不合格</translation>
+    </message>
+    <message>
+        <source>Reason of the decision</source>
+        <translation>判定の理由</translation>
+    </message>
+    <message>
+        <source>Decide</source>
+        <translation>判定</translation>
+    </message>
+    <message>
+        <source>Decide who passes</source>
+        <translation>合否を判定する</translation>
+    </message>
+    <message>
+        <source>Comments</source>
+        <translation>コメント</translation>
+    </message>
+    <message>
+        <source>One that has a place turns the picture there</source>
+        <translation>位置のあるものを選ぶと画面がそこへ向きます</translation>
+    </message>
+    <message>
+        <source>New comment</source>
+        <translation>新しいコメント</translation>
+    </message>
+    <message>
+        <source>Pinned to the criterion that is chosen</source>
+        <translation>選んだ評価項目に付きます</translation>
+    </message>
+    <message>
+        <source>Comment</source>
+        <translation>コメント</translation>
+    </message>
+    <message>
+        <source>at the middle of the picture</source>
+        <translation>画面の中央に</translation>
+    </message>
+    <message>
+        <source>Pin it to the place in the middle of the picture</source>
+        <translation>画面の中央の場所に付けます</translation>
+    </message>
+    <message>
+        <source>at this moment</source>
+        <translation>この時点に</translation>
+    </message>
+    <message>
+        <source>Pin it to the moment that the replay shows</source>
+        <translation>再生で見えている時点に付けます</translation>
+    </message>
+    <message>
+        <source>Add</source>
+        <translation>追加</translation>
+    </message>
+    <message>
+        <source>Add the comment</source>
+        <translation>コメントを追加</translation>
+    </message>
+    <message>
+        <source>Delete</source>
+        <translation>削除</translation>
+    </message>
+    <message>
+        <source>Delete the comment</source>
+        <translation>コメントを削除</translation>
+    </message>
+    <message>
+        <source>%1, %2</source>
+        <translation>%1、%2</translation>
+    </message>
+    <message>
+        <source>All points together</source>
+        <translation>総得点</translation>
+    </message>
+    <message>
+        <source>cannot be told</source>
+        <translation>判断できない</translation>
+    </message>
+    <message>
+        <source>%1 of %2</source>
+        <translation>%1 / %2</translation>
+    </message>
+    <message>
+        <source>%1 ± %2 %3</source>
+        <translation>%1 ± %2 %3</translation>
+    </message>
+    <message>
+        <source>critical error</source>
+        <translation>重大な誤り</translation>
+    </message>
+    <message>
+        <source>perhaps a critical error</source>
+        <translation>重大な誤りの可能性</translation>
+    </message>
+    <message>
+        <source>borderline</source>
+        <translation>境界</translation>
+    </message>
+    <message>
+        <source>machine: %1</source>
+        <translation>機械：%1</translation>
+    </message>
+    <message>
+        <source> (machine: %1)</source>
+        <translation> （機械：%1）</translation>
+    </message>
+    <message>
+        <source>at %1 s</source>
+        <translation>%1 秒</translation>
+    </message>
+    <message>
+        <source>%1 N</source>
+        <translation>%1 N</translation>
+    </message>
+    <message>
+        <source>%1: %2</source>
+        <translation>%1：%2</translation>
+    </message>
+    <message>
+        <source>%1 (at %2 s)</source>
+        <translation>%1（%2 秒）</translation>
+    </message>
+    <message>
+        <source>Open a work on the marking desk.</source>
+        <translation>採点机で作品を開いてください。</translation>
+    </message>
+    <message>
+        <source>The machine&apos;s score is hidden until your marks are in.</source>
+        <translation>機械の得点は、自分の評価を出すまで隠されています。</translation>
+    </message>
+    <message>
+        <source>The machine&apos;s score is shown when all works are marked.</source>
+        <translation>機械の得点は、すべての作品を評価すると表示されます。</translation>
+    </message>
+    <message>
+        <source>It waits for its score.</source>
+        <translation>採点を待っています。</translation>
+    </message>
+    <message>
+        <source>%1 of %2 points; machine: %3. %4.</source>
+        <translation>%1 / %2 点、機械：%3。%4。</translation>
+    </message>
+    <message>
+        <source>Why: %1.</source>
+        <translation>理由：%1。</translation>
+    </message>
+    <message>
+        <source>Proven.</source>
+        <translation>証明済み。</translation>
+    </message>
+    <message>
+        <source>Unproven: %1.</source>
+        <translation>未証明：%1。</translation>
+    </message>
+    <message>
+        <source>choose</source>
+        <translation>選択</translation>
+    </message>
+    <message>
+        <source>band as it is</source>
+        <translation>段階はそのまま</translation>
+    </message>
+    <message>
+        <source>critical: as it is</source>
+        <translation>重大な誤り：そのまま</translation>
+    </message>
+    <message>
+        <source>no critical error</source>
+        <translation>重大な誤りなし</translation>
+    </message>
+    <message>
+        <source> of %1</source>
+        <translation> / %1</translation>
+    </message>
+    <message>
+        <source>Mark</source>
+        <translation>評価する</translation>
+    </message>
+    <message>
+        <source>Override</source>
+        <translation>変更する</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::WorkTable</name>
+    <message>
+        <source>critical error</source>
+        <translation>重大な誤り</translation>
+    </message>
+    <message>
+        <source>borderline</source>
+        <translation>境界</translation>
+    </message>
+    <message>
+        <source>unproven</source>
+        <translation>未証明</translation>
+    </message>
+    <message>
+        <source>not scored</source>
+        <translation>採点不能</translation>
+    </message>
+    <message>
+        <source>passed</source>
+        <translation>合格</translation>
+    </message>
+    <message>
+        <source>not passed</source>
+        <translation>不合格</translation>
+    </message>
+    <message>
+        <source>the teacher decides</source>
+        <translation>教員が判定</translation>
+    </message>
+    <message>
+        <source>%1 of %2</source>
+        <translation>%1 / %2</translation>
+    </message>
+    <message>
+        <source>hidden</source>
+        <translation>非表示</translation>
+    </message>
+    <message>
+        <source>marked</source>
+        <translation>評価済み</translation>
+    </message>
+    <message>
+        <source>to be marked</source>
+        <translation>未評価</translation>
+    </message>
+    <message>
+        <source>begun</source>
+        <translation>途中</translation>
+    </message>
+    <message>
+        <source>waits for its score</source>
+        <translation>採点待ち</translation>
+    </message>
+    <message>
+        <source>the machine&apos;s score is shown at the end</source>
+        <translation>機械の得点は最後に表示</translation>
+    </message>
+    <message>
+        <source>came a second time</source>
+        <translation>二度目</translation>
+    </message>
+    <message>
+        <source>overridden: %1</source>
+        <translation>変更：%1</translation>
+    </message>
+    <message>
+        <source>decided</source>
+        <translation>判定済み</translation>
+    </message>
+    <message>
+        <source>Code</source>
+        <translation>コード</translation>
+    </message>
+    <message>
+        <source>File</source>
+        <translation>ファイル</translation>
+    </message>
+    <message>
+        <source>Score</source>
+        <translation>得点</translation>
+    </message>
+    <message>
+        <source>Machine&apos;s score</source>
+        <translation>機械の得点</translation>
+    </message>
+    <message>
+        <source>Passed</source>
+        <translation>合否</translation>
+    </message>
+    <message>
+        <source>Flags</source>
+        <translation>印</translation>
+    </message>
+    <message>
+        <source>State</source>
+        <translation>状態</translation>
+    </message>
+    <message>
+        <source>Comments</source>
+        <translation>コメント</translation>
     </message>
 </context>
 </TS>

@@ -128,16 +128,20 @@ Desk::Desk(DeskSetup setup, std::vector<ReturnedWork> works) : setup_(std::move(
         written_ = hasher.value();
         if (state_.marker != setup_.marker)
             throw core::Error(fmt::format("this is the desk of \"{}\"", state_.marker), file_.string(),
-                              "mark under another name");
+                              "mark under another name")
+                .as("desk-of-another", {state_.marker});
         if (state_.exerciseHash != setup_.exerciseHash)
             throw core::Error(fmt::format("this desk was begun for another exercise, {}", state_.exercise),
-                              file_.string(), "choose that one, or mark under another name");
+                              file_.string(), "choose that one, or mark under another name")
+                .as("desk-other-exercise", {state_.exercise});
         if (state_.rubricHash != rubricHash && state_.isBlind)
             throw core::Error(fmt::format("this desk marks blind by another rubric, {}", state_.rubric), file_.string(),
-                              "choose that one, or mark under another name");
+                              "choose that one, or mark under another name")
+                .as("desk-other-rubric", {state_.rubric});
         if (state_.isBlind != setup_.isBlind)
             throw core::Error(state_.isBlind ? "this desk marks blind" : "this desk shows the machine's score",
-                              file_.string(), "go on with it so, or mark under another name");
+                              file_.string(), "go on with it so, or mark under another name")
+                .as(state_.isBlind ? "desk-blind" : "desk-seen");
     } else {
         state_.marker = setup_.marker;
         state_.isBlind = setup_.isBlind;
@@ -193,7 +197,8 @@ void Desk::change(Change&& what) {
         hasher.add(std::span<const std::byte>(bytes));
         if (hasher.value() != written_)
             throw core::Error("somebody else marks at this desk", file_.string(),
-                              "open it again: what stands there now is kept, this change is not");
+                              "open it again: what stands there now is kept, this change is not")
+                .as("desk-elsewhere");
     }
     core::writeFile(file_, text);
     core::Hasher hasher;

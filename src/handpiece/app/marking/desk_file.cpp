@@ -135,12 +135,13 @@ fs::path deskFile(const fs::path& folder, const std::string& marker) {
         return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == '/' || c == '\\' || c == '"';
     });
     if (marker.find_first_not_of(' ') == std::string::npos)
-        throw core::Error("the marker has no name", folder.string(), "give a name or a code");
+        throw core::Error("the marker has no name", folder.string(), "give a name or a code").as("marker-name");
     if (isControl || marker.size() > kMaxMarkerBytes || marker.front() == ' ' || marker.back() == ' ' ||
         marker.ends_with(" again") || marker == "machine")
         throw core::Error(fmt::format("nobody can mark as \"{}\"", marker), folder.string(),
                           "give a name or a code of up to 60 bytes, without / \\ \"; \"machine\" and \"... again\" are "
-                          "taken");
+                          "taken")
+            .as("marker-name");
     return folder / ("marking-" + marker + ".json");
 }
 
@@ -171,7 +172,8 @@ std::string deskJson(const DeskState& state) {
 DeskState parseDesk(std::string_view text, const std::string& where) {
     const auto wrong = [&where](const std::string& why) {
         return core::Error("this is no marking desk: " + why, where,
-                           "bring it back from a copy, or mark under another name");
+                           "bring it back from a copy, or mark under another name")
+            .as("desk-damaged", {why});
     };
     if (text.size() > kMaxDeskBytes) throw wrong("it is larger than 64 MiB");
     try {
@@ -180,7 +182,8 @@ DeskState parseDesk(std::string_view text, const std::string& where) {
         if (json.at("format").get<int>() > kFormat)
             throw core::Error(fmt::format("this desk has format {}, and this program reads {}",
                                           json.at("format").get<int>(), kFormat),
-                              where, "use the newer program");
+                              where, "use the newer program")
+                .as("desk-newer");
         return stateOf(json);
     } catch (const core::Error&) {
         throw;

@@ -95,7 +95,8 @@ class Finder {
 
 std::vector<ReturnedWork> findWork(const fs::path& folder, const core::Progress& progress) {
     if (!core::isFolder(folder))
-        throw core::Error("there is no such folder", folder.string(), "choose the folder with the returned work");
+        throw core::Error("there is no such folder", folder.string(), "choose the folder with the returned work")
+            .as("no-work-folder");
     Finder finder(folder);
     finder.look(folder, false);
     std::vector<ReturnedWork> works = finder.found();

@@ -575,6 +575,42 @@
         <source>For teachers: score, look at and mark a folder of returned work</source>
         <translation>教員用：提出物のフォルダーを採点し、見て、評価します</translation>
     </message>
+    <message>
+        <source>Exercises...</source>
+        <translation>課題を選ぶ...</translation>
+    </message>
+    <message>
+        <source>Choose an exercise: what it asks, the ideal, your best so far</source>
+        <translation>課題を選びます（内容、見本、これまでの最高点）</translation>
+    </message>
+    <message>
+        <source>Exercises</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>Finish</source>
+        <translation>完了</translation>
+    </message>
+    <message>
+        <source>Your work on this exercise is done: it is judged, and you see why</source>
+        <translation>この課題の作業を終えて採点し、その理由を表示します</translation>
+    </message>
+    <message>
+        <source>Result</source>
+        <translation>結果</translation>
+    </message>
+    <message>
+        <source>The result of the work that was finished last</source>
+        <translation>最後に終えた作業の結果を表示します</translation>
+    </message>
+    <message>
+        <source>Progress...</source>
+        <translation>上達の記録...</translation>
+    </message>
+    <message>
+        <source>Your results over the attempts at each exercise</source>
+        <translation>課題ごとに、回を追った結果を表示します</translation>
+    </message>
 </context>
 <context>
     <name>BurPicture</name>
@@ -2499,6 +2535,38 @@
     <message>
         <source>Choose a rubric.</source>
         <translation>評価表を選んでください。</translation>
+    </message>
+    <message>
+        <source>Your results were kept by a newer Handpiece (version %1, this one knows %2).</source>
+        <translation>成績は新しい Handpiece で保存されています（バージョン %1、このプログラムは %2 まで）。</translation>
+    </message>
+    <message>
+        <source>Use that one. Nothing is lost.</source>
+        <translation>新しいほうを使ってください。何も失われていません。</translation>
+    </message>
+    <message>
+        <source>Another program is writing your results.</source>
+        <translation>別のプログラムが成績を書き込んでいます。</translation>
+    </message>
+    <message>
+        <source>Close the other one, or try again.</source>
+        <translation>そのプログラムを閉じるか、もう一度試してください。</translation>
+    </message>
+    <message>
+        <source>The file of your results cannot be read. Technical detail: %1</source>
+        <translation>成績のファイルを読み込めません。技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>Move the file away: a new one is made.</source>
+        <translation>ファイルを別の場所に移してください。新しいファイルが作られます。</translation>
+    </message>
+    <message>
+        <source>This exercise is worked in voxels of %1 um: a score never hangs on one&apos;s settings.</source>
+        <translation>この課題のボクセルは %1 um に決まっています。得点が各自の設定で変わらないようにするためです。</translation>
+    </message>
+    <message>
+        <source>Open another tooth to choose the size.</source>
+        <translation>大きさを選ぶには、別の歯を開いてください。</translation>
     </message>
 </context>
 <context>
@@ -5928,6 +5996,14 @@ lingual: %4</source>
         <source>making the mouth around it (the first time only)</source>
         <translation>周りの口腔を作成中（初回のみ）</translation>
     </message>
+    <message>
+        <source>Preparing the exercise</source>
+        <translation>課題を準備しています</translation>
+    </message>
+    <message>
+        <source>Scoring your work</source>
+        <translation>作業を採点しています</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::SliceView</name>
@@ -8223,6 +8299,428 @@ lingual: %4</source>
     <message>
         <source>Comments</source>
         <translation>コメント</translation>
+    </message>
+</context>
+<context>
+    <name>Assessment</name>
+    <message>
+        <source>; %1: %2 to %3 %4</source>
+        <translation>；%1：%2～%3 %4</translation>
+    </message>
+    <message>
+        <source>; %1: at least %2 %3</source>
+        <translation>；%1：%2 %3 以上</translation>
+    </message>
+    <message>
+        <source>; %1: at most %2 %3</source>
+        <translation>；%1：%2 %3 以下</translation>
+    </message>
+    <message>
+        <source> (%1 points)</source>
+        <translation>（%1 点）</translation>
+    </message>
+    <message>
+        <source>; critical error: %1</source>
+        <translation>；重大な誤り：%1</translation>
+    </message>
+    <message>
+        <source>Passed</source>
+        <translation>合格</translation>
+    </message>
+    <message>
+        <source>Not passed</source>
+        <translation>不合格</translation>
+    </message>
+    <message>
+        <source>The teacher decides</source>
+        <translation>教員が判断</translation>
+    </message>
+    <message>
+        <source>%1 of %2</source>
+        <translation>%1 / %2</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ExercisesDialog</name>
+    <message>
+        <source>Exercises</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>Preparing what is shown</source>
+        <translation>表示を準備しています</translation>
+    </message>
+    <message>
+        <source>Begin</source>
+        <translation>始める</translation>
+    </message>
+    <message>
+        <source>Open the tooth of this exercise and work on it</source>
+        <translation>この課題の歯を開いて作業を始めます</translation>
+    </message>
+    <message>
+        <source>Folder...</source>
+        <translation>フォルダー...</translation>
+    </message>
+    <message>
+        <source>Choose a folder with exercises of your school</source>
+        <translation>学校の課題があるフォルダーを選びます</translation>
+    </message>
+    <message>
+        <source>Title of the exercise</source>
+        <translation>課題の題名</translation>
+    </message>
+    <message>
+        <source>What to do</source>
+        <translation>内容</translation>
+    </message>
+    <message>
+        <source>Tooth, bur and helps</source>
+        <translation>歯、バー、使える補助</translation>
+    </message>
+    <message>
+        <source>Best so far</source>
+        <translation>これまでの最高点</translation>
+    </message>
+    <message>
+        <source>What is judged</source>
+        <translation>採点の項目</translation>
+    </message>
+    <message>
+        <source>What is wrong</source>
+        <translation>問題点</translation>
+    </message>
+    <message>
+        <source>Those of the program.</source>
+        <translation>プログラムに付属の課題です。</translation>
+    </message>
+    <message>
+        <source>And those in %1</source>
+        <translation>付属の課題と、%1 にある課題です。</translation>
+    </message>
+    <message>
+        <source>Reading the folder</source>
+        <translation>フォルダーを読み込んでいます</translation>
+    </message>
+    <message>
+        <source>Opening the exercise</source>
+        <translation>課題を開いています</translation>
+    </message>
+    <message>
+        <source>Cutting the ideal</source>
+        <translation>見本を削っています</translation>
+    </message>
+    <message>
+        <source>The ideal: drag to turn it</source>
+        <translation>見本：ドラッグで回転</translation>
+    </message>
+    <message>
+        <source>Tooth %1</source>
+        <translation>歯 %1</translation>
+    </message>
+    <message>
+        <source>%1 minutes</source>
+        <translation>%1 分</translation>
+    </message>
+    <message>
+        <source>Burs: %1</source>
+        <translation>バー：%1</translation>
+    </message>
+    <message>
+        <source>Bur to begin with: %1</source>
+        <translation>最初のバー：%1</translation>
+    </message>
+    <message>
+        <source>Not in this exercise: %1</source>
+        <translation>この課題では使えないもの: %1</translation>
+    </message>
+    <message>
+        <source>Not tried yet.</source>
+        <translation>まだ試していません。</translation>
+    </message>
+    <message>
+        <source>This exercise is not judged: it has no rubric.</source>
+        <translation>この課題には採点基準がなく、採点されません。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::PracticeFeature</name>
+    <message>
+        <source>A folder with exercises</source>
+        <translation>課題のフォルダー</translation>
+    </message>
+    <message>
+        <source>Cutting the ideal</source>
+        <translation>見本を削っています</translation>
+    </message>
+    <message>
+        <source>Best so far: %1 % in %2 attempts</source>
+        <translation>これまでの最高点：%1 %（%2 回）</translation>
+    </message>
+    <message>
+        <source>Save the result</source>
+        <translation>結果を保存</translation>
+    </message>
+    <message>
+        <source>Page (*.html)</source>
+        <translation>ページ (*.html)</translation>
+    </message>
+    <message>
+        <source>Writing the page</source>
+        <translation>ページを書き出しています</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ProgressCurve</name>
+    <message>
+        <source>Share of all points over the attempts</source>
+        <translation>回を追った得点率</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ProgressDialog</name>
+    <message>
+        <source>Exercise</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>Attempts</source>
+        <translation>試行</translation>
+    </message>
+    <message>
+        <source>Progress</source>
+        <translation>上達の記録</translation>
+    </message>
+    <message>
+        <source>When</source>
+        <translation>日時</translation>
+    </message>
+    <message>
+        <source>Score</source>
+        <translation>得点</translation>
+    </message>
+    <message>
+        <source>Passed</source>
+        <translation>合格</translation>
+    </message>
+    <message>
+        <source>Device</source>
+        <translation>デバイス</translation>
+    </message>
+    <message>
+        <source>Proven</source>
+        <translation>検証済み</translation>
+    </message>
+    <message>
+        <source>No exercise is finished yet.</source>
+        <translation>終えた課題はまだありません。</translation>
+    </message>
+    <message>
+        <source>Attempts with another device, motion scale or version of the exercise are not compared: each has a line of its own.</source>
+        <translation>デバイス、動きの倍率、課題の版が違う試行は比べられません。それぞれ別の線で示します。</translation>
+    </message>
+    <message>
+        <source>%1 (%2 %)</source>
+        <translation>%1（%2 %）</translation>
+    </message>
+    <message>
+        <source>yes</source>
+        <translation>はい</translation>
+    </message>
+    <message>
+        <source>no</source>
+        <translation>いいえ</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ResultDialog</name>
+    <message>
+        <source>Result</source>
+        <translation>結果</translation>
+    </message>
+    <message>
+        <source>Before you see the result: what do you think of your own work?</source>
+        <translation>結果を見る前に、自分の作業をどう評価しますか？</translation>
+    </message>
+    <message>
+        <source>Of all points I expect</source>
+        <translation>予想する得点率</translation>
+    </message>
+    <message>
+        <source> %</source>
+        <translation> %</translation>
+    </message>
+    <message>
+        <source>What went well, and what would you do otherwise?</source>
+        <translation>うまくいった点と、次に変えたい点</translation>
+    </message>
+    <message>
+        <source>Show the result</source>
+        <translation>結果を見る</translation>
+    </message>
+    <message>
+        <source>Exercise</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>Score</source>
+        <translation>得点</translation>
+    </message>
+    <message>
+        <source>Why</source>
+        <translation>理由</translation>
+    </message>
+    <message>
+        <source>Your own judgement</source>
+        <translation>自己評価</translation>
+    </message>
+    <message>
+        <source>All that was judged</source>
+        <translation>採点のすべて</translation>
+    </message>
+    <message>
+        <source>A click on a row with a place turns the eye there and plays the seconds in which it happened</source>
+        <translation>場所のある行をクリックすると、視点をそこに向け、起きた数秒を再生します</translation>
+    </message>
+    <message>
+        <source>Criterion</source>
+        <translation>項目</translation>
+    </message>
+    <message>
+        <source>Measured</source>
+        <translation>測定値</translation>
+    </message>
+    <message>
+        <source>Band</source>
+        <translation>評価</translation>
+    </message>
+    <message>
+        <source>Points</source>
+        <translation>点</translation>
+    </message>
+    <message>
+        <source>Where</source>
+        <translation>場所</translation>
+    </message>
+    <message>
+        <source>Your tooth</source>
+        <translation>自分の歯</translation>
+    </message>
+    <message>
+        <source>The ideal</source>
+        <translation>見本</translation>
+    </message>
+    <message>
+        <source>Save as a page...</source>
+        <translation>ページとして保存...</translation>
+    </message>
+    <message>
+        <source>One HTML page to keep or to print</source>
+        <translation>保存や印刷のための HTML ページ 1 枚</translation>
+    </message>
+    <message>
+        <source>Again</source>
+        <translation>もう一度</translation>
+    </message>
+    <message>
+        <source>Begin the same exercise anew</source>
+        <translation>同じ課題を最初から始めます</translation>
+    </message>
+    <message>
+        <source>Next</source>
+        <translation>次へ</translation>
+    </message>
+    <message>
+        <source>Choose the next exercise</source>
+        <translation>次の課題を選びます</translation>
+    </message>
+    <message>
+        <source>%1 points (%2 to %3): %4</source>
+        <translation>%1 点（%2～%3）：%4</translation>
+    </message>
+    <message>
+        <source>Perhaps a critical error: %1</source>
+        <translation>重大な誤りの可能性：%1</translation>
+    </message>
+    <message>
+        <source>Critical error: %1</source>
+        <translation>重大な誤り：%1</translation>
+    </message>
+    <message>
+        <source>Criteria worth %1 of %2 points could not be measured.</source>
+        <translation>%2 点のうち %1 点分の項目は測定できませんでした。</translation>
+    </message>
+    <message>
+        <source>You expected %1 %; it is %2 %.</source>
+        <translation>予想は %1 %、結果は %2 % です。</translation>
+    </message>
+    <message>
+        <source>Proven: cut again from its recording it is the same tooth, bit for bit.</source>
+        <translation>検証済み：記録から削り直すと、まったく同じ歯になります。</translation>
+    </message>
+    <message>
+        <source>Not proven: the recording does not lead to this very tooth.</source>
+        <translation>未検証：記録から同じ歯になりません。</translation>
+    </message>
+    <message>
+        <source>What cost most</source>
+        <translation>最も減点された項目</translation>
+    </message>
+    <message>
+        <source>%1 points lost</source>
+        <translation>%1 点の減点</translation>
+    </message>
+    <message>
+        <source>Show</source>
+        <translation>表示</translation>
+    </message>
+    <message>
+        <source>Turn the eye there and play the seconds in which it happened</source>
+        <translation>視点をそこに向け、起きた数秒を再生します</translation>
+    </message>
+    <message>
+        <source>Turn the eye there</source>
+        <translation>視点をそこに向けます</translation>
+    </message>
+    <message>
+        <source>not measured</source>
+        <translation>測定できず</translation>
+    </message>
+    <message>
+        <source>not with this device</source>
+        <translation>このデバイスでは対象外</translation>
+    </message>
+    <message>
+        <source>void</source>
+        <translation>無効</translation>
+    </message>
+    <message>
+        <source>borderline</source>
+        <translation>境界</translation>
+    </message>
+    <message>
+        <source> (borderline)</source>
+        <translation>（境界）</translation>
+    </message>
+    <message>
+        <source>shown only</source>
+        <translation>表示のみ</translation>
+    </message>
+    <message>
+        <source>%1 s</source>
+        <translation>%1 秒</translation>
+    </message>
+    <message>
+        <source>place</source>
+        <translation>場所</translation>
+    </message>
+    <message>
+        <source>The ideal: drag to turn it</source>
+        <translation>見本：ドラッグで回転</translation>
+    </message>
+    <message>
+        <source>Your tooth: drag to turn it</source>
+        <translation>自分の歯：ドラッグで回転</translation>
     </message>
 </context>
 </TS>

@@ -4,8 +4,6 @@
 #include <QCoreApplication>
 #include <QLocale>
 #include <QStringList>
-#include <algorithm>
-#include <numeric>
 
 namespace handpiece::desktop {
 namespace {
@@ -91,19 +89,6 @@ QString passedWords(score::Passed passed) {
 
 QString pointsWords(double points, double most) {
     return said(QT_TRANSLATE_NOOP("Assessment", "%1 of %2")).arg(number(points, 1), number(most, 1));
-}
-
-std::vector<std::size_t> costliestOf(const score::Assessment& assessment) {
-    const auto& all = assessment.criteria;
-    std::vector<std::size_t> order;
-    const auto lost = [&](std::size_t i) { return all[i].points ? all[i].maxPoints - *all[i].points : 0.0; };
-    const auto isCritical = [&](std::size_t i) { return all[i].critical == score::Verdict::yes; };
-    for (std::size_t i = 0; i < all.size(); ++i)
-        if (isCritical(i) || lost(i) > 0.0) order.push_back(i);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return isCritical(a) != isCritical(b) ? isCritical(a) : lost(a) > lost(b);
-    });
-    return order;
 }
 
 }  // namespace handpiece::desktop

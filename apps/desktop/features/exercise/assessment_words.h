@@ -4,7 +4,6 @@
 /// Rubrics and results in the person's language.
 
 #include <QString>
-#include <vector>
 
 #include "handpiece/assess/score/score.h"
 
@@ -20,7 +19,5 @@ namespace handpiece::desktop {
 [[nodiscard]] QString passedWords(score::Passed passed);
 /// "7.5 of 10"; empty where there are none.
 [[nodiscard]] QString pointsWords(double points, double most);
-/// Indices into its criteria: critical errors first, then what cost most points; only what cost any.
-[[nodiscard]] std::vector<std::size_t> costliestOf(const score::Assessment& assessment);
 
 }  // namespace handpiece::desktop

@@ -9,7 +9,9 @@
 #include "desktop/features/exercise/progress_dialog.h"
 #include "desktop/work/simulator.h"
 #include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/app/report/assessment_pictures.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -271,6 +273,35 @@ void PracticeFeature::showProgress() {
     progress_->raise();
 }
 
-void PracticeFeature::savePage() {}
+void PracticeFeature::savePage() {
+    if (!done_ || page_) return;
+    const QString file =
+        window_.questions.save(tr("Save the result"), QString::fromStdString(done_->work.task->id) + ".html",
+                               tr("Page (*.html)"), QStringLiteral(".html"));
+    if (file.isEmpty()) return;
+    page_ = new Job(
+        tr("Writing the page"),
+        [done = done_, path = toPath(file)](const core::Progress& progress) {
+            const course::FinishedWork& work = done->work;
+            const report::AssessmentPictures pictures =
+                report::assessmentPictures(*work.task, work.work.teeth, work.work.state, work.result.assessment, {},
+                                           core::part(progress, 0.0, 0.9));
+            core::writeFile(path, report::studentReport(work.result, *work.task, work.rubric, pictures), {true, true});
+        },
+        this);
+    const auto end = [this] {
+        page_->deleteLater();
+        page_ = nullptr;
+    };
+    connect(page_, &Job::done, this, [this, end, file] {
+        end();
+        window_.tellSaved(file);
+    });
+    connect(page_, &Job::failed, this, [this, end](const Problem& problem) {
+        end();
+        window_.showProblem(problem);
+    });
+    page_->start();
+}
 
 }  // namespace handpiece::desktop

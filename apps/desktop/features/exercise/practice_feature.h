@@ -47,6 +47,7 @@ class PracticeFeature : public Feature {
     bool isKept_ = true;
     std::optional<double> stopAtS_;  ///< the replay
     std::unique_ptr<Job> ideal_;
+    Job* page_ = nullptr;  ///< being written
 };
 
 }  // namespace handpiece::desktop

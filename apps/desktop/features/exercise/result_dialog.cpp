@@ -18,11 +18,11 @@
 #include "desktop/picture/solid_view.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
+#include "handpiece/app/report/assessment_report.h"
 
 namespace handpiece::desktop {
 namespace {
 
-constexpr std::size_t kFirstErrors = 3;
 enum Column { criterion, value, band, points, place, columnCount };
 
 /// The first that leads somewhere; null: none does.
@@ -210,16 +210,18 @@ void ResultDialog::fillErrors() {
         row->deleteLater();
     errorRows_.clear();
     const score::Assessment& a = done_->work.result.assessment;
-    const std::vector<std::size_t> order = costliestOf(a);
+    const std::vector<std::size_t> order = report::costliest(a);
     if (!order.empty()) {
         errorRows_.push_back(heading(tr("What cost most"), this));
         errors_->addWidget(errorRows_.back());
     }
-    for (std::size_t i = 0; i < std::min(order.size(), kFirstErrors); ++i) {
+    for (std::size_t i = 0; i < std::min(order.size(), report::kFirstErrors); ++i) {
         const score::CriterionScore& c = a.criteria[order[i]];
         QString words = titleOf(done_->work.rubric, c.id) + QStringLiteral(": ") + valueWords(c);
         if (!c.band.empty()) words += QStringLiteral(", ") + bandTitle(done_->work.rubric, c.band);
         if (c.points) words += QStringLiteral(", ") + tr("%1 points lost").arg(QLocale().toString(c.maxPoints - *c.points, 'f', 1));
+        const QString drill = QString::fromStdString(report::drillFor(c.measure));
+        if (!drill.isEmpty()) words += QLatin1Char('\n') + drill;
         auto* row = new QWidget(this);
         auto* line = new QHBoxLayout(row);
         line->setContentsMargins(0, 0, 0, 0);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -115,6 +116,7 @@ Result scoreWork(const Work& work, const tasks::Task& task, const rubric::Rubric
     preparation.whole = work.teeth.front();
     preparation.cut = mirrors.front().get();
     preparation.landmarks = toothCase.landmarks;
+    if (work.scan) preparation.noiseMm = work.scan->noiseMm;
     preparation.axes = measures::axesOf(toothCase.landmarks, toothCase.buccalSign);
     std::vector<measures::Preparation::Other> others;
     for (std::size_t number = 1; number < work.teeth.size() && number <= toothCase.others.size(); ++number)
@@ -146,9 +148,12 @@ Result scoreWork(const Work& work, const tasks::Task& task, const rubric::Rubric
     }
     for (measures::Measured& one : measures::measure(preparation, requests))
         measured.push_back(std::move(one));
-    if (work.scan)
+    if (work.scan) {
+        const std::array<measures::Request, 1> overPulp{{{"remaining-dentine", {}}}};
+        const std::optional<double> overPulpMm = measures::measure(preparation, overPulp).front().value;
         for (measures::Measured& one : measured)
-            if (one.value) one.uncertainty = widened(one, *work.scan);
+            if (one.value) one.uncertainty = widened(one, *work.scan, overPulpMm);
+    }
 
     Result result;
     result.assessment = score::evaluate(rubric, measured, work.context);

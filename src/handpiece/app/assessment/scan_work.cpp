@@ -31,9 +31,10 @@ using geometry::TriangleTree;
 constexpr double kLeastOverlap = 0.25;  ///< of the scan that is uncut: a crown preparation leaves little
 constexpr double kStrangeMm = 1.0;      ///< so far outside the whole tooth it is gingiva or another tooth
 constexpr double kAroundZoneMm = 0.3;   ///< nothing this near to where may be cut is registered on
-constexpr double kSmoothMm = 0.25;      ///< reach of the filter against the scanner's noise
+constexpr double kSmoothMm = 0.2;       ///< reach of the filter against the scanner's noise
 constexpr int kSmoothRounds = 3;
 constexpr double kSeedMm = 0.1;       ///< at least so deep under the whole tooth something was cut
+constexpr double kBesideMm = 0.2;     ///< of cut surface the margin may lie so far
 constexpr double kLeastCutMm2 = 0.1;  ///< less is a speck of the scan
 
 constexpr const char* kRemedy =
@@ -118,45 +119,99 @@ class Cells {
     std::unordered_map<std::int64_t, std::vector<std::uint32_t>> cells_;
 };
 
-/// Noise taken off along the normals, edges left: a bilateral filter (Fleishman, Drori & Cohen-Or 2003) whose two
-/// weights are biweights instead of Gaussians. What stands off by more than four times the noise is shape.
-TriangleMesh smoothed(TriangleMesh mesh, double noiseMm) {
-    const double shapeMm = std::max(4.0 * noiseMm, 1e-3);
-    const auto biweight = [](double t) { return t < 1.0 ? (1.0 - t * t) * (1.0 - t * t) : 0.0; };
-    for (int round = 0; round < kSmoothRounds; ++round) {
-        std::vector<Vec3> normals(mesh.vertices.size(), Vec3::Zero()), plain = normals;
-        for (const geometry::Triangle& t : mesh.triangles) {
-            const Vec3& a = mesh.vertices[t[0]];
-            const Vec3 n = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
-            for (const std::uint32_t v : t)
-                plain[v] += n;
-        }
-        const Cells cells(mesh.vertices, kSmoothMm);
-        const auto unit = [](const Vec3& n) { return n.norm() > 1e-300 ? Vec3(n.normalized()) : Vec3(Vec3::Zero()); };
-        std::vector<Vec3> moved = mesh.vertices;
-        core::parallelFor(mesh.vertices.size(), 128, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                // Of faces that look about the same way: across an edge the mean would be of neither side.
-                const Vec3 own = unit(plain[i]);
-                Vec3 n = Vec3::Zero();
+double biweight(double t) {
+    return t < 1.0 ? (1.0 - t * t) * (1.0 - t * t) : 0.0;
+}
+Vec3 unit(const Vec3& n) {
+    return n.norm() > 1e-300 ? Vec3(n.normalized()) : Vec3(Vec3::Zero());
+}
+
+/// Twice the area long, of each face.
+std::vector<Vec3> faceNormals(const TriangleMesh& mesh) {
+    std::vector<Vec3> normals;
+    normals.reserve(mesh.triangles.size());
+    for (const geometry::Triangle& t : mesh.triangles) {
+        const Vec3& a = mesh.vertices[t[0]];
+        normals.push_back((mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a));
+    }
+    return normals;
+}
+
+/// Unit normals of vertices, from all that lies within reach and looks about the same way: across an edge the mean
+/// would be of neither side.
+std::vector<Vec3> evenNormals(const TriangleMesh& mesh, const std::vector<Vec3>& faces, const Cells& cells) {
+    std::vector<Vec3> plain(mesh.vertices.size(), Vec3::Zero()), even = plain;
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        for (const std::uint32_t v : mesh.triangles[f])
+            plain[v] += faces[f];
+    core::parallelFor(plain.size(), 128, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            // A folded vertex has no way of its own: twice, the second time with what the first found.
+            Vec3 way = unit(plain[i]);
+            for (int pass = 0; pass < 2; ++pass) {
+                Vec3 sum = Vec3::Zero();
                 cells.around(mesh.vertices[i], [&](std::uint32_t j) {
-                    if (unit(plain[j]).dot(own) > 0.6) n += plain[j];
+                    if (unit(plain[j]).dot(way) > 0.5) sum += plain[j];
                 });
-                normals[i] = unit(n);
+                way = unit(sum);
             }
-        });
-        core::parallelFor(mesh.vertices.size(), 128, [&](std::size_t begin, std::size_t end) {
+            even[i] = way;
+        }
+    });
+    return even;
+}
+
+/// Faces that noise has turned against what lies around them.
+std::vector<char> foldedFaces(const TriangleMesh& mesh, const std::vector<Vec3>& faces, const std::vector<Vec3>& even) {
+    std::vector<char> folded(faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        const geometry::Triangle& t = mesh.triangles[f];
+        folded[f] = unit(faces[f]).dot(unit(even[t[0]] + even[t[1]] + even[t[2]])) < 0.3;
+    }
+    return folded;
+}
+
+/// Noise taken off along the normals, edges left: a bilateral filter (Fleishman, Drori & Cohen-Or 2003) whose two
+/// weights are biweights instead of Gaussians. What stands off by more than 3.5 times the noise is shape. Vertices of
+/// folded faces also go along the surface, between their neighbours.
+TriangleMesh smoothed(TriangleMesh mesh, double noiseMm) {
+    const double shapeMm = std::max(3.5 * noiseMm, 1e-3);
+    const std::size_t n = mesh.vertices.size();
+    const geometry::MeshEdges edges(mesh);
+    for (int round = 0; round < kSmoothRounds; ++round) {
+        const Cells cells(mesh.vertices, kSmoothMm);
+        const std::vector<Vec3> faces = faceNormals(mesh), normals = evenNormals(mesh, faces, cells);
+        const std::vector<char> folded = foldedFaces(mesh, faces, normals);
+        std::vector<char> slides(n, 0);
+        for (std::size_t f = 0; f < folded.size(); ++f)
+            if (folded[f])
+                for (const std::uint32_t v : mesh.triangles[f])
+                    slides[v] = 1;
+        std::vector<Vec3> sums(n, Vec3::Zero());
+        std::vector<double> counts(n, 0.0);
+        for (const auto& e : edges.edges()) {
+            if (e.count != 2) slides[e.low] = slides[e.high] = 0;
+            sums[e.low] += mesh.vertices[e.high];
+            sums[e.high] += mesh.vertices[e.low];
+            counts[e.low] += 1.0;
+            counts[e.high] += 1.0;
+        }
+        std::vector<Vec3> moved = mesh.vertices;
+        core::parallelFor(n, 128, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 double sum = 0.0, weights = 0.0;
                 cells.around(mesh.vertices[i], [&](std::uint32_t j) {
                     const Vec3 d = mesh.vertices[j] - mesh.vertices[i];
-                    if (normals[j].dot(normals[i]) < 0.5) return;
+                    if (normals[j].dot(normals[i]) < 0.6) return;
                     const double h = normals[i].dot(d);
                     const double w = biweight(d.norm() / kSmoothMm) * biweight(std::abs(h) / shapeMm);
                     sum += w * h;
                     weights += w;
                 });
                 if (weights > 0.0) moved[i] += sum / weights * normals[i];
+                if (!slides[i] || !(counts[i] > 0.0)) continue;
+                const Vec3 d = sums[i] / counts[i] - mesh.vertices[i];
+                moved[i] += 0.5 * (d - normals[i].dot(d) * normals[i]);
             }
         });
         mesh.vertices = std::move(moved);
@@ -181,11 +236,11 @@ Spread spreadOf(const std::vector<double>& distances, const std::vector<double>&
     return spread;
 }
 
-/// Faces of cut surface: pieces that lie deep enough, and what hangs on them that is deeper than noise.
+/// Vertices of cut surface: pieces that lie deep enough, and what hangs on them that is deeper than `growMm`.
 std::vector<char> cutVertices(const TriangleMesh& mesh, const std::vector<double>& distances,
-                              const std::vector<double>& areas, double noiseMm) {
+                              const std::vector<double>& areas, double growMm) {
     const std::size_t n = mesh.vertices.size();
-    const double seedMm = std::max(kSeedMm, 4.0 * noiseMm), growMm = 2.0 * noiseMm;
+    const double seedMm = std::max(kSeedMm, 2.0 * growMm);
     geometry::DisjointSets sets(n);
     const geometry::MeshEdges edges(mesh);
     const auto isAtAll = [&](std::uint32_t v) { return distances[v] < -growMm; };
@@ -204,38 +259,93 @@ std::vector<char> cutVertices(const TriangleMesh& mesh, const std::vector<double
 /// What a scan shows as gone: how far a place lies from it, negative in it.
 class Removed {
   public:
-    Removed(const TriangleMesh& mesh, const std::vector<char>& cut, const TriangleTree& whole, double noiseMm)
-        : tree_(mesh), whole_(whole), noiseMm_(noiseMm) {
+    /// Beside a cut the surface counts where it is deeper than `growMm`, farther off nowhere.
+    Removed(const TriangleMesh& mesh, const std::vector<char>& cut, const TriangleTree& whole, double growMm)
+        : tree_(mesh), whole_(whole), growMm_(growMm) {
         TriangleMesh rim{mesh.vertices, {}};
         const geometry::MeshEdges edges(mesh);
         for (const auto& e : edges.edges())
             if (e.count != 2) rim.triangles.push_back({e.low, e.high, e.high});
         if (!rim.triangles.empty()) rim_ = std::make_unique<TriangleTree>(rim);
-        cut_ = facesWith(mesh, cut, true);
-        rest_ = facesWith(mesh, cut, false);
+        const std::vector<Vec3> normals = faceNormals(mesh);
+        const std::vector<char> folded =
+            foldedFaces(mesh, normals, evenNormals(mesh, normals, Cells(mesh.vertices, kSmoothMm)));
+        // What a folded face's corner or edge says is no better.
+        std::vector<char> isBad(mesh.vertices.size(), 0);
+        for (std::size_t f = 0; f < folded.size(); ++f)
+            if (folded[f])
+                for (const std::uint32_t v : mesh.triangles[f])
+                    isBad[v] = 1;
+        TriangleMesh bad{mesh.vertices, {}};
+        for (const geometry::Triangle& t : mesh.triangles)
+            if (isBad[t[0]] || isBad[t[1]] || isBad[t[2]]) bad.triangles.push_back(t);
+        if (!bad.triangles.empty()) folded_ = std::make_unique<TriangleTree>(bad);
+        std::vector<Vec3> cutMm;
+        for (std::size_t i = 0; i < cut.size(); ++i)
+            if (cut[i]) cutMm.push_back(mesh.vertices[i]);
+        const Cells cells(cutMm, kBesideMm);
+        TriangleMesh cutFaces{mesh.vertices, {}}, beside = cutFaces;
+        for (const geometry::Triangle& t : mesh.triangles) {
+            if (cut[t[0]] || cut[t[1]] || cut[t[2]]) {
+                cutFaces.triangles.push_back(t);
+                continue;
+            }
+            bool isNear = false;
+            for (const std::uint32_t v : t)
+                cells.around(mesh.vertices[v], [&](std::uint32_t) { isNear = true; });
+            if (isNear) beside.triangles.push_back(t);
+        }
+        if (!cutFaces.triangles.empty()) cut_ = std::make_unique<TriangleTree>(cutFaces);
+        if (!beside.triangles.empty()) beside_ = std::make_unique<TriangleTree>(beside);
     }
     [[nodiscard]] double operator()(const Vec3& p) const {
-        geometry::NearestPoint n;
-        const double d = tree_.signedDistance(p, &n);
+        const geometry::NearestPoint n = tree_.nearest(p);
+        const auto isOn = [&](const std::unique_ptr<TriangleTree>& faces) {
+            return faces && faces->nearest(n.pointMm, 1e-7).triangle != geometry::kNoTriangle;
+        };
         // Past its border a scan says nothing.
-        if (rim_ && rim_->nearest(n.pointMm, 1e-7).triangle != geometry::kNoTriangle) return std::abs(d);
-        const bool isCut = cut_ && (!rest_ || cut_->nearest(n.pointMm, 1e-7).triangle != geometry::kNoTriangle);
-        if (isCut) return -d;
-        // Beside a cut the uncut surface is the whole tooth's, not the scanner's noise.
-        return std::max(-d, whole_.signedDistance(p) + 2.0 * noiseMm_);
+        if (isOn(rim_)) return n.distanceMm;
+        // A folded face's normal says nothing; how often a way out meets the surface does.
+        const double side = isOn(folded_) ? (isInside(p) ? -1.0 : 1.0) : tree_.side(p, n);
+        const double d = side * n.distanceMm;
+        if (isOn(cut_)) return -d;
+        return isOn(beside_) ? std::max(-d, whole_.signedDistance(p) + growMm_) : n.distanceMm;
     }
 
   private:
-    static std::unique_ptr<TriangleTree> facesWith(const TriangleMesh& mesh, const std::vector<char>& cut, bool asked) {
-        TriangleMesh faces{mesh.vertices, {}};
-        for (const geometry::Triangle& t : mesh.triangles)
-            if ((cut[t[0]] || cut[t[1]] || cut[t[2]]) == asked) faces.triangles.push_back(t);
-        return faces.triangles.empty() ? nullptr : std::make_unique<TriangleTree>(faces);
+    /// By the parity of meetings along most of seven ways up, where even an open crown has no border. A fold is met
+    /// twice more.
+    [[nodiscard]] bool isInside(const Vec3& p) const {
+        // Spread 25 degrees about +z, off the grid's directions.
+        static const std::array<Vec3, 7> kWays = [] {
+            std::array<Vec3, 7> ways{Vec3(0.013, 0.007, 1.0).normalized()};
+            constexpr double kTilt = 0.47;
+            constexpr double kAround[6][2] = {{0.98, 0.20},   {0.32, 0.95},   {-0.66, 0.75},
+                                              {-0.98, -0.20}, {-0.32, -0.95}, {0.66, -0.75}};
+            for (std::size_t i = 0; i < 6; ++i)
+                ways[i + 1] = Vec3(kTilt * kAround[i][0], kTilt * kAround[i][1], 1.0).normalized();
+            return ways;
+        }();
+        constexpr double kStepMm = 1e-6;
+        constexpr int kMostMeetings = 64;
+        int odd = 0;
+        for (const Vec3& way : kWays) {
+            Vec3 from = p;
+            int meetings = 0;
+            for (; meetings < kMostMeetings; ++meetings) {
+                const geometry::RayMeeting met = tree_.firstMeeting(from, way);
+                if (met.triangle == geometry::kNoTriangle) break;
+                from += (met.distanceMm + kStepMm) * way;
+            }
+            odd += meetings % 2;
+        }
+        return odd > 3;
     }
+
     TriangleTree tree_;
-    std::unique_ptr<TriangleTree> rim_, cut_, rest_;
+    std::unique_ptr<TriangleTree> rim_, cut_, beside_, folded_;
     const TriangleTree& whole_;
-    double noiseMm_;
+    double growMm_;
 };
 
 registration::Registered registered(const TriangleMesh& scan, const TriangleMesh& whole,
@@ -366,7 +476,8 @@ Work workOfScan(TriangleMesh mesh, const tasks::Task& task, const std::string& w
     far = distancesTo(whole->tree, mesh);
     fit.noiseMm = spreadOf(far, areas, uncut).rmsMm;
     fit.voxelMm = task.voxelMm;
-    const std::vector<char> cut = cutVertices(mesh, far, areas, fit.noiseMm);
+    const double growMm = 2.0 * fit.rmsMm;
+    const std::vector<char> cut = cutVertices(mesh, far, areas, growMm);
     core::Box box;
     for (std::size_t i = 0; i < cut.size(); ++i) {
         if (!cut[i]) continue;
@@ -378,7 +489,7 @@ Work workOfScan(TriangleMesh mesh, const tasks::Task& task, const std::string& w
     Work work;
     work.teeth = {whole};
     if (!box.isEmpty()) {
-        const auto removed = std::make_shared<const Removed>(mesh, cut, whole->tree, fit.noiseMm);
+        const auto removed = std::make_shared<const Removed>(mesh, cut, whole->tree, growMm);
         const zones::Zones gone(
             [removed](const Vec3& p) {
                 return zones::PastTarget{(*removed)(p), -zones::kFarMm};
@@ -400,19 +511,19 @@ Work workOfScan(TriangleMesh mesh, const tasks::Task& task, const std::string& w
 namespace {
 
 /// How a kind takes up the scan's error.
-enum class Takes { mean, extreme, spread, slope, shortSlope, roughness, volume, share, widthShare, area };
+enum class Takes { mean, floor, extreme, spread, slope, shortSlope, roughness, volume, share, widthShare, area, pulp };
 struct TakesRow {
     std::string_view kind;
     Takes takes;
 };
 constexpr TakesRow kTakes[] = {
-    {"axial-depth", Takes::mean},
+    {"axial-depth", Takes::floor},
     {"caries-left", Takes::volume},
     {"caries-left-periphery", Takes::volume},
     {"caries-left-pulpal", Takes::volume},
     {"cavosurface-angle", Takes::shortSlope},
-    {"floor-depth", Takes::mean},
-    {"floor-depth-shortest", Takes::mean},
+    {"floor-depth", Takes::floor},
+    {"floor-depth-shortest", Takes::floor},
     {"floor-flatness", Takes::spread},
     {"floor-tilt", Takes::slope},
     {"gouge-depth", Takes::extreme},
@@ -425,7 +536,7 @@ constexpr TakesRow kTakes[] = {
     {"occlusal-convergence", Takes::slope},
     {"outline-extent", Takes::extreme},
     {"proximal-clearance", Takes::extreme},
-    {"pulp-exposed", Takes::area},
+    {"pulp-exposed", Takes::pulp},
     {"reduction", Takes::mean},
     {"remaining-dentine", Takes::extreme},
     {"removed", Takes::volume},
@@ -440,7 +551,7 @@ constexpr TakesRow kTakes[] = {
 
 }  // namespace
 
-double widened(const measures::Measured& m, const score::ScanFit& scan) {
+double widened(const measures::Measured& m, const score::ScanFit& scan, std::optional<double> overPulpMm) {
     constexpr double kDegrees = 57.295779513082321;
     const auto row =
         std::find_if(std::begin(kTakes), std::end(kTakes), [&](const TakesRow& one) { return one.kind == m.kind; });
@@ -452,11 +563,14 @@ double widened(const measures::Measured& m, const score::ScanFit& scan) {
     const bool isExtreme =
         m.of.statistic == "least" || m.of.statistic == "greatest" || m.of.statistic == "p5" || m.of.statistic == "p95";
     // Of a mean over four patches; of the one that stands out most.
-    const double mean = std::hypot(2.0 * lies, noise), extreme = std::hypot(2.0 * lies, 3.0 * noise);
+    const double mean = std::hypot(2.0 * lies, noise), extreme = std::hypot(2.0 * lies, 5.0 * noise);
     double more = 0.0;
     switch (row->takes) {
         case Takes::mean:
             more = isExtreme ? extreme : mean;
+            break;
+        case Takes::floor:  // where it ends is less sure, and what lies over it is not level
+            more = isExtreme ? extreme : mean + 0.25 * scan.voxelMm;
             break;
         case Takes::extreme:
             more = extreme;
@@ -484,6 +598,9 @@ double widened(const measures::Measured& m, const score::ScanFit& scan) {
             break;
         case Takes::area:
             more = std::sqrt(scan.cutMm2) * extreme;
+            break;
+        case Takes::pulp:  // none where the pulp lies surely under the surface
+            if (!overPulpMm || *overPulpMm <= extreme) more = std::sqrt(scan.cutMm2) * extreme;
             break;
     }
     return m.uncertainty + more;

@@ -4,6 +4,7 @@
 /// A real preparation: a scan of a plastic or real tooth that was cut, as work on an exercise.
 
 #include <filesystem>
+#include <optional>
 
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
@@ -28,7 +29,9 @@ inline constexpr double kLeastUncutMm2 = 20.0;      ///< to register on
 [[nodiscard]] Work workOfScan(geometry::TriangleMesh mesh, const tasks::Task& task, const std::string& where,
                               const core::Progress& progress = {});
 
-/// A measure's uncertainty with what registration and scanner add (docs/assessment.md#scans).
-[[nodiscard]] double widened(const measures::Measured& measured, const score::ScanFit& scan);
+/// A measure's uncertainty with what registration and scanner add (docs/assessment.md#scans). `overPulpMm`: the least
+/// thickness over the pulp, where it could be measured.
+[[nodiscard]] double widened(const measures::Measured& measured, const score::ScanFit& scan,
+                             std::optional<double> overPulpMm);
 
 }  // namespace handpiece::assessment

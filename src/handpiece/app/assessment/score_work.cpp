@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -267,6 +268,7 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
     preparation.whole = work.teeth.front();
     preparation.cut = mirrors.front().get();
     preparation.landmarks = toothCase.landmarks;
+    if (work.scan) preparation.noiseMm = work.scan->noiseMm;
     preparation.axes = measures::axesOf(toothCase.landmarks, toothCase.buccalSign);
     std::vector<measures::Preparation::Other> others;
     for (std::size_t number = 1; number < work.teeth.size() && number <= toothCase.others.size(); ++number)
@@ -292,9 +294,12 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
         (measures::requireKind(request).subject == measures::Subject::tooth ? ofTooth : ofHand).push_back(request);
     MeasuredWork result;
     result.measured = measures::measure(preparation, ofTooth);
-    if (work.scan)
+    if (work.scan) {
+        const std::array<measures::Request, 1> overPulp{{{"remaining-dentine", {}}}};
+        const std::optional<double> overPulpMm = measures::measure(preparation, overPulp).front().value;
         for (measures::Measured& one : result.measured)
-            if (one.value) one.uncertainty = widened(one, *work.scan);
+            if (one.value) one.uncertainty = widened(one, *work.scan, overPulpMm);
+    }
     core::report(progress, 0.4);
     findTimes(work.recordings, result.measured, task.voxelMm, core::part(progress, 0.4, 0.6));
     const hand::Against against{preparation.axes.longAxis, preparation.zones};

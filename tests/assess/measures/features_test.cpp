@@ -196,6 +196,91 @@ TEST_F(Block, zonesCountersIsthmusAndANickedNeighbour) {
     EXPECT_NEAR(*take(p, "adjacent-removed").value, cap, 0.05 * cap);
 }
 
+TEST_F(Block, orificesInAStraightLineAndAGougedChamber) {
+    // A chamber of 3 by 2 mm from -2.2 up to -1.2, and a canal under either end of it that leans by 15 degrees.
+    const double lean = std::tan(15.0 * test::kRad);
+    const Vec3 orifice[] = {Vec3(1.0, 0, -2.2), Vec3(-1.0, 0, -2.2)};
+    const auto chamber = [](const Vec3& q) {
+        const Vec3 off = (q - Vec3(0, 0, -1.7)).cwiseAbs() - Vec3(1.5, 1.0, 0.5);
+        return off.cwiseMax(0.0).norm() + std::min(off.maxCoeff(), 0.0);
+    };
+    const auto canal = [&](int i, const Vec3& q) {
+        const Vec3 way = Vec3(i == 0 ? lean : -lean, 0, -1).normalized(), off = q - orifice[i];
+        return std::max((off - off.dot(way) * way).norm() - 0.3, -off.dot(way));
+    };
+    const Body body = of({{Tissue::pulp,
+                           [&](const Vec3& q) {
+                               return std::min({chamber(q), canal(0, q), canal(1, q)});
+                           }}},
+                         Tissue::dentine);
+    const auto box = [](const Vec3& middle, const Vec3& half) {
+        return [=](const Vec3& q) {
+            const Vec3 off = (q - middle).cwiseAbs() - half;
+            return off.cwiseMax(0.0).norm() + std::min(off.maxCoeff(), 0.0);
+        };
+    };
+    std::vector<cases::Landmark> marks(2);
+    for (int i : {0, 1})
+        marks[static_cast<std::size_t>(i)] = {
+            cases::LandmarkKind::orifice, i == 0 ? "mesial" : "distal", {body_.inGrid.apply(orifice[i])}};
+    const auto ask = [&](const Shape& shape, const char* kind) {
+        const auto cut = test::carved(body, shape);
+        Preparation p = preparation(body, *cut);
+        p.landmarks = marks;
+        return take(p, kind);
+    };
+    // The lines lean inwards on their way up: they come out at +-(1 - 2.2 lean) = +-0.41.
+    const Shape whole = [&](const Vec3& q) { return std::min(box(Vec3(0, 0, 0), Vec3(1.5, 1, 1.2))(q), chamber(q)); };
+    EXPECT_EQ(ask(whole, "orifices-reached").value, 100.0);
+    const Shape half = [&](const Vec3& q) { return box(Vec3(0.9, 0, 0), Vec3(0.8, 1, 1.5))(q); };
+    const Measured one = ask(half, "orifices-reached");
+    EXPECT_EQ(one.value, 50.0);
+    ASSERT_EQ(one.evidence.size(), 1U);
+    EXPECT_NE(one.evidence[0].text.find("distal"), std::string::npos);
+    // Above the mesial orifice, but not where its line comes out.
+    EXPECT_EQ(ask(box(Vec3(1.2, 0, 0), Vec3(0.4, 1, 1.5)), "orifices-reached").value, 0.0);
+
+    // Less than a voxel where floor and walls of the chamber meet.
+    EXPECT_NEAR(*ask(whole, "gouge-depth").value, 0.0, 0.07);
+    // 0.4 mm into the floor, 0.25 mm into a wall; a wide opening over the roof is none.
+    const Shape floor = [&](const Vec3& q) {
+        return std::min(whole(q), box(Vec3(0, 0, -1.5), Vec3(0.4, 0.4, 1.1))(q));
+    };
+    EXPECT_NEAR(*ask(floor, "gouge-depth").value, 0.4, 0.05);
+    const Shape wall = [&](const Vec3& q) {
+        return std::min(
+            {whole(q), box(Vec3(0, 0.5, -1.7), Vec3(0.4, 0.75, 0.3))(q), box(Vec3(0, 0, 0), Vec3(2.4, 1.9, 0.9))(q)});
+    };
+    EXPECT_NEAR(*ask(wall, "gouge-depth").value, 0.25, 0.05);
+    // What cannot be said has no value.
+    EXPECT_NE(ask(box(Vec3(0, 0, 0), Vec3(1, 1, 0.8)), "gouge-depth").reason.find("roof"), std::string::npos);
+    marks.clear();
+    EXPECT_FALSE(ask(whole, "gouge-depth").value);
+    EXPECT_FALSE(ask(whole, "orifices-reached").value);
+}
+
+TEST_F(Block, outlineAndClearanceSayWhyTheyAreNone) {
+    BoxCavity box;
+    const auto cut = test::carved(body_, box.solid());
+    Preparation p = preparation(body_, *cut);
+    EXPECT_NEAR(*take(p, "outline-extent", side("mesial")).value, box.wallAt(0, 0) + box.wallAt(1, 0), 0.01);
+    EXPECT_NEAR(*take(p, "outline-extent", side("buccal")).value, box.wallAt(2, 0) + box.wallAt(3, 0), 0.01);
+    EXPECT_FALSE(take(p, "outline-extent").value);
+    EXPECT_FALSE(take(p, "proximal-clearance").value);
+    const tooth::ToothMirror other(body_.model);
+    const core::Pose beside{6.5 * (body_.inGrid.orientation * Vec3::UnitX()), core::Quat::Identity()};
+    const Preparation::Other others[] = {{body_.model, &other, beside, 45}};
+    p.others = others;
+    // Closed on all sides: no margin faces the tooth beside it.
+    EXPECT_NE(take(p, "proximal-clearance").reason.find("margin"), std::string::npos);
+    EXPECT_NE(take(p, "proximal-clearance", side("distal")).reason.find("no tooth"), std::string::npos);
+    // Open towards it, which stands half a millimetre off.
+    const auto open = test::carved(body_, [solid = box.solid()](const Vec3& q) { return solid(q - Vec3(1.75, 0, 0)); });
+    p.cut = open.get();
+    EXPECT_NEAR(*take(p, "proximal-clearance").value, 0.5, 0.01);
+    EXPECT_NEAR(*take(p, "proximal-clearance", side("mesial", "greatest")).value, 0.5, 0.01);
+}
+
 TEST_F(Block, sameBitsAtAnyThreadCount) {
     BoxCavity box;
     box.tiltDeg = 3.0;

@@ -31,7 +31,7 @@ Axes axesOf(std::span<const cases::Landmark> landmarks, int buccalSign) {
     return axes;
 }
 
-std::optional<Vec3> sideDirection(const Axes& axes, std::string_view side) {
+std::optional<Vec3> axisOf(const Axes& axes, std::string_view side) {
     Vec3 towards = Vec3::Zero();
     if (side == "mesial" || side == "distal")
         towards = axes.mesial;
@@ -40,7 +40,14 @@ std::optional<Vec3> sideDirection(const Axes& axes, std::string_view side) {
     else if (side == "occlusal" || side == "gingival")
         towards = axes.longAxis;
     if (side == "distal" || side == "lingual" || side == "gingival") towards = -towards;
-    const Vec3 square = squareTo(axes.draw, towards);
+    if (towards.isZero()) return {};
+    return towards;
+}
+
+std::optional<Vec3> sideDirection(const Axes& axes, std::string_view side) {
+    const auto towards = axisOf(axes, side);
+    if (!towards) return {};
+    const Vec3 square = squareTo(axes.draw, *towards);
     // Of three axes one lies along the path of draw.
     if (!(square.norm() > kCos45)) return {};
     return Vec3(square.normalized());

@@ -21,20 +21,21 @@ AxialStation CutTooth::axialAt(Look& look, double azimuthRad, const Vec3& axis, 
     AxialStation station;
     station.azimuthRad = azimuthRad;
     Vec3 h = core::cos(azimuthRad) * frame_.u + core::sin(azimuthRad) * frame_.v;
-    Vec3 through = axis;  // of the rays, at w = 0
+    Vec3 through = axis;   // of the rays, at w = 0
+    double inwards = 0.0;  // so much farther they go: to the axis
     struct Met {
         double r;
         bool isCut;
         Vec3 p, n;
     };
-    const auto meets = [&](double w) -> std::optional<Met> {
+    const auto meets = [&](double w, double cutMm) -> std::optional<Met> {
         const Vec3 from = through + w * frame_.w + kAxialFarMm * h;
-        const geometry::RayMeeting met = whole().tree.firstMeeting(from, -h, kAxialFarMm);
+        const geometry::RayMeeting met = whole().tree.firstMeeting(from, -h, kAxialFarMm + inwards);
         if (met.triangle == geometry::kNoTriangle) return {};
         double way = met.distanceMm;
         Vec3 p = from - way * h;
-        if (look.now(p) >= cutMm()) {
-            const auto on = look.cast(p, -h, kAxialFarMm - way);
+        if (look.now(p) >= cutMm) {
+            const auto on = look.cast(p, -h, kAxialFarMm + inwards - way);
             if (!on) return {};
             way += *on;
             p = from - way * h;
@@ -47,23 +48,28 @@ AxialStation CutTooth::axialAt(Look& look, double azimuthRad, const Vec3& axis, 
         station.hasMargin = false;
         double above = highW;
         for (double w = highW - 0.01; w > lowW - 0.5; w -= kAxialLevelMm) {
-            const auto met = meets(w);
+            const auto met = meets(w, cutMm());
             if (met && met->isCut) {
                 station.samples.push_back({w, met->r, met->n});
                 above = w;
                 continue;
             }
             if (!met || station.samples.empty()) continue;
-            // Below it is as it was: the margin lies between.
-            double high = above, low = w;
-            for (int i = 0; i < 14; ++i) {
-                const double middle = 0.5 * (low + high);
-                const auto there = meets(middle);
-                (there && there->isCut ? high : low) = middle;
-            }
+            // Below it is as it was: the margin lies between. Air counts from a tenth of a voxel on: where it is twice
+            // as much says where it begins.
+            const auto beginAt = [&](double cut, double high, double low) {
+                for (int i = 0; i < 14; ++i) {
+                    const double middle = 0.5 * (low + high);
+                    const auto there = meets(middle, cut);
+                    (there && there->isCut ? high : low) = middle;
+                }
+                return high;
+            };
+            const double once = beginAt(cutMm(), above, w), twice = beginAt(2.0 * cutMm(), above + kAxialLevelMm, once);
             station.hasMargin = true;
-            station.marginW = high;
-            if (const auto under = meets(low)) station.marginMm = under->p;
+            station.marginW = once - std::min(twice - once, kAxialLevelMm);
+            const double low = station.marginW - 1e-4;
+            if (const auto under = meets(low, cutMm())) station.marginMm = under->p;
             break;
         }
         std::reverse(station.samples.begin(), station.samples.end());
@@ -96,7 +102,8 @@ AxialStation CutTooth::axialAt(Look& look, double azimuthRad, const Vec3& axis, 
             if (points.empty() || !(normal.norm() > 1e-9)) return station;
             const Vec3 square = normal.normalized();
             if (square.dot(h) < kSin45) return station;
-            through = axis + middleR / static_cast<double>(points.size()) * h;
+            inwards = middleR / static_cast<double>(points.size());
+            through = axis + inwards * h;
             h = square;
             continue;
         }
@@ -110,7 +117,7 @@ AxialStation CutTooth::axialAt(Look& look, double azimuthRad, const Vec3& axis, 
         // Up to where the wall turns into the occlusal surface.
         double low = wHigh, high = highW;
         for (double w = wHigh; w < highW; w += kAxialLevelMm) {
-            const auto met = meets(w);
+            const auto met = meets(w, cutMm());
             if (!met || !met->isCut || std::abs(met->n.dot(frame_.w)) > kSin45) {
                 high = w;
                 break;
@@ -119,7 +126,7 @@ AxialStation CutTooth::axialAt(Look& look, double azimuthRad, const Vec3& axis, 
         }
         for (int i = 0; i < 12; ++i) {
             const double middle = 0.5 * (low + high);
-            const auto met = meets(middle);
+            const auto met = meets(middle, cutMm());
             (met && met->isCut && std::abs(met->n.dot(frame_.w)) <= kSin45 ? low : high) = middle;
         }
         station.topW = low;

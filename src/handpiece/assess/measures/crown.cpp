@@ -13,12 +13,19 @@ namespace {
 using core::Vec3;
 
 constexpr double kFarMm = 10.0;
-constexpr double kCuspMm = 1.0;         // about a cusp's tip, square to the path of draw, is the cusp
-constexpr double kAxialSin = 0.5;       // an axial wall stands within 30 degrees of the path of draw
-constexpr double kMarginWidthMm = 0.1;  // less is no finish line
+constexpr double kCuspMm = 1.0;    // about a cusp's tip, square to the path of draw, is the cusp
+constexpr double kAxialSin = 0.5;  // an axial wall stands within 30 degrees of the path of draw
+constexpr double kWallStepMm = 0.25, kWallShare = 0.05;
+constexpr double kWallCos = 0.9848078, kSteadyCos = 0.8660254;  // 10 and 30 degrees
+constexpr double kMarginWidthMm = 0.1;                          // less is no finish line
 constexpr std::size_t kLeastSections = 8;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 const char* const kNoCrown = "it is taken of crown preparations; this is a cavity";
+
+/// Standard deviation of a mean over stations round the crown.
+double scatterOf(const Places& places) {
+    return localScatter(places.values, 1) / std::sqrt(static_cast<double>(places.values.size()));
+}
 
 /// At most so many of many, evenly.
 std::size_t strideFor(std::size_t count) {
@@ -92,7 +99,9 @@ Taken takeConvergence(CutTooth& tooth, const Selection& of) {
     }
     if (sections < kLeastSections) return none("fewer than eight sections have two axial walls");
     if (places.values.empty()) return none("no section there has two axial walls");
-    return places.taken(of, "mean", "section through here");
+    Taken taken = places.taken(of, "mean", "section through here");
+    taken.residual = scatterOf(places);
+    return taken;
 }
 
 Taken takeMarginWidth(CutTooth& tooth, const Selection& of) {
@@ -103,7 +112,9 @@ Taken takeMarginWidth(CutTooth& tooth, const Selection& of) {
         if (station.hasMargin && station.middle.isFound && (of.side.empty() || station.side == of.side))
             places.add(std::max(0.0, station.widthMm), station.marginMm);
     if (places.values.empty()) return none("no margin under an axial wall was found there");
-    return places.taken(of, "median", "finish line");
+    Taken taken = places.taken(of, "median", "finish line");
+    taken.residual = scatterOf(places);
+    return taken;
 }
 
 Taken takeMarginContinuity(CutTooth& tooth, const Selection&) {
@@ -150,18 +161,25 @@ Taken takeMarginHeight(CutTooth& tooth, const Selection& of) {
         places.add(-low, station.marginMm);
     }
     if (places.values.empty()) return none("no margin there stands over an edge of the gingiva");
-    return places.taken(of, "mean", "margin over the gingiva");
+    Taken taken = places.taken(of, "mean", "margin over the gingiva");
+    taken.residual = scatterOf(places);
+    return taken;
 }
 
-Taken takeAxialDepth(CutTooth& tooth, const Selection& of) {
-    if (tooth.cutPoints().empty()) return none(kNothing);
-    if (of.side.empty()) return none("axial depth is of one side: name it");
-    const auto towards = sideDirection(tooth.preparation().axes, of.side);
-    if (!towards) return none("the path of draw runs along that side, or it is not known");
-    const DrawFrame& frame = tooth.frame();
+namespace {
+
+struct Axial {
+    Places places;
+    double areaMm2 = 0.0;
+};
+/// Cut surface that stands along the tooth and looks out freely towards a side.
+Axial axialTowards(CutTooth& tooth, const Vec3& towards) {
+    // Of a cavity that is drawn out sideways the axial wall is its floor: it still stands along the long axis.
+    const Axes& axes = tooth.preparation().axes;
+    const Vec3& upright = std::abs(axes.draw.dot(axes.longAxis)) > kSin45 ? axes.draw : axes.longAxis;
     std::vector<const SurfacePoint*> part;
     for (const SurfacePoint& point : tooth.cutPoints())
-        if (std::abs(point.n.dot(frame.w)) < kAxialSin && point.n.dot(*towards) > kSin45) part.push_back(&point);
+        if (std::abs(point.n.dot(upright)) < kAxialSin && point.n.dot(towards) > kSin45) part.push_back(&point);
     const std::size_t stride = strideFor(part.size());
     std::vector<double> depth(part.empty() ? 0 : (part.size() + stride - 1) / stride, kNone);
     core::parallelFor(depth.size(), 32, [&](std::size_t begin, std::size_t end) {
@@ -176,9 +194,74 @@ Taken takeAxialDepth(CutTooth& tooth, const Selection& of) {
             if (!wall || off + *wall > met.distanceMm - off) depth[i] = met.distanceMm;
         }
     });
-    Places places;
+    // What lies farther in by a step is another wall: the distal one of an MO looks out over the pulpal floor, too.
+    // Hence the outermost stretch of depths that much of the surface has.
+    std::vector<double> share(static_cast<std::size_t>(kFarMm / kWallStepMm) + 1, 0.0);
+    double all = 0.0;
+    const auto binOf = [&](double d) { return std::min(share.size() - 1, static_cast<std::size_t>(d / kWallStepMm)); };
     for (std::size_t i = 0; i < depth.size(); ++i)
-        if (depth[i] != kNone) places.add(depth[i], part[i * stride]->p);
+        if (const SurfacePoint& point = *part[i * stride]; depth[i] != kNone && point.n.dot(towards) > kSteadyCos) {
+            share[binOf(depth[i])] += point.areaMm2;
+            all += point.areaMm2;
+        }
+    std::size_t from = 0;
+    while (from < share.size() && !(share[from] > kWallShare * all))
+        ++from;
+    std::size_t to = from;
+    while (to < share.size() && share[to] > kWallShare * all)
+        ++to;
+    const auto isOfWall = [&](std::size_t i) {
+        return depth[i] != kNone &&
+               (tooth.form() == Form::crown || (depth[i] > kWallStepMm * (static_cast<double>(from) - 1.0) &&
+                                                depth[i] < kWallStepMm * (static_cast<double>(to) + 1.0)));
+    };
+    // A cavity's corners are none of it; a crown's walls go round.
+    Vec3 mean = Vec3::Zero();
+    for (int round = 0; round < 3 && tooth.form() == Form::cavity; ++round) {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t i = 0; i < depth.size(); ++i)
+            if (const SurfacePoint& point = *part[i * stride];
+                isOfWall(i) && (round == 0 || point.n.dot(mean) > kWallCos))
+                sum += point.areaMm2 * point.n;
+        if (!(sum.norm() > 0.0)) break;
+        mean = sum.normalized();
+    }
+    Axial axial;
+    for (std::size_t i = 0; i < depth.size(); ++i)
+        if (isOfWall(i) && (mean.isZero() || part[i * stride]->n.dot(mean) > kWallCos)) {
+            axial.places.add(depth[i], part[i * stride]->p);
+            axial.areaMm2 += static_cast<double>(stride) * part[i * stride]->areaMm2;
+        }
+    return axial;
+}
+
+}  // namespace
+
+Taken takeAxialDepth(CutTooth& tooth, const Selection& of) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    const Axes& axes = tooth.preparation().axes;
+    const auto directionOf = [&](std::string_view side) {
+        const auto square = sideDirection(axes, side);
+        return square ? square : axisOf(axes, side);
+    };
+    if (of.side.empty()) {
+        // Which wall is the axial one only a cavity that is drawn out sideways says by itself.
+        if (std::abs(axes.draw.dot(axes.longAxis)) > kSin45) return none("axial depth is of one side: name it");
+        constexpr double kLeastShare = 0.25;  // of what looks out: less is the rim of a wall
+        Axial proximal, facial = axialTowards(tooth, axes.draw);
+        for (const std::string_view side : {"mesial", "distal"})
+            if (Axial one = axialTowards(tooth, *directionOf(side)); one.areaMm2 > proximal.areaMm2)
+                proximal = std::move(one);
+        const bool isProximal = proximal.areaMm2 > kLeastShare * (proximal.areaMm2 + facial.areaMm2);
+        const Places& places = isProximal ? proximal.places : facial.places;
+        if (places.values.empty()) return none("no axial wall looks out of the cavity");
+        return places.taken(of, "median", "axial wall");
+    }
+    if (of.side == "occlusal" || of.side == "gingival")
+        return none("an axial wall looks mesial, distal, buccal or lingual");
+    const auto towards = directionOf(of.side);
+    if (!towards) return none("nobody says which side is " + of.side);
+    const Places places = axialTowards(tooth, *towards).places;
     if (places.values.empty()) return none("no axial wall faces that side");
     return places.taken(of, "median", "axial wall");
 }

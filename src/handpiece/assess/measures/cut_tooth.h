@@ -19,6 +19,8 @@ namespace handpiece::measures {
 inline constexpr double kSin45 = 0.70710678118654752;
 /// Rays along the path of draw stand this far apart, and walls are taken at as many places.
 inline constexpr double kProbeMm = 0.05;
+/// Under the pulpal floor lies the gingival one.
+inline constexpr double kLowerMm = 0.4;
 
 /// A place of a surface where an edge of the grid passes through it. Such places stand for equal areas on the whole: an
 /// area A with normal n is met |n_x| + |n_y| + |n_z| times A / h^2 (Cauchy and Crofton).
@@ -56,6 +58,8 @@ struct HeightMap {
 struct Floor {
     std::vector<int> nodes;  ///< of the height map, rising
     std::vector<int> flat;   ///< those of them out of the corners towards the walls
+    std::vector<int> inner;  ///< those of `flat` that do not lie at its edge
+    double unevenMm = 0.0;   ///< rms of `flat` about its surface of second order
     Plane plane;             ///< w over (u, v), through `flat`
     double areaMm2 = 0.0;    ///< as the path of draw sees it
 };
@@ -94,6 +98,13 @@ struct AxialStation {
     Line middle;
 };
 
+/// A place where a wall meets the uncut surface.
+struct MarginPlace {
+    core::Vec3 p;      ///< tooth frame
+    core::Vec3 outer;  ///< unit, of the uncut surface
+    double lengthMm;   ///< of margin that it stands for
+};
+
 class CutTooth {
   public:
     explicit CutTooth(const Preparation& preparation);
@@ -129,8 +140,10 @@ class CutTooth {
     [[nodiscard]] double nearlyNow(const core::Vec3& p) const;
     /// Of the surface that was cut; empty when nothing was.
     [[nodiscard]] const std::vector<SurfacePoint>& cutPoints();
+    /// The cavosurface margin, about as dense as the voxels.
+    [[nodiscard]] const std::vector<MarginPlace>& margin();
     [[nodiscard]] const HeightMap& heights();
-    /// The largest first.
+    /// The pulpal one first, then the largest.
     [[nodiscard]] const std::vector<Floor>& floors();
     [[nodiscard]] Form form();
     [[nodiscard]] const std::vector<WallStation>& walls();
@@ -155,6 +168,7 @@ class CutTooth {
     std::vector<bool> isKept_;  ///< by dense brick: in now_
     std::optional<field::DistanceField> now_;
     std::optional<std::vector<SurfacePoint>> cutPoints_;
+    std::optional<std::vector<MarginPlace>> margin_;
     std::optional<HeightMap> heights_;
     std::optional<std::vector<Floor>> floors_;
     std::optional<std::vector<WallStation>> walls_;

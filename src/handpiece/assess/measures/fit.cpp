@@ -42,6 +42,44 @@ bool solveNormal(double* a, double* b, int n) {
     return true;
 }
 
+double localScatter(std::span<const double> values, std::size_t lag) {
+    if (values.size() <= lag) return 0.0;
+    double squares = 0.0;
+    for (std::size_t i = lag; i < values.size(); ++i)
+        squares += (values[i] - values[i - lag]) * (values[i] - values[i - lag]);
+    return std::sqrt(0.5 * squares / static_cast<double>(values.size() - lag));
+}
+
+double rmsAboutCurve(std::span<const Vec3> points) {
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& p : points)
+        middle += p / static_cast<double>(points.size());
+    double a[36] = {}, b[6] = {};
+    const auto termsOf = [&](const Vec3& p, double* u) {
+        const double x = p.x() - middle.x(), y = p.y() - middle.y();
+        u[0] = 1.0, u[1] = x, u[2] = y, u[3] = x * x, u[4] = x * y, u[5] = y * y;
+    };
+    double u[6];
+    for (const Vec3& p : points) {
+        termsOf(p, u);
+        for (int row = 0; row < 6; ++row) {
+            for (int column = 0; column <= row; ++column)
+                a[row * 6 + column] += u[row] * u[column];
+            b[row] += u[row] * (p.z() - middle.z());
+        }
+    }
+    if (points.size() < 12 || !solveNormal(a, b, 6)) return 0.0;
+    double squares = 0.0;
+    for (const Vec3& p : points) {
+        termsOf(p, u);
+        double off = p.z() - middle.z();
+        for (int k = 0; k < 6; ++k)
+            off -= b[k] * u[k];
+        squares += off * off;
+    }
+    return std::sqrt(squares / static_cast<double>(points.size()));
+}
+
 double medianOf(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     return percentile(values, 0.5);

@@ -42,6 +42,12 @@ struct Plane {
 /// cut-off. In parallel. Points whose surroundings settle no surface are left out.
 [[nodiscard]] std::vector<double> rough(std::span<const core::Vec3> points, double cutOffMm);
 
+/// Standard deviation of values one after the other, by their differences over `lag` of them: a slow change, which is
+/// form, does not count.
+[[nodiscard]] double localScatter(std::span<const double> values, std::size_t lag);
+/// Root mean square of heights z over (x, y) about their surface of second order; about 0 where they settle none.
+[[nodiscard]] double rmsAboutCurve(std::span<const core::Vec3> points);
+
 [[nodiscard]] double medianOf(std::vector<double> values);
 /// Share 0..1 of the sorted values lies below, between neighbours linearly. Of none: 0.
 [[nodiscard]] double percentile(std::span<const double> sorted, double share);

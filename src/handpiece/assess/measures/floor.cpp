@@ -2,6 +2,7 @@
 // floor-depth, floor-depth-shortest, floor-flatness, floor-tilt
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "handpiece/assess/measures/take.h"
 #include "handpiece/base/core/parallel.h"
@@ -11,9 +12,7 @@ namespace handpiece::measures {
 namespace {
 using core::Vec3;
 
-constexpr double kLowerMm = 0.4;  // under the largest floor lies the gingival one
-
-/// The pulpal floor is the largest; "gingival" asks for the largest of those that lie lower.
+/// The pulpal floor comes first; "gingival" asks for the largest of those that lie lower.
 const Floor* floorOf(CutTooth& tooth, const Selection& of, std::string& reason) {
     if (tooth.cutPoints().empty()) {
         reason = "nothing was cut";
@@ -43,6 +42,22 @@ double flatAreaMm2(const Floor& floor) {
     return kProbeMm * kProbeMm * static_cast<double>(floor.flat.size());
 }
 
+double unevenIn(const Floor& floor) {
+    return meanOf(floor.unevenMm, flatAreaMm2(floor) / (kPieceMm * kPieceMm));
+}
+/// All of it for the deepest place; else the flat part without its outermost ring, where the corner's radius begins.
+const std::vector<int>& placesOf(const Floor& floor, const Selection& of) {
+    return of.statistic == "greatest" ? floor.nodes : floor.inner.empty() ? floor.flat : floor.inner;
+}
+/// By how much a statistic changes with that ring: where a corner begins is known to a place or so.
+double edgeOf(const Floor& floor, const Selection& of, const std::function<double(int)>& valueOf, double value) {
+    if (of.statistic == "greatest") return 0.0;
+    std::vector<double> values;
+    for (const int node : floor.flat)
+        values.push_back(valueOf(node));
+    return std::abs(statisticOf(values, of.statistic.empty() ? "median" : of.statistic, nullptr) - value);
+}
+
 Vec3 normalOf(const Plane& plane) {
     return Vec3(-plane.slope.x(), -plane.slope.y(), 1.0).normalized();
 }
@@ -56,12 +71,19 @@ Taken takeFloorDepth(CutTooth& tooth, const Selection& of) {
     const HeightMap& map = tooth.heights();
     Places places;
     // A pit beside a wall counts for the deepest.
-    for (const int node : of.statistic == "greatest" ? floor->nodes : floor->flat) {
+    for (const int node : placesOf(*floor, of)) {
         const HeightMap::Node& n = map.nodes[static_cast<std::size_t>(node)];
         places.add(n.before - n.now, tooth.frame().from(map.drawOf(node)));
     }
     Taken taken = places.taken(of, "median", "depth of the floor");
-    taken.residual = meanOf(floor->plane.rms, flatAreaMm2(*floor) / (kPieceMm * kPieceMm));
+    taken.residual = unevenIn(*floor);
+    taken.offMm = edgeOf(
+        *floor, of,
+        [&](int node) {
+            const HeightMap::Node& n = map.nodes[static_cast<std::size_t>(node)];
+            return n.before - n.now;
+        },
+        *taken.value);
     return taken;
 }
 
@@ -69,7 +91,7 @@ Taken takeFloorDepthShortest(CutTooth& tooth, const Selection& of) {
     std::string reason;
     const Floor* floor = floorOf(tooth, of, reason);
     if (floor == nullptr) return none(reason);
-    const std::vector<int>& nodes = of.statistic == "greatest" ? floor->nodes : floor->flat;
+    const std::vector<int>& nodes = placesOf(*floor, of);
     Places places;
     places.values.resize(nodes.size());
     places.mm.resize(nodes.size());
@@ -80,7 +102,11 @@ Taken takeFloorDepthShortest(CutTooth& tooth, const Selection& of) {
         }
     });
     Taken taken = places.taken(of, "median", "shortest way to the uncut surface");
-    taken.residual = meanOf(floor->plane.rms, flatAreaMm2(*floor) / (kPieceMm * kPieceMm));
+    taken.residual = unevenIn(*floor);
+    taken.offMm = edgeOf(
+        *floor, of,
+        [&](int node) { return -tooth.whole().tree.signedDistance(tooth.frame().from(tooth.heights().drawOf(node))); },
+        *taken.value);
     return taken;
 }
 
@@ -100,7 +126,7 @@ Taken takeFloorFlatness(CutTooth& tooth, const Selection& of) {
     const Vec3 place = tooth.frame().from(map.drawOf(floor->flat[lowest]));
     std::sort(off.begin(), off.end());
     Taken taken = at(percentile(off, 0.975) - percentile(off, 0.025), place, "deepest under the floor's plane");
-    taken.residual = meanOf(floor->plane.rms, flatAreaMm2(*floor) / (kPieceMm * kPieceMm));
+    taken.residual = unevenIn(*floor);
     return taken;
 }
 
@@ -113,7 +139,7 @@ Taken takeFloorTilt(CutTooth& tooth, const Selection& of) {
         at(kDegrees * core::atan(floor->plane.slope.norm()), tooth.frame().from(middle), "middle of the floor");
     // Of a slope over a breadth b with n even pieces: root of 12 times their scatter over b root n.
     const double breadth = std::sqrt(flatAreaMm2(*floor));
-    taken.residual = kDegrees * 3.46 / breadth * meanOf(floor->plane.rms, breadth / kPieceMm, breadth / kPieceMm);
+    taken.residual = kDegrees * 3.46 / breadth * meanOf(floor->unevenMm, breadth / kPieceMm, breadth / kPieceMm);
     return taken;
 }
 

@@ -14,6 +14,7 @@ constexpr double kLeastAreaMm2 = 0.1;   // of a floor
 constexpr double kFlatCos = 0.9659258;  // 15 degrees
 constexpr double kCornerMm = 0.004;     // a ring of the floor lies in the corner when its mean stands higher than this
 constexpr double kLeastFlatShare = 0.2;
+constexpr double kPulpalShare = 0.3;  // of the largest floor's area: a higher floor is no mere step then
 
 /// Normals of planes through five by five places, where enough of them are of the floor.
 Vec3 localNormal(const HeightMap& map, const std::vector<int>& label, int mine, int node) {
@@ -123,7 +124,14 @@ void findFlat(const HeightMap& map, const std::vector<int>& label, int mine, dou
     }
     std::sort(kept.begin(), kept.end());
     floor.plane = through(map, kept);
-    if (floor.plane.isFound) floor.flat = std::move(kept);
+    if (!floor.plane.isFound) return;
+    for (const int node : kept)
+        if (ring[static_cast<std::size_t>(node)] > first) floor.inner.push_back(node);
+    floor.flat = std::move(kept);
+    std::vector<Vec3> places;
+    for (const int node : floor.flat)
+        places.push_back(map.drawOf(node));
+    floor.unevenMm = rmsAboutCurve(places);
 }
 
 }  // namespace
@@ -169,6 +177,17 @@ void CutTooth::findFloors() {
     }
     std::stable_sort(floors.begin(), floors.end(),
                      [](const Floor& a, const Floor& b) { return a.nodes.size() > b.nodes.size(); });
+    // The pulpal one comes first: a wide box makes a gingival floor that is larger and lies lower.
+    if (!floors.empty()) {
+        std::size_t pulpal = 0;
+        for (std::size_t i = 1; i < floors.size(); ++i)
+            if (floors[i].plane.isFound && floors[pulpal].plane.isFound &&
+                floors[i].areaMm2 > kPulpalShare * floors.front().areaMm2 &&
+                floors[i].plane.at > floors[pulpal].plane.at + kLowerMm)
+                pulpal = i;
+        std::rotate(floors.begin(), floors.begin() + static_cast<std::ptrdiff_t>(pulpal),
+                    floors.begin() + static_cast<std::ptrdiff_t>(pulpal) + 1);
+    }
     floors_ = std::move(floors);
 }
 

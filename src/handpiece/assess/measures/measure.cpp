@@ -42,6 +42,10 @@ constexpr Registered kRegistered[] = {
     {"unsupported-enamel", takeUnsupportedEnamel},
     {"adjacent-depth", takeAdjacentDepth},
     {"adjacent-removed", takeAdjacentRemoved},
+    {"outline-extent", takeOutlineExtent},
+    {"proximal-clearance", takeProximalClearance},
+    {"orifices-reached", takeOrificesReached},
+    {"gouge-depth", takeGougeDepth},
 };
 
 }  // namespace
@@ -65,7 +69,8 @@ std::vector<Measured> measure(const Preparation& preparation, std::span<const Re
             result.reason = std::move(taken.reason);
             result.evidence = std::move(taken.evidence);
             if (result.value)
-                result.uncertainty = uncertaintyOf(request.kind, tooth.voxelMm(), *result.value, taken.residual);
+                result.uncertainty =
+                    uncertaintyOf(request.kind, tooth.voxelMm(), *result.value, taken.residual) + taken.offMm;
         }
         results.push_back(std::move(result));
     }

@@ -29,6 +29,8 @@ struct Axes {
 [[nodiscard]] Axes axesOf(std::span<const cases::Landmark> landmarks, int buccalSign);
 /// The direction of a side of kSides, square to the path of draw; none for a side that lies along it, or is not known.
 [[nodiscard]] std::optional<core::Vec3> sideDirection(const Axes& axes, std::string_view side);
+/// The same as the tooth lies, whatever the path of draw: unit; none where it is not known.
+[[nodiscard]] std::optional<core::Vec3> axisOf(const Axes& axes, std::string_view side);
 /// The side that a direction points to most; empty when none is known within 45 degrees of it.
 [[nodiscard]] std::string_view sideOf(const Axes& axes, const core::Vec3& direction);
 

@@ -21,6 +21,7 @@ struct Taken {
     std::optional<double> value;
     std::string reason;
     std::vector<Evidence> evidence{};
+    double offMm = 0.0;     ///< what is open about where the measure is taken, in its unit
     double residual = 0.0;  ///< what the surface's own unevenness makes uncertain, one standard deviation, in its unit
 };
 using Take = Taken (*)(CutTooth& tooth, const Selection& of);
@@ -76,6 +77,10 @@ Taken takeCariesLeftPulpal(CutTooth&, const Selection&);
 Taken takeUnsupportedEnamel(CutTooth&, const Selection&);
 Taken takeAdjacentDepth(CutTooth&, const Selection&);
 Taken takeAdjacentRemoved(CutTooth&, const Selection&);
+Taken takeOutlineExtent(CutTooth&, const Selection&);
+Taken takeProximalClearance(CutTooth&, const Selection&);
+Taken takeOrificesReached(CutTooth&, const Selection&);
+Taken takeGougeDepth(CutTooth&, const Selection&);
 
 /// Unevenness is alike over this way [mm]: a mean over n such pieces is surer by the root of n.
 inline constexpr double kPieceMm = 0.3;

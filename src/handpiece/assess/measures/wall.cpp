@@ -2,6 +2,7 @@
 // wall-height, wall-angle, undercut-area, undercut-depth, cavosurface-angle
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <span>
 
 #include "handpiece/assess/measures/take.h"
@@ -12,11 +13,15 @@ namespace handpiece::measures {
 namespace {
 using core::Vec3;
 
-// Less is none: nor is what is less than thrice the wall's own roughness, or four tenths of a voxel, by which a coarse
-// field may make a mark too deep.
-constexpr double kLeastUndercutMm = 0.03, kLeastUndercutVoxels = 0.4;
-constexpr double kTopMm = 0.3;    // of wall and of uncut surface at a margin
-constexpr double kEdgeMm = 0.04;  // right at it nothing is taken
+// Less is none: nor is what the wall's own roughness makes from valley to peak (two crossed waves: four times its rms,
+// waves in three directions five), or four tenths of a voxel, by which a coarse field may make a mark too deep.
+constexpr double kLeastUndercutMm = 0.03, kLeastUndercutVoxels = 0.4, kRoughnessTimes = 5.0;
+// A wall's form is its mean over the roughness's cut-off, 0.4 mm to either side.
+constexpr int kFormPlaces = 8;
+constexpr double kFormCos = 0.7071068;   // 45 degrees: deep marks turn the aim by 20 to either side
+constexpr double kTopMm = 0.3;           // of wall and of uncut surface at a margin
+constexpr std::size_t kPiecePlaces = 6;  // kPieceMm along a wall
+constexpr double kEdgeMm = 0.04;         // right at it nothing is taken
 
 bool isOn(const Selection& of, std::string_view side) {
     return of.side.empty() || of.side == side;
@@ -40,24 +45,58 @@ std::string noWall(const Selection& of) {
 /// How deep a wall's profile lies behind what is above it, at worst, and how much of it does.
 struct Undercut {
     double depthMm = 0.0, lengthMm = 0.0;
-    std::size_t deepest = 0;
+    std::size_t deepest = 0, above = 0;  ///< samples; the one that it lies behind
 };
 Undercut undercutOf(std::span<const WallStation::Sample> samples, double outwards) {
     Undercut found;
     if (samples.size() < 2) return found;
     double least = outwards * samples.back().r;
+    std::size_t above = samples.size() - 1;
     for (std::size_t i = samples.size(); i-- > 0;) {
         const double r = outwards * samples[i].r;
-        least = std::min(least, r);
+        if (r < least) {
+            least = r;
+            above = i;
+        }
         const double behind = r - least;
         if (behind > found.depthMm) {
             found.depthMm = behind;
             found.deepest = i;
+            found.above = above;
         }
         if (behind > 0.001 && i + 1 < samples.size())
             found.lengthMm += core::hypot(samples[i + 1].w - samples[i].w, samples[i + 1].r - samples[i].r);
     }
     return found;
+}
+
+/// How far a wall lies behind at one height what it is at another, on the mean of the places beside it.
+double formBehind(CutTooth& tooth, const WallStation& wall, double deepW, double aboveW) {
+    const auto at = [](const WallStation& of, double w) -> std::optional<double> {
+        const auto next = std::lower_bound(of.samples.begin(), of.samples.end(), w,
+                                           [](const WallStation::Sample& s, double height) { return s.w < height; });
+        if (next == of.samples.end()) return {};
+        if (next == of.samples.begin()) return next->w - w < 1e-9 ? std::optional(next->r) : std::nullopt;
+        const WallStation::Sample &low = *(next - 1), &high = *next;
+        return low.r + (high.r - low.r) * (w - low.w) / (high.w - low.w);
+    };
+    // Walls come row by row.
+    const std::vector<WallStation>& walls = tooth.walls();
+    const std::ptrdiff_t here = &wall - walls.data();
+    constexpr std::ptrdiff_t kSearch = 4 * kFormPlaces;
+    double sum = 0.0, count = 0.0;
+    for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, here - kSearch);
+         i < std::min(static_cast<std::ptrdiff_t>(walls.size()), here + kSearch + 1); ++i) {
+        const WallStation& other = walls[static_cast<std::size_t>(i)];
+        if (other.floor != wall.floor || other.run != wall.run || other.side != wall.side ||
+            std::abs(other.row - wall.row) > kFormPlaces || other.h.dot(wall.h) < kFormCos)
+            continue;
+        const auto deep = at(other, deepW), above = at(other, aboveW);
+        if (!deep || !above) continue;
+        sum += *deep - *above;
+        ++count;
+    }
+    return count > 0.0 ? sum / count : 0.0;
 }
 
 struct AllUndercuts {
@@ -68,12 +107,11 @@ struct AllUndercuts {
 AllUndercuts undercuts(CutTooth& tooth, const Selection& of) {
     AllUndercuts all;
     const DrawFrame& frame = tooth.frame();
-    const auto add = [&](const Undercut& one, bool isCorner, double rms, double spacingMm, const Vec3& place) {
+    const double leastMm = std::max(kLeastUndercutMm, kLeastUndercutVoxels * tooth.voxelMm());
+    const auto add = [&](const Undercut& one, bool isCorner, double roughMm, double spacingMm, const Vec3& place) {
         ++all.asked;
         // Aslant in a corner marks look twice as deep.
-        if (one.depthMm <=
-            (isCorner ? 2.0 : 1.0) * std::max({kLeastUndercutMm, kLeastUndercutVoxels * tooth.voxelMm(), 3.0 * rms}))
-            return;
+        if (one.depthMm <= (isCorner ? 2.0 : 1.0) * std::max(leastMm, roughMm)) return;
         all.areaMm2 += one.lengthMm * spacingMm;
         if (one.depthMm > all.depthMm) {
             all.depthMm = one.depthMm;
@@ -81,6 +119,19 @@ AllUndercuts undercuts(CutTooth& tooth, const Selection& of) {
         }
     };
     if (tooth.form() == Form::cavity) {
+        // Of all places of a side together: one line may run along a mark.
+        std::map<std::pair<int, std::string_view>, std::pair<double, double>> squares;
+        for (const WallStation& wall : tooth.walls())
+            if (!wall.isCorner) {
+                auto& [sum, count] = squares[{wall.floor, wall.side}];
+                sum += wall.middle.rms * wall.middle.rms;
+                ++count;
+            }
+        const auto roughOf = [&](const WallStation& wall) {
+            const auto at = squares.find({wall.floor, wall.side});
+            const double pooled = at == squares.end() ? 0.0 : std::sqrt(at->second.first / at->second.second);
+            return kRoughnessTimes * std::max(pooled, wall.isCorner ? 0.0 : wall.middle.rms);
+        };
         for (const WallStation& wall : tooth.walls()) {
             if (!isOn(of, wall.side)) continue;
             // Right at the margin's edge a coarse field rounds it off by some hundredths.
@@ -88,9 +139,14 @@ AllUndercuts undercuts(CutTooth& tooth, const Selection& of) {
             while (!below.empty() && below.back().w > wall.marginW - std::max(kEdgeMm, tooth.voxelMm()))
                 below = below.first(below.size() - 1);
             if (below.empty()) continue;
-            const Undercut one = undercutOf(below, 1.0);
+            Undercut one = undercutOf(below, 1.0);
+            // Of the wall's form, too: else it is a mark.
+            if (one.depthMm > leastMm) {
+                const double behind = formBehind(tooth, wall, below[one.deepest].w, below[one.above].w);
+                if (behind <= leastMm) one.depthMm = 0.0;
+            }
             const WallStation::Sample& s = below[one.deepest];
-            add(one, wall.isCorner, wall.middle.rms, wall.spacingMm,
+            add(one, wall.isCorner, roughOf(wall), wall.spacingMm,
                 frame.from(wall.start) + (s.w - wall.start.z()) * frame.w + s.r * wall.h);
         }
         return all;
@@ -104,7 +160,8 @@ AllUndercuts undercuts(CutTooth& tooth, const Selection& of) {
         const Undercut one = undercutOf(steep, -1.0);
         if (steep.empty()) continue;
         const double spacing = wall.middle.at * 6.283185307179586 / CutTooth::kAzimuths;
-        add(one, false, wall.middle.rms, spacing, wall.marginMm + (steep[one.deepest].w - wall.marginW) * frame.w);
+        add(one, false, kRoughnessTimes * wall.middle.rms, spacing,
+            wall.marginMm + (steep[one.deepest].w - wall.marginW) * frame.w);
     }
     return all;
 }
@@ -116,9 +173,9 @@ Taken takeWallHeight(CutTooth& tooth, const Selection& of) {
     Places places;
     double residual = 0.0;
     if (tooth.form() == Form::cavity) {
-        for (const WallStation& wall : tooth.walls())
-            if (wall.floor == 0 && isOn(of, wall.side)) places.add(wall.heightMm(), wall.marginMm);
-        if (!tooth.floors().empty()) residual = tooth.floors().front().plane.rms;
+        for (const WallStation* wall : straightWalls(tooth, of))
+            places.add(wall->heightMm(), wall->marginMm);
+        if (!tooth.floors().empty()) residual = tooth.floors().front().unevenMm;
         if (places.values.empty()) return none(noWall(of));
     } else {
         for (const AxialStation& wall : tooth.axialWalls())
@@ -128,6 +185,17 @@ Taken takeWallHeight(CutTooth& tooth, const Selection& of) {
     }
     Taken taken = places.taken(of, "median", "margin over this wall's foot");
     taken.residual = meanOf(residual, static_cast<double>(places.values.size()) * kProbeMm / kPieceMm);
+    // A crown's wall ends in a round edge that the field knows to a tenth of a voxel.
+    if (tooth.form() == Form::crown) taken.offMm = 0.06 * tooth.voxelMm();
+    if (const std::size_t n = places.values.size(); n > 4 && tooth.form() == Form::cavity) {
+        // Where a corner begins is known to two places or so: that tells where the margin runs up and down.
+        for (const auto& [from, to] : {std::pair<std::size_t, std::size_t>{2, n}, {0, n - 2}, {1, n - 1}}) {
+            const std::span<const double> part(places.values.data() + from, to - from);
+            taken.offMm = std::max(
+                taken.offMm,
+                std::abs(statisticOf(part, of.statistic.empty() ? "median" : of.statistic, nullptr) - *taken.value));
+        }
+    }
     return taken;
 }
 
@@ -150,7 +218,12 @@ Taken takeWallAngle(CutTooth& tooth, const Selection& of) {
     }
     Taken taken = places.taken(of, "mean", "wall against the path of draw");
     const double way = static_cast<double>(places.values.size()) * kProbeMm;
-    taken.residual = kDegrees * meanOf(medianOf(std::move(scatter)), way / kPieceMm);
+    // What differs from place to place, and what is left of each line's own unevenness.
+    const bool isCavity = tooth.form() == Form::cavity;
+    const double differs = isCavity
+                               ? 0.4 * meanOf(localScatter(places.values, kPiecePlaces), way / kPieceMm)
+                               : localScatter(places.values, 1) / std::sqrt(static_cast<double>(places.values.size()));
+    taken.residual = core::hypot(differs, kDegrees * meanOf(medianOf(std::move(scatter)), way / kPieceMm));
     return taken;
 }
 

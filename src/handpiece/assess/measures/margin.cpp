@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// outline-extent, proximal-clearance; the cavosurface margin that both are taken of
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "handpiece/assess/measures/take.h"
+#include "handpiece/base/core/parallel.h"
+
+namespace handpiece::measures {
+namespace {
+using core::Vec3;
+
+constexpr double kNearVoxels = 0.3,
+                 kFarVoxels = 2.0;  // under the uncut surface a place of the wall leads to its margin
+constexpr double kBendVoxels = 0.03;
+constexpr double kTipMm = 0.1;
+constexpr double kLeastSin = 0.2;     // between both surfaces: flatter, there is no edge
+constexpr double kProximalCos = 0.5;  // the uncut surface faces the tooth beside within 60 degrees
+
+}  // namespace
+
+const std::vector<MarginPlace>& CutTooth::margin() {
+    if (margin_) return *margin_;
+    const std::vector<SurfacePoint>& points = cutPoints();
+    std::vector<std::optional<MarginPlace>> found(points.size());
+    const double low = kNearVoxels * voxelMm(), high = kFarVoxels * voxelMm();
+    core::parallelFor(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+        Look look(*this);
+        for (std::size_t i = begin; i < end; ++i) {
+            // The node's own field rules out nearly all others.
+            if (!(look.before(points[i].p) > -high - 0.5 * voxelMm())) continue;
+            geometry::NearestPoint nearest;
+            double deep = -whole().tree.signedDistance(points[i].p, &nearest);
+            if (!(deep > low && deep < high)) continue;
+            // On along the wall, straight, until the uncut triangles are met.
+            Vec3 outer = look.normalBefore(nearest.pointMm);
+            const Vec3& wall = points[i].n;
+            const Vec3 up = outer - outer.dot(wall) * wall;
+            if (!(up.norm() > kLeastSin)) continue;
+            const Vec3 along = up.normalized();
+            Vec3 p = points[i].p;
+            for (int step = 0; step < 4 && std::abs(deep) > 1e-6; ++step) {
+                p += deep / std::max(kLeastSin, along.dot(outer)) * along;
+                deep = -whole().tree.signedDistance(p, &nearest);
+                outer = look.normalBefore(nearest.pointMm);
+            }
+            if (std::abs(deep) > 1e-4 || (p - points[i].p).norm() > high / kLeastSin) continue;
+            // Anew without the wall's normal, which near an edge is not good: from where the wall lies a half, a whole
+            // and one and a half voxels under the surface. Where these do not lie in line three surfaces meet.
+            const Vec3 across = (wall - wall.dot(outer) * outer).normalized();
+            double off[3];
+            bool isMet = true;
+            for (int k = 0; k < 3; ++k) {
+                const Vec3 from = p - (k + 1) * 0.5 * voxelMm() * outer + voxelMm() * across;
+                const auto on = look.now(from) > 0.0 ? look.cast(from, -across, 3.0 * voxelMm()) : std::nullopt;
+                isMet = isMet && on.has_value();
+                off[k] = voxelMm() - on.value_or(0.0);
+            }
+            if (!isMet || std::abs(off[0] - 2.0 * off[1] + off[2]) > kBendVoxels * voxelMm()) continue;
+            p += (2.0 * off[0] - off[1]) * across;
+            found[i] = MarginPlace{p, outer, points[i].areaMm2 * up.norm() / (high - low)};
+        }
+    });
+    margin_.emplace();
+    for (const auto& place : found)
+        if (place) margin_->push_back(*place);
+    return *margin_;
+}
+
+Taken takeOutlineExtent(CutTooth& tooth, const Selection& of) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    if (tooth.form() == Form::crown) return none("a crown preparation has no outline");
+    if (of.side.empty()) return none("an extent has a direction: name the side");
+    const auto towards = axisOf(tooth.preparation().axes, of.side);
+    if (!towards) return none("nobody says which way " + of.side + " is");
+    if (tooth.margin().empty()) return none("no edge between cut and uncut surface was found");
+    // From both ends, but for a tenth of a millimetre of margin: a coarse field has bumps where two walls and the
+    // surface meet.
+    std::vector<std::pair<double, const MarginPlace*>> places;
+    for (const MarginPlace& place : tooth.margin())
+        places.emplace_back(place.p.dot(*towards), &place);
+    std::sort(places.begin(), places.end());
+    std::size_t low = 0, high = places.size() - 1;
+    for (double length = 0.0; low < high && (length += places[low].second->lengthMm) < kTipMm;)
+        ++low;
+    for (double length = 0.0; low < high && (length += places[high].second->lengthMm) < kTipMm;)
+        --high;
+    return at(places[high].first - places[low].first, places[high].second->p, "outermost of the outline, " + of.side);
+}
+
+Taken takeProximalClearance(CutTooth& tooth, const Selection& of) {
+    if (tooth.cutPoints().empty()) return none(kNothing);
+    if (tooth.form() == Form::crown) return none("it is taken of cavities; a crown has no margin at the contact");
+    if (!of.side.empty() && of.side != "mesial" && of.side != "distal")
+        return none("a tooth stands beside it on the mesial or the distal side: name one of these");
+    const Preparation& p = tooth.preparation();
+    if (p.others.empty()) return none("the case has no tooth beside it that can be cut");
+    const Vec3 middle = tooth.whole().tree.bounds().centre();
+    Places places;
+    bool isBeside = false;
+    for (const std::string_view side : {"mesial", "distal"}) {
+        if (!of.side.empty() && of.side != side) continue;
+        const auto towards = axisOf(p.axes, side);
+        if (!towards) continue;
+        for (const Preparation::Other& other : p.others) {
+            const geometry::TriangleTree& tree = other.whole->tree;
+            if (!((other.inTooth.apply(tree.bounds().centre()) - middle).dot(*towards) > 0.0)) continue;
+            isBeside = true;
+            for (const MarginPlace& place : tooth.margin())
+                if (place.outer.dot(*towards) > kProximalCos)
+                    places.add(std::max(0.0, tree.signedDistance(other.inTooth.applyInverse(place.p))), place.p);
+        }
+    }
+    if (!isBeside) return none("no tooth stands there");
+    if (places.values.empty()) return none("no margin of the cavity lies on the side of the tooth beside it");
+    return places.taken(of, "least", "margin nearest to the tooth beside it");
+}
+
+}  // namespace handpiece::measures

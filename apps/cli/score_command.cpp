@@ -10,6 +10,7 @@
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/parallel.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::cli {
@@ -18,6 +19,7 @@ namespace {
 struct ScoreOptions {
     std::string work, exercise, rubric, out;
     bool json = false, noReplay = false;
+    std::size_t threads = 0;
 };
 
 void tell(const assessment::Result& result) {
@@ -37,6 +39,7 @@ void tell(const assessment::Result& result) {
 }
 
 void run(const ScoreOptions& o) {
+    core::setThreadCount(o.threads);
     const tasks::Task task = tasks::readTask(o.exercise);
     if (o.rubric.empty() && task.rubric.empty())
         throw core::Error("this exercise has no rubric", o.exercise,
@@ -71,6 +74,7 @@ void addScoreCommand(Command& app) {
     command.flag("--no-replay", o.noReplay, "do not cut a session again: quicker, and not proven");
     command.flag("--json", o.json, "as JSON (docs/formats/rubric.md)");
     command.option("--out", o.out, "folder for result.json");
+    command.option("--threads", o.threads, "threads for long work; 0: all cores").check(range(0, 64)).showDefault();
     command.footer("Example:\n  handpiece score out/cut/session.h5 --exercise class-one");
     command.callback([options] { run(*options); });
 }

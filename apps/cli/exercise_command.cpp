@@ -10,13 +10,15 @@
 
 #include "cli/commands.h"
 #include "handpiece/app/course/shipped_exercises.h"
+#include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/assess/task/task.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/parallel.h"
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/starter/block.h"
 #include "handpiece/model/tooth/state_file.h"
-#include "handpiece/model/tooth/tooth_mirror.h"
+#include "studies/exercise_trials.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::cli {
@@ -32,6 +34,9 @@ struct ExerciseOptions {
     std::string kind, layers = "hard";
     int level = 1;
     bool json = false;
+    studies::TrialOptions trials;
+    double trialVoxelUm = 100.0;
+    std::size_t threads = 0;
 };
 
 std::string listed(const std::vector<std::string>& names) {
@@ -150,20 +155,21 @@ void ideal(const ExerciseOptions& o) {
     const tasks::Task task = tasks::readTask(o.path);
     if (!task.preparation)
         throw core::Error("this exercise asks for no preparation", o.path, "add [preparation] to exercise.toml");
-    tooth::LoadSettings settings;
-    settings.field.voxelMm = task.voxelMm;
+    simulation::SimulationSettings settings;
+    settings.field = simulation::fieldSettingsAt(task.voxelMm);
     studies::ProgressBar bar("making the tooth");
-    const auto model = tooth::loadModel(task.toothCase, settings, bar.listener());
+    const simulation::SimulationSetup station =
+        simulation::makeSimulation(task.toothCase, settings, true, bar.listener());
     bar.finish();
     const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
-    const tooth::StateDelta state = zones::idealState(*laid.zones, model);
+    const tooth::StateDelta state = zones::idealState(*laid.zones, station.tooth);
     cases::Attempt attempt;
     std::error_code ec;
     const fs::path path(o.path);
     attempt.caseFile = fs::absolute(fs::is_directory(path, ec) ? path / "case" : path);
-    attempt.caseKey = cases::caseKey(task.toothCase);
+    attempt.caseKey = cases::contentKey(task.toothCase);
     attempt.caseName = task.toothCase.name;
-    attempt.state = tooth::encodeState(state, tooth::identityOf({model}));
+    attempt.state = tooth::encodeState(state, station.identity());
     attempt.voxelMm = task.voxelMm;
     attempt.removedMm3 = state.removedMm3.own;
     attempt.bur =
@@ -172,6 +178,21 @@ void ideal(const ExerciseOptions& o) {
     attempt.drive = "turbine";
     cases::writeAttempt(attempt, o.out);
     fmt::print("{}: {:.2f} mm3 gone\n", o.out, tooth::sumOf(state.removedMm3.own));
+}
+
+void trials(const ExerciseOptions& o) {
+    core::setThreadCount(o.threads);
+    studies::TrialOptions options = o.trials;
+    options.out = o.out;
+    options.voxelMm = 1e-3 * o.trialVoxelUm;
+    core::prepareOutputFolder(options.out);
+    studies::ProgressBar bar("exercises");
+    const std::vector<studies::ExerciseTrials> all = studies::tryExercises(options, bar.listener());
+    bar.finish();
+    const std::string json = studies::trialsJson(options, all), text = studies::trialsText(options, all);
+    core::writeFile(options.out / "trials.json", json);
+    core::writeFile(options.out / "trials.md", text);
+    fmt::print("{}", o.json ? json : text);
 }
 
 void makeBlock(const ExerciseOptions& o) {
@@ -229,6 +250,22 @@ void addExerciseCommand(Command& app) {
     asked.option("EXERCISE", o.path, "folder or .handpiece file").required();
     asked.option("--out", o.out, "folder").required();
     asked.callback([options] { ideal(*options); });
+
+    Command trying = exercise.subcommand(
+        "trials", "The ten shipped exercises, done by scripted hands: well, with each critical error, and unsteadily");
+    trying.option("--out", o.out, "folder for trials.json, trials.md and the teeth").required();
+    trying.option("--only", o.trials.exercises, "numbers of exercises, 1 to 10").takeAll();
+    trying.option("--trials", o.trials.trials, "of each of five steadinesses, on exercises 1, 2 and 4; 0: none")
+        .check(range(0, 1000))
+        .showDefault();
+    trying.option("--seed", o.trials.seed, "of the hands' noise").showDefault();
+    trying.option("--voxel", o.trialVoxelUm, "of the teeth [um]").check(range(20.0, 400.0)).showDefault();
+    trying.option("--faces", o.trials.faces, "triangles of each tooth").showDefault();
+    trying.flag("--arm", o.trials.atTheArm,
+                "those done well by the loop at 1 kHz, recorded and proven, instead of sweeping alone");
+    trying.option("--threads", o.threads, "threads for long work; 0: all cores").check(range(0, 64)).showDefault();
+    trying.flag("--json", o.json, "as JSON");
+    trying.callback([options] { trials(*options); });
 
     Command pack = exercise.subcommand("pack", "An exercise as one file, or back into a folder");
     pack.option("EXERCISE", o.path, "folder or .handpiece file").required();

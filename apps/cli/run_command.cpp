@@ -215,15 +215,6 @@ studies::CuttingRates ratesOf(const RunOptions& o, const studies::RunSettings& r
     return rates;
 }
 
-/// The bur's lowest point at a distance from its axis.
-double bottomOf(const instrument::Bur& bur, double rhoMm) {
-    double low = 0.0, high = bur.lengthMm();
-    constexpr double kStepMm = 0.01;
-    while (low < high && instrument::signedDistanceMm(bur.profile(), rhoMm, low) > 1e-6)
-        low += kStepMm;
-    return low;
-}
-
 device::Motion cutMotionOf(const RunOptions& o, const studies::RunSettings& settings, const cases::Case& toothCase,
                            const simulation::SimulationSetup& station, std::vector<studies::LesionPlan>& lesions) {
     const double pedal = o.pedalGiven ? o.pedal : 1.0;
@@ -250,21 +241,7 @@ device::Motion cutMotionOf(const RunOptions& o, const studies::RunSettings& sett
     cut.offsetMm = {o.at[0], o.at[1]};
     cut.pulpGuardMm = o.pulpGuardMm;
     if (o.motion != "excavate") return studies::cuttingMotionByName(o.motion, *method, scene, cut);
-    scene.burBottomMm = [&](double rhoMm) { return bottomOf(*station.settings.bur, rhoMm); };
-    scene.outerMm = [&](const core::Vec3& p) { return tooth->tree.signedDistance(p); };
-    std::vector<geometry::TriangleTree> pulp;
-    for (const cases::Part& part : toothCase.parts) {
-        if (cases::isCarious(part.tissue)) scene.decay.push_back(part.mesh);
-        if (part.tissue == cases::Tissue::pulp) pulp.emplace_back(part.mesh);
-    }
-    if (!pulp.empty())
-        scene.pulpMm = [&](const core::Vec3& p) {
-            double nearest = std::numeric_limits<double>::infinity();
-            for (const geometry::TriangleTree& tree : pulp)
-                nearest = std::min(nearest, tree.signedDistance(p));
-            return nearest;
-        };
-    scene.tissueAt = [&](const core::Vec3& p) { return station.tooth->tissues.at(p); };
+    scene = studies::excavationScene(station, toothCase);
     if (!o.fullRemoval && pedal > 0.0) scene.rates = ratesOf(o, settings, station.settings);
     studies::Excavation plan = studies::planExcavation(scene, cut);
     lesions = std::move(plan.lesions);

@@ -13,6 +13,7 @@
 #include "handpiece/app/report/assessment_pictures.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/parallel.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::cli {
@@ -22,6 +23,7 @@ struct ScoreOptions {
     std::string work, exercise, rubric, out, classFolder;
     MeshUnit unit;
     bool json = false, noReplay = false, noPictures = false;
+    std::size_t threads = 0;
 };
 
 void tell(const assessment::Result& result) {
@@ -72,6 +74,7 @@ void writeReport(const ScoreOptions& o, const assessment::Work& work, const asse
 }
 
 void run(const ScoreOptions& o) {
+    core::setThreadCount(o.threads);
     if (!o.classFolder.empty()) return runClass(o);
     if (o.work.empty()) throw core::Error("there is no work to judge", "score", "name a session, an attempt or a scan");
     if (o.exercise.empty()) throw core::Error("which exercise is it?", "--exercise", "name its folder or file");
@@ -118,6 +121,7 @@ void addScoreCommand(Command& app) {
     command.option("--class", o.classFolder,
                    "instead of work: a folder with a folder of results a student; --out is the class's page");
     command.option("--out", o.out, "folder for result.json, report.html and pictures; of --class the page (.html)");
+    command.option("--threads", o.threads, "threads for long work; 0: all cores").check(range(0, 64)).showDefault();
     command.footer(
         "Examples:\n  handpiece score out/cut/session.h5 --exercise class-one --out result\n"
         "  handpiece score --class results --out class.html");

@@ -101,22 +101,26 @@ device::Motion withPedal(const device::Motion& motion, double pedal) {
 }
 
 device::Motion withTremor(const device::Motion& motion, double amplitudeMm, std::uint64_t seed) {
-    constexpr double kStepS = 0.004, kLowHz = 8.0, kHighHz = 12.0;
+    return withNoise(motion, {{amplitudeMm, 8.0, 12.0}}, 0.004, seed);
+}
+
+device::Motion withNoise(const device::Motion& motion, const std::vector<Band>& bands, double stepS,
+                         std::uint64_t seed) {
     constexpr int kWaves = 12;
     std::mt19937_64 random(seed);
     const auto share = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
     struct Wave {
-        double hz, phase;
+        double mm, hz, phase;
     };
-    Wave waves[3][kWaves];
-    for (auto& axis : waves)
-        for (Wave& w : axis) {
-            w.hz = kLowHz + (kHighHz - kLowHz) * share();
-            w.phase = 2.0 * std::numbers::pi * share();
-        }
-    const double each = amplitudeMm * std::sqrt(2.0 / kWaves);
+    std::vector<Wave> waves[3];
+    for (const Band& band : bands)
+        for (auto& axis : waves)
+            for (int i = 0; i < kWaves; ++i) {
+                const double hz = band.lowHz + (band.highHz - band.lowHz) * share();
+                axis.push_back({band.amplitudeMm * std::sqrt(2.0 / kWaves), hz, 2.0 * std::numbers::pi * share()});
+            }
     std::vector<double> times;
-    for (double t = 0.0; t < motion.durationS(); t += kStepS)
+    for (double t = 0.0; t < motion.durationS(); t += stepS)
         times.push_back(t);
     for (const device::TimedPose& p : motion.poses())
         times.push_back(p.timeS);
@@ -128,7 +132,7 @@ device::Motion withTremor(const device::Motion& motion, double amplitudeMm, std:
         pose.timeS = t;
         for (int axis = 0; axis < 3; ++axis)
             for (const Wave& w : waves[axis])
-                pose.burInTooth.positionMm[axis] += each * core::sin(2.0 * std::numbers::pi * w.hz * t + w.phase);
+                pose.burInTooth.positionMm[axis] += w.mm * core::sin(2.0 * std::numbers::pi * w.hz * t + w.phase);
         poses.push_back(pose);
     }
     return device::Motion(std::move(poses));

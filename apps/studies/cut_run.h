@@ -47,5 +47,12 @@ struct CutOutcome {
 /// The motion of a hand that trembles: 8 to 12 Hz, root mean square `amplitudeMm` along each axis; the same for the
 /// same seed. Physiological tremor lies in that band [R].
 [[nodiscard]] device::Motion withTremor(const device::Motion& motion, double amplitudeMm, std::uint64_t seed);
+/// Waves of a band of frequencies, root mean square `amplitudeMm` along each axis.
+struct Band {
+    double amplitudeMm, lowHz, highHz;
+};
+/// The motion with all of the bands on it, at times no more than `stepS` apart.
+[[nodiscard]] device::Motion withNoise(const device::Motion& motion, const std::vector<Band>& bands, double stepS,
+                                       std::uint64_t seed);
 
 }  // namespace handpiece::studies

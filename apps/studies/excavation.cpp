@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -533,6 +534,15 @@ void goRound(Path& path, const Vec3& middle, const Vec3& to, const Quat& turn) {
     path.turnTo({to, turn}, kAirMmS);
 }
 
+/// The bur's lowest point at a distance from its axis.
+double bottomOf(const instrument::Bur& bur, double rhoMm) {
+    double low = 0.0, high = bur.lengthMm();
+    constexpr double kStepMm = 0.01;
+    while (low < high && instrument::signedDistanceMm(bur.profile(), rhoMm, low) > 1e-6)
+        low += kStepMm;
+    return low;
+}
+
 }  // namespace
 
 Excavation planExcavation(const CuttingScene& scene, const CuttingOptions& o) {
@@ -594,6 +604,29 @@ Excavation planExcavation(const CuttingScene& scene, const CuttingOptions& o) {
         throw core::Error("the bur cannot come to any of the carious tissue", "excavate",
                           "take a smaller bur, or a smaller --pulp-guard");
     return {path.finish(), std::move(lesions)};
+}
+
+CuttingScene excavationScene(const simulation::SimulationSetup& station, const cases::Case& toothCase) {
+    CuttingScene scene;
+    scene.toothBounds = station.tooth->outer.bounds();
+    scene.burRadiusMm = station.settings.bur->maxRadiusMm();
+    scene.burLengthMm = station.settings.bur->lengthMm();
+    scene.burBottomMm = [&](double rhoMm) { return bottomOf(*station.settings.bur, rhoMm); };
+    scene.outerMm = [&](const core::Vec3& p) { return station.tooth->tree.signedDistance(p); };
+    const auto pulp = std::make_shared<std::vector<geometry::TriangleTree>>();
+    for (const cases::Part& part : toothCase.parts) {
+        if (cases::isCarious(part.tissue)) scene.decay.push_back(part.mesh);
+        if (part.tissue == cases::Tissue::pulp) pulp->emplace_back(part.mesh);
+    }
+    if (!pulp->empty())
+        scene.pulpMm = [pulp](const core::Vec3& p) {
+            double nearest = kInfinity;
+            for (const geometry::TriangleTree& tree : *pulp)
+                nearest = std::min(nearest, tree.signedDistance(p));
+            return nearest;
+        };
+    scene.tissueAt = [&](const core::Vec3& p) { return station.tooth->tissues.at(p); };
+    return scene;
 }
 
 std::vector<LesionOutcome> lesionOutcomes(const std::vector<LesionPlan>& lesions, const core::Box& toothBounds,

@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/model/case/case.h"
 #include "handpiece/tick/device/motion.h"
 #include "studies/cutting_motion.h"
 
@@ -26,6 +28,9 @@ struct Excavation {
     device::Motion motion;
     std::vector<LesionPlan> lesions;
 };
+
+/// The tooth, its bur, its decay and its pulp, for planExcavation(); the station by reference. Without rates.
+[[nodiscard]] CuttingScene excavationScene(const simulation::SimulationSetup& station, const cases::Case& toothCase);
 
 /// The way of the hand through all lesions: in along an axis of its own for each, layer by layer in strokes no wider
 /// than the decay (wider only where the bur is), out again, round the tooth with the pedal up, and on. With rates the

@@ -277,10 +277,17 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
             others.push_back({work.teeth[number], mirrors[number].get(), other.inCase, other.fdiNumber});
         }
     preparation.others = others;
+    // Of both jaws: which of them surrounds the tooth, the measure finds.
+    geometry::TriangleMesh gums;
+    for (const cases::Part& part : toothCase.scenery) {
+        if (part.tissue != cases::Tissue::gum) continue;
+        const auto first = static_cast<std::uint32_t>(gums.vertices.size());
+        gums.vertices.insert(gums.vertices.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
+        for (const geometry::Triangle& t : part.mesh.triangles)
+            gums.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
     std::optional<geometry::TriangleTree> gingiva;
-    for (const cases::Part& part : toothCase.scenery)
-        if (part.tissue == cases::Tissue::gum && !part.mesh.triangles.empty() && !gingiva) gingiva.emplace(part.mesh);
-    if (gingiva) preparation.gingiva = &*gingiva;
+    if (!gums.triangles.empty()) preparation.gingiva = &gingiva.emplace(gums);
     std::optional<preparation::Laid> laid;
     if (task.preparation) {
         laid = preparation::layOn(toothCase, *task.preparation);

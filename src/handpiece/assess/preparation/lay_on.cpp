@@ -114,6 +114,12 @@ class Site {
         return tooth_.buccalSign;
     }
     [[nodiscard]] double inside(const Vec3& from, const Vec3& way) const { return insideOf(*tree_, from, way); }
+    /// How far off the tooth ends for good, in a direction; negative where it does not lie that way.
+    [[nodiscard]] double outermost(const Vec3& from, const Vec3& way) const {
+        constexpr double kOffMm = 40.0;
+        const geometry::RayMeeting in = tree_->firstMeeting(from + kOffMm * way, -way);
+        return in.triangle == geometry::kNoTriangle ? -kOffMm : kOffMm - in.distanceMm;
+    }
 
     // ------------------------------------------------------------------ cavities
 
@@ -172,15 +178,25 @@ class Site {
         if (count == 0) fail("no fissure lies on the occlusal surface", "set it in the window (Ctrl+Shift+J)");
         const double floor = height / static_cast<double>(count) - number("depth_mm");
         const double open = !hasBox ? 0.0 : recipe_.side == "mesial" ? 1.0 : -1.0;
+        // At the floor all round; towards the marginal ridges, which get thinner towards their crests, as high as the
+        // wall stands.
+        const double flare = core::tan(number("wall_deg") * kRadPerDeg);
         const auto isRoom = [&](const Vec3& p) {
-            const Vec3 at(p.x(), p.y(), floor);
-            constexpr int kWays = 16;
+            constexpr int kWays = 48;
+            constexpr double kStepMm = 0.25, kUnderSurfaceMm = 0.2;
             for (int i = 0; i < kWays; ++i) {
                 const double rad = 2.0 * std::numbers::pi * i / kWays;
                 const Vec3 way(core::cos(rad), core::sin(rad), 0.0);
                 // Towards the box the ridge goes.
                 if (open * way.x() > 0.7) continue;
-                if (inside(at, way) < ridge + half) return false;
+                for (double up = 0.0;; up += kStepMm) {
+                    const Vec3 at(p.x(), p.y(), floor + up);
+                    const double wall = half + up * flare;
+                    if (up > 0.0 &&
+                        (std::abs(way.x()) < 0.7 || inside(at + wall * way, Vec3::UnitZ()) < kUnderSurfaceMm))
+                        break;
+                    if (outermost(at, way) < ridge + wall) return false;
+                }
             }
             return true;
         };
@@ -409,12 +425,41 @@ class Site {
             return least;
         };
     }
-    /// What must stay: the pulp and what lies round it; of an access, that takes the pulp, nothing.
+    /// What must stay: the pulp and what lies round it. Of an access, that takes the pulp: what keeps root and
+    /// furcation whole. Of a class III from palatal the labial surface too.
     [[nodiscard]] geometry::ScalarFunction guarded() const {
-        if (recipe_.preparation == "access") return {};
+        if (recipe_.preparation == "access") return rootShell();
         auto pulp = pulpMm();
-        if (!pulp) return {};
-        return [pulp, round = recipe_.pulpMm](const Vec3& p) { return pulp(p) - round; };
+        geometry::ScalarFunction kept;
+        if (pulp) kept = [pulp, round = recipe_.pulpMm](const Vec3& p) { return pulp(p) - round; };
+        if (recipe_.preparation != "class-three") return kept;
+        return
+            [kept, labial = labialShell()](const Vec3& p) { return kept ? std::min(kept(p), labial(p)) : labial(p); };
+    }
+    /// All that lies within `shell_mm` of the outer surface below the cemento-enamel junction.
+    [[nodiscard]] geometry::ScalarFunction rootShell() const {
+        double cervixMm = 0.0;
+        const auto junction = need(LandmarkKind::cementoEnamelJunction).front();
+        for (const Vec3& p : junction->pointsMm)
+            cervixMm += p.z() / static_cast<double>(junction->pointsMm.size());
+        return [tree = tree_, cervixMm, thick = number("shell_mm")](const Vec3& p) {
+            return std::max(-tree->signedDistance(p) - thick, p.z() - cervixMm);
+        };
+    }
+    /// All that lies within `labial_mm` of a surface that faces labially, along that way.
+    [[nodiscard]] geometry::ScalarFunction labialShell() const {
+        const Vec3 way(0.0, buccal(), 0.0);
+        return [tree = tree_, way, thick = number("labial_mm")](const Vec3& p) {
+            const double depthMm = -tree->signedDistance(p);
+            if (depthMm > thick) return depthMm - thick;  // no less far along any way
+            constexpr double kBackMm = 0.2;               // nodes just outside stand for tooth too
+            const geometry::RayMeeting out = tree->firstMeeting(p - kBackMm * way, way);
+            if (out.triangle == geometry::kNoTriangle) return kFarMm;
+            const float* normal = &tree->pseudonormals()[std::size_t{out.triangle} * 21];
+            constexpr double kFaces = 0.7;
+            if (way.y() * normal[1] < kFaces) return kFarMm;
+            return out.distanceMm - kBackMm - thick;
+        };
     }
 
     const cases::Tooth& tooth_;

@@ -12,23 +12,24 @@ namespace {
 
 // Sizes as taught; docs/assessment.md says from where, and which are recalled.
 constexpr std::array kClassOne{
-    Parameter{"depth_mm", 1.5, 0.5, 4.0, "from the fissure's floor to the pulpal floor"},
+    Parameter{"depth_mm", 1.75, 0.5, 4.0, "from the fissure's floor to the pulpal floor"},
     Parameter{"width_mm", 1.2, 0.4, 5.0, "isthmus, at the floor"},
     Parameter{"ridge_mm", 2.0, 0.5, 4.0, "left of marginal ridges and of the buccal and lingual walls"},
     Parameter{"wall_deg", -3.0, -10.0, 15.0, "of each wall against the path of draw; negative converges occlusally"}};
 constexpr std::array kClassTwo{
-    Parameter{"depth_mm", 1.5, 0.5, 4.0, "from the fissure's floor to the pulpal floor"},
-    Parameter{"width_mm", 1.2, 0.4, 5.0, "isthmus, at the floor"},
+    Parameter{"depth_mm", 1.75, 0.5, 4.0, "from the fissure's floor to the pulpal floor"},
+    Parameter{"width_mm", 1.75, 0.4, 5.0, "isthmus, at the floor"},
     Parameter{"ridge_mm", 2.0, 0.5, 4.0, "left of the other marginal ridge and of the buccal and lingual walls"},
     Parameter{"wall_deg", -3.0, -10.0, 15.0, "of each wall against the path of draw; negative converges occlusally"},
-    Parameter{"axial_mm", 1.25, 0.5, 4.0, "from the contact to the axial wall"},
+    Parameter{"axial_mm", 1.75, 0.5, 4.0, "from the contact to the axial wall"},
     Parameter{"box_width_mm", 3.5, 1.0, 8.0, "of the box, buccolingually, at its floor"},
     Parameter{"under_contact_mm", 1.0, 0.2, 4.0, "from the contact down to the gingival floor"}};
 constexpr std::array kClassThree{
     Parameter{"height_mm", 2.5, 0.5, 6.0, "incisogingivally"},
     Parameter{"axial_mm", 1.0, 0.3, 3.0, "from the contact to the axial wall"},
     Parameter{"depth_mm", 1.75, 0.5, 6.0, "from the palatal side towards the labial one, at the contact"},
-    Parameter{"corner_mm", 0.4, 0.0, 2.0, "radius of the outline's corners"}};
+    Parameter{"corner_mm", 0.4, 0.0, 2.0, "radius of the outline's corners"},
+    Parameter{"labial_mm", 0.5, 0.0, 2.0, "of the labial surface that must stay"}};
 constexpr std::array kClassFive{
     Parameter{"width_mm", 4.5, 1.0, 10.0, "mesiodistally"}, Parameter{"height_mm", 2.5, 0.5, 8.0, "incisogingivally"},
     Parameter{"axial_mm", 1.0, 0.3, 3.0, "under the uncut surface, the shortest way"},
@@ -39,8 +40,10 @@ constexpr std::array kCrown{
     Parameter{"margin_mm", 0.5, 0.2, 2.0, "width of the margin"},
     Parameter{"convergence_deg", 12.0, 0.0, 40.0, "total, of opposite walls"},
     Parameter{"over_cervix_mm", 0.75, 0.0, 4.0, "from the cemento-enamel junction to the margin"}};
-constexpr std::array kAccess{Parameter{"round_mm", 0.6, 0.2, 2.0, "outline round horns and orifices"},
-                             Parameter{"wall_deg", 2.0, -5.0, 20.0, "of each wall against the path of draw"}};
+constexpr std::array kAccess{
+    Parameter{"round_mm", 0.6, 0.2, 2.0, "outline round horns and orifices"},
+    Parameter{"wall_deg", 2.0, -5.0, 20.0, "of each wall against the path of draw"},
+    Parameter{"shell_mm", 0.5, 0.0, 2.0, "under the surface of root and furcation that must stay"}};
 constexpr std::array kLesion{
     Parameter{"over_pulp_mm", 0.5, 0.0, 3.0, "carious tissue nearer to the pulp than this is not asked for"}};
 constexpr std::array kStroke{Parameter{"depth_mm", 1.5, 0.2, 6.0, "under the block's top"},

@@ -44,21 +44,19 @@ void Simulator::finish() {
                 done->recordings.push_back(recording.name);
             done->taskPath = document.taskPath;
             done->finished = QDateTime::currentMSecsSinceEpoch();
-            done->began = document.began != 0
-                              ? document.began
-                              : done->finished - std::llround(1e3 * left->tooth.elapsedS);
+            done->began =
+                document.began != 0 ? document.began : done->finished - std::llround(1e3 * left->tooth.elapsedS);
             // What was cut lies open as it ended; its marker goes once whoever hears of it has kept the result.
             document_ = {};
             unsaved_ = false;
             emit unsavedChanged(false);
+            emit finished(*done);
             openSession(done->work.session);
-            whenFree([this, done] {
-                if (mode_ != Mode::replay) {
-                    close();
-                } else {
+            whenFree([this] {
+                if (mode_ == Mode::replay)
                     seek(replay_->durationS());
-                }
-                emit finished(*done);
+                else if (mode_ == Mode::empty)
+                    close();
             });
         },
         // Cancelled, or it cannot be judged: the tooth as it was.

@@ -57,7 +57,8 @@ PracticeFeature::PracticeFeature(const FeatureContext& context)
     });
     on(commands_[Command::progress], [this] { showProgress(); });
     commands.enableWhile(commands_[Command::finish], [this] {
-        return !simulator_.isBusy() && simulator_.isRecorded() && simulator_.task() && !simulator_.task()->rubric.empty();
+        return !simulator_.isBusy() && simulator_.isRecorded() && simulator_.task() &&
+               !simulator_.task()->rubric.empty();
     });
     commands.enableWhile(commands_[Command::result], [this] { return done_ != nullptr; });
     connect(&simulator_, &Simulator::finished, this, &PracticeFeature::take);
@@ -87,7 +88,6 @@ void PracticeFeature::openDialogs() {
         exercises_->setFolder(toPath(folder));
     });
     connect(result_, &ResultDialog::judged, this, [this](const OwnJudgement& own) { keep(own); });
-    connect(result_, &QDialog::finished, this, [this] { keep({}); });
     connect(result_, &ResultDialog::evidenceChosen, this, &PracticeFeature::showEvidence);
     connect(result_, &ResultDialog::pageRequested, this, &PracticeFeature::savePage);
     connect(result_, &ResultDialog::againRequested, this, [this] { begin(done_->taskPath); });
@@ -124,8 +124,8 @@ void PracticeFeature::showDocument() {
         const auto now = QDateTime::currentMSecsSinceEpoch();
         const QString title = task->toothCase.exercise ? inThisLanguage(task->toothCase.exercise->title) : QString();
         try {
-            kept->see({task->id, task->version, rubric::hashText(tasks::contentHash(*task)), title.toStdString(), now,
-                       now});
+            kept->see(
+                {task->id, task->version, rubric::hashText(tasks::contentHash(*task)), title.toStdString(), now, now});
         } catch (const core::Error& error) {
             window_.showProblem(problemOf(error));
         }
@@ -142,19 +142,17 @@ void PracticeFeature::showTick() {
 
 void PracticeFeature::take(const Simulator::Finished& done) {
     done_ = std::make_shared<const Simulator::Finished>(done);
-    isKept_ = false;
-    const bool asks = done.work.task->ownJudgement;
-    result_->setResult(done_, nullptr, asks);
-    if (!asks) keep({});
+    result_->setResult(done_, nullptr, done.work.task->ownJudgement);
+    keep();
     makeIdeal();
     result_->show();
     result_->raise();
     result_->activateWindow();
 }
 
-/// Once: with what the person thought of it, where they said so.
-void PracticeFeature::keep(const std::optional<OwnJudgement>& own) {
-    if (isKept_ || !done_) return;
+/// Before it is seen: nothing that happens from here on loses it.
+void PracticeFeature::keep() {
+    attempt_.clear();
     school::Store* kept = store();
     if (!kept) return;
     const score::Result& result = done_->work.result;
@@ -175,16 +173,22 @@ void PracticeFeature::keep(const std::optional<OwnJudgement>& own) {
     attempt.borderline = result.assessment.borderline;
     attempt.proven = result.identity.proven;
     attempt.result = assessment::resultJson(result.assessment, result.identity);
-    std::optional<school::Judgement> said;
-    if (own)
-        said = school::Judgement{attempt.id, own->percent, own->words.toStdString(),
-                                 QDateTime::currentMSecsSinceEpoch()};
     try {
-        kept->add(attempt, said);
-        isKept_ = true;
+        kept->add(attempt);
+        attempt_ = attempt.id;
         simulator_.forget(*done_);
     } catch (const core::Error& error) {
         // The recording stays marked: the next start offers it.
+        window_.showProblem(problemOf(error));
+    }
+}
+
+void PracticeFeature::keep(const OwnJudgement& own) {
+    if (attempt_.empty()) return;
+    try {
+        store()->add(
+            school::Judgement{attempt_, own.percent, own.words.toStdString(), QDateTime::currentMSecsSinceEpoch()});
+    } catch (const core::Error& error) {
         window_.showProblem(problemOf(error));
     }
 }

@@ -30,7 +30,8 @@ class PracticeFeature : public Feature {
     void openDialogs();
     void begin(const std::filesystem::path& path);
     void take(const Simulator::Finished& done);
-    void keep(const std::optional<OwnJudgement>& own);
+    void keep();
+    void keep(const OwnJudgement& own);
     void showEvidence(const measures::Evidence& evidence);
     void turnTo(const core::Vec3& placeMm);
     void savePage();
@@ -44,7 +45,7 @@ class PracticeFeature : public Feature {
     ResultDialog* result_;
     ProgressDialog* progress_;
     std::shared_ptr<const Simulator::Finished> done_;
-    bool isKept_ = true;
+    std::string attempt_;            ///< its id in the store; empty: it could not be kept
     std::optional<double> stopAtS_;  ///< the replay
     std::unique_ptr<Job> ideal_;
     Job* page_ = nullptr;  ///< being written

@@ -14,12 +14,12 @@ constexpr CommandOf<Command> kCommands[] = {
      "Ctrl+N", in(Shelf::file, 2)},
 };
 
-/// A folder that is no case and no attempt, or a file whose name only scans have.
+/// A folder that is no case, no attempt and no exercise, or a file whose name only scans have.
 bool mayBeScan(const QFileInfo& info) {
     if (info.isDir()) {
         const QDir folder(info.absoluteFilePath());
         return !folder.exists(QStringLiteral("case.toml")) && !folder.exists(QStringLiteral("attempt.toml")) &&
-               !folder.isEmpty();
+               !folder.exists(QStringLiteral("exercise.toml")) && !folder.isEmpty();
     }
     static const QStringList endings{QStringLiteral("nrrd"), QStringLiteral("nhdr"), QStringLiteral("nii"),
                                      QStringLiteral("mha"),  QStringLiteral("mhd"),  QStringLiteral("dcm"),

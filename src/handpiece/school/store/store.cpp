@@ -174,7 +174,7 @@ std::vector<Exercise> Store::exercises() const {
     return all;
 }
 
-void Store::add(const Attempt& a, const std::optional<Judgement>& own) {
+void Store::add(const Attempt& a) {
     Transaction transaction(state_->database);
     Statement(
         state_->database,
@@ -197,15 +197,18 @@ void Store::add(const Attempt& a, const std::optional<Judgement>& own) {
         .with(a.result)
         .run();
     post(state_->database, "attempt", a.id, a.finished);
-    if (own) {
-        Statement(state_->database, "INSERT INTO judgements (attempt, percent, words, made) VALUES (?, ?, ?, ?)")
-            .with(own->attempt)
-            .with(own->percent)
-            .with(own->words)
-            .with(own->made)
-            .run();
-        post(state_->database, "judgement", own->attempt, own->made);
-    }
+    transaction.commit();
+}
+
+void Store::add(const Judgement& judgement) {
+    Transaction transaction(state_->database);
+    Statement(state_->database, "INSERT INTO judgements (attempt, percent, words, made) VALUES (?, ?, ?, ?)")
+        .with(judgement.attempt)
+        .with(judgement.percent)
+        .with(judgement.words)
+        .with(judgement.made)
+        .run();
+    post(state_->database, "judgement", judgement.attempt, judgement.made);
     transaction.commit();
 }
 

@@ -94,8 +94,9 @@ class Store {
     /// By their ids.
     [[nodiscard]] std::vector<Exercise> exercises() const;
 
-    /// With what the person thought of it, if they were asked: both or neither.
-    void add(const Attempt& attempt, const std::optional<Judgement>& own = {});
+    void add(const Attempt& attempt);
+    /// Of an attempt that is there, once.
+    void add(const Judgement& judgement);
     /// In the order in which they were finished; empty `exercise`: all.
     [[nodiscard]] std::vector<Attempt> attempts(const std::string& exercise = {}) const;
     [[nodiscard]] std::optional<Attempt> attempt(const std::string& id) const;

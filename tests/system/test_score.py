@@ -4,6 +4,7 @@
 import json
 import math
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -163,6 +164,51 @@ class Score(SystemTest):
     def table(self, *arguments):
         self.ok(*arguments)
         return pathlib.Path(arguments[-1]).read_text()
+
+    def test_a_page_for_the_student_and_one_for_the_class(self):
+        exercise = self.exercise("one", "--rubric", RUBRICS / "46-class-i.toml", "--title", "Class I", "--set", "ridge_mm=2.3")
+        deep = self.exercise("deep", "--rubric", RUBRICS / "46-class-i.toml", "--set", "depth_mm=2.3", "--set", "ridge_mm=2.3")
+        for made, name in ((deep, "deep"), (exercise, "good")):
+            self.ok("exercise", "ideal", made, "--out", self.folder / f"{name}-work")
+        results = self.folder / "results"
+        for number, name in ((1, "deep"), (2, "good")):
+            self.ok("score", self.folder / f"{name}-work", "--exercise", exercise, "--out", results / "A7" / str(number))
+        page = (results / "A7" / "1" / "report.html").read_text()
+        for part in ("Class I", "To work on first", "To practise", "data:image/png;base64,", "too much gone"):
+            self.assertIn(part, page)
+        self.assertIsNone(re.search(r'(src|href)="(?!data:)|url\(|<script', page), "it loads nothing")
+        pictures = {file.stem for file in (results / "A7" / "1").glob("*.png")}
+        for name in ("occlusal-own", "occlusal-ideal", "occlusal-deviation", "section-mesial-own", "error-depth"):
+            self.assertIn(name, pictures)
+        self.ok("--language", "ja", "score", self.folder / "deep-work", "--exercise", exercise, "--no-pictures",
+                "--out", results / "B2")
+        japanese = (results / "B2" / "report.html").read_text()
+        self.assertIn('<html lang="ja">', japanese)
+        self.assertNotIn("<img", japanese)
+        self.ok("score", "--class", results, "--out", self.folder / "class.html")
+        page = (self.folder / "class.html").read_text()
+        for part in ("3 results of 2 students", "A7", "B2", "Learning curves", "What cost the class most"):
+            self.assertIn(part, page)
+        self.refused("score", "--class", exercise, "--out", self.folder / "none.html", mentions=("no result in it",))
+        (results / "C3.json").write_text('{"schema": "handpiece-result-1"}')
+        self.refused("score", "--class", results, "--out", self.folder / "none.html", mentions=("C3.json", "missing"))
+        self.assertFalse((self.folder / "none.html").exists(), "nothing is half written")
+
+    def test_a_scan_of_the_cut_tooth(self):
+        exercise = self.exercise("one", "--rubric", RUBRICS / "46-class-i.toml")
+        self.ok("run", "--case", exercise / "case", "--bur", "330", "--motion", "class-one", "--voxel", 100,
+                "--out", self.folder / "cut")
+        virtual = self.score(self.folder / "cut" / "attempt", exercise)
+        scan = self.score(self.folder / "cut" / "cut.stl", exercise)
+        self.assertEqual((scan["device"], scan["proven"]), ("scan", False))
+        self.assertLess(scan["scan"]["rms_mm"], 0.01)
+        for one, other in zip(virtual["criteria"], scan["criteria"]):
+            if one["value"] is None:
+                self.assertIn("scan", other["reason"])
+            else:
+                self.assertAlmostEqual(one["value"], other["value"], delta=one["uncertainty"] + other["uncertainty"], msg=one["id"])
+        self.refused("score", self.tooth / "pulp.stl", "--exercise", exercise, mentions=("pulp.stl",))
+        self.refused("score", self.folder / "cut" / "cut.stl", "--exercise", exercise, "--unit", "m", mentions=("--unit",))
 
 
 if __name__ == "__main__":

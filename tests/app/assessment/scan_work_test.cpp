@@ -90,6 +90,7 @@ TriangleMesh scanned(const TriangleMesh& mesh, double fromZ, double noiseMm, std
 struct Tally {
     std::size_t count = 0, covered = 0;
     double worst = 0.0, stated = 0.0;
+    std::optional<Vec3> place{};  ///< of the worst
 };
 int scans(int usual) {
     const char* asked = std::getenv("HANDPIECE_SCANS");
@@ -121,6 +122,7 @@ void compare(const tasks::Task& task, const Cut& cut, const rubric::Rubric& rubr
             Tally& tally = tallies[scan.id];
             ++tally.count;
             tally.covered += error <= stated;
+            if (error > tally.worst && !scan.evidence.empty()) tally.place = scan.evidence.front().placeMm;
             tally.worst = std::max(tally.worst, error);
             tally.stated = std::max(tally.stated, scan.uncertainty);
         }
@@ -128,8 +130,10 @@ void compare(const tasks::Task& task, const Cut& cut, const rubric::Rubric& rubr
 }
 void tell(const char* what, const std::map<std::string, Tally>& tallies) {
     for (const auto& [id, t] : tallies)
-        fmt::print("{} {:<22} {:>3} of {:>3} within, worst {:.4f}, stated at most {:.4f}\n", what, id, t.covered,
-                   t.count, t.worst, t.stated);
+        fmt::print("{} {:<22} {:>3} of {:>3} within, worst {:.4f}{}, stated at most {:.4f}\n", what, id, t.covered,
+                   t.count, t.worst,
+                   t.place ? fmt::format(" at {:.2f} {:.2f} {:.2f}", t.place->x(), t.place->y(), t.place->z()) : "",
+                   t.stated);
 }
 
 TEST(ScanWork, OwnCutToothScannedComesToTheVirtualValuesWithinWhatIsStated) {

@@ -268,8 +268,10 @@ class Removed {
             if (e.count != 2) rim.triangles.push_back({e.low, e.high, e.high});
         if (!rim.triangles.empty()) rim_ = std::make_unique<TriangleTree>(rim);
         const std::vector<Vec3> normals = faceNormals(mesh);
-        const std::vector<char> folded =
-            foldedFaces(mesh, normals, evenNormals(mesh, normals, Cells(mesh.vertices, kSmoothMm)));
+        const std::vector<Vec3> even = evenNormals(mesh, normals, Cells(mesh.vertices, kSmoothMm));
+        for (const geometry::Triangle& t : mesh.triangles)
+            even_.push_back(even[t[0]] + even[t[1]] + even[t[2]]);
+        const std::vector<char> folded = foldedFaces(mesh, normals, even);
         // What a folded face's corner or edge says is no better.
         std::vector<char> isBad(mesh.vertices.size(), 0);
         for (std::size_t f = 0; f < folded.size(); ++f)
@@ -305,8 +307,11 @@ class Removed {
         };
         // Past its border a scan says nothing.
         if (isOn(rim_)) return n.distanceMm;
-        // A folded face's normal says nothing; how often a way out meets the surface does.
-        const double side = isOn(folded_) ? (isInside(p) ? -1.0 : 1.0) : tree_.side(p, n);
+        // The nearest feature's normal says nothing where noise has folded the surface. Where what lies around it says
+        // another, how often a way out meets the surface decides.
+        double side = tree_.side(p, n);
+        const bool isDoubtful = !(side * even_[tree_.triangles()[n.triangle].index].dot(p - n.pointMm) > 0.0);
+        if (isDoubtful || isOn(folded_)) side = isInside(p) ? -1.0 : 1.0;
         const double d = side * n.distanceMm;
         if (isOn(cut_)) return -d;
         return isOn(beside_) ? std::max(-d, whole_.signedDistance(p) + growMm_) : n.distanceMm;
@@ -344,6 +349,7 @@ class Removed {
 
     TriangleTree tree_;
     std::unique_ptr<TriangleTree> rim_, cut_, beside_, folded_;
+    std::vector<Vec3> even_;  ///< by face
     const TriangleTree& whole_;
     double growMm_;
 };

@@ -26,7 +26,7 @@ std::string titleIn(const List& list, const std::string& id) {
 }
 
 /// What to practise, by the beginning of the measure's name.
-constexpr std::array<std::pair<std::string_view, const char*>, 36> kDrills{{
+constexpr std::array<std::pair<std::string_view, const char*>, 40> kDrills{{
     {"floor-flatness", "drill.floor"},
     {"floor-tilt", "drill.floor"},
     {"floor-depth", "drill.depth"},
@@ -62,6 +62,10 @@ constexpr std::array<std::pair<std::string_view, const char*>, 36> kDrills{{
     {"mirror-share", "drill.mirror"},
     {"views", "drill.mirror"},
     {"time", "drill.time"},
+    {"drill-time", "drill.time"},
+    {"idle-time", "drill.time"},
+    {"strokes", "drill.time"},
+    {"bur-changes", "drill.time"},
     {"", "drill.other"},
 }};
 

@@ -178,7 +178,7 @@ void addDistribution(HtmlReport& page, const std::vector<Column>& columns, const
     for (const Column& c : columns) {
         std::vector<std::string> row{criterionTitle(rubric, c.id), fmt::format("{}", c.values.size())};
         for (const double q : {0.0, 0.25, 0.5, 0.75, 1.0})
-            row.push_back(c.values.empty() ? "" : fmt::format("{:.3g}", quantile(c.values, q)));
+            row.push_back(c.values.empty() ? "" : fmt::format("{:.3f}", quantile(c.values, q)));
         row.push_back(c.unit);
         rows.push_back(std::move(row));
     }

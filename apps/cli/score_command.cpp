@@ -65,7 +65,8 @@ void addScoreCommand(Command& app) {
     Command command = app.subcommand("score", "Judge work on an exercise by its rubric");
     const auto options = std::make_shared<ScoreOptions>();
     ScoreOptions& o = *options;
-    command.option("WORK", o.work, "a session (.h5), a folder with all sessions of one piece of work, or an attempt").required();
+    command.option("WORK", o.work, "a session (.h5), a folder with all sessions of one piece of work, or an attempt")
+        .required();
     command.option("--exercise", o.exercise, "folder or .handpiece file").required();
     command.option("--rubric", o.rubric, "instead of the exercise's own: a file, or one that comes with the program");
     command.flag("--no-replay", o.noReplay, "do not cut a session again: quicker, and not proven");

@@ -33,10 +33,14 @@ bool isSession(const fs::path& path) {
     return path.extension() == ".h5";
 }
 
+bool isAttempt(const fs::path& work) {
+    return core::isFolder(work) ? cases::isAttempt(work) : !isSession(work);
+}
+
 /// The case that a piece of work is of, as an exercise that asks for nothing.
 tasks::Task ownTask(const fs::path& work) {
     tasks::Task task;
-    if (core::isFolder(work) ? cases::isAttempt(work) : !isSession(work)) {
+    if (isAttempt(work)) {
         cases::OpenAttempt open = cases::openAttempt(work);
         task.toothCase = std::move(open.toothCase);
         task.voxelMm = open.attempt.voxelMm;
@@ -63,7 +67,13 @@ const Measured* find(const MeasuredWork& in, const Request& request) {
 MeasuredWork measureOrFind(const fs::path& work, const std::optional<tasks::Task>& task, const std::string& exercise,
                            std::span<const Request> asked, const MeasureStore& store, const core::Progress& progress,
                            bool& isKept) {
-    const StoreKey key{workHash(work), exercise};
+    std::optional<tasks::Task> own;
+    StoreKey key{workHash(work), exercise};
+    if (!task && isAttempt(work)) {
+        // An attempt names its case, which may lie elsewhere and have other landmarks by now; a session holds it.
+        own = ownTask(work);
+        key.exercise = rubric::hashText(tasks::contentHash(*own));
+    }
     std::optional<MeasuredWork> kept = store.find(key);
     std::vector<Request> missing;
     for (const Request& request : asked)
@@ -71,7 +81,7 @@ MeasuredWork measureOrFind(const fs::path& work, const std::optional<tasks::Task
     isKept = kept && missing.empty();
     if (isKept) return std::move(*kept);
 
-    const std::optional<tasks::Task> own = task ? std::nullopt : std::optional(ownTask(work));
+    if (!task && !own) own = ownTask(work);
     const tasks::Task& against = task ? *task : *own;
     const core::Progress reading = core::part(progress, 0.0, 0.9), measuring = core::part(progress, 0.9, 1.0);
     if (kept) {

@@ -126,9 +126,8 @@ Work workOf(std::vector<Done> chain) {
         work.sessionHashes.push_back(one.recording.hash);
         work.recordings.push_back(one.recording);
         if (one.device != work.context.device)
-            throw core::Error(fmt::format("this was done with the device \"{}\", and {} with \"{}\"",
-                                          work.context.device, one.recording.name, one.device),
-                              chain.back().recording.name, "what is of the hand is never pooled over devices");
+            work.noHand = fmt::format("its sessions were done with different devices: {} and {}", one.device,
+                                      work.context.device);
         if (!one.isProven && work.isProven)
             work.proof =
                 chain.size() > 1 ? fmt::format("{}: {}", one.recording.path.filename().string(), one.proof) : one.proof;
@@ -310,10 +309,8 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
     core::report(progress, 0.4);
     findTimes(work.recordings, result.measured, task.voxelMm, core::part(progress, 0.4, 0.6));
     const hand::Against against{preparation.axes.longAxis, preparation.zones};
-    if (!work.recordings.empty()) {
-        for (measures::Measured& one :
-             ofHand.empty() ? std::vector<measures::Measured>{}
-                            : measureHand(work.recordings, ofHand, against, core::part(progress, 0.6, 1.0)))
+    if (work.noHand.empty() && !ofHand.empty()) {
+        for (measures::Measured& one : measureHand(work.recordings, ofHand, against, core::part(progress, 0.6, 1.0)))
             result.measured.push_back(std::move(one));
     } else {
         for (const measures::Request& request : ofHand)

@@ -25,8 +25,8 @@ struct Work {
     bool isProven = false;                   ///< cut again from its beginning it left this very tooth, bit for bit
     std::string proof;                       ///< in a sentence: that, or why not
     score::Context context;
-    std::vector<Recording> recordings{};  ///< whose samples tell of the hand, in the order of the work
-    std::string noHand{};                 ///< why there are none, where there are none
+    std::vector<Recording> recordings{};   ///< that led to this tooth, in the order of the work, where all are known
+    std::string noHand{};                  ///< why nothing is measured of the hand; empty: it is
     std::optional<score::ScanFit> scan{};  ///< of a scan; readScan() makes those
 };
 

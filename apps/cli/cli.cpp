@@ -42,6 +42,7 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods, c
     addExerciseCommand(top);
     addRubricCommand(top);
     addScoreCommand(top);
+    addRescoreCommand(top);
     addAgreeCommand(top);
     addReproduceCommand(top);
     addBenchCommand(top);

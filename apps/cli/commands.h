@@ -29,6 +29,7 @@ void addXrayCommand(Command& app);
 void addExerciseCommand(Command& app);
 void addRubricCommand(Command& app);
 void addScoreCommand(Command& app);
+void addRescoreCommand(Command& app);
 void addAgreeCommand(Command& app);
 
 }  // namespace handpiece::cli

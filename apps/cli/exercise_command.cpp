@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "handpiece/app/course/shipped_exercises.h"
 #include "handpiece/assess/rubric/rubric.h"
 #include "handpiece/assess/task/task.h"
 #include "handpiece/base/core/error.h"
@@ -56,7 +57,7 @@ std::string rubricOf(const ExerciseOptions& o, const preparation::Recipe& recipe
     if (o.rubric.empty()) return rubric::shippedTextFor(recipe.preparation, recipe.side);
     const std::vector<std::string> shipped = rubric::shippedRubrics();
     const bool isName = std::find(shipped.begin(), shipped.end(), o.rubric) != shipped.end();
-    std::string given = isName ? rubric::shippedText(o.rubric) : text(o.rubric);
+    std::string given = isName ? std::string(rubric::shippedRubricText(o.rubric)) : text(o.rubric);
     rubric::requireSound(rubric::parseRubric(given, o.rubric));
     return given;
 }
@@ -100,24 +101,12 @@ void print(const Json& json) {
 }
 
 void list(const ExerciseOptions& o) {
-    std::error_code ec;
-    if (!fs::is_directory(o.path, ec))
-        throw core::Error("there is no such folder", o.path, "name one with exercises in it");
-    std::vector<fs::path> found;
-    for (const fs::directory_entry& entry : fs::directory_iterator(o.path))
-        if (entry.is_directory() || cases::isPackageName(entry.path())) found.push_back(entry.path());
-    std::sort(found.begin(), found.end());
     Json all = Json::array();
-    for (const fs::path& path : found) {
-        try {
-            if (!tasks::isTask(path)) continue;
-            Json one = toJson(tasks::readTask(path));
-            one["file"] = path.filename().string();
-            all.push_back(one);
-        } catch (const core::Error& error) {
-            // One bad file hides no other; it is told in its place.
-            all.push_back({{"file", path.filename().string()}, {"error", error.what()}});
-        }
+    for (const course::Found& found : course::exercisesIn(o.path)) {
+        // One bad file hides no other; it is told in its place.
+        Json one = found.task ? toJson(*found.task) : Json{{"error", found.error->what()}};
+        one["file"] = found.path.filename().string();
+        all.push_back(one);
     }
     if (o.json) return print(all);
     for (const Json& one : all)
@@ -199,23 +188,11 @@ void ideal(const ExerciseOptions& o) {
 }
 
 void makeBlock(const ExerciseOptions& o) {
-    // The stricter a level, the less may go beside the target; a judgement of the project, not a standard.
-    constexpr double kLeewayMm[] = {0.5, 0.35, 0.2};
+    tasks::Task task = course::blockTask(o.kind, o.level, o.layers);
     ExerciseOptions with = o;
-    with.sideMm = with.floorMm = kLeewayMm[o.level - 1];
-    tasks::Task task;
-    task.id = fmt::format("block-{}-{}", o.kind, o.level);
-    if (o.layers != "hard") task.id += "-" + o.layers;
-    const auto layers = std::find(starter::kBlockLayers.begin(), starter::kBlockLayers.end(), o.layers);
-    task.toothCase = starter::makeBlock(static_cast<starter::BlockLayers>(layers - starter::kBlockLayers.begin()));
+    with.sideMm = task.preparation->leeway.sideMm;
+    with.floorMm = task.preparation->leeway.floorMm;
     task.preparation = recipeOf(with, "block-" + o.kind);
-    cases::Exercise exercise;
-    exercise.title = {{"en", fmt::format("Block: {}, level {}", o.kind, o.level)}};
-    exercise.bur = "330";
-    cases::View view;
-    view.eyeMm = core::Vec3(0.0, -18.0, 30.0);
-    exercise.view = view;
-    task.toothCase.exercise = exercise;
     task.rubric = rubricOf(o, *task.preparation);
     write(task, o.out);
 }

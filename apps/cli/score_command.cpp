@@ -6,8 +6,11 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/inputs.h"
 #include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/app/assessment/scan_work.h"
 #include "handpiece/app/assessment/score_work.h"
+#include "handpiece/app/report/assessment_pictures.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "studies/progress_bar.h"
@@ -16,8 +19,9 @@ namespace handpiece::cli {
 namespace {
 
 struct ScoreOptions {
-    std::string work, exercise, rubric, out;
-    bool json = false, noReplay = false;
+    std::string work, exercise, rubric, out, classFolder;
+    MeshUnit unit;
+    bool json = false, noReplay = false, noPictures = false;
 };
 
 void tell(const assessment::Result& result) {
@@ -36,7 +40,41 @@ void tell(const assessment::Result& result) {
     fmt::print("{}: {}\n", result.identity.proven ? "proven" : "not proven", result.proof);
 }
 
+/// The page of a class, of results that are there.
+void runClass(const ScoreOptions& o) {
+    if (o.out.empty()) throw core::Error("the class has no page yet", "--out", "name the page (.html)");
+    const std::vector<report::ClassEntry> entries = assessment::readClass(o.classFolder);
+    core::writeFile(o.out, report::classReport(entries));
+    fmt::print("{}: {} results\n", o.out, entries.size());
+}
+
+/// The page, and its pictures beside it as files of their own.
+void writeReport(const ScoreOptions& o, const assessment::Work& work, const assessment::Result& result,
+                 const tasks::Task& task, const rubric::Rubric& judged) {
+    const std::filesystem::path folder(o.out);
+    report::AssessmentPictures pictures;
+    if (!o.noPictures) {
+        studies::ProgressBar bar("pictures");
+        pictures = report::assessmentPictures(task, work.teeth, work.state, result.assessment, {}, bar.listener());
+        bar.finish();
+    }
+    const auto keep = [&](const std::string& name, const report::Png& png) {
+        if (!png.empty()) core::writeFile(folder / (name + ".png"), png);
+    };
+    for (const report::AssessmentPictures::View& view : pictures.views) {
+        keep(view.name + "-own", view.own);
+        keep(view.name + "-ideal", view.ideal);
+        keep(view.name + "-deviation", view.deviation);
+    }
+    for (const auto& [criterion, png] : pictures.places)
+        keep("error-" + criterion, png);
+    core::writeFile(folder / "report.html", report::studentReport(result, task, judged, pictures));
+}
+
 void run(const ScoreOptions& o) {
+    if (!o.classFolder.empty()) return runClass(o);
+    if (o.work.empty()) throw core::Error("there is no work to judge", "score", "name a session, an attempt or a scan");
+    if (o.exercise.empty()) throw core::Error("which exercise is it?", "--exercise", "name its folder or file");
     const tasks::Task task = tasks::readTask(o.exercise);
     if (o.rubric.empty() && task.rubric.empty())
         throw core::Error("this exercise has no rubric", o.exercise,
@@ -44,14 +82,17 @@ void run(const ScoreOptions& o) {
     const rubric::Rubric judged = o.rubric.empty() ? rubric::parseRubric(task.rubric, o.exercise + "/rubric.toml")
                                                    : rubric::rubricByNameOrFile(o.rubric);
     rubric::requireSound(judged);
-    studies::ProgressBar bar("cutting it again");
-    const assessment::Work work = assessment::readWork(o.work, task, !o.noReplay, bar.listener());
+    studies::ProgressBar bar(assessment::isScan(o.work) ? "registering the scan" : "cutting it again");
+    const assessment::Work work = assessment::isScan(o.work)
+                                      ? assessment::readScan(o.work, task, o.unit.mmPerUnit(), bar.listener())
+                                      : assessment::readWork(o.work, task, !o.noReplay, bar.listener());
     bar.finish();
     const assessment::Result result = assessment::scoreWork(work, task, judged);
     const std::string json = assessment::resultJson(result.assessment, result.identity);
     if (!o.out.empty()) {
         core::prepareOutputFolder(o.out);
         core::writeFile(std::filesystem::path(o.out) / "result.json", json);
+        writeReport(o, work, result, task, judged);
     }
     if (o.json)
         fmt::print("{}\n", json);
@@ -65,13 +106,21 @@ void addScoreCommand(Command& app) {
     Command command = app.subcommand("score", "Judge work on an exercise by its rubric");
     const auto options = std::make_shared<ScoreOptions>();
     ScoreOptions& o = *options;
-    command.option("WORK", o.work, "a session (.h5) or an attempt").required();
-    command.option("--exercise", o.exercise, "folder or .handpiece file").required();
+    command.option("WORK", o.work,
+                   "a session (.h5), a folder with all sessions of one piece of work, an attempt, or a scan of a "
+                   "preparation (.stl, .ply)");
+    command.option("--exercise", o.exercise, "folder or .handpiece file");
     command.option("--rubric", o.rubric, "instead of the exercise's own: a file, or one that comes with the program");
+    addUnitOptions(command, o.unit, false);
     command.flag("--no-replay", o.noReplay, "do not cut a session again: quicker, and not proven");
     command.flag("--json", o.json, "as JSON (docs/formats/rubric.md)");
-    command.option("--out", o.out, "folder for result.json");
-    command.footer("Example:\n  handpiece score out/cut/session.h5 --exercise class-one");
+    command.flag("--no-pictures", o.noPictures, "without pictures of the tooth");
+    command.option("--class", o.classFolder,
+                   "instead of work: a folder with a folder of results a student; --out is the class's page");
+    command.option("--out", o.out, "folder for result.json, report.html and pictures; of --class the page (.html)");
+    command.footer(
+        "Examples:\n  handpiece score out/cut/session.h5 --exercise class-one --out result\n"
+        "  handpiece score --class results --out class.html");
     command.callback([options] { run(*options); });
 }
 

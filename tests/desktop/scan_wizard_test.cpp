@@ -25,7 +25,7 @@
 #include "desktop/features/scan/report_page.h"
 #include "desktop/features/scan/scan_wizard.h"
 #include "desktop/features/scan/slice_view.h"
-#include "desktop/features/scan/solid_view.h"
+#include "desktop/picture/solid_view.h"
 #include "desktop/features/scan/tissue_page.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/case/case.h"

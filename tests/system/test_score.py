@@ -2,10 +2,14 @@
 """Work judged by the command line: session and attempt agree, a session is proven, what does not fit is refused."""
 
 import json
+import math
 import pathlib
+import shutil
+import signal
+import subprocess
 import unittest
 
-from support import SystemTest
+from support import HANDPIECE, SystemTest, rows_of
 
 RUBRICS = pathlib.Path(__file__).resolve().parents[2] / "data" / "rubrics"
 
@@ -21,6 +25,9 @@ class Score(SystemTest):
         self.ok("exercise", "new", "--case", self.tooth, "--preparation", "class-one", "--id", name, "--voxel", voxel_um,
                 "--out", path, *arguments)
         return path
+
+    def samples(self, session):
+        return rows_of(self.ok("export", session, "--csv").stdout)
 
     def score(self, work, exercise, *arguments):
         return json.loads(self.ok("score", work, "--exercise", exercise, "--json", *arguments).stdout)
@@ -51,8 +58,25 @@ class Score(SystemTest):
         self.assertEqual(session, json.loads((self.folder / "result" / "result.json").read_text()))
         for name in ("score", "passed", "exercise_hash", "case_key", "state_hash", "rubric_hash"):
             self.assertEqual(session[name], attempt[name], name)
-        values = [[(c["id"], c["value"]) for c in one["criteria"]] for one in (session, attempt)]
+        hand = ("time", "path", "smoothness")
+        values = [[(c["id"], c["value"]) for c in one["criteria"] if c["id"] not in hand] for one in (session, attempt)]
         self.assertEqual(values[0], values[1])
+        # Of the hand an attempt alone knows nothing, and says so; the session's time is that of its samples.
+        for name in hand:
+            had, none = (next(c for c in one["criteria"] if c["id"] == name) for one in (session, attempt))
+            self.assertIsNotNone(had["value"], had["reason"])
+            self.assertIsNone(none["value"])
+            self.assertEqual(none["standing"], "not-measured")
+            self.assertIn("no samples", none["reason"])
+        rows = self.samples(self.folder / "cut" / "session.h5")
+        had = {c["id"]: c for c in session["criteria"]}
+        self.assertAlmostEqual(had["time"]["value"], float(rows[-1]["t_s"]) + 1e-3, delta=had["time"]["uncertainty"] + 1e-6)
+        # Where the floor is deepest the bur was, cutting, at the time that is told.
+        deepest = had["depth"]["evidence"][0]
+        at = min(rows, key=lambda row: abs(float(row["t_s"]) - deepest["t_s"]))
+        self.assertEqual(deepest["session"], 0)
+        self.assertGreaterEqual(int(at["flags"]) & 32, 32)
+        self.assertLess(math.dist([float(at[c]) for c in ("x_mm", "y_mm", "z_mm")], deepest["xyz_mm"]), 2.0)
         self.assertFalse(self.score(self.folder / "cut" / "session.h5", exercise, "--no-replay")["proven"])
 
         finer = self.exercise("finer", "--rubric", RUBRICS / "46-class-i.toml", voxel_um=90)
@@ -64,6 +88,81 @@ class Score(SystemTest):
         bare = self.exercise("bare", "--no-rubric")
         self.refused("score", self.folder / "cut" / "attempt", "--exercise", bare, mentions=("no rubric", "--rubric"))
         self.assertGreater(self.score(self.folder / "cut" / "attempt", bare, "--rubric", "46-class-i")["score"], 0)
+
+    def test_a_chain_of_sessions_and_a_class_under_another_rubric(self):
+        exercise = self.exercise("one", "--rubric", RUBRICS / "46-class-i.toml")
+        run = ("--bur", "330", "--motion", "class-one", "--voxel", 100)
+        self.ok("run", "--case", exercise / "case", *run, "--out", self.folder / "first")
+        self.ok("run", "--case", self.folder / "first" / "attempt", *run, "--out", self.folder / "second")
+        first, second = (self.folder / name / "session.h5" for name in ("first", "second"))
+        work = self.folder / "class"
+        work.mkdir()
+        (work / "both").mkdir()
+        # Named against their order: the teeth tell it.
+        shutil.copy(first, work / "both" / "z.h5")
+        shutil.copy(second, work / "both" / "a.h5")
+        both, alone = self.score(work / "both", exercise), self.score(first, exercise)
+        self.assertTrue(both["proven"])
+        self.assertEqual(both["session_hash"][0], alone["session_hash"][0])
+        self.assertEqual(len(both["session_hash"]), 2)
+        time = [next(c["value"] for c in one["criteria"] if c["id"] == "time") for one in (both, alone)]
+        self.assertAlmostEqual(time[0], 2 * time[1], places=6)
+        last = self.score(second, exercise)
+        self.assertFalse(last["proven"])
+        self.assertEqual(last["state_hash"], both["state_hash"])
+        (self.folder / "gap").mkdir()
+        shutil.copy(second, self.folder / "gap" / "a.h5")
+        self.refused("score", self.folder / "gap", "--exercise", exercise, mentions=("a.h5", "one is missing"))
+
+        # A class: a session, a chain, an attempt, a damaged session, things that are no work.
+        shutil.copy(first, work / "anna.h5")
+        shutil.copytree(self.folder / "first" / "attempt", work / "cleo")
+        (work / "dan.h5").write_bytes(first.read_bytes()[:30000])
+        (work / "notes.txt").write_text("x")
+        rescore = ("rescore", work, "--exercise", exercise, "--rubric", "46-class-i", "--out")
+        once = json.loads(self.ok(*rescore, self.folder / "once.csv", "--json").stdout)
+        self.assertEqual([one["work"] for one in once], ["anna.h5", "both", "cleo", "dan.h5"])
+        self.assertEqual([one.get("proven") for one in once], [True, True, False, None])
+        self.assertIn("damaged", once[3]["error"])
+        for one, scored in ((once[0], alone), (once[1], both)):
+            del one["work"]
+            self.assertEqual(one, scored, "as score says it")
+        rows = rows_of((self.folder / "once.csv").read_text())
+        self.assertEqual([row["proven"] for row in rows], ["yes", "yes", "no", ""])
+        self.assertEqual(float(rows[1]["depth"]), next(c["value"] for c in both["criteria"] if c["id"] == "depth"))
+        # From what was kept: the same to the byte, and nothing is cut again, not even where it could no longer be.
+        for file in self.folder.rglob("*.field"):
+            file.unlink()
+        again = self.ok(*rescore, self.folder / "again.csv")
+        self.assertIn("3 scored, 3 of them as measured before; 1 could not be scored", again.stdout)
+        self.assertEqual((self.folder / "once.csv").read_bytes(), (self.folder / "again.csv").read_bytes())
+        self.assertEqual(list(self.folder.rglob("*.field")), [])
+        # Kept measures that somebody changed are not believed.
+        kept = sorted((self.folder / "cache" / "handpiece" / "measures").iterdir())
+        self.assertEqual(len(kept), 3)
+        for file in kept:
+            file.write_text(file.read_text().replace('"proven":false', '"proven":true'))
+        forged = rows_of(self.table(*rescore, self.folder / "forged.csv"))
+        self.assertEqual([row["proven"] for row in forged], ["yes", "yes", "no", ""])
+        # Another rubric: only what is not known yet is measured; a folder without work; Ctrl-C.
+        other = rows_of(self.table("rescore", work, "--exercise", exercise, "--rubric", "block-channel", "--out",
+                                   self.folder / "other.csv"))
+        self.assertEqual([row["rubric"] for row in other], ["block-channel"] * 3 + [""])
+        self.refused("rescore", exercise / "case", "--rubric", "46-class-i", "--out", self.folder / "none.csv",
+                     mentions=("nothing to score",))
+        process = subprocess.Popen([HANDPIECE, *map(str, rescore), str(self.folder / "stopped.csv"), "--anew"],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        try:
+            process.wait(0.4)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=60)[1]
+        self.assertEqual((process.returncode, said), (1, "handpiece: cancelled\n"))
+        self.assertFalse((self.folder / "stopped.csv").exists())
+
+    def table(self, *arguments):
+        self.ok(*arguments)
+        return pathlib.Path(arguments[-1]).read_text()
 
 
 if __name__ == "__main__":

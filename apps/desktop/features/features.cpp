@@ -6,10 +6,12 @@
 #include "desktop/features/device/device_feature.h"
 #include "desktop/features/drill/drill_feature.h"
 #include "desktop/features/exercise/exercise_feature.h"
+#include "desktop/features/exercise/practice_feature.h"
 #include "desktop/features/files/files_feature.h"
 #include "desktop/features/files/recovery_feature.h"
 #include "desktop/features/files/starter_feature.h"
 #include "desktop/features/landmarks/landmarks_feature.h"
+#include "desktop/features/marking/marking_feature.h"
 #include "desktop/features/measure/measure_feature.h"
 #include "desktop/features/position/position_feature.h"
 #include "desktop/features/radiograph/radiograph_feature.h"
@@ -33,12 +35,14 @@ void installFeatures(const FeatureContext& context) {
     add(new ViewFeature(context));
     add(new PositionFeature(context));
     add(new ExerciseFeature(context));
+    add(new PracticeFeature(context));
     add(new LayoutFeature(context));
     add(new ReplayFeature(context));
     add(new MeasureFeature(context));
     add(new DrillFeature(context));
     add(new SoundFeature(context));
     add(new DeviceFeature(context));
+    add(new MarkingFeature(context));  // before scans: both look at folders
     add(new ScanFeature(context));
     add(new RadiographFeature(context));
     add(new FilesFeature(context));      // it opens whatever the others leave

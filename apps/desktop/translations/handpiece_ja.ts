@@ -567,6 +567,50 @@
         <source>For teachers: drag a landmark over the tooth</source>
         <translation>指導者用：指標点を歯の上でドラッグします</translation>
     </message>
+    <message>
+        <source>Marking desk...</source>
+        <translation>採点机...</translation>
+    </message>
+    <message>
+        <source>For teachers: score, look at and mark a folder of returned work</source>
+        <translation>教員用：提出物のフォルダーを採点し、見て、評価します</translation>
+    </message>
+    <message>
+        <source>Exercises...</source>
+        <translation>課題を選ぶ...</translation>
+    </message>
+    <message>
+        <source>Choose an exercise: what it asks, the ideal, your best so far</source>
+        <translation>課題を選びます（内容、見本、これまでの最高点）</translation>
+    </message>
+    <message>
+        <source>Exercises</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>Finish</source>
+        <translation>完了</translation>
+    </message>
+    <message>
+        <source>Your work on this exercise is done: it is judged, and you see why</source>
+        <translation>この課題の作業を終えて採点し、その理由を表示します</translation>
+    </message>
+    <message>
+        <source>Result</source>
+        <translation>結果</translation>
+    </message>
+    <message>
+        <source>The result of the work that was finished last</source>
+        <translation>最後に終えた作業の結果を表示します</translation>
+    </message>
+    <message>
+        <source>Progress...</source>
+        <translation>上達の記録...</translation>
+    </message>
+    <message>
+        <source>Your results over the attempts at each exercise</source>
+        <translation>課題ごとに、回を追った結果を表示します</translation>
+    </message>
 </context>
 <context>
     <name>BurPicture</name>
@@ -2404,6 +2448,126 @@
         <source>Mend it here, or with: handpiece mesh repair FILE MENDED.stl</source>
         <translation>ここで修復するか、次を実行してください：handpiece mesh repair FILE MENDED.stl</translation>
     </message>
+    <message>
+        <source>This is the marking desk of %1.</source>
+        <translation>これは %1 の採点机です。</translation>
+    </message>
+    <message>
+        <source>Mark under another name.</source>
+        <translation>別の名前で採点してください。</translation>
+    </message>
+    <message>
+        <source>This marking desk was begun for another exercise, %1.</source>
+        <translation>この採点机は別の課題 %1 で始められました。</translation>
+    </message>
+    <message>
+        <source>Choose that exercise, or mark under another name.</source>
+        <translation>その課題を選ぶか、別の名前で採点してください。</translation>
+    </message>
+    <message>
+        <source>This desk marks blind by another rubric, %1.</source>
+        <translation>この採点机は別の評価表 %1 でブラインド採点をしています。</translation>
+    </message>
+    <message>
+        <source>Choose that rubric, or mark under another name.</source>
+        <translation>その評価表を選ぶか、別の名前で採点してください。</translation>
+    </message>
+    <message>
+        <source>This desk marks blind.</source>
+        <translation>この採点机はブラインド採点です。</translation>
+    </message>
+    <message>
+        <source>Tick &quot;Mark blind&quot; to go on, or mark under another name.</source>
+        <translation>「ブラインド採点」に印を付けて続けるか、別の名前で採点してください。</translation>
+    </message>
+    <message>
+        <source>This desk shows the machine&apos;s score.</source>
+        <translation>この採点机は機械の得点を表示しています。</translation>
+    </message>
+    <message>
+        <source>Untick &quot;Mark blind&quot; to go on, or mark under another name.</source>
+        <translation>「ブラインド採点」の印を外して続けるか、別の名前で採点してください。</translation>
+    </message>
+    <message>
+        <source>Somebody else marks at this desk; this change was not kept.</source>
+        <translation>別の場所でこの採点机が使われています。この変更は保存されませんでした。</translation>
+    </message>
+    <message>
+        <source>Begin again: what stands there now is taken up.</source>
+        <translation>もう一度始めてください。今の内容から続けられます。</translation>
+    </message>
+    <message>
+        <source>This marking desk cannot be read. Technical detail: %1</source>
+        <translation>この採点机は読めません。技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>Bring its file back from a copy, or mark under another name.</source>
+        <translation>控えからファイルを戻すか、別の名前で採点してください。</translation>
+    </message>
+    <message>
+        <source>This marking desk was made by a newer program.</source>
+        <translation>この採点机は新しいプログラムで作られました。</translation>
+    </message>
+    <message>
+        <source>Use the newer program.</source>
+        <translation>新しいプログラムを使ってください。</translation>
+    </message>
+    <message>
+        <source>Nobody can mark under this name.</source>
+        <translation>この名前では採点できません。</translation>
+    </message>
+    <message>
+        <source>Give a name or a code without / \ and quotes; &quot;machine&quot; is taken.</source>
+        <translation>/ \ と引用符を含まない名前かコードを入れてください。「machine」は使えません。</translation>
+    </message>
+    <message>
+        <source>There is no such folder.</source>
+        <translation>そのフォルダーはありません。</translation>
+    </message>
+    <message>
+        <source>Choose the folder with the returned work.</source>
+        <translation>提出物のフォルダーを選んでください。</translation>
+    </message>
+    <message>
+        <source>This exercise has no rubric.</source>
+        <translation>この課題には評価表がありません。</translation>
+    </message>
+    <message>
+        <source>Choose a rubric.</source>
+        <translation>評価表を選んでください。</translation>
+    </message>
+    <message>
+        <source>Your results were kept by a newer Handpiece (version %1, this one knows %2).</source>
+        <translation>成績は新しい Handpiece で保存されています（バージョン %1、このプログラムは %2 まで）。</translation>
+    </message>
+    <message>
+        <source>Use that one. Nothing is lost.</source>
+        <translation>新しいほうを使ってください。何も失われていません。</translation>
+    </message>
+    <message>
+        <source>Another program is writing your results.</source>
+        <translation>別のプログラムが成績を書き込んでいます。</translation>
+    </message>
+    <message>
+        <source>Close the other one, or try again.</source>
+        <translation>そのプログラムを閉じるか、もう一度試してください。</translation>
+    </message>
+    <message>
+        <source>The file of your results cannot be read. Technical detail: %1</source>
+        <translation>成績のファイルを読み込めません。技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>Move the file away: a new one is made.</source>
+        <translation>ファイルを別の場所に移してください。新しいファイルが作られます。</translation>
+    </message>
+    <message>
+        <source>This exercise is worked in voxels of %1 um: a score never hangs on one&apos;s settings.</source>
+        <translation>この課題のボクセルは %1 um に決まっています。得点が各自の設定で変わらないようにするためです。</translation>
+    </message>
+    <message>
+        <source>Open another tooth to choose the size.</source>
+        <translation>大きさを選ぶには、別の歯を開いてください。</translation>
+    </message>
 </context>
 <context>
     <name>Pulp</name>
@@ -3931,8 +4095,8 @@ openhaptics:Left Arm, or forcedimension:2</source>
         <translation>&lt;h3&gt;Handpiece %1&lt;/h3&gt;&lt;p&gt;オープンな歯科手術シミュレーターです。歯に触れ、削ることができます。&lt;/p&gt;</translation>
     </message>
     <message>
-        <source>&lt;p&gt;Licensed under the Apache License 2.0. For teaching; no medical device.&lt;/p&gt;&lt;p&gt;It stands on: Qt %1 (LGPL 3), OpenAL Soft (LGPL 2), Mesa (MIT), Eigen (MPL 2), fmt (MIT), oneTBB (Apache 2.0), Qhull (Qhull licence), HDF5 (BSD), libzip (BSD), zlib (zlib), libpng (libpng), toml++ (MIT), nlohmann-json (MIT), CLI11 (BSD).&lt;/p&gt;&lt;p&gt;Draws with: %2&lt;/p&gt;&lt;p&gt;Sound: %3&lt;/p&gt;</source>
-        <translation>&lt;p&gt;Apache License 2.0 で公開しています。教育用であり、医療機器ではありません。&lt;/p&gt;&lt;p&gt;使用しているソフトウェア：Qt %1 (LGPL 3)、OpenAL Soft (LGPL 2)、Mesa (MIT)、Eigen (MPL 2)、fmt (MIT)、oneTBB (Apache 2.0)、Qhull (Qhull licence)、HDF5 (BSD)、libzip (BSD)、zlib (zlib)、libpng (libpng)、toml++ (MIT)、nlohmann-json (MIT)、CLI11 (BSD)。&lt;/p&gt;&lt;p&gt;描画：%2&lt;/p&gt;&lt;p&gt;音：%3&lt;/p&gt;</translation>
+        <source>&lt;p&gt;Licensed under the Apache License 2.0. For teaching; no medical device.&lt;/p&gt;&lt;p&gt;It stands on: Qt %1 (LGPL 3), OpenAL Soft (LGPL 2), Mesa (MIT), Eigen (MPL 2), fmt (MIT), oneTBB (Apache 2.0), Qhull (Qhull licence), HDF5 (BSD), libzip (BSD), SQLite (public domain), zlib (zlib), libpng (libpng), toml++ (MIT), nlohmann-json (MIT), CLI11 (BSD).&lt;/p&gt;&lt;p&gt;Draws with: %2&lt;/p&gt;&lt;p&gt;Sound: %3&lt;/p&gt;</source>
+        <translation>&lt;p&gt;Apache License 2.0 で公開しています。教育用であり、医療機器ではありません。&lt;/p&gt;&lt;p&gt;使用しているソフトウェア：Qt %1 (LGPL 3)、OpenAL Soft (LGPL 2)、Mesa (MIT)、Eigen (MPL 2)、fmt (MIT)、oneTBB (Apache 2.0)、Qhull (Qhull licence)、HDF5 (BSD)、libzip (BSD)、SQLite (パブリックドメイン)、zlib (zlib)、libpng (libpng)、toml++ (MIT)、nlohmann-json (MIT)、CLI11 (BSD)。&lt;/p&gt;&lt;p&gt;描画：%2&lt;/p&gt;&lt;p&gt;音：%3&lt;/p&gt;</translation>
     </message>
     <message>
         <source>nothing yet</source>
@@ -5832,6 +5996,14 @@ lingual: %4</source>
         <source>making the mouth around it (the first time only)</source>
         <translation>周りの口腔を作成中（初回のみ）</translation>
     </message>
+    <message>
+        <source>Preparing the exercise</source>
+        <translation>課題を準備しています</translation>
+    </message>
+    <message>
+        <source>Scoring your work</source>
+        <translation>作業を採点しています</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::SliceView</name>
@@ -7380,6 +7552,1175 @@ lingual: %4</source>
     <message>
         <source>Source</source>
         <translation>由来</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::AgreementPage</name>
+    <message>
+        <source>Agreement</source>
+        <translation>一致度</translation>
+    </message>
+    <message>
+        <source>Weighted kappa (linear), ICC(2,1), Krippendorff&apos;s alpha, bias and limits of agreement, with 95 % intervals</source>
+        <translation>重み付きカッパ（線形）、ICC(2,1)、Krippendorff のアルファ、偏りと一致の限界（95 % 区間付き）</translation>
+    </message>
+    <message>
+        <source>Of</source>
+        <translation>対象</translation>
+    </message>
+    <message>
+        <source>Works</source>
+        <translation>作品数</translation>
+    </message>
+    <message>
+        <source>Coefficient</source>
+        <translation>係数</translation>
+    </message>
+    <message>
+        <source>Value (95 %)</source>
+        <translation>値（95 %）</translation>
+    </message>
+    <message>
+        <source>Picture</source>
+        <translation>図</translation>
+    </message>
+    <message>
+        <source>Plot of the agreement</source>
+        <translation>一致度の図</translation>
+    </message>
+    <message>
+        <source>undefined: %1</source>
+        <translation>定義されません：%1</translation>
+    </message>
+    <message>
+        <source>%1 (%2 to %3)</source>
+        <translation>%1（%2 ～ %3）</translation>
+    </message>
+    <message>
+        <source>all points together</source>
+        <translation>総得点</translation>
+    </message>
+    <message>
+        <source>%1 and %2</source>
+        <translation>%1 と %2</translation>
+    </message>
+    <message>
+        <source>weighted kappa</source>
+        <translation>重み付きカッパ</translation>
+    </message>
+    <message>
+        <source>bias, limits of agreement</source>
+        <translation>偏り、一致の限界</translation>
+    </message>
+    <message>
+        <source>all raters</source>
+        <translation>全評価者</translation>
+    </message>
+    <message>
+        <source>Krippendorff&apos;s alpha</source>
+        <translation>Krippendorff のアルファ</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::DeskDialog</name>
+    <message>
+        <source>Marking desk</source>
+        <translation>採点机</translation>
+    </message>
+    <message>
+        <source>Pages of the marking desk</source>
+        <translation>採点机のページ</translation>
+    </message>
+    <message>
+        <source>What is marked</source>
+        <translation>採点の対象</translation>
+    </message>
+    <message>
+        <source>Works</source>
+        <translation>作品</translation>
+    </message>
+    <message>
+        <source>Agreement</source>
+        <translation>一致度</translation>
+    </message>
+    <message>
+        <source>How far it is</source>
+        <translation>進み具合</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>中止</translation>
+    </message>
+    <message>
+        <source>Stop; what has been scored so far stays</source>
+        <translation>止めます。ここまでの得点は残ります</translation>
+    </message>
+    <message>
+        <source>Folder of the returned work</source>
+        <translation>提出物のフォルダー</translation>
+    </message>
+    <message>
+        <source>Sessions, attempts, hand-ins; a folder can be dropped here</source>
+        <translation>記録、試行、提出ファイル。フォルダーをここへドロップできます</translation>
+    </message>
+    <message>
+        <source>Choose...</source>
+        <translation>選択...</translation>
+    </message>
+    <message>
+        <source>Choose the folder</source>
+        <translation>フォルダーを選ぶ</translation>
+    </message>
+    <message>
+        <source>Returned work</source>
+        <translation>提出物</translation>
+    </message>
+    <message>
+        <source>Exercise</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>The exercise that was worked on: its folder, or its .handpiece file</source>
+        <translation>行われた課題：そのフォルダーまたは .handpiece ファイル</translation>
+    </message>
+    <message>
+        <source>Choose the exercise</source>
+        <translation>課題を選ぶ</translation>
+    </message>
+    <message>
+        <source>Rubric</source>
+        <translation>評価表</translation>
+    </message>
+    <message>
+        <source>How the machine scores, and what is marked</source>
+        <translation>機械の採点の仕方と、評価する項目</translation>
+    </message>
+    <message>
+        <source>The exercise&apos;s own</source>
+        <translation>課題自身のもの</translation>
+    </message>
+    <message>
+        <source>File...</source>
+        <translation>ファイル...</translation>
+    </message>
+    <message>
+        <source>A rubric of your own</source>
+        <translation>自分の評価表</translation>
+    </message>
+    <message>
+        <source>Marker</source>
+        <translation>採点者</translation>
+    </message>
+    <message>
+        <source>Your name or code: each marker has a desk of their own in the folder</source>
+        <translation>名前またはコード。採点者ごとに、フォルダー内に自分の机があります</translation>
+    </message>
+    <message>
+        <source>Mark blind</source>
+        <translation>ブラインド採点</translation>
+    </message>
+    <message>
+        <source>Works come under codes in random order, a tenth of them twice; the machine&apos;s score is hidden until your own mark is in</source>
+        <translation>作品はコードで無作為の順に現れ、十分の一は二度現れます。自分の評価を出すまで機械の得点は隠されます</translation>
+    </message>
+    <message>
+        <source>Cut recordings again to prove them</source>
+        <translation>記録を切削し直して証明する</translation>
+    </message>
+    <message>
+        <source>Slower; without it every recording is unproven</source>
+        <translation>時間がかかります。しなければ記録はすべて未証明です</translation>
+    </message>
+    <message>
+        <source>Begin, or go on</source>
+        <translation>始める・続ける</translation>
+    </message>
+    <message>
+        <source>What this marker did in this folder before is taken up again</source>
+        <translation>この採点者がこのフォルダーで前にしたことを引き継ぎます</translation>
+    </message>
+    <message>
+        <source>Double click or Enter opens a work</source>
+        <translation>ダブルクリックか Enter で作品を開きます</translation>
+    </message>
+    <message>
+        <source>Critical errors</source>
+        <translation>重大な誤り</translation>
+    </message>
+    <message>
+        <source>Only works with a critical error</source>
+        <translation>重大な誤りのある作品だけ</translation>
+    </message>
+    <message>
+        <source>Borderline</source>
+        <translation>境界</translation>
+    </message>
+    <message>
+        <source>Only works where something lies within uncertainty</source>
+        <translation>不確かさの範囲に入るものがある作品だけ</translation>
+    </message>
+    <message>
+        <source>Unproven</source>
+        <translation>未証明</translation>
+    </message>
+    <message>
+        <source>Only works that were not cut again to the same tooth</source>
+        <translation>切削し直して同じ歯になっていない作品だけ</translation>
+    </message>
+    <message>
+        <source>Not scored</source>
+        <translation>採点不能</translation>
+    </message>
+    <message>
+        <source>Only works that could not be scored</source>
+        <translation>採点できなかった作品だけ</translation>
+    </message>
+    <message>
+        <source>How many works</source>
+        <translation>作品の数</translation>
+    </message>
+    <message>
+        <source>Open</source>
+        <translation>開く</translation>
+    </message>
+    <message>
+        <source>Open the work in the picture</source>
+        <translation>作品を画面に開く</translation>
+    </message>
+    <message>
+        <source>Score again</source>
+        <translation>再採点</translation>
+    </message>
+    <message>
+        <source>Look for work that has come since, and score what has no score</source>
+        <translation>後から届いた作品を探し、得点のないものを採点します</translation>
+    </message>
+    <message>
+        <source>Export</source>
+        <translation>書き出し</translation>
+    </message>
+    <message>
+        <source>Write tables for others</source>
+        <translation>ほかの人のための表を書き出します</translation>
+    </message>
+    <message>
+        <source>Results, codes only (CSV)...</source>
+        <translation>結果、コードのみ（CSV）...</translation>
+    </message>
+    <message>
+        <source>Results with file names (CSV)...</source>
+        <translation>結果、ファイル名付き（CSV）...</translation>
+    </message>
+    <message>
+        <source>Blind marks, for agreement (CSV)...</source>
+        <translation>ブラインド評価、一致度用（CSV）...</translation>
+    </message>
+    <message>
+        <source>Agreement with pictures (folder)...</source>
+        <translation>一致度と図（フォルダー）...</translation>
+    </message>
+    <message>
+        <source>Works: %1 of %2</source>
+        <translation>作品：%1 / %2</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::MarkingFeature</name>
+    <message>
+        <source>Marking</source>
+        <translation>採点</translation>
+    </message>
+    <message>
+        <source>Folder of the returned work</source>
+        <translation>提出物のフォルダー</translation>
+    </message>
+    <message>
+        <source>Exercise</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>Exercises (*.handpiece exercise.toml);;All files (*)</source>
+        <translation>課題 (*.handpiece exercise.toml);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Rubric</source>
+        <translation>評価表</translation>
+    </message>
+    <message>
+        <source>Rubrics (*.toml);;All files (*)</source>
+        <translation>評価表 (*.toml);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Cancelled. What has been scored stays; &quot;Score again&quot; goes on.</source>
+        <translation>中止しました。ここまでの得点は残ります。「再採点」で続けられます。</translation>
+    </message>
+    <message>
+        <source>Looking for work</source>
+        <translation>作品を探しています</translation>
+    </message>
+    <message>
+        <source>There is no returned work in this folder.</source>
+        <translation>このフォルダーに提出物はありません。</translation>
+    </message>
+    <message>
+        <source>Scoring</source>
+        <translation>採点中</translation>
+    </message>
+    <message>
+        <source>Opening %1</source>
+        <translation>%1 を開いています</translation>
+    </message>
+    <message>
+        <source>%1 of %2</source>
+        <translation>%1 / %2</translation>
+    </message>
+    <message>
+        <source>There is no tooth in the middle of the picture: the comment has no place.</source>
+        <translation>画面の中央に歯がないため、コメントに位置が付きません。</translation>
+    </message>
+    <message>
+        <source>Computing...</source>
+        <translation>計算中...</translation>
+    </message>
+    <message>
+        <source>Agreement</source>
+        <translation>一致度</translation>
+    </message>
+    <message>
+        <source>There is nothing to compare yet: marks count once they are in.</source>
+        <translation>まだ比べるものがありません。評価は出されてから数えられます。</translation>
+    </message>
+    <message>
+        <source>Marks that were given blind alone; works whose machine&apos;s score is hidden are left out.</source>
+        <translation>ブラインドで出された評価だけです。機械の得点が隠れている作品は除かれます。</translation>
+    </message>
+    <message>
+        <source>Folder for the agreement</source>
+        <translation>一致度のフォルダー</translation>
+    </message>
+    <message>
+        <source>Write the table</source>
+        <translation>表を書き出す</translation>
+    </message>
+    <message>
+        <source>Table (*.csv)</source>
+        <translation>表 (*.csv)</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::SheetPanel</name>
+    <message>
+        <source>Work that is marked</source>
+        <translation>採点中の作品</translation>
+    </message>
+    <message>
+        <source>Code of the work</source>
+        <translation>作品のコード</translation>
+    </message>
+    <message>
+        <source>Previous work</source>
+        <translation>前の作品</translation>
+    </message>
+    <message>
+        <source>Next work</source>
+        <translation>次の作品</translation>
+    </message>
+    <message>
+        <source>Back to the table</source>
+        <translation>表に戻る</translation>
+    </message>
+    <message>
+        <source>Criteria</source>
+        <translation>評価項目</translation>
+    </message>
+    <message>
+        <source>Choose one to judge it; a place below it turns the picture there</source>
+        <translation>選ぶと評価できます。下にある場所を選ぶと画面がそこへ向きます</translation>
+    </message>
+    <message>
+        <source>Criterion</source>
+        <translation>評価項目</translation>
+    </message>
+    <message>
+        <source>Your mark</source>
+        <translation>自分の評価</translation>
+    </message>
+    <message>
+        <source>Measured</source>
+        <translation>測定値</translation>
+    </message>
+    <message>
+        <source>Band</source>
+        <translation>段階</translation>
+    </message>
+    <message>
+        <source>Points</source>
+        <translation>得点</translation>
+    </message>
+    <message>
+        <source>Criterion that is judged</source>
+        <translation>評価中の項目</translation>
+    </message>
+    <message>
+        <source>Critical error</source>
+        <translation>重大な誤り</translation>
+    </message>
+    <message>
+        <source>Cannot be told</source>
+        <translation>判断できない</translation>
+    </message>
+    <message>
+        <source>Reason</source>
+        <translation>理由</translation>
+    </message>
+    <message>
+        <source>Why you judge otherwise: it is kept</source>
+        <translation>評価を変える理由。保存されます</translation>
+    </message>
+    <message>
+        <source>Reason, needed</source>
+        <translation>理由（必須）</translation>
+    </message>
+    <message>
+        <source>Judge</source>
+        <translation>評価する</translation>
+    </message>
+    <message>
+        <source>Take back</source>
+        <translation>取り消す</translation>
+    </message>
+    <message>
+        <source>The machine&apos;s judgement stands again</source>
+        <translation>機械の評価に戻します</translation>
+    </message>
+    <message>
+        <source>My marks are in</source>
+        <translation>評価を出す</translation>
+    </message>
+    <message>
+        <source>They are fixed then, and the machine&apos;s score is shown</source>
+        <translation>評価が確定し、機械の得点が表示されます</translation>
+    </message>
+    <message>
+        <source>Who passes</source>
+        <translation>合否</translation>
+    </message>
+    <message>
+        <source>as scored</source>
+        <translation>得点のとおり</translation>
+    </message>
+    <message>
+        <source>passed</source>
+        <translation>合格</translation>
+    </message>
+    <message>
+        <source>not passed</source>
+        <translation>不合格</translation>
+    </message>
+    <message>
+        <source>Reason of the decision</source>
+        <translation>判定の理由</translation>
+    </message>
+    <message>
+        <source>Decide</source>
+        <translation>判定</translation>
+    </message>
+    <message>
+        <source>Decide who passes</source>
+        <translation>合否を判定する</translation>
+    </message>
+    <message>
+        <source>Comments</source>
+        <translation>コメント</translation>
+    </message>
+    <message>
+        <source>One that has a place turns the picture there</source>
+        <translation>位置のあるものを選ぶと画面がそこへ向きます</translation>
+    </message>
+    <message>
+        <source>New comment</source>
+        <translation>新しいコメント</translation>
+    </message>
+    <message>
+        <source>Pinned to the criterion that is chosen</source>
+        <translation>選んだ評価項目に付きます</translation>
+    </message>
+    <message>
+        <source>Comment</source>
+        <translation>コメント</translation>
+    </message>
+    <message>
+        <source>at the middle of the picture</source>
+        <translation>画面の中央に</translation>
+    </message>
+    <message>
+        <source>Pin it to the place in the middle of the picture</source>
+        <translation>画面の中央の場所に付けます</translation>
+    </message>
+    <message>
+        <source>at this moment</source>
+        <translation>この時点に</translation>
+    </message>
+    <message>
+        <source>Pin it to the moment that the replay shows</source>
+        <translation>再生で見えている時点に付けます</translation>
+    </message>
+    <message>
+        <source>Add</source>
+        <translation>追加</translation>
+    </message>
+    <message>
+        <source>Add the comment</source>
+        <translation>コメントを追加</translation>
+    </message>
+    <message>
+        <source>Delete</source>
+        <translation>削除</translation>
+    </message>
+    <message>
+        <source>Delete the comment</source>
+        <translation>コメントを削除</translation>
+    </message>
+    <message>
+        <source>%1, %2</source>
+        <translation>%1、%2</translation>
+    </message>
+    <message>
+        <source>All points together</source>
+        <translation>総得点</translation>
+    </message>
+    <message>
+        <source>cannot be told</source>
+        <translation>判断できない</translation>
+    </message>
+    <message>
+        <source>%1 of %2</source>
+        <translation>%1 / %2</translation>
+    </message>
+    <message>
+        <source>%1 ± %2 %3</source>
+        <translation>%1 ± %2 %3</translation>
+    </message>
+    <message>
+        <source>critical error</source>
+        <translation>重大な誤り</translation>
+    </message>
+    <message>
+        <source>perhaps a critical error</source>
+        <translation>重大な誤りの可能性</translation>
+    </message>
+    <message>
+        <source>borderline</source>
+        <translation>境界</translation>
+    </message>
+    <message>
+        <source>machine: %1</source>
+        <translation>機械：%1</translation>
+    </message>
+    <message>
+        <source> (machine: %1)</source>
+        <translation> （機械：%1）</translation>
+    </message>
+    <message>
+        <source>at %1 s</source>
+        <translation>%1 秒</translation>
+    </message>
+    <message>
+        <source>%1 N</source>
+        <translation>%1 N</translation>
+    </message>
+    <message>
+        <source>%1: %2</source>
+        <translation>%1：%2</translation>
+    </message>
+    <message>
+        <source>%1 (at %2 s)</source>
+        <translation>%1（%2 秒）</translation>
+    </message>
+    <message>
+        <source>Open a work on the marking desk.</source>
+        <translation>採点机で作品を開いてください。</translation>
+    </message>
+    <message>
+        <source>The machine&apos;s score is hidden until your marks are in.</source>
+        <translation>機械の得点は、自分の評価を出すまで隠されています。</translation>
+    </message>
+    <message>
+        <source>The machine&apos;s score is shown when all works are marked.</source>
+        <translation>機械の得点は、すべての作品を評価すると表示されます。</translation>
+    </message>
+    <message>
+        <source>It waits for its score.</source>
+        <translation>採点を待っています。</translation>
+    </message>
+    <message>
+        <source>%1 of %2 points; machine: %3. %4.</source>
+        <translation>%1 / %2 点、機械：%3。%4。</translation>
+    </message>
+    <message>
+        <source>Why: %1.</source>
+        <translation>理由：%1。</translation>
+    </message>
+    <message>
+        <source>Proven.</source>
+        <translation>証明済み。</translation>
+    </message>
+    <message>
+        <source>Unproven: %1.</source>
+        <translation>未証明：%1。</translation>
+    </message>
+    <message>
+        <source>choose</source>
+        <translation>選択</translation>
+    </message>
+    <message>
+        <source>band as it is</source>
+        <translation>段階はそのまま</translation>
+    </message>
+    <message>
+        <source>critical: as it is</source>
+        <translation>重大な誤り：そのまま</translation>
+    </message>
+    <message>
+        <source>no critical error</source>
+        <translation>重大な誤りなし</translation>
+    </message>
+    <message>
+        <source> of %1</source>
+        <translation> / %1</translation>
+    </message>
+    <message>
+        <source>Mark</source>
+        <translation>評価する</translation>
+    </message>
+    <message>
+        <source>Override</source>
+        <translation>変更する</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::WorkTable</name>
+    <message>
+        <source>critical error</source>
+        <translation>重大な誤り</translation>
+    </message>
+    <message>
+        <source>borderline</source>
+        <translation>境界</translation>
+    </message>
+    <message>
+        <source>unproven</source>
+        <translation>未証明</translation>
+    </message>
+    <message>
+        <source>not scored</source>
+        <translation>採点不能</translation>
+    </message>
+    <message>
+        <source>passed</source>
+        <translation>合格</translation>
+    </message>
+    <message>
+        <source>not passed</source>
+        <translation>不合格</translation>
+    </message>
+    <message>
+        <source>the teacher decides</source>
+        <translation>教員が判定</translation>
+    </message>
+    <message>
+        <source>%1 of %2</source>
+        <translation>%1 / %2</translation>
+    </message>
+    <message>
+        <source>hidden</source>
+        <translation>非表示</translation>
+    </message>
+    <message>
+        <source>marked</source>
+        <translation>評価済み</translation>
+    </message>
+    <message>
+        <source>to be marked</source>
+        <translation>未評価</translation>
+    </message>
+    <message>
+        <source>begun</source>
+        <translation>途中</translation>
+    </message>
+    <message>
+        <source>waits for its score</source>
+        <translation>採点待ち</translation>
+    </message>
+    <message>
+        <source>the machine&apos;s score is shown at the end</source>
+        <translation>機械の得点は最後に表示</translation>
+    </message>
+    <message>
+        <source>came a second time</source>
+        <translation>二度目</translation>
+    </message>
+    <message>
+        <source>overridden: %1</source>
+        <translation>変更：%1</translation>
+    </message>
+    <message>
+        <source>decided</source>
+        <translation>判定済み</translation>
+    </message>
+    <message>
+        <source>Code</source>
+        <translation>コード</translation>
+    </message>
+    <message>
+        <source>File</source>
+        <translation>ファイル</translation>
+    </message>
+    <message>
+        <source>Score</source>
+        <translation>得点</translation>
+    </message>
+    <message>
+        <source>Machine&apos;s score</source>
+        <translation>機械の得点</translation>
+    </message>
+    <message>
+        <source>Passed</source>
+        <translation>合否</translation>
+    </message>
+    <message>
+        <source>Flags</source>
+        <translation>印</translation>
+    </message>
+    <message>
+        <source>State</source>
+        <translation>状態</translation>
+    </message>
+    <message>
+        <source>Comments</source>
+        <translation>コメント</translation>
+    </message>
+</context>
+<context>
+    <name>Assessment</name>
+    <message>
+        <source>; %1: %2 to %3 %4</source>
+        <translation>；%1：%2～%3 %4</translation>
+    </message>
+    <message>
+        <source>; %1: at least %2 %3</source>
+        <translation>；%1：%2 %3 以上</translation>
+    </message>
+    <message>
+        <source>; %1: at most %2 %3</source>
+        <translation>；%1：%2 %3 以下</translation>
+    </message>
+    <message>
+        <source> (%1 points)</source>
+        <translation>（%1 点）</translation>
+    </message>
+    <message>
+        <source>; critical error: %1</source>
+        <translation>；重大な誤り：%1</translation>
+    </message>
+    <message>
+        <source>Passed</source>
+        <translation>合格</translation>
+    </message>
+    <message>
+        <source>Not passed</source>
+        <translation>不合格</translation>
+    </message>
+    <message>
+        <source>The teacher decides</source>
+        <translation>教員が判断</translation>
+    </message>
+    <message>
+        <source>%1 of %2</source>
+        <translation>%1 / %2</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ExercisesDialog</name>
+    <message>
+        <source>Exercises</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>Preparing what is shown</source>
+        <translation>表示を準備しています</translation>
+    </message>
+    <message>
+        <source>Begin</source>
+        <translation>始める</translation>
+    </message>
+    <message>
+        <source>Open the tooth of this exercise and work on it</source>
+        <translation>この課題の歯を開いて作業を始めます</translation>
+    </message>
+    <message>
+        <source>Folder...</source>
+        <translation>フォルダー...</translation>
+    </message>
+    <message>
+        <source>Choose a folder with exercises of your school</source>
+        <translation>学校の課題があるフォルダーを選びます</translation>
+    </message>
+    <message>
+        <source>Title of the exercise</source>
+        <translation>課題の題名</translation>
+    </message>
+    <message>
+        <source>What to do</source>
+        <translation>内容</translation>
+    </message>
+    <message>
+        <source>Tooth, bur and helps</source>
+        <translation>歯、バー、使える補助</translation>
+    </message>
+    <message>
+        <source>Best so far</source>
+        <translation>これまでの最高点</translation>
+    </message>
+    <message>
+        <source>What is judged</source>
+        <translation>採点の項目</translation>
+    </message>
+    <message>
+        <source>What is wrong</source>
+        <translation>問題点</translation>
+    </message>
+    <message>
+        <source>Those of the program.</source>
+        <translation>プログラムに付属の課題です。</translation>
+    </message>
+    <message>
+        <source>And those in %1</source>
+        <translation>付属の課題と、%1 にある課題です。</translation>
+    </message>
+    <message>
+        <source>Reading the folder</source>
+        <translation>フォルダーを読み込んでいます</translation>
+    </message>
+    <message>
+        <source>Opening the exercise</source>
+        <translation>課題を開いています</translation>
+    </message>
+    <message>
+        <source>Cutting the ideal</source>
+        <translation>見本を削っています</translation>
+    </message>
+    <message>
+        <source>The ideal: drag to turn it</source>
+        <translation>見本：ドラッグで回転</translation>
+    </message>
+    <message>
+        <source>Tooth %1</source>
+        <translation>歯 %1</translation>
+    </message>
+    <message>
+        <source>%1 minutes</source>
+        <translation>%1 分</translation>
+    </message>
+    <message>
+        <source>Burs: %1</source>
+        <translation>バー：%1</translation>
+    </message>
+    <message>
+        <source>Bur to begin with: %1</source>
+        <translation>最初のバー：%1</translation>
+    </message>
+    <message>
+        <source>Not in this exercise: %1</source>
+        <translation>この課題では使えないもの: %1</translation>
+    </message>
+    <message>
+        <source>Not tried yet.</source>
+        <translation>まだ試していません。</translation>
+    </message>
+    <message>
+        <source>This exercise is not judged: it has no rubric.</source>
+        <translation>この課題には採点基準がなく、採点されません。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::PracticeFeature</name>
+    <message>
+        <source>A folder with exercises</source>
+        <translation>課題のフォルダー</translation>
+    </message>
+    <message>
+        <source>Cutting the ideal</source>
+        <translation>見本を削っています</translation>
+    </message>
+    <message>
+        <source>Best so far: %1 % in %2 attempts</source>
+        <translation>これまでの最高点：%1 %（%2 回）</translation>
+    </message>
+    <message>
+        <source>Save the result</source>
+        <translation>結果を保存</translation>
+    </message>
+    <message>
+        <source>Page (*.html)</source>
+        <translation>ページ (*.html)</translation>
+    </message>
+    <message>
+        <source>Writing the page</source>
+        <translation>ページを書き出しています</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ProgressCurve</name>
+    <message>
+        <source>Share of all points over the attempts</source>
+        <translation>回を追った得点率</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ProgressDialog</name>
+    <message>
+        <source>Exercise</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>Attempts</source>
+        <translation>試行</translation>
+    </message>
+    <message>
+        <source>Progress</source>
+        <translation>上達の記録</translation>
+    </message>
+    <message>
+        <source>When</source>
+        <translation>日時</translation>
+    </message>
+    <message>
+        <source>Score</source>
+        <translation>得点</translation>
+    </message>
+    <message>
+        <source>Passed</source>
+        <translation>合格</translation>
+    </message>
+    <message>
+        <source>Device</source>
+        <translation>デバイス</translation>
+    </message>
+    <message>
+        <source>Proven</source>
+        <translation>検証済み</translation>
+    </message>
+    <message>
+        <source>No exercise is finished yet.</source>
+        <translation>終えた課題はまだありません。</translation>
+    </message>
+    <message>
+        <source>Attempts with another device, motion scale or version of the exercise are not compared: each has a line of its own.</source>
+        <translation>デバイス、動きの倍率、課題の版が違う試行は比べられません。それぞれ別の線で示します。</translation>
+    </message>
+    <message>
+        <source>%1 (%2 %)</source>
+        <translation>%1（%2 %）</translation>
+    </message>
+    <message>
+        <source>yes</source>
+        <translation>はい</translation>
+    </message>
+    <message>
+        <source>no</source>
+        <translation>いいえ</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ResultDialog</name>
+    <message>
+        <source>Result</source>
+        <translation>結果</translation>
+    </message>
+    <message>
+        <source>Before you see the result: what do you think of your own work?</source>
+        <translation>結果を見る前に、自分の作業をどう評価しますか？</translation>
+    </message>
+    <message>
+        <source>Of all points I expect</source>
+        <translation>予想する得点率</translation>
+    </message>
+    <message>
+        <source> %</source>
+        <translation> %</translation>
+    </message>
+    <message>
+        <source>What went well, and what would you do otherwise?</source>
+        <translation>うまくいった点と、次に変えたい点</translation>
+    </message>
+    <message>
+        <source>Show the result</source>
+        <translation>結果を見る</translation>
+    </message>
+    <message>
+        <source>Exercise</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>Score</source>
+        <translation>得点</translation>
+    </message>
+    <message>
+        <source>Why</source>
+        <translation>理由</translation>
+    </message>
+    <message>
+        <source>Your own judgement</source>
+        <translation>自己評価</translation>
+    </message>
+    <message>
+        <source>All that was judged</source>
+        <translation>採点のすべて</translation>
+    </message>
+    <message>
+        <source>A click on a row with a place turns the eye there and plays the seconds in which it happened</source>
+        <translation>場所のある行をクリックすると、視点をそこに向け、起きた数秒を再生します</translation>
+    </message>
+    <message>
+        <source>Criterion</source>
+        <translation>項目</translation>
+    </message>
+    <message>
+        <source>Measured</source>
+        <translation>測定値</translation>
+    </message>
+    <message>
+        <source>Band</source>
+        <translation>評価</translation>
+    </message>
+    <message>
+        <source>Points</source>
+        <translation>点</translation>
+    </message>
+    <message>
+        <source>Where</source>
+        <translation>場所</translation>
+    </message>
+    <message>
+        <source>Your tooth</source>
+        <translation>自分の歯</translation>
+    </message>
+    <message>
+        <source>The ideal</source>
+        <translation>見本</translation>
+    </message>
+    <message>
+        <source>Save as a page...</source>
+        <translation>ページとして保存...</translation>
+    </message>
+    <message>
+        <source>One HTML page to keep or to print</source>
+        <translation>保存や印刷のための HTML ページ 1 枚</translation>
+    </message>
+    <message>
+        <source>Again</source>
+        <translation>もう一度</translation>
+    </message>
+    <message>
+        <source>Begin the same exercise anew</source>
+        <translation>同じ課題を最初から始めます</translation>
+    </message>
+    <message>
+        <source>Next</source>
+        <translation>次へ</translation>
+    </message>
+    <message>
+        <source>Choose the next exercise</source>
+        <translation>次の課題を選びます</translation>
+    </message>
+    <message>
+        <source>%1 points (%2 to %3): %4</source>
+        <translation>%1 点（%2～%3）：%4</translation>
+    </message>
+    <message>
+        <source>Perhaps a critical error: %1</source>
+        <translation>重大な誤りの可能性：%1</translation>
+    </message>
+    <message>
+        <source>Critical error: %1</source>
+        <translation>重大な誤り：%1</translation>
+    </message>
+    <message>
+        <source>Criteria worth %1 of %2 points could not be measured.</source>
+        <translation>%2 点のうち %1 点分の項目は測定できませんでした。</translation>
+    </message>
+    <message>
+        <source>You expected %1 %; it is %2 %.</source>
+        <translation>予想は %1 %、結果は %2 % です。</translation>
+    </message>
+    <message>
+        <source>Proven: cut again from its recording it is the same tooth, bit for bit.</source>
+        <translation>検証済み：記録から削り直すと、まったく同じ歯になります。</translation>
+    </message>
+    <message>
+        <source>Not proven: the recording does not lead to this very tooth.</source>
+        <translation>未検証：記録から同じ歯になりません。</translation>
+    </message>
+    <message>
+        <source>What cost most</source>
+        <translation>最も減点された項目</translation>
+    </message>
+    <message>
+        <source>%1 points lost</source>
+        <translation>%1 点の減点</translation>
+    </message>
+    <message>
+        <source>Show</source>
+        <translation>表示</translation>
+    </message>
+    <message>
+        <source>Turn the eye there and play the seconds in which it happened</source>
+        <translation>視点をそこに向け、起きた数秒を再生します</translation>
+    </message>
+    <message>
+        <source>Turn the eye there</source>
+        <translation>視点をそこに向けます</translation>
+    </message>
+    <message>
+        <source>not measured</source>
+        <translation>測定できず</translation>
+    </message>
+    <message>
+        <source>not with this device</source>
+        <translation>このデバイスでは対象外</translation>
+    </message>
+    <message>
+        <source>void</source>
+        <translation>無効</translation>
+    </message>
+    <message>
+        <source>borderline</source>
+        <translation>境界</translation>
+    </message>
+    <message>
+        <source> (borderline)</source>
+        <translation>（境界）</translation>
+    </message>
+    <message>
+        <source>shown only</source>
+        <translation>表示のみ</translation>
+    </message>
+    <message>
+        <source>%1 s</source>
+        <translation>%1 秒</translation>
+    </message>
+    <message>
+        <source>place</source>
+        <translation>場所</translation>
+    </message>
+    <message>
+        <source>The ideal: drag to turn it</source>
+        <translation>見本：ドラッグで回転</translation>
+    </message>
+    <message>
+        <source>Your tooth: drag to turn it</source>
+        <translation>自分の歯：ドラッグで回転</translation>
     </message>
 </context>
 </TS>

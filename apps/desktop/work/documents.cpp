@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 
 #include "handpiece/app/exercise/permissions.h"
 #include "handpiece/app/simulation/session_player.h"
@@ -227,6 +228,13 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
         recovered = simulation::recover(request.path, reading);
         loaded.document = request.recovered;
         recovered->toothCase.exercise = request.exercise;
+        if (!request.recovered.taskPath.empty()) {
+            try {
+                loaded.document.task = std::make_shared<const tasks::Task>(tasks::readTask(request.recovered.taskPath));
+            } catch (const core::Error&) {  // gone by now: the tooth comes back all the same
+                loaded.document.taskPath.clear();
+            }
+        }
         loaded.toothCase = std::make_shared<const cases::Case>(std::move(recovered->toothCase));
         loaded.elapsedS = recovered->elapsedS;
         loaded.code = recovered->code;
@@ -238,6 +246,18 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
         loaded.bur = settings.bur->name();
         loaded.drive = settings.drive.name;
         loaded.speedRpm = settings.drive.freeSpeedRpm;
+    } else if (!request.task.empty()) {
+        auto task = std::make_shared<const tasks::Task>(tasks::readTask(request.task));
+        const fs::path whole = core::wholePath(request.task);
+        loaded.document.caseFile = core::isFolder(whole) && core::isThere(whole / tasks::kTaskFile) ? whole / "case" : whole;
+        loaded.document.taskPath = whole;
+        loaded.document.name = task->toothCase.name;
+        loaded.document.began =
+            std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
+                .count();
+        loaded.toothCase = std::make_shared<const cases::Case>(task->toothCase);
+        settings.field = simulation::fieldSettingsAt(task->voxelMm);
+        loaded.document.task = std::move(task);
     } else if (request.starter) {
         cases::Case made = starterCase(*request.starter, request.starterFolder, reading, listener);
         loaded.document.caseFile = starterPlace(*request.starter, request.starterFolder);

@@ -16,6 +16,7 @@
 #include "handpiece/app/simulation/live_session.h"
 #include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/assess/task/task.h"
 #include "handpiece/base/core/progress.h"
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/case.h"
@@ -59,6 +60,9 @@ struct Document {
     /// That led to this tooth before the recording under way, in their order.
     std::vector<RecordingPlace> recordings{};
     std::string student{};  ///< of an attempt, as typed
+    std::shared_ptr<const tasks::Task> task{};  ///< null: none is set
+    std::filesystem::path taskPath{};
+    std::int64_t began = 0;  ///< work on it [ms since 1970]; 0: not known
 };
 
 /// What is being done for a tooth that opens, for people.
@@ -79,6 +83,7 @@ struct LoadRequest {
     std::filesystem::path path;  ///< case, attempt or mesh; a session to be recovered from
     int fdi = 0;                 ///< the tooth of a case to work on; 0: its own
     std::optional<Starter> starter;
+    std::filesystem::path task;  ///< an exercise, in the place of `path`
     bool recover = false;
     Document recovered;  ///< with `recover`: what its marker says
     std::optional<cases::Exercise> exercise;

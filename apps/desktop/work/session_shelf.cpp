@@ -47,6 +47,7 @@ std::optional<SessionNote> readNote(const fs::path& session) {
                                s[QStringLiteral("mouth")].toBool(true)};
     note.workedOn = o[QStringLiteral("tooth")].toInt();
     note.exercise = o[QStringLiteral("exercise")].toString();
+    note.task = o[QStringLiteral("task")].toString();
     for (const QJsonValue& name : o[QStringLiteral("recordings")].toArray())
         note.recordings << name.toString();
     return note;
@@ -65,6 +66,7 @@ void writeNote(const fs::path& session, const SessionNote& note) {
                                                    {QStringLiteral("faces"), static_cast<qint64>(s->faces)},
                                                    {QStringLiteral("mouth"), s->inMouth}};
     if (note.workedOn != 0) o[QStringLiteral("tooth")] = note.workedOn;
+    if (!note.task.isEmpty()) o[QStringLiteral("task")] = note.task;
     if (!note.exercise.isEmpty()) o[QStringLiteral("exercise")] = note.exercise;
     if (!note.recordings.isEmpty()) o[QStringLiteral("recordings")] = QJsonArray::fromStringList(note.recordings);
     core::writeFile(beside(session, ".json"), QJsonDocument(o).toJson().toStdString(),

@@ -26,6 +26,7 @@ struct SessionNote {
     int workedOn = 0;                     ///< the tooth of the case, when it is not its own
     QString exercise = {};                ///< cases::exerciseText(): what was locked stays locked
     QStringList recordings = {};          ///< of the same attempt, before this one
+    QString task = {};                    ///< the exercise's file or folder; may be empty
 };
 
 /// A recording whose program ended without a word.

@@ -73,6 +73,7 @@ SessionNote Simulator::noteNow() const {
         note.recordings << QString::fromStdString(recording.name);
     note.starter = document_.starter;
     note.workedOn = document_.workedOn;
+    note.task = toQString(document_.taskPath);
     return note;
 }
 

@@ -21,6 +21,7 @@
 #include "desktop/work/foot.h"
 #include "desktop/work/replay_driver.h"
 #include "desktop/work/session_shelf.h"
+#include "handpiece/app/course/finished_work.h"
 #include "handpiece/app/exercise/permissions.h"
 #include "handpiece/app/simulation/live_session.h"
 #include "handpiece/senses/measure/pulp_light.h"
@@ -101,9 +102,25 @@ class Simulator : public QObject {
     void openFirst() { openStarter(options_.starter); }
     /// A case, an attempt, a mesh or a session, whatever the file is; of a case the tooth `fdi` (0: its own).
     void open(const std::filesystem::path& path, int fdi = 0);
+    /// An exercise, folder or file, begun anew: its tooth, its voxel, its locks.
+    void openExercise(const std::filesystem::path& path);
+    /// Of the tooth that is open; null without one.
+    [[nodiscard]] const std::shared_ptr<const tasks::Task>& task() const noexcept { return document_.task; }
+    /// Work on an exercise, scored.
+    struct Finished {
+        course::FinishedWork work;
+        std::filesystem::path taskPath;
+        std::vector<std::string> recordings;       ///< that led to it
+        std::int64_t began = 0, finished = 0;      ///< [ms since 1970]
+    };
+    /// Closes the recording and judges it beside everything else; its replay lies open at its end then, and finished()
+    /// tells the rest. Cancelled or refused: the tooth comes back as it was.
+    void finish();
     void recover(const Crashed& crashed, std::function<void()> then = {});
     /// Gives up what a crash left behind; the recording itself stays for a while.
     void forget(const Crashed& crashed) { shelf_.settle(crashed.session); }
+    void forget(const Finished& done) { shelf_.settle(done.work.session); }
+    [[nodiscard]] const Folders& folders() const noexcept { return options_.folders; }
     void cancelJob();
     /// At once, or when the work that goes on is over; the last one asked for, the others are given up.
     void whenFree(std::function<void()> what);
@@ -219,6 +236,8 @@ class Simulator : public QObject {
     void noticed(const QString& id, const QStringList& arguments);
     /// What was done to the tooth is to be undone, all of it.
     void wasReset();
+    /// What was cut is still marked as unsaved: forget() it once its result is kept.
+    void finished(const handpiece::desktop::Simulator::Finished& done);
     /// The exercise locks it.
     void refused(handpiece::exercise::Operation operation);
 
@@ -258,6 +277,7 @@ class Simulator : public QObject {
     }
     [[nodiscard]] SessionNote noteNow() const;
     [[nodiscard]] LoadRequest request() const;
+    [[nodiscard]] LoadRequest requestAgain() const;
     [[nodiscard]] bool mayWork();
     void tellDrill();
     [[nodiscard]] ReplayDriver::Heard replayEar();

@@ -293,11 +293,7 @@ void Simulator::setCode(const QString& asked) {
     sessionCode_ = code.toStdString();
     if (job_ || mode_ != Mode::liveSession) return;
     if (!status_.cut && status_.strokes == 0 && document_.attemptFile.empty()) {
-        LoadRequest wanted = request();
-        wanted.starter = document_.starter;
-        wanted.path = document_.caseFile;
-        wanted.fdi = document_.workedOn;
-        load(std::move(wanted), tr("Preparing the tooth"));
+        load(requestAgain(), tr("Preparing the tooth"));
     } else {
         emit noticed(QStringLiteral("code-later"), {code});
     }
@@ -312,6 +308,7 @@ void Simulator::recover(const Crashed& crashed, std::function<void()> then) {
     wanted.recovered.name = crashed.note.title.toStdString();
     wanted.recovered.starter = crashed.note.starter;
     wanted.recovered.workedOn = crashed.note.workedOn;
+    wanted.recovered.taskPath = toPath(crashed.note.task);
     for (const QString& name : crashed.note.recordings)
         wanted.recovered.recordings.push_back({name.toStdString(), shelf_.folder() / name.toStdString(), false});
     wanted.recovered.recordings.push_back({crashed.session.filename().string(), crashed.session, false});
@@ -439,6 +436,11 @@ void Simulator::copyRecording(const fs::path& file) {
 void Simulator::setVoxel(int um) {
     if (mode_ == Mode::empty && !job_) options_.voxelUm = voxelUm_ = um;
     if (job_ || mode_ != Mode::liveSession || um == voxelUm_) return;
+    if (document_.task) {
+        emit failed(problemById(QStringLiteral("voxel-of-exercise"), {QString::number(voxelUm_)}));
+        emit settingsChanged();
+        return;
+    }
     if (status_.inStroke) {
         emit failed(problemById(QStringLiteral("voxel-in-stroke")));
         emit settingsChanged();
@@ -446,11 +448,7 @@ void Simulator::setVoxel(int um) {
     }
     options_.voxelUm = um;
     if (!status_.cut) {
-        LoadRequest wanted = request();
-        wanted.starter = document_.starter;
-        wanted.path = document_.caseFile;
-        wanted.fdi = document_.workedOn;
-        load(std::move(wanted), tr("Preparing the tooth"));
+        load(requestAgain(), tr("Preparing the tooth"));
         return;
     }
     if (settings_.resumed || shelf_.current().empty()) {

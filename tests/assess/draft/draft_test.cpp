@@ -95,7 +95,7 @@ TEST(Draft, ComesBackFromItsFile) {
     const fs::path file = fs::temp_directory_path() / fmt::format("draft-{}.handpiece", ::getpid());
     Content content = block();
     tasks::writeTask(taskOf(content), file);
-    EXPECT_EQ(tasks::readTask(file).rubric, rubric::shippedText("dexterity-cross")) << "with its comments";
+    EXPECT_EQ(tasks::readTask(file).rubric, rubric::shippedRubricText("dexterity-cross")) << "with its comments";
     content = contentOf(tasks::readTask(file));
     EXPECT_TRUE(hasProposedRubric(content));
     EXPECT_FALSE(hasErrors(problems(content)));

@@ -153,7 +153,7 @@ TEST(Hand, GoesRoundACircleOfAKnownLength) {
 }
 
 TEST(Hand, StandsStillOnAnEncodersSteps) {
-    // Noise of a step to and fro at each tick: 55 mm a second, if one added them up.
+    // Noise of a step to or fro at each tick: 27 mm a second, if one added them up.
     std::mt19937_64 generator(test::seed());
     const Measured path = one("path-length", 10.0, [&](double) {
         Sample s = cutting();

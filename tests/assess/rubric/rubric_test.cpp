@@ -320,7 +320,7 @@ TEST(Shipped, AllAreSoundInBothLanguages) {
 TEST(Rubric, ComesBackFromWhatIsWritten) {
     std::vector<std::string> texts;
     for (const std::string& name : shippedRubrics())
-        texts.push_back(shippedText(name));
+        texts.emplace_back(shippedRubricText(name));
     texts.push_back(kHead + kDepth + kWidth +
                     "critical = { below = 0.1, title = { en = \"a \\\"quote\\\"\" } }\ndevices = [\"falcon\"]\n"
                     "excludes = [\"depth\"]\nwords = { \"pt-BR\" = \"x\\ny\" }\nleaves_out = { en = \"z\" }\n"

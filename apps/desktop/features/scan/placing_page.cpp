@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "desktop/features/scan/fdi_picker.h"
-#include "desktop/features/scan/solid_view.h"
+#include "desktop/picture/solid_view.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/widgets/parts.h"
 

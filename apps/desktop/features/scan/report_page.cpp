@@ -14,7 +14,7 @@
 #include <algorithm>
 
 #include "desktop/features/scan/placing_page.h"
-#include "desktop/features/scan/solid_view.h"
+#include "desktop/picture/solid_view.h"
 #include "desktop/features/scan/tissue_colours.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/widgets/notation.h"

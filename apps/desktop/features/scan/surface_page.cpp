@@ -12,7 +12,7 @@
 #include <QSpinBox>
 #include <QVBoxLayout>
 
-#include "desktop/features/scan/solid_view.h"
+#include "desktop/picture/solid_view.h"
 #include "desktop/features/scan/tissue_colours.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/widgets/notation.h"

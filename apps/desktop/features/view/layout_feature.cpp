@@ -110,7 +110,8 @@ void LayoutFeature::showAbout() {
         tr("<p>Licensed under the Apache License 2.0. For teaching; no medical device.</p>"
            "<p>It stands on: Qt %1 (LGPL 3), OpenAL Soft (LGPL 2), Mesa (MIT), Eigen (MPL 2), fmt (MIT), oneTBB "
            "(Apache 2.0), "
-           "Qhull (Qhull licence), HDF5 (BSD), libzip (BSD), zlib (zlib), libpng (libpng), toml++ (MIT), "
+           "Qhull (Qhull licence), HDF5 (BSD), libzip (BSD), SQLite (public domain), zlib (zlib), libpng (libpng), "
+           "toml++ (MIT), "
            "nlohmann-json (MIT), CLI11 (BSD).</p><p>Draws with: %2</p><p>Sound: %3</p>")
             .arg(
                 QLatin1String(qVersion()),

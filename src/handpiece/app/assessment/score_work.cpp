@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 
+#include "handpiece/app/assessment/scan_work.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/app/simulation/tissue_export.h"
 #include "handpiece/assess/measures/preparation.h"
@@ -266,6 +268,7 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
     preparation.whole = work.teeth.front();
     preparation.cut = mirrors.front().get();
     preparation.landmarks = toothCase.landmarks;
+    if (work.scan) preparation.noiseMm = work.scan->noiseMm;
     preparation.axes = measures::axesOf(toothCase.landmarks, toothCase.buccalSign);
     std::vector<measures::Preparation::Other> others;
     for (std::size_t number = 1; number < work.teeth.size() && number <= toothCase.others.size(); ++number)
@@ -291,6 +294,12 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
         (measures::requireKind(request).subject == measures::Subject::tooth ? ofTooth : ofHand).push_back(request);
     MeasuredWork result;
     result.measured = measures::measure(preparation, ofTooth);
+    if (work.scan) {
+        const std::array<measures::Request, 1> overPulp{{{"remaining-dentine", {}}}};
+        const std::optional<double> overPulpMm = measures::measure(preparation, overPulp).front().value;
+        for (measures::Measured& one : result.measured)
+            if (one.value) one.uncertainty = widened(one, *work.scan, overPulpMm);
+    }
     core::report(progress, 0.4);
     findTimes(work.recordings, result.measured, task.voxelMm, core::part(progress, 0.4, 0.6));
     const hand::Against against{preparation.axes.longAxis, preparation.zones};
@@ -311,6 +320,7 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
     result.identity.sessionHashes = work.sessionHashes;
     result.identity.proven = work.isProven;
     result.identity.engineRevision = core::kEngineRevision;
+    result.identity.scan = work.scan;
     result.proof = work.proof;
     return result;
 }

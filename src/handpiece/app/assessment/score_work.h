@@ -4,6 +4,7 @@
 /// From what somebody did to a score: sessions or an attempt, held against their exercise, measured, judged.
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct Work {
     score::Context context;
     std::vector<Recording> recordings{};  ///< whose samples tell of the hand, in the order of the work
     std::string noHand{};                 ///< why there are none, where there are none
+    std::optional<score::ScanFit> scan{};  ///< of a scan; readScan() makes those
 };
 
 /// Files of sessions (.h5) in a folder, by name.
@@ -54,11 +56,7 @@ struct MeasuredWork {
                                        std::span<const measures::Request> requests,
                                        const core::Progress& progress = {});
 
-struct Result {
-    score::Assessment assessment;
-    score::Identity identity;
-    std::string proof;
-};
+using Result = score::Result;
 /// Throws core::Error for a rubric that is not sound.
 [[nodiscard]] Result judge(const MeasuredWork& work, const rubric::Rubric& rubric);
 /// measureWork() and judge().

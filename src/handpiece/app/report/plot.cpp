@@ -286,7 +286,7 @@ std::string_view svgStyle() {
 .hp text { fill: currentColor; } .hp .hp-page { fill: #ffffff; } .hp .hp-title { font-size: 14px; font-weight: 600; }
 .hp .hp-grid { stroke: #8a93a3; stroke-opacity: 0.28; stroke-width: 1; }
 .hp .hp-frame { fill: none; stroke: #8a93a3; stroke-width: 1; }
-.hp .hp-line { fill: none; stroke-width: 1.7; stroke-linejoin: round; } .hp .hp-dash { stroke-dasharray: 6 4; }
+.hp .hp-line { fill: none; stroke-width: 1.7; stroke-linejoin: round; } .hp .hp-dash { stroke-dasharray: 6 4; } .hp .hp-wide { stroke-width: 3.5; stroke-linecap: round; }
 .hp .hp-mark { stroke: #c9762b; stroke-width: 0.8; stroke-dasharray: 3 2; } .hp .hp-bar { fill: #2f6f9f; }
 .hp .hp-limit { stroke: #c62828; stroke-width: 1.3; stroke-dasharray: 8 5; } .hp .hp-limit-text { fill: #c62828; }
 .hp .hp-tooth { fill: #d9c9a3; fill-opacity: 0.75; stroke: #8c7a4f; stroke-width: 1; }

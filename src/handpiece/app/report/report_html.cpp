@@ -33,6 +33,7 @@ td.yes { color: #1d7a3f; } td.no { color: #c62828; font-weight: 600; }
 .columns { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1.6rem; }
 .pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 0.6rem; }
 .slices { display: grid; grid-template-columns: 1fr 1fr 1fr; gap: 0.6rem; align-items: end; }
+.thirds { display: grid; grid-template-columns: 1fr 1fr 1fr; gap: 0.6rem; align-items: end; } .thirds figure { margin: 0; }
 .slices img { max-height: 90mm; object-fit: contain; background: #000; }
 .frame { border: 1.5px solid #0b62a4; border-radius: 8px; padding: 0.2rem 1.2rem; background: #f2f7fc; }
 figure { margin: 1rem 0; } .pictures figure, .slices figure { margin: 0; }
@@ -48,9 +49,8 @@ td.yes, .good { color: #66c98c; } td.no, .bad { color: #ff7b72; } }
 figure, tr, .frame { break-inside: avoid; } * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
 )";
 
-std::string dataAddress(const std::filesystem::path& png) {
+std::string dataAddress(std::span<const std::byte> bytes) {
     static constexpr char kLetters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const std::vector<std::byte> bytes = core::readFile(png);
     std::string out = "data:image/png;base64,";
     out.reserve(out.size() + (bytes.size() + 2) / 3 * 4);
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
@@ -154,6 +154,10 @@ void HtmlReport::figure(std::string_view svg, std::string_view caption) {
 }
 
 void HtmlReport::picture(const std::filesystem::path& png, std::string_view caption) {
+    picture(core::readFile(png), caption);
+}
+
+void HtmlReport::picture(std::span<const std::byte> png, std::string_view caption) {
     body_ += fmt::format("<figure><img alt=\"{0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>\n",
                          escaped(caption), dataAddress(png));
 }
@@ -166,7 +170,7 @@ void HtmlReport::picture(const view::Image& image, std::string_view caption) {
 }
 
 void HtmlReport::begin(Group group) {
-    constexpr std::array kClasses{"columns", "pictures", "slices", "frame"};
+    constexpr std::array kClasses{"columns", "pictures", "slices", "frame", "thirds"};
     body_ += fmt::format("<div class=\"{}\">\n", kClasses[static_cast<std::size_t>(group)]);
 }
 

@@ -5,8 +5,10 @@
 /// elsewhere. Every page of the program is made with it, in the program's language.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,7 +22,7 @@ class HtmlReport {
   public:
     enum class Tone { plain, note, good, bad, missing };
     /// What stands side by side, or in a frame.
-    enum class Group { columns, pictures, slices, frame };
+    enum class Group { columns, pictures, slices, frame, thirds };
     struct Chip {
         std::array<std::uint8_t, 3> colour;
         std::string name;
@@ -46,6 +48,8 @@ class HtmlReport {
     /// A PNG file, taken into the page.
     void picture(const std::filesystem::path& png, std::string_view caption);
     void picture(const view::Image& image, std::string_view caption);
+    /// The bytes of a PNG file.
+    void picture(std::span<const std::byte> png, std::string_view caption);
     void begin(Group group);
     void end();
     /// The page.

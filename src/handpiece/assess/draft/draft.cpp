@@ -30,6 +30,7 @@ Content contentOf(const tasks::Task& task) {
     content.voxelMm = task.voxelMm;
     content.minutes = task.minutes;
     content.preparation = task.preparation;
+    content.ownJudgement = task.ownJudgement;
     content.rubricText = task.rubric;
     if (!task.rubric.empty()) content.rubric = rubric::parseRubric(task.rubric, kRubricHere);
     auto tooth = std::make_shared<cases::Case>(task.toothCase);
@@ -48,6 +49,7 @@ tasks::Task taskOf(const Content& content) {
     task.voxelMm = content.voxelMm;
     task.minutes = content.minutes;
     task.preparation = content.preparation;
+    task.ownJudgement = content.ownJudgement;
     if (content.rubric) {
         task.rubric = rubric::rubricToml(*content.rubric);
         if (!content.rubricText.empty() &&

@@ -26,6 +26,7 @@ struct Content {
     double voxelMm = 0.05;
     std::optional<double> minutes;
     std::optional<preparation::Recipe> preparation;
+    bool ownJudgement = false;  ///< a student says what they expect before they see the result
     std::optional<rubric::Rubric> rubric;
     std::string rubricText;  ///< as read: written again, with its comments, while it means the same
 };

@@ -72,7 +72,7 @@ std::vector<int> ringsOf(const HeightMap& map, const std::vector<int>& label, in
     return ring;
 }
 
-void findFlat(const HeightMap& map, const std::vector<int>& label, int mine, Floor& floor) {
+void findFlat(const HeightMap& map, const std::vector<int>& label, int mine, double noiseMm, Floor& floor) {
     // A first plane through what is about as steep as most of it.
     std::vector<Vec3> normals;
     std::vector<double> x, y;
@@ -118,7 +118,7 @@ void findFlat(const HeightMap& map, const std::vector<int>& label, int mine, Flo
             const Vec3 q = map.drawOf(node);
             mean += q.z() - plane.of(q.x(), q.y());
         }
-        if (!more.empty() && mean / static_cast<double>(more.size()) > kCornerMm + 0.5 * plane.rms) break;
+        if (!more.empty() && mean / static_cast<double>(more.size()) > kCornerMm + 2.0 * noiseMm + 0.5 * plane.rms) break;
         kept.insert(kept.end(), more.begin(), more.end());
     }
     std::sort(kept.begin(), kept.end());
@@ -164,7 +164,7 @@ void CutTooth::findFloors() {
         floor.areaMm2 = kProbeMm * kProbeMm * static_cast<double>(floor.nodes.size());
         if (floor.areaMm2 < kLeastAreaMm2) continue;
         std::sort(floor.nodes.begin(), floor.nodes.end());
-        findFlat(map, label, labels, floor);
+        findFlat(map, label, labels, p_.noiseMm, floor);
         floors.push_back(std::move(floor));
     }
     std::stable_sort(floors.begin(), floors.end(),

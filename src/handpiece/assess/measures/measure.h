@@ -47,6 +47,10 @@ struct MeasureKind {
     std::string_view says;            ///< in one line; the definition is in docs/assessment.md
 };
 
+/// Raised with every change after which the same work may be measured otherwise, or another measure is taken: kept values
+/// of before are taken anew.
+inline constexpr int kMeasuresRevision = 1;
+
 /// All there are, by id.
 [[nodiscard]] std::span<const MeasureKind> measureKinds();
 /// Null when there is none of this id.

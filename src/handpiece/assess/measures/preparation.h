@@ -53,6 +53,8 @@ struct Preparation {
     std::span<const Other> others{};  ///< teeth beside it
     /// Gingiva as a surface, tooth frame; null when the case has none.
     const geometry::TriangleTree* gingiva = nullptr;
+    /// Rms of what a scanner has left on the surface; 0: it was cut here.
+    double noiseMm = 0.0;
     /// Of the task; null where it has none.
     const zones::Zones* zones = nullptr;
 };

@@ -162,10 +162,10 @@ void requireSound(const Rubric& rubric);
 [[nodiscard]] std::string_view shippedFor(std::string_view preparation);
 /// Its text, with mesial and distal changed over where `side` is the other than it was made for; empty: there is none.
 [[nodiscard]] std::string shippedTextFor(std::string_view preparation, std::string_view side);
-/// As it is shipped, with its comments. Throws core::Error naming those there are.
-[[nodiscard]] std::string shippedText(std::string_view name);
 /// Throws core::Error naming them.
 [[nodiscard]] Rubric shippedRubric(std::string_view name);
+/// The file as it is; throws alike.
+[[nodiscard]] std::string_view shippedRubricText(std::string_view name);
 
 /// The band that has the value; null when none has.
 [[nodiscard]] const Band* bandOf(const Criterion& criterion, double value);

@@ -76,7 +76,7 @@ std::string_view shippedFor(std::string_view preparation) {
     return {};
 }
 
-std::string shippedText(std::string_view name) {
+std::string_view shippedRubricText(std::string_view name) {
     for (const Shipped& s : all())
         if (s.name == name) return s.text;
     throw core::Error(fmt::format("there is no rubric \"{}\"", name.substr(0, 64)), {},
@@ -86,7 +86,7 @@ std::string shippedText(std::string_view name) {
 std::string shippedTextFor(std::string_view preparation, std::string_view side) {
     const std::string_view name = shippedFor(preparation);
     if (name.empty()) return {};
-    const std::string text = shippedText(name);
+    const std::string text(shippedRubricText(name));
     // All that have a side were made for the mesial one.
     if (side != "distal") return text;
     constexpr std::pair<std::string_view, std::string_view> kSwaps[] = {
@@ -108,7 +108,7 @@ std::string shippedTextFor(std::string_view preparation, std::string_view side) 
 }
 
 Rubric shippedRubric(std::string_view name) {
-    return parseRubric(shippedText(name), fmt::format("data/rubrics/{}.toml", name));
+    return parseRubric(shippedRubricText(name), fmt::format("data/rubrics/{}.toml", name));
 }
 
 }  // namespace handpiece::rubric

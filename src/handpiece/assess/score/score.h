@@ -116,12 +116,29 @@ struct Attempts {
 /// motion scales, or one of which not all was measured.
 [[nodiscard]] Attempts attempts(std::span<const Assessment> all);
 
+/// How a scan of a real preparation lies on the whole tooth.
+struct ScanFit {
+    double rmsMm = 0.0;     ///< of the uncut surface, by area
+    double uncutMm2 = 0.0;  ///< of it that was registered on
+    double noiseMm = 0.0;   ///< rms that is left when the scanner's noise is taken off
+    double cutMm2 = 0.0;    ///< surface that was cut
+    double voxelMm = 0.0;   ///< of the field made of it
+};
+
 /// Of what a result was made, beside the score.
 struct Identity {
     std::string exercise, exerciseHash, caseKey, stateHash;
     std::vector<std::string> sessionHashes;  ///< the chain, in order
     bool proven = false;                     ///< all of it replayed to the same bits
     std::int32_t engineRevision = 0;
+    std::optional<ScanFit> scan{};  ///< none: it was cut here
+};
+
+/// A score, of what, and how sure that is.
+struct Result {
+    Assessment assessment;
+    Identity identity;
+    std::string proof;  ///< in a sentence: that it was cut again to the same tooth, or why not
 };
 
 }  // namespace handpiece::score

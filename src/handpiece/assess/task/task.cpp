@@ -41,7 +41,8 @@ std::vector<std::byte> bytesOf(std::string_view text) {
 /// What exercise.toml says, but for case and rubric.
 Task parse(std::string_view text, const std::string& where) {
     const Table root = Table::parse(text, where);
-    root.allowOnly({"format", "type", "id", "version", "voxel_um", "minutes", "rubric", "exercise", "preparation"});
+    root.allowOnly({"format", "type", "id", "version", "voxel_um", "minutes", "own_judgement", "rubric", "exercise",
+                    "preparation"});
     const std::int64_t format = root.integer("format").value_or(0);
     if (format != kFormatVersion)
         root.fail(fmt::format("this exercise is of format {}", format),
@@ -62,6 +63,7 @@ Task parse(std::string_view text, const std::string& where) {
     task.minutes = root.number("minutes");
     if (task.minutes && !(*task.minutes > 0.0 && *task.minutes <= 24 * 60))
         root.fail(fmt::format("{} minutes", *task.minutes), "give more than 0, a day at most", "minutes");
+    task.ownJudgement = root.flag("own_judgement").value_or(false);
     if (const auto rubric = root.text("rubric"); rubric && *rubric != kRubricFile)
         root.fail(fmt::format("the rubric is \"{}\"", *rubric), fmt::format("call the file {}", kRubricFile), "rubric");
     if (const auto exercise = root.table("exercise")) task.toothCase.exercise = cases::readExercise(*exercise);
@@ -73,6 +75,7 @@ std::string tomlOf(const Task& task) {
     std::string out = fmt::format("format = {}\ntype = \"exercise\"\nid = \"{}\"\nversion = {}\nvoxel_um = {}\n",
                                   kFormatVersion, task.id, task.version, 1e3 * task.voxelMm);
     if (task.minutes) out += fmt::format("minutes = {}\n", *task.minutes);
+    if (task.ownJudgement) out += "own_judgement = true\n";
     if (!task.rubric.empty()) out += fmt::format("rubric = \"{}\"\n", kRubricFile);
     if (task.preparation) out += "\n" + preparation::recipeToml(*task.preparation);
     if (task.toothCase.exercise) out += "\n" + cases::exerciseText(*task.toothCase.exercise);

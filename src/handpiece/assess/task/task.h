@@ -24,6 +24,7 @@ struct Task {
     double voxelMm = 0.05;                           ///< of the tooth: a score never hangs on a student's setting
     std::optional<double> minutes;                   ///< that it may take
     std::optional<preparation::Recipe> preparation;  ///< what is to be cut; none: nothing is asked
+    bool ownJudgement = false;                       ///< a student says what they expect before they see the result
     std::string rubric;                              ///< how it is judged, as its TOML text; empty: it is not
 };
 

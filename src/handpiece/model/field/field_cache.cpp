@@ -333,6 +333,14 @@ std::optional<DistanceField> readFieldFile(const fs::path& path, std::uint64_t k
     return DistanceField(std::move(sections.field));
 }
 
+fs::path userCacheFolder() {
+    const char* cache = std::getenv("XDG_CACHE_HOME");
+    const char* home = std::getenv("HOME");
+    if (cache != nullptr && fs::path(cache).is_absolute()) return fs::path(cache) / "handpiece";
+    if (home != nullptr && fs::path(home).is_absolute()) return fs::path(home) / ".cache" / "handpiece";
+    return {};
+}
+
 std::vector<fs::path> cachePlaces(const cases::Case& toothCase, const fs::path& cacheFolder, std::uint64_t key) {
     const std::string name = fmt::format("{:016x}.field", key);
     if (!cacheFolder.empty()) return {cacheFolder / name};
@@ -340,13 +348,7 @@ std::vector<fs::path> cachePlaces(const cases::Case& toothCase, const fs::path& 
     std::error_code ec;
     if (!toothCase.source.empty() && fs::is_directory(toothCase.source, ec))
         places.push_back(toothCase.source / ".handpiece-cache" / name);
-    const char* cache = std::getenv("XDG_CACHE_HOME");
-    const char* home = std::getenv("HOME");
-    if (cache != nullptr && fs::path(cache).is_absolute()) {
-        places.push_back(fs::path(cache) / "handpiece" / name);
-    } else if (home != nullptr && fs::path(home).is_absolute()) {
-        places.push_back(fs::path(home) / ".cache" / "handpiece" / name);
-    }
+    if (const fs::path user = userCacheFolder(); !user.empty()) places.push_back(user / name);
     return places;
 }
 

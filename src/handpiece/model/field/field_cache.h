@@ -49,6 +49,10 @@ class TissueSet {
                                                          const geometry::TriangleTree& tree,
                                                          const FieldSettings& settings, const TissueSet& tissues);
 
+/// The user's own folder for what can be made again: $XDG_CACHE_HOME or ~/.cache, handpiece in it; empty where there is
+/// neither.
+[[nodiscard]] std::filesystem::path userCacheFolder();
+
 /// Where a field of this key may lie, the place to try first in front: the folder asked for; else beside the case
 /// (.handpiece-cache), then the user's cache folder ($XDG_CACHE_HOME or ~/.cache, handpiece). A single file has no
 /// beside.

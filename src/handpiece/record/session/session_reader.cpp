@@ -295,6 +295,11 @@ void SessionReader::State::leaveOutWhatWasNotDone() {
         keyFrameTicks.push_back(row.tick);
 }
 
+bool readSideBySide() {
+    hbool_t is = false;
+    return H5is_library_threadsafe(&is) >= 0 && is;
+}
+
 SessionReader::SessionReader(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {
     silenceHdf5();
     State& s = *state_;

@@ -15,6 +15,9 @@
 
 namespace handpiece::session {
 
+/// True where readers of several threads may be at work at once: the HDF5 library was built for it, as Debian's is.
+[[nodiscard]] bool readSideBySide();
+
 /// Reads by stretches; memory does not grow with the session. One thread.
 ///
 /// What the file says about itself (types, sizes, links, filters) is checked before anything is read by it, and what

@@ -89,6 +89,26 @@ constexpr std::array<Colour, 8> kDepthScale{{{244, 240, 222},
                                              {72, 44, 116},
                                              {52, 2, 62}}};
 
+// Red to blue over white (ColorBrewer's RdBu of seven, C. Brewer, Apache-2.0), safe for any colour vision.
+constexpr std::array<Colour, 7> kDeviationScale{{{178, 24, 43},
+                                                 {239, 138, 98},
+                                                 {253, 219, 199},
+                                                 {247, 247, 247},
+                                                 {209, 229, 240},
+                                                 {103, 169, 207},
+                                                 {33, 102, 172}}};
+
+template <std::size_t N>
+Colour between(const std::array<Colour, N>& scale, double share) {
+    const double place = std::clamp(share, 0.0, 1.0) * (N - 1);
+    const auto i = std::min(static_cast<std::size_t>(place), N - 2);
+    const double t = place - static_cast<double>(i);
+    Colour out{};
+    for (std::size_t c = 0; c < 3; ++c)
+        out[c] = static_cast<std::uint8_t>(std::lround((1.0 - t) * scale[i][c] + t * scale[i + 1][c]));
+    return out;
+}
+
 template <class E, std::size_t N>
 E byName(std::string_view name, const std::array<std::pair<E, std::string_view>, N>& known, const char* what) {
     std::string names;
@@ -137,14 +157,11 @@ std::vector<LegendEntry> legendOf(const std::vector<cases::Tissue>& tissues, Pal
 }
 
 std::array<std::uint8_t, 3> removedDepthColour(double depthMm, double mostMm) {
-    const double share = mostMm > 0.0 ? std::clamp(depthMm / mostMm, 0.0, 1.0) : (depthMm > 0.0 ? 1.0 : 0.0);
-    const double place = share * (kDepthScale.size() - 1);
-    const auto i = std::min(static_cast<std::size_t>(place), kDepthScale.size() - 2);
-    const double t = place - static_cast<double>(i);
-    Colour out{};
-    for (std::size_t c = 0; c < 3; ++c)
-        out[c] = static_cast<std::uint8_t>(std::lround((1.0 - t) * kDepthScale[i][c] + t * kDepthScale[i + 1][c]));
-    return out;
+    return between(kDepthScale, mostMm > 0.0 ? depthMm / mostMm : (depthMm > 0.0 ? 1.0 : 0.0));
+}
+
+std::array<std::uint8_t, 3> deviationColour(double deviationMm, double mostMm) {
+    return between(kDeviationScale, mostMm > 0.0 ? 0.5 + 0.5 * deviationMm / mostMm : 0.5);
 }
 
 }  // namespace handpiece::view

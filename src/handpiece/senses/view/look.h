@@ -48,6 +48,9 @@ struct LegendEntry {
 /// Colour for a removed depth on the scale from 0 to `mostMm`, that of the renderer's removed-depth colours: from pale
 /// to dark, so that the order is seen in grey too.
 [[nodiscard]] std::array<std::uint8_t, 3> removedDepthColour(double depthMm, double mostMm);
+/// Colour for a signed deviation on the scale from -mostMm (red: too much is gone) over 0 (pale) to mostMm (blue: too
+/// little); told apart with any colour vision.
+[[nodiscard]] std::array<std::uint8_t, 3> deviationColour(double deviationMm, double mostMm);
 
 /// Every tissue is to be seen.
 constexpr std::array<bool, cases::kTissueCount> allVisible() {
@@ -67,8 +70,11 @@ struct Look {
     std::array<bool, cases::kTissueCount> visible = allVisible();
     bool removedDepthColours = false;
     double removedDepthMostMm = 3.0;  ///< the end of that scale
-    std::optional<Plane> cutAway;     ///< applies to tooth and scenery, not to bur and turbine
-    bool sectionGrid = false;         ///< millimetre lines on the cut-away's face
+    /// Instead of removed depths, with removedDepthColours: BrickUpdate::removedDepthMm holds a deviation plus this,
+    /// and the colours are those of deviationColour(). 0: removed depths.
+    double deviationMostMm = 0.0;
+    std::optional<Plane> cutAway;  ///< applies to tooth and scenery, not to bur and turbine
+    bool sectionGrid = false;      ///< millimetre lines on the cut-away's face
     bool bur = true, turbine = true;
     bool cheeks = false;  ///< lips and cheeks: else they are held aside
     bool wet = true, debris = true, spray = true, shadows = true;

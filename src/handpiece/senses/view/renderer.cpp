@@ -94,7 +94,7 @@ struct Renderer::State {
     Instruments instruments;
     Section section;
     gl::Texture depthScale;
-    double depthScaleMm = -1.0;
+    double depthScaleMm = -1.0, deviationScaleMm = 0.0;
     gl::VertexArray none;
     EyeTarget left, right, mirror, moving;
     std::vector<std::unique_ptr<Pass>> effects;
@@ -108,7 +108,7 @@ struct Renderer::State {
 
     State() : effects(makeEffects([this] { return instruments.headRadiusMm(); })) {}
 
-    void renewDepthScale(double mostMm);
+    void renewDepthScale(const Look& look);
     [[nodiscard]] bool isSmall(double mm, const Camera& from, const Viewport& size, const Look& look) const;
     Detail detailFor(const Camera& to, const Viewport& size, const Look& look, FrameReport& report);
     [[nodiscard]] LayerWants wantsFor(const Eye& eye, const Viewport& size, const Look& look, const Lighting& lighting,
@@ -125,13 +125,17 @@ struct Renderer::State {
     void read(EyeTarget& from, Image& out, FrameReport& report) const;
 };
 
-void Renderer::State::renewDepthScale(double mostMm) {
-    if (mostMm == depthScaleMm) return;
+void Renderer::State::renewDepthScale(const Look& look) {
+    const double mostMm = look.removedDepthMostMm;
+    if (mostMm == depthScaleMm && look.deviationMostMm == deviationScaleMm) return;
     depthScaleMm = mostMm;
+    deviationScaleMm = look.deviationMostMm;
     constexpr int kSteps = 256;
     std::vector<std::uint8_t> colours;
     for (int i = 0; i < kSteps; ++i) {
-        const auto c = removedDepthColour(mostMm * i / (kSteps - 1), mostMm);
+        const double share = static_cast<double>(i) / (kSteps - 1);
+        const auto c = deviationScaleMm > 0.0 ? deviationColour(2.0 * share - 1.0, 1.0)
+                                              : removedDepthColour(mostMm * share, mostMm);
         colours.insert(colours.end(), {c[0], c[1], c[2], 255});
     }
     depthScale.fill(kSteps, 1, GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE, colours.data(), true);
@@ -486,7 +490,7 @@ FrameReport Renderer::draw(const Camera& camera, const Viewport& viewport, const
     s.context.makeCurrent();
     FrameReport report;
     const double begin = nowMs();
-    s.renewDepthScale(look.removedDepthMostMm);
+    s.renewDepthScale(look);
     const Detail detail = s.detailFor(camera, viewport, look, report);
     const std::uint64_t drawnBefore = s.left.number;
     const bool one = look.stereo == Stereo::none;

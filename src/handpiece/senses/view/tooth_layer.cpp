@@ -456,7 +456,8 @@ void ToothLayer::drawLight(Shaders& shaders, const Scene& scene, const gl::Textu
     const double top = box.isEmpty() ? 0.0 : box.max.z();
     light.set("crown", Vec2f(static_cast<float>(top - kCrownMm), static_cast<float>(top)));
     light.set("removedColours", look.removedDepthColours ? 1 : 0);
-    light.set("removedMost", static_cast<float>(std::max(1e-3, look.removedDepthMostMm)));
+    light.set("removedMost", static_cast<float>(std::max(1e-3, look.deviationMostMm > 0.0 ? 2.0 * look.deviationMostMm
+                                                                                          : look.removedDepthMostMm)));
     gl::drawFullScreen();
     glDepthFunc(GL_LESS);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "desktop/features/scan/solid_view.h"
+#include "desktop/picture/solid_view.h"
 
 #include <QEvent>
 #include <QMouseEvent>

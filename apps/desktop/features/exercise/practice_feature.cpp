@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "desktop/features/exercise/practice_feature.h"
+
+#include <QDateTime>
+#include <QFileDialog>
+
+#include "desktop/features/exercise/assessment_words.h"
+#include "desktop/features/exercise/exercises_dialog.h"
+#include "desktop/features/exercise/progress_dialog.h"
+#include "desktop/work/simulator.h"
+#include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/app/report/assessment_pictures.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+
+namespace handpiece::desktop {
+namespace {
+
+namespace fs = std::filesystem;
+using Command = PracticeFeature::Command;
+constexpr CommandOf<Command> kCommands[] = {
+    {Command::exercises, "actionExercises", QT_TRANSLATE_NOOP("Commands", "Exercises..."),
+     QT_TRANSLATE_NOOP("Commands", "Choose an exercise: what it asks, the ideal, your best so far"), "exercise",
+     "Ctrl+Shift+L", in(Shelf::file, 3), in(Shelf::fileBar, 2), brief(QT_TRANSLATE_NOOP("Commands", "Exercises"))},
+    {Command::finish, "actionFinish", QT_TRANSLATE_NOOP("Commands", "Finish"),
+     QT_TRANSLATE_NOOP("Commands", "Your work on this exercise is done: it is judged, and you see why"), "check",
+     "Ctrl+Return", in(Shelf::file, 9), in(Shelf::toolBar, 43)},
+    {Command::result, "actionResult", QT_TRANSLATE_NOOP("Commands", "Result"),
+     QT_TRANSLATE_NOOP("Commands", "The result of the work that was finished last"), "report", "Ctrl+Shift+B",
+     in(Shelf::view, 25)},
+    {Command::progress, "actionProgress", QT_TRANSLATE_NOOP("Commands", "Progress..."),
+     QT_TRANSLATE_NOOP("Commands", "Your results over the attempts at each exercise"), "plot", "Ctrl+Shift+H",
+     in(Shelf::view, 26)},
+};
+// A way into the seconds in which something happened, and out of them.
+constexpr double kBeforeS = 1.5, kAfterS = 1.5, kEyeMm = 26.0;
+
+}  // namespace
+
+PracticeFeature::PracticeFeature(const FeatureContext& context)
+    : Feature(context),
+      commands_(window_.commands(), kCommands),
+      exercises_(new ExercisesDialog(simulator_.folders().starters / ("exercises-" HANDPIECE_VERSION), &window_)),
+      result_(new ResultDialog(&window_)),
+      progress_(new ProgressDialog(&window_)) {
+    openDialogs();
+    Commands& commands = window_.commands();
+    on(commands_[Command::exercises], [this] {
+        exercises_->show();
+        exercises_->raise();
+        exercises_->activateWindow();
+    });
+    on(commands_[Command::finish], [this] { simulator_.finish(); });
+    on(commands_[Command::result], [this] {
+        result_->show();
+        result_->raise();
+    });
+    on(commands_[Command::progress], [this] { showProgress(); });
+    commands.enableWhile(commands_[Command::finish], [this] {
+        return !simulator_.isBusy() && simulator_.isRecorded() && simulator_.task() && !simulator_.task()->rubric.empty();
+    });
+    commands.enableWhile(commands_[Command::result], [this] { return done_ != nullptr; });
+    connect(&simulator_, &Simulator::finished, this, &PracticeFeature::take);
+    window_.openers.push_back([this](const QString& file) {
+        try {
+            if (!tasks::isTask(toPath(file))) return false;
+        } catch (const core::Error&) {
+            return false;  // whoever opens it tells what is wrong
+        }
+        simulator_.openExercise(toPath(file));
+        return true;
+    });
+}
+
+void PracticeFeature::openDialogs() {
+    exercises_->bestOf = [this](const std::string& id) { return bestOf(id); };
+    if (const QString folder = settings_.value(QStringLiteral("exercises/folder")).toString(); !folder.isEmpty())
+        exercises_->setFolder(toPath(folder));
+    else if (!simulator_.casesFolder().empty())
+        exercises_->setFolder(simulator_.casesFolder());
+    connect(exercises_, &ExercisesDialog::beginRequested, this, &PracticeFeature::begin);
+    connect(exercises_, &ExercisesDialog::folderRequested, this, [this] {
+        const QString folder = QFileDialog::getExistingDirectory(exercises_, tr("A folder with exercises"),
+                                                                 window_.questions.startFolder());
+        if (folder.isEmpty()) return;
+        settings_.set(QStringLiteral("exercises/folder"), folder);
+        exercises_->setFolder(toPath(folder));
+    });
+    connect(result_, &ResultDialog::judged, this, [this](const OwnJudgement& own) { keep(own); });
+    connect(result_, &QDialog::finished, this, [this] { keep({}); });
+    connect(result_, &ResultDialog::evidenceChosen, this, &PracticeFeature::showEvidence);
+    connect(result_, &ResultDialog::pageRequested, this, &PracticeFeature::savePage);
+    connect(result_, &ResultDialog::againRequested, this, [this] { begin(done_->taskPath); });
+    connect(result_, &ResultDialog::nextRequested, this, [this] {
+        exercises_->show();
+        exercises_->raise();
+        exercises_->chooseAfter(done_->work.task->id);
+    });
+}
+
+school::Store* PracticeFeature::store() {
+    if (store_) return store_.get();
+    try {
+        store_ = std::make_unique<school::Store>(simulator_.folders().sessions.parent_path() / "results.db");
+    } catch (const core::Error& error) {
+        window_.showProblem(problemOf(error));
+    }
+    return store_.get();
+}
+
+void PracticeFeature::begin(const fs::path& path) {
+    window_.whenMayLeave([this, path] {
+        exercises_->hide();
+        result_->close();
+        simulator_.openExercise(path);
+    });
+}
+
+void PracticeFeature::showDocument() {
+    stopAtS_.reset();
+    const auto& task = simulator_.task();
+    if (!task || simulator_.mode() != Simulator::Mode::liveSession) return;
+    if (school::Store* kept = store()) {
+        const auto now = QDateTime::currentMSecsSinceEpoch();
+        const QString title = task->toothCase.exercise ? inThisLanguage(task->toothCase.exercise->title) : QString();
+        try {
+            kept->see({task->id, task->version, rubric::hashText(tasks::contentHash(*task)), title.toStdString(), now,
+                       now});
+        } catch (const core::Error& error) {
+            window_.showProblem(problemOf(error));
+        }
+    }
+}
+
+void PracticeFeature::showTick() {
+    if (!stopAtS_ || simulator_.mode() != Simulator::Mode::replay || !simulator_.replay()) return;
+    const ReplayNow now = simulator_.replay()->now();
+    if (now.seeking || now.timeS < *stopAtS_) return;
+    simulator_.play(false);
+    stopAtS_.reset();
+}
+
+void PracticeFeature::take(const Simulator::Finished& done) {
+    done_ = std::make_shared<const Simulator::Finished>(done);
+    isKept_ = false;
+    const bool asks = done.work.task->ownJudgement;
+    result_->setResult(done_, nullptr, asks);
+    if (!asks) keep({});
+    makeIdeal();
+    result_->show();
+    result_->raise();
+    result_->activateWindow();
+}
+
+/// Once: with what the person thought of it, where they said so.
+void PracticeFeature::keep(const std::optional<OwnJudgement>& own) {
+    if (isKept_ || !done_) return;
+    school::Store* kept = store();
+    if (!kept) return;
+    const score::Result& result = done_->work.result;
+    school::Attempt attempt;
+    attempt.id = school::newId();
+    attempt.exercise = result.identity.exercise;
+    attempt.exerciseHash = result.identity.exerciseHash;
+    attempt.rubricHash = rubric::hashText(result.assessment.rubricHash);
+    attempt.sessionHashes = result.identity.sessionHashes;
+    attempt.recordings = done_->recordings;
+    attempt.began = done_->began;
+    attempt.finished = done_->finished;
+    attempt.device = result.assessment.context.device;
+    attempt.motionScale = result.assessment.context.motionScale;
+    attempt.score = result.assessment.score;
+    attempt.maxScore = result.assessment.maxScore;
+    attempt.passed = score::nameOf(result.assessment.passed);
+    attempt.borderline = result.assessment.borderline;
+    attempt.proven = result.identity.proven;
+    attempt.result = assessment::resultJson(result.assessment, result.identity);
+    std::optional<school::Judgement> said;
+    if (own)
+        said = school::Judgement{attempt.id, own->percent, own->words.toStdString(),
+                                 QDateTime::currentMSecsSinceEpoch()};
+    try {
+        kept->add(attempt, said);
+        isKept_ = true;
+        simulator_.forget(*done_);
+    } catch (const core::Error& error) {
+        // The recording stays marked: the next start offers it.
+        window_.showProblem(problemOf(error));
+    }
+}
+
+void PracticeFeature::makeIdeal() {
+    const auto ideal = std::make_shared<course::Parts>();
+    ideal_ = std::make_unique<Job>(tr("Cutting the ideal"),
+                                   [ideal, task = done_->work.task](const core::Progress& progress) {
+                                       *ideal = course::idealOf(*task, progress);
+                                   });
+    connect(ideal_.get(), &Job::done, this, [this, ideal, of = done_] {
+        if (done_ == of) result_->setIdeal(*ideal);
+    });
+    ideal_->start();
+}
+
+void PracticeFeature::turnTo(const core::Vec3& placeMm) {
+    view::Camera eye = view_.camera();
+    const core::Vec3 draw = done_->work.draw;
+    // A little from the side of the place: walls are seen that hide from straight above.
+    core::Vec3 aside = placeMm - draw * placeMm.dot(draw);
+    if (aside.norm() > 1e-6) aside.normalize();
+    eye.targetMm = placeMm;
+    eye.eyeMm = placeMm + kEyeMm * (draw - 0.35 * aside).normalized();
+    if (eye.forward().cross(eye.up).norm() < 0.2) eye.up = core::Vec3::UnitY();
+    view_.setCamera(eye);
+}
+
+void PracticeFeature::showEvidence(const measures::Evidence& evidence) {
+    if (!done_) return;
+    const fs::path session = done_->work.session;
+    if (simulator_.mode() != Simulator::Mode::replay || simulator_.document().caseFile != session) {
+        window_.whenMayLeave([this, session, evidence] {
+            simulator_.open(session);
+            simulator_.whenFree([this, session, evidence] {
+                if (simulator_.mode() == Simulator::Mode::replay && simulator_.document().caseFile == session)
+                    showEvidence(evidence);
+            });
+        });
+        return;
+    }
+    if (evidence.placeMm) turnTo(*evidence.placeMm);
+    const double endS = simulator_.replay()->durationS();
+    if (evidence.timeS) {
+        simulator_.seek(std::max(0.0, *evidence.timeS - kBeforeS));
+        stopAtS_ = std::min(endS, *evidence.timeS + kAfterS);
+        simulator_.play(true);
+    } else {
+        stopAtS_.reset();
+        simulator_.play(false);
+        simulator_.seek(endS);
+    }
+}
+
+QString PracticeFeature::bestOf(const std::string& id) {
+    school::Store* kept = store();
+    if (!kept) return {};
+    std::vector<school::Attempt> of;
+    try {
+        of = kept->attempts(id);
+    } catch (const core::Error& error) {
+        window_.showProblem(problemOf(error));
+    }
+    if (of.empty()) return {};
+    const school::Attempt latest = of.back();
+    double best = 0.0;
+    int count = 0;
+    for (const school::Attempt& attempt : of)
+        if (areComparable(attempt, latest)) {
+            best = std::max(best, attempt.percent());
+            ++count;
+        }
+    return tr("Best so far: %1 % in %2 attempts").arg(QLocale().toString(best, 'f', 0)).arg(count);
+}
+
+void PracticeFeature::showProgress() {
+    school::Store* kept = store();
+    if (!kept) return;
+    try {
+        progress_->setResults(kept->exercises(), kept->attempts(), done_ ? done_->work.task->id : std::string());
+    } catch (const core::Error& error) {
+        window_.showProblem(problemOf(error));
+        return;
+    }
+    progress_->show();
+    progress_->raise();
+}
+
+void PracticeFeature::savePage() {
+    if (!done_ || page_) return;
+    const QString file =
+        window_.questions.save(tr("Save the result"), QString::fromStdString(done_->work.task->id) + ".html",
+                               tr("Page (*.html)"), QStringLiteral(".html"));
+    if (file.isEmpty()) return;
+    page_ = new Job(
+        tr("Writing the page"),
+        [done = done_, path = toPath(file)](const core::Progress& progress) {
+            const course::FinishedWork& work = done->work;
+            const report::AssessmentPictures pictures =
+                report::assessmentPictures(*work.task, work.work.teeth, work.work.state, work.result.assessment, {},
+                                           core::part(progress, 0.0, 0.9));
+            core::writeFile(path, report::studentReport(work.result, *work.task, work.rubric, pictures), {true, true});
+        },
+        this);
+    const auto end = [this] {
+        page_->deleteLater();
+        page_ = nullptr;
+    };
+    connect(page_, &Job::done, this, [this, end, file] {
+        end();
+        window_.tellSaved(file);
+    });
+    connect(page_, &Job::failed, this, [this, end](const Problem& problem) {
+        end();
+        window_.showProblem(problem);
+    });
+    page_->start();
+}
+
+}  // namespace handpiece::desktop

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "desktop/features/exercise/result_dialog.h"
+
+#include <QButtonGroup>
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QLabel>
+#include <QLocale>
+#include <QPlainTextEdit>
+#include <QPushButton>
+#include <QRadioButton>
+#include <QSpinBox>
+#include <QStackedWidget>
+#include <QTableWidget>
+#include <QVBoxLayout>
+
+#include "desktop/features/exercise/assessment_words.h"
+#include "desktop/picture/solid_view.h"
+#include "desktop/widgets/parts.h"
+#include "desktop/widgets/theme.h"
+#include "handpiece/app/report/assessment_report.h"
+
+namespace handpiece::desktop {
+namespace {
+
+enum Column { criterion, value, band, points, place, columnCount };
+
+/// The first that leads somewhere; null: none does.
+const measures::Evidence* evidenceOf(const score::CriterionScore& c) {
+    for (const measures::Evidence& e : c.evidence)
+        if (e.placeMm || e.timeS) return &e;
+    return nullptr;
+}
+
+}  // namespace
+
+ResultDialog::ResultDialog(QWidget* parent) : QDialog(parent), pages_(new QStackedWidget(this)) {
+    setObjectName(QStringLiteral("resultDialog"));
+    setWindowTitle(tr("Result"));
+    pages_->addWidget(makeJudging());
+    pages_->addWidget(makeResult());
+    auto* column = new QVBoxLayout(this);
+    column->addWidget(pages_);
+    resize(1000, 760);
+}
+
+QWidget* ResultDialog::makeJudging() {
+    auto* page = new QWidget;
+    auto* column = new QVBoxLayout(page);
+    auto* asked = new QLabel(tr("Before you see the result: what do you think of your own work?"), page);
+    asked->setWordWrap(true);
+    asked->setFont(scaledFont(font(), 1.3, true));
+    column->addWidget(asked);
+    auto* row = new QHBoxLayout;
+    row->addWidget(new QLabel(tr("Of all points I expect"), page));
+    percent_ = named(new QSpinBox(page), "judgePercent", tr("Of all points I expect"));
+    percent_->setRange(0, 100);
+    percent_->setSuffix(tr(" %"));
+    row->addWidget(percent_);
+    row->addStretch();
+    column->addLayout(row);
+    column->addWidget(new QLabel(tr("What went well, and what would you do otherwise?"), page));
+    words_ = named(new QPlainTextEdit(page), "judgeWords", tr("What went well, and what would you do otherwise?"));
+    column->addWidget(words_, 1);
+    auto* show = named(new QPushButton(tr("Show the result"), page), "judgeShow", tr("Show the result"));
+    column->addWidget(show, 0, Qt::AlignRight);
+    connect(show, &QPushButton::clicked, this, &ResultDialog::judge);
+    return page;
+}
+
+QWidget* ResultDialog::makeResult() {
+    auto* page = new QWidget;
+    auto* left = new QVBoxLayout;
+    const auto text = [&](const char* object, const QString& name) {
+        auto* label = named(new QLabel(page), object, name);
+        label->setTextFormat(Qt::PlainText);
+        label->setWordWrap(true);
+        label->setTextInteractionFlags(Qt::TextSelectableByMouse);
+        left->addWidget(label);
+        return label;
+    };
+    title_ = text("resultTitle", tr("Exercise"));
+    score_ = text("resultScore", tr("Score"));
+    score_->setFont(scaledFont(font(), 1.5, true));
+    why_ = text("resultWhy", tr("Why"));
+    compared_ = text("resultOwnJudgement", tr("Your own judgement"));
+    errors_ = new QVBoxLayout;
+    left->addLayout(errors_);
+    table_ = named(new QTableWidget(page), "resultTable", tr("All that was judged"),
+                   tr("A click on a row with a place turns the eye there and plays the seconds in which it happened"));
+    table_->setColumnCount(columnCount);
+    table_->setHorizontalHeaderLabels({tr("Criterion"), tr("Measured"), tr("Band"), tr("Points"), tr("Where")});
+    table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+    table_->horizontalHeader()->setSectionResizeMode(criterion, QHeaderView::Stretch);
+    table_->verticalHeader()->hide();
+    table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
+    table_->setSelectionBehavior(QAbstractItemView::SelectRows);
+    table_->setWordWrap(true);
+    left->addWidget(table_, 1);
+    connect(table_, &QTableWidget::cellClicked, this, [this](int row, int) {
+        const auto& all = done_->work.result.assessment.criteria;
+        if (const auto* e = evidenceOf(all[static_cast<std::size_t>(row)])) emit evidenceChosen(*e);
+    });
+    proof_ = note({}, page, "resultProof");
+    left->addWidget(proof_);
+
+    auto* right = new QVBoxLayout;
+    auto* choice = new QHBoxLayout;
+    which_ = new QButtonGroup(this);
+    const auto add = [&](const char* object, const QString& words, int id) {
+        auto* button = named(new QRadioButton(words, page), object, words);
+        which_->addButton(button, id);
+        choice->addWidget(button);
+    };
+    add("resultOwn", tr("Your tooth"), 0);
+    add("resultIdeal", tr("The ideal"), 1);
+    which_->button(0)->setChecked(true);
+    choice->addStretch();
+    connect(which_, &QButtonGroup::idClicked, this, &ResultDialog::showTooth);
+    right->addLayout(choice);
+    tooth_ = new SolidView("resultTooth", page);
+    right->addWidget(tooth_, 1);
+
+    auto* below = new QHBoxLayout;
+    const auto push = [&](const char* object, const QString& words, const QString& tip, auto wanted) {
+        auto* button = named(new QPushButton(words, page), object, words, tip);
+        below->addWidget(button);
+        connect(button, &QPushButton::clicked, this, wanted);
+    };
+    push("resultPage", tr("Save as a page..."), tr("One HTML page to keep or to print"), &ResultDialog::pageRequested);
+    below->addStretch();
+    push("resultAgain", tr("Again"), tr("Begin the same exercise anew"), &ResultDialog::againRequested);
+    push("resultNext", tr("Next"), tr("Choose the next exercise"), &ResultDialog::nextRequested);
+    auto* row = new QHBoxLayout;
+    row->addLayout(left, 3);
+    row->addLayout(right, 2);
+    auto* column = new QVBoxLayout(page);
+    column->addLayout(row, 1);
+    column->addLayout(below);
+    return page;
+}
+
+void ResultDialog::setResult(std::shared_ptr<const Simulator::Finished> done, course::Parts ideal, bool asksFirst) {
+    done_ = std::move(done);
+    ideal_ = std::move(ideal);
+    own_.reset();
+    isAsking_ = asksFirst;
+    percent_->setValue(50);
+    words_->clear();
+    fill();
+    pages_->setCurrentIndex(asksFirst ? 0 : 1);
+}
+
+void ResultDialog::setIdeal(course::Parts ideal) {
+    ideal_ = std::move(ideal);
+    which_->button(1)->setEnabled(ideal_ != nullptr);
+    showTooth();
+}
+
+void ResultDialog::judge() {
+    own_ = OwnJudgement{static_cast<double>(percent_->value()), words_->toPlainText().trimmed()};
+    isAsking_ = false;
+    emit judged(*own_);
+    fill();
+    pages_->setCurrentIndex(1);
+}
+
+/// Who closes it without a word has none; the result is kept all the same.
+void ResultDialog::closeEvent(QCloseEvent* event) {
+    isAsking_ = false;
+    pages_->setCurrentIndex(1);
+    QDialog::closeEvent(event);
+}
+
+void ResultDialog::fill() {
+    const score::Assessment& a = done_->work.result.assessment;
+    const auto& exercise = done_->work.task->toothCase.exercise;
+    title_->setText(exercise && !exercise->title.empty() ? inThisLanguage(exercise->title)
+                                                         : QString::fromStdString(done_->work.task->id));
+    const QLocale locale;
+    score_->setText(tr("%1 points (%2 to %3): %4")
+                        .arg(pointsWords(a.score, a.maxScore), locale.toString(a.leastScore, 'f', 1),
+                             locale.toString(a.mostScore, 'f', 1), passedWords(a.passed)));
+    QStringList why;
+    for (const score::CriticalError& error : a.critical)
+        why << (error.borderline ? tr("Perhaps a critical error: %1") : tr("Critical error: %1"))
+                   .arg(titleOf(done_->work.rubric, error.criterion));
+    if (a.wholeScore > a.maxScore + 1e-9)
+        why << tr("Criteria worth %1 of %2 points could not be measured.")
+                   .arg(locale.toString(a.wholeScore - a.maxScore, 'f', 1), locale.toString(a.wholeScore, 'f', 1));
+    why_->setText(why.join(QLatin1Char('\n')));
+    why_->setToolTip(QString::fromStdString(a.why));
+    why_->setVisible(!why.isEmpty());
+    if (own_)
+        compared_->setText(tr("You expected %1 %; it is %2 %.")
+                               .arg(locale.toString(own_->percent, 'f', 0), locale.toString(a.percent(), 'f', 0)));
+    compared_->setVisible(own_.has_value());
+    proof_->setText(done_->work.result.identity.proven
+                        ? tr("Proven: cut again from its recording it is the same tooth, bit for bit.")
+                        : tr("Not proven: the recording does not lead to this very tooth."));
+    proof_->setToolTip(QString::fromStdString(done_->work.result.proof));
+    fillErrors();
+    fillTable();
+    which_->button(0)->setChecked(true);
+    setIdeal(ideal_);
+}
+
+void ResultDialog::fillErrors() {
+    for (QWidget* row : errorRows_)
+        row->deleteLater();
+    errorRows_.clear();
+    const score::Assessment& a = done_->work.result.assessment;
+    const std::vector<std::size_t> order = report::costliest(a);
+    if (!order.empty()) {
+        errorRows_.push_back(heading(tr("What cost most"), this));
+        errors_->addWidget(errorRows_.back());
+    }
+    for (std::size_t i = 0; i < std::min(order.size(), report::kFirstErrors); ++i) {
+        const score::CriterionScore& c = a.criteria[order[i]];
+        QString words = titleOf(done_->work.rubric, c.id) + QStringLiteral(": ") + valueWords(c);
+        if (!c.band.empty()) words += QStringLiteral(", ") + bandTitle(done_->work.rubric, c.band);
+        if (c.points) words += QStringLiteral(", ") + tr("%1 points lost").arg(QLocale().toString(c.maxPoints - *c.points, 'f', 1));
+        const QString drill = QString::fromStdString(report::drillFor(c.measure));
+        if (!drill.isEmpty()) words += QLatin1Char('\n') + drill;
+        auto* row = new QWidget(this);
+        auto* line = new QHBoxLayout(row);
+        line->setContentsMargins(0, 0, 0, 0);
+        auto* label = new QLabel(words, row);
+        label->setTextFormat(Qt::PlainText);
+        label->setWordWrap(true);
+        label->setObjectName(QStringLiteral("resultError_%1").arg(i + 1));
+        line->addWidget(label, 1);
+        if (const measures::Evidence* e = evidenceOf(c)) {
+            auto* show = named(new QPushButton(tr("Show"), row), "", tr("Show"),
+                               e->timeS ? tr("Turn the eye there and play the seconds in which it happened")
+                                        : tr("Turn the eye there"));
+            show->setObjectName(QStringLiteral("resultShow_%1").arg(i + 1));
+            line->addWidget(show);
+            connect(show, &QPushButton::clicked, this, [this, at = *e] { emit evidenceChosen(at); });
+        }
+        errors_->addWidget(row);
+        errorRows_.push_back(row);
+    }
+}
+
+void ResultDialog::fillTable() {
+    const auto& all = done_->work.result.assessment.criteria;
+    table_->setRowCount(static_cast<int>(all.size()));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const score::CriterionScore& c = all[i];
+        const auto put = [&](Column column, const QString& words, const QString& tip = {}) {
+            auto* item = new QTableWidgetItem(words);
+            item->setToolTip(tip);
+            if (column == value || column == points) item->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
+            table_->setItem(static_cast<int>(i), column, item);
+        };
+        put(criterion, titleOf(done_->work.rubric, c.id));
+        QString measured = valueWords(c);
+        if (c.standing == score::Standing::notMeasured) measured = tr("not measured");
+        if (c.standing == score::Standing::leftOut) measured = tr("not with this device");
+        if (c.standing == score::Standing::voided) measured = tr("void");
+        put(value, measured, QString::fromStdString(c.reason));
+        QString bands = c.band.empty() ? QString() : bandTitle(done_->work.rubric, c.band);
+        if (c.borderline) bands += bands.isEmpty() ? tr("borderline") : tr(" (borderline)");
+        put(band, bands);
+        put(points, c.points ? pointsWords(*c.points, c.maxPoints) : tr("shown only"));
+        const measures::Evidence* e = evidenceOf(c);
+        put(place, !e ? QString() : e->timeS ? tr("%1 s").arg(QLocale().toString(*e->timeS, 'f', 1)) : tr("place"),
+            e ? QString::fromStdString(e->text) : QString());
+    }
+    table_->resizeRowsToContents();
+}
+
+void ResultDialog::showTooth() {
+    const bool isIdeal = which_->checkedId() == 1 && ideal_;
+    const course::Parts& parts = isIdeal ? ideal_ : done_->work.own;
+    core::Box box;
+    if (parts)
+        for (const cases::Part& part : *parts)
+            for (const core::Vec3& v : part.mesh.vertices)
+                box.extend(v);
+    tooth_->setParts(parts, box);
+    tooth_->setCaption(isIdeal ? tr("The ideal: drag to turn it") : tr("Your tooth: drag to turn it"), false);
+}
+
+}  // namespace handpiece::desktop

@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "desktop/features/marking/marking_feature.h"
+
+#include <QDir>
+#include <QDockWidget>
+#include <QFileDialog>
+#include <QFileInfo>
+
+#include "desktop/features/marking/agreement_page.h"
+#include "desktop/features/marking/sheet_panel.h"
+#include "desktop/work/simulator.h"
+#include "handpiece/app/assessment/marks_agreement.h"
+#include "handpiece/app/marking/desk_csv.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/model/case/attempt.h"
+
+namespace handpiece::desktop {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Command = MarkingFeature::Command;
+constexpr CommandOf<Command> kCommands[] = {
+    {Command::desk, "actionMarkingDesk", QT_TRANSLATE_NOOP("Commands", "Marking desk..."),
+     QT_TRANSLATE_NOOP("Commands", "For teachers: score, look at and mark a folder of returned work"), "check",
+     "Ctrl+Shift+T", in(Shelf::tools, 40)},
+};
+
+/// A folder that holds what students give back, and is no case, attempt or exercise itself.
+bool mayBeReturnedWork(const QFileInfo& info) {
+    if (!info.isDir()) return false;
+    const QDir folder(info.absoluteFilePath());
+    for (const char* own : {"case.toml", "attempt.toml", "exercise.toml"})
+        if (folder.exists(QLatin1String(own))) return false;
+    if (!folder.entryList({QStringLiteral("*.h5"), QStringLiteral("*.handpiece")}, QDir::Files).isEmpty()) return true;
+    for (const QString& below : folder.entryList(QDir::Dirs | QDir::NoDotAndDotDot)) {
+        const QDir inner(folder.filePath(below));
+        if (inner.exists(QStringLiteral("attempt.toml")) || inner.exists(QStringLiteral("result.json")) ||
+            !inner.entryList({QStringLiteral("*.h5"), QStringLiteral("*.handpiece")}, QDir::Files).isEmpty())
+            return true;
+    }
+    return false;
+}
+
+/// Where results are kept, so that a desk that is opened again has them at once.
+constexpr const char* kKept = ".marking";
+/// How near the eye comes to a place.
+constexpr double kNearMm = 30.0;
+
+}  // namespace
+
+MarkingFeature::MarkingFeature(const FeatureContext& context)
+    : Feature(context),
+      commands_(window_.commands(), kCommands),
+      dialog_(new DeskDialog(&window_)),
+      sheet_(new SheetPanel) {
+    askFolder = [this](const QString& title) {
+        return QFileDialog::getExistingDirectory(dialog_, title, window_.questions.startFolder());
+    };
+    dock_ = window_.docks().add({"markingDock",
+                                 tr("Marking"),
+                                 12,
+                                 {{Detail::practice, Qt::RightDockWidgetArea, 5, 520},
+                                  {Detail::laboratory, Qt::RightDockWidgetArea, 5, 520},
+                                  {Detail::paper, Qt::RightDockWidgetArea, 5, 520}},
+                                 [this] { return isWanted_; }},
+                                sheet_);
+    connect(dock_->toggleViewAction(), &QAction::triggered, this, [this](bool shown) { isWanted_ = shown; });
+    on(commands_[Command::desk], [this] { open(); });
+    window_.openersBeside.push_back([this](const QFileInfo& info) {
+        if (!mayBeReturnedWork(info)) return false;
+        open(info.absoluteFilePath());
+        return true;
+    });
+    dialog_->setMarker(settings_.value(QStringLiteral("marking/marker")).toString());
+    connect(dialog_, &DeskDialog::folderRequested, this, [this] {
+        if (const QString folder = askFolder(tr("Folder of the returned work")); !folder.isEmpty()) open(folder);
+    });
+    connect(dialog_, &DeskDialog::exerciseRequested, this, [this] {
+        const QString file =
+            window_.questions.open(tr("Exercise"), tr("Exercises (*.handpiece exercise.toml);;All files (*)"));
+        if (!file.isEmpty())
+            dialog_->setExercise(file.endsWith(QLatin1String("exercise.toml")) ? QFileInfo(file).absolutePath() : file);
+    });
+    connect(dialog_, &DeskDialog::rubricRequested, this, [this] {
+        const QString file = window_.questions.open(tr("Rubric"), tr("Rubrics (*.toml);;All files (*)"));
+        if (!file.isEmpty()) dialog_->setRubricFile(file);
+    });
+    connect(dialog_, &DeskDialog::beginRequested, this, [this] {
+        wish_ = dialog_->wish();
+        begin();
+    });
+    connect(dialog_, &DeskDialog::scoreRequested, this, &MarkingFeature::begin);
+    connect(dialog_, &DeskDialog::cancelRequested, this, [this] {
+        if (job_) job_->cancel();
+    });
+    connect(dialog_, &DeskDialog::openRequested, this, &MarkingFeature::openWork);
+    connect(dialog_, &DeskDialog::exportRequested, this, &MarkingFeature::write);
+    connect(dialog_, &DeskDialog::agreementRequested, this, &MarkingFeature::computeAgreement);
+    connect(sheet_, &SheetPanel::stepRequested, this, [this](int step) {
+        if (const QString code = dialog_->beside(code_, step); !code.isEmpty()) openWork(code);
+    });
+    connect(sheet_, &SheetPanel::tableRequested, this, [this] { open(); });
+    connect(sheet_, &SheetPanel::markRequested, this, [this](const std::string& id, const marking::Mark& mark) {
+        tryTo([&](marking::Desk& desk) { desk.setMark(code_.toStdString(), id, mark); });
+    });
+    connect(sheet_, &SheetPanel::giveInRequested, this,
+            [this] { tryTo([this](marking::Desk& desk) { desk.giveIn(code_.toStdString()); }); });
+    connect(sheet_, &SheetPanel::overrideRequested, this, [this](const std::string& id, const marking::Override& said) {
+        tryTo([&](marking::Desk& desk) { desk.override(code_.toStdString(), id, said); });
+    });
+    connect(sheet_, &SheetPanel::withdrawRequested, this, [this](const std::string& id) {
+        tryTo([&](marking::Desk& desk) { desk.withdraw(code_.toStdString(), id); });
+    });
+    connect(sheet_, &SheetPanel::decisionRequested, this, [this](const std::optional<marking::Decision>& decision) {
+        tryTo([&](marking::Desk& desk) { desk.decide(code_.toStdString(), decision); });
+    });
+    connect(sheet_, &SheetPanel::commentRequested, this, &MarkingFeature::comment);
+    connect(sheet_, &SheetPanel::commentRemoved, this, [this](int number) {
+        tryTo([&](marking::Desk& desk) { desk.removeComment(code_.toStdString(), number); });
+    });
+    connect(sheet_, &SheetPanel::placeRequested, this, &MarkingFeature::goTo);
+}
+
+void MarkingFeature::open(const QString& folder) {
+    if (!folder.isEmpty()) {
+        dialog_->setFolder(folder);
+        // Where the exercise came along with the work, it is that.
+        for (const QFileInfo& info : QDir(folder).entryInfoList(QDir::Files | QDir::Dirs | QDir::NoDotAndDotDot)) {
+            try {
+                if (dialog_->wish().exercise.isEmpty() && tasks::isTask(toPath(info.absoluteFilePath())) &&
+                    !cases::isAttempt(toPath(info.absoluteFilePath())))
+                    dialog_->setExercise(info.absoluteFilePath());
+            } catch (const core::Error&) {
+                continue;  // it has a row of its own in the table, with what is wrong
+            }
+        }
+    }
+    dialog_->show();
+    dialog_->raise();
+    dialog_->activateWindow();
+}
+
+void MarkingFeature::startJob(const QString& title, Job::Work work, std::function<void()> done) {
+    auto* job = new Job(title, std::move(work), this);
+    job_ = job;
+    dialog_->setWork(title, 0.0);
+    connect(job, &Job::progressed, this, [this, title](double share) { dialog_->setWork(title, share); });
+    connect(job, &Job::done, this, [this, done = std::move(done)] {
+        endJob();
+        done();
+    });
+    connect(job, &Job::cancelled, this, [this] {
+        endJob();
+        dialog_->setNote(tr("Cancelled. What has been scored stays; \"Score again\" goes on."));
+    });
+    connect(job, &Job::failed, this, [this](const Problem& problem) {
+        endJob();
+        dialog_->setNote(problem.what);
+        window_.showProblem(problem);
+    });
+    job->start();
+}
+
+void MarkingFeature::endJob() {
+    if (job_) job_->deleteLater();
+    job_ = nullptr;
+    dialog_->setWork({}, 0.0);
+    dialog_->refresh();
+    showSheet();
+}
+
+void MarkingFeature::begin() {
+    if (job_ || wish_.folder.isEmpty()) return;
+    settings_.set(QStringLiteral("marking/marker"), wish_.marker);
+    dialog_->setNote({});
+    struct Found {
+        tasks::Task task;
+        rubric::Rubric rubric;
+        std::vector<marking::ReturnedWork> works;
+    };
+    const auto found = std::make_shared<Found>();
+    startJob(
+        tr("Looking for work"),
+        [found, wish = wish_](const core::Progress& progress) {
+            const std::string exercise = toPath(wish.exercise).string();
+            found->task = tasks::readTask(exercise);
+            if (wish.rubric.isEmpty() && found->task.rubric.empty())
+                throw core::Error("this exercise has no rubric", exercise, "choose one").as("exercise-without-rubric");
+            found->rubric = wish.rubric.isEmpty() ? rubric::parseRubric(found->task.rubric, exercise + "/rubric.toml")
+                                                  : rubric::rubricByNameOrFile(toPath(wish.rubric).string());
+            rubric::requireSound(found->rubric);
+            found->works = marking::findWork(toPath(wish.folder), progress);
+        },
+        [this, found] { takeDesk(wish_, std::move(found->works), std::move(found->task), std::move(found->rubric)); });
+}
+
+void MarkingFeature::takeDesk(const DeskWish& wish, std::vector<marking::ReturnedWork> works, tasks::Task task,
+                              rubric::Rubric rubric) {
+    marking::DeskSetup setup;
+    setup.folder = toPath(wish.folder);
+    setup.marker = wish.marker.toStdString();
+    setup.exercise = task.id;
+    setup.exerciseHash = rubric::hashText(tasks::contentHash(task));
+    setup.rubric = std::move(rubric);
+    setup.isBlind = wish.isBlind;
+    std::shared_ptr<marking::Desk> desk;
+    try {
+        desk = std::make_shared<marking::Desk>(std::move(setup), std::move(works));
+    } catch (const core::Error& error) {
+        window_.showProblem(problemOf(error));
+        return;
+    }
+    task_ = std::make_shared<const tasks::Task>(std::move(task));
+    if (!code_.isEmpty() && !desk->has(code_.toStdString())) code_.clear();
+    sheet_->showWork(nullptr, {}, {}, false, false);
+    dialog_->setDesk(desk.get());
+    desk_ = std::move(desk);
+    showSheet();
+    if (desk_->works().empty()) dialog_->setNote(tr("There is no returned work in this folder."));
+    score();
+}
+
+void MarkingFeature::score() {
+    marking::ScoreSettings settings;
+    settings.prove = wish_.prove;
+    settings.kept = desk_->folder() / kKept;
+    startJob(
+        tr("Scoring"),
+        [this, desk = desk_, works = desk_->works(), rubric = desk_->rubric(), task = task_,
+         settings](const core::Progress& progress) {
+            marking::scoreAll(
+                works, *task, rubric, settings, progress, [this, desk](std::size_t which, marking::Scored scored) {
+                    const auto shared = std::make_shared<marking::Scored>(std::move(scored));
+                    QMetaObject::invokeMethod(this, [this, desk, which, shared] {
+                        desk->take(which, std::move(*shared));
+                        if (desk != desk_) return;
+                        dialog_->refresh();
+                        if (!code_.isEmpty() && &desk_->work(code_.toStdString()) == &desk_->works()[which])
+                            showSheet();
+                    });
+                });
+        },
+        [this] { showSheet(); });
+}
+
+void MarkingFeature::openWork(const QString& code) {
+    if (!desk_ || !desk_->has(code.toStdString())) return;
+    code_ = code;
+    isWanted_ = true;
+    window_.docks().showWanted();
+    dock_->raise();
+    dialog_->select(code);
+    showSheet();
+    const marking::ReturnedWork work = desk_->work(code.toStdString());
+    if (work.isResultOnly || !core::isThere(work.path)) return;
+    const bool isSession = work.path.extension() == ".h5" && !core::isFolder(work.path);
+    if (desk_->isRevealed(code.toStdString())) return look(work.path, isSession);
+    // Under its code, without whose it is; its recordings stay away, for their names may tell.
+    if (copyJob_) copyJob_->deleteLater();
+    const fs::path place = toPath(shown_.filePath(code + (isSession ? ".h5" : ".handpiece")));
+    auto* job = new Job(
+        tr("Opening %1").arg(code),
+        [from = work.path, place, isSession](const core::Progress&) {
+            if (core::isThere(place)) return;
+            if (isSession) return fs::create_symlink(core::wholePath(from), place);
+            cases::OpenAttempt open = cases::openAttempt(from);
+            open.attempt.student.clear();
+            open.attempt.session.clear();
+            open.attempt.recordings.clear();
+            cases::writeAttempt(open.attempt, place, &open.toothCase);
+        },
+        this);
+    copyJob_ = job;
+    connect(job, &Job::done, this, [this, job, place, isSession, code] {
+        job->deleteLater();
+        if (code == code_) look(place, isSession);
+    });
+    connect(job, &Job::failed, this, [this, job](const Problem& problem) {
+        job->deleteLater();
+        window_.showProblem(problem);
+    });
+    job->start();
+}
+
+void MarkingFeature::look(const fs::path& path, bool isSession) {
+    window_.whenMayLeave([this, path, isSession] {
+        goesToEnd_ = isSession;
+        if (isSession)
+            simulator_.open(path);
+        else
+            simulator_.review(path);
+    });
+}
+
+void MarkingFeature::showDocument() {
+    const bool isReplay = simulator_.mode() == Simulator::Mode::replay;
+    sheet_->setHasTime(isReplay);
+    if (!goesToEnd_ || !isReplay || !simulator_.replay()) return;
+    // What is marked is how it ended.
+    goesToEnd_ = false;
+    simulator_.seek(simulator_.replay()->durationS());
+}
+
+void MarkingFeature::showSheet() {
+    if (!desk_ || code_.isEmpty()) return sheet_->showWork(nullptr, {}, {}, false, false);
+    const auto& codes = desk_->codes();
+    const auto at = std::find(codes.begin(), codes.end(), code_.toStdString()) - codes.begin();
+    sheet_->showWork(desk_.get(), code_, tr("%1 of %2").arg(at + 1).arg(codes.size()),
+                     !dialog_->beside(code_, -1).isEmpty(), !dialog_->beside(code_, 1).isEmpty());
+}
+
+void MarkingFeature::tryTo(const std::function<void(marking::Desk& desk)>& change) {
+    if (!desk_ || code_.isEmpty()) return;
+    try {
+        change(*desk_);
+    } catch (const core::Error& error) {
+        window_.showProblem(problemOf(error));
+    }
+    dialog_->refresh();
+    showSheet();
+}
+
+void MarkingFeature::comment(const QString& text, bool atPlace, bool atTime) {
+    marking::Comment said;
+    said.text = text.toStdString();
+    if (const std::string id = sheet_->criterion(); id != marking::kTotal) said.criterion = id;
+    if (atPlace && simulator_.tooth()) {
+        const view::Ray ray = view::rayThrough(view_.camera(), {view_.width(), view_.height()},
+                                               core::Vec2(0.5 * view_.width(), 0.5 * view_.height()));
+        simulator_.tooth()->withProbe([&](const measure::ToothProbe& probe) {
+            if (const auto hit = probe.cast(ray.originMm, ray.direction)) said.placeMm = hit->pointMm;
+        });
+        if (!said.placeMm) {
+            dialog_->setNote(tr("There is no tooth in the middle of the picture: the comment has no place."));
+        }
+    }
+    if (atTime && simulator_.replay()) said.timeS = simulator_.replay()->now().timeS;
+    tryTo([&](marking::Desk& desk) { desk.comment(code_.toStdString(), said); });
+}
+
+void MarkingFeature::goTo(const std::optional<core::Vec3>& placeMm, const std::optional<double>& timeS) {
+    if (timeS && simulator_.mode() == Simulator::Mode::replay && simulator_.replay()) {
+        simulator_.play(false);
+        simulator_.seek(std::clamp(*timeS, 0.0, simulator_.replay()->durationS()));
+    }
+    if (!placeMm || !view_.hasTooth() || !simulator_.tooth()) return;
+    // From where the eye is, or from occlusal where the tooth itself is in the way.
+    view::Camera camera = view_.camera();
+    const auto isSeen = [&](const core::Vec3& along) {
+        return simulator_.tooth()->withProbe([&](const measure::ToothProbe& probe) {
+            const auto hit = probe.cast(*placeMm - kNearMm * along, along);
+            return !hit || (hit->pointMm - *placeMm).norm() < 0.3;
+        });
+    };
+    core::Vec3 along = camera.forward();
+    if (const core::Vec3 down(0.0, 0.02, -1.0); !isSeen(along) && isSeen(down.normalized())) {
+        along = down.normalized();
+        camera.up = core::Vec3(0.0, simulator_.toothCase()->buccalSign < 0 ? -1.0 : 1.0, 0.0);
+    }
+    camera.targetMm = *placeMm;
+    camera.eyeMm = *placeMm - kNearMm * along;
+    view_.setCamera(camera);
+}
+
+void MarkingFeature::computeAgreement() {
+    if (!desk_ || !desk_->isBlind() || agreementJob_) return;
+    struct Computed {
+        marking::DeskAgreement agreement;
+        QString note;
+    };
+    const auto computed = std::make_shared<Computed>();
+    // The desk as it is now: marks may change meanwhile.
+    const auto copy = std::make_shared<const marking::Desk>(*desk_);
+    dialog_->agreement()->setNote(tr("Computing..."));
+    auto* job = new Job(
+        tr("Agreement"),
+        [computed, copy](const core::Progress&) {
+            const marking::Desk::Others others = copy->othersOfFolder();
+            computed->agreement = marking::agreementOfDesk(*copy, others.desks);
+            for (const std::string& problem : others.problems)
+                computed->note += QString::fromStdString(problem) + QLatin1Char('\n');
+        },
+        this);
+    agreementJob_ = job;
+    connect(job, &Job::done, this, [this, job, computed] {
+        job->deleteLater();
+        agreementJob_ = nullptr;
+        QString text = computed->note;
+        text += computed->agreement.criteria.empty()
+                    ? tr("There is nothing to compare yet: marks count once they are in.")
+                    : tr("Marks that were given blind alone; works whose machine's score is hidden are left out.");
+        dialog_->agreement()->show(computed->agreement, text);
+    });
+    connect(job, &Job::failed, this, [this, job](const Problem& problem) {
+        job->deleteLater();
+        agreementJob_ = nullptr;
+        dialog_->agreement()->setNote(problem.what);
+    });
+    job->start();
+}
+
+void MarkingFeature::write(const QString& what) {
+    if (!desk_) return;
+    const bool isFolder = what == QLatin1String("agreement");
+    const QString file =
+        isFolder ? window_.questions.save(tr("Folder for the agreement"), QStringLiteral("agreement"), {}, {})
+                 : window_.questions.save(
+                       tr("Write the table"),
+                       what == QLatin1String("marks") ? QStringLiteral("marks.csv") : QStringLiteral("results.csv"),
+                       tr("Table (*.csv)"), QStringLiteral(".csv"));
+    if (file.isEmpty()) return;
+    try {
+        if (!isFolder) {
+            core::writeFile(toPath(file), what == QLatin1String("marks")
+                                              ? marking::marksCsv(*desk_, desk_->othersOfFolder().desks)
+                                              : marking::resultsCsv(*desk_, what == QLatin1String("files")
+                                                                                ? marking::Naming::withFiles
+                                                                                : marking::Naming::codesOnly));
+        } else {
+            const marking::DeskAgreement agreement = marking::agreementOfDesk(*desk_, desk_->othersOfFolder().desks);
+            core::prepareOutputFolder(toPath(file));
+            core::writeFile(toPath(file) / "agreement.json", assessment::agreementJson(agreement.criteria));
+            core::writeFile(toPath(file) / "agreement.txt", assessment::agreementText(agreement.criteria));
+            for (std::size_t i = 0; i < agreement.pictures.size(); ++i)
+                core::writeFile(toPath(file) / fmt::format("{:02}.svg", i + 1), agreement.pictures[i].svg);
+        }
+        window_.tellSaved(file);
+    } catch (const core::Error& error) {
+        window_.showProblem(problemOf(error));
+    }
+}
+
+}  // namespace handpiece::desktop

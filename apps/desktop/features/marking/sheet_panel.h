@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// One work on the marking desk, beside its picture: criteria, one's own marks or overrides, comments.
+
+#include <QWidget>
+#include <optional>
+#include <string>
+
+#include "handpiece/app/marking/desk.h"
+
+class QCheckBox;
+class QComboBox;
+class QDoubleSpinBox;
+class QLabel;
+class QLineEdit;
+class QListWidget;
+class QPushButton;
+class QToolButton;
+class QTreeWidget;
+class QTreeWidgetItem;
+
+namespace handpiece::desktop {
+
+/// [markingSheet]. Shows what the desk says and asks for changes; the desk decides.
+class SheetPanel : public QWidget {
+    Q_OBJECT
+  public:
+    explicit SheetPanel(QWidget* parent = nullptr);
+
+    /// Null or an empty code: nothing. `place`: "3 of 12".
+    void showWork(const marking::Desk* desk, const QString& code, const QString& place, bool hasPrevious, bool hasNext);
+    [[nodiscard]] const QString& code() const noexcept { return code_; }
+    /// The criterion that is chosen; empty: none.
+    [[nodiscard]] std::string criterion() const;
+    /// Whether a comment can be pinned to a moment now.
+    void setHasTime(bool hasTime);
+
+  signals:
+    void stepRequested(int step);
+    void tableRequested();
+    void markRequested(const std::string& criterion, const handpiece::marking::Mark& mark);
+    void giveInRequested();
+    void overrideRequested(const std::string& criterion, const handpiece::marking::Override& said);
+    void withdrawRequested(const std::string& criterion);
+    void decisionRequested(const std::optional<handpiece::marking::Decision>& decision);
+    /// Whether at the middle of the picture, at this moment of the replay.
+    void commentRequested(const QString& text, bool atPlace, bool atTime);
+    void commentRemoved(int number);
+    void placeRequested(const std::optional<handpiece::core::Vec3>& placeMm, const std::optional<double>& timeS);
+
+  private:
+    [[nodiscard]] bool isMarking() const;  ///< blind, and one's own mark is not in
+    void fillCriteria();
+    void addEvidence(QTreeWidgetItem* under, const score::CriterionScore& of);
+    void fillComments();
+    void showSummary();
+    void showEditor();
+    void showWhetherReady();
+    void say();
+
+    const marking::Desk* desk_ = nullptr;
+    QString code_;
+    QLabel *title_, *summary_;
+    QToolButton *previous_, *next_;
+    QTreeWidget* criteria_;
+    QLabel* editing_;
+    QComboBox *band_, *critical_, *decision_;
+    QDoubleSpinBox* points_;
+    QCheckBox* cannotTell_;
+    QLineEdit *reason_, *decisionReason_, *comment_;
+    QPushButton *say_, *withdraw_, *giveIn_, *decide_, *addComment_, *removeComment_;
+    QWidget* decisionRow_;
+    QCheckBox *atPlace_, *atTime_;
+    QListWidget* comments_;
+};
+
+}  // namespace handpiece::desktop

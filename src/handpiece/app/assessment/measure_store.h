@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What was measured of a piece of work, kept in files, so that another rubric can judge it without cutting it again.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "handpiece/app/assessment/score_work.h"
+
+namespace handpiece::assessment {
+
+/// What kept measures hold for, beside this engine and these measures (measures::kMeasuresRevision).
+struct StoreKey {
+    std::string work;      ///< hash of its files: workHash()
+    std::string exercise;  ///< hash of what it was held against
+};
+/// Of all that makes a piece of work: a session, a folder's sessions, an attempt's files. Throws core::Error.
+[[nodiscard]] std::string workHash(const std::filesystem::path& work);
+
+/// As text, and back: nothing where it is of another key, engine or revision, damaged, or holds what cannot be.
+[[nodiscard]] std::string encodeMeasures(const StoreKey& key, const MeasuredWork& work);
+[[nodiscard]] std::optional<MeasuredWork> decodeMeasures(std::string_view text, const StoreKey& key);
+
+/// One small file a piece of work, in a folder of the user's own: what somebody else wrote is not believed. Any thread.
+class MeasureStore {
+  public:
+    /// Empty: keeps nothing.
+    explicit MeasureStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    /// In the user's cache folder.
+    [[nodiscard]] static MeasureStore usual();
+
+    [[nodiscard]] std::optional<MeasuredWork> find(const StoreKey& key) const;
+    /// A store that cannot be written is no error: it will be measured again.
+    void keep(const StoreKey& key, const MeasuredWork& work) const;
+
+  private:
+    [[nodiscard]] std::filesystem::path placeOf(const StoreKey& key) const;
+    std::filesystem::path folder_;
+};
+
+}  // namespace handpiece::assessment

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/app/course/finished_work.h"
+
+#include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/model/tooth/tooth_mirror.h"
+#include "handpiece/senses/surface/brick_source.h"
+#include "handpiece/senses/surface/closed_surface.h"
+
+namespace handpiece::course {
+namespace {
+
+Parts partsOf(const std::shared_ptr<const tooth::ToothModel>& model, const tooth::StateDelta& state,
+              const core::Progress& progress) {
+    tooth::ToothMirror mirror(model);
+    mirror.apply(state);
+    const surface::MirrorSource source(mirror);
+    auto parts = std::make_shared<std::vector<cases::Part>>();
+    const std::vector<cases::Tissue> tissues = model->tissues.tissues();
+    for (std::size_t i = 0; i < tissues.size(); ++i) {
+        const double share = 1.0 / static_cast<double>(tissues.size());
+        geometry::TriangleMesh mesh =
+            surface::closedPart(source, model->tissues, tissues[i],
+                                core::part(progress, share * static_cast<double>(i), share * static_cast<double>(i + 1)));
+        if (mesh.triangles.empty()) continue;
+        const std::string name(cases::properties(tissues[i]).name);
+        parts->push_back({name, tissues[i], static_cast<int>(i), std::move(mesh)});
+    }
+    return parts;
+}
+
+}  // namespace
+
+rubric::Rubric rubricOf(const tasks::Task& task) {
+    if (task.rubric.empty())
+        throw core::Error("this exercise has no rubric", task.id, "ask your teacher for one that has: it cannot be judged");
+    rubric::Rubric rubric = rubric::parseRubric(task.rubric, task.id + "/" + tasks::kRubricFile);
+    rubric::requireSound(rubric);
+    return rubric;
+}
+
+FinishedWork finish(const std::filesystem::path& session, std::shared_ptr<const tasks::Task> task,
+                    const core::Progress& progress) {
+    FinishedWork done;
+    done.task = std::move(task);
+    done.session = session;
+    done.rubric = rubricOf(*done.task);
+    done.work = assessment::readWork(session, *done.task, true, core::part(progress, 0.0, 0.7));
+    core::report(progress, 0.7);
+    done.result = assessment::scoreWork(done.work, *done.task, done.rubric);
+    if (done.task->preparation) done.draw = preparation::layOn(done.task->toothCase, *done.task->preparation).draw;
+    core::report(progress, 0.85);
+    done.own = partsOf(done.work.teeth.front(), done.work.state, core::part(progress, 0.85, 1.0));
+    return done;
+}
+
+Parts idealOf(const tasks::Task& task, const core::Progress& progress) {
+    if (!task.preparation) return nullptr;
+    tooth::LoadSettings settings;
+    settings.field = simulation::fieldSettingsAt(task.voxelMm);
+    const auto model = tooth::loadModel(task.toothCase, settings, core::part(progress, 0.0, 0.6));
+    const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
+    core::report(progress, 0.65);
+    const tooth::StateDelta state = zones::idealState(*laid.zones, model);
+    return partsOf(model, state, core::part(progress, 0.75, 1.0));
+}
+
+}  // namespace handpiece::course

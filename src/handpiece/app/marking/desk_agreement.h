@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// How far markers agree with the machine, with themselves and with each other. Marks that were given blind alone:
+/// who has seen a score does not mark independently of it.
+
+#include <string>
+#include <vector>
+
+#include "handpiece/app/assessment/marks_agreement.h"
+#include "handpiece/app/marking/desk.h"
+
+namespace handpiece::marking {
+
+/// The rater's name of the machine, and what is put behind a marker's for works that came again.
+inline constexpr const char* kMachine = "machine";
+inline constexpr const char* kAgain = " again";
+
+/// All marks that this desk may show, as docs/agreement.md has them: item, rater, criterion, mark. Items are ids of
+/// works, the same at every desk; only works that are revealed here. Throws core::Error where the desk is not blind.
+[[nodiscard]] std::string marksCsv(const Desk& desk, const std::vector<DeskState>& desks);
+
+struct DeskAgreement {
+    std::vector<assessment::CriterionAgreement> criteria;  ///< in the rubric's order, kTotal last
+    std::vector<std::string> raters;                       ///< all that occur
+    /// A picture (SVG) each, with its file's name.
+    struct Picture {
+        std::string name, svg;
+    };
+    std::vector<Picture> pictures;
+};
+/// Of marksCsv(). Empty without marks. `draws` of each bootstrap interval.
+[[nodiscard]] DeskAgreement agreementOfDesk(const Desk& desk, const std::vector<DeskState>& desks,
+                                            std::size_t draws = assessment::kDraws);
+/// Linear weighted kappa of each criterion with bands, of two raters, with its interval.
+[[nodiscard]] std::string kappaSvg(const std::vector<assessment::CriterionAgreement>& criteria,
+                                   const std::string& first, const std::string& second);
+
+}  // namespace handpiece::marking

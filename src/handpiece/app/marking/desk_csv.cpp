@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/app/marking/desk_csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace handpiece::marking {
+namespace {
+
+std::string number(const std::optional<double>& value) {
+    return value ? fmt::format("{}", *value) : std::string();
+}
+bool isNumber(const std::string& text) {
+    return text.find_first_not_of("0123456789+-.eE") == std::string::npos &&
+           text.find_first_of("0123456789") != std::string::npos;
+}
+
+}  // namespace
+
+std::string csvLine(const std::vector<std::string>& cells) {
+    std::string line;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        std::string cell = cells[i];
+        if (!cell.empty() && std::string_view("=+-@\t\r").find(cell.front()) != std::string_view::npos &&
+            !isNumber(cell))
+            cell.insert(cell.begin(), '\'');
+        if (cell.find_first_of(",\"\r\n") != std::string::npos || cell.starts_with(' ') || cell.ends_with(' ')) {
+            std::string quoted = "\"";
+            for (const char c : cell) {
+                if (c == '"') quoted += '"';
+                quoted += c;
+            }
+            cell = quoted + '"';
+        }
+        line += (i > 0 ? "," : "") + cell;
+    }
+    return line + "\r\n";
+}
+
+std::string resultsCsv(const Desk& desk, Naming naming) {
+    std::vector<std::string> head = {"code"};
+    if (naming == Naming::withFiles) head.emplace_back("file");
+    for (const char* name : {"score", "max_score", "passed", "machine_score", "machine_max_score", "machine_passed",
+                             "proven", "borderline", "critical", "decision_reason", "comments", "problem"})
+        head.emplace_back(name);
+    for (const rubric::Criterion& c : desk.rubric().criteria)
+        for (const char* what : {"points", "band", "machine_points", "machine_band", "value", "reason"})
+            head.push_back(fmt::format("{}.{}", c.id, what));
+    std::string out = csvLine(head);
+    for (const std::string& code : desk.codes()) {
+        std::vector<std::string> row = {code};
+        // Whose a code is stays hidden from who marks blind until the mark is in.
+        if (naming == Naming::withFiles) row.push_back(desk.isRevealed(code) ? desk.work(code).name : std::string());
+        const assessment::Result* machine = desk.machine(code);
+        const std::optional<score::Assessment> final = desk.finalScore(code);
+        const Sheet& sheet = desk.sheet(code);
+        if (machine != nullptr && final) {
+            const score::Assessment& was = machine->assessment;
+            std::vector<std::string> critical;
+            for (const score::CriticalError& e : final->critical)
+                critical.push_back(e.criterion + (e.borderline ? "?" : ""));
+            for (const std::string& cell :
+                 {number(final->score), number(final->maxScore), std::string(score::nameOf(*desk.passed(code))),
+                  number(was.score), number(was.maxScore), std::string(score::nameOf(was.passed)),
+                  std::string(machine->identity.proven ? "yes" : "no"), std::string(final->borderline ? "yes" : "no"),
+                  fmt::format("{}", fmt::join(critical, " "))})
+                row.push_back(cell);
+        } else {
+            row.resize(row.size() + 9);
+        }
+        row.push_back(sheet.decision ? sheet.decision->reason : std::string());
+        std::vector<std::string> comments;
+        for (const Comment& c : sheet.comments)
+            comments.push_back(c.criterion.empty() ? c.text : c.criterion + ": " + c.text);
+        row.push_back(fmt::format("{}", fmt::join(comments, " | ")));
+        row.push_back(desk.problem(code));
+        for (std::size_t i = 0; i < desk.rubric().criteria.size(); ++i) {
+            if (machine == nullptr || !final) {
+                row.resize(row.size() + 6);
+                continue;
+            }
+            const score::CriterionScore &now = final->criteria[i], &was = machine->assessment.criteria[i];
+            const auto said = sheet.overrides.find(now.id);
+            for (const std::string& cell :
+                 {number(now.points), now.band, number(was.points), was.band, number(was.value),
+                  said != sheet.overrides.end() ? said->second.reason : std::string()})
+                row.push_back(cell);
+        }
+        out += csvLine(row);
+    }
+    return out;
+}
+
+}  // namespace handpiece::marking

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/app/marking/scoring.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <numeric>
+#include <thread>
+
+#include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/app/simulation/live_tooth.h"
+#include "handpiece/base/core/any_error.h"
+#include "handpiece/base/core/engine_revision.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/base/core/hash.h"
+#include "handpiece/base/core/parallel.h"
+#include "handpiece/senses/view/renderer.h"
+
+namespace handpiece::marking {
+
+namespace fs = std::filesystem;
+
+/// What was found before, by what it was found of: FOLDER/KEY.json, its proof and its picture beside.
+struct Kept {
+    fs::path folder;
+    std::string key;
+
+    Kept(const ReturnedWork& work, const tasks::Task& task, const rubric::Rubric& rubric, const ScoreSettings& settings)
+        : folder(settings.kept) {
+        core::Hasher hasher;
+        hasher.add(std::string_view(work.id));
+        hasher.add(tasks::contentHash(task));
+        hasher.add(rubric::hashOf(rubric));
+        hasher.add(core::kEngineRevision);
+        hasher.add(settings.prove);
+        key = rubric::hashText(hasher.value());
+    }
+    [[nodiscard]] fs::path file(const char* ending) const { return folder / (key + ending); }
+
+    [[nodiscard]] std::optional<Scored> read(bool withPicture) const {
+        if (folder.empty() || !core::isThere(file(".json"))) return {};
+        const auto text = [](const fs::path& path) {
+            const std::vector<std::byte> bytes = core::readFile(path, 8u << 20);
+            return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        };
+        try {
+            Scored scored;
+            scored.result_ = parseResult(text(file(".json")), file(".json").string());
+            scored.result_->proof = text(file(".txt"));
+            if (withPicture && core::isThere(file(".png"))) scored.picture_ = view::readPng(file(".png"));
+            return scored;
+        } catch (const core::Error&) {
+            return {};  // what cannot be read is made again
+        }
+    }
+    /// Where nothing can be kept (a full disk, a folder that is read only) it is made again the next time.
+    void write(const Scored& scored) const {
+        if (folder.empty() || !scored.result_) return;
+        try {
+            core::prepareOutputFolder(folder, true);
+            if (!scored.picture_.rgba.empty()) view::writePng(scored.picture_, file(".png"));
+            core::writeFile(file(".txt"), scored.result_->proof, {true, false});
+            core::writeFile(file(".json"), assessment::resultJson(scored.result_->assessment, scored.result_->identity),
+                            {true, false});
+        } catch (const core::Error&) {
+            return;
+        }
+    }
+};
+
+namespace {
+
+constexpr view::Viewport kPicture{192, 144};
+
+/// The tooth worked on, as it was cut, from occlusal.
+view::Image pictureOf(const assessment::Work& work, int buccalSign) {
+    tooth::StateDelta own;
+    for (const tooth::StateDelta::Brick& brick : work.state.bricks)
+        if (tooth::toothOf(brick.id) == 0) own.bricks.push_back(brick);
+    own.removedMm3.own = work.state.removedMm3.own;
+    simulation::LiveTooth live(work.teeth.front(), own);
+    live.settle();
+    const core::Box bounds = live.model().outer.bounds();
+    view::Renderer renderer;
+    renderer.setTooth(bounds);
+    renderer.updateBricks(live.uncutSurface(), true);
+    renderer.updateBricks(live.takeNews());
+    view::Look look;
+    look.palette = view::Palette::textbook;
+    look.bur = look.turbine = look.debris = look.spray = false;
+    look.backgroundTop = look.backgroundBottom = {236, 239, 243};
+    view::Moment moment;
+    moment.burShown = false;
+    const view::Camera camera = view::standardView(view::StandardView::occlusal, bounds, buccalSign, kPicture);
+    view::Image image;
+    for (int i = 0; i < 8 && (renderer.draw(camera, kPicture, look, moment, image).refining || i == 0); ++i) {
+    }
+    return image;
+}
+
+Scored readLoneResult(const ReturnedWork& work, const tasks::Task& task, const rubric::Rubric& rubric) {
+    const std::vector<std::byte> bytes = core::readFile(work.path, 8u << 20);
+    assessment::Result result =
+        parseResult({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, work.path.string());
+    if (result.identity.exerciseHash != rubric::hashText(tasks::contentHash(task)))
+        return Scored::failed("this is a result of another exercise");
+    if (result.assessment.rubricHash != rubric::hashOf(rubric))
+        return Scored::failed(fmt::format("this is a result by another rubric: {} version {}, hash {}",
+                                          result.assessment.rubric, result.assessment.rubricVersion,
+                                          rubric::hashText(result.assessment.rubricHash)));
+    // Who wrote it nobody can tell.
+    result.identity.proven = false;
+    result.proof = "the result came without the work that it is of";
+    return Scored::of(std::move(result));
+}
+
+}  // namespace
+
+Scored Scored::failed(std::string problem) {
+    Scored scored;
+    scored.problem_ = std::move(problem);
+    return scored;
+}
+
+Scored Scored::of(assessment::Result result, view::Image picture) {
+    Scored scored;
+    scored.result_ = std::move(result);
+    scored.picture_ = std::move(picture);
+    return scored;
+}
+
+Scored scoreReturned(const ReturnedWork& work, const tasks::Task& task, const rubric::Rubric& rubric,
+                     const ScoreSettings& settings, const core::Progress& progress) {
+    if (!work.problem.empty()) return Scored::failed(work.problem);
+    // Cancelling is told apart from what is wrong with the work by asking, not by the words of an error.
+    std::atomic<bool> isCancelled{false};
+    const core::Progress heard = [&progress, &isCancelled](double fraction) {
+        if (progress && !progress(fraction)) isCancelled = true;
+        return !isCancelled;
+    };
+    try {
+        if (work.isResultOnly) return readLoneResult(work, task, rubric);
+        const Kept kept(work, task, rubric, settings);
+        if (std::optional<Scored> before = kept.read(settings.pictures)) return std::move(*before);
+        const assessment::Work done =
+            assessment::readWork(work.path, task, settings.prove, core::part(heard, 0.0, 0.8));
+        core::report(heard, 0.8);
+        assessment::Result result = assessment::scoreWork(done, task, rubric);
+        core::report(heard, 0.95);
+        view::Image picture;
+        if (settings.pictures) {
+            try {
+                picture = pictureOf(done, task.toothCase.buccalSign);
+            } catch (const core::Error&) {
+                picture = {};  // no OpenGL: the score stands without a picture
+            }
+        }
+        Scored scored = Scored::of(std::move(result), std::move(picture));
+        kept.write(scored);
+        return scored;
+    } catch (const std::exception& error) {
+        if (isCancelled) throw core::Error("cancelled");
+        return Scored::failed(core::asError(error).problem());
+    }
+}
+
+void scoreAll(std::span<const ReturnedWork> works, const tasks::Task& task, const rubric::Rubric& rubric,
+              const ScoreSettings& settings, const core::Progress& progress,
+              const std::function<void(std::size_t which, Scored scored)>& done) {
+    if (works.empty()) return core::report(progress, 1.0);
+    const std::size_t workers = std::min({core::threadCount(), works.size(), std::size_t{4}});
+    std::atomic<std::size_t> next{0};
+    std::atomic<bool> isCancelled{false};
+    std::vector<double> shares(works.size(), 0.0);  // of each work; never back
+    std::mutex telling;
+    const auto tell = [&](std::size_t which, double share) {
+        const std::lock_guard lock(telling);
+        shares[which] = std::max(shares[which], share);
+        const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+        if (progress && !progress(sum / static_cast<double>(works.size()))) isCancelled = true;
+        return !isCancelled;
+    };
+    std::exception_ptr failure;
+    const auto work = [&] {
+        for (std::size_t i = next++; i < works.size() && !isCancelled; i = next++) {
+            try {
+                Scored scored =
+                    scoreReturned(works[i], task, rubric, settings, [&](double share) { return tell(i, share); });
+                tell(i, 1.0);
+                const std::lock_guard lock(telling);
+                done(i, std::move(scored));
+            } catch (...) {
+                const std::lock_guard lock(telling);
+                isCancelled = true;
+                if (!failure) failure = std::current_exception();
+            }
+        }
+    };
+    std::vector<std::thread> threads;
+    for (std::size_t i = 1; i < workers; ++i)
+        threads.emplace_back(work);
+    work();
+    for (std::thread& thread : threads)
+        thread.join();
+    if (failure) std::rethrow_exception(failure);
+    if (isCancelled) throw core::Error("cancelled");
+}
+
+}  // namespace handpiece::marking

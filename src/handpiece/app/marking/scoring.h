@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The machine's score of each returned work, closed until a Desk opens it; computed on all cores, kept on the disk.
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "handpiece/app/assessment/score_work.h"
+#include "handpiece/app/marking/returned_work.h"
+#include "handpiece/base/core/progress.h"
+#include "handpiece/senses/view/image.h"
+
+namespace handpiece::marking {
+
+/// What the machine found of one work. Nobody but a Desk can look at the result, so that a blind marker's window
+/// cannot show it by mistake.
+class Scored {
+  public:
+    /// Why there is no result, in a sentence; empty where there is one.
+    [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
+    /// The cut tooth from occlusal; nothing where it could not be drawn.
+    [[nodiscard]] const view::Image& picture() const noexcept { return picture_; }
+
+    [[nodiscard]] static Scored failed(std::string problem);
+    [[nodiscard]] static Scored of(assessment::Result result, view::Image picture = {});
+
+  private:
+    friend class Desk;
+    friend struct Kept;
+    std::optional<assessment::Result> result_;
+    std::string problem_;
+    view::Image picture_;
+};
+
+struct ScoreSettings {
+    bool prove = true;  ///< cut sessions again
+    bool pictures = true;
+    std::filesystem::path kept;  ///< where results are kept by content, exercise, rubric and engine; empty: nowhere
+};
+
+/// Of one work. What is wrong with it is the answer's problem(); throws core::Error only when cancelled.
+[[nodiscard]] Scored scoreReturned(const ReturnedWork& work, const tasks::Task& task, const rubric::Rubric& rubric,
+                                   const ScoreSettings& settings, const core::Progress& progress = {});
+/// Of all, as many at a time as there are cores (four at most: each holds a tooth). `done` is called once for each,
+/// from any thread, one at a time. Throws core::Error when cancelled.
+void scoreAll(std::span<const ReturnedWork> works, const tasks::Task& task, const rubric::Rubric& rubric,
+              const ScoreSettings& settings, const core::Progress& progress,
+              const std::function<void(std::size_t which, Scored scored)>& done);
+
+/// A result as `handpiece score` writes it; throws core::Error for what is none. Its proof is empty.
+[[nodiscard]] assessment::Result parseResult(std::string_view json, const std::string& where);
+
+}  // namespace handpiece::marking

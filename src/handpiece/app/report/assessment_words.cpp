@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/app/report/assessment_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "handpiece/app/report/assessment_report.h"
+#include "handpiece/base/config/words.h"
+
+namespace handpiece::report {
+namespace {
+
+using config::words;
+
+template <class List>
+std::string titleIn(const List& list, const std::string& id) {
+    for (const auto& one : list)
+        if (one.id == id)
+            if (const auto said = cases::inLanguage(one.title, words().language()); !said.empty())
+                return std::string(said);
+    return id;
+}
+
+/// What to practise, by the beginning of the measure's name.
+constexpr std::array<std::pair<std::string_view, const char*>, 36> kDrills{{
+    {"floor-flatness", "drill.floor"},
+    {"floor-tilt", "drill.floor"},
+    {"floor-depth", "drill.depth"},
+    {"axial-depth", "drill.depth"},
+    {"reduction", "drill.reduction"},
+    {"roughness", "drill.roughness"},
+    {"isthmus", "drill.width"},
+    {"outline-extent", "drill.width"},
+    {"proximal-clearance", "drill.clearance"},
+    {"marginal-ridge-left", "drill.ridge"},
+    {"wall-angle", "drill.walls"},
+    {"wall-height", "drill.depth"},
+    {"occlusal-convergence", "drill.walls"},
+    {"cavosurface-angle", "drill.walls"},
+    {"undercut", "drill.undercut"},
+    {"margin-", "drill.margin"},
+    {"remaining-dentine", "drill.pulp"},
+    {"pulp-exposed", "drill.pulp"},
+    {"gouge-depth", "drill.access"},
+    {"orifices-reached", "drill.access"},
+    {"adjacent-", "drill.adjacent"},
+    {"caries-left", "drill.caries"},
+    {"unsupported-enamel", "drill.enamel"},
+    {"removed", "drill.outline"},
+    {"force", "drill.force"},
+    {"load-over-limit", "drill.force"},
+    {"impulse-on-protected", "drill.force"},
+    {"speed-under-load", "drill.force"},
+    {"stalls", "drill.force"},
+    {"smoothness", "drill.hand"},
+    {"path-length", "drill.hand"},
+    {"tilt", "drill.tilt"},
+    {"mirror-share", "drill.mirror"},
+    {"views", "drill.mirror"},
+    {"time", "drill.time"},
+    {"", "drill.other"},
+}};
+
+}  // namespace
+
+std::string drillFor(const std::string& measure) {
+    for (const auto& [beginning, id] : kDrills)
+        if (measure.rfind(beginning, 0) == 0) return words().text(id);
+    return words().text("drill.other");
+}
+
+std::string criterionTitle(const rubric::Rubric& rubric, const std::string& id) {
+    return titleIn(rubric.criteria, id);
+}
+
+std::string bandTitle(const rubric::Rubric& rubric, const std::string& id) {
+    return titleIn(rubric.bands, id);
+}
+
+std::string ruleTitle(const rubric::Rubric& rubric, const std::string& id) {
+    return titleIn(rubric.rules, id);
+}
+
+std::string verdictOf(score::Passed passed) {
+    return passed == score::Passed::yes  ? words()("assessment.passed")
+           : passed == score::Passed::no ? words()("assessment.not-passed")
+                                         : words()("assessment.teacher");
+}
+
+std::string whyOf(const score::Assessment& a, const rubric::Rubric& rubric) {
+    const auto critical =
+        std::find_if(a.critical.begin(), a.critical.end(), [](const auto& error) { return !error.borderline; });
+    if (critical != a.critical.end())
+        return words()("assessment.why-critical", criterionTitle(rubric, critical->criterion));
+    if (a.passed == score::Passed::yes) return words()("assessment.why-met");
+    if (a.passed == score::Passed::no) {
+        for (const score::RuleResult& r : a.rules)
+            for (const rubric::Rule& rule : rubric.rules)
+                if (rule.id == r.id && rule.required && r.holds == std::optional(false))
+                    return words()("assessment.why-rule", ruleTitle(rubric, r.id));
+        return words()("assessment.why-under-mark");
+    }
+    if (a.borderline) return words()("assessment.why-borderline");
+    std::string missing;
+    for (const score::CriterionScore& c : a.criteria)
+        if (c.standing == score::Standing::notMeasured && (c.maxPoints > 0.0 || !c.possibleBands.empty()))
+            missing += (missing.empty() ? "" : ", ") + criterionTitle(rubric, c.id);
+    return missing.empty() ? words()("assessment.why-unsaid") : words()("assessment.why-missing", missing);
+}
+
+std::string valueOf(const score::CriterionScore& s) {
+    if (!s.value) return {};
+    return fmt::format("{:.3g} ± {:.2g}{}{}", *s.value, s.uncertainty, s.unit.empty() ? "" : " ", s.unit);
+}
+
+std::string placeText(const measures::Evidence& e) {
+    return fmt::format("{}{}x {:.2f}, y {:.2f}, z {:.2f} mm", e.text, e.text.empty() ? "" : ": ", e.placeMm->x(),
+                       e.placeMm->y(), e.placeMm->z());
+}
+
+std::string viewTitle(const std::string& name) {
+    return words().text("view." + name);
+}
+
+}  // namespace handpiece::report

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What a person has done, in one file of their own: exercises, attempts with their results, judgements, comments, and
+/// what a school has yet to hear of it. docs/formats/store.md.
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "handpiece/base/core/vec.h"
+
+namespace handpiece::school {
+
+/// Since 1970, UTC. The store has no clock of its own.
+using Milliseconds = std::int64_t;
+
+/// 32 hexadecimal digits out of the system's randomness: what is made on two computers never gets one id.
+[[nodiscard]] std::string newId();
+
+struct Exercise {
+    std::string id;            ///< its own, of exercise.toml
+    std::int64_t version = 1;  ///< its own
+    std::string hash;          ///< 16 hexadecimal digits
+    std::string title;         ///< as shown when it was seen last
+    Milliseconds firstSeen = 0, lastSeen = 0;
+};
+
+/// One piece of work that was finished and scored; never changed afterwards.
+struct Attempt {
+    std::string id;  ///< newId()
+    std::string exercise, exerciseHash, rubricHash;
+    std::vector<std::string> sessionHashes;  ///< the chain, in order
+    std::vector<std::string> recordings;     ///< names of their files, in the same order; they may be gone by now
+    Milliseconds began = 0, finished = 0;
+    std::string device;
+    double motionScale = 1.0;
+    double score = 0.0, maxScore = 0.0;
+    std::string passed;  ///< "yes", "no", "teacher"
+    bool borderline = false, proven = false;
+    std::string result;  ///< the JSON of the result, whole
+
+    [[nodiscard]] double percent() const { return maxScore > 0.0 ? 100.0 * score / maxScore : 0.0; }
+};
+
+/// What a person thinks of their own work, before they see the result.
+struct Judgement {
+    std::string attempt;
+    double percent = 0.0;  ///< that they expect, 0 to 100
+    std::string words;     ///< may be empty
+    Milliseconds made = 0;
+};
+
+/// Pinned to a place on the tooth and to a time of the recording, where it has them.
+struct Comment {
+    std::string id;  ///< newId()
+    std::string attempt, author, words;
+    std::optional<core::Vec3> placeMm;  ///< in the tooth's frame
+    std::optional<double> timeS;
+    Milliseconds made = 0;
+};
+
+/// One thing that a school has yet to hear of. Nothing in the outbox is changed or taken out.
+struct Outgoing {
+    std::int64_t sequence = 0;  ///< grows
+    std::string kind;           ///< "attempt", "judgement", "comment"
+    std::string id;             ///< of it; of a judgement its attempt's
+    Milliseconds made = 0;
+};
+
+/// Survives kill -9, a full disk and a second program; on a network's home folder as well (a rollback journal, no
+/// shared memory). One thread each.
+///
+/// All members throw core::Error: "store-newer" (its version, ours), "store-locked", "store-damaged" (why), "no-space",
+/// "not-writable". What was stored before then still stands.
+class Store {
+  public:
+    /// Made where there is none, with its folder; brought to the version of now where it is older. Where the disk is
+    /// read-only it can be read. `patience`: how long it waits for another program that writes.
+    explicit Store(const std::filesystem::path& file, std::chrono::milliseconds patience = std::chrono::seconds(5));
+    ~Store();
+    Store(const Store&) = delete;
+    Store& operator=(const Store&) = delete;
+
+    /// That the schema of now has.
+    static constexpr int kVersion = 2;
+
+    /// Notes that it was there; `firstSeen` of before stays.
+    void see(const Exercise& exercise);
+    /// By their ids.
+    [[nodiscard]] std::vector<Exercise> exercises() const;
+
+    /// With what the person thought of it, if they were asked: both or neither.
+    void add(const Attempt& attempt, const std::optional<Judgement>& own = {});
+    /// In the order in which they were finished; empty `exercise`: all.
+    [[nodiscard]] std::vector<Attempt> attempts(const std::string& exercise = {}) const;
+    [[nodiscard]] std::optional<Attempt> attempt(const std::string& id) const;
+    [[nodiscard]] std::optional<Judgement> judgementOf(const std::string& attempt) const;
+
+    void add(const Comment& comment);
+    [[nodiscard]] std::vector<Comment> commentsOn(const std::string& attempt) const;
+
+    /// What follows `sequence`, in its order, `most` at once.
+    [[nodiscard]] std::vector<Outgoing> outbox(std::int64_t sequence, std::size_t most = 100) const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace handpiece::school

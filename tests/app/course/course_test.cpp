@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// The exercises that come along are whole ones, and what is shown of an ideal is what its zones ask for.
+#include <gtest/gtest.h>
+
+#include "handpiece/app/course/finished_work.h"
+#include "handpiece/app/course/shipped_exercises.h"
+#include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/base/core/file.h"
+#include "support/error_of.h"
+#include "support/random.h"
+
+namespace handpiece::course {
+namespace {
+
+namespace fs = std::filesystem;
+
+double volumeMm3(const geometry::TriangleMesh& mesh) {
+    double six = 0.0;
+    for (const auto& t : mesh.triangles)
+        six += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]]));
+    return six / 6.0;
+}
+
+TEST(Course, EachShippedExerciseCanBeDoneAndJudged) {
+    const test::TemporaryFolder folder;
+    ASSERT_GE(shippedExercises().size(), 10u);
+    for (const Shipped& shipped : shippedExercises()) {
+        const fs::path place = shippedExercise(shipped.id, folder.path());
+        const tasks::Task task = tasks::readTask(place);
+        EXPECT_EQ(task.id, shipped.id);
+        EXPECT_TRUE(tasks::problems(task).empty()) << shipped.id << ": " << tasks::problems(task).front();
+        EXPECT_FALSE(rubricOf(task).criteria.empty());
+        ASSERT_TRUE(task.toothCase.exercise);
+        for (const char* language : {"en", "ja"}) {
+            EXPECT_EQ(task.toothCase.exercise->title.count(language), 1u) << shipped.id;
+            EXPECT_EQ(task.toothCase.exercise->instructions.count(language), 1u) << shipped.id;
+        }
+    }
+    // Kept: the same task, not made again; damaged: made anew.
+    const fs::path line = folder.path() / "dexterity-line";
+    const auto hash = tasks::contentHash(tasks::readTask(line));
+    const auto made = fs::last_write_time(line / tasks::kTaskFile);
+    EXPECT_EQ(shippedExercise("dexterity-line", folder.path()), line);
+    EXPECT_EQ(fs::last_write_time(line / tasks::kTaskFile), made);
+    core::writeFile(line / tasks::kTaskFile, std::string("format = "));
+    EXPECT_EQ(tasks::contentHash(tasks::readTask(shippedExercise("dexterity-line", folder.path()))), hash);
+    EXPECT_NE(test::errorOf([&] { static_cast<void>(shippedExercise("none-such", folder.path())); }), "");
+}
+
+TEST(Course, TheIdealThatIsShownHasLostTheTarget) {
+    tasks::Task task = blockTask("cross", 2, "layered");
+    task.voxelMm = 0.1;
+    const Parts ideal = idealOf(task);
+    ASSERT_EQ(ideal->size(), 2u) << "enamel and dentine";
+    double left = 0.0;
+    for (const cases::Part& part : *ideal)
+        left += volumeMm3(part.mesh);
+    tooth::LoadSettings settings;
+    settings.field = simulation::fieldSettingsAt(task.voxelMm);
+    settings.useCache = false;
+    const auto model = tooth::loadModel(task.toothCase, settings);
+    const tooth::ToothMirror whole(model);
+    const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
+    const double targetMm3 = zones::zoneVolumes(*laid.zones, whole).targetMm3();
+    ASSERT_GT(targetMm3, 5.0);
+    EXPECT_NEAR(left, 16.0 * 12.0 * 8.0 - targetMm3, 0.01 * targetMm3 + 1e-3 * 16.0 * 12.0 * 8.0);
+    task.preparation.reset();
+    EXPECT_EQ(idealOf(task), nullptr);
+}
+
+TEST(Course, OneBadFileInAFolderHidesNoOther) {
+    const test::TemporaryFolder folder;
+    tasks::writeTask(blockTask("line", 1), folder.path() / "a");
+    tasks::writeTask(blockTask("steps", 3), folder.path() / "c.handpiece");
+    fs::create_directories(folder.path() / "b");
+    core::writeFile(folder.path() / "b" / tasks::kTaskFile, std::string("format = 1\nid = \"NO\"\n"));
+    fs::create_directories(folder.path() / "no exercise");
+    const std::vector<Found> found = exercisesIn(folder.path());
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_EQ(found[0].task->id, "block-line-1");
+    EXPECT_TRUE(found[1].error);
+    EXPECT_EQ(found[2].task->id, "block-steps-3");
+    EXPECT_LT(found[2].task->preparation->leeway.sideMm, found[0].task->preparation->leeway.sideMm);
+    EXPECT_NE(test::errorOf([&] { static_cast<void>(exercisesIn(folder.path() / "gone")); }), "");
+    EXPECT_NE(test::errorOf([] { static_cast<void>(blockTask("line", 4)); }), "");
+}
+
+TEST(Course, WhatCannotBeJudgedSaysSo) {
+    tasks::Task task = blockTask("line", 1);
+    EXPECT_NE(test::errorOf([&] { static_cast<void>(rubricOf(task)); }).find("no rubric"), std::string::npos);
+    task.rubric = "format = 1\n";
+    EXPECT_NE(test::errorOf([&] { static_cast<void>(rubricOf(task)); }), "");
+}
+
+}  // namespace
+}  // namespace handpiece::course

@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: Apache-2.0
+// The teacher's marking desk, by clicks: a folder is scored, sorted, filtered, opened in the picture, overridden with a
+// reason, commented, exported; blind with one's own marks first; gone on with.
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDockWidget>
+#include <QDoubleSpinBox>
+#include <QHeaderView>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QTabWidget>
+#include <QTableView>
+#include <QToolButton>
+#include <QTreeWidget>
+#include <set>
+
+#include "desktop/features/marking/agreement_page.h"
+#include "desktop/features/marking/marking_feature.h"
+#include "desktop/features/marking/sheet_panel.h"
+#include "handpiece/app/assessment/marks.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/model/case/attempt.h"
+#include "shell_support.h"
+
+namespace handpiece::desktop {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* kRubric = R"(
+format = 1
+id = "little"
+version = "1"
+status = "proposal"
+pass_mark = 60
+title = { en = "Take little" }
+[[band]]
+id = "little"
+title = { en = "little" }
+[[band]]
+id = "much"
+title = { en = "much" }
+[[criterion]]
+id = "enamel"
+measure = "removed"
+tissue = "enamel"
+unit = "mm3"
+weight = 80
+knots = [[0.03, 100], [0.5, 0]]
+bands = [{ id = "little", to = 0.06 }, { id = "much", from = 0.06 }]
+title = { en = "enamel taken" }
+[[criterion]]
+id = "beside"
+measure = "removed"
+tissue = "dentine"
+unit = "mm3"
+weight = 20
+knots = [[0, 100], [1, 0]]
+critical = { above = 0.5 }
+title = { en = "dentine taken" }
+)";
+
+class MarkingTest : public ShellTest {
+  protected:
+    template <class W>
+    [[nodiscard]] W* part(const char* name) {
+        W* found = window().findChild<W*>(QLatin1String(name));
+        EXPECT_NE(found, nullptr) << name;
+        return found;
+    }
+    [[nodiscard]] MarkingFeature& feature() { return *window().findChild<MarkingFeature*>(); }
+    [[nodiscard]] const marking::Desk& desk() { return *feature().desk(); }
+    [[nodiscard]] fs::path works() const { return at("works"); }
+
+    void makeExercise() {
+        tasks::Task task;
+        task.id = "little";
+        task.toothCase = eggTooth(46);
+        task.voxelMm = 0.1;
+        task.rubric = kRubric;
+        tasks::writeTask(task, at("exercise"));
+        fs::create_directories(works());
+    }
+    /// Two hand-ins of one sitting, its recording, and a file that is none.
+    void makeWork() {
+        makeExercise();
+        CommandLine line;
+        line.file = own_.filePath("exercise/case");
+        startWithTooth(line);
+        simulator().setCode(QStringLiteral("S-07"));
+        ASSERT_TRUE(idle());
+        ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
+        ASSERT_TRUE(cut());
+        save("S-07-first.handpiece");
+        ASSERT_TRUE(cut());
+        ASSERT_TRUE(cut());
+        save("S-08-second.handpiece");
+        const fs::path recording = simulator().recording();
+        simulator().close();
+        fs::copy_file(recording, works() / "S-09.h5");
+        core::writeFile(works() / "broken.handpiece", std::string_view("no zip"));
+    }
+    void save(const char* name) {
+        file_ = toQString(works() / name);
+        action("actionSaveAs")->trigger();
+        ASSERT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !simulator().isBusy(); }));
+    }
+    void click(const char* name) {
+        auto* button = part<QAbstractButton>(name);
+        ASSERT_TRUE(button->isEnabled()) << name;
+        ASSERT_TRUE(button->isVisible()) << name;
+        QTest::mouseClick(button, Qt::LeftButton, Qt::NoModifier, QPoint(8, button->height() / 2));
+    }
+    void type(const char* name, const QString& text) {
+        auto* line = part<QLineEdit>(name);
+        line->setFocus();
+        line->selectAll();
+        QTest::keyClicks(line, text);
+    }
+    void begin(const QString& marker, bool isBlind) {
+        action("actionMarkingDesk")->trigger();
+        ASSERT_TRUE(part<QDialog>("markingDesk")->isVisible());
+        part<QTabWidget>("markingTabs")->setCurrentIndex(0);
+        type("markingFolder", own_.filePath("works"));
+        type("markingExercise", own_.filePath("exercise"));
+        type("markingMarker", marker);
+        if (part<QCheckBox>("markingBlind")->isChecked() != isBlind) click("markingBlind");
+        click("markingBegin");
+        ASSERT_TRUE(waitFor([this] { return !feature().isAtWork() || window().errorDialog() != nullptr; }));
+    }
+    [[nodiscard]] QTableView* table() { return part<QTableView>("markingTable"); }
+    [[nodiscard]] QString cell(int row, int column) { return table()->model()->index(row, column).data().toString(); }
+    [[nodiscard]] int rows() { return table()->model()->rowCount(); }
+    [[nodiscard]] int rowOf(const QString& file) {
+        for (int row = 0; row < rows(); ++row)
+            if (cell(row, WorkTable::kFile) == file) return row;
+        return -1;
+    }
+    void sortBy(int column) {
+        QHeaderView* head = table()->horizontalHeader();
+        QTest::mouseClick(
+            head->viewport(), Qt::LeftButton, Qt::NoModifier,
+            QPoint(head->sectionViewportPosition(column) + head->sectionSize(column) / 2, head->height() / 2));
+    }
+    void openRow(int row) {
+        const QRect place = table()->visualRect(table()->model()->index(row, 0));
+        QTest::mouseClick(table()->viewport(), Qt::LeftButton, Qt::NoModifier, place.center());
+        click("markingOpen");
+    }
+    void chooseCriterion(int row) {
+        auto* tree = part<QTreeWidget>("sheetCriteria");
+        QTest::mouseClick(tree->viewport(), Qt::LeftButton, Qt::NoModifier,
+                          tree->visualItemRect(tree->topLevelItem(row)).center());
+        ASSERT_EQ(tree->currentItem(), tree->topLevelItem(row));
+    }
+    void setPoints(double points) {
+        auto* spin = part<QDoubleSpinBox>("sheetPoints");
+        ASSERT_TRUE(spin->isVisible());
+        spin->setFocus();
+        spin->selectAll();
+        QTest::keyClicks(spin, QString::number(points));
+        QTest::keyClick(spin, Qt::Key_Tab);
+        ASSERT_DOUBLE_EQ(spin->value(), points);
+    }
+    /// By the arrow keys.
+    void chooseBand(int row) {
+        auto* box = part<QComboBox>("sheetBand");
+        ASSERT_TRUE(box->isVisible());
+        box->setFocus();
+        QTest::keyClick(box, Qt::Key_Home);
+        for (int i = 0; i < row; ++i)
+            QTest::keyClick(box, Qt::Key_Down);
+        ASSERT_EQ(box->currentIndex(), row);
+    }
+    void keep(QWidget* widget, const char* name) {
+        if (const char* folder = std::getenv("HANDPIECE_TEST_PICTURES"))
+            widget->grab().save(QString::fromLocal8Bit(folder) + QLatin1Char('/') + QLatin1String(name));
+    }
+};
+
+TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
+    makeWork();
+    begin(QStringLiteral("Tanaka"), false);
+    ASSERT_NE(feature().desk(), nullptr);
+    ASSERT_EQ(rows(), 4);
+    EXPECT_FALSE(part<QProgressBar>("markingProgress")->isVisible());
+    const int first = rowOf("S-07-first.handpiece"), second = rowOf("S-08-second.handpiece"),
+              session = rowOf("S-09.h5"), broken = rowOf("broken.handpiece");
+    ASSERT_GE(std::min({first, second, session, broken}), 0);
+    EXPECT_FALSE(table()->model()->index(first, 0).data(Qt::DecorationRole).value<QPixmap>().isNull());
+    EXPECT_TRUE(cell(broken, WorkTable::kFlags).contains("not scored"));
+    EXPECT_FALSE(cell(broken, WorkTable::kState).isEmpty());
+    EXPECT_TRUE(cell(first, WorkTable::kFlags).contains("unproven"));
+    EXPECT_FALSE(cell(session, WorkTable::kFlags).contains("unproven")) << "cut again, to the same tooth";
+    EXPECT_EQ(cell(second, WorkTable::kScore), cell(session, WorkTable::kScore)) << "one tooth, two files";
+    EXPECT_NE(cell(first, WorkTable::kScore), cell(second, WorkTable::kScore));
+    keep(part<QDialog>("markingDesk"), "desk.png");
+    // Sorted by score, both ways.
+    sortBy(WorkTable::kScore);
+    const QString end = cell(0, WorkTable::kFile);
+    sortBy(WorkTable::kScore);
+    EXPECT_NE(cell(0, WorkTable::kFile), end);
+    EXPECT_EQ(cell(3, WorkTable::kFile), end);
+    // Filtered.
+    click("markingProblem");
+    EXPECT_EQ(rows(), 1);
+    click("markingUnproven");
+    EXPECT_EQ(rows(), 3);
+    click("markingProblem");
+    click("markingUnproven");
+    ASSERT_EQ(rows(), 4);
+
+    // Opened in the picture.
+    openRow(rowOf("S-08-second.handpiece"));
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::review && !simulator().isBusy(); }));
+    EXPECT_GT(removedMm3(), 0.0);
+    ASSERT_TRUE(part<QDockWidget>("markingDock")->isVisible());
+    const std::string code = part<SheetPanel>("markingSheet")->code().toStdString();
+    const double before = desk().finalScore(code)->score;
+    // An override needs a reason.
+    chooseCriterion(0);
+    setPoints(12.5);
+    EXPECT_FALSE(part<QPushButton>("sheetSay")->isEnabled());
+    type("sheetReason", QStringLiteral("   "));
+    EXPECT_FALSE(part<QPushButton>("sheetSay")->isEnabled());
+    type("sheetReason", QStringLiteral("ragged margins"));
+    click("sheetSay");
+    ASSERT_EQ(desk().sheet(code).overrides.size(), 1u);
+    EXPECT_EQ(desk().sheet(code).overrides.at("enamel").reason, "ragged margins");
+    EXPECT_NEAR(desk().finalScore(code)->score, 12.5 + *desk().finalScore(code)->criteria[1].points, 1e-9);
+    EXPECT_DOUBLE_EQ(desk().machine(code)->assessment.score, before) << "the machine's stands beside";
+    EXPECT_TRUE(part<QLabel>("sheetSummary")->text().contains("12.5") ||
+                part<QTreeWidget>("sheetCriteria")->topLevelItem(0)->text(4).contains("12.5"));
+    keep(&window(), "sheet.png");
+    // A comment at the tooth in the middle of the picture.
+    type("sheetComment", QStringLiteral("look here"));
+    click("sheetCommentPlace");
+    click("sheetCommentAdd");
+    ASSERT_EQ(desk().sheet(code).comments.size(), 1u);
+    const marking::Comment comment = desk().sheet(code).comments[0];
+    EXPECT_EQ(comment.criterion, "enamel");
+    ASSERT_TRUE(comment.placeMm);
+    EXPECT_GT(comment.placeMm->z(), 4.0) << "of the top of the egg";
+    // A click on it brings the eye there.
+    view()->showStandardView(view::StandardView::buccal);
+    auto* list = part<QListWidget>("sheetComments");
+    QTest::mouseClick(list->viewport(), Qt::LeftButton, Qt::NoModifier, list->visualItemRect(list->item(0)).center());
+    EXPECT_LT((view()->camera().targetMm - *comment.placeMm).norm(), 1e-9);
+    // Who passes.
+    QTest::keyClick(part<QComboBox>("sheetDecision"), Qt::Key_Down);
+    EXPECT_FALSE(part<QPushButton>("sheetDecide")->isEnabled());
+    type("sheetDecisionReason", QStringLiteral("good enough"));
+    click("sheetDecide");
+    EXPECT_EQ(desk().passed(code), score::Passed::yes);
+
+    // To the recording, by next or previous; evidence of time stands in it.
+    const int from = rowOf("S-08-second.handpiece"), to = rowOf("S-09.h5");
+    ASSERT_EQ(std::abs(from - to), 1) << "of equal score before the override, so side by side";
+    click(to > from ? "sheetNext" : "sheetPrevious");
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay && !simulator().isBusy(); }));
+    ASSERT_TRUE(waitFor([this] {
+        return simulator().replay() && simulator().replay()->now().timeS > simulator().replay()->durationS() - 0.01;
+    })) << "it shows how it ended";
+    EXPECT_TRUE(part<QCheckBox>("sheetCommentTime")->isEnabled());
+    click("sheetCommentTime");
+    type("sheetComment", QStringLiteral("at the end"));
+    click("sheetCommentAdd");
+    const std::string other = part<SheetPanel>("markingSheet")->code().toStdString();
+    ASSERT_EQ(desk().sheet(other).comments.size(), 1u);
+    EXPECT_GT(*desk().sheet(other).comments[0].timeS, 0.1);
+    simulator().seek(0.0);
+    ASSERT_TRUE(waitFor([this] { return simulator().replay()->now().timeS < 0.01; }));
+    QTest::mouseClick(list->viewport(), Qt::LeftButton, Qt::NoModifier, list->visualItemRect(list->item(0)).center());
+    EXPECT_TRUE(waitFor(
+        [&] { return std::abs(simulator().replay()->now().timeS - *desk().sheet(other).comments[0].timeS) < 0.02; }));
+
+    // Tables for others.
+    const auto written = [this](const char* way, const char* name) {
+        file_ = own_.filePath(QLatin1String(name));
+        part<QAction>(way)->trigger();
+        const auto bytes = core::readFile(toPath(file_));
+        return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    const std::string codes = written("markingExport_codes", "codes.csv");
+    EXPECT_EQ(codes.find("S-0"), std::string::npos);
+    EXPECT_NE(codes.find("ragged margins"), std::string::npos);
+    EXPECT_NE(written("markingExport_files", "files.csv").find("S-08-second.handpiece"), std::string::npos);
+
+    // Another start goes on where this one was.
+    start();
+    begin(QStringLiteral("Tanaka"), false);
+    EXPECT_EQ(desk().sheet(code).overrides.at("enamel").points, 12.5);
+    EXPECT_EQ(desk().sheet(code).comments.size(), 1u);
+    EXPECT_EQ(desk().passed(code), score::Passed::yes);
+    // The other kind of marking is another desk.
+    begin(QStringLiteral("Tanaka"), true);
+    ASSERT_NE(window().errorDialog(), nullptr);
+    window().errorDialog()->reject();
+}
+
+TEST_F(MarkingTest, BlindOnesOwnMarksComeFirst) {
+    makeWork();
+    fs::remove(works() / "broken.handpiece");
+    begin(QStringLiteral("Sato"), true);
+    ASSERT_EQ(rows(), 4) << "three works, one of them twice";
+    for (int row = 0; row < 4; ++row) {
+        EXPECT_EQ(cell(row, WorkTable::kFile), "hidden");
+        for (const int column : {WorkTable::kScore, WorkTable::kMachine, WorkTable::kPassed, WorkTable::kFlags})
+            EXPECT_EQ(cell(row, column), "") << "the machine's score is hidden";
+    }
+    keep(part<QDialog>("markingDesk"), "blind.png");
+    openRow(0);
+    std::set<std::string> marked;
+    for (int i = 0; i < 4; ++i) {
+        ASSERT_TRUE(waitFor([this] {
+            return !simulator().isBusy() &&
+                   (simulator().mode() == Simulator::Mode::review || simulator().mode() == Simulator::Mode::replay);
+        }));
+        const QString code = part<SheetPanel>("markingSheet")->code();
+        ASSERT_TRUE(waitFor([&] { return window().windowTitle().contains(code); }))
+            << window().windowTitle().toStdString();
+        EXPECT_FALSE(window().windowTitle().contains("S-0")) << "nor does the title say whose it is";
+        if (simulator().mode() == Simulator::Mode::review) {
+            EXPECT_EQ(simulator().reviewed().student, "");
+        }
+        ASSERT_TRUE(marked.insert(code.toStdString()).second);
+        EXPECT_TRUE(part<QLabel>("sheetSummary")->text().contains("hidden"));
+        auto* tree = part<QTreeWidget>("sheetCriteria");
+        ASSERT_EQ(tree->topLevelItemCount(), 3);
+        EXPECT_TRUE(tree->isColumnHidden(2) && tree->isColumnHidden(3) && tree->isColumnHidden(4));
+        if (i == 0) keep(&window(), "blind-sheet.png");
+        EXPECT_FALSE(part<QPushButton>("sheetGiveIn")->isEnabled());
+        chooseCriterion(0);
+        chooseBand(1 + i % 2);
+        click("sheetSay");
+        chooseCriterion(1);
+        setPoints(15);
+        click("sheetSay");
+        EXPECT_FALSE(part<QPushButton>("sheetGiveIn")->isEnabled()) << "all points together are missing";
+        chooseCriterion(2);
+        setPoints(60 + i);
+        click("sheetSay");
+        click("sheetGiveIn");
+        EXPECT_TRUE(desk().sheet(code.toStdString()).isIn);
+        if (i < 3) click("sheetNext");
+    }
+    ASSERT_TRUE(desk().areAllIn());
+    for (const std::string& code : desk().codes())
+        EXPECT_NE(desk().machine(code), nullptr);
+    EXPECT_EQ(part<QTreeWidget>("sheetCriteria")->isColumnHidden(4), false);
+    click("sheetTable");
+    for (int row = 0; row < 4; ++row)
+        EXPECT_NE(cell(row, WorkTable::kFile), "hidden");
+    // Agreement with pictures.
+    auto* tabs = part<QTabWidget>("markingTabs");
+    QTest::mouseClick(tabs->tabBar(), Qt::LeftButton, Qt::NoModifier, tabs->tabBar()->tabRect(2).center());
+    ASSERT_TRUE(waitFor([this] { return part<QTreeWidget>("agreementTable")->topLevelItemCount() == 3; }));
+    EXPECT_GT(part<QComboBox>("agreementPicture")->count(), 0);
+    EXPECT_TRUE(part<SvgView>("agreementPlot")->hasPicture());
+    keep(part<QDialog>("markingDesk"), "agreement.png");
+    file_ = own_.filePath("marks.csv");
+    part<QAction>("markingExport_marks")->trigger();
+    EXPECT_EQ(assessment::readMarks(toPath(file_)).size(), 3u);
+    file_ = own_.filePath("agreement");
+    part<QAction>("markingExport_agreement")->trigger();
+    EXPECT_TRUE(fs::exists(toPath(file_) / "agreement.json"));
+    EXPECT_TRUE(fs::exists(toPath(file_) / "01.svg"));
+}
+
+TEST_F(MarkingTest, AFolderIsDroppedAndScoringIsCancelled) {
+    makeWork();
+    fs::copy(at("exercise"), works() / "exercise", fs::copy_options::recursive);
+    drop(own_.filePath("works"));
+    ASSERT_TRUE(part<QDialog>("markingDesk")->isVisible());
+    EXPECT_EQ(part<QLineEdit>("markingFolder")->text(), own_.filePath("works"));
+    EXPECT_TRUE(part<QLineEdit>("markingExercise")->text().endsWith("works/exercise")) << "it came along";
+    EXPECT_FALSE(part<QPushButton>("markingBegin")->isEnabled()) << "nobody marks without a name";
+    type("markingMarker", QStringLiteral("T"));
+    click("markingBegin");
+    ASSERT_TRUE(waitFor([this] { return feature().desk() != nullptr && feature().isAtWork(); }));
+    click("markingCancel");
+    ASSERT_TRUE(waitFor([this] { return !feature().isAtWork(); }));
+    EXPECT_TRUE(part<QLabel>("markingNote")->text().contains("Cancelled"));
+    click("markingScore");
+    ASSERT_TRUE(waitFor([this] { return !feature().isAtWork(); }));
+    ASSERT_TRUE(
+        waitFor([this] { return rowOf("S-09.h5") >= 0 && !cell(rowOf("S-09.h5"), WorkTable::kScore).isEmpty(); }));
+    // What is wrong is told, and nothing is open.
+    type("markingExercise", own_.filePath("none"));
+    part<QTabWidget>("markingTabs")->setCurrentIndex(0);
+    type("markingExercise", own_.filePath("none"));
+    click("markingBegin");
+    ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
+    window().errorDialog()->reject();
+}
+
+}  // namespace
+}  // namespace handpiece::desktop

@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "handpiece/app/course/shipped_exercises.h"
 #include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/assess/rubric/rubric.h"
 #include "handpiece/assess/task/task.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
@@ -30,6 +31,7 @@ using Json = nlohmann::ordered_json;
 struct ExerciseOptions {
     std::string path, out, caseFile, preparation, side, rubric, id, title, instructions, bur;
     std::vector<std::string> set;  // NAME=NUMBER
+    bool noRubric = false;
     double voxelUm = 50.0, sideMm = 0.2, floorMm = 0.2, minutes = 0.0;
     std::string kind, layers = "hard";
     int level = 1;
@@ -52,6 +54,17 @@ std::vector<std::string> preparationNames(bool ofBlocks) {
 std::string text(const std::string& file) {
     const std::vector<std::byte> bytes = core::readFile(file, config::Table::kMaxBytes);
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// By name or as a file; without one that which is made for the preparation.
+std::string rubricOf(const ExerciseOptions& o, const preparation::Recipe& recipe) {
+    if (o.noRubric) return {};
+    if (o.rubric.empty()) return rubric::shippedTextFor(recipe.preparation, recipe.side);
+    const std::vector<std::string> shipped = rubric::shippedRubrics();
+    const bool isName = std::find(shipped.begin(), shipped.end(), o.rubric) != shipped.end();
+    std::string given = isName ? std::string(rubric::shippedRubricText(o.rubric)) : text(o.rubric);
+    rubric::requireSound(rubric::parseRubric(given, o.rubric));
+    return given;
 }
 
 /// As [preparation] of a file would have it, so that it is checked by the same rules.
@@ -131,7 +144,7 @@ void makeNew(const ExerciseOptions& o) {
     task.voxelMm = 1e-3 * o.voxelUm;
     if (o.minutes > 0.0) task.minutes = o.minutes;
     task.preparation = recipeOf(o, o.preparation);
-    if (!o.rubric.empty()) task.rubric = text(o.rubric);
+    task.rubric = rubricOf(o, *task.preparation);
     write(task, o.out);
 }
 
@@ -201,7 +214,7 @@ void makeBlock(const ExerciseOptions& o) {
     with.sideMm = task.preparation->leeway.sideMm;
     with.floorMm = task.preparation->leeway.floorMm;
     task.preparation = recipeOf(with, "block-" + o.kind);
-    if (!o.rubric.empty()) task.rubric = text(o.rubric);
+    task.rubric = rubricOf(o, *task.preparation);
     write(task, o.out);
 }
 
@@ -231,7 +244,8 @@ void addExerciseCommand(Command& app) {
         .takeAll();
     make.option("--leeway-side", o.sideMm, "what may go beside the target [mm]").showDefault();
     make.option("--leeway-floor", o.floorMm, "what may go under it [mm]").showDefault();
-    make.option("--rubric", o.rubric, "how it is judged: a file");
+    make.option("--rubric", o.rubric, "how it is judged: a name or a file; else as the preparation's own says");
+    make.flag("--no-rubric", o.noRubric, "it is not judged");
     make.option("--id", o.id, "small letters, digits, '-'").required();
     make.option("--title", o.title, "in English");
     make.option("--instructions", o.instructions, "in English");
@@ -287,7 +301,8 @@ void addMakeBlockCommand(Command& make) {
         .check(oneOf({starter::kBlockLayers.begin(), starter::kBlockLayers.end()}))
         .showDefault();
     block.option("--set", o.set, "NAME=NUMBER: a size of the figure, such as depth_mm=2; several times").takeAll();
-    block.option("--rubric", o.rubric, "how it is judged: a file");
+    block.option("--rubric", o.rubric, "how it is judged: a name or a file; else as the figure's own says");
+    block.flag("--no-rubric", o.noRubric, "it is not judged");
     block.option("--out", o.out, "folder, or file that ends in .handpiece").required();
     block.footer("Example:\n  handpiece make block --kind cross --level 2 --out cross");
     block.callback([options] { makeBlock(*options); });

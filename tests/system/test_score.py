@@ -86,7 +86,7 @@ class Score(SystemTest):
         self.ok("make", "block", "--kind", "line", "--rubric", RUBRICS / "dexterity-line.toml", "--out", other)
         self.refused("score", self.folder / "cut" / "attempt", "--exercise", other, mentions=("another tooth",))
         self.refused("score", self.tooth, "--exercise", exercise, mentions=("neither a session nor an attempt",))
-        bare = self.exercise("bare")
+        bare = self.exercise("bare", "--no-rubric")
         self.refused("score", self.folder / "cut" / "attempt", "--exercise", bare, mentions=("no rubric", "--rubric"))
         self.assertGreater(self.score(self.folder / "cut" / "attempt", bare, "--rubric", "46-class-i")["score"], 0)
 

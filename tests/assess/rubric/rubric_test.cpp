@@ -317,5 +317,37 @@ TEST(Shipped, AllAreSoundInBothLanguages) {
     EXPECT_THAT(errorOf([] { (void)rubricByNameOrFile("./46-clown.toml"); }), HasSubstr("46-clown.toml"));
 }
 
+TEST(Rubric, ComesBackFromWhatIsWritten) {
+    std::vector<std::string> texts;
+    for (const std::string& name : shippedRubrics())
+        texts.emplace_back(shippedRubricText(name));
+    texts.push_back(kHead + kDepth + kWidth +
+                    "critical = { below = 0.1, title = { en = \"a \\\"quote\\\"\" } }\ndevices = [\"falcon\"]\n"
+                    "excludes = [\"depth\"]\nwords = { \"pt-BR\" = \"x\\ny\" }\nleaves_out = { en = \"z\" }\n"
+                    "status = \"adapted\"\nsource = \"s\"\nlimit = 0.1\n"
+                    "[[step]]\nid = \"one\"\ntitle = { en = \"One\" }\ncriteria = [\"depth\"]\n"
+                    "[[rule]]\nid = \"ok\"\nneeds = [{ bands = [\"bad\"], of = [\"width\"], least = 0, most = 1 }]\n"
+                    "required = true\nelse_at_most = 12.5\nsource = \"q\"\n"
+                    "[[rule]]\nid = \"both\"\nneeds = [{ rule = \"ok\" }]\n");
+    for (const std::string& text : texts) {
+        const Rubric before = parsed(text), after = parsed(rubricToml(before));
+        EXPECT_EQ(canonicalText(before), canonicalText(after));
+        EXPECT_THAT(differences(before, after), IsEmpty()) << before.id;
+        EXPECT_EQ(describe(before, "ja"), describe(after, "ja"));
+        EXPECT_EQ(rubricToml(before), rubricToml(after));
+        for (std::size_t i = 0; i < before.criteria.size(); ++i) {
+            const Criterion &a = before.criteria[i], &b = after.criteria[i];
+            EXPECT_EQ(a.title, b.title);
+            EXPECT_EQ(a.words, b.words);
+            EXPECT_EQ(a.leavesOut, b.leavesOut);
+            EXPECT_EQ(a.source, b.source);
+            EXPECT_EQ(a.status, b.status);
+            EXPECT_EQ(a.devices, b.devices);
+            ASSERT_EQ(a.critical.has_value(), b.critical.has_value());
+            EXPECT_EQ(a.critical ? a.critical->title : Texts{}, b.critical ? b.critical->title : Texts{});
+        }
+    }
+}
+
 }  // namespace
 }  // namespace handpiece::rubric

@@ -86,13 +86,14 @@ class Linter {
     }
 
   private:
-    void tell(Severity severity, int line, const std::string& of, std::string problem, std::string remedy = {}) {
+    void tell(Severity severity, int line, const std::string& of, std::string problem, std::string remedy = {},
+              std::string criterion = {}) {
         std::string where = line > 0 ? fmt::format("{}:{}", rubric_.where, line) : rubric_.where;
         if (!of.empty()) where += ": " + of;
-        findings_.push_back({severity, std::move(where), std::move(problem), std::move(remedy)});
+        findings_.push_back({severity, std::move(where), std::move(problem), std::move(remedy), std::move(criterion)});
     }
     void tell(Severity severity, const Criterion& c, std::string problem, std::string remedy = {}, int line = 0) {
-        tell(severity, line > 0 ? line : c.line, "criterion " + c.id, std::move(problem), std::move(remedy));
+        tell(severity, line > 0 ? line : c.line, "criterion " + c.id, std::move(problem), std::move(remedy), c.id);
     }
 
     void whole();

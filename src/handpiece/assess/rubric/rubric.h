@@ -134,6 +134,7 @@ struct Finding {
     Severity severity = Severity::error;
     std::string where;  ///< "file:line: criterion id", as far as known
     std::string problem, remedy;
+    std::string criterion{};  ///< the id of the one it is about; empty: the whole, a step, a rule
 };
 /// All that is wrong with it, in the order of the file.
 [[nodiscard]] std::vector<Finding> check(const Rubric& rubric);
@@ -152,8 +153,15 @@ void requireSound(const Rubric& rubric);
 /// The rubric in plain words.
 [[nodiscard]] std::string describe(const Rubric& rubric, std::string_view language);
 
+/// As a file of the format: parseRubric() gives back the same rubric, lines and `where` apart; comments are lost.
+[[nodiscard]] std::string rubricToml(const Rubric& rubric);
+
 /// Of those that come with the program, sorted.
 [[nodiscard]] std::vector<std::string> shippedRubrics();
+/// The name of the one made for a preparation ("class-one"); empty: there is none.
+[[nodiscard]] std::string_view shippedFor(std::string_view preparation);
+/// Its text, with mesial and distal changed over where `side` is the other than it was made for; empty: there is none.
+[[nodiscard]] std::string shippedTextFor(std::string_view preparation, std::string_view side);
 /// Throws core::Error naming them.
 [[nodiscard]] Rubric shippedRubric(std::string_view name);
 /// The file as it is; throws alike.

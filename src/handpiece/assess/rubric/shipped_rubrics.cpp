@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "handpiece/assess/rubric/rubric.h"
 #include "handpiece/base/core/error.h"
@@ -53,11 +54,57 @@ std::vector<std::string> shippedRubrics() {
     return names;
 }
 
+std::string_view shippedFor(std::string_view preparation) {
+    constexpr std::pair<std::string_view, std::string_view> kFor[] = {
+        {"access", "46-access"},
+        {"block-channel", "dexterity-channel"},
+        {"block-circle", "dexterity-circle"},
+        {"block-cross", "dexterity-cross"},
+        {"block-d-circle", "dexterity-d-circle"},
+        {"block-hollow-circle", "dexterity-hollow-circle"},
+        {"block-line", "dexterity-line"},
+        {"block-steps", "dexterity-steps"},
+        {"class-five", "33-class-v"},
+        {"class-one", "46-class-i"},
+        {"class-three", "11-class-iii"},
+        {"class-two", "46-class-ii-mo"},
+        {"crown", "46-crown"},
+        {"lesion", "46-deep-lesion"},
+    };
+    for (const auto& [of, name] : kFor)
+        if (of == preparation) return name;
+    return {};
+}
+
 std::string_view shippedRubricText(std::string_view name) {
     for (const Shipped& s : all())
         if (s.name == name) return s.text;
     throw core::Error(fmt::format("there is no rubric \"{}\"", name.substr(0, 64)), {},
                       fmt::format("give a file, or one of {}", fmt::join(shippedRubrics(), ", ")));
+}
+
+std::string shippedTextFor(std::string_view preparation, std::string_view side) {
+    const std::string_view name = shippedFor(preparation);
+    if (name.empty()) return {};
+    const std::string text(shippedRubricText(name));
+    // All that have a side were made for the mesial one.
+    if (side != "distal") return text;
+    constexpr std::pair<std::string_view, std::string_view> kSwaps[] = {
+        {"mesial", "distal"}, {"Mesial", "Distal"}, {"distal", "mesial"}, {"Distal", "Mesial"},
+        {"近心", "遠心"},     {"遠心", "近心"},     {"-mo\"", "-do\""},   {" MO", " DO"}};
+    std::string out;
+    for (std::size_t i = 0; i < text.size();) {
+        const auto* swap = std::find_if(std::begin(kSwaps), std::end(kSwaps), [&](const auto& s) {
+            return std::string_view(text).substr(i, s.first.size()) == s.first;
+        });
+        if (swap == std::end(kSwaps)) {
+            out += text[i++];
+        } else {
+            out += swap->second;
+            i += swap->first.size();
+        }
+    }
+    return out;
 }
 
 Rubric shippedRubric(std::string_view name) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Values as TOML writes them. Private to this room.
+/// Values as TOML writes them, for those who write files of the product.
 
 #include <span>
 #include <string>

@@ -112,9 +112,11 @@ TEST_F(PositionTest, TheRecordSaysFromWhereAndHow) {
         const session::SessionReader reader(simulator().recording());
         for (const session::Event& event : reader.events())
             if (event.name == "working way") told.push_back(event.text);
-        return told == std::vector<std::string>{R"({"position": 11, "mirror_only": false, "finger_rest": false})",
-                                                R"({"position": 11, "mirror_only": true, "finger_rest": false})",
-                                                R"({"position": 11, "mirror_only": false, "finger_rest": false})"};
+        return told == std::vector<std::string>{
+                           R"({"position": 0, "mirror_only": false, "finger_rest": false, "depth_stop": false})",
+                           R"({"position": 11, "mirror_only": false, "finger_rest": false, "depth_stop": false})",
+                           R"({"position": 11, "mirror_only": true, "finger_rest": false, "depth_stop": false})",
+                           R"({"position": 11, "mirror_only": false, "finger_rest": false, "depth_stop": false})"};
     }));
 }
 
@@ -136,7 +138,7 @@ TEST_F(PositionTest, ARecordingThatGoesOnAfterAReplayDoesNotCountWhatWasBefore) 
         const session::SessionReader reader(recording);
         for (const session::Event& event : reader.events())
             if (event.name == "working way") last = event.text;
-        return last == R"({"position": 0, "mirror_only": false, "finger_rest": false})";
+        return last == R"({"position": 0, "mirror_only": false, "finger_rest": false, "depth_stop": false})";
     }));
 }
 

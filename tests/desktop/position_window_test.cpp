@@ -105,6 +105,7 @@ TEST_F(PositionTest, TheRecordSaysFromWhereAndHow) {
     action("actionMirrorView")->trigger();
     ASSERT_TRUE(waitFor([this] { return simulator().sample().timeS > 0.3; }));
     action("actionMirrorView")->trigger();
+    part<QCheckBox>("depthStopOn")->click();
     ASSERT_TRUE(waitFor([this] { return simulator().status().recording.writtenRecords > 0; }));
     ASSERT_TRUE(waitFor([&] {
         QTest::qWait(300);  // it is written by and by, and stays readable
@@ -116,7 +117,8 @@ TEST_F(PositionTest, TheRecordSaysFromWhereAndHow) {
                            R"({"position": 0, "mirror_only": false, "finger_rest": false, "depth_stop": false})",
                            R"({"position": 11, "mirror_only": false, "finger_rest": false, "depth_stop": false})",
                            R"({"position": 11, "mirror_only": true, "finger_rest": false, "depth_stop": false})",
-                           R"({"position": 11, "mirror_only": false, "finger_rest": false, "depth_stop": false})"};
+                           R"({"position": 11, "mirror_only": false, "finger_rest": false, "depth_stop": false})",
+                           R"({"position": 11, "mirror_only": false, "finger_rest": false, "depth_stop": true})"};
     }));
 }
 

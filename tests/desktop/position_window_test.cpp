@@ -105,6 +105,7 @@ TEST_F(PositionTest, TheRecordSaysFromWhereAndHow) {
     action("actionMirrorView")->trigger();
     ASSERT_TRUE(waitFor([this] { return simulator().sample().timeS > 0.3; }));
     action("actionMirrorView")->trigger();
+    part<QCheckBox>("depthStopOn")->click();
     ASSERT_TRUE(waitFor([this] { return simulator().status().recording.writtenRecords > 0; }));
     ASSERT_TRUE(waitFor([&] {
         QTest::qWait(300);  // it is written by and by, and stays readable
@@ -112,9 +113,12 @@ TEST_F(PositionTest, TheRecordSaysFromWhereAndHow) {
         const session::SessionReader reader(simulator().recording());
         for (const session::Event& event : reader.events())
             if (event.name == "working way") told.push_back(event.text);
-        return told == std::vector<std::string>{R"({"position": 11, "mirror_only": false, "finger_rest": false})",
-                                                R"({"position": 11, "mirror_only": true, "finger_rest": false})",
-                                                R"({"position": 11, "mirror_only": false, "finger_rest": false})"};
+        return told == std::vector<std::string>{
+                           R"({"position": 0, "mirror_only": false, "finger_rest": false, "depth_stop": false})",
+                           R"({"position": 11, "mirror_only": false, "finger_rest": false, "depth_stop": false})",
+                           R"({"position": 11, "mirror_only": true, "finger_rest": false, "depth_stop": false})",
+                           R"({"position": 11, "mirror_only": false, "finger_rest": false, "depth_stop": false})",
+                           R"({"position": 11, "mirror_only": false, "finger_rest": false, "depth_stop": true})"};
     }));
 }
 
@@ -136,7 +140,7 @@ TEST_F(PositionTest, ARecordingThatGoesOnAfterAReplayDoesNotCountWhatWasBefore) 
         const session::SessionReader reader(recording);
         for (const session::Event& event : reader.events())
             if (event.name == "working way") last = event.text;
-        return last == R"({"position": 0, "mirror_only": false, "finger_rest": false})";
+        return last == R"({"position": 0, "mirror_only": false, "finger_rest": false, "depth_stop": false})";
     }));
 }
 

@@ -103,7 +103,6 @@ void Simulator::sit(LoadedTooth loaded) {
     liveSession.elapsedS = elapsedS_ = loaded.elapsedS;
     liveSession.history = std::move(loaded.history);
     liveSession.realTime = options_.realTime;
-    recordingGoesOn_ = !loaded.recording.empty();
     const cases::Exercise* exercise = toothCase_->exercise ? &*toothCase_->exercise : nullptr;
     liveSession.lowerButtonUndoes =
         exercise::permissionsOf(exercise, exercise::WorkMode::work).allows(exercise::Operation::undo);
@@ -404,8 +403,15 @@ void Simulator::setHullMethod(bool hull) {
 }
 
 void Simulator::noteWorkingWay(int hour, bool mirrorOnly, bool fingerRest) {
+    way_ = {hour, mirrorOnly, fingerRest, way_.depthStop};
     if (mode_ != Mode::liveSession || !liveSession_) return;
-    liveSession_->noteWorkingWay({hour, mirrorOnly, fingerRest});
+    liveSession_->noteWorkingWay(way_);
+}
+
+void Simulator::noteDepthStop(bool isOn) {
+    if (way_.depthStop == isOn) return;
+    way_.depthStop = isOn;
+    noteWorkingWay(way_.hour, way_.mirrorOnly, way_.fingerRest);
 }
 
 void Simulator::setForceMode(force::LawId mode) {

@@ -182,10 +182,10 @@ class Simulator : public QObject {
     void setSpeed(double rpm);
     void setMultipliers(double stiffness, double damping, double friction);
     void setHullMethod(bool hull);
-    /// The recording under way holds work of before: of this tooth before a replay, or of a program that ended.
-    [[nodiscard]] bool recordingGoesOn() const noexcept { return recordingGoesOn_; }
     /// From where and how one works from now on, for the record: an hour or 0, by mirror only, with a finger rest.
     void noteWorkingWay(int hour, bool mirrorOnly, bool fingerRest);
+    /// Whether the depth stop is on from now on, likewise.
+    void noteDepthStop(bool isOn);
     /// The paper's penalty force instead of the proxy's.
     void setForceMode(force::LawId mode);
     /// A knock at each touch; the hum of the bur. Both off where nothing can be felt anyway: the mouse.
@@ -297,8 +297,8 @@ class Simulator : public QObject {
     core::Pose startPose_;
     simulation::SimulationSettings settings_;
     QString burName_ = QStringLiteral("330"), driveName_ = QStringLiteral("turbine"), code_;
-    bool recordingGoesOn_ = false;
-    std::string sessionCode_;  ///< that the recording carries, or the next one will
+    simulation::WorkingWay way_{0, false, false, false};  ///< as told last
+    std::string sessionCode_;                             ///< that the recording carries, or the next one will
     double speedRpm_ = 0.0, elapsedS_ = 0.0;
     bool hull_ = false;
     int voxelUm_ = 50;

@@ -114,10 +114,14 @@ void MeasureFeature::connectTools() {
     // The load and the depth stop: wheel in the picture, sliders in the box.
     connect(&view_, &ViewWidget::loadChanged, box_, &MeasureBox::setLoad);
     connect(box_, &MeasureBox::loadChanged, &view_, &ViewWidget::setLoad);
-    connect(&view_, &ViewWidget::stopChanged, this,
-            [this](std::optional<double> depthMm) { box_->setDepthStop(depthMm.value_or(0.0)); });
-    connect(box_, &MeasureBox::depthStopChanged, this,
-            [this](double stopMm) { view_.setStop(stopMm > 0.0 ? std::optional<double>(stopMm) : std::nullopt); });
+    connect(&view_, &ViewWidget::stopChanged, this, [this](std::optional<double> depthMm) {
+        box_->setDepthStop(depthMm.value_or(0.0));
+        simulator_.noteDepthStop(depthMm.has_value());
+    });
+    connect(box_, &MeasureBox::depthStopChanged, this, [this](double stopMm) {
+        view_.setStop(stopMm > 0.0 ? std::optional<double>(stopMm) : std::nullopt);
+        simulator_.noteDepthStop(stopMm > 0.0);
+    });
     // The picture decides; the actions follow.
     for (const auto& [command, tool] : kTools)
         on(commands_[command], [this, t = tool](bool isOn) { view_.setTool(isOn ? t : Tool::drill); });
@@ -187,6 +191,7 @@ void MeasureFeature::showDocument() {
         // The hand that holds this tooth's bur presses and stops as the panel says.
         view_.setLoad(box_->loadN());
         view_.setStop(box_->depthStopMm());
+        simulator_.noteDepthStop(box_->depthStopMm().has_value());
         readouts_.start();
     }
 }

@@ -58,8 +58,8 @@ void PositionFeature::showDocument() {
         panel_->setTooth(toothCase->fdiNumber, input::headInCase(*toothCase).has_value());
     else
         panel_->setTooth(0, false);
-    // One that goes on would count what it was told last.
-    if (view_.isMirrorView() || simulator_.recordingGoesOn()) tellRecord();
+    // From its beginning each recording says how one works: what it does not tell, nobody can measure.
+    tellRecord();
 }
 
 void PositionFeature::sit(int hour) {

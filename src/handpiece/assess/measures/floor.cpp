@@ -55,7 +55,7 @@ double edgeOf(const Floor& floor, const Selection& of, const std::function<doubl
     std::vector<double> values;
     for (const int node : floor.flat)
         values.push_back(valueOf(node));
-    constexpr double kShare = 0.75;  // of that change is open
+    constexpr double kShare = 0.9;  // of that change is open
     return kShare * std::abs(statisticOf(values, of.statistic.empty() ? "median" : of.statistic, nullptr) - value);
 }
 

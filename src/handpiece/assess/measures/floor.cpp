@@ -55,7 +55,8 @@ double edgeOf(const Floor& floor, const Selection& of, const std::function<doubl
     std::vector<double> values;
     for (const int node : floor.flat)
         values.push_back(valueOf(node));
-    return std::abs(statisticOf(values, of.statistic.empty() ? "median" : of.statistic, nullptr) - value);
+    constexpr double kShare = 0.9;  // of that change is open
+    return kShare * std::abs(statisticOf(values, of.statistic.empty() ? "median" : of.statistic, nullptr) - value);
 }
 
 Vec3 normalOf(const Plane& plane) {

@@ -16,8 +16,8 @@ using core::Vec3;
 // Less is none: nor is what the wall's own roughness makes from valley to peak (two crossed waves: four times its rms,
 // waves in three directions five), or four tenths of a voxel, by which a coarse field may make a mark too deep.
 constexpr double kLeastUndercutMm = 0.03, kLeastUndercutVoxels = 0.4, kRoughnessTimes = 5.0;
-// A wall's form is its mean over the roughness's cut-off, 0.4 mm to either side.
-constexpr int kFormPlaces = 8;
+// A wall's form is its mean over the roughness's cut-off, 0.8 mm along it.
+constexpr int kFormPlaces = 17;
 constexpr double kFormCos = 0.7071068;   // 45 degrees: deep marks turn the aim by 20 to either side
 constexpr double kTopMm = 0.3;           // of wall and of uncut surface at a margin
 constexpr std::size_t kPiecePlaces = 6;  // kPieceMm along a wall
@@ -80,23 +80,26 @@ double formBehind(CutTooth& tooth, const WallStation& wall, double deepW, double
         const WallStation::Sample &low = *(next - 1), &high = *next;
         return low.r + (high.r - low.r) * (w - low.w) / (high.w - low.w);
     };
-    // Walls come row by row.
+    // Walls come row by row. At a wall's end the nearest places all lie to one side.
     const std::vector<WallStation>& walls = tooth.walls();
     const std::ptrdiff_t here = &wall - walls.data();
     constexpr std::ptrdiff_t kSearch = 4 * kFormPlaces;
-    double sum = 0.0, count = 0.0;
+    std::vector<std::pair<int, double>> beside;  // rows off; how far behind
     for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, here - kSearch);
          i < std::min(static_cast<std::ptrdiff_t>(walls.size()), here + kSearch + 1); ++i) {
         const WallStation& other = walls[static_cast<std::size_t>(i)];
         if (other.floor != wall.floor || other.run != wall.run || other.side != wall.side ||
-            std::abs(other.row - wall.row) > kFormPlaces || other.h.dot(wall.h) < kFormCos)
+            std::abs(other.row - wall.row) >= kFormPlaces || other.h.dot(wall.h) < kFormCos)
             continue;
         const auto deep = at(other, deepW), above = at(other, aboveW);
-        if (!deep || !above) continue;
-        sum += *deep - *above;
-        ++count;
+        if (deep && above) beside.emplace_back(std::abs(other.row - wall.row), *deep - *above);
     }
-    return count > 0.0 ? sum / count : 0.0;
+    std::sort(beside.begin(), beside.end());
+    if (beside.size() > kFormPlaces) beside.resize(kFormPlaces);
+    double sum = 0.0;
+    for (const auto& [rows, behind] : beside)
+        sum += behind;
+    return beside.empty() ? 0.0 : sum / static_cast<double>(beside.size());
 }
 
 struct AllUndercuts {
@@ -128,9 +131,12 @@ AllUndercuts undercuts(CutTooth& tooth, const Selection& of) {
                 ++count;
             }
         const auto roughOf = [&](const WallStation& wall) {
-            const auto at = squares.find({wall.floor, wall.side});
-            const double pooled = at == squares.end() ? 0.0 : std::sqrt(at->second.first / at->second.second);
-            return kRoughnessTimes * std::max(pooled, wall.isCorner ? 0.0 : wall.middle.rms);
+            // In a corner of either wall's.
+            double most = wall.isCorner ? 0.0 : wall.middle.rms;
+            for (const auto& [at, of_] : squares)
+                if (at.first == wall.floor && (wall.isCorner || at.second == wall.side))
+                    most = std::max(most, std::sqrt(of_.first / of_.second));
+            return kRoughnessTimes * most;
         };
         for (const WallStation& wall : tooth.walls()) {
             if (!isOn(of, wall.side)) continue;
@@ -186,7 +192,7 @@ Taken takeWallHeight(CutTooth& tooth, const Selection& of) {
     Taken taken = places.taken(of, "median", "margin over this wall's foot");
     taken.residual = meanOf(residual, static_cast<double>(places.values.size()) * kProbeMm / kPieceMm);
     // A crown's wall ends in a round edge that the field knows to a tenth of a voxel.
-    if (tooth.form() == Form::crown) taken.offMm = 0.06 * tooth.voxelMm();
+    if (tooth.form() == Form::crown) taken.offMm = 0.07 * tooth.voxelMm();
     if (const std::size_t n = places.values.size(); n > 4 && tooth.form() == Form::cavity) {
         // Where a corner begins is known to two places or so: that tells where the margin runs up and down.
         for (const auto& [from, to] : {std::pair<std::size_t, std::size_t>{2, n}, {0, n - 2}, {1, n - 1}}) {

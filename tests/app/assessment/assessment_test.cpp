@@ -61,6 +61,36 @@ TEST(Result, HasTheNamesThatOthersRelyOn) {
     EXPECT_THAT(json, HasSubstr("\"xyz_mm\": [\n            1.0,\n            -2.0,\n            0.25\n          ]"));
 }
 
+TEST(Result, ComesBackFromItsJsonAndNothingElseDoes) {
+    const rubric::Rubric r = rubric::shippedRubric("46-class-i");
+    std::vector<measures::Measured> measured;
+    for (const rubric::Criterion& c : r.criteria) {
+        measures::Measured m{c.measure, c.of, 2.05, 0.1, {}, {{12.5, core::Vec3(1, -2, 0.25), 0.8, "deepest"}}};
+        if (c.id == "time") m = {c.measure, c.of, {}, 0.0, "no samples", {}};
+        measured.push_back(m);
+    }
+    score::Identity of{"one", "e1", "c1", "s1", {"h1", "h2"}, true, 7, score::ScanFit{0.03, 140, 0.01, 20, 0.1}};
+    const std::string json = resultJson(score::evaluate(r, measured, {"pointer", 2}), of);
+    const score::Result back = parseResult(json, "result.json");
+    EXPECT_EQ(resultJson(back.assessment, back.identity), json);
+    of.scan.reset();
+    const std::string plain = resultJson(score::evaluate(r, measured, {"pointer", 2}), of);
+    EXPECT_FALSE(parseResult(plain, "result.json").identity.scan);
+    // Any member that is missing, or of another type, is named with the file; no file makes it crash.
+    for (const char* member :
+         {"engine", "proven", "score_range", "passed", "criteria", "rubric_hash", "motion_scale"}) {
+        std::string broken = json;
+        broken.replace(broken.find(std::string("\"") + member + "\""), 2, "\"_");
+        EXPECT_THAT(test::errorOf([&] { (void)parseResult(broken, "a.json"); }),
+                    testing::AllOf(HasSubstr("a.json"), HasSubstr(member)));
+    }
+    for (const char* bad : {"", "[]", "null", "{", "{\"schema\": 3}", "{\"schema\": \"handpiece-result-9\"}"})
+        EXPECT_THAT(test::errorOf([&] { (void)parseResult(bad, "a.json"); }), HasSubstr("a.json")) << bad;
+    for (std::size_t cut = 1; cut < json.size(); cut += 97)
+        EXPECT_THAT(test::errorOf([&] { (void)parseResult(json.substr(0, json.size() - 1 - cut), "a.json"); }),
+                    HasSubstr("a.json"));
+}
+
 TEST(Marks, AreATableOfItemsAndRaters) {
     const std::vector<MarkTable> tables = parseMarks(
         "\xEF\xBB\xBFmark,rater,item,criterion\r\n3, A ,\"x, \"\"1\"\"\",depth\r\n\r\n,B,\"x, "

@@ -171,6 +171,21 @@ TEST(Look, RemovedDepthGetsDarkerWithEveryStepForEveryColourVision) {
     }
 }
 
+TEST(Look, DeviationsGoFromRedOverPaleToBlue) {
+    EXPECT_EQ(deviationColour(-9.0, 0.5), deviationColour(-0.5, 0.5));
+    EXPECT_EQ(deviationColour(9.0, 0.5), deviationColour(0.5, 0.5));
+    EXPECT_EQ(deviationColour(0.2, 0.0), deviationColour(0.0, 0.5));
+    for (int i = 1; i <= 10; ++i) {
+        const auto gone = deviationColour(-0.05 * i, 0.5), left = deviationColour(0.05 * i, 0.5);
+        EXPECT_GT(gone[0], gone[2]) << i;
+        EXPECT_GT(left[2], left[0]) << i;
+        // Each step is darker, so that the size is seen in grey too.
+        const auto sum = [](const std::array<std::uint8_t, 3>& c) { return c[0] + c[1] + c[2]; };
+        EXPECT_LT(sum(gone), sum(deviationColour(-0.05 * (i - 1), 0.5))) << i;
+        EXPECT_LT(sum(left), sum(deviationColour(0.05 * (i - 1), 0.5))) << i;
+    }
+}
+
 TEST(Look, TheDepthScaleEndsWhereItIsSaidTo) {
     EXPECT_EQ(removedDepthColour(-1.0, 3.0), removedDepthColour(0.0, 3.0));
     EXPECT_EQ(removedDepthColour(9.0, 3.0), removedDepthColour(3.0, 3.0));

@@ -114,8 +114,8 @@ class Page {
         for (const score::CriticalError& e : a_.critical) {
             std::string line = titleOf(e.criterion);
             if (const rubric::Criterion* c = criterion(e.criterion); c != nullptr && c->critical)
-                if (const auto said = cases::inLanguage(c->critical->title, words().language()); !said.empty())
-                    line = std::string(said);
+                if (const auto text = cases::inLanguage(c->critical->title, words().language()); !text.empty())
+                    line = std::string(text);
             for (const score::CriterionScore& s : a_.criteria)
                 if (s.id == e.criterion && s.value) line += ": " + valueOf(s);
             page_.paragraph(e.borderline ? words()("assessment.may-be-critical", line) : line,
@@ -138,16 +138,16 @@ class Page {
             const auto picture = pictures_.places.find(s.id);
             const bool isShown = picture != pictures_.places.end() && !picture->second.empty();
             if (isShown) page_.begin(Group::columns);
-            Facts facts{{words()("assessment.measured"), s.value ? valueOf(s) : s.reason}};
+            Facts facts{{words()("assessment.measured"), s.value ? valueOf(s) : said(s.reason)}};
             if (c != nullptr)
                 if (const std::string wanted = wantedOf(*c, rubric_); !wanted.empty())
                     facts.emplace_back(c->isGraded() || !c->bands.empty() ? words()("assessment.wanted")
                                                                           : words()("assessment.allowed"),
                                        wanted);
             // The first that says each of them.
-            const auto add = [&](const char* name, const auto& said) {
+            const auto add = [&](const char* name, const auto& read) {
                 for (const measures::Evidence& e : s.evidence)
-                    if (const std::string text = said(e); !text.empty()) {
+                    if (const std::string text = read(e); !text.empty()) {
                         facts.emplace_back(words().text(name), text);
                         return;
                     }
@@ -167,8 +167,8 @@ class Page {
                 page_.end();
             }
             if (c != nullptr)
-                if (const auto said = cases::inLanguage(c->words, words().language()); !said.empty())
-                    page_.paragraph(said);
+                if (const auto text = cases::inLanguage(c->words, words().language()); !text.empty())
+                    page_.paragraph(text);
             page_.paragraph(words()("assessment.practise", drillFor(s.measure)));
             page_.end();
         }
@@ -188,7 +188,7 @@ class Page {
                 say(s.possibleBands.size() > 1 ? words()("assessment.borderline-between", bands)
                                                : words()("assessment.borderline"));
             }
-            if (s.standing != score::Standing::judged) say(s.reason);
+            if (s.standing != score::Standing::judged) say(said(s.reason));
             if (s.standing == score::Standing::judged && !s.points) say(words()("rubric.shown"));
             rows.push_back({titleOf(s.id), s.value ? fmt::format("{:.3f}", *s.value) : std::string(),
                             s.value ? fmt::format("± {:.3f}", s.uncertainty) : std::string(), s.unit,
@@ -247,16 +247,16 @@ class Page {
     void addOrigin() {
         const score::Identity& of = result_.identity;
         page_.heading(words()("assessment.origin"));
-        Facts facts{
-            {words()("assessment.proven"),
-             (of.proven ? words()("assessment.is-proven") : words()("assessment.not-proven")) + ": " + result_.proof},
-            {words()("assessment.device"),
-             a_.context.device.empty() ? words()("assessment.not-known") : a_.context.device},
-            {words()("assessment.exercise"), fmt::format("{} ({})", of.exercise, of.exerciseHash)},
-            {words()("assessment.rubric"),
-             fmt::format("{} {} ({})", a_.rubric, a_.rubricVersion, rubric::hashText(a_.rubricHash))},
-            {words()("assessment.state"), of.stateHash},
-            {words()("assessment.engine"), fmt::format("{}", of.engineRevision)}};
+        Facts facts{{words()("assessment.proven"),
+                     (of.proven ? words()("assessment.is-proven") : words()("assessment.not-proven")) + ": " +
+                         said(result_.proof)},
+                    {words()("assessment.device"),
+                     a_.context.device.empty() ? words()("assessment.not-known") : a_.context.device},
+                    {words()("assessment.exercise"), fmt::format("{} ({})", of.exercise, of.exerciseHash)},
+                    {words()("assessment.rubric"),
+                     fmt::format("{} {} ({})", a_.rubric, a_.rubricVersion, rubric::hashText(a_.rubricHash))},
+                    {words()("assessment.state"), of.stateHash},
+                    {words()("assessment.engine"), fmt::format("{}", of.engineRevision)}};
         for (const std::string& hash : of.sessionHashes)
             facts.emplace_back(words()("assessment.session"), hash);
         page_.facts({}, facts);

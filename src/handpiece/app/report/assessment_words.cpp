@@ -69,7 +69,47 @@ constexpr std::array<std::pair<std::string_view, const char*>, 40> kDrills{{
     {"", "drill.other"},
 }};
 
+/// What measures say in English, under names that other languages have too. What is not among them stays as it is.
+constexpr const char* kSaid[] = {
+    "said.axial-wall",
+    "said.margin",
+    "said.floor-depth",
+    "said.deepest-floor",
+    "said.deepest-undercut",
+    "said.finish-line",
+    "said.margin-over-gingiva",
+    "said.margin-over-foot",
+    "said.middle-of-floor",
+    "said.middle-of-isthmus",
+    "said.open-pulp",
+    "said.reduced",
+    "said.section-here",
+    "said.shortest-way",
+    "said.thinnest-over-pulp",
+    "said.thinnest-ridge",
+    "said.this-surface",
+    "said.wall",
+    "said.nothing-cut",
+    "said.nothing-cut-there",
+    "said.no-pulp",
+    "said.no-gingiva",
+    "said.no-caries",
+    "said.no-tooth-beside",
+    "said.no-hand-in-scan",
+    "said.hand-not-yet",
+    "said.attempt",
+    "said.cut-again",
+    "said.not-cut-again",
+};
+
 }  // namespace
+
+std::string said(const std::string& english) {
+    const config::Words& source = config::Words::in("en");
+    for (const char* id : kSaid)
+        if (source.text(id) == english) return words().text(id);
+    return english;
+}
 
 std::string drillFor(const std::string& measure) {
     for (const auto& [beginning, id] : kDrills)
@@ -122,7 +162,7 @@ std::string valueOf(const score::CriterionScore& s) {
 }
 
 std::string placeText(const measures::Evidence& e) {
-    return fmt::format("{}{}x {:.2f}, y {:.2f}, z {:.2f} mm", e.text, e.text.empty() ? "" : ": ", e.placeMm->x(),
+    return fmt::format("{}{}x {:.2f}, y {:.2f}, z {:.2f} mm", said(e.text), e.text.empty() ? "" : ": ", e.placeMm->x(),
                        e.placeMm->y(), e.placeMm->z());
 }
 

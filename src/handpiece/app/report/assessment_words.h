@@ -17,6 +17,8 @@ namespace handpiece::report {
 [[nodiscard]] std::string verdictOf(score::Passed passed);
 /// Why, in one sentence: Assessment::why says it in English.
 [[nodiscard]] std::string whyOf(const score::Assessment& assessment, const rubric::Rubric& rubric);
+/// An evidence's text, a reason or a proof, which are English, in the program's language where it is known.
+[[nodiscard]] std::string said(const std::string& english);
 /// "1.52 ± 0.03 mm".
 [[nodiscard]] std::string valueOf(const score::CriterionScore& score);
 /// Where, in words and numbers.

@@ -119,7 +119,8 @@ void findFlat(const HeightMap& map, const std::vector<int>& label, int mine, dou
             const Vec3 q = map.drawOf(node);
             mean += q.z() - plane.of(q.x(), q.y());
         }
-        if (!more.empty() && mean / static_cast<double>(more.size()) > kCornerMm + 2.0 * noiseMm + 0.5 * plane.rms) break;
+        if (!more.empty() && mean / static_cast<double>(more.size()) > kCornerMm + 2.0 * noiseMm + 0.5 * plane.rms)
+            break;
         kept.insert(kept.end(), more.begin(), more.end());
     }
     std::sort(kept.begin(), kept.end());

@@ -8121,6 +8121,10 @@ lingual: %4</source>
         <source>Override</source>
         <translation>変更する</translation>
     </message>
+    <message>
+        <source>How the work stands</source>
+        <translation>作品の状況</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::WorkTable</name>

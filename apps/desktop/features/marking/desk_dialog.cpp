@@ -48,7 +48,7 @@ DeskDialog::DeskDialog(QWidget* parent) : QDialog(parent, Qt::Window) {
     column->addWidget(tabs_, 1);
     column->addLayout(below);
     column->addWidget(note_);
-    resize(980, 640);
+    resize(1100, 640);
     connect(cancel_, &QPushButton::clicked, this, &DeskDialog::cancelRequested);
     connect(tabs_, &QTabWidget::currentChanged, this, [this] {
         if (isAgreementShown()) emit agreementRequested();
@@ -126,10 +126,11 @@ QWidget* DeskDialog::makeWorks() {
     table_->verticalHeader()->hide();
     table_->horizontalHeader()->setStretchLastSection(false);
     table_->horizontalHeader()->setSectionResizeMode(WorkTable::kState, QHeaderView::Stretch);
-    table_->setColumnWidth(WorkTable::kCode, 170);
-    table_->setColumnWidth(WorkTable::kFile, 150);
-    table_->setColumnWidth(WorkTable::kMachine, 120);
-    table_->setColumnWidth(WorkTable::kFlags, 150);
+    const std::pair<int, int> widths[] = {
+        {WorkTable::kCode, 160},   {WorkTable::kFile, 150},  {WorkTable::kScore, 100},  {WorkTable::kMachine, 110},
+        {WorkTable::kPassed, 105}, {WorkTable::kFlags, 130}, {WorkTable::kComments, 80}};
+    for (const auto& [column, width] : widths)
+        table_->setColumnWidth(column, width);
     // As they come until somebody sorts.
     table_->horizontalHeader()->setSortIndicator(-1, Qt::AscendingOrder);
     const auto box = [this, page](const char* name, const QString& text, const QString& tip) {

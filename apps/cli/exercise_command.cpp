@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/assess/task/task.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
@@ -162,7 +163,7 @@ void ideal(const ExerciseOptions& o) {
     if (!task.preparation)
         throw core::Error("this exercise asks for no preparation", o.path, "add [preparation] to exercise.toml");
     tooth::LoadSettings settings;
-    settings.field.voxelMm = task.voxelMm;
+    settings.field = simulation::fieldSettingsAt(task.voxelMm);  // as the window opens it
     studies::ProgressBar bar("making the tooth");
     const auto model = tooth::loadModel(task.toothCase, settings, bar.listener());
     bar.finish();

@@ -8078,10 +8078,6 @@ lingual: %4</source>
         <translation>採点を待っています。</translation>
     </message>
     <message>
-        <source>%1 of %2 points; machine: %3. %4.</source>
-        <translation>%1 / %2 点、機械：%3。%4。</translation>
-    </message>
-    <message>
         <source>Why: %1.</source>
         <translation>理由：%1。</translation>
     </message>
@@ -8124,6 +8120,10 @@ lingual: %4</source>
     <message>
         <source>How the work stands</source>
         <translation>作品の状況</translation>
+    </message>
+    <message>
+        <source>%1 of %2 points (machine: %3): %4.</source>
+        <translation>%1 / %2 点（機械：%3）：%4。</translation>
     </message>
 </context>
 <context>

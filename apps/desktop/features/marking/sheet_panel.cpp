@@ -342,7 +342,7 @@ void SheetPanel::showSummary() {
         return;
     }
     QString text =
-        tr("%1 of %2 points; machine: %3. %4.")
+        tr("%1 of %2 points (machine: %3): %4.")
             .arg(pointsText(final->score), pointsText(final->maxScore), pointsText(machine->assessment.score),
                  WorkTable::passedWord(static_cast<int>(*desk_->passed(id))));
     if (!final->why.empty() && !desk_->sheet(id).decision)

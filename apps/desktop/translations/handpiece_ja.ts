@@ -7486,7 +7486,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>Weighted kappa (linear), ICC(2,1), Krippendorff&apos;s alpha, bias and limits of agreement, with 95 % intervals</source>
-        <translation>重み付きカッパ（線形）、ICC(2,1)、Krippendorff のアルファ、偏りと一致の限界（95 % 区間付き）</translation>
+        <translation>重み付きカッパ（線形）、級内相関係数 (2,1)、クリッペンドルフのアルファ、偏りと一致の限界（95 % 区間付き）</translation>
     </message>
     <message>
         <source>Of</source>
@@ -7542,7 +7542,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>Krippendorff&apos;s alpha</source>
-        <translation>Krippendorff のアルファ</translation>
+        <translation>クリッペンドルフのアルファ</translation>
     </message>
 </context>
 <context>
@@ -7605,7 +7605,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>The exercise that was worked on: its folder, or its .handpiece file</source>
-        <translation>行われた課題：そのフォルダーまたは .handpiece ファイル</translation>
+        <translation>行われた課題：そのフォルダー、または一つにまとめたファイル</translation>
     </message>
     <message>
         <source>Choose the exercise</source>

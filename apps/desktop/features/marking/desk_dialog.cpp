@@ -11,6 +11,7 @@
 #include <QHeaderView>
 #include <QLabel>
 #include <QLineEdit>
+#include <QLocale>
 #include <QMenu>
 #include <QMimeData>
 #include <QProgressBar>
@@ -83,8 +84,6 @@ QWidget* DeskDialog::makeSetUp() {
     rubric_ =
         named(new QComboBox(page), "markingRubric", tr("Rubric"), tr("How the machine scores, and what is marked"));
     rubric_->addItem(tr("The exercise's own"), QString());
-    for (const std::string& name : rubric::shippedRubrics())
-        rubric_->addItem(QString::fromStdString(name), QString::fromStdString(name));
     auto* chooseRubric = named(new QPushButton(tr("File..."), page), "markingRubricChoose", tr("A rubric of your own"));
     form->addRow(tr("Rubric"), withButton(rubric_, chooseRubric));
     marker_ = named(new QLineEdit(page), "markingMarker", tr("Marker"),
@@ -268,6 +267,19 @@ void DeskDialog::select(const QString& code) {
 void DeskDialog::showWhetherReady() {
     const DeskWish now = wish();
     begin_->setEnabled(!isAtWork_ && !now.folder.isEmpty() && !now.exercise.isEmpty() && !now.marker.isEmpty());
+}
+
+void DeskDialog::showEvent(QShowEvent* event) {
+    QDialog::showEvent(event);
+    if (rubric_->count() > 1) return;
+    // By their titles, once somebody asks.
+    const std::string language = QLocale().bcp47Name().toStdString();
+    for (const std::string& name : rubric::shippedRubrics()) {
+        const rubric::Rubric shipped = rubric::shippedRubric(name);
+        const std::string_view title = cases::inLanguage(shipped.title, language);
+        rubric_->addItem(QString::fromUtf8(title.data(), static_cast<qsizetype>(title.size())),
+                         QString::fromStdString(name));
+    }
 }
 
 void DeskDialog::dragEnterEvent(QDragEnterEvent* event) {

@@ -7562,7 +7562,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>Weighted kappa (linear), ICC(2,1), Krippendorff&apos;s alpha, bias and limits of agreement, with 95 % intervals</source>
-        <translation>重み付きカッパ（線形）、ICC(2,1)、Krippendorff のアルファ、偏りと一致の限界（95 % 区間付き）</translation>
+        <translation>重み付きカッパ（線形）、級内相関係数 (2,1)、クリッペンドルフのアルファ、偏りと一致の限界（95 % 区間付き）</translation>
     </message>
     <message>
         <source>Of</source>
@@ -7618,7 +7618,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>Krippendorff&apos;s alpha</source>
-        <translation>Krippendorff のアルファ</translation>
+        <translation>クリッペンドルフのアルファ</translation>
     </message>
 </context>
 <context>
@@ -7681,7 +7681,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>The exercise that was worked on: its folder, or its .handpiece file</source>
-        <translation>行われた課題：そのフォルダーまたは .handpiece ファイル</translation>
+        <translation>行われた課題：そのフォルダー、または一つにまとめたファイル</translation>
     </message>
     <message>
         <source>Choose the exercise</source>
@@ -8154,10 +8154,6 @@ lingual: %4</source>
         <translation>採点を待っています。</translation>
     </message>
     <message>
-        <source>%1 of %2 points; machine: %3. %4.</source>
-        <translation>%1 / %2 点、機械：%3。%4。</translation>
-    </message>
-    <message>
         <source>Why: %1.</source>
         <translation>理由：%1。</translation>
     </message>
@@ -8196,6 +8192,14 @@ lingual: %4</source>
     <message>
         <source>Override</source>
         <translation>変更する</translation>
+    </message>
+    <message>
+        <source>How the work stands</source>
+        <translation>作品の状況</translation>
+    </message>
+    <message>
+        <source>%1 of %2 points (machine: %3): %4.</source>
+        <translation>%1 / %2 点（機械：%3）：%4。</translation>
     </message>
 </context>
 <context>

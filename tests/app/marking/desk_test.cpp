@@ -391,10 +391,17 @@ TEST(Desk, GoesOnWhereItWas) {
     other.exerciseHash = "e2";
     EXPECT_THAT(errorOf([&] { Desk(other, works); }), HasSubstr("another exercise"));
     EXPECT_THAT(errorOf([&] { Desk(setupIn(folder.path(), true, "田中"), works); }), HasSubstr("shows"));
-    // Another rubric: seen desks go on under it.
-    DeskSetup changed = setupIn(folder.path(), false, "田中");
-    changed.rubric.passMark = 70.0;
-    EXPECT_EQ(Desk(changed, works).state().rubricHash, rubric::hashText(rubric::hashOf(changed.rubric)));
+    // An override that no longer fits is told, and what was said stays.
+    desk.override(code, "depth", {"", 45.0, {}, "x"});
+    DeskSetup lighter = setupIn(folder.path(), false, "田中");
+    lighter.rubric.criteria[0].weight = 40.0;
+    Desk light(lighter, works);
+    light.take(0, Scored::of(resultOf(1.75, 0.8)));
+    EXPECT_FALSE(light.finalScore(code));
+    EXPECT_THAT(light.problem(code), HasSubstr("no longer fits"));
+    EXPECT_EQ(light.sheet(code).overrides.at("depth").points, 45.0);
+    EXPECT_EQ(light.state().rubricHash, rubric::hashText(rubric::hashOf(lighter.rubric)))
+        << "seen desks go on under it";
     core::writeFile(desk.file(), std::string_view("{\"handpiece\":\"marking\",\"format\":2}"));
     EXPECT_THAT(errorOf([&] { Desk(setupIn(folder.path(), false, "田中"), works); }), HasSubstr("newer"));
     core::writeFile(desk.file(), std::string_view("{"));
@@ -551,6 +558,47 @@ TEST(Agreement, OfMarkersMachineAndSelf) {
     const Desk::Others told = first.othersOfFolder();
     EXPECT_EQ(told.desks.size(), 2u);
     EXPECT_EQ(told.problems.size(), 1u);
+}
+
+TEST(Readers, RefuseWhatIsDamaged) {
+    const test::TemporaryFolder folder;
+    Desk desk(setupIn(folder.path(), true), worksOf(4));
+    markAll(desk, desk.codes()[0], "good", "fair", 10, 60);
+    desk.comment(desk.codes()[1], {0, "depth", "here", core::Vec3(1, 2, 3), 4.5});
+    const assessment::Result result = resultOf(1.75, {});
+    const std::string texts[] = {deskJson(desk.state()), assessment::resultJson(result.assessment, result.identity)};
+    EXPECT_EQ(deskJson(parseDesk(texts[0], "d")), texts[0]);
+    std::mt19937_64 random(test::seed());
+    std::size_t refused = 0;
+    for (int i = 0; i < 6000; ++i) {
+        std::string text = texts[i % 2];
+        for (std::uint64_t n = 1 + random() % 4; n > 0; --n) {
+            const std::size_t at = random() % text.size();
+            switch (random() % 4) {
+                case 0:
+                    text[at] = static_cast<char>(random());
+                    break;
+                case 1:
+                    text.erase(at, 1 + random() % 40);
+                    break;
+                case 2:
+                    text.insert(at, text.substr(random() % text.size(), 1 + random() % 40));
+                    break;
+                default:
+                    text.resize(at + 1);
+            }
+            if (text.empty()) text = "x";
+        }
+        try {
+            if (i % 2 == 0)
+                static_cast<void>(itemsOf(parseDesk(text, "d")));
+            else
+                static_cast<void>(parseResult(text, "r"));
+        } catch (const core::Error&) {  // anything else, or none to speak of, fails the test
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 3000u);
 }
 
 TEST(Csv, CellsAreWhatTheyWere) {

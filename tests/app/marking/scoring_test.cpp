@@ -88,7 +88,8 @@ TEST_F(MarkingFolder, ScoresWhatCanBeScoredAndSaysWhyTheRestCannot) {
         names.push_back(work.name);
     EXPECT_THAT(names, ElementsAre("broken.h5", "broken.handpiece", "deep.handpiece", "good.handpiece",
                                    "sub/copied.handpiece"));
-    EXPECT_THAT(found[4].problem, HasSubstr("deep.handpiece, byte for byte"));
+    EXPECT_THAT(found[4].problem, HasSubstr("byte for byte"));
+    EXPECT_EQ(found[4].twin, "deep.handpiece");
 
     ScoreSettings settings;
     settings.kept = folder_.path() / "kept";
@@ -136,6 +137,13 @@ TEST_F(MarkingFolder, ScoresWhatCanBeScoredAndSaysWhyTheRestCannot) {
     const auto lone = std::find_if(with.begin(), with.end(), [](const auto& w) { return w.isResultOnly; });
     ASSERT_NE(lone, with.end());
     EXPECT_EQ(scoreReturned(*lone, task_, rubric_, settings).problem(), "");
+    std::string forged = json;
+    const std::size_t at = forged.find("\"id\": \"width\"");
+    ASSERT_NE(at, std::string::npos);
+    forged.replace(at, 13, "\"id\": \"depth\"");
+    core::writeFile(works() / "lone" / "result.json", forged);
+    EXPECT_THAT(scoreReturned(*lone, task_, rubric_, settings).problem(), HasSubstr("other criteria"));
+    core::writeFile(works() / "lone" / "result.json", json);
     EXPECT_THAT(scoreReturned(*lone, blockTask(1.8), rubric_, settings).problem(), HasSubstr("another exercise"));
     EXPECT_THAT(scoreReturned(*lone, task_, rubric::shippedRubric("46-class-i"), settings).problem(),
                 HasSubstr("another rubric"));

@@ -27,9 +27,13 @@ SvgView::SvgView(QWidget* parent) : QWidget(parent) {
 
 void SvgView::setSvg(const std::string& svg) {
     QByteArray text = QByteArray::fromStdString(svg);
-    // Qt knows no media rules; those of dark pages come last in the style.
-    const qsizetype from = text.indexOf("@media"), to = text.indexOf("</style>", from);
-    if (from >= 0 && to > from) text.remove(from, to - from);
+    // Qt knows no media rules, which come last in the style, and no sizes in per cent: the page is painted here.
+    const auto remove = [&text](const char* first, const char* before) {
+        const qsizetype from = text.indexOf(first), to = text.indexOf(before, from);
+        if (from >= 0 && to > from) text.remove(from, to - from);
+    };
+    remove("@media", "</style>");
+    remove("<rect class=\"hp-page\"", "\n");
     if (text.isEmpty())
         renderer_.load(QByteArrayLiteral("<svg xmlns=\"http://www.w3.org/2000/svg\"/>"));
     else
@@ -41,6 +45,7 @@ void SvgView::setSvg(const std::string& svg) {
 void SvgView::paintEvent(QPaintEvent* event) {
     Q_UNUSED(event);
     QPainter painter(this);
+    painter.fillRect(rect(), Qt::white);
     if (renderer_.isValid()) renderer_.render(&painter, QRectF(rect()));
 }
 

@@ -11,6 +11,7 @@
 #include <QHeaderView>
 #include <QLabel>
 #include <QLineEdit>
+#include <QLocale>
 #include <QMenu>
 #include <QMimeData>
 #include <QProgressBar>
@@ -48,7 +49,7 @@ DeskDialog::DeskDialog(QWidget* parent) : QDialog(parent, Qt::Window) {
     column->addWidget(tabs_, 1);
     column->addLayout(below);
     column->addWidget(note_);
-    resize(980, 640);
+    resize(1100, 640);
     connect(cancel_, &QPushButton::clicked, this, &DeskDialog::cancelRequested);
     connect(tabs_, &QTabWidget::currentChanged, this, [this] {
         if (isAgreementShown()) emit agreementRequested();
@@ -83,8 +84,6 @@ QWidget* DeskDialog::makeSetUp() {
     rubric_ =
         named(new QComboBox(page), "markingRubric", tr("Rubric"), tr("How the machine scores, and what is marked"));
     rubric_->addItem(tr("The exercise's own"), QString());
-    for (const std::string& name : rubric::shippedRubrics())
-        rubric_->addItem(QString::fromStdString(name), QString::fromStdString(name));
     auto* chooseRubric = named(new QPushButton(tr("File..."), page), "markingRubricChoose", tr("A rubric of your own"));
     form->addRow(tr("Rubric"), withButton(rubric_, chooseRubric));
     marker_ = named(new QLineEdit(page), "markingMarker", tr("Marker"),
@@ -126,10 +125,11 @@ QWidget* DeskDialog::makeWorks() {
     table_->verticalHeader()->hide();
     table_->horizontalHeader()->setStretchLastSection(false);
     table_->horizontalHeader()->setSectionResizeMode(WorkTable::kState, QHeaderView::Stretch);
-    table_->setColumnWidth(WorkTable::kCode, 170);
-    table_->setColumnWidth(WorkTable::kFile, 150);
-    table_->setColumnWidth(WorkTable::kMachine, 120);
-    table_->setColumnWidth(WorkTable::kFlags, 150);
+    const std::pair<int, int> widths[] = {
+        {WorkTable::kCode, 160},   {WorkTable::kFile, 150},  {WorkTable::kScore, 100},  {WorkTable::kMachine, 110},
+        {WorkTable::kPassed, 105}, {WorkTable::kFlags, 130}, {WorkTable::kComments, 80}};
+    for (const auto& [column, width] : widths)
+        table_->setColumnWidth(column, width);
     // As they come until somebody sorts.
     table_->horizontalHeader()->setSortIndicator(-1, Qt::AscendingOrder);
     const auto box = [this, page](const char* name, const QString& text, const QString& tip) {
@@ -267,6 +267,19 @@ void DeskDialog::select(const QString& code) {
 void DeskDialog::showWhetherReady() {
     const DeskWish now = wish();
     begin_->setEnabled(!isAtWork_ && !now.folder.isEmpty() && !now.exercise.isEmpty() && !now.marker.isEmpty());
+}
+
+void DeskDialog::showEvent(QShowEvent* event) {
+    QDialog::showEvent(event);
+    if (rubric_->count() > 1) return;
+    // By their titles, once somebody asks.
+    const std::string language = QLocale().bcp47Name().toStdString();
+    for (const std::string& name : rubric::shippedRubrics()) {
+        const rubric::Rubric shipped = rubric::shippedRubric(name);
+        const std::string_view title = cases::inLanguage(shipped.title, language);
+        rubric_->addItem(QString::fromUtf8(title.data(), static_cast<qsizetype>(title.size())),
+                         QString::fromStdString(name));
+    }
 }
 
 void DeskDialog::dragEnterEvent(QDragEnterEvent* event) {

@@ -62,6 +62,7 @@ class DeskDialog : public QDialog {
     void agreementRequested();
 
   protected:
+    void showEvent(QShowEvent* event) override;
     void dragEnterEvent(QDragEnterEvent* event) override;
     void dropEvent(QDropEvent* event) override;
 

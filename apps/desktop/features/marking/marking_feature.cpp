@@ -46,6 +46,8 @@ bool mayBeReturnedWork(const QFileInfo& info) {
 constexpr const char* kKept = ".marking";
 /// How near the eye comes to a place.
 constexpr double kNearMm = 30.0;
+/// Wide enough for the criteria.
+constexpr int kSheetPixels = 380;
 
 }  // namespace
 
@@ -60,9 +62,9 @@ MarkingFeature::MarkingFeature(const FeatureContext& context)
     dock_ = window_.docks().add({"markingDock",
                                  tr("Marking"),
                                  12,
-                                 {{Detail::practice, Qt::RightDockWidgetArea, 5, 520},
-                                  {Detail::laboratory, Qt::RightDockWidgetArea, 5, 520},
-                                  {Detail::paper, Qt::RightDockWidgetArea, 5, 520}},
+                                 {{Detail::practice, Qt::LeftDockWidgetArea, 36, 510, "drillDock"},
+                                  {Detail::laboratory, Qt::LeftDockWidgetArea, 36, 510, "drillDock"},
+                                  {Detail::paper, Qt::LeftDockWidgetArea, 36, 510, "drillDock"}},
                                  [this] { return isWanted_; }},
                                 sheet_);
     connect(dock_->toggleViewAction(), &QAction::triggered, this, [this](bool shown) { isWanted_ = shown; });
@@ -122,6 +124,12 @@ MarkingFeature::MarkingFeature(const FeatureContext& context)
     connect(sheet_, &SheetPanel::placeRequested, this, &MarkingFeature::goTo);
 }
 
+MarkingFeature::~MarkingFeature() {
+    // They tell of their work here: they end first.
+    for (const QPointer<Job>& job : {job_, agreementJob_, copyJob_})
+        delete job;
+}
+
 void MarkingFeature::open(const QString& folder) {
     if (!folder.isEmpty()) {
         dialog_->setFolder(folder);
@@ -156,7 +164,7 @@ void MarkingFeature::startJob(const QString& title, Job::Work work, std::functio
     });
     connect(job, &Job::failed, this, [this](const Problem& problem) {
         endJob();
-        dialog_->setNote(problem.what);
+        dialog_->setNote(problem.what + QLatin1Char(' ') + problem.remedy);
         window_.showProblem(problem);
     });
     job->start();
@@ -208,7 +216,9 @@ void MarkingFeature::takeDesk(const DeskWish& wish, std::vector<marking::Returne
     try {
         desk = std::make_shared<marking::Desk>(std::move(setup), std::move(works));
     } catch (const core::Error& error) {
-        window_.showProblem(problemOf(error));
+        const Problem problem = problemOf(error);
+        dialog_->setNote(problem.what + QLatin1Char(' ') + problem.remedy);
+        window_.showProblem(problem);
         return;
     }
     task_ = std::make_shared<const tasks::Task>(std::move(task));
@@ -247,10 +257,15 @@ void MarkingFeature::score() {
 void MarkingFeature::openWork(const QString& code) {
     if (!desk_ || !desk_->has(code.toStdString())) return;
     code_ = code;
+    const bool isNew = !dock_->isVisible();
     isWanted_ = true;
     window_.docks().showWanted();
     dock_->raise();
+    if (isNew) window_.resizeDocks({dock_}, {kSheetPixels}, Qt::Horizontal);
     dialog_->select(code);
+    dialog_->hide();  // it would lie over the picture; the sheet leads back to it
+    window_.raise();
+    window_.activateWindow();
     showSheet();
     const marking::ReturnedWork work = desk_->work(code.toStdString());
     if (work.isResultOnly || !core::isThere(work.path)) return;

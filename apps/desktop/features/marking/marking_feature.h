@@ -22,6 +22,7 @@ class MarkingFeature : public Feature {
   public:
     enum class Command { desk };
     explicit MarkingFeature(const FeatureContext& context);
+    ~MarkingFeature() override;
     void showDocument() override;
 
     /// Null: none is open.

@@ -16,6 +16,7 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <cmath>
 
 #include "desktop/features/marking/work_table.h"
 #include "desktop/widgets/parts.h"
@@ -24,7 +25,7 @@
 namespace handpiece::desktop {
 namespace {
 
-enum Column { kName, kMark, kMeasured, kBand, kPoints };
+enum Column { kName, kMark, kPoints, kBand, kMeasured };
 constexpr int kIdRole = Qt::UserRole, kTimeRole = Qt::UserRole + 1, kPlaceRole = Qt::UserRole + 2;
 
 QString inWords(const cases::Texts& texts, const std::string& otherwise) {
@@ -39,6 +40,10 @@ QString bandText(const rubric::Rubric& rubric, const std::string& id) {
 }
 QString pointsText(double points) {
     return QLocale().toString(points, 'f', 1);
+}
+/// A tenth where it is large, a thousandth where it is small.
+QString measuredText(double value) {
+    return QLocale().toString(value, 'f', std::abs(value) < 10.0 ? 3 : 1);
 }
 QVariant placeOf(const std::optional<core::Vec3>& mm) {
     return mm ? QVariant(QVariantList{mm->x(), mm->y(), mm->z()}) : QVariant();
@@ -64,12 +69,13 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     title_->setFont(scaledFont(font(), 1.15, true));
     previous_ = iconButton(QStringLiteral("step-back"), "sheetPrevious", tr("Previous work"), this);
     next_ = iconButton(QStringLiteral("step-forward"), "sheetNext", tr("Next work"), this);
-    auto* table = iconButton(QStringLiteral("chart"), "sheetTable", tr("Back to the table"), this);
-    summary_ = note({}, this, "sheetSummary");
+    auto* table = iconButton(QStringLiteral("report"), "sheetTable", tr("Back to the table"), this);
+    summary_ = named(new QLabel(this), "sheetSummary", tr("How the work stands"));
+    summary_->setWordWrap(true);
     summary_->setTextFormat(Qt::PlainText);
     criteria_ = named(new QTreeWidget(this), "sheetCriteria", tr("Criteria"),
                       tr("Choose one to judge it; a place below it turns the picture there"));
-    criteria_->setHeaderLabels({tr("Criterion"), tr("Your mark"), tr("Measured"), tr("Band"), tr("Points")});
+    criteria_->setHeaderLabels({tr("Criterion"), tr("Your mark"), tr("Points"), tr("Band"), tr("Measured")});
     criteria_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
     criteria_->setMinimumHeight(140);
     editing_ = named(new QLabel(this), "sheetEditing", tr("Criterion that is judged"));
@@ -269,8 +275,7 @@ void SheetPanel::fillCriteria() {
         const score::CriterionScore &now = final->criteria[place], &was = machine->assessment.criteria[place];
         const bool isSaid = sheet.overrides.contains(name);
         item->setText(kMeasured, was.value ? tr("%1 ± %2 %3")
-                                                 .arg(QLocale().toString(*was.value, 'f', 2),
-                                                      QLocale().toString(was.uncertainty, 'f', 2),
+                                                 .arg(measuredText(*was.value), measuredText(was.uncertainty),
                                                       QString::fromStdString(was.unit))
                                            : QString::fromStdString(was.reason));
         QStringList band{now.band.empty() ? QString() : bandText(desk_->rubric(), now.band)};
@@ -337,7 +342,7 @@ void SheetPanel::showSummary() {
         return;
     }
     QString text =
-        tr("%1 of %2 points; machine: %3. %4.")
+        tr("%1 of %2 points (machine: %3): %4.")
             .arg(pointsText(final->score), pointsText(final->maxScore), pointsText(machine->assessment.score),
                  WorkTable::passedWord(static_cast<int>(*desk_->passed(id))));
     if (!final->why.empty() && !desk_->sheet(id).decision)

@@ -124,7 +124,8 @@ QVariant WorkTable::data(const QModelIndex& index, int role) const {
         case kCodeRole:
             return QString::fromStdString(id);
         case Qt::DecorationRole: {
-            if (index.column() != kCode) return {};
+            // Two equal pictures would tell which works come twice.
+            if (index.column() != kCode || !desk_->isRevealed(id)) return {};
             const view::Image& image = desk_->picture(id);
             if (image.rgba.empty()) return {};
             QPixmap& picture = pictures_[id];

@@ -234,7 +234,13 @@ bool Desk::isScored(const std::string& code) const {
 
 std::string Desk::problem(const std::string& code) const {
     const std::size_t at = placeOf(code);
-    return scored_[at] && !scored_[at]->problem().empty() ? scored_[at]->problem() : works_[at].problem;
+    // Whose the other is stays hidden from who marks blind.
+    if (const std::string& twin = works_[at].twin; !twin.empty() && isRevealed(code))
+        return works_[at].problem + ": " + twin;
+    if (scored_[at] && !scored_[at]->problem().empty()) return scored_[at]->problem();
+    std::string why = works_[at].problem;
+    static_cast<void>(judge(code, why));
+    return why;
 }
 
 const view::Image& Desk::picture(const std::string& code) const {
@@ -263,7 +269,7 @@ const assessment::Result* Desk::machine(const std::string& code) const {
     return isRevealed(code) && scored && scored->result_ ? &*scored->result_ : nullptr;
 }
 
-std::optional<score::Assessment> Desk::finalScore(const std::string& code) const {
+std::optional<score::Assessment> Desk::judge(const std::string& code, std::string& why) const {
     const assessment::Result* machine = this->machine(code);
     if (machine == nullptr) return {};
     Sheet fitting = sheet(code);
@@ -271,9 +277,16 @@ std::optional<score::Assessment> Desk::finalScore(const std::string& code) const
     std::erase_if(fitting.overrides, [this](const auto& one) { return setup_.rubric.criterion(one.first) == nullptr; });
     try {
         return withOverrides(setup_.rubric, machine->assessment, fitting);
-    } catch (const core::Error&) {
-        return {};  // it fitted the rubric that it was made under
+    } catch (const core::Error& error) {
+        // It fitted the rubric that it was made under.
+        why = fmt::format("an override no longer fits the rubric: {}: {}", error.where(), error.problem());
+        return {};
     }
+}
+
+std::optional<score::Assessment> Desk::finalScore(const std::string& code) const {
+    std::string why;
+    return judge(code, why);
 }
 
 std::optional<score::Passed> Desk::passed(const std::string& code) const {

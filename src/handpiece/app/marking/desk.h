@@ -131,7 +131,7 @@ class Desk {
     /// Of one of works().
     void take(std::size_t which, Scored scored);
     [[nodiscard]] bool isScored(const std::string& code) const;
-    /// Why the machine has no score; empty where it has one, or none yet.
+    /// Why there is no score; empty where there is one, or none yet.
     [[nodiscard]] std::string problem(const std::string& code) const;
     [[nodiscard]] const view::Image& picture(const std::string& code) const;
     /// Whether the machine's score, and which works come twice, may be seen.
@@ -180,6 +180,7 @@ class Desk {
     template <class Change>
     void change(Change&& change);
     void arrange();
+    [[nodiscard]] std::optional<score::Assessment> judge(const std::string& code, std::string& why) const;
     const rubric::Criterion& criterion(const std::string& id) const;
     std::size_t placeOf(const std::string& code) const;
 

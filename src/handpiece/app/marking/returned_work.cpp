@@ -112,7 +112,8 @@ std::vector<ReturnedWork> findWork(const fs::path& folder, const core::Progress&
         if (!work.id.empty()) {
             const auto [at, isNew] = first.emplace(work.id, work.name);
             if (isNew) continue;
-            work.problem = fmt::format("it is {}, byte for byte", at->second);
+            work.problem = "another work is the same, byte for byte";
+            work.twin = at->second;
         }
         // A name of its own, so that it has a row.
         core::Hasher hasher;

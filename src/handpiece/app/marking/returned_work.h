@@ -17,6 +17,7 @@ struct ReturnedWork {
     std::filesystem::path path;  ///< a session, or an attempt (a folder or a file); of a lone result that
     bool isResultOnly = false;   ///< a result.json without the work that it is of
     std::string problem;         ///< why it cannot be scored, in a sentence; empty: nothing known
+    std::string twin{};          ///< name of another work that is the same to the byte; empty: none
 };
 
 inline constexpr std::size_t kMaxWorks = 5000;

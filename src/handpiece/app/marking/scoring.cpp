@@ -23,6 +23,18 @@ namespace handpiece::marking {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// Whoever wrote it: the rubric's criteria, each once, in its order.
+bool fits(const score::Assessment& assessment, const rubric::Rubric& rubric) {
+    return std::equal(assessment.criteria.begin(), assessment.criteria.end(), rubric.criteria.begin(),
+                      rubric.criteria.end(), [](const score::CriterionScore& s, const rubric::Criterion& c) {
+                          return s.id == c.id && s.measure == c.measure && s.of == c.of;
+                      });
+}
+
+}  // namespace
+
 /// What was found before, by what it was found of: FOLDER/KEY.json, its proof and its picture beside.
 struct Kept {
     fs::path folder;
@@ -40,7 +52,7 @@ struct Kept {
     }
     [[nodiscard]] fs::path file(const char* ending) const { return folder / (key + ending); }
 
-    [[nodiscard]] std::optional<Scored> read(bool withPicture) const {
+    [[nodiscard]] std::optional<Scored> read(const rubric::Rubric& rubric, bool withPicture) const {
         if (folder.empty() || !core::isThere(file(".json"))) return {};
         const auto text = [](const fs::path& path) {
             const std::vector<std::byte> bytes = core::readFile(path, 8u << 20);
@@ -49,6 +61,7 @@ struct Kept {
         try {
             Scored scored;
             scored.result_ = parseResult(text(file(".json")), file(".json").string());
+            if (!fits(scored.result_->assessment, rubric)) return {};
             scored.result_->proof = text(file(".txt"));
             if (withPicture && core::isThere(file(".png"))) scored.picture_ = view::readPng(file(".png"));
             return scored;
@@ -111,6 +124,7 @@ Scored readLoneResult(const ReturnedWork& work, const tasks::Task& task, const r
         return Scored::failed(fmt::format("this is a result by another rubric: {} version {}, hash {}",
                                           result.assessment.rubric, result.assessment.rubricVersion,
                                           rubric::hashText(result.assessment.rubricHash)));
+    if (!fits(result.assessment, rubric)) return Scored::failed("this result has other criteria than its rubric");
     // Who wrote it nobody can tell.
     result.identity.proven = false;
     result.proof = "the result came without the work that it is of";
@@ -144,7 +158,7 @@ Scored scoreReturned(const ReturnedWork& work, const tasks::Task& task, const ru
     try {
         if (work.isResultOnly) return readLoneResult(work, task, rubric);
         const Kept kept(work, task, rubric, settings);
-        if (std::optional<Scored> before = kept.read(settings.pictures)) return std::move(*before);
+        if (std::optional<Scored> before = kept.read(rubric, settings.pictures)) return std::move(*before);
         const assessment::Work done =
             assessment::readWork(work.path, task, settings.prove, core::part(heard, 0.0, 0.8));
         core::report(heard, 0.8);

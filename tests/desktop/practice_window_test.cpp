@@ -284,6 +284,35 @@ TEST_F(PracticeTest, AStoreThatCannotBeReadIsToldAndTheWorkGoesOn) {
     EXPECT_EQ(core::readFile(at("data") / "results.db").size(), 4096u);
 }
 
+TEST_F(PracticeTest, AnExerciseThatACrashInterruptedIsStillOne) {
+    makeExercise("one", false);
+    startWithTooth();
+    openExercises();
+    begin("one");
+    ASSERT_TRUE(cut());
+    ASSERT_TRUE(waitFor([this] { return simulator().isUnsaved(); }));
+    const std::uint64_t written = simulator().status().recording.writtenRecords;
+    ASSERT_TRUE(waitFor([&] { return simulator().status().recording.writtenRecords > written + 100; }));
+    const double cutMm3 = removedMm3();
+    // What lies there in this moment is what a crash would leave.
+    const fs::path recording = simulator().recording();
+    const fs::path marker = fs::path(recording).replace_extension(".json");
+    const auto record = core::readFile(recording), mark = core::readFile(marker);
+    host_.reset();
+    core::writeFile(recording, record);
+    core::writeFile(marker, mark);
+    startWithTooth();
+    ASSERT_EQ(simulator().crashed().size(), 1u);
+    simulator().recover(simulator().crashed().front());
+    ASSERT_TRUE(waitFor([this] { return simulator().task() && simulator().isRecorded() && !simulator().isBusy(); }));
+    EXPECT_EQ(simulator().task()->id, "one");
+    EXPECT_NEAR(removedMm3(), cutMm3, 0.01);
+    finish();
+    ASSERT_EQ(store().attempts().size(), 1u);
+    EXPECT_GT(store().attempts().front().finished, store().attempts().front().began);
+    EXPECT_TRUE(simulator().crashed().empty());
+}
+
 TEST_F(PracticeTest, ThePageIsWrittenWithPictures) {
     makeExercise("one", false);
     startWithTooth();

@@ -79,7 +79,8 @@ class PracticeTest : public ShellTest {
     }
     void finish() {
         ASSERT_TRUE(waitFor([this] { return action("actionFinish")->isEnabled(); }));
-        action("actionFinish")->trigger();
+        ASSERT_TRUE(part<QPushButton>("exerciseFinish")->isVisible());
+        click("exerciseFinish");
         ASSERT_TRUE(waitFor([this] { return result().isVisible(); })) << "no result";
         ASSERT_EQ(window().errorDialog(), nullptr);
         ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay && !simulator().isBusy(); }));
@@ -171,7 +172,7 @@ TEST_F(PracticeTest, FromTheChoiceToTheResultAndAgain) {
     ASSERT_TRUE(exercises().isVisible());
     EXPECT_EQ(part<QListWidget>("exercisesList")->currentItem()->text(), "Line two");
     chooseInList(QStringLiteral("Line one"));
-    EXPECT_TRUE(part<QLabel>("exercisesBest")->text().contains("1 attempts")) << "best so far";
+    EXPECT_TRUE(part<QLabel>("exercisesBest")->text().contains("1")) << "best so far";
 }
 
 TEST_F(PracticeTest, AClickOnEvidenceTurnsTheEyeAndPlaysTheSeconds) {
@@ -245,6 +246,7 @@ TEST_F(PracticeTest, ProgressIsACurveOverTheAttempts) {
         a.device = i == 3 ? "other-arm" : "pointer";
         a.score = 20.0 + 20.0 * i;
         a.maxScore = 100.0;
+        a.wholeScore = i == 1 ? 120.0 : 100.0;
         a.passed = i < 2 ? "no" : "yes";
         store().add(a);
     }
@@ -253,6 +255,7 @@ TEST_F(PracticeTest, ProgressIsACurveOverTheAttempts) {
     ASSERT_TRUE(curve->isVisible());
     ASSERT_EQ(curve->lines().size(), 2u) << "devices are never pooled";
     EXPECT_EQ(curve->lines()[0].points, (std::vector<std::pair<int, double>>{{1, 20.0}, {2, 40.0}, {3, 60.0}}));
+    EXPECT_EQ(curve->lines()[0].isWhole, (std::vector<bool>{true, false, true}));
     EXPECT_EQ(curve->lines()[1].points, (std::vector<std::pair<int, double>>{{4, 80.0}}));
     EXPECT_EQ(part<QComboBox>("progressExercise")->currentText(), "Line one");
     EXPECT_EQ(part<QTableWidget>("progressTable")->rowCount(), 4);
@@ -279,6 +282,35 @@ TEST_F(PracticeTest, AStoreThatCannotBeReadIsToldAndTheWorkGoesOn) {
     ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
     EXPECT_EQ(simulator().crashed().size(), 1u);
     EXPECT_EQ(core::readFile(at("data") / "results.db").size(), 4096u);
+}
+
+TEST_F(PracticeTest, AnExerciseThatACrashInterruptedIsStillOne) {
+    makeExercise("one", false);
+    startWithTooth();
+    openExercises();
+    begin("one");
+    ASSERT_TRUE(cut());
+    ASSERT_TRUE(waitFor([this] { return simulator().isUnsaved(); }));
+    const std::uint64_t written = simulator().status().recording.writtenRecords;
+    ASSERT_TRUE(waitFor([&] { return simulator().status().recording.writtenRecords > written + 100; }));
+    const double cutMm3 = removedMm3();
+    // What lies there in this moment is what a crash would leave.
+    const fs::path recording = simulator().recording();
+    const fs::path marker = fs::path(recording).replace_extension(".json");
+    const auto record = core::readFile(recording), mark = core::readFile(marker);
+    host_.reset();
+    core::writeFile(recording, record);
+    core::writeFile(marker, mark);
+    startWithTooth();
+    ASSERT_EQ(simulator().crashed().size(), 1u);
+    simulator().recover(simulator().crashed().front());
+    ASSERT_TRUE(waitFor([this] { return simulator().task() && simulator().isRecorded() && !simulator().isBusy(); }));
+    EXPECT_EQ(simulator().task()->id, "one");
+    EXPECT_NEAR(removedMm3(), cutMm3, 0.01);
+    finish();
+    ASSERT_EQ(store().attempts().size(), 1u);
+    EXPECT_GT(store().attempts().front().finished, store().attempts().front().began);
+    EXPECT_TRUE(simulator().crashed().empty());
 }
 
 TEST_F(PracticeTest, ThePageIsWrittenWithPictures) {

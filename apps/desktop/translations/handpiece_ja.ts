@@ -3244,6 +3244,14 @@
         <source>Recordings that did not come with it: %1</source>
         <translation>含まれていない記録: %1</translation>
     </message>
+    <message>
+        <source>Finish</source>
+        <translation>完了</translation>
+    </message>
+    <message>
+        <source>Your work on this exercise is done: it is judged, and you see why</source>
+        <translation>この課題の作業を終えて採点し、その理由を表示します</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::FdiPicker</name>
@@ -8320,8 +8328,8 @@ lingual: %4</source>
         <translation>；%1：%2 %3 以下</translation>
     </message>
     <message>
-        <source> (%1 points)</source>
-        <translation>（%1 点）</translation>
+        <source>%1 (%2 points)</source>
+        <translation>%1（%2 点）</translation>
     </message>
     <message>
         <source>; critical error: %1</source>
@@ -8473,6 +8481,10 @@ lingual: %4</source>
         <source>Writing the page</source>
         <translation>ページを書き出しています</translation>
     </message>
+    <message>
+        <source>Attempts so far: %1; of none could all be measured.</source>
+        <translation>これまでの試行：%1 回。すべてを測定できたものはありません。</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::ProgressCurve</name>
@@ -8534,6 +8546,14 @@ lingual: %4</source>
     <message>
         <source>no</source>
         <translation>いいえ</translation>
+    </message>
+    <message>
+        <source>Hollow: not all of it could be measured; its share says nothing about the rest.</source>
+        <translation>白抜き：一部を測定できませんでした。残りについては何も言えません。</translation>
+    </message>
+    <message>
+        <source>%1 (%2 %), in part</source>
+        <translation>%1（%2 %）、一部のみ</translation>
     </message>
 </context>
 <context>
@@ -8620,7 +8640,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>One HTML page to keep or to print</source>
-        <translation>保存や印刷のための HTML ページ 1 枚</translation>
+        <translation>保存や印刷のためのページ 1 枚</translation>
     </message>
     <message>
         <source>Again</source>
@@ -8703,8 +8723,8 @@ lingual: %4</source>
         <translation>境界</translation>
     </message>
     <message>
-        <source> (borderline)</source>
-        <translation>（境界）</translation>
+        <source>%1 (borderline)</source>
+        <translation>%1（境界）</translation>
     </message>
     <message>
         <source>shown only</source>
@@ -8725,6 +8745,10 @@ lingual: %4</source>
     <message>
         <source>Your tooth: drag to turn it</source>
         <translation>自分の歯：ドラッグで回転</translation>
+    </message>
+    <message>
+        <source>not counted</source>
+        <translation>数えない</translation>
     </message>
 </context>
 </TS>

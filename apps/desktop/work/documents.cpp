@@ -249,7 +249,8 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
     } else if (!request.task.empty()) {
         auto task = std::make_shared<const tasks::Task>(tasks::readTask(request.task));
         const fs::path whole = core::wholePath(request.task);
-        loaded.document.caseFile = core::isFolder(whole) && core::isThere(whole / tasks::kTaskFile) ? whole / "case" : whole;
+        loaded.document.caseFile =
+            core::isFolder(whole) && core::isThere(whole / tasks::kTaskFile) ? whole / "case" : whole;
         loaded.document.taskPath = whole;
         loaded.document.name = task->toothCase.name;
         loaded.document.began =

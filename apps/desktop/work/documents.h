@@ -59,7 +59,7 @@ struct Document {
     std::string name;  ///< for the title: the file's, or the tooth's
     /// That led to this tooth before the recording under way, in their order.
     std::vector<RecordingPlace> recordings{};
-    std::string student{};  ///< of an attempt, as typed
+    std::string student{};                      ///< of an attempt, as typed
     std::shared_ptr<const tasks::Task> task{};  ///< null: none is set
     std::filesystem::path taskPath{};
     std::int64_t began = 0;  ///< work on it [ms since 1970]; 0: not known

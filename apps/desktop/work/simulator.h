@@ -110,8 +110,8 @@ class Simulator : public QObject {
     struct Finished {
         course::FinishedWork work;
         std::filesystem::path taskPath;
-        std::vector<std::string> recordings;       ///< that led to it
-        std::int64_t began = 0, finished = 0;      ///< [ms since 1970]
+        std::vector<std::string> recordings;   ///< that led to it
+        std::int64_t began = 0, finished = 0;  ///< [ms since 1970]
     };
     /// Closes the recording and judges it beside everything else; its replay lies open at its end then, and finished()
     /// tells the rest. Cancelled or refused: the tooth comes back as it was.

@@ -69,6 +69,7 @@ class StoreTest : public testing::Test {
         a.device = "pointer";
         a.score = 7.25;
         a.maxScore = 10.0;
+        a.wholeScore = 12.5;
         a.passed = "teacher";
         a.borderline = true;
         a.proven = true;
@@ -118,6 +119,8 @@ TEST_F(StoreTest, GivesBackAllThatWasPutInAlsoToAnotherProgram) {
     EXPECT_EQ(back.device, "pointer");
     EXPECT_EQ(back.motionScale, 1.0);
     EXPECT_EQ(back.percent(), 72.5);
+    EXPECT_EQ(back.wholeScore, 12.5);
+    EXPECT_FALSE(back.isWhole());
     EXPECT_EQ(back.passed, "teacher");
     EXPECT_TRUE(back.borderline);
     EXPECT_TRUE(back.proven);
@@ -202,6 +205,7 @@ TEST_F(StoreTest, ComesUpFromVersionOneWithAllThatItHolds) {
         Store store(file_);
         ASSERT_TRUE(store.attempt("old"));
         EXPECT_EQ(store.attempt("old")->percent(), 50.0);
+        EXPECT_TRUE(store.attempt("old")->isWhole());
         store.add(Comment{newId(), "old", "teacher", "before", {}, {}, 3});
         EXPECT_EQ(store.commentsOn("old").size(), 1u);
         EXPECT_EQ(store.outbox(0).size(), 2u);

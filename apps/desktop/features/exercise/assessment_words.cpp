@@ -59,9 +59,10 @@ QString whatIsJudged(const rubric::Rubric& rubric) {
                         line += said(QT_TRANSLATE_NOOP("Assessment", "; %1: at most %2 %3"))
                                     .arg(name, number(*band.to, 2), unit);
                 }
-        if (c.isGraded()) line += said(QT_TRANSLATE_NOOP("Assessment", " (%1 points)")).arg(number(c.weight, 0));
+        if (c.isGraded()) line = said(QT_TRANSLATE_NOOP("Assessment", "%1 (%2 points)")).arg(line, number(c.weight, 0));
         if (c.critical)
-            line += said(QT_TRANSLATE_NOOP("Assessment", "; critical error: %1")).arg(inThisLanguage(c.critical->title));
+            line +=
+                said(QT_TRANSLATE_NOOP("Assessment", "; critical error: %1")).arg(inThisLanguage(c.critical->title));
         lines << line;
     }
     return lines.join(QLatin1Char('\n'));

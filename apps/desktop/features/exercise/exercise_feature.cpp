@@ -102,6 +102,7 @@ ExerciseFeature::ExerciseFeature(const FeatureContext& context)
     window_.statusBar()->addPermanentWidget(code_);
     connect(panel_, &ExercisePanel::watchRequested, this,
             [this](int which) { simulator_.watchRecording(static_cast<std::size_t>(which)); });
+    connect(panel_, &ExercisePanel::finishRequested, this, [this] { simulator_.finish(); });
     connect(panel_, &ExercisePanel::goOnRequested, this, [this] {
         if (simulator_.isReviewing()) simulator_.open(fs::path(simulator_.reviewed().attemptFile));
     });
@@ -147,6 +148,8 @@ void ExerciseFeature::showDocument() {
         for (const RecordingPlace& recording : simulator_.reviewed().recordings)
             text.review.recordings.push_back({QString::fromStdString(recording.name), recording.packed});
     }
+    text.canFinish =
+        simulator_.mode() == Simulator::Mode::liveSession && simulator_.task() && !simulator_.task()->rubric.empty();
     panel_->setText(text);
     isWanted_ = exercise != nullptr || text.review.isOn;
     window_.docks().showWanted();

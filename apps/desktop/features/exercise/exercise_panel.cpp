@@ -31,6 +31,10 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
     locked_ = note({}, this, "exerciseLocked");
     locked_->setTextFormat(Qt::PlainText);
     column->addWidget(locked_);
+    finish_ = named(new QPushButton(tr("Finish"), this), "exerciseFinish", tr("Finish"),
+                    tr("Your work on this exercise is done: it is judged, and you see why"));
+    column->addWidget(finish_);
+    connect(finish_, &QPushButton::clicked, this, &ExercisePanel::finishRequested);
     review_ = new QWidget(this);
     recordings_ = new QVBoxLayout(review_);
     recordings_->setContentsMargins(0, 0, 0, 0);
@@ -57,6 +61,7 @@ void ExercisePanel::setText(const ExerciseText& text) {
     show(instructions_, text.instructions);
     show(locked_, text.locked.isEmpty() ? QString()
                                         : tr("Not in this exercise: %1").arg(text.locked.join(QStringLiteral("; "))));
+    finish_->setVisible(text.canFinish);
     showReview(text.review);
 }
 

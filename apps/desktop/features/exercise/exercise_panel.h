@@ -17,7 +17,8 @@ namespace handpiece::desktop {
 /// Plain data for the panel, in the words of the case.
 struct ExerciseText {
     QString title, instructions;
-    QStringList locked;  ///< what is withheld, in words
+    QStringList locked;      ///< what is withheld, in words
+    bool canFinish = false;  ///< it is judged, and at work
     struct Review {
         bool isOn = false;
         QString student;  ///< may be empty
@@ -40,11 +41,13 @@ class ExercisePanel : public QWidget {
     /// By its place in ExerciseText::Review::recordings.
     void watchRequested(int recording);
     void goOnRequested();
+    void finishRequested();
 
   private:
     void showReview(const ExerciseText::Review& review);
 
     QLabel *title_, *instructions_, *locked_, *student_, *missing_;
+    QPushButton* finish_;
     QWidget* review_;
     QVBoxLayout* recordings_;
     std::vector<QPushButton*> watch_;

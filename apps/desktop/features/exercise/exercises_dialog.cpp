@@ -54,7 +54,6 @@ ExercisesDialog::ExercisesDialog(fs::path madeIn, QWidget* parent)
     about_ = text("exercisesAbout", tr("Tooth, bur and helps"));
     best_ = text("exercisesBest", tr("Best so far"));
     best_->setFont(scaledFont(font(), 1.0, true));
-    view_->setAxesShown(true, 0);
     right->addWidget(view_, 1);
     asks_ = text("exercisesAsks", tr("What is judged"));
     right->removeWidget(asks_);
@@ -245,6 +244,7 @@ void ExercisesDialog::showTask() {
         view_->setCaption({}, false);
         return;
     }
+    view_->setAxesShown(task_->toothCase.fdiNumber != 0, task_->toothCase.buccalSign);
     const cases::Exercise exercise = task_->toothCase.exercise.value_or(cases::Exercise{});
     title_->setText(exercise.title.empty() ? QString::fromStdString(task_->id) : inThisLanguage(exercise.title));
     show(words_, inThisLanguage(exercise.instructions));

@@ -169,6 +169,7 @@ void PracticeFeature::keep() {
     attempt.motionScale = result.assessment.context.motionScale;
     attempt.score = result.assessment.score;
     attempt.maxScore = result.assessment.maxScore;
+    attempt.wholeScore = result.assessment.wholeScore;
     attempt.passed = score::nameOf(result.assessment.passed);
     attempt.borderline = result.assessment.borderline;
     attempt.proven = result.identity.proven;
@@ -254,14 +255,15 @@ QString PracticeFeature::bestOf(const std::string& id) {
     }
     if (of.empty()) return {};
     const school::Attempt latest = of.back();
-    double best = 0.0;
+    std::optional<double> best;
     int count = 0;
     for (const school::Attempt& attempt : of)
         if (areComparable(attempt, latest)) {
-            best = std::max(best, attempt.percent());
+            if (attempt.isWhole()) best = std::max(best.value_or(0.0), attempt.percent());
             ++count;
         }
-    return tr("Best so far: %1 % in %2 attempts").arg(QLocale().toString(best, 'f', 0)).arg(count);
+    return best ? tr("Best so far: %1 % in %2 attempts").arg(QLocale().toString(*best, 'f', 0)).arg(count)
+                : tr("Attempts so far: %1; of none could all be measured.").arg(count);
 }
 
 void PracticeFeature::showProgress() {

@@ -40,6 +40,7 @@ void ProgressCurve::setAttempts(const std::vector<school::Attempt>& attempts) {
             lines_.emplace_back();
         }
         lines_[line].points.emplace_back(static_cast<int>(i) + 1, attempts[i].percent());
+        lines_[line].isWhole.push_back(attempts[i].isWhole());
     }
     count_ = static_cast<int>(attempts.size());
     QStringList said;
@@ -82,9 +83,12 @@ void ProgressCurve::paintEvent(QPaintEvent*) {
         for (const auto& [attempt, percent] : lines_[i].points)
             line << at(attempt, percent);
         painter.drawPolyline(line);
-        painter.setPen(Qt::NoPen);
-        for (const QPointF& point : line)
-            painter.drawEllipse(point, 4.0, 4.0);
+        painter.setPen(QPen(pen.color(), 2.0));
+        for (qsizetype j = 0; j < line.size(); ++j) {
+            painter.setBrush(lines_[i].isWhole[static_cast<std::size_t>(j)] ? pen.color()
+                                                                            : colours.color(QPalette::Window));
+            painter.drawEllipse(line[j], 4.0, 4.0);
+        }
     }
 }
 
@@ -137,11 +141,15 @@ void ProgressDialog::showExercise(int row) {
     for (const school::Attempt& attempt : attempts_)
         if (row >= 0 && attempt.exercise == id) of.push_back(attempt);
     curve_->setAttempts(of);
-    note_->setText(of.empty() ? tr("No exercise is finished yet.")
-                   : curve_->lines().size() > 1
-                       ? tr("Attempts with another device, motion scale or version of the exercise are not compared: "
-                            "each has a line of its own.")
-                       : QString());
+    QStringList notes;
+    if (of.empty()) notes << tr("No exercise is finished yet.");
+    if (curve_->lines().size() > 1)
+        notes << tr(
+            "Attempts with another device, motion scale or version of the exercise are not compared: "
+            "each has a line of its own.");
+    if (std::any_of(of.begin(), of.end(), [](const school::Attempt& a) { return !a.isWhole(); }))
+        notes << tr("Hollow: not all of it could be measured; its share says nothing about the rest.");
+    note_->setText(notes.join(QLatin1Char('\n')));
     note_->setVisible(!note_->text().isEmpty());
     table_->setRowCount(static_cast<int>(of.size()));
     const QLocale locale;
@@ -151,7 +159,8 @@ void ProgressDialog::showExercise(int row) {
             table_->setItem(static_cast<int>(i), column, new QTableWidgetItem(words));
         };
         put(0, locale.toString(QDateTime::fromMSecsSinceEpoch(a.finished), QLocale::ShortFormat));
-        put(1, tr("%1 (%2 %)").arg(pointsWords(a.score, a.maxScore), locale.toString(a.percent(), 'f', 0)));
+        put(1, (a.isWhole() ? tr("%1 (%2 %)") : tr("%1 (%2 %), in part"))
+                   .arg(pointsWords(a.score, a.maxScore), locale.toString(a.percent(), 'f', 0)));
         put(2, passedWords(a.passed == "yes"  ? score::Passed::yes
                            : a.passed == "no" ? score::Passed::no
                                               : score::Passed::teacher));

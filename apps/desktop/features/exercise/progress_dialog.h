@@ -24,6 +24,7 @@ class ProgressCurve : public QWidget {
     void setAttempts(const std::vector<school::Attempt>& attempts);
     struct Line {
         std::vector<std::pair<int, double>> points;  ///< number of the attempt, from 1; share of all points [%]
+        std::vector<bool> isWhole;                   ///< all of it was measured; else drawn hollow
     };
     [[nodiscard]] const std::vector<Line>& lines() const noexcept { return lines_; }
 

@@ -219,7 +219,9 @@ void ResultDialog::fillErrors() {
         const score::CriterionScore& c = a.criteria[order[i]];
         QString words = titleOf(done_->work.rubric, c.id) + QStringLiteral(": ") + valueWords(c);
         if (!c.band.empty()) words += QStringLiteral(", ") + bandTitle(done_->work.rubric, c.band);
-        if (c.points) words += QStringLiteral(", ") + tr("%1 points lost").arg(QLocale().toString(c.maxPoints - *c.points, 'f', 1));
+        if (c.points)
+            words +=
+                QStringLiteral(", ") + tr("%1 points lost").arg(QLocale().toString(c.maxPoints - *c.points, 'f', 1));
         const QString drill = QString::fromStdString(report::drillFor(c.measure));
         if (!drill.isEmpty()) words += QLatin1Char('\n') + drill;
         auto* row = new QWidget(this);
@@ -261,11 +263,16 @@ void ResultDialog::fillTable() {
         if (c.standing == score::Standing::voided) measured = tr("void");
         put(value, measured, QString::fromStdString(c.reason));
         QString bands = c.band.empty() ? QString() : bandTitle(done_->work.rubric, c.band);
-        if (c.borderline) bands += bands.isEmpty() ? tr("borderline") : tr(" (borderline)");
+        if (c.borderline) bands = bands.isEmpty() ? tr("borderline") : tr("%1 (borderline)").arg(bands);
         put(band, bands);
-        put(points, c.points ? pointsWords(*c.points, c.maxPoints) : tr("shown only"));
+        put(points, c.points            ? pointsWords(*c.points, c.maxPoints)
+                    : c.maxPoints > 0.0 ? tr("not counted")
+                                        : tr("shown only"));
         const measures::Evidence* e = evidenceOf(c);
-        put(place, !e ? QString() : e->timeS ? tr("%1 s").arg(QLocale().toString(*e->timeS, 'f', 1)) : tr("place"),
+        put(place,
+            !e         ? QString()
+            : e->timeS ? tr("%1 s").arg(QLocale().toString(*e->timeS, 'f', 1))
+                       : tr("place"),
             e ? QString::fromStdString(e->text) : QString());
     }
     table_->resizeRowsToContents();

@@ -14,8 +14,8 @@
 #include <algorithm>
 
 #include "desktop/features/scan/placing_page.h"
-#include "desktop/picture/solid_view.h"
 #include "desktop/features/scan/tissue_colours.h"
+#include "desktop/picture/solid_view.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/widgets/notation.h"
 #include "desktop/widgets/parts.h"

@@ -12,8 +12,8 @@
 #include <QSpinBox>
 #include <QVBoxLayout>
 
-#include "desktop/picture/solid_view.h"
 #include "desktop/features/scan/tissue_colours.h"
+#include "desktop/picture/solid_view.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/widgets/notation.h"
 #include "desktop/widgets/parts.h"

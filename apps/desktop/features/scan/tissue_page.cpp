@@ -20,8 +20,8 @@
 
 #include "desktop/features/scan/fdi_picker.h"
 #include "desktop/features/scan/histogram_view.h"
-#include "desktop/picture/solid_view.h"
 #include "desktop/features/scan/tissue_colours.h"
+#include "desktop/picture/solid_view.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/widgets/notation.h"
 #include "desktop/widgets/parts.h"

@@ -19,9 +19,9 @@ Parts partsOf(const std::shared_ptr<const tooth::ToothModel>& model, const tooth
     const std::vector<cases::Tissue> tissues = model->tissues.tissues();
     for (std::size_t i = 0; i < tissues.size(); ++i) {
         const double share = 1.0 / static_cast<double>(tissues.size());
-        geometry::TriangleMesh mesh =
-            surface::closedPart(source, model->tissues, tissues[i],
-                                core::part(progress, share * static_cast<double>(i), share * static_cast<double>(i + 1)));
+        geometry::TriangleMesh mesh = surface::closedPart(
+            source, model->tissues, tissues[i],
+            core::part(progress, share * static_cast<double>(i), share * static_cast<double>(i + 1)));
         if (mesh.triangles.empty()) continue;
         const std::string name(cases::properties(tissues[i]).name);
         parts->push_back({name, tissues[i], static_cast<int>(i), std::move(mesh)});
@@ -33,7 +33,8 @@ Parts partsOf(const std::shared_ptr<const tooth::ToothModel>& model, const tooth
 
 rubric::Rubric rubricOf(const tasks::Task& task) {
     if (task.rubric.empty())
-        throw core::Error("this exercise has no rubric", task.id, "ask your teacher for one that has: it cannot be judged");
+        throw core::Error("this exercise has no rubric", task.id,
+                          "ask your teacher for one that has: it cannot be judged");
     rubric::Rubric rubric = rubric::parseRubric(task.rubric, task.id + "/" + tasks::kRubricFile);
     rubric::requireSound(rubric);
     return rubric;

@@ -22,7 +22,8 @@ struct FinishedWork {
     rubric::Rubric rubric;
     score::Result result;
     Parts own;
-    core::Vec3 draw = core::Vec3::UnitZ();  ///< the preparation's path of draw, out of the tooth: from there one sees into it
+    core::Vec3 draw =
+        core::Vec3::UnitZ();  ///< the preparation's path of draw, out of the tooth: from there one sees into it
 };
 
 /// Its rubric, sound. Throws core::Error, also for a task that has none.

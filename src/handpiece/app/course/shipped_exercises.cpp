@@ -26,8 +26,10 @@ struct Row {
     const char *bur, *english, *japanese;
 };
 constexpr const char* kOfBlocks =
-    "Cut the figure as the ideal shows it: all of its width and depth, with upright walls, and nothing beside or under it.";
-constexpr const char* kOfBlocksJa = "見本どおりの図形を削る。幅と深さは過不足なく、壁は垂直に、周囲と底を削りすぎないこと。";
+    "Cut the figure as the ideal shows it: all of its width and depth, with upright walls, and nothing beside or under "
+    "it.";
+constexpr const char* kOfBlocksJa =
+    "見本どおりの図形を削る。幅と深さは過不足なく、壁は垂直に、周囲と底を削りすぎないこと。";
 constexpr std::array kRows = {
     Row{"dexterity-line", "line", 0, "330", kOfBlocks, kOfBlocksJa},
     Row{"dexterity-channel", "channel", 0, "330", kOfBlocks, kOfBlocksJa},
@@ -39,12 +41,15 @@ constexpr std::array kRows = {
     Row{"46-class-i", "class-one", 46, "330",
         "Open the fissures to an even, flat floor. Leave the marginal ridges and the cusps; let the walls converge a "
         "little occlusally; keep off the pulp.",
-        "裂溝に沿って、均一で平らな窩底まで削る。辺縁隆線と咬頭を残し、壁は咬合面に向かってわずかに狭め、歯髄に近づかないこと。"},
+        "裂溝に沿って、均一で平らな窩底まで削る。辺縁隆線と咬頭を残し、壁は咬合面に向かってわずかに狭め、歯髄に近づかな"
+        "いこと。"},
     Row{"33-class-v", "class-five", 33, "330",
-        "Cut the cervical cavity on the labial side: everywhere as deep, with rounded corners. Do not touch the gingiva.",
+        "Cut the cervical cavity on the labial side: everywhere as deep, with rounded corners. Do not touch the "
+        "gingiva.",
         "唇側歯頸部の窩洞を削る。深さは全体で均一に、隅角は丸く。歯肉に触れないこと。"},
     Row{"46-access", "access", 46, "round-2",
-        "Open the pulp chamber so that all orifices can be seen and reached; take no more of the walls and nothing of the "
+        "Open the pulp chamber so that all orifices can be seen and reached; take no more of the walls and nothing of "
+        "the "
         "floor.",
         "すべての根管口が見えて届くように髄室を開拡する。壁は必要以上に削らず、髄床底は削らないこと。"},
 };

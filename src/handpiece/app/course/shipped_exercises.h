@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The exercises that come with the program: made by it, from its own teeth, blocks and rubrics. And what a folder holds.
+/// The exercises that come with the program: made by it, from its own teeth, blocks and rubrics. And what a folder
+/// holds.
 
 #include <filesystem>
 #include <optional>
@@ -34,8 +35,8 @@ struct Found {
     std::optional<tasks::Task> task;
     std::optional<core::Error> error;
 };
-/// Folders and .handpiece files that are exercises, by name; one bad file hides no other. Throws core::Error where there
-/// is no such folder.
+/// Folders and .handpiece files that are exercises, by name; one bad file hides no other. Throws core::Error where
+/// there is no such folder.
 [[nodiscard]] std::vector<Found> exercisesIn(const std::filesystem::path& folder, const core::Progress& progress = {});
 
 }  // namespace handpiece::course

@@ -43,6 +43,7 @@ CREATE TABLE comments (
   id TEXT PRIMARY KEY, attempt TEXT NOT NULL REFERENCES attempts (id), author TEXT NOT NULL, words TEXT NOT NULL,
   x_mm REAL, y_mm REAL, z_mm REAL, t_s REAL, made INTEGER NOT NULL) STRICT;
 CREATE INDEX comments_by_attempt ON comments (attempt, made);
+ALTER TABLE attempts ADD COLUMN whole_score REAL NOT NULL DEFAULT 0;
 )sql",
 };
 
@@ -99,7 +100,7 @@ void bringUp(Database& database) {
 
 constexpr const char* kAttemptColumns =
     "id, exercise, exercise_hash, rubric_hash, session_hashes, recordings, began, finished, device, motion_scale, "
-    "score, max_score, passed, borderline, proven, result";
+    "score, max_score, passed, borderline, proven, result, whole_score";
 
 Attempt attemptOf(const Statement& row) {
     Attempt attempt;
@@ -119,6 +120,7 @@ Attempt attemptOf(const Statement& row) {
     attempt.borderline = row.integer(13) != 0;
     attempt.proven = row.integer(14) != 0;
     attempt.result = row.text(15);
+    attempt.wholeScore = row.number(16);
     return attempt;
 }
 
@@ -178,7 +180,7 @@ void Store::add(const Attempt& a) {
     Transaction transaction(state_->database);
     Statement(
         state_->database,
-        fmt::format("INSERT INTO attempts ({}) VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)", kAttemptColumns).c_str())
+        fmt::format("INSERT INTO attempts ({}) VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)", kAttemptColumns).c_str())
         .with(a.id)
         .with(a.exercise)
         .with(a.exerciseHash)
@@ -195,6 +197,7 @@ void Store::add(const Attempt& a) {
         .with(std::int64_t{a.borderline})
         .with(std::int64_t{a.proven})
         .with(a.result)
+        .with(a.wholeScore)
         .run();
     post(state_->database, "attempt", a.id, a.finished);
     transaction.commit();

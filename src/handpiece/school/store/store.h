@@ -39,11 +39,14 @@ struct Attempt {
     Milliseconds began = 0, finished = 0;
     std::string device;
     double motionScale = 1.0;
-    double score = 0.0, maxScore = 0.0;
-    std::string passed;  ///< "yes", "no", "teacher"
+    double score = 0.0, maxScore = 0.0;  ///< of what could be measured
+    double wholeScore = 0.0;             ///< the most of all that is graded; 0: not known
+    std::string passed;                  ///< "yes", "no", "teacher"
     bool borderline = false, proven = false;
     std::string result;  ///< the JSON of the result, whole
 
+    /// Only such attempts say how good one is: of others a part is missing.
+    [[nodiscard]] bool isWhole() const { return wholeScore <= maxScore + 1e-9; }
     [[nodiscard]] double percent() const { return maxScore > 0.0 ? 100.0 * score / maxScore : 0.0; }
 };
 

@@ -135,7 +135,8 @@ TEST(Preparation, ClassThreeAndFiveAndAccessAndCrownLieWhereTheyShould) {
         const Vec3 way(0.0, tooth.buccalSign, 0.0), middle = s.box.centre();
         const auto under = [&](double mm, double side) {
             const Vec3 off = 20.0 * side * way;
-            return Vec3(middle + off - (laid.whole->firstMeeting(middle + off, -side * way).distanceMm + mm) * side * way);
+            return Vec3(middle + off -
+                        (laid.whole->firstMeeting(middle + off, -side * way).distanceMm + mm) * side * way);
         };
         EXPECT_EQ(laid.zones->at(under(0.3, 1.0)), zones::Zone::protectedZone);
         EXPECT_NE(laid.zones->at(under(0.7, 1.0)), zones::Zone::protectedZone);

@@ -198,7 +198,6 @@ void trials(const ExerciseOptions& o) {
     studies::TrialOptions options = o.trials;
     options.out = o.out;
     options.voxelMm = 1e-3 * o.trialVoxelUm;
-    core::prepareOutputFolder(options.out);
     studies::ProgressBar bar("exercises");
     const std::vector<studies::ExerciseTrials> all = studies::tryExercises(options, bar.listener());
     bar.finish();

@@ -14,6 +14,7 @@
 #include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/core/rotation.h"
 #include "handpiece/model/dentition/mouth.h"
@@ -435,6 +436,7 @@ std::vector<ExerciseTrials> tryExercises(const TrialOptions& o, const core::Prog
     for (const std::size_t number : o.exercises)
         if (number < 1 || number > chosen.size())
             throw core::Error(fmt::format("there is no exercise {}", number), "--only", "give 1 to 10");
+    core::prepareOutputFolder(o.out);
     std::erase_if(chosen, [&](const Spec& spec) {
         return !o.exercises.empty() && std::find(o.exercises.begin(), o.exercises.end(),
                                                  static_cast<std::size_t>(spec.number)) == o.exercises.end();

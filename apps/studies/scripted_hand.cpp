@@ -25,7 +25,8 @@ using core::Vec3;
 
 constexpr double kMeetsMm = 0.02;  // less of the tooth than this is nothing to cut
 constexpr double kOfLeeway = 0.25;
-constexpr double kSlackMm = 0.008;  // between two places that were sought to 5 um
+constexpr double kKeptOffMm = 0.05;  // from what must stay
+constexpr double kSlackMm = 0.008;   // between two places that were sought to 5 um
 constexpr double kSpinUpS = 0.8;
 
 /// The scene on a grid whose z is the path of draw, and the bur in it.
@@ -324,7 +325,7 @@ HandScene handSceneOf(const preparation::Laid& laid, std::function<double(const 
     const double beyond = kOfLeeway * std::min(laid.zones->leeway().sideMm, laid.zones->leeway().floorMm);
     scene.asideMm = [zones = laid.zones, beyond](const Vec3& p) {
         const zones::Zones::Distances d = zones->distancesMm(p);
-        return std::max(d.target - beyond, -d.kept);
+        return std::max(d.target - beyond, kKeptOffMm - d.kept);
     };
     scene.toothMm = [whole = laid.whole](const Vec3& p) { return whole->signedDistance(p); };
     scene.othersMm = std::move(others);

@@ -81,7 +81,7 @@ TEST(Preparation, ClassOneFollowsTheFissuresAndLeavesTheRidges) {
                 for (const Vec3& p : mark.pointsMm)
                     if (laid.zones->targetMm(Vec3(p.x(), p.y(), floor + 0.01)) < 0.0) sum += p.z() - floor, ++count;
         ASSERT_GT(count, 3) << fdi;
-        EXPECT_NEAR(sum / count, 1.5, 0.35) << fdi;
+        EXPECT_NEAR(sum / count, recipe.number("depth_mm"), 0.35) << fdi;
         fmt::print("class I of {}: {:.1f} mm3, ridge {:.2f} mm, {} strokes\n", fdi, s.targetMm3, s.leastOutsideMm,
                    laid.cavities.front().outline.strokes.size());
     }
@@ -131,6 +131,16 @@ TEST(Preparation, ClassThreeAndFiveAndAccessAndCrownLieWhereTheyShould) {
                                   (tooth.buccalSign > 0 ? laid.whole->bounds().max.y() : laid.whole->bounds().min.y()) -
                               0.8);
         EXPECT_NEAR(s.box.size().z(), 2.5, 0.2);
+        // The labial surface must stay, half a millimetre of it; what the window goes in by is free.
+        const Vec3 way(0.0, tooth.buccalSign, 0.0), middle = s.box.centre();
+        const auto under = [&](double mm, double side) {
+            const Vec3 off = 20.0 * side * way;
+            return Vec3(middle + off -
+                        (laid.whole->firstMeeting(middle + off, -side * way).distanceMm + mm) * side * way);
+        };
+        EXPECT_EQ(laid.zones->at(under(0.3, 1.0)), zones::Zone::protectedZone);
+        EXPECT_NE(laid.zones->at(under(0.7, 1.0)), zones::Zone::protectedZone);
+        EXPECT_EQ(laid.zones->at(under(0.2, -1.0)), zones::Zone::target);
     }
     {
         const cases::Tooth& tooth = toothOf(33);
@@ -153,6 +163,12 @@ TEST(Preparation, ClassThreeAndFiveAndAccessAndCrownLieWhereTheyShould) {
             if (mark.kind != cases::LandmarkKind::orifice && mark.kind != cases::LandmarkKind::pulpHorn) continue;
             EXPECT_LT(laid.zones->targetMm(mark.pointsMm.front() + Vec3(0, 0, 0.6)), 0.0) << mark.name;
         }
+        // Root and furcation must stay whole.
+        for (const cases::Landmark& mark : tooth.landmarks)
+            if (mark.kind == cases::LandmarkKind::furcation) {
+                EXPECT_EQ(laid.zones->at(mark.pointsMm.front() + Vec3(0, 0, 0.2)), zones::Zone::protectedZone);
+                EXPECT_NE(laid.zones->at(mark.pointsMm.front() + Vec3(0, 0, 1.0)), zones::Zone::protectedZone);
+            }
     }
     {
         const cases::Tooth& tooth = toothOf(46);

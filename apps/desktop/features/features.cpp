@@ -5,6 +5,7 @@
 
 #include "desktop/features/device/device_feature.h"
 #include "desktop/features/drill/drill_feature.h"
+#include "desktop/features/editor/editor_feature.h"
 #include "desktop/features/exercise/exercise_feature.h"
 #include "desktop/features/exercise/practice_feature.h"
 #include "desktop/features/files/files_feature.h"
@@ -43,6 +44,7 @@ void installFeatures(const FeatureContext& context) {
     add(new SoundFeature(context));
     add(new DeviceFeature(context));
     add(new MarkingFeature(context));  // before scans: both look at folders
+    add(new EditorFeature(context));
     add(new ScanFeature(context));
     add(new RadiographFeature(context));
     add(new FilesFeature(context));      // it opens whatever the others leave

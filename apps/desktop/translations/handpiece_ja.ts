@@ -8751,4 +8751,707 @@ lingual: %4</source>
         <translation>数えない</translation>
     </message>
 </context>
+<context>
+    <name>Commands</name>
+    <message>
+        <source>New exercise...</source>
+        <translation>新しい課題...</translation>
+    </message>
+    <message>
+        <source>For teachers: set a task, from its tooth to how it is judged</source>
+        <translation>教員用：歯の選択から評価の方法まで、課題を作ります</translation>
+    </message>
+    <message>
+        <source>Edit exercise...</source>
+        <translation>課題を編集...</translation>
+    </message>
+    <message>
+        <source>For teachers: change an exercise that was saved</source>
+        <translation>教員用：保存した課題を変更します</translation>
+    </message>
+</context>
+<context>
+    <name>Preparation</name>
+    <message>
+        <source>Endodontic access cavity</source>
+        <translation>髄室開拡</translation>
+    </message>
+    <message>
+        <source>Block: channel</source>
+        <translation>ブロック：溝</translation>
+    </message>
+    <message>
+        <source>Block: circle</source>
+        <translation>ブロック：円</translation>
+    </message>
+    <message>
+        <source>Block: cross</source>
+        <translation>ブロック：十字</translation>
+    </message>
+    <message>
+        <source>Block: half circle</source>
+        <translation>ブロック：半円</translation>
+    </message>
+    <message>
+        <source>Block: ring</source>
+        <translation>ブロック：輪</translation>
+    </message>
+    <message>
+        <source>Block: line</source>
+        <translation>ブロック：直線</translation>
+    </message>
+    <message>
+        <source>Block: steps</source>
+        <translation>ブロック：段</translation>
+    </message>
+    <message>
+        <source>Class V cavity</source>
+        <translation>5 級窩洞</translation>
+    </message>
+    <message>
+        <source>Class I cavity</source>
+        <translation>1 級窩洞</translation>
+    </message>
+    <message>
+        <source>Class III cavity</source>
+        <translation>3 級窩洞</translation>
+    </message>
+    <message>
+        <source>Class II cavity</source>
+        <translation>2 級窩洞</translation>
+    </message>
+    <message>
+        <source>Full crown</source>
+        <translation>全部被覆冠</translation>
+    </message>
+    <message>
+        <source>Removal of carious tissue</source>
+        <translation>う蝕除去</translation>
+    </message>
+    <message>
+        <source>Depth</source>
+        <translation>深さ</translation>
+    </message>
+    <message>
+        <source>Width</source>
+        <translation>幅</translation>
+    </message>
+    <message>
+        <source>Height, incisogingivally</source>
+        <translation>高さ（切縁歯肉方向）</translation>
+    </message>
+    <message>
+        <source>Length</source>
+        <translation>長さ</translation>
+    </message>
+    <message>
+        <source>Diameter</source>
+        <translation>直径</translation>
+    </message>
+    <message>
+        <source>Diameter of the island</source>
+        <translation>中央に残す部分の直径</translation>
+    </message>
+    <message>
+        <source>Left of marginal ridges and walls</source>
+        <translation>残す辺縁隆線と側壁の厚さ</translation>
+    </message>
+    <message>
+        <source>Wall angle</source>
+        <translation>側壁の角度</translation>
+    </message>
+    <message>
+        <source>Axial depth</source>
+        <translation>軸側の深さ</translation>
+    </message>
+    <message>
+        <source>Width of the box</source>
+        <translation>ボックスの幅</translation>
+    </message>
+    <message>
+        <source>Gingival floor under the contact</source>
+        <translation>接触点から歯肉側窩壁まで</translation>
+    </message>
+    <message>
+        <source>Radius of the corners</source>
+        <translation>隅角の半径</translation>
+    </message>
+    <message>
+        <source>Over the cemento-enamel junction</source>
+        <translation>セメント・エナメル境からの高さ</translation>
+    </message>
+    <message>
+        <source>Occlusal reduction</source>
+        <translation>咬合面の削除量</translation>
+    </message>
+    <message>
+        <source>Width of the margin</source>
+        <translation>マージンの幅</translation>
+    </message>
+    <message>
+        <source>Total occlusal convergence</source>
+        <translation>咬合面方向への収束角</translation>
+    </message>
+    <message>
+        <source>Round horns and orifices</source>
+        <translation>髄角と根管口の周囲</translation>
+    </message>
+    <message>
+        <source>Carious tissue left over the pulp</source>
+        <translation>歯髄の上に残すう蝕の厚さ</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::EditorDialog</name>
+    <message>
+        <source>Error</source>
+        <translation>エラー</translation>
+    </message>
+    <message>
+        <source>Warning</source>
+        <translation>警告</translation>
+    </message>
+    <message>
+        <source>Remark</source>
+        <translation>注記</translation>
+    </message>
+    <message>
+        <source>Parts of the exercise</source>
+        <translation>課題の構成</translation>
+    </message>
+    <message>
+        <source>Tooth</source>
+        <translation>歯</translation>
+    </message>
+    <message>
+        <source>Preparation</source>
+        <translation>形成</translation>
+    </message>
+    <message>
+        <source>Work</source>
+        <translation>作業</translation>
+    </message>
+    <message>
+        <source>Judgement</source>
+        <translation>評価</translation>
+    </message>
+    <message>
+        <source>Texts</source>
+        <translation>文章</translation>
+    </message>
+    <message>
+        <source>What is wrong</source>
+        <translation>問題点</translation>
+    </message>
+    <message>
+        <source>A click goes to its page</source>
+        <translation>クリックするとそのページへ移ります</translation>
+    </message>
+    <message>
+        <source>Undo</source>
+        <translation>元に戻す</translation>
+    </message>
+    <message>
+        <source>Take the last change back</source>
+        <translation>最後の変更を取り消します</translation>
+    </message>
+    <message>
+        <source>Redo</source>
+        <translation>やり直す</translation>
+    </message>
+    <message>
+        <source>Make it again</source>
+        <translation>もう一度行います</translation>
+    </message>
+    <message>
+        <source>Try it</source>
+        <translation>試す</translation>
+    </message>
+    <message>
+        <source>Open it in the window as a student would have it</source>
+        <translation>学生が見るのと同じ形で、ウィンドウに開きます</translation>
+    </message>
+    <message>
+        <source>Save</source>
+        <translation>保存</translation>
+    </message>
+    <message>
+        <source>Save the exercise where it is</source>
+        <translation>課題を今の場所に保存します</translation>
+    </message>
+    <message>
+        <source>Save as .handpiece...</source>
+        <translation>.handpiece として保存...</translation>
+    </message>
+    <message>
+        <source>One file to give to students</source>
+        <translation>学生に渡す 1 つのファイル</translation>
+    </message>
+    <message>
+        <source>Exercise editor: %1</source>
+        <translation>課題エディター：%1</translation>
+    </message>
+    <message>
+        <source>Laying the preparation on the tooth...</source>
+        <translation>形成を歯に当てはめています...</translation>
+    </message>
+    <message>
+        <source>Students cannot have it like this yet.</source>
+        <translation>このままでは学生に渡せません。</translation>
+    </message>
+    <message>
+        <source>Nothing stands in the way.</source>
+        <translation>問題はありません。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::EditorFeature</name>
+    <message>
+        <source>Exercise editor</source>
+        <translation>課題エディター</translation>
+    </message>
+    <message>
+        <source>The exercise was changed, and no file holds it.</source>
+        <translation>課題は変更されましたが、まだ保存されていません。</translation>
+    </message>
+    <message>
+        <source>Save</source>
+        <translation>保存</translation>
+    </message>
+    <message>
+        <source>Do not save</source>
+        <translation>保存しない</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>キャンセル</translation>
+    </message>
+    <message>
+        <source>Making the block...</source>
+        <translation>ブロックを作っています...</translation>
+    </message>
+    <message>
+        <source>Edit exercise</source>
+        <translation>課題を編集</translation>
+    </message>
+    <message>
+        <source>Exercises (*.handpiece exercise.toml);;All files (*)</source>
+        <translation>課題 (*.handpiece exercise.toml);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Making the tooth...</source>
+        <translation>歯を作っています...</translation>
+    </message>
+    <message>
+        <source>Case of the exercise</source>
+        <translation>課題の症例</translation>
+    </message>
+    <message>
+        <source>Cases (*.handpiece case.toml);;All files (*)</source>
+        <translation>症例 (*.handpiece case.toml);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Reading the case...</source>
+        <translation>症例を読み込んでいます...</translation>
+    </message>
+    <message>
+        <source>Save the exercise</source>
+        <translation>課題を保存</translation>
+    </message>
+    <message>
+        <source>Exercise (*.handpiece)</source>
+        <translation>課題 (*.handpiece)</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::PreparationPage</name>
+    <message>
+        <source>The tooth as it is asked for</source>
+        <translation>課題が求める形の歯</translation>
+    </message>
+    <message>
+        <source>Show it on the tooth</source>
+        <translation>歯に表示</translation>
+    </message>
+    <message>
+        <source>Cuts the tooth as the preparation asks for it; takes seconds</source>
+        <translation>形成の指示どおりに歯を削って見せます。数秒かかります</translation>
+    </message>
+    <message>
+        <source>Preparation</source>
+        <translation>形成</translation>
+    </message>
+    <message>
+        <source>Nothing is asked</source>
+        <translation>形成は求めない</translation>
+    </message>
+    <message>
+        <source>Side</source>
+        <translation>面</translation>
+    </message>
+    <message>
+        <source>mesial</source>
+        <translation>近心</translation>
+    </message>
+    <message>
+        <source>distal</source>
+        <translation>遠心</translation>
+    </message>
+    <message>
+        <source>What may go beside it</source>
+        <translation>目標のほかに削ってよい範囲</translation>
+    </message>
+    <message>
+        <source>At the sides</source>
+        <translation>側方</translation>
+    </message>
+    <message>
+        <source>Past the walls of the target</source>
+        <translation>目標の側壁より外側</translation>
+    </message>
+    <message>
+        <source>Under the floor</source>
+        <translation>窩底の下</translation>
+    </message>
+    <message>
+        <source>Deeper than the target</source>
+        <translation>目標より深い部分</translation>
+    </message>
+    <message>
+        <source>Kept over the pulp</source>
+        <translation>歯髄の上に残す厚さ</translation>
+    </message>
+    <message>
+        <source>All within this of the pulp must stay; 0: the pulp alone</source>
+        <translation>歯髄からこの距離以内はすべて残します。0 は歯髄だけ</translation>
+    </message>
+    <message>
+        <source>%1 to %2, usually %3</source>
+        <translation>%1～%2、通常 %3</translation>
+    </message>
+    <message>
+        <source>Cutting the ideal...</source>
+        <translation>理想形を削っています...</translation>
+    </message>
+    <message>
+        <source>As it is asked for: drag to turn it</source>
+        <translation>課題が求める形：ドラッグして回せます</translation>
+    </message>
+    <message>
+        <source>Of before: show it again</source>
+        <translation>変更前のもの：もう一度表示してください</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::RubricPage</name>
+    <message>
+        <source>A rubric that comes along</source>
+        <translation>付属のルーブリック</translation>
+    </message>
+    <message>
+        <source>Take this rubric</source>
+        <translation>このルーブリックを使う</translation>
+    </message>
+    <message>
+        <source>In the place of the one that is there; Undo brings that back</source>
+        <translation>今のものと置き換えます。「元に戻す」で戻せます</translation>
+    </message>
+    <message>
+        <source>Not judged</source>
+        <translation>評価しない</translation>
+    </message>
+    <message>
+        <source>Add criterion</source>
+        <translation>項目を追加</translation>
+    </message>
+    <message>
+        <source>Remove</source>
+        <translation>削除</translation>
+    </message>
+    <message>
+        <source>Up</source>
+        <translation>上へ</translation>
+    </message>
+    <message>
+        <source>Down</source>
+        <translation>下へ</translation>
+    </message>
+    <message>
+        <source>Pass from</source>
+        <translation>合格は</translation>
+    </message>
+    <message>
+        <source>There is a pass mark</source>
+        <translation>合格点を設ける</translation>
+    </message>
+    <message>
+        <source>Pass mark</source>
+        <translation>合格点</translation>
+    </message>
+    <message>
+        <source>Of the greatest score</source>
+        <translation>満点に対する割合</translation>
+    </message>
+    <message>
+        <source>Criteria</source>
+        <translation>評価項目</translation>
+    </message>
+    <message>
+        <source>Points: value: points, from 0 to 100, straight between. Bands: name from..to; ... Critical: &lt; or &gt;</source>
+        <translation>得点は「値: 点」（0～100、間は直線）。区分は「名前 下限..上限; ...」。重大な誤りは &lt; か &gt;</translation>
+    </message>
+    <message>
+        <source>Criterion</source>
+        <translation>項目</translation>
+    </message>
+    <message>
+        <source>Measure</source>
+        <translation>計測</translation>
+    </message>
+    <message>
+        <source>Of</source>
+        <translation>対象</translation>
+    </message>
+    <message>
+        <source>Unit</source>
+        <translation>単位</translation>
+    </message>
+    <message>
+        <source>Points (value: points)</source>
+        <translation>得点（値: 点）</translation>
+    </message>
+    <message>
+        <source>Bands</source>
+        <translation>区分</translation>
+    </message>
+    <message>
+        <source>Weight</source>
+        <translation>配点</translation>
+    </message>
+    <message>
+        <source>Critical</source>
+        <translation>重大な誤り</translation>
+    </message>
+    <message>
+        <source>English</source>
+        <translation>英語</translation>
+    </message>
+    <message>
+        <source>Japanese</source>
+        <translation>日本語</translation>
+    </message>
+    <message>
+        <source>To mend</source>
+        <translation>直すところ</translation>
+    </message>
+    <message>
+        <source>Weights: %1</source>
+        <translation>配点の合計：%1</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::TextsPage</name>
+    <message>
+        <source>Short name</source>
+        <translation>短い名前</translation>
+    </message>
+    <message>
+        <source>Small letters, digits, &apos;-&apos;</source>
+        <translation>英小文字、数字、「-」</translation>
+    </message>
+    <message>
+        <source>Version</source>
+        <translation>版</translation>
+    </message>
+    <message>
+        <source>Raise it with each change to be told apart</source>
+        <translation>区別が必要な変更のたびに上げます</translation>
+    </message>
+    <message>
+        <source>Title, English</source>
+        <translation>題名（英語）</translation>
+    </message>
+    <message>
+        <source>Title, Japanese</source>
+        <translation>題名（日本語）</translation>
+    </message>
+    <message>
+        <source>What to do, English</source>
+        <translation>指示（英語）</translation>
+    </message>
+    <message>
+        <source>What to do, Japanese</source>
+        <translation>指示（日本語）</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ToothPage</name>
+    <message>
+        <source>A tooth of the program</source>
+        <translation>プログラムの歯</translation>
+    </message>
+    <message>
+        <source>Tooth</source>
+        <translation>歯</translation>
+    </message>
+    <message>
+        <source>FDI number</source>
+        <translation>FDI 歯式の番号</translation>
+    </message>
+    <message>
+        <source>Tooth (FDI)</source>
+        <translation>歯（FDI）</translation>
+    </message>
+    <message>
+        <source>Patient</source>
+        <translation>患者</translation>
+    </message>
+    <message>
+        <source>Another number is another patient; 0 the average</source>
+        <translation>番号を変えると別の患者になります。0 は平均</translation>
+    </message>
+    <message>
+        <source>Take this tooth</source>
+        <translation>この歯を使う</translation>
+    </message>
+    <message>
+        <source>With all its tissues, landmarks and the mouth around it</source>
+        <translation>すべての組織、指標点、周囲の口腔も含みます</translation>
+    </message>
+    <message>
+        <source>A block, for the hand alone</source>
+        <translation>手技だけの練習用ブロック</translation>
+    </message>
+    <message>
+        <source>Layers</source>
+        <translation>層</translation>
+    </message>
+    <message>
+        <source>As hard as enamel</source>
+        <translation>エナメル質の硬さ</translation>
+    </message>
+    <message>
+        <source>Enamel on dentine</source>
+        <translation>象牙質の上にエナメル質</translation>
+    </message>
+    <message>
+        <source>With carious dentine</source>
+        <translation>う蝕象牙質入り</translation>
+    </message>
+    <message>
+        <source>Take this block</source>
+        <translation>このブロックを使う</translation>
+    </message>
+    <message>
+        <source>16 x 12 x 8 mm, with a flat top</source>
+        <translation>16 x 12 x 8 mm、上面は平ら</translation>
+    </message>
+    <message>
+        <source>A case of your own</source>
+        <translation>自分の症例</translation>
+    </message>
+    <message>
+        <source>Case file...</source>
+        <translation>症例のファイル...</translation>
+    </message>
+    <message>
+        <source>A case with landmarks: folder or .handpiece file</source>
+        <translation>指標点のある症例：フォルダーまたは .handpiece ファイル</translation>
+    </message>
+    <message>
+        <source>Now: %1, %2 landmarks</source>
+        <translation>現在：%1、指標点 %2 個</translation>
+    </message>
+    <message>
+        <source>Now: none</source>
+        <translation>現在：なし</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::WorkPage</name>
+    <message>
+        <source>First bur</source>
+        <translation>最初のバー</translation>
+    </message>
+    <message>
+        <source>The student&apos;s choice</source>
+        <translation>学生が選ぶ</translation>
+    </message>
+    <message>
+        <source>Burs allowed</source>
+        <translation>使えるバー</translation>
+    </message>
+    <message>
+        <source>None ticked: all of them</source>
+        <translation>印がなければすべて</translation>
+    </message>
+    <message>
+        <source>Helps that are locked</source>
+        <translation>使えない補助機能</translation>
+    </message>
+    <message>
+        <source>At most</source>
+        <translation>最長</translation>
+    </message>
+    <message>
+        <source>A time limit</source>
+        <translation>制限時間</translation>
+    </message>
+    <message>
+        <source>Minutes</source>
+        <translation>分</translation>
+    </message>
+    <message>
+        <source> min</source>
+        <translation> 分</translation>
+    </message>
+    <message>
+        <source>Voxel of the tooth</source>
+        <translation>歯のボクセル</translation>
+    </message>
+    <message>
+        <source>The same for every student: a score never hangs on their settings</source>
+        <translation>どの学生も同じです。学生の設定で得点が変わることはありません</translation>
+    </message>
+    <message>
+        <source>Students judge their own work first</source>
+        <translation>学生が先に自己評価する</translation>
+    </message>
+    <message>
+        <source>Before they see the result</source>
+        <translation>結果を見る前に行います</translation>
+    </message>
+    <message>
+        <source>Start with the view that is open</source>
+        <translation>今の視点から始める</translation>
+    </message>
+    <message>
+        <source>Turn the tooth in the window, then take its view</source>
+        <translation>ウィンドウで歯を回してから、その視点を取り込みます</translation>
+    </message>
+    <message>
+        <source>The usual view</source>
+        <translation>通常の視点</translation>
+    </message>
+    <message>
+        <source>Time</source>
+        <translation>時間</translation>
+    </message>
+    <message>
+        <source>Voxel</source>
+        <translation>ボクセル</translation>
+    </message>
+    <message>
+        <source>Burs allowed (none ticked: all)</source>
+        <translation>使えるバー（印がなければすべて）</translation>
+    </message>
+    <message>
+        <source>Starts with a view of its own.</source>
+        <translation>この課題の視点から始まります。</translation>
+    </message>
+    <message>
+        <source>Starts with the usual view.</source>
+        <translation>通常の視点から始まります。</translation>
+    </message>
+</context>
 </TS>

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "handpiece/assess/draft/cells.h"
 #include "handpiece/model/starter/block.h"
 #include "support/error_of.h"
 
@@ -133,6 +134,74 @@ TEST(Draft, TellsWhatIsWrongAndWhere) {
     }));
     // A preparation of teeth on a block.
     EXPECT_TRUE(hasErrors(problemsOnTooth(withTemplate(block(), "class-one"))));
+}
+
+TEST(Draft, ACriterionThatGoesOrIsRenamedLeavesNothingThatRefersToIt) {
+    for (const std::string& name : rubric::shippedRubrics()) {
+        const rubric::Rubric before = rubric::shippedRubric(name);
+        for (std::size_t i = 0; i < before.criteria.size(); ++i) {
+            rubric::Rubric renamed = before, removed = before;
+            renameCriterion(renamed, i, "another-name");
+            removeCriterion(removed, i);
+            std::vector<std::string> named;
+            const auto add = [&](const std::vector<std::string>& names) {
+                named.insert(named.end(), names.begin(), names.end());
+            };
+            for (const rubric::Rubric* of : {&renamed, &removed}) {
+                for (const rubric::Criterion& c : of->criteria)
+                    add(c.excludes);
+                for (const rubric::Step& step : of->steps)
+                    add(step.criteria);
+                for (const rubric::Rule& rule : of->rules)
+                    for (const rubric::Condition& need : rule.needs)
+                        add(need.of);
+            }
+            EXPECT_EQ(std::count(named.begin(), named.end(), before.criteria[i].id), 0) << name;
+            for (const rubric::Finding& f : rubric::check(renamed))
+                EXPECT_NE(f.severity, rubric::Severity::error) << name << ": " << f.problem;
+            for (const rubric::Finding& f : rubric::check(removed))
+                EXPECT_TRUE(f.severity != rubric::Severity::error ||
+                            f.problem.find("no criterion has a weight") != std::string::npos)
+                    << name << ": " << f.problem;
+        }
+    }
+}
+
+TEST(Cells, ComeBackAndTellWhatTheyCannotRead) {
+    for (const std::string& name : rubric::shippedRubrics())
+        for (const rubric::Criterion& c : rubric::shippedRubric(name).criteria) {
+            rubric::Criterion back;
+            readKnots(back, knotsCell(c));
+            readBands(back, bandsCell(c));
+            readCritical(back, criticalCell(c));
+            readSelection(back, selectionCell(c));
+            EXPECT_EQ(back.knots, c.knots) << c.id;
+            EXPECT_EQ(back.of, c.of) << c.id;
+            EXPECT_EQ(bandsCell(back), bandsCell(c));
+            ASSERT_EQ(back.bands.size(), c.bands.size());
+            for (std::size_t i = 0; i < c.bands.size(); ++i) {
+                EXPECT_EQ(back.bands[i].from, c.bands[i].from);
+                EXPECT_EQ(back.bands[i].to, c.bands[i].to);
+            }
+            EXPECT_EQ(back.critical.has_value(), c.critical.has_value());
+            EXPECT_EQ(criticalCell(back), criticalCell(c));
+        }
+    rubric::Criterion c;
+    readBands(c, " fair -1.5 .. 2=60 ;; bad 2..");
+    ASSERT_EQ(c.bands.size(), 2u);
+    EXPECT_EQ(c.bands[0].from, -1.5);
+    EXPECT_EQ(c.bands[0].points, 60.0);
+    EXPECT_FALSE(c.bands[1].to);
+    for (const char* wrong : {"fair", "fair 1..x", "1..2", "fair 1..2 = y", "fair 1.2.3"}) {
+        EXPECT_NE(test::errorOf([&] { readBands(c, wrong); }).find("cannot be read"), std::string::npos) << wrong;
+        EXPECT_EQ(c.bands.size(), 2u);
+    }
+    for (const char* wrong : {"1", "1:", "a:1", "1:nan", "1:0;2:1"})
+        EXPECT_NE(test::errorOf([&] { readKnots(c, wrong); }), "") << wrong;
+    for (const char* wrong : {"0.5", "<", "> x", "="})
+        EXPECT_NE(test::errorOf([&] { readCritical(c, wrong); }), "") << wrong;
+    for (const char* wrong : {"side", "colour red", "limit x"})
+        EXPECT_NE(test::errorOf([&] { readSelection(c, wrong); }), "") << wrong;
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/assess/draft/draft.h"
 
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "handpiece/base/core/error.h"
@@ -94,6 +96,42 @@ Content withSide(Content content, std::string_view side) {
     content.preparation->side = side;
     if (follows) propose(content);
     return content;
+}
+
+void renameCriterion(rubric::Rubric& rubric, std::size_t which, const std::string& id) {
+    const std::string before = std::exchange(rubric.criteria.at(which).id, id);
+    // Two of a name: what refers to it may mean the other.
+    if (rubric.criterion(before) != nullptr) return;
+    const auto rename = [&](std::vector<std::string>& names) { std::replace(names.begin(), names.end(), before, id); };
+    for (rubric::Criterion& c : rubric.criteria)
+        rename(c.excludes);
+    for (rubric::Step& step : rubric.steps)
+        rename(step.criteria);
+    for (rubric::Rule& rule : rubric.rules)
+        for (rubric::Condition& need : rule.needs)
+            rename(need.of);
+}
+
+void removeCriterion(rubric::Rubric& rubric, std::size_t which) {
+    const std::string id = rubric.criteria.at(which).id;
+    rubric.criteria.erase(rubric.criteria.begin() + static_cast<std::ptrdiff_t>(which));
+    restateTotal(rubric);
+    if (rubric.criterion(id) != nullptr) return;
+    for (rubric::Criterion& c : rubric.criteria)
+        std::erase(c.excludes, id);
+    for (rubric::Step& step : rubric.steps)
+        std::erase(step.criteria, id);
+    std::erase_if(rubric.steps, [](const rubric::Step& s) { return s.criteria.empty(); });
+    for (rubric::Rule& rule : rubric.rules)
+        // Without names a condition would count all.
+        std::erase_if(rule.needs, [&](rubric::Condition& n) { return std::erase(n.of, id) > 0 && n.of.empty(); });
+    std::erase_if(rubric.rules, [](const rubric::Rule& r) { return r.needs.empty(); });
+}
+
+void restateTotal(rubric::Rubric& rubric) {
+    if (!rubric.totalWeight) return;
+    rubric.totalWeight = std::accumulate(rubric.criteria.begin(), rubric.criteria.end(), 0.0,
+                                         [](double sum, const rubric::Criterion& c) { return sum + c.weight; });
 }
 
 void Draft::change(Content content, std::string_view name) {

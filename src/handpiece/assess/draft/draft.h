@@ -43,6 +43,13 @@ struct Content {
 /// True while the rubric is that which comes along for the preparation, or there is none.
 [[nodiscard]] bool hasProposedRubric(const Content& content);
 
+/// Another name: what refers to it follows.
+void renameCriterion(rubric::Rubric& rubric, std::size_t which, const std::string& id);
+/// With what refers to it; a step without criteria and a rule without needs go too.
+void removeCriterion(rubric::Rubric& rubric, std::size_t which);
+/// A sum of weights that the rubric states is that which they have.
+void restateTotal(rubric::Rubric& rubric);
+
 /// The parts of an exercise in which something can be wrong.
 enum class Part { tooth, preparation, work, judgement, texts };
 struct Problem {

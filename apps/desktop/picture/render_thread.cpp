@@ -102,6 +102,7 @@ struct RenderThread::Shared {
     std::shared_ptr<const instrument::Bur> bur;
     std::shared_ptr<const geometry::TriangleMesh> turbine;
     std::optional<view::SectionFace> face;
+    std::optional<std::vector<view::GlassSurface>> glass;
     std::optional<messages::HapticSample> given;  ///< by setSample()
     bool newTooth = false, newBur = false, newTurbine = false, newFace = false, newRequest = false, stanched = false;
 
@@ -325,6 +326,7 @@ void RenderThread::run() {
         bool newTooth = false, newBur = false, fresh = false;
         std::shared_ptr<const geometry::TriangleMesh> turbine;
         std::optional<std::optional<view::SectionFace>> face;
+        std::optional<std::vector<view::GlassSurface>> glass;
         {
             std::unique_lock lock(shared_->mutex);
             // A picture that is due waits for its turn; else wait for a word from the window, or look for news.
@@ -362,6 +364,7 @@ void RenderThread::run() {
             worker.bur = shared_->bur;
             if (std::exchange(shared_->newTurbine, false)) turbine = shared_->turbine;
             if (std::exchange(shared_->newFace, false)) face = std::exchange(shared_->face, std::nullopt);
+            glass = std::exchange(shared_->glass, std::nullopt);
             const messages::HapticSample earlier = worker.sample;
             if (worker.feed && worker.feed->hasNews()) {
                 worker.sample = worker.feed->read();
@@ -419,7 +422,8 @@ void RenderThread::run() {
                 worker.cutPlane = *face ? std::optional((*face)->plane) : std::nullopt;
                 if (*face) worker.renderer->setSectionFace(std::move(**face));
             }
-            if (newTooth || news || newBur || turbine || face) worker.dirty = true;
+            if (glass) worker.renderer->setGlass(*glass);
+            if (newTooth || news || newBur || turbine || face || glass) worker.dirty = true;
             if (!worker.dirty || !worker.renderRequest.visible || now < lastFrame + kFramePeriod) continue;
             lastFrame = now;
             Frame frame = worker.draw();
@@ -466,6 +470,7 @@ void RenderThread::setTooth(std::shared_ptr<simulation::LiveTooth> tooth, std::v
         s.feed = std::move(feed);
         s.given.reset();
         s.face.reset();
+        s.glass.reset();
         s.newFace = false;
         s.sample = messages::HapticSample{};
         s.newTooth = true;
@@ -493,6 +498,10 @@ void RenderThread::setSample(const messages::HapticSample& sample) {
         s.given = sample;
         s.sample = sample;
     });
+}
+
+void RenderThread::setGlass(std::vector<view::GlassSurface> surfaces) {
+    tell(*shared_, [&](Shared& s) { s.glass = std::move(surfaces); });
 }
 
 void RenderThread::clearBlood() {

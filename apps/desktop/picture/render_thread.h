@@ -67,6 +67,8 @@ class RenderThread {
     void setBur(std::shared_ptr<const instrument::Bur> bur);
     void setTurbine(geometry::TriangleMesh mesh);
     void setSample(const messages::HapticSample& sample);
+    /// Over the tooth until another one.
+    void setGlass(std::vector<view::GlassSurface> surfaces);
     /// Gingiva that was cut bleeds in the picture until then.
     void clearBlood();
     [[nodiscard]] bool isBleeding() const;

@@ -150,6 +150,9 @@ input::PointerController* ViewWidget::hand() const {
 void ViewWidget::setSample(const messages::HapticSample& sample) {
     state_->render->setSample(sample);
 }
+void ViewWidget::setGlass(std::vector<view::GlassSurface> surfaces) {
+    state_->render->setGlass(std::move(surfaces));
+}
 void ViewWidget::clearBlood() {
     state_->render->clearBlood();
 }

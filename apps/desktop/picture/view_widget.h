@@ -58,6 +58,8 @@ class ViewWidget : public QWidget {
     /// For load, stop and pedal; null without a pointer. Prefer setLoad() and setStop(), which tell listeners.
     [[nodiscard]] input::PointerController* hand() const;
     void setSample(const messages::HapticSample& sample);
+    /// Translucent surfaces over the tooth, until another one; none: away with them.
+    void setGlass(std::vector<view::GlassSurface> surfaces);
     /// Gingiva that was cut bleeds in the picture until then, or until another tooth.
     void clearBlood();
     [[nodiscard]] bool isBleeding() const;

@@ -874,6 +874,43 @@ TEST(Renderer, WhatAChangeOccludesFartherOffIsLitWhenNothingElseChanges) {
     expectSame(expected, image);
 }
 
+TEST(Renderer, GlassIsSeenThroughWhatIsSolidAndGoesWithoutATrace) {
+    Renderer renderer;
+    renderer.setTooth(box(4.0, -1.0, 1.0));
+    renderer.updateBricks(table());
+    Image before, with, after;
+    const auto settle = [&](Image& out) {
+        while (renderer.draw(above(), kSize, plainLook(), withoutBur(), out).refining) {
+        }
+    };
+    settle(before);
+    // Green, from 3 mm under the table to its top, left of the middle.
+    const auto mesh =
+        std::make_shared<const geometry::TriangleMesh>(test::boxMesh(Vec3(-2.0, -1.0, -3.0), Vec3(-1.0, 0.0, 0.0)));
+    renderer.setGlass({{mesh, {0.0f, 0.62f, 0.45f}, 0.34f}});
+    settle(with);
+    const Rgb was = at(before, above(), Vec3(-1.5, -0.5, 0.0)), is = at(with, above(), Vec3(-1.5, -0.5, 0.0));
+    EXPECT_GT(is.g - is.r, was.g - was.r + 30);
+    const Rgb asideWas = at(before, above(), Vec3(1.5, -2.5, 0.0)), asideIs = at(with, above(), Vec3(1.5, -2.5, 0.0));
+    EXPECT_EQ(brightness(asideIs), brightness(asideWas));
+    // All of it under the table: paler, and seen.
+    const auto hidden =
+        std::make_shared<const geometry::TriangleMesh>(test::boxMesh(Vec3(-2.0, -1.0, -3.0), Vec3(-1.0, 0.0, -1.0)));
+    renderer.setGlass({{hidden, {0.0f, 0.62f, 0.45f}, 0.34f}});
+    settle(after);
+    const Rgb under = at(after, above(), Vec3(-1.5, -0.5, -1.0));
+    const Rgb underWas = at(before, above(), Vec3(-1.5, -0.5, -1.0));
+    EXPECT_GT(under.g - under.r, underWas.g - underWas.r + 10);
+    renderer.setGlass({});
+    settle(after);
+    EXPECT_EQ(after.rgba, before.rgba);
+    renderer.setGlass({{mesh, {0.0f, 0.62f, 0.45f}, 0.34f}});
+    renderer.setTooth(box(4.0, -1.0, 1.0));
+    renderer.updateBricks(table());
+    settle(after);
+    EXPECT_EQ(after.rgba, before.rgba) << "another tooth has none of it";
+}
+
 TEST(Renderer, SizesThatNoPictureHasAreRefused) {
     Renderer renderer;
     Image image;

@@ -10,6 +10,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/senses/view/effects.h"
+#include "handpiece/senses/view/effects_glass.h"
 #include "handpiece/senses/view/gl.h"
 #include "handpiece/senses/view/instruments.h"
 #include "handpiece/senses/view/passes.h"
@@ -98,6 +99,7 @@ struct Renderer::State {
     gl::VertexArray none;
     EyeTarget left, right, mirror, moving;
     std::vector<std::unique_ptr<Pass>> effects;
+    GlassPass glass;
     Image rightPicture, leftPicture, smallPicture;
 
     std::optional<Camera> camera;
@@ -298,6 +300,10 @@ void Renderer::State::drawEye(EyeTarget& target, const Camera& from, const Eye& 
         passing = passing.joined(touched);
         passes.push_back(effect.get());
     }
+    if (const PixelRect touched = glass.touches(context_).common(whole); !touched.isEmpty()) {
+        passing = passing.joined(touched);
+        passes.push_back(&glass);
+    }
     const bool ghost = look.tooth == ToothShown::ghost && scene.isCut();
     const PixelRect ghostRect = ghost ? scene.rectOfCut(eye, size).common(whole) : PixelRect{};
     passing = passing.joined(ghostRect);
@@ -433,6 +439,7 @@ bool Renderer::isSoftware() const noexcept {
 void Renderer::setTooth(const core::Box& bounds) {
     state_->context.makeCurrent();
     state_->scene.setTooth(bounds);
+    state_->glass.set({});
 }
 
 void Renderer::updateBricks(std::span<const surface::BrickUpdate> bricks, bool before) {
@@ -443,6 +450,7 @@ void Renderer::updateBricks(std::span<const surface::BrickUpdate> bricks, bool b
 void Renderer::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue) {
     state_->context.makeCurrent();
     state_->scene.setMesh(mesh, tissue);
+    state_->glass.set({});
 }
 
 void Renderer::setScenery(std::span<const cases::Part> parts) {
@@ -463,6 +471,11 @@ void Renderer::setBur(const geometry::TriangleMesh& mesh, double headLengthMm, d
 void Renderer::setTurbine(const geometry::TriangleMesh& mesh) {
     state_->context.makeCurrent();
     state_->instruments.setTurbine(mesh);
+}
+
+void Renderer::setGlass(const std::vector<GlassSurface>& surfaces) {
+    state_->context.makeCurrent();
+    state_->glass.set(surfaces);
 }
 
 void Renderer::setResponsive(bool responsive) {

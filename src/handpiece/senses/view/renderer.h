@@ -4,6 +4,7 @@
 /// Draws the tooth, the bur and what is around them, with OpenGL 3.3, into a picture. The same on screen and off: a
 /// window shows the picture, a file keeps it; no display is needed.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -47,6 +48,13 @@ enum class BurFinish { diamond, carbide, steel, plain };
 /// By an ability's name; empty: the one that the catalogue gives this bur. A bur from a mesh file is plain unless its
 /// ability is another than that of one of which nothing is known.
 [[nodiscard]] BurFinish finishOf(const instrument::Bur& bur, std::string_view cuttingParameters = {});
+
+/// A closed surface to be seen through all that is solid: a zone of a task. Tooth frame.
+struct GlassSurface {
+    std::shared_ptr<const geometry::TriangleMesh> mesh;
+    std::array<float, 3> colour{1.0f, 1.0f, 1.0f};  ///< sRGB, 0 to 1
+    float alpha = 0.25f;                            ///< of a side seen squarely; at its rim more
+};
 
 /// All that moves from picture to picture. Poses as in messages::HapticSample: the proxy's, never sunk in.
 struct Moment {
@@ -108,6 +116,9 @@ class Renderer {
     void setTurbine(const geometry::TriangleMesh& mesh);
     /// The face shown at Look::cutAway when its plane is the same; without it the inside shows as walls only.
     void setSectionFace(SectionFace face);
+
+    /// Over the tooth, in this order; forgotten by setTooth() and setMesh(). None: away with it.
+    void setGlass(const std::vector<GlassSurface>& surfaces);
 
     /// For a window at work on a software renderer: full detail comes back strip by strip over several pictures, and a
     /// new look of the tooth counts as motion, so that no single picture keeps the hand waiting. Off: in one go.

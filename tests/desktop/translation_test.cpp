@@ -203,11 +203,11 @@ std::vector<std::pair<QString, QString>> textsOf(QWidget* top) {
 /// English words that stand in a Japanese window too: names, units, formats, keys.
 QString leftInEnglish(QString text) {
     static const QRegularExpression tags(QStringLiteral("<[^>]*>")), words(QStringLiteral("[A-Za-z]{3,}"));
-    static const std::set<QString> names = {"Handpiece", "STL",    "PNG",   "SVG",       "CSV",      "FDI",   "ISO",
-                                            "PLY",       "OBJ",    "Ctrl",  "Shift",     "Home",     "End",   "Esc",
-                                            "Del",       "Return", "Enter", "Backspace", "Left",     "Right", "Up",
-                                            "Down",      "PgUp",   "PgDn",  "Space",     "DICOM",    "rpm",   "min",
-                                            "English",   "OpenGL", "Tab",   "Palmer",    "Universal"};
+    static const std::set<QString> names = {"Handpiece", "STL",    "PNG",   "SVG",       "CSV",       "FDI",      "ISO",
+                                            "PLY",       "OBJ",    "Ctrl",  "Shift",     "Home",      "End",      "Esc",
+                                            "Del",       "Return", "Enter", "Backspace", "Left",      "Right",    "Up",
+                                            "Down",      "PgUp",   "PgDn",  "Space",     "DICOM",     "rpm",      "min",
+                                            "English",   "OpenGL", "Tab",   "Palmer",    "Universal", "handpiece"};
     text.remove(tags);
     QStringList found;
     for (auto it = words.globalMatch(text); it.hasNext();)

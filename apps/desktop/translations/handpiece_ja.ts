@@ -611,6 +611,14 @@
         <source>Your results over the attempts at each exercise</source>
         <translation>課題ごとに、回を追った結果を表示します</translation>
     </message>
+    <message>
+        <source>Task in the picture</source>
+        <translation>課題を画像に表示</translation>
+    </message>
+    <message>
+        <source>What is to go and what must stay, as glass over the tooth</source>
+        <translation>削る部分と残すべき部分を、歯の上に透明なガラスとして表示します</translation>
+    </message>
 </context>
 <context>
     <name>BurPicture</name>
@@ -9247,6 +9255,10 @@ lingual: %4</source>
     <message>
         <source>Weights: %1</source>
         <translation>配点の合計：%1</translation>
+    </message>
+    <message>
+        <source>It is not judged: take a rubric that comes along.</source>
+        <translation>評価されません。付属の評価表を選んでください。</translation>
     </message>
 </context>
 <context>

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "desktop/features/drill/bur_list.h"
 #include "desktop/features/editor/editor_words.h"
 #include "desktop/framework/helps.h"
 #include "desktop/picture/solid_view.h"
@@ -242,8 +243,8 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     burs_ = named(new QListWidget(this), "editorBurs", tr("Burs allowed"), tr("None ticked: all of them"));
     for (const instrument::CatalogueEntry& bur : instrument::catalogue()) {
         const QString name = QString::fromStdString(bur.name);
-        bur_->addItem(name, name);
-        auto* item = new QListWidgetItem(QStringLiteral("%1  ⌀ %2 mm").arg(name).arg(bur.diameterMm), burs_);
+        bur_->addItem(burTitle(name), name);
+        auto* item = new QListWidgetItem(QStringLiteral("%1  ⌀ %2 mm").arg(burTitle(name)).arg(bur.diameterMm), burs_);
         item->setData(Qt::UserRole, name);
         item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsSelectable | Qt::ItemIsUserCheckable);
         item->setCheckState(Qt::Unchecked);
@@ -325,7 +326,7 @@ void WorkPage::show(const Content& content) {
     showing_ = true;
     const cases::Exercise& e = content.exercise;
     const QString bur = QString::fromStdString(e.bur);
-    if (bur_->findData(bur) < 0) bur_->addItem(bur, bur);  // of a file: told as a problem
+    if (bur_->findData(bur) < 0) bur_->addItem(burTitle(bur), bur);  // of a file: told as a problem
     bur_->setCurrentIndex(bur_->findData(bur));
     const auto tick = [](QListWidget* list, const std::vector<std::string>& names) {
         for (int i = 0; i < list->count(); ++i) {

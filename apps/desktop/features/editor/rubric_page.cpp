@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "desktop/features/exercise/assessment_words.h"
 #include "desktop/widgets/parts.h"
 #include "handpiece/assess/draft/cells.h"
 #include "handpiece/base/core/error.h"
@@ -53,7 +54,7 @@ RubricPage::RubricPage(Change change) : EditorPage(std::move(change)) {
     auto* above = new QHBoxLayout;
     shipped_ = named(new QComboBox(this), "editorShipped", tr("A rubric that comes along"));
     for (const std::string& name : rubric::shippedRubrics())
-        shipped_->addItem(QString::fromStdString(name));
+        shipped_->addItem(inThisLanguage(rubric::shippedRubric(name).title), QString::fromStdString(name));
     auto* take = named(new QPushButton(tr("Take this rubric"), this), "editorTakeRubric", tr("Take this rubric"),
                        tr("In the place of the one that is there; Undo brings that back"));
     none_ = named(new QPushButton(tr("Not judged"), this), "editorNoRubric", tr("Not judged"));
@@ -111,7 +112,7 @@ RubricPage::RubricPage(Change change) : EditorPage(std::move(change)) {
     column->addWidget(whole_);
 
     connect(take, &QPushButton::clicked, this, [this] {
-        const std::string name = shipped_->currentText().toStdString();
+        const std::string name = shipped_->currentData().toString().toStdString();
         unread_.clear();
         change_("", [&](Content& c) {
             c.rubricText = rubric::shippedRubricText(name);
@@ -311,7 +312,9 @@ void RubricPage::showFindings() {
         QString said = QString::fromStdString(p.what);
         if (!p.remedy.empty()) said += QStringLiteral(" (") + QString::fromStdString(p.remedy) + QLatin1Char(')');
         if (p.criterion.empty()) {
-            whole << said;
+            // Without criteria there is only this to be remarked.
+            const bool isUnjudged = ids_.empty() && p.severity == rubric::Severity::remark;
+            whole << (isUnjudged ? tr("It is not judged: take a rubric that comes along.") : said);
             continue;
         }
         for (std::size_t i = 0; i < ids_.size(); ++i)

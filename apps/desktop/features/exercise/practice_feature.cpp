@@ -24,7 +24,10 @@ constexpr CommandOf<Command> kCommands[] = {
      "Ctrl+Shift+L", in(Shelf::file, 3), in(Shelf::fileBar, 2), brief(QT_TRANSLATE_NOOP("Commands", "Exercises"))},
     {Command::finish, "actionFinish", QT_TRANSLATE_NOOP("Commands", "Finish"),
      QT_TRANSLATE_NOOP("Commands", "Your work on this exercise is done: it is judged, and you see why"), "check",
-     "Ctrl+Return", in(Shelf::file, 9), in(Shelf::toolBar, 43)},
+     "Ctrl+Return", in(Shelf::file, 9)},
+    {Command::zones, "actionZones", QT_TRANSLATE_NOOP("Commands", "Task in the picture"),
+     QT_TRANSLATE_NOOP("Commands", "What is to go and what must stay, as glass over the tooth"), "transparency",
+     "Ctrl+Shift+Y", in(Shelf::view, 24), kCheckable, exercise::Operation::transparency},
     {Command::result, "actionResult", QT_TRANSLATE_NOOP("Commands", "Result"),
      QT_TRANSLATE_NOOP("Commands", "The result of the work that was finished last"), "report", "Ctrl+Shift+B",
      in(Shelf::view, 25)},
@@ -60,6 +63,12 @@ PracticeFeature::PracticeFeature(const FeatureContext& context)
         return !simulator_.isBusy() && simulator_.isRecorded() && simulator_.task() &&
                !simulator_.task()->rubric.empty();
     });
+    commands.enableWhile(commands_[Command::zones], [this] {
+        return simulator_.mode() == Simulator::Mode::liveSession && simulator_.task() && simulator_.task()->preparation;
+    });
+    connect(commands_[Command::zones], &QAction::toggled, this, &PracticeFeature::showZones);
+    connect(&glass_, &ZoneGlass::changed, this, [this] { view_.setGlass(glass_.surfaces()); });
+    connect(&glass_, &ZoneGlass::refused, &window_, &MainWindow::showProblem);
     commands.enableWhile(commands_[Command::result], [this] { return done_ != nullptr; });
     connect(&simulator_, &Simulator::finished, this, &PracticeFeature::take);
     window_.openers.push_back([this](const QString& file) {
@@ -119,7 +128,13 @@ void PracticeFeature::begin(const fs::path& path) {
 void PracticeFeature::showDocument() {
     stopAtS_.reset();
     const auto& task = simulator_.task();
-    if (!task || simulator_.mode() != Simulator::Mode::liveSession) return;
+    const bool isAtWork = task && simulator_.mode() == Simulator::Mode::liveSession;
+    const bool isGiven =
+        isAtWork && task->preparation && !simulator_.permissions().locks(exercise::Operation::transparency);
+    // A block has its figure printed on it; on a tooth one finds one's own way first.
+    commands_[Command::zones]->setChecked(isGiven && task->preparation->preparation.starts_with("block-"));
+    showZones();
+    if (!isAtWork) return;
     if (school::Store* kept = store()) {
         const auto now = QDateTime::currentMSecsSinceEpoch();
         const QString title = task->toothCase.exercise ? inThisLanguage(task->toothCase.exercise->title) : QString();
@@ -130,6 +145,14 @@ void PracticeFeature::showDocument() {
             window_.showProblem(problemOf(error));
         }
     }
+}
+
+void PracticeFeature::showZones() {
+    const auto& task = simulator_.task();
+    if (commands_[Command::zones]->isChecked() && task && task->preparation)
+        glass_.show(std::shared_ptr<const cases::Case>(task, &task->toothCase), *task->preparation);
+    else
+        glass_.hide();
 }
 
 void PracticeFeature::showTick() {

@@ -8,6 +8,7 @@
 
 #include "desktop/features/exercise/result_dialog.h"
 #include "desktop/framework/feature.h"
+#include "desktop/work/zone_glass.h"
 #include "handpiece/school/store/store.h"
 
 namespace handpiece::desktop {
@@ -18,7 +19,7 @@ class ProgressDialog;
 class PracticeFeature : public Feature {
     Q_OBJECT
   public:
-    enum class Command { exercises, finish, result, progress };
+    enum class Command { exercises, finish, zones, result, progress };
     explicit PracticeFeature(const FeatureContext& context);
     void showDocument() override;
     void showTick() override;
@@ -38,6 +39,7 @@ class PracticeFeature : public Feature {
     void showProgress();
     [[nodiscard]] QString bestOf(const std::string& id);
     void makeIdeal();
+    void showZones();
 
     CommandSet<Command> commands_;
     std::unique_ptr<school::Store> store_;
@@ -49,6 +51,7 @@ class PracticeFeature : public Feature {
     std::optional<double> stopAtS_;  ///< the replay
     std::unique_ptr<Job> ideal_;
     Job* page_ = nullptr;  ///< being written
+    ZoneGlass glass_;
 };
 
 }  // namespace handpiece::desktop

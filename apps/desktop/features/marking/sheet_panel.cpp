@@ -130,17 +130,21 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     editor->addWidget(reason_, 2, 0, 1, 3);
     editor->addWidget(say_, 3, 0);
     editor->addWidget(withdraw_, 3, 1);
-    editor->addWidget(giveIn_, 3, 2);
+    editor->addWidget(giveIn_, 4, 0, 1, 3);
     decisionRow_ = new QWidget(this);
-    auto* decision = new QHBoxLayout(decisionRow_);
+    // No wider than the other panels of its column: a hidden one too makes the window wider.
+    auto* decision = new QGridLayout(decisionRow_);
     decision->setContentsMargins(0, 0, 0, 0);
-    decision->addWidget(decision_);
-    decision->addWidget(decisionReason_, 1);
-    decision->addWidget(decide_);
-    auto* pins = new QHBoxLayout;
+    decision->addWidget(decision_, 0, 0);
+    decision->addWidget(decide_, 0, 1);
+    decision->addWidget(decisionReason_, 1, 0, 1, 2);
+    for (QComboBox* box : {band_, critical_, decision_}) {
+        box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+        box->setMinimumContentsLength(6);
+    }
+    auto* pins = new QVBoxLayout;
     pins->addWidget(atPlace_);
     pins->addWidget(atTime_);
-    pins->addStretch(1);
     auto* writing = new QHBoxLayout;
     writing->addWidget(comment_, 1);
     writing->addWidget(addComment_);

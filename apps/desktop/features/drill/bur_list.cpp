@@ -2,11 +2,9 @@
 #include "desktop/features/drill/bur_list.h"
 
 #include <QApplication>
-#include <QFileInfo>
 #include <QPainter>
 
 #include "desktop/widgets/theme.h"
-#include "handpiece/base/geometry/mesh_io.h"
 
 namespace handpiece::desktop {
 
@@ -17,23 +15,6 @@ QString diameterText(double mm) {
 }
 
 }  // namespace
-
-QString burTitle(const QString& name) {
-    // A file's is what it is called, without its place.
-    if (geometry::meshFormatOf(name.toStdString()) != geometry::MeshFormat::unknown)
-        return QFileInfo(name).completeBaseName();
-    if (name.isEmpty() || !name.front().isLetter()) return name;
-    // The catalogue's own names; burs from files keep theirs.
-    for (const auto& [front, text] :
-         {std::pair(QLatin1String("round-"), QT_TRANSLATE_NOOP("handpiece::desktop::BurModel", "Round %1")),
-          std::pair(QLatin1String("steel-round-"),
-                    QT_TRANSLATE_NOOP("handpiece::desktop::BurModel", "Steel round %1"))})
-        if (name.startsWith(front)) return BurModel::tr(text).arg(name.mid(front.size()));
-    QString title = name;
-    title.replace(QLatin1Char('-'), QLatin1Char(' '));
-    title[0] = title[0].toUpper();
-    return title;
-}
 
 BurModel::BurModel(QObject* parent) : QAbstractListModel(parent) {}
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "desktop/features/drill/bur_picture.h"
+#include "desktop/work/bur_words.h"
 
 namespace handpiece::desktop {
 
@@ -73,8 +74,5 @@ class BurDelegate : public QStyledItemDelegate {
   private:
     QString inHand_;
 };
-
-/// "Round 1/4" for "round-1/4"; names that begin with a digit stay.
-[[nodiscard]] QString burTitle(const QString& name);
 
 }  // namespace handpiece::desktop

@@ -16,11 +16,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "desktop/features/drill/bur_list.h"
 #include "desktop/features/editor/editor_words.h"
 #include "desktop/framework/helps.h"
 #include "desktop/picture/solid_view.h"
 #include "desktop/widgets/parts.h"
+#include "desktop/work/bur_words.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/model/starter/block.h"
 

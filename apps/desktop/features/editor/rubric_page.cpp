@@ -5,6 +5,7 @@
 #include <QComboBox>
 #include <QHeaderView>
 #include <QLabel>
+#include <QLocale>
 #include <QPushButton>
 #include <QSignalBlocker>
 #include <QSpinBox>
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "desktop/features/exercise/assessment_words.h"
 #include "desktop/widgets/parts.h"
 #include "handpiece/assess/draft/cells.h"
 #include "handpiece/base/core/error.h"
@@ -53,8 +53,12 @@ RubricPage::RubricPage(Change change) : EditorPage(std::move(change)) {
     auto* column = new QVBoxLayout(this);
     auto* above = new QHBoxLayout;
     shipped_ = named(new QComboBox(this), "editorShipped", tr("A rubric that comes along"));
-    for (const std::string& name : rubric::shippedRubrics())
-        shipped_->addItem(inThisLanguage(rubric::shippedRubric(name).title), QString::fromStdString(name));
+    const std::string language = QLocale().bcp47Name().toStdString();
+    for (const std::string& name : rubric::shippedRubrics()) {
+        const rubric::Rubric one = rubric::shippedRubric(name);
+        shipped_->addItem(QString::fromStdString(std::string(cases::inLanguage(one.title, language))),
+                          QString::fromStdString(name));
+    }
     auto* take = named(new QPushButton(tr("Take this rubric"), this), "editorTakeRubric", tr("Take this rubric"),
                        tr("In the place of the one that is there; Undo brings that back"));
     none_ = named(new QPushButton(tr("Not judged"), this), "editorNoRubric", tr("Not judged"));

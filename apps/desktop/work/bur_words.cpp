@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "desktop/work/bur_words.h"
+
+#include <QCoreApplication>
+#include <QFileInfo>
+
+#include "handpiece/base/geometry/mesh_io.h"
+
+namespace handpiece::desktop {
+
+QString burTitle(const QString& name) {
+    // A file's is what it is called, without its place.
+    if (geometry::meshFormatOf(name.toStdString()) != geometry::MeshFormat::unknown)
+        return QFileInfo(name).completeBaseName();
+    if (name.isEmpty() || !name.front().isLetter()) return name;
+    // The catalogue's own names; burs from files keep theirs.
+    for (const auto& [front, text] :
+         {std::pair(QLatin1String("round-"), QT_TRANSLATE_NOOP("handpiece::desktop::BurModel", "Round %1")),
+          std::pair(QLatin1String("steel-round-"),
+                    QT_TRANSLATE_NOOP("handpiece::desktop::BurModel", "Steel round %1"))})
+        if (name.startsWith(front))
+            return QCoreApplication::translate("handpiece::desktop::BurModel", text).arg(name.mid(front.size()));
+    QString title = name;
+    title.replace(QLatin1Char('-'), QLatin1Char(' '));
+    title[0] = title[0].toUpper();
+    return title;
+}
+
+}  // namespace handpiece::desktop

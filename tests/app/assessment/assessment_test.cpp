@@ -65,7 +65,7 @@ TEST(Result, ComesBackFromItsJsonAndNothingElseDoes) {
     const rubric::Rubric r = rubric::shippedRubric("46-class-i");
     std::vector<measures::Measured> measured;
     for (const rubric::Criterion& c : r.criteria) {
-        measures::Measured m{c.measure, c.of, 2.05, 0.1, {}, {{12.5, core::Vec3(1, -2, 0.25), 0.8, "deepest"}}};
+        measures::Measured m{c.measure, c.of, 2.05, 0.1, {}, {{12.5, core::Vec3(1, -2, 0.25), 0.8, "deepest", 1}}};
         if (c.id == "time") m = {c.measure, c.of, {}, 0.0, "no samples", {}};
         measured.push_back(m);
     }

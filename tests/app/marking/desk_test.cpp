@@ -217,11 +217,12 @@ TEST(Result, IsReadAsItWasWritten) {
         for (const std::optional<double> width : {std::optional<double>(), std::optional<double>(1.1)}) {
             const assessment::Result result = resultOf(depth, width, 0.99);
             const std::string json = assessment::resultJson(result.assessment, result.identity);
-            const assessment::Result read = parseResult(json, "result.json");
+            const assessment::Result read = assessment::parseResult(json, "result.json");
             EXPECT_EQ(assessment::resultJson(read.assessment, read.identity), json);
         }
     for (const char* bad : {"", "{}", "[1]", "{\"schema\":\"handpiece-result-1\"}", "{\"schema\":3}"})
-        EXPECT_THAT(errorOf([&] { static_cast<void>(parseResult(bad, "r.json")); }), HasSubstr("no result")) << bad;
+        EXPECT_THAT(errorOf([&] { static_cast<void>(assessment::parseResult(bad, "r.json")); }), HasSubstr("no result"))
+            << bad;
 }
 
 TEST(Blind, OrderIsARandomPermutationAndATenthComesAgain) {
@@ -593,7 +594,7 @@ TEST(Readers, RefuseWhatIsDamaged) {
             if (i % 2 == 0)
                 static_cast<void>(itemsOf(parseDesk(text, "d")));
             else
-                static_cast<void>(parseResult(text, "r"));
+                static_cast<void>(assessment::parseResult(text, "r"));
         } catch (const core::Error&) {  // anything else, or none to speak of, fails the test
             ++refused;
         }

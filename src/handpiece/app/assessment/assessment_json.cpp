@@ -74,10 +74,11 @@ constexpr std::size_t kMostResults = 100'000;
 class Reader {
   public:
     Reader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {
-        if (!json.is_object()) fail("this is no object");
+        if (!json.is_object()) fail("what should be an object is none");
     }
     [[noreturn]] void fail(const std::string& problem) const {
-        throw core::Error(problem, where_, "give a result.json as handpiece score writes it");
+        throw core::Error("this is no result of a score: " + problem, where_,
+                          "give a result.json as handpiece score writes it");
     }
     [[nodiscard]] const Json& member(const char* name) const {
         const auto at = json_.find(name);
@@ -139,6 +140,7 @@ measures::Evidence evidenceOf(const Reader& json) {
     }
     e.forceN = json.numberOrNone("force_n");
     e.text = json.text("text");
+    e.session = static_cast<std::size_t>(std::clamp(json.numberOrNone("session").value_or(0.0), 0.0, 1e6));
     return e;
 }
 
@@ -208,7 +210,8 @@ bool comesBefore(const std::string& a, const std::string& b) {
 score::Result parseResult(std::string_view text, const std::string& where) {
     const Json parsed = Json::parse(text, nullptr, false);
     if (parsed.is_discarded())
-        throw core::Error("this is no JSON", where, "give a result.json as handpiece score writes it");
+        throw core::Error("this is no result of a score, nor JSON", where,
+                          "give a result.json as handpiece score writes it");
     const Reader json(parsed, where);
     if (const std::string schema = json.text("schema"); schema != kResultSchema)
         json.fail(fmt::format("its schema is \"{}\", not \"{}\"", schema, kResultSchema));

@@ -9,6 +9,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
+#include "handpiece/model/case/attempt.h"
 #include "handpiece/model/field/field_cache.h"
 
 namespace handpiece::assessment {
@@ -109,7 +110,7 @@ std::string workHash(const fs::path& work) {
     std::error_code ec;
     if (!fs::is_directory(work, ec)) {
         files = {work};
-    } else if (fs::exists(work / "attempt.toml", ec)) {
+    } else if (fs::exists(work / cases::kAttemptFile, ec)) {
         for (fs::recursive_directory_iterator entry(work, ec), end; !ec && entry != end; entry.increment(ec))
             if (entry->is_regular_file(ec)) files.push_back(entry->path());
     } else {

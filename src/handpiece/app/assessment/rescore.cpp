@@ -4,17 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <mutex>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/app/assessment/csv_cell.h"
+#include "handpiece/app/assessment/side_by_side.h"
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
-#include "handpiece/base/core/parallel.h"
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/case_bytes.h"
 #include "handpiece/record/session/session_reader.h"
@@ -98,16 +96,6 @@ MeasuredWork measureOrFind(const fs::path& work, const std::optional<tasks::Task
     return whole;
 }
 
-std::string csvText(const std::string& text) {
-    // A table shall not take a file's name for a formula.
-    const bool isFormula = !text.empty() && std::string_view("=+-@\t").find(text.front()) != std::string_view::npos;
-    std::string out = isFormula ? "'" + text : text;
-    if (out.find_first_of(",\"\r\n") == std::string::npos) return out;
-    for (std::size_t i = out.find('"'); i != std::string::npos; i = out.find('"', i + 2))
-        out.insert(i, 1, '"');
-    return '"' + out + '"';
-}
-
 }  // namespace
 
 std::vector<fs::path> worksIn(const fs::path& folder) {
@@ -142,24 +130,10 @@ std::vector<Rescored> rescore(std::span<const fs::path> works, const std::option
     const std::vector<Request> asked = requestsOf(rubric);
     const std::string exercise = task ? rubric::hashText(tasks::contentHash(*task)) : std::string(kOwnCase);
     std::vector<Rescored> all(works.size());
-    std::vector<double> done(works.size(), 0.0);
-    std::mutex mutex;
-    std::atomic<std::size_t> next{0};
-    std::atomic<bool> isCancelled{false};
-    const auto scoreOne = [&](std::size_t i) {
+    const auto scoreOne = [&](std::size_t i, const core::Progress& mine) {
         Rescored& one = all[i];
         one.work = works[i];
-        const core::Progress mine = [&, i](double fraction) {
-            const std::lock_guard lock(mutex);
-            done[i] = fraction;
-            double sum = 0.0;
-            for (const double d : done)
-                sum += d;
-            if (!isCancelled && progress && !progress(sum / static_cast<double>(works.size()))) isCancelled = true;
-            return !isCancelled.load();
-        };
         try {
-            if (!mine(0.0)) return;
             const MeasuredWork measured = measureOrFind(works[i], task, exercise, asked, store, mine, one.isKept);
             one.result = judge(measured, rubric);
             // Kept measures are told by what they hold, not by what the exercise is called now.
@@ -167,21 +141,8 @@ std::vector<Rescored> rescore(std::span<const fs::path> works, const std::option
         } catch (const std::exception& e) {
             one.problem = core::asError(e).what();
         }
-        (void)mine(1.0);
     };
-    // Threads of their own: each may wait for inner work without being given another's.
-    const std::size_t side = session::readSideBySide() ? std::min(core::threadCount(), works.size()) : 1;
-    {
-        std::vector<std::jthread> others;
-        const auto workOn = [&] {
-            for (std::size_t i = next++; i < works.size() && !isCancelled; i = next++)
-                scoreOne(i);
-        };
-        for (std::size_t i = 1; i < side; ++i)
-            others.emplace_back(workOn);
-        workOn();
-    }
-    if (isCancelled) throw core::Error("cancelled");
+    eachSideBySide(works.size(), works.size(), progress, scoreOne);
     return all;
 }
 
@@ -194,7 +155,7 @@ std::string rescoredCsv(std::span<const Rescored> all, const rubric::Rubric& rub
         csv += fmt::format(",{0},{0} +-,{0} band,{0} points,{0} not measured", c.id);
     csv += '\n';
     for (const Rescored& one : all) {
-        csv += csvText(one.work.filename().string()) + "," + csvText(one.problem);
+        csv += csvCell(one.work.filename().string()) + "," + csvCell(one.problem);
         if (!one.result) {
             csv += std::string(20 + 5 * rubric.criteria.size(), ',') + "\n";
             continue;
@@ -205,15 +166,15 @@ std::string rescoredCsv(std::span<const Rescored> all, const rubric::Rubric& rub
         for (const score::CriticalError& e : a.critical)
             critical += fmt::format("{}{}{}", critical.empty() ? "" : " ", e.criterion, e.borderline ? "?" : "");
         csv += fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{:.2f},{},{},{},{},{},{}", of.proven ? "yes" : "no",
-                           csvText(one.result->proof), of.sessionHashes.size(), csvText(of.exercise), of.exerciseHash,
-                           of.caseKey, of.stateHash, csvText(a.context.device), csvText(a.rubric),
-                           csvText(a.rubricVersion), rubric::hashText(a.rubricHash), a.score, a.maxScore, a.percent(),
-                           a.leastScore, a.mostScore, score::nameOf(a.passed), csvText(a.why),
-                           a.borderline ? "yes" : "no", csvText(critical));
+                           csvCell(one.result->proof), of.sessionHashes.size(), csvCell(of.exercise), of.exerciseHash,
+                           of.caseKey, of.stateHash, csvCell(a.context.device), csvCell(a.rubric),
+                           csvCell(a.rubricVersion), rubric::hashText(a.rubricHash), a.score, a.maxScore, a.percent(),
+                           a.leastScore, a.mostScore, score::nameOf(a.passed), csvCell(a.why),
+                           a.borderline ? "yes" : "no", csvCell(critical));
         for (const score::CriterionScore& c : a.criteria)
             csv += fmt::format(",{},{},{},{},{}", c.value ? fmt::format("{}", *c.value) : "",
-                               c.value ? fmt::format("{}", c.uncertainty) : "", csvText(c.band),
-                               c.points ? fmt::format("{}", *c.points) : "", csvText(c.reason));
+                               c.value ? fmt::format("{}", c.uncertainty) : "", csvCell(c.band),
+                               c.points ? fmt::format("{}", *c.points) : "", csvCell(c.reason));
         csv += '\n';
     }
     return csv;

@@ -5,36 +5,21 @@
 
 #include <algorithm>
 
+#include "handpiece/app/assessment/csv_cell.h"
+
 namespace handpiece::marking {
 namespace {
 
 std::string number(const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : std::string();
 }
-bool isNumber(const std::string& text) {
-    return text.find_first_not_of("0123456789+-.eE") == std::string::npos &&
-           text.find_first_of("0123456789") != std::string::npos;
-}
 
 }  // namespace
 
 std::string csvLine(const std::vector<std::string>& cells) {
     std::string line;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        std::string cell = cells[i];
-        if (!cell.empty() && std::string_view("=+-@\t\r").find(cell.front()) != std::string_view::npos &&
-            !isNumber(cell))
-            cell.insert(cell.begin(), '\'');
-        if (cell.find_first_of(",\"\r\n") != std::string::npos || cell.starts_with(' ') || cell.ends_with(' ')) {
-            std::string quoted = "\"";
-            for (const char c : cell) {
-                if (c == '"') quoted += '"';
-                quoted += c;
-            }
-            cell = quoted + '"';
-        }
-        line += (i > 0 ? "," : "") + cell;
-    }
+    for (std::size_t i = 0; i < cells.size(); ++i)
+        line += (i > 0 ? "," : "") + assessment::csvCell(cells[i]);
     return line + "\r\n";
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "handpiece/app/assessment/measure_store.h"
 #include "handpiece/assess/rubric/rubric.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
@@ -25,22 +26,6 @@ std::vector<fs::path> entriesOf(const fs::path& folder) {
     if (error) throw core::Error("the folder cannot be read: " + error.message(), folder.string(), "choose another");
     std::sort(found.begin(), found.end());
     return found;
-}
-
-/// The bytes of a file, or of the files of an attempt's folder with their names.
-std::string contentId(const fs::path& path) {
-    core::Hasher hasher;
-    const auto add = [&hasher](const fs::path& file) { hasher.add(std::span<const std::byte>(core::readFile(file))); };
-    if (core::isFolder(path)) {
-        for (const char* name : {cases::kAttemptFile, cases::kAttemptStateFile})
-            if (core::isThere(path / name)) {
-                hasher.add(std::string_view(name));
-                add(path / name);
-            }
-    } else {
-        add(path);
-    }
-    return rubric::hashText(hasher.value());
 }
 
 class Finder {
@@ -105,7 +90,7 @@ std::vector<ReturnedWork> findWork(const fs::path& folder, const core::Progress&
         core::report(progress, static_cast<double>(i) / static_cast<double>(works.size()));
         ReturnedWork& work = works[i];
         try {
-            work.id = contentId(work.path);
+            work.id = assessment::workHash(work.path);
         } catch (const core::Error& error) {
             work.problem = error.problem();
         }

@@ -6,17 +6,15 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
-#include <numeric>
-#include <thread>
 
 #include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/app/assessment/side_by_side.h"
 #include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
-#include "handpiece/base/core/parallel.h"
 #include "handpiece/senses/view/renderer.h"
 
 namespace handpiece::marking {
@@ -47,6 +45,7 @@ struct Kept {
         hasher.add(tasks::contentHash(task));
         hasher.add(rubric::hashOf(rubric));
         hasher.add(core::kEngineRevision);
+        hasher.add(measures::kMeasuresRevision);
         hasher.add(settings.prove);
         key = rubric::hashText(hasher.value());
     }
@@ -60,7 +59,7 @@ struct Kept {
         };
         try {
             Scored scored;
-            scored.result_ = parseResult(text(file(".json")), file(".json").string());
+            scored.result_ = assessment::parseResult(text(file(".json")), file(".json").string());
             if (!fits(scored.result_->assessment, rubric)) return {};
             scored.result_->proof = text(file(".txt"));
             if (withPicture && core::isThere(file(".png"))) scored.picture_ = view::readPng(file(".png"));
@@ -117,7 +116,7 @@ view::Image pictureOf(const assessment::Work& work, int buccalSign) {
 Scored readLoneResult(const ReturnedWork& work, const tasks::Task& task, const rubric::Rubric& rubric) {
     const std::vector<std::byte> bytes = core::readFile(work.path, 8u << 20);
     assessment::Result result =
-        parseResult({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, work.path.string());
+        assessment::parseResult({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, work.path.string());
     if (result.identity.exerciseHash != rubric::hashText(tasks::contentHash(task)))
         return Scored::failed("this is a result of another exercise");
     if (result.assessment.rubricHash != rubric::hashOf(rubric))
@@ -185,42 +184,13 @@ void scoreAll(std::span<const ReturnedWork> works, const tasks::Task& task, cons
               const ScoreSettings& settings, const core::Progress& progress,
               const std::function<void(std::size_t which, Scored scored)>& done) {
     if (works.empty()) return core::report(progress, 1.0);
-    const std::size_t workers = std::min({core::threadCount(), works.size(), std::size_t{4}});
-    std::atomic<std::size_t> next{0};
-    std::atomic<bool> isCancelled{false};
-    std::vector<double> shares(works.size(), 0.0);  // of each work; never back
+    constexpr std::size_t kMost = 4;  // each holds a tooth
     std::mutex telling;
-    const auto tell = [&](std::size_t which, double share) {
+    assessment::eachSideBySide(works.size(), kMost, progress, [&](std::size_t i, const core::Progress& its) {
+        Scored scored = scoreReturned(works[i], task, rubric, settings, its);
         const std::lock_guard lock(telling);
-        shares[which] = std::max(shares[which], share);
-        const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
-        if (progress && !progress(sum / static_cast<double>(works.size()))) isCancelled = true;
-        return !isCancelled;
-    };
-    std::exception_ptr failure;
-    const auto work = [&] {
-        for (std::size_t i = next++; i < works.size() && !isCancelled; i = next++) {
-            try {
-                Scored scored =
-                    scoreReturned(works[i], task, rubric, settings, [&](double share) { return tell(i, share); });
-                tell(i, 1.0);
-                const std::lock_guard lock(telling);
-                done(i, std::move(scored));
-            } catch (...) {
-                const std::lock_guard lock(telling);
-                isCancelled = true;
-                if (!failure) failure = std::current_exception();
-            }
-        }
-    };
-    std::vector<std::thread> threads;
-    for (std::size_t i = 1; i < workers; ++i)
-        threads.emplace_back(work);
-    work();
-    for (std::thread& thread : threads)
-        thread.join();
-    if (failure) std::rethrow_exception(failure);
-    if (isCancelled) throw core::Error("cancelled");
+        done(i, std::move(scored));
+    });
 }
 
 }  // namespace handpiece::marking

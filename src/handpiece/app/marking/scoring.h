@@ -52,7 +52,4 @@ void scoreAll(std::span<const ReturnedWork> works, const tasks::Task& task, cons
               const ScoreSettings& settings, const core::Progress& progress,
               const std::function<void(std::size_t which, Scored scored)>& done);
 
-/// A result as `handpiece score` writes it; throws core::Error for what is none. Its proof is empty.
-[[nodiscard]] assessment::Result parseResult(std::string_view json, const std::string& where);
-
 }  // namespace handpiece::marking

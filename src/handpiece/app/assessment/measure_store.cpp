@@ -50,7 +50,9 @@ Evidence evidenceOf(const Json& json) {
         e.placeMm = core::Vec3(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>());
     e.forceN = numberOr(json.at("f"));
     e.text = json.at("text").get<std::string>();
-    e.session = json.at("session").get<std::size_t>();
+    const auto* const session = json.at("session").get_ptr<const Json::number_unsigned_t*>();
+    if (session == nullptr) throw core::Error("a session without a number", "kept measures");
+    e.session = static_cast<std::size_t>(*session);
     return e;
 }
 

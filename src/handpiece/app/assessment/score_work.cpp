@@ -227,6 +227,27 @@ std::vector<fs::path> sessionsIn(const fs::path& folder) {
     return sessions;
 }
 
+std::string workHash(const fs::path& work) {
+    std::vector<fs::path> files;
+    std::error_code ec;
+    if (!fs::is_directory(work, ec)) {
+        files = {work};
+    } else if (fs::exists(work / cases::kAttemptFile, ec)) {
+        for (fs::recursive_directory_iterator entry(work, ec), end; !ec && entry != end; entry.increment(ec))
+            if (entry->is_regular_file(ec)) files.push_back(entry->path());
+    } else {
+        files = sessionsIn(work);
+    }
+    std::sort(files.begin(), files.end());
+    core::Hasher hasher;
+    for (const fs::path& file : files) {
+        // Of a chain their order counts, of a single file its name does not.
+        if (files.size() > 1) hasher.add(file.lexically_relative(work).generic_string());
+        hasher.add(std::span<const std::byte>(core::readFile(file)));
+    }
+    return rubric::hashText(hasher.value());
+}
+
 Work readWork(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress) {
     std::error_code ec;
     if (!fs::exists(path, ec))

@@ -32,6 +32,8 @@ struct Work {
 
 /// Files of sessions (.h5) in a folder, by name.
 [[nodiscard]] std::vector<std::filesystem::path> sessionsIn(const std::filesystem::path& folder);
+/// Of all that makes a piece of work: a session, a folder's sessions, an attempt's files. Throws core::Error.
+[[nodiscard]] std::string workHash(const std::filesystem::path& work);
 
 /// Of a session (.h5), of a folder with all sessions of a chain, each of which goes on from the tooth that the one
 /// before it left, or of an attempt, with the sessions that came along. Sessions are cut again unless `prove` is false;

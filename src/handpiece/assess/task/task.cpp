@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <span>
 
 #include "handpiece/base/core/error.h"
@@ -71,9 +72,21 @@ Task parse(std::string_view text, const std::string& where) {
     return task;
 }
 
+/// The shortest number of micrometres that is read as this voxel again, bit for bit: 51 um are no 1000 times .051.
+std::string micrometres(double voxelMm) {
+    std::string text;
+    for (int digits = 3; digits <= 17; ++digits) {
+        text = fmt::format("{:.{}g}", 1e3 * voxelMm, digits);
+        double read = 0.0;
+        std::from_chars(text.data(), text.data() + text.size(), read);
+        if (1e-3 * read == voxelMm) break;
+    }
+    return text;
+}
+
 std::string tomlOf(const Task& task) {
     std::string out = fmt::format("format = {}\ntype = \"exercise\"\nid = \"{}\"\nversion = {}\nvoxel_um = {}\n",
-                                  kFormatVersion, task.id, task.version, 1e3 * task.voxelMm);
+                                  kFormatVersion, task.id, task.version, micrometres(task.voxelMm));
     if (task.minutes) out += fmt::format("minutes = {}\n", *task.minutes);
     if (task.ownJudgement) out += "own_judgement = true\n";
     if (!task.rubric.empty()) out += fmt::format("rubric = \"{}\"\n", kRubricFile);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/app/course/finished_work.h"
 
+#include <algorithm>
+
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/model/tooth/tooth_mirror.h"
 #include "handpiece/senses/surface/brick_source.h"
 #include "handpiece/senses/surface/closed_surface.h"
@@ -40,18 +43,49 @@ rubric::Rubric rubricOf(const tasks::Task& task) {
     return rubric;
 }
 
-FinishedWork finish(const std::filesystem::path& session, std::shared_ptr<const tasks::Task> task,
+FinishedWork finish(std::span<const assessment::ChainLink> chain, std::shared_ptr<const tasks::Task> task,
                     const core::Progress& progress) {
     FinishedWork done;
     done.task = std::move(task);
-    done.session = session;
     done.rubric = rubricOf(*done.task);
-    done.work = assessment::readWork(session, *done.task, true, core::part(progress, 0.0, 0.7));
+    done.work = assessment::readChain(chain, *done.task, true, core::part(progress, 0.0, 0.7));
+    done.session = chain.back().in;
     core::report(progress, 0.7);
     done.result = assessment::scoreWork(done.work, *done.task, done.rubric);
     if (done.task->preparation) done.draw = preparation::layOn(done.task->toothCase, *done.task->preparation).draw;
     core::report(progress, 0.85);
     done.own = partsOf(done.work.teeth.front(), done.work.state, core::part(progress, 0.85, 1.0));
+    return done;
+}
+
+FinishedWork finish(const std::filesystem::path& session, std::shared_ptr<const tasks::Task> task,
+                    const core::Progress& progress) {
+    const assessment::ChainLink link{session.filename().string(), session, false};
+    return finish(std::span(&link, 1), std::move(task), progress);
+}
+
+FinishedWork reopen(score::Result result, std::span<const assessment::ChainLink> chain,
+                    std::shared_ptr<const tasks::Task> task, const core::Progress& progress) {
+    FinishedWork done;
+    done.task = std::move(task);
+    const std::vector<std::string> hashes = result.identity.sessionHashes;
+    const bool isSame = result.identity.exerciseHash == rubric::hashText(tasks::contentHash(*done.task));
+    if (isSame && !done.task->rubric.empty())
+        if (rubric::Rubric its = rubricOf(*done.task); rubric::hashOf(its) == result.assessment.rubricHash)
+            done.rubric = std::move(its);
+    const bool isWhole = isSame && !chain.empty() && chain.size() == hashes.size() &&
+                         std::all_of(chain.begin(), chain.end(),
+                                     [](const assessment::ChainLink& link) { return core::isThere(link.in); });
+    done.result = std::move(result);
+    if (!isWhole) return done;
+    assessment::Work work = assessment::readChain(chain, *done.task, false, core::part(progress, 0.0, 0.6));
+    if (work.sessionHashes != hashes ||
+        rubric::hashText(tooth::stateHash(work.state)) != done.result.identity.stateHash)
+        return done;
+    done.work = std::move(work);
+    done.session = chain.back().in;
+    if (done.task->preparation) done.draw = preparation::layOn(done.task->toothCase, *done.task->preparation).draw;
+    done.own = partsOf(done.work.teeth.front(), done.work.state, core::part(progress, 0.6, 1.0));
     return done;
 }
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "handpiece/app/assessment/score_work.h"
@@ -17,7 +18,7 @@ using Parts = std::shared_ptr<const std::vector<cases::Part>>;
 /// A piece of work, scored.
 struct FinishedWork {
     std::shared_ptr<const tasks::Task> task;
-    std::filesystem::path session;
+    std::filesystem::path session;  ///< the last of the chain
     assessment::Work work;
     rubric::Rubric rubric;
     score::Result result;
@@ -29,9 +30,17 @@ struct FinishedWork {
 /// Its rubric, sound. Throws core::Error, also for a task that has none.
 [[nodiscard]] rubric::Rubric rubricOf(const tasks::Task& task);
 
-/// Cuts the session again, measures and judges it. Throws core::Error; "cancelled" when asked to stop.
+/// Cuts the sessions again, measures and judges what they left. Throws core::Error; "cancelled" when asked to stop.
+[[nodiscard]] FinishedWork finish(std::span<const assessment::ChainLink> chain, std::shared_ptr<const tasks::Task> task,
+                                  const core::Progress& progress = {});
+/// Of one session, which begins with the whole tooth.
 [[nodiscard]] FinishedWork finish(const std::filesystem::path& session, std::shared_ptr<const tasks::Task> task,
                                   const core::Progress& progress = {});
+
+/// A result of before. Where all its sessions are still there, byte for byte, and the task is the one that it was
+/// judged by, with the tooth and its recordings; else these are empty, and `session` too. Throws as finish().
+[[nodiscard]] FinishedWork reopen(score::Result result, std::span<const assessment::ChainLink> chain,
+                                  std::shared_ptr<const tasks::Task> task, const core::Progress& progress = {});
 
 /// The tooth as the task asks for it, a surface a tissue. Null: it asks for no preparation. Throws as finish().
 [[nodiscard]] Parts idealOf(const tasks::Task& task, const core::Progress& progress = {});

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "handpiece/assess/task/task.h"
+#include "handpiece/assess/task/target.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <span>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
+#include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/exercise_table.h"
 
 namespace handpiece::tasks {
@@ -41,8 +44,8 @@ std::vector<std::byte> bytesOf(std::string_view text) {
 /// What exercise.toml says, but for case and rubric.
 Task parse(std::string_view text, const std::string& where) {
     const Table root = Table::parse(text, where);
-    root.allowOnly({"format", "type", "id", "version", "voxel_um", "minutes", "own_judgement", "rubric", "exercise",
-                    "preparation"});
+    root.allowOnly({"format", "type", "id", "version", "voxel_um", "minutes", "minutes_hard", "live_bar",
+                    "own_judgement", "rubric", "exercise", "preparation"});
     const std::int64_t format = root.integer("format").value_or(0);
     if (format != kFormatVersion)
         root.fail(fmt::format("this exercise is of format {}", format),
@@ -63,6 +66,10 @@ Task parse(std::string_view text, const std::string& where) {
     task.minutes = root.number("minutes");
     if (task.minutes && !(*task.minutes > 0.0 && *task.minutes <= 24 * 60))
         root.fail(fmt::format("{} minutes", *task.minutes), "give more than 0, a day at most", "minutes");
+    task.isTimeHard = root.flag("minutes_hard").value_or(false);
+    if (task.isTimeHard && !task.minutes)
+        root.fail("a hard limit without minutes", "give minutes, or leave minutes_hard out", "minutes_hard");
+    task.hasLiveBar = root.flag("live_bar").value_or(false);
     task.ownJudgement = root.flag("own_judgement").value_or(false);
     if (const auto rubric = root.text("rubric"); rubric && *rubric != kRubricFile)
         root.fail(fmt::format("the rubric is \"{}\"", *rubric), fmt::format("call the file {}", kRubricFile), "rubric");
@@ -71,10 +78,27 @@ Task parse(std::string_view text, const std::string& where) {
     return task;
 }
 
+/// The shortest number of micrometres that is read as this voxel again, bit for bit: 51 um are no 1000 times .051.
+std::string micrometres(double voxelMm) {
+    const double near = 1e3 * voxelMm;
+    std::string text;
+    for (int digits = 3; digits <= 17; ++digits)
+        // A thousand times it may lie a bit beside the number that it was read from.
+        for (const double um : {near, std::nextafter(near, 0.0), std::nextafter(near, 1e9)}) {
+            text = fmt::format("{:.{}g}", um, digits);
+            double read = 0.0;
+            std::from_chars(text.data(), text.data() + text.size(), read);
+            if (1e-3 * read == voxelMm) return text;
+        }
+    return text;
+}
+
 std::string tomlOf(const Task& task) {
     std::string out = fmt::format("format = {}\ntype = \"exercise\"\nid = \"{}\"\nversion = {}\nvoxel_um = {}\n",
-                                  kFormatVersion, task.id, task.version, 1e3 * task.voxelMm);
+                                  kFormatVersion, task.id, task.version, micrometres(task.voxelMm));
     if (task.minutes) out += fmt::format("minutes = {}\n", *task.minutes);
+    if (task.isTimeHard) out += "minutes_hard = true\n";
+    if (task.hasLiveBar) out += "live_bar = true\n";
     if (task.ownJudgement) out += "own_judgement = true\n";
     if (!task.rubric.empty()) out += fmt::format("rubric = \"{}\"\n", kRubricFile);
     if (task.preparation) out += "\n" + preparation::recipeToml(*task.preparation);
@@ -93,7 +117,28 @@ Task ofCase(const fs::path& path) {
     return task;
 }
 
+Task ofAttempt(const fs::path& path) {
+    cases::OpenAttempt open = cases::openAttempt(path);
+    if (open.attempt.exercise.empty())
+        throw core::Error("this attempt is of no exercise", path.string(), "name the exercise's folder or file");
+    return parseTask(open.attempt.exercise, open.attempt.rubric, std::move(open.toothCase),
+                     path.string() + ": " + cases::kExerciseInAttempt);
+}
+
 }  // namespace
+
+std::string taskToml(const Task& task) {
+    return tomlOf(task);
+}
+
+Task parseTask(std::string_view toml, std::string rubric, cases::Case toothCase, const std::string& where) {
+    Task task = parse(toml, where);
+    auto exercise = std::move(task.toothCase.exercise);
+    task.toothCase = std::move(toothCase);
+    if (exercise) task.toothCase.exercise = std::move(exercise);
+    task.rubric = std::move(rubric);
+    return task;
+}
 
 bool isTask(const fs::path& path) {
     std::error_code ec;
@@ -106,6 +151,7 @@ Task readTask(const fs::path& path) {
     std::error_code ec;
     if (!fs::exists(path, ec))
         throw core::Error("there is no such exercise", path.string(), "name a folder or a .handpiece file");
+    if (cases::isAttempt(path)) return ofAttempt(path);
     if (!isTask(path)) return ofCase(path);
     const bool isFolder = fs::is_directory(path, ec);
     cases::PackageFiles content;
@@ -169,27 +215,30 @@ std::uint64_t contentHash(const Task& task) {
     return hasher.value();
 }
 
+void requireTarget(const Task& task) {
+    if (!task.preparation) return;
+    const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
+    // Is there tooth in the target at all?
+    const core::Box& box = laid.zones->box();
+    constexpr int kSteps = 40;
+    for (int z = 0; z < kSteps; ++z)
+        for (int y = 0; y < kSteps; ++y)
+            for (int x = 0; x < kSteps; ++x) {
+                const core::Vec3 p =
+                    box.min + box.size().cwiseProduct((core::Vec3(x, y, z).array() + 0.5).matrix()) / kSteps;
+                if (laid.zones->at(p) == zones::Zone::target && laid.whole->signedDistance(p) < 0.0) return;
+            }
+    throw core::Error("the target holds nothing of the tooth", {}, "give other numbers or landmarks")
+        .as("target-empty");
+}
+
 std::vector<std::string> problems(const Task& task) {
-    std::vector<std::string> found;
-    if (!task.preparation) return found;
     try {
-        const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
-        // Is there tooth in the target at all?
-        const core::Box& box = laid.zones->box();
-        std::size_t inTarget = 0;
-        constexpr int kSteps = 40;
-        for (int z = 0; z < kSteps; ++z)
-            for (int y = 0; y < kSteps; ++y)
-                for (int x = 0; x < kSteps; ++x) {
-                    const core::Vec3 p =
-                        box.min + box.size().cwiseProduct((core::Vec3(x, y, z).array() + 0.5).matrix()) / kSteps;
-                    inTarget += laid.zones->at(p) == zones::Zone::target && laid.whole->signedDistance(p) < 0.0;
-                }
-        if (inTarget == 0) found.push_back("the target holds nothing of the tooth: give other numbers or landmarks");
+        requireTarget(task);
     } catch (const core::Error& error) {
-        found.push_back(error.what());
+        return {error.what()};
     }
-    return found;
+    return {};
 }
 
 }  // namespace handpiece::tasks

@@ -161,6 +161,17 @@ void readRecordings(const CaseFiles& files, Attempt& a) {
     }
 }
 
+/// What an attempt of no exercise, or of before, does not have.
+void readExercise(const CaseFiles& files, Attempt& a) {
+    const auto text = [&](const char* name) {
+        if (!files.has(name)) return std::string();
+        const std::vector<std::byte> bytes = files.read(name, Table::kMaxBytes);
+        return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    a.exercise = text(kExerciseInAttempt);
+    a.rubric = text(kRubricInAttempt);
+}
+
 bool isNoRecording(const std::string& name) {
     return !name.starts_with(kRecordingsFolder);
 }
@@ -195,6 +206,7 @@ Attempt readFrom(const CaseFiles& files, const fs::path& path) {
             .as("attempt-damaged");
     a.caseFile = (baseOf(path) / a.caseFile).lexically_normal();
     readRecordings(files, a);
+    readExercise(files, a);
     return std::move(parsed.attempt);
 }
 
@@ -254,6 +266,8 @@ void writeAttempt(const Attempt& attempt, const fs::path& path, const Case* toot
     }
     // Programs before it passed such a file over.
     if (attempt.handedIn || !attempt.recordings.empty()) files[kRecordingsFile] = bytesOf(recordingsToml(attempt));
+    if (!attempt.exercise.empty()) files[kExerciseInAttempt] = bytesOf(attempt.exercise);
+    if (!attempt.rubric.empty()) files[kRubricInAttempt] = bytesOf(attempt.rubric);
     if (packed)
         writePackage(path, files);
     else

@@ -38,11 +38,15 @@ struct Attempt {
     };
     std::vector<Recording> recordings;
     bool handedIn = false;  ///< given to a teacher
+    /// exercise.toml and rubric.toml of the exercise that it is work on, as text; empty: of none.
+    std::string exercise{}, rubric{};
 };
 
 inline constexpr const char* kAttemptFile = "attempt.toml";
 inline constexpr const char* kAttemptStateFile = "tooth.state";
 inline constexpr const char* kRecordingsFile = "recordings.toml";
+inline constexpr const char* kExerciseInAttempt = "exercise/exercise.toml";
+inline constexpr const char* kRubricInAttempt = "exercise/rubric.toml";
 /// Of the recordings that come along with an attempt, all together: an hour's work is a few dozen megabytes.
 inline constexpr std::uint64_t kMaxRecordingBytes = 256ull << 20;
 

@@ -151,7 +151,7 @@ class Finder {
         add(cavity, "depth_mm", {0.5 * inner, 0.0, floor}, -Vec3::UnitZ());
         // Its middle lies three tenths of its height under the contact.
         add(cavity, "height_mm", {0.5 * inner, low.y(), floor}, -Vec3::UnitY(), 1.0 / 0.8);
-        add(cavity, "axial_mm", {inner, 0.0, floor}, out * Vec3::UnitX());
+        add(cavity, "axial_mm", {inner, 0.0, floor + 0.5}, out * Vec3::UnitX());  // the floor follows it
         corner(cavity, Vec2(inner, high.y()), Vec2(out, 1.0), floor);
         const Vec3 draw = cavity.inTooth.orientation * Vec3::UnitZ();
         if (const auto labial = outermost(cavity.inTooth.apply({0.5 * inner, 0.0, floor}), -draw))

@@ -2,13 +2,10 @@
 #include "app/scan_work/scans.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "handpiece/assess/measures/measure.h"
 #include "handpiece/assess/preparation/preparation.h"
-#include "handpiece/base/geometry/isosurface.h"
-#include "handpiece/model/dentition/gingiva.h"
 #include "handpiece/model/dentition/tooth_form.h"
 #include "handpiece/senses/surface/brick_source.h"
 #include "handpiece/senses/surface/closed_surface.h"
@@ -63,11 +60,6 @@ Bench benchOf(Kind kind, bool neighbours) {
                                       : Vec3(own.distalContactMm() - form.mesialContactMm() - kGapMm * Vec3::UnitX());
         bench.task.toothCase.others.push_back(std::move(other));
     }
-    const std::array<dentition::ArchTooth, 3> arch{
-        {{&bench.task.toothCase.others[0], bench.task.toothCase.others[0].inCase},
-         {&bench.task.toothCase, {}},
-         {&bench.task.toothCase.others[1], bench.task.toothCase.others[1].inCase}}};
-    bench.gingiva = dentition::makePeriodontium(arch).gingiva;
     return bench;
 }
 
@@ -120,34 +112,16 @@ TriangleMesh crownOf(const TriangleMesh& mesh, double fromZ) {
     return out;
 }
 
-TriangleMesh jawOf(const TriangleMesh& tooth, const Bench& bench, double fromZ, double spacingMm) {
-    std::vector<TriangleTree> bodies;
-    bodies.emplace_back(tooth);
-    core::Box box = tooth.bounds();
-    for (const cases::PlacedTooth& other : bench.task.toothCase.others)
-        bodies.emplace_back(geometry::transformed(other.surface(), other.inCase));
-    if (!bench.gingiva.triangles.empty()) bodies.emplace_back(bench.gingiva);
-    constexpr double kAroundMm = 5.0, kRimMm = 0.4;
-    box = box.grown(kAroundMm);
-    box.min.z() = fromZ - kRimMm;
-    box.max.z() = tooth.bounds().max.z() + 2.0;
-    const auto f = [&](const Vec3& p) {
-        double least = 1e9;
-        for (const TriangleTree& body : bodies)
-            least = std::min(least, body.signedDistance(p));
-        return least;
-    };
-    const TriangleMesh all = geometry::isosurface(box, f, {spacingMm});
-    TriangleMesh out{all.vertices, {}};
-    const core::Box inner = box.grown(-kRimMm);
-    for (const geometry::Triangle& t : all.triangles)
-        if (std::all_of(t.begin(), t.end(), [&](std::uint32_t v) {
-                const Vec3& p = all.vertices[v];
-                return p.z() > inner.min.z() && p.x() > inner.min.x() && p.x() < inner.max.x() &&
-                       p.y() > inner.min.y() && p.y() < inner.max.y();
-            }))
-            out.triangles.push_back(t);
-    return out;
+TriangleMesh jawOf(const TriangleMesh& tooth, const Bench& bench, double fromZ) {
+    TriangleMesh jaw = crownOf(tooth, fromZ);
+    for (const cases::PlacedTooth& other : bench.task.toothCase.others) {
+        const TriangleMesh crown = crownOf(geometry::transformed(other.surface(), other.inCase), fromZ);
+        const auto first = static_cast<std::uint32_t>(jaw.vertices.size());
+        jaw.vertices.insert(jaw.vertices.end(), crown.vertices.begin(), crown.vertices.end());
+        for (const geometry::Triangle& t : crown.triangles)
+            jaw.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    return jaw;
 }
 
 TriangleMesh scanned(TriangleMesh mesh, double noiseMm, std::mt19937_64& generator) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Scans of preparations whose truth is known: one's own cut tooth as a mesh, alone or as a scanner sees it between its
-/// neighbours and in its gingiva, moved anywhere, noisy.
+/// Scans of preparations whose truth is known: one's own cut tooth as a mesh, alone or with the crowns
+/// beside it, moved anywhere, noisy.
 
 #include <map>
 #include <random>
@@ -24,7 +24,6 @@ enum class Kind { classOne, classTwo, classFive, crown, lesion };
 struct Bench {
     tasks::Task task;  ///< 46 (class V: 33); `neighbours`: with the teeth beside it
     rubric::Rubric rubric;
-    TriangleMesh gingiva;  ///< closed; empty without neighbours
 };
 [[nodiscard]] Bench benchOf(Kind kind, bool neighbours);
 /// Caries removal in the tooth of a case.
@@ -41,8 +40,8 @@ struct Cut {
 
 /// Open below, tooth frame, without noise.
 [[nodiscard]] TriangleMesh crownOf(const TriangleMesh& mesh, double fromZ);
-/// All that a scanner sees from above around a tooth: one surface of tooth, neighbours and gingiva.
-[[nodiscard]] TriangleMesh jawOf(const TriangleMesh& tooth, const Bench& bench, double fromZ, double spacingMm = 0.1);
+/// The crowns of a tooth and of those beside it.
+[[nodiscard]] TriangleMesh jawOf(const TriangleMesh& tooth, const Bench& bench, double fromZ);
 /// Moved anywhere, every vertex off by noise along each axis.
 [[nodiscard]] TriangleMesh scanned(TriangleMesh mesh, double noiseMm, std::mt19937_64& generator);
 

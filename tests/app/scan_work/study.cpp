@@ -16,7 +16,7 @@ namespace {
 struct Options {
     int count = 2, repeats = 2;
     std::uint64_t seed = 1;
-    double noiseMm = 0.03, spacingMm = 0.1;
+    double noiseMm = 0.03;
     std::string kinds = "12VCjkBR";
     std::string toothCase;  ///< instead of a made tooth: its carious tissue taken away
     bool show = false;
@@ -32,12 +32,12 @@ struct Plan {
 };
 constexpr Plan kPlans[] = {
     {'1', Kind::classOne, false, false, "class I, crown alone", 0.5},
-    {'2', Kind::classTwo, true, false, "class II, in its jaw", -1.0},
+    {'2', Kind::classTwo, true, false, "class II, with its neighbours", -1.0},
     {'V', Kind::classFive, false, false, "class V, crown alone", -1.0},
     {'C', Kind::crown, false, false, "crown, 1.5 mm under the cervix too", -2.5},
-    {'j', Kind::classOne, true, false, "class I, in its jaw", -1.0},
-    {'k', Kind::crown, true, false, "crown, in its jaw", -1.0},
-    {'B', Kind::crown, true, true, "crown, in its jaw, with a scan of before", -1.0},
+    {'j', Kind::classOne, true, false, "class I, with its neighbours", -1.0},
+    {'k', Kind::crown, true, false, "crown, with its neighbours", -1.0},
+    {'B', Kind::crown, true, true, "crown, with its neighbours, with a scan of before", -1.0},
     {'R', Kind::lesion, false, false, "caries removal in the tooth of a case, crown alone", 0.0},
 };
 
@@ -53,10 +53,9 @@ void run(const Options& o) {
         for (int i = 0; i < o.count; ++i) {
             const Cut cut = cutBy(bench.task, varied(*bench.task.preparation, generator));
             const assessment::Result truth = assessment::scoreWork(cut.work, bench.task, bench.rubric);
-            const TriangleMesh shown =
-                plan.isJaw ? jawOf(cut.mesh, bench, plan.fromZ, o.spacingMm) : crownOf(cut.mesh, plan.fromZ);
+            const TriangleMesh shown = plan.isJaw ? jawOf(cut.mesh, bench, plan.fromZ) : crownOf(cut.mesh, plan.fromZ);
             std::optional<TriangleMesh> before;
-            if (plan.isBefore) before = jawOf(bench.task.toothCase.outer, bench, plan.fromZ, o.spacingMm);
+            if (plan.isBefore) before = jawOf(bench.task.toothCase.outer, bench, plan.fromZ);
             for (int k = 0; k < o.repeats; ++k) {
                 ++scans;
                 try {
@@ -134,8 +133,6 @@ int main(int argc, char** argv) {
             o.seed = std::strtoull(value, nullptr, 10);
         else if (name == "--noise")
             o.noiseMm = std::atof(value);
-        else if (name == "--spacing")
-            o.spacingMm = std::atof(value);
         else if (name == "--kinds")
             o.kinds = value;
         else if (name == "--case")
@@ -144,7 +141,7 @@ int main(int argc, char** argv) {
             handpiece::core::setThreadCount(static_cast<std::size_t>(std::atoi(value)));
         else {
             std::fputs(
-                "scan_study [--count N] [--repeats N] [--seed N] [--noise MM] [--spacing MM] [--kinds 12VCjkBR] "
+                "scan_study [--count N] [--repeats N] [--seed N] [--noise MM] [--kinds 12VCjkBR] "
                 "[--case CASE] "
                 "[--show] [--threads N]\n",
                 stderr);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <span>
 
 #include "handpiece/base/core/error.h"
@@ -79,14 +80,23 @@ Task parse(std::string_view text, const std::string& where) {
 
 /// The shortest number of micrometres that is read as this voxel again, bit for bit: 51 um are no 1000 times .051.
 std::string micrometres(double voxelMm) {
-    std::string text;
-    for (int digits = 3; digits <= 17; ++digits) {
-        text = fmt::format("{:.{}g}", 1e3 * voxelMm, digits);
-        double read = 0.0;
-        std::from_chars(text.data(), text.data() + text.size(), read);
-        if (1e-3 * read == voxelMm) break;
+    const auto isRead = [&](const std::string& text) {
+        double um = 0.0;
+        std::from_chars(text.data(), text.data() + text.size(), um);
+        return 1e-3 * um == voxelMm;
+    };
+    const double um = 1e3 * voxelMm;
+    for (int digits = 3; digits < 17; ++digits)
+        if (const std::string text = fmt::format("{:.{}g}", um, digits); isRead(text)) return text;
+    // One of the numbers beside it.
+    double less = um, more = um;
+    for (int step = 0; step < 3; ++step) {
+        less = std::nextafter(less, 0.0);
+        more = std::nextafter(more, 1e9);
+        for (const double one : {less, more})
+            if (const std::string text = fmt::format("{}", one); isRead(text)) return text;
     }
-    return text;
+    return fmt::format("{}", um);
 }
 
 std::string tomlOf(const Task& task) {

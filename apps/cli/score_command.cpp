@@ -23,7 +23,7 @@ namespace handpiece::cli {
 namespace {
 
 struct ScoreOptions {
-    std::string work, exercise, rubric, out, classFolder;
+    std::string work, exercise, rubric, out, classFolder, before;
     MeshUnit unit;
     bool json = false, noReplay = false, noPictures = false;
     std::size_t threads = 0;
@@ -114,10 +114,14 @@ void run(const ScoreOptions& o) {
     const rubric::Rubric judged = o.rubric.empty() ? rubric::parseRubric(task.rubric, o.exercise + "/rubric.toml")
                                                    : rubric::rubricByNameOrFile(o.rubric);
     rubric::requireSound(judged);
-    studies::ProgressBar bar(assessment::isScan(o.work) ? "registering the scan" : "cutting it again");
-    const assessment::Work work = assessment::isScan(o.work)
-                                      ? assessment::readScan(o.work, task, o.unit.mmPerUnit(), bar.listener())
-                                      : assessment::readWork(o.work, task, !o.noReplay, bar.listener());
+    const bool isScan = scan_work::isScan(o.work);
+    if (!o.before.empty() && !isScan)
+        throw core::Error("an earlier scan belongs to a scan", "--before", "leave it out, or name a scan to judge");
+    scan_work::Files files{o.work, {}, o.unit.mmPerUnit()};
+    if (!o.before.empty()) files.before = o.before;
+    studies::ProgressBar bar(isScan ? "registering the scan" : "cutting it again");
+    const assessment::Work work = isScan ? assessment::readScan(files, task, bar.listener())
+                                         : assessment::readWork(o.work, task, !o.noReplay, bar.listener());
     bar.finish();
     const assessment::Result result = assessment::scoreWork(work, task, judged);
     const std::string json = assessment::resultJson(result.assessment, result.identity);
@@ -140,6 +144,9 @@ void addScoreCommand(Command& app) {
     command.option("--exercise", o.exercise, "folder or .handpiece file");
     command.option("--rubric", o.rubric, "instead of the exercise's own: a file, or one that comes with the program");
     addUnitOptions(command, o.unit, false);
+    command.option("--before", o.before,
+                   "an earlier scan, before anything was cut, of the same tooth and those beside it (.stl, .ply): to "
+                   "register a scan on");
     command.flag("--no-replay", o.noReplay, "do not cut a session again: quicker, and not proven");
     command.flag("--json", o.json, "as JSON (docs/formats/rubric.md)");
     command.flag("--no-pictures", o.noPictures, "without pictures of the tooth");

@@ -251,6 +251,24 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     auto* list = part<QListWidget>("sheetComments");
     QTest::mouseClick(list->viewport(), Qt::LeftButton, Qt::NoModifier, list->visualItemRect(list->item(0)).center());
     EXPECT_LT((view()->camera().targetMm - *comment.placeMm).norm(), 1e-9);
+    // Another where one clicks in the picture, off the middle; a click beside the tooth is none.
+    view()->showStandardView(view::StandardView::occlusal);
+    click("sheetCommentPick");
+    QTest::mouseClick(view(), Qt::LeftButton, Qt::NoModifier, QPoint(4, view()->height() / 2));
+    EXPECT_TRUE(part<QPushButton>("sheetCommentPick")->isChecked()) << "there is no tooth";
+    const QPoint aside = view()->rect().center() + QPoint(80, 50);
+    const view::Ray ray =
+        view::rayThrough(view()->camera(), {view()->width(), view()->height()}, core::Vec2(aside.x(), aside.y()));
+    QTest::mouseClick(view(), Qt::LeftButton, Qt::NoModifier, aside);
+    EXPECT_FALSE(part<QPushButton>("sheetCommentPick")->isChecked());
+    type("sheetComment", QStringLiteral("and here"));
+    click("sheetCommentAdd");
+    ASSERT_EQ(desk().sheet(code).comments.size(), 2u);
+    const marking::Comment pinned = desk().sheet(code).comments[1];
+    ASSERT_TRUE(pinned.placeMm);
+    const core::Vec3 off = *pinned.placeMm - ray.originMm;
+    EXPECT_LT((off - off.dot(ray.direction) * ray.direction).norm(), 1e-6) << "under the pointer";
+    EXPECT_GT((*pinned.placeMm - *comment.placeMm).norm(), 0.5);
     // Who passes.
     QTest::keyClick(part<QComboBox>("sheetDecision"), Qt::Key_Down);
     EXPECT_FALSE(part<QPushButton>("sheetDecide")->isEnabled());
@@ -295,7 +313,7 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     start();
     begin(QStringLiteral("Tanaka"), false);
     EXPECT_EQ(desk().sheet(code).overrides.at("enamel").points, 12.5);
-    EXPECT_EQ(desk().sheet(code).comments.size(), 1u);
+    EXPECT_EQ(desk().sheet(code).comments.size(), 2u);
     EXPECT_EQ(desk().passed(code), score::Passed::yes);
     // The other kind of marking is another desk.
     begin(QStringLiteral("Tanaka"), true);

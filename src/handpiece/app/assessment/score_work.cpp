@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "handpiece/app/assessment/scan_work.h"
+#include "handpiece/app/scan_work/scan_work.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/app/simulation/tissue_export.h"
 #include "handpiece/assess/measures/preparation.h"
@@ -373,8 +373,12 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
         const std::array<measures::Request, 1> overPulp{{{"remaining-dentine", {}}}};
         const std::optional<double> overPulpMm = measures::measure(preparation, overPulp).front().value;
         for (measures::Measured& one : result.measured)
-            if (one.value) one.uncertainty = widened(one, *work.scan, overPulpMm);
+            if (one.value) one.uncertainty = scan_work::widened(one, *work.scan, overPulpMm);
     }
+    if (!work.noBeside.empty())
+        for (measures::Measured& one : result.measured)
+            if (one.kind == "adjacent-depth" || one.kind == "adjacent-removed")
+                one = {one.kind, one.of, {}, 0.0, work.noBeside, {}};
     core::report(progress, 0.4);
     findTimes(work.recordings, result.measured, task.voxelMm, core::part(progress, 0.4, 0.6));
     const hand::Against against{preparation.axes.longAxis, preparation.zones};

@@ -28,6 +28,7 @@ struct Work {
     std::vector<Recording> recordings{};   ///< that led to this tooth, in the order of the work, where all are known
     std::string noHand{};                  ///< why nothing is measured of the hand; empty: it is
     std::optional<score::ScanFit> scan{};  ///< of a scan; readScan() makes those
+    std::string noBeside{};                ///< why nothing is known of cuts in the teeth beside it; empty: it is
 };
 
 /// Files of sessions (.h5) in a folder, by name.

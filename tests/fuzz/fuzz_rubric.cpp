@@ -15,8 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         (void)rubric::describe(read, "ja");
         if (rubric::hashOf(read) != rubric::hashOf(rubric::parseRubric(text, "again"))) __builtin_trap();
         const std::string toml = rubric::rubricToml(read);
-        const rubric::Rubric back =
-            handpiece::fuzz::mustRead([&] { return rubric::parseRubric(toml, "written"); });
+        const rubric::Rubric back = handpiece::fuzz::mustRead([&] { return rubric::parseRubric(toml, "written"); });
         if (rubric::hashOf(back) != rubric::hashOf(read) || rubric::rubricToml(back) != toml) __builtin_trap();
         bool isSound = true;
         for (const rubric::Finding& f : rubric::check(read))

@@ -187,8 +187,8 @@ DeskState parseDesk(std::string_view text, const std::string& where) {
         const Json json = Json::parse(text);
         if (json.at("handpiece").get<std::string>() != "marking") throw wrong("it is something else");
         if (const int format = countIn(json.at("format")); format > kFormat)
-            throw core::Error(fmt::format("this desk has format {}, and this program reads {}", format, kFormat),
-                              where, "use the newer program")
+            throw core::Error(fmt::format("this desk has format {}, and this program reads {}", format, kFormat), where,
+                              "use the newer program")
                 .as("desk-newer");
         return stateOf(json);
     } catch (const core::Error&) {

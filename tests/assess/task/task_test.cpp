@@ -71,6 +71,18 @@ TEST_F(TaskFile, ComesBackFromFolderAndPackage) {
     }
 }
 
+TEST_F(TaskFile, EveryVoxelComesBackBitForBit) {
+    // Of 20 to 400 um, 42 whole numbers came back as another number (1000 times .051 is not 51), and with another hash.
+    Task task = block();
+    for (const double voxelUm : {26.0, 51.0, 102.0, 351.0, 33.3, 50.1, 1000.0 / 7.0}) {
+        task.voxelMm = 1e-3 * voxelUm;
+        writeTask(task, folder_ / "task");
+        const Task back = readTask(folder_ / "task");
+        EXPECT_EQ(back.voxelMm, task.voxelMm) << voxelUm;
+        EXPECT_EQ(contentHash(back), contentHash(task)) << voxelUm;
+    }
+}
+
 TEST_F(TaskFile, HashRestsOnWhatIsAskedAndNotOnWords) {
     const Task task = block();
     Task words = task, deeper = task, finer = task, other = task;

@@ -381,6 +381,8 @@ TEST_F(StoreTest, RefusesANewerOneAnothersAndWhatIsNone) {
     EXPECT_EQ(newer.id(), "store-newer");
     EXPECT_THAT(newer.arguments(), ElementsAre("9", std::to_string(Store::kVersion)));
     EXPECT_EQ(answer(file_, "PRAGMA user_version"), "9") << "left as it is";
+    sql(file_, "PRAGMA user_version = -1");
+    EXPECT_EQ(test::errorIdOf([&] { Store store(file_); }), "store-damaged") << "no version comes before the first";
     const fs::path others = folder_.path() / "others.db";
     sql(others, "CREATE TABLE t (x); PRAGMA user_version = 1");
     EXPECT_EQ(test::errorIdOf([&] { Store store(others); }), "store-damaged");

@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "handpiece/app/assessment/scan_work.h"
+#include "handpiece/app/scan_work/scan_work.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/app/simulation/tissue_export.h"
 #include "handpiece/assess/measures/preparation.h"
@@ -260,6 +260,27 @@ std::vector<fs::path> sessionsIn(const fs::path& folder) {
     return sessions;
 }
 
+std::string workHash(const fs::path& work) {
+    std::vector<fs::path> files;
+    std::error_code ec;
+    if (!fs::is_directory(work, ec)) {
+        files = {work};
+    } else if (fs::exists(work / cases::kAttemptFile, ec)) {
+        for (fs::recursive_directory_iterator entry(work, ec), end; !ec && entry != end; entry.increment(ec))
+            if (entry->is_regular_file(ec)) files.push_back(entry->path());
+    } else {
+        files = sessionsIn(work);
+    }
+    std::sort(files.begin(), files.end());
+    core::Hasher hasher;
+    for (const fs::path& file : files) {
+        // Of a chain their order counts, of a single file its name does not.
+        if (files.size() > 1) hasher.add(file.lexically_relative(work).generic_string());
+        hasher.add(std::span<const std::byte>(core::readFile(file)));
+    }
+    return rubric::hashText(hasher.value());
+}
+
 Work readWork(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress) {
     std::error_code ec;
     if (!fs::exists(path, ec))
@@ -352,8 +373,12 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
         const std::array<measures::Request, 1> overPulp{{{"remaining-dentine", {}}}};
         const std::optional<double> overPulpMm = measures::measure(preparation, overPulp).front().value;
         for (measures::Measured& one : result.measured)
-            if (one.value) one.uncertainty = widened(one, *work.scan, overPulpMm);
+            if (one.value) one.uncertainty = scan_work::widened(one, *work.scan, overPulpMm);
     }
+    if (!work.noBeside.empty())
+        for (measures::Measured& one : result.measured)
+            if (one.kind == "adjacent-depth" || one.kind == "adjacent-removed")
+                one = {one.kind, one.of, {}, 0.0, work.noBeside, {}};
     core::report(progress, 0.4);
     findTimes(work.recordings, result.measured, task.voxelMm, core::part(progress, 0.4, 0.6));
     const hand::Against against{preparation.axes.longAxis, preparation.zones};

@@ -28,10 +28,13 @@ struct Work {
     std::vector<Recording> recordings{};   ///< that led to this tooth, in the order of the work, where all are known
     std::string noHand{};                  ///< why nothing is measured of the hand; empty: it is
     std::optional<score::ScanFit> scan{};  ///< of a scan; readScan() makes those
+    std::string noBeside{};                ///< why nothing is known of cuts in the teeth beside it; empty: it is
 };
 
 /// Files of sessions (.h5) in a folder, by name.
 [[nodiscard]] std::vector<std::filesystem::path> sessionsIn(const std::filesystem::path& folder);
+/// Of all that makes a piece of work: a session, a folder's sessions, an attempt's files. Throws core::Error.
+[[nodiscard]] std::string workHash(const std::filesystem::path& work);
 
 /// Of a session (.h5), of a folder with all sessions of a chain, each of which goes on from the tooth that the one
 /// before it left, or of an attempt, with the sessions that came along. Sessions are cut again unless `prove` is false;

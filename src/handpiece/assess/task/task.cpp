@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "handpiece/assess/task/task.h"
+#include "handpiece/assess/task/target.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <span>
 
 #include "handpiece/base/core/error.h"
@@ -76,9 +78,24 @@ Task parse(std::string_view text, const std::string& where) {
     return task;
 }
 
+/// The shortest number of micrometres that is read as this voxel again, bit for bit: 51 um are no 1000 times .051.
+std::string micrometres(double voxelMm) {
+    const double near = 1e3 * voxelMm;
+    std::string text;
+    for (int digits = 3; digits <= 17; ++digits)
+        // A thousand times it may lie a bit beside the number that it was read from.
+        for (const double um : {near, std::nextafter(near, 0.0), std::nextafter(near, 1e9)}) {
+            text = fmt::format("{:.{}g}", um, digits);
+            double read = 0.0;
+            std::from_chars(text.data(), text.data() + text.size(), read);
+            if (1e-3 * read == voxelMm) return text;
+        }
+    return text;
+}
+
 std::string tomlOf(const Task& task) {
     std::string out = fmt::format("format = {}\ntype = \"exercise\"\nid = \"{}\"\nversion = {}\nvoxel_um = {}\n",
-                                  kFormatVersion, task.id, task.version, 1e3 * task.voxelMm);
+                                  kFormatVersion, task.id, task.version, micrometres(task.voxelMm));
     if (task.minutes) out += fmt::format("minutes = {}\n", *task.minutes);
     if (task.isTimeHard) out += "minutes_hard = true\n";
     if (task.hasLiveBar) out += "live_bar = true\n";
@@ -198,27 +215,30 @@ std::uint64_t contentHash(const Task& task) {
     return hasher.value();
 }
 
+void requireTarget(const Task& task) {
+    if (!task.preparation) return;
+    const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
+    // Is there tooth in the target at all?
+    const core::Box& box = laid.zones->box();
+    constexpr int kSteps = 40;
+    for (int z = 0; z < kSteps; ++z)
+        for (int y = 0; y < kSteps; ++y)
+            for (int x = 0; x < kSteps; ++x) {
+                const core::Vec3 p =
+                    box.min + box.size().cwiseProduct((core::Vec3(x, y, z).array() + 0.5).matrix()) / kSteps;
+                if (laid.zones->at(p) == zones::Zone::target && laid.whole->signedDistance(p) < 0.0) return;
+            }
+    throw core::Error("the target holds nothing of the tooth", {}, "give other numbers or landmarks")
+        .as("target-empty");
+}
+
 std::vector<std::string> problems(const Task& task) {
-    std::vector<std::string> found;
-    if (!task.preparation) return found;
     try {
-        const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
-        // Is there tooth in the target at all?
-        const core::Box& box = laid.zones->box();
-        std::size_t inTarget = 0;
-        constexpr int kSteps = 40;
-        for (int z = 0; z < kSteps; ++z)
-            for (int y = 0; y < kSteps; ++y)
-                for (int x = 0; x < kSteps; ++x) {
-                    const core::Vec3 p =
-                        box.min + box.size().cwiseProduct((core::Vec3(x, y, z).array() + 0.5).matrix()) / kSteps;
-                    inTarget += laid.zones->at(p) == zones::Zone::target && laid.whole->signedDistance(p) < 0.0;
-                }
-        if (inTarget == 0) found.push_back("the target holds nothing of the tooth: give other numbers or landmarks");
+        requireTarget(task);
     } catch (const core::Error& error) {
-        found.push_back(error.what());
+        return {error.what()};
     }
-    return found;
+    return {};
 }
 
 }  // namespace handpiece::tasks

@@ -94,6 +94,10 @@ void bringUp(Database& database) {
         throw core::Error("this is a database of another program", database.where(),
                           "move the file away: a new one is made")
             .as("store-damaged", {"a database of another program"});
+    if (version < 0)
+        throw core::Error(fmt::format("this store of results is damaged: version {}", version), database.where(),
+                          "move the file away: a new one is made")
+            .as("store-damaged", {fmt::format("version {}", version)});
     if (version > Store::kVersion)
         throw core::Error(fmt::format("this store is of version {}, and this program knows {}", version,
                                       static_cast<int>(Store::kVersion)),

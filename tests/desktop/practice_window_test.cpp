@@ -6,6 +6,7 @@
 #include <QLabel>
 #include <QListWidget>
 #include <QPlainTextEdit>
+#include <QProgressBar>
 #include <QPushButton>
 #include <QRadioButton>
 #include <QSpinBox>
@@ -16,6 +17,9 @@
 #include "desktop/features/exercise/progress_dialog.h"
 #include "desktop/features/exercise/result_dialog.h"
 #include "desktop/picture/solid_view.h"
+#include "desktop/widgets/notice_bar.h"
+#include "desktop/work/live_zones.h"
+#include "handpiece/app/assessment/recording.h"
 #include "handpiece/app/course/shipped_exercises.h"
 #include "handpiece/base/core/file.h"
 #include "shell_support.h"
@@ -28,7 +32,8 @@ namespace fs = std::filesystem;
 class PracticeTest : public ShellTest {
   protected:
     /// A block in coarse voxels, so that a test need not wait, with what the program's own has.
-    fs::path makeExercise(const char* id, bool asksFirst, std::vector<std::string> locked = {}) {
+    fs::path makeExercise(const char* id, bool asksFirst, std::vector<std::string> locked = {},
+                          const std::function<void(tasks::Task&)>& change = {}) {
         tasks::Task task = course::blockTask("line", 1);
         task.id = id;
         task.voxelMm = 0.1;
@@ -38,6 +43,7 @@ class PracticeTest : public ShellTest {
         task.toothCase.exercise->instructions = {{"en", "Cut the line."}};
         task.toothCase.exercise->lockedHelps = std::move(locked);
         task.toothCase.exercise->allowedBurs = {"330", "round-2"};
+        if (change) change(task);
         const fs::path place = at("exercises") / id;
         fs::create_directories(place.parent_path());
         tasks::writeTask(task, place);
@@ -76,6 +82,42 @@ class PracticeTest : public ShellTest {
         }));
         EXPECT_FALSE(exercises().isVisible());
         view()->showStandardView(view::StandardView::occlusal);
+    }
+    /// For people to look at, where HANDPIECE_TEST_PICTURES names a folder.
+    void picture(QWidget* widget, const char* name) {
+        const QString folder = qEnvironmentVariable("HANDPIECE_TEST_PICTURES");
+        if (folder.isEmpty()) return;
+        QTest::qWait(1500);  // what is drawn beside has time to come
+        widget->grab().save(folder + QLatin1Char('/') + QLatin1String(name) + QStringLiteral(".png"));
+    }
+    void save(const char* name) {
+        file_ = own_.filePath(QLatin1String(name));
+        action("actionSaveAs")->trigger();
+        ASSERT_TRUE(waitFor([this] { return QFile::exists(file_) && !simulator().isBusy(); }));
+        ASSERT_EQ(window().errorDialog(), nullptr);
+    }
+    void resume(const char* name) {
+        const fs::path place = toPath(own_.filePath(QLatin1String(name)));
+        window().openFile(toQString(place));
+        ASSERT_TRUE(waitFor([&] {
+            return simulator().document().attemptFile == place && simulator().mode() == Simulator::Mode::liveSession &&
+                   simulator().isRecorded() && !simulator().isBusy();
+        }));
+        view()->showStandardView(view::StandardView::occlusal);
+    }
+    /// Presses in the middle of the picture for a while, whatever comes of it.
+    void press(std::uint64_t ticks) {
+        const QPoint middle = view()->rect().center();
+        QTest::mousePress(view(), Qt::LeftButton, Qt::NoModifier, middle);
+        const std::uint64_t from = simulator().sample().tick;
+        EXPECT_TRUE(waitFor([&] { return simulator().sample().tick > from + ticks; }));
+        QTest::mouseRelease(view(), Qt::LeftButton, Qt::NoModifier, middle);
+    }
+    [[nodiscard]] bool isTold(const char* notice) {
+        const auto bars = window().findChildren<NoticeBar*>();
+        return std::any_of(bars.begin(), bars.end(), [&](const NoticeBar* bar) {
+            return bar->isVisible() && bar->current() == QLatin1String(notice);
+        });
     }
     void finish() {
         ASSERT_TRUE(waitFor([this] { return action("actionFinish")->isEnabled(); }));
@@ -311,6 +353,356 @@ TEST_F(PracticeTest, AnExerciseThatACrashInterruptedIsStillOne) {
     ASSERT_EQ(store().attempts().size(), 1u);
     EXPECT_GT(store().attempts().front().finished, store().attempts().front().began);
     EXPECT_TRUE(simulator().crashed().empty());
+}
+
+TEST_F(PracticeTest, AnAttemptResumedThreeTimesIsOneProvenChain) {
+    makeExercise("one", false, {"cross-section"});
+    startWithTooth();
+    openExercises();
+    begin("one");
+    const std::int64_t began = simulator().document().began;
+    EXPECT_GT(began, 0);
+    ASSERT_TRUE(cut());
+    save("work.handpiece");
+    for (int sitting = 0; sitting < 3; ++sitting) {
+        if (sitting == 1) {  // also over a restart of the program
+            host_.reset();
+            startWithTooth();
+        }
+        const double before = cases::readAttempt(toPath(file_)).elapsedS;
+        EXPECT_GT(before, 0.0);
+        resume("work.handpiece");
+        ASSERT_TRUE(simulator().task()) << "it is still that exercise";
+        EXPECT_EQ(simulator().task()->id, "one");
+        EXPECT_TRUE(simulator().permissions().locks(exercise::Operation::section));
+        EXPECT_GE(simulator().workedS(), before) << "the clock goes on";
+        EXPECT_EQ(simulator().document().recordings.size(), static_cast<std::size_t>(sitting) + 1);
+        ASSERT_TRUE(cut());
+        save("work.handpiece");
+    }
+    const double cutMm3 = removedMm3();
+    finish();
+    ASSERT_EQ(store().attempts().size(), 1u);
+    const school::Attempt kept = store().attempts().front();
+    EXPECT_TRUE(kept.proven) << result().shown()->work.result.proof;
+    EXPECT_EQ(kept.sessionHashes.size(), 4u);
+    EXPECT_EQ(kept.recordings.size(), 4u);
+    EXPECT_GT(kept.workedS, 1.0);
+    EXPECT_TRUE(part<QLabel>("resultProof")->text().startsWith("Proven"));
+    EXPECT_TRUE(waitFor([&] { return std::abs(removedMm3() - cutMm3) < 1e-3; }));
+    // The hand's time is that of all four.
+    const auto& all = result().shown()->work.work.recordings;
+    ASSERT_EQ(all.size(), 4u);
+    std::vector<measures::Measured> time = assessment::measureHand(all, std::vector<measures::Request>{{"time"}}, {});
+    EXPECT_NEAR(*time.front().value, kept.workedS, 0.5);
+    // What happened in the first is played out of the first.
+    measures::Evidence there;
+    there.timeS = 0.2;
+    there.session = 0;
+    emit result().evidenceChosen(there);
+    ASSERT_TRUE(waitFor([&] {
+        return simulator().mode() == Simulator::Mode::replay && simulator().document().caseFile == all[0].path &&
+               !simulator().isBusy();
+    }));
+}
+
+TEST_F(PracticeTest, AnAttemptWithASittingMissingIsScoredAndToldToBeUnproven) {
+    makeExercise("one", false);
+    startWithTooth();
+    openExercises();
+    begin("one");
+    ASSERT_TRUE(cut());
+    save("work.handpiece");
+    resume("work.handpiece");
+    ASSERT_TRUE(cut());
+    const fs::path second = simulator().recording();
+    save("work.handpiece");
+    resume("work.handpiece");
+    ASSERT_TRUE(fs::remove(second));
+    ASSERT_TRUE(cut());
+    finish();
+    ASSERT_EQ(store().attempts().size(), 1u);
+    EXPECT_FALSE(store().attempts().front().proven);
+    EXPECT_TRUE(part<QLabel>("resultProof")->text().contains("no longer there"));
+    EXPECT_EQ(store().attempts().front().sessionHashes.size(), 2u);
+}
+
+TEST_F(PracticeTest, TheClockRunsAndAHardLimitEndsTheWork) {
+    makeExercise("soft", false, {}, [](tasks::Task& task) { task.minutes = 0.02; });
+    makeExercise("hard", false, {}, [](tasks::Task& task) {
+        task.minutes = 0.25;
+        task.isTimeHard = true;
+    });
+    startWithTooth();
+    EXPECT_TRUE(part<QLabel>("exerciseClock")->isHidden());
+    openExercises();
+    begin("soft");
+    ASSERT_TRUE(waitFor([this] { return isTold("time-up"); }));
+    EXPECT_FALSE(simulator().isTimeOver());
+    EXPECT_TRUE(part<QLabel>("exerciseClock")->text().contains("0:01"));
+    ASSERT_TRUE(cut()) << "one can go on";
+    finish();
+    EXPECT_GT(store().attempts().front().lateS(), 0.0);
+    EXPECT_TRUE(part<QLabel>("resultTime")->text().contains("over by"));
+    openExercises();
+    begin("hard");
+    EXPECT_FALSE(simulator().isTimeOver());
+    ASSERT_TRUE(cut());
+    ASSERT_TRUE(waitFor([this] { return simulator().isTimeOver() && isTold("time-over"); }));
+    const double cutMm3 = removedMm3();
+    press(1500);
+    EXPECT_EQ(removedMm3(), cutMm3) << "the pedal is dead";
+    EXPECT_EQ(simulator().sample().pedal, 0.0);
+    action("actionUndo")->trigger();
+    press(300);
+    EXPECT_EQ(removedMm3(), cutMm3) << "nor is anything taken back";
+    // Saved and resumed, it is still over.
+    save("late.handpiece");
+    resume("late.handpiece");
+    ASSERT_TRUE(waitFor([this] { return simulator().isTimeOver(); }));
+    press(1000);
+    EXPECT_EQ(removedMm3(), cutMm3);
+    finish();
+    EXPECT_EQ(store().attempts().size(), 2u);
+    EXPECT_TRUE(store().attempts().back().proven) << "what the dead pedal did is replayed as it was";
+}
+
+TEST_F(PracticeTest, ResultsOfBeforeAreOpenedWithWhatIsLeftOfThem) {
+    const fs::path place = makeExercise("one", true);
+    startWithTooth();
+    openExercises();
+    begin("one");
+    ASSERT_TRUE(cut());
+    finish();
+    part<QSpinBox>("judgePercent")->setValue(40);
+    click("judgeShow");
+    const school::Attempt kept = store().attempts().front();
+    store().add(school::Comment{school::newId(), kept.id, "Sato", "look here", core::Vec3(0, 0, -0.5), 0.3, 5});
+    host_.reset();
+    startWithTooth();
+    const auto openFirst = [this] {
+        action("actionProgress")->trigger();
+        auto* table = part<QTableWidget>("progressTable");
+        EXPECT_FALSE(part<QPushButton>("progressOpen")->isEnabled());
+        QTest::mouseClick(table->viewport(), Qt::LeftButton, Qt::NoModifier,
+                          table->visualItemRect(table->item(0, 0)).center());
+        click("progressOpen");
+        ASSERT_TRUE(waitFor([this] { return result().isVisible(); }));
+    };
+    openFirst();
+    const course::FinishedWork& shown = result().shown()->work;
+    EXPECT_EQ(shown.result.assessment.score, kept.score);
+    EXPECT_TRUE(part<QLabel>("resultScore")->isVisible()) << "nobody is asked again";
+    EXPECT_TRUE(part<QLabel>("resultOwnJudgement")->text().contains("40"));
+    ASSERT_NE(shown.own, nullptr);
+    EXPECT_TRUE(part<QPushButton>("resultPage")->isEnabled());
+    // The teacher's comment leads to its place and seconds.
+    auto* comments = part<QListWidget>("resultComments");
+    ASSERT_TRUE(comments->isVisible());
+    EXPECT_TRUE(comments->item(0)->text().contains("Sato: look here"));
+    QTest::mouseClick(comments->viewport(), Qt::LeftButton, Qt::NoModifier,
+                      comments->visualItemRect(comments->item(0)).center());
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay && !simulator().isBusy(); }));
+    ASSERT_TRUE(view()->written().markMm);
+    EXPECT_EQ(*view()->written().markMm, core::Vec3(0, 0, -0.5));
+    EXPECT_EQ(store().attempts().size(), 1u) << "seen, not done again";
+    simulator().close();
+    // Its recording gone, and then the exercise as well: the result stands.
+    result().close();
+    ASSERT_EQ(kept.recordings.size(), 1u);
+    fs::remove(simulator().folders().sessions / kept.recordings.front());
+    openFirst();
+    EXPECT_EQ(result().shown()->work.own, nullptr);
+    EXPECT_TRUE(part<QPushButton>("resultPage")->isEnabled());
+    result().close();
+    fs::remove_all(place);
+    openFirst();
+    EXPECT_EQ(result().shown()->work.result.assessment.score, kept.score);
+    EXPECT_FALSE(part<QPushButton>("resultPage")->isEnabled());
+    EXPECT_EQ(part<QLabel>("resultTitle")->text(), "Line one");
+}
+
+TEST_F(PracticeTest, WhatWasLostIsDueLaterAndShownWithoutHelps) {
+    makeExercise("one", false);
+    makeExercise("two", false);
+    startWithTooth();
+    openExercises();
+    begin("one");
+    ASSERT_TRUE(cut());
+    finish();
+    const std::vector<school::Retest> lost = store().retests();
+    ASSERT_FALSE(lost.empty()) << "so little was cut that points are lost";
+    EXPECT_EQ(lost.front().due - store().attempts().front().finished, 7LL * 24 * 3600 * 1000);
+    openExercises();
+    chooseInList(QStringLiteral("Line one"));
+    EXPECT_FALSE(part<QPushButton>("exercisesRetest")->isVisible()) << "not before its time";
+    exercises().close();
+    // Eight days later.
+    school::Attempt before = store().attempts().front();
+    before.id = school::newId();
+    std::vector<school::Retest> due = lost;
+    for (school::Retest& one : due)
+        one.due = before.finished - 1;
+    store().add(before, due);
+    openExercises();
+    chooseInList(QStringLiteral("Line two"));
+    EXPECT_FALSE(part<QPushButton>("exercisesRetest")->isVisible());
+    chooseInList(QStringLiteral("Line one (due)"));
+    EXPECT_TRUE(part<QLabel>("exercisesDue")->text().startsWith("Due once more"));
+    EXPECT_TRUE(part<QPushButton>("exercisesBegin")->isVisible()) << "nobody must";
+    click("exercisesRetest");
+    ASSERT_TRUE(waitFor([&] {
+        return simulator().task() && simulator().isRecorded() && !simulator().isBusy() && removedMm3() == 0.0;
+    }));
+    for (const auto help : {exercise::Operation::depthStop, exercise::Operation::section,
+                            exercise::Operation::transparency, exercise::Operation::compare})
+        EXPECT_TRUE(simulator().permissions().locks(help));
+    EXPECT_FALSE(action("actionZones")->isEnabled());
+    view()->showStandardView(view::StandardView::occlusal);
+    ASSERT_TRUE(cut());
+    finish();
+    const std::vector<school::Retest> after = store().retests("one");
+    ASSERT_FALSE(after.empty());
+    EXPECT_GT(after.front().due, store().attempts().back().finished) << "it waits again";
+    EXPECT_EQ(store().attempts().back().exerciseHash, before.exerciseHash) << "helps are not the exercise";
+}
+
+TEST_F(PracticeTest, TheLiveBarCountsAsTheScoreDoesAndIsNotThereUnlessAllowed) {
+    makeExercise("one", false);
+    makeExercise("live", false, {}, [](tasks::Task& task) { task.hasLiveBar = true; });
+    startWithTooth();
+    openExercises();
+    begin("one");
+    EXPECT_FALSE(part<QProgressBar>("exerciseTarget")->isVisible());
+    openExercises();
+    begin("live");
+    ASSERT_TRUE(part<QProgressBar>("exerciseTarget")->isVisible());
+    LiveShares last;
+    int counts = 0;
+    QObject::connect(window().findChild<LiveZones*>(), &LiveZones::counted, &window(), [&](const LiveShares& shares) {
+        last = shares;
+        ++counts;
+    });
+    ASSERT_TRUE(cut());
+    ASSERT_TRUE(cut());
+    const int before = counts;
+    ASSERT_TRUE(waitFor([&] { return counts > before && last.targetRemoved > 0.0; }));
+    // Nothing more is cut, and so nothing more counted.
+    const int settledAt = counts;
+    QTest::qWait(1500);
+    EXPECT_LE(counts, settledAt + 2);
+    const auto& task = *simulator().task();
+    const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
+    tooth::ToothMirror mirror(simulator().tooth()->modelShared());
+    mirror.apply(simulator().tooth()->state({}));
+    const zones::ZoneVolumes truth = zones::zoneVolumes(*laid.zones, mirror);
+    EXPECT_EQ(last.targetRemoved, truth.removedMm3(zones::Zone::target) / truth.targetMm3());
+    EXPECT_EQ(last.beyondMm3, truth.removedMm3(zones::Zone::container));
+    EXPECT_EQ(part<QProgressBar>("exerciseTarget")->value(), static_cast<int>(100.0 * last.targetRemoved));
+}
+
+/// Pictures of all of it in both languages: HANDPIECE_TEST_PICTURES names their folder.
+TEST_F(PracticeTest, DISABLED_IsLookedAt) {
+    const fs::path place = makeExercise("one", false, {}, [](tasks::Task& task) {
+        task.minutes = 0.05;
+        task.hasLiveBar = true;
+    });
+    for (const char* language : {"en", "ja"}) {
+        CommandLine line;
+        line.language = QLatin1String(language);
+        const auto look = [&](QWidget* widget, const char* name) {
+            picture(widget, (std::string(name) + "-" + language).c_str());
+        };
+        startWithTooth(line);
+        window().openFile(toQString(place));
+        ASSERT_TRUE(
+            waitFor([this] { return simulator().task() && simulator().isRecorded() && !simulator().isBusy(); }));
+        view()->showStandardView(view::StandardView::occlusal);
+        ASSERT_TRUE(cut());
+        ASSERT_TRUE(cut());
+        look(&window(), "work");
+        finish();
+        look(&result(), "result");
+        ASSERT_TRUE(waitFor([this] { return !store().retests().empty(); }));
+        measures::Evidence there;
+        there.placeMm = core::Vec3(0.0, 0.0, -0.2);
+        emit result().evidenceChosen(there);
+        result().hide();
+        look(&window(), "mark");
+        there.placeMm = core::Vec3(0.0, 0.0, -4.0);
+        emit result().evidenceChosen(there);
+        look(&window(), "mark-hidden");
+        school::Attempt before = store().attempts().back();
+        before.id = school::newId();
+        std::vector<school::Retest> due = store().retests();
+        for (school::Retest& one : due)
+            one.due = 1;
+        store().add(before, due);
+        store().add(
+            school::Comment{school::newId(), before.id, "Sato", "floor too flat here", core::Vec3::Zero(), 0.3, 5});
+        openExercises();
+        auto* list = part<QListWidget>("exercisesList");
+        ASSERT_TRUE(waitFor([&] { return exercises().isReady() && list->count() > 1; }));
+        list->setCurrentRow(list->count() - 1);
+        ASSERT_TRUE(waitFor([&] { return exercises().isReady(); }));
+        look(&exercises(), "due");
+        exercises().close();
+        action("actionProgress")->trigger();
+        look(part<ProgressDialog>("progressDialog"), "progress");
+        part<QTableWidget>("progressTable")->setCurrentCell(0, 0);
+        click("progressOpen");
+        ASSERT_TRUE(waitFor([this] { return result().isVisible(); }));
+        look(&result(), "older");
+        host_.reset();
+    }
+}
+
+TEST_F(PracticeTest, TwiceOutOfOrderAndHalfLosesNothing) {
+    makeExercise("one", true);
+    makeExercise("two", false);
+    startWithTooth();
+    openExercises();
+    begin("one");
+    // Finish without a cut: judged all the same, and twice pressed it is one attempt.
+    ASSERT_TRUE(waitFor([this] { return action("actionFinish")->isEnabled(); }));
+    action("actionFinish")->trigger();
+    action("actionFinish")->trigger();
+    ASSERT_TRUE(waitFor([this] { return result().isVisible(); }));
+    ASSERT_TRUE(idle());
+    EXPECT_EQ(store().attempts().size(), 1u);
+    EXPECT_EQ(store().attempts().front().passed, "no");
+    // Closed without a word: no judgement, and the result is still to be had.
+    result().close();
+    EXPECT_FALSE(store().judgementOf(store().attempts().front().id));
+    action("actionResult")->trigger();
+    EXPECT_TRUE(part<QLabel>("resultScore")->isVisible());
+    // Another exercise over unfinished work: one is asked, and stays where one says so.
+    openExercises();
+    begin("one");
+    ASSERT_TRUE(cut());
+    answer_ = Questions::Unsaved::cancel;
+    openExercises();
+    chooseInList(QStringLiteral("Line two"));
+    const int asked = asked_;
+    click("exercisesBegin");
+    EXPECT_EQ(asked_, asked + 1);
+    EXPECT_EQ(simulator().task()->id, "one");
+    EXPECT_GT(removedMm3(), 0.0);
+    // The window closed while it is judged: the work is offered at the next start.
+    ASSERT_TRUE(exercises().close());
+    ASSERT_TRUE(idle());
+    action("actionFinish")->trigger();
+    ASSERT_TRUE(simulator().isBusy());
+    host_.reset();
+    startWithTooth();
+    EXPECT_EQ(store().attempts().size(), 1u);
+    ASSERT_EQ(simulator().crashed().size(), 1u);
+    simulator().recover(simulator().crashed().front());
+    ASSERT_TRUE(waitFor([this] { return simulator().task() && simulator().isRecorded() && !simulator().isBusy(); }));
+    EXPECT_GT(removedMm3(), 0.0);
+    finish();
+    EXPECT_EQ(store().attempts().size(), 2u);
+    EXPECT_TRUE(store().attempts().back().proven);
 }
 
 TEST_F(PracticeTest, ThePageIsWrittenWithPictures) {

@@ -54,6 +54,8 @@ enum class Notice {
     cacheRenewed,
     cacheNotKept,
     saved,
+    timeUp,
+    timeOver,
     translationMissing,
     openGlMissing
 

@@ -452,10 +452,29 @@ void landmarks(QPainter& p, const Area& area) {
     p.restore();
 }
 
+/// Whole where it is seen, dashed and paler where the tooth hides it.
+void mark(QPainter& p, const Area& area) {
+    const auto at = area.state.markMm ? area.at(*area.state.markMm) : std::nullopt;
+    if (!at) return;
+    constexpr double kRadius = 11.0;
+    const bool isHidden = area.state.isMarkHidden;
+    QColor colour = kLine;
+    if (isHidden) colour.setAlpha(150);
+    p.save();
+    p.setBrush(Qt::NoBrush);
+    p.setPen(QPen(QColor(0, 0, 0, isHidden ? 90 : 150), 4.0));
+    p.drawEllipse(*at, kRadius, kRadius);
+    p.setPen(QPen(colour, 2.0, isHidden ? Qt::DashLine : Qt::SolidLine));
+    p.drawEllipse(*at, kRadius, kRadius);
+    p.restore();
+    if (!isHidden) dot(p, *at, colour, 2.5);
+}
+
 void onTooth(QPainter& p, const Area& area) {
     const OverlayState& state = area.state;
     sectionFrame(p, area);
     landmarks(p, area);
+    mark(p, area);
     // Who cuts on wants to see the cavity, and its readings are no longer true.
     for (const Measurement& one : state.pressed ? std::vector<Measurement>{} : state.measurements)
         measurement(p, area, one, false);

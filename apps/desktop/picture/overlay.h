@@ -44,6 +44,8 @@ struct OverlayState {
     std::optional<Measurement> thinnest;  ///< over the pulp
     measure::PulpLimits pulpLimits;
     std::vector<ShownLandmark> landmarks;
+    std::optional<core::Vec3> markMm;      ///< of what a result tells
+    bool isMarkHidden = false;             ///< by the tooth
     std::optional<LandmarkPoint> grabbed;  ///< of them, that is moved
     std::optional<SectionPlace> section;
     core::Box bounds;  ///< of the tooth

@@ -337,7 +337,12 @@ OverlayState ViewWidget::State::overlay() const {
     state.cross = cross;
     if (thinnest && !isHidden(thinnest->fromMm)) state.thinnest = thinnest;
     state.pulpLimits = pulpLimits;
-    if (!state.pressed) state.landmarks = landmarks;
+    if (!state.pressed) {
+        state.landmarks = landmarks;
+        state.markMm = markMm;
+        // In a replay the tooth grows and goes about it.
+        state.isMarkHidden = markMm && isHidden(*markMm);
+    }
     if (tool == Tool::landmarks) state.grabbed = grabbed;
     state.section = section;
     state.bounds = bounds;

@@ -53,6 +53,7 @@ struct ViewWidget::State {
     std::optional<core::Vec3> mirrorCentreMm, restMm;
     bool mirrorView = false;
     std::vector<ShownLandmark> landmarks;
+    std::optional<core::Vec3> markMm;
     std::optional<LandmarkPoint> grabbed;
     std::vector<Measurement> measurements;
     std::optional<core::Vec3> calliperStartMm, pointerMm;

@@ -145,6 +145,11 @@ const std::vector<ShownLandmark>& ViewWidget::landmarks() const {
     return state_->landmarks;
 }
 
+void ViewWidget::setMark(std::optional<core::Vec3> placeMm) {
+    state_->markMm = placeMm;
+    update();
+}
+
 void ViewWidget::grabLandmark(std::optional<LandmarkPoint> at) {
     state_->grabbed = at;
     update();

@@ -108,6 +108,7 @@ void ViewWidget::clearTooth() {
     setTool(Tool::drill);
     clearMeasurements();
     setLandmarks({});
+    s.markMm.reset();
     s.thinnest.reset();
     s.sectionPlaced = false;
     s.frame.reset();

@@ -1515,6 +1515,14 @@
         <source>The tooth cannot be kept in %1: the next start makes it again. %2</source>
         <translation>歯を %1 に保存できません。次に起動したときにもう一度作ります。%2</translation>
     </message>
+    <message>
+        <source>The %1 minutes of this exercise are over. You can go on; the result says by how much.</source>
+        <translation>この課題の制限時間 %1 分が過ぎました。続けられますが、超過した時間が結果に示されます。</translation>
+    </message>
+    <message>
+        <source>The %1 minutes of this exercise are over: the pedal is dead. Finish to see the result.</source>
+        <translation>この課題の制限時間 %1 分が過ぎたため、ペダルは効きません。「完了」を押すと結果が出ます。</translation>
+    </message>
 </context>
 <context>
     <name>Overlay</name>
@@ -3411,6 +3419,42 @@
     <message>
         <source>Your work on this exercise is done: it is judged, and you see why</source>
         <translation>この課題の作業を終えて採点し、その理由を表示します</translation>
+    </message>
+    <message>
+        <source>Time worked</source>
+        <translation>作業時間</translation>
+    </message>
+    <message>
+        <source>Removed of the target</source>
+        <translation>目標のうち削除した割合</translation>
+    </message>
+    <message>
+        <source>Target: %p %</source>
+        <translation>目標：%p %</translation>
+    </message>
+    <message>
+        <source>Time: %1 of %2</source>
+        <translation>時間：%1 / %2</translation>
+    </message>
+    <message>
+        <source>Time: %1 of %2, over by %3</source>
+        <translation>時間：%1 / %2、超過 %3</translation>
+    </message>
+    <message>
+        <source>Leeway used: %1 mm³</source>
+        <translation>許容範囲の切削：%1 mm³</translation>
+    </message>
+    <message>
+        <source>Beyond it: %1 mm³</source>
+        <translation>許容範囲の外：%1 mm³</translation>
+    </message>
+    <message>
+        <source>Protected, and cut: %1 mm³</source>
+        <translation>保護部位の切削：%1 mm³</translation>
+    </message>
+    <message>
+        <source>Nothing beside the target</source>
+        <translation>目標の外は切削なし</translation>
     </message>
 </context>
 <context>
@@ -8626,6 +8670,26 @@ lingual: %4</source>
         <source>This exercise is not judged: it has no rubric.</source>
         <translation>この課題には採点基準がなく、採点されません。</translation>
     </message>
+    <message>
+        <source>Without helps</source>
+        <translation>補助なしで</translation>
+    </message>
+    <message>
+        <source>Show what was lost once more, by yourself: no depth, no section, no glass</source>
+        <translation>失点した項目を、深さ表示・断面・半透明表示なしで、もう一度自力で行います</translation>
+    </message>
+    <message>
+        <source>Due</source>
+        <translation>再確認</translation>
+    </message>
+    <message>
+        <source>%1 (due)</source>
+        <translation>%1（再確認）</translation>
+    </message>
+    <message>
+        <source>Due once more, without helps: %1</source>
+        <translation>補助なしの再確認：%1</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::PracticeFeature</name>
@@ -8656,6 +8720,10 @@ lingual: %4</source>
     <message>
         <source>Attempts so far: %1; of none could all be measured.</source>
         <translation>これまでの試行：%1 回。すべてを測定できたものはありません。</translation>
+    </message>
+    <message>
+        <source>Opening the result</source>
+        <translation>結果を開いています</translation>
     </message>
 </context>
 <context>
@@ -8726,6 +8794,22 @@ lingual: %4</source>
     <message>
         <source>%1 (%2 %), in part</source>
         <translation>%1（%2 %）、一部のみ</translation>
+    </message>
+    <message>
+        <source>Time</source>
+        <translation>時間</translation>
+    </message>
+    <message>
+        <source>Open the result</source>
+        <translation>結果を開く</translation>
+    </message>
+    <message>
+        <source>See it again: why, the page, and the seconds where its recording is kept</source>
+        <translation>理由、印刷用のページ、記録が残っていればその場面を、もう一度見られます</translation>
+    </message>
+    <message>
+        <source>%1, over by %2</source>
+        <translation>%1、超過 %2</translation>
     </message>
 </context>
 <context>
@@ -8855,10 +8939,6 @@ lingual: %4</source>
         <translation>検証済み：記録から削り直すと、まったく同じ歯になります。</translation>
     </message>
     <message>
-        <source>Not proven: the recording does not lead to this very tooth.</source>
-        <translation>未検証：記録から同じ歯になりません。</translation>
-    </message>
-    <message>
         <source>What cost most</source>
         <translation>最も減点された項目</translation>
     </message>
@@ -8921,6 +9001,38 @@ lingual: %4</source>
     <message>
         <source>not counted</source>
         <translation>数えない</translation>
+    </message>
+    <message>
+        <source>Time</source>
+        <translation>時間</translation>
+    </message>
+    <message>
+        <source>Your teacher&apos;s comments</source>
+        <translation>先生のコメント</translation>
+    </message>
+    <message>
+        <source>A click on a comment turns the eye to its place and plays its seconds</source>
+        <translation>コメントをクリックすると、その場所に視点を向け、その場面を再生します</translation>
+    </message>
+    <message>
+        <source>(%1 s)</source>
+        <translation>（%1 秒）</translation>
+    </message>
+    <message>
+        <source>Time: %1 of %2</source>
+        <translation>時間：%1 / %2</translation>
+    </message>
+    <message>
+        <source>Time: %1 of %2, over by %3</source>
+        <translation>時間：%1 / %2、超過 %3</translation>
+    </message>
+    <message>
+        <source>Not proven: the recording does not lead to this very tooth. %1</source>
+        <translation>証明できません：記録をたどってもこの歯になりません。%1</translation>
+    </message>
+    <message>
+        <source>Its recording is no longer kept: the tooth cannot be shown</source>
+        <translation>記録が残っていないため、歯を表示できません</translation>
     </message>
 </context>
 <context>

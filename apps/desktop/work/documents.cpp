@@ -79,6 +79,21 @@ void tell(const LoadListener& listener, LoadStep step) {
     if (listener.step) listener.step(step);
 }
 
+void lockHelps(tasks::Task& task) {
+    if (!task.toothCase.exercise) task.toothCase.exercise.emplace();
+    std::vector<std::string>& locked = task.toothCase.exercise->lockedHelps;
+    for (const std::string_view help : kUnaidedLocks)
+        if (std::find(locked.begin(), locked.end(), help) == locked.end()) locked.emplace_back(help);
+    task.hasLiveBar = false;
+}
+
+/// Where the case of an exercise lies, to be named by an attempt.
+fs::path casePlace(const fs::path& task) {
+    if (!core::isFolder(task)) return task;
+    if (cases::isAttempt(task)) return cases::readAttempt(task).caseFile;
+    return core::isThere(task / tasks::kTaskFile) ? task / "case" : task;
+}
+
 /// An attempt of before named its last recording only.
 std::vector<RecordingPlace> placesOf(const cases::Attempt& attempt, const LoadRequest& request) {
     std::vector<cases::Attempt::Recording> named = attempt.recordings;
@@ -90,6 +105,14 @@ std::vector<RecordingPlace> placesOf(const cases::Attempt& attempt, const LoadRe
 }
 
 }  // namespace
+
+bool isUnaided(const tasks::Task& task) {
+    if (!task.toothCase.exercise) return false;
+    const std::vector<std::string>& locked = task.toothCase.exercise->lockedHelps;
+    return std::all_of(kUnaidedLocks.begin(), kUnaidedLocks.end(), [&](std::string_view help) {
+        return std::find(locked.begin(), locked.end(), help) != locked.end();
+    });
+}
 
 cases::PackageFiles recordingBytes(const std::vector<RecordingPlace>& places, bool packedOnly, std::size_t& leftOut,
                                    const core::Progress& progress) {
@@ -236,7 +259,7 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
             }
         }
         loaded.toothCase = std::make_shared<const cases::Case>(std::move(recovered->toothCase));
-        loaded.elapsedS = recovered->elapsedS;
+        loaded.elapsedS = loaded.document.beforeS + recovered->elapsedS;
         loaded.code = recovered->code;
         loaded.recording = request.path;
         loaded.session = simulation::LiveSessionSettings::Session::recovered;
@@ -247,10 +270,10 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
         loaded.drive = settings.drive.name;
         loaded.speedRpm = settings.drive.freeSpeedRpm;
     } else if (!request.task.empty()) {
-        auto task = std::make_shared<const tasks::Task>(tasks::readTask(request.task));
+        auto task = std::make_shared<tasks::Task>(tasks::readTask(request.task));
+        if (request.unaided) lockHelps(*task);
         const fs::path whole = core::wholePath(request.task);
-        loaded.document.caseFile =
-            core::isFolder(whole) && core::isThere(whole / tasks::kTaskFile) ? whole / "case" : whole;
+        loaded.document.caseFile = casePlace(whole);
         loaded.document.taskPath = whole;
         loaded.document.name = task->toothCase.name;
         loaded.document.began =
@@ -274,6 +297,12 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
         attempt = std::move(open.attempt);
         loaded.document.student = attempt->student;
         loaded.document.recordings = placesOf(*attempt, request);
+        if (!attempt->exercise.empty()) {
+            loaded.document.task = std::make_shared<const tasks::Task>(
+                tasks::parseTask(attempt->exercise, attempt->rubric, *loaded.toothCase, request.path.string()));
+            loaded.document.taskPath = core::wholePath(request.path);
+            loaded.toothCase = {loaded.document.task, &loaded.document.task->toothCase};
+        }
         settings.field = simulation::fieldSettingsAt(attempt->voxelMm);
         loaded.elapsedS = attempt->elapsedS;
         loaded.code = attempt->student;

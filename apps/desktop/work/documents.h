@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "handpiece/app/simulation/history_bytes.h"
@@ -23,6 +24,11 @@
 #include "handpiece/model/dentition/tooth_form.h"
 
 namespace handpiece::desktop {
+
+/// What is withheld where somebody shows what they can do by themselves: a retest.
+inline constexpr std::array<std::string_view, 7> kUnaidedLocks{
+    "depth", "tissue-colours", "cross-section", "transparency", "guide", "calliper", "compare"};
+[[nodiscard]] bool isUnaided(const tasks::Task& task);
 
 /// A tooth that the program makes: one of the 32 of a patient.
 struct Starter {
@@ -63,6 +69,7 @@ struct Document {
     std::shared_ptr<const tasks::Task> task{};  ///< null: none is set
     std::filesystem::path taskPath{};
     std::int64_t began = 0;  ///< work on it [ms since 1970]; 0: not known
+    double beforeS = 0.0;    ///< worked before the recording under way began
 };
 
 /// What is being done for a tooth that opens, for people.
@@ -84,6 +91,7 @@ struct LoadRequest {
     int fdi = 0;                 ///< the tooth of a case to work on; 0: its own
     std::optional<Starter> starter;
     std::filesystem::path task;  ///< an exercise, in the place of `path`
+    bool unaided = false;        ///< with `task`: kUnaidedLocks are locked as well
     bool recover = false;
     Document recovered;  ///< with `recover`: what its marker says
     std::optional<cases::Exercise> exercise;

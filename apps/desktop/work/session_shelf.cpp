@@ -48,6 +48,8 @@ std::optional<SessionNote> readNote(const fs::path& session) {
     note.workedOn = o[QStringLiteral("tooth")].toInt();
     note.exercise = o[QStringLiteral("exercise")].toString();
     note.task = o[QStringLiteral("task")].toString();
+    note.beforeS = o[QStringLiteral("before_s")].toDouble();
+    note.began = o[QStringLiteral("began")].toInteger();
     for (const QJsonValue& name : o[QStringLiteral("recordings")].toArray())
         note.recordings << name.toString();
     return note;
@@ -67,6 +69,8 @@ void writeNote(const fs::path& session, const SessionNote& note) {
                                                    {QStringLiteral("mouth"), s->inMouth}};
     if (note.workedOn != 0) o[QStringLiteral("tooth")] = note.workedOn;
     if (!note.task.isEmpty()) o[QStringLiteral("task")] = note.task;
+    if (note.beforeS > 0.0) o[QStringLiteral("before_s")] = note.beforeS;
+    if (note.began != 0) o[QStringLiteral("began")] = note.began;
     if (!note.exercise.isEmpty()) o[QStringLiteral("exercise")] = note.exercise;
     if (!note.recordings.isEmpty()) o[QStringLiteral("recordings")] = QJsonArray::fromStringList(note.recordings);
     core::writeFile(beside(session, ".json"), QJsonDocument(o).toJson().toStdString(),

@@ -27,6 +27,8 @@ struct SessionNote {
     QString exercise = {};                ///< cases::exerciseText(): what was locked stays locked
     QStringList recordings = {};          ///< of the same attempt, before this one
     QString task = {};                    ///< the exercise's file or folder; may be empty
+    double beforeS = 0.0;                 ///< worked before this recording began
+    qint64 began = 0;                     ///< work on it [ms since 1970]; 0: not known
 };
 
 /// A recording whose program ended without a word.

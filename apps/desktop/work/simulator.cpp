@@ -74,6 +74,8 @@ SessionNote Simulator::noteNow() const {
     note.starter = document_.starter;
     note.workedOn = document_.workedOn;
     note.task = toQString(document_.taskPath);
+    note.beforeS = document_.beforeS;
+    note.began = document_.began;
     return note;
 }
 
@@ -96,6 +98,10 @@ void Simulator::sit(LoadedTooth loaded) {
     savedMm3_ = loaded.state.removedMm3.own;
     savedOthersMm3_ = sample_.removedOthersMm3;
     unsaved_ = false;
+    isTimeTold_ = false;
+    const auto& task = document_.task;
+    isTimeOver_->store(task && task->minutes && task->isTimeHard && loaded.elapsedS >= 60.0 * *task->minutes,
+                       std::memory_order_relaxed);
 
     simulation::LiveSessionSettings liveSession;
     liveSession.code = loaded.code.empty() ? code_.toStdString() : loaded.code;
@@ -109,6 +115,7 @@ void Simulator::sit(LoadedTooth loaded) {
     if (options_.record) {
         try {
             if (loaded.recording.empty()) {
+                document_.beforeS = loaded.elapsedS;
                 liveSession.sessionFile = shelf_.begin(noteNow());
             } else {
                 shelf_.goOn(loaded.recording);
@@ -277,6 +284,7 @@ void Simulator::poll() {
     if (sample_.tick > 0 && (sample_.flags & messages::kRestoring) == 0) markUnsaved(isCutSinceSaved());
     if (fine && !status_.fault.empty())
         emit failed(problemById(QStringLiteral("sitting-ended"), {QString::fromStdString(status_.fault)}));
+    watchTime();
     emit plotted(liveSession_->takePlot());
     for (const simulation::Notice& notice : liveSession_->takeNotices()) {
         // Hands says which, and what to do.
@@ -311,16 +319,22 @@ bool Simulator::mayWork() {
     return mode_ == Mode::liveSession && liveSession_ && status_.fault.empty();
 }
 
+bool Simulator::mayTakeBack() {
+    if (!mayWork()) return false;
+    if (isTimeOver()) tellTimeOver();
+    return !isTimeOver();
+}
+
 void Simulator::undo() {
-    if (mayWork() && may(exercise::Operation::undo)) liveSession_->undo();
+    if (mayTakeBack() && may(exercise::Operation::undo)) liveSession_->undo();
 }
 
 void Simulator::redo() {
-    if (mayWork() && may(exercise::Operation::redo)) liveSession_->redo();
+    if (mayTakeBack() && may(exercise::Operation::redo)) liveSession_->redo();
 }
 
 void Simulator::reset() {
-    if (!mayWork() || !may(exercise::Operation::reset)) return;
+    if (!mayTakeBack() || !may(exercise::Operation::reset)) return;
     liveSession_->reset();
     emit wasReset();
 }

@@ -7,6 +7,7 @@
 #include <QObject>
 #include <QStringList>
 #include <QTimer>
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -102,8 +103,8 @@ class Simulator : public QObject {
     void openFirst() { openStarter(options_.starter); }
     /// A case, an attempt, a mesh or a session, whatever the file is; of a case the tooth `fdi` (0: its own).
     void open(const std::filesystem::path& path, int fdi = 0);
-    /// An exercise, folder or file, begun anew: its tooth, its voxel, its locks.
-    void openExercise(const std::filesystem::path& path);
+    /// An exercise, folder or file, begun anew: its tooth, its voxel, its locks. Unaided: kUnaidedLocks as well.
+    void openExercise(const std::filesystem::path& path, bool unaided = false);
     /// Of the tooth that is open; null without one.
     [[nodiscard]] const std::shared_ptr<const tasks::Task>& task() const noexcept { return document_.task; }
     /// Work on an exercise, scored.
@@ -112,9 +113,15 @@ class Simulator : public QObject {
         std::filesystem::path taskPath;
         std::vector<std::string> recordings;   ///< that led to it
         std::int64_t began = 0, finished = 0;  ///< [ms since 1970]
+        double workedS = 0.0;                  ///< without pauses; 0: not known
     };
-    /// Closes the recording and judges it beside everything else; its replay lies open at its end then, and finished()
-    /// tells the rest. Cancelled or refused: the tooth comes back as it was.
+    /// How long the tooth that is open was worked on: without pauses, replays and what lay between sittings. Undo turns
+    /// no clock back.
+    [[nodiscard]] double workedS() const { return elapsedS_ + (liveSession_ ? status_.timeS : 0.0); }
+    /// The exercise's time is up and its limit hard: the pedal is dead, nothing is taken back.
+    [[nodiscard]] bool isTimeOver() const noexcept { return isTimeOver_->load(std::memory_order_relaxed); }
+    /// Closes the recording and judges it, with those of the same attempt before it, beside everything else; its replay
+    /// lies open at its end then, and finished() tells the rest. Cancelled or refused: the tooth comes back as it was.
     void finish();
     void recover(const Crashed& crashed, std::function<void()> then = {});
     /// Gives up what a crash left behind; the recording itself stays for a while.
@@ -272,6 +279,8 @@ class Simulator : public QObject {
     void stopLiveSession(bool keepMarker);
     void poll();
     void markUnsaved(bool unsaved, bool inAnyCase = false);
+    void watchTime();
+    void tellTimeOver();
     [[nodiscard]] bool isCutSinceSaved() const {
         return sample_.removedMm3 != savedMm3_ || sample_.removedOthersMm3 != savedOthersMm3_;
     }
@@ -279,6 +288,7 @@ class Simulator : public QObject {
     [[nodiscard]] LoadRequest request() const;
     [[nodiscard]] LoadRequest requestAgain() const;
     [[nodiscard]] bool mayWork();
+    [[nodiscard]] bool mayTakeBack();
     void tellDrill();
     [[nodiscard]] ReplayDriver::Heard replayEar();
 
@@ -300,7 +310,9 @@ class Simulator : public QObject {
     simulation::WorkingWay way_{0, false, false, false};  ///< as told last
     std::string sessionCode_;                             ///< that the recording carries, or the next one will
     double speedRpm_ = 0.0, elapsedS_ = 0.0;
-    bool hull_ = false;
+    bool hull_ = false, isTimeTold_ = false;
+    /// The tick reads it.
+    std::shared_ptr<std::atomic<bool>> isTimeOver_ = std::make_shared<std::atomic<bool>>(false);
     int voxelUm_ = 50;
     messages::HapticSample sample_;
     simulation::LiveSessionStatus status_;

@@ -19,6 +19,25 @@ core::Box boundsOf(const cases::Case& toothCase) {
 
 }  // namespace
 
+namespace {
+
+/// Its pedal is up from the moment at which the exercise's time is over.
+class EndingDevice final : public device::PassingDevice {
+  public:
+    EndingDevice(std::unique_ptr<device::Device> inner, std::shared_ptr<const std::atomic<bool>> isOver)
+        : PassingDevice(std::move(inner)), isOver_(std::move(isOver)) {}
+    device::Reading read(double periodS) noexcept HANDPIECE_REALTIME override {
+        device::Reading reading = PassingDevice::read(periodS);
+        if (isOver_->load(std::memory_order_relaxed)) reading.pedal = 0.0;
+        return reading;
+    }
+
+  private:
+    std::shared_ptr<const std::atomic<bool>> isOver_;
+};
+
+}  // namespace
+
 std::unique_ptr<device::Device> Simulator::takeHandpiece() {
     handChanged_ = false;
     usedHand_ = hands_.current() && !handLentAway_ ? hands_.current() : nullptr;
@@ -27,11 +46,13 @@ std::unique_ptr<device::Device> Simulator::takeHandpiece() {
     if (usedHand_) {
         mailbox_.reset();
         usedHand_->placeFor(tooth);
-        return std::make_unique<LentDevice>(usedHand_);
+        return std::make_unique<EndingDevice>(std::make_unique<LentDevice>(usedHand_), isTimeOver_);
     }
     mailbox_ = std::make_shared<device::PointerMailbox>();
-    return safety::withPedal(
-        std::make_unique<device::PointerDevice>(device::PointerHandSettings{}, mailbox_, startPose_), foot_.value());
+    return std::make_unique<EndingDevice>(
+        safety::withPedal(std::make_unique<device::PointerDevice>(device::PointerHandSettings{}, mailbox_, startPose_),
+                          foot_.value()),
+        isTimeOver_);
 }
 
 /// The same tooth, as it is, in another hand: what was cut stays, with what can be undone.

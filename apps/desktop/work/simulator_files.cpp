@@ -6,6 +6,8 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/case/attempt.h"
 
+#include <set>
+
 namespace handpiece::desktop {
 namespace fs = std::filesystem;
 
@@ -309,8 +311,14 @@ void Simulator::recover(const Crashed& crashed, std::function<void()> then) {
     wanted.recovered.starter = crashed.note.starter;
     wanted.recovered.workedOn = crashed.note.workedOn;
     wanted.recovered.taskPath = toPath(crashed.note.task);
-    for (const QString& name : crashed.note.recordings)
-        wanted.recovered.recordings.push_back({name.toStdString(), shelf_.folder() / name.toStdString(), false});
+    wanted.recovered.beforeS = crashed.note.beforeS;
+    wanted.recovered.began = crashed.note.began;
+    for (const QString& name : crashed.note.recordings) {
+        // On the shelf, or gone from there and in the attempt that it was saved with.
+        const fs::path place = shelf_.folder() / name.toStdString(), saved = wanted.recovered.attemptFile;
+        const bool isPacked = !core::isThere(place) && !saved.empty() && core::isThere(saved);
+        wanted.recovered.recordings.push_back({name.toStdString(), isPacked ? saved : place, isPacked});
+    }
     wanted.recovered.recordings.push_back({crashed.session.filename().string(), crashed.session, false});
     try {
         if (!crashed.note.exercise.isEmpty())
@@ -340,19 +348,24 @@ void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
     const auto attempt = std::make_shared<cases::Attempt>(attemptNow(false));
     const tooth::TissueVolumes removedMm3 = attempt->removedMm3;
     const double othersMm3 = sample_.removedOthersMm3;
+    const auto carried = std::make_shared<std::set<std::string>>();
     start(
         tr("Saving"),
-        [attempt, packed, path, toothCase = toothCase_, recordings = document_.recordings](const core::Progress& p) {
-            // What came with the attempt goes on with it: it may lie in the very file that is replaced.
+        [attempt, packed, path, carried, toothCase = toothCase_, recordings = document_.recordings,
+         isJudged = document_.task != nullptr](const core::Progress& p) {
+            // What came with the attempt goes on with it: it may lie in the very file that is replaced. Of an exercise
+            // all sittings before this one: the shelf keeps none for ever.
             std::size_t leftOut = 0;
-            cases::writeAttempt(*attempt, path, packed ? toothCase.get() : nullptr,
-                                recordingBytes(recordings, true, leftOut, p));
+            cases::PackageFiles files = recordingBytes(recordings, !isJudged, leftOut, p);
+            for (const auto& [name, bytes] : files)
+                carried->insert(name);
+            cases::writeAttempt(*attempt, path, packed ? toothCase.get() : nullptr, std::move(files));
         },
-        [this, path, removedMm3, othersMm3, vanished, then = std::move(then)] {
+        [this, path, removedMm3, othersMm3, vanished, carried, then = std::move(then)] {
             document_.attemptFile = path;
             document_.name = path.stem().string();
             for (RecordingPlace& recording : document_.recordings)
-                if (recording.packed) recording.in = path;
+                if (carried->contains(recording.name)) recording = {recording.name, path, true};
             savedMm3_ = removedMm3;
             savedOthersMm3_ = othersMm3;
             markUnsaved(isCutSinceSaved(), true);  // its place has changed in any case

@@ -48,6 +48,10 @@ cases::Attempt Simulator::attemptNow(bool handedIn) {
         attempt.recordings.push_back({recording.name, recording.packed});
     if (!attempt.session.empty()) attempt.recordings.push_back({attempt.session, false});
     attempt.handedIn = handedIn;
+    if (document_.task) {
+        attempt.exercise = tasks::taskToml(*document_.task);
+        attempt.rubric = document_.task->rubric;
+    }
     return attempt;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An exercise from its beginning to its score.
 #include <QDateTime>
+#include <QLocale>
 
 #include "desktop/work/simulator.h"
 
@@ -15,13 +16,29 @@ LoadRequest Simulator::requestAgain() const {
     wanted.path = document_.caseFile;
     wanted.fdi = document_.workedOn;
     wanted.task = document_.taskPath;
+    wanted.unaided = document_.task && isUnaided(*document_.task);
     return wanted;
 }
 
-void Simulator::openExercise(const fs::path& path) {
+void Simulator::openExercise(const fs::path& path, bool unaided) {
     LoadRequest wanted = request();
     wanted.task = path;
+    wanted.unaided = unaided;
     load(std::move(wanted), tr("Preparing the exercise"));
+}
+
+/// While a live session runs.
+void Simulator::watchTime() {
+    const auto& task = document_.task;
+    if (!task || !task->minutes || isTimeTold_ || workedS() < 60.0 * *task->minutes) return;
+    isTimeTold_ = true;
+    isTimeOver_->store(task->isTimeHard, std::memory_order_relaxed);
+    tellTimeOver();
+}
+
+void Simulator::tellTimeOver() {
+    emit noticed(isTimeOver() ? QStringLiteral("time-over") : QStringLiteral("time-up"),
+                 {QLocale().toString(*document_.task->minutes)});
 }
 
 void Simulator::finish() {
@@ -36,13 +53,18 @@ void Simulator::finish() {
     start(
         tr("Scoring your work"),
         [left, done, task = document_.task](const core::Progress& progress) {
-            done->work = course::finish(left->file.session, task, progress);
+            // What was done in sittings before this one belongs to it.
+            std::vector<assessment::ChainLink> chain;
+            for (const RecordingPlace& place : left->tooth.document.recordings)
+                chain.push_back({place.name, place.in, place.packed});
+            done->work = course::finish(chain, task, progress);
         },
         [this, left, done] {
             const Document& document = left->tooth.document;
             for (const RecordingPlace& recording : document.recordings)
                 done->recordings.push_back(recording.name);
             done->taskPath = document.taskPath;
+            done->workedS = left->tooth.elapsedS;
             done->finished = QDateTime::currentMSecsSinceEpoch();
             done->began =
                 document.began != 0 ? document.began : done->finished - std::llround(1e3 * left->tooth.elapsedS);

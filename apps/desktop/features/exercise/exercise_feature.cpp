@@ -10,6 +10,7 @@
 #include <QPushButton>
 #include <QRegularExpressionValidator>
 #include <QStatusBar>
+#include <numeric>
 
 #include "desktop/features/exercise/exercise_panel.h"
 #include "desktop/framework/helps.h"
@@ -106,6 +107,7 @@ ExerciseFeature::ExerciseFeature(const FeatureContext& context)
     connect(panel_, &ExercisePanel::goOnRequested, this, [this] {
         if (simulator_.isReviewing()) simulator_.open(fs::path(simulator_.reviewed().attemptFile));
     });
+    connect(&live_, &LiveZones::counted, panel_, [this](const LiveShares& shares) { panel_->setShares(&shares); });
     connectCommands();
     showCode();
     window_.openers.push_back([this](const QString& path) { return open(path); });
@@ -150,9 +152,28 @@ void ExerciseFeature::showDocument() {
     }
     text.canFinish =
         simulator_.mode() == Simulator::Mode::liveSession && simulator_.task() && !simulator_.task()->rubric.empty();
+    const bool isAtWork = simulator_.mode() == Simulator::Mode::liveSession;
+    text.hasLiveBar = isAtWork && simulator_.task() && simulator_.task()->hasLiveBar && simulator_.task()->preparation;
     panel_->setText(text);
+    panel_->setShares(nullptr);
+    if (text.hasLiveBar)
+        live_.watch(simulator_.task(), simulator_.tooth());
+    else
+        live_.stop();
+    showTick();
     isWanted_ = exercise != nullptr || text.review.isOn;
     window_.docks().showWanted();
+}
+
+void ExerciseFeature::showTick() {
+    const auto& task = simulator_.task();
+    const bool isAtWork = task && simulator_.mode() == Simulator::Mode::liveSession;
+    if (isAtWork && task->minutes)
+        panel_->setClock(simulator_.workedS(), 60.0 * *task->minutes);
+    else
+        panel_->setClock(std::nullopt);
+    const auto& removed = simulator_.sample().removedMm3;
+    if (isAtWork) live_.tell(std::accumulate(std::begin(removed), std::end(removed), 0.0));
 }
 
 void ExerciseFeature::handIn() {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "desktop/framework/feature.h"
+#include "desktop/work/live_zones.h"
 
 class QDockWidget;
 class QLabel;
@@ -30,6 +31,7 @@ class ExerciseFeature : public Feature {
     };
     explicit ExerciseFeature(const FeatureContext& context);
     void showDocument() override;
+    void showTick() override;
 
     Questions questions;
 
@@ -50,6 +52,7 @@ class ExerciseFeature : public Feature {
     QDockWidget* dock_;
     QLabel* code_;
     bool isWanted_ = false;
+    LiveZones live_{this};
 };
 
 }  // namespace handpiece::desktop

@@ -2,6 +2,8 @@
 #include "desktop/features/exercise/exercise_panel.h"
 
 #include <QLabel>
+#include <QLocale>
+#include <QProgressBar>
 #include <QPushButton>
 #include <QVBoxLayout>
 
@@ -31,6 +33,21 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
     locked_ = note({}, this, "exerciseLocked");
     locked_->setTextFormat(Qt::PlainText);
     column->addWidget(locked_);
+    clock_ = note({}, this, "exerciseClock");
+    clock_->setAccessibleName(tr("Time worked"));
+    column->addWidget(clock_);
+    live_ = new QWidget(this);
+    auto* live = new QVBoxLayout(live_);
+    live->setContentsMargins(0, 0, 0, 0);
+    live->setSpacing(2);
+    target_ = named(new QProgressBar(live_), "exerciseTarget", tr("Removed of the target"));
+    target_->setRange(0, 100);
+    target_->setMinimumWidth(80);
+    target_->setFormat(tr("Target: %p %"));
+    live->addWidget(target_);
+    beyond_ = note({}, live_, "exerciseBeyond");
+    live->addWidget(beyond_);
+    column->addWidget(live_);
     finish_ = named(new QPushButton(tr("Finish"), this), "exerciseFinish", tr("Finish"),
                     tr("Your work on this exercise is done: it is judged, and you see why"));
     column->addWidget(finish_);
@@ -62,7 +79,38 @@ void ExercisePanel::setText(const ExerciseText& text) {
     show(locked_, text.locked.isEmpty() ? QString()
                                         : tr("Not in this exercise: %1").arg(text.locked.join(QStringLiteral("; "))));
     finish_->setVisible(text.canFinish);
+    live_->setVisible(text.hasLiveBar);
     showReview(text.review);
+}
+
+void ExercisePanel::setClock(std::optional<double> workedS, double limitS) {
+    const int now = workedS ? static_cast<int>(*workedS) : -1;
+    if (now == shownS_) return;
+    shownS_ = now;
+    clock_->setVisible(workedS.has_value());
+    if (!workedS) return;
+    const auto minutes = [](int seconds) {
+        return QStringLiteral("%1:%2").arg(seconds / 60).arg(seconds % 60, 2, 10, QLatin1Char('0'));
+    };
+    const int limit = static_cast<int>(limitS);
+    clock_->setText(now <= limit
+                        ? tr("Time: %1 of %2").arg(minutes(now), minutes(limit))
+                        : tr("Time: %1 of %2, over by %3").arg(minutes(now), minutes(limit), minutes(now - limit)));
+}
+
+void ExercisePanel::setShares(const LiveShares* shares) {
+    const QLocale locale;
+    target_->setValue(shares ? static_cast<int>(100.0 * shares->targetRemoved) : 0);
+    QStringList lines;
+    const auto line = [&](const QString& words, double mm3) {
+        if (mm3 >= 0.005) lines << words.arg(locale.toString(mm3, 'f', 2));
+    };
+    if (shares) {
+        line(tr("Leeway used: %1 mm³"), shares->leewayMm3);
+        line(tr("Beyond it: %1 mm³"), shares->beyondMm3);
+        line(tr("Protected, and cut: %1 mm³"), shares->protectedMm3);
+    }
+    beyond_->setText(lines.isEmpty() ? tr("Nothing beside the target") : lines.join(QLatin1Char('\n')));
 }
 
 void ExercisePanel::showReview(const ExerciseText::Review& review) {

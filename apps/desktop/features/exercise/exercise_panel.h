@@ -6,9 +6,13 @@
 
 #include <QStringList>
 #include <QWidget>
+#include <optional>
 #include <vector>
 
+#include "desktop/work/live_zones.h"
+
 class QLabel;
+class QProgressBar;
 class QPushButton;
 class QVBoxLayout;
 
@@ -19,6 +23,7 @@ struct ExerciseText {
     QString title, instructions;
     QStringList locked;      ///< what is withheld, in words
     bool canFinish = false;  ///< it is judged, and at work
+    bool hasLiveBar = false;
     struct Review {
         bool isOn = false;
         QString student;  ///< may be empty
@@ -36,6 +41,10 @@ class ExercisePanel : public QWidget {
   public:
     explicit ExercisePanel(QWidget* parent = nullptr);
     void setText(const ExerciseText& text);
+    /// Worked so far, and what the exercise gives; none: no clock.
+    void setClock(std::optional<double> workedS, double limitS = 0.0);
+    /// What is gone of the zones; null: nothing is counted yet.
+    void setShares(const LiveShares* shares);
 
   signals:
     /// By its place in ExerciseText::Review::recordings.
@@ -46,7 +55,10 @@ class ExercisePanel : public QWidget {
   private:
     void showReview(const ExerciseText::Review& review);
 
-    QLabel *title_, *instructions_, *locked_, *student_, *missing_;
+    QLabel *title_, *instructions_, *locked_, *clock_, *beyond_, *student_, *missing_;
+    QProgressBar* target_;
+    QWidget* live_;
+    int shownS_ = -2;
     QPushButton* finish_;
     QWidget* review_;
     QVBoxLayout* recordings_;

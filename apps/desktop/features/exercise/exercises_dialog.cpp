@@ -29,7 +29,9 @@ ExercisesDialog::ExercisesDialog(fs::path madeIn, QWidget* parent)
       view_(new SolidView("exercisesIdeal", this)),
       progress_(named(new QProgressBar(this), "exercisesProgress", tr("Preparing what is shown"))),
       begin_(named(new QPushButton(tr("Begin"), this), "exercisesBegin", tr("Begin"),
-                   tr("Open the tooth of this exercise and work on it"))) {
+                   tr("Open the tooth of this exercise and work on it"))),
+      retest_(named(new QPushButton(tr("Without helps"), this), "exercisesRetest", tr("Without helps"),
+                    tr("Show what was lost once more, by yourself: no depth, no section, no glass"))) {
     setObjectName(QStringLiteral("exercisesDialog"));
     setWindowTitle(tr("Exercises"));
     auto* left = new QVBoxLayout;
@@ -54,6 +56,7 @@ ExercisesDialog::ExercisesDialog(fs::path madeIn, QWidget* parent)
     about_ = text("exercisesAbout", tr("Tooth, bur and helps"));
     best_ = text("exercisesBest", tr("Best so far"));
     best_->setFont(scaledFont(font(), 1.0, true));
+    due_ = text("exercisesDue", tr("Due"));
     right->addWidget(view_, 1);
     asks_ = text("exercisesAsks", tr("What is judged"));
     right->removeWidget(asks_);
@@ -71,6 +74,7 @@ ExercisesDialog::ExercisesDialog(fs::path madeIn, QWidget* parent)
     below->addWidget(progress_, 1);
     below->addStretch();
     begin_->setDefault(true);
+    below->addWidget(retest_);
     below->addWidget(begin_);
     right->addLayout(below);
     auto* row = new QHBoxLayout(this);
@@ -79,7 +83,8 @@ ExercisesDialog::ExercisesDialog(fs::path madeIn, QWidget* parent)
     resize(980, 720);
     connect(list_, &QListWidget::currentRowChanged, this, &ExercisesDialog::choose);
     connect(folder, &QPushButton::clicked, this, &ExercisesDialog::folderRequested);
-    connect(begin_, &QPushButton::clicked, this, [this] { emit beginRequested(path_); });
+    connect(begin_, &QPushButton::clicked, this, [this] { emit beginRequested(path_, false); });
+    connect(retest_, &QPushButton::clicked, this, [this] { emit beginRequested(path_, true); });
 }
 
 ExercisesDialog::~ExercisesDialog() = default;
@@ -96,6 +101,7 @@ void ExercisesDialog::showEvent(QShowEvent* event) {
         list();
     else
         showTask();  // what is best may be another by now
+    showDue();
 }
 
 void ExercisesDialog::list() {
@@ -113,6 +119,7 @@ void ExercisesDialog::list() {
             if (!entry.wrong.isEmpty()) item->setToolTip(entry.wrong);
         }
         list_->setCurrentRow(0);
+        showDue();
     };
     fill();
     if (folder_.empty()) return choose(0);
@@ -131,6 +138,17 @@ void ExercisesDialog::list() {
             fill();
             choose(0);
         });
+}
+
+/// In the list by a word behind the title: whoever looks for something to do finds it, and nobody is pressed.
+void ExercisesDialog::showDue() {
+    for (int row = 0; row < list_->count(); ++row) {
+        const Entry& entry = entries_[static_cast<std::size_t>(row)];
+        QString title = inThisLanguage(entry.title);
+        if (title.isEmpty()) title = toQString(entry.path.filename());
+        QListWidgetItem* item = list_->item(row);
+        item->setText(entry.id.empty() || dueOf(entry.id).empty() ? title : tr("%1 (due)").arg(title));
+    }
 }
 
 void ExercisesDialog::chooseAfter(const std::string& id) {
@@ -231,6 +249,8 @@ void ExercisesDialog::makeIdeal() {
 
 void ExercisesDialog::showTask() {
     begin_->setEnabled(task_ != nullptr);
+    const std::vector<std::string> due = task_ ? dueOf(task_->id) : std::vector<std::string>();
+    retest_->setVisible(!due.empty());
     note_->clear();
     note_->hide();
     const auto show = [](QLabel* label, const QString& words) {
@@ -238,7 +258,7 @@ void ExercisesDialog::showTask() {
         label->setVisible(!words.isEmpty());
     };
     if (!task_) {
-        for (QLabel* label : {words_, about_, best_, asks_})
+        for (QLabel* label : {words_, about_, best_, due_, asks_})
             show(label, {});
         view_->setParts(nullptr, {});
         view_->setCaption({}, false);
@@ -265,9 +285,15 @@ void ExercisesDialog::showTask() {
     show(about_, about.join(QStringLiteral(" · ")));
     const QString best = bestOf(task_->id);
     show(best_, best.isEmpty() ? tr("Not tried yet.") : best);
+    show(due_, {});
     try {
-        show(asks_, task_->rubric.empty() ? tr("This exercise is not judged: it has no rubric.")
-                                          : whatIsJudged(course::rubricOf(*task_)));
+        const rubric::Rubric rubric = task_->rubric.empty() ? rubric::Rubric{} : course::rubricOf(*task_);
+        show(asks_,
+             task_->rubric.empty() ? tr("This exercise is not judged: it has no rubric.") : whatIsJudged(rubric));
+        QStringList titles;
+        for (const std::string& criterion : due)
+            titles << titleOf(rubric, criterion);
+        if (!due.empty()) show(due_, tr("Due once more, without helps: %1").arg(titles.join(QStringLiteral("; "))));
     } catch (const core::Error& error) {
         show(asks_, {});
         note_->setText(error.what());

@@ -36,6 +36,10 @@ class ExercisesDialog : public QDialog {
     void setFolder(const std::filesystem::path& folder);
     /// In a line: what was reached so far at the exercise of this id; empty: nothing yet.
     std::function<QString(const std::string& id)> bestOf = [](const std::string&) { return QString(); };
+    /// Criteria that are to be shown once more at it, by their ids; empty: nothing is due.
+    std::function<std::vector<std::string>(const std::string& id)> dueOf = [](const std::string&) {
+        return std::vector<std::string>();
+    };
     /// Shows the one after this in the list; the first after the last, and of one that is not in it.
     void chooseAfter(const std::string& id);
     /// All of the chosen one is there.
@@ -44,7 +48,7 @@ class ExercisesDialog : public QDialog {
     [[nodiscard]] const course::Parts& ideal() const noexcept { return ideal_; }
 
   signals:
-    void beginRequested(const std::filesystem::path& path);
+    void beginRequested(const std::filesystem::path& path, bool unaided);
     void folderRequested();
 
   protected:
@@ -61,6 +65,7 @@ class ExercisesDialog : public QDialog {
     void list();
     void choose(int row);
     void showTask();
+    void showDue();
     void makeIdeal();
     void start(const QString& what, Job::Work work, std::function<void()> done);
     void giveUp();
@@ -71,10 +76,10 @@ class ExercisesDialog : public QDialog {
     course::Parts ideal_;
     Job* job_ = nullptr;  ///< under way
     QListWidget* list_;
-    QLabel *where_, *title_, *about_, *best_, *words_, *asks_, *note_;
+    QLabel *where_, *title_, *about_, *best_, *due_, *words_, *asks_, *note_;
     SolidView* view_;
     QProgressBar* progress_;
-    QPushButton* begin_;
+    QPushButton *begin_, *retest_;
 };
 
 }  // namespace handpiece::desktop

@@ -3,12 +3,14 @@
 
 #include <QDateTime>
 #include <QFileDialog>
+#include <utility>
 
 #include "desktop/features/exercise/assessment_words.h"
 #include "desktop/features/exercise/exercises_dialog.h"
 #include "desktop/features/exercise/progress_dialog.h"
 #include "desktop/work/simulator.h"
 #include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/app/course/retest.h"
 #include "handpiece/app/report/assessment_pictures.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
@@ -49,6 +51,7 @@ PracticeFeature::PracticeFeature(const FeatureContext& context)
     openDialogs();
     Commands& commands = window_.commands();
     on(commands_[Command::exercises], [this] {
+        readDue();
         exercises_->show();
         exercises_->raise();
         exercises_->activateWindow();
@@ -83,6 +86,10 @@ PracticeFeature::PracticeFeature(const FeatureContext& context)
 }
 
 void PracticeFeature::openDialogs() {
+    exercises_->dueOf = [this](const std::string& id) {
+        const auto at = due_.find(id);
+        return at == due_.end() ? std::vector<std::string>() : at->second;
+    };
     exercises_->bestOf = [this](const std::string& id) { return bestOf(id); };
     if (const QString folder = settings_.value(QStringLiteral("exercises/folder")).toString(); !folder.isEmpty())
         exercises_->setFolder(toPath(folder));
@@ -99,8 +106,10 @@ void PracticeFeature::openDialogs() {
     connect(result_, &ResultDialog::judged, this, [this](const OwnJudgement& own) { keep(own); });
     connect(result_, &ResultDialog::evidenceChosen, this, &PracticeFeature::showEvidence);
     connect(result_, &ResultDialog::pageRequested, this, &PracticeFeature::savePage);
-    connect(result_, &ResultDialog::againRequested, this, [this] { begin(done_->taskPath); });
+    connect(result_, &ResultDialog::againRequested, this, &PracticeFeature::again);
+    connect(progress_, &ProgressDialog::resultRequested, this, &PracticeFeature::openResult);
     connect(result_, &ResultDialog::nextRequested, this, [this] {
+        readDue();
         exercises_->show();
         exercises_->raise();
         exercises_->chooseAfter(done_->work.task->id);
@@ -117,12 +126,41 @@ school::Store* PracticeFeature::store() {
     return store_.get();
 }
 
-void PracticeFeature::begin(const fs::path& path) {
-    window_.whenMayLeave([this, path] {
+void PracticeFeature::begin(const fs::path& path, bool unaided) {
+    window_.whenMayLeave([this, path, unaided] {
         exercises_->hide();
         result_->close();
-        simulator_.openExercise(path);
+        simulator_.openExercise(path, unaided);
     });
+}
+
+void PracticeFeature::again() {
+    if (core::isThere(done_->taskPath)) return begin(done_->taskPath);
+    // It lies elsewhere by now: in the list, perhaps.
+    commands_[Command::exercises]->trigger();
+}
+
+void PracticeFeature::readDue() {
+    due_.clear();
+    school::Store* kept = store();
+    if (!kept) return;
+    try {
+        for (const school::Retest& retest : kept->retests())
+            if (retest.due <= QDateTime::currentMSecsSinceEpoch()) due_[retest.exercise].push_back(retest.criterion);
+    } catch (const core::Error& error) {
+        window_.showProblem(problemOf(error));
+    }
+}
+
+std::vector<school::Retest> PracticeFeature::retestsAfter(const school::Attempt& attempt) {
+    std::vector<course::DueCriterion> open;
+    for (school::Retest& one : store_->retests(attempt.exercise))
+        open.push_back({std::move(one.criterion), std::move(one.attempt), one.step, one.due});
+    std::vector<school::Retest> retests;
+    for (course::DueCriterion& one : course::nextRetests(std::move(open), done_->work.result.assessment, attempt.id,
+                                                         isUnaided(*done_->work.task), attempt.finished))
+        retests.push_back({attempt.exercise, std::move(one.criterion), std::move(one.attempt), one.step, one.due});
+    return retests;
 }
 
 void PracticeFeature::showDocument() {
@@ -139,8 +177,8 @@ void PracticeFeature::showDocument() {
         const auto now = QDateTime::currentMSecsSinceEpoch();
         const QString title = task->toothCase.exercise ? inThisLanguage(task->toothCase.exercise->title) : QString();
         try {
-            kept->see(
-                {task->id, task->version, rubric::hashText(tasks::contentHash(*task)), title.toStdString(), now, now});
+            kept->see({task->id, task->version, rubric::hashText(tasks::contentHash(*task)), title.toStdString(), now,
+                       now, simulator_.document().taskPath.string()});
         } catch (const core::Error& error) {
             window_.showProblem(problemOf(error));
         }
@@ -196,9 +234,11 @@ void PracticeFeature::keep() {
     attempt.passed = score::nameOf(result.assessment.passed);
     attempt.borderline = result.assessment.borderline;
     attempt.proven = result.identity.proven;
+    attempt.workedS = done_->workedS;
+    attempt.limitS = 60.0 * done_->work.task->minutes.value_or(0.0);
     attempt.result = assessment::resultJson(result.assessment, result.identity);
     try {
-        kept->add(attempt);
+        kept->add(attempt, retestsAfter(attempt));
         attempt_ = attempt.id;
         simulator_.forget(*done_);
     } catch (const core::Error& error) {
@@ -215,6 +255,80 @@ void PracticeFeature::keep(const OwnJudgement& own) {
     } catch (const core::Error& error) {
         window_.showProblem(problemOf(error));
     }
+}
+
+void PracticeFeature::openResult(const QString& id) {
+    school::Store* kept = store();
+    if (!kept || older_) return;
+    std::optional<school::Attempt> attempt;
+    std::vector<school::Exercise> exercises;
+    try {
+        attempt = kept->attempt(id.toStdString());
+        exercises = kept->exercises();
+    } catch (const core::Error& error) {
+        return window_.showProblem(problemOf(error));
+    }
+    if (!attempt) return;
+    school::Exercise of{attempt->exercise, 1, {}, {}, 0, 0, {}};
+    for (const school::Exercise& exercise : exercises)
+        if (exercise.id == attempt->exercise && (of.hash != attempt->exerciseHash || of.place.empty())) of = exercise;
+    const auto done = std::make_shared<Simulator::Finished>();
+    older_ = new Job(
+        tr("Opening the result"),
+        [done, attempt, of, sessions = simulator_.folders().sessions](const core::Progress& progress) {
+            auto task = std::make_shared<tasks::Task>();
+            try {
+                if (!of.place.empty() && core::isThere(of.place)) *task = tasks::readTask(of.place);
+            } catch (const core::Error&) {
+                *task = {};  // it is another file by now: the result stands without it
+            }
+            if (task->id != attempt->exercise) *task = {};
+            if (task->id.empty()) {
+                task->id = attempt->exercise;
+                task->toothCase.exercise.emplace();
+                task->toothCase.exercise->title = {{"en", of.title}};
+            }
+            if (attempt->limitS > 0.0) task->minutes = attempt->limitS / 60.0;
+            std::vector<assessment::ChainLink> chain;
+            for (const std::string& name : attempt->recordings)
+                chain.push_back({name, sessions / name, false});
+            done->work = course::reopen(assessment::parseResult(attempt->result, "results.db"), chain, task, progress);
+            done->taskPath = of.place;
+            done->recordings = attempt->recordings;
+            done->began = attempt->began;
+            done->finished = attempt->finished;
+            done->workedS = attempt->workedS;
+        },
+        this);
+    connect(older_, &Job::done, this, [this, done, attempt] {
+        std::exchange(older_, nullptr)->deleteLater();
+        showOlder(*attempt, done);
+    });
+    connect(older_, &Job::failed, this, [this](const Problem& problem) {
+        std::exchange(older_, nullptr)->deleteLater();
+        window_.showProblem(problem);
+    });
+    older_->start();
+}
+
+void PracticeFeature::showOlder(const school::Attempt& attempt, std::shared_ptr<const Simulator::Finished> done) {
+    done_ = std::move(done);
+    attempt_ = attempt.id;
+    result_->setResult(done_, nullptr, false);
+    std::optional<OwnJudgement> own;
+    std::vector<school::Comment> comments;
+    try {
+        if (const auto said = store_->judgementOf(attempt.id))
+            own = OwnJudgement{said->percent, QString::fromStdString(said->words)};
+        comments = store_->commentsOn(attempt.id);
+    } catch (const core::Error& error) {
+        window_.showProblem(problemOf(error));
+    }
+    result_->setSaid(std::move(own), std::move(comments));
+    if (done_->work.task->preparation) makeIdeal();
+    result_->show();
+    result_->raise();
+    result_->activateWindow();
 }
 
 void PracticeFeature::makeIdeal() {
@@ -243,7 +357,11 @@ void PracticeFeature::turnTo(const core::Vec3& placeMm) {
 
 void PracticeFeature::showEvidence(const measures::Evidence& evidence) {
     if (!done_) return;
-    const fs::path session = done_->work.session;
+    // Of a chain the one in which it happened.
+    const std::vector<assessment::Recording>& chain = done_->work.work.recordings;
+    const fs::path session =
+        evidence.timeS && evidence.session < chain.size() ? chain[evidence.session].path : done_->work.session;
+    if (session.empty()) return;  // its recording is no longer kept, which the result tells
     if (simulator_.mode() != Simulator::Mode::replay || simulator_.document().caseFile != session) {
         window_.whenMayLeave([this, session, evidence] {
             simulator_.open(session);
@@ -255,6 +373,7 @@ void PracticeFeature::showEvidence(const measures::Evidence& evidence) {
         return;
     }
     if (evidence.placeMm) turnTo(*evidence.placeMm);
+    view_.setMark(evidence.placeMm);
     const double endS = simulator_.replay()->durationS();
     if (evidence.timeS) {
         simulator_.seek(std::max(0.0, *evidence.timeS - kBeforeS));

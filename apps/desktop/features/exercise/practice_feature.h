@@ -3,6 +3,7 @@
 /// @file
 /// A student's way: choose an exercise, work on it, finish, see the result and why, again or the next; how it went on.
 
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -29,7 +30,12 @@ class PracticeFeature : public Feature {
 
   private:
     void openDialogs();
-    void begin(const std::filesystem::path& path);
+    void begin(const std::filesystem::path& path, bool unaided = false);
+    void again();
+    void readDue();
+    [[nodiscard]] std::vector<school::Retest> retestsAfter(const school::Attempt& attempt);
+    void openResult(const QString& attempt);
+    void showOlder(const school::Attempt& attempt, std::shared_ptr<const Simulator::Finished> done);
     void take(const Simulator::Finished& done);
     void keep();
     void keep(const OwnJudgement& own);
@@ -50,7 +56,9 @@ class PracticeFeature : public Feature {
     std::string attempt_;            ///< its id in the store; empty: it could not be kept
     std::optional<double> stopAtS_;  ///< the replay
     std::unique_ptr<Job> ideal_;
-    Job* page_ = nullptr;  ///< being written
+    Job* page_ = nullptr;                                  ///< being written
+    Job* older_ = nullptr;                                 ///< a result of before, on its way
+    std::map<std::string, std::vector<std::string>> due_;  ///< criteria by exercise
     ZoneGlass glass_;
 };
 

@@ -7,6 +7,7 @@
 #include <QLabel>
 #include <QLocale>
 #include <QPainter>
+#include <QPushButton>
 #include <QSet>
 #include <QTableWidget>
 #include <QVBoxLayout>
@@ -99,8 +100,9 @@ ProgressDialog::ProgressDialog(QWidget* parent)
       table_(named(new QTableWidget(this), "progressTable", tr("Attempts"))) {
     setObjectName(QStringLiteral("progressDialog"));
     setWindowTitle(tr("Progress"));
-    table_->setColumnCount(5);
-    table_->setHorizontalHeaderLabels({tr("When"), tr("Score"), tr("Passed"), tr("Device"), tr("Proven")});
+    table_->setColumnCount(6);
+    table_->setHorizontalHeaderLabels({tr("When"), tr("Score"), tr("Passed"), tr("Time"), tr("Device"), tr("Proven")});
+    table_->setSelectionMode(QAbstractItemView::SingleSelection);
     table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
     table_->horizontalHeader()->setStretchLastSection(true);
     table_->verticalHeader()->hide();
@@ -112,7 +114,14 @@ ProgressDialog::ProgressDialog(QWidget* parent)
     column->addWidget(curve_, 2);
     column->addWidget(note_);
     column->addWidget(table_, 2);
-    resize(640, 640);
+    open_ = named(new QPushButton(tr("Open the result"), this), "progressOpen", tr("Open the result"),
+                  tr("See it again: why, the page, and the seconds where its recording is kept"));
+    column->addWidget(open_, 0, Qt::AlignRight);
+    connect(open_, &QPushButton::clicked, this, &ProgressDialog::openChosen);
+    connect(table_, &QTableWidget::cellDoubleClicked, this, &ProgressDialog::openChosen);
+    connect(table_, &QTableWidget::itemSelectionChanged, this,
+            [this] { open_->setEnabled(table_->currentRow() >= 0); });
+    resize(700, 640);
     connect(exercise_, &QComboBox::currentIndexChanged, this, &ProgressDialog::showExercise);
 }
 
@@ -135,6 +144,11 @@ void ProgressDialog::setResults(std::vector<school::Exercise> exercises, std::ve
     showExercise(exercise_->currentIndex());
 }
 
+void ProgressDialog::openChosen() {
+    if (const QTableWidgetItem* item = table_->item(table_->currentRow(), 0))
+        emit resultRequested(item->data(Qt::UserRole).toString());
+}
+
 void ProgressDialog::showExercise(int row) {
     std::vector<school::Attempt> of;
     const std::string id = row < 0 ? std::string() : exercise_->itemData(row).toString().toStdString();
@@ -151,6 +165,9 @@ void ProgressDialog::showExercise(int row) {
         notes << tr("Hollow: not all of it could be measured; its share says nothing about the rest.");
     note_->setText(notes.join(QLatin1Char('\n')));
     note_->setVisible(!note_->text().isEmpty());
+    table_->clearSelection();
+    table_->setCurrentItem(nullptr);
+    open_->setEnabled(false);
     table_->setRowCount(static_cast<int>(of.size()));
     const QLocale locale;
     for (std::size_t i = 0; i < of.size(); ++i) {
@@ -164,8 +181,16 @@ void ProgressDialog::showExercise(int row) {
         put(2, passedWords(a.passed == "yes"  ? score::Passed::yes
                            : a.passed == "no" ? score::Passed::no
                                               : score::Passed::teacher));
-        put(3, QString::fromStdString(a.device));
-        put(4, a.proven ? tr("yes") : tr("no"));
+        table_->item(static_cast<int>(i), 0)->setData(Qt::UserRole, QString::fromStdString(a.id));
+        const auto minutes = [](double seconds) {
+            const int whole = static_cast<int>(seconds);
+            return QStringLiteral("%1:%2").arg(whole / 60).arg(whole % 60, 2, 10, QLatin1Char('0'));
+        };
+        put(3, a.workedS <= 0.0  ? QString()
+               : a.lateS() > 0.0 ? tr("%1, over by %2").arg(minutes(a.workedS), minutes(a.lateS()))
+                                 : minutes(a.workedS));
+        put(4, QString::fromStdString(a.device));
+        put(5, a.proven ? tr("yes") : tr("no"));
     }
 }
 

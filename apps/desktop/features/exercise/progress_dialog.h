@@ -11,6 +11,7 @@
 
 class QComboBox;
 class QLabel;
+class QPushButton;
 class QTableWidget;
 
 namespace handpiece::desktop {
@@ -47,13 +48,19 @@ class ProgressDialog : public QDialog {
     void setResults(std::vector<school::Exercise> exercises, std::vector<school::Attempt> attempts,
                     const std::string& chosen);
 
+  signals:
+    /// One's result of before, to be seen again.
+    void resultRequested(const QString& attempt);
+
   private:
     void showExercise(int row);
+    void openChosen();
 
     std::vector<school::Attempt> attempts_;
     QComboBox* exercise_;
     ProgressCurve* curve_;
     QTableWidget* table_;
+    QPushButton* open_;
     QLabel* note_;
 };
 

@@ -5,6 +5,7 @@
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QLabel>
+#include <QListWidget>
 #include <QLocale>
 #include <QPlainTextEdit>
 #include <QPushButton>
@@ -83,6 +84,7 @@ QWidget* ResultDialog::makeResult() {
     score_ = text("resultScore", tr("Score"));
     score_->setFont(scaledFont(font(), 1.5, true));
     why_ = text("resultWhy", tr("Why"));
+    time_ = text("resultTime", tr("Time"));
     compared_ = text("resultOwnJudgement", tr("Your own judgement"));
     errors_ = new QVBoxLayout;
     left->addLayout(errors_);
@@ -100,6 +102,21 @@ QWidget* ResultDialog::makeResult() {
     connect(table_, &QTableWidget::cellClicked, this, [this](int row, int) {
         const auto& all = done_->work.result.assessment.criteria;
         if (const auto* e = evidenceOf(all[static_cast<std::size_t>(row)])) emit evidenceChosen(*e);
+    });
+    comments_ = named(new QListWidget(page), "resultComments", tr("Your teacher's comments"),
+                      tr("A click on a comment turns the eye to its place and plays its seconds"));
+    comments_->setMaximumHeight(110);
+    comments_->setWordWrap(true);
+    left->addWidget(comments_);
+    connect(comments_, &QListWidget::itemClicked, this, [this](const QListWidgetItem* item) {
+        const school::Comment& said = said_[static_cast<std::size_t>(comments_->row(item))];
+        if (!said.placeMm && !said.timeS) return;
+        measures::Evidence there;
+        there.placeMm = said.placeMm;
+        there.timeS = said.timeS;
+        // Of a chain a teacher sees the last session.
+        there.session = std::max<std::size_t>(1, done_->work.work.recordings.size()) - 1;
+        emit evidenceChosen(there);
     });
     proof_ = note({}, page, "resultProof");
     left->addWidget(proof_);
@@ -126,8 +143,10 @@ QWidget* ResultDialog::makeResult() {
         auto* button = named(new QPushButton(words, page), object, words, tip);
         below->addWidget(button);
         connect(button, &QPushButton::clicked, this, wanted);
+        return button;
     };
-    push("resultPage", tr("Save as a page..."), tr("One HTML page to keep or to print"), &ResultDialog::pageRequested);
+    page_ = push("resultPage", tr("Save as a page..."), tr("One HTML page to keep or to print"),
+                 &ResultDialog::pageRequested);
     below->addStretch();
     push("resultAgain", tr("Again"), tr("Begin the same exercise anew"), &ResultDialog::againRequested);
     push("resultNext", tr("Next"), tr("Choose the next exercise"), &ResultDialog::nextRequested);
@@ -144,11 +163,29 @@ void ResultDialog::setResult(std::shared_ptr<const Simulator::Finished> done, co
     done_ = std::move(done);
     ideal_ = std::move(ideal);
     own_.reset();
+    said_.clear();
     isAsking_ = asksFirst;
     percent_->setValue(50);
     words_->clear();
     fill();
     pages_->setCurrentIndex(asksFirst ? 0 : 1);
+}
+
+void ResultDialog::setSaid(std::optional<OwnJudgement> own, std::vector<school::Comment> comments) {
+    own_ = std::move(own);
+    said_ = std::move(comments);
+    fill();
+}
+
+void ResultDialog::fillComments() {
+    comments_->clear();
+    for (const school::Comment& said : said_) {
+        QString words = QString::fromStdString(said.words);
+        if (!said.author.empty()) words = QString::fromStdString(said.author) + QStringLiteral(": ") + words;
+        if (said.timeS) words += QLatin1Char(' ') + tr("(%1 s)").arg(QLocale().toString(*said.timeS, 'f', 1));
+        comments_->addItem(words);
+    }
+    comments_->setVisible(!said_.empty());
 }
 
 void ResultDialog::setIdeal(course::Parts ideal) {
@@ -191,16 +228,34 @@ void ResultDialog::fill() {
     why_->setText(why.join(QLatin1Char('\n')));
     why_->setToolTip(QString::fromStdString(a.why));
     why_->setVisible(!why.isEmpty());
+    const auto& limit = done_->work.task->minutes;
+    const auto minutes = [](double seconds) {
+        const int whole = static_cast<int>(seconds);
+        return QStringLiteral("%1:%2").arg(whole / 60).arg(whole % 60, 2, 10, QLatin1Char('0'));
+    };
+    if (limit && done_->workedS > 0.0)
+        time_->setText(
+            done_->workedS <= 60.0 * *limit
+                ? tr("Time: %1 of %2").arg(minutes(done_->workedS), minutes(60.0 * *limit))
+                : tr("Time: %1 of %2, over by %3")
+                      .arg(minutes(done_->workedS), minutes(60.0 * *limit), minutes(done_->workedS - 60.0 * *limit)));
+    time_->setVisible(limit && done_->workedS > 0.0);
     if (own_)
         compared_->setText(tr("You expected %1 %; it is %2 %.")
                                .arg(locale.toString(own_->percent, 'f', 0), locale.toString(a.percent(), 'f', 0)));
     compared_->setVisible(own_.has_value());
     proof_->setText(done_->work.result.identity.proven
                         ? tr("Proven: cut again from its recording it is the same tooth, bit for bit.")
-                        : tr("Not proven: the recording does not lead to this very tooth."));
+                        : tr("Not proven: the recording does not lead to this very tooth. %1")
+                              .arg(QString::fromStdString(done_->work.result.proof))
+                              .trimmed());
     proof_->setToolTip(QString::fromStdString(done_->work.result.proof));
+    const bool hasTooth = done_->work.own != nullptr;
+    page_->setEnabled(!done_->work.rubric.criteria.empty());
+    which_->button(0)->setEnabled(hasTooth);
     fillErrors();
     fillTable();
+    fillComments();
     which_->button(0)->setChecked(true);
     setIdeal(ideal_);
 }
@@ -287,6 +342,7 @@ void ResultDialog::showTooth() {
             for (const core::Vec3& v : part.mesh.vertices)
                 box.extend(v);
     tooth_->setParts(parts, box);
+    if (!parts) return tooth_->setCaption(tr("Its recording is no longer kept: the tooth cannot be shown"), false);
     tooth_->setCaption(isIdeal ? tr("The ideal: drag to turn it") : tr("Your tooth: drag to turn it"), false);
 }
 

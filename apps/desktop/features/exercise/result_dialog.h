@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "desktop/work/simulator.h"
+#include "handpiece/school/store/store.h"
 
 class QButtonGroup;
 class QLabel;
+class QListWidget;
 class QPlainTextEdit;
 class QPushButton;
 class QSpinBox;
@@ -36,6 +38,8 @@ class ResultDialog : public QDialog {
 
     /// Null `ideal`: none is shown. With `asksFirst` the result is seen once the person has said what they expect.
     void setResult(std::shared_ptr<const Simulator::Finished> done, course::Parts ideal, bool asksFirst);
+    /// Of a result of before: what was said of it then, by oneself and by a teacher.
+    void setSaid(std::optional<OwnJudgement> own, std::vector<school::Comment> comments);
     void setIdeal(course::Parts ideal);
     [[nodiscard]] const std::shared_ptr<const Simulator::Finished>& shown() const noexcept { return done_; }
 
@@ -58,6 +62,7 @@ class ResultDialog : public QDialog {
     void fill();
     void fillErrors();
     void fillTable();
+    void fillComments();
     void showTooth();
 
     std::shared_ptr<const Simulator::Finished> done_;
@@ -67,7 +72,10 @@ class ResultDialog : public QDialog {
     QStackedWidget* pages_;
     QSpinBox* percent_;
     QPlainTextEdit* words_;
-    QLabel *title_, *score_, *why_, *compared_, *proof_;
+    QLabel *title_, *score_, *why_, *time_, *compared_, *proof_;
+    QListWidget* comments_;
+    std::vector<school::Comment> said_;
+    QPushButton* page_;
     QVBoxLayout* errors_;
     std::vector<QWidget*> errorRows_;
     QTableWidget* table_;

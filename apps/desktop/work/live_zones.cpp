@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "desktop/work/live_zones.h"
+
+#include "handpiece/base/rt/realtime_thread.h"
+
+namespace handpiece::desktop {
+namespace {
+
+constexpr int kPauseMs = 400;
+
+}  // namespace
+
+struct LiveZones::Watched {
+    std::shared_ptr<const tasks::Task> task;
+    std::shared_ptr<simulation::LiveTooth> tooth;
+    std::shared_ptr<const preparation::Laid> laid;  ///< made by the first count
+};
+
+LiveZones::LiveZones(QObject* parent) : QObject(parent) {
+    timer_.setInterval(kPauseMs);
+    connect(&timer_, &QTimer::timeout, this, &LiveZones::count);
+}
+
+void LiveZones::watch(std::shared_ptr<const tasks::Task> task, std::shared_ptr<simulation::LiveTooth> tooth) {
+    stop();
+    if (!task || !task->preparation || !tooth) return;
+    watched_ = std::make_shared<Watched>(Watched{std::move(task), std::move(tooth), nullptr});
+    removedMm3_ = 0.0;
+    countedMm3_ = -1.0;
+    timer_.start();
+}
+
+void LiveZones::stop() {
+    timer_.stop();
+    watched_.reset();
+    if (!job_) return;
+    // It ends when it likes; nobody hears of it.
+    job_->disconnect(this);
+    for (const auto end : {&Job::done, &Job::cancelled})
+        connect(job_.get(), end, job_.get(), &QObject::deleteLater);
+    connect(job_.get(), &Job::failed, job_.get(), &QObject::deleteLater);
+    job_.release()->setParent(this);
+}
+
+void LiveZones::count() {
+    if (!watched_ || job_ || (removedMm3_ == countedMm3_ && isSure_)) return;
+    isSure_ = removedMm3_ == countedMm3_;
+    countedMm3_ = removedMm3_;
+    const auto shares = std::make_shared<LiveShares>();
+    job_ = std::make_unique<Job>(QString(), [shares, watched = watched_](const core::Progress&) {
+        rt::stepBack();
+        if (!watched->laid)
+            watched->laid = std::make_shared<const preparation::Laid>(
+                preparation::layOn(watched->task->toothCase, *watched->task->preparation));
+        *shares = course::liveShares(*watched->laid->zones, *watched->tooth);
+    });
+    const auto end = [this] { job_.release()->deleteLater(); };
+    connect(job_.get(), &Job::done, this, [this, end, shares] {
+        end();
+        emit counted(*shares);
+    });
+    connect(job_.get(), &Job::cancelled, this, end);
+    // The preparation does not lie on this tooth, which finishing tells: there is nothing to count.
+    connect(job_.get(), &Job::failed, this, [this, end] {
+        end();
+        timer_.stop();
+    });
+    job_->start();
+}
+
+}  // namespace handpiece::desktop

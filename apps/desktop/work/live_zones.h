@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What of a task's zones is gone, a few times a second while one works: counted beside everything else, as the score
+/// counts it. The tick knows nothing of it.
+
+#include <QObject>
+#include <QTimer>
+#include <memory>
+
+#include "desktop/framework/job.h"
+#include "handpiece/app/course/live_shares.h"
+#include "handpiece/assess/preparation/preparation.h"
+#include "handpiece/assess/task/task.h"
+
+namespace handpiece::desktop {
+
+using course::LiveShares;
+
+/// Lives on the window's thread. One thread of its own, behind all others, and only when something was cut.
+class LiveZones : public QObject {
+    Q_OBJECT
+  public:
+    explicit LiveZones(QObject* parent = nullptr);
+    /// Of this tooth, from now on. A task without a preparation is none.
+    void watch(std::shared_ptr<const tasks::Task> task, std::shared_ptr<simulation::LiveTooth> tooth);
+    void stop();
+    /// So much is gone of the tooth now [mm3]: nothing is counted again where it is as before.
+    void tell(double removedMm3) { removedMm3_ = removedMm3; }
+
+  signals:
+    void counted(const handpiece::desktop::LiveShares& shares);
+
+  private:
+    struct Watched;
+    void count();
+
+    std::shared_ptr<Watched> watched_;
+    double removedMm3_ = 0.0, countedMm3_ = -1.0;
+    bool isSure_ = false;  ///< counted once more since: whoever listens is some milliseconds behind
+    std::unique_ptr<Job> job_;
+    QTimer timer_;
+};
+
+}  // namespace handpiece::desktop

@@ -114,6 +114,7 @@ PreparationPage::PreparationPage(Change change) : EditorPage(std::move(change)) 
     auto* beside = new QVBoxLayout;
     columns->addLayout(beside, 1);
     ideal_ = new SolidView("editorIdeal", this);
+    ideal_->setPlaceholder({});
     ideal_->setAccessibleName(tr("The tooth as it is asked for"));
     idealButton_ =
         named(new QPushButton(tr("Show it on the tooth"), this), "editorShowIdeal", tr("Show it on the tooth"),

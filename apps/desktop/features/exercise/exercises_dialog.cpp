@@ -10,6 +10,7 @@
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <array>
 
 #include "desktop/features/exercise/assessment_words.h"
 #include "desktop/framework/helps.h"
@@ -31,6 +32,7 @@ ExercisesDialog::ExercisesDialog(fs::path madeIn, QWidget* parent)
       begin_(named(new QPushButton(tr("Begin"), this), "exercisesBegin", tr("Begin"),
                    tr("Open the tooth of this exercise and work on it"))) {
     setObjectName(QStringLiteral("exercisesDialog"));
+    view_->setPlaceholder({});
     setWindowTitle(tr("Exercises"));
     auto* left = new QVBoxLayout;
     left->addWidget(list_, 1);
@@ -92,26 +94,20 @@ void ExercisesDialog::setFolder(const fs::path& folder) {
 
 void ExercisesDialog::showEvent(QShowEvent* event) {
     QDialog::showEvent(event);
-    if (entries_.empty())
-        list();
-    else
-        showTask();  // what is best may be another by now
+    if (entries_.empty()) return list();
+    showRows();  // what is best may be another by now
+    showTask();
 }
 
 void ExercisesDialog::list() {
     giveUp();
     entries_.clear();
     for (const course::Shipped& shipped : course::shippedExercises())
-        entries_.push_back({shipped.id, {}, shipped.title, {}, true});
+        entries_.push_back({shipped.id, {}, shipped.exercise.title, {}, true, shipped.level, shipped.minutes});
     where_->setText(folder_.empty() ? tr("Those of the program.") : tr("And those in %1").arg(toQString(folder_)));
     const auto fill = [this] {
+        showRows();
         const QSignalBlocker quiet(list_);
-        list_->clear();
-        for (const Entry& entry : entries_) {
-            auto* item = new QListWidgetItem(inThisLanguage(entry.title), list_);
-            if (item->text().isEmpty()) item->setText(toQString(entry.path.filename()));
-            if (!entry.wrong.isEmpty()) item->setToolTip(entry.wrong);
-        }
         list_->setCurrentRow(0);
     };
     fill();
@@ -124,13 +120,40 @@ void ExercisesDialog::list() {
             for (const course::Found& one : *found) {
                 Entry entry{toQString(one.path.filename()).toStdString(), one.path, {}, {}, false};
                 if (one.error) entry.wrong = problemOf(*one.error).what;
-                if (one.task) entry.id = one.task->id;
+                if (one.task) entry.id = one.task->id, entry.level = one.task->level, entry.minutes = one.task->minutes;
                 if (one.task && one.task->toothCase.exercise) entry.title = one.task->toothCase.exercise->title;
                 entries_.push_back(std::move(entry));
             }
             fill();
             choose(0);
         });
+}
+
+/// The list anew, with the same row chosen.
+void ExercisesDialog::showRows() {
+    const QSignalBlocker quiet(list_);
+    const int row = list_->currentRow();
+    list_->clear();
+    for (const Entry& entry : entries_) {
+        auto* item = new QListWidgetItem(inThisLanguage(entry.title), list_);
+        if (item->text().isEmpty()) item->setText(toQString(entry.path.filename()));
+        if (const QString about = aboutOf(entry); !about.isEmpty())
+            item->setText(item->text() + QLatin1Char('\n') + about);
+        if (!entry.wrong.isEmpty()) item->setToolTip(entry.wrong);
+    }
+    list_->setCurrentRow(row);
+}
+
+/// For whom, how long, how far one has come.
+QString ExercisesDialog::aboutOf(const Entry& entry) const {
+    constexpr std::array<const char*, tasks::kLevels.size()> kWords = {
+        QT_TR_NOOP("beginner"), QT_TR_NOOP("basic"), QT_TR_NOOP("intermediate"), QT_TR_NOOP("advanced")};
+    QStringList about;
+    const auto level = std::find(tasks::kLevels.begin(), tasks::kLevels.end(), entry.level);
+    if (level != tasks::kLevels.end()) about << tr(kWords[static_cast<std::size_t>(level - tasks::kLevels.begin())]);
+    if (entry.minutes) about << tr("%1 minutes").arg(*entry.minutes);
+    if (const QString best = bestOf(entry.id); !best.isEmpty()) about << best;
+    return about.join(QStringLiteral(" · "));
 }
 
 void ExercisesDialog::chooseAfter(const std::string& id) {
@@ -159,10 +182,12 @@ void ExercisesDialog::start(const QString& what, Job::Work work, std::function<v
     progress_->setToolTip(what);
     progress_->setValue(0);
     progress_->show();
+    view_->setPlaceholder(what);
     const auto end = [this] {
         job_->deleteLater();
         job_ = nullptr;
         progress_->hide();
+        view_->setPlaceholder({});
     };
     connect(job_, &Job::progressed, this,
             [this](double fraction) { progress_->setValue(static_cast<int>(1000.0 * fraction)); });
@@ -200,8 +225,10 @@ void ExercisesDialog::choose(int row) {
     start(
         tr("Opening the exercise"),
         [read, entry, madeIn = madeIn_](const core::Progress& progress) {
-            read->path = entry.isShipped ? course::shippedExercise(entry.id, madeIn, progress) : entry.path;
-            read->task = std::make_shared<const tasks::Task>(tasks::readTask(read->path));
+            course::Made made = entry.isShipped ? course::makeShipped(entry.id, madeIn, progress)
+                                                : course::Made{entry.path, tasks::readTask(entry.path)};
+            read->path = std::move(made.path);
+            read->task = std::make_shared<const tasks::Task>(std::move(made.task));
         },
         [this, read] {
             task_ = read->task;

@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "handpiece/app/assessment/score_work.h"
@@ -29,9 +31,24 @@ struct FinishedWork {
 /// Its rubric, sound. Throws core::Error, also for a task that has none.
 [[nodiscard]] rubric::Rubric rubricOf(const tasks::Task& task);
 
-/// Cuts the session again, measures and judges it. Throws core::Error; "cancelled" when asked to stop.
+/// Cuts a session, a chain of them or an attempt again, measures and judges it; `own` stays empty. Throws core::Error;
+/// "cancelled" when asked to stop.
+[[nodiscard]] FinishedWork judged(const std::filesystem::path& work, std::shared_ptr<const tasks::Task> task,
+                                  const core::Progress& progress = {});
+/// The same of a session, with one's own tooth to look at.
 [[nodiscard]] FinishedWork finish(const std::filesystem::path& session, std::shared_ptr<const tasks::Task> task,
                                   const core::Progress& progress = {});
+
+/// What a student says of work that is handed in.
+struct HandInWords {
+    std::string student;  ///< a code
+    std::optional<double> expectedPercent;
+    std::string expectedWords;
+};
+/// One file for a teacher: the tooth, its case, all sessions of the chain, for which exercise (its hash), the result
+/// that it got here, and what its student expected. `score` and the marking desk read it as any attempt and judge it
+/// anew. Throws core::Error: sessions that are gone or too large together, what cannot be written.
+void handIn(const FinishedWork& done, const HandInWords& words, const std::filesystem::path& file);
 
 /// The tooth as the task asks for it, a surface a tissue. Null: it asks for no preparation. Throws as finish().
 [[nodiscard]] Parts idealOf(const tasks::Task& task, const core::Progress& progress = {});

@@ -10,6 +10,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
 #include "handpiece/model/case/exercise_table.h"
+#include "handpiece/model/case/package_type.h"
 
 namespace handpiece::tasks {
 namespace {
@@ -41,8 +42,8 @@ std::vector<std::byte> bytesOf(std::string_view text) {
 /// What exercise.toml says, but for case and rubric.
 Task parse(std::string_view text, const std::string& where) {
     const Table root = Table::parse(text, where);
-    root.allowOnly({"format", "type", "id", "version", "voxel_um", "minutes", "own_judgement", "rubric", "exercise",
-                    "preparation"});
+    root.allowOnly({"format", "type", "id", "version", "voxel_um", "minutes", "own_judgement", "level", "rubric",
+                    "exercise", "preparation"});
     const std::int64_t format = root.integer("format").value_or(0);
     if (format != kFormatVersion)
         root.fail(fmt::format("this exercise is of format {}", format),
@@ -64,22 +65,15 @@ Task parse(std::string_view text, const std::string& where) {
     if (task.minutes && !(*task.minutes > 0.0 && *task.minutes <= 24 * 60))
         root.fail(fmt::format("{} minutes", *task.minutes), "give more than 0, a day at most", "minutes");
     task.ownJudgement = root.flag("own_judgement").value_or(false);
+    task.level = root.text("level").value_or("");
+    if (!task.level.empty() && std::find(kLevels.begin(), kLevels.end(), task.level) == kLevels.end())
+        root.fail(fmt::format("\"{}\" is no level", task.level), fmt::format("one of {}", fmt::join(kLevels, ", ")),
+                  "level");
     if (const auto rubric = root.text("rubric"); rubric && *rubric != kRubricFile)
         root.fail(fmt::format("the rubric is \"{}\"", *rubric), fmt::format("call the file {}", kRubricFile), "rubric");
     if (const auto exercise = root.table("exercise")) task.toothCase.exercise = cases::readExercise(*exercise);
     if (const auto recipe = root.table("preparation")) task.preparation = preparation::readRecipe(*recipe);
     return task;
-}
-
-std::string tomlOf(const Task& task) {
-    std::string out = fmt::format("format = {}\ntype = \"exercise\"\nid = \"{}\"\nversion = {}\nvoxel_um = {}\n",
-                                  kFormatVersion, task.id, task.version, 1e3 * task.voxelMm);
-    if (task.minutes) out += fmt::format("minutes = {}\n", *task.minutes);
-    if (task.ownJudgement) out += "own_judgement = true\n";
-    if (!task.rubric.empty()) out += fmt::format("rubric = \"{}\"\n", kRubricFile);
-    if (task.preparation) out += "\n" + preparation::recipeToml(*task.preparation);
-    if (task.toothCase.exercise) out += "\n" + cases::exerciseText(*task.toothCase.exercise);
-    return out;
 }
 
 /// Of a case's own `[exercise]`.
@@ -95,11 +89,23 @@ Task ofCase(const fs::path& path) {
 
 }  // namespace
 
+std::string taskToml(const Task& task) {
+    std::string out = fmt::format("format = {}\ntype = \"exercise\"\nid = \"{}\"\nversion = {}\nvoxel_um = {}\n",
+                                  kFormatVersion, task.id, task.version, 1e3 * task.voxelMm);
+    if (task.minutes) out += fmt::format("minutes = {}\n", *task.minutes);
+    if (!task.level.empty()) out += fmt::format("level = \"{}\"\n", task.level);
+    if (task.ownJudgement) out += "own_judgement = true\n";
+    if (!task.rubric.empty()) out += fmt::format("rubric = \"{}\"\n", kRubricFile);
+    if (task.preparation) out += "\n" + preparation::recipeToml(*task.preparation);
+    if (task.toothCase.exercise) out += "\n" + cases::exerciseText(*task.toothCase.exercise);
+    return out;
+}
+
 bool isTask(const fs::path& path) {
     std::error_code ec;
     if (fs::is_directory(path, ec)) return fs::exists(path / kTaskFile, ec);
     if (!cases::isPackageName(path) || !fs::exists(path, ec)) return false;
-    return cases::readPackage(path, [](const std::string&) { return false; }).count(kTaskFile) != 0;
+    return cases::packageType(path) == cases::PackageType::exercise;
 }
 
 Task readTask(const fs::path& path) {
@@ -138,11 +144,12 @@ void writeTask(const Task& task, const fs::path& path) {
     plain.exercise.reset();
     for (auto& [name, data] : cases::caseFiles(plain))
         files[kCasePrefix + name] = std::move(data);
-    files[kTaskFile] = bytesOf(tomlOf(task));
+    files[kTaskFile] = bytesOf(taskToml(task));
     if (!task.rubric.empty()) files[kRubricFile] = bytesOf(task.rubric);
-    if (cases::isPackageName(path))
+    if (cases::isPackageName(path)) {
+        cases::setPackageType(files, cases::PackageType::exercise);
         cases::writePackage(path, files);
-    else
+    } else
         cases::writeFolder(path, files, kTaskFile);
 }
 

@@ -3,10 +3,12 @@
 /// @file
 /// An exercise as a file: a case, what is to be done with it, how it is judged. docs/formats/exercise.md.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "handpiece/assess/preparation/preparation.h"
 #include "handpiece/model/case/case.h"
@@ -16,6 +18,8 @@ namespace handpiece::tasks {
 
 inline constexpr const char* kTaskFile = "exercise.toml";
 inline constexpr const char* kRubricFile = "rubric.toml";
+/// For whom an exercise is, the easiest first.
+inline constexpr std::array<std::string_view, 4> kLevels = {"beginner", "basic", "intermediate", "advanced"};
 
 struct Task {
     std::string id;                                  ///< small letters, digits, '-'; 1 to 64 of them
@@ -23,6 +27,7 @@ struct Task {
     cases::Case toothCase;                           ///< its `exercise` has texts, burs, locks, view
     double voxelMm = 0.05;                           ///< of the tooth: a score never hangs on a student's setting
     std::optional<double> minutes;                   ///< that it may take
+    std::string level;                               ///< of kLevels; empty: not said
     std::optional<preparation::Recipe> preparation;  ///< what is to be cut; none: nothing is asked
     bool ownJudgement = false;                       ///< a student says what they expect before they see the result
     std::string rubric;                              ///< how it is judged, as its TOML text; empty: it is not
@@ -36,6 +41,9 @@ struct Task {
 [[nodiscard]] Task readTask(const std::filesystem::path& path);
 /// Into a folder, or as one .handpiece file; whole or not at all.
 void writeTask(const Task& task, const std::filesystem::path& path);
+
+/// exercise.toml of it.
+[[nodiscard]] std::string taskToml(const Task& task);
 
 /// What a score rests on: the case's surfaces and tissues, voxel, preparation. Not the texts, nor the rubric, which has
 /// a hash of its own.

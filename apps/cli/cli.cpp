@@ -1,18 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/cli.h"
 
+#include <fcntl.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 #include "cli/commands.h"
 #include "cli/completion.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/any_error.h"
+#include "handpiece/base/core/error.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::cli {
+namespace {
+
+/// Begun without one of the three (>&-), a program gives its number to the first file that it opens, and prints into
+/// that.
+void holdStandardStreams() {
+    for (int number = 0; number <= 2; ++number)
+        if (fcntl(number, F_GETFD) == -1 && errno == EBADF) (void)open("/dev/null", O_RDWR);
+}
+
+/// What was printed is a result as well.
+void finishPrinting() {
+    errno = 0;
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+        throw core::Error(
+            std::string("not all could be printed") + (errno != 0 ? ": " + std::string(std::strerror(errno)) : ""),
+            "standard output", "give it a place with room");
+}
+
+}  // namespace
 
 int run(int argc, const char* const* argv, const MethodRegistry& extraMethods, const LawRegistry& extraLaws) {
+    holdStandardStreams();
     CLI::App app{"Handpiece: an open dental surgery simulator", "handpiece"};
     app.require_subcommand(1);
     app.set_version_flag("--version", "handpiece " HANDPIECE_VERSION);
@@ -53,6 +78,7 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods, c
         for (const auto& [name, make] : extraLaws)
             force::addLaw(name, make);
         app.parse(argc, argv);
+        finishPrinting();
         return 0;
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? 0 : 2;

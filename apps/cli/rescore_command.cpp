@@ -36,7 +36,7 @@ void rescore(const RescoreOptions& o) {
         return;
     }
     for (const assessment::Rescored& one : all) {
-        const std::string name = one.work.filename().string();
+        const std::string name = assessment::nameOf(one.work, all);
         if (one.result)
             fmt::print("  {:<32} {:>6.1f} of {:<6.1f} passed: {:<8} {}\n", name, one.result->assessment.score,
                        one.result->assessment.maxScore, score::nameOf(one.result->assessment.passed),

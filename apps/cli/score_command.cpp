@@ -4,6 +4,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/inputs.h"
@@ -21,7 +24,7 @@ namespace handpiece::cli {
 namespace {
 
 struct ScoreOptions {
-    std::string work, exercise, rubric, out, classFolder;
+    std::string work, exercise, rubric, out, classFolder, before;
     MeshUnit unit;
     bool json = false, noReplay = false, noPictures = false;
     std::size_t threads = 0;
@@ -62,27 +65,53 @@ void runClass(const ScoreOptions& o) {
     fmt::print("{}: {} results\n", o.out, entries.size());
 }
 
-/// The page, and its pictures beside it as files of their own.
-void writeReport(const ScoreOptions& o, const assessment::Work& work, const assessment::Result& result,
-                 const tasks::Task& task, const rubric::Rubric& judged) {
+using Files = std::vector<std::pair<std::filesystem::path, std::vector<std::byte>>>;
+
+/// What `--out` asks for: the result, its pictures, the page.
+Files filesOf(const ScoreOptions& o, const assessment::Work& work, const assessment::Result& result,
+              const std::string& json, const tasks::Task& task, const rubric::Rubric& judged) {
     const std::filesystem::path folder(o.out);
+    Files files;
+    const auto keep = [&](const std::string& name, std::span<const std::byte> data) {
+        if (!data.empty()) files.emplace_back(folder / name, std::vector<std::byte>(data.begin(), data.end()));
+    };
+    keep("result.json", std::as_bytes(std::span(json)));
     report::AssessmentPictures pictures;
     if (!o.noPictures) {
         studies::ProgressBar bar("pictures");
         pictures = report::assessmentPictures(task, work.teeth, work.state, result.assessment, {}, bar.listener());
         bar.finish();
     }
-    const auto keep = [&](const std::string& name, const report::Png& png) {
-        if (!png.empty()) core::writeFile(folder / (name + ".png"), png);
-    };
     for (const report::AssessmentPictures::View& view : pictures.views) {
-        keep(view.name + "-own", view.own);
-        keep(view.name + "-ideal", view.ideal);
-        keep(view.name + "-deviation", view.deviation);
+        keep(view.name + "-own.png", view.own);
+        keep(view.name + "-ideal.png", view.ideal);
+        keep(view.name + "-deviation.png", view.deviation);
     }
     for (const auto& [criterion, png] : pictures.places)
-        keep("error-" + criterion, png);
-    core::writeFile(folder / "report.html", report::studentReport(result, task, judged, pictures));
+        keep("error-" + criterion + ".png", png);
+    const std::string page = report::studentReport(result, task, judged, pictures);
+    keep("report.html", std::as_bytes(std::span(page)));
+    return files;
+}
+
+/// All of them; where one cannot be written, none that was not there before.
+void writeAll(const std::filesystem::path& folder, const Files& files) {
+    const bool isNew = !core::isThere(folder);
+    core::prepareOutputFolder(folder);
+    std::vector<std::filesystem::path> made;
+    try {
+        for (const auto& [path, data] : files) {
+            const bool wasThere = core::isThere(path);
+            core::writeFile(path, data);
+            if (!wasThere) made.push_back(path);
+        }
+    } catch (const core::Error&) {
+        std::error_code ignored;
+        for (const std::filesystem::path& path : made)
+            std::filesystem::remove(path, ignored);
+        if (isNew) std::filesystem::remove(folder, ignored);
+        throw;
+    }
 }
 
 void run(const ScoreOptions& o) {
@@ -97,20 +126,20 @@ void run(const ScoreOptions& o) {
     const rubric::Rubric judged = o.rubric.empty() ? rubric::parseRubric(task.rubric, o.exercise + "/rubric.toml")
                                                    : rubric::rubricByNameOrFile(o.rubric);
     rubric::requireSound(judged);
-    studies::ProgressBar bar(assessment::isScan(o.work) ? "registering the scan" : "cutting it again");
-    const assessment::Work work = assessment::isScan(o.work)
-                                      ? assessment::readScan(o.work, task, o.unit.mmPerUnit(), bar.listener())
-                                      : assessment::readWork(o.work, task, !o.noReplay, bar.listener());
+    const bool isScan = scan_work::isScan(o.work);
+    if (!o.before.empty() && !isScan)
+        throw core::Error("an earlier scan belongs to a scan", "--before", "leave it out, or name a scan to judge");
+    scan_work::Files files{o.work, {}, o.unit.mmPerUnit()};
+    if (!o.before.empty()) files.before = o.before;
+    studies::ProgressBar bar(isScan ? "registering the scan" : "cutting it again");
+    const assessment::Work work = isScan ? assessment::readScan(files, task, bar.listener())
+                                         : assessment::readWork(o.work, task, !o.noReplay, bar.listener());
     bar.finish();
     const assessment::Result result = assessment::scoreWork(work, task, judged);
     const std::string json = assessment::resultJson(result.assessment, result.identity);
-    if (!o.out.empty()) {
-        core::prepareOutputFolder(o.out);
-        core::writeFile(std::filesystem::path(o.out) / "result.json", json);
-        writeReport(o, work, result, task, judged);
-    }
+    if (!o.out.empty()) writeAll(o.out, filesOf(o, work, result, json, task, judged));
     if (o.json) {
-        fmt::print("{}\n", json);
+        fmt::print("{}", json);
     } else {
         tell(result);
         tellHandIn(o, result);
@@ -129,6 +158,9 @@ void addScoreCommand(Command& app) {
     command.option("--exercise", o.exercise, "folder, .handpiece file, or id of one that comes along");
     command.option("--rubric", o.rubric, "instead of the exercise's own: a file, or one that comes with the program");
     addUnitOptions(command, o.unit, false);
+    command.option("--before", o.before,
+                   "an earlier scan, before anything was cut, of the same tooth and those beside it (.stl, .ply): to "
+                   "register a scan on");
     command.flag("--no-replay", o.noReplay, "do not cut a session again: quicker, and not proven");
     command.flag("--json", o.json, "as JSON (docs/formats/rubric.md)");
     command.flag("--no-pictures", o.noPictures, "without pictures of the tooth");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any text must give a rubric that can be checked, hashed, described and, where it is sound, used, or one core::Error.
+// Any text must give a rubric that can be checked, hashed, described, written so that it reads back the same and, where
+// it is sound, used, or one core::Error.
 #include <cmath>
 #include <vector>
 
@@ -13,12 +14,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const rubric::Rubric read = rubric::parseRubric(text, "fuzz");
         (void)rubric::describe(read, "ja");
         if (rubric::hashOf(read) != rubric::hashOf(rubric::parseRubric(text, "again"))) __builtin_trap();
+        const std::string toml = rubric::rubricToml(read);
+        const rubric::Rubric back =
+            handpiece::fuzz::mustRead([&] { return rubric::parseRubric(toml, "written"); });
+        if (rubric::hashOf(back) != rubric::hashOf(read) || rubric::rubricToml(back) != toml) __builtin_trap();
         bool isSound = true;
         for (const rubric::Finding& f : rubric::check(read))
             if (f.severity == rubric::Severity::error) isSound = false;
         (void)rubric::differences(read, read);
         if (!isSound) return;
-        if (!rubric::differences(read, read).empty()) __builtin_trap();
+        if (!rubric::differences(read, back).empty()) __builtin_trap();
         std::vector<handpiece::measures::Measured> measured;
         for (const rubric::Criterion& c : read.criteria) {
             handpiece::measures::Measured m;

@@ -3,7 +3,9 @@
 
 import json
 import math
+import os
 import pathlib
+import random
 import re
 import shutil
 import signal
@@ -89,6 +91,53 @@ class Score(SystemTest):
         bare = self.exercise("bare", "--no-rubric")
         self.refused("score", self.folder / "cut" / "attempt", "--exercise", bare, mentions=("no rubric", "--rubric"))
         self.assertGreater(self.score(self.folder / "cut" / "attempt", bare, "--rubric", "46-class-i")["score"], 0)
+
+    def test_random_works_score_alike_from_session_attempt_and_store_on_any_machine(self):
+        seed = int(os.environ.get("HANDPIECE_TEST_SEED", 20261126))
+        print(f"HANDPIECE_TEST_SEED={seed}", flush=True)
+        draw = random.Random(seed)
+        exercise = self.exercise("one", "--rubric", RUBRICS / "46-class-i.toml")
+        hand = ("time", "path", "smoothness")
+        for number in range(2):
+            cut = self.folder / f"cut{number}"
+            self.ok("run", "--case", exercise / "case", "--bur", draw.choice(["330", "245"]), "--motion", "class-one", "--voxel", 100,
+                    "--depth", round(draw.uniform(0.6, 2.2), 3), "--isthmus", round(draw.uniform(1.1, 2.0), 3),
+                    "--tremor", round(draw.uniform(0, 150)), "--seed", draw.randrange(1000), "--duration", 12, "--speed", 6, "--out", cut)
+
+            def scored(work, *arguments, **machine):
+                os.environ.update(machine)
+                try:
+                    return self.ok("score", work, "--exercise", exercise, "--json", *arguments).stdout
+                finally:
+                    for name in machine:
+                        del os.environ[name]
+
+            session = cut / "session.h5"
+            first = scored(session, "--threads", 1)
+            self.assertTrue(json.loads(first)["proven"])
+            for simd, threads in (("base", 2), ("avx2", 1), ("avx512", 2)):
+                self.assertEqual(scored(session, "--threads", threads, HANDPIECE_SIMD=simd), first, (simd, threads))
+
+            def of_tooth(text):
+                read = json.loads(text) if isinstance(text, str) else text
+                # Only what sessions tell of a place is left out: when it was cut, and with what load.
+                for one in read["criteria"]:
+                    for place in one["evidence"]:
+                        place.update(t_s=None, session=None, force_n=None)
+                return json.dumps([c for c in read["criteria"] if c["id"] not in hand])
+
+            tooth = of_tooth(first)
+            self.assertEqual(of_tooth(scored(session, "--no-replay")), tooth, "from the record")
+            self.assertEqual(of_tooth(scored(cut / "attempt")), tooth, "from the attempt")
+
+            work = self.folder / f"work{number}"
+            work.mkdir()
+            shutil.copy(session, work)
+            rescore = ("rescore", work, "--exercise", exercise, "--rubric", RUBRICS / "46-class-i.toml", "--json", "--out")
+            for _ in ("measured", "as measured before"):
+                again = json.loads(self.ok(*rescore, self.folder / "table.csv").stdout)[0]
+                del again["work"]
+                self.assertEqual(json.dumps(again), json.dumps(json.loads(first)))
 
     def test_a_chain_of_sessions_and_a_class_under_another_rubric(self):
         exercise = self.exercise("one", "--rubric", RUBRICS / "46-class-i.toml")

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "app/simulation/live_session_fixture.h"
+#include "handpiece/app/assessment/found_work.h"
+#include "handpiece/app/assessment/rescore.h"
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/simulation/working_way.h"
 #include "handpiece/base/core/file.h"
@@ -216,6 +219,125 @@ TEST(ReadWork, OfAnAttemptAndItsSessionsIsTheSame) {
     EXPECT_FALSE(forged.isProven);
     EXPECT_THAT(forged.proof, HasSubstr("another tooth"));
     EXPECT_TRUE(forged.recordings.empty());
+}
+
+/// Four sittings at one block, each of which goes on from what the one before it left, as files of their own.
+class Chain : public testing::Test {
+  protected:
+    void SetUp() override {
+        tooth::StateDelta state;
+        for (std::size_t i = 0; i < kCount; ++i) {
+            simulation::SimulationSetup station = simulation::blockStation();
+            simulation::LiveSessionSettings settings;
+            settings.sessionFile = folder_.path() / names_[i];
+            if (i > 0) station.resume(state);
+            station.settings.resumed = i > 0;
+            const auto lead = std::make_shared<simulation::Lead>();
+            // Each by a hand that comes from a little more to the side.
+            const double aside = 0.25 * static_cast<double>(i);
+            simulation::LiveSession sitting(station, simulation::blockCase(),
+                                            simulation::handOf(simulation::hole(aside), lead), settings, nullptr);
+            ASSERT_TRUE(simulation::leadTo(sitting, *lead, 1.3));
+            sitting.stop();
+            state = sitting.state();
+            links_.push_back({names_[i], settings.sessionFile, false});
+            attempt_ = sitting.attempt(folder_.path() / "case");
+        }
+        end_ = rubric::hashText(tooth::stateHash(state));
+    }
+    [[nodiscard]] std::string hashOf(const Work& work) const { return rubric::hashText(tooth::stateHash(work.state)); }
+    /// A folder with those of them.
+    [[nodiscard]] fs::path folderOf(const char* name, const std::vector<std::size_t>& which) const {
+        const fs::path place = folder_.path() / "works" / name;
+        fs::create_directories(place);
+        for (const std::size_t i : which)
+            fs::copy_file(folder_.path() / names_[i], place / names_[i]);
+        return place;
+    }
+
+    static constexpr std::size_t kCount = 4;
+    /// Not in the order of the work: that is told by the teeth.
+    const std::array<std::string, kCount> names_{"b.h5", "a.h5", "d.h5", "c.h5"};
+    core::PrivateFolder folder_;
+    std::vector<ChainLink> links_;
+    cases::Attempt attempt_;
+    std::string end_;
+    tasks::Task task_ = blockTask();
+};
+
+TEST_F(Chain, OfFourSessionsIsProvenHoweverItIsHandedIn) {
+    const std::vector<Request> asked{{"removed"}, {"time"}, {"strokes"}};
+    const Work told = readChain(links_, task_);
+    EXPECT_TRUE(told.isProven) << told.proof;
+    EXPECT_THAT(told.proof, HasSubstr("4 sessions"));
+    EXPECT_EQ(told.sessionHashes.size(), kCount);
+    EXPECT_EQ(hashOf(told), end_);
+    const MeasuredWork measured = measureWork(told, task_, asked);
+    ASSERT_TRUE(measured.measured[2].value);
+    EXPECT_EQ(*measured.measured[2].value, static_cast<double>(kCount)) << "a stroke a sitting";
+    EXPECT_NEAR(*measured.measured[1].value, 4 * 1.3, 0.5) << "pauses are not counted";
+    const Work inFolder = readWork(folderOf("all", {0, 1, 2, 3}), task_);
+    EXPECT_TRUE(inFolder.isProven) << inFolder.proof;
+    EXPECT_EQ(inFolder.sessionHashes, told.sessionHashes);
+    EXPECT_EQ(hashOf(inFolder), end_);
+    // The first two came with an attempt, as with one that was handed in and gone on with.
+    const cases::Case block = simulation::blockCase();
+    attempt_.recordings = {{names_[0], true}, {names_[1], true}, {names_[2], false}, {names_[3], false}};
+    const fs::path attempt = folder_.path() / "attempt.handpiece";
+    cases::writeAttempt(attempt_, attempt, &block,
+                        {{names_[0], core::readFile(links_[0].in)}, {names_[1], core::readFile(links_[1].in)}});
+    std::vector<ChainLink> mixed = links_;
+    mixed[0] = {names_[0], attempt, true};
+    mixed[1] = {names_[1], attempt, true};
+    const Work packed = readChain(mixed, task_);
+    EXPECT_TRUE(packed.isProven) << packed.proof;
+    EXPECT_EQ(packed.sessionHashes, told.sessionHashes);
+}
+
+TEST_F(Chain, WithOneMissingIsScoredAndSaysSo) {
+    fs::remove(links_[1].in);
+    const Work told = readChain(links_, task_);
+    EXPECT_FALSE(told.isProven);
+    EXPECT_THAT(told.proof, HasSubstr("a.h5 is no longer there"));
+    EXPECT_EQ(hashOf(told), end_) << "the tooth is that of the last";
+    const std::vector<Request> asked{{"removed"}, {"time"}};
+    const MeasuredWork measured = measureWork(told, task_, asked);
+    EXPECT_TRUE(measured.measured[0].value);
+    EXPECT_FALSE(measured.measured[1].value) << "a time without a part of it is none";
+    EXPECT_THAT(measured.measured[1].reason, HasSubstr("no longer there"));
+    const Work inFolder = readWork(folderOf("some", {0, 2, 3}), task_);
+    EXPECT_FALSE(inFolder.isProven);
+    EXPECT_THAT(inFolder.proof, HasSubstr("d.h5 goes on from a tooth that no other session here leaves"));
+    EXPECT_EQ(hashOf(inFolder), end_);
+    EXPECT_TRUE(inFolder.recordings.empty());
+    // In another order than it was worked in.
+    std::vector<ChainLink> turned{links_[0], links_[3], links_[2]};
+    EXPECT_THAT(readChain(turned, task_).proof, HasSubstr("c.h5 goes on from another tooth"));
+    fs::remove(links_[3].in);
+    EXPECT_NE(test::errorOf([&] { static_cast<void>(readChain(links_, task_)); }), "") << "no tooth to judge";
+    EXPECT_NE(test::errorOf([&] { static_cast<void>(readChain({}, task_)); }), "");
+}
+
+TEST_F(Chain, OfTwoWorksIsNone) {
+    const fs::path two = folderOf("two", {0, 1});
+    fs::copy_file(links_[0].in, two / "again.h5");
+    EXPECT_THAT(test::errorOf([&] { static_cast<void>(readWork(two, task_)); }), HasSubstr("several works"));
+}
+
+TEST_F(Chain, IsOneWorkForAllWhoLook) {
+    (void)folderOf("student-1", {0, 1, 2, 3});
+    (void)folderOf("student-2", {0, 2, 3});
+    const fs::path works = folder_.path() / "works";
+    fs::copy_file(links_[0].in, works / "alone.h5");
+    fs::create_directories(works / "student-3");
+    core::writeFile(works / "student-3" / "result.json", std::string_view("{}"));
+    fs::create_directories(works / ".hidden");
+    core::writeFile(works / ".hidden" / "x.h5", std::string_view(""));
+    std::vector<std::string> found;
+    for (const FoundWork& one : findWork(works))
+        found.push_back(one.path.lexically_relative(works).generic_string() + (one.isResultOnly ? "!" : ""));
+    EXPECT_THAT(found, testing::ElementsAre("alone.h5", "student-1", "student-2", "student-3/result.json!"));
+    EXPECT_EQ(worksIn(works).size(), 3u);
 }
 
 }  // namespace

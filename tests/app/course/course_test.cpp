@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "handpiece/app/course/finished_work.h"
+#include "handpiece/app/course/retest.h"
 #include "handpiece/app/course/shipped_exercises.h"
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/file.h"
@@ -83,6 +84,54 @@ TEST(Course, OneBadFileInAFolderHidesNoOther) {
     EXPECT_LT(found[2].task->preparation->leeway.sideMm, found[0].task->preparation->leeway.sideMm);
     EXPECT_NE(test::errorOf([&] { static_cast<void>(exercisesIn(folder.path() / "gone")); }), "");
     EXPECT_NE(test::errorOf([] { static_cast<void>(blockTask("line", 4)); }), "");
+}
+
+score::Assessment resultOf(const std::vector<std::pair<std::string, double>>& pointsOfTen) {
+    score::Assessment result;
+    for (const auto& [id, points] : pointsOfTen) {
+        score::CriterionScore c;
+        c.id = id;
+        c.measure = "removed";
+        c.maxPoints = 10.0;
+        if (points >= 0.0)
+            c.points = points;
+        else
+            c.standing = score::Standing::notMeasured;
+        result.criteria.push_back(c);
+    }
+    return result;
+}
+
+TEST(Retest, OfWhatWasLostIsDueInAWeekAndThenLaterAndLater) {
+    constexpr std::int64_t kDay = 24LL * 3600 * 1000;
+    // The three dearest of what was lost; a tenth of a point is no loss.
+    std::vector<DueCriterion> open =
+        nextRetests({}, resultOf({{"a", 9.95}, {"b", 5}, {"c", 2}, {"d", 0}, {"e", 9}}), "one", false, 0);
+    ASSERT_EQ(open.size(), 3u);
+    EXPECT_EQ(open[0].criterion, "d");
+    EXPECT_EQ(open[2].criterion, "b");
+    EXPECT_EQ(open[0].due, 7 * kDay);
+    // The next day all is well: it stays due, for that is no retest. Nor is one with helps, later.
+    const score::Assessment good = resultOf({{"a", 10}, {"b", 10}, {"c", 10}, {"d", 10}, {"e", 10}});
+    open = nextRetests(open, good, "two", true, kDay);
+    EXPECT_EQ(open[0].due, 7 * kDay);
+    open = nextRetests(open, good, "three", false, 8 * kDay);
+    EXPECT_EQ(open[0].due, 7 * kDay);
+    EXPECT_EQ(open[0].attempt, "one");
+    // Shown when due, but for what could not be measured and what was lost again.
+    open = nextRetests(open, resultOf({{"b", 10}, {"c", -1}, {"d", 3}}), "four", true, 8 * kDay);
+    ASSERT_EQ(open.size(), 3u);
+    EXPECT_EQ(open[0].due, 15 * kDay) << "lost again";
+    EXPECT_EQ(open[0].step, 0);
+    EXPECT_EQ(open[1].due, 7 * kDay) << "not measured";
+    EXPECT_EQ(open[2].due, 29 * kDay);
+    EXPECT_EQ(open[2].step, 1);
+    EXPECT_EQ(open[2].attempt, "four");
+    open = nextRetests(open, good, "five", true, 29 * kDay);
+    EXPECT_EQ(open[2].due, 89 * kDay);
+    open = nextRetests(open, good, "six", true, 89 * kDay);
+    ASSERT_EQ(open.size(), 2u) << "the third time it is done with";
+    EXPECT_TRUE(nextRetests({}, good, "x", false, 0).empty());
 }
 
 TEST(Course, WhatCannotBeJudgedSaysSo) {

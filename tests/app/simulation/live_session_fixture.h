@@ -60,6 +60,15 @@ inline device::Motion twoHoles() {
                            at(2.8, 0.9, 0.3, 1), at(2.801, 0.9, 0.3, 0), at(3.2, 0.9, 0.3, 0)});
 }
 
+/// One of 1.1 s at this x, the pedal up from then on.
+inline device::Motion hole(double x) {
+    const auto at = [x](double timeS, double z, double pedal) {
+        return device::TimedPose{timeS, {core::Vec3(x, 0, z), core::Quat::Identity()}, pedal};
+    };
+    return device::Motion({at(0.0, 0.3, 1), at(0.4, 0.3, 1), at(0.7, -1.8, 1), at(1.0, -1.8, 1), at(1.1, 0.3, 1),
+                           at(1.101, 0.3, 0), at(3.0, 0.4, 0)});
+}
+
 inline std::unique_ptr<device::Device> handOf(device::Motion motion, std::shared_ptr<Lead> lead = nullptr) {
     return std::make_unique<LedHand>(std::move(motion), std::move(lead));
 }

@@ -118,7 +118,7 @@ TEST_F(Block, whatIsGoneAndWhatIsLeftOfEachTissue) {
     const Vec3 centre(0, 0, -1.9);
     const Body body = of({{Tissue::dentine, [=](const Vec3& q) { return q.z() - dej; }},
                           {Tissue::cariesFirm, [=](const Vec3& q) { return (q - centre).norm() - 0.6; }},
-                          {Tissue::cariesSoft, [=](const Vec3& q) { return (q - centre).norm() - 0.3; }}},
+                          {Tissue::cariesSoft, [=](const Vec3& q) { return (q - centre).norm() - 0.4; }}},
                          Tissue::enamel);
     BoxCavity box;
     box.radiusMm = 0.05;
@@ -128,7 +128,7 @@ TEST_F(Block, whatIsGoneAndWhatIsLeftOfEachTissue) {
     const auto cut = test::carved(body, box.solid());
     const Preparation p = preparation(body, *cut);
     const double half = 2.0 / 3.0 * std::numbers::pi;
-    const double firm = half * (0.216 - 0.027), soft = half * 0.027;
+    const double firm = half * (0.216 - 0.064), soft = half * 0.064;
     EXPECT_NEAR(*take(p, "caries-left").value, firm + soft, 0.02 * (firm + soft));
     EXPECT_NEAR(*take(p, "caries-left", tissue("caries-soft")).value, soft, 0.05 * soft);
     // The junction lies 0.9 mm over the floor: a layer of 0.1 mm under the floor is periphery.
@@ -151,6 +151,54 @@ TEST_F(Block, whatIsGoneAndWhatIsLeftOfEachTissue) {
     const double free = wide.lengthMm * wide.widthMm - mouth;
     const Measured hangs = take(preparation(body, *hollow), "unsupported-enamel");
     EXPECT_NEAR(*hangs.value, free, 0.15 * free);
+}
+
+TEST_F(Block, cariesIsLeftWhereItIsAndNoneAlongACutThatFollowsIt) {
+    // A round lesion, cut out exactly, 0.1 mm short, 0.1 mm too far, and 0.1 mm aside; the whole of it.
+    constexpr double kRadius = 1.2;
+    const auto ball = [](double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; };
+    const double lens = std::numbers::pi * (4.0 * kRadius + 0.1) * (2.0 * kRadius - 0.1) * (2.0 * kRadius - 0.1) / 12.0;
+    struct Way {
+        const char* name;
+        double radius, aside, leftMm3;
+    };
+    const Way ways[] = {{"exactly", kRadius, 0.0, 0.0},
+                        {"short", kRadius - 0.1, 0.0, ball(kRadius) - ball(kRadius - 0.1)},
+                        {"too far", kRadius + 0.1, 0.0, 0.0},
+                        {"aside", kRadius, 0.1, ball(kRadius) - lens},
+                        {"half", kRadius - 0.35, 0.0, ball(kRadius) - ball(kRadius - 0.35)}};
+    std::mt19937_64 random(handpiece::test::seed() + 17);
+    for (const double voxel : {0.1, 0.05})
+        for (int turn = 0; turn < 4; ++turn) {
+            // The first one stands square in the grid, where whole layers of nodes lie on a border.
+            const core::Pose pose = turn == 0 ? core::Pose{} : test::randomPose(random);
+            const Body plain = test::bodyOf(test::boxMesh(Vec3(-2, -2, -3.5), Vec3(2, 2, 0)), pose, voxel);
+            const Vec3 centre(0.03, -0.02, -1.7);
+            const Shape lesion = [=](const Vec3& q) { return (q - centre).norm() - kRadius; };
+            const Body body{
+                tooth::withTissues(
+                    *plain.model,
+                    field::TissueMap::fromFunctions(
+                        plain.model->field,
+                        std::vector<field::TissueMap::PartFunction>{
+                            {[&](const Vec3& p) { return lesion(pose.applyInverse(p)); }, Tissue::cariesSoft, 2},
+                            {[&](const Vec3& p) { return lesion(pose.applyInverse(p)) - 0.4; }, Tissue::cariesFirm, 1}},
+                        Tissue::dentine)),
+                pose};
+            for (const Way& way : ways) {
+                const auto cut = test::carved(
+                    body, [&](const Vec3& q) { return (q - centre - Vec3(way.aside, 0, 0)).norm() - way.radius; });
+                const Preparation p = preparation(body, *cut);
+                const Measured left = take(p, "caries-left", tissue("caries-soft"));
+                ASSERT_TRUE(left.value);
+                std::printf("caries left, %.2f mm, turn %d, %s: %.4f, is %.4f, stated %.4f\n", voxel, turn, way.name,
+                            *left.value, way.leftMm3, left.uncertainty);
+                EXPECT_LE(std::abs(*left.value - way.leftMm3), left.uncertainty) << way.name << " " << voxel;
+                // A hundredth of a voxel of the lesion's surface and of the cut's, and a two-hundredth of what is left.
+                EXPECT_LE(left.uncertainty,
+                          0.025 * voxel * 4.0 * std::numbers::pi * kRadius * kRadius + 0.0051 * way.leftMm3);
+            }
+        }
 }
 
 TEST_F(Block, zonesCountersIsthmusAndANickedNeighbour) {

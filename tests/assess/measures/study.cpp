@@ -116,6 +116,9 @@ void faults(const Options& o) {
                     found[f][g] += finding.isFound ? 1 : 0;
                     open[g] += finding.isBorderline ? 1 : 0;
                     isFalse = isFalse || (g != f && finding.isFound);
+                    if (o.show && finding.isFound != (g == f))
+                        std::printf("  %s %d, %s put in: %s %s\n", kKindNames[static_cast<int>(kind)], done,
+                                    kFaultNames[f], kFaultNames[g], finding.said.c_str());
                 }
                 falsely += isFalse ? 1 : 0;
             }

@@ -586,8 +586,10 @@ std::array<Finding, kFaults> findings(const Trial& trial) {
                                  {"roughness", side("lingual")}});
     std::array<Finding, kFaults> found{};
     const auto see = [&](Fault fault, std::size_t i, double limit, bool isAbove) {
-        if (!got[i].value) return;
         Finding& f = found[static_cast<std::size_t>(fault)];
+        f.said += (f.said.empty() ? "" : ", ") + got[i].of.side + " " +
+                  (got[i].value ? std::to_string(*got[i].value) : got[i].reason);
+        if (!got[i].value) return;
         const double value = *got[i].value;
         f.isFound = f.isFound || (isAbove ? value > limit : value < limit);
         f.isBorderline = f.isBorderline || std::abs(value - limit) < got[i].uncertainty;

@@ -81,6 +81,7 @@ class Lab {
 /// Whether a fault is found, and whether the uncertainty reaches over the limit.
 struct Finding {
     bool isFound = false, isBorderline = false;
+    std::string said;  ///< each value that was looked at
 };
 /// All faults' findings of one trial, in the order of Fault. The limits are those of the shipped rubrics' critical
 /// errors where they have one: ridge 1 mm, neighbour 0.1 mm, pulp 0.5 mm; else half-way between what is right and the

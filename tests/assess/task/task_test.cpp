@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "handpiece/model/case/attempt.h"
 #include "handpiece/model/starter/block.h"
 #include "support/error_of.h"
 
@@ -70,6 +71,18 @@ TEST_F(TaskFile, ComesBackFromFolderAndPackage) {
     }
 }
 
+TEST_F(TaskFile, EveryVoxelComesBackBitForBit) {
+    // Of 20 to 400 um, 42 whole numbers came back as another number (1000 times .051 is not 51), and with another hash.
+    Task task = block();
+    for (const double voxelUm : {26.0, 51.0, 102.0, 351.0, 33.3, 50.1, 1000.0 / 7.0}) {
+        task.voxelMm = 1e-3 * voxelUm;
+        writeTask(task, folder_ / "task");
+        const Task back = readTask(folder_ / "task");
+        EXPECT_EQ(back.voxelMm, task.voxelMm) << voxelUm;
+        EXPECT_EQ(contentHash(back), contentHash(task)) << voxelUm;
+    }
+}
+
 TEST_F(TaskFile, HashRestsOnWhatIsAskedAndNotOnWords) {
     const Task task = block();
     Task words = task, deeper = task, finer = task, other = task;
@@ -99,6 +112,38 @@ TEST_F(TaskFile, AnExerciseInACaseIsReadAndMovedOver) {
     writeTask(task, folder_ / "moved");
     EXPECT_EQ(readTask(folder_ / "moved").toothCase.exercise->bur, "330");
     EXPECT_FALSE(cases::readCase(folder_ / "moved" / "case").exercise) << "it stands in exercise.toml now";
+}
+
+TEST_F(TaskFile, AnAttemptCarriesItsExerciseWhereverItGoes) {
+    Task task = block();
+    task.isTimeHard = task.hasLiveBar = true;
+    writeTask(task, folder_ / "task");
+    task = readTask(folder_ / "task");  // as files keep it
+    EXPECT_TRUE(task.isTimeHard);
+    EXPECT_TRUE(task.hasLiveBar);
+    cases::Attempt attempt;
+    attempt.caseFile = folder_ / "task" / "case";
+    attempt.caseKey = cases::contentKey(task.toothCase);
+    attempt.voxelMm = task.voxelMm;
+    attempt.exercise = taskToml(task);
+    attempt.rubric = task.rubric;
+    cases::writeAttempt(attempt, folder_ / "one.handpiece", &task.toothCase);
+    cases::writeAttempt(attempt, folder_ / "folder");
+    for (const char* name : {"one.handpiece", "folder"}) {
+        EXPECT_FALSE(isTask(folder_ / name)) << "it is an attempt";
+        const Task back = readTask(folder_ / name);
+        EXPECT_EQ(contentHash(back), contentHash(task)) << name;
+        EXPECT_EQ(back.rubric, task.rubric);
+        EXPECT_EQ(taskToml(back), taskToml(task));
+    }
+    attempt.exercise = "format = 9";
+    cases::writeAttempt(attempt, folder_ / "newer.handpiece", &task.toothCase);
+    EXPECT_NE(test::errorOf([&] { (void)readTask(folder_ / "newer.handpiece"); }).find("newer program"),
+              std::string::npos);
+    attempt.exercise.clear();
+    cases::writeAttempt(attempt, folder_ / "none.handpiece", &task.toothCase);
+    EXPECT_NE(test::errorOf([&] { (void)readTask(folder_ / "none.handpiece"); }).find("no exercise"),
+              std::string::npos);
 }
 
 TEST_F(TaskFile, BadOnesAreToldInOneLineEach) {

@@ -144,6 +144,33 @@ TEST_F(StoreTest, GivesBackAllThatWasPutInAlsoToAnotherProgram) {
     EXPECT_EQ(store.outbox(0)[0].id, first.id);
 }
 
+TEST_F(StoreTest, RetestsComeWithTheAttemptThatAsksForThemOrNotAtAll) {
+    Store store(file_);
+    Attempt first = attempt(), second = attempt(), other = attempt();
+    first.workedS = 605.5;
+    first.limitS = 600.0;
+    other.exercise = "block";
+    store.add(first, {{"", "depth", first.id, 0, 70}, {"", "width", first.id, 1, 50}});
+    store.add(other, {{"", "width", other.id, 0, 60}});
+    EXPECT_EQ(store.attempt(first.id)->workedS, 605.5);
+    EXPECT_EQ(store.attempt(first.id)->lateS(), 5.5);
+    EXPECT_EQ(store.attempt(other.id)->lateS(), 0.0) << "no limit";
+    std::vector<std::string> due;
+    for (const Retest& one : store.retests())
+        due.push_back(one.exercise + "/" + one.criterion + "/" + std::to_string(one.step));
+    EXPECT_THAT(due, ElementsAre("class-one-46/width/1", "block/width/0", "class-one-46/depth/0"));
+    // Twice the same criterion: nothing of it is stored, nor what was there lost.
+    EXPECT_NE(test::errorOf([&] {
+                  store.add(second, {{"", "depth", second.id, 0, 1}, {"", "depth", second.id, 0, 2}});
+              }),
+              "");
+    EXPECT_FALSE(store.attempt(second.id));
+    EXPECT_EQ(store.retests("class-one-46").size(), 2u);
+    store.add(second, {});
+    EXPECT_TRUE(store.retests("class-one-46").empty());
+    EXPECT_EQ(store.retests().size(), 1u);
+}
+
 TEST_F(StoreTest, IdsAreOnesOwnAndNothingOfAnAttemptIsHalfStored) {
     std::set<std::string> ids;
     for (int i = 0; i < 10000; ++i)
@@ -354,6 +381,8 @@ TEST_F(StoreTest, RefusesANewerOneAnothersAndWhatIsNone) {
     EXPECT_EQ(newer.id(), "store-newer");
     EXPECT_THAT(newer.arguments(), ElementsAre("9", std::to_string(Store::kVersion)));
     EXPECT_EQ(answer(file_, "PRAGMA user_version"), "9") << "left as it is";
+    sql(file_, "PRAGMA user_version = -1");
+    EXPECT_EQ(test::errorIdOf([&] { Store store(file_); }), "store-damaged") << "no version comes before the first";
     const fs::path others = folder_.path() / "others.db";
     sql(others, "CREATE TABLE t (x); PRAGMA user_version = 1");
     EXPECT_EQ(test::errorIdOf([&] { Store store(others); }), "store-damaged");

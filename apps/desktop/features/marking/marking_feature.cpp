@@ -10,6 +10,7 @@
 #include "desktop/features/marking/sheet_panel.h"
 #include "desktop/work/simulator.h"
 #include "handpiece/app/assessment/marks_agreement.h"
+#include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/marking/desk_csv.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/case/attempt.h"
@@ -269,14 +270,17 @@ void MarkingFeature::openWork(const QString& code) {
     showSheet();
     const marking::ReturnedWork work = desk_->work(code.toStdString());
     if (work.isResultOnly || !core::isThere(work.path)) return;
-    const bool isSession = work.path.extension() == ".h5" && !core::isFolder(work.path);
-    if (desk_->isRevealed(code.toStdString())) return look(work.path, isSession);
+    const bool isSession = !cases::isPackageName(work.path) && !cases::isAttempt(work.path);
+    // Of a chain the one that came last.
+    const fs::path shown =
+        core::isFolder(work.path) && isSession ? assessment::sessionsIn(work.path).back() : work.path;
+    if (desk_->isRevealed(code.toStdString())) return look(shown, isSession);
     // Under its code, without whose it is; its recordings stay away, for their names may tell.
     if (copyJob_) copyJob_->deleteLater();
     const fs::path place = toPath(shown_.filePath(code + (isSession ? ".h5" : ".handpiece")));
     auto* job = new Job(
         tr("Opening %1").arg(code),
-        [from = work.path, place, isSession](const core::Progress&) {
+        [from = shown, place, isSession](const core::Progress&) {
             if (core::isThere(place)) return;
             if (isSession) return fs::create_symlink(core::wholePath(from), place);
             cases::OpenAttempt open = cases::openAttempt(from);

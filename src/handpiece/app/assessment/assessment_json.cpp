@@ -225,8 +225,20 @@ score::Result parseResult(std::string_view text, const std::string& where) {
     of.proven = json.flag("proven");
     if (parsed.contains("scan") && !json.member("scan").is_null()) {
         const Reader scan(json.member("scan"), where);
-        of.scan = {scan.number("rms_mm"), scan.number("uncut_mm2"), scan.number("noise_mm"), scan.number("cut_mm2"),
-                   scan.number("voxel_mm")};
+        score::ScanFit& fit = of.scan.emplace();
+        fit.rmsMm = scan.number("rms_mm");
+        fit.uncutMm2 = scan.number("uncut_mm2");
+        fit.noiseMm = scan.number("noise_mm");
+        fit.cutMm2 = scan.number("cut_mm2");
+        fit.voxelMm = scan.number("voxel_mm");
+        // Results of before say nothing of these.
+        fit.liesMm = scan.numberOrNone("lies_mm").value_or(0.0);
+        fit.turnsDeg = scan.numberOrNone("turns_deg").value_or(0.0);
+        if (const std::string on = scan.textOrEmpty("registered_on"); !on.empty()) {
+            const auto found = score::registeredOnByName(on);
+            if (!found) scan.fail("\"registered_on\" is none of what a scan is registered on");
+            fit.registeredOn = *found;
+        }
     }
     for (const Json& hash : json.list("session_hash"))
         of.sessionHashes.push_back(hash.is_string() ? hash.get<std::string>() : std::string());
@@ -327,11 +339,14 @@ std::string resultJson(const score::Assessment& a, const score::Identity& of) {
                  {"device", a.context.device},
                  {"motion_scale", a.context.motionScale}};
     json["scan"] = !of.scan ? Json(nullptr)
-                            : Json{{"rms_mm", of.scan->rmsMm},
+                            : Json{{"registered_on", score::nameOf(of.scan->registeredOn)},
+                                   {"rms_mm", of.scan->rmsMm},
                                    {"uncut_mm2", of.scan->uncutMm2},
                                    {"noise_mm", of.scan->noiseMm},
                                    {"cut_mm2", of.scan->cutMm2},
-                                   {"voxel_mm", of.scan->voxelMm}};
+                                   {"voxel_mm", of.scan->voxelMm},
+                                   {"lies_mm", of.scan->liesMm},
+                                   {"turns_deg", of.scan->turnsDeg}};
     for (const score::CriticalError& e : a.critical)
         json["critical"].push_back({{"criterion", e.criterion}, {"borderline", e.borderline}});
     json["criteria"] = Json::array();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/app/assessment/marks_agreement.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -289,7 +291,9 @@ std::string blandAltmanSvg(const CriterionAgreement& of, const RaterPair& pair) 
     marks.line = false;
     marks.markers = true;
     plot.series.push_back(std::move(marks));
-    if (pair.blandAltman && pair.blandAltman->bias)
+    if (pair.blandAltman && pair.blandAltman->bias && *pair.blandAltman->low == *pair.blandAltman->high)
+        plot.limits = {{*pair.blandAltman->bias, "bias, ±1.96 sd"}};
+    else if (pair.blandAltman && pair.blandAltman->bias)
         plot.limits = {{*pair.blandAltman->bias, "bias"},
                        {*pair.blandAltman->low, "−1.96 sd"},
                        {*pair.blandAltman->high, "+1.96 sd"}};

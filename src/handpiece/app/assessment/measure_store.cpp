@@ -9,7 +9,6 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
-#include "handpiece/model/case/attempt.h"
 #include "handpiece/model/field/field_cache.h"
 
 namespace handpiece::assessment {
@@ -51,7 +50,9 @@ Evidence evidenceOf(const Json& json) {
         e.placeMm = core::Vec3(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>());
     e.forceN = numberOr(json.at("f"));
     e.text = json.at("text").get<std::string>();
-    e.session = json.at("session").get<std::size_t>();
+    const auto* const session = json.at("session").get_ptr<const Json::number_unsigned_t*>();
+    if (session == nullptr) throw core::Error("a session without a number", "kept measures");
+    e.session = static_cast<std::size_t>(*session);
     return e;
 }
 
@@ -104,27 +105,6 @@ bool canBeKept(const MeasuredWork& work) {
 }
 
 }  // namespace
-
-std::string workHash(const fs::path& work) {
-    std::vector<fs::path> files;
-    std::error_code ec;
-    if (!fs::is_directory(work, ec)) {
-        files = {work};
-    } else if (fs::exists(work / cases::kAttemptFile, ec)) {
-        for (fs::recursive_directory_iterator entry(work, ec), end; !ec && entry != end; entry.increment(ec))
-            if (entry->is_regular_file(ec)) files.push_back(entry->path());
-    } else {
-        files = sessionsIn(work);
-    }
-    std::sort(files.begin(), files.end());
-    core::Hasher hasher;
-    for (const fs::path& file : files) {
-        // Of a chain their order counts, of a single file its name does not.
-        if (files.size() > 1) hasher.add(file.lexically_relative(work).generic_string());
-        hasher.add(std::span<const std::byte>(core::readFile(file)));
-    }
-    return rubric::hashText(hasher.value());
-}
 
 std::string encodeMeasures(const StoreKey& key, const MeasuredWork& work) {
     Json json = {{"key", keyJson(key)},

@@ -17,8 +17,6 @@ struct StoreKey {
     std::string work;      ///< hash of its files: workHash()
     std::string exercise;  ///< hash of what it was held against
 };
-/// Of all that makes a piece of work: a session, a folder's sessions, an attempt's files. Throws core::Error.
-[[nodiscard]] std::string workHash(const std::filesystem::path& work);
 
 /// As text, and back: nothing where it is of another key, engine or revision, damaged, or holds what cannot be.
 [[nodiscard]] std::string encodeMeasures(const StoreKey& key, const MeasuredWork& work);

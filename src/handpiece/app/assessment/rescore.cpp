@@ -8,6 +8,7 @@
 
 #include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/assessment/csv_cell.h"
+#include "handpiece/app/assessment/found_work.h"
 #include "handpiece/app/assessment/side_by_side.h"
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/any_error.h"
@@ -99,28 +100,13 @@ MeasuredWork measureOrFind(const fs::path& work, const std::optional<tasks::Task
 }  // namespace
 
 std::vector<fs::path> worksIn(const fs::path& folder) {
-    if (!core::isFolder(folder))
-        throw core::Error("there is no such folder", folder.string(), "name the folder with sessions and attempts");
     std::vector<fs::path> works;
-    std::error_code ec;
-    for (fs::directory_iterator entry(folder, ec), end; !ec && entry != end; entry.increment(ec)) {
-        const fs::path& path = entry->path();
-        const bool isDirectory = fs::is_directory(path, ec);
-        if (path.filename().string().starts_with('.')) continue;
-        if (isDirectory ? cases::isAttempt(path) || !sessionsIn(path).empty() : isSession(path)) works.push_back(path);
-        if (isDirectory || !cases::isPackageName(path)) continue;
-        try {
-            if (!cases::isAttempt(path)) continue;  // a case or an exercise
-        } catch (const core::Error&) {
-            // Says so in its row.
-        }
-        works.push_back(path);
-    }
-    if (ec) throw core::Error("the folder cannot be read", folder.string(), ec.message());
+    // What cannot be read says so in its row.
+    for (const FoundWork& one : findWork(folder))
+        if (!one.isResultOnly) works.push_back(one.path);
     if (works.empty())
         throw core::Error("there is nothing to score in it", folder.string(),
                           "sessions (.h5), attempts, folders with the sessions of one piece of work");
-    std::sort(works.begin(), works.end());
     return works;
 }
 
@@ -146,6 +132,13 @@ std::vector<Rescored> rescore(std::span<const fs::path> works, const std::option
     return all;
 }
 
+std::string nameOf(const fs::path& work, std::span<const Rescored> all) {
+    fs::path root = work.parent_path();
+    for (const Rescored& one : all)
+        if (const fs::path its = one.work.parent_path(); its.string().size() < root.string().size()) root = its;
+    return work.lexically_relative(root).generic_string();
+}
+
 std::string rescoredCsv(std::span<const Rescored> all, const rubric::Rubric& rubric) {
     std::string csv =
         "work,error,proven,proof,sessions,exercise,exercise_hash,case_key,state_hash,device,rubric,"
@@ -155,7 +148,7 @@ std::string rescoredCsv(std::span<const Rescored> all, const rubric::Rubric& rub
         csv += fmt::format(",{0},{0} +-,{0} band,{0} points,{0} not measured", c.id);
     csv += '\n';
     for (const Rescored& one : all) {
-        csv += csvCell(one.work.filename().string()) + "," + csvCell(one.problem);
+        csv += csvCell(nameOf(one.work, all)) + "," + csvCell(one.problem);
         if (!one.result) {
             csv += std::string(20 + 5 * rubric.criteria.size(), ',') + "\n";
             continue;
@@ -184,7 +177,7 @@ std::string rescoredJson(std::span<const Rescored> all) {
     using Json = nlohmann::ordered_json;
     Json list = Json::array();
     for (const Rescored& one : all) {
-        Json row = {{"work", one.work.filename().string()}};
+        Json row = {{"work", nameOf(one.work, all)}};
         if (one.result)
             row.update(Json::parse(resultJson(one.result->assessment, one.result->identity)));
         else

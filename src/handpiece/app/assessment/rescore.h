@@ -14,8 +14,7 @@
 
 namespace handpiece::assessment {
 
-/// What lies in a folder and can be scored, by name: sessions, attempts (folders or .handpiece files), and folders with
-/// the sessions of one piece of work. What is something else is passed over. Throws core::Error where there is none.
+/// What findWork() finds and can be scored. Throws core::Error where there is none.
 [[nodiscard]] std::vector<std::filesystem::path> worksIn(const std::filesystem::path& folder);
 
 /// One piece of work: a result, or why there is none.
@@ -34,6 +33,8 @@ struct Rescored {
                                             const std::optional<tasks::Task>& task, const rubric::Rubric& rubric,
                                             const MeasureStore& store, const core::Progress& progress = {});
 
+/// Below the folder that all lie in, with '/'.
+[[nodiscard]] std::string nameOf(const std::filesystem::path& work, std::span<const Rescored> all);
 /// A line each, with a head; docs/cli.md#rescore.
 [[nodiscard]] std::string rescoredCsv(std::span<const Rescored> all, const rubric::Rubric& rubric);
 /// A list of results as resultJson() has them, each with `work`, or `work` and `error`.

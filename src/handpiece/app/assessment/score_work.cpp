@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "handpiece/app/assessment/scan_work.h"
+#include "handpiece/app/scan_work/scan_work.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/app/simulation/tissue_export.h"
 #include "handpiece/assess/measures/preparation.h"
@@ -43,18 +43,21 @@ Recording recordingAt(const fs::path& path) {
     return {path, path.string(), hashOf(core::readFile(path)), {}};
 }
 
-/// Those that came along with an attempt, in its order.
-std::vector<Recording> recordingsIn(const fs::path& attempt, const std::vector<cases::Attempt::Recording>& named) {
-    const auto folder = std::make_shared<const core::PrivateFolder>();
-    std::vector<Recording> recordings;
-    for (const cases::Attempt::Recording& one : named) {
-        const std::vector<std::byte> bytes = cases::readRecording(attempt, one.name);
-        const fs::path place = folder->path() / one.name;
+/// Those that came along with attempts are put where they can be read.
+class Unpacked {
+  public:
+    Recording at(const ChainLink& link) {
+        if (!link.isPacked) return recordingAt(link.in);
+        if (!folder_) folder_ = std::make_shared<const core::PrivateFolder>();
+        const std::vector<std::byte> bytes = cases::readRecording(link.in, link.name);
+        const fs::path place = folder_->path() / link.name;
         core::writeFile(place, bytes, {true, false});
-        recordings.push_back({place, fmt::format("{} of {}", one.name, attempt.string()), hashOf(bytes), folder});
+        return {place, fmt::format("{} of {}", link.name, link.in.string()), hashOf(bytes), folder_};
     }
-    return recordings;
-}
+
+  private:
+    std::shared_ptr<const core::PrivateFolder> folder_;
+};
 
 /// A session by itself: from which tooth to which.
 struct Done {
@@ -158,25 +161,59 @@ Work workOfSession(const fs::path& path, const tasks::Task& task, bool prove, co
     return work;
 }
 
+constexpr const char* kNotFromThere = "its session {} goes on from another tooth than was left before it";
+
+/// In the order that is told, each held against the one before it. `broken`: what is wrong with it already.
+Work workInOrder(std::vector<Done> chain, std::string broken) {
+    std::uint64_t left = tooth::stateHash({});
+    for (const Done& one : chain) {
+        if (one.startHash != left && broken.empty())
+            broken = fmt::format(kNotFromThere, one.recording.path.filename().string());
+        left = one.endHash;
+    }
+    Work work = workOf(std::move(chain));
+    if (broken.empty()) return work;
+    work.isProven = false;
+    work.proof = work.noHand = std::move(broken);
+    work.recordings.clear();
+    return work;
+}
+
+/// The order is told by the teeth alone: names may have been changed.
 Work workOfFolder(const fs::path& folder, const tasks::Task& task, bool prove, const core::Progress& progress) {
     std::vector<Recording> recordings;
     for (const fs::path& path : sessionsIn(folder))
         recordings.push_back(recordingAt(path));
     std::vector<Done> waiting = doAllAgain(recordings, task, prove, progress), chain;
-    std::uint64_t left = tooth::stateHash({});
+    const std::uint64_t whole = tooth::stateHash({});
+    std::uint64_t left = whole;
+    std::string broken;
+    const auto nameOf = [](const Done& done) { return done.recording.path.filename().string(); };
     while (!waiting.empty()) {
-        const auto next =
-            std::find_if(waiting.begin(), waiting.end(), [&](const Done& d) { return d.startHash == left; });
-        if (next == waiting.end())
-            throw core::Error(fmt::format("{} goes on from a tooth that no other session here leaves",
-                                          waiting.front().recording.path.filename().string()),
-                              folder.string(),
-                              "put all sessions of this work into the folder, and no others: one is missing");
+        auto next = std::find_if(waiting.begin(), waiting.end(), [&](const Done& d) { return d.startHash == left; });
+        if (next == waiting.end()) {
+            const auto other =
+                std::find_if(waiting.begin(), waiting.end(), [&](const Done& d) { return d.startHash == whole; });
+            if (other != waiting.end())
+                throw core::Error(fmt::format("{} and {} both begin with the whole tooth: these are several works",
+                                              nameOf(chain.front()), nameOf(*other)),
+                                  folder.string(), "put the sessions of one work into a folder, and no others");
+            // One is missing. On with the first of those that none of the others leads to.
+            next = std::find_if(waiting.begin(), waiting.end(), [&](const Done& d) {
+                return std::none_of(waiting.begin(), waiting.end(),
+                                    [&](const Done& o) { return &o != &d && o.endHash == d.startHash; });
+            });
+            if (next == waiting.end()) next = waiting.begin();
+            if (broken.empty())
+                broken =
+                    fmt::format("{} goes on from a tooth that no other session here leaves: one is missing before it",
+                                nameOf(*next));
+        }
         left = next->endHash;
         chain.push_back(std::move(*next));
         waiting.erase(next);
     }
-    return workOf(std::move(chain));
+    return workInOrder(std::move(chain), std::move(broken));
 }
 
 Work workOfAttempt(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress) {
@@ -193,21 +230,17 @@ Work workOfAttempt(const fs::path& path, const tasks::Task& task, bool prove, co
         work.proof = fmt::format("its session {} did not come along", missing->name);
         work.noHand = work.proof;
     } else {
-        std::vector<Done> chain = doAllAgain(recordingsIn(path, named), task, prove, core::part(progress, 0.1, 1.0));
-        std::uint64_t left = tooth::stateHash({});
-        std::string broken;
-        for (const Done& one : chain) {
-            if (one.startHash != left && broken.empty())
-                broken = fmt::format("its session {} goes on from another tooth than was left before it",
-                                     one.recording.path.filename().string());
-            left = one.endHash;
-        }
-        if (broken.empty() && left != tooth::stateHash(cut->state))
-            broken = "it is another tooth than its sessions leave";
-        work = workOf(std::move(chain));
-        if (!broken.empty()) {
+        Unpacked unpacked;
+        std::vector<Recording> recordings;
+        for (const cases::Attempt::Recording& one : named)
+            recordings.push_back(unpacked.at({one.name, path, true}));
+        std::vector<Done> chain = doAllAgain(recordings, task, prove, core::part(progress, 0.1, 1.0));
+        const bool isThis = chain.back().endHash == tooth::stateHash(cut->state);
+        // What breaks the chain itself says more than that its end is another tooth.
+        work = workInOrder(std::move(chain), {});
+        if (!isThis && work.noHand.empty()) {
             work.isProven = false;
-            work.proof = work.noHand = broken;
+            work.proof = work.noHand = "it is another tooth than its sessions leave";
             work.recordings.clear();
         }
     }
@@ -227,6 +260,27 @@ std::vector<fs::path> sessionsIn(const fs::path& folder) {
     return sessions;
 }
 
+std::string workHash(const fs::path& work) {
+    std::vector<fs::path> files;
+    std::error_code ec;
+    if (!fs::is_directory(work, ec)) {
+        files = {work};
+    } else if (fs::exists(work / cases::kAttemptFile, ec)) {
+        for (fs::recursive_directory_iterator entry(work, ec), end; !ec && entry != end; entry.increment(ec))
+            if (entry->is_regular_file(ec)) files.push_back(entry->path());
+    } else {
+        files = sessionsIn(work);
+    }
+    std::sort(files.begin(), files.end());
+    core::Hasher hasher;
+    for (const fs::path& file : files) {
+        // Of a chain their order counts, of a single file its name does not.
+        if (files.size() > 1) hasher.add(file.lexically_relative(work).generic_string());
+        hasher.add(std::span<const std::byte>(core::readFile(file)));
+    }
+    return rubric::hashText(hasher.value());
+}
+
 Work readWork(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress) {
     std::error_code ec;
     if (!fs::exists(path, ec))
@@ -237,6 +291,21 @@ Work readWork(const fs::path& path, const tasks::Task& task, bool prove, const c
     if (isFolder && !sessionsIn(path).empty()) return workOfFolder(path, task, prove, progress);
     throw core::Error("this is neither a session nor an attempt", path.string(),
                       "name session.h5, a folder of sessions, an attempt's folder or a .handpiece file");
+}
+
+Work readChain(std::span<const ChainLink> chain, const tasks::Task& task, bool prove, const core::Progress& progress) {
+    if (chain.empty()) throw core::Error("there is no session of this work", task.id, "record what you do");
+    Unpacked unpacked;
+    std::vector<Recording> recordings;
+    std::string missing;
+    for (const ChainLink& link : chain) {
+        const bool isLast = &link == &chain.back();
+        if (isLast || core::isThere(link.in))
+            recordings.push_back(unpacked.at(link));
+        else if (missing.empty())
+            missing = fmt::format("its session {} is no longer there", link.name);
+    }
+    return workInOrder(doAllAgain(recordings, task, prove, progress), std::move(missing));
 }
 
 std::vector<measures::Request> requestsOf(const rubric::Rubric& rubric) {
@@ -304,8 +373,12 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
         const std::array<measures::Request, 1> overPulp{{{"remaining-dentine", {}}}};
         const std::optional<double> overPulpMm = measures::measure(preparation, overPulp).front().value;
         for (measures::Measured& one : result.measured)
-            if (one.value) one.uncertainty = widened(one, *work.scan, overPulpMm);
+            if (one.value) one.uncertainty = scan_work::widened(one, *work.scan, overPulpMm);
     }
+    if (!work.noBeside.empty())
+        for (measures::Measured& one : result.measured)
+            if (one.kind == "adjacent-depth" || one.kind == "adjacent-removed")
+                one = {one.kind, one.of, {}, 0.0, work.noBeside, {}};
     core::report(progress, 0.4);
     const hand::Against against{preparation.axes.longAxis, preparation.zones};
     std::vector<measures::Measured> hand =

@@ -28,19 +28,33 @@ struct Work {
     std::vector<Recording> recordings{};   ///< that led to this tooth, in the order of the work, where all are known
     std::string noHand{};                  ///< why nothing is measured of the hand; empty: it is
     std::optional<score::ScanFit> scan{};  ///< of a scan; readScan() makes those
+    std::string noBeside{};                ///< why nothing is known of cuts in the teeth beside it; empty: it is
 };
 
 /// Files of sessions (.h5) in a folder, by name.
 [[nodiscard]] std::vector<std::filesystem::path> sessionsIn(const std::filesystem::path& folder);
+/// Of all that makes a piece of work: a session, a folder's sessions, an attempt's files. Throws core::Error.
+[[nodiscard]] std::string workHash(const std::filesystem::path& work);
 
 /// Of a session (.h5), of a folder with all sessions of a chain, each of which goes on from the tooth that the one
 /// before it left, or of an attempt, with the sessions that came along. Sessions are cut again unless `prove` is false;
 /// one that does not come to the same tooth, or is of another engine, is taken from its last key frame and says so.
-/// An attempt of which not all sessions came along, or that is another tooth than they leave, is not proven and has no
-/// measures of the hand. Throws core::Error: none of these; work on another tooth than the exercise's, or in another
-/// voxel; a session of a folder that is missing (before which).
+/// Where a session of a chain is missing, or is another tooth than the attempt, it is not proven and has no measures of
+/// the hand. Throws core::Error: none of these; work on another tooth than the exercise's, or in another voxel; a
+/// folder with sessions of several works.
 [[nodiscard]] Work readWork(const std::filesystem::path& path, const tasks::Task& task, bool prove = true,
                             const core::Progress& progress = {});
+
+/// A session of a chain that is known, whatever happened to its file.
+struct ChainLink {
+    std::string name;          ///< of its file
+    std::filesystem::path in;  ///< itself, or the attempt that it came with
+    bool isPacked = false;     ///< that
+};
+/// Of a chain in the order of the work, as readWork() of an attempt's; the tooth is what the last one leaves. Throws
+/// core::Error also where that is not there.
+[[nodiscard]] Work readChain(std::span<const ChainLink> chain, const tasks::Task& task, bool prove = true,
+                             const core::Progress& progress = {});
 
 /// What was measured of a piece of work: all that a rubric needs to judge it.
 struct MeasuredWork {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/error.h"
@@ -47,6 +49,16 @@ rubric::Rubric rubricOf(const tasks::Task& task) {
     return rubric;
 }
 
+namespace {
+/// Measured and judged; `own` stays empty.
+void judge(FinishedWork& done, const core::Progress& progress) {
+    const assessment::MeasuredWork measured =
+        assessment::measureWork(done.work, *done.task, assessment::requestsOf(done.rubric), progress);
+    done.result = assessment::judge(measured, done.rubric);
+    if (done.task->preparation) done.draw = measured.draw;
+}
+}  // namespace
+
 FinishedWork judged(const std::filesystem::path& work, std::shared_ptr<const tasks::Task> task,
                     const core::Progress& progress) {
     FinishedWork done;
@@ -54,17 +66,50 @@ FinishedWork judged(const std::filesystem::path& work, std::shared_ptr<const tas
     done.session = work;
     done.rubric = rubricOf(*done.task);
     done.work = assessment::readWork(work, *done.task, true, core::part(progress, 0.0, 0.8));
-    const assessment::MeasuredWork measured = assessment::measureWork(
-        done.work, *done.task, assessment::requestsOf(done.rubric), core::part(progress, 0.8, 1.0));
-    done.result = assessment::judge(measured, done.rubric);
-    if (done.task->preparation) done.draw = measured.draw;
+    judge(done, core::part(progress, 0.8, 1.0));
+    return done;
+}
+
+FinishedWork finish(std::span<const assessment::ChainLink> chain, std::shared_ptr<const tasks::Task> task,
+                    const core::Progress& progress) {
+    FinishedWork done;
+    done.task = std::move(task);
+    done.rubric = rubricOf(*done.task);
+    done.work = assessment::readChain(chain, *done.task, true, core::part(progress, 0.0, 0.7));
+    done.session = chain.back().in;
+    judge(done, core::part(progress, 0.7, 0.85));
+    done.own = partsOf(done.work.teeth.front(), done.work.state, core::part(progress, 0.85, 1.0));
     return done;
 }
 
 FinishedWork finish(const std::filesystem::path& session, std::shared_ptr<const tasks::Task> task,
                     const core::Progress& progress) {
-    FinishedWork done = judged(session, std::move(task), core::part(progress, 0.0, 0.85));
-    done.own = partsOf(done.work.teeth.front(), done.work.state, core::part(progress, 0.85, 1.0));
+    const assessment::ChainLink link{session.filename().string(), session, false};
+    return finish(std::span(&link, 1), std::move(task), progress);
+}
+
+FinishedWork reopen(score::Result result, std::span<const assessment::ChainLink> chain,
+                    std::shared_ptr<const tasks::Task> task, const core::Progress& progress) {
+    FinishedWork done;
+    done.task = std::move(task);
+    const std::vector<std::string> hashes = result.identity.sessionHashes;
+    const bool isSame = result.identity.exerciseHash == rubric::hashText(tasks::contentHash(*done.task));
+    if (isSame && !done.task->rubric.empty())
+        if (rubric::Rubric its = rubricOf(*done.task); rubric::hashOf(its) == result.assessment.rubricHash)
+            done.rubric = std::move(its);
+    const bool isWhole = isSame && !chain.empty() && chain.size() == hashes.size() &&
+                         std::all_of(chain.begin(), chain.end(),
+                                     [](const assessment::ChainLink& link) { return core::isThere(link.in); });
+    done.result = std::move(result);
+    if (!isWhole) return done;
+    assessment::Work work = assessment::readChain(chain, *done.task, false, core::part(progress, 0.0, 0.6));
+    if (work.sessionHashes != hashes ||
+        rubric::hashText(tooth::stateHash(work.state)) != done.result.identity.stateHash)
+        return done;
+    done.work = std::move(work);
+    done.session = chain.back().in;
+    if (done.task->preparation) done.draw = preparation::layOn(done.task->toothCase, *done.task->preparation).draw;
+    done.own = partsOf(done.work.teeth.front(), done.work.state, core::part(progress, 0.6, 1.0));
     return done;
 }
 
@@ -81,6 +126,8 @@ void handIn(const FinishedWork& done, const HandInWords& words, const std::files
     attempt.removedMm3 = done.work.state.removedMm3.own;
     attempt.student = words.student;
     attempt.handedIn = true;
+    attempt.exercise = tasks::taskToml(task);
+    attempt.rubric = task.rubric;
     attempt.handIn = cases::Attempt::HandIn{task.id,
                                             task.version,
                                             done.result.identity.exerciseHash,

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ using Parts = std::shared_ptr<const std::vector<cases::Part>>;
 /// A piece of work, scored.
 struct FinishedWork {
     std::shared_ptr<const tasks::Task> task;
-    std::filesystem::path session;
+    std::filesystem::path session;  ///< the last of the chain
     assessment::Work work;
     rubric::Rubric rubric;
     score::Result result;
@@ -35,9 +36,17 @@ struct FinishedWork {
 /// "cancelled" when asked to stop.
 [[nodiscard]] FinishedWork judged(const std::filesystem::path& work, std::shared_ptr<const tasks::Task> task,
                                   const core::Progress& progress = {});
-/// The same of a session, with one's own tooth to look at.
+/// Cuts the sessions again, measures and judges what they left. Throws core::Error; "cancelled" when asked to stop.
+[[nodiscard]] FinishedWork finish(std::span<const assessment::ChainLink> chain, std::shared_ptr<const tasks::Task> task,
+                                  const core::Progress& progress = {});
+/// Of one session, which begins with the whole tooth.
 [[nodiscard]] FinishedWork finish(const std::filesystem::path& session, std::shared_ptr<const tasks::Task> task,
                                   const core::Progress& progress = {});
+
+/// A result of before. Where all its sessions are still there, byte for byte, and the task is the one that it was
+/// judged by, with the tooth and its recordings; else these are empty, and `session` too. Throws as finish().
+[[nodiscard]] FinishedWork reopen(score::Result result, std::span<const assessment::ChainLink> chain,
+                                  std::shared_ptr<const tasks::Task> task, const core::Progress& progress = {});
 
 /// What a student says of work that is handed in.
 struct HandInWords {

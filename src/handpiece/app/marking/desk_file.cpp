@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -31,6 +32,12 @@ double numberIn(const Json& json) {
     const double value = json.get<double>();
     if (!std::isfinite(value)) throw std::out_of_range("a number is not finite");
     return value;
+}
+/// A count: 0 and more.
+int countIn(const Json& json) {
+    const auto* const whole = json.get_ptr<const Json::number_integer_t*>();
+    if (whole == nullptr || *whole < 0 || *whole > INT_MAX) throw std::out_of_range("a count is none");
+    return static_cast<int>(*whole);
 }
 
 Json toJson(const Sheet& sheet) {
@@ -85,7 +92,7 @@ Sheet sheetOf(const Json& json) {
     if (json.contains("comments"))
         for (const Json& one : json.at("comments")) {
             Comment c;
-            c.number = one.at("number").get<int>();
+            c.number = countIn(one.at("number"));
             c.text = textIn(one.at("text"));
             if (one.contains("criterion")) c.criterion = textIn(one.at("criterion"));
             if (one.contains("xyz_mm"))
@@ -124,7 +131,7 @@ DeskState stateOf(const Json& json) {
     }
     for (const auto& [code, sheet] : json.at("sheets").items())
         state.sheets.emplace(code, sheetOf(sheet));
-    state.nextComment = json.at("next_comment").get<int>();
+    state.nextComment = countIn(json.at("next_comment"));
     return state;
 }
 
@@ -179,9 +186,8 @@ DeskState parseDesk(std::string_view text, const std::string& where) {
     try {
         const Json json = Json::parse(text);
         if (json.at("handpiece").get<std::string>() != "marking") throw wrong("it is something else");
-        if (json.at("format").get<int>() > kFormat)
-            throw core::Error(fmt::format("this desk has format {}, and this program reads {}",
-                                          json.at("format").get<int>(), kFormat),
+        if (const int format = countIn(json.at("format")); format > kFormat)
+            throw core::Error(fmt::format("this desk has format {}, and this program reads {}", format, kFormat),
                               where, "use the newer program")
                 .as("desk-newer");
         return stateOf(json);

@@ -14,7 +14,7 @@ namespace handpiece::marking {
 struct ReturnedWork {
     std::string name;            ///< below the folder, with '/'
     std::string id;              ///< of its content, 16 hexadecimal digits: the same for every marker and place
-    std::filesystem::path path;  ///< a session, or an attempt (a folder or a file); of a lone result that
+    std::filesystem::path path;  ///< a session, a folder of a chain of them, an attempt; of a lone result that
     bool isResultOnly = false;   ///< a result.json without the work that it is of
     std::string problem;         ///< why it cannot be scored, in a sentence; empty: nothing known
     std::string twin{};          ///< name of another work that is the same to the byte; empty: none
@@ -22,10 +22,8 @@ struct ReturnedWork {
 
 inline constexpr std::size_t kMaxWorks = 5000;
 
-/// Sessions (.h5), attempts (folders and .handpiece files) and, where there is no work beside it, result.json: in the
-/// folder and in folders directly below it, by name. What is something else is passed over; what cannot be read, and
-/// what is the same to the byte as another, is there with its problem. Throws core::Error: no such folder, more than
-/// kMaxWorks, cancelled.
+/// What assessment::findWork() finds, by name; what cannot be read, and what is the same to the byte as another, is
+/// there with its problem. Throws core::Error: no such folder, more than kMaxWorks, cancelled.
 [[nodiscard]] std::vector<ReturnedWork> findWork(const std::filesystem::path& folder,
                                                  const core::Progress& progress = {});
 

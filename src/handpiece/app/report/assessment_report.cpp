@@ -68,6 +68,7 @@ class Page {
 
     std::string text() {
         addVerdict();
+        addScan();
         addCritical();
         addFirstErrors();
         addCriteria();
@@ -105,6 +106,23 @@ class Page {
                                     fmt::format("{:.1f}", a_.wholeScore)),
                             Tone::note);
         page_.end();
+    }
+
+    void addScan() {
+        if (!result_.identity.scan) return;
+        const score::ScanFit& fit = *result_.identity.scan;
+        page_.heading(words()("assessment.scan"));
+        page_.paragraph(words()("assessment.scan-says"));
+        const auto mm = [](double value) { return fmt::format("{:.3f} mm", value); };
+        page_.facts({}, {{words()("assessment.scan-on"),
+                          words()(fmt::format("assessment.scan-on-{}", score::nameOf(fit.registeredOn)),
+                                  fmt::format("{:.0f}", fit.uncutMm2))},
+                         {words()("assessment.scan-rms"), mm(fit.rmsMm)},
+                         {words()("assessment.scan-noise"), mm(fit.noiseMm)},
+                         {words()("assessment.scan-lies"),
+                          fmt::format("± {}, ± {:.2f}°", mm(2.0 * fit.liesMm), 2.0 * fit.turnsDeg)},
+                         {words()("assessment.scan-cut"), fit.cutMm2 > 0.0 ? fmt::format("{:.1f} mm²", fit.cutMm2)
+                                                                           : words()("assessment.scan-nothing-cut")}});
     }
 
     void addCritical() {

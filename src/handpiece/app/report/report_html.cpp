@@ -33,7 +33,7 @@ td.yes { color: #1d7a3f; } td.no { color: #c62828; font-weight: 600; }
 .columns { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1.6rem; }
 .pictures { display: grid; grid-template-columns: 1fr 1fr; gap: 0.6rem; }
 .slices { display: grid; grid-template-columns: 1fr 1fr 1fr; gap: 0.6rem; align-items: end; }
-.thirds { display: grid; grid-template-columns: 1fr 1fr 1fr; gap: 0.6rem; align-items: end; } .thirds figure { margin: 0; }
+.thirds { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 0.6rem; align-items: end; } .thirds figure { margin: 0; }
 .slices img { max-height: 90mm; object-fit: contain; background: #000; }
 .frame { border: 1.5px solid #0b62a4; border-radius: 8px; padding: 0.2rem 1.2rem; background: #f2f7fc; }
 figure { margin: 1rem 0; } .pictures figure, .slices figure { margin: 0; }

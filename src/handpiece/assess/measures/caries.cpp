@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 
@@ -18,6 +19,8 @@ using core::Vec3;
 constexpr double kPeripheryMm = 1.0;
 constexpr double kBeneathMm = 0.1;  // beneath the junction dentine has to be there
 constexpr double kLongestPrismMm = 3.0;
+/// By so much of a voxel a border between tissues, or the cut in one, is uncertain as a whole.
+constexpr double kBorderVoxels = 0.01;
 
 bool isEnamel(Tissue tissue) {
     return tissue == Tissue::enamel || tissue == Tissue::demineralisedEnamel || tissue == Tissue::stainedEnamel;
@@ -139,6 +142,125 @@ bool hasCaries(const tooth::ToothModel& whole) {
     return false;
 }
 
+/// What of a tissue is left, by cells of the grid. Cut and borders of tissues lie between nodes, both by interpolated
+/// distances: a cell through which one of them passes is sampled. A sample is left or it is not; so a cut that runs
+/// along the border of a lesion leaves nothing there, where shares of voxels would leave an eighth of a voxel of it.
+class CellsLeft {
+  public:
+    CellsLeft(const tooth::ToothModel& whole, const tooth::ToothMirror& cut, std::function<bool(Tissue)> isMeant)
+        : whole_(whole), cut_(cut), isMeant_(std::move(isMeant)) {}
+
+    struct Sum {
+        double mm3 = 0.0;
+        double borderMm2 = 0.0;    ///< of borders of the tissue to others, and of the cut in it
+        std::optional<Vec3> seen;  ///< where most of it lies open
+        double seenShare = 0.0;
+    };
+    /// `weight`: of a cell, by its middle, 0 to 1.
+    [[nodiscard]] Sum sum(const std::function<double(const Vec3&)>& weight) const {
+        const field::FieldView view = whole_.field.view();
+        const auto dense = static_cast<std::uint32_t>(whole_.field.storage().coarse.size());
+        std::vector<Sum> sums(dense);
+        core::parallelFor(dense, 16, [&](std::size_t begin, std::size_t end) {
+            std::array<float, field::kBrickValues> scratch;
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto id = static_cast<std::uint32_t>(i);
+                const bool isChanged = cut_.isChanged(id), isMixed = whole_.tissues.nodes()->isMixed(i);
+                if (!isChanged && view.brickIndex[i] < 0 && view.coarse[i] > 0.0f) continue;
+                if (!isMixed && !isMeant_(whole_.tissues.ofBrick(id))) continue;
+                const float* now = isChanged ? cut_.values(id, scratch.data()) : scratch.data();
+                if (!isChanged) whole_.uncutBrick(id, scratch.data());
+                const field::TissueMap::Layers layers = whole_.tissues.layers(id);
+                const auto brick = field::brickAt(view.bricks, id);
+                for (int z = 0; z < field::kBrickCells; ++z)
+                    for (int y = 0; y < field::kBrickCells; ++y)
+                        for (int x = 0; x < field::kBrickCells; ++x) {
+                            const int node[3] = {x, y, z};
+                            Vec3 low;
+                            for (int k = 0; k < 3; ++k)
+                                low[k] =
+                                    view.originMm[k] +
+                                    view.voxelMm * (field::kBrickCells * brick[static_cast<std::size_t>(k)] + node[k]);
+                            addCell(sums[i], now, layers, x + field::kBrickNodes * (y + field::kBrickNodes * z), low,
+                                    view.voxelMm, isChanged, weight);
+                        }
+            }
+        });
+        Sum all;
+        for (const Sum& one : sums) {
+            all.mm3 += one.mm3;
+            all.borderMm2 += one.borderMm2;
+            if (one.seenShare > all.seenShare) all.seen = one.seen, all.seenShare = one.seenShare;
+        }
+        return all;
+    }
+
+  private:
+    static constexpr int kSteps = 4;  // samples along each edge of a cell
+
+    void addCell(Sum& sum, const float* now, const field::TissueMap::Layers& layers, int corner, const Vec3& low,
+                 double voxelMm, bool isChanged, const std::function<double(const Vec3&)>& weight) const {
+        std::array<double, 8> at;
+        int inTooth = 0;
+        for (int c = 0; c < 8; ++c) {
+            at[static_cast<std::size_t>(c)] = static_cast<double>(now[corner + offsetOf(c)]);
+            inTooth += at[static_cast<std::size_t>(c)] < 0.0;
+        }
+        if (inTooth == 0 && !isChanged) return;
+        // Layers that pass through it; the first that holds all of it hides the others.
+        bool isPassed = false;
+        Tissue tissue = layers.rest;
+        for (const field::TissueMap::Layer& layer : layers.layers) {
+            int inside = 0;
+            for (int c = 0; c < 8; ++c)
+                inside += layer.values[corner + offsetOf(c)] < 0;
+            if (inside == 0) continue;
+            if (inside == 8) {
+                tissue = layer.tissue;
+                break;
+            }
+            isPassed = true;
+        }
+        if (!isPassed && !isMeant_(tissue)) return;
+        const double cellMm3 = voxelMm * voxelMm * voxelMm;
+        double share = inTooth == 8 && !isPassed ? 1.0 : 0.0;
+        bool isBorder = false;
+        if (inTooth > 0 && share == 0.0) {
+            int left = 0, meant = 0;
+            for (int k = 0; k < kSteps; ++k)
+                for (int j = 0; j < kSteps; ++j)
+                    for (int i = 0; i < kSteps; ++i) {
+                        const double t[3] = {(i + 0.5) / kSteps, (j + 0.5) / kSteps, (k + 0.5) / kSteps};
+                        const Tissue here =
+                            isPassed ? whole_.tissues.at(low + voxelMm * Vec3(t[0], t[1], t[2])) : tissue;
+                        if (!isMeant_(here)) continue;
+                        ++meant;
+                        double value = 0.0;
+                        for (int c = 0; c < 8; ++c)
+                            value += at[static_cast<std::size_t>(c)] * ((c & 1) != 0 ? t[0] : 1.0 - t[0]) *
+                                     ((c >> 1 & 1) != 0 ? t[1] : 1.0 - t[1]) * ((c >> 2) != 0 ? t[2] : 1.0 - t[2]);
+                        left += value < 0.0;
+                    }
+            share = static_cast<double>(left) / (kSteps * kSteps * kSteps);
+            isBorder = meant > 0;
+        }
+        if (share == 0.0 && !isBorder) return;
+        const double part = weight(low + Vec3::Constant(0.5 * voxelMm));
+        sum.mm3 += part * share * cellMm3;
+        // A surface passes through 1.5 cells for each of its faces, in the mean over directions.
+        if (isBorder) sum.borderMm2 += part * voxelMm * voxelMm / 1.5;
+        if (isChanged && inTooth < 8 && part * share > sum.seenShare)
+            sum.seen = low + Vec3::Constant(0.5 * voxelMm), sum.seenShare = part * share;
+    }
+    static int offsetOf(int corner) {
+        return (corner & 1) + field::kBrickNodes * ((corner >> 1 & 1) + field::kBrickNodes * (corner >> 2));
+    }
+
+    const tooth::ToothModel& whole_;
+    const tooth::ToothMirror& cut_;
+    std::function<bool(Tissue)> isMeant_;
+};
+
 /// By where it lies: at the periphery (1), towards the pulp (-1), anywhere (0).
 Taken cariesLeft(CutTooth& tooth, const Selection& of, int where) {
     const Preparation& p = tooth.preparation();
@@ -153,12 +275,24 @@ Taken cariesLeft(CutTooth& tooth, const Selection& of, int where) {
         if (junction->places().empty()) return none("the tooth has no enamel-dentine junction");
     }
     const double voxel = tooth.voxelMm();
-    const auto weight = [&](const Vec3& place, Tissue tissue) {
-        if (!cases::isCarious(tissue) || !isAsked(of, tissue)) return 0.0;
-        if (where != 0 && junction->nearest(place, kPeripheryMm).has_value() != (where > 0)) return 0.0;
-        return of.zone.empty() ? 1.0 : std::clamp(0.5 - *p.zones->distanceMm(of.zone, place) / voxel, 0.0, 1.0);
+    const auto shareOf = [voxel](double distanceMm) { return std::clamp(0.5 - distanceMm / voxel, 0.0, 1.0); };
+    const auto weight = [&](const Vec3& middle) {
+        double share = 1.0;
+        if (where != 0) {
+            const auto near = junction->nearest(middle, kPeripheryMm + voxel);
+            const double atPeriphery =
+                near ? shareOf((junction->places()[*near].p - middle).norm() - kPeripheryMm) : 0.0;
+            share = where > 0 ? atPeriphery : 1.0 - atPeriphery;
+        }
+        return of.zone.empty() || share == 0.0 ? share : share * shareOf(*p.zones->distanceMm(of.zone, middle));
     };
-    return {volumeOf(*p.whole, *p.cut, false, weight), {}};
+    const CellsLeft cells(*p.whole, *p.cut,
+                          [&](Tissue tissue) { return cases::isCarious(tissue) && isAsked(of, tissue); });
+    const CellsLeft::Sum left = cells.sum(weight);
+    Taken taken{left.mm3, {}};
+    taken.offMm = kBorderVoxels * voxel * left.borderMm2;
+    if (left.seen && left.mm3 > taken.offMm) taken.evidence.push_back({{}, *left.seen, {}, "carious tissue left"});
+    return taken;
 }
 
 }  // namespace

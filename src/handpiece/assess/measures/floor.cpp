@@ -50,13 +50,15 @@ const std::vector<int>& placesOf(const Floor& floor, const Selection& of) {
     return of.statistic == "greatest" ? floor.nodes : floor.inner.empty() ? floor.flat : floor.inner;
 }
 /// By how much a statistic changes with that ring: where a corner begins is known to a place or so.
-double edgeOf(const Floor& floor, const Selection& of, const std::function<double(int)>& valueOf, double value) {
+double edgeOf(const CutTooth& tooth, const Floor& floor, const Selection& of, const std::function<double(int)>& valueOf,
+              double value) {
     if (of.statistic == "greatest") return 0.0;
     std::vector<double> values;
     for (const int node : floor.flat)
         values.push_back(valueOf(node));
-    constexpr double kShare = 0.9;  // of that change is open
-    return kShare * std::abs(statisticOf(values, of.statistic.empty() ? "median" : of.statistic, nullptr) - value);
+    constexpr double kShare = 0.9, kScanShare = 2.0;  // of that change is open; a scanned corner by two rings
+    return (tooth.preparation().noiseMm > 0.0 ? kScanShare : kShare) *
+           std::abs(statisticOf(values, of.statistic.empty() ? "median" : of.statistic, nullptr) - value);
 }
 
 Vec3 normalOf(const Plane& plane) {
@@ -79,7 +81,7 @@ Taken takeFloorDepth(CutTooth& tooth, const Selection& of) {
     Taken taken = places.taken(of, "median", "depth of the floor");
     taken.residual = unevenIn(*floor);
     taken.offMm = edgeOf(
-        *floor, of,
+        tooth, *floor, of,
         [&](int node) {
             const HeightMap::Node& n = map.nodes[static_cast<std::size_t>(node)];
             return n.before - n.now;
@@ -105,7 +107,7 @@ Taken takeFloorDepthShortest(CutTooth& tooth, const Selection& of) {
     Taken taken = places.taken(of, "median", "shortest way to the uncut surface");
     taken.residual = unevenIn(*floor);
     taken.offMm = edgeOf(
-        *floor, of,
+        tooth, *floor, of,
         [&](int node) { return -tooth.whole().tree.signedDistance(tooth.frame().from(tooth.heights().drawOf(node))); },
         *taken.value);
     return taken;

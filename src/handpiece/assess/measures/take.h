@@ -41,12 +41,30 @@ struct Places {
         values.push_back(value);
         mm.push_back(p);
     }
+    /// Of a scan, extremes are asked of medians over `reach` places to either side: one place may be a flaw of the
+    /// scan. `isClosed`: the last place stands beside the first.
+    [[nodiscard]] Places evened(double noiseMm, std::size_t reach, bool isClosed) const;
     [[nodiscard]] Taken taken(const Selection& of, std::string_view ownStatistic, const char* text) const {
         std::size_t where = 0;
         const double value = statisticOf(values, of.statistic.empty() ? ownStatistic : of.statistic, &where);
         return at(value, mm[where], text);
     }
 };
+
+inline Places Places::evened(double noiseMm, std::size_t reach, bool isClosed) const {
+    const std::size_t n = values.size();
+    if (!(noiseMm > 0.0) || n < 2 * reach + 1) return *this;
+    Places even;
+    for (std::size_t i = 0; i < n; ++i) {
+        std::vector<double> about;
+        for (std::size_t k = 0; k <= 2 * reach; ++k) {
+            const std::size_t at = i + n + k - reach;
+            if (isClosed || (at >= n && at < 2 * n)) about.push_back(values[at % n]);
+        }
+        even.add(medianOf(std::move(about)), mm[i]);
+    }
+    return even;
+}
 
 Taken takeRemoved(CutTooth&, const Selection&);
 Taken takeRemovedShare(CutTooth&, const Selection&);

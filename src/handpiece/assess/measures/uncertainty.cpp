@@ -41,11 +41,16 @@ constexpr Row kMeasured[] = {
 };
 // Bounds that rest on the voxel and on single analytic cases, not on many.
 constexpr Row kEstimated[] = {
-    {"undercut-area", 0.0, 0.0, 0.2, 0.0},         {"pulp-exposed", 0.0, 0.0, 0.05, 0.0},
-    {"margin-continuity", 1.4, 0.0, 0.0, 0.0},     {"caries-left", 0.0, 0.0, 0.02, 0.0},
-    {"caries-left-periphery", 0.0, 0.0, 0.1, 0.0}, {"caries-left-pulpal", 0.0, 0.0, 0.1, 0.0},
-    {"unsupported-enamel", 0.0, 0.0, 0.15, 0.0},   {"orifices-reached", 0.0, 0.0, 0.0, 1.0},
-    {"gouge-depth", 0.0, 0.7, 0.0, 0.0},           {"adjacent-removed", 0.0, 0.0, 0.05, 0.0},
+    {"undercut-area", 0.0, 0.0, 0.2, 0.0},
+    {"pulp-exposed", 0.0, 0.0, 0.05, 0.0},
+    {"margin-continuity", 1.4, 0.0, 0.0, 0.0},
+    {"caries-left", 0.0, 0.0, 0.005, 0.0},
+    {"caries-left-periphery", 0.0, 0.0, 0.005, 0.0},
+    {"caries-left-pulpal", 0.0, 0.0, 0.005, 0.0},
+    {"unsupported-enamel", 0.0, 0.0, 0.15, 0.0},
+    {"orifices-reached", 0.0, 0.0, 0.0, 1.0},
+    {"gouge-depth", 0.0, 0.7, 0.0, 0.0},
+    {"adjacent-removed", 0.0, 0.0, 0.05, 0.0},
 };
 
 }  // namespace

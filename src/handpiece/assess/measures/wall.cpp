@@ -21,6 +21,7 @@ constexpr int kFormPlaces = 17;
 constexpr double kFormCos = 0.7071068;   // 45 degrees: deep marks turn the aim by 20 to either side
 constexpr double kTopMm = 0.3;           // of wall and of uncut surface at a margin
 constexpr std::size_t kPiecePlaces = 6;  // kPieceMm along a wall
+constexpr std::size_t kScanReach = 2;    // stations to either side that bear a scanned one out
 constexpr double kEdgeMm = 0.04;         // right at it nothing is taken
 
 bool isOn(const Selection& of, std::string_view side) {
@@ -157,14 +158,26 @@ AllUndercuts undercuts(CutTooth& tooth, const Selection& of) {
         }
         return all;
     }
-    for (const AxialStation& wall : tooth.axialWalls()) {
+    const std::vector<AxialStation>& stations = tooth.axialWalls();
+    // Of a scan only what the station beside it has too: one alone is a flaw of the scan.
+    const auto depthAt = [&](std::size_t i) {
+        const AxialStation& wall = stations[i % stations.size()];
+        std::vector<WallStation::Sample> steep;
+        for (const WallStation::Sample& s : wall.samples)
+            if (s.n.dot(frame.w) < kSin45) steep.push_back(s);
+        return wall.middle.isFound ? undercutOf(steep, -1.0).depthMm : 0.0;
+    };
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+        const AxialStation& wall = stations[i];
         if (!wall.middle.isFound || !isOn(of, wall.side)) continue;
         // The margin's own ledge stands out, and is seen.
         std::vector<WallStation::Sample> steep;
         for (const WallStation::Sample& s : wall.samples)
             if (s.n.dot(frame.w) < kSin45) steep.push_back(s);
-        const Undercut one = undercutOf(steep, -1.0);
+        Undercut one = undercutOf(steep, -1.0);
         if (steep.empty()) continue;
+        if (tooth.preparation().noiseMm > 0.0 && one.depthMm > leastMm)
+            one.depthMm = std::min(one.depthMm, std::max(depthAt(i + 1), depthAt(i + stations.size() - 1)));
         const double spacing = wall.middle.at * 6.283185307179586 / CutTooth::kAzimuths;
         add(one, false, kRoughnessTimes * wall.middle.rms, spacing,
             wall.marginMm + (steep[one.deepest].w - wall.marginW) * frame.w);
@@ -189,6 +202,8 @@ Taken takeWallHeight(CutTooth& tooth, const Selection& of) {
                 places.add(wall.topW - wall.marginW, wall.marginMm);
         if (places.values.empty()) return none("no axial wall stands over a margin there");
     }
+    const bool isExtreme = of.statistic == "least" || of.statistic == "greatest";
+    if (isExtreme) places = places.evened(tooth.preparation().noiseMm, kScanReach, tooth.form() == Form::crown);
     Taken taken = places.taken(of, "median", "margin over this wall's foot");
     taken.residual = meanOf(residual, static_cast<double>(places.values.size()) * kProbeMm / kPieceMm);
     // A crown's wall ends in a round edge that the field knows to a tenth of a voxel.

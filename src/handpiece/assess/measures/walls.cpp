@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The walls of a cavity, as a probe finds them that is led up along the path of draw.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <span>
 #include <tuple>
+#include <vector>
 
-#include "handpiece/assess/measures/cut_tooth.h"
+#include "handpiece/assess/measures/take.h"
 #include "handpiece/base/core/parallel.h"
 
 namespace handpiece::measures {
@@ -22,6 +25,74 @@ constexpr int kGapPlaces = 6;
 constexpr int kBesideRows = 4;
 constexpr double kStraightCos = 0.9659258;  // 15 degrees
 constexpr double kRoundMm = 0.8;            // of floor about a wall's foot
+constexpr double kMarksTimes = 0.5;         // of what marks leave open of that mean
+// A wall's middle begins at one of these shares of its height, above the corner with the floor, and ends below the
+// margin.
+constexpr std::array kShares{0.30, 0.40, 0.50, 0.60};
+constexpr double kMiddleTo = 0.85;
+constexpr int kBins = 11;  // of its height, from the first share to the last
+
+Line lineFrom(const WallStation& wall, double share) {
+    std::vector<core::Vec2> points;
+    for (const WallStation::Sample& s : wall.samples)
+        if (s.w >= wall.floorW + share * wall.heightMm() && s.w <= wall.floorW + kMiddleTo * wall.heightMm())
+            points.emplace_back(s.w, s.r);
+    return robustLine(points);
+}
+
+/// How far the mean profile of a wall's places lies off their lines from this share of the height on (rms), and how
+/// far each of them lies off its own, both [mm].
+struct Bend {
+    double meanMm = 0.0, eachMm = 0.0;
+};
+Bend bendFrom(std::span<WallStation* const> places, double share) {
+    std::array<double, kBins> sum{}, count{};
+    double squares = 0.0, all = 0.0;
+    for (const WallStation* wall : places) {
+        const Line line = lineFrom(*wall, share);
+        if (!line.isFound) continue;
+        for (const WallStation::Sample& s : wall->samples) {
+            const double at = (s.w - wall->floorW) / wall->heightMm();
+            if (at < share || at > kMiddleTo) continue;
+            const double off = s.r - line.of(s.w);
+            const auto bin = std::min<std::size_t>(
+                kBins - 1, static_cast<std::size_t>((at - kShares.front()) / (kMiddleTo - kShares.front()) * kBins));
+            sum[bin] += off;
+            count[bin] += 1.0;
+            squares += off * off;
+            all += 1.0;
+        }
+    }
+    double means = 0.0, bins = 0.0;
+    for (std::size_t i = 0; i < kBins; ++i)
+        if (count[i] > 0.0) {
+            means += sum[i] / count[i] * (sum[i] / count[i]);
+            ++bins;
+        }
+    return {std::sqrt(means / std::max(1.0, bins)), std::sqrt(squares / std::max(1.0, all))};
+}
+
+/// Where the middle of a wall begins: the corner's radius bends all its places alike, marks and roughness do not.
+void layMiddle(std::span<WallStation* const> places) {
+    std::vector<WallStation*> straight;
+    for (WallStation* wall : places)
+        if (!wall->isCorner) straight.push_back(wall);
+    const std::span<WallStation* const> looked = straight.empty() ? places : std::span<WallStation* const>(straight);
+    const double pieces = std::max(1.0, static_cast<double>(looked.size()) * kProbeMm / kPieceMm);
+    const Bend upper = bendFrom(looked, kShares.back());
+    double from = kShares.back();
+    for (const double share : kShares) {
+        const Bend bend = bendFrom(looked, share);
+        if (bend.meanMm > 1.2 * upper.meanMm + 0.0005 + kMarksTimes * upper.eachMm / std::sqrt(pieces)) continue;
+        from = share;
+        break;
+    }
+    for (WallStation* wall : places) {
+        if (const Line line = lineFrom(*wall, from); line.isFound) wall->middle = line;
+        wall->middleFromW = wall->floorW + from * wall->heightMm();
+        wall->middleToW = wall->floorW + kMiddleTo * wall->heightMm();
+    }
+}
 
 }  // namespace
 
@@ -99,28 +170,8 @@ bool CutTooth::probeWall(Look& look, WallStation& wall, double topW, double farM
         return wall.heightMm() > kLeastHeightMm;
     };
     if (!standOn(wall.samples[wall.samples.size() / 2].r)) return false;
-    // Its middle: above the corner with the floor, whose radius shows in what a line leaves over, and below the margin.
-    const auto fitFrom = [&](double share) {
-        std::vector<core::Vec2> points;
-        for (const WallStation::Sample& s : wall.samples)
-            if (s.w >= wall.floorW + share * wall.heightMm() && s.w <= wall.floorW + 0.85 * wall.heightMm())
-                points.emplace_back(s.w, s.r);
-        return robustLine(points);
-    };
-    constexpr double kShares[] = {0.30, 0.40, 0.50, 0.60};
-    const Line upper = fitFrom(kShares[3]);
-    wall.middle = upper;
-    for (const double share : kShares) {
-        const Line line = fitFrom(share);
-        if (!line.isFound || (upper.isFound && line.rms > 1.2 * upper.rms + 0.0005)) continue;
-        wall.middle = line;
-        wall.middleFromW = wall.floorW + share * wall.heightMm();
-        break;
-    }
-    if (!wall.middle.isFound || !standOn(wall.middle.of(wall.floorW))) return false;
-    if (wall.middleFromW == 0.0) wall.middleFromW = wall.floorW + kShares[3] * wall.heightMm();
-    wall.middleToW = wall.floorW + 0.85 * wall.heightMm();
-    return true;
+    wall.middle = lineFrom(wall, kShares.back());
+    return wall.middle.isFound && standOn(wall.middle.of(wall.floorW));
 }
 
 void CutTooth::findWalls() {
@@ -192,6 +243,11 @@ void CutTooth::findWalls() {
             const auto other = byRow.find({wall.floor, wall.run, wall.side, wall.row + rows});
             wall.isCorner = wall.isCorner || other == byRow.end() || other->second->h.dot(wall.h) < kStraightCos;
         }
+    std::map<std::tuple<int, int, std::string_view>, std::vector<WallStation*>> whole;
+    for (WallStation& wall : walls)
+        whole[{wall.floor, wall.run, wall.side}].push_back(&wall);
+    for (const auto& [of, places] : whole)
+        layMiddle(places);
     walls_ = std::move(walls);
 }
 

@@ -234,6 +234,18 @@ std::string_view nameOf(Passed passed) {
     return passed == Passed::yes ? "yes" : passed == Passed::no ? "no" : "teacher";
 }
 
+std::string_view nameOf(RegisteredOn on) {
+    return on == RegisteredOn::adjacentTeeth ? "adjacent-teeth"
+           : on == RegisteredOn::earlierScan ? "earlier-scan"
+                                             : "uncut-surface";
+}
+
+std::optional<RegisteredOn> registeredOnByName(std::string_view name) {
+    for (const RegisteredOn on : {RegisteredOn::uncutSurface, RegisteredOn::adjacentTeeth, RegisteredOn::earlierScan})
+        if (nameOf(on) == name) return on;
+    return std::nullopt;
+}
+
 Assessment evaluate(const Rubric& rubric, std::span<const Measured> measured, const Context& context) {
     requireSound(rubric);
     Assessment a;

@@ -116,13 +116,26 @@ struct Attempts {
 /// motion scales, or one of which not all was measured.
 [[nodiscard]] Attempts attempts(std::span<const Assessment> all);
 
+/// On what a scan was registered.
+enum class RegisteredOn {
+    uncutSurface,   ///< of the tooth itself
+    adjacentTeeth,  ///< and what is left uncut of the tooth
+    earlierScan,    ///< of the same, that was registered on the tooth
+};
+/// "uncut-surface", "adjacent-teeth", "earlier-scan", and back.
+[[nodiscard]] std::string_view nameOf(RegisteredOn on);
+[[nodiscard]] std::optional<RegisteredOn> registeredOnByName(std::string_view name);
+
 /// How a scan of a real preparation lies on the whole tooth.
 struct ScanFit {
-    double rmsMm = 0.0;     ///< of the uncut surface, by area
-    double uncutMm2 = 0.0;  ///< of it that was registered on
+    double rmsMm = 0.0;     ///< of the surface that was registered on, by area
+    double uncutMm2 = 0.0;  ///< of that surface
     double noiseMm = 0.0;   ///< rms that is left when the scanner's noise is taken off
     double cutMm2 = 0.0;    ///< surface that was cut
     double voxelMm = 0.0;   ///< of the field made of it
+    RegisteredOn registeredOn = RegisteredOn::uncutSurface;
+    double liesMm = 0.0;    ///< standard deviation of where the work lies, from how that surface holds it
+    double turnsDeg = 0.0;  ///< and of how it is turned
 };
 
 /// Of what a result was made, beside the score.

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <span>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
+#include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/exercise_table.h"
 #include "handpiece/model/case/package_type.h"
 
@@ -42,8 +44,8 @@ std::vector<std::byte> bytesOf(std::string_view text) {
 /// What exercise.toml says, but for case and rubric.
 Task parse(std::string_view text, const std::string& where) {
     const Table root = Table::parse(text, where);
-    root.allowOnly({"format", "type", "id", "version", "voxel_um", "minutes", "own_judgement", "level", "rubric",
-                    "exercise", "preparation"});
+    root.allowOnly({"format", "type", "id", "version", "voxel_um", "minutes", "minutes_hard", "live_bar",
+                    "own_judgement", "level", "rubric", "exercise", "preparation"});
     const std::int64_t format = root.integer("format").value_or(0);
     if (format != kFormatVersion)
         root.fail(fmt::format("this exercise is of format {}", format),
@@ -64,6 +66,10 @@ Task parse(std::string_view text, const std::string& where) {
     task.minutes = root.number("minutes");
     if (task.minutes && !(*task.minutes > 0.0 && *task.minutes <= 24 * 60))
         root.fail(fmt::format("{} minutes", *task.minutes), "give more than 0, a day at most", "minutes");
+    task.isTimeHard = root.flag("minutes_hard").value_or(false);
+    if (task.isTimeHard && !task.minutes)
+        root.fail("a hard limit without minutes", "give minutes, or leave minutes_hard out", "minutes_hard");
+    task.hasLiveBar = root.flag("live_bar").value_or(false);
     task.ownJudgement = root.flag("own_judgement").value_or(false);
     task.level = root.text("level").value_or("");
     if (!task.level.empty() && std::find(kLevels.begin(), kLevels.end(), task.level) == kLevels.end())
@@ -74,6 +80,32 @@ Task parse(std::string_view text, const std::string& where) {
     if (const auto exercise = root.table("exercise")) task.toothCase.exercise = cases::readExercise(*exercise);
     if (const auto recipe = root.table("preparation")) task.preparation = preparation::readRecipe(*recipe);
     return task;
+}
+
+/// The shortest number of micrometres that is read as this voxel again, bit for bit: 51 um are no 1000 times .051.
+std::string micrometres(double voxelMm) {
+    std::string text;
+    for (int digits = 3; digits <= 17; ++digits) {
+        text = fmt::format("{:.{}g}", 1e3 * voxelMm, digits);
+        double read = 0.0;
+        std::from_chars(text.data(), text.data() + text.size(), read);
+        if (1e-3 * read == voxelMm) break;
+    }
+    return text;
+}
+
+std::string tomlOf(const Task& task) {
+    std::string out = fmt::format("format = {}\ntype = \"exercise\"\nid = \"{}\"\nversion = {}\nvoxel_um = {}\n",
+                                  kFormatVersion, task.id, task.version, micrometres(task.voxelMm));
+    if (task.minutes) out += fmt::format("minutes = {}\n", *task.minutes);
+    if (task.isTimeHard) out += "minutes_hard = true\n";
+    if (task.hasLiveBar) out += "live_bar = true\n";
+    if (!task.level.empty()) out += fmt::format("level = \"{}\"\n", task.level);
+    if (task.ownJudgement) out += "own_judgement = true\n";
+    if (!task.rubric.empty()) out += fmt::format("rubric = \"{}\"\n", kRubricFile);
+    if (task.preparation) out += "\n" + preparation::recipeToml(*task.preparation);
+    if (task.toothCase.exercise) out += "\n" + cases::exerciseText(*task.toothCase.exercise);
+    return out;
 }
 
 /// Of a case's own `[exercise]`.
@@ -87,18 +119,27 @@ Task ofCase(const fs::path& path) {
     return task;
 }
 
+Task ofAttempt(const fs::path& path) {
+    cases::OpenAttempt open = cases::openAttempt(path);
+    if (open.attempt.exercise.empty())
+        throw core::Error("this attempt is of no exercise", path.string(), "name the exercise's folder or file");
+    return parseTask(open.attempt.exercise, open.attempt.rubric, std::move(open.toothCase),
+                     path.string() + ": " + cases::kExerciseInAttempt);
+}
+
 }  // namespace
 
 std::string taskToml(const Task& task) {
-    std::string out = fmt::format("format = {}\ntype = \"exercise\"\nid = \"{}\"\nversion = {}\nvoxel_um = {}\n",
-                                  kFormatVersion, task.id, task.version, 1e3 * task.voxelMm);
-    if (task.minutes) out += fmt::format("minutes = {}\n", *task.minutes);
-    if (!task.level.empty()) out += fmt::format("level = \"{}\"\n", task.level);
-    if (task.ownJudgement) out += "own_judgement = true\n";
-    if (!task.rubric.empty()) out += fmt::format("rubric = \"{}\"\n", kRubricFile);
-    if (task.preparation) out += "\n" + preparation::recipeToml(*task.preparation);
-    if (task.toothCase.exercise) out += "\n" + cases::exerciseText(*task.toothCase.exercise);
-    return out;
+    return tomlOf(task);
+}
+
+Task parseTask(std::string_view toml, std::string rubric, cases::Case toothCase, const std::string& where) {
+    Task task = parse(toml, where);
+    auto exercise = std::move(task.toothCase.exercise);
+    task.toothCase = std::move(toothCase);
+    if (exercise) task.toothCase.exercise = std::move(exercise);
+    task.rubric = std::move(rubric);
+    return task;
 }
 
 bool isTask(const fs::path& path) {
@@ -112,6 +153,7 @@ Task readTask(const fs::path& path) {
     std::error_code ec;
     if (!fs::exists(path, ec))
         throw core::Error("there is no such exercise", path.string(), "name a folder or a .handpiece file");
+    if (cases::isAttempt(path)) return ofAttempt(path);
     if (!isTask(path)) return ofCase(path);
     const bool isFolder = fs::is_directory(path, ec);
     cases::PackageFiles content;
@@ -144,7 +186,7 @@ void writeTask(const Task& task, const fs::path& path) {
     plain.exercise.reset();
     for (auto& [name, data] : cases::caseFiles(plain))
         files[kCasePrefix + name] = std::move(data);
-    files[kTaskFile] = bytesOf(taskToml(task));
+    files[kTaskFile] = bytesOf(tomlOf(task));
     if (!task.rubric.empty()) files[kRubricFile] = bytesOf(task.rubric);
     if (cases::isPackageName(path)) {
         cases::setPackageType(files, cases::PackageType::exercise);

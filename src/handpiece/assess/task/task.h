@@ -28,6 +28,8 @@ struct Task {
     double voxelMm = 0.05;                           ///< of the tooth: a score never hangs on a student's setting
     std::optional<double> minutes;                   ///< that it may take
     std::string level;                               ///< of kLevels; empty: not said
+    bool isTimeHard = false;                         ///< work ends with them; else one is told
+    bool hasLiveBar = false;                         ///< what is removed of the target is shown during the work
     std::optional<preparation::Recipe> preparation;  ///< what is to be cut; none: nothing is asked
     bool ownJudgement = false;                       ///< a student says what they expect before they see the result
     std::string rubric;                              ///< how it is judged, as its TOML text; empty: it is not
@@ -37,13 +39,15 @@ struct Task {
 /// file that cannot be read.
 [[nodiscard]] bool isTask(const std::filesystem::path& path);
 /// A folder or a .handpiece file; also a case with `[exercise]` in its case.toml, which then is a task without
-/// preparation and rubric. Throws core::Error (what, where with line, remedy).
+/// preparation and rubric, and an attempt that carries its exercise. Throws core::Error (what, where with line,
+/// remedy).
 [[nodiscard]] Task readTask(const std::filesystem::path& path);
+/// exercise.toml, as an attempt carries it beside the rubric, and back with the case that the attempt is of.
+[[nodiscard]] std::string taskToml(const Task& task);
+[[nodiscard]] Task parseTask(std::string_view toml, std::string rubric, cases::Case toothCase,
+                             const std::string& where);
 /// Into a folder, or as one .handpiece file; whole or not at all.
 void writeTask(const Task& task, const std::filesystem::path& path);
-
-/// exercise.toml of it.
-[[nodiscard]] std::string taskToml(const Task& task);
 
 /// What a score rests on: the case's surfaces and tissues, voxel, preparation. Not the texts, nor the rubric, which has
 /// a hash of its own.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/base/core/parallel.h"
 
+#include "handpiece/base/core/alone.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -14,10 +16,12 @@ namespace handpiece::core {
 namespace {
 std::mutex controlMutex;
 std::unique_ptr<tbb::global_control> control;
+thread_local bool isAlone = false;
 }  // namespace
 
 void parallelFor(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
     if (count == 0) return;
+    if (isAlone) return body(0, count);
 #if defined(__SANITIZE_THREAD__)
     // TBB itself is not instrumented: each hand-over of its tasks would be told as a race.
     if (count < 2) return body(0, count);
@@ -28,6 +32,14 @@ void parallelFor(std::size_t count, std::size_t grain, const std::function<void(
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain == 0 ? 1 : grain),
                       [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
 #endif
+}
+
+Alone::Alone() : wasAlone_(isAlone) {
+    isAlone = true;
+}
+
+Alone::~Alone() {
+    isAlone = wasAlone_;
 }
 
 std::size_t threadCount() {

@@ -198,6 +198,17 @@ void readHandIn(const CaseFiles& files, Attempt& a) {
     a.handIn = std::move(h);
 }
 
+/// What an attempt of no exercise, or of before, does not have.
+void readExercise(const CaseFiles& files, Attempt& a) {
+    const auto text = [&](const char* name) {
+        if (!files.has(name)) return std::string();
+        const std::vector<std::byte> bytes = files.read(name, Table::kMaxBytes);
+        return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    a.exercise = text(kExerciseInAttempt);
+    a.rubric = text(kRubricInAttempt);
+}
+
 bool isNoRecording(const std::string& name) {
     return !name.starts_with(kRecordingsFolder);
 }
@@ -233,6 +244,7 @@ Attempt readFrom(const CaseFiles& files, const fs::path& path) {
     a.caseFile = (baseOf(path) / a.caseFile).lexically_normal();
     readRecordings(files, a);
     readHandIn(files, a);
+    readExercise(files, a);
     return std::move(parsed.attempt);
 }
 
@@ -298,6 +310,8 @@ void writeAttempt(const Attempt& attempt, const fs::path& path, const Case* toot
     }
     // Programs before it passed such a file over.
     if (attempt.handedIn || !attempt.recordings.empty()) files[kRecordingsFile] = bytesOf(recordingsToml(attempt));
+    if (!attempt.exercise.empty()) files[kExerciseInAttempt] = bytesOf(attempt.exercise);
+    if (!attempt.rubric.empty()) files[kRubricInAttempt] = bytesOf(attempt.rubric);
     if (attempt.handIn) {
         files[kHandInFile] = bytesOf(handInToml(*attempt.handIn));
         if (!attempt.handIn->result.empty()) files[kHandInResultFile] = bytesOf(attempt.handIn->result);

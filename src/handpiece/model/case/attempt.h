@@ -50,6 +50,8 @@ struct Attempt {
         friend bool operator==(const HandIn&, const HandIn&) = default;
     };
     std::optional<HandIn> handIn;  ///< none of what was handed in without an exercise
+    /// exercise.toml and rubric.toml of the exercise that it is work on, as text; empty: of none.
+    std::string exercise{}, rubric{};
 };
 
 inline constexpr const char* kAttemptFile = "attempt.toml";
@@ -57,6 +59,8 @@ inline constexpr const char* kAttemptStateFile = "tooth.state";
 inline constexpr const char* kRecordingsFile = "recordings.toml";
 inline constexpr const char* kHandInFile = "hand-in.toml";
 inline constexpr const char* kHandInResultFile = "result.json";
+inline constexpr const char* kExerciseInAttempt = "exercise/exercise.toml";
+inline constexpr const char* kRubricInAttempt = "exercise/rubric.toml";
 /// Of the recordings that come along with an attempt, all together: an hour's work is a few dozen megabytes.
 inline constexpr std::uint64_t kMaxRecordingBytes = 256ull << 20;
 

@@ -45,6 +45,14 @@ CREATE TABLE comments (
 CREATE INDEX comments_by_attempt ON comments (attempt, made);
 ALTER TABLE attempts ADD COLUMN whole_score REAL NOT NULL DEFAULT 0;
 )sql",
+    R"sql(
+CREATE TABLE retests (
+  exercise TEXT NOT NULL, criterion TEXT NOT NULL, attempt TEXT NOT NULL REFERENCES attempts (id),
+  step INTEGER NOT NULL, due INTEGER NOT NULL, PRIMARY KEY (exercise, criterion)) STRICT;
+ALTER TABLE attempts ADD COLUMN worked_s REAL NOT NULL DEFAULT 0;
+ALTER TABLE attempts ADD COLUMN limit_s REAL NOT NULL DEFAULT 0;
+ALTER TABLE exercises ADD COLUMN place TEXT NOT NULL DEFAULT '';
+)sql",
 };
 
 /// A list in one field: none of the values has a line's end in it.
@@ -86,6 +94,10 @@ void bringUp(Database& database) {
         throw core::Error("this is a database of another program", database.where(),
                           "move the file away: a new one is made")
             .as("store-damaged", {"a database of another program"});
+    if (version < 0)
+        throw core::Error(fmt::format("this store of results is damaged: version {}", version), database.where(),
+                          "move the file away: a new one is made")
+            .as("store-damaged", {fmt::format("version {}", version)});
     if (version > Store::kVersion)
         throw core::Error(fmt::format("this store is of version {}, and this program knows {}", version,
                                       static_cast<int>(Store::kVersion)),
@@ -100,7 +112,7 @@ void bringUp(Database& database) {
 
 constexpr const char* kAttemptColumns =
     "id, exercise, exercise_hash, rubric_hash, session_hashes, recordings, began, finished, device, motion_scale, "
-    "score, max_score, passed, borderline, proven, result, whole_score";
+    "score, max_score, passed, borderline, proven, result, whole_score, worked_s, limit_s";
 
 Attempt attemptOf(const Statement& row) {
     Attempt attempt;
@@ -121,6 +133,8 @@ Attempt attemptOf(const Statement& row) {
     attempt.proven = row.integer(14) != 0;
     attempt.result = row.text(15);
     attempt.wholeScore = row.number(16);
+    attempt.workedS = row.number(17);
+    attempt.limitS = row.number(18);
     return attempt;
 }
 
@@ -155,14 +169,15 @@ Store::~Store() = default;
 void Store::see(const Exercise& exercise) {
     Transaction transaction(state_->database);
     Statement(state_->database,
-              "INSERT INTO exercises (id, version, hash, title, first_seen, last_seen) VALUES (?1, ?2, ?3, ?4, ?5, ?6) "
-              "ON CONFLICT (id, hash) DO UPDATE SET version = ?2, title = ?4, last_seen = ?6")
+              "INSERT INTO exercises (id, version, hash, title, first_seen, last_seen, place) VALUES (?1, ?2, ?3, ?4, "
+              "?5, ?6, ?7) ON CONFLICT (id, hash) DO UPDATE SET version = ?2, title = ?4, last_seen = ?6, place = ?7")
         .with(exercise.id)
         .with(exercise.version)
         .with(exercise.hash)
         .with(exercise.title)
         .with(exercise.firstSeen)
         .with(exercise.lastSeen)
+        .with(exercise.place)
         .run();
     transaction.commit();
 }
@@ -170,17 +185,52 @@ void Store::see(const Exercise& exercise) {
 std::vector<Exercise> Store::exercises() const {
     std::vector<Exercise> all;
     Statement rows(state_->database,
-                   "SELECT id, version, hash, title, first_seen, last_seen FROM exercises ORDER BY id, first_seen");
+                   "SELECT id, version, hash, title, first_seen, last_seen, place FROM exercises ORDER BY id, "
+                   "first_seen");
     while (rows.next())
-        all.push_back({rows.text(0), rows.integer(1), rows.text(2), rows.text(3), rows.integer(4), rows.integer(5)});
+        all.push_back({rows.text(0), rows.integer(1), rows.text(2), rows.text(3), rows.integer(4), rows.integer(5),
+                       rows.text(6)});
     return all;
 }
 
-void Store::add(const Attempt& a) {
+void Store::add(const Attempt& attempt) {
     Transaction transaction(state_->database);
-    Statement(
-        state_->database,
-        fmt::format("INSERT INTO attempts ({}) VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)", kAttemptColumns).c_str())
+    insert(attempt);
+    transaction.commit();
+}
+
+void Store::add(const Attempt& attempt, const std::vector<Retest>& retests) {
+    Transaction transaction(state_->database);
+    insert(attempt);
+    Statement(state_->database, "DELETE FROM retests WHERE exercise = ?").with(attempt.exercise).run();
+    for (const Retest& retest : retests)
+        Statement(state_->database,
+                  "INSERT INTO retests (exercise, criterion, attempt, step, due) VALUES (?, ?, ?, ?, ?)")
+            .with(attempt.exercise)
+            .with(retest.criterion)
+            .with(retest.attempt)
+            .with(std::int64_t{retest.step})
+            .with(retest.due)
+            .run();
+    transaction.commit();
+}
+
+std::vector<Retest> Store::retests(const std::string& exercise) const {
+    std::vector<Retest> all;
+    Statement rows(state_->database,
+                   "SELECT exercise, criterion, attempt, step, due FROM retests WHERE ?1 = '' OR exercise = ?1 "
+                   "ORDER BY due, exercise, criterion");
+    rows.with(exercise);
+    while (rows.next())
+        all.push_back({rows.text(0), rows.text(1), rows.text(2), static_cast<int>(rows.integer(3)), rows.integer(4)});
+    return all;
+}
+
+/// In a transaction.
+void Store::insert(const Attempt& a) {
+    Statement(state_->database,
+              fmt::format("INSERT INTO attempts ({}) VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)", kAttemptColumns)
+                  .c_str())
         .with(a.id)
         .with(a.exercise)
         .with(a.exerciseHash)
@@ -198,9 +248,10 @@ void Store::add(const Attempt& a) {
         .with(std::int64_t{a.proven})
         .with(a.result)
         .with(a.wholeScore)
+        .with(a.workedS)
+        .with(a.limitS)
         .run();
     post(state_->database, "attempt", a.id, a.finished);
-    transaction.commit();
 }
 
 void Store::add(const Judgement& judgement) {

@@ -28,6 +28,7 @@ struct Exercise {
     std::string hash;          ///< 16 hexadecimal digits
     std::string title;         ///< as shown when it was seen last
     Milliseconds firstSeen = 0, lastSeen = 0;
+    std::string place{};  ///< its folder or file when it was seen last; it may be gone by now
 };
 
 /// One piece of work that was finished and scored; never changed afterwards.
@@ -43,11 +44,22 @@ struct Attempt {
     double wholeScore = 0.0;             ///< the most of all that is graded; 0: not known
     std::string passed;                  ///< "yes", "no", "teacher"
     bool borderline = false, proven = false;
-    std::string result;  ///< the JSON of the result, whole
+    std::string result;                  ///< the JSON of the result, whole
+    double workedS = 0.0, limitS = 0.0;  ///< without pauses, and what the exercise gives; 0: not known, none
 
     /// Only such attempts say how good one is: of others a part is missing.
     [[nodiscard]] bool isWhole() const { return wholeScore <= maxScore + 1e-9; }
+    /// By how much its exercise's time was passed.
+    [[nodiscard]] double lateS() const { return limitS > 0.0 && workedS > limitS ? workedS - limitS : 0.0; }
     [[nodiscard]] double percent() const { return maxScore > 0.0 ? 100.0 * score / maxScore : 0.0; }
+};
+
+/// A criterion that was lost, to be shown once more without helps when it is due.
+struct Retest {
+    std::string exercise, criterion;  ///< its id in the rubric
+    std::string attempt;              ///< that lost it, or showed it last
+    int step = 0;                     ///< how often it was shown since it was lost
+    Milliseconds due = 0;
 };
 
 /// What a person thinks of their own work, before they see the result.
@@ -90,7 +102,7 @@ class Store {
     Store& operator=(const Store&) = delete;
 
     /// That the schema of now has.
-    static constexpr int kVersion = 2;
+    static constexpr int kVersion = 3;
 
     /// Notes that it was there; `firstSeen` of before stays.
     void see(const Exercise& exercise);
@@ -98,6 +110,10 @@ class Store {
     [[nodiscard]] std::vector<Exercise> exercises() const;
 
     void add(const Attempt& attempt);
+    /// And all retests of its exercise, in the place of those that it had: both or neither.
+    void add(const Attempt& attempt, const std::vector<Retest>& retests);
+    /// By when they are due; empty `exercise`: all.
+    [[nodiscard]] std::vector<Retest> retests(const std::string& exercise = {}) const;
     /// Of an attempt that is there, once.
     void add(const Judgement& judgement);
     /// In the order in which they were finished; empty `exercise`: all.
@@ -112,6 +128,7 @@ class Store {
     [[nodiscard]] std::vector<Outgoing> outbox(std::int64_t sequence, std::size_t most = 100) const;
 
   private:
+    void insert(const Attempt& attempt);
     struct State;
     std::unique_ptr<State> state_;
 };

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/app/course/retest.h"
+
+#include <algorithm>
+
+#include "handpiece/app/report/assessment_report.h"
+
+namespace handpiece::course {
+namespace {
+
+std::int64_t dueAfter(std::int64_t now, int step) {
+    constexpr std::int64_t kDay = 24 * 3600 * 1000;
+    return now + kDay * kRetestDays[static_cast<std::size_t>(step)];
+}
+
+}  // namespace
+
+std::vector<DueCriterion> nextRetests(std::vector<DueCriterion> open, const score::Assessment& result,
+                                      const std::string& attempt, bool isUnaided, std::int64_t now) {
+    const std::vector<std::size_t> lost = report::costliest(result);
+    const auto isLost = [&](const score::CriterionScore& c) {
+        return std::any_of(lost.begin(), lost.end(), [&](std::size_t i) { return result.criteria[i].id == c.id; });
+    };
+    std::erase_if(open, [&](DueCriterion& one) {
+        const auto c = std::find_if(result.criteria.begin(), result.criteria.end(),
+                                    [&](const score::CriterionScore& s) { return s.id == one.criterion; });
+        if (c == result.criteria.end() || c->standing != score::Standing::judged) return false;
+        if (isLost(*c)) {
+            one = {one.criterion, attempt, 0, dueAfter(now, 0)};
+        } else if (isUnaided && one.due <= now) {
+            if (one.step + 1 == static_cast<int>(kRetestDays.size())) return true;
+            one = {one.criterion, attempt, one.step + 1, dueAfter(now, one.step + 1)};
+        }
+        return false;
+    });
+    for (std::size_t i = 0; i < std::min(lost.size(), kMostNewRetests); ++i) {
+        const std::string& id = result.criteria[lost[i]].id;
+        if (std::none_of(open.begin(), open.end(), [&](const DueCriterion& one) { return one.criterion == id; }))
+            open.push_back({id, attempt, 0, dueAfter(now, 0)});
+    }
+    return open;
+}
+
+}  // namespace handpiece::course

@@ -287,7 +287,8 @@ void addHandInCommand(Command& exercise, const std::shared_ptr<ExerciseOptions>&
     hand.option("--expected", o.expected, "what the student expects [%]").check(range(0.0, 100.0));
     hand.option("--words", o.words, "and says of it");
     hand.option("--out", o.out, "file that ends in .handpiece").required();
-    hand.footer("Example:\n  handpiece exercise hand-in cut/session.h5 --exercise 46-class-i --student A7 --out a7.handpiece");
+    hand.footer(
+        "Example:\n  handpiece exercise hand-in cut/session.h5 --exercise 46-class-i --student A7 --out a7.handpiece");
     hand.callback([options] { handIn(*options); });
 }
 

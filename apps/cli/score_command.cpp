@@ -54,7 +54,9 @@ void tellHandIn(const ScoreOptions& o, const assessment::Result& result) {
     const bool isThis = in->exerciseHash == result.identity.exerciseHash;
     fmt::print("handed in for exercise {} version {}{}\n", in->exercise, in->version,
                isThis ? "" : fmt::format(" (hash {}), which is not the one that it is held against", in->exerciseHash));
-    if (in->expectedPercent) fmt::print("its student expected {:g} %{}\n", *in->expectedPercent, in->expectedWords.empty() ? "" : ": " + in->expectedWords);
+    if (in->expectedPercent)
+        fmt::print("its student expected {:g} %{}\n", *in->expectedPercent,
+                   in->expectedWords.empty() ? "" : ": " + in->expectedWords);
 }
 
 /// The page of a class, of results that are there.
@@ -118,7 +120,9 @@ void run(const ScoreOptions& o) {
     core::setThreadCount(o.threads);
     if (!o.classFolder.empty()) return runClass(o);
     if (o.work.empty()) throw core::Error("there is no work to judge", "score", "name a session, an attempt or a scan");
-    if (o.exercise.empty()) throw core::Error("which exercise is it?", "--exercise", "name its folder or file, or the id of one that comes along");
+    if (o.exercise.empty())
+        throw core::Error("which exercise is it?", "--exercise",
+                          "name its folder or file, or the id of one that comes along");
     const tasks::Task task = exerciseOf(o.exercise).task;
     if (o.rubric.empty() && task.rubric.empty())
         throw core::Error("this exercise has no rubric", o.exercise,

@@ -389,7 +389,8 @@ std::vector<ExerciseTrials> tryExercises(const TrialOptions& o, const core::Prog
                 trials.errors.push_back(std::move(error));
             }
         core::report(own, 0.5);
-        if (o.trials > 0 && std::find(kSteadinessOf.begin(), kSteadinessOf.end(), trials.number) != kSteadinessOf.end()) {
+        if (o.trials > 0 &&
+            std::find(kSteadinessOf.begin(), kSteadinessOf.end(), trials.number) != kSteadinessOf.end()) {
             for (const double tremor : kTremorMm) {
                 HandTrials hand{tremor, tremor, {}, 0};
                 for (int i = 0; i < o.trials; ++i) {
@@ -422,10 +423,13 @@ std::string trialsJson(const TrialOptions& o, const std::vector<ExerciseTrials>&
               {"done_well_by", o.atTheArm ? "the loop at 1 kHz" : "sweeping alone"},
               {"exercises", Json::array()}};
     for (const ExerciseTrials& t : all) {
-        Json one{{"number", t.number},       {"id", t.id},
+        Json one{{"number", t.number},
+                 {"id", t.id},
                  {"bur", t.bur},
-                 {"hand_s", t.handS},        {"way_mm", t.wayMm},
-                 {"ideal", toJson(t.ideal)}, {"done_well", toJson(t.doneWell)},
+                 {"hand_s", t.handS},
+                 {"way_mm", t.wayMm},
+                 {"ideal", toJson(t.ideal)},
+                 {"done_well", toJson(t.doneWell)},
                  {"errors", Json::array()}};
         if (o.atTheArm) one["proof"] = t.proof;
         for (const ErrorOnPurpose& e : t.errors)

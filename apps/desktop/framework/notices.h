@@ -49,6 +49,7 @@ enum class Notice {
     helpLocked,
     handedIn,
     handedInPart,
+    recordingsDeleted,
     otherEngine,
     caseVanished,
     cacheRenewed,

@@ -343,9 +343,9 @@ void SolidView::paintEvent(QPaintEvent* event) {
     }
     if (!hasPicture) {
         painter.setPen(pale);
-        painter.drawText(QRectF(rect()).adjusted(20, 20, -20, -20), Qt::AlignCenter | Qt::TextWordWrap,
-                         missing_.isEmpty() ? placeholder_
-                                            : tr("There is no picture. Technical detail: %1").arg(missing_));
+        painter.drawText(
+            QRectF(rect()).adjusted(20, 20, -20, -20), Qt::AlignCenter | Qt::TextWordWrap,
+            missing_.isEmpty() ? placeholder_ : tr("There is no picture. Technical detail: %1").arg(missing_));
     }
     if (hasFocus()) {
         painter.setPen(QPen(palette().color(QPalette::Highlight), 2));

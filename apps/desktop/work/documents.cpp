@@ -160,7 +160,8 @@ cases::Case starterCase(const Starter& starter, const fs::path& folder, const co
     if (!starter.inMouth) return tooth;
     if (isNew) show(tooth);
     hears.making = [&] { tell(listener, LoadStep::mouth); };
-    cases::Case mouth = course::keptMouth(starter.fdi, starter.patient, folder, core::part(progress, toothShare, 1.0), hears);
+    cases::Case mouth =
+        course::keptMouth(starter.fdi, starter.patient, folder, core::part(progress, toothShare, 1.0), hears);
     // The mouth's own teeth are coarser: the one that is worked on stands in for its like, in the same frame.
     static_cast<cases::Tooth&>(mouth) = std::move(static_cast<cases::Tooth&>(tooth));
     return mouth;

@@ -10,6 +10,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "desktop/work/documents.h"
@@ -39,8 +42,7 @@ struct Crashed {
 class SessionShelf {
   public:
     struct Limits {
-        std::size_t sessions = 20;
-        std::uint64_t bytes = 2ull << 30;
+        std::uint64_t bytes = 4ull << 30;  ///< of all recordings
     };
     explicit SessionShelf(std::filesystem::path folder);
     SessionShelf(std::filesystem::path folder, Limits limits);
@@ -65,8 +67,11 @@ class SessionShelf {
     [[nodiscard]] std::vector<Crashed> crashed() const;
     /// Its work is saved elsewhere by now, or given up: it becomes a recording like any other.
     void settle(const std::filesystem::path& session);
-    /// Deletes the oldest recordings beyond the limits, never one with a marker. Returns how many.
-    std::size_t tidy();
+    /// It was given to a teacher: tidy() never deletes it.
+    void keepHandedIn(const std::string& name);
+    /// Deletes the oldest recordings beyond the limit, never one with a marker, one that was handed in, or one of
+    /// `kept` (names of files). Returns names and bytes of those that went.
+    std::vector<std::pair<std::string, std::uint64_t>> tidy(const std::set<std::string>& kept = {});
 
   private:
     void take(const std::filesystem::path& session);

@@ -118,7 +118,8 @@ TEST(Recording, TellsOfTheHand) {
     const std::vector<Request> asked{{"time"},        {"force"},        {"load-over-limit", overOne}, {"path-length"},
                                      {"bur-changes"}, {"mirror-share"}, {"depth-stop-share"},         {"undos"},
                                      {"views"},       {"stalls"},       {"impulse-on-protected"},     {"strokes"}};
-    const std::vector<Measured> told = readRecord(chain, {}, 0.05, asked, {}), again = readRecord(chain, {}, 0.05, asked, {});
+    const std::vector<Measured> told = readRecord(chain, {}, 0.05, asked, {}),
+                                again = readRecord(chain, {}, 0.05, asked, {});
     const double truth[] = {8.0, 1.5, 4.0, 48.0, 2.0, 0, 0, 1.0, 2.0, 2.0, 4.0, 2.0};
     for (std::size_t i = 0; i < asked.size(); ++i) {
         ASSERT_TRUE(told[i].value) << asked[i].kind << ": " << told[i].reason;
@@ -135,8 +136,9 @@ TEST(Recording, TellsOfTheHand) {
     EXPECT_NEAR(*told[6].value, 25.0, 0.2);
     EXPECT_EQ(told[4].evidence.at(0).timeS, 2.0);
     EXPECT_EQ(told[4].evidence.at(1).session, 1u) << "the next begins with the first bur again";
-    EXPECT_THAT(readRecord(std::span(chain).last(1), {}, 0.05, std::vector<Request>{{"mirror-share"}}, {}).front().reason,
-                HasSubstr("does not tell"));
+    EXPECT_THAT(
+        readRecord(std::span(chain).last(1), {}, 0.05, std::vector<Request>{{"mirror-share"}}, {}).front().reason,
+        HasSubstr("does not tell"));
 }
 
 tasks::Task blockTask() {

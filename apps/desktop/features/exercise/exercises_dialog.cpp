@@ -23,6 +23,23 @@ namespace handpiece::desktop {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// In words; empty for what is no level.
+QString levelWords(const std::string& level) {
+    constexpr std::array<const char*, tasks::kLevels.size()> kWords = {
+        QT_TRANSLATE_NOOP("handpiece::desktop::ExercisesDialog", "beginner"),
+        QT_TRANSLATE_NOOP("handpiece::desktop::ExercisesDialog", "basic"),
+        QT_TRANSLATE_NOOP("handpiece::desktop::ExercisesDialog", "intermediate"),
+        QT_TRANSLATE_NOOP("handpiece::desktop::ExercisesDialog", "advanced")};
+    const auto at = std::find(tasks::kLevels.begin(), tasks::kLevels.end(), level);
+    return at == tasks::kLevels.end()
+               ? QString()
+               : ExercisesDialog::tr(kWords[static_cast<std::size_t>(at - tasks::kLevels.begin())]);
+}
+
+}  // namespace
+
 ExercisesDialog::ExercisesDialog(fs::path madeIn, QWidget* parent)
     : QDialog(parent),
       madeIn_(std::move(madeIn)),
@@ -32,8 +49,8 @@ ExercisesDialog::ExercisesDialog(fs::path madeIn, QWidget* parent)
       begin_(named(new QPushButton(tr("Begin"), this), "exercisesBegin", tr("Begin"),
                    tr("Open the tooth of this exercise and work on it"))) {
     setObjectName(QStringLiteral("exercisesDialog"));
-    view_->setPlaceholder({});
     setWindowTitle(tr("Exercises"));
+    view_->setPlaceholder({});
     auto* left = new QVBoxLayout;
     left->addWidget(list_, 1);
     where_ = note({}, this, "exercisesWhere");
@@ -94,20 +111,26 @@ void ExercisesDialog::setFolder(const fs::path& folder) {
 
 void ExercisesDialog::showEvent(QShowEvent* event) {
     QDialog::showEvent(event);
-    if (entries_.empty()) return list();
-    showRows();  // what is best may be another by now
-    showTask();
+    if (entries_.empty())
+        list();
+    else
+        showTask();  // what is best may be another by now
 }
 
 void ExercisesDialog::list() {
     giveUp();
     entries_.clear();
     for (const course::Shipped& shipped : course::shippedExercises())
-        entries_.push_back({shipped.id, {}, shipped.exercise.title, {}, true, shipped.level, shipped.minutes});
+        entries_.push_back({shipped.id, {}, shipped.exercise.title, {}, true});
     where_->setText(folder_.empty() ? tr("Those of the program.") : tr("And those in %1").arg(toQString(folder_)));
     const auto fill = [this] {
-        showRows();
         const QSignalBlocker quiet(list_);
+        list_->clear();
+        for (const Entry& entry : entries_) {
+            auto* item = new QListWidgetItem(inThisLanguage(entry.title), list_);
+            if (item->text().isEmpty()) item->setText(toQString(entry.path.filename()));
+            if (!entry.wrong.isEmpty()) item->setToolTip(entry.wrong);
+        }
         list_->setCurrentRow(0);
     };
     fill();
@@ -120,40 +143,13 @@ void ExercisesDialog::list() {
             for (const course::Found& one : *found) {
                 Entry entry{toQString(one.path.filename()).toStdString(), one.path, {}, {}, false};
                 if (one.error) entry.wrong = problemOf(*one.error).what;
-                if (one.task) entry.id = one.task->id, entry.level = one.task->level, entry.minutes = one.task->minutes;
+                if (one.task) entry.id = one.task->id;
                 if (one.task && one.task->toothCase.exercise) entry.title = one.task->toothCase.exercise->title;
                 entries_.push_back(std::move(entry));
             }
             fill();
             choose(0);
         });
-}
-
-/// The list anew, with the same row chosen.
-void ExercisesDialog::showRows() {
-    const QSignalBlocker quiet(list_);
-    const int row = list_->currentRow();
-    list_->clear();
-    for (const Entry& entry : entries_) {
-        auto* item = new QListWidgetItem(inThisLanguage(entry.title), list_);
-        if (item->text().isEmpty()) item->setText(toQString(entry.path.filename()));
-        if (const QString about = aboutOf(entry); !about.isEmpty())
-            item->setText(item->text() + QLatin1Char('\n') + about);
-        if (!entry.wrong.isEmpty()) item->setToolTip(entry.wrong);
-    }
-    list_->setCurrentRow(row);
-}
-
-/// For whom, how long, how far one has come.
-QString ExercisesDialog::aboutOf(const Entry& entry) const {
-    constexpr std::array<const char*, tasks::kLevels.size()> kWords = {
-        QT_TR_NOOP("beginner"), QT_TR_NOOP("basic"), QT_TR_NOOP("intermediate"), QT_TR_NOOP("advanced")};
-    QStringList about;
-    const auto level = std::find(tasks::kLevels.begin(), tasks::kLevels.end(), entry.level);
-    if (level != tasks::kLevels.end()) about << tr(kWords[static_cast<std::size_t>(level - tasks::kLevels.begin())]);
-    if (entry.minutes) about << tr("%1 minutes").arg(*entry.minutes);
-    if (const QString best = bestOf(entry.id); !best.isEmpty()) about << best;
-    return about.join(QStringLiteral(" · "));
 }
 
 void ExercisesDialog::chooseAfter(const std::string& id) {
@@ -277,6 +273,7 @@ void ExercisesDialog::showTask() {
     show(words_, inThisLanguage(exercise.instructions));
     QStringList about;
     if (task_->toothCase.fdiNumber != 0) about << tr("Tooth %1").arg(task_->toothCase.fdiNumber);
+    if (const QString level = levelWords(task_->level); !level.isEmpty()) about << level;
     if (task_->minutes) about << tr("%1 minutes").arg(*task_->minutes);
     QStringList burs;
     for (const std::string& bur : exercise.allowedBurs)

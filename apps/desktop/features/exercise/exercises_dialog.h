@@ -57,12 +57,8 @@ class ExercisesDialog : public QDialog {
         cases::Texts title;
         QString wrong;
         bool isShipped = false;
-        std::string level{};
-        std::optional<double> minutes{};
     };
     void list();
-    void showRows();
-    [[nodiscard]] QString aboutOf(const Entry& entry) const;
     void choose(int row);
     void showTask();
     void makeIdeal();

@@ -381,10 +381,10 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
                 one = {one.kind, one.of, {}, 0.0, work.noBeside, {}};
     core::report(progress, 0.4);
     const hand::Against against{preparation.axes.longAxis, preparation.zones};
-    std::vector<measures::Measured> hand =
-        readRecord(work.recordings, result.measured, task.voxelMm,
-                   work.noHand.empty() ? std::span<const measures::Request>(ofHand) : std::span<const measures::Request>(),
-                   against, core::part(progress, 0.4, 1.0));
+    std::vector<measures::Measured> hand = readRecord(
+        work.recordings, result.measured, task.voxelMm,
+        work.noHand.empty() ? std::span<const measures::Request>(ofHand) : std::span<const measures::Request>(),
+        against, core::part(progress, 0.4, 1.0));
     if (!work.noHand.empty())
         for (const measures::Request& request : ofHand)
             hand.push_back({request.kind, request.of, {}, 0.0, work.noHand, {}});

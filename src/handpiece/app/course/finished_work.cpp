@@ -114,8 +114,7 @@ FinishedWork reopen(score::Result result, std::span<const assessment::ChainLink>
 }
 
 void handIn(const FinishedWork& done, const HandInWords& words, const std::filesystem::path& file) {
-    if (!cases::isPackageName(file))
-        throw core::Error("a hand-in is one file", file.string(), "name it .handpiece");
+    if (!cases::isPackageName(file)) throw core::Error("a hand-in is one file", file.string(), "name it .handpiece");
     const tasks::Task& task = *done.task;
     cases::Attempt attempt;
     attempt.caseFile = file;

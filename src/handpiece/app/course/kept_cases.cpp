@@ -66,7 +66,10 @@ cases::Case keptMouth(int fdi, const dentition::Patient& patient, const fs::path
     cases::Case mouth = kept(
         folder / fmt::format("mouth-{}-{}-{}", patientName(patient), kMouthFaces, HANDPIECE_VERSION),
         [](const cases::Case& c) { return c.others.size() + 1 == dentition::kToothCount; },
-        [&] { return dentition::makeMouth(patient, {kMadeAt, kMouthFaces}, progress); }, listener);
+        [&] {
+            return dentition::makeMouth(patient, {kMadeAt, kMouthFaces}, progress);
+        },
+        listener);
     // What is kept beside the mouth, the fields of all that stands there, serves each of its teeth.
     return cases::workOn(std::move(mouth), fdi);
 }

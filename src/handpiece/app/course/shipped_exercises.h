@@ -22,12 +22,12 @@ namespace handpiece::course {
 /// What can be told of an exercise that comes along without making it.
 struct Shipped {
     std::string id;
-    int number = 0;                   ///< 1 to 10 of the ten first exercises; 0: a further block
-    int fdi = 0;                      ///< 0: a block
-    bool hasNeighbours = false;       ///< stands in its arch, with gingiva
-    std::string level, preparation;   ///< of tasks::kLevels; of preparation::templates()
+    int number = 0;                  ///< 1 to 10 of the ten first exercises; 0: a further block
+    int fdi = 0;                     ///< 0: a block
+    bool hasNeighbours = false;      ///< stands in its arch, with gingiva
+    std::string level, preparation;  ///< of tasks::kLevels; of preparation::templates()
     double minutes = 0.0;
-    cases::Exercise exercise;         ///< title, instructions, burs, locks
+    cases::Exercise exercise;  ///< title, instructions, burs, locks
 };
 /// The ten first exercises in their order, then further blocks.
 [[nodiscard]] const std::vector<Shipped>& shippedExercises();

@@ -180,8 +180,7 @@ void readHandIn(const CaseFiles& files, Attempt& a) {
     if (version != 1)
         root.fail(fmt::format("the hand-in's format is {}, this program reads format 1", version),
                   version > 1 ? "use a newer Handpiece" : kRemedy, "format");
-    root.allowOnly(
-        {"format", "exercise", "exercise_version", "exercise_hash", "expected_percent", "expected_words"});
+    root.allowOnly({"format", "exercise", "exercise_version", "exercise_hash", "expected_percent", "expected_words"});
     Attempt::HandIn h;
     h.exercise = root.text("exercise").value_or("");
     h.version = root.integer("exercise_version").value_or(1);
@@ -267,8 +266,7 @@ bool isAttemptType(std::optional<PackageType> type) {
 bool isAttempt(const fs::path& path) {
     std::error_code ec;
     if (fs::is_directory(path, ec)) return fs::exists(path / kAttemptFile, ec);
-    return isPackageName(path) && fs::exists(path, ec) &&
-           isAttemptType(packageType(path));
+    return isPackageName(path) && fs::exists(path, ec) && isAttemptType(packageType(path));
 }
 
 void writeAttempt(const Attempt& attempt, const fs::path& path, const Case* toothCase, PackageFiles recordings) {

@@ -16,8 +16,8 @@
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/case.h"
 #include "handpiece/model/case/case_files.h"
-#include "handpiece/model/case/package_type.h"
 #include "handpiece/model/case/exercise_table.h"
+#include "handpiece/model/case/package_type.h"
 
 namespace handpiece::cases {
 namespace {

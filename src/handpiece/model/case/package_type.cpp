@@ -36,8 +36,8 @@ const char* holds(PackageType type) {
 }  // namespace
 
 void setPackageType(PackageFiles& files, PackageType type) {
-    const std::string text = fmt::format("format = {}\ntype = \"{}\"\n", kTypeFormat,
-                                         kPackageTypes[static_cast<std::size_t>(type)]);
+    const std::string text =
+        fmt::format("format = {}\ntype = \"{}\"\n", kTypeFormat, kPackageTypes[static_cast<std::size_t>(type)]);
     const auto bytes = std::as_bytes(std::span(text));
     files[kPackageFile] = {bytes.begin(), bytes.end()};
 }
@@ -76,8 +76,7 @@ std::optional<PackageType> packageType(const std::filesystem::path& file) {
 
 void requireOpenable(const PackageFiles& files, const std::string& where) {
     if (packageType(files, where) == PackageType::exam)
-        throw core::Error("this is an exam, which only its school's station opens", where,
-                          "ask who gave it out");
+        throw core::Error("this is an exam, which only its school's station opens", where, "ask who gave it out");
 }
 
 }  // namespace handpiece::cases

@@ -19,6 +19,8 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/core/rotation.h"
+#include "handpiece/model/case/attempt.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "handpiece/tick/device/capability.h"
 #include "studies/cut_run.h"
 #include "studies/excavation.h"
@@ -232,6 +234,7 @@ Ready readyOf(const Spec& spec, const TrialOptions& o, const core::Progress& pro
     settings.parameters.tissues = force::defaultParameters(settings.tissues).tissues;
     r.station = simulation::makeSimulation(r.task.toothCase, settings, true, core::part(progress, 0.6, 0.9));
     r.laid = preparation::layOn(r.task.toothCase, *r.task.preparation);
+    tasks::writeTask(r.task, o.out / "exercises" / r.task.id);
     std::vector<std::pair<std::shared_ptr<const tooth::ToothModel>, core::Pose>> beside;
     for (const simulation::StandingTooth& other : r.station.others)
         if (other.field) beside.emplace_back(other.model, other.inCase);
@@ -278,12 +281,30 @@ TrialScore judged(const Ready& r, const assessment::Work& work) {
     return t;
 }
 
-TrialScore sweptAndJudged(Ready& r, const device::Motion& motion) {
+/// As an attempt that `handpiece score` reads, beside its exercise.
+void keep(const Ready& r, const TrialOptions& o, const assessment::Work& work, std::string name) {
+    for (char& c : name)
+        if (c == ' ') c = '-';
+    cases::Attempt attempt;
+    attempt.caseFile = fs::absolute(o.out / "exercises" / r.task.id / "case");
+    attempt.caseKey = cases::contentKey(r.task.toothCase);
+    attempt.caseName = r.task.toothCase.name;
+    attempt.state = tooth::encodeState(work.state, r.station.identity());
+    attempt.voxelMm = o.voxelMm;
+    attempt.removedMm3 = work.state.removedMm3.own;
+    attempt.bur = r.instrument.bur->name();
+    attempt.cuttingParameters = r.instrument.cuttingParameters.name;
+    attempt.drive = r.station.settings.drive.name;
+    cases::writeAttempt(attempt, o.out / "works" / r.task.id / name);
+}
+
+TrialScore sweptAndJudged(Ready& r, const TrialOptions& o, const device::Motion& motion, const std::string& name = {}) {
     r.station.renewFields();
     sweep(r.station, motion);
     assessment::Work work;
     work.teeth = r.station.teeth();
     work.state = r.station.state();
+    if (!name.empty()) keep(r, o, work, name);
     return judged(r, work);
 }
 
@@ -306,10 +327,11 @@ TrialScore atTheArm(Ready& r, const TrialOptions& o, std::string& proof) {
     return judged(r, work);
 }
 
-TrialScore idealOf(const Ready& r) {
+TrialScore idealOf(const Ready& r, const TrialOptions& o) {
     assessment::Work work;
     work.teeth = r.station.teeth();
     work.state = zones::idealState(*r.laid.zones, r.station.tooth);
+    keep(r, o, work, "ideal");
     return judged(r, work);
 }
 
@@ -368,16 +390,16 @@ std::vector<ExerciseTrials> tryExercises(const TrialOptions& o, const core::Prog
         Ready r = readyOf(spec, o, core::part(own, 0.0, 0.3));
         ExerciseTrials trials;
         trials.number = numberOf(spec), trials.id = spec.id, trials.bur = r.instrument.bur->name();
-        trials.ideal = idealOf(r);
+        trials.ideal = idealOf(r, o);
         trials.handS = r.well.durationS();
         for (std::size_t i = 1; i < r.well.poses().size(); ++i)
             trials.wayMm +=
                 (r.well.poses()[i].burInTooth.positionMm - r.well.poses()[i - 1].burInTooth.positionMm).norm();
-        trials.doneWell = o.atTheArm ? atTheArm(r, o, trials.proof) : sweptAndJudged(r, r.well);
+        trials.doneWell = o.atTheArm ? atTheArm(r, o, trials.proof) : sweptAndJudged(r, o, r.well, "done well");
         core::report(own, 0.4);
         if (o.withErrors)
             for (const Mistake& mistake : spec.mistakes) {
-                const TrialScore t = sweptAndJudged(r, mistake.plan(r));
+                const TrialScore t = sweptAndJudged(r, o, mistake.plan(r), mistake.name);
                 ErrorOnPurpose error{mistake.name, mistake.criterion, false, true, {}};
                 for (const std::string& id : t.critical)
                     if (id == mistake.criterion)
@@ -396,7 +418,7 @@ std::vector<ExerciseTrials> tryExercises(const TrialOptions& o, const core::Prog
                 for (int i = 0; i < o.trials; ++i) {
                     const std::uint64_t seed = o.seed * 1000000 + static_cast<std::uint64_t>(trials.number) * 10000 +
                                                trials.hands.size() * 1000 + static_cast<std::uint64_t>(i);
-                    const TrialScore t = sweptAndJudged(r, withUnsteadiness(r.well, {tremor, tremor}, seed));
+                    const TrialScore t = sweptAndJudged(r, o, withUnsteadiness(r.well, {tremor, tremor}, seed));
                     hand.percent.push_back(t.percent());
                     hand.critical += !t.critical.empty();
                 }

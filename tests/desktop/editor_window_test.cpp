@@ -14,8 +14,10 @@
 #include <QTableWidget>
 #include <set>
 
+#include "desktop/features/editor/curve_view.h"
 #include "desktop/features/editor/editor_dialog.h"
 #include "desktop/features/editor/editor_feature.h"
+#include "desktop/features/editor/editor_pages.h"
 #include "desktop/picture/solid_view.h"
 #include "shell_support.h"
 
@@ -120,7 +122,7 @@ TEST_F(EditorTest, FromNothingToAFileThatAStudentOpens) {
     EXPECT_DOUBLE_EQ(now().preparation->leeway.sideMm, 0.35);
     ASSERT_TRUE(settled());
     press("editorShowIdeal");
-    ASSERT_TRUE(waitFor([this] { return !feature().isBusy() && part<SolidView>("editorIdeal")->isDrawn(); }));
+    ASSERT_TRUE(waitFor([this] { return !feature().isBusy() && part<SolidView>("editorPicture")->isDrawn(); }));
     look("preparation");
 
     page(2);
@@ -129,7 +131,7 @@ TEST_F(EditorTest, FromNothingToAFileThatAStudentOpens) {
     tick("editorBurs", "245");
     tick("editorHelps", "undo");
     QTest::mouseClick(part<QCheckBox>("editorTimed"), Qt::LeftButton, Qt::NoModifier, QPoint(8, 8));
-    type(part<QSpinBox>("editorMinutes"), "12");
+    type(part<QDoubleSpinBox>("editorMinutes"), "12");
     press("editorTakeView");
     ASSERT_TRUE(now().exercise.view);
     EXPECT_EQ(now().exercise.view->eyeMm, view()->camera().eyeMm);
@@ -169,6 +171,181 @@ TEST_F(EditorTest, FromNothingToAFileThatAStudentOpens) {
     EXPECT_EQ(simulator().task()->id, "cross-of-mine");
     EXPECT_EQ(simulator().burName(), "330");
     EXPECT_TRUE(simulator().permissions().locks(exercise::Operation::undo));
+}
+
+TEST_F(EditorTest, NumbersAreDraggedByHandlesInThePicture) {
+    startWithTooth();
+    beginBlock();
+    page(1);
+    choose("editorTemplate", part<QComboBox>("editorTemplate")->findData("block-cross"));
+    ASSERT_TRUE(settled());
+    auto* picture = part<SolidView>("editorPicture");
+    const PreparationPage& shown = *editor().preparationPage();
+    ASSERT_EQ(shown.handles().size(), 3u);
+    ASSERT_TRUE(waitFor([&] { return picture->isDrawn(); }));
+    EXPECT_GT(shown.glass().surfaces().size(), 0u);
+    look("handles");
+    const auto handleOf = [&](std::string_view number) {
+        for (std::size_t i = 0; i < shown.handles().size(); ++i)
+            if (shown.handles()[i].number == number) return static_cast<int>(i);
+        return -1;
+    };
+    // By the pointer, as far as `mm` along the handle's way; the button stays down unless it is let go.
+    const auto drag = [&](std::string_view number, double mm, bool isLetGo) {
+        const int handle = handleOf(number);
+        ASSERT_GE(handle, 0);
+        const draft::Handle one = shown.handles()[static_cast<std::size_t>(handle)];
+        const view::Viewport port{picture->width(), picture->height()};
+        const auto pixel = [&](const core::Vec3& place) {
+            const auto at = view::pixelOf(picture->camera(), port, place);
+            return QPoint(static_cast<int>(std::lround(at->x())), static_cast<int>(std::lround(at->y())));
+        };
+        const QPoint from = pixel(one.placeMm), to = pixel(one.placeMm + mm * one.way);
+        ASSERT_GT((to - from).manhattanLength(), 4);
+        QTest::mousePress(picture, Qt::LeftButton, Qt::NoModifier, from);
+        for (const double share : {0.3, 0.7, 1.0}) {
+            const QPointF at = QPointF(from) + share * QPointF(to - from);
+            QMouseEvent move(QEvent::MouseMove, at, picture->mapToGlobal(at), Qt::NoButton, Qt::LeftButton,
+                             Qt::NoModifier);
+            QApplication::sendEvent(picture, &move);
+        }
+        EXPECT_TRUE(picture->isDragging());
+        if (isLetGo) QTest::mouseRelease(picture, Qt::LeftButton, Qt::NoModifier, to);
+    };
+    const double before = now().preparation->number("width_mm");
+    auto* field = part<QDoubleSpinBox>("editorNumber_width_mm");
+    // While it is held only field and glass follow; Escape gives it up.
+    drag("width_mm", 0.6, false);
+    EXPECT_NEAR(field->value(), before + 1.2, 0.15);
+    EXPECT_EQ(now().preparation->number("width_mm"), before) << "no step of the draft yet";
+    ASSERT_TRUE(waitFor([&] { return shown.glass().recipe().number("width_mm") == field->value(); }))
+        << "the glass goes along";
+    look("dragging");
+    QTest::keyClick(picture, Qt::Key_Escape);
+    EXPECT_FALSE(picture->isDragging());
+    EXPECT_TRUE(editor().isVisible()) << "Escape was the handle's";
+    EXPECT_EQ(field->value(), before);
+    ASSERT_TRUE(settled());
+    EXPECT_EQ(shown.glass().recipe().number("width_mm"), before);
+    // Let go it is one step, on a twentieth of a millimetre.
+    drag("width_mm", 0.6, true);
+    const double wide = now().preparation->number("width_mm");
+    EXPECT_NEAR(wide, before + 1.2, 0.15);
+    EXPECT_NEAR(wide / 0.05, std::round(wide / 0.05), 1e-9);
+    ASSERT_TRUE(settled());
+    // The handle stands on the wall of now.
+    const core::Vec3 place = shown.handles()[static_cast<std::size_t>(handleOf("width_mm"))].placeMm;
+    EXPECT_NEAR(shown.glass().laid()->zones->targetMm(place), 0.0, 0.01);
+    drag("depth_mm", 0.5, true);
+    EXPECT_NEAR(now().preparation->number("depth_mm"), 2.0, 0.15);
+    ASSERT_TRUE(settled());
+    press("editorUndo");
+    EXPECT_EQ(now().preparation->number("depth_mm"), 1.5);
+    EXPECT_EQ(now().preparation->number("width_mm"), wide);
+    press("editorUndo");
+    EXPECT_EQ(now().preparation->number("width_mm"), before);
+    ASSERT_TRUE(settled());
+    // Beside a handle the tooth turns.
+    const core::Vec3 eye = picture->camera().eyeMm;
+    QTest::mousePress(picture, Qt::LeftButton, Qt::NoModifier, QPoint(12, picture->height() - 60));
+    QMouseEvent move(QEvent::MouseMove, QPointF(60, picture->height() - 90.0),
+                     picture->mapToGlobal(QPointF(60, picture->height() - 90.0)), Qt::NoButton, Qt::LeftButton,
+                     Qt::NoModifier);
+    QApplication::sendEvent(picture, &move);
+    QTest::mouseRelease(picture, Qt::LeftButton, Qt::NoModifier, QPoint(60, picture->height() - 90));
+    EXPECT_GT((picture->camera().eyeMm - eye).norm(), 1.0);
+    // The start view can be that of the picture.
+    page(2);
+    press("editorTakePictureView");
+    ASSERT_TRUE(now().exercise.view);
+    EXPECT_EQ(now().exercise.view->eyeMm, picture->camera().eyeMm);
+    type(part<QDoubleSpinBox>("editorEyeZ"), "55");
+    EXPECT_EQ(now().exercise.view->eyeMm.z(), 55.0);
+}
+
+TEST_F(EditorTest, AllOfARubricHasItsField) {
+    startWithTooth();
+    beginBlock();
+    page(1);
+    choose("editorTemplate", part<QComboBox>("editorTemplate")->findData("block-line"));
+    page(3);
+    const auto line = [this](const char* name, const QString& text) { type(part<QLineEdit>(name), text); };
+    auto* table = part<QTableWidget>("editorCriteria");
+    table->setCurrentCell(0, 0);
+    const std::string first = now().rubric->criteria[0].id, second = now().rubric->criteria[1].id;
+    line("editorDevices", "pointer, haply");
+    EXPECT_EQ(now().rubric->criteria[0].devices, (std::vector<std::string>{"pointer", "haply"}));
+    line("editorExcludes", QString::fromStdString(second));
+    EXPECT_EQ(now().rubric->criteria[0].excludes, std::vector<std::string>{second});
+    choose("editorStatus", 3);
+    EXPECT_EQ(now().rubric->criteria[0].status, rubric::Status::proposal);
+    line("editorSource", "my own");
+    EXPECT_EQ(now().rubric->criteria[0].source, "my own");
+    // A knot of the curve, dragged down to fewer points; Escape gives up.
+    auto* curve = part<CurveView>("editorCurve");
+    const auto knots = now().rubric->criteria[0].knots;
+    ASSERT_GE(knots.size(), 2u);
+    const QPoint from = curve->at(knots.back()).toPoint(), to = from + QPoint(0, 25);
+    const auto pull = [&](bool isLetGo) {
+        QTest::mousePress(curve, Qt::LeftButton, Qt::NoModifier, from);
+        QMouseEvent move(QEvent::MouseMove, QPointF(to), curve->mapToGlobal(QPointF(to)), Qt::NoButton, Qt::LeftButton,
+                         Qt::NoModifier);
+        QApplication::sendEvent(curve, &move);
+        if (isLetGo) QTest::mouseRelease(curve, Qt::LeftButton, Qt::NoModifier, to);
+    };
+    pull(false);
+    QTest::keyClick(curve, Qt::Key_Escape);
+    QTest::mouseRelease(curve, Qt::LeftButton, Qt::NoModifier, to);
+    EXPECT_EQ(now().rubric->criteria[0].knots, knots);
+    pull(true);
+    EXPECT_LT(now().rubric->criteria[0].knots.back().points, knots.back().points);
+    press("editorUndo");
+    EXPECT_EQ(now().rubric->criteria[0].knots, knots);
+    look("rubric");
+
+    part<QTabWidget>("editorRubricTabs")->setCurrentIndex(1);
+    line("editorRubricId", "own-line");
+    line("editorRubricVersion", "2");
+    EXPECT_EQ(now().rubric->id, "own-line");
+    EXPECT_EQ(now().rubric->version, "2");
+    const auto write = [this](const char* name, int row, int column, const QString& text) {
+        auto* list = part<QTableWidget>(name);
+        list->item(row, column)->setText(text);
+    };
+    press("editorStepsAdd");
+    write("editorSteps", 0, 1, QString::fromStdString(first + ", " + second));
+    ASSERT_EQ(now().rubric->steps.size(), 1u);
+    EXPECT_EQ(now().rubric->steps[0].criteria, (std::vector<std::string>{first, second}));
+    const auto rules = static_cast<int>(now().rubric->rules.size());
+    press("editorRulesAdd");
+    write("editorRules", rules, 1, "nonsense");
+    EXPECT_NE(part<QTableWidget>("editorRules")->item(rules, 1)->toolTip(), "") << "told in its cell";
+    const std::string band = now().rubric->bands.front().id;
+    write("editorRules", rules, 1, QString::fromStdString(band + " of " + first + " least 1"));
+    EXPECT_EQ(now().rubric->rules.back().needs[0].least, 1);
+    EXPECT_EQ(now().rubric->rules.back().needs[0].of, std::vector<std::string>{first});
+    write("editorRules", rules, 3, "60");
+    EXPECT_EQ(now().rubric->rules.back().elseAtMost, 60.0);
+    look("rules");
+    // A name that changes is followed.
+    write("editorBandNames", 0, 0, "best");
+    EXPECT_EQ(now().rubric->rules.back().needs[0].bands, std::vector<std::string>{"best"});
+
+    part<QTabWidget>("editorRubricTabs")->setCurrentIndex(2);
+    line("editorRubricLanguage", "de");
+    press("editorRubricAddLanguage");
+    auto* words = part<QTableWidget>("editorRubricTexts");
+    ASSERT_EQ(words->columnCount(), 4);
+    write("editorRubricTexts", 0, 3, QStringLiteral("Rille"));
+    EXPECT_EQ(now().rubric->title.at("de"), "Rille");
+    look("words");
+    // All of it comes back from the file.
+    ASSERT_TRUE(settled());
+    file_ = own_.filePath("rubric.handpiece");
+    press("editorSaveAs");
+    const rubric::Rubric saved = rubric::parseRubric(tasks::readTask(toPath(file_)).rubric, "saved");
+    EXPECT_EQ(rubric::hashOf(saved), rubric::hashOf(*now().rubric));
+    EXPECT_EQ(rubric::rubricToml(saved), rubric::rubricToml(*now().rubric));
 }
 
 TEST_F(EditorTest, ARubricIsMendedAtItsRowAndTakenBack) {

@@ -12,6 +12,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "desktop/widgets/notation.h"
 #include "desktop/widgets/parts.h"
@@ -23,6 +24,7 @@ namespace handpiece::desktop {
 namespace {
 
 constexpr double kRadPerPixel = 0.01, kKeyRad = 0.15, kWheelFactor = 1.12;
+constexpr double kHandlePixels = 6.0, kHandleReach = 14.0, kShownWayMm = 0.9;
 constexpr double kMaxSoftwarePixels = 0.9e6;  // more would follow the hand too late
 
 std::array<std::uint8_t, 3> rgb(const QColor& colour) {
@@ -36,6 +38,7 @@ std::array<std::uint8_t, 3> rgb(const QColor& colour) {
 struct SolidView::Worker {
     struct Wish {
         std::shared_ptr<const std::vector<cases::Part>> parts;
+        std::shared_ptr<const std::vector<view::GlassSurface>> glass;
         core::Box bounds;
         view::Camera camera;
         view::Look look;
@@ -81,6 +84,7 @@ struct SolidView::Worker {
 void SolidView::Worker::run() {
     std::unique_ptr<view::Renderer> renderer;
     std::shared_ptr<const std::vector<cases::Part>> shown;
+    std::shared_ptr<const std::vector<view::GlassSurface>> glass;
     view::Image image;
     bool refining = false;
     std::uint64_t done = 0;
@@ -104,6 +108,11 @@ void SolidView::Worker::run() {
                 // As scenery: it takes open pieces and any tissue.
                 static const std::vector<cases::Part> kNone;
                 renderer->setScenery(shown ? *shown : kNone);
+                glass.reset();  // forgotten with the tooth before
+            }
+            if (now.glass != glass) {
+                glass = now.glass;
+                renderer->setGlass(glass ? *glass : std::vector<view::GlassSurface>{});
             }
             double scale = renderer->isSoftware() ? 1.0 : now.ratio;
             const double area = scale * scale * now.size.width() * now.size.height();
@@ -133,6 +142,7 @@ SolidView::SolidView(const char* name, QWidget* parent) : QWidget(parent) {
     setAccessibleName(tr("The tooth, to be turned"));
     setToolTip(tr("Drag: turn. Right button: shift. Wheel: nearer. Double click: all of it. Arrow keys turn."));
     setFocusPolicy(Qt::StrongFocus);
+    setMouseTracking(true);
     setAttribute(Qt::WA_OpaquePaintEvent);
     look_.bur = look_.turbine = false;
     look_.wet = false;
@@ -234,6 +244,112 @@ void SolidView::lookFrom(view::StandardView from, int buccalSign) {
     wish();
 }
 
+void SolidView::setCamera(const view::Camera& camera) {
+    camera_ = camera;
+    placed_ = true;
+    wish();
+}
+
+void SolidView::setGlass(std::vector<view::GlassSurface> surfaces) {
+    glass_ = surfaces.empty() ? nullptr : std::make_shared<const std::vector<view::GlassSurface>>(std::move(surfaces));
+    wish();
+}
+
+void SolidView::setHandles(std::vector<SolidHandle> handles) {
+    if (isDragging()) {
+        if (handles.size() != handles_.size())
+            giveUpHandle();
+        else
+            handles[static_cast<std::size_t>(grabbed_)] = handles_[static_cast<std::size_t>(grabbed_)];
+    }
+    handles_ = std::move(handles);
+    if (hovered_ >= static_cast<int>(handles_.size())) hovered_ = -1;
+    update();
+}
+
+void SolidView::setHandleText(int handle, const QString& text) {
+    handles_.at(static_cast<std::size_t>(handle)).text = text;
+    update();
+}
+
+std::optional<QPointF> SolidView::handleAt(int handle) const {
+    const SolidHandle& one = handles_.at(static_cast<std::size_t>(handle));
+    const core::Vec3 place = one.placeMm + (handle == grabbed_ ? movedMm_ : 0.0) * one.way;
+    const auto at = view::pixelOf(camera_, {std::max(1, width()), std::max(1, height())}, place);
+    return at ? std::optional(QPointF(at->x(), at->y())) : std::nullopt;
+}
+
+int SolidView::handleUnder(const QPointF& pointer) const {
+    int found = -1;
+    double least = kHandleReach;
+    for (int i = 0; i < static_cast<int>(handles_.size()); ++i)
+        if (const auto at = handleAt(i)) {
+            const double far = std::hypot(at->x() - pointer.x(), at->y() - pointer.y());
+            if (far < least) least = far, found = i;
+        }
+    return found;
+}
+
+/// As far as the handle's way, seen in the picture, goes with the pointer; seen from its end up is onwards.
+double SolidView::movedBy(const QPointF& pointer) const {
+    const SolidHandle& one = handles_[static_cast<std::size_t>(grabbed_)];
+    const view::Viewport port{std::max(1, width()), std::max(1, height())};
+    const double mm = view::mmPerPixel(camera_, port, one.placeMm);
+    const core::Vec2 by(pointer.x() - grabbedAt_.x(), pointer.y() - grabbedAt_.y());
+    // Of a millimetre, as its place is seen.
+    const core::Vec2 perMm(one.way.dot(camera_.right()) / mm, -one.way.dot(camera_.upward()) / mm);
+    constexpr double kLeastSeen = 0.2;
+    if (perMm.norm() * mm > kLeastSeen) return by.dot(perMm) / perMm.squaredNorm();
+    return -by.y() * mm;
+}
+
+void SolidView::giveUpHandle() {
+    const int was = std::exchange(grabbed_, -1);
+    held_ = Qt::NoButton;
+    movedMm_ = 0.0;
+    update();
+    if (was >= 0) emit handleGivenUp(was);
+}
+
+void SolidView::drawHandles(QPainter& painter) const {
+    const view::Viewport port{std::max(1, width()), std::max(1, height())};
+    painter.setFont(scaledFont(font(), 0.95));
+    const int named = isDragging() ? grabbed_ : hovered_;
+    for (int i = 0; i < static_cast<int>(handles_.size()); ++i) {
+        const auto at = handleAt(i);
+        if (!at) continue;
+        const SolidHandle& one = handles_[static_cast<std::size_t>(i)];
+        const core::Vec3 place = one.placeMm + (i == grabbed_ ? movedMm_ : 0.0) * one.way;
+        const QColor colour = i == named ? QColor(0xff, 0xd5, 0x4a) : QColor(0xff, 0xff, 0xff);
+        for (const double sign : {1.0, -1.0}) {
+            const auto end = view::pixelOf(camera_, port, place + sign * kShownWayMm * one.way);
+            if (!end) continue;
+            const QPointF to(end->x(), end->y());
+            painter.setPen(QPen(QColor(0, 0, 0, 150), 4, Qt::SolidLine, Qt::RoundCap));
+            painter.drawLine(*at, to);
+            painter.setPen(QPen(colour, 2, Qt::SolidLine, Qt::RoundCap));
+            painter.drawLine(*at, to);
+        }
+        painter.setPen(QPen(QColor(0, 0, 0, 190), 1.5));
+        painter.setBrush(colour);
+        painter.drawEllipse(*at, kHandlePixels, kHandlePixels);
+    }
+    if (named < 0) return;
+    const auto at = handleAt(named);
+    const QString& text = handles_[static_cast<std::size_t>(named)].text;
+    if (!at || text.isEmpty()) return;
+    const QFontMetrics metrics = painter.fontMetrics();
+    QRectF box(0, 0, metrics.horizontalAdvance(text) + 14.0, metrics.height() + 6.0);
+    box.moveTo(at->x() + 14.0, at->y() - box.height() - 6.0);
+    box.moveLeft(std::clamp(box.left(), 2.0, std::max(2.0, width() - box.width() - 2.0)));
+    box.moveTop(std::clamp(box.top(), 2.0, std::max(2.0, height() - box.height() - 2.0)));
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(QColor(0, 0, 0, 190));
+    painter.drawRoundedRect(box, 4, 4);
+    painter.setPen(QColor(0xff, 0xe9, 0xa8));
+    painter.drawText(box, Qt::AlignCenter, text);
+}
+
 void SolidView::fit() {
     if (bounds_.isEmpty()) return;
     const view::Viewport viewport{std::max(1, width()), std::max(1, height())};
@@ -249,7 +365,7 @@ void SolidView::wish() {
     const QColor window = palette().color(QPalette::Window);
     look_.backgroundTop = rgb(isDark(palette()) ? QColor(0x34, 0x3a, 0x42) : mixed(window, Qt::black, 0.32));
     look_.backgroundBottom = rgb(isDark(palette()) ? QColor(0x16, 0x18, 0x1c) : mixed(window, Qt::black, 0.55));
-    worker_->set({parts_, bounds_, camera_, look_, size(), devicePixelRatioF()});
+    worker_->set({parts_, glass_, bounds_, camera_, look_, size(), devicePixelRatioF()});
 }
 
 void SolidView::take() {
@@ -330,6 +446,7 @@ void SolidView::paintEvent(QPaintEvent* event) {
                                                    : mixed(palette().color(QPalette::Window), Qt::black, 0.45));
     painter.setRenderHint(QPainter::Antialiasing);
     if (hasPicture && axesShown_) drawAxes(painter);
+    if (hasPicture) drawHandles(painter);
     painter.setFont(scaledFont(font(), 0.9));
     const QColor pale(0xe8, 0xec, 0xf1);
     if (!caption_.isEmpty()) {
@@ -372,12 +489,31 @@ void SolidView::changeEvent(QEvent* event) {
 }
 
 void SolidView::mousePressEvent(QMouseEvent* event) {
+    if (isDragging()) return giveUpHandle();  // another button
     held_ = event->button();
     last_ = event->position();
+    if (held_ != Qt::LeftButton) return;
+    grabbed_ = handleUnder(last_);
+    grabbedAt_ = last_;
+    movedMm_ = 0.0;
+    if (isDragging()) update();
 }
 
 void SolidView::mouseMoveEvent(QMouseEvent* event) {
-    if (held_ == Qt::NoButton) return;
+    if (held_ == Qt::NoButton) {
+        if (const int now = handleUnder(event->position()); now != hovered_) {
+            hovered_ = now;
+            setCursor(hovered_ >= 0 ? Qt::OpenHandCursor : Qt::ArrowCursor);
+            update();
+        }
+        return;
+    }
+    if (isDragging()) {
+        movedMm_ = movedBy(event->position());
+        update();
+        emit handleDragged(grabbed_, movedMm_);
+        return;
+    }
     const QPointF by = event->position() - last_;
     last_ = event->position();
     if (held_ == Qt::LeftButton)
@@ -388,8 +524,37 @@ void SolidView::mouseMoveEvent(QMouseEvent* event) {
 }
 
 void SolidView::mouseReleaseEvent(QMouseEvent* event) {
-    Q_UNUSED(event);
+    if (event->button() != held_) return;
     held_ = Qt::NoButton;
+    if (!isDragging()) return;
+    const int was = std::exchange(grabbed_, -1);
+    const double moved = std::exchange(movedMm_, 0.0);
+    // It stands there until it is told anew.
+    handles_[static_cast<std::size_t>(was)].placeMm += moved * handles_[static_cast<std::size_t>(was)].way;
+    hovered_ = was;
+    update();
+    emit handleDropped(was, moved);
+}
+
+bool SolidView::event(QEvent* event) {
+    // While a handle is held Escape is not the dialog's.
+    if (event->type() == QEvent::ShortcutOverride && isDragging() &&
+        static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape) {
+        event->accept();
+        return true;
+    }
+    return QWidget::event(event);
+}
+
+void SolidView::focusOutEvent(QFocusEvent* event) {
+    if (isDragging()) giveUpHandle();
+    QWidget::focusOutEvent(event);
+}
+
+void SolidView::leaveEvent(QEvent* event) {
+    hovered_ = -1;
+    update();
+    QWidget::leaveEvent(event);
 }
 
 void SolidView::mouseDoubleClickEvent(QMouseEvent* event) {
@@ -408,6 +573,9 @@ void SolidView::wheelEvent(QWheelEvent* event) {
 
 void SolidView::keyPressEvent(QKeyEvent* event) {
     switch (event->key()) {
+        case Qt::Key_Escape:
+            if (!isDragging()) return QWidget::keyPressEvent(event);
+            return giveUpHandle();
         case Qt::Key_Left:
             camera_ = view::orbited(camera_, -kKeyRad, 0);
             break;

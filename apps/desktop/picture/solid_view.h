@@ -1,20 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The surfaces that a scan becomes, turned by hand.
+/// Surfaces of a tooth, turned by hand, with glass over them and handles to drag.
 
 #include <QImage>
 #include <QWidget>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "handpiece/model/case/case.h"
 #include "handpiece/senses/view/camera.h"
 #include "handpiece/senses/view/look.h"
+#include "handpiece/senses/view/renderer.h"
 
 class QHBoxLayout;
 
 namespace handpiece::desktop {
+
+/// Something to be dragged along a line, tooth frame.
+struct SolidHandle {
+    core::Vec3 placeMm = core::Vec3::Zero(), way = core::Vec3::UnitZ();
+    QString text;  ///< beside it, under the pointer and while it is dragged
+};
 
 /// Drag: turn; right or middle button: shift; wheel: nearer; double click or Home: all of it; arrow keys turn. Drawn in
 /// a thread of its own by the renderer of the simulator.
@@ -35,6 +43,15 @@ class SolidView : public QWidget {
     /// As the buttons below the picture do, one a tissue that there is [NAME_enamel, ...].
     void setTissueShown(cases::Tissue tissue, bool shown);
     void lookFrom(view::StandardView from, int buccalSign = 0);
+    void setCamera(const view::Camera& camera);
+    /// Over the parts; none: away with it.
+    void setGlass(std::vector<view::GlassSurface> surfaces);
+    /// While one is dragged it stays where the pointer has it.
+    void setHandles(std::vector<SolidHandle> handles);
+    void setHandleText(int handle, const QString& text);
+    /// Where one is seen; nothing behind the eye.
+    [[nodiscard]] std::optional<QPointF> handleAt(int handle) const;
+    [[nodiscard]] bool isDragging() const noexcept { return grabbed_ >= 0; }
     /// The latest picture is of the latest wish.
     [[nodiscard]] bool isDrawn() const noexcept;
     [[nodiscard]] const QImage& picture() const noexcept { return picture_; }
@@ -43,7 +60,17 @@ class SolidView : public QWidget {
     [[nodiscard]] QSize sizeHint() const override { return {360, 320}; }
     [[nodiscard]] QSize minimumSizeHint() const override { return {160, 140}; }
 
+  signals:
+    /// So far along its way, from where it was taken.
+    void handleDragged(int handle, double movedMm);
+    /// Let go there; or given up: it stands where it was.
+    void handleDropped(int handle, double movedMm);
+    void handleGivenUp(int handle);
+
   protected:
+    bool event(QEvent* event) override;
+    void focusOutEvent(QFocusEvent* event) override;
+    void leaveEvent(QEvent* event) override;
     void paintEvent(QPaintEvent* event) override;
     void resizeEvent(QResizeEvent* event) override;
     void showEvent(QShowEvent* event) override;
@@ -62,6 +89,10 @@ class SolidView : public QWidget {
     void fit();
     void makeTissueButtons();
     void drawAxes(QPainter& painter) const;
+    void drawHandles(QPainter& painter) const;
+    [[nodiscard]] int handleUnder(const QPointF& pointer) const;
+    [[nodiscard]] double movedBy(const QPointF& pointer) const;
+    void giveUpHandle();
 
     std::unique_ptr<Worker> worker_;
     std::shared_ptr<const std::vector<cases::Part>> parts_;
@@ -76,6 +107,11 @@ class SolidView : public QWidget {
     QPointF last_;
     QHBoxLayout* tissues_;
     std::vector<cases::Tissue> there_;
+    std::shared_ptr<const std::vector<view::GlassSurface>> glass_;
+    std::vector<SolidHandle> handles_;
+    int grabbed_ = -1, hovered_ = -1;
+    QPointF grabbedAt_;
+    double movedMm_ = 0.0;
 };
 
 }  // namespace handpiece::desktop

@@ -2580,6 +2580,158 @@
         <source>Open another tooth to choose the size.</source>
         <translation>大きさを選ぶには、別の歯を開いてください。</translation>
     </message>
+    <message>
+        <source>&quot;%1&quot; cannot be read.</source>
+        <translation>「%1」を読み取れない。</translation>
+    </message>
+    <message>
+        <source>Write it as in: %2</source>
+        <translation>次のように書く：%2</translation>
+    </message>
+    <message>
+        <source>A weight is a number above 0.</source>
+        <translation>配点は 0 より大きい数にする。</translation>
+    </message>
+    <message>
+        <source>Leave it empty for a criterion that is shown and not graded.</source>
+        <translation>表示するだけで採点しない項目では空にする。</translation>
+    </message>
+    <message>
+        <source>The preparation holds nothing of the tooth.</source>
+        <translation>形成の中に歯がない。</translation>
+    </message>
+    <message>
+        <source>Give other numbers, or set the landmarks anew.</source>
+        <translation>別の数値にするか、ランドマークを設定し直す。</translation>
+    </message>
+    <message>
+        <source>The tooth has no surface as a whole.</source>
+        <translation>歯全体の表面がない。</translation>
+    </message>
+    <message>
+        <source>Take another tooth, or give its case the whole tooth as one closed surface.</source>
+        <translation>別の歯を使うか、症例に歯全体を一つの閉じた表面として加える。</translation>
+    </message>
+    <message>
+        <source>The preparation lies outside the tooth.</source>
+        <translation>形成が歯の外にある。</translation>
+    </message>
+    <message>
+        <source>Give other sizes.</source>
+        <translation>別の寸法にする。</translation>
+    </message>
+    <message>
+        <source>The tooth has no fissures as landmarks.</source>
+        <translation>歯に裂溝のランドマークがない。</translation>
+    </message>
+    <message>
+        <source>Find or set them with the tooth open in the window (Ctrl+J), and save the case.</source>
+        <translation>歯をウィンドウに開いて検出または設定し（Ctrl+J）、症例を保存する。</translation>
+    </message>
+    <message>
+        <source>The tooth has no contacts as landmarks.</source>
+        <translation>歯に接触点のランドマークがない。</translation>
+    </message>
+    <message>
+        <source>The tooth has no root canal orifices as landmarks.</source>
+        <translation>歯に根管口のランドマークがない。</translation>
+    </message>
+    <message>
+        <source>The tooth has no cemento-enamel junction as a landmark.</source>
+        <translation>歯にセメント・エナメル境のランドマークがない。</translation>
+    </message>
+    <message>
+        <source>Find or set it with the tooth open in the window (Ctrl+J), and save the case.</source>
+        <translation>歯をウィンドウに開いて検出または設定し（Ctrl+J）、症例を保存する。</translation>
+    </message>
+    <message>
+        <source>The tooth has no mesial contact.</source>
+        <translation>歯に近心の接触点がない。</translation>
+    </message>
+    <message>
+        <source>Set it with the tooth open in the window (Ctrl+Shift+J), or ask for the distal side.</source>
+        <translation>歯をウィンドウに開いて設定する（Ctrl+Shift+J）か、遠心側を選ぶ。</translation>
+    </message>
+    <message>
+        <source>The tooth has no distal contact.</source>
+        <translation>歯に遠心の接触点がない。</translation>
+    </message>
+    <message>
+        <source>Set it with the tooth open in the window (Ctrl+Shift+J), or ask for the mesial side.</source>
+        <translation>歯をウィンドウに開いて設定する（Ctrl+Shift+J）か、近心側を選ぶ。</translation>
+    </message>
+    <message>
+        <source>The case does not say which side is buccal.</source>
+        <translation>どちらが頬側か症例に書かれていない。</translation>
+    </message>
+    <message>
+        <source>Say it in the case: buccal = &quot;+y&quot; or &quot;-y&quot;.</source>
+        <translation>症例に buccal = &quot;+y&quot; または &quot;-y&quot; と書く。</translation>
+    </message>
+    <message>
+        <source>The figure is wider than long.</source>
+        <translation>図形の幅が長さより大きい。</translation>
+    </message>
+    <message>
+        <source>Give a greater length.</source>
+        <translation>長さを大きくする。</translation>
+    </message>
+    <message>
+        <source>The island is as wide as the figure.</source>
+        <translation>中央の島が図形と同じ大きさになっている。</translation>
+    </message>
+    <message>
+        <source>Make it less.</source>
+        <translation>小さくする。</translation>
+    </message>
+    <message>
+        <source>No fissure lies on the occlusal surface.</source>
+        <translation>咬合面に裂溝がない。</translation>
+    </message>
+    <message>
+        <source>Set them with the tooth open in the window (Ctrl+Shift+J).</source>
+        <translation>歯をウィンドウに開いて設定する（Ctrl+Shift+J）。</translation>
+    </message>
+    <message>
+        <source>There is no room along the fissures.</source>
+        <translation>裂溝に沿った余地がない。</translation>
+    </message>
+    <message>
+        <source>Give a thinner ridge, or a lesser width or depth.</source>
+        <translation>残す隆線を薄くするか、幅か深さを小さくする。</translation>
+    </message>
+    <message>
+        <source>The contact does not lie on the tooth.</source>
+        <translation>接触点が歯の上にない。</translation>
+    </message>
+    <message>
+        <source>Set it with the tooth open in the window (Ctrl+Shift+J).</source>
+        <translation>歯をウィンドウに開いて設定する（Ctrl+Shift+J）。</translation>
+    </message>
+    <message>
+        <source>The cemento-enamel junction does not reach the buccal side.</source>
+        <translation>セメント・エナメル境が頬側に届いていない。</translation>
+    </message>
+    <message>
+        <source>Set it anew with the tooth open in the window (Ctrl+Shift+J).</source>
+        <translation>歯をウィンドウに開いて設定し直す（Ctrl+Shift+J）。</translation>
+    </message>
+    <message>
+        <source>The margin does not lie on the tooth.</source>
+        <translation>マージンが歯の上にない。</translation>
+    </message>
+    <message>
+        <source>Give another height over the cemento-enamel junction.</source>
+        <translation>セメント・エナメル境からの高さを変える。</translation>
+    </message>
+    <message>
+        <source>The tooth has no carious tissue.</source>
+        <translation>歯にう蝕組織がない。</translation>
+    </message>
+    <message>
+        <source>Take a tooth with a lesion, or another preparation.</source>
+        <translation>病変のある歯か、別の形成を選ぶ。</translation>
+    </message>
 </context>
 <context>
     <name>Pulp</name>
@@ -8221,6 +8373,18 @@ lingual: %4</source>
         <source>%1 of %2 points (machine: %3): %4.</source>
         <translation>%1 / %2 点（機械：%3）：%4。</translation>
     </message>
+    <message>
+        <source>Click the place</source>
+        <translation>場所をクリック</translation>
+    </message>
+    <message>
+        <source>The next click in the picture pins the comment there; in a replay also to that moment</source>
+        <translation>画像で次にクリックした場所にコメントを付ける。再生中はその時刻にも付ける</translation>
+    </message>
+    <message>
+        <source>Place chosen: click anew</source>
+        <translation>場所を選択済み：選び直す</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::WorkTable</name>
@@ -8928,6 +9092,42 @@ lingual: %4</source>
         <source>Carious tissue left over the pulp</source>
         <translation>歯髄の上に残すう蝕の厚さ</translation>
     </message>
+    <message>
+        <source>Title of the rubric</source>
+        <translation>採点基準の題</translation>
+    </message>
+    <message>
+        <source>About the rubric</source>
+        <translation>採点基準の説明</translation>
+    </message>
+    <message>
+        <source>Band %1</source>
+        <translation>区分 %1</translation>
+    </message>
+    <message>
+        <source>Step %1</source>
+        <translation>段階 %1</translation>
+    </message>
+    <message>
+        <source>Criterion %1</source>
+        <translation>項目 %1</translation>
+    </message>
+    <message>
+        <source>%1: what it is about</source>
+        <translation>%1：内容</translation>
+    </message>
+    <message>
+        <source>%1: what it leaves out</source>
+        <translation>%1：含まないもの</translation>
+    </message>
+    <message>
+        <source>%1: its critical error</source>
+        <translation>%1：重大な誤り</translation>
+    </message>
+    <message>
+        <source>Rule %1</source>
+        <translation>規則 %1</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::EditorDialog</name>
@@ -9094,14 +9294,6 @@ lingual: %4</source>
 <context>
     <name>handpiece::desktop::PreparationPage</name>
     <message>
-        <source>The tooth as it is asked for</source>
-        <translation>課題が求める形の歯</translation>
-    </message>
-    <message>
-        <source>Show it on the tooth</source>
-        <translation>歯に表示</translation>
-    </message>
-    <message>
         <source>Cuts the tooth as the preparation asks for it; takes seconds</source>
         <translation>形成の指示どおりに歯を削って見せます。数秒かかります</translation>
     </message>
@@ -9166,8 +9358,40 @@ lingual: %4</source>
         <translation>課題が求める形：ドラッグして回せます</translation>
     </message>
     <message>
-        <source>Of before: show it again</source>
-        <translation>変更前のもの：もう一度表示してください</translation>
+        <source>The tooth with its preparation</source>
+        <translation>形成を重ねた歯</translation>
+    </message>
+    <message>
+        <source>Drag a handle: its number follows; Escape gives it up. Drag elsewhere: turn. Right button: shift. Wheel: nearer.</source>
+        <translation>ハンドルをドラッグ：数値が変わる（Escape で取りやめ）。ほかの所をドラッグ：回転。右ボタン：移動。ホイール：拡大。</translation>
+    </message>
+    <message>
+        <source>Cut it out</source>
+        <translation>切削して見る</translation>
+    </message>
+    <message>
+        <source>%1: %2 %3</source>
+        <translation>%1：%2 %3</translation>
+    </message>
+    <message>
+        <source>Green is to go, orange must stay: drag a white handle to change a number</source>
+        <translation>緑は切削、橙は保存：白いハンドルをドラッグして数値を変える</translation>
+    </message>
+    <message>
+        <source>Choose a tooth first</source>
+        <translation>先に歯を選ぶ</translation>
+    </message>
+    <message>
+        <source>Laying the preparation on the tooth...</source>
+        <translation>形成を歯に重ねています...</translation>
+    </message>
+    <message>
+        <source>Choose a preparation</source>
+        <translation>形成を選ぶ</translation>
+    </message>
+    <message>
+        <source>Back to its numbers</source>
+        <translation>数値に戻る</translation>
     </message>
 </context>
 <context>
@@ -9280,6 +9504,142 @@ lingual: %4</source>
         <source>It is not judged: take a rubric that comes along.</source>
         <translation>評価されません。付属の評価表を選んでください。</translation>
     </message>
+    <message>
+        <source>Parts of the rubric</source>
+        <translation>採点基準の部分</translation>
+    </message>
+    <message>
+        <source>Bands, steps, rules</source>
+        <translation>区分・段階・規則</translation>
+    </message>
+    <message>
+        <source>Words</source>
+        <translation>言葉</translation>
+    </message>
+    <message>
+        <source>Only for</source>
+        <translation>対象の装置</translation>
+    </message>
+    <message>
+        <source>Devices that it is valid for: pointer, ...; none: all</source>
+        <translation>有効な装置：pointer, ...。空：すべて</translation>
+    </message>
+    <message>
+        <source>Makes void</source>
+        <translation>無効にする項目</translation>
+    </message>
+    <message>
+        <source>Criteria that do not count where this one fails</source>
+        <translation>この項目が不可のとき数えない項目</translation>
+    </message>
+    <message>
+        <source>Its figures are</source>
+        <translation>数値の根拠</translation>
+    </message>
+    <message>
+        <source>as the rubric&apos;s</source>
+        <translation>採点基準に同じ</translation>
+    </message>
+    <message>
+        <source>Source</source>
+        <translation>出典</translation>
+    </message>
+    <message>
+        <source>Where the figures are from</source>
+        <translation>数値の出典</translation>
+    </message>
+    <message>
+        <source>Short name</source>
+        <translation>短い名前</translation>
+    </message>
+    <message>
+        <source>Small letters, digits, &apos;-&apos;, &apos;.&apos;</source>
+        <translation>半角の小文字、数字、「-」、「.」</translation>
+    </message>
+    <message>
+        <source>Version</source>
+        <translation>版</translation>
+    </message>
+    <message>
+        <source>Another one with each change to be told apart</source>
+        <translation>区別したい変更ごとに変える</translation>
+    </message>
+    <message>
+        <source>Weights sum to</source>
+        <translation>配点の合計</translation>
+    </message>
+    <message>
+        <source>A check against slips; empty: none</source>
+        <translation>誤りを防ぐための確認。空：なし</translation>
+    </message>
+    <message>
+        <source>Bands, from best to worst</source>
+        <translation>区分（よい順）</translation>
+    </message>
+    <message>
+        <source>Name</source>
+        <translation>名前</translation>
+    </message>
+    <message>
+        <source>Steps, in the order of the work</source>
+        <translation>段階（作業の順）</translation>
+    </message>
+    <message>
+        <source>Rules</source>
+        <translation>規則</translation>
+    </message>
+    <message>
+        <source>yes</source>
+        <translation>はい</translation>
+    </message>
+    <message>
+        <source>no</source>
+        <translation>いいえ</translation>
+    </message>
+    <message>
+        <source>Needs</source>
+        <translation>条件</translation>
+    </message>
+    <message>
+        <source>To pass</source>
+        <translation>合格に必要</translation>
+    </message>
+    <message>
+        <source>Else at most [%]</source>
+        <translation>満たさないときの上限 [%]</translation>
+    </message>
+    <message>
+        <source>Needs: bands, then of which criteria, then how many: unacceptable most 0; modify of depth, outline most 2; rule other</source>
+        <translation>条件：区分、対象の項目、数の順：unacceptable most 0; modify of depth, outline most 2; rule other</translation>
+    </message>
+    <message>
+        <source>Words by language</source>
+        <translation>言語ごとの言葉</translation>
+    </message>
+    <message>
+        <source>Another language</source>
+        <translation>別の言語</translation>
+    </message>
+    <message>
+        <source>Its tag: de, fr, pt-BR, ...</source>
+        <translation>言語タグ：de, fr, pt-BR, ...</translation>
+    </message>
+    <message>
+        <source>Add language</source>
+        <translation>言語を追加</translation>
+    </message>
+    <message>
+        <source>Of &quot;%1&quot;</source>
+        <translation>「%1」について</translation>
+    </message>
+    <message>
+        <source>Choose a criterion</source>
+        <translation>項目を選ぶ</translation>
+    </message>
+    <message>
+        <source>What</source>
+        <translation>何の言葉か</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::TextsPage</name>
@@ -9314,6 +9674,22 @@ lingual: %4</source>
     <message>
         <source>What to do, Japanese</source>
         <translation>指示（日本語）</translation>
+    </message>
+    <message>
+        <source>Another language</source>
+        <translation>別の言語</translation>
+    </message>
+    <message>
+        <source>Its tag: de, fr, pt-BR, ...; what is written below is in it</source>
+        <translation>言語タグ：de, fr, pt-BR, ...。下の文はその言語で書く</translation>
+    </message>
+    <message>
+        <source>Title, in it</source>
+        <translation>その言語の題</translation>
+    </message>
+    <message>
+        <source>What to do, in it</source>
+        <translation>その言語の説明</translation>
     </message>
 </context>
 <context>
@@ -9454,10 +9830,6 @@ lingual: %4</source>
         <translation>結果を見る前に行います</translation>
     </message>
     <message>
-        <source>Start with the view that is open</source>
-        <translation>今の視点から始める</translation>
-    </message>
-    <message>
         <source>Turn the tooth in the window, then take its view</source>
         <translation>ウィンドウで歯を回してから、その視点を取り込みます</translation>
     </message>
@@ -9484,6 +9856,76 @@ lingual: %4</source>
     <message>
         <source>Starts with the usual view.</source>
         <translation>通常の視点から始まります。</translation>
+    </message>
+    <message>
+        <source>Take the window&apos;s view</source>
+        <translation>ウィンドウの視点を使う</translation>
+    </message>
+    <message>
+        <source>Take the preparation&apos;s view</source>
+        <translation>形成の画像の視点を使う</translation>
+    </message>
+    <message>
+        <source>As the picture on the page Preparation shows it</source>
+        <translation>「形成」のページの画像の視点</translation>
+    </message>
+    <message>
+        <source>Show it in the window</source>
+        <translation>ウィンドウで見る</translation>
+    </message>
+    <message>
+        <source>Turns the tooth in the window to the start view</source>
+        <translation>ウィンドウの歯を開始時の視点にする</translation>
+    </message>
+    <message>
+        <source>Eye</source>
+        <translation>視点</translation>
+    </message>
+    <message>
+        <source>Looks at</source>
+        <translation>注視点</translation>
+    </message>
+    <message>
+        <source>Up</source>
+        <translation>上方向</translation>
+    </message>
+    <message>
+        <source>Start view [mm]</source>
+        <translation>開始時の視点 [mm]</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::CurveView</name>
+    <message>
+        <source>Points by value</source>
+        <translation>値ごとの得点</translation>
+    </message>
+    <message>
+        <source>Drag a knot. Double click: another one. Right button or Delete: away with it. Arrow keys move it.</source>
+        <translation>折れ点をドラッグ。ダブルクリックで追加。右ボタンか Delete で削除。矢印キーで移動。</translation>
+    </message>
+    <message>
+        <source>No curve: a double click makes its first knot</source>
+        <translation>曲線なし：ダブルクリックで最初の折れ点を作る</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ListTable</name>
+    <message>
+        <source>Add</source>
+        <translation>追加</translation>
+    </message>
+    <message>
+        <source>Remove</source>
+        <translation>削除</translation>
+    </message>
+    <message>
+        <source>Up</source>
+        <translation>上へ</translation>
+    </message>
+    <message>
+        <source>Down</source>
+        <translation>下へ</translation>
     </message>
 </context>
 </TS>

@@ -47,7 +47,7 @@ void ZoneGlass::setZones(std::set<SeenZone> zones) {
 void ZoneGlass::make() {
     if (job_) {
         isStale_ = true;
-        job_->cancel();
+        if (!isCoarse_) job_->cancel();
         return;
     }
     isStale_ = false;
@@ -56,16 +56,18 @@ void ZoneGlass::make() {
         std::vector<view::GlassSurface> surfaces;
     };
     const auto made = std::make_shared<Made>();
-    job_ = std::make_unique<Job>(QString(), [made, wish = *wish_, zones = zones_](const core::Progress& progress) {
+    const double finestMm = isCoarse_ ? 0.2 : 0.1;
+    job_ = std::make_unique<Job>(QString(), [made, wish = *wish_, zones = zones_, finestMm,
+                                             whole = isLaidTooth() ? whole_ : nullptr](const core::Progress& progress) {
         rt::stepBack();
-        made->laid = std::make_shared<const preparation::Laid>(preparation::layOn(*wish.toothCase, wish.recipe));
+        made->laid = std::make_shared<const preparation::Laid>(preparation::layOn(*wish.toothCase, wish.recipe, whole));
         double done = 0.0;
         const double share = 1.0 / static_cast<double>(std::max<std::size_t>(1, zones.size()));
         // The innermost first: glass lies over what is drawn before it.
         for (const SeenZone zone : {SeenZone::protectedZone, SeenZone::target, SeenZone::leeway, SeenZone::container}) {
             if (!zones.contains(zone)) continue;
             auto mesh = std::make_shared<const geometry::TriangleMesh>(preparation::zoneSurface(
-                zone, *wish.toothCase, wish.recipe, *made->laid, core::part(progress, done, done + share)));
+                zone, *wish.toothCase, wish.recipe, *made->laid, core::part(progress, done, done + share), finestMm));
             done += share;
             if (mesh->triangles.empty()) continue;
             const QColor colour = colourOf(zone);
@@ -77,12 +79,13 @@ void ZoneGlass::make() {
                                                                  : 0.2f});
         }
     });
-    // Of one that is out of date nothing is heard but that it is over.
-    const auto end = [this] {
+    // Of one that is out of date nothing is heard but that it is over; while numbers are dragged it is better than
+    // none.
+    const auto end = [this, wasCoarse = isCoarse_] {
         job_.release()->deleteLater();
         if (isStale_ && wish_) {
             make();
-            return true;
+            return !wasCoarse;
         }
         isStale_ = false;
         return !wish_.has_value();
@@ -95,9 +98,12 @@ void ZoneGlass::make() {
         emit changed();
         emit refused(problem);
     });
-    connect(job_.get(), &Job::done, this, [this, end, made] {
+    connect(job_.get(), &Job::done, this, [this, end, made, of = *wish_] {
+        laidCase_ = of.toothCase;
+        whole_ = made->laid->whole;
         if (end()) return;
         laid_ = made->laid;
+        laidRecipe_ = of.recipe;
         surfaces_ = made->surfaces;
         emit changed();
     });

@@ -25,6 +25,9 @@ class ZoneGlass : public QObject {
     explicit ZoneGlass(QObject* parent = nullptr) : QObject(parent) {}
     /// Of this tooth. What is there stays until the new one is ready.
     void show(std::shared_ptr<const cases::Case> toothCase, const preparation::Recipe& recipe);
+    /// While numbers are being dragged: coarser, and each is finished before the newest is begun, so that the glass
+    /// goes along.
+    void setCoarse(bool coarse) { isCoarse_ = coarse; }
     /// Away with it, until show().
     void hide();
     /// Which of them; as made: target and protected.
@@ -35,6 +38,7 @@ class ZoneGlass : public QObject {
     [[nodiscard]] const std::vector<view::GlassSurface>& surfaces() const noexcept { return surfaces_; }
     /// What they were made of; null while nothing is shown.
     [[nodiscard]] const std::shared_ptr<const preparation::Laid>& laid() const noexcept { return laid_; }
+    [[nodiscard]] const preparation::Recipe& recipe() const noexcept { return laidRecipe_; }
     /// As the glass and a legend have it.
     [[nodiscard]] static QColor colourOf(preparation::SeenZone zone);
 
@@ -50,12 +54,17 @@ class ZoneGlass : public QObject {
         preparation::Recipe recipe;
     };
     void make();
+    [[nodiscard]] bool isLaidTooth() const { return wish_ && wish_->toothCase == laidCase_; }
 
     std::set<preparation::SeenZone> zones_{preparation::SeenZone::target, preparation::SeenZone::protectedZone};
     std::optional<Wish> wish_;
+    bool isCoarse_ = false;
     bool isStale_ = false;  ///< wish or zones are others than the job under way has
     std::unique_ptr<Job> job_;
     std::shared_ptr<const preparation::Laid> laid_;
+    preparation::Recipe laidRecipe_;
+    std::shared_ptr<const cases::Case> laidCase_;          ///< of the tree
+    std::shared_ptr<const geometry::TriangleTree> whole_;  ///< of its surface: dear to make
     std::vector<view::GlassSurface> surfaces_;
 };
 

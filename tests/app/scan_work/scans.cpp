@@ -27,6 +27,8 @@ preparation::Recipe recipeOf(Kind kind) {
             return {"class-five", "", {}, {0.2, 0.2}, 0.0};
         case Kind::crown:
             return {"crown", "", {}, {0.2, 0.2}, 0.0};
+        case Kind::lesion:
+            return {"lesion", "", {}, {0.3, 0.3}, 0.0};
         case Kind::classOne:
             break;
     }
@@ -35,11 +37,6 @@ preparation::Recipe recipeOf(Kind kind) {
 }
 
 }  // namespace
-
-const char* nameOf(Kind kind) {
-    constexpr const char* kNames[] = {"class I", "class II", "class V", "crown"};
-    return kNames[static_cast<int>(kind)];
-}
 
 Bench benchOf(Kind kind, bool neighbours) {
     Bench bench;
@@ -71,6 +68,16 @@ Bench benchOf(Kind kind, bool neighbours) {
          {&bench.task.toothCase, {}},
          {&bench.task.toothCase.others[1], bench.task.toothCase.others[1].inCase}}};
     bench.gingiva = dentition::makePeriodontium(arch).gingiva;
+    return bench;
+}
+
+Bench benchOf(const std::string& toothCase) {
+    Bench bench;
+    bench.task.id = "scanned";
+    bench.task.toothCase = cases::readCase(toothCase);
+    bench.task.voxelMm = 0.1;
+    bench.task.preparation = recipeOf(Kind::lesion);
+    bench.rubric = rubric::shippedRubric("46-deep-lesion");
     return bench;
 }
 

@@ -19,8 +19,7 @@ using core::Vec3;
 using geometry::TriangleMesh;
 using geometry::TriangleTree;
 
-enum class Kind { classOne, classTwo, classFive, crown };
-[[nodiscard]] const char* nameOf(Kind kind);
+enum class Kind { classOne, classTwo, classFive, crown, lesion };
 
 struct Bench {
     tasks::Task task;  ///< 46 (class V: 33); `neighbours`: with the teeth beside it
@@ -28,6 +27,8 @@ struct Bench {
     TriangleMesh gingiva;  ///< closed; empty without neighbours
 };
 [[nodiscard]] Bench benchOf(Kind kind, bool neighbours);
+/// Caries removal in the tooth of a case.
+[[nodiscard]] Bench benchOf(const std::string& toothCase);
 /// The task's own numbers, each a little off.
 [[nodiscard]] preparation::Recipe varied(const preparation::Recipe& recipe, std::mt19937_64& generator);
 

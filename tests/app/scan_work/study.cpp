@@ -17,7 +17,8 @@ struct Options {
     int count = 2, repeats = 2;
     std::uint64_t seed = 1;
     double noiseMm = 0.03, spacingMm = 0.1;
-    std::string kinds = "12VCjkB";
+    std::string kinds = "12VCjkBR";
+    std::string toothCase;  ///< instead of a made tooth: its carious tissue taken away
     bool show = false;
 };
 
@@ -37,17 +38,18 @@ constexpr Plan kPlans[] = {
     {'j', Kind::classOne, true, false, "class I, in its jaw", -1.0},
     {'k', Kind::crown, true, false, "crown, in its jaw", -1.0},
     {'B', Kind::crown, true, true, "crown, in its jaw, with a scan of before", -1.0},
+    {'R', Kind::lesion, false, false, "caries removal in the tooth of a case, crown alone", 0.0},
 };
 
 void run(const Options& o) {
     for (const Plan& plan : kPlans) {
-        if (o.kinds.find(plan.letter) == std::string::npos) continue;
+        if (o.kinds.find(plan.letter) == std::string::npos || (plan.letter == 'R' && o.toothCase.empty())) continue;
         Tallies tallies;
         std::map<std::string, int> on;
         int scans = 0, refused = 0;
         double lies = 0.0;
         std::mt19937_64 generator(o.seed * 1000 + static_cast<unsigned char>(plan.letter));
-        const Bench bench = benchOf(plan.kind, plan.isJaw);
+        const Bench bench = plan.kind == Kind::lesion ? benchOf(o.toothCase) : benchOf(plan.kind, plan.isJaw);
         for (int i = 0; i < o.count; ++i) {
             const Cut cut = cutBy(bench.task, varied(*bench.task.preparation, generator));
             const assessment::Result truth = assessment::scoreWork(cut.work, bench.task, bench.rubric);
@@ -136,11 +138,14 @@ int main(int argc, char** argv) {
             o.spacingMm = std::atof(value);
         else if (name == "--kinds")
             o.kinds = value;
+        else if (name == "--case")
+            o.toothCase = value;
         else if (name == "--threads")
             handpiece::core::setThreadCount(static_cast<std::size_t>(std::atoi(value)));
         else {
             std::fputs(
-                "scan_study [--count N] [--repeats N] [--seed N] [--noise MM] [--spacing MM] [--kinds 12VCjkB] "
+                "scan_study [--count N] [--repeats N] [--seed N] [--noise MM] [--spacing MM] [--kinds 12VCjkBR] "
+                "[--case CASE] "
                 "[--show] [--threads N]\n",
                 stderr);
             return 2;

@@ -204,5 +204,109 @@ TEST(Cells, ComeBackAndTellWhatTheyCannotRead) {
         EXPECT_NE(test::errorOf([&] { readSelection(c, wrong); }), "") << wrong;
 }
 
+TEST(Cells, CarryAllThatARubricIs) {
+    for (const std::string& name : rubric::shippedRubrics()) {
+        SCOPED_TRACE(name);
+        const rubric::Rubric read = rubric::shippedRubric(name);
+        // Every field written into its cell and read out of it again.
+        rubric::Rubric again = read;
+        for (rubric::Criterion& c : again.criteria) {
+            const rubric::Criterion was = c;
+            c.knots.clear(), c.bands.clear(), c.of = {}, c.devices.clear(), c.excludes.clear();
+            readKnots(c, knotsCell(was));
+            readBands(c, bandsCell(was));
+            readSelection(c, selectionCell(was));
+            readCritical(c, criticalCell(was));
+            c.devices = readNames(namesCell(was.devices));
+            c.excludes = readNames(namesCell(was.excludes));
+        }
+        for (rubric::Step& step : again.steps)
+            step.criteria = readNames(namesCell(step.criteria));
+        for (rubric::Rule& rule : again.rules) {
+            const std::string cell = needsCell(rule);
+            rule.needs.clear();
+            readNeeds(rule, cell);
+        }
+        const std::string toml = rubric::rubricToml(again);
+        EXPECT_EQ(toml, rubric::rubricToml(read));
+        const rubric::Rubric back = rubric::parseRubric(toml, "back");
+        EXPECT_EQ(rubric::hashOf(back), rubric::hashOf(read));
+        // And every text has a place.
+        std::size_t texts = 0, kept = 0;
+        for (const TextPlace& place : textsOf(again))
+            texts += place.texts->size();
+        for (TextPlace& place : textsOf(again))
+            place.texts->clear();
+        for (std::size_t at = toml.find("ja = "); at != std::string::npos; at = toml.find("ja = ", at + 1))
+            ++kept;
+        EXPECT_GE(texts, 2 * kept);
+        EXPECT_EQ(rubric::rubricToml(again).find("ja = "), std::string::npos) << "none has no place";
+    }
+}
+
+TEST(Cells, WhatARuleNeeds) {
+    rubric::Rule rule;
+    readNeeds(rule, "unacceptable most 0; to-modify, fair of depth, outline least 1 most 2 ; rule other");
+    ASSERT_EQ(rule.needs.size(), 3u);
+    EXPECT_EQ(rule.needs[1].bands, (std::vector<std::string>{"to-modify", "fair"}));
+    EXPECT_EQ(rule.needs[1].of, (std::vector<std::string>{"depth", "outline"}));
+    EXPECT_EQ(rule.needs[1].least, 1);
+    EXPECT_EQ(rule.needs[1].most, 2);
+    EXPECT_EQ(rule.needs[2].rule, "other");
+    EXPECT_EQ(needsCell(rule), "unacceptable most 0; to-modify, fair of depth, outline least 1 most 2; rule other");
+    for (const char* wrong :
+         {"unacceptable", "most 2", "ideal most x", "ideal most -1", "ideal most 1.5", "rule", "rule a most 1"})
+        EXPECT_THROW(readNeeds(rule, wrong), core::Error) << wrong;
+    EXPECT_EQ(rule.needs.size(), 3u) << "left as it was";
+}
+
+TEST(Rubrics, WhatRefersToABandOrARuleFollows) {
+    rubric::Rubric r = rubric::shippedRubric("46-class-i");
+    r.rules.clear();
+    rubric::Rule one, two;
+    one.id = "one", two.id = "two";
+    readNeeds(one, r.bands.back().id + " most 0");
+    readNeeds(two, "rule one");
+    one.required = two.required = true;
+    r.rules = {one, two};
+    const std::string last = r.bands.back().id;
+    renameBand(r, r.bands.size() - 1, "worst");
+    renameRule(r, 0, "first");
+    EXPECT_EQ(r.rules[0].needs[0].bands[0], "worst");
+    EXPECT_EQ(r.rules[1].needs[0].rule, "first");
+    for (const rubric::Criterion& c : r.criteria)
+        for (const rubric::Band& band : c.bands)
+            EXPECT_NE(band.id, last);
+    removeRule(r, 0);
+    EXPECT_TRUE(r.rules.empty()) << "the other needed nothing else";
+    removeBand(r, r.bands.size() - 1);
+    for (const rubric::Criterion& c : r.criteria)
+        for (const rubric::Band& band : c.bands)
+            EXPECT_NE(band.id, "worst");
+}
+
+TEST(Problems, AreSaidInEveryLanguage) {
+    Content content = block();
+    content.id = "No Id";
+    content.voxelMm = 1.0;
+    content.exercise.bur = "no-such";
+    content.exercise.title.clear();
+    content.rubric->criteria.front().unit = "m";
+    content.rubric->criteria.front().knots = {{1.0, 50.0}};
+    content.rubric->bands.push_back(content.rubric->bands.front());
+    const std::vector<Problem> found = problems(content);
+    ASSERT_GE(found.size(), 7u);
+    for (const Problem& p : found) {
+        ASSERT_FALSE(p.said.empty()) << p.what;
+        const std::string english = config::Words::in("en")(p.said), japanese = config::Words::in("ja")(p.said);
+        EXPECT_NE(english, japanese);
+        if (p.severity != rubric::Severity::remark) {
+            EXPECT_EQ(p.what, p.criterion.empty() ? english : p.criterion + ": " + english);
+        }
+        EXPECT_TRUE(std::any_of(japanese.begin(), japanese.end(), [](char c) { return (c & 0x80) != 0; })) << japanese;
+        EXPECT_EQ(p.remedy.empty(), p.advice.empty());
+    }
+}
+
 }  // namespace
 }  // namespace handpiece::draft

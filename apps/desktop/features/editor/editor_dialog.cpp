@@ -13,6 +13,7 @@
 #include <algorithm>
 
 #include "desktop/features/editor/editor_pages.h"
+#include "desktop/features/editor/editor_words.h"
 #include "desktop/features/editor/rubric_page.h"
 #include "desktop/framework/problem.h"
 #include "desktop/widgets/parts.h"
@@ -60,10 +61,11 @@ EditorDialog::EditorDialog(QWidget* parent) : QDialog(parent), settle_(new QTime
     connect(list_, &QListWidget::itemClicked, this,
             [this](const QListWidgetItem* item) { tabs_->setCurrentIndex(item->data(Qt::UserRole).toInt()); });
     connect(work_, &WorkPage::viewRequested, this, &EditorDialog::viewRequested);
+    connect(work_, &WorkPage::viewShown, this, &EditorDialog::viewShown);
     settle_->setSingleShot(true);
     settle_->setInterval(kSettleMs);
     connect(settle_, &QTimer::timeout, this, &EditorDialog::settled);
-    resize(860, 640);
+    resize(980, 680);
     refresh();
 }
 
@@ -165,10 +167,9 @@ void EditorDialog::showProblems() {
     std::vector<draft::Problem> all = problems();
     std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.severity < b.severity; });
     for (const draft::Problem& p : all) {
-        QString said = QStringLiteral("%1, %2: %3")
-                           .arg(severityWords(p.severity), tabs_->tabText(static_cast<int>(p.part)),
-                                QString::fromStdString(p.what));
-        if (!p.remedy.empty()) said += QStringLiteral(" (") + QString::fromStdString(p.remedy) + QLatin1Char(')');
+        const QString said =
+            QStringLiteral("%1, %2: %3")
+                .arg(severityWords(p.severity), tabs_->tabText(static_cast<int>(p.part)), problemWords(p));
         auto* item = new QListWidgetItem(said, list_);
         item->setData(Qt::UserRole, static_cast<int>(p.part));
     }

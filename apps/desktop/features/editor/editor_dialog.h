@@ -54,7 +54,8 @@ class EditorDialog : public QDialog {
     void saveRequested();
     void saveAsRequested();
     void tryRequested();
-    void viewRequested();
+    void viewRequested(bool ofPreparation);
+    void viewShown();
     /// The draft has been as it is for a moment: its tooth may be looked at.
     void settled();
 

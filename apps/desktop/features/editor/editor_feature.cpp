@@ -84,7 +84,7 @@ bool EditorFeature::eventFilter(QObject* watched, QEvent* event) {
 }
 
 bool EditorFeature::isBusy() const {
-    return making_ || checking_ || cutting_ || again_ || dialog_->isSettling();
+    return making_ || checking_ || cutting_ || again_ || dialog_->isSettling() || dialog_->preparationPage()->isBusy();
 }
 
 bool EditorFeature::mayLeave() {
@@ -104,11 +104,20 @@ void EditorFeature::connectDialog() {
     connect(dialog_, &EditorDialog::saveAsRequested, this, [this] { save(true); });
     connect(dialog_, &EditorDialog::tryRequested, this, &EditorFeature::tryOut);
     connect(dialog_, &EditorDialog::settled, this, &EditorFeature::check);
-    connect(dialog_, &EditorDialog::viewRequested, this, [this] {
-        const view::Camera& camera = view_.camera();
+    connect(dialog_, &EditorDialog::viewRequested, this, [this](bool ofPreparation) {
+        const view::Camera camera =
+            ofPreparation ? dialog_->preparationPage()->camera().value_or(view_.camera()) : view_.camera();
         dialog_->change("", [&](draft::Content& c) {
             c.exercise.view = cases::View{camera.eyeMm, camera.targetMm, camera.up};
         });
+    });
+    connect(dialog_, &EditorDialog::viewShown, this, [this] {
+        const auto& start = dialog_->draft().now().exercise.view;
+        if (!start || !view_.hasTooth()) return;
+        view::Camera camera = view_.camera();
+        camera.eyeMm = start->eyeMm, camera.targetMm = start->targetMm, camera.up = start->up;
+        view_.setCamera(camera);
+        window_.raise();
     });
     connect(dialog_->preparationPage(), &PreparationPage::idealRequested, this, &EditorFeature::cutIdeal);
     connect(dialog_->toothPage(), &ToothPage::starterRequested, this, &EditorFeature::takeStarter);
@@ -221,9 +230,9 @@ void EditorFeature::cutIdeal() {
     });
     dialog_->preparationPage()->setIdeal(nullptr);
     const auto end = [this] { cutting_.release()->deleteLater(); };
-    connect(cutting_.get(), &Job::done, this, [this, end, ideal, sign = now.tooth->buccalSign] {
+    connect(cutting_.get(), &Job::done, this, [this, end, ideal] {
         end();
-        if (*ideal) dialog_->preparationPage()->setIdeal(*ideal, sign);
+        if (*ideal) dialog_->preparationPage()->setIdeal(*ideal);
     });
     connect(cutting_.get(), &Job::failed, this, [this, end](const Problem& problem) {
         end();

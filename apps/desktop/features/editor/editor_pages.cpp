@@ -8,6 +8,7 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QLocale>
 #include <QPlainTextEdit>
 #include <QPushButton>
 #include <QSignalBlocker>
@@ -15,6 +16,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "desktop/features/editor/editor_words.h"
 #include "desktop/framework/helps.h"
@@ -41,7 +43,7 @@ void setText(QPlainTextEdit* field, const QString& text) {
 }
 /// A value that is typed keeps its text.
 void setValue(QDoubleSpinBox* field, double value) {
-    if (std::abs(field->value() - value) > 1e-9) field->setValue(value);
+    if (std::abs(field->value() - value) > 0.5 * std::pow(10.0, -field->decimals())) field->setValue(value);
 }
 QDoubleSpinBox* millimetres(QWidget* parent, const char* name, const QString& words) {
     auto* field = named(new QDoubleSpinBox(parent), name, words);
@@ -110,18 +112,26 @@ PreparationPage::PreparationPage(Change change) : EditorPage(std::move(change)) 
     setObjectName(QStringLiteral("editorPreparation"));
     auto* columns = new QHBoxLayout(this);
     form_ = new QFormLayout;
-    columns->addLayout(form_, 1);
+    columns->addLayout(form_, 2);
     auto* beside = new QVBoxLayout;
-    columns->addLayout(beside, 1);
-    ideal_ = new SolidView("editorIdeal", this);
-    ideal_->setPlaceholder({});
-    ideal_->setAccessibleName(tr("The tooth as it is asked for"));
-    idealButton_ =
-        named(new QPushButton(tr("Show it on the tooth"), this), "editorShowIdeal", tr("Show it on the tooth"),
-              tr("Cuts the tooth as the preparation asks for it; takes seconds"));
-    beside->addWidget(ideal_, 1);
+    columns->addLayout(beside, 3);
+    picture_ = new SolidView("editorPicture", this);
+    picture_->setPlaceholder({});
+    picture_->setAccessibleName(tr("The tooth with its preparation"));
+    picture_->setToolTip(
+        tr("Drag a handle: its number follows; Escape gives it up. Drag elsewhere: turn. Right button: shift. Wheel: "
+           "nearer."));
+    idealButton_ = named(new QPushButton(tr("Cut it out"), this), "editorShowIdeal", tr("Cut it out"),
+                         tr("Cuts the tooth as the preparation asks for it; takes seconds"));
+    beside->addWidget(picture_, 1);
     beside->addWidget(idealButton_);
-    connect(idealButton_, &QPushButton::clicked, this, &PreparationPage::idealRequested);
+    connect(idealButton_, &QPushButton::clicked, this, [this] {
+        if (shows_ == Shown::ideal)
+            showTask();
+        else
+            emit idealRequested();
+    });
+    connectPicture();
     template_ = named(new QComboBox(this), "editorTemplate", tr("Preparation"));
     template_->addItem(tr("Nothing is asked"), QString());
     for (const preparation::Template& t : preparation::templates())
@@ -190,22 +200,165 @@ void PreparationPage::showNumbers(const preparation::Template* of) {
     }
 }
 
-void PreparationPage::setIdeal(std::shared_ptr<const std::vector<cases::Part>> parts, int buccalSign) {
-    hasIdeal_ = parts != nullptr;
-    if (!parts) return ideal_->setCaption(tr("Cutting the ideal..."), true);
+void PreparationPage::connectPicture() {
+    connect(&glass_, &ZoneGlass::changed, this, &PreparationPage::takeGlass);
+    connect(&glass_, &ZoneGlass::refused, this, [this](const Problem& problem) {
+        if (shows_ != Shown::task) return;
+        picture_->setCaption(problem.what, true);
+        if (picture_->isDragging()) return;  // back to where it lies
+        handles_.clear();
+        picture_->setHandles({});
+    });
+    connect(picture_, &SolidView::handleDragged, this,
+            [this](int handle, double movedMm) { drag(handle, movedMm, false); });
+    connect(picture_, &SolidView::handleDropped, this,
+            [this](int handle, double movedMm) { drag(handle, movedMm, true); });
+    connect(picture_, &SolidView::handleGivenUp, this, [this] {
+        glass_.setCoarse(false);
+        if (!dragged_ || !recipe_) return;
+        const std::string name(dragged_->number);
+        dragged_.reset();
+        showField(name, recipe_->number(name));
+        glass_.show(tooth_, *recipe_);
+    });
+}
+
+QString PreparationPage::handleText(std::string_view name, double value) {
+    return tr("%1: %2 %3").arg(parameterWords(name), QLocale().toString(value, 'f', 2), parameterUnit(name));
+}
+
+void PreparationPage::showField(std::string_view name, double value) {
+    const bool was = std::exchange(showing_, true);
+    for (const auto& [of, field] : fields_)
+        if (of == name) setValue(field, value);
+    showing_ = was;
+}
+
+/// While it is dragged only picture and field know; let go, it is one step of the draft.
+void PreparationPage::drag(int handle, double movedMm, bool isOver) {
+    if (!recipe_ || static_cast<std::size_t>(handle) >= handles_.size()) return;
+    if (!dragged_) dragged_ = handles_[static_cast<std::size_t>(handle)];
+    const std::string name(dragged_->number);
+    const double value = draft::valueOf(*dragged_, *recipe_, movedMm);
+    picture_->setHandleText(handle, handleText(name, value));
+    if (!isOver) {
+        showField(name, value);
+        preparation::Recipe next = *recipe_;
+        next.numbers[name] = value;
+        glass_.setCoarse(true);
+        glass_.show(tooth_, next);
+        return;
+    }
+    dragged_.reset();
+    glass_.setCoarse(false);
+    showField(name, recipe_->number(name));
+    if (value == recipe_->number(name)) {
+        glass_.show(tooth_, *recipe_);
+        return;
+    }
+    change_("", [&](Content& c) {
+        if (c.preparation) c.preparation->numbers[name] = value;
+    });
+}
+
+void PreparationPage::takeGlass() {
+    if (shows_ != Shown::task) return;
+    picture_->setGlass(glass_.surfaces());
+    if (!glass_.laid() || !tooth_) return;
+    handles_ = draft::handlesOf(*tooth_, glass_.recipe(), *glass_.laid());
+    std::vector<SolidHandle> shown;
+    for (const draft::Handle& h : handles_)
+        shown.push_back({h.placeMm, h.way, handleText(h.number, glass_.recipe().number(h.number))});
+    picture_->setHandles(std::move(shown));
+    picture_->setCaption(tr("Green is to go, orange must stay: drag a white handle to change a number"), false);
+    if (!picture_->isDragging()) look(false);
+}
+
+/// Near to the preparation, from where it is seen; a new template's only, then the eye is the teacher's.
+void PreparationPage::look(bool anew) {
+    if (!glass_.laid() || (!anew && lookedAt_ == glass_.recipe().preparation)) return;
+    lookedAt_ = glass_.recipe().preparation;
+    const view::StandardView from = lookedAt_ == "class-five"    ? view::StandardView::buccal
+                                    : lookedAt_ == "class-three" ? view::StandardView::lingual
+                                                                 : view::StandardView::oblique;
+    core::Box box = glass_.laid()->zones->box();
+    const core::Box& whole = glass_.laid()->whole->bounds();
+    box = box.grown(2.0);
+    box.min = box.min.cwiseMax(whole.min), box.max = box.max.cwiseMin(whole.max);
+    const view::Viewport port{std::max(1, picture_->width()), std::max(1, picture_->height())};
+    picture_->setCamera(view::standardView(from, box, tooth_->buccalSign, port));
+}
+
+void PreparationPage::showTask() {
+    shows_ = tooth_ ? Shown::task : Shown::nothing;
+    idealButton_->setText(tr("Cut it out"));
+    if (!tooth_) {
+        picture_->setParts(nullptr, {});
+        picture_->setGlass({});
+        picture_->setHandles({});
+        return picture_->setCaption(tr("Choose a tooth first"), false);
+    }
+    std::shared_ptr<const std::vector<cases::Part>> parts(tooth_, &tooth_->parts);
+    if (tooth_->parts.empty())  // its surface is all that it has
+        parts = std::make_shared<const std::vector<cases::Part>>(
+            std::vector<cases::Part>{{"outer", cases::Tissue::enamel, 0, tooth_->surface()}});
     core::Box box;
     for (const cases::Part& part : *parts)
         for (const core::Vec3& v : part.mesh.vertices)
             box.extend(v);
-    ideal_->setParts(parts, box);
-    ideal_->setCaption(tr("As it is asked for: drag to turn it"), false);
-    ideal_->lookFrom(view::StandardView::oblique, buccalSign);
+    picture_->setParts(parts, box);
+    picture_->setCaption(recipe_ ? tr("Laying the preparation on the tooth...") : tr("Choose a preparation"), false);
+    if (!recipe_) {
+        glass_.hide();
+        handles_.clear();
+        picture_->setHandles({});
+    } else if (glassOf_ == recipe_ && pictured_ == tooth_ && glass_.laid()) {
+        takeGlass();
+    } else {
+        glass_.show(tooth_, *recipe_);
+    }
+    glassOf_ = recipe_;
+    pictured_ = tooth_;
+}
+
+void PreparationPage::refreshPicture() {
+    if (!isVisible()) return;
+    if (shows_ != Shown::nothing && pictured_ == tooth_ && glassOf_ == recipe_) return;
+    // What was held belongs to what was there.
+    if (picture_->isDragging()) picture_->setHandles({});
+    if (pictured_ != tooth_) lookedAt_.clear();
+    if (shows_ == Shown::task && pictured_ == tooth_ && tooth_ && recipe_) {
+        glassOf_ = recipe_;
+        return glass_.show(tooth_, *recipe_);
+    }
+    showTask();
+}
+
+void PreparationPage::showEvent(QShowEvent* event) {
+    EditorPage::showEvent(event);
+    refreshPicture();
+}
+
+std::optional<view::Camera> PreparationPage::camera() const {
+    return shows_ == Shown::nothing ? std::nullopt : std::optional(picture_->camera());
+}
+
+void PreparationPage::setIdeal(std::shared_ptr<const std::vector<cases::Part>> parts) {
+    if (!parts) return picture_->setCaption(tr("Cutting the ideal..."), true);
+    core::Box box;
+    for (const cases::Part& part : *parts)
+        for (const core::Vec3& v : part.mesh.vertices)
+            box.extend(v);
+    shows_ = Shown::ideal;
+    picture_->setGlass({});
+    picture_->setHandles({});
+    picture_->setParts(parts, box);
+    picture_->setCaption(tr("As it is asked for: drag to turn it"), false);
+    idealButton_->setText(tr("Back to its numbers"));
 }
 
 void PreparationPage::clearIdeal() {
-    hasIdeal_ = false;
-    ideal_->setParts(nullptr, {});
-    ideal_->setCaption({}, false);
+    showTask();
 }
 
 void PreparationPage::show(const Content& content) {
@@ -223,7 +376,8 @@ void PreparationPage::show(const Content& content) {
     if (recipe)
         for (const auto& [name, field] : fields_)
             setValue(field, recipe->number(name));
-    if (hasIdeal_) ideal_->setCaption(tr("Of before: show it again"), true);
+    tooth_ = content.tooth;
+    recipe_ = content.preparation;
     for (QDoubleSpinBox* field : {leewaySide_, leewayFloor_, pulp_})
         field->setEnabled(recipe != nullptr);
     const preparation::Recipe plainOne;
@@ -232,6 +386,7 @@ void PreparationPage::show(const Content& content) {
     setValue(leewayFloor_, r.leeway.floorMm);
     setValue(pulp_, r.pulpMm);
     showing_ = false;
+    refreshPicture();
 }
 
 WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
@@ -258,21 +413,52 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
         item->setCheckState(Qt::Unchecked);
     }
     timed_ = named(new QCheckBox(tr("At most"), this), "editorTimed", tr("A time limit"));
-    minutes_ = named(new QSpinBox(this), "editorMinutes", tr("Minutes"));
-    minutes_->setRange(1, 24 * 60);
+    minutes_ = named(new QDoubleSpinBox(this), "editorMinutes", tr("Minutes"));
+    minutes_->setRange(0.1, 24 * 60);
+    minutes_->setDecimals(1);
     minutes_->setValue(30);
     minutes_->setSuffix(tr(" min"));
-    voxel_ = named(new QSpinBox(this), "editorVoxel", tr("Voxel of the tooth"),
+    voxel_ = named(new QDoubleSpinBox(this), "editorVoxel", tr("Voxel of the tooth"),
                    tr("The same for every student: a score never hangs on their settings"));
     voxel_->setRange(20, 400);
+    voxel_->setDecimals(1);
     voxel_->setSingleStep(10);
     voxel_->setSuffix(QStringLiteral(" µm"));
     ownJudgement_ = named(new QCheckBox(tr("Students judge their own work first"), this), "editorOwnJudgement",
                           tr("Students judge their own work first"), tr("Before they see the result"));
     view_ = note({}, this, "editorView");
-    auto* take = named(new QPushButton(tr("Start with the view that is open"), this), "editorTakeView",
-                       tr("Start with the view that is open"), tr("Turn the tooth in the window, then take its view"));
+    auto* take = named(new QPushButton(tr("Take the window's view"), this), "editorTakeView",
+                       tr("Take the window's view"), tr("Turn the tooth in the window, then take its view"));
+    auto* ofPicture = named(new QPushButton(tr("Take the preparation's view"), this), "editorTakePictureView",
+                            tr("Take the preparation's view"), tr("As the picture on the page Preparation shows it"));
+    showView_ = named(new QPushButton(tr("Show it in the window"), this), "editorShowView", tr("Show it in the window"),
+                      tr("Turns the tooth in the window to the start view"));
     auto* drop = named(new QPushButton(tr("The usual view"), this), "editorDropView", tr("The usual view"));
+    auto* eye = new QGridLayout;
+    const QString what[] = {tr("Eye"), tr("Looks at"), tr("Up")};
+    const char* names[] = {"editorEye", "editorTarget", "editorUp"};
+    for (int row = 0; row < 3; ++row) {
+        eye->addWidget(new QLabel(what[row], this), row, 0);
+        for (int k = 0; k < 3; ++k) {
+            const char axis[] = {"XYZ"[k], '\0'};
+            auto* field = named(new QDoubleSpinBox(this), "", what[row] + QLatin1Char(' ') + QLatin1String(axis));
+            field->setObjectName(QLatin1String(names[row]) + QLatin1String(axis));
+            field->setRange(row == 2 ? -1.0 : -500.0, row == 2 ? 1.0 : 500.0);
+            field->setDecimals(row == 2 ? 3 : 2);
+            field->setSingleStep(row == 2 ? 0.05 : 1.0);
+            field->setButtonSymbols(QAbstractSpinBox::NoButtons);
+            eye->addWidget(field, row, 1 + k);
+            eye_.push_back(field);
+            connect(field, &QDoubleSpinBox::valueChanged, this, [this, row, k](double value) {
+                if (showing_) return;
+                change_("view", [&](Content& c) {
+                    if (!c.exercise.view) return;
+                    cases::View& v = *c.exercise.view;
+                    (row == 0 ? v.eyeMm : row == 1 ? v.targetMm : v.up)[k] = value;
+                });
+            });
+        }
+    }
     form->addRow(tr("First bur"), bur_);
     auto* limit = new QHBoxLayout;
     limit->addWidget(timed_);
@@ -280,9 +466,15 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     form->addRow(tr("Time"), limit);
     form->addRow(tr("Voxel"), voxel_);
     form->addRow(ownJudgement_);
+    form->addRow(heading(tr("Start view [mm]"), this));
     form->addRow(view_);
-    form->addRow(take);
-    form->addRow(drop);
+    form->addRow(eye);
+    auto* views = new QGridLayout;
+    views->addWidget(take, 0, 0);
+    views->addWidget(ofPicture, 0, 1);
+    views->addWidget(showView_, 1, 0);
+    views->addWidget(drop, 1, 1);
+    form->addRow(views);
     auto* lists = new QVBoxLayout;
     lists->addWidget(heading(tr("Burs allowed (none ticked: all)"), this));
     lists->addWidget(burs_, 1);
@@ -312,14 +504,16 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
         });
     };
     connect(timed_, &QCheckBox::toggled, this, setTime);
-    connect(minutes_, &QSpinBox::valueChanged, this, setTime);
-    connect(voxel_, &QSpinBox::valueChanged, this, [this](int um) {
+    connect(minutes_, &QDoubleSpinBox::valueChanged, this, setTime);
+    connect(voxel_, &QDoubleSpinBox::valueChanged, this, [this](double um) {
         if (!showing_) change_("voxel", [&](Content& c) { c.voxelMm = 1e-3 * um; });
     });
     connect(ownJudgement_, &QCheckBox::toggled, this, [this](bool own) {
         if (!showing_) change_("", [&](Content& c) { c.ownJudgement = own; });
     });
-    connect(take, &QPushButton::clicked, this, &WorkPage::viewRequested);
+    connect(take, &QPushButton::clicked, this, [this] { emit viewRequested(false); });
+    connect(ofPicture, &QPushButton::clicked, this, [this] { emit viewRequested(true); });
+    connect(showView_, &QPushButton::clicked, this, &WorkPage::viewShown);
     connect(drop, &QPushButton::clicked, this, [this] { change_("", [&](Content& c) { c.exercise.view.reset(); }); });
 }
 
@@ -340,10 +534,17 @@ void WorkPage::show(const Content& content) {
     tick(helps_, e.lockedHelps);
     timed_->setChecked(content.minutes.has_value());
     minutes_->setEnabled(content.minutes.has_value());
-    if (content.minutes) minutes_->setValue(static_cast<int>(std::lround(*content.minutes)));
-    voxel_->setValue(static_cast<int>(std::lround(1e3 * content.voxelMm)));
+    if (content.minutes) setValue(minutes_, *content.minutes);
+    setValue(voxel_, 1e3 * content.voxelMm);
     ownJudgement_->setChecked(content.ownJudgement);
     view_->setText(e.view ? tr("Starts with a view of its own.") : tr("Starts with the usual view."));
+    showView_->setEnabled(e.view.has_value());
+    for (std::size_t i = 0; i < eye_.size(); ++i) {
+        eye_[i]->setEnabled(e.view.has_value());
+        const cases::View v = e.view.value_or(cases::View{});
+        const core::Vec3& row = i < 3 ? v.eyeMm : i < 6 ? v.targetMm : v.up;
+        setValue(eye_[i], e.view ? row[static_cast<int>(i % 3)] : 0.0);
+    }
     showing_ = false;
 }
 
@@ -358,12 +559,21 @@ TextsPage::TextsPage(Change change) : EditorPage(std::move(change)) {
     titleJa_ = named(new QLineEdit(this), "editorTitleJa", tr("Title, Japanese"));
     whatEn_ = named(new QPlainTextEdit(this), "editorInstructionsEn", tr("What to do, English"));
     whatJa_ = named(new QPlainTextEdit(this), "editorInstructionsJa", tr("What to do, Japanese"));
+    other_ = named(new QComboBox(this), "editorOtherLanguage", tr("Another language"),
+                   tr("Its tag: de, fr, pt-BR, ...; what is written below is in it"));
+    other_->setEditable(true);
+    other_->setInsertPolicy(QComboBox::NoInsert);
+    titleOther_ = named(new QLineEdit(this), "editorTitleOther", tr("Title, in it"));
+    whatOther_ = named(new QPlainTextEdit(this), "editorInstructionsOther", tr("What to do, in it"));
     form->addRow(tr("Short name"), id_);
     form->addRow(tr("Version"), version_);
     form->addRow(tr("Title, English"), titleEn_);
     form->addRow(tr("Title, Japanese"), titleJa_);
     form->addRow(tr("What to do, English"), whatEn_);
     form->addRow(tr("What to do, Japanese"), whatJa_);
+    form->addRow(tr("Another language"), other_);
+    form->addRow(tr("Title, in it"), titleOther_);
+    form->addRow(tr("What to do, in it"), whatOther_);
     connect(id_, &QLineEdit::textEdited, this,
             [this](const QString& text) { change_("id", [&](Content& c) { c.id = text.toStdString(); }); });
     connect(version_, &QSpinBox::valueChanged, this, [this](int version) {
@@ -390,6 +600,17 @@ TextsPage::TextsPage(Change change) : EditorPage(std::move(change)) {
     };
     what(whatEn_, "en", "what en");
     what(whatJa_, "ja", "what ja");
+    connect(other_, &QComboBox::currentTextChanged, this, [this] { showOther(); });
+    connect(titleOther_, &QLineEdit::textEdited, this, [this, put](const QString& text) {
+        const std::string tag = other_->currentText().trimmed().toStdString();
+        change_("title other", [&](Content& c) { put(c.exercise.title, tag.c_str(), text); });
+    });
+    connect(whatOther_, &QPlainTextEdit::textChanged, this, [this, put] {
+        const std::string tag = other_->currentText().trimmed().toStdString();
+        if (showing_ || tag.empty()) return;
+        change_("what other",
+                [&](Content& c) { put(c.exercise.instructions, tag.c_str(), whatOther_->toPlainText()); });
+    });
 }
 
 void TextsPage::show(const Content& content) {
@@ -404,7 +625,36 @@ void TextsPage::show(const Content& content) {
     setText(titleJa_, text(content.exercise.title, "ja"));
     setText(whatEn_, text(content.exercise.instructions, "en"));
     setText(whatJa_, text(content.exercise.instructions, "ja"));
+    title_ = content.exercise.title;
+    what_ = content.exercise.instructions;
+    const QString chosen = other_->currentText();
+    QStringList tags;
+    for (const cases::Texts* texts : {&title_, &what_})
+        for (const auto& [tag, words] : *texts)
+            if (const QString name = QString::fromStdString(tag); tag != "en" && tag != "ja" && !tags.contains(name))
+                tags << name;
+    const QSignalBlocker quiet(other_);
+    other_->clear();
+    other_->addItems(tags);
+    other_->setCurrentText(!chosen.isEmpty() ? chosen : tags.value(0));
     showing_ = false;
+    showOther();
+}
+
+void TextsPage::showOther() {
+    const bool was = std::exchange(showing_, true);
+    const std::string tag = other_->currentText().trimmed().toStdString();
+    const auto text = [&](const cases::Texts& texts) {
+        const auto at = texts.find(tag);
+        return at == texts.end() ? QString() : QString::fromStdString(at->second);
+    };
+    setText(titleOther_, text(title_));
+    setText(whatOther_, text(what_));
+    // English and Japanese have their fields above.
+    const bool isOther = !tag.empty() && tag != "en" && tag != "ja";
+    titleOther_->setEnabled(isOther);
+    whatOther_->setEnabled(isOther);
+    showing_ = was;
 }
 
 }  // namespace handpiece::desktop

@@ -7,6 +7,9 @@
 #include <vector>
 
 #include "desktop/features/editor/editor_page.h"
+#include "desktop/work/zone_glass.h"
+#include "handpiece/assess/draft/handles.h"
+#include "handpiece/senses/view/camera.h"
 
 class QCheckBox;
 class QComboBox;
@@ -44,27 +47,54 @@ class ToothPage : public EditorPage {
     std::vector<QWidget*> buttons_;
 };
 
-/// [editorPreparation]. A field for each number of the template, with its unit and limits; the ideal beside them.
+/// [editorPreparation]. A field for each number of the template, with its unit and limits; beside them the tooth with
+/// the preparation as glass, whose numbers are dragged by handles; or the tooth as it is asked for.
 class PreparationPage : public EditorPage {
     Q_OBJECT
   public:
     explicit PreparationPage(Change change);
     void show(const draft::Content& content) override;
     /// The tooth as the preparation asks for it; null: it is being made.
-    void setIdeal(std::shared_ptr<const std::vector<cases::Part>> parts, int buccalSign = 0);
+    void setIdeal(std::shared_ptr<const std::vector<cases::Part>> parts);
     void clearIdeal();
     /// Whether it can be asked for.
     void setIdealPossible(bool possible) { idealButton_->setEnabled(possible); }
+    /// Of the picture; none while there is no tooth in it.
+    [[nodiscard]] std::optional<view::Camera> camera() const;
+    /// Glass and handles are being made.
+    [[nodiscard]] bool isBusy() const noexcept { return glass_.isBusy(); }
+    /// In the order of the handles in the picture.
+    [[nodiscard]] const std::vector<draft::Handle>& handles() const noexcept { return handles_; }
+    [[nodiscard]] const ZoneGlass& glass() const noexcept { return glass_; }
 
   signals:
     void idealRequested();
 
-  private:
-    void showNumbers(const preparation::Template* of);
+  protected:
+    void showEvent(QShowEvent* event) override;
 
-    SolidView* ideal_;
+  private:
+    enum class Shown { nothing, task, ideal };
+    void connectPicture();
+    void showNumbers(const preparation::Template* of);
+    void showField(std::string_view name, double value);
+    /// Tooth and glass, where the page is seen and they are others than before.
+    void refreshPicture();
+    void showTask();
+    void takeGlass();
+    void look(bool anew);
+    void drag(int handle, double movedMm, bool isOver);
+    [[nodiscard]] static QString handleText(std::string_view name, double value);
+
+    SolidView* picture_;
     QPushButton* idealButton_;
-    bool hasIdeal_ = false;
+    Shown shows_ = Shown::nothing;
+    std::shared_ptr<const cases::Case> tooth_, pictured_;
+    std::optional<preparation::Recipe> recipe_, glassOf_;
+    std::string lookedAt_;  ///< the template for which the eye was placed
+    ZoneGlass glass_;
+    std::vector<draft::Handle> handles_;
+    std::optional<draft::Handle> dragged_;  ///< as it was when it was taken
     QComboBox *template_, *side_;
     QLabel* sideLabel_;
     QWidget* numbers_ = nullptr;
@@ -82,14 +112,18 @@ class WorkPage : public EditorPage {
     void show(const draft::Content& content) override;
 
   signals:
-    void viewRequested();
+    /// The window's, or that of the preparation's picture.
+    void viewRequested(bool ofPreparation);
+    void viewShown();
 
   private:
     QComboBox* bur_;
     QListWidget *burs_, *helps_;
     QCheckBox *timed_, *ownJudgement_;
-    QSpinBox *minutes_, *voxel_;
+    QDoubleSpinBox *minutes_, *voxel_;
     QLabel* view_;
+    QPushButton* showView_;
+    std::vector<QDoubleSpinBox*> eye_;  ///< of the start view: eye, target, up
 };
 
 /// [editorTexts]
@@ -100,8 +134,12 @@ class TextsPage : public EditorPage {
     void show(const draft::Content& content) override;
 
   private:
-    QLineEdit *id_, *titleEn_, *titleJa_;
-    QPlainTextEdit *whatEn_, *whatJa_;
+    QLineEdit *id_, *titleEn_, *titleJa_, *titleOther_;
+    QPlainTextEdit *whatEn_, *whatJa_, *whatOther_;
+    void showOther();
+
+    QComboBox* other_;  ///< a third language, by its tag
+    cases::Texts title_, what_;
     QSpinBox* version_;
 };
 

@@ -4,6 +4,9 @@
 #include <QCoreApplication>
 #include <utility>
 
+#include "desktop/framework/problem.h"
+#include "handpiece/base/config/words.h"
+
 namespace handpiece::desktop {
 namespace {
 
@@ -58,6 +61,57 @@ QString templateWords(std::string_view id) {
 }
 QString parameterWords(std::string_view name) {
     return found(kParameters, name);
+}
+QString measureWords(std::string_view id) {
+    const std::string name = "measure." + std::string(id);
+    return QString::fromStdString(config::words().has(name) ? config::words().text(name) : std::string(id));
+}
+QString statusWords(rubric::Status status) {
+    return QString::fromStdString(config::words().text("rubric.status." + std::string(rubric::nameOf(status))));
+}
+QString textPlaceWords(const draft::TextPlace& place) {
+    using Kind = draft::TextPlace::Kind;
+    const QString id = QString::fromStdString(place.id);
+    const auto said = [&](const char* text) { return QCoreApplication::translate("Preparation", text).arg(id); };
+    switch (place.kind) {
+        case Kind::title:
+            return QCoreApplication::translate("Preparation", "Title of the rubric");
+        case Kind::words:
+            return QCoreApplication::translate("Preparation", "About the rubric");
+        case Kind::band:
+            return said(QT_TRANSLATE_NOOP("Preparation", "Band %1"));
+        case Kind::step:
+            return said(QT_TRANSLATE_NOOP("Preparation", "Step %1"));
+        case Kind::criterion:
+            return said(QT_TRANSLATE_NOOP("Preparation", "Criterion %1"));
+        case Kind::criterionWords:
+            return said(QT_TRANSLATE_NOOP("Preparation", "%1: what it is about"));
+        case Kind::leavesOut:
+            return said(QT_TRANSLATE_NOOP("Preparation", "%1: what it leaves out"));
+        case Kind::criticalError:
+            return said(QT_TRANSLATE_NOOP("Preparation", "%1: its critical error"));
+        case Kind::rule:
+            return said(QT_TRANSLATE_NOOP("Preparation", "Rule %1"));
+    }
+    return id;
+}
+QString problemWords(const draft::Problem& problem, bool withAbout) {
+    QString what, remedy;
+    if (!problem.said.empty()) {
+        what = QString::fromStdString(config::words()(problem.said));
+        if (!problem.advice.empty()) remedy = QString::fromStdString(config::words()(problem.advice));
+        if (withAbout && !problem.about.empty())
+            what = QString::fromStdString(config::words()(problem.about)) + QStringLiteral(": ") + what;
+    } else if (const QString id = QString::fromStdString(problem.error); problemIds().contains(id)) {
+        QStringList arguments;
+        for (const std::string& argument : problem.arguments)
+            arguments << QString::fromStdString(argument);
+        const Problem known = problemById(id, arguments);
+        what = known.what, remedy = known.remedy;
+    } else {
+        what = QString::fromStdString(problem.what), remedy = QString::fromStdString(problem.remedy);
+    }
+    return remedy.isEmpty() ? what : QStringLiteral("%1 (%2)").arg(what, remedy);
 }
 QString parameterUnit(std::string_view name) {
     return name.ends_with("_deg") ? QStringLiteral("°") : name.ends_with("_mm") ? QStringLiteral("mm") : QString();

@@ -3,17 +3,26 @@
 
 #include <QCheckBox>
 #include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QFormLayout>
 #include <QHeaderView>
 #include <QLabel>
+#include <QLineEdit>
 #include <QLocale>
 #include <QPushButton>
 #include <QSignalBlocker>
-#include <QSpinBox>
+#include <QSplitter>
+#include <QTabWidget>
 #include <QTableWidget>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "desktop/features/editor/curve_view.h"
+#include "desktop/features/editor/editor_words.h"
+#include "desktop/features/editor/list_table.h"
+#include "desktop/framework/problem.h"
 #include "desktop/widgets/parts.h"
 #include "handpiece/assess/draft/cells.h"
 #include "handpiece/base/core/error.h"
@@ -68,8 +77,49 @@ RubricPage::RubricPage(Change change) : EditorPage(std::move(change)) {
     above->addWidget(none_);
     above->addStretch(1);
     column->addLayout(above);
+    tabs_ = named(new QTabWidget(this), "editorRubricTabs", tr("Parts of the rubric"));
+    tabs_->addTab(criteriaTab(), tr("Criteria"));
+    tabs_->addTab(wholeTab(), tr("Bands, steps, rules"));
+    tabs_->addTab(textsTab(), tr("Words"));
+    column->addWidget(tabs_, 1);
+    whole_ = note({}, this, "editorRubricNote");
+    whole_->setTextFormat(Qt::PlainText);
+    column->addWidget(whole_);
+
+    connect(take, &QPushButton::clicked, this, [this] {
+        const std::string name = shipped_->currentData().toString().toStdString();
+        unread_.clear();
+        change_("", [&](Content& c) {
+            c.rubricText = rubric::shippedRubricText(name);
+            c.rubric = rubric::parseRubric(c.rubricText, "the rubric");
+        });
+    });
+    connect(none_, &QPushButton::clicked, this, [this] {
+        unread_.clear();
+        change_("", [](Content& c) { c.rubric.reset(); });
+    });
+    const auto setMark = [this] {
+        if (showing_) return;
+        change_("pass mark", [this](Content& c) {
+            if (c.rubric)
+                c.rubric->passMark = hasMark_->isChecked() ? std::optional<double>(mark_->value()) : std::nullopt;
+        });
+    };
+    connect(hasMark_, &QCheckBox::toggled, this, setMark);
+    connect(mark_, &QDoubleSpinBox::valueChanged, this, setMark);
+}
+
+QWidget* RubricPage::criteriaTab() {
+    auto* page = new QWidget(this);
+    auto* column = new QVBoxLayout(page);
     addTable();
-    column->addWidget(table_, 1);
+    auto* split = new QSplitter(Qt::Vertical, page);
+    split->setChildrenCollapsible(false);
+    split->addWidget(table_);
+    split->addWidget(details());
+    split->setStretchFactor(0, 3);
+    split->setStretchFactor(1, 1);
+    column->addWidget(split, 1);
     auto* below = new QHBoxLayout;
     const auto button = [&](const QString& text, const char* name, auto asked) {
         auto* made = named(new QPushButton(text, this), name, text);
@@ -104,38 +154,322 @@ RubricPage::RubricPage(Change change) : EditorPage(std::move(change)) {
     sum_->setWordWrap(false);
     below->addWidget(sum_);
     hasMark_ = named(new QCheckBox(tr("Pass from"), this), "editorHasPassMark", tr("There is a pass mark"));
-    mark_ = named(new QSpinBox(this), "editorPassMark", tr("Pass mark"), tr("Of the greatest score"));
-    mark_->setRange(1, 100);
+    mark_ = named(new QDoubleSpinBox(this), "editorPassMark", tr("Pass mark"), tr("Of the greatest score"));
+    mark_->setRange(0.1, 100);
+    mark_->setDecimals(1);
     mark_->setValue(60);
     mark_->setSuffix(QStringLiteral(" %"));
     below->addWidget(hasMark_);
     below->addWidget(mark_);
     column->addLayout(below);
-    whole_ = note({}, this, "editorRubricNote");
-    whole_->setTextFormat(Qt::PlainText);
-    column->addWidget(whole_);
+    return page;
+}
 
-    connect(take, &QPushButton::clicked, this, [this] {
-        const std::string name = shipped_->currentData().toString().toStdString();
-        unread_.clear();
-        change_("", [&](Content& c) {
-            c.rubricText = rubric::shippedRubricText(name);
-            c.rubric = rubric::parseRubric(c.rubricText, "the rubric");
+QWidget* RubricPage::details() {
+    auto* box = new QWidget(this);
+    auto* columns = new QHBoxLayout(box);
+    columns->setContentsMargins(0, 4, 0, 0);
+    auto* form = new QFormLayout;
+    of_ = heading({}, box);
+    of_->setObjectName(QStringLiteral("editorDetailsOf"));
+    form->addRow(of_);
+    const auto line = [&](const char* name, const QString& words, const QString& tip, auto read) {
+        auto* field = named(new QLineEdit(box), name, words, tip);
+        form->addRow(words, field);
+        connect(field, &QLineEdit::editingFinished, this, [this, field, name, read] {
+            if (showing_ || !field->isModified()) return;
+            field->setModified(false);
+            const std::string text = field->text().trimmed().toStdString();
+            changeCriterion(name, [&](rubric::Criterion& c) { read(c, text); });
         });
-    });
-    connect(none_, &QPushButton::clicked, this, [this] {
-        unread_.clear();
-        change_("", [](Content& c) { c.rubric.reset(); });
-    });
-    const auto setMark = [this] {
-        if (showing_) return;
-        change_("pass mark", [this](Content& c) {
-            if (c.rubric)
-                c.rubric->passMark = hasMark_->isChecked() ? std::optional<double>(mark_->value()) : std::nullopt;
-        });
+        return field;
     };
-    connect(hasMark_, &QCheckBox::toggled, this, setMark);
-    connect(mark_, &QSpinBox::valueChanged, this, setMark);
+    devices_ = line("editorDevices", tr("Only for"), tr("Devices that it is valid for: pointer, ...; none: all"),
+                    [](rubric::Criterion& c, const std::string& text) { c.devices = draft::readNames(text); });
+    excludes_ = line("editorExcludes", tr("Makes void"), tr("Criteria that do not count where this one fails"),
+                     [](rubric::Criterion& c, const std::string& text) { c.excludes = draft::readNames(text); });
+    status_ = named(new QComboBox(box), "editorStatus", tr("Its figures are"));
+    status_->addItem(tr("as the rubric's"));
+    for (const rubric::Status one : {rubric::Status::published, rubric::Status::adapted, rubric::Status::proposal})
+        status_->addItem(statusWords(one));
+    form->addRow(tr("Its figures are"), status_);
+    connect(status_, &QComboBox::activated, this, [this](int index) {
+        changeCriterion("", [&](rubric::Criterion& c) {
+            c.status = index == 0 ? std::nullopt : std::optional(static_cast<rubric::Status>(index - 1));
+        });
+    });
+    source_ = line("editorSource", tr("Source"), tr("Where the figures are from"),
+                   [](rubric::Criterion& c, const std::string& text) { c.source = text; });
+    columns->addLayout(form, 1);
+    curve_ = new CurveView(box);
+    columns->addWidget(curve_, 1);
+    connect(curve_, &CurveView::knotsChanged, this, [this](const std::vector<rubric::Knot>& knots) {
+        unread_.erase({table_->currentRow(), kKnots});
+        changeCriterion("", [&](rubric::Criterion& c) { c.knots = knots; });
+    });
+    connect(table_, &QTableWidget::currentCellChanged, this, [this] { showDetails(); });
+    return box;
+}
+
+QWidget* RubricPage::wholeTab() {
+    auto* page = new QWidget(this);
+    auto* column = new QVBoxLayout(page);
+    auto* form = new QFormLayout;
+    const auto line = [&](const char* name, const QString& words, const QString& tip, auto read) {
+        auto* field = named(new QLineEdit(page), name, words, tip);
+        form->addRow(words, field);
+        connect(field, &QLineEdit::editingFinished, this, [this, field, read] {
+            if (showing_ || !field->isModified()) return;
+            field->setModified(false);
+            const std::string text = field->text().trimmed().toStdString();
+            try {
+                rubric::Rubric tried = *now_;
+                read(tried, text);
+                changeRubric([&](rubric::Rubric& r) { r = tried; });
+                field->setStyleSheet({});
+            } catch (const core::Error& error) {
+                field->setStyleSheet(QStringLiteral("background: rgba(220, 60, 60, 70)"));
+                field->setToolTip(problemOf(error).what);
+            }
+        });
+        return field;
+    };
+    id_ = line("editorRubricId", tr("Short name"), tr("Small letters, digits, '-', '.'"),
+               [](rubric::Rubric& r, const std::string& text) { r.id = text; });
+    version_ = line("editorRubricVersion", tr("Version"), tr("Another one with each change to be told apart"),
+                    [](rubric::Rubric& r, const std::string& text) { r.version = text; });
+    wholeStatus_ = named(new QComboBox(page), "editorRubricStatus", tr("Its figures are"));
+    for (const rubric::Status one : {rubric::Status::published, rubric::Status::adapted, rubric::Status::proposal})
+        wholeStatus_->addItem(statusWords(one));
+    form->addRow(tr("Its figures are"), wholeStatus_);
+    connect(wholeStatus_, &QComboBox::activated, this, [this](int index) {
+        changeRubric([&](rubric::Rubric& r) { r.status = static_cast<rubric::Status>(index); });
+    });
+    wholeSource_ = line("editorRubricSource", tr("Source"), tr("Where the figures are from"),
+                        [](rubric::Rubric& r, const std::string& text) { r.source = text; });
+    total_ = line("editorRubricTotal", tr("Weights sum to"), tr("A check against slips; empty: none"),
+                  [](rubric::Rubric& r, const std::string& text) { r.totalWeight = draft::readNumber(text); });
+    column->addLayout(form);
+    const ListTable::Change how = [this](const auto& what) { changeRubric(what); };
+    const auto named_ = [](auto list, const char* stem) {
+        for (std::size_t number = list.size() + 1;; ++number) {
+            std::string id = stem + std::to_string(number);
+            if (std::none_of(list.begin(), list.end(), [&](const auto& one) { return one.id == id; })) return id;
+        }
+    };
+    bands_ = new ListTable(
+        "editorBandNames", tr("Bands, from best to worst"),
+        {[](const rubric::Rubric& r) { return r.bands.size(); },
+         [](const rubric::Rubric& r, std::size_t row, int) { return QString::fromStdString(r.bands[row].id); },
+         [](rubric::Rubric& r, std::size_t row, int, const std::string& text) { draft::renameBand(r, row, text); },
+         [named_](rubric::Rubric& r) {
+             r.bands.push_back({named_(r.bands, "band-"), {}});
+         },
+         [](rubric::Rubric& r, std::size_t row) { draft::removeBand(r, row); },
+         [](rubric::Rubric& r, std::size_t a, std::size_t b) { std::swap(r.bands[a], r.bands[b]); }},
+        how, page);
+    bands_->setColumns({tr("Name")}, {200});
+    steps_ = new ListTable(
+        "editorSteps", tr("Steps, in the order of the work"),
+        {[](const rubric::Rubric& r) { return r.steps.size(); },
+         [](const rubric::Rubric& r, std::size_t row, int column_) {
+             const rubric::Step& step = r.steps[row];
+             return QString::fromStdString(column_ == 0 ? step.id : draft::namesCell(step.criteria));
+         },
+         [](rubric::Rubric& r, std::size_t row, int column_, const std::string& text) {
+             if (column_ == 0)
+                 r.steps[row].id = text;
+             else
+                 r.steps[row].criteria = draft::readNames(text);
+         },
+         [named_](rubric::Rubric& r) {
+             r.steps.push_back({named_(r.steps, "step-"), {}, {}, 0});
+         },
+         [](rubric::Rubric& r, std::size_t row) { r.steps.erase(r.steps.begin() + static_cast<long>(row)); },
+         [](rubric::Rubric& r, std::size_t a, std::size_t b) { std::swap(r.steps[a], r.steps[b]); }},
+        how, page);
+    steps_->setColumns({tr("Name"), tr("Criteria")}, {120, 420});
+    rules_ = new ListTable(
+        "editorRules", tr("Rules"),
+        {[](const rubric::Rubric& r) { return r.rules.size(); },
+         [](const rubric::Rubric& r, std::size_t row, int column_) {
+             const rubric::Rule& rule = r.rules[row];
+             switch (column_) {
+                 case 0:
+                     return QString::fromStdString(rule.id);
+                 case 1:
+                     return QString::fromStdString(draft::needsCell(rule));
+                 case 2:
+                     return rule.required ? tr("yes") : tr("no");
+                 case 3:
+                     return rule.elseAtMost ? QString::number(*rule.elseAtMost, 'g', 12) : QString();
+                 default:
+                     return QString::fromStdString(rule.source);
+             }
+         },
+         [](rubric::Rubric& r, std::size_t row, int column_, const std::string& text) {
+             rubric::Rule& rule = r.rules[row];
+             if (column_ == 0) draft::renameRule(r, row, text);
+             if (column_ == 1) draft::readNeeds(rule, text);
+             if (column_ == 2) {
+                 const QString said = QString::fromStdString(text);
+                 if (said != tr("yes") && said != tr("no"))
+                     throw core::Error(fmt::format("\"{}\" cannot be read", text), {}, "write yes or no")
+                         .as("cell-unreadable", {text, tr("yes").toStdString() + ", " + tr("no").toStdString()});
+                 rule.required = said == tr("yes");
+             }
+             if (column_ == 3) rule.elseAtMost = draft::readNumber(text);
+             if (column_ == 4) rule.source = text;
+         },
+         [named_](rubric::Rubric& r) {
+             rubric::Rule made;
+             made.id = named_(r.rules, "rule-");
+             rubric::Condition need;
+             if (!r.bands.empty()) need.bands = {r.bands.back().id};
+             need.most = 0;
+             made.needs = {need};
+             made.required = true;
+             r.rules.push_back(std::move(made));
+         },
+         [](rubric::Rubric& r, std::size_t row) { draft::removeRule(r, row); },
+         [](rubric::Rubric& r, std::size_t a, std::size_t b) { std::swap(r.rules[a], r.rules[b]); }},
+        how, page);
+    rules_->setColumns({tr("Name"), tr("Needs"), tr("To pass"), tr("Else at most [%]"), tr("Source")},
+                       {120, 330, 60, 110, 160});
+    rules_->table()->setToolTip(
+        tr("Needs: bands, then of which criteria, then how many: unacceptable most 0; modify of depth, outline most 2; "
+           "rule other"));
+    auto* lists = new QHBoxLayout;
+    lists->addWidget(bands_, 1);
+    lists->addWidget(steps_, 2);
+    column->addLayout(lists, 1);
+    column->addWidget(rules_, 1);
+    return page;
+}
+
+QWidget* RubricPage::textsTab() {
+    auto* page = new QWidget(this);
+    auto* column = new QVBoxLayout(page);
+    texts_ = new ListTable(
+        "editorRubricTexts", tr("Words by language"),
+        {[](const rubric::Rubric& r) {
+             rubric::Rubric copy = r;
+             return draft::textsOf(copy).size();
+         },
+         [this](const rubric::Rubric& r, std::size_t row, int column_) {
+             rubric::Rubric copy = r;
+             const draft::TextPlace place = draft::textsOf(copy)[row];
+             if (column_ == 0) return textPlaceWords(place);
+             return inOf(*place.texts, languages().value(column_ - 1).toStdString().c_str());
+         },
+         [this](rubric::Rubric& r, std::size_t row, int column_, const std::string& text) {
+             put(*draft::textsOf(r)[row].texts, languages().value(column_ - 1).toStdString().c_str(),
+                 QString::fromStdString(text));
+         },
+         {},
+         {},
+         {},
+         1},
+        [this](const auto& what) { changeRubric(what); }, page);
+    column->addWidget(texts_, 1);
+    auto* row = new QHBoxLayout;
+    language_ =
+        named(new QLineEdit(page), "editorRubricLanguage", tr("Another language"), tr("Its tag: de, fr, pt-BR, ..."));
+    language_->setPlaceholderText(tr("Its tag: de, fr, pt-BR, ..."));
+    auto* add = named(new QPushButton(tr("Add language"), page), "editorRubricAddLanguage", tr("Add language"));
+    add->setAutoDefault(false);
+    connect(add, &QPushButton::clicked, this, [this] {
+        const QString tag = language_->text().trimmed();
+        if (tag.isEmpty() || languages().contains(tag)) return;
+        added_ << tag;
+        language_->clear();
+        showWhole();
+    });
+    row->addWidget(language_);
+    row->addWidget(add);
+    row->addStretch(1);
+    column->addLayout(row);
+    return page;
+}
+
+QStringList RubricPage::languages() const {
+    QStringList tags{QStringLiteral("en"), QStringLiteral("ja")};
+    if (now_) {
+        rubric::Rubric copy = *now_;
+        for (const draft::TextPlace& place : draft::textsOf(copy))
+            for (const auto& [tag, text] : *place.texts)
+                if (!tags.contains(QString::fromStdString(tag))) tags << QString::fromStdString(tag);
+    }
+    for (const QString& tag : added_)
+        if (!tags.contains(tag)) tags << tag;
+    return tags;
+}
+
+void RubricPage::changeCriterion(const char* step, const std::function<void(rubric::Criterion&)>& how) {
+    const int row = table_->currentRow();
+    if (showing_ || row < 0 || !now_ || static_cast<std::size_t>(row) >= now_->criteria.size()) return;
+    change_(step, [&](Content& c) { how(c.rubric->criteria[static_cast<std::size_t>(row)]); });
+}
+
+void RubricPage::changeRubric(const std::function<void(rubric::Rubric&)>& how) {
+    if (showing_) return;
+    unread_.clear();
+    change_("", [&](Content& c) {
+        if (!c.rubric) c.rubric = empty();
+        how(*c.rubric);
+    });
+}
+
+void RubricPage::showDetails() {
+    const bool was = std::exchange(showing_, true);
+    const int row = table_->currentRow();
+    const rubric::Criterion* c = now_ && row >= 0 && static_cast<std::size_t>(row) < now_->criteria.size()
+                                     ? &now_->criteria[static_cast<std::size_t>(row)]
+                                     : nullptr;
+    for (QWidget* field : std::initializer_list<QWidget*>{devices_, excludes_, source_, status_, curve_})
+        field->setEnabled(c != nullptr);
+    of_->setText(c ? tr("Of \"%1\"").arg(QString::fromStdString(c->id)) : tr("Choose a criterion"));
+    const rubric::Criterion none;
+    const rubric::Criterion& of = c ? *c : none;
+    const auto set = [](QLineEdit* field, const std::string& text) {
+        if (!field->hasFocus() || !field->isModified()) field->setText(QString::fromStdString(text));
+    };
+    set(devices_, draft::namesCell(of.devices));
+    set(excludes_, draft::namesCell(of.excludes));
+    set(source_, of.source);
+    status_->setCurrentIndex(of.status ? 1 + static_cast<int>(*of.status) : 0);
+    const measures::MeasureKind* kind = measures::findMeasureKind(of.measure);
+    curve_->setCurve(of.knots, QString::fromStdString(of.unit), kind ? kind->least : 0.0, kind ? kind->most : 1e12);
+    showing_ = was;
+}
+
+void RubricPage::showWhole() {
+    const bool was = std::exchange(showing_, true);
+    const rubric::Rubric* r = now_ ? &*now_ : nullptr;
+    const rubric::Rubric none;
+    const rubric::Rubric& of = r ? *r : none;
+    const auto set = [r](QLineEdit* field, const std::string& text) {
+        field->setEnabled(r != nullptr);
+        if (!field->hasFocus() || !field->isModified()) field->setText(QString::fromStdString(text));
+    };
+    set(id_, of.id);
+    set(version_, of.version);
+    set(wholeSource_, of.source);
+    set(total_, of.totalWeight ? fmt::format("{}", *of.totalWeight) : std::string());
+    wholeStatus_->setEnabled(r != nullptr);
+    wholeStatus_->setCurrentIndex(static_cast<int>(of.status));
+    const QStringList tags = languages();
+    std::vector<int> widths{230};
+    QStringList titles{tr("What")};
+    for (const QString& tag : tags) {
+        const QString name = QLocale(tag).language() == QLocale::C ? tag : QLocale(tag).nativeLanguageName();
+        titles << (name.isEmpty() || name == tag ? tag : QStringLiteral("%1 (%2)").arg(name, tag));
+        widths.push_back(270);
+    }
+    if (texts_->table()->columnCount() != titles.size()) texts_->setColumns(titles, widths);
+    for (ListTable* list : {bands_, steps_, rules_, texts_})
+        list->show(r);
+    showing_ = was;
 }
 
 void RubricPage::addTable() {
@@ -174,12 +508,13 @@ void RubricPage::showRow(int row, const rubric::Criterion& c) {
         measure->setObjectName(QStringLiteral("editorMeasure_%1").arg(row + 1));
         measure->setAccessibleName(tr("Measure"));
         for (const measures::MeasureKind& kind : measures::measureKinds()) {
-            measure->addItem(words(kind.id));
+            measure->addItem(measureWords(kind.id), words(kind.id));
             measure->setItemData(measure->count() - 1, words(kind.says), Qt::ToolTipRole);
         }
         table_->setCellWidget(row, kMeasure, measure);
         connect(measure, &QComboBox::activated, this, [this, row, measure] {
-            const measures::MeasureKind* kind = measures::findMeasureKind(measure->currentText().toStdString());
+            const measures::MeasureKind* kind =
+                measures::findMeasureKind(measure->currentData().toString().toStdString());
             if (kind == nullptr) return;
             change_("", [&](Content& content) {
                 rubric::Criterion& criterion = content.rubric->criteria.at(static_cast<std::size_t>(row));
@@ -189,8 +524,8 @@ void RubricPage::showRow(int row, const rubric::Criterion& c) {
         });
     }
     const QString id = QString::fromStdString(c.measure);
-    if (measure->findText(id) < 0) measure->addItem(id);  // of a file: the linter tells
-    measure->setCurrentIndex(measure->findText(id));
+    if (measure->findData(id) < 0) measure->addItem(id, id);  // of a file: the linter tells
+    measure->setCurrentIndex(measure->findData(id));
     const measures::MeasureKind* kind = measures::findMeasureKind(c.measure);
     measure->setToolTip(kind ? words(kind->says) : QString());
     setCell(row, kOf, QString::fromStdString(draft::selectionCell(c)));
@@ -222,12 +557,16 @@ void RubricPage::show(const Content& content) {
     }
     sum_->setText(content.rubric ? tr("Weights: %1").arg(sum) : QString());
     none_->setEnabled(content.rubric.has_value());
+    now_ = content.rubric;
     hasMark_->setEnabled(content.rubric.has_value());
     const std::optional<double> passMark = content.rubric ? content.rubric->passMark : std::nullopt;
     hasMark_->setChecked(passMark.has_value());
     mark_->setEnabled(passMark.has_value());
-    if (passMark) mark_->setValue(static_cast<int>(std::lround(*passMark)));
+    if (passMark && std::abs(mark_->value() - *passMark) > 0.05) mark_->setValue(*passMark);
     showing_ = false;
+    if (count > 0 && table_->currentRow() < 0) table_->setCurrentCell(0, kId);
+    showDetails();
+    showWhole();
     showFindings();
 }
 
@@ -247,7 +586,7 @@ void RubricPage::read(rubric::Criterion& c, Column column, const QString& text) 
             bool isNumber = false;
             const double weight = text.trimmed().isEmpty() ? 0.0 : text.toDouble(&isNumber);
             if (!text.trimmed().isEmpty() && !(isNumber && weight > 0.0 && weight <= 1e12))
-                throw core::Error("a weight is a number above 0", {}, "none: shown, not graded");
+                throw core::Error("a weight is a number above 0", {}, "none: shown, not graded").as("cell-weight");
             c.weight = weight;
             break;
         }
@@ -278,7 +617,8 @@ void RubricPage::takeCell(int row, int column) {
             unread_.erase({row, column});
         });
     } catch (const core::Error& error) {
-        unread_[{row, column}] = {text, QString::fromStdString(error.problem() + "; " + error.remedy())};
+        const Problem problem = problemOf(error);
+        unread_[{row, column}] = {text, problem.what + QLatin1Char(' ') + problem.remedy};
         const QSignalBlocker blocker(table_);
         setCell(row, static_cast<Column>(column), text);
         showFindings();
@@ -313,8 +653,7 @@ void RubricPage::showFindings() {
         }
     for (const draft::Problem& p : problems_) {
         if (p.part != draft::Part::judgement) continue;
-        QString said = QString::fromStdString(p.what);
-        if (!p.remedy.empty()) said += QStringLiteral(" (") + QString::fromStdString(p.remedy) + QLatin1Char(')');
+        const QString said = problemWords(p);
         if (p.criterion.empty()) {
             // Without criteria there is only this to be remarked.
             const bool isUnjudged = ids_.empty() && p.severity == rubric::Severity::remark;
@@ -323,7 +662,7 @@ void RubricPage::showFindings() {
         }
         for (std::size_t i = 0; i < ids_.size(); ++i)
             if (ids_[i] == p.criterion) {
-                rows[i] << said.mid(static_cast<qsizetype>(p.criterion.size()) + 2);
+                rows[i] << problemWords(p, false);
                 wrong[i] = wrong[i] || p.severity == rubric::Severity::error;
             }
     }

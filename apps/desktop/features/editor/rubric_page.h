@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The rubric as a table: a criterion a row, what the linter finds at its row.
+/// The rubric as tables: criteria with what the linter finds at their rows; bands, steps and rules; all its texts by
+/// language. Every key of the file has its field.
 
+#include <QStringList>
+#include <functional>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "desktop/features/editor/editor_page.h"
@@ -11,11 +15,16 @@
 class QCheckBox;
 class QComboBox;
 class QLabel;
+class QDoubleSpinBox;
+class QLineEdit;
 class QPushButton;
-class QSpinBox;
+class QTabWidget;
 class QTableWidget;
 
 namespace handpiece::desktop {
+
+class CurveView;
+class ListTable;
 
 /// [editorJudgement]
 class RubricPage : public EditorPage {
@@ -41,6 +50,16 @@ class RubricPage : public EditorPage {
         kColumns
     };
     void addTable();
+    QWidget* criteriaTab();
+    QWidget* wholeTab();
+    QWidget* textsTab();
+    /// Of the criterion in the row that is chosen: what has no column.
+    QWidget* details();
+    void showDetails();
+    void showWhole();
+    void changeCriterion(const char* step, const std::function<void(rubric::Criterion&)>& how);
+    void changeRubric(const std::function<void(rubric::Rubric&)>& how);
+    [[nodiscard]] QStringList languages() const;
     void showRow(int row, const rubric::Criterion& criterion);
     void setCell(int row, Column column, const QString& text, bool isFixed = false);
     /// What a person typed: into the rubric, or told at its row.
@@ -52,7 +71,17 @@ class RubricPage : public EditorPage {
     QComboBox* shipped_;
     QTableWidget* table_;
     QCheckBox* hasMark_;
-    QSpinBox* mark_;
+    QDoubleSpinBox* mark_;
+    QTabWidget* tabs_;
+    CurveView* curve_;
+    QLabel* of_;
+    QLineEdit *devices_, *excludes_, *source_;
+    QComboBox *status_, *wholeStatus_;
+    QLineEdit *id_, *version_, *wholeSource_, *total_;
+    ListTable *bands_, *steps_, *rules_, *texts_;
+    QLineEdit* language_;
+    QStringList added_;  ///< languages of this person's, beside those that the texts have
+    std::optional<rubric::Rubric> now_;
     QLabel *sum_, *whole_;
     QPushButton *add_, *remove_, *up_, *down_, *none_;
     std::vector<draft::Problem> problems_;

@@ -26,7 +26,7 @@ constexpr CommandOf<Command> kCommands[] = {
      "Ctrl+Shift+L", in(Shelf::file, 3), in(Shelf::fileBar, 2), brief(QT_TRANSLATE_NOOP("Commands", "Exercises"))},
     {Command::finish, "actionFinish", QT_TRANSLATE_NOOP("Commands", "Finish"),
      QT_TRANSLATE_NOOP("Commands", "Your work on this exercise is done: it is judged, and you see why"), "check",
-     "Ctrl+Return", in(Shelf::file, 9)},
+     "Ctrl+Shift+W", in(Shelf::file, 9)},
     {Command::zones, "actionZones", QT_TRANSLATE_NOOP("Commands", "Task in the picture"),
      QT_TRANSLATE_NOOP("Commands", "What is to go and what must stay, as glass over the tooth"), "transparency",
      "Ctrl+Shift+Y", in(Shelf::view, 24), kCheckable, exercise::Operation::transparency},

@@ -5,6 +5,8 @@
 #include <QDockWidget>
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QKeyEvent>
+#include <QMouseEvent>
 
 #include "desktop/features/marking/agreement_page.h"
 #include "desktop/features/marking/sheet_panel.h"
@@ -118,6 +120,11 @@ MarkingFeature::MarkingFeature(const FeatureContext& context)
     connect(sheet_, &SheetPanel::decisionRequested, this, [this](const std::optional<marking::Decision>& decision) {
         tryTo([&](marking::Desk& desk) { desk.decide(code_.toStdString(), decision); });
     });
+    connect(sheet_, &SheetPanel::placeWanted, this, [this](bool wanted) {
+        isPlaceWanted_ = wanted;
+        if (wanted) view_.setFocus();
+    });
+    view_.installEventFilter(this);
     connect(sheet_, &SheetPanel::commentRequested, this, &MarkingFeature::comment);
     connect(sheet_, &SheetPanel::commentRemoved, this, [this](int number) {
         tryTo([&](marking::Desk& desk) { desk.removeComment(code_.toStdString(), number); });
@@ -129,6 +136,48 @@ MarkingFeature::~MarkingFeature() {
     // They tell of their work here: they end first.
     for (const QPointer<Job>& job : {job_, agreementJob_, copyJob_})
         delete job;
+}
+
+/// A click that says where a comment belongs; Escape gives that up.
+bool MarkingFeature::eventFilter(QObject* watched, QEvent* event) {
+    if (watched != &view_ || !isPlaceWanted_) return Feature::eventFilter(watched, event);
+    if (event->type() == QEvent::KeyPress && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape) {
+        forgetPlace();
+        return true;
+    }
+    if (event->type() != QEvent::MouseButtonPress) return Feature::eventFilter(watched, event);
+    const auto* press = static_cast<QMouseEvent*>(event);
+    if (press->button() != Qt::LeftButton) return Feature::eventFilter(watched, event);
+    if (const auto place = placeUnder(press->position())) {
+        pickedMm_ = place;
+        pickedS_.reset();
+        if (simulator_.mode() == Simulator::Mode::replay && simulator_.replay())
+            pickedS_ = simulator_.replay()->now().timeS;
+        sheet_->setPlace(place);
+    }
+    return true;
+}
+
+std::optional<core::Vec3> MarkingFeature::placeUnder(const QPointF& point) const {
+    std::optional<core::Vec3> place;
+    if (!simulator_.tooth()) return place;
+    view::Viewport port{view_.width(), view_.height()};
+    core::Vec2 pixel(point.x(), point.y());
+    if (view_.isComparing()) {  // one eye, two halves
+        port.width = std::max(1, port.width / 2);
+        if (pixel.x() >= port.width) pixel.x() -= port.width;
+    }
+    const view::Ray ray = view::rayThrough(view_.camera(), port, pixel);
+    simulator_.tooth()->withProbe([&](const measure::ToothProbe& probe) {
+        if (const auto hit = probe.cast(ray.originMm, ray.direction)) place = hit->pointMm;
+    });
+    return place;
+}
+
+void MarkingFeature::forgetPlace() {
+    pickedMm_.reset();
+    pickedS_.reset();
+    sheet_->setPlace({});
 }
 
 void MarkingFeature::open(const QString& folder) {
@@ -257,6 +306,7 @@ void MarkingFeature::score() {
 
 void MarkingFeature::openWork(const QString& code) {
     if (!desk_ || !desk_->has(code.toStdString())) return;
+    if (code != code_) forgetPlace();
     code_ = code;
     const bool isNew = !dock_->isVisible();
     isWanted_ = true;
@@ -344,17 +394,17 @@ void MarkingFeature::comment(const QString& text, bool atPlace, bool atTime) {
     marking::Comment said;
     said.text = text.toStdString();
     if (const std::string id = sheet_->criterion(); id != marking::kTotal) said.criterion = id;
-    if (atPlace && simulator_.tooth()) {
-        const view::Ray ray = view::rayThrough(view_.camera(), {view_.width(), view_.height()},
-                                               core::Vec2(0.5 * view_.width(), 0.5 * view_.height()));
-        simulator_.tooth()->withProbe([&](const measure::ToothProbe& probe) {
-            if (const auto hit = probe.cast(ray.originMm, ray.direction)) said.placeMm = hit->pointMm;
-        });
+    if (pickedMm_) {
+        said.placeMm = pickedMm_;
+        said.timeS = pickedS_;
+    } else if (atPlace && simulator_.tooth()) {
+        said.placeMm = placeUnder({0.5 * view_.width(), 0.5 * view_.height()});
         if (!said.placeMm) {
             dialog_->setNote(tr("There is no tooth in the middle of the picture: the comment has no place."));
         }
     }
     if (atTime && simulator_.replay()) said.timeS = simulator_.replay()->now().timeS;
+    forgetPlace();
     tryTo([&](marking::Desk& desk) { desk.comment(code_.toStdString(), said); });
 }
 

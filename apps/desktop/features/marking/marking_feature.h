@@ -31,6 +31,9 @@ class MarkingFeature : public Feature {
     /// Whom to ask for a folder; tests put their own answer here.
     std::function<QString(const QString& title)> askFolder;
 
+  protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
+
   private:
     void open(const QString& folder = {});
     void begin();
@@ -44,6 +47,9 @@ class MarkingFeature : public Feature {
     void showSheet();
     /// Runs a change of the desk; what is refused is told.
     void tryTo(const std::function<void(marking::Desk& desk)>& change);
+    /// The tooth under a point of the picture.
+    [[nodiscard]] std::optional<core::Vec3> placeUnder(const QPointF& point) const;
+    void forgetPlace();
     void comment(const QString& text, bool atPlace, bool atTime);
     void goTo(const std::optional<core::Vec3>& placeMm, const std::optional<double>& timeS);
     void computeAgreement();
@@ -56,7 +62,10 @@ class MarkingFeature : public Feature {
     std::shared_ptr<marking::Desk> desk_;
     DeskWish wish_;
     std::shared_ptr<const tasks::Task> task_;
-    QString code_;  ///< of the work that is open; empty: none
+    QString code_;                        ///< of the work that is open; empty: none
+    bool isPlaceWanted_ = false;          ///< the next click in the picture is one
+    std::optional<core::Vec3> pickedMm_;  ///< for the next comment
+    std::optional<double> pickedS_;
     bool goesToEnd_ = false, isWanted_ = false;
     QTemporaryDir shown_;  ///< works under their codes, for who marks blind
     QPointer<Job> job_, agreementJob_, copyJob_;

@@ -107,6 +107,9 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
         named(new QLineEdit(this), "sheetComment", tr("New comment"), tr("Pinned to the criterion that is chosen"));
     comment_->setPlaceholderText(tr("Comment"));
     comment_->setMaxLength(1000);
+    pick_ = named(new QPushButton(this), "sheetCommentPick", tr("Click the place"),
+                  tr("The next click in the picture pins the comment there; in a replay also to that moment"));
+    pick_->setCheckable(true);
     atPlace_ = named(new QCheckBox(tr("at the middle of the picture"), this), "sheetCommentPlace",
                      tr("Pin it to the place in the middle of the picture"));
     atTime_ = named(new QCheckBox(tr("at this moment"), this), "sheetCommentTime",
@@ -143,6 +146,7 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
         box->setMinimumContentsLength(6);
     }
     auto* pins = new QVBoxLayout;
+    pins->addWidget(pick_);
     pins->addWidget(atPlace_);
     pins->addWidget(atTime_);
     auto* writing = new QHBoxLayout;
@@ -196,10 +200,12 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
         comment_->clear();
         emit commentRequested(text, atPlace_->isChecked(), atTime_->isChecked() && atTime_->isEnabled());
     });
+    connect(pick_, &QPushButton::toggled, this, &SheetPanel::placeWanted);
     connect(removeComment_, &QPushButton::clicked, this, [this] {
         if (const QListWidgetItem* item = comments_->currentItem()) emit commentRemoved(item->data(kIdRole).toInt());
     });
     setHasTime(false);
+    setPlace({});
     showWork(nullptr, {}, {}, false, false);
 }
 
@@ -216,6 +222,12 @@ std::string SheetPanel::criterion() const {
 
 void SheetPanel::setHasTime(bool hasTime) {
     atTime_->setEnabled(hasTime);
+}
+
+void SheetPanel::setPlace(const std::optional<core::Vec3>& placeMm) {
+    pick_->setChecked(false);
+    pick_->setText(placeMm ? tr("Place chosen: click anew") : tr("Click the place"));
+    atPlace_->setEnabled(!placeMm);
 }
 
 void SheetPanel::showWork(const marking::Desk* desk, const QString& code, const QString& place, bool hasPrevious,

@@ -35,6 +35,8 @@ class SheetPanel : public QWidget {
     [[nodiscard]] std::string criterion() const;
     /// Whether a comment can be pinned to a moment now.
     void setHasTime(bool hasTime);
+    /// The place that was clicked in the picture, for the next comment; none: none is waiting.
+    void setPlace(const std::optional<core::Vec3>& placeMm);
 
   signals:
     void stepRequested(int step);
@@ -44,6 +46,8 @@ class SheetPanel : public QWidget {
     void overrideRequested(const std::string& criterion, const handpiece::marking::Override& said);
     void withdrawRequested(const std::string& criterion);
     void decisionRequested(const std::optional<handpiece::marking::Decision>& decision);
+    /// The next click in the picture says where; off: it does not.
+    void placeWanted(bool wanted);
     /// Whether at the middle of the picture, at this moment of the replay.
     void commentRequested(const QString& text, bool atPlace, bool atTime);
     void commentRemoved(int number);
@@ -69,7 +73,7 @@ class SheetPanel : public QWidget {
     QDoubleSpinBox* points_;
     QCheckBox* cannotTell_;
     QLineEdit *reason_, *decisionReason_, *comment_;
-    QPushButton *say_, *withdraw_, *giveIn_, *decide_, *addComment_, *removeComment_;
+    QPushButton *say_, *withdraw_, *giveIn_, *decide_, *addComment_, *removeComment_, *pick_;
     QWidget* decisionRow_;
     QCheckBox *atPlace_, *atTime_;
     QListWidget* comments_;

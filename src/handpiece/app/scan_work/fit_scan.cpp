@@ -67,7 +67,10 @@ struct Places {
         : toTooth(distancesTo(scene.whole.tree, mesh)),
           toOthers(near(scene.beside.get(), mesh, 2.0)),
           areas(vertexAreas(mesh)) {}
-    [[nodiscard]] bool isBeside(std::size_t i) const { return toOthers[i] < std::abs(toTooth[i]); }
+    /// Outside of the tooth and nearer to another.
+    [[nodiscard]] bool isBeside(std::size_t i) const {
+        return toTooth[i] > 0.0 && toOthers[i] < std::min(toTooth[i], kStrangeMm);
+    }
 };
 
 /// Share of a scan that lies on some surface that is known.

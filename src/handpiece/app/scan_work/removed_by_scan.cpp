@@ -39,7 +39,7 @@ Removed::Removed(const TriangleMesh& mesh, const std::vector<char>& cut, const T
     TriangleMesh rim{mesh.vertices, {}};
     const geometry::MeshEdges edges(mesh);
     for (const auto& e : edges.edges())
-        if (e.count != 2) rim.triangles.push_back({e.low, e.high, e.high});
+        if (e.count == 1) rim.triangles.push_back({e.low, e.high, e.high});
     if (!rim.triangles.empty()) rim_ = std::make_unique<TriangleTree>(rim);
     const std::vector<Vec3> normals = faceNormals(mesh);
     const std::vector<Vec3> even = evenNormals(mesh, normals, Cells(mesh.vertices, kSmoothMm));

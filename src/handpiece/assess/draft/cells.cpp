@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include "handpiece/base/core/error.h"
 
@@ -30,7 +31,8 @@ std::vector<std::string_view> split(std::string_view text, char at) {
 }
 [[noreturn]] void refuse(std::string_view part, const char* example) {
     throw core::Error(fmt::format("\"{}\" cannot be read", part.substr(0, 64)), {},
-                      fmt::format("write it as in {}", example));
+                      fmt::format("write it as in {}", example))
+        .as("cell-unreadable", {std::string(part.substr(0, 64)), example});
 }
 double numberIn(std::string_view text, std::string_view part, const char* example) {
     text = trimmed(text);
@@ -44,6 +46,72 @@ std::string cell(const std::optional<double>& value) {
 }
 
 }  // namespace
+
+std::string namesCell(const std::vector<std::string>& names) {
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::vector<std::string> readNames(std::string_view text) {
+    std::vector<std::string> names;
+    for (const std::string_view name : split(text, ','))
+        names.emplace_back(name);
+    return names;
+}
+
+std::optional<double> readNumber(std::string_view text) {
+    if (trimmed(text).empty()) return std::nullopt;
+    return numberIn(text, trimmed(text), "12.5");
+}
+
+std::string needsCell(const rubric::Rule& rule) {
+    std::vector<std::string> parts;
+    for (const rubric::Condition& need : rule.needs) {
+        std::string part = need.rule.empty() ? namesCell(need.bands) : "rule " + need.rule;
+        if (!need.of.empty()) part += " of " + namesCell(need.of);
+        if (need.least) part += fmt::format(" least {}", *need.least);
+        if (need.most) part += fmt::format(" most {}", *need.most);
+        parts.push_back(std::move(part));
+    }
+    return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+void readNeeds(rubric::Rule& rule, std::string_view text) {
+    constexpr const char* kExample = "unacceptable most 0; modify of depth, outline most 2; rule other";
+    std::vector<rubric::Condition> needs;
+    for (const std::string_view part : split(text, ';')) {
+        rubric::Condition need;
+        std::string before;  // of the keyword that is read
+        std::string_view key = "bands";
+        const auto end = [&] {
+            if (key == "bands")
+                need.bands = readNames(before);
+            else if (key == "of")
+                need.of = readNames(before);
+            else if (key == "rule")
+                need.rule = trimmed(before);
+            else {
+                const double count = numberIn(before, part, kExample);
+                if (count < 0.0 || count != std::floor(count) || count > 1e6) refuse(part, kExample);
+                (key == "least" ? need.least : need.most) = static_cast<std::int64_t>(count);
+            }
+            before.clear();
+        };
+        for (const std::string_view word : split(part, ' ')) {
+            if (word == "of" || word == "least" || word == "most" || word == "rule") {
+                end();
+                key = word;
+            } else {
+                before += std::string(word) + " ";
+            }
+        }
+        end();
+        if (need.rule.empty() ? need.bands.empty() || (!need.least && !need.most)
+                              : !need.bands.empty() || !need.of.empty() || need.least || need.most)
+            refuse(part, kExample);
+        needs.push_back(std::move(need));
+    }
+    rule.needs = std::move(needs);
+}
 
 std::string knotsCell(const rubric::Criterion& criterion) {
     std::vector<std::string> parts;

@@ -130,6 +130,63 @@ void removeCriterion(rubric::Rubric& rubric, std::size_t which) {
     std::erase_if(rubric.rules, [](const rubric::Rule& r) { return r.needs.empty(); });
 }
 
+void renameBand(rubric::Rubric& rubric, std::size_t which, const std::string& id) {
+    const std::string before = std::exchange(rubric.bands.at(which).id, id);
+    if (std::any_of(rubric.bands.begin(), rubric.bands.end(), [&](const auto& b) { return b.id == before; })) return;
+    for (rubric::Criterion& c : rubric.criteria)
+        for (rubric::Band& band : c.bands)
+            if (band.id == before) band.id = id;
+    for (rubric::Rule& rule : rubric.rules)
+        for (rubric::Condition& need : rule.needs)
+            std::replace(need.bands.begin(), need.bands.end(), before, id);
+}
+
+void renameRule(rubric::Rubric& rubric, std::size_t which, const std::string& id) {
+    const std::string before = std::exchange(rubric.rules.at(which).id, id);
+    if (std::any_of(rubric.rules.begin(), rubric.rules.end(), [&](const auto& r) { return r.id == before; })) return;
+    for (rubric::Rule& rule : rubric.rules)
+        for (rubric::Condition& need : rule.needs)
+            if (need.rule == before) need.rule = id;
+}
+
+void removeBand(rubric::Rubric& rubric, std::size_t which) {
+    const std::string id = rubric.bands.at(which).id;
+    rubric.bands.erase(rubric.bands.begin() + static_cast<std::ptrdiff_t>(which));
+    if (std::any_of(rubric.bands.begin(), rubric.bands.end(), [&](const auto& b) { return b.id == id; })) return;
+    for (rubric::Criterion& c : rubric.criteria)
+        std::erase_if(c.bands, [&](const rubric::Band& b) { return b.id == id; });
+    for (rubric::Rule& rule : rubric.rules)
+        std::erase_if(rule.needs, [&](rubric::Condition& n) { return std::erase(n.bands, id) > 0 && n.bands.empty(); });
+    std::erase_if(rubric.rules, [](const rubric::Rule& r) { return r.needs.empty(); });
+}
+
+void removeRule(rubric::Rubric& rubric, std::size_t which) {
+    const std::string id = rubric.rules.at(which).id;
+    rubric.rules.erase(rubric.rules.begin() + static_cast<std::ptrdiff_t>(which));
+    if (std::any_of(rubric.rules.begin(), rubric.rules.end(), [&](const auto& r) { return r.id == id; })) return;
+    for (rubric::Rule& rule : rubric.rules)
+        std::erase_if(rule.needs, [&](const rubric::Condition& n) { return n.rule == id; });
+    std::erase_if(rubric.rules, [](const rubric::Rule& r) { return r.needs.empty(); });
+}
+
+std::vector<TextPlace> textsOf(rubric::Rubric& rubric) {
+    using Kind = TextPlace::Kind;
+    std::vector<TextPlace> all{{Kind::title, {}, &rubric.title}, {Kind::words, {}, &rubric.words}};
+    for (rubric::BandName& band : rubric.bands)
+        all.push_back({Kind::band, band.id, &band.title});
+    for (rubric::Criterion& c : rubric.criteria) {
+        all.push_back({Kind::criterion, c.id, &c.title});
+        all.push_back({Kind::criterionWords, c.id, &c.words});
+        all.push_back({Kind::leavesOut, c.id, &c.leavesOut});
+        if (c.critical) all.push_back({Kind::criticalError, c.id, &c.critical->title});
+    }
+    for (rubric::Step& step : rubric.steps)
+        all.push_back({Kind::step, step.id, &step.title});
+    for (rubric::Rule& rule : rubric.rules)
+        all.push_back({Kind::rule, rule.id, &rule.title});
+    return all;
+}
+
 void restateTotal(rubric::Rubric& rubric) {
     if (!rubric.totalWeight) return;
     rubric.totalWeight = std::accumulate(rubric.criteria.begin(), rubric.criteria.end(), 0.0,

@@ -13,6 +13,7 @@
 #include "handpiece/assess/preparation/preparation.h"
 #include "handpiece/assess/rubric/rubric.h"
 #include "handpiece/assess/task/task.h"
+#include "handpiece/base/config/words.h"
 #include "handpiece/model/case/case.h"
 
 namespace handpiece::draft {
@@ -46,6 +47,23 @@ struct Content {
 
 /// Another name: what refers to it follows.
 void renameCriterion(rubric::Rubric& rubric, std::size_t which, const std::string& id);
+/// Likewise of a band and a rule.
+void renameBand(rubric::Rubric& rubric, std::size_t which, const std::string& id);
+void renameRule(rubric::Rubric& rubric, std::size_t which, const std::string& id);
+/// With what refers to it; a rule without needs goes too.
+void removeBand(rubric::Rubric& rubric, std::size_t which);
+void removeRule(rubric::Rubric& rubric, std::size_t which);
+
+/// A text of a rubric, by language.
+struct TextPlace {
+    enum class Kind { title, words, band, step, criterion, criterionWords, leavesOut, criticalError, rule };
+    Kind kind;
+    std::string id;  ///< of band, step, criterion, rule
+    rubric::Texts* texts;
+};
+/// All there may be, in the order of the file.
+[[nodiscard]] std::vector<TextPlace> textsOf(rubric::Rubric& rubric);
+
 /// With what refers to it; a step without criteria and a rule without needs go too.
 void removeCriterion(rubric::Rubric& rubric, std::size_t which);
 /// A sum of weights that the rubric states is that which they have.
@@ -57,7 +75,11 @@ struct Problem {
     Part part = Part::tooth;
     rubric::Severity severity = rubric::Severity::error;  ///< an error: students cannot have it like this
     std::string what, remedy;
-    std::string criterion{};  ///< of the rubric, the one it is about; empty: all of it
+    std::string criterion{};               ///< of the rubric, the one it is about; empty: all of it
+    config::Phrase about{};                ///< of the rubric: the criterion, step or rule
+    config::Phrase said{}, advice{};       ///< `what` and `remedy` to be said in any language; empty: see `error`
+    std::string error{};                   ///< core::Error::id()
+    std::vector<std::string> arguments{};  ///< of the error
 };
 /// What can be told at once.
 [[nodiscard]] std::vector<Problem> problems(const Content& content);

@@ -4,6 +4,9 @@
 #include <algorithm>
 
 #include "handpiece/assess/draft/draft.h"
+#include "handpiece/assess/rubric/lint.h"
+#include "handpiece/assess/task/target.h"
+#include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/instrument/catalogue.h"
 
@@ -12,12 +15,22 @@ namespace {
 
 using rubric::Severity;
 
+using config::Phrase;
+
+template <class... Parts>
+Phrase say(const char* id, const Parts&... parts) {
+    return {id, {fmt::format("{}", parts)...}};
+}
+Problem problemOf(Part part, const core::Error& error) {
+    return {part, Severity::error, error.problem(), error.remedy(), {}, {}, {}, {}, error.id(), error.arguments()};
+}
+
 class Look {
   public:
     explicit Look(const Content& content) : c_(content) {}
 
     std::vector<Problem> all() {
-        if (!c_.tooth) tell(Part::tooth, Severity::error, "no tooth is chosen yet", "choose one");
+        if (!c_.tooth) tell(Part::tooth, Severity::error, say("draft.no-tooth"), say("draft.choose-tooth"));
         preparation();
         work();
         judgement();
@@ -26,27 +39,28 @@ class Look {
     }
 
   private:
-    void tell(Part part, Severity severity, std::string what, std::string remedy = {}, std::string criterion = {}) {
-        found_.push_back({part, severity, std::move(what), std::move(remedy), std::move(criterion)});
+    void tell(Part part, Severity severity, Phrase said, Phrase advice) {
+        static const config::Words& english = config::Words::in("en");
+        found_.push_back(
+            {part, severity, english(said), english(advice), {}, {}, std::move(said), std::move(advice), {}, {}});
     }
-    void tell(Part part, const core::Error& error) { tell(part, Severity::error, error.problem(), error.remedy()); }
 
     void preparation() {
         if (!c_.preparation)
-            return tell(Part::preparation, Severity::warning, "nothing is asked", "choose a preparation");
+            return tell(Part::preparation, Severity::warning, say("draft.nothing-asked"),
+                        say("draft.choose-preparation"));
         try {
             // By the rules of the file.
             (void)preparation::readRecipe(
                 *config::Table::parse(preparation::recipeToml(*c_.preparation), "here").table("preparation"));
         } catch (const core::Error& error) {
-            tell(Part::preparation, error);
+            found_.push_back(problemOf(Part::preparation, error));
         }
     }
 
     void bur(const std::string& name) {
         if (instrument::findBur(name) == nullptr)
-            tell(Part::work, Severity::error, fmt::format("there is no bur \"{}\"", name),
-                 "choose one of the program's: students have no files of yours");
+            tell(Part::work, Severity::error, say("draft.no-bur", name), say("draft.choose-bur"));
     }
     void work() {
         const cases::Exercise& e = c_.exercise;
@@ -56,14 +70,12 @@ class Look {
             bur(e.bur);
             if (!e.allowedBurs.empty() &&
                 std::find(e.allowedBurs.begin(), e.allowedBurs.end(), e.bur) == e.allowedBurs.end())
-                tell(Part::work, Severity::error, fmt::format("the first bur, {}, is not allowed", e.bur),
-                     "allow it, or choose another");
+                tell(Part::work, Severity::error, say("draft.first-bur", e.bur), say("draft.allow-bur"));
         }
         if (c_.voxelMm < 0.02 - 1e-9 || c_.voxelMm > 0.4 + 1e-9)
-            tell(Part::work, Severity::error, fmt::format("a voxel of {} um", 1e3 * c_.voxelMm), "give 20 to 400 um");
+            tell(Part::work, Severity::error, say("draft.voxel", 1e3 * c_.voxelMm), say("draft.voxel-range"));
         if (c_.minutes && !(*c_.minutes > 0.0 && *c_.minutes <= 24 * 60))
-            tell(Part::work, Severity::error, fmt::format("{} minutes", *c_.minutes),
-                 "give more than 0, a day at most");
+            tell(Part::work, Severity::error, say("draft.minutes", *c_.minutes), say("draft.minutes-range"));
         tooWide();
     }
     /// Of the preparation's narrowest place, where a number says it.
@@ -81,34 +93,41 @@ class Look {
             const instrument::CatalogueEntry* entry = instrument::findBur(name);
             return entry == nullptr || entry->diameterMm <= widthMm + 2.0 * c_.preparation->leeway.sideMm;
         });
-        if (!fits)
-            tell(Part::work, Severity::warning, fmt::format("all burs are wider than the {} mm asked for", widthMm),
-                 "allow a thinner one, or ask for more width");
+        if (!fits) tell(Part::work, Severity::warning, say("draft.too-wide", widthMm), say("draft.thinner"));
     }
 
     void judgement() {
         if (!c_.rubric)
-            return tell(Part::judgement, Severity::remark, "it is not judged", "take a rubric that comes along");
-        for (rubric::Finding& f : rubric::check(*c_.rubric))
-            tell(Part::judgement, f.severity, f.criterion.empty() ? f.problem : f.criterion + ": " + f.problem,
-                 std::move(f.remedy), f.criterion);
+            return tell(Part::judgement, Severity::remark, say("draft.not-judged"), say("draft.take-rubric"));
+        for (rubric::SaidFinding& said : rubric::lint(*c_.rubric)) {
+            rubric::Finding& f = said.finding;
+            std::string what = f.criterion.empty() ? f.problem : f.criterion + ": " + f.problem;
+            found_.push_back({Part::judgement,
+                              f.severity,
+                              std::move(what),
+                              std::move(f.remedy),
+                              std::move(f.criterion),
+                              std::move(said.about),
+                              std::move(said.problem),
+                              std::move(said.remedy),
+                              {},
+                              {}});
+        }
     }
 
     void texts() {
         const bool isId = !c_.id.empty() && c_.id.size() <= 64 && std::all_of(c_.id.begin(), c_.id.end(), [](char ch) {
             return (ch >= 'a' && ch <= 'z') || (ch >= '0' && ch <= '9') || ch == '-';
         });
-        if (!isId)
-            tell(Part::texts, Severity::error, fmt::format("\"{}\" is no id", c_.id),
-                 "1 to 64 small letters, digits and '-'");
+        if (!isId) tell(Part::texts, Severity::error, say("draft.no-id", c_.id), say("draft.id-range"));
         const auto missing = [](const cases::Texts& all, const char* language) {
             const auto at = all.find(language);
             return at == all.end() || at->second.empty();
         };
         const bool noTitle = missing(c_.exercise.title, "en") && missing(c_.exercise.title, "ja");
-        if (noTitle) tell(Part::texts, Severity::warning, "it has no title", "give one");
+        if (noTitle) tell(Part::texts, Severity::warning, say("draft.no-title"), say("draft.give-title"));
         if (missing(c_.exercise.instructions, "en") && missing(c_.exercise.instructions, "ja"))
-            tell(Part::texts, Severity::remark, "it does not say what to do", "give instructions");
+            tell(Part::texts, Severity::remark, say("draft.no-instructions"), say("draft.give-instructions"));
     }
 
     const Content& c_;
@@ -124,8 +143,11 @@ std::vector<Problem> problems(const Content& content) {
 std::vector<Problem> problemsOnTooth(const Content& content) {
     std::vector<Problem> found;
     if (!content.tooth || !content.preparation) return found;
-    for (std::string& what : tasks::problems(taskOf(content)))
-        found.push_back({Part::preparation, Severity::error, std::move(what), {}, {}});
+    try {
+        tasks::requireTarget(taskOf(content));
+    } catch (const core::Error& error) {
+        found.push_back(problemOf(Part::preparation, error));
+    }
     return found;
 }
 

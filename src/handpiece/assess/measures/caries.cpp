@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <map>
+#include <unordered_map>
 
 #include "handpiece/assess/measures/take.h"
 #include "handpiece/base/core/parallel.h"
@@ -113,7 +113,9 @@ class Junction {
                 for (int dy = -ring; dy <= ring; ++dy)
                     for (int dx = -ring; dx <= ring; ++dx) {
                         if (std::max({std::abs(dx), std::abs(dy), std::abs(dz)}) != ring) continue;
-                        const auto cell = cells_.find({middle[0] + dx, middle[1] + dy, middle[2] + dz});
+                        const Cell at{middle[0] + dx, middle[1] + dy, middle[2] + dz};
+                        if (best2 < kNotNearer * leastSquared(p, at)) continue;
+                        const auto cell = cells_.find(at);
                         if (cell == cells_.end()) continue;
                         for (const std::size_t i : cell->second)
                             if (const double d2 = (places_[i].p - p).squaredNorm(); d2 < best2) {
@@ -132,8 +134,25 @@ class Junction {
         return {static_cast<int>(std::floor(p.x() / kCellMm)), static_cast<int>(std::floor(p.y() / kCellMm)),
                 static_cast<int>(std::floor(p.z() / kCellMm))};
     }
+    /// Square of the way to a cell, which saves most cells; rounding must not make it longer.
+    static constexpr double kNotNearer = 1.0 - 1e-9;
+    static double leastSquared(const Vec3& p, const Cell& cell) {
+        double sum = 0.0;
+        for (int k = 0; k < 3; ++k) {
+            const double from = kCellMm * cell[static_cast<std::size_t>(k)];
+            const double off = std::max({from - p[k], p[k] - from - kCellMm, 0.0});
+            sum += off * off;
+        }
+        return sum;
+    }
+    struct CellHash {
+        std::size_t operator()(const Cell& c) const {
+            const auto u = [&](int k) { return static_cast<std::uint32_t>(c[static_cast<std::size_t>(k)]); };
+            return u(0) * 73856093u ^ u(1) * 19349663u ^ u(2) * 83492791u;
+        }
+    };
     std::vector<Place> places_;
-    std::map<Cell, std::vector<std::size_t>> cells_;
+    std::unordered_map<Cell, std::vector<std::size_t>, CellHash> cells_;
 };
 
 bool hasCaries(const tooth::ToothModel& whole) {

@@ -16,6 +16,7 @@ constexpr double kFarMm = 10.0;
 constexpr double kCuspMm = 1.0;    // about a cusp's tip, square to the path of draw, is the cusp
 constexpr double kAxialSin = 0.5;  // an axial wall stands within 30 degrees of the path of draw
 constexpr double kWallStepMm = 0.25, kWallShare = 0.05;
+constexpr double kWallOffMm = 0.75;  // from the wall's middle, towards its side: farther off is another one
 constexpr double kWallCos = 0.9848078, kSteadyCos = 0.8660254;  // 10 and 30 degrees
 constexpr double kMarginWidthMm = 0.1;                          // less is no finish line
 constexpr std::size_t kLeastSections = 8;
@@ -188,7 +189,8 @@ Axial axialTowards(CutTooth& tooth, const Vec3& towards) {
             const SurfacePoint& point = *part[i * stride];
             const geometry::RayMeeting met = tooth.whole().tree.firstMeeting(point.p, point.n, kFarMm);
             if (met.triangle == geometry::kNoTriangle) continue;
-            // A wall that looks at another one is no axial wall.
+            // A wall that looks out under the occlusal margin, or at another wall, is no axial one.
+            if (!(look.normalBefore(point.p + met.distanceMm * point.n).dot(towards) > kSin45)) continue;
             const double off = 2.0 * tooth.voxelMm();
             const auto wall = look.cast(point.p + off * point.n, point.n, met.distanceMm);
             if (!wall || off + *wall > met.distanceMm - off) depth[i] = met.distanceMm;
@@ -210,10 +212,19 @@ Axial axialTowards(CutTooth& tooth, const Vec3& towards) {
     std::size_t to = from;
     while (to < share.size() && share[to] > kWallShare * all)
         ++to;
-    const auto isOfWall = [&](std::size_t i) {
+    const auto isInStretch = [&](std::size_t i) {
         return depth[i] != kNone &&
                (tooth.form() == Form::crown || (depth[i] > kWallStepMm * (static_cast<double>(from) - 1.0) &&
                                                 depth[i] < kWallStepMm * (static_cast<double>(to) + 1.0)));
+    };
+    // Beside the isthmus of an MO others look out as near to the surface: the wall is where most of it stands.
+    std::vector<double> stands;
+    for (std::size_t i = 0; i < depth.size(); ++i)
+        if (isInStretch(i)) stands.push_back(part[i * stride]->p.dot(towards));
+    const double middle = stands.empty() ? 0.0 : statisticOf(stands, "median", nullptr);
+    const auto isOfWall = [&](std::size_t i) {
+        return isInStretch(i) &&
+               (tooth.form() == Form::crown || std::abs(part[i * stride]->p.dot(towards) - middle) < kWallOffMm);
     };
     // A cavity's corners are none of it; a crown's walls go round.
     Vec3 mean = Vec3::Zero();
@@ -245,7 +256,18 @@ Taken takeAxialDepth(CutTooth& tooth, const Selection& of) {
         return square ? square : axisOf(axes, side);
     };
     if (of.side.empty()) {
-        // Which wall is the axial one only a cavity that is drawn out sideways says by itself.
+        // A crown has it all round; which wall is the axial one else only a cavity that is drawn out sideways says.
+        if (tooth.form() == Form::crown) {
+            Places all;
+            for (const std::string_view side : {"mesial", "distal", "buccal", "lingual"})
+                if (const auto towards = directionOf(side)) {
+                    const Places some = axialTowards(tooth, *towards).places;
+                    for (std::size_t i = 0; i < some.values.size(); ++i)
+                        all.add(some.values[i], some.mm[i]);
+                }
+            if (all.values.empty()) return none("no axial wall looks out of the tooth");
+            return all.taken(of, "median", "axial wall");
+        }
         if (std::abs(axes.draw.dot(axes.longAxis)) > kSin45) return none("axial depth is of one side: name it");
         constexpr double kLeastShare = 0.25;  // of what looks out: less is the rim of a wall
         Axial proximal, facial = axialTowards(tooth, axes.draw);

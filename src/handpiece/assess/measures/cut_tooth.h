@@ -103,6 +103,7 @@ struct MarginPlace {
     core::Vec3 p;      ///< tooth frame
     core::Vec3 outer;  ///< unit, of the uncut surface
     double lengthMm;   ///< of margin that it stands for
+    double roughMm;    ///< by how much the wall's steps leave it open; 0: an even wall
 };
 
 class CutTooth {

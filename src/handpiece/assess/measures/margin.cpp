@@ -13,7 +13,7 @@ using core::Vec3;
 
 constexpr double kNearVoxels = 0.3,
                  kFarVoxels = 2.0;  // under the uncut surface a place of the wall leads to its margin
-constexpr double kBendVoxels = 0.03;
+constexpr double kBendVoxels = 0.03, kRoughVoxels = 0.5;
 constexpr double kTipMm = 0.1;
 constexpr double kLeastSin = 0.2;     // between both surfaces: flatter, there is no edge
 constexpr double kProximalCos = 0.5;  // the uncut surface faces the tooth beside within 60 degrees
@@ -47,7 +47,8 @@ const std::vector<MarginPlace>& CutTooth::margin() {
             }
             if (std::abs(deep) > 1e-4 || (p - points[i].p).norm() > high / kLeastSin) continue;
             // Anew without the wall's normal, which near an edge is not good: from where the wall lies a half, a whole
-            // and one and a half voxels under the surface. Where these do not lie in line three surfaces meet.
+            // and one and a half voxels under the surface. Where these do not lie in line three surfaces meet, or a bur
+            // has left steps.
             const Vec3 across = (wall - wall.dot(outer) * outer).normalized();
             double off[3];
             bool isMet = true;
@@ -57,9 +58,11 @@ const std::vector<MarginPlace>& CutTooth::margin() {
                 isMet = isMet && on.has_value();
                 off[k] = voxelMm() - on.value_or(0.0);
             }
-            if (!isMet || std::abs(off[0] - 2.0 * off[1] + off[2]) > kBendVoxels * voxelMm()) continue;
+            const double bend = std::abs(off[0] - 2.0 * off[1] + off[2]);
+            if (!isMet || bend > kRoughVoxels * voxelMm()) continue;
             p += (2.0 * off[0] - off[1]) * across;
-            found[i] = MarginPlace{p, outer, points[i].areaMm2 * up.norm() / (high - low)};
+            found[i] = MarginPlace{p, outer, points[i].areaMm2 * up.norm() / (high - low),
+                                   bend > kBendVoxels * voxelMm() ? bend : 0.0};
         }
     });
     margin_.emplace();
@@ -76,17 +79,33 @@ Taken takeOutlineExtent(CutTooth& tooth, const Selection& of) {
     if (!towards) return none("nobody says which way " + of.side + " is");
     if (tooth.margin().empty()) return none("no edge between cut and uncut surface was found");
     // From both ends, but for a tenth of a millimetre of margin: a coarse field has bumps where two walls and the
-    // surface meet.
-    std::vector<std::pair<double, const MarginPlace*>> places;
-    for (const MarginPlace& place : tooth.margin())
-        places.emplace_back(place.p.dot(*towards), &place);
-    std::sort(places.begin(), places.end());
-    std::size_t low = 0, high = places.size() - 1;
-    for (double length = 0.0; low < high && (length += places[low].second->lengthMm) < kTipMm;)
-        ++low;
-    for (double length = 0.0; low < high && (length += places[high].second->lengthMm) < kTipMm;)
-        --high;
-    return at(places[high].first - places[low].first, places[high].second->p, "outermost of the outline, " + of.side);
+    // surface meet. There only places count whose wall is even, unless those with steps go half a voxel farther out.
+    std::vector<std::pair<double, const MarginPlace*>> even, all;
+    for (const MarginPlace& place : tooth.margin()) {
+        all.emplace_back(place.p.dot(*towards), &place);
+        if (place.roughMm == 0.0) even.push_back(all.back());
+    }
+    double extent[2];
+    const MarginPlace* outermost = nullptr;
+    Taken taken;
+    for (const bool isHigh : {false, true}) {
+        const auto endOf = [&](std::vector<std::pair<double, const MarginPlace*>>& places) {
+            std::sort(places.begin(), places.end(),
+                      [&](const auto& a, const auto& b) { return isHigh ? a > b : a < b; });
+            std::size_t i = 0;
+            for (double length = 0.0; i + 1 < places.size() && (length += places[i].second->lengthMm) < kTipMm;)
+                ++i;
+            return places[i];
+        };
+        auto end = endOf(even.empty() ? all : even);
+        if (const auto farther = endOf(all); std::abs(farther.first - end.first) > 0.5 * tooth.voxelMm()) end = farther;
+        extent[isHigh ? 1 : 0] = end.first;
+        outermost = end.second;
+        taken.offMm += end.second->roughMm;
+    }
+    taken.value = extent[1] - extent[0];
+    taken.evidence.push_back({{}, outermost->p, {}, "outermost of the outline, " + of.side});
+    return taken;
 }
 
 Taken takeProximalClearance(CutTooth& tooth, const Selection& of) {
@@ -97,7 +116,8 @@ Taken takeProximalClearance(CutTooth& tooth, const Selection& of) {
     const Preparation& p = tooth.preparation();
     if (p.others.empty()) return none("the case has no tooth beside it that can be cut");
     const Vec3 middle = tooth.whole().tree.bounds().centre();
-    Places places;
+    Places even, all;
+    double roughMm = 0.0;
     bool isBeside = false;
     for (const std::string_view side : {"mesial", "distal"}) {
         if (!of.side.empty() && of.side != side) continue;
@@ -108,13 +128,23 @@ Taken takeProximalClearance(CutTooth& tooth, const Selection& of) {
             if (!((other.inTooth.apply(tree.bounds().centre()) - middle).dot(*towards) > 0.0)) continue;
             isBeside = true;
             for (const MarginPlace& place : tooth.margin())
-                if (place.outer.dot(*towards) > kProximalCos)
-                    places.add(std::max(0.0, tree.signedDistance(other.inTooth.applyInverse(place.p))), place.p);
+                if (place.outer.dot(*towards) > kProximalCos) {
+                    const double off = std::max(0.0, tree.signedDistance(other.inTooth.applyInverse(place.p)));
+                    all.add(off, place.p);
+                    if (place.roughMm == 0.0) even.add(off, place.p);
+                    roughMm = std::max(roughMm, place.roughMm);
+                }
         }
     }
     if (!isBeside) return none("no tooth stands there");
-    if (places.values.empty()) return none("no margin of the cavity lies on the side of the tooth beside it");
-    return places.taken(of, "least", "margin nearest to the tooth beside it");
+    if (all.values.empty()) return none("no margin of the cavity lies on the side of the tooth beside it");
+    const char* const text = "margin nearest to the tooth beside it";
+    Taken taken = all.taken(of, "least", text);
+    taken.offMm = roughMm;
+    if (even.values.empty()) return taken;
+    // As of the outline: places with steps count where they make a difference of half a voxel.
+    Taken ofEven = even.taken(of, "least", text);
+    return std::abs(*ofEven.value - *taken.value) > 0.5 * tooth.voxelMm() ? taken : ofEven;
 }
 
 }  // namespace handpiece::measures

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "handpiece/assess/preparation/preparation.h"
+#include "handpiece/assess/preparation/zone_surfaces.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/core/rotation.h"
@@ -36,8 +36,10 @@ double insideOf(const geometry::TriangleTree& tree, const Vec3& from, const Vec3
 
 class Site {
   public:
-    Site(const cases::Tooth& tooth, const Recipe& recipe)
-        : tooth_(tooth), recipe_(recipe), tree_(std::make_shared<geometry::TriangleTree>(surfaceOf(tooth))) {}
+    Site(const cases::Tooth& tooth, const Recipe& recipe, std::shared_ptr<const geometry::TriangleTree> whole)
+        : tooth_(tooth),
+          recipe_(recipe),
+          tree_(whole ? std::move(whole) : std::make_shared<const geometry::TriangleTree>(surfaceOf(tooth))) {}
 
     Laid laid() {
         Laid laid;
@@ -72,20 +74,23 @@ class Site {
         // Beyond the tooth there is nothing to take.
         const core::Box& whole = tree_->bounds();
         box.min = box.min.cwiseMax(whole.min), box.max = box.max.cwiseMin(whole.max);
-        if (box.isEmpty()) fail("the preparation lies outside the tooth", "give other sizes");
+        if (box.isEmpty()) fail("the preparation lies outside the tooth", "give other sizes", "lay-outside");
         laid.zones = std::make_shared<zones::Zones>(std::move(target), box, recipe_.leeway, guarded());
         return laid;
     }
 
   private:
-    [[noreturn]] void fail(const std::string& what, const std::string& remedy) const {
+    /// `id`: by which a window says it in its language, with what varies.
+    [[noreturn]] void fail(const std::string& what, const std::string& remedy, std::string id) const {
         throw core::Error(fmt::format("{}: {}", recipe_.preparation, what),
-                          tooth_.name.empty() ? "the tooth" : tooth_.name, remedy);
+                          tooth_.name.empty() ? "the tooth" : tooth_.name, remedy)
+            .as(std::move(id));
     }
     static const geometry::TriangleMesh& surfaceOf(const cases::Tooth& tooth) {
         if (tooth.surface().triangles.empty())
             throw core::Error("the tooth has no surface as a whole", tooth.name,
-                              "name outer.stl in case.toml: the whole tooth as one closed surface");
+                              "name outer.stl in case.toml: the whole tooth as one closed surface")
+                .as("lay-no-surface");
         return tooth.surface();
     }
     [[nodiscard]] double number(std::string_view name) const { return recipe_.number(name); }
@@ -100,20 +105,29 @@ class Site {
         auto found = marks(kind);
         if (found.empty())
             fail(fmt::format("the tooth has no landmark \"{}\"", cases::kLandmarkKinds[static_cast<std::size_t>(kind)]),
-                 "find or set it in the window (Ctrl+J), or handpiece case landmarks --find");
+                 "find or set it in the window (Ctrl+J), or handpiece case landmarks --find",
+                 "lay-no-" + std::string(cases::kLandmarkKinds[static_cast<std::size_t>(kind)]));
         return found;
     }
     [[nodiscard]] Vec3 contact(const std::string& side) const {
         for (const cases::Landmark* mark : need(LandmarkKind::contact))
             if (mark->name == side) return mark->pointsMm.front();
-        fail(fmt::format("the tooth has no {} contact", side), "set it in the window (Ctrl+Shift+J)");
+        fail(fmt::format("the tooth has no {} contact", side), "set it in the window (Ctrl+Shift+J)",
+             "lay-no-contact-" + side);
     }
     /// +1 where buccal is +y.
     [[nodiscard]] double buccal() const {
-        if (tooth_.buccalSign == 0) fail("the case does not say which side is buccal", "add buccal = \"+y\" or \"-y\"");
+        if (tooth_.buccalSign == 0)
+            fail("the case does not say which side is buccal", "add buccal = \"+y\" or \"-y\"", "lay-no-buccal");
         return tooth_.buccalSign;
     }
     [[nodiscard]] double inside(const Vec3& from, const Vec3& way) const { return insideOf(*tree_, from, way); }
+    /// So far inside the tooth at least, upwards: by the side on which the first surface over it is met.
+    [[nodiscard]] bool isUnder(const Vec3& p, double leastMm) const {
+        const geometry::RayMeeting over = tree_->firstMeeting(p, Vec3::UnitZ());
+        return over.triangle != geometry::kNoTriangle && over.distanceMm >= leastMm &&
+               tree_->pseudonormals()[std::size_t{over.triangle} * 21 + 2] > 0.0f;
+    }
     /// How far off the tooth ends for good, in a direction; negative where it does not lie that way.
     [[nodiscard]] double outermost(const Vec3& from, const Vec3& way) const {
         constexpr double kOffMm = 40.0;
@@ -133,7 +147,7 @@ class Site {
         };
         const auto groove = [&](const Vec2& way) {
             const double half = 0.5 * (number("length_mm") - number("width_mm"));
-            if (half < 0.0) fail("it is wider than long", "give a greater length");
+            if (half < 0.0) fail("it is wider than long", "give a greater length", "lay-wider");
             return Outline::Stroke{{middle - half * way, middle + half * way}, 0.5 * number("width_mm")};
         };
         Outline outline;
@@ -145,7 +159,7 @@ class Site {
             outline.areas = {zones::circle(middle, 0.5 * number("diameter_mm"))};
         } else if (kind == "hollow-circle") {
             if (number("inner_mm") >= number("diameter_mm"))
-                fail("the island is as wide as the figure", "make it less");
+                fail("the island is as wide as the figure", "make it less", "lay-island");
             outline.areas = {zones::circle(middle, 0.5 * number("diameter_mm"))};
             outline.holes = {zones::circle(middle, 0.5 * number("inner_mm"))};
         } else if (kind == "d-circle") {
@@ -175,7 +189,8 @@ class Site {
         for (const cases::Landmark* fissure : fissures)
             for (const Vec3& p : fissure->pointsMm)
                 if (isOnTop(p)) height += p.z(), ++count;
-        if (count == 0) fail("no fissure lies on the occlusal surface", "set it in the window (Ctrl+Shift+J)");
+        if (count == 0)
+            fail("no fissure lies on the occlusal surface", "set it in the window (Ctrl+Shift+J)", "lay-fissure-off");
         const double floor = height / static_cast<double>(count) - number("depth_mm");
         const double open = !hasBox ? 0.0 : recipe_.side == "mesial" ? 1.0 : -1.0;
         // At the floor all round; towards the marginal ridges, which get thinner towards their crests, as high as the
@@ -192,9 +207,7 @@ class Site {
                 for (double up = 0.0;; up += kStepMm) {
                     const Vec3 at(p.x(), p.y(), floor + up);
                     const double wall = half + up * flare;
-                    if (up > 0.0 &&
-                        (std::abs(way.x()) < 0.7 || inside(at + wall * way, Vec3::UnitZ()) < kUnderSurfaceMm))
-                        break;
+                    if (up > 0.0 && (std::abs(way.x()) < 0.7 || !isUnder(at + wall * way, kUnderSurfaceMm))) break;
                     if (outermost(at, way) < ridge + wall) return false;
                 }
             }
@@ -221,7 +234,8 @@ class Site {
             end();
         }
         if (outline.isEmpty())
-            fail("there is no room along the fissures", "give a thinner ridge, or a lesser width or depth");
+            fail("there is no room along the fissures", "give a thinner ridge, or a lesser width or depth",
+                 "lay-no-room");
         cavities_.push_back({{}, std::move(outline), {Floor::Kind::flat, floor, 0.0}, number("wall_deg") * kRadPerDeg});
     }
     /// Fissures run over onto the sides; those are not followed.
@@ -275,7 +289,8 @@ class Site {
         // Depth counts from the palatal surface beside the contact.
         const Vec3 within = at - sign * Vec3::UnitX() * (0.5 * number("axial_mm"));
         const double toSurface = inside(within, draw);
-        if (!(toSurface > 0.0)) fail("the contact does not lie on the tooth", "set it in the window (Ctrl+Shift+J)");
+        if (!(toSurface > 0.0))
+            fail("the contact does not lie on the tooth", "set it in the window (Ctrl+Shift+J)", "lay-contact-off");
         cavities_.push_back({pose, std::move(outline), {Floor::Kind::flat, toSurface - number("depth_mm"), 0.0}, 0.0});
     }
 
@@ -289,7 +304,8 @@ class Site {
         for (const Vec3& p : junction->pointsMm)
             if (sign * p.y() > 0.0 && (cervix == nullptr || std::abs(p.x() - middle) < std::abs(cervix->x() - middle)))
                 cervix = &p;
-        if (cervix == nullptr) fail("the cemento-enamel junction does not reach the buccal side", "set it anew");
+        if (cervix == nullptr)
+            fail("the cemento-enamel junction does not reach the buccal side", "set it anew", "lay-junction-short");
         const double half = 0.5 * number("height_mm");
         const Vec3 at(cervix->x(), cervix->y(), cervix->z() + number("over_cervix_mm") + half);
         Outline outline;
@@ -359,7 +375,8 @@ class Site {
             const Vec2 way = (p - middle).head<2>().normalized();
             const Vec3 from(middle.x(), middle.y(), height);
             const double out = inside(from, Vec3(way.x(), way.y(), 0.0));
-            if (!(out > margin)) fail("the margin does not lie on the tooth", "give another height over the cervix");
+            if (!(out > margin))
+                fail("the margin does not lie on the tooth", "give another height over the cervix", "lay-margin-off");
             ring.push_back({core::atan2(way.y(), way.x()), height, middle.head<2>() + (out - margin) * way});
         }
         std::sort(ring.begin(), ring.end(), [](const Place& a, const Place& b) { return a.rad < b.rad; });
@@ -400,7 +417,8 @@ class Site {
                 const core::Box& bounds = carious.back()->bounds();
                 box.extend(bounds.min), box.extend(bounds.max);
             }
-        if (carious.empty()) fail("the tooth has no carious tissue", "make it with --lesion, or choose another task");
+        if (carious.empty())
+            fail("the tooth has no carious tissue", "make it with --lesion, or choose another task", "lay-no-caries");
         const auto pulp = pulpMm();
         return [carious = std::move(carious), pulp, over = number("over_pulp_mm")](const Vec3& p) {
             double least = kFarMm;
@@ -464,16 +482,20 @@ class Site {
 
     const cases::Tooth& tooth_;
     const Recipe& recipe_;
-    std::shared_ptr<geometry::TriangleTree> tree_;
+    std::shared_ptr<const geometry::TriangleTree> tree_;
     std::vector<Cavity> cavities_;
 };
 
 }  // namespace
 
 Laid layOn(const cases::Tooth& tooth, const Recipe& recipe) {
+    return layOn(tooth, recipe, nullptr);
+}
+
+Laid layOn(const cases::Tooth& tooth, const Recipe& recipe, std::shared_ptr<const geometry::TriangleTree> whole) {
     if (findTemplate(recipe.preparation) == nullptr)
         throw core::Error(fmt::format("there is no preparation \"{}\"", recipe.preparation), "preparation", "");
-    return Site(tooth, recipe).laid();
+    return Site(tooth, recipe, std::move(whole)).laid();
 }
 
 }  // namespace handpiece::preparation

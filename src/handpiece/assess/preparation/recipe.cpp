@@ -21,9 +21,9 @@ constexpr std::array kClassTwo{
     Parameter{"width_mm", 1.75, 0.4, 5.0, "isthmus, at the floor"},
     Parameter{"ridge_mm", 2.0, 0.5, 4.0, "left of the other marginal ridge and of the buccal and lingual walls"},
     Parameter{"wall_deg", -3.0, -10.0, 15.0, "of each wall against the path of draw; negative converges occlusally"},
-    Parameter{"axial_mm", 1.25, 0.5, 4.0, "from the contact to the axial wall"},
-    Parameter{"box_width_mm", 3.5, 1.0, 8.0, "of the box, buccolingually, at its floor"},
-    Parameter{"under_contact_mm", 1.0, 0.2, 4.0, "from the contact down to the gingival floor"}};
+    Parameter{"axial_mm", 1.5, 0.5, 4.0, "from the contact to the axial wall"},
+    Parameter{"box_width_mm", 3.9, 1.0, 8.0, "of the box, buccolingually, at its floor"},
+    Parameter{"under_contact_mm", 2.0, 0.2, 4.0, "from the contact down to the gingival floor"}};
 constexpr std::array kClassThree{
     Parameter{"height_mm", 2.5, 0.5, 6.0, "incisogingivally"},
     Parameter{"axial_mm", 1.0, 0.3, 3.0, "from the contact to the axial wall"},

@@ -12,7 +12,7 @@ namespace {
 
 using core::Vec3;
 
-constexpr double kFineMm = 0.1, kMostNodes = 300e3;
+constexpr double kMostNodes = 300e3;
 
 core::Box common(const core::Box& a, const core::Box& b) {
     return {a.min.cwiseMax(b.min), a.max.cwiseMin(b.max)};
@@ -20,10 +20,10 @@ core::Box common(const core::Box& a, const core::Box& b) {
 
 /// f < 0 in the tooth. Where f is clear of the border the tooth, which is dear to ask, is not asked.
 template <class F>
-geometry::TriangleMesh surfaceOf(const F& f, const geometry::TriangleTree& whole, const core::Box& box,
+geometry::TriangleMesh surfaceOf(const F& f, const geometry::TriangleTree& whole, const core::Box& box, double finestMm,
                                  const core::Progress& progress) {
     if (box.isEmpty()) return {};
-    double spacingMm = kFineMm;
+    double spacingMm = finestMm;
     while (box.size().prod() > kMostNodes * spacingMm * spacingMm * spacingMm)
         spacingMm *= 1.05;
     const core::Box around = box.grown(spacingMm);
@@ -59,21 +59,21 @@ geometry::TriangleMesh surfaceOf(const F& f, const geometry::TriangleTree& whole
 }  // namespace
 
 geometry::TriangleMesh zoneSurface(SeenZone zone, const cases::Tooth& tooth, const Recipe& recipe, const Laid& laid,
-                                   const core::Progress& progress) {
+                                   const core::Progress& progress, double finestMm) {
     const zones::Zones& zones = *laid.zones;
     const core::Box& whole = laid.whole->bounds();
     const zones::Leeway& leeway = zones.leeway();
     switch (zone) {
         case SeenZone::target:
             return surfaceOf([&](const Vec3& p) { return std::max(zones.targetMm(p), -zones.protectedMm(p)); },
-                             *laid.whole, common(zones.box(), whole), progress);
+                             *laid.whole, common(zones.box(), whole), finestMm, progress);
         case SeenZone::leeway:
             return surfaceOf([&](const Vec3& p) { return std::max(zones.allowedMm(p), -zones.protectedMm(p)); },
                              *laid.whole, common(zones.box().grown(std::max(leeway.sideMm, leeway.floorMm)), whole),
-                             progress);
+                             finestMm, progress);
         case SeenZone::container:
             return surfaceOf([&](const Vec3& p) { return std::max(-zones.allowedMm(p), -zones.protectedMm(p)); },
-                             *laid.whole, whole, progress);
+                             *laid.whole, whole, finestMm, progress);
         case SeenZone::protectedZone:
             break;
     }
@@ -94,7 +94,7 @@ geometry::TriangleMesh zoneSurface(SeenZone zone, const cases::Tooth& tooth, con
     // The pulp alone is known exactly.
     if (pulp.triangles.empty() || recipe.pulpMm <= 0.0) return pulp;
     return surfaceOf([&](const Vec3& p) { return zones.protectedMm(p); }, *laid.whole,
-                     common(box.grown(recipe.pulpMm), whole), progress);
+                     common(box.grown(recipe.pulpMm), whole), finestMm, progress);
 }
 
 }  // namespace handpiece::preparation

@@ -21,9 +21,14 @@ enum class SeenZone : std::uint8_t {
 inline constexpr std::array kSeenZones{SeenZone::target, SeenZone::leeway, SeenZone::protectedZone,
                                        SeenZone::container};
 
-/// Closed, within the tooth, to about a tenth of a millimetre; edges are bevelled by that. Empty where there is no such
-/// zone. `laid`: of this recipe on this tooth. In parallel, the same bytes at any thread count.
+/// layOn() with the tooth's surface as somebody has it already: dear to make.
+[[nodiscard]] Laid layOn(const cases::Tooth& tooth, const Recipe& recipe,
+                         std::shared_ptr<const geometry::TriangleTree> whole);
+
+/// Closed, within the tooth, to about `finestMm`; edges are bevelled by that. Empty where there is no such zone.
+/// `laid`: of this recipe on this tooth. In parallel, the same bytes at any thread count.
 [[nodiscard]] geometry::TriangleMesh zoneSurface(SeenZone zone, const cases::Tooth& tooth, const Recipe& recipe,
-                                                 const Laid& laid, const core::Progress& progress = {});
+                                                 const Laid& laid, const core::Progress& progress = {},
+                                                 double finestMm = 0.1);
 
 }  // namespace handpiece::preparation

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "handpiece/assess/rubric/rubric.h"
+#include "handpiece/assess/rubric/lint.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/case/tissue.h"
 
@@ -13,6 +13,13 @@ namespace {
 
 using measures::MeasureKind;
 using measures::Selector;
+
+using config::Phrase;
+
+template <class... Parts>
+Phrase say(const char* id, Parts&&... parts) {
+    return {id, {fmt::format("{}", std::forward<Parts>(parts))...}};
+}
 
 /// The nearest of the names by insertions, deletions and changes; for "did you mean".
 std::string_view nearest(std::string_view name, std::span<const MeasureKind> kinds) {
@@ -76,7 +83,7 @@ class Linter {
   public:
     explicit Linter(const Rubric& rubric) : rubric_(rubric) {}
 
-    std::vector<Finding> findings() {
+    std::vector<SaidFinding> findings() {
         whole();
         for (const Criterion& c : rubric_.criteria)
             criterion(c);
@@ -86,14 +93,19 @@ class Linter {
     }
 
   private:
-    void tell(Severity severity, int line, const std::string& of, std::string problem, std::string remedy = {},
+    void tell(Severity severity, int line, const Phrase& of, Phrase said, Phrase advice = {},
               std::string criterion = {}) {
+        static const config::Words& english = config::Words::in("en");
         std::string where = line > 0 ? fmt::format("{}:{}", rubric_.where, line) : rubric_.where;
-        if (!of.empty()) where += ": " + of;
-        findings_.push_back({severity, std::move(where), std::move(problem), std::move(remedy), std::move(criterion)});
+        if (!of.empty()) where += ": " + english(of);
+        findings_.push_back({{severity, std::move(where), english(said), english(advice), std::move(criterion)},
+                             of,
+                             std::move(said),
+                             std::move(advice)});
     }
-    void tell(Severity severity, const Criterion& c, std::string problem, std::string remedy = {}, int line = 0) {
-        tell(severity, line > 0 ? line : c.line, "criterion " + c.id, std::move(problem), std::move(remedy), c.id);
+    void tell(Severity severity, const Criterion& c, Phrase said, Phrase advice = {}, int line = 0) {
+        tell(severity, line > 0 ? line : c.line, say("lint.of-criterion", c.id), std::move(said), std::move(advice),
+             c.id);
     }
 
     void whole();
@@ -110,67 +122,55 @@ class Linter {
     void once(const List& list, const char* what);
 
     const Rubric& rubric_;
-    std::vector<Finding> findings_;
+    std::vector<SaidFinding> findings_;
 };
 
 template <class List>
 void Linter::once(const List& list, const char* what) {
     std::set<std::string> seen;
     for (const auto& entry : list)
-        if (!seen.insert(entry.id).second)
-            tell(Severity::error, 0, {}, fmt::format("there are two {} \"{}\"", what, entry.id),
-                 "give one another name");
+        if (!seen.insert(entry.id).second) tell(Severity::error, 0, {}, say(what, entry.id), say("lint.rename"));
 }
 
 void Linter::whole() {
-    if (rubric_.criteria.empty())
-        tell(Severity::error, 0, {}, "there is no criterion", "give at least one [[criterion]]");
-    if (rubric_.title.empty()) tell(Severity::warning, 0, {}, "it has no title", "give title = { en = \"...\" }");
-    once(rubric_.criteria, "criteria");
-    once(rubric_.bands, "bands");
-    once(rubric_.steps, "steps");
-    once(rubric_.rules, "rules");
+    if (rubric_.criteria.empty()) tell(Severity::error, 0, {}, say("lint.no-criterion"), say("lint.add-criterion"));
+    if (rubric_.title.empty()) tell(Severity::warning, 0, {}, say("lint.no-title"), say("lint.give-title"));
+    once(rubric_.criteria, "lint.two-criteria");
+    once(rubric_.bands, "lint.two-bands");
+    once(rubric_.steps, "lint.two-steps");
+    once(rubric_.rules, "lint.two-rules");
     double sum = 0.0;
     for (const Criterion& c : rubric_.criteria)
         sum += c.weight;
     if (rubric_.totalWeight && std::abs(sum - *rubric_.totalWeight) > 1e-9 * std::max(1.0, sum))
-        tell(Severity::error, 0, {},
-             fmt::format("the weights sum to {}, not to the {} that total_weight states", sum, *rubric_.totalWeight),
-             "mend a weight or total_weight");
+        tell(Severity::error, 0, {}, say("lint.sum", sum, *rubric_.totalWeight), say("lint.mend-sum"));
     if (rubric_.passMark && !(*rubric_.passMark > 0.0 && *rubric_.passMark <= 100.0))
-        tell(Severity::error, 0, {}, fmt::format("pass_mark is {}", *rubric_.passMark),
-             "it is in % of the greatest score, above 0");
+        tell(Severity::error, 0, {}, say("lint.pass-mark", *rubric_.passMark), say("lint.pass-mark-range"));
     if (rubric_.passMark && sum == 0.0)
-        tell(Severity::error, 0, {}, "there is a pass_mark and no criterion has a weight", "give weights");
+        tell(Severity::error, 0, {}, say("lint.pass-mark-alone"), say("lint.give-weights"));
     if (rubric_.status != Status::proposal && rubric_.source.empty())
-        tell(Severity::error, 0, {}, fmt::format("it is {}, and there is no source", nameOf(rubric_.status)),
-             "give source = \"...\", or status = \"proposal\"");
+        tell(Severity::error, 0, {}, say("lint.no-source", nameOf(rubric_.status)),
+             say("lint.give-source-or-proposal"));
     const bool canPass = rubric_.passMark || std::any_of(rubric_.rules.begin(), rubric_.rules.end(),
                                                          [](const Rule& r) { return r.required; });
-    if (!canPass)
-        tell(Severity::remark, 0, {},
-             "it has neither a pass_mark nor a required rule: who passes, the teacher decides");
+    if (!canPass) tell(Severity::remark, 0, {}, say("lint.teacher-decides"));
 }
 
 void Linter::value(const Criterion& c, const MeasureKind* kind, double v, const char* what, int line) {
     if (kind && (v < kind->least || v > kind->most))
-        tell(Severity::error, c,
-             fmt::format("{} at {} {}, which no measure can have: {} to {}", what, v, kind->unit, kind->least,
-                         kind->most),
-             "mind the unit", line);
+        tell(Severity::error, c, say(what, v, kind->unit, kind->least, kind->most), say("lint.mind-unit"), line);
 }
 
 void Linter::selection(const Criterion& c, const MeasureKind& kind) {
     const auto takes = [&](Selector selector, bool isGiven, const char* key) {
         if (!isGiven) return false;
         const bool isTaken = (kind.takes & static_cast<unsigned>(selector)) != 0;
-        if (!isTaken)
-            tell(Severity::error, c, fmt::format("{} has no {}", kind.id, key), fmt::format("leave {} out", key));
+        if (!isTaken) tell(Severity::error, c, say("lint.takes-none", kind.id, key), say("lint.leave-out", key));
         return isTaken;
     };
     const auto unknown = [&](const char* key, const std::string& given, const auto& known) {
-        tell(Severity::error, c, fmt::format("there is no {} \"{}\"", key, given.substr(0, 64)),
-             fmt::format("one of {}", fmt::join(known, ", ")));
+        tell(Severity::error, c, say("lint.unknown-of", key, given.substr(0, 64)),
+             say("lint.one-of", fmt::join(known, ", ")));
     };
     const measures::Selection& of = c.of;
     if (takes(Selector::zone, !of.zone.empty(), "zone") && !has(measures::kZones, of.zone))
@@ -183,44 +183,36 @@ void Linter::selection(const Criterion& c, const MeasureKind& kind) {
         unknown("statistic", of.statistic, measures::kStatistics);
     takes(Selector::limit, of.limit.has_value(), "limit");
     if ((kind.takes & static_cast<unsigned>(Selector::limit)) != 0 && !of.limit)
-        tell(Severity::error, c, fmt::format("{} needs a limit", kind.id), "give limit = ...");
+        tell(Severity::error, c, say("lint.needs-limit", kind.id), say("lint.give-limit"));
 }
 
 void Linter::criterion(const Criterion& c) {
     const MeasureKind* kind = measures::findMeasureKind(c.measure);
     if (!kind) {
-        tell(Severity::error, c, fmt::format("there is no measure \"{}\"", c.measure),
-             fmt::format("did you mean \"{}\"? docs/formats/rubric.md lists them",
-                         nearest(c.measure, measures::measureKinds())));
+        tell(Severity::error, c, say("lint.unknown-measure", c.measure),
+             say("lint.did-you-mean", nearest(c.measure, measures::measureKinds())));
     } else {
         if (c.unit != kind->unit)
-            tell(Severity::error, c,
-                 c.unit.empty() ? fmt::format("the unit is missing")
-                                : fmt::format("the unit is \"{}\"", c.unit.substr(0, 64)),
-                 kind->unit.empty()
-                     ? fmt::format("{} has none: leave it out", kind->id)
-                     : fmt::format("{} is in {}: write unit = \"{}\"", kind->id, kind->unit, kind->unit));
+            tell(Severity::error, c, c.unit.empty() ? say("lint.no-unit") : say("lint.unit", c.unit.substr(0, 64)),
+                 kind->unit.empty() ? say("lint.unit-none", kind->id) : say("lint.unit-is", kind->id, kind->unit));
         selection(c, *kind);
         if (c.isGraded() && kind->subject == measures::Subject::hand && c.devices.empty())
-            tell(Severity::warning, c, "it grades the hand on any device",
-                 "name the devices: scores of different ones are never pooled");
+            tell(Severity::warning, c, say("lint.any-device"), say("lint.name-devices"));
     }
     if (c.isGraded() && c.knots.empty() && c.bands.empty())
-        tell(Severity::error, c, "it has a weight and neither knots nor bands", "say what gives how many points");
+        tell(Severity::error, c, say("lint.no-points"), say("lint.say-points"));
     if (!c.isGraded() && !c.knots.empty())
-        tell(Severity::error, c, "it has knots and no weight", "give weight = ..., or leave the knots out");
+        tell(Severity::error, c, say("lint.knots-no-weight"), say("lint.weight-or-knots"));
     knots(c, kind);
     bands(c, kind);
     critical(c, kind);
     const Status status = c.status.value_or(rubric_.status);
     if (status < rubric_.status && c.source.empty())
-        tell(Severity::error, c, fmt::format("it is {}, and there is no source", nameOf(status)),
-             "give source = \"...\"");
+        tell(Severity::error, c, say("lint.no-source", nameOf(status)), say("lint.give-source"));
     if (status > rubric_.status)
-        tell(Severity::error, c,
-             fmt::format("it is {} in a rubric that says {}", nameOf(status), nameOf(rubric_.status)),
-             fmt::format("a rubric is no more than its weakest criterion: status = \"{}\"", nameOf(status)));
-    if (c.title.empty()) tell(Severity::warning, c, "it has no title", "give title = { en = \"...\" }");
+        tell(Severity::error, c, say("lint.status-weaker", nameOf(status), nameOf(rubric_.status)),
+             say("lint.status-weakest", nameOf(status)));
+    if (c.title.empty()) tell(Severity::warning, c, say("lint.no-title"), say("lint.give-title"));
 }
 
 /// Where points rise again after they fell.
@@ -235,26 +227,22 @@ bool hasTwoPeaks(const std::vector<double>& points) {
 
 void Linter::knots(const Criterion& c, const MeasureKind* kind) {
     if (c.knots.empty()) return;
-    if (c.knots.size() == 1) tell(Severity::error, c, "one knot is no curve", "give two at least");
+    if (c.knots.size() == 1) tell(Severity::error, c, say("lint.one-knot"), say("lint.two-knots"));
     std::vector<double> points;
     for (std::size_t i = 0; i < c.knots.size(); ++i) {
         const Knot& knot = c.knots[i];
         if (i > 0 && !(knot.value > c.knots[i - 1].value))
-            tell(Severity::error, c, fmt::format("the knots do not ascend at {}", knot.value),
-                 "sort them, each value once");
-        value(c, kind, knot.value, "a knot lies");
+            tell(Severity::error, c, say("lint.knots-order", knot.value), say("lint.sort-knots"));
+        value(c, kind, knot.value, "lint.a-knot");
         if (!(knot.points >= 0.0 && knot.points <= 100.0))
-            tell(Severity::error, c, fmt::format("a knot gives {} points", knot.points), "0 to 100");
+            tell(Severity::error, c, say("lint.knot-points", knot.points), say("lint.points-range"));
         points.push_back(knot.points);
     }
-    if (hasTwoPeaks(points))
-        tell(Severity::error, c, "the points rise again after they fell",
-             "away from the ideal they may only fall, to either side");
+    if (hasTwoPeaks(points)) tell(Severity::error, c, say("lint.two-peaks"), say("lint.only-fall"));
     if (*std::max_element(points.begin(), points.end()) < 100.0)
-        tell(Severity::warning, c, "nobody can have full points", "let the ideal give 100");
+        tell(Severity::warning, c, say("lint.no-full"), say("lint.ideal-100"));
     if (std::all_of(points.begin(), points.end(), [&](double p) { return p == points.front(); }))
-        tell(Severity::warning, c, "all values give the same points",
-             "let the points differ, or show the criterion only");
+        tell(Severity::warning, c, say("lint.flat"), say("lint.differ"));
 }
 
 void Linter::bands(const Criterion& c, const MeasureKind* kind) {
@@ -264,27 +252,23 @@ void Linter::bands(const Criterion& c, const MeasureKind* kind) {
     for (const Band& band : c.bands) {
         const auto is = [&](const BandName& name) { return name.id == band.id; };
         if (std::none_of(rubric_.bands.begin(), rubric_.bands.end(), is))
-            tell(Severity::error, c, fmt::format("there is no band \"{}\"", band.id),
-                 "list it: [[band]], from best to worst", band.line);
+            tell(Severity::error, c, say("lint.unknown-band", band.id), say("lint.list-band"), band.line);
         if (band.from && band.to && *band.from > *band.to) {
-            tell(Severity::error, c, fmt::format("band \"{}\" goes from {} to {}", band.id, *band.from, *band.to),
-                 "from is the lesser", band.line);
+            tell(Severity::error, c, say("lint.band-order", band.id, *band.from, *band.to), say("lint.from-lesser"),
+                 band.line);
             wrong = true;
         }
-        if (band.from) value(c, kind, *band.from, "a band begins", band.line);
-        if (band.to) value(c, kind, *band.to, "a band ends", band.line);
+        if (band.from) value(c, kind, *band.from, "lint.band-begins", band.line);
+        if (band.to) value(c, kind, *band.to, "lint.band-ends", band.line);
         if (band.points && !(*band.points >= 0.0 && *band.points <= 100.0))
-            tell(Severity::error, c, fmt::format("band \"{}\" gives {} points", band.id, *band.points), "0 to 100",
+            tell(Severity::error, c, say("lint.band-points", band.id, *band.points), say("lint.points-range"),
                  band.line);
         if (band.points && !c.knots.empty())
-            tell(Severity::error, c, fmt::format("band \"{}\" gives points, and the knots do too", band.id),
-                 "leave one of them out: with knots, bands are labels", band.line);
+            tell(Severity::error, c, say("lint.band-and-knots", band.id), say("lint.bands-labels"), band.line);
         if (band.points && !c.isGraded())
-            tell(Severity::error, c, fmt::format("band \"{}\" gives points, and there is no weight", band.id),
-                 "give weight = ...", band.line);
+            tell(Severity::error, c, say("lint.band-no-weight", band.id), say("lint.give-weight"), band.line);
         if (!band.points && c.isGraded() && c.knots.empty())
-            tell(Severity::error, c, fmt::format("band \"{}\" gives no points", band.id), "give points = ..., or knots",
-                 band.line);
+            tell(Severity::error, c, say("lint.band-none", band.id), say("lint.give-points"), band.line);
         sorted.push_back(&band);
     }
     if (wrong) return;
@@ -298,8 +282,7 @@ void Linter::bands(const Criterion& c, const MeasureKind* kind) {
         return v <= -kFar ? std::string("below") : v >= kFar ? std::string("above") : fmt::format("{}", v);
     };
     const auto gap = [&](double low, double high) {
-        tell(Severity::error, c, fmt::format("no band has the values from {} to {}", told(low), told(high)),
-             "close the gap");
+        tell(Severity::error, c, say("lint.gap", told(low), told(high)), say("lint.close-gap"));
     };
     if (from(sorted.front()) > (kind ? kind->least : from(sorted.front()))) gap(kind->least, from(sorted.front()));
     double end = to(sorted.front());
@@ -307,9 +290,8 @@ void Linter::bands(const Criterion& c, const MeasureKind* kind) {
         if (from(sorted[i]) > end) gap(end, from(sorted[i]));
         if (from(sorted[i]) < end)
             tell(Severity::error, c,
-                 fmt::format("\"{}\" and another band both have the values from {} to {}", sorted[i]->id,
-                             told(from(sorted[i])), told(std::min(end, to(sorted[i])))),
-                 "let bands touch, not overlap", sorted[i]->line);
+                 say("lint.overlap", sorted[i]->id, told(from(sorted[i])), told(std::min(end, to(sorted[i])))),
+                 say("lint.touch"), sorted[i]->line);
         end = std::max(end, to(sorted[i]));
     }
     if (kind && end < kind->most) gap(end, kind->most);
@@ -317,11 +299,9 @@ void Linter::bands(const Criterion& c, const MeasureKind* kind) {
     std::vector<double> points;
     for (const Band* band : sorted)
         points.push_back(band->points.value_or(0.0));
-    if (hasTwoPeaks(points))
-        tell(Severity::error, c, "the points of the bands rise again after they fell",
-             "away from the ideal they may only fall, to either side");
+    if (hasTwoPeaks(points)) tell(Severity::error, c, say("lint.bands-two-peaks"), say("lint.only-fall"));
     if (*std::max_element(points.begin(), points.end()) < 100.0)
-        tell(Severity::warning, c, "nobody can have full points", "let the ideal give 100");
+        tell(Severity::warning, c, say("lint.no-full"), say("lint.ideal-100"));
     for (const Band& better : c.bands)
         for (const Band& worse : c.bands) {
             const auto rank = [&](const Band& b) {
@@ -330,8 +310,8 @@ void Linter::bands(const Criterion& c, const MeasureKind* kind) {
                        rubric_.bands.begin();
             };
             if (rank(better) < rank(worse) && better.points.value_or(0) < worse.points.value_or(0)) {
-                tell(Severity::warning, c, fmt::format("\"{}\" gives more points than \"{}\"", worse.id, better.id),
-                     "[[band]] lists them from best to worst", worse.line);
+                tell(Severity::warning, c, say("lint.worse-more", worse.id, better.id), say("lint.best-first"),
+                     worse.line);
                 return;
             }
         }
@@ -340,20 +320,18 @@ void Linter::bands(const Criterion& c, const MeasureKind* kind) {
 void Linter::critical(const Criterion& c, const MeasureKind* kind) {
     if (!c.critical) return;
     const auto& [below, above, title, line] = *c.critical;
-    if (!below && !above)
-        tell(Severity::error, c, "the critical error has no condition", "give below = ... or above = ...", line);
-    if (below) value(c, kind, *below, "critical below", line);
-    if (above) value(c, kind, *above, "critical above", line);
+    if (!below && !above) tell(Severity::error, c, say("lint.critical-none"), say("lint.give-critical"), line);
+    if (below) value(c, kind, *below, "lint.critical-below", line);
+    if (above) value(c, kind, *above, "lint.critical-above", line);
     if (below && above && *below > *above)
-        tell(Severity::error, c, fmt::format("every value is critical: below {} or above {}", *below, *above),
-             "below is the lesser", line);
+        tell(Severity::error, c, say("lint.all-critical", *below, *above), say("lint.below-lesser"), line);
     if (kind && ((below && !above && *below == kind->least) || (above && !below && *above == kind->most)))
-        tell(Severity::error, c, "no value can be critical", "move the limit into what the measure can have", line);
+        tell(Severity::error, c, say("lint.never-critical"), say("lint.move-limit"), line);
 }
 
 void Linter::rule(const Rule& r) {
-    const auto wrong = [&](std::string problem, std::string remedy) {
-        tell(Severity::error, r.line, "rule " + r.id, std::move(problem), std::move(remedy));
+    const auto wrong = [&](Phrase problem, Phrase remedy) {
+        tell(Severity::error, r.line, say("lint.of-rule", r.id), std::move(problem), std::move(remedy));
     };
     std::size_t banded = 0;
     for (const Criterion& c : rubric_.criteria)
@@ -362,32 +340,30 @@ void Linter::rule(const Rule& r) {
         for (const std::string& band : need.bands)
             if (std::none_of(rubric_.bands.begin(), rubric_.bands.end(),
                              [&](const BandName& n) { return n.id == band; }))
-                wrong(fmt::format("there is no band \"{}\"", band), "list it: [[band]]");
+                wrong(say("lint.unknown-band", band), say("lint.list-it"));
         for (const std::string& name : need.of) {
             const Criterion* c = rubric_.criterion(name);
             if (!c)
-                wrong(fmt::format("there is no criterion \"{}\"", name), "name one of the rubric's");
+                wrong(say("lint.unknown-criterion", name), say("lint.name-one"));
             else if (c->bands.empty())
-                wrong(fmt::format("criterion \"{}\" has no bands", name), "give it bands, or leave it out");
+                wrong(say("lint.no-bands", name), say("lint.bands-or-out"));
         }
         if (need.least && need.most && *need.least > *need.most)
-            wrong(fmt::format("at least {} and at most {} is never so", *need.least, *need.most),
-                  "least is the lesser");
+            wrong(say("lint.never", *need.least, *need.most), say("lint.least-lesser"));
         const std::size_t counted = need.of.empty() ? banded : need.of.size();
         if (need.least && static_cast<std::size_t>(*need.least) > counted)
-            wrong(fmt::format("at least {} of {} is never so", *need.least, counted), "ask for fewer");
+            wrong(say("lint.too-many", *need.least, counted), say("lint.fewer"));
         if (!need.rule.empty() && std::none_of(rubric_.rules.begin(), rubric_.rules.end(),
                                                [&](const Rule& other) { return other.id == need.rule; }))
-            wrong(fmt::format("there is no rule \"{}\"", need.rule), "name one of the rubric's");
+            wrong(say("lint.unknown-rule", need.rule), say("lint.name-one"));
     }
     if (r.elseAtMost && !(*r.elseAtMost >= 0.0 && *r.elseAtMost < 100.0))
-        wrong(fmt::format("else_at_most is {}", *r.elseAtMost), "it is in % of the greatest score, under 100");
+        wrong(say("lint.else-range", *r.elseAtMost), say("lint.under-100"));
     const bool isUsed = std::any_of(rubric_.rules.begin(), rubric_.rules.end(), [&](const Rule& other) {
         return std::any_of(other.needs.begin(), other.needs.end(), [&](const Condition& n) { return n.rule == r.id; });
     });
     if (!r.required && !r.elseAtMost && !isUsed)
-        tell(Severity::warning, r.line, "rule " + r.id, "it has no effect",
-             "give required = true or else_at_most = ...");
+        tell(Severity::warning, r.line, say("lint.of-rule", r.id), say("lint.no-effect"), say("lint.give-effect"));
 }
 
 void Linter::references() {
@@ -395,23 +371,21 @@ void Linter::references() {
     for (const Step& step : rubric_.steps)
         for (const std::string& name : step.criteria) {
             if (!rubric_.criterion(name))
-                tell(Severity::error, step.line, "step " + step.id, fmt::format("there is no criterion \"{}\"", name),
-                     "name one of the rubric's");
+                tell(Severity::error, step.line, say("lint.of-step", step.id), say("lint.unknown-criterion", name),
+                     say("lint.name-one"));
             else if (const auto [at, isNew] = stepOf.emplace(name, step.id); !isNew)
-                tell(Severity::error, step.line, "step " + step.id,
-                     fmt::format("criterion \"{}\" is in step \"{}\" already", name, at->second), "once is enough");
+                tell(Severity::error, step.line, say("lint.of-step", step.id), say("lint.step-twice", name, at->second),
+                     say("lint.once"));
         }
     std::map<std::string, std::vector<std::string>> voids, needs;
     for (const Criterion& c : rubric_.criteria) {
         if (!rubric_.steps.empty() && !stepOf.contains(c.id))
-            tell(Severity::warning, c, "it is in no step", "name it in a [[step]]");
+            tell(Severity::warning, c, say("lint.in-no-step"), say("lint.name-in-step"));
         for (const std::string& name : c.excludes)
             if (!rubric_.criterion(name))
-                tell(Severity::error, c, fmt::format("it excludes \"{}\", which is no criterion", name),
-                     "name one of the rubric's");
+                tell(Severity::error, c, say("lint.excludes-unknown", name), say("lint.name-one"));
         if (!c.excludes.empty() && !c.isGraded() && !c.critical)
-            tell(Severity::warning, c, "it can exclude nothing: it has neither points nor a critical error",
-                 "give one of them");
+            tell(Severity::warning, c, say("lint.excludes-nothing"), say("lint.give-one"));
         voids[c.id] = c.excludes;
     }
     for (const Rule& r : rubric_.rules) {
@@ -420,11 +394,9 @@ void Linter::references() {
             if (!need.rule.empty()) needs[r.id].push_back(need.rule);
     }
     if (const std::vector<std::string> circle = circleIn(voids); !circle.empty())
-        tell(Severity::error, 0, {},
-             fmt::format("criteria exclude each other in a circle: {}", fmt::join(circle, " -> ")), "break it");
+        tell(Severity::error, 0, {}, say("lint.circle", fmt::join(circle, " -> ")), say("lint.break-it"));
     if (const std::vector<std::string> circle = circleIn(needs); !circle.empty())
-        tell(Severity::error, 0, {}, fmt::format("rules need each other in a circle: {}", fmt::join(circle, " -> ")),
-             "break it");
+        tell(Severity::error, 0, {}, say("lint.rule-circle", fmt::join(circle, " -> ")), say("lint.break-it"));
 }
 
 void Linter::languages() {
@@ -450,15 +422,24 @@ void Linter::languages() {
         std::vector<std::string> missing;
         for (const auto& [what, texts] : all)
             if (!texts->empty() && !texts->contains(language)) missing.push_back(what);
-        if (!missing.empty())
-            tell(Severity::remark, 0, {}, fmt::format("not in \"{}\": {}", language, fmt::join(missing, ", ")));
+        if (!missing.empty()) {
+            tell(Severity::remark, 0, {}, say("lint.not-in", language, missing.size()));
+            findings_.back().finding.problem = fmt::format("not in \"{}\": {}", language, fmt::join(missing, ", "));
+        }
     }
 }
 
 }  // namespace
 
-std::vector<Finding> check(const Rubric& rubric) {
+std::vector<SaidFinding> lint(const Rubric& rubric) {
     return Linter(rubric).findings();
+}
+
+std::vector<Finding> check(const Rubric& rubric) {
+    std::vector<Finding> found;
+    for (SaidFinding& one : lint(rubric))
+        found.push_back(std::move(one.finding));
+    return found;
 }
 
 void requireSound(const Rubric& rubric) {

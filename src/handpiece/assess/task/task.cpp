@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "handpiece/assess/task/task.h"
+#include "handpiece/assess/task/target.h"
 
 #include <fmt/format.h>
 
@@ -218,27 +218,30 @@ std::uint64_t contentHash(const Task& task) {
     return hasher.value();
 }
 
+void requireTarget(const Task& task) {
+    if (!task.preparation) return;
+    const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
+    // Is there tooth in the target at all?
+    const core::Box& box = laid.zones->box();
+    constexpr int kSteps = 40;
+    for (int z = 0; z < kSteps; ++z)
+        for (int y = 0; y < kSteps; ++y)
+            for (int x = 0; x < kSteps; ++x) {
+                const core::Vec3 p =
+                    box.min + box.size().cwiseProduct((core::Vec3(x, y, z).array() + 0.5).matrix()) / kSteps;
+                if (laid.zones->at(p) == zones::Zone::target && laid.whole->signedDistance(p) < 0.0) return;
+            }
+    throw core::Error("the target holds nothing of the tooth", {}, "give other numbers or landmarks")
+        .as("target-empty");
+}
+
 std::vector<std::string> problems(const Task& task) {
-    std::vector<std::string> found;
-    if (!task.preparation) return found;
     try {
-        const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
-        // Is there tooth in the target at all?
-        const core::Box& box = laid.zones->box();
-        std::size_t inTarget = 0;
-        constexpr int kSteps = 40;
-        for (int z = 0; z < kSteps; ++z)
-            for (int y = 0; y < kSteps; ++y)
-                for (int x = 0; x < kSteps; ++x) {
-                    const core::Vec3 p =
-                        box.min + box.size().cwiseProduct((core::Vec3(x, y, z).array() + 0.5).matrix()) / kSteps;
-                    inTarget += laid.zones->at(p) == zones::Zone::target && laid.whole->signedDistance(p) < 0.0;
-                }
-        if (inTarget == 0) found.push_back("the target holds nothing of the tooth: give other numbers or landmarks");
+        requireTarget(task);
     } catch (const core::Error& error) {
-        found.push_back(error.what());
+        return {error.what()};
     }
-    return found;
+    return {};
 }
 
 }  // namespace handpiece::tasks

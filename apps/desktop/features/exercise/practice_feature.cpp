@@ -3,6 +3,7 @@
 
 #include <QDateTime>
 #include <QFileDialog>
+#include <QTimer>
 #include <map>
 #include <set>
 
@@ -49,7 +50,8 @@ PracticeFeature::PracticeFeature(const FeatureContext& context)
       result_(new ResultDialog(&window_)),
       progress_(new ProgressDialog(&window_)) {
     openDialogs();
-    tidyRecordings();
+    // Once those who tell of it are there.
+    QTimer::singleShot(0, this, &PracticeFeature::tidyRecordings);
     Commands& commands = window_.commands();
     on(commands_[Command::exercises], [this] {
         exercises_->show();

@@ -106,10 +106,6 @@ constexpr Row kRows[] = {
      QT_TRANSLATE_NOOP("Notices",
                        "Handed in: %1, with its tooth. Recordings in it: %2 (%3 MB). Recordings that are no longer "
                        "there, or too large together, and not in it: %4.")},
-    {Notice::recordingsDeleted, "recordings-deleted", Kind::hint,
-     QT_TRANSLATE_NOOP("Notices",
-                       "The oldest recordings were deleted (%1, %2 MB): all together have %3 MB at most. The best and "
-                       "the last of each exercise, and what was handed in, are kept.")},
     {Notice::otherEngine, "other-engine", Kind::warning,
      QT_TRANSLATE_NOOP(
          "Notices", "Recorded by engine revision %1; this program's is %2. What you see is cut again approximately."),

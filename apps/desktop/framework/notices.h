@@ -49,7 +49,6 @@ enum class Notice {
     helpLocked,
     handedIn,
     handedInPart,
-    recordingsDeleted,
     otherEngine,
     caseVanished,
     cacheRenewed,

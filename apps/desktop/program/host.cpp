@@ -17,13 +17,8 @@ namespace handpiece::desktop {
 namespace {
 
 /// Below what the person has chosen: the school's defaults; above it: the command line.
-Simulator::Options asAsked(Simulator::Options options, const CommandLine& line, const exercise::SchoolDefaults& school,
-                           const Settings& settings) {
-    constexpr double kLeastMb = 100.0, kMostMb = 1e7;
-    const double shelfMb = static_cast<double>(options.shelf.bytes >> 20);
-    options.shelf.bytes =
-        static_cast<std::uint64_t>(settings.number(QStringLiteral("recordings/megabytes"), shelfMb, kLeastMb, kMostMb))
-        << 20;
+Simulator::Options asAsked(Simulator::Options options, const CommandLine& line,
+                           const exercise::SchoolDefaults& school) {
     if (!line.inject.isEmpty()) options.hands.inject = line.inject.toStdString();
     options.hands.leftHanded = school.leftHanded;
     options.hands.scale = school.scale;
@@ -67,7 +62,7 @@ Host::Host(QApplication& application, const CommandLine& line, const Simulator::
       realTime_(options.realTime),
       school_(exercise::schoolDefaults()),
       settings_(options.folders.settingsFile),
-      simulator_(asAsked(options, line, school_, settings_)) {
+      simulator_(asAsked(options, line, school_)) {
     fillIn(settings_, school_);
     const QString theme = settings_.value(QStringLiteral("window/theme"), QStringLiteral("system")).toString();
     chooseAppearance(theme == QLatin1String("dark")    ? Appearance::dark

@@ -1480,10 +1480,6 @@
         <translation>この課題では使えません: %1。</translation>
     </message>
     <message>
-        <source>The oldest recordings were deleted (%1, %2 MB): all together have %3 MB at most. The best and the last of each exercise, and what was handed in, are kept.</source>
-        <translation>古い記録を削除しました（%1 件、%2 MB）。記録は全部で最大 %3 MB です。各課題の最高得点と最新の記録、提出した記録は残ります。</translation>
-    </message>
-    <message>
         <source>Handed in: %1, with its tooth. Recordings in it: %2 (%3 MB).</source>
         <translation>提出しました: %1（歯を含む）。含まれる記録: %2（%3 MB）。</translation>
     </message>

@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kHandedIn = ".handed-in";
-
 fs::path beside(const fs::path& session, const char* extension) {
     return fs::path(session).replace_extension(extension);
 }
@@ -143,13 +141,8 @@ void SessionShelf::settle(const fs::path& session) {
     fs::remove(beside(session, ".json"), error);
 }
 
-void SessionShelf::keepHandedIn(const std::string& name) {
-    const fs::path session = folder_ / name;
-    if (core::isThere(session)) core::writeFile(beside(session, kHandedIn), "", {.ownerOnly = true, .lasting = false});
-}
-
-std::vector<std::pair<std::string, std::uint64_t>> SessionShelf::tidy(const std::set<std::string>& kept) {
-    std::vector<std::pair<std::string, std::uint64_t>> removed;
+std::size_t SessionShelf::tidy() {
+    std::size_t kept = 0, removed = 0;
     std::uint64_t bytes = 0;
     std::error_code ignored;
     // Killed in the first instant, before anything was recorded.
@@ -163,19 +156,18 @@ std::vector<std::pair<std::string, std::uint64_t>> SessionShelf::tidy(const std:
     for (const fs::path& session : sessionsIn(folder_)) {
         std::error_code error;
         const std::uint64_t size = fs::file_size(session, error);
-        if (error) continue;
         const auto note = readNote(session);
         // A marker that says "saved" was left by a crash with nothing lost.
-        const bool holds = (note && (note->unsaved || isAlive(session))) || core::isThere(beside(session, kHandedIn)) ||
-                           kept.contains(session.filename().string());
-        bytes += size;
-        if (holds || bytes <= limits_.bytes) continue;
-        fs::remove(session, error);
-        if (error) continue;
-        bytes -= size;
-        removed.emplace_back(session.filename().string(), size);
-        for (const char* extension : {".json", ".lock"})
-            fs::remove(beside(session, extension), error);
+        const bool holds = note && (note->unsaved || isAlive(session));
+        if (!holds && (kept >= limits_.sessions || bytes + (error ? 0 : size) > limits_.bytes)) {
+            fs::remove(session, error);
+            if (!error) ++removed;
+            for (const char* extension : {".json", ".lock"})
+                fs::remove(beside(session, extension), error);
+            continue;
+        }
+        ++kept;
+        bytes += error ? 0 : size;
     }
     return removed;
 }

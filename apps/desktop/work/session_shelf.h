@@ -10,9 +10,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "desktop/work/documents.h"
@@ -42,7 +39,8 @@ struct Crashed {
 class SessionShelf {
   public:
     struct Limits {
-        std::uint64_t bytes = 4ull << 30;  ///< of all recordings
+        std::size_t sessions = 20;
+        std::uint64_t bytes = 2ull << 30;
     };
     explicit SessionShelf(std::filesystem::path folder);
     SessionShelf(std::filesystem::path folder, Limits limits);
@@ -67,11 +65,8 @@ class SessionShelf {
     [[nodiscard]] std::vector<Crashed> crashed() const;
     /// Its work is saved elsewhere by now, or given up: it becomes a recording like any other.
     void settle(const std::filesystem::path& session);
-    /// It was given to a teacher: tidy() never deletes it.
-    void keepHandedIn(const std::string& name);
-    /// Deletes the oldest recordings beyond the limit, never one with a marker, one that was handed in, or one of
-    /// `kept` (names of files). Returns names and bytes of those that went.
-    std::vector<std::pair<std::string, std::uint64_t>> tidy(const std::set<std::string>& kept = {});
+    /// Deletes the oldest recordings beyond the limits, never one with a marker. Returns how many.
+    std::size_t tidy();
 
   private:
     void take(const std::filesystem::path& session);

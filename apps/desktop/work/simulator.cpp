@@ -55,17 +55,7 @@ Simulator::Simulator(const Options& options, QObject* parent)
     if (options.sound) player_ = std::make_unique<sound::Player>();
     connect(&timer_, &QTimer::timeout, this, &Simulator::poll);
     timer_.setTimerType(Qt::PreciseTimer);
-}
-
-void Simulator::tidyRecordings(const std::set<std::string>& kept) {
-    const auto removed = shelf_.tidy(kept);
-    if (removed.empty()) return;
-    std::uint64_t bytes = 0;
-    for (const auto& [name, size] : removed)
-        bytes += size;
-    const auto megabytes = [](std::uint64_t n) { return QString::number(n >> 20); };
-    emit noticed(QStringLiteral("recordings-deleted"),
-                 {QString::number(removed.size()), megabytes(bytes), megabytes(options_.shelf.bytes)});
+    shelf_.tidy();
 }
 
 Simulator::~Simulator() {
@@ -255,6 +245,7 @@ void Simulator::close() {
     toothCase_.reset();
     tooth_.reset();
     unsaved_ = false;
+    shelf_.tidy();
     emit documentChanged();
     emit unsavedChanged(false);
 }

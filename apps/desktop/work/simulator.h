@@ -119,8 +119,6 @@ class Simulator : public QObject {
     void recover(const Crashed& crashed, std::function<void()> then = {});
     /// Gives up what a crash left behind; the recording itself stays for a while.
     void forget(const Crashed& crashed) { shelf_.settle(crashed.session); }
-    /// Deletes the oldest recordings beyond the shelf's limit, never one of these names; tells how many went.
-    void tidyRecordings(const std::set<std::string>& kept);
     void forget(const Finished& done) { shelf_.settle(done.work.session); }
     [[nodiscard]] const Folders& folders() const noexcept { return options_.folders; }
     void cancelJob();

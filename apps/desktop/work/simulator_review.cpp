@@ -76,12 +76,10 @@ void Simulator::handIn(const fs::path& path) {
                 packed->bytes += bytes.size();
             cases::writeAttempt(*attempt, path, toothCase.get(), std::move(files));
         },
-        [this, left, path, packed, attempt] {
+        [this, left, path, packed] {
             left->tooth.document.attemptFile = path;
             left->file.note.unsaved = false;
             emit saved(toQString(path));
-            for (const cases::Attempt::Recording& recording : attempt->recordings)
-                shelf_.keepHandedIn(recording.name);
             QStringList told{toQString(path.filename()), QString::number(packed->count),
                              QLocale().toString(static_cast<double>(packed->bytes) / (1 << 20), 'f', 1)};
             if (packed->leftOut > 0) told << QString::number(packed->leftOut);

@@ -3,9 +3,6 @@
 
 #include <QDateTime>
 #include <QFileDialog>
-#include <QTimer>
-#include <map>
-#include <set>
 
 #include "desktop/features/exercise/assessment_words.h"
 #include "desktop/features/exercise/exercises_dialog.h"
@@ -50,8 +47,6 @@ PracticeFeature::PracticeFeature(const FeatureContext& context)
       result_(new ResultDialog(&window_)),
       progress_(new ProgressDialog(&window_)) {
     openDialogs();
-    // Once those who tell of it are there.
-    QTimer::singleShot(0, this, &PracticeFeature::tidyRecordings);
     Commands& commands = window_.commands();
     on(commands_[Command::exercises], [this] {
         exercises_->show();
@@ -85,32 +80,6 @@ PracticeFeature::PracticeFeature(const FeatureContext& context)
         simulator_.openExercise(toPath(file));
         return true;
     });
-}
-
-void PracticeFeature::tidyRecordings() {
-    std::set<std::string> kept;
-    if (core::isThere(simulator_.folders().sessions.parent_path() / "results.db")) {
-        school::Store* results = store();
-        if (!results) return;  // what must stay is not known
-        try {
-            struct Two {
-                school::Attempt best, last;
-            };
-            std::map<std::string, Two> of;  // by exercise
-            for (const school::Attempt& attempt : results->attempts()) {
-                const auto [at, isNew] = of.emplace(attempt.exerciseHash, Two{attempt, attempt});
-                at->second.last = attempt;
-                if (attempt.isWhole() && attempt.percent() >= at->second.best.percent()) at->second.best = attempt;
-            }
-            for (const auto& [exercise, two] : of)
-                for (const school::Attempt* attempt : {&two.best, &two.last})
-                    kept.insert(attempt->recordings.begin(), attempt->recordings.end());
-        } catch (const core::Error& error) {
-            window_.showProblem(problemOf(error));
-            return;
-        }
-    }
-    simulator_.tidyRecordings(kept);
 }
 
 void PracticeFeature::openDialogs() {

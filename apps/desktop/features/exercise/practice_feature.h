@@ -28,8 +28,6 @@ class PracticeFeature : public Feature {
     [[nodiscard]] school::Store* store();
 
   private:
-    /// Beyond what the recordings may take, the oldest go: never the best and the last of an exercise.
-    void tidyRecordings();
     void openDialogs();
     void begin(const std::filesystem::path& path);
     void take(const Simulator::Finished& done);

@@ -162,7 +162,14 @@ class Score(SystemTest):
         self.assertEqual(last["state_hash"], both["state_hash"])
         (self.folder / "gap").mkdir()
         shutil.copy(second, self.folder / "gap" / "a.h5")
-        self.refused("score", self.folder / "gap", "--exercise", exercise, mentions=("a.h5", "one is missing"))
+        # One is missing: scored as the last leaves it, told, and not proven.
+        told = self.ok("score", self.folder / "gap", "--exercise", exercise).stdout
+        self.assertIn("not proven: a.h5 goes on from a tooth that no other session here leaves", told)
+        self.assertEqual(self.score(self.folder / "gap", exercise)["state_hash"], both["state_hash"])
+        # Two works are none.
+        shutil.copy(first, self.folder / "gap" / "b.h5")
+        shutil.copy(first, self.folder / "gap" / "c.h5")
+        self.refused("score", self.folder / "gap", "--exercise", exercise, mentions=("c.h5", "several works"))
 
         # A class: a session, a chain, an attempt, a damaged session, things that are no work.
         shutil.copy(first, work / "anna.h5")

@@ -22,7 +22,7 @@ using preparation::Recipe;
 const cases::Tooth& toothOf(int fdi) {
     static std::map<int, cases::Tooth> made;
     const auto [at, isNew] = made.try_emplace(fdi);
-    if (isNew) at->second = dentition::makeTooth(fdi, {1, 25.0}, {3000, 1500});
+    if (isNew) at->second = dentition::makeTooth(fdi, {1, 25.0}, {4000, 2000});
     return at->second;
 }
 Recipe recipeOf(std::string_view preparation, const std::string& side = {}) {

@@ -220,6 +220,20 @@ TEST_F(Block, zonesCountersIsthmusAndANickedNeighbour) {
     EXPECT_NEAR(*take(p, "removed", target).value, 0.5 * all, 0.01 * all);
     EXPECT_NEAR(*take(p, "removed-share", target).value, 100.0 * all / 2.0 / zones::zoneVolumes(half, *cut).targetMm3(),
                 0.5);
+    // Of a leeway of 0.4 mm beside it, 0.4 mm of the cavity's length.
+    const zones::Zones with(
+        [](const Vec3& q) {
+            return zones::PastTarget{body_.inGrid.applyInverse(q).x(), -zones::kFarMm};
+        },
+        body_.model->tree.bounds().grown(20.0), {0.4, 0.4});
+    p.zones = &with;
+    target.zone = "leeway-side";
+    const double beside = *take(p, "removed", target).value;
+    EXPECT_NEAR(beside, 0.4 * box.depthMm * (box.widthMm + box.depthMm * std::tan(6.0 * test::kRad)), 0.02 * beside);
+    EXPECT_NEAR(*take(p, "removed-share", target).value, 100.0 * beside / (0.4 * 5.0 * 3.5), 0.1);
+    target.zone = "leeway-floor";
+    EXPECT_NE(take(p, "removed-share", target).reason.find("none of it"), std::string::npos);
+    p.zones = &half;
     target.zone = "container";
     EXPECT_NEAR(*take(p, "removed", target).value, 0.5 * all, 0.01 * all);
     EXPECT_FALSE(take(p, "removed-share", target).value);

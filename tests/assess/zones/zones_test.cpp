@@ -107,6 +107,9 @@ TEST_P(VolumesByZone, AreThoseOfTheClosedForm) {
         EXPECT_NEAR(v.removedMm3(Zone::leewayFloor), floor, 0.005 * all);
         EXPECT_NEAR(v.removedMm3(Zone::container), below, 0.005 * all);
         EXPECT_NEAR(v.removedMm3(Zone::target), whole, 0.005 * all);
+        const double beside = (areaOf(0.8) - areaOf(0.6)) * 1.75;
+        EXPECT_NEAR(tooth::sumOf(v.whole[1]), beside, 0.005 * beside) << "that there is of the leeway at the sides";
+        EXPECT_NEAR(tooth::sumOf(v.whole[2]), floor, 0.005 * floor) << "and under the floor";
         const tooth::TissueVolumes left = tooth::integrateVolumes(*model, [&](std::uint32_t dense) -> const float* {
             static thread_local std::array<float, field::kBrickValues> scratch;
             return mirror.isChanged(dense) ? mirror.values(dense, scratch.data()) : nullptr;

@@ -22,33 +22,38 @@ ListTable::ListTable(const char* name, const QString& title, Hooks hooks, Change
     table_ = named(new QTableWidget(this), name, title);
     table_->verticalHeader()->setDefaultSectionSize(26);
     table_->setSelectionBehavior(QAbstractItemView::SelectRows);
-    const auto button = [&](const QString& text, const char* suffix, const std::function<void()>& asked) {
-        auto* made = named(new QPushButton(text, this), "", title + QStringLiteral(": ") + text);
+    const auto button = [&](const QString& sign, const QString& words, const char* suffix,
+                            const std::function<void()>& asked) {
+        auto* made = named(new QPushButton(sign, this), "", title + QStringLiteral(": ") + words, words);
         made->setObjectName(QLatin1String(name) + QLatin1String(suffix));
+        made->setFixedWidth(30);
+        made->setAutoDefault(false);
         connect(made, &QPushButton::clicked, this, asked);
         above->addWidget(made);
         buttons_.push_back(made);
     };
-    const auto change_of = [this](const std::function<void(rubric::Rubric&)>& how) {
+    const auto changed = [this](const std::function<void(rubric::Rubric&)>& how) {
         unread_.clear();
         change_(how);
     };
-    if (hooks_.add) button(tr("Add"), "Add", [this, change_of] { change_of(hooks_.add); });
+    if (hooks_.add) button(QStringLiteral("+"), tr("Add"), "Add", [this, changed] { changed(hooks_.add); });
     if (hooks_.remove)
-        button(tr("Remove"), "Remove", [this, change_of] {
+        button(QStringLiteral("\u2212"), tr("Remove"), "Remove", [this, changed] {
             const int row = table_->currentRow();
-            if (row >= 0) change_of([&](rubric::Rubric& r) { hooks_.remove(r, static_cast<std::size_t>(row)); });
+            if (row >= 0) changed([&](rubric::Rubric& r) { hooks_.remove(r, static_cast<std::size_t>(row)); });
         });
     if (hooks_.swap)
         for (const int by : {-1, 1})
-            button(by < 0 ? tr("Up") : tr("Down"), by < 0 ? "Up" : "Down", [this, change_of, by] {
-                const int row = table_->currentRow(), other = row + by;
-                if (row < 0 || other < 0 || other >= table_->rowCount()) return;
-                change_of([&](rubric::Rubric& r) {
-                    hooks_.swap(r, static_cast<std::size_t>(row), static_cast<std::size_t>(other));
-                });
-                table_->setCurrentCell(other, 0);
-            });
+            button(by < 0 ? QStringLiteral("\u2191") : QStringLiteral("\u2193"), by < 0 ? tr("Up") : tr("Down"),
+                   by < 0 ? "Up" : "Down", [this, changed, by] {
+                       const int row = table_->currentRow(), other = row + by;
+                       if (row < 0 || other < 0 || other >= table_->rowCount()) return;
+                       changed([&](rubric::Rubric& r) {
+                           hooks_.swap(r, static_cast<std::size_t>(row), static_cast<std::size_t>(other));
+                       });
+                       table_->setCurrentCell(other, 0);
+                   });
+    table_->setMinimumHeight(60);
     column->addLayout(above);
     column->addWidget(table_, 1);
     connect(table_, &QTableWidget::cellChanged, this, &ListTable::takeCell);

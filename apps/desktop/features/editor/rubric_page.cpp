@@ -62,6 +62,8 @@ RubricPage::RubricPage(Change change) : EditorPage(std::move(change)) {
     auto* column = new QVBoxLayout(this);
     auto* above = new QHBoxLayout;
     shipped_ = named(new QComboBox(this), "editorShipped", tr("A rubric that comes along"));
+    shipped_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    shipped_->setMinimumContentsLength(20);
     const std::string language = QLocale().bcp47Name().toStdString();
     for (const std::string& name : rubric::shippedRubrics()) {
         const rubric::Rubric one = rubric::shippedRubric(name);
@@ -84,6 +86,7 @@ RubricPage::RubricPage(Change change) : EditorPage(std::move(change)) {
     column->addWidget(tabs_, 1);
     whole_ = note({}, this, "editorRubricNote");
     whole_->setTextFormat(Qt::PlainText);
+    whole_->setMaximumHeight(32);  // the list under the pages has all of it
     column->addWidget(whole_);
 
     connect(take, &QPushButton::clicked, this, [this] {
@@ -562,7 +565,8 @@ void RubricPage::show(const Content& content) {
     const std::optional<double> passMark = content.rubric ? content.rubric->passMark : std::nullopt;
     hasMark_->setChecked(passMark.has_value());
     mark_->setEnabled(passMark.has_value());
-    if (passMark && std::abs(mark_->value() - *passMark) > 0.05) mark_->setValue(*passMark);
+    const double mark = passMark.value_or(mark_->value());
+    if (std::abs(mark_->value() - mark) > 0.05) mark_->setValue(mark);
     showing_ = false;
     if (count > 0 && table_->currentRow() < 0) table_->setCurrentCell(0, kId);
     showDetails();

@@ -34,11 +34,12 @@ Amount amountOf(CutTooth& tooth, const Selection& of, bool withWhole) {
         if (p.zones == nullptr || name == zones::kZoneNames.end())
             return {0.0, 0.0, "the task has no zone \"" + of.zone + "\""};
         const zones::ZoneVolumes volumes = zones::zoneVolumes(*p.zones, *p.cut);
-        amount.removed = sumOf(volumes.removed[static_cast<std::size_t>(name - zones::kZoneNames.begin())]);
+        const auto zone = static_cast<std::size_t>(name - zones::kZoneNames.begin());
+        amount.removed = sumOf(volumes.removed[zone]);
         if (!withWhole) return amount;
-        if (name != zones::kZoneNames.begin())
-            return {0.0, 0.0, "only of the target is it known how much there was: ask for mm3"};
-        amount.whole = sumOf(volumes.target);
+        if (zone >= volumes.whole.size())
+            return {0.0, 0.0, "only of target and leeway is it known how much there was: ask for mm3"};
+        amount.whole = sumOf(volumes.whole[zone]);
         return amount;
     }
     if (p.removedMm3)

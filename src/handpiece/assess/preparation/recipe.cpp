@@ -39,7 +39,7 @@ constexpr std::array kCrown{
     Parameter{"occlusal_mm", 1.5, 0.3, 3.0, "reduction on top"},
     Parameter{"margin_mm", 0.5, 0.2, 2.0, "width of the margin"},
     Parameter{"convergence_deg", 12.0, 0.0, 40.0, "total, of opposite walls"},
-    Parameter{"over_cervix_mm", 0.75, 0.0, 4.0, "from the cemento-enamel junction to the margin"}};
+    Parameter{"over_cervix_mm", 0.95, 0.0, 4.0, "from the cemento-enamel junction to the margin"}};
 constexpr std::array kAccess{
     Parameter{"round_mm", 0.6, 0.2, 2.0, "outline round horns and orifices"},
     Parameter{"wall_deg", 2.0, -5.0, 20.0, "of each wall against the path of draw"},

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <span>
 
 #include "handpiece/base/core/error.h"
@@ -84,13 +85,16 @@ Task parse(std::string_view text, const std::string& where) {
 
 /// The shortest number of micrometres that is read as this voxel again, bit for bit: 51 um are no 1000 times .051.
 std::string micrometres(double voxelMm) {
+    const double near = 1e3 * voxelMm;
     std::string text;
-    for (int digits = 3; digits <= 17; ++digits) {
-        text = fmt::format("{:.{}g}", 1e3 * voxelMm, digits);
-        double read = 0.0;
-        std::from_chars(text.data(), text.data() + text.size(), read);
-        if (1e-3 * read == voxelMm) break;
-    }
+    for (int digits = 3; digits <= 17; ++digits)
+        // A thousand times it may lie a bit beside the number that it was read from.
+        for (const double um : {near, std::nextafter(near, 0.0), std::nextafter(near, 1e9)}) {
+            text = fmt::format("{:.{}g}", um, digits);
+            double read = 0.0;
+            std::from_chars(text.data(), text.data() + text.size(), read);
+            if (1e-3 * read == voxelMm) return text;
+        }
     return text;
 }
 

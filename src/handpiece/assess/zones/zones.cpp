@@ -87,7 +87,7 @@ double ZoneVolumes::removedMm3(Zone zone) const {
 }
 
 double ZoneVolumes::targetMm3() const {
-    return tooth::sumOf(target);
+    return tooth::sumOf(whole[static_cast<std::size_t>(Zone::target)]);
 }
 
 ZoneVolumes zoneVolumes(const Zones& zones, const tooth::ToothMirror& cut) {
@@ -96,6 +96,7 @@ ZoneVolumes zoneVolumes(const Zones& zones, const tooth::ToothMirror& cut) {
     const auto inverseVoxel = static_cast<float>(view.inverseVoxelMm);
     const double voxelMm3 = view.voxelMm * view.voxelMm * view.voxelMm;
     const auto perLayer = static_cast<std::uint32_t>(view.bricks[0]) * static_cast<std::uint32_t>(view.bricks[1]);
+    const double reachMm = view.voxelMm + std::max(zones.leeway().sideMm, zones.leeway().floorMm);
     std::vector<ZoneVolumes> layers(static_cast<std::size_t>(view.bricks[2]));
     core::parallelFor(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
         std::array<float, field::kBrickValues> uncut, scratch;
@@ -104,7 +105,7 @@ ZoneVolumes zoneVolumes(const Zones& zones, const tooth::ToothMirror& cut) {
                 const std::uint32_t dense = static_cast<std::uint32_t>(layer) * perLayer + i;
                 if (view.brickIndex[dense] < 0 && view.coarse[dense] >= 0.0f) continue;
                 const bool isChanged = cut.isChanged(dense);
-                if (!isChanged && !isNear(view, dense, zones.box(), view.voxelMm)) continue;
+                if (!isChanged && !isNear(view, dense, zones.box(), reachMm)) continue;
                 model.uncutBrick(dense, uncut.data());
                 const float* now = isChanged ? cut.values(dense, scratch.data()) : uncut.data();
                 const std::uint8_t* tissues = model.field.storage().tissues->of(dense);
@@ -122,16 +123,22 @@ ZoneVolumes zoneVolumes(const Zones& zones, const tooth::ToothMirror& cut) {
                                     tooth::occupancy(static_cast<float>(distanceMm), inverseVoxel));
                             };
                             const Zones::Distances d = zones.distancesMm(p);
-                            layers[layer].target[tissues[at]] += share(std::max({whole, d.target, -d.kept})) * voxelMm3;
-                            if (!(gone > 0.0f)) continue;
                             // Each of these holds the one before, so what lies between two of them is told right even
-                            // where the cut runs along a border.
-                            const double removed = std::max(whole, -static_cast<double>(now[at]));
-                            const double free = std::max(removed, -d.kept);
-                            const double inTarget = share(std::max(free, d.target)),
-                                         underIt = share(std::max({free, d.allowed, d.wall})),
-                                         allowed = share(std::max(free, d.allowed)), notKept = share(free),
-                                         all = share(removed);
+                            // where a surface runs along a border.
+                            const auto nested = [&](double inside) {
+                                const double free = std::max(inside, -d.kept);
+                                return std::array{share(std::max(free, d.target)),
+                                                  share(std::max({free, d.allowed, d.wall})),
+                                                  share(std::max(free, d.allowed)), share(free), share(inside)};
+                            };
+                            const auto [wholeTarget, wholeUnder, wholeAllowed, wholeFree, wholeAll] = nested(whole);
+                            const std::array<double, 3> wholes = {wholeTarget, wholeAllowed - wholeUnder,
+                                                                  wholeUnder - wholeTarget};
+                            for (std::size_t k = 0; k < wholes.size(); ++k)
+                                layers[layer].whole[k][tissues[at]] += wholes[k] * voxelMm3;
+                            if (!(gone > 0.0f)) continue;
+                            const auto [inTarget, underIt, allowed, notKept, all] =
+                                nested(std::max(whole, -static_cast<double>(now[at])));
                             const std::array<double, kZoneCount> shares = {
                                 inTarget, allowed - underIt, underIt - inTarget, all - notKept, notKept - allowed};
                             for (std::size_t k = 0; k < kZoneCount; ++k)
@@ -145,7 +152,8 @@ ZoneVolumes zoneVolumes(const Zones& zones, const tooth::ToothMirror& cut) {
         for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
             for (std::size_t k = 0; k < kZoneCount; ++k)
                 total.removed[k][t] += layer.removed[k][t];
-            total.target[t] += layer.target[t];
+            for (std::size_t k = 0; k < total.whole.size(); ++k)
+                total.whole[k][t] += layer.whole[k][t];
         }
     return total;
 }

@@ -85,7 +85,8 @@ class Zones {
 /// By zone and tissue [mm3].
 struct ZoneVolumes {
     std::array<tooth::TissueVolumes, kZoneCount> removed{};  ///< sums to what the field has lost, to rounding
-    tooth::TissueVolumes target{};                           ///< that the uncut tooth has in the target
+    /// That the uncut tooth has in the target, its side and its floor's leeway; of the others it is not summed.
+    std::array<tooth::TissueVolumes, 3> whole{};
     [[nodiscard]] double removedMm3(Zone zone) const;
     [[nodiscard]] double targetMm3() const;
 };

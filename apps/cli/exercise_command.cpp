@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/inputs.h"
+#include "handpiece/app/course/finished_work.h"
 #include "handpiece/app/course/shipped_exercises.h"
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/assess/rubric/rubric.h"
@@ -29,6 +31,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 struct ExerciseOptions {
+    std::string exercise, student, words;
+    double expected = -1.0;  // not said
     std::string path, out, caseFile, preparation, side, rubric, id, title, instructions, bur;
     std::vector<std::string> set;  // NAME=NUMBER
     bool noRubric = false;
@@ -84,6 +88,19 @@ preparation::Recipe recipeOf(const ExerciseOptions& o, const std::string& id) {
     return preparation::readRecipe(*config::Table::parse(toml, "the command line").table("preparation"));
 }
 
+/// What it is like to work on, for people who choose.
+void describe(Json& json, const std::string& level, const std::optional<double>& minutes,
+              const std::optional<cases::Exercise>& exercise) {
+    json["level"] = level.empty() ? Json(nullptr) : Json(level);
+    json["minutes"] = minutes ? Json(*minutes) : Json(nullptr);
+    const cases::Exercise e = exercise.value_or(cases::Exercise{});
+    json["title"] = exercise ? Json(e.title) : Json(nullptr);
+    json["instructions"] = exercise ? Json(e.instructions) : Json(nullptr);
+    json["bur"] = e.bur.empty() ? Json(nullptr) : Json(e.bur);
+    json["allowed_burs"] = e.allowedBurs;
+    json["locked_helps"] = e.lockedHelps;
+}
+
 Json toJson(const tasks::Task& task) {
     Json json{{"id", task.id},
               {"version", task.version},
@@ -91,13 +108,20 @@ Json toJson(const tasks::Task& task) {
               {"case", task.toothCase.name},
               {"fdi", task.toothCase.fdiNumber},
               {"voxel_um", 1e3 * task.voxelMm},
-              {"minutes", nullptr},
               {"preparation", nullptr},
-              {"rubric", !task.rubric.empty()},
-              {"title", nullptr}};
-    if (task.minutes) json["minutes"] = *task.minutes;
+              {"rubric", !task.rubric.empty()}};
     if (task.preparation) json["preparation"] = task.preparation->preparation;
-    if (task.toothCase.exercise) json["title"] = task.toothCase.exercise->title;
+    describe(json, task.level, task.minutes, task.toothCase.exercise);
+    return json;
+}
+
+Json toJson(const course::Shipped& shipped) {
+    Json json{{"id", shipped.id},
+              {"number", shipped.number == 0 ? Json(nullptr) : Json(shipped.number)},
+              {"fdi", shipped.fdi == 0 ? Json(nullptr) : Json(shipped.fdi)},
+              {"neighbours", shipped.hasNeighbours},
+              {"preparation", shipped.preparation}};
+    describe(json, shipped.level, shipped.minutes, shipped.exercise);
     return json;
 }
 
@@ -105,7 +129,33 @@ void print(const Json& json) {
     fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
+/// One line of what it is, and what it asks under it.
+void printRow(const std::string& name, const Json& one) {
+    const auto text = [&one](const char* key) {
+        return one[key].is_object() ? one[key].value("en", std::string()) : std::string();
+    };
+    std::vector<std::string> about{text("title")};
+    if (about.front().empty()) about.front() = one["id"].get<std::string>();
+    if (one["level"].is_string()) about.push_back(one["level"].get<std::string>());
+    if (one["minutes"].is_number()) about.push_back(fmt::format("{:g} min", one["minutes"].get<double>()));
+    if (one["bur"].is_string()) about.push_back(fmt::format("bur {}", one["bur"].get<std::string>()));
+    for (const Json& help : one["locked_helps"])
+        about.push_back(fmt::format("locked: {}", help.get<std::string>()));
+    fmt::print("{}: {}\n", name, fmt::join(about, ", "));
+    if (const std::string asks = text("instructions"); !asks.empty()) fmt::print("    {}\n", asks);
+}
+
+void listShipped(const ExerciseOptions& o) {
+    Json all = Json::array();
+    for (const course::Shipped& shipped : course::shippedExercises())
+        all.push_back(toJson(shipped));
+    if (o.json) return print(all);
+    for (const Json& one : all)
+        printRow(one["id"].get<std::string>(), one);
+}
+
 void list(const ExerciseOptions& o) {
+    if (o.path.empty()) return listShipped(o);
     Json all = Json::array();
     for (const course::Found& found : course::exercisesIn(o.path)) {
         // One bad file hides no other; it is told in its place.
@@ -118,9 +168,7 @@ void list(const ExerciseOptions& o) {
         if (one.contains("error"))
             fmt::print("{}: {}\n", one["file"].get<std::string>(), one["error"].get<std::string>());
         else
-            fmt::print("{}: {} version {}, {}{}\n", one["file"].get<std::string>(), one["id"].get<std::string>(),
-                       one["version"].get<std::int64_t>(), one["case"].get<std::string>(),
-                       one["preparation"].is_null() ? "" : ", " + one["preparation"].get<std::string>());
+            printRow(one["file"].get<std::string>(), one);
     if (all.empty()) fmt::print("{}: no exercises\n", o.path);
 }
 
@@ -149,7 +197,7 @@ void makeNew(const ExerciseOptions& o) {
 }
 
 void check(const ExerciseOptions& o) {
-    const tasks::Task task = tasks::readTask(o.path);
+    const tasks::Task task = exerciseOf(o.path).task;
     const std::vector<std::string> wrong = tasks::problems(task);
     if (o.json) {
         Json json = toJson(task);
@@ -165,7 +213,7 @@ void check(const ExerciseOptions& o) {
 
 /// The tooth as it should be, as an attempt of the exercise's case.
 void ideal(const ExerciseOptions& o) {
-    const tasks::Task task = tasks::readTask(o.path);
+    const auto [path, task] = exerciseOf(o.path);
     if (!task.preparation)
         throw core::Error("this exercise asks for no preparation", o.path, "add [preparation] to exercise.toml");
     simulation::SimulationSettings settings;
@@ -178,7 +226,6 @@ void ideal(const ExerciseOptions& o) {
     const tooth::StateDelta state = zones::idealState(*laid.zones, station.tooth);
     cases::Attempt attempt;
     std::error_code ec;
-    const fs::path path(o.path);
     attempt.caseFile = fs::absolute(fs::is_directory(path, ec) ? path / "case" : path);
     attempt.caseKey = cases::contentKey(task.toothCase);
     attempt.caseName = task.toothCase.name;
@@ -191,6 +238,20 @@ void ideal(const ExerciseOptions& o) {
     attempt.drive = "turbine";
     cases::writeAttempt(attempt, o.out);
     fmt::print("{}: {:.2f} mm3 gone\n", o.out, tooth::sumOf(state.removedMm3.own));
+}
+
+/// A finished piece of work as one file for a teacher.
+void handIn(const ExerciseOptions& o) {
+    const auto task = std::make_shared<const tasks::Task>(exerciseOf(o.exercise).task);
+    studies::ProgressBar bar("cutting it again");
+    const course::FinishedWork done = course::judged(o.path, task, bar.listener());
+    bar.finish();
+    const std::optional<double> expected = o.expected < 0.0 ? std::nullopt : std::optional(o.expected);
+    course::handIn(done, {o.student, expected, o.words}, o.out);
+    fmt::print("{}: exercise {}, hash {}, {} sessions, {}; {:.1f} of {:.1f} points here\n", o.out, task->id,
+               done.result.identity.exerciseHash, done.work.recordings.size(),
+               done.result.identity.proven ? "proven" : "not proven", done.result.assessment.score,
+               done.result.assessment.maxScore);
 }
 
 void trials(const ExerciseOptions& o) {
@@ -217,6 +278,20 @@ void makeBlock(const ExerciseOptions& o) {
     write(task, o.out);
 }
 
+void addHandInCommand(Command& exercise, const std::shared_ptr<ExerciseOptions>& options) {
+    ExerciseOptions& o = *options;
+    Command hand = exercise.subcommand("hand-in", "Work on an exercise as one file for a teacher");
+    hand.option("WORK", o.path, "a session (.h5), a folder with all sessions of it, or an attempt").required();
+    hand.option("--exercise", o.exercise, "folder, .handpiece file, or id of one that comes along").required();
+    hand.option("--student", o.student, "a code, never a name");
+    hand.option("--expected", o.expected, "what the student expects [%]").check(range(0.0, 100.0));
+    hand.option("--words", o.words, "and says of it");
+    hand.option("--out", o.out, "file that ends in .handpiece").required();
+    hand.footer(
+        "Example:\n  handpiece exercise hand-in cut/session.h5 --exercise 46-class-i --student A7 --out a7.handpiece");
+    hand.callback([options] { handIn(*options); });
+}
+
 }  // namespace
 
 void addExerciseCommand(Command& app) {
@@ -224,12 +299,13 @@ void addExerciseCommand(Command& app) {
     exercise.requireSubcommand();
     exercise.footer(
         "Examples:\n  handpiece exercise new --case molar --preparation class-one --id class-one-46 --out class-one\n"
-        "  handpiece exercise check class-one\n  handpiece exercise pack class-one class-one.handpiece");
+        "  handpiece exercise check class-one\n  handpiece exercise pack class-one class-one.handpiece\n"
+        "  handpiece exercise list\n  handpiece exercise pack 46-class-ii-mo class-two.handpiece");
     const auto options = std::make_shared<ExerciseOptions>();
     ExerciseOptions& o = *options;
 
-    Command listing = exercise.subcommand("list", "The exercises of a folder");
-    listing.option("FOLDER", o.path, "with folders and .handpiece files in it").required();
+    Command listing = exercise.subcommand("list", "The exercises that come along, or those of a folder");
+    listing.option("FOLDER", o.path, "with folders and .handpiece files in it; none: those that come along");
     listing.flag("--json", o.json, "as JSON");
     listing.callback([options] { list(*options); });
 
@@ -255,12 +331,12 @@ void addExerciseCommand(Command& app) {
     make.callback([options] { makeNew(*options); });
 
     Command checking = exercise.subcommand("check", "What is wrong with an exercise; exit code 1 if anything is");
-    checking.option("EXERCISE", o.path, "folder or .handpiece file").required();
+    checking.option("EXERCISE", o.path, "folder, .handpiece file, or id of one that comes along").required();
     checking.flag("--json", o.json, "as JSON");
     checking.callback([options] { check(*options); });
 
     Command asked = exercise.subcommand("ideal", "The tooth as the exercise asks for it, as an attempt to look at");
-    asked.option("EXERCISE", o.path, "folder or .handpiece file").required();
+    asked.option("EXERCISE", o.path, "folder, .handpiece file, or id of one that comes along").required();
     asked.option("--out", o.out, "folder").required();
     asked.callback([options] { ideal(*options); });
 
@@ -281,9 +357,10 @@ void addExerciseCommand(Command& app) {
     trying.callback([options] { trials(*options); });
 
     Command pack = exercise.subcommand("pack", "An exercise as one file, or back into a folder");
-    pack.option("EXERCISE", o.path, "folder or .handpiece file").required();
+    pack.option("EXERCISE", o.path, "folder, .handpiece file, or id of one that comes along").required();
     pack.option("OUT", o.out, "file that ends in .handpiece, or folder").required();
-    pack.callback([options] { write(tasks::readTask(options->path), options->out); });
+    addHandInCommand(exercise, options);
+    pack.callback([options] { write(exerciseOf(options->path).task, options->out); });
 }
 
 void addMakeBlockCommand(Command& make) {

@@ -4,12 +4,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/inspect.h"
+#include "handpiece/model/field/field_cache.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/tick/contact/hull/hull_method.h"
 #include "studies/progress_bar.h"
@@ -99,6 +102,19 @@ double BurInput::mmPerUnit() const {
 
 std::shared_ptr<const instrument::Bur> loadBur(const BurInput& bur) {
     return instrument::makeInstrument(bur.name, {}, {}, bur.mmPerUnit()).bur;
+}
+
+course::Made exerciseOf(const std::string& given) {
+    const auto& shipped = course::shippedExercises();
+    const bool comesAlong = std::any_of(shipped.begin(), shipped.end(), [&](const auto& s) { return s.id == given; });
+    if (core::isThere(given) || !comesAlong) return {given, tasks::readTask(given)};
+    const fs::path cache = field::userCacheFolder();
+    if (cache.empty())
+        throw core::Error("there is no folder to make this exercise in", given, "set XDG_CACHE_HOME or HOME");
+    studies::ProgressBar bar("making the exercise");
+    course::Made made = course::makeShipped(given, cache / "starter", bar.listener());
+    bar.finish();
+    return made;
 }
 
 std::unique_ptr<contact::Method> makeMethod(const std::string& name, const MethodRegistry& extra,

@@ -8,6 +8,7 @@
 
 #include "cli/cli.h"
 #include "cli/command.h"
+#include "handpiece/app/course/shipped_exercises.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/tick/contact/field_method.h"
 
@@ -56,6 +57,9 @@ void addContactOptions(Command& command, ContactInputs& inputs, const MethodRegi
 [[nodiscard]] std::shared_ptr<const tooth::ToothModel> loadTooth(const ContactInputs& inputs);
 /// A name of the catalogue, SHAPE:DxL, or a mesh file.
 [[nodiscard]] std::shared_ptr<const instrument::Bur> loadBur(const BurInput& bur);
+/// An exercise's folder or .handpiece file, or the id of one that comes along: that is made first, in the user's cache
+/// folder, with a progress bar. Throws core::Error.
+[[nodiscard]] course::Made exerciseOf(const std::string& given);
 /// By name: field, hull or a registered one; throws core::Error naming those there are.
 [[nodiscard]] std::unique_ptr<contact::Method> makeMethod(const std::string& name, const MethodRegistry& extra,
                                                           std::shared_ptr<const tooth::ToothModel> tooth,

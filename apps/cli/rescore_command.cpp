@@ -24,7 +24,7 @@ void rescore(const RescoreOptions& o) {
     const rubric::Rubric judged = rubric::rubricByNameOrFile(o.rubric);
     rubric::requireSound(judged);
     const std::optional<tasks::Task> task =
-        o.exercise.empty() ? std::nullopt : std::optional(tasks::readTask(o.exercise));
+        o.exercise.empty() ? std::nullopt : std::optional(exerciseOf(o.exercise).task);
     const std::vector<std::filesystem::path> works = assessment::worksIn(o.folder);
     const assessment::MeasureStore store = o.anew ? assessment::MeasureStore({}) : assessment::MeasureStore::usual();
     studies::ProgressBar bar("scoring");

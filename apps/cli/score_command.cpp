@@ -17,6 +17,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/model/case/attempt.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::cli {
@@ -43,6 +44,19 @@ void tell(const assessment::Result& result) {
     fmt::print("{:.1f} of {:.1f} points ({:.1f} to {:.1f}); passed: {}{}\n", a.score, a.maxScore, a.leastScore,
                a.mostScore, score::nameOf(a.passed), a.why.empty() ? "" : ", " + a.why);
     fmt::print("{}: {}\n", result.identity.proven ? "proven" : "not proven", result.proof);
+}
+
+/// For which exercise it was handed in, and what its student expected.
+void tellHandIn(const ScoreOptions& o, const assessment::Result& result) {
+    if (!cases::isPackageName(o.work)) return;
+    const std::optional<cases::Attempt::HandIn> in = cases::readAttempt(o.work).handIn;
+    if (!in) return;
+    const bool isThis = in->exerciseHash == result.identity.exerciseHash;
+    fmt::print("handed in for exercise {} version {}{}\n", in->exercise, in->version,
+               isThis ? "" : fmt::format(" (hash {}), which is not the one that it is held against", in->exerciseHash));
+    if (in->expectedPercent)
+        fmt::print("its student expected {:g} %{}\n", *in->expectedPercent,
+                   in->expectedWords.empty() ? "" : ": " + in->expectedWords);
 }
 
 /// The page of a class, of results that are there.
@@ -106,8 +120,10 @@ void run(const ScoreOptions& o) {
     core::setThreadCount(o.threads);
     if (!o.classFolder.empty()) return runClass(o);
     if (o.work.empty()) throw core::Error("there is no work to judge", "score", "name a session, an attempt or a scan");
-    if (o.exercise.empty()) throw core::Error("which exercise is it?", "--exercise", "name its folder or file");
-    const tasks::Task task = tasks::readTask(o.exercise);
+    if (o.exercise.empty())
+        throw core::Error("which exercise is it?", "--exercise",
+                          "name its folder or file, or the id of one that comes along");
+    const tasks::Task task = exerciseOf(o.exercise).task;
     if (o.rubric.empty() && task.rubric.empty())
         throw core::Error("this exercise has no rubric", o.exercise,
                           "give one with --rubric: a file, or a name of handpiece rubric show");
@@ -126,10 +142,12 @@ void run(const ScoreOptions& o) {
     const assessment::Result result = assessment::scoreWork(work, task, judged);
     const std::string json = assessment::resultJson(result.assessment, result.identity);
     if (!o.out.empty()) writeAll(o.out, filesOf(o, work, result, json, task, judged));
-    if (o.json)
+    if (o.json) {
         fmt::print("{}", json);
-    else
+    } else {
         tell(result);
+        tellHandIn(o, result);
+    }
 }
 
 }  // namespace
@@ -141,7 +159,7 @@ void addScoreCommand(Command& app) {
     command.option("WORK", o.work,
                    "a session (.h5), a folder with all sessions of one piece of work, an attempt, or a scan of a "
                    "preparation (.stl, .ply)");
-    command.option("--exercise", o.exercise, "folder or .handpiece file");
+    command.option("--exercise", o.exercise, "folder, .handpiece file, or id of one that comes along");
     command.option("--rubric", o.rubric, "instead of the exercise's own: a file, or one that comes with the program");
     addUnitOptions(command, o.unit, false);
     command.option("--before", o.before,

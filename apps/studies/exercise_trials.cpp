@@ -13,14 +13,13 @@
 
 #include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/assessment/score_work.h"
+#include "handpiece/app/course/finished_work.h"
+#include "handpiece/app/course/shipped_exercises.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/core/rotation.h"
 #include "handpiece/model/case/attempt.h"
-#include "handpiece/model/dentition/mouth.h"
-#include "handpiece/model/lesion/lesion.h"
-#include "handpiece/model/starter/block.h"
 #include "handpiece/model/tooth/state_file.h"
 #include "handpiece/tick/device/capability.h"
 #include "studies/cut_run.h"
@@ -79,24 +78,14 @@ struct Mistake {
     const char *name, *criterion;
     Plan plan;
 };
+/// How a scripted hand does one of course::shippedExercises().
 struct Spec {
-    int number;
-    const char *id, *rubric, *bur, *toothCase;
-    preparation::Recipe recipe;
+    const char* id;
     std::vector<Mistake> mistakes;
+    const char* bur = "";  ///< empty: the exercise's own
     bool isExcavated = false;
     double cellMm = 0.1;
 };
-
-preparation::Recipe recipeOf(const char* id, const char* side = "", double leewayMm = 0.2,
-                             std::map<std::string, double, std::less<>> numbers = {}) {
-    preparation::Recipe recipe;
-    recipe.preparation = id;
-    recipe.side = side;
-    recipe.leeway = {leewayMm, leewayMm};
-    recipe.numbers = std::move(numbers);
-    return recipe;
-}
 
 /// Way through a lesion, as `handpiece run --motion excavate`; `pulpGuardMm` 0: heedless.
 device::Motion excavation(const Ready& r, double depthMm, double pulpGuardMm) {
@@ -155,66 +144,29 @@ Mistake ridgeThinned(const char* name, const char* criterion, double sign) {
 
 std::vector<Spec> specs() {
     std::vector<Spec> all;
-    all.push_back({1,
-                   "block-channel",
-                   "block-channel",
-                   "330",
-                   "block",
-                   recipeOf("block-channel", "", 0.2),
+    all.push_back({"block-channel",
                    {deeper("0.7 mm too deep", "container", {{"depth_mm", 2.2}}),
                     deeper("0.8 mm too wide", "container", {{"width_mm", 2.0}})}});
-    all.push_back({2,
-                   "block-cross",
-                   "block-cross-mirror",
-                   "330",
-                   "block",
-                   recipeOf("block-cross", "", 0.35),
-                   {deeper("0.9 mm too deep", "container", {{"depth_mm", 2.4}})}});
-    all.push_back({3,
-                   "caries-block",
-                   "block-caries",
-                   "round-4",
-                   "carious-block",
-                   recipeOf("lesion", "", 0.2, {{"over_pulp_mm", 0.0}}),
-                   {{"floor breached", "floor-breached", [](const Ready& r) {
-                         return withPlunge(r.well, {0.0, 0.0, -3.0}, Vec3::UnitZ(), 0.8);
-                     }}}});
-    all.push_back({4,
-                   "class-one-46",
-                   "46-class-i",
-                   "330",
-                   "tooth46",
-                   recipeOf("class-one", "", 0.2, {{"ridge_mm", 2.2}}),
+    all.push_back({"block-cross-mirror", {deeper("0.9 mm too deep", "container", {{"depth_mm", 2.4}})}});
+    all.push_back({"block-caries", {{"floor breached", "floor-breached", [](const Ready& r) {
+                                         return withPlunge(r.well, {0.0, 0.0, -3.0}, Vec3::UnitZ(), 0.8);
+                                     }}}});
+    all.push_back({"46-class-i",
                    {deeper("floor 1.5 mm too deep", "depth", {{"depth_mm", 3.0}}),
                     ridgeThinned("mesial ridge thinned to 0.6 mm", "ridge-mesial", 1.0),
                     ridgeThinned("distal ridge thinned to 0.6 mm", "ridge-distal", -1.0), intoPulp()}});
     all.push_back(
-        {5,
-         "deep-lesion-46",
-         "46-deep-lesion",
-         "round-2",
-         "deep46",
-         recipeOf("lesion"),
+        {"46-deep-lesion",
          {{"left off 1.2 mm deep", "soft-periphery", [](const Ready& r) { return excavation(r, 1.2, kPulpGuardMm); }},
           {"followed into the pulp", "pulp-exposed",
            [](const Ready& r) {
                const Vec3 lowest = r.laid.zones->box().centre() - 0.5 * r.laid.zones->box().size().z() * Vec3::UnitZ();
                return withPlunge(r.well, r.pulpNear(lowest), Vec3::UnitZ(), 0.3);
            }}},
+         "round-2",
          true});
-    all.push_back({6,
-                   "class-two-46",
-                   "46-class-ii-mo",
-                   "245",
-                   "mouth46",
-                   recipeOf("class-two", "mesial"),
-                   {nicked("mesial"), intoPulp()}});
-    all.push_back({7,
-                   "class-three-11",
-                   "11-class-iii",
-                   "330",
-                   "mouth11",
-                   recipeOf("class-three", "mesial"),
+    all.push_back({"46-class-ii-mo", {nicked("mesial"), intoPulp()}});
+    all.push_back({"11-class-iii",
                    {nicked("mesial"), intoPulp(), {"perforated labially", "labial-perforation", [](const Ready& r) {
                                                        const Vec3 middle = r.laid.zones->box().centre();
                                                        const geometry::RayMeeting out = r.laid.whole->firstMeeting(
@@ -223,13 +175,9 @@ std::vector<Spec> specs() {
                                                                          middle + (20.0 - out.distanceMm) * r.buccal(),
                                                                          r.laid.draw, 0.3);
                                                    }}}});
-    all.push_back({8, "class-five-33", "33-class-v", "330", "mouth33", recipeOf("class-five"), {intoPulp()}});
-    all.push_back({9,
-                   "crown-46",
-                   "46-crown",
-                   "taper-round:1.0x7.0",
-                   "mouth46",
-                   recipeOf("crown"),
+    all.push_back({"33-class-v", {intoPulp()}});
+    // A slim bur: 856-012 is wider than the chamfer's way between the teeth.
+    all.push_back({"46-crown",
                    {nicked("mesial"),
                     intoPulp(),
                     {"undercut", "undercut",
@@ -246,19 +194,17 @@ std::vector<Spec> specs() {
                                             Vec3::UnitZ());
                          return withPlunge(r.well, low + (off - 0.3) * out, draw, 0.0);
                      }}},
+                   "taper-round:1.0x7.0",
                    false,
                    0.15});
-    all.push_back({10,
-                   "access-46",
-                   "46-access",
-                   "cylinder-round:1.0x9.0",
-                   "tooth46",
-                   recipeOf("access"),
+    // One bur all the way down: the exercise's own are changed on the way.
+    all.push_back({"46-access",
                    {{"perforated into the furcation", "perforation",
                      [](const Ready& r) {
                          return withPlunge(r.well, r.mark(LandmarkKind::furcation).pointsMm.front(), r.laid.draw, 0.3);
                      }},
-                    {"an orifice missed", "orifices", [](const Ready& r) {
+                    {"an orifice missed", "orifices",
+                     [](const Ready& r) {
                          // All but what lies round one of them.
                          HandScene scene = handSceneOf(r.laid, nullptr);
                          const Vec3 missed = r.mark(LandmarkKind::orifice).pointsMm.front();
@@ -266,44 +212,17 @@ std::vector<Spec> specs() {
                              return std::max(in(p), 1.2 - core::hypot(p.x() - missed.x(), p.y() - missed.y()));
                          };
                          return planPreparation(scene, *r.instrument.bur, r.hand);
-                     }}}});
+                     }}},
+                   "cylinder-round:1.0x9.0"});
     return all;
-}
-
-cases::Case caseOf(const std::string& name, const TrialOptions& o, const core::Progress& progress) {
-    if (name == "block") return starter::makeBlock(starter::BlockLayers::hard);
-    if (name == "carious-block") return starter::makeBlock(starter::BlockLayers::carious);
-    const fs::path kept = o.out / "teeth" / name;
-    std::error_code ec;
-    // What is there from an earlier run is used when it has the faces wanted.
-    if (fs::exists(kept / "case.toml", ec)) {
-        cases::Case there = cases::readCase(kept);
-        if (there.outer.triangles.size() == o.faces) return there;
-    }
-    const int fdi = std::stoi(name.substr(name.size() - 2));
-    cases::Case made;
-    if (name.starts_with("mouth")) {
-        dentition::MouthOptions mouth;
-        mouth.fdi = fdi;
-        mouth.faces = o.faces;
-        made = dentition::makeMouth({}, mouth, progress);
-    } else {
-        static_cast<cases::Tooth&>(made) = dentition::makeTooth(fdi, {}, {o.faces, 0}, progress);
-        if (name.starts_with("deep")) lesion::addLesions(made, lesion::lesionsByName("occlusal:D3"));
-    }
-    cases::writeCase(made, kept);
-    return cases::readCase(kept);  // the very numbers that another run will read
 }
 
 Ready readyOf(const Spec& spec, const TrialOptions& o, const core::Progress& progress) {
     Ready r;
-    r.task.id = spec.id;
-    r.task.toothCase = caseOf(spec.toothCase, o, core::part(progress, 0.0, 0.6));
+    r.task = course::makeShipped(spec.id, o.out / "teeth", core::part(progress, 0.0, 0.6), o.faces).task;
     r.task.voxelMm = o.voxelMm;
-    r.task.preparation = spec.recipe;
-    r.rubric = rubric::shippedRubric(spec.rubric);
-    rubric::requireSound(r.rubric);
-    r.instrument = instrument::makeInstrument(spec.bur);
+    r.rubric = course::rubricOf(r.task);
+    r.instrument = instrument::makeInstrument(*spec.bur ? spec.bur : r.task.toothCase.exercise->bur);
     r.hand.cellMm = spec.cellMm;
     simulation::SimulationSettings settings;
     settings.field = simulation::fieldSettingsAt(o.voxelMm);
@@ -315,7 +234,6 @@ Ready readyOf(const Spec& spec, const TrialOptions& o, const core::Progress& pro
     settings.parameters.tissues = force::defaultParameters(settings.tissues).tissues;
     r.station = simulation::makeSimulation(r.task.toothCase, settings, true, core::part(progress, 0.6, 0.9));
     r.laid = preparation::layOn(r.task.toothCase, *r.task.preparation);
-    r.task.rubric = rubric::shippedRubricText(spec.rubric);
     tasks::writeTask(r.task, o.out / "exercises" / r.task.id);
     std::vector<std::pair<std::shared_ptr<const tooth::ToothModel>, core::Pose>> beside;
     for (const simulation::StandingTooth& other : r.station.others)
@@ -459,10 +377,11 @@ std::vector<ExerciseTrials> tryExercises(const TrialOptions& o, const core::Prog
     for (const std::size_t number : o.exercises)
         if (number < 1 || number > chosen.size())
             throw core::Error(fmt::format("there is no exercise {}", number), "--only", "give 1 to 10");
+    const auto numberOf = [](const Spec& spec) { return course::shippedExercise(spec.id).number; };
     core::prepareOutputFolder(o.out);
     std::erase_if(chosen, [&](const Spec& spec) {
         return !o.exercises.empty() && std::find(o.exercises.begin(), o.exercises.end(),
-                                                 static_cast<std::size_t>(spec.number)) == o.exercises.end();
+                                                 static_cast<std::size_t>(numberOf(spec))) == o.exercises.end();
     });
     std::vector<ExerciseTrials> all;
     for (const Spec& spec : chosen) {
@@ -470,7 +389,7 @@ std::vector<ExerciseTrials> tryExercises(const TrialOptions& o, const core::Prog
         const core::Progress own = core::part(progress, done * each, (done + 1.0) * each);
         Ready r = readyOf(spec, o, core::part(own, 0.0, 0.3));
         ExerciseTrials trials;
-        trials.number = spec.number, trials.id = spec.id, trials.rubric = spec.rubric, trials.bur = spec.bur;
+        trials.number = numberOf(spec), trials.id = spec.id, trials.bur = r.instrument.bur->name();
         trials.ideal = idealOf(r, o);
         trials.handS = r.well.durationS();
         for (std::size_t i = 1; i < r.well.poses().size(); ++i)
@@ -492,11 +411,12 @@ std::vector<ExerciseTrials> tryExercises(const TrialOptions& o, const core::Prog
                 trials.errors.push_back(std::move(error));
             }
         core::report(own, 0.5);
-        if (o.trials > 0 && std::find(kSteadinessOf.begin(), kSteadinessOf.end(), spec.number) != kSteadinessOf.end()) {
+        if (o.trials > 0 &&
+            std::find(kSteadinessOf.begin(), kSteadinessOf.end(), trials.number) != kSteadinessOf.end()) {
             for (const double tremor : kTremorMm) {
                 HandTrials hand{tremor, tremor, {}, 0};
                 for (int i = 0; i < o.trials; ++i) {
-                    const std::uint64_t seed = o.seed * 1000000 + static_cast<std::uint64_t>(spec.number) * 10000 +
+                    const std::uint64_t seed = o.seed * 1000000 + static_cast<std::uint64_t>(trials.number) * 10000 +
                                                trials.hands.size() * 1000 + static_cast<std::uint64_t>(i);
                     const TrialScore t = sweptAndJudged(r, o, withUnsteadiness(r.well, {tremor, tremor}, seed));
                     hand.percent.push_back(t.percent());
@@ -525,10 +445,13 @@ std::string trialsJson(const TrialOptions& o, const std::vector<ExerciseTrials>&
               {"done_well_by", o.atTheArm ? "the loop at 1 kHz" : "sweeping alone"},
               {"exercises", Json::array()}};
     for (const ExerciseTrials& t : all) {
-        Json one{{"number", t.number},       {"id", t.id},
-                 {"rubric", t.rubric},       {"bur", t.bur},
-                 {"hand_s", t.handS},        {"way_mm", t.wayMm},
-                 {"ideal", toJson(t.ideal)}, {"done_well", toJson(t.doneWell)},
+        Json one{{"number", t.number},
+                 {"id", t.id},
+                 {"bur", t.bur},
+                 {"hand_s", t.handS},
+                 {"way_mm", t.wayMm},
+                 {"ideal", toJson(t.ideal)},
+                 {"done_well", toJson(t.doneWell)},
                  {"errors", Json::array()}};
         if (o.atTheArm) one["proof"] = t.proof;
         for (const ErrorOnPurpose& e : t.errors)

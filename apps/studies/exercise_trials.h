@@ -18,7 +18,7 @@ struct TrialOptions {
     std::filesystem::path out;           ///< teeth stay in it and are used again
     std::vector<std::size_t> exercises;  ///< 1 to 10; empty: all
     double voxelMm = 0.1;
-    std::size_t faces = 20000;  ///< of each tooth
+    std::size_t faces = 20000;  ///< of each tooth that is worked on
     int trials = 20;            ///< of each steadiness; 0: none
     std::uint64_t seed = 1;
     bool atTheArm = false;  ///< those done well: by the loop at 1 kHz, recorded and proven; else by sweeping alone
@@ -48,7 +48,7 @@ struct HandTrials {
 };
 struct ExerciseTrials {
     int number = 0;
-    std::string id, rubric, bur;
+    std::string id, bur;
     TrialScore ideal, doneWell;
     std::string proof;  ///< at the arm
     double handS = 0.0, wayMm = 0.0;

@@ -60,5 +60,39 @@ class Exercise(SystemTest):
         self.refused("exercise", "check", block, mentions=("exercise.toml",))
 
 
+    def test_those_that_come_along(self):
+        rows = json.loads(self.ok("exercise", "list", "--json").stdout)
+        self.assertEqual([row["number"] for row in rows[:10]], list(range(1, 11)))
+        self.assertEqual([row["id"] for row in rows if row["neighbours"]],
+                         ["46-class-ii-mo", "11-class-iii", "33-class-v", "46-crown"])
+        told = self.ok("exercise", "list").stdout
+        for row in rows:
+            self.assertIn(row["title"]["en"], told)
+            self.assertIn(row["instructions"]["en"], told)
+        self.ok("exercise", "pack", "block-caries", self.folder / "caries.handpiece")
+        packed = json.loads(self.ok("exercise", "check", self.folder / "caries.handpiece", "--json").stdout)
+        self.assertEqual(packed, json.loads(self.ok("exercise", "check", "block-caries", "--json").stdout))
+        self.assertEqual((packed["level"], packed["minutes"]), ("beginner", 15))
+        self.refused("exercise", "check", "block-none", mentions=("no such exercise",))
+
+    def test_a_hand_in_is_scored_as_the_work_itself(self):
+        block = self.block("--kind", "line", "--set", "depth_mm=0.5")
+        self.ok("run", "--case", block / "case", "--bur", "330", "--motion", "plunge", "--depth", 0.4,
+                "--duration", 1, "--out", self.folder / "run")
+        hand_in = ("exercise", "hand-in", self.folder / "run" / "session.h5", "--exercise", block)
+        self.refused(*hand_in, "--out", self.folder / "a7", mentions=(".handpiece",))
+        file = self.folder / "a7.handpiece"
+        self.ok(*hand_in, "--student", "A7", "--expected", 80, "--words", "rough", "--out", file)
+        own = json.loads(self.ok("score", self.folder / "run" / "session.h5", "--exercise", block, "--json").stdout)
+        again = json.loads(self.ok("score", file, "--exercise", block, "--json").stdout)
+        self.assertTrue(again["proven"])
+        self.assertEqual(again, own)
+        told = self.ok("score", file, "--exercise", block).stdout
+        self.assertIn("its student expected 80 %: rough", told)
+        self.assertNotIn("is not the one", told)
+        other = self.block("--kind", "line", "--set", "depth_mm=1", name="other")
+        self.assertIn("is not the one", self.ok("score", file, "--exercise", other).stdout)
+
+
 if __name__ == "__main__":
     unittest.main()

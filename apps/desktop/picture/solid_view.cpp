@@ -137,6 +137,7 @@ void SolidView::Worker::run() {
 }
 
 SolidView::SolidView(const char* name, QWidget* parent) : QWidget(parent) {
+    placeholder_ = tr("The tooth appears here when its tissues are found");
     setObjectName(QLatin1String(name));
     setAccessibleName(tr("The tooth, to be turned"));
     setToolTip(tr("Drag: turn. Right button: shift. Wheel: nearer. Double click: all of it. Arrow keys turn."));
@@ -217,6 +218,11 @@ void SolidView::makeTissueButtons() {
 void SolidView::setCaption(const QString& caption, bool isStale) {
     caption_ = caption;
     isStale_ = isStale;
+    update();
+}
+
+void SolidView::setPlaceholder(const QString& words) {
+    placeholder_ = words;
     update();
 }
 
@@ -454,9 +460,9 @@ void SolidView::paintEvent(QPaintEvent* event) {
     }
     if (!hasPicture) {
         painter.setPen(pale);
-        painter.drawText(QRectF(rect()).adjusted(20, 20, -20, -20), Qt::AlignCenter | Qt::TextWordWrap,
-                         missing_.isEmpty() ? tr("The tooth appears here when its tissues are found")
-                                            : tr("There is no picture. Technical detail: %1").arg(missing_));
+        painter.drawText(
+            QRectF(rect()).adjusted(20, 20, -20, -20), Qt::AlignCenter | Qt::TextWordWrap,
+            missing_.isEmpty() ? placeholder_ : tr("There is no picture. Technical detail: %1").arg(missing_));
     }
     if (hasFocus()) {
         painter.setPen(QPen(palette().color(QPalette::Highlight), 2));

@@ -36,6 +36,8 @@ class SolidView : public QWidget {
     void setParts(std::shared_ptr<const std::vector<cases::Part>> parts, const core::Box& bounds);
     /// A line about what is shown, above the picture ("Preview"); dimmed when it is no longer true.
     void setCaption(const QString& caption, bool isStale);
+    /// In the picture's place while there is nothing to be seen.
+    void setPlaceholder(const QString& words);
     /// Occlusal, mesial and the sides as arrows; `buccalSign` 0: the sides without names.
     void setAxesShown(bool shown, int buccalSign);
     /// As the buttons below the picture do, one a tissue that there is [NAME_enamel, ...].
@@ -98,7 +100,7 @@ class SolidView : public QWidget {
     view::Camera camera_;
     view::Look look_;
     QImage picture_;
-    QString caption_, missing_;
+    QString caption_, missing_, placeholder_;
     bool isStale_ = false, axesShown_ = false, placed_ = false;
     int buccalSign_ = 0;
     Qt::MouseButton held_ = Qt::NoButton;

@@ -8571,6 +8571,22 @@ lingual: %4</source>
 <context>
     <name>handpiece::desktop::ExercisesDialog</name>
     <message>
+        <source>beginner</source>
+        <translation>初級</translation>
+    </message>
+    <message>
+        <source>basic</source>
+        <translation>基礎</translation>
+    </message>
+    <message>
+        <source>intermediate</source>
+        <translation>中級</translation>
+    </message>
+    <message>
+        <source>advanced</source>
+        <translation>上級</translation>
+    </message>
+    <message>
         <source>Exercises</source>
         <translation>課題</translation>
     </message>

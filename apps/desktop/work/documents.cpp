@@ -7,14 +7,13 @@
 #include <atomic>
 #include <chrono>
 
+#include "handpiece/app/course/kept_cases.h"
 #include "handpiece/app/exercise/permissions.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
-#include "handpiece/model/case/as_written.h"
 #include "handpiece/model/case/work_on.h"
-#include "handpiece/model/dentition/mouth.h"
 #include "handpiece/model/tooth/state_file.h"
 #include "handpiece/senses/surface/brick_source.h"
 #include "handpiece/senses/surface/closed_surface.h"
@@ -158,78 +157,35 @@ FileKind fileKindOf(const fs::path& path) {
 
 namespace {
 
-/// A case of the cache, or made and put there, where that can be done. What lies in its place and is not it is made
-/// anew.
-cases::Case kept(const fs::path& place, const std::function<bool(const cases::Case&)>& isIt,
-                 const std::function<cases::Case()>& make, const LoadListener& listener) {
-    std::error_code error;
-    if (fs::exists(fs::symlink_status(place, error))) {
-        try {
-            cases::Case found = cases::readCase(place);
-            if (isIt(found)) return found;
-        } catch (const core::Error&) {  // damaged
-        }
-        if (listener.renewed) listener.renewed(place);
-        fs::remove_all(place, error);
-    }
-    const cases::Case made = make();
-    try {
-        fs::create_directories(place.parent_path(), error);
-        cases::writeCase(made, place);
-        // As read back: an STL holds less than a double, and the cache beside it belongs to what it holds.
-        return cases::readCase(place);
-    } catch (const core::Error& why) {
-        if (listener.notKept) listener.notKept(place, why);
-        return cases::asWritten(made, place);
-    }
-}
-
-std::string patientName(const dentition::Patient& patient) {
-    return fmt::format("{}-{:g}", patient.seed, patient.ageYears);
-}
-
-/// The version stands in the names: a later one may make other teeth of the same rules.
 fs::path starterPlace(const Starter& starter, const fs::path& folder) {
-    return folder / fmt::format("tooth-{}-{}-{}-{}", patientName(starter.patient), starter.fdi, starter.faces,
-                                HANDPIECE_VERSION);
+    return course::keptToothPlace(starter.fdi, starter.patient, starter.faces, folder);
 }
 
 }  // namespace
 
 cases::Case starterCase(const Starter& starter, const fs::path& folder, const core::Progress& progress,
                         const LoadListener& listener) {
-    const std::string patient = patientName(starter.patient);
-    const fs::path toothPlace = starterPlace(starter, folder);
-    const fs::path mouthPlace = folder / fmt::format("mouth-{}-{}-{}", patient, kMouthFaces, HANDPIECE_VERSION);
     const double toothShare = starter.inMouth ? 0.2 : 1.0;
-    cases::Case tooth = kept(
-        toothPlace, [&](const cases::Case& c) { return c.fdiNumber == starter.fdi; },
-        [&] {
-            tell(listener, LoadStep::shaping);
-            const auto show = [&](cases::Tooth shown) {
-                auto sketch = std::make_shared<cases::Case>();
-                static_cast<cases::Tooth&>(*sketch) = std::move(shown);
-                if (listener.sketch) listener.sketch(std::move(sketch));
-            };
-            show(dentition::makeSketch(starter.fdi, starter.patient));
-            cases::Case made;
-            static_cast<cases::Tooth&>(made) = dentition::makeTooth(starter.fdi, starter.patient, {starter.faces, 0},
-                                                                    core::part(progress, 0.0, toothShare));
-            if (starter.inMouth) show(made);
-            return made;
-        },
-        listener);
+    const auto show = [&](cases::Tooth shown) {
+        auto sketch = std::make_shared<cases::Case>();
+        static_cast<cases::Tooth&>(*sketch) = std::move(shown);
+        if (listener.sketch) listener.sketch(std::move(sketch));
+    };
+    bool isNew = false;
+    course::KeptListener hears{[&] {
+                                   isNew = true;
+                                   tell(listener, LoadStep::shaping);
+                                   show(dentition::makeSketch(starter.fdi, starter.patient));
+                               },
+                               listener.renewed, listener.notKept};
+    cases::Case tooth = course::keptTooth(starter.fdi, starter.patient, starter.faces, folder,
+                                          core::part(progress, 0.0, toothShare), hears);
     if (!starter.inMouth) return tooth;
-    cases::Case mouth = kept(
-        mouthPlace, [](const cases::Case& c) { return c.others.size() + 1 == dentition::kToothCount; },
-        [&] {
-            tell(listener, LoadStep::mouth);
-            return dentition::makeMouth(starter.patient, {46, kMouthFaces}, core::part(progress, toothShare, 1.0));
-        },
-        listener);
+    if (isNew) show(tooth);
+    hears.making = [&] { tell(listener, LoadStep::mouth); };
+    cases::Case mouth =
+        course::keptMouth(starter.fdi, starter.patient, folder, core::part(progress, toothShare, 1.0), hears);
     // The mouth's own teeth are coarser: the one that is worked on stands in for its like, in the same frame.
-    mouth = cases::workOn(std::move(mouth), starter.fdi);
-    // What is kept beside the mouth, the fields of all that stands there, serves each of its teeth.
     static_cast<cases::Tooth&>(mouth) = std::move(static_cast<cases::Tooth&>(tooth));
     return mouth;
 }

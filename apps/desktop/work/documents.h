@@ -127,9 +127,6 @@ struct LoadedTooth {
 [[nodiscard]] cases::PackageFiles recordingBytes(const std::vector<RecordingPlace>& places, bool packedOnly,
                                                  std::size_t& leftOut, const core::Progress& progress);
 
-/// Faces of each tooth around a starter tooth, which are seen and felt at arm's length.
-inline constexpr std::size_t kMouthFaces = 8000;
-
 /// The case of a starter tooth: it and its patient's mouth out of their folders in the cache, made and put there the
 /// first time. Where nothing can be put there it is opened all the same.
 [[nodiscard]] cases::Case starterCase(const Starter& starter, const std::filesystem::path& folder,

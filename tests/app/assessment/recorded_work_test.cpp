@@ -70,7 +70,7 @@ TEST(Recording, TellsWhenAndWithWhatLoadAPlaceWasCut) {
     };
     measured[0].evidence = {
         at(2.5, 0, 0), at(0.5, 0, 0), at(2.0, 0.6, 0), at(1.0, -0.45, 0.28), at(1, 3, 0), at(1, 0, -0.2), {}};
-    findTimes(std::span(&session, 1), measured, 0.05);
+    EXPECT_TRUE(readRecord(std::span(&session, 1), measured, 0.05, {}, {}).empty());
     const std::vector<measures::Evidence>& told = measured[0].evidence;
     const auto is = [&](std::size_t i, double timeS, double forceN) {
         ASSERT_TRUE(told[i].timeS) << i;
@@ -89,7 +89,7 @@ TEST(Recording, TellsWhenAndWithWhatLoadAPlaceWasCut) {
                                        session};
     for (measures::Evidence& e : measured[0].evidence)
         e.timeS.reset();
-    findTimes(chain, measured, 0.05);
+    EXPECT_TRUE(readRecord(chain, measured, 0.05, {}, {}).empty());
     is(0, 2.5, 1.0);
     EXPECT_EQ(told[0].session, 1u);
 }
@@ -118,7 +118,8 @@ TEST(Recording, TellsOfTheHand) {
     const std::vector<Request> asked{{"time"},        {"force"},        {"load-over-limit", overOne}, {"path-length"},
                                      {"bur-changes"}, {"mirror-share"}, {"depth-stop-share"},         {"undos"},
                                      {"views"},       {"stalls"},       {"impulse-on-protected"},     {"strokes"}};
-    const std::vector<Measured> told = measureHand(chain, asked, {}), again = measureHand(chain, asked, {});
+    const std::vector<Measured> told = readRecord(chain, {}, 0.05, asked, {}),
+                                again = readRecord(chain, {}, 0.05, asked, {});
     const double truth[] = {8.0, 1.5, 4.0, 48.0, 2.0, 0, 0, 1.0, 2.0, 2.0, 4.0, 2.0};
     for (std::size_t i = 0; i < asked.size(); ++i) {
         ASSERT_TRUE(told[i].value) << asked[i].kind << ": " << told[i].reason;
@@ -135,8 +136,9 @@ TEST(Recording, TellsOfTheHand) {
     EXPECT_NEAR(*told[6].value, 25.0, 0.2);
     EXPECT_EQ(told[4].evidence.at(0).timeS, 2.0);
     EXPECT_EQ(told[4].evidence.at(1).session, 1u) << "the next begins with the first bur again";
-    EXPECT_THAT(measureHand(std::span(chain).last(1), std::vector<Request>{{"mirror-share"}}, {}).front().reason,
-                HasSubstr("does not tell"));
+    EXPECT_THAT(
+        readRecord(std::span(chain).last(1), {}, 0.05, std::vector<Request>{{"mirror-share"}}, {}).front().reason,
+        HasSubstr("does not tell"));
 }
 
 tasks::Task blockTask() {

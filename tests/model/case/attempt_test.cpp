@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/model/case/attempt.h"
+#include "handpiece/model/case/package_type.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -157,6 +158,61 @@ TEST_F(AttemptTest, ARecordingThatIsNotItsOwnOrTooMuchIsRefused) {
     EXPECT_THAT(with("format = 2"), HasSubstr("newer Handpiece"));
     EXPECT_THAT(with("format = 1\nmarks = 3"), HasSubstr("marks"));
     EXPECT_THAT(with("format = 1\n#" + std::string(300 << 10, 'x')), HasSubstr("more than"));
+}
+
+TEST_F(AttemptTest, AFileSaysWhatItIsAndAHandInWhatItIsOf) {
+    Attempt a = sample();
+    a.handedIn = true;
+    a.handIn = Attempt::HandIn{"46-class-i", 2, "c29df62bcbcde75d", "{\"score\": 81}", 70.5, "a \"little\" rough\n2"};
+    const fs::path place = folder() / "in.handpiece";
+    writeAttempt(a, place, &tooth_);
+    EXPECT_EQ(readAttempt(place).handIn, a.handIn);
+    EXPECT_EQ(packageType(place), PackageType::handIn);
+    writeAttempt(a, folder() / "in", nullptr);
+    EXPECT_EQ(readAttempt(folder() / "in").handIn, a.handIn) << "as a folder, too";
+    writeAttempt(sample(), folder() / "saved.handpiece", &tooth_);
+    EXPECT_EQ(packageType(folder() / "saved.handpiece"), PackageType::attempt);
+    EXPECT_FALSE(readAttempt(folder() / "saved.handpiece").handIn);
+    writeCase(tooth_, folder() / "case.handpiece");
+    EXPECT_EQ(packageType(folder() / "case.handpiece"), PackageType::toothCase);
+    EXPECT_FALSE(isAttempt(folder() / "case.handpiece"));
+
+    PackageFiles files = readPackage(place);
+    const auto put = [&](const char* name, const std::string& text) {
+        files[name].resize(text.size());
+        std::transform(text.begin(), text.end(), files[name].begin(), [](char c) { return static_cast<std::byte>(c); });
+        writePackage(place, files);
+    };
+    const auto with = [&](const char* name, const std::string& text) {
+        const std::vector<std::byte> before = files[name];
+        put(name, text);
+        const std::string why = errorOf([&] { (void)readAttempt(place); });
+        EXPECT_EQ(why.find('\n'), std::string::npos) << why;
+        files[name] = before;
+        return why;
+    };
+    const std::string head = "format = 1\nexercise = \"x\"\nexercise_hash = \"c29df62bcbcde75d\"\n";
+    EXPECT_EQ(with(kHandInFile, head), "");
+    EXPECT_THAT(with(kHandInFile, head + "expected_percent = 101"), HasSubstr("0 to 100"));
+    EXPECT_THAT(with(kHandInFile, head + "marks = 3"), HasSubstr("marks"));
+    EXPECT_THAT(with(kHandInFile, "format = 1\nexercise_hash = \"x\""), HasSubstr("16 hexadecimal digits"));
+    EXPECT_THAT(with(kHandInFile, "format = 2"), HasSubstr("newer Handpiece"));
+    EXPECT_THAT(with(kHandInResultFile, std::string((4 << 20) + 1, '{')), HasSubstr("more than"));
+    EXPECT_THAT(with(kPackageFile, "format = 1\ntype = \"virus\""), HasSubstr("no type \"virus\""));
+    EXPECT_THAT(with(kPackageFile, "format = 2\ntype = \"attempt\""), HasSubstr("newer Handpiece"));
+    EXPECT_THAT(with(kPackageFile, "format = 1\ntype = \"exercise\""), HasSubstr("has no exercise.toml"));
+    EXPECT_THAT(with(kPackageFile, std::string(65 << 10, '#')), HasSubstr("more than"));
+    // An exam is nobody's case, exercise or attempt here.
+    put(kPackageFile, "format = 1\ntype = \"exam\"\n");
+    EXPECT_THAT(errorOf([&] { (void)readAttempt(place); }), HasSubstr("exam"));
+    EXPECT_THAT(errorOf([&] { (void)openAttempt(place); }), HasSubstr("exam"));
+    EXPECT_THAT(errorOf([&] { (void)readCase(place); }), HasSubstr("exam"));
+    EXPECT_FALSE(isAttempt(place));
+    // Of before: nothing says it.
+    files.erase(kPackageFile);
+    writePackage(place, files);
+    EXPECT_EQ(packageType(place), PackageType::attempt);
+    EXPECT_TRUE(isAttempt(place));
 }
 
 TEST_F(AttemptTest, MovesTogetherWithItsCase) {

@@ -116,6 +116,7 @@ PreparationPage::PreparationPage(Change change) : EditorPage(std::move(change)) 
     auto* beside = new QVBoxLayout;
     columns->addLayout(beside, 3);
     picture_ = new SolidView("editorPicture", this);
+    picture_->setPlaceholder({});
     picture_->setAccessibleName(tr("The tooth with its preparation"));
     picture_->setToolTip(
         tr("Drag a handle: its number follows; Escape gives it up. Drag elsewhere: turn. Right button: shift. Wheel: "

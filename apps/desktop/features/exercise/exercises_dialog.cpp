@@ -10,6 +10,7 @@
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <array>
 
 #include "desktop/features/exercise/assessment_words.h"
 #include "desktop/framework/helps.h"
@@ -21,6 +22,23 @@
 namespace handpiece::desktop {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// In words; empty for what is no level.
+QString levelWords(const std::string& level) {
+    constexpr std::array<const char*, tasks::kLevels.size()> kWords = {
+        QT_TRANSLATE_NOOP("handpiece::desktop::ExercisesDialog", "beginner"),
+        QT_TRANSLATE_NOOP("handpiece::desktop::ExercisesDialog", "basic"),
+        QT_TRANSLATE_NOOP("handpiece::desktop::ExercisesDialog", "intermediate"),
+        QT_TRANSLATE_NOOP("handpiece::desktop::ExercisesDialog", "advanced")};
+    const auto at = std::find(tasks::kLevels.begin(), tasks::kLevels.end(), level);
+    return at == tasks::kLevels.end()
+               ? QString()
+               : ExercisesDialog::tr(kWords[static_cast<std::size_t>(at - tasks::kLevels.begin())]);
+}
+
+}  // namespace
 
 ExercisesDialog::ExercisesDialog(fs::path madeIn, QWidget* parent)
     : QDialog(parent),
@@ -34,6 +52,7 @@ ExercisesDialog::ExercisesDialog(fs::path madeIn, QWidget* parent)
                     tr("Show what was lost once more, by yourself: no depth, no section, no glass"))) {
     setObjectName(QStringLiteral("exercisesDialog"));
     setWindowTitle(tr("Exercises"));
+    view_->setPlaceholder({});
     auto* left = new QVBoxLayout;
     left->addWidget(list_, 1);
     where_ = note({}, this, "exercisesWhere");
@@ -108,7 +127,7 @@ void ExercisesDialog::list() {
     giveUp();
     entries_.clear();
     for (const course::Shipped& shipped : course::shippedExercises())
-        entries_.push_back({shipped.id, {}, shipped.title, {}, true});
+        entries_.push_back({shipped.id, {}, shipped.exercise.title, {}, true});
     where_->setText(folder_.empty() ? tr("Those of the program.") : tr("And those in %1").arg(toQString(folder_)));
     const auto fill = [this] {
         const QSignalBlocker quiet(list_);
@@ -177,10 +196,12 @@ void ExercisesDialog::start(const QString& what, Job::Work work, std::function<v
     progress_->setToolTip(what);
     progress_->setValue(0);
     progress_->show();
+    view_->setPlaceholder(what);
     const auto end = [this] {
         job_->deleteLater();
         job_ = nullptr;
         progress_->hide();
+        view_->setPlaceholder({});
     };
     connect(job_, &Job::progressed, this,
             [this](double fraction) { progress_->setValue(static_cast<int>(1000.0 * fraction)); });
@@ -218,8 +239,10 @@ void ExercisesDialog::choose(int row) {
     start(
         tr("Opening the exercise"),
         [read, entry, madeIn = madeIn_](const core::Progress& progress) {
-            read->path = entry.isShipped ? course::shippedExercise(entry.id, madeIn, progress) : entry.path;
-            read->task = std::make_shared<const tasks::Task>(tasks::readTask(read->path));
+            course::Made made = entry.isShipped ? course::makeShipped(entry.id, madeIn, progress)
+                                                : course::Made{entry.path, tasks::readTask(entry.path)};
+            read->path = std::move(made.path);
+            read->task = std::make_shared<const tasks::Task>(std::move(made.task));
         },
         [this, read] {
             task_ = read->task;
@@ -270,6 +293,7 @@ void ExercisesDialog::showTask() {
     show(words_, inThisLanguage(exercise.instructions));
     QStringList about;
     if (task_->toothCase.fdiNumber != 0) about << tr("Tooth %1").arg(task_->toothCase.fdiNumber);
+    if (const QString level = levelWords(task_->level); !level.isEmpty()) about << level;
     if (task_->minutes) about << tr("%1 minutes").arg(*task_->minutes);
     QStringList burs;
     for (const std::string& bur : exercise.allowedBurs)

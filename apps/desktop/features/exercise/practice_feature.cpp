@@ -45,7 +45,7 @@ constexpr double kBeforeS = 1.5, kAfterS = 1.5, kEyeMm = 26.0;
 PracticeFeature::PracticeFeature(const FeatureContext& context)
     : Feature(context),
       commands_(window_.commands(), kCommands),
-      exercises_(new ExercisesDialog(simulator_.folders().starters / ("exercises-" HANDPIECE_VERSION), &window_)),
+      exercises_(new ExercisesDialog(simulator_.folders().starters, &window_)),
       result_(new ResultDialog(&window_)),
       progress_(new ProgressDialog(&window_)) {
     openDialogs();

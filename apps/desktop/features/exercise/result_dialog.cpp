@@ -136,6 +136,7 @@ QWidget* ResultDialog::makeResult() {
     connect(which_, &QButtonGroup::idClicked, this, &ResultDialog::showTooth);
     right->addLayout(choice);
     tooth_ = new SolidView("resultTooth", page);
+    tooth_->setPlaceholder({});
     right->addWidget(tooth_, 1);
 
     auto* below = new QHBoxLayout;

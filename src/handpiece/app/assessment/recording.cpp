@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "handpiece/app/simulation/simulation_setup.h"
@@ -176,28 +177,49 @@ class TimeListener : public Listener {
     std::shared_ptr<const instrument::Bur> bur_;
 };
 
+/// More than one at a reading.
+struct Several : Listener {
+    std::vector<std::unique_ptr<Listener>> all;
+    void goOn(std::size_t session) override {
+        for (const auto& one : all)
+            one->goOn(session);
+    }
+    void takeBur(double atS, const simulation::SimulationSettings& settings) override {
+        for (const auto& one : all)
+            one->takeBur(atS, settings);
+    }
+    void takeWay(const simulation::WorkingWay& way) override {
+        for (const auto& one : all)
+            one->takeWay(way);
+    }
+    void takeStep(double atS) override {
+        for (const auto& one : all)
+            one->takeStep(atS);
+    }
+    void take(double timeS, double lastsS, const Record& record) override {
+        for (const auto& one : all)
+            one->take(timeS, lastsS, record);
+    }
+};
+
 }  // namespace
 
-std::vector<measures::Measured> measureHand(std::span<const Recording> chain,
-                                            std::span<const measures::Request> requests, const hand::Against& against,
-                                            const core::Progress& progress) {
-    hand::HandMeasures hand(requests, against);
-    HandListener listener(hand);
-    play(chain, listener, progress);
-    return hand.measured();
-}
-
-void findTimes(std::span<const Recording> chain, std::span<measures::Measured> measured, double voxelMm,
-               const core::Progress& progress) {
+std::vector<measures::Measured> readRecord(std::span<const Recording> chain, std::span<measures::Measured> ofTooth,
+                                           double voxelMm, std::span<const measures::Request> ofHand,
+                                           const hand::Against& against, const core::Progress& progress) {
     /// What the depth, told in steps and along one direction, leaves open of where the bur lay [mm].
     constexpr double kPoseErrorMm = 0.02;
     std::vector<measures::Evidence*> places;
-    for (measures::Measured& m : measured)
+    for (measures::Measured& m : ofTooth)
         for (measures::Evidence& evidence : m.evidence)
             if (evidence.placeMm && !evidence.timeS) places.push_back(&evidence);
-    if (places.empty() || chain.empty()) return;
-    TimeListener listener(places, 0.5 * voxelMm + kPoseErrorMm);
-    play(chain, listener, progress);
+    std::optional<hand::HandMeasures> hand;
+    if (!ofHand.empty()) hand.emplace(ofHand, against);
+    Several listener;
+    if (hand) listener.all.push_back(std::make_unique<HandListener>(*hand));
+    if (!places.empty()) listener.all.push_back(std::make_unique<TimeListener>(places, 0.5 * voxelMm + kPoseErrorMm));
+    if (!listener.all.empty()) play(chain, listener, progress);
+    return hand ? hand->measured() : std::vector<measures::Measured>();
 }
 
 }  // namespace handpiece::assessment

@@ -24,16 +24,14 @@ struct Recording {
     std::shared_ptr<const core::PrivateFolder> keeps{};  ///< the folder that `path` lies in, where it was unpacked
 };
 
-/// Of a chain of sessions, in the order of the work. Reads them by stretches: memory does not grow with them. Throws
-/// core::Error for what is damaged or not asked rightly.
-[[nodiscard]] std::vector<measures::Measured> measureHand(std::span<const Recording> chain,
-                                                          std::span<const measures::Request> requests,
-                                                          const hand::Against& against,
-                                                          const core::Progress& progress = {});
-
-/// Gives places of the tooth their time and load: those at which the bur, cutting, lay there last, to within half a
-/// voxel. A place that no bur reached keeps none. One pass over the chain for all.
-void findTimes(std::span<const Recording> chain, std::span<measures::Measured> measured, double voxelMm,
-               const core::Progress& progress = {});
+/// Of a chain of sessions, in the order of the work, read once, by stretches: memory does not grow with them. Gives
+/// places of the tooth their time and load, those at which the bur, cutting, lay there last, to within half a voxel (a
+/// place that no bur reached keeps none), and returns what is asked of the hand. Throws core::Error for what is damaged
+/// or not asked rightly.
+[[nodiscard]] std::vector<measures::Measured> readRecord(std::span<const Recording> chain,
+                                                         std::span<measures::Measured> ofTooth, double voxelMm,
+                                                         std::span<const measures::Request> ofHand,
+                                                         const hand::Against& against,
+                                                         const core::Progress& progress = {});
 
 }  // namespace handpiece::assessment

@@ -380,15 +380,17 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
             if (one.kind == "adjacent-depth" || one.kind == "adjacent-removed")
                 one = {one.kind, one.of, {}, 0.0, work.noBeside, {}};
     core::report(progress, 0.4);
-    findTimes(work.recordings, result.measured, task.voxelMm, core::part(progress, 0.4, 0.6));
     const hand::Against against{preparation.axes.longAxis, preparation.zones};
-    if (work.noHand.empty() && !ofHand.empty()) {
-        for (measures::Measured& one : measureHand(work.recordings, ofHand, against, core::part(progress, 0.6, 1.0)))
-            result.measured.push_back(std::move(one));
-    } else {
+    std::vector<measures::Measured> hand = readRecord(
+        work.recordings, result.measured, task.voxelMm,
+        work.noHand.empty() ? std::span<const measures::Request>(ofHand) : std::span<const measures::Request>(),
+        against, core::part(progress, 0.4, 1.0));
+    if (!work.noHand.empty())
         for (const measures::Request& request : ofHand)
-            result.measured.push_back({request.kind, request.of, {}, 0.0, work.noHand, {}});
-    }
+            hand.push_back({request.kind, request.of, {}, 0.0, work.noHand, {}});
+    for (measures::Measured& one : hand)
+        result.measured.push_back(std::move(one));
+    result.draw = preparation.axes.draw;
     result.context = work.context;
     result.identity.exercise = task.id;
     result.identity.exerciseHash = rubric::hashText(tasks::contentHash(task));

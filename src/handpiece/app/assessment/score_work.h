@@ -62,6 +62,7 @@ struct MeasuredWork {
     score::Identity identity;
     score::Context context;
     std::string proof;
+    core::Vec3 draw = core::Vec3::UnitZ();  ///< path of draw, out of the tooth; not kept in a store
 };
 /// What a rubric asks for, each once.
 [[nodiscard]] std::vector<measures::Request> requestsOf(const rubric::Rubric& rubric);

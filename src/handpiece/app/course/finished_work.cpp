@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/app/course/finished_work.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/model/case/attempt.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "handpiece/model/tooth/tooth_mirror.h"
+#include "handpiece/record/session/session_reader.h"
 #include "handpiece/senses/surface/brick_source.h"
 #include "handpiece/senses/surface/closed_surface.h"
 
@@ -43,6 +49,27 @@ rubric::Rubric rubricOf(const tasks::Task& task) {
     return rubric;
 }
 
+namespace {
+/// Measured and judged; `own` stays empty.
+void judge(FinishedWork& done, const core::Progress& progress) {
+    const assessment::MeasuredWork measured =
+        assessment::measureWork(done.work, *done.task, assessment::requestsOf(done.rubric), progress);
+    done.result = assessment::judge(measured, done.rubric);
+    if (done.task->preparation) done.draw = measured.draw;
+}
+}  // namespace
+
+FinishedWork judged(const std::filesystem::path& work, std::shared_ptr<const tasks::Task> task,
+                    const core::Progress& progress) {
+    FinishedWork done;
+    done.task = std::move(task);
+    done.session = work;
+    done.rubric = rubricOf(*done.task);
+    done.work = assessment::readWork(work, *done.task, true, core::part(progress, 0.0, 0.8));
+    judge(done, core::part(progress, 0.8, 1.0));
+    return done;
+}
+
 FinishedWork finish(std::span<const assessment::ChainLink> chain, std::shared_ptr<const tasks::Task> task,
                     const core::Progress& progress) {
     FinishedWork done;
@@ -50,10 +77,7 @@ FinishedWork finish(std::span<const assessment::ChainLink> chain, std::shared_pt
     done.rubric = rubricOf(*done.task);
     done.work = assessment::readChain(chain, *done.task, true, core::part(progress, 0.0, 0.7));
     done.session = chain.back().in;
-    core::report(progress, 0.7);
-    done.result = assessment::scoreWork(done.work, *done.task, done.rubric);
-    if (done.task->preparation) done.draw = preparation::layOn(done.task->toothCase, *done.task->preparation).draw;
-    core::report(progress, 0.85);
+    judge(done, core::part(progress, 0.7, 0.85));
     done.own = partsOf(done.work.teeth.front(), done.work.state, core::part(progress, 0.85, 1.0));
     return done;
 }
@@ -87,6 +111,46 @@ FinishedWork reopen(score::Result result, std::span<const assessment::ChainLink>
     if (done.task->preparation) done.draw = preparation::layOn(done.task->toothCase, *done.task->preparation).draw;
     done.own = partsOf(done.work.teeth.front(), done.work.state, core::part(progress, 0.6, 1.0));
     return done;
+}
+
+void handIn(const FinishedWork& done, const HandInWords& words, const std::filesystem::path& file) {
+    if (!cases::isPackageName(file)) throw core::Error("a hand-in is one file", file.string(), "name it .handpiece");
+    const tasks::Task& task = *done.task;
+    cases::Attempt attempt;
+    attempt.caseFile = file;
+    attempt.caseKey = cases::contentKey(task.toothCase);
+    attempt.caseName = task.toothCase.name;
+    attempt.state = tooth::encodeState(done.work.state, tooth::identityOf(done.work.teeth));
+    attempt.voxelMm = task.voxelMm;
+    attempt.removedMm3 = done.work.state.removedMm3.own;
+    attempt.student = words.student;
+    attempt.handedIn = true;
+    attempt.exercise = tasks::taskToml(task);
+    attempt.rubric = task.rubric;
+    attempt.handIn = cases::Attempt::HandIn{task.id,
+                                            task.version,
+                                            done.result.identity.exerciseHash,
+                                            assessment::resultJson(done.result.assessment, done.result.identity),
+                                            words.expectedPercent,
+                                            words.expectedWords};
+    cases::PackageFiles sessions;
+    for (const assessment::Recording& one : done.work.recordings) {
+        const std::string name = one.path.filename().string();
+        const session::SessionReader reader(one.path);
+        attempt.elapsedS += static_cast<double>(reader.endTick()) / reader.info().rateHz;
+        const simulation::SimulationSettings settings =
+            simulation::settingsFromJson(reader.info().settings, one.path.string());
+        if (settings.bur) attempt.bur = settings.bur->name();
+        attempt.cuttingParameters = settings.cuttingParameters.name;
+        attempt.drive = settings.drive.name;
+        if (!sessions.emplace(name, core::readFile(one.path, cases::kMaxRecordingBytes)).second)
+            throw core::Error(fmt::format("two of its sessions are called {}", name), one.path.string(),
+                              "give them other names");
+        attempt.recordings.push_back({name, true});
+        attempt.session = name;
+    }
+    if (attempt.bur.empty() && task.toothCase.exercise) attempt.bur = task.toothCase.exercise->bur;
+    cases::writeAttempt(attempt, file, &task.toothCase, std::move(sessions));
 }
 
 Parts idealOf(const tasks::Task& task, const core::Progress& progress) {

@@ -19,15 +19,32 @@ namespace handpiece::course {
 /// starter::kBlockLayers. The leeway is a judgement of the project. Throws core::Error for a kind that is none.
 [[nodiscard]] tasks::Task blockTask(const std::string& kind, int level, const std::string& layers = "hard");
 
+/// What can be told of an exercise that comes along without making it.
 struct Shipped {
     std::string id;
-    cases::Texts title;
+    int number = 0;                  ///< 1 to 10 of the ten first exercises; 0: a further block
+    int fdi = 0;                     ///< 0: a block
+    bool hasNeighbours = false;      ///< stands in its arch, with gingiva
+    std::string level, preparation;  ///< of tasks::kLevels; of preparation::templates()
+    double minutes = 0.0;
+    cases::Exercise exercise;  ///< title, instructions, burs, locks
 };
-/// Blocks first, then teeth, in the order in which they are to be done.
+/// The ten first exercises in their order, then further blocks.
 [[nodiscard]] const std::vector<Shipped>& shippedExercises();
-/// In its own folder below `folder`, where it is made the first time: a tooth takes seconds. Throws core::Error.
-[[nodiscard]] std::filesystem::path shippedExercise(const std::string& id, const std::filesystem::path& folder,
-                                                    const core::Progress& progress = {});
+/// Throws core::Error for an id that none has.
+[[nodiscard]] const Shipped& shippedExercise(const std::string& id);
+
+/// Faces of a tooth that is worked on.
+inline constexpr std::size_t kExerciseFaces = 40656;
+struct Made {
+    std::filesystem::path path;
+    tasks::Task task;  ///< as its files hold it
+};
+/// In a folder of its own below `folder`, with the teeth that it is of; what is there and whole is used. A tooth takes
+/// seconds, the mouth of some (once for all of them) a minute or two. Whole or not at all: cancelled, it leaves nothing
+/// but finished teeth. The same bytes everywhere. Throws core::Error.
+[[nodiscard]] Made makeShipped(const std::string& id, const std::filesystem::path& folder,
+                               const core::Progress& progress = {}, std::size_t faces = kExerciseFaces);
 
 /// One of a folder, or what is wrong with it.
 struct Found {

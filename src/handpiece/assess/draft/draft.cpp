@@ -31,6 +31,7 @@ Content contentOf(const tasks::Task& task) {
     content.exercise = task.toothCase.exercise.value_or(cases::Exercise{});
     content.voxelMm = task.voxelMm;
     content.minutes = task.minutes;
+    content.level = task.level;
     content.preparation = task.preparation;
     content.ownJudgement = task.ownJudgement;
     content.rubricText = task.rubric;
@@ -50,6 +51,7 @@ tasks::Task taskOf(const Content& content) {
     task.toothCase.exercise = content.exercise;
     task.voxelMm = content.voxelMm;
     task.minutes = content.minutes;
+    task.level = content.level;
     task.preparation = content.preparation;
     task.ownJudgement = content.ownJudgement;
     if (content.rubric) {

@@ -26,6 +26,7 @@ struct Content {
     cases::Exercise exercise;                  ///< texts, burs, locks, view
     double voxelMm = 0.05;
     std::optional<double> minutes;
+    std::string level;  ///< of tasks::kLevels; empty: not said
     std::optional<preparation::Recipe> preparation;
     bool ownJudgement = false;  ///< a student says what they expect before they see the result
     std::optional<rubric::Rubric> rubric;

@@ -13,6 +13,7 @@
 #include "handpiece/base/core/hash.h"
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/exercise_table.h"
+#include "handpiece/model/case/package_type.h"
 
 namespace handpiece::tasks {
 namespace {
@@ -45,7 +46,7 @@ std::vector<std::byte> bytesOf(std::string_view text) {
 Task parse(std::string_view text, const std::string& where) {
     const Table root = Table::parse(text, where);
     root.allowOnly({"format", "type", "id", "version", "voxel_um", "minutes", "minutes_hard", "live_bar",
-                    "own_judgement", "rubric", "exercise", "preparation"});
+                    "own_judgement", "level", "rubric", "exercise", "preparation"});
     const std::int64_t format = root.integer("format").value_or(0);
     if (format != kFormatVersion)
         root.fail(fmt::format("this exercise is of format {}", format),
@@ -71,6 +72,10 @@ Task parse(std::string_view text, const std::string& where) {
         root.fail("a hard limit without minutes", "give minutes, or leave minutes_hard out", "minutes_hard");
     task.hasLiveBar = root.flag("live_bar").value_or(false);
     task.ownJudgement = root.flag("own_judgement").value_or(false);
+    task.level = root.text("level").value_or("");
+    if (!task.level.empty() && std::find(kLevels.begin(), kLevels.end(), task.level) == kLevels.end())
+        root.fail(fmt::format("\"{}\" is no level", task.level), fmt::format("one of {}", fmt::join(kLevels, ", ")),
+                  "level");
     if (const auto rubric = root.text("rubric"); rubric && *rubric != kRubricFile)
         root.fail(fmt::format("the rubric is \"{}\"", *rubric), fmt::format("call the file {}", kRubricFile), "rubric");
     if (const auto exercise = root.table("exercise")) task.toothCase.exercise = cases::readExercise(*exercise);
@@ -99,6 +104,7 @@ std::string tomlOf(const Task& task) {
     if (task.minutes) out += fmt::format("minutes = {}\n", *task.minutes);
     if (task.isTimeHard) out += "minutes_hard = true\n";
     if (task.hasLiveBar) out += "live_bar = true\n";
+    if (!task.level.empty()) out += fmt::format("level = \"{}\"\n", task.level);
     if (task.ownJudgement) out += "own_judgement = true\n";
     if (!task.rubric.empty()) out += fmt::format("rubric = \"{}\"\n", kRubricFile);
     if (task.preparation) out += "\n" + preparation::recipeToml(*task.preparation);
@@ -144,7 +150,7 @@ bool isTask(const fs::path& path) {
     std::error_code ec;
     if (fs::is_directory(path, ec)) return fs::exists(path / kTaskFile, ec);
     if (!cases::isPackageName(path) || !fs::exists(path, ec)) return false;
-    return cases::readPackage(path, [](const std::string&) { return false; }).count(kTaskFile) != 0;
+    return cases::packageType(path) == cases::PackageType::exercise;
 }
 
 Task readTask(const fs::path& path) {
@@ -186,9 +192,10 @@ void writeTask(const Task& task, const fs::path& path) {
         files[kCasePrefix + name] = std::move(data);
     files[kTaskFile] = bytesOf(tomlOf(task));
     if (!task.rubric.empty()) files[kRubricFile] = bytesOf(task.rubric);
-    if (cases::isPackageName(path))
+    if (cases::isPackageName(path)) {
+        cases::setPackageType(files, cases::PackageType::exercise);
         cases::writePackage(path, files);
-    else
+    } else
         cases::writeFolder(path, files, kTaskFile);
 }
 

@@ -3,6 +3,7 @@
 /// @file
 /// An exercise as a file: a case, what is to be done with it, how it is judged. docs/formats/exercise.md.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -17,6 +18,8 @@ namespace handpiece::tasks {
 
 inline constexpr const char* kTaskFile = "exercise.toml";
 inline constexpr const char* kRubricFile = "rubric.toml";
+/// For whom an exercise is, the easiest first.
+inline constexpr std::array<std::string_view, 4> kLevels = {"beginner", "basic", "intermediate", "advanced"};
 
 struct Task {
     std::string id;                                  ///< small letters, digits, '-'; 1 to 64 of them
@@ -24,6 +27,7 @@ struct Task {
     cases::Case toothCase;                           ///< its `exercise` has texts, burs, locks, view
     double voxelMm = 0.05;                           ///< of the tooth: a score never hangs on a student's setting
     std::optional<double> minutes;                   ///< that it may take
+    std::string level;                               ///< of kLevels; empty: not said
     bool isTimeHard = false;                         ///< work ends with them; else one is told
     bool hasLiveBar = false;                         ///< what is removed of the target is shown during the work
     std::optional<preparation::Recipe> preparation;  ///< what is to be cut; none: nothing is asked

@@ -15,6 +15,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
 #include "handpiece/model/case/case_files.h"
+#include "handpiece/model/case/package_type.h"
 #include "handpiece/model/case/toml_text.h"
 
 namespace handpiece::cases {
@@ -27,6 +28,7 @@ constexpr std::int64_t kFormatVersion = 1;
 constexpr std::uint64_t kMaxStateBytes = 2ull << 30;
 constexpr double kMinVoxelMm = 0.005, kMaxVoxelMm = 1.0;  // as a session's
 constexpr std::size_t kMaxRecordings = 1000, kMaxListBytes = 256 << 10, kLongestName = 120;
+constexpr std::uint64_t kMaxResultBytes = 4 << 20;
 constexpr const char* kRecordingsFolder = "recordings/";
 constexpr const char* kRemedy = "see docs/case-format.md#attempts";
 
@@ -161,6 +163,40 @@ void readRecordings(const CaseFiles& files, Attempt& a) {
     }
 }
 
+std::string handInToml(const Attempt::HandIn& h) {
+    std::string out = fmt::format(
+        "# What was handed in: docs/case-format.md#hand-ins.\nformat = 1\nexercise = {}\nexercise_version = {}\n"
+        "exercise_hash = {}\n",
+        tomlText(h.exercise), h.version, tomlText(h.exerciseHash));
+    if (h.expectedPercent) out += fmt::format("expected_percent = {}\n", tomlNumber(*h.expectedPercent));
+    if (!h.expectedWords.empty()) out += fmt::format("expected_words = {}\n", tomlText(h.expectedWords));
+    return out;
+}
+
+void readHandIn(const CaseFiles& files, Attempt& a) {
+    if (!files.has(kHandInFile)) return;
+    const Table root = Table::parse(tomlIn(files, kHandInFile), files.where(kHandInFile));
+    const std::int64_t version = root.integer("format").value_or(0);
+    if (version != 1)
+        root.fail(fmt::format("the hand-in's format is {}, this program reads format 1", version),
+                  version > 1 ? "use a newer Handpiece" : kRemedy, "format");
+    root.allowOnly({"format", "exercise", "exercise_version", "exercise_hash", "expected_percent", "expected_words"});
+    Attempt::HandIn h;
+    h.exercise = root.text("exercise").value_or("");
+    h.version = root.integer("exercise_version").value_or(1);
+    h.exerciseHash = root.text("exercise_hash").value_or("");
+    (void)hexOf(root, "exercise_hash");
+    h.expectedPercent = root.number("expected_percent");
+    if (h.expectedPercent && !(*h.expectedPercent >= 0.0 && *h.expectedPercent <= 100.0))
+        root.fail(fmt::format("expected_percent is {}", *h.expectedPercent), "give 0 to 100", "expected_percent");
+    h.expectedWords = root.text("expected_words").value_or("");
+    if (files.has(kHandInResultFile)) {
+        const std::vector<std::byte> json = files.read(kHandInResultFile, kMaxResultBytes);
+        h.result.assign(reinterpret_cast<const char*>(json.data()), json.size());
+    }
+    a.handIn = std::move(h);
+}
+
 /// What an attempt of no exercise, or of before, does not have.
 void readExercise(const CaseFiles& files, Attempt& a) {
     const auto text = [&](const char* name) {
@@ -206,6 +242,7 @@ Attempt readFrom(const CaseFiles& files, const fs::path& path) {
             .as("attempt-damaged");
     a.caseFile = (baseOf(path) / a.caseFile).lexically_normal();
     readRecordings(files, a);
+    readHandIn(files, a);
     readExercise(files, a);
     return std::move(parsed.attempt);
 }
@@ -220,11 +257,16 @@ Attempt parseAttempt(std::string_view text, const std::string& where) {
     return parse(text, where).attempt;
 }
 
+namespace {
+bool isAttemptType(std::optional<PackageType> type) {
+    return type == PackageType::attempt || type == PackageType::handIn;
+}
+}  // namespace
+
 bool isAttempt(const fs::path& path) {
     std::error_code ec;
     if (fs::is_directory(path, ec)) return fs::exists(path / kAttemptFile, ec);
-    return isPackageName(path) && fs::exists(path, ec) &&
-           readPackage(path, [](const std::string&) { return false; }).count(kAttemptFile) > 0;
+    return isPackageName(path) && fs::exists(path, ec) && isAttemptType(packageType(path));
 }
 
 void writeAttempt(const Attempt& attempt, const fs::path& path, const Case* toothCase, PackageFiles recordings) {
@@ -268,15 +310,21 @@ void writeAttempt(const Attempt& attempt, const fs::path& path, const Case* toot
     if (attempt.handedIn || !attempt.recordings.empty()) files[kRecordingsFile] = bytesOf(recordingsToml(attempt));
     if (!attempt.exercise.empty()) files[kExerciseInAttempt] = bytesOf(attempt.exercise);
     if (!attempt.rubric.empty()) files[kRubricInAttempt] = bytesOf(attempt.rubric);
-    if (packed)
+    if (attempt.handIn) {
+        files[kHandInFile] = bytesOf(handInToml(*attempt.handIn));
+        if (!attempt.handIn->result.empty()) files[kHandInResultFile] = bytesOf(attempt.handIn->result);
+    }
+    if (packed) {
+        setPackageType(files, attempt.handedIn ? PackageType::handIn : PackageType::attempt);
         writePackage(path, files);
-    else
+    } else
         writeFolder(path, files, kAttemptFile);
 }
 
 Attempt readAttempt(const fs::path& path) {
     if (!isPackageName(path)) return readFrom(filesInFolder(path), path);
     const PackageFiles content = readPackage(path, isNoRecording);
+    requireOpenable(content, path.string());
     return readFrom(filesInPackage(path, content), path);
 }
 
@@ -294,7 +342,10 @@ std::vector<std::byte> readRecording(const fs::path& attempt, const std::string&
 
 OpenAttempt openAttempt(const fs::path& path) {
     std::optional<PackageFiles> content;
-    if (isPackageName(path)) content = readPackage(path, isNoRecording);
+    if (isPackageName(path)) {
+        content = readPackage(path, isNoRecording);
+        requireOpenable(*content, path.string());
+    }
     Attempt attempt = readFrom(content ? filesInPackage(path, *content) : filesInFolder(path), path);
     const bool holdsCase = content && content->count(std::string(kCaseInAttempt) + kCaseFile) > 0;
     if (holdsCase) attempt.caseFile = core::wholePath(path).lexically_normal();

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,17 @@ struct Attempt {
     };
     std::vector<Recording> recordings;
     bool handedIn = false;  ///< given to a teacher
+    /// Of work on an exercise that was handed in: for which, and what its own program and its student make of it.
+    struct HandIn {
+        std::string exercise;  ///< id
+        std::int64_t version = 1;
+        std::string exerciseHash;               ///< 16 hexadecimal digits
+        std::string result;                     ///< JSON of the score that it got where it was done; may be empty
+        std::optional<double> expectedPercent;  ///< by its student, before they saw it
+        std::string expectedWords;
+        friend bool operator==(const HandIn&, const HandIn&) = default;
+    };
+    std::optional<HandIn> handIn;  ///< none of what was handed in without an exercise
     /// exercise.toml and rubric.toml of the exercise that it is work on, as text; empty: of none.
     std::string exercise{}, rubric{};
 };
@@ -45,6 +57,8 @@ struct Attempt {
 inline constexpr const char* kAttemptFile = "attempt.toml";
 inline constexpr const char* kAttemptStateFile = "tooth.state";
 inline constexpr const char* kRecordingsFile = "recordings.toml";
+inline constexpr const char* kHandInFile = "hand-in.toml";
+inline constexpr const char* kHandInResultFile = "result.json";
 inline constexpr const char* kExerciseInAttempt = "exercise/exercise.toml";
 inline constexpr const char* kRubricInAttempt = "exercise/rubric.toml";
 /// Of the recordings that come along with an attempt, all together: an hour's work is a few dozen megabytes.

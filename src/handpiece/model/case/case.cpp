@@ -17,6 +17,7 @@
 #include "handpiece/model/case/case.h"
 #include "handpiece/model/case/case_files.h"
 #include "handpiece/model/case/exercise_table.h"
+#include "handpiece/model/case/package_type.h"
 
 namespace handpiece::cases {
 namespace {
@@ -276,6 +277,7 @@ Case readCase(const fs::path& path) {
     }
     if (isPackageName(path)) {
         const PackageFiles content = readPackage(path);
+        requireOpenable(content, path.string());
         for (const char* prefix : {"", kCaseInAttempt})
             if (const CaseFiles files = filesInPackage(path, content, prefix); files.has(kCaseFile))
                 return readCaseFiles(files);

@@ -10,6 +10,7 @@
 #include "handpiece/model/case/as_written.h"
 #include "handpiece/model/case/case.h"
 #include "handpiece/model/case/case_files.h"
+#include "handpiece/model/case/package_type.h"
 #include "handpiece/model/case/toml_text.h"
 
 namespace handpiece::cases {
@@ -111,9 +112,11 @@ PackageFiles caseFiles(const Case& toothCase) {
 
 void writeCase(const Case& toothCase, const fs::path& path) {
     if (path.empty()) throw core::Error("a case needs a folder", "output folder", "name one");
-    if (isPackageName(path))
-        writePackage(path, caseFiles(toothCase));
-    else
+    if (isPackageName(path)) {
+        PackageFiles files = caseFiles(toothCase);
+        setPackageType(files, PackageType::toothCase);
+        writePackage(path, files);
+    } else
         writeFolder(path, caseFiles(toothCase), kCaseFile);
 }
 

@@ -393,7 +393,8 @@ TEST_F(PracticeTest, AnAttemptResumedThreeTimesIsOneProvenChain) {
     // The hand's time is that of all four.
     const auto& all = result().shown()->work.work.recordings;
     ASSERT_EQ(all.size(), 4u);
-    std::vector<measures::Measured> time = assessment::measureHand(all, std::vector<measures::Request>{{"time"}}, {});
+    std::vector<measures::Measured> time =
+        assessment::readRecord(all, {}, 0.1, std::vector<measures::Request>{{"time"}}, {});
     EXPECT_NEAR(*time.front().value, kept.workedS, 0.5);
     // What happened in the first is played out of the first.
     measures::Evidence there;

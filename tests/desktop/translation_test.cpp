@@ -202,7 +202,9 @@ std::vector<std::pair<QString, QString>> textsOf(QWidget* top) {
 
 /// English words that stand in a Japanese window too: names, units, formats, keys.
 QString leftInEnglish(QString text) {
-    static const QRegularExpression tags(QStringLiteral("<[^>]*>")), words(QStringLiteral("[A-Za-z]{3,}"));
+    // What is typed as it stands, in a file's own words, is no language's.
+    static const QRegularExpression tags(QStringLiteral("<code>.*?</code>|<[^>]*>")),
+        words(QStringLiteral("[A-Za-z]{3,}"));
     static const std::set<QString> names = {"Handpiece", "STL",    "PNG",   "SVG",       "CSV",       "FDI",      "ISO",
                                             "PLY",       "OBJ",    "Ctrl",  "Shift",     "Home",      "End",      "Esc",
                                             "Del",       "Return", "Enter", "Backspace", "Left",      "Right",    "Up",

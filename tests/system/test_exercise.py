@@ -38,7 +38,7 @@ class Exercise(SystemTest):
         self.ok(*new, "--preparation", "class-two", "--side", "mesial", "--title", "Class II MO", "--minutes", 45)
         first = json.loads(self.ok("exercise", "check", self.folder / "two", "--json").stdout)
         self.assertEqual((first["fdi"], first["minutes"], first["title"]), (46, 45, {"en": "Class II MO"}))
-        self.ok(*new, "--preparation", "class-two", "--side", "mesial", "--set", "axial_mm=1.5")
+        self.ok(*new, "--preparation", "class-two", "--side", "mesial", "--set", "axial_mm=1.3")
         second = json.loads(self.ok("exercise", "check", self.folder / "two", "--json").stdout)
         self.assertNotEqual(first["hash"], second["hash"])
         gone = self.ok("exercise", "ideal", self.folder / "two", "--out", self.folder / "ideal").stdout

@@ -26,7 +26,10 @@ class Trials(SystemTest):
             self.assertTrue(work["full_within_the_borderline"], work)
             self.assertEqual((work["passed"], work["critical"], work["not_measured"]), ("yes", [], []))
         self.assertEqual([error["found"] for error in channel["errors"]], [True, True])
-        self.assertTrue(channel["ordered"])
+        # Which of the two that spoil everything is worse three trials do not tell; twenty do (docs/exercise-trials.md).
+        means = [hand["mean_percent"] for hand in channel["hands"]]
+        self.assertEqual(means[:3], sorted(means[:3], reverse=True))
+        self.assertLess(max(means[3:]), means[2])
         self.assertGreaterEqual(channel["auc"], 0.9)
         self.assertIn("| 1 block-channel, 330 |", (self.folder / "trials" / "trials.md").read_text())
 

@@ -9471,7 +9471,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>Drag a handle: its number follows; Escape gives it up. Drag elsewhere: turn. Right button: shift. Wheel: nearer.</source>
-        <translation>ハンドルをドラッグ：数値が変わる（Escape で取りやめ）。ほかの所をドラッグ：回転。右ボタン：移動。ホイール：拡大。</translation>
+        <translation>ハンドルをドラッグ：数値が変わる（Esc で取りやめ）。ほかの所をドラッグ：回転。右ボタン：移動。ホイール：拡大。</translation>
     </message>
     <message>
         <source>Cut it out</source>
@@ -9629,8 +9629,8 @@ lingual: %4</source>
         <translation>対象の装置</translation>
     </message>
     <message>
-        <source>Devices that it is valid for: pointer, ...; none: all</source>
-        <translation>有効な装置：pointer, ...。空：すべて</translation>
+        <source>Devices that it is valid for: &lt;code&gt;pointer, falcon&lt;/code&gt;; none: all</source>
+        <translation>有効な装置：&lt;code&gt;pointer, falcon&lt;/code&gt;。空：すべて</translation>
     </message>
     <message>
         <source>Makes void</source>
@@ -9717,8 +9717,8 @@ lingual: %4</source>
         <translation>満たさないときの上限 [%]</translation>
     </message>
     <message>
-        <source>Needs: bands, then of which criteria, then how many: unacceptable most 0; modify of depth, outline most 2; rule other</source>
-        <translation>条件：区分、対象の項目、数の順：unacceptable most 0; modify of depth, outline most 2; rule other</translation>
+        <source>Needs: bands, then of which criteria, then how many: &lt;code&gt;unacceptable most 0; modify of depth, outline most 2; rule other&lt;/code&gt;</source>
+        <translation>条件：区分、対象の項目、数の順：&lt;code&gt;unacceptable most 0; modify of depth, outline most 2; rule other&lt;/code&gt;</translation>
     </message>
     <message>
         <source>Words by language</source>
@@ -10010,7 +10010,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>Drag a knot. Double click: another one. Right button or Delete: away with it. Arrow keys move it.</source>
-        <translation>折れ点をドラッグ。ダブルクリックで追加。右ボタンか Delete で削除。矢印キーで移動。</translation>
+        <translation>折れ点をドラッグ。ダブルクリックで追加。右ボタンか Del で削除。矢印キーで移動。</translation>
     </message>
     <message>
         <source>No curve: a double click makes its first knot</source>

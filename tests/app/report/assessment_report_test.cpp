@@ -41,10 +41,10 @@ tasks::Task task() {
 /// All of it as good as can be but for what is told.
 score::Result resultOf(const std::map<std::string, double>& told) {
     const rubric::Rubric rubric = rubric::shippedRubric("46-class-i");
-    const std::map<std::string, double> good = {{"depth", 1.75},        {"isthmus", 1.25},     {"ridge-mesial", 2.5},
-                                                {"ridge-distal", 2.5},  {"floor", 0.0},        {"wall-buccal", -3.0},
-                                                {"wall-lingual", -3.0}, {"pulp-exposed", 0.0}, {"time", 300.0},
-                                                {"path", 900.0},        {"smoothness", -4.0}};
+    const std::map<std::string, double> good = {{"depth", 1.75},       {"outline", 95.0},      {"isthmus", 1.25},
+                                                {"ridge-mesial", 2.5}, {"ridge-distal", 2.5},  {"floor", 0.0},
+                                                {"wall-buccal", -3.0}, {"wall-lingual", -3.0}, {"pulp-exposed", 0.0},
+                                                {"time", 300.0},       {"path", 900.0},        {"smoothness", -4.0}};
     std::vector<measures::Measured> measured;
     for (const rubric::Criterion& c : rubric.criteria) {
         measures::Measured m{c.measure, c.of, good.at(c.id), 0.02, {}, {}};

@@ -104,13 +104,15 @@ TEST(Preparation, LeftIsRightInTheMirror) {
 TEST(Preparation, ClassTwoBreaksTheContactAndReachesUnderIt) {
     for (const char* side : {"mesial", "distal"}) {
         const cases::Tooth& tooth = toothOf(46);
-        const Laid laid = layOn(tooth, recipeOf("class-two", side));
+        const Recipe recipe = recipeOf("class-two", side);
+        const double underMm = recipe.number("under_contact_mm");
+        const Laid laid = layOn(tooth, recipe);
         for (const cases::Landmark& mark : tooth.landmarks)
             if (mark.kind == cases::LandmarkKind::contact) {
                 const Vec3 inside = mark.pointsMm.front() + Vec3(mark.name == "mesial" ? -0.3 : 0.3, 0, 0);
                 EXPECT_EQ(laid.zones->at(inside) == zones::Zone::target, mark.name == side) << mark.name;
-                EXPECT_EQ(laid.zones->at(inside - Vec3(0, 0, 0.9)) == zones::Zone::target, mark.name == side);
-                EXPECT_NE(laid.zones->at(inside - Vec3(0, 0, 1.1)), zones::Zone::target);
+                EXPECT_EQ(laid.zones->at(inside - Vec3(0, 0, underMm - 0.1)) == zones::Zone::target, mark.name == side);
+                EXPECT_NE(laid.zones->at(inside - Vec3(0, 0, underMm + 0.1)), zones::Zone::target);
             }
         // All of one piece: what the box holds and what the fissures hold touch.
         const Sampled s = sampled(laid, 0.2);

@@ -22,6 +22,7 @@
 #include "desktop/features/editor/curve_view.h"
 #include "desktop/features/editor/editor_words.h"
 #include "desktop/features/editor/list_table.h"
+#include "desktop/framework/language.h"
 #include "desktop/framework/problem.h"
 #include "desktop/widgets/parts.h"
 #include "handpiece/assess/draft/cells.h"
@@ -187,7 +188,8 @@ QWidget* RubricPage::details() {
         });
         return field;
     };
-    devices_ = line("editorDevices", tr("Only for"), tr("Devices that it is valid for: pointer, ...; none: all"),
+    devices_ = line("editorDevices", tr("Only for"),
+                    tr("Devices that it is valid for: <code>pointer, falcon</code>; none: all"),
                     [](rubric::Criterion& c, const std::string& text) { c.devices = draft::readNames(text); });
     excludes_ = line("editorExcludes", tr("Makes void"), tr("Criteria that do not count where this one fails"),
                      [](rubric::Criterion& c, const std::string& text) { c.excludes = draft::readNames(text); });
@@ -340,8 +342,8 @@ QWidget* RubricPage::wholeTab() {
     rules_->setColumns({tr("Name"), tr("Needs"), tr("To pass"), tr("Else at most [%]"), tr("Source")},
                        {120, 330, 60, 110, 160});
     rules_->table()->setToolTip(
-        tr("Needs: bands, then of which criteria, then how many: unacceptable most 0; modify of depth, outline most 2; "
-           "rule other"));
+        tr("Needs: bands, then of which criteria, then how many: <code>unacceptable most 0; modify of depth, outline "
+           "most 2; rule other</code>"));
     auto* lists = new QHBoxLayout;
     lists->addWidget(bands_, 1);
     lists->addWidget(steps_, 2);
@@ -465,7 +467,9 @@ void RubricPage::showWhole() {
     std::vector<int> widths{230};
     QStringList titles{tr("What")};
     for (const QString& tag : tags) {
-        const QString name = QLocale(tag).language() == QLocale::C ? tag : QLocale(tag).nativeLanguageName();
+        const QString name = tag == QLatin1String("en") || tag == QLatin1String("ja") ? Language::nameOf(tag)
+                             : QLocale(tag).language() == QLocale::C                  ? tag
+                                                                     : QLocale(tag).nativeLanguageName();
         titles << (name.isEmpty() || name == tag ? tag : QStringLiteral("%1 (%2)").arg(name, tag));
         widths.push_back(270);
     }

@@ -339,8 +339,7 @@ Made makeShipped(const std::string& id, const fs::path& folder, const core::Prog
     const tasks::Task task = taskOf(row, standOf(row, folder, faces, core::part(progress, 0.0, 0.95)));
     core::report(progress, 0.95);
     fs::create_directories(place.parent_path(), error);
-    tasks::writeTask(task, place);
-    core::report(progress, 1.0);
+    tasks::writeTask(task, place);  // from here on it is there: too late to cancel
     return {place, tasks::readTask(place)};
 }
 

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 
+#include "handpiece/assess/measures/preparation.h"
 #include "handpiece/base/geometry/mesh_edges.h"
 
 namespace handpiece::scan_work {
 namespace {
 
-constexpr double kSeedMm = 0.1;       ///< at least so deep under the whole tooth something was cut
 constexpr double kBesideMm = 0.2;     ///< of cut surface the margin may lie so far
 constexpr double kLeastCutMm2 = 0.1;  ///< less is a speck of the scan
 
@@ -18,7 +18,7 @@ constexpr double kLeastCutMm2 = 0.1;  ///< less is a speck of the scan
 std::vector<char> cutVertices(const TriangleMesh& mesh, const std::vector<double>& distances,
                               const std::vector<double>& areas, double growMm) {
     const std::size_t n = mesh.vertices.size();
-    const double seedMm = std::max(kSeedMm, 2.0 * growMm);
+    const double seedMm = std::max(measures::kScanSeedMm, 2.0 * growMm);
     geometry::DisjointSets sets(n);
     const geometry::MeshEdges edges(mesh);
     const auto isAtAll = [&](std::uint32_t v) { return distances[v] < -growMm; };

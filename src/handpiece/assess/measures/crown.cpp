@@ -169,8 +169,6 @@ Taken takeMarginHeight(CutTooth& tooth, const Selection& of) {
 
 namespace {
 
-constexpr double kScanSkinMm = 0.1;  // what a scan takes as cut reaches this somewhere
-
 struct Axial {
     Places places;
     double areaMm2 = 0.0;
@@ -192,7 +190,7 @@ Axial axialTowards(CutTooth& tooth, const Vec3& towards) {
             const geometry::RayMeeting met = tooth.whole().tree.firstMeeting(point.p, point.n, kFarMm);
             if (met.triangle == geometry::kNoTriangle) continue;
             // Round a scanned cavity noise makes a skin of what was not cut.
-            if (tooth.preparation().noiseMm > 0.0 && met.distanceMm < kScanSkinMm) continue;
+            if (tooth.preparation().noiseMm > 0.0 && met.distanceMm < kScanSeedMm) continue;
             // A wall that looks out under the occlusal margin, or at another wall, is no axial one.
             if (!(look.normalBefore(point.p + met.distanceMm * point.n).dot(towards) > kSin45)) continue;
             const double off = 2.0 * tooth.voxelMm();

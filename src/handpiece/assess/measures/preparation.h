@@ -37,6 +37,9 @@ struct Axes {
 /// Cut into the tooth, or all round it. `found`: by whether its walls face one another.
 enum class Form { found, cavity, crown };
 
+/// Of a scan: at least so deep under the whole tooth something was cut [mm]; what lies nearer all over is noise.
+inline constexpr double kScanSeedMm = 0.1;
+
 /// What is measured. References must outlive the measuring; nobody may feed the mirrors meanwhile.
 struct Preparation {
     std::shared_ptr<const tooth::ToothModel> whole;

@@ -81,12 +81,9 @@ void layMiddle(std::span<WallStation* const> places) {
     const double pieces = std::max(1.0, static_cast<double>(looked.size()) * kProbeMm / kPieceMm);
     const Bend upper = bendFrom(looked, kShares.back());
     double from = kShares.back();
-    for (const double share : kShares) {
-        const Bend bend = bendFrom(looked, share);
-        if (bend.meanMm > 1.2 * upper.meanMm + 0.0005 + kMarksTimes * upper.eachMm / std::sqrt(pieces)) continue;
-        from = share;
-        break;
-    }
+    const double straightMm = 1.2 * upper.meanMm + 0.0005 + kMarksTimes * upper.eachMm / std::sqrt(pieces);
+    for (std::size_t i = 0; i + 1 < kShares.size() && from == kShares.back(); ++i)
+        if (bendFrom(looked, kShares[i]).meanMm <= straightMm) from = kShares[i];
     for (WallStation* wall : places) {
         if (const Line line = lineFrom(*wall, from); line.isFound) wall->middle = line;
         wall->middleFromW = wall->floorW + from * wall->heightMm();

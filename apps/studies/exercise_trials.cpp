@@ -197,7 +197,7 @@ std::vector<Spec> specs() {
                                             Vec3::UnitZ());
                          return withPlunge(r.well, low + (off - 0.3) * out, draw, 0.0);
                      }}},
-                   "taper-round:0.8x7.0",
+                   "taper-round:0.8x6.0",
                    false,
                    0.15});
     // One bur all the way down: the exercise's own are changed on the way.

@@ -177,7 +177,7 @@ std::vector<Spec> specs() {
                              r.laid.whole->firstMeeting(middle + 20.0 * r.buccal(), -r.buccal());
                          return withPlunge(r.well, middle + (20.0 - out.distanceMm) * r.buccal(), r.laid.draw, 0.3);
                      }}},
-                   "cylinder-round:0.6x4.0"});
+                   "cylinder-flat:0.6x4.0"});
     all.push_back({"33-class-v", {intoPulp()}});
     // A slim bur: 856-012 is wider than the chamfer's way between the teeth.
     all.push_back({"46-crown",
@@ -197,7 +197,7 @@ std::vector<Spec> specs() {
                                             Vec3::UnitZ());
                          return withPlunge(r.well, low + (off - 0.3) * out, draw, 0.0);
                      }}},
-                   "taper-round:0.8x6.0",
+                   "taper-round:1.0x7.0",
                    false,
                    0.15});
     // One bur all the way down: the exercise's own are changed on the way.

@@ -565,7 +565,8 @@ void RubricPage::show(const Content& content) {
     const std::optional<double> passMark = content.rubric ? content.rubric->passMark : std::nullopt;
     hasMark_->setChecked(passMark.has_value());
     mark_->setEnabled(passMark.has_value());
-    if (passMark && std::abs(mark_->value() - *passMark) > 0.05) mark_->setValue(*passMark);
+    const double mark = passMark.value_or(mark_->value());
+    if (std::abs(mark_->value() - mark) > 0.05) mark_->setValue(mark);
     showing_ = false;
     if (count > 0 && table_->currentRow() < 0) table_->setCurrentCell(0, kId);
     showDetails();

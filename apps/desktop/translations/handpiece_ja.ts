@@ -10009,6 +10009,30 @@ lingual: %4</source>
         <source>Start view [mm]</source>
         <translation>開始時の視点 [mm]</translation>
     </message>
+    <message>
+        <source>Work ends with them</source>
+        <translation>時間になったら作業を終える</translation>
+    </message>
+    <message>
+        <source>The pedal is dead then; else students are told once, and go on</source>
+        <translation>以後フットペダルが効きません。オフの場合は一度知らせるだけで、作業は続けられます</translation>
+    </message>
+    <message>
+        <source>Level</source>
+        <translation>レベル</translation>
+    </message>
+    <message>
+        <source>Not said</source>
+        <translation>指定なし</translation>
+    </message>
+    <message>
+        <source>Show during the work what is gone of the target</source>
+        <translation>作業中に目標の切削量を表示する</translation>
+    </message>
+    <message>
+        <source>A bar for target, leeway and what must stay</source>
+        <translation>目標・許容範囲・残すべき部分の切削量をバーで示します</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::CurveView</name>

@@ -379,15 +379,18 @@ void MarkingFeature::showSheet() {
                      !dialog_->beside(code_, -1).isEmpty(), !dialog_->beside(code_, 1).isEmpty());
 }
 
-void MarkingFeature::tryTo(const std::function<void(marking::Desk& desk)>& change) {
-    if (!desk_ || code_.isEmpty()) return;
+bool MarkingFeature::tryTo(const std::function<void(marking::Desk& desk)>& change) {
+    if (!desk_ || code_.isEmpty()) return false;
+    bool isKept = false;
     try {
         change(*desk_);
+        isKept = true;
     } catch (const core::Error& error) {
         window_.showProblem(problemOf(error));
     }
     dialog_->refresh();
     showSheet();
+    return isKept;
 }
 
 void MarkingFeature::comment(const QString& text, bool atPlace, bool atTime) {
@@ -404,8 +407,9 @@ void MarkingFeature::comment(const QString& text, bool atPlace, bool atTime) {
         }
     }
     if (atTime && simulator_.replay()) said.timeS = simulator_.replay()->now().timeS;
+    if (!tryTo([&](marking::Desk& desk) { desk.comment(code_.toStdString(), said); })) return;
     forgetPlace();
-    tryTo([&](marking::Desk& desk) { desk.comment(code_.toStdString(), said); });
+    sheet_->clearComment();
 }
 
 void MarkingFeature::goTo(const std::optional<core::Vec3>& placeMm, const std::optional<double>& timeS) {

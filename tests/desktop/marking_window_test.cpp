@@ -153,6 +153,10 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     EXPECT_EQ(codes.find("S-0"), std::string::npos);
     EXPECT_NE(codes.find("ragged margins"), std::string::npos);
     EXPECT_NE(written("markingExport_files", "files.csv").find("S-08-second.handpiece"), std::string::npos);
+    const std::string page = written("markingExport_class", "class.html");
+    EXPECT_NE(page.find("S-08-second"), std::string::npos);
+    EXPECT_NE(page.find("<svg"), std::string::npos);
+    EXPECT_EQ(page.find("broken"), std::string::npos) << "it has no score";
 
     // Another start goes on where this one was.
     start();

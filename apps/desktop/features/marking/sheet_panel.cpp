@@ -23,6 +23,7 @@
 #include "desktop/features/marking/work_table.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
+#include "handpiece/app/report/assessment_words.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -315,7 +316,7 @@ void SheetPanel::fillCriteria() {
         item->setText(kMeasured, was.value ? tr("%1 ± %2 %3")
                                                  .arg(measuredText(*was.value), measuredText(was.uncertainty),
                                                       QString::fromStdString(was.unit))
-                                           : QString::fromStdString(was.reason));
+                                           : QString::fromStdString(report::said(was.reason)));
         QStringList band{now.band.empty() ? QString() : bandText(desk_->rubric(), now.band)};
         if (now.critical != score::Verdict::no)
             band << (now.critical == score::Verdict::yes ? tr("critical error") : tr("perhaps a critical error"));
@@ -340,7 +341,7 @@ void SheetPanel::fillCriteria() {
 
 void SheetPanel::addEvidence(QTreeWidgetItem* under, const score::CriterionScore& of) {
     for (const measures::Evidence& e : of.evidence) {
-        QStringList words{QString::fromStdString(e.text)};
+        QStringList words{QString::fromStdString(report::said(e.text))};
         if (e.timeS) words << tr("at %1 s").arg(QLocale().toString(*e.timeS, 'f', 1));
         if (e.forceN) words << tr("%1 N").arg(QLocale().toString(*e.forceN, 'f', 2));
         words.removeAll(QString());
@@ -385,10 +386,10 @@ void SheetPanel::showSummary() {
             .arg(pointsText(final->score), pointsText(final->maxScore), pointsText(machine->assessment.score),
                  WorkTable::passedWord(static_cast<int>(*desk_->passed(id))));
     if (!final->why.empty() && !desk_->sheet(id).decision)
-        text += QLatin1Char(' ') + tr("Why: %1.").arg(QString::fromStdString(final->why));
-    text +=
-        QLatin1Char(' ') +
-        (machine->identity.proven ? tr("Proven.") : tr("Unproven: %1.").arg(QString::fromStdString(machine->proof)));
+        text += QLatin1Char(' ') + tr("Why: %1.").arg(QString::fromStdString(report::whyOf(*final, desk_->rubric())));
+    text += QLatin1Char(' ') + (machine->identity.proven
+                                    ? tr("Proven.")
+                                    : tr("Unproven: %1.").arg(QString::fromStdString(report::said(machine->proof))));
     summary_->setText(text);
 }
 

@@ -121,6 +121,8 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     click("sheetDecide");
     EXPECT_EQ(desk().passed(code), score::Passed::yes);
 
+    EXPECT_FALSE(part<QLabel>("sheetNotShown")->isVisible());
+
     // To the recording, by next or previous; evidence of time stands in it.
     const int from = rowOf("S-08-second.handpiece"), to = rowOf("S-09.h5");
     ASSERT_EQ(std::abs(from - to), 1) << "of equal score before the override, so side by side";
@@ -141,6 +143,14 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     QTest::mouseClick(list->viewport(), Qt::LeftButton, Qt::NoModifier, list->visualItemRect(list->item(0)).center());
     EXPECT_TRUE(waitFor(
         [&] { return std::abs(simulator().replay()->now().timeS - *desk().sheet(other).comments[0].timeS) < 0.02; }));
+
+    // What cannot be opened leaves the tooth before in the picture, which is told, and nothing is pinned to it.
+    click("sheetTable");
+    openRow(rowOf("broken.handpiece"));
+    ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
+    window().errorDialog()->reject();
+    EXPECT_TRUE(part<QLabel>("sheetNotShown")->isVisible());
+    EXPECT_FALSE(part<QPushButton>("sheetCommentPick")->isEnabled());
 
     // Tables for others.
     const auto written = [this](const char* way, const char* name) {

@@ -2736,6 +2736,50 @@
         <source>Take a tooth with a lesion, or another preparation.</source>
         <translation>病変のある歯か、別の形成を選ぶ。</translation>
     </message>
+    <message>
+        <source>Another work is the same, byte for byte.</source>
+        <translation>ほかの作品とまったく同じ内容です。</translation>
+    </message>
+    <message>
+        <source>Ask whose it is.</source>
+        <translation>だれの作品か確かめてください。</translation>
+    </message>
+    <message>
+        <source>This is work on another tooth than the exercise&apos;s.</source>
+        <translation>この課題とは別の歯の作品です。</translation>
+    </message>
+    <message>
+        <source>Choose the exercise that it was done on.</source>
+        <translation>作業した課題を選んでください。</translation>
+    </message>
+    <message>
+        <source>This is a result of another exercise.</source>
+        <translation>別の課題の結果です。</translation>
+    </message>
+    <message>
+        <source>This is a result by another rubric: %1, version %2.</source>
+        <translation>別のルーブリックによる結果です：%1、版 %2。</translation>
+    </message>
+    <message>
+        <source>This result has other criteria than its rubric.</source>
+        <translation>この結果の項目はルーブリックと一致しません。</translation>
+    </message>
+    <message>
+        <source>This was cut in voxels of %1 micrometres; the exercise has %2.</source>
+        <translation>%1 µm のボクセルで削られています。課題は %2 µm です。</translation>
+    </message>
+    <message>
+        <source>Work on it as the exercise has it.</source>
+        <translation>課題のとおりに作業してください。</translation>
+    </message>
+    <message>
+        <source>This work is no longer in the folder, or was changed.</source>
+        <translation>この作品はフォルダーにないか、変更されています。</translation>
+    </message>
+    <message>
+        <source>Put it back, or score again.</source>
+        <translation>元に戻すか、再採点してください。</translation>
+    </message>
 </context>
 <context>
     <name>Pulp</name>
@@ -8437,6 +8481,10 @@ lingual: %4</source>
         <source>Place chosen: click anew</source>
         <translation>場所を選択済み：選び直す</translation>
     </message>
+    <message>
+        <source>The picture does not show this work.</source>
+        <translation>画面に出ているのはこの作品ではありません。</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::WorkTable</name>
@@ -9247,6 +9295,10 @@ lingual: %4</source>
     <message>
         <source>Rule %1</source>
         <translation>規則 %1</translation>
+    </message>
+    <message>
+        <source>Kept of the labial surface</source>
+        <translation>唇側面に残す厚さ</translation>
     </message>
 </context>
 <context>

@@ -360,6 +360,7 @@ void MarkingFeature::openWork(const QString& code) {
 
 void MarkingFeature::look(const fs::path& path, bool isSession) {
     window_.whenMayLeave([this, path, isSession] {
+        opening_ = code_;
         goesToEnd_ = isSession;
         if (isSession)
             simulator_.open(path);
@@ -371,6 +372,12 @@ void MarkingFeature::look(const fs::path& path, bool isSession) {
 void MarkingFeature::showDocument() {
     const bool isReplay = simulator_.mode() == Simulator::Mode::replay;
     sheet_->setHasTime(isReplay);
+    const bool isWork = isReplay || simulator_.mode() == Simulator::Mode::review;
+    if (!isWork)
+        inPicture_.clear();
+    else if (!opening_.isEmpty())
+        inPicture_ = std::exchange(opening_, {});
+    sheet_->setIsShown(!code_.isEmpty() && inPicture_ == code_);
     if (!goesToEnd_ || !isReplay || !simulator_.replay()) return;
     // What is marked is how it ended.
     goesToEnd_ = false;
@@ -378,11 +385,15 @@ void MarkingFeature::showDocument() {
 }
 
 void MarkingFeature::showSheet() {
-    if (!desk_ || code_.isEmpty()) return sheet_->showWork(nullptr, {}, {}, false, false);
+    if (!desk_ || code_.isEmpty()) {
+        sheet_->showWork(nullptr, {}, {}, false, false);
+        return sheet_->setIsShown(false);
+    }
     const auto& codes = desk_->codes();
     const auto at = std::find(codes.begin(), codes.end(), code_.toStdString()) - codes.begin();
     sheet_->showWork(desk_.get(), code_, tr("%1 of %2").arg(at + 1).arg(codes.size()),
                      !dialog_->beside(code_, -1).isEmpty(), !dialog_->beside(code_, 1).isEmpty());
+    sheet_->setIsShown(inPicture_ == code_);
 }
 
 bool MarkingFeature::tryTo(const std::function<void(marking::Desk& desk)>& change) {

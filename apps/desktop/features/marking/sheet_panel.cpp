@@ -77,6 +77,9 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     summary_ = named(new QLabel(this), "sheetSummary", tr("How the work stands"));
     summary_->setWordWrap(true);
     summary_->setTextFormat(Qt::PlainText);
+    notShown_ = named(new QLabel(tr("The picture does not show this work."), this), "sheetNotShown",
+                      tr("Whether the picture shows this work"));
+    notShown_->setFont(scaledFont(font(), 1.0, true));
     criteria_ = named(new QTreeWidget(this), "sheetCriteria", tr("Criteria"),
                       tr("Choose one to judge it; a place below it turns the picture there"));
     criteria_->setHeaderLabels({tr("Criterion"), tr("Your mark"), tr("Points"), tr("Band"), tr("Measured")});
@@ -163,6 +166,7 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     column->setSpacing(5);
     column->addLayout(above);
     column->addWidget(summary_);
+    column->addWidget(notShown_);
     column->addWidget(criteria_, 1);
     column->addLayout(editor);
     column->addWidget(decisionRow_);
@@ -231,7 +235,14 @@ void SheetPanel::setHasTime(bool hasTime) {
 void SheetPanel::setPlace(const std::optional<core::Vec3>& placeMm) {
     pick_->setChecked(false);
     pick_->setText(placeMm ? tr("Place chosen: click anew") : tr("Click the place"));
-    atPlace_->setEnabled(!placeMm);
+    atPlace_->setEnabled(!placeMm && isShown_);
+}
+
+void SheetPanel::setIsShown(bool isShown) {
+    isShown_ = isShown;
+    notShown_->setVisible(!isShown && desk_ != nullptr);
+    pick_->setEnabled(isShown);
+    atPlace_->setEnabled(isShown);
 }
 
 void SheetPanel::clearComment() {
@@ -374,8 +385,8 @@ void SheetPanel::showSummary() {
     const assessment::Result* machine = desk_->machine(id);
     const std::optional<score::Assessment> final = desk_->finalScore(id);
     if (machine == nullptr || !final) {
-        const std::string problem = desk_->problem(id);
-        summary_->setText(!problem.empty()         ? QString::fromStdString(problem)
+        const QString problem = WorkTable::problemWords(*desk_, id);
+        summary_->setText(!problem.isEmpty()       ? problem
                           : isMarking()            ? tr("The machine's score is hidden until your marks are in.")
                           : !desk_->isRevealed(id) ? tr("The machine's score is shown when all works are marked.")
                                                    : tr("It waits for its score."));

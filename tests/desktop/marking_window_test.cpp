@@ -21,6 +21,7 @@
 #include "desktop/features/marking/marking_feature.h"
 #include "desktop/features/marking/sheet_panel.h"
 #include "handpiece/app/assessment/marks.h"
+#include "handpiece/app/marking/returned_marks.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/case/attempt.h"
 #include "shell_support.h"
@@ -308,6 +309,27 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     EXPECT_EQ(codes.find("S-0"), std::string::npos);
     EXPECT_NE(codes.find("ragged margins"), std::string::npos);
     EXPECT_NE(written("markingExport_files", "files.csv").find("S-08-second.handpiece"), std::string::npos);
+
+    // Back to the student: of the work that is open, and of each that has a score.
+    file_ = own_.filePath("S-09-marks.json");
+    click("sheetReturn");
+    const auto returned = [](const fs::path& file) {
+        const auto bytes = core::readFile(file);
+        return marking::parseReturned({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file.string());
+    };
+    const marking::ReturnedMarks alone = returned(toPath(file_));
+    EXPECT_EQ(alone.marker, "Tanaka");
+    ASSERT_EQ(alone.comments.size(), 1u);
+    EXPECT_EQ(alone.comments[0].timeS, desk().sheet(other).comments[0].timeS);
+    EXPECT_TRUE(areOf(alone, desk().machine(other)->identity));
+    file_ = own_.filePath("given");
+    part<QAction>("markingExport_returned")->trigger();
+    EXPECT_EQ(std::distance(fs::directory_iterator(at("given")), {}), 3) << "the broken one has no score";
+    const marking::ReturnedMarks all = returned(at("given") / "S-08-second-marks.json");
+    ASSERT_EQ(all.changes.size(), 1u);
+    EXPECT_EQ(all.changes[0].reason, "ragged margins");
+    EXPECT_EQ(all.passed, score::Passed::yes);
+    EXPECT_EQ(all.comments.size(), 2u);
 
     // Another start goes on where this one was.
     start();

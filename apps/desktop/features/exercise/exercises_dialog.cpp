@@ -11,6 +11,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "desktop/features/exercise/assessment_words.h"
 #include "desktop/framework/helps.h"
@@ -179,13 +180,7 @@ void ExercisesDialog::chooseAfter(const std::string& id) {
 
 void ExercisesDialog::giveUp() {
     if (!job_) return;
-    // It goes once it has heard of it: nobody waits.
-    job_->disconnect(this);
-    job_->cancel();
-    for (const auto end : {&Job::done, &Job::cancelled})
-        connect(job_, end, job_, &QObject::deleteLater);
-    connect(job_, &Job::failed, job_, &QObject::deleteLater);
-    job_ = nullptr;
+    std::exchange(job_, nullptr)->abandon(this);
     progress_->hide();
 }
 

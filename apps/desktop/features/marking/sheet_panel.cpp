@@ -163,6 +163,10 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     column->addWidget(comments_);
     column->addLayout(writing);
     column->addLayout(pins);
+    return_ = named(new QPushButton(tr("Return to student..."), this), "sheetReturn", tr("Return to student..."),
+                    tr("One file with your comments, what you judged otherwise and why, and the score"));
+    column->addWidget(return_);
+    connect(return_, &QPushButton::clicked, this, &SheetPanel::returnRequested);
 
     connect(previous_, &QToolButton::clicked, this, [this] { emit stepRequested(-1); });
     connect(next_, &QToolButton::clicked, this, [this] { emit stepRequested(1); });
@@ -233,6 +237,7 @@ void SheetPanel::setPlace(const std::optional<core::Vec3>& placeMm) {
 void SheetPanel::showWork(const marking::Desk* desk, const QString& code, const QString& place, bool hasPrevious,
                           bool hasNext) {
     const std::string before = code == code_ ? criterion() : std::string();
+    return_->setEnabled(desk != nullptr && !code.isEmpty() && desk->machine(code.toStdString()) != nullptr);
     if (code != code_) {
         comment_->clear();
         decisionReason_->clear();

@@ -784,8 +784,9 @@ TEST_F(PracticeTest, AFinishedWorkIsHandedInAsTheCommandLineDoesIt) {
     // The same to the byte as `handpiece exercise hand-in` of the same recording.
     const auto task = std::make_shared<const tasks::Task>(tasks::readTask(place));
     const fs::path session = result().shown()->work.session;
-    course::handIn(course::judged(session, task), {"A7", 65.0, "too short"}, at("cli.handpiece"));
-    EXPECT_EQ(core::readFile(file), core::readFile(at("cli.handpiece")));
+    fs::create_directories(at("cli"));
+    course::handIn(course::judged(session, task), {"A7", 65.0, "too short"}, at("cli") / "a7.handpiece");
+    EXPECT_EQ(core::readFile(file), core::readFile(at("cli") / "a7.handpiece"));
     // The teacher's desk has it, and comes to the same score.
     const std::vector<marking::ReturnedWork> works = marking::findWork(file.parent_path());
     ASSERT_EQ(works.size(), 1u);
@@ -799,7 +800,8 @@ TEST_F(PracticeTest, AFinishedWorkIsHandedInAsTheCommandLineDoesIt) {
     host_.reset();
     startWithTooth();
     answer();
-    file_ = own_.filePath("later.handpiece");
+    fs::create_directories(at("later"));
+    file_ = own_.filePath("later/a7.handpiece");
     const auto handInFirst = [this] {
         action("actionProgress")->trigger();
         EXPECT_FALSE(part<QPushButton>("progressHandIn")->isEnabled());

@@ -97,6 +97,7 @@ QWidget* ResultDialog::makeResult() {
     table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
     table_->horizontalHeader()->setSectionResizeMode(criterion, QHeaderView::Stretch);
     table_->verticalHeader()->hide();
+    table_->verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
     table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     table_->setSelectionBehavior(QAbstractItemView::SelectRows);
     table_->setWordWrap(true);
@@ -422,7 +423,6 @@ void ResultDialog::fillTable() {
                        : tr("place"),
             e ? QString::fromStdString(e->text) : QString());
     }
-    table_->resizeRowsToContents();
 }
 
 void ResultDialog::showTooth() {

@@ -9285,6 +9285,14 @@ lingual: %4</source>
         <translation>う蝕除去</translation>
     </message>
     <message>
+        <source>As painted</source>
+        <translation>塗った範囲のとおり</translation>
+    </message>
+    <message>
+        <source>As in recorded work</source>
+        <translation>記録した形成のとおり</translation>
+    </message>
+    <message>
         <source>Depth</source>
         <translation>深さ</translation>
     </message>
@@ -10156,6 +10164,30 @@ lingual: %4</source>
     <message>
         <source>Start view [mm]</source>
         <translation>開始時の視点 [mm]</translation>
+    </message>
+    <message>
+        <source>Work ends with them</source>
+        <translation>時間になったら作業を終える</translation>
+    </message>
+    <message>
+        <source>The pedal is dead then; else students are told once, and go on</source>
+        <translation>以後フットペダルが効きません。オフの場合は一度知らせるだけで、作業は続けられます</translation>
+    </message>
+    <message>
+        <source>Level</source>
+        <translation>レベル</translation>
+    </message>
+    <message>
+        <source>Not said</source>
+        <translation>指定なし</translation>
+    </message>
+    <message>
+        <source>Show during the work what is gone of the target</source>
+        <translation>作業中に目標の切削量を表示する</translation>
+    </message>
+    <message>
+        <source>A bar for target, leeway and what must stay</source>
+        <translation>目標・許容範囲・残すべき部分の切削量をバーで示します</translation>
     </message>
 </context>
 <context>

@@ -381,15 +381,18 @@ void MarkingFeature::showSheet() {
                      !dialog_->beside(code_, -1).isEmpty(), !dialog_->beside(code_, 1).isEmpty());
 }
 
-void MarkingFeature::tryTo(const std::function<void(marking::Desk& desk)>& change) {
-    if (!desk_ || code_.isEmpty()) return;
+bool MarkingFeature::tryTo(const std::function<void(marking::Desk& desk)>& change) {
+    if (!desk_ || code_.isEmpty()) return false;
+    bool isKept = false;
     try {
         change(*desk_);
+        isKept = true;
     } catch (const core::Error& error) {
         window_.showProblem(problemOf(error));
     }
     dialog_->refresh();
     showSheet();
+    return isKept;
 }
 
 void MarkingFeature::comment(const QString& text, bool atPlace, bool atTime) {
@@ -412,8 +415,9 @@ void MarkingFeature::comment(const QString& text, bool atPlace, bool atTime) {
         for (std::size_t i = 0; i < all.size(); ++i)
             if (all[i].name == simulator_.document().caseFile.filename()) said.session = i;
     }
+    if (!tryTo([&](marking::Desk& desk) { desk.comment(code_.toStdString(), said); })) return;
     forgetPlace();
-    tryTo([&](marking::Desk& desk) { desk.comment(code_.toStdString(), said); });
+    sheet_->clearComment();
 }
 
 void MarkingFeature::goTo(const std::optional<core::Vec3>& placeMm, const std::optional<double>& timeS) {

@@ -45,8 +45,8 @@ class MarkingFeature : public Feature {
     void openWork(const QString& code);
     void look(const std::filesystem::path& path, bool isSession);
     void showSheet();
-    /// Runs a change of the desk; what is refused is told.
-    void tryTo(const std::function<void(marking::Desk& desk)>& change);
+    /// Runs a change of the desk; what is refused is told. Whether it was kept.
+    bool tryTo(const std::function<void(marking::Desk& desk)>& change);
     /// The tooth under a point of the picture.
     [[nodiscard]] std::optional<core::Vec3> placeUnder(const QPointF& point) const;
     void forgetPlace();

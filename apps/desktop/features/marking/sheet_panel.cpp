@@ -11,12 +11,14 @@
 #include <QListWidget>
 #include <QLocale>
 #include <QPushButton>
+#include <QScrollBar>
 #include <QSignalBlocker>
 #include <QToolButton>
 #include <QTreeWidget>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "desktop/features/marking/work_table.h"
 #include "desktop/widgets/parts.h"
@@ -26,6 +28,7 @@ namespace handpiece::desktop {
 namespace {
 
 enum Column { kName, kMark, kPoints, kBand, kMeasured };
+constexpr int kMostNamePixels = 190;
 constexpr int kIdRole = Qt::UserRole, kTimeRole = Qt::UserRole + 1, kPlaceRole = Qt::UserRole + 2;
 
 QString inWords(const cases::Texts& texts, const std::string& otherwise) {
@@ -77,6 +80,8 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
                       tr("Choose one to judge it; a place below it turns the picture there"));
     criteria_->setHeaderLabels({tr("Criterion"), tr("Your mark"), tr("Points"), tr("Band"), tr("Measured")});
     criteria_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
+    // Its places, which may be long, lie across all columns.
+    criteria_->header()->setSectionResizeMode(kName, QHeaderView::Interactive);
     criteria_->setMinimumHeight(140);
     editing_ = named(new QLabel(this), "sheetEditing", tr("Criterion that is judged"));
     editing_->setTextFormat(Qt::PlainText);
@@ -200,9 +205,7 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
         emit decisionRequested(decided);
     });
     connect(addComment_, &QPushButton::clicked, this, [this] {
-        const QString text = comment_->text();
-        comment_->clear();
-        emit commentRequested(text, atPlace_->isChecked(), atTime_->isChecked() && atTime_->isEnabled());
+        emit commentRequested(comment_->text(), atPlace_->isChecked(), atTime_->isChecked() && atTime_->isEnabled());
     });
     connect(pick_, &QPushButton::toggled, this, &SheetPanel::placeWanted);
     connect(removeComment_, &QPushButton::clicked, this, [this] {
@@ -234,14 +237,21 @@ void SheetPanel::setPlace(const std::optional<core::Vec3>& placeMm) {
     atPlace_->setEnabled(!placeMm);
 }
 
+void SheetPanel::clearComment() {
+    comment_->clear();
+}
+
 void SheetPanel::showWork(const marking::Desk* desk, const QString& code, const QString& place, bool hasPrevious,
                           bool hasNext) {
     const std::string before = code == code_ ? criterion() : std::string();
     return_->setEnabled(desk != nullptr && !code.isEmpty() && desk->machine(code.toStdString()) != nullptr);
-    if (code != code_) {
-        comment_->clear();
-        decisionReason_->clear();
-    }
+    std::set<QString> open;
+    for (int row = 0; code == code_ && row < criteria_->topLevelItemCount(); ++row)
+        if (criteria_->topLevelItem(row)->isExpanded())
+            open.insert(criteria_->topLevelItem(row)->data(kName, kIdRole).toString());
+    const int scrolled = code == code_ ? criteria_->verticalScrollBar()->value() : 0;
+    const bool isOther = code != code_;
+    if (isOther) comment_->clear();
     desk_ = code.isEmpty() ? nullptr : desk;
     code_ = desk_ != nullptr ? code : QString();
     setEnabled(desk_ != nullptr);
@@ -249,17 +259,28 @@ void SheetPanel::showWork(const marking::Desk* desk, const QString& code, const 
     previous_->setEnabled(hasPrevious);
     next_->setEnabled(hasNext);
     fillCriteria();
+    if (isOther) fitNames();
     fillComments();
     showSummary();
-    for (int row = 0; row < criteria_->topLevelItemCount(); ++row)
-        if (row == 0 || criteria_->topLevelItem(row)->data(kName, kIdRole).toString().toStdString() == before)
-            criteria_->setCurrentItem(criteria_->topLevelItem(row));
-    if (desk_ != nullptr) {
-        const auto& decision = desk_->sheet(code_.toStdString()).decision;
-        decision_->setCurrentIndex(!decision ? 0 : decision->passed ? 1 : 2);
-        if (decision) decisionReason_->setText(QString::fromStdString(decision->reason));
+    {
+        const QSignalBlocker quiet(criteria_);
+        for (int row = 0; row < criteria_->topLevelItemCount(); ++row) {
+            QTreeWidgetItem* item = criteria_->topLevelItem(row);
+            const QString id = item->data(kName, kIdRole).toString();
+            if (row == 0 || id.toStdString() == before) criteria_->setCurrentItem(item);
+            item->setExpanded(open.contains(id));
+        }
+        criteria_->verticalScrollBar()->setValue(scrolled);
     }
     showEditor();
+}
+
+/// As wide as the names, and not so wide that no points are seen.
+void SheetPanel::fitNames() {
+    int width = 0;
+    for (int row = 0; row < criteria_->topLevelItemCount(); ++row)
+        width = std::max(width, criteria_->fontMetrics().horizontalAdvance(criteria_->topLevelItem(row)->text(kName)));
+    criteria_->setColumnWidth(kName, std::min(width + criteria_->indentation() + 16, kMostNamePixels));
 }
 
 void SheetPanel::fillCriteria() {
@@ -283,6 +304,7 @@ void SheetPanel::fillCriteria() {
         auto* item =
             new QTreeWidgetItem(criteria_, {c != nullptr ? inWords(c->title, c->id) : tr("All points together")});
         item->setData(kName, kIdRole, QString::fromStdString(name));
+        item->setToolTip(kName, item->text(kName));
         if (const auto mark = sheet.marks.find(name); mark != sheet.marks.end())
             item->setText(kMark, mark->second.cannotTell ? tr("cannot be told")
                                  : mark->second.points   ? pointsText(*mark->second.points)
@@ -329,6 +351,7 @@ void SheetPanel::addEvidence(QTreeWidgetItem* under, const score::CriterionScore
         words.removeAll(QString());
         auto* item = new QTreeWidgetItem(under, {words.join(QStringLiteral(", "))});
         item->setFirstColumnSpanned(true);
+        item->setToolTip(kName, item->text(kName));
         item->setData(kName, kTimeRole, timeOf(e.timeS));
         item->setData(kName, kPlaceRole, placeOf(e.placeMm));
     }
@@ -379,10 +402,30 @@ void SheetPanel::showEditor() {
     const rubric::Criterion* c = desk_ != nullptr ? desk_->rubric().criterion(name) : nullptr;
     const bool isTotal = name == marking::kTotal, marks = isMarking();
     const bool canSay = desk_ != nullptr && (marks ? c != nullptr || isTotal : c != nullptr && desk_->machine(id));
+    Edited now{id, name, marks, canSay, {}, {}, {}};
+    if (desk_ != nullptr) {
+        const marking::Sheet& sheet = desk_->sheet(id);
+        if (const auto mark = sheet.marks.find(name); marks && mark != sheet.marks.end()) now.mark = mark->second;
+        if (const auto said = sheet.overrides.find(name); !marks && said != sheet.overrides.end())
+            now.said = said->second;
+        now.decision = sheet.decision;
+    }
+    const auto set = [](QComboBox* box, int index) {
+        const QSignalBlocker quiet(box);
+        box->setCurrentIndex(index);
+    };
+    if (!edited_ || edited_->code != id || edited_->decision != now.decision) {
+        set(decision_, !now.decision ? 0 : now.decision->passed ? 1 : 2);
+        decisionReason_->setText(now.decision ? QString::fromStdString(now.decision->reason) : QString());
+    }
+    decisionRow_->setVisible(desk_ != nullptr && desk_->finalScore(id).has_value());
+    // What is half typed outlives scores that come in, a comment, and a change that the desk refused.
+    const bool isSame = edited_ && edited_->code == id && edited_->criterion == name && edited_->marks == marks &&
+                        edited_->canSay == canSay && edited_->mark == now.mark && edited_->said == now.said;
+    edited_ = std::move(now);
+    if (isSame) return showWhetherReady();
     const QSignalBlocker quiet1(band_), quiet2(points_), quiet3(critical_), quiet4(cannotTell_);
-    editing_->setText(c != nullptr ? inWords(c->words.empty() ? c->title : c->title, c->id)
-                      : isTotal    ? tr("All points together")
-                                   : QString());
+    editing_->setText(c != nullptr ? inWords(c->title, c->id) : isTotal ? tr("All points together") : QString());
     band_->clear();
     band_->addItem(marks ? tr("choose") : tr("band as it is"), QString());
     std::vector<std::string> listed;
@@ -411,24 +454,18 @@ void SheetPanel::showEditor() {
     say_->setVisible(canSay);
     say_->setText(marks ? tr("Mark") : tr("Override"));
     giveIn_->setVisible(marks);
-    decisionRow_->setVisible(desk_ != nullptr && desk_->finalScore(id).has_value());
-    bool isSaid = false;
-    if (desk_ != nullptr) {
-        const marking::Sheet& sheet = desk_->sheet(id);
-        if (const auto mark = sheet.marks.find(name); marks && mark != sheet.marks.end()) {
-            band_->setCurrentIndex(std::max(0, band_->findData(QString::fromStdString(mark->second.band))));
-            if (mark->second.points) points_->setValue(*mark->second.points);
-            cannotTell_->setChecked(mark->second.cannotTell);
-        }
-        if (const auto said = sheet.overrides.find(name); !marks && said != sheet.overrides.end()) {
-            isSaid = true;
-            band_->setCurrentIndex(std::max(0, band_->findData(QString::fromStdString(said->second.band))));
-            if (said->second.points) points_->setValue(*said->second.points);
-            if (said->second.critical) critical_->setCurrentIndex(*said->second.critical ? 1 : 2);
-            reason_->setText(QString::fromStdString(said->second.reason));
-        }
+    if (edited_->mark) {
+        band_->setCurrentIndex(std::max(0, band_->findData(QString::fromStdString(edited_->mark->band))));
+        if (edited_->mark->points) points_->setValue(*edited_->mark->points);
+        cannotTell_->setChecked(edited_->mark->cannotTell);
     }
-    withdraw_->setVisible(isSaid);
+    if (edited_->said) {
+        band_->setCurrentIndex(std::max(0, band_->findData(QString::fromStdString(edited_->said->band))));
+        if (edited_->said->points) points_->setValue(*edited_->said->points);
+        if (edited_->said->critical) critical_->setCurrentIndex(*edited_->said->critical ? 1 : 2);
+        reason_->setText(QString::fromStdString(edited_->said->reason));
+    }
+    withdraw_->setVisible(edited_->said.has_value());
     showWhetherReady();
 }
 

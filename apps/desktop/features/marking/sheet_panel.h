@@ -37,6 +37,8 @@ class SheetPanel : public QWidget {
     void setHasTime(bool hasTime);
     /// The place that was clicked in the picture, for the next comment; none: none is waiting.
     void setPlace(const std::optional<core::Vec3>& placeMm);
+    /// It was kept.
+    void clearComment();
 
   signals:
     void stepRequested(int step);
@@ -56,8 +58,17 @@ class SheetPanel : public QWidget {
     void placeRequested(const std::optional<handpiece::core::Vec3>& placeMm, const std::optional<double>& timeS);
 
   private:
+    /// What the fields were filled for: only another fills them anew.
+    struct Edited {
+        std::string code, criterion;
+        bool marks = false, canSay = false;
+        std::optional<marking::Mark> mark;
+        std::optional<marking::Override> said;
+        std::optional<marking::Decision> decision;
+    };
     [[nodiscard]] bool isMarking() const;  ///< blind, and one's own mark is not in
     void fillCriteria();
+    void fitNames();
     void addEvidence(QTreeWidgetItem* under, const score::CriterionScore& of);
     void fillComments();
     void showSummary();
@@ -67,6 +78,7 @@ class SheetPanel : public QWidget {
 
     const marking::Desk* desk_ = nullptr;
     QString code_;
+    std::optional<Edited> edited_;
     QLabel *title_, *summary_;
     QToolButton *previous_, *next_;
     QTreeWidget* criteria_;

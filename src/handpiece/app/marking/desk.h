@@ -49,6 +49,7 @@ struct Comment {
 struct Decision {
     bool passed = false;
     std::string reason;  ///< never blank
+    friend bool operator==(const Decision&, const Decision&) = default;
 };
 
 /// Of one work under one code.

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kRubricHere = "the rubric";
 
 std::string proposedText(const std::optional<preparation::Recipe>& recipe) {
-    return recipe ? rubric::shippedTextFor(recipe->preparation, recipe->side) : std::string();
+    return recipe ? rubric::shippedTextFor(recipe->kind(), recipe->side) : std::string();
 }
 
 void propose(Content& content) {
@@ -32,6 +32,8 @@ Content contentOf(const tasks::Task& task) {
     content.voxelMm = task.voxelMm;
     content.minutes = task.minutes;
     content.level = task.level;
+    content.isTimeHard = task.isTimeHard;
+    content.hasLiveBar = task.hasLiveBar;
     content.preparation = task.preparation;
     content.ownJudgement = task.ownJudgement;
     content.teacherWork = task.teacherWork;
@@ -53,6 +55,8 @@ tasks::Task taskOf(const Content& content) {
     task.voxelMm = content.voxelMm;
     task.minutes = content.minutes;
     task.level = content.level;
+    task.isTimeHard = content.isTimeHard && content.minutes;
+    task.hasLiveBar = content.hasLiveBar;
     task.preparation = content.preparation;
     task.ownJudgement = content.ownJudgement;
     task.teacherWork = content.teacherWork;
@@ -99,6 +103,20 @@ Content withSide(Content content, std::string_view side) {
     const bool follows = content.rubric && hasProposedRubric(content);
     content.preparation->side = side;
     if (follows) propose(content);
+    return content;
+}
+
+Content beginStroke(Content content, const core::Vec3& onSurfaceMm, double radiusMm, bool erases) {
+    if (!content.preparation || content.preparation->preparation != preparation::kPaintedTemplate)
+        content = withTemplate(std::move(content), preparation::kPaintedTemplate);
+    content.preparation->strokes.push_back({{onSurfaceMm}, radiusMm, erases});
+    return content;
+}
+
+Content extendStroke(Content content, const core::Vec3& onSurfaceMm) {
+    if (!content.preparation || content.preparation->strokes.empty()) return content;
+    preparation::BrushStroke& stroke = content.preparation->strokes.back();
+    if ((onSurfaceMm - stroke.pointsMm.back()).norm() >= 0.25 * stroke.radiusMm) stroke.pointsMm.push_back(onSurfaceMm);
     return content;
 }
 

@@ -941,24 +941,37 @@ TEST_F(PracticeTest, TheTeachersOwnWorkPlaysBesideAlsoAfterTheWorkWasResumed) {
     ASSERT_TRUE(waitFor([this] { return simulator().replay()->now().playing; }));
     EXPECT_EQ(core::readFile(simulator().document().caseFile), core::readFile(session));
     EXPECT_FALSE(view()->written().markMm);
-    // At the place that was looked at, the seconds in which the teacher's bur cut there.
-    const measures::Evidence* found = nullptr;
-    const auto& criteria = result().shown()->work.result.assessment.criteria;
-    for (std::size_t row = 0; row < criteria.size() && !found; ++row)
-        for (const measures::Evidence& e : criteria[row].evidence)
-            if (e.placeMm && e.timeS && !found) {
-                found = &e;
-                auto* table = part<QTableWidget>("resultTable");
-                table->scrollToItem(table->item(static_cast<int>(row), 0));
-                QTest::mouseClick(table->viewport(), Qt::LeftButton, Qt::NoModifier,
-                                  table->visualItemRect(table->item(static_cast<int>(row), 0)).center());
-            }
-    ASSERT_NE(found, nullptr);
+    // At the place that was looked at, the seconds in which the teacher's bur cut there: both cut in the middle.
+    const core::Vec3 cutMm(0.0, 0.0, -0.03);
+    store().add(school::Comment{school::newId(), store().attempts().back().id, "Sato", "here", cutMm, {}, 5});
+    result().close();
+    action("actionProgress")->trigger();
+    part<QTableWidget>("progressTable")->setCurrentCell(0, 0);
+    click("progressOpen");
+    ASSERT_TRUE(waitFor([this] { return part<QPushButton>("resultTeacherWork")->isVisible(); }));
+    auto* comments = part<QListWidget>("resultComments");
+    QTest::mouseClick(comments->viewport(), Qt::LeftButton, Qt::NoModifier,
+                      comments->visualItemRect(comments->item(0)).center());
     ASSERT_TRUE(waitFor([&] { return simulator().document().caseFile == own && !simulator().isBusy(); }));
-    click("resultTeacherWork");
-    ASSERT_TRUE(waitFor(isTeachers));
-    ASSERT_TRUE(waitFor([this] { return view()->written().markMm.has_value(); }));
-    EXPECT_EQ(*view()->written().markMm, *found->placeMm);
+    const double endS = [&] {
+        click("resultTeacherWork");
+        EXPECT_TRUE(waitFor(isTeachers));
+        EXPECT_TRUE(waitFor([this] { return view()->written().markMm.has_value(); }));
+        return simulator().replay()->durationS();
+    }();
+    EXPECT_EQ(*view()->written().markMm, cutMm);
+    std::vector<measures::Measured> truth(1);
+    truth.front().evidence.emplace_back().placeMm = cutMm;
+    const assessment::Recording recording{session, "teacher", {}, {}};
+    static_cast<void>(assessment::readRecord(std::span(&recording, 1), truth, 0.1, {}, {}));
+    ASSERT_TRUE(truth.front().evidence.front().timeS) << "the teacher never cut in the middle";
+    bool wasPlaying = false;
+    ASSERT_TRUE(waitFor([&] {
+        const ReplayNow now = simulator().replay()->now();
+        wasPlaying |= now.playing;
+        return wasPlaying && !now.playing && !now.seeking;
+    }));
+    EXPECT_NEAR(simulator().replay()->now().timeS, std::min(endS, *truth.front().evidence.front().timeS + 1.5), 0.3);
     picture(&window(), "teacher");
     // Nor is it lost where the exercise is edited.
     EXPECT_EQ(draft::taskOf(draft::contentOf(task)).teacherWork, task.teacherWork);

@@ -262,6 +262,14 @@ void ExercisesDialog::makeIdeal() {
             view_->setParts(ideal_, box);
             view_->setCaption(tr("The ideal: drag to turn it"), false);
             view_->lookFrom(view::StandardView::oblique, task_->toothCase.buccalSign);
+            // As one begins: a cavity on the far side would not be seen.
+            if (const auto& exercise = task_->toothCase.exercise; exercise && exercise->view) {
+                view::Camera camera;
+                camera.eyeMm = exercise->view->eyeMm;
+                camera.targetMm = exercise->view->targetMm;
+                camera.up = exercise->view->up;
+                view_->setCamera(camera);
+            }
         });
 }
 

@@ -237,7 +237,7 @@ cases::View viewOf(const Row& row, int buccalSign) {
     const bool isClassThree = row.recipe.preparation == "class-three";
     const bool isFromAside = isClassThree || row.recipe.preparation == "class-five";
     cases::View view;
-    view.targetMm = core::Vec3(0.0, 0.0, 4.0);
+    view.targetMm = core::Vec3(0.0, 0.0, isClassThree ? 6.5 : 4.0);
     const core::Vec3 aside(0.0, (isClassThree ? -26.0 : 26.0) * buccalSign, 14.0);
     const core::Vec3 above(0.0, 11.0 * buccalSign, 27.0);
     view.eyeMm = view.targetMm + (isFromAside ? aside : above);

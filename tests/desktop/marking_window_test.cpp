@@ -122,6 +122,8 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     click("sheetDecide");
     EXPECT_EQ(desk().passed(code), score::Passed::yes);
 
+    EXPECT_FALSE(part<QLabel>("sheetNotShown")->isVisible());
+
     // To the recording, by next or previous; evidence of time stands in it.
     const int from = rowOf("S-08-second.handpiece"), to = rowOf("S-09.h5");
     ASSERT_EQ(std::abs(from - to), 1) << "of equal score before the override, so side by side";
@@ -143,6 +145,14 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     EXPECT_TRUE(waitFor(
         [&] { return std::abs(simulator().replay()->now().timeS - *desk().sheet(other).comments[0].timeS) < 0.02; }));
 
+    // What cannot be opened leaves the tooth before in the picture, which is told, and nothing is pinned to it.
+    click("sheetTable");
+    openRow(rowOf("broken.handpiece"));
+    ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
+    window().errorDialog()->reject();
+    EXPECT_TRUE(part<QLabel>("sheetNotShown")->isVisible());
+    EXPECT_FALSE(part<QPushButton>("sheetCommentPick")->isEnabled());
+
     // Tables for others.
     const auto written = [this](const char* way, const char* name) {
         file_ = own_.filePath(QLatin1String(name));
@@ -154,6 +164,10 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     EXPECT_EQ(codes.find("S-0"), std::string::npos);
     EXPECT_NE(codes.find("ragged margins"), std::string::npos);
     EXPECT_NE(written("markingExport_files", "files.csv").find("S-08-second.handpiece"), std::string::npos);
+    const std::string page = written("markingExport_class", "class.html");
+    EXPECT_NE(page.find("S-08-second"), std::string::npos);
+    EXPECT_NE(page.find("<svg"), std::string::npos);
+    EXPECT_EQ(page.find("broken"), std::string::npos) << "it has no score";
 
     // Back to the student: of the work that is open, and of each that has a score.
     file_ = own_.filePath("S-09-marks.json");

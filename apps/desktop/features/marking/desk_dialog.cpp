@@ -151,6 +151,7 @@ QWidget* DeskDialog::makeWorks() {
     const std::pair<const char*, QString> ways[] = {{"codes", tr("Results, codes only (CSV)...")},
                                                     {"files", tr("Results with file names (CSV)...")},
                                                     {"returned", tr("Marks for each student (folder)...")},
+                                                    {"class", tr("Page of the class, with file names...")},
                                                     {"marks", tr("Blind marks, for agreement (CSV)...")},
                                                     {"agreement", tr("Agreement with pictures (folder)...")}};
     for (const auto& [name, text] : ways) {

@@ -66,6 +66,7 @@ class MarkingFeature : public Feature {
     DeskWish wish_;
     std::shared_ptr<const tasks::Task> task_;
     QString code_;                        ///< of the work that is open; empty: none
+    QString opening_, inPicture_;         ///< what the picture is about to show, and what it shows of this desk
     bool isPlaceWanted_ = false;          ///< the next click in the picture is one
     std::optional<core::Vec3> pickedMm_;  ///< for the next comment
     std::optional<double> pickedS_;

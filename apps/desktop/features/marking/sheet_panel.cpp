@@ -23,6 +23,7 @@
 #include "desktop/features/marking/work_table.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
+#include "handpiece/app/report/assessment_words.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -76,6 +77,9 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     summary_ = named(new QLabel(this), "sheetSummary", tr("How the work stands"));
     summary_->setWordWrap(true);
     summary_->setTextFormat(Qt::PlainText);
+    notShown_ = named(new QLabel(tr("The picture does not show this work."), this), "sheetNotShown",
+                      tr("Whether the picture shows this work"));
+    notShown_->setFont(scaledFont(font(), 1.0, true));
     criteria_ = named(new QTreeWidget(this), "sheetCriteria", tr("Criteria"),
                       tr("Choose one to judge it; a place below it turns the picture there"));
     criteria_->setHeaderLabels({tr("Criterion"), tr("Your mark"), tr("Points"), tr("Band"), tr("Measured")});
@@ -162,6 +166,7 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     column->setSpacing(5);
     column->addLayout(above);
     column->addWidget(summary_);
+    column->addWidget(notShown_);
     column->addWidget(criteria_, 1);
     column->addLayout(editor);
     column->addWidget(decisionRow_);
@@ -234,7 +239,14 @@ void SheetPanel::setHasTime(bool hasTime) {
 void SheetPanel::setPlace(const std::optional<core::Vec3>& placeMm) {
     pick_->setChecked(false);
     pick_->setText(placeMm ? tr("Place chosen: click anew") : tr("Click the place"));
-    atPlace_->setEnabled(!placeMm);
+    atPlace_->setEnabled(!placeMm && isShown_);
+}
+
+void SheetPanel::setIsShown(bool isShown) {
+    isShown_ = isShown;
+    notShown_->setVisible(!isShown && desk_ != nullptr);
+    pick_->setEnabled(isShown);
+    atPlace_->setEnabled(isShown);
 }
 
 void SheetPanel::clearComment() {
@@ -320,7 +332,7 @@ void SheetPanel::fillCriteria() {
         item->setText(kMeasured, was.value ? tr("%1 ± %2 %3")
                                                  .arg(measuredText(*was.value), measuredText(was.uncertainty),
                                                       QString::fromStdString(was.unit))
-                                           : QString::fromStdString(was.reason));
+                                           : QString::fromStdString(report::said(was.reason)));
         QStringList band{now.band.empty() ? QString() : bandText(desk_->rubric(), now.band)};
         if (now.critical != score::Verdict::no)
             band << (now.critical == score::Verdict::yes ? tr("critical error") : tr("perhaps a critical error"));
@@ -345,7 +357,7 @@ void SheetPanel::fillCriteria() {
 
 void SheetPanel::addEvidence(QTreeWidgetItem* under, const score::CriterionScore& of) {
     for (const measures::Evidence& e : of.evidence) {
-        QStringList words{QString::fromStdString(e.text)};
+        QStringList words{QString::fromStdString(report::said(e.text))};
         if (e.timeS) words << tr("at %1 s").arg(QLocale().toString(*e.timeS, 'f', 1));
         if (e.forceN) words << tr("%1 N").arg(QLocale().toString(*e.forceN, 'f', 2));
         words.removeAll(QString());
@@ -378,8 +390,8 @@ void SheetPanel::showSummary() {
     const assessment::Result* machine = desk_->machine(id);
     const std::optional<score::Assessment> final = desk_->finalScore(id);
     if (machine == nullptr || !final) {
-        const std::string problem = desk_->problem(id);
-        summary_->setText(!problem.empty()         ? QString::fromStdString(problem)
+        const QString problem = WorkTable::problemWords(*desk_, id);
+        summary_->setText(!problem.isEmpty()       ? problem
                           : isMarking()            ? tr("The machine's score is hidden until your marks are in.")
                           : !desk_->isRevealed(id) ? tr("The machine's score is shown when all works are marked.")
                                                    : tr("It waits for its score."));
@@ -390,10 +402,10 @@ void SheetPanel::showSummary() {
             .arg(pointsText(final->score), pointsText(final->maxScore), pointsText(machine->assessment.score),
                  WorkTable::passedWord(static_cast<int>(*desk_->passed(id))));
     if (!final->why.empty() && !desk_->sheet(id).decision)
-        text += QLatin1Char(' ') + tr("Why: %1.").arg(QString::fromStdString(final->why));
-    text +=
-        QLatin1Char(' ') +
-        (machine->identity.proven ? tr("Proven.") : tr("Unproven: %1.").arg(QString::fromStdString(machine->proof)));
+        text += QLatin1Char(' ') + tr("Why: %1.").arg(QString::fromStdString(report::whyOf(*final, desk_->rubric())));
+    text += QLatin1Char(' ') + (machine->identity.proven
+                                    ? tr("Proven.")
+                                    : tr("Unproven: %1.").arg(QString::fromStdString(report::said(machine->proof))));
     summary_->setText(text);
 }
 

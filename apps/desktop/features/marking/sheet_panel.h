@@ -37,6 +37,8 @@ class SheetPanel : public QWidget {
     void setHasTime(bool hasTime);
     /// The place that was clicked in the picture, for the next comment; none: none is waiting.
     void setPlace(const std::optional<core::Vec3>& placeMm);
+    /// Whether it is this work that the picture shows.
+    void setIsShown(bool isShown);
     /// It was kept.
     void clearComment();
 
@@ -79,7 +81,8 @@ class SheetPanel : public QWidget {
     const marking::Desk* desk_ = nullptr;
     QString code_;
     std::optional<Edited> edited_;
-    QLabel *title_, *summary_;
+    bool isShown_ = false;
+    QLabel *title_, *summary_, *notShown_;
     QToolButton *previous_, *next_;
     QTreeWidget* criteria_;
     QLabel* editing_;

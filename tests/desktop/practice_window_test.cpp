@@ -790,7 +790,7 @@ TEST_F(PracticeTest, AFinishedWorkIsHandedInAsTheCommandLineDoesIt) {
     // The teacher's desk has it, and comes to the same score.
     const std::vector<marking::ReturnedWork> works = marking::findWork(file.parent_path());
     ASSERT_EQ(works.size(), 1u);
-    EXPECT_EQ(works.front().problem, "");
+    EXPECT_FALSE(works.front().error);
     const assessment::Work read = assessment::readWork(works.front().path, *task);
     EXPECT_TRUE(read.isProven) << read.proof;
     const score::Result judged = assessment::scoreWork(read, *task, course::rubricOf(*task));

@@ -132,6 +132,9 @@ TEST_F(EditorTest, FromNothingToAFileThatAStudentOpens) {
     tick("editorHelps", "undo");
     QTest::mouseClick(part<QCheckBox>("editorTimed"), Qt::LeftButton, Qt::NoModifier, QPoint(8, 8));
     type(part<QDoubleSpinBox>("editorMinutes"), "12");
+    for (const char* box : {"editorHardLimit", "editorLiveBar"})
+        QTest::mouseClick(part<QCheckBox>(box), Qt::LeftButton, Qt::NoModifier, QPoint(8, 8));
+    choose("editorLevel", 2);
     press("editorTakeView");
     ASSERT_TRUE(now().exercise.view);
     EXPECT_EQ(now().exercise.view->eyeMm, view()->camera().eyeMm);
@@ -155,6 +158,10 @@ TEST_F(EditorTest, FromNothingToAFileThatAStudentOpens) {
     const tasks::Task saved = tasks::readTask(toPath(file_));
     EXPECT_EQ(saved.id, "cross-of-mine");
     EXPECT_EQ(saved.minutes, 12.0);
+    EXPECT_TRUE(saved.isTimeHard);
+    EXPECT_TRUE(saved.hasLiveBar);
+    EXPECT_EQ(saved.level, "basic");
+    EXPECT_TRUE(draft::contentOf(saved).isTimeHard && draft::contentOf(saved).hasLiveBar) << "kept when edited again";
     EXPECT_DOUBLE_EQ(saved.preparation->number("depth_mm"), 1.8);
     EXPECT_EQ(saved.rubric, rubric::shippedRubricText("dexterity-cross"));
     const cases::Exercise& exercise = *saved.toothCase.exercise;

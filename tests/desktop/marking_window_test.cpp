@@ -18,170 +18,15 @@
 #include <set>
 
 #include "desktop/features/marking/agreement_page.h"
-#include "desktop/features/marking/marking_feature.h"
 #include "desktop/features/marking/sheet_panel.h"
 #include "handpiece/app/assessment/marks.h"
-#include "handpiece/base/core/file.h"
 #include "handpiece/model/case/attempt.h"
-#include "shell_support.h"
+#include "marking_support.h"
 
 namespace handpiece::desktop {
 namespace {
 
 namespace fs = std::filesystem;
-
-const char* kRubric = R"(
-format = 1
-id = "little"
-version = "1"
-status = "proposal"
-pass_mark = 60
-title = { en = "Take little" }
-[[band]]
-id = "little"
-title = { en = "little" }
-[[band]]
-id = "much"
-title = { en = "much" }
-[[criterion]]
-id = "enamel"
-measure = "removed"
-tissue = "enamel"
-unit = "mm3"
-weight = 80
-knots = [[0.03, 100], [0.5, 0]]
-bands = [{ id = "little", to = 0.06 }, { id = "much", from = 0.06 }]
-title = { en = "enamel taken" }
-[[criterion]]
-id = "beside"
-measure = "removed"
-tissue = "dentine"
-unit = "mm3"
-weight = 20
-knots = [[0, 100], [1, 0]]
-critical = { above = 0.5 }
-title = { en = "dentine taken" }
-)";
-
-class MarkingTest : public ShellTest {
-  protected:
-    template <class W>
-    [[nodiscard]] W* part(const char* name) {
-        W* found = window().findChild<W*>(QLatin1String(name));
-        EXPECT_NE(found, nullptr) << name;
-        return found;
-    }
-    [[nodiscard]] MarkingFeature& feature() { return *window().findChild<MarkingFeature*>(); }
-    [[nodiscard]] const marking::Desk& desk() { return *feature().desk(); }
-    [[nodiscard]] fs::path works() const { return at("works"); }
-
-    void makeExercise() {
-        tasks::Task task;
-        task.id = "little";
-        task.toothCase = eggTooth(46);
-        task.voxelMm = 0.1;
-        task.rubric = kRubric;
-        tasks::writeTask(task, at("exercise"));
-        fs::create_directories(works());
-    }
-    /// Two hand-ins of one sitting, its recording, and a file that is none.
-    void makeWork() {
-        makeExercise();
-        CommandLine line;
-        line.file = own_.filePath("exercise/case");
-        startWithTooth(line);
-        simulator().setCode(QStringLiteral("S-07"));
-        ASSERT_TRUE(idle());
-        ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
-        ASSERT_TRUE(cut());
-        save("S-07-first.handpiece");
-        ASSERT_TRUE(cut());
-        ASSERT_TRUE(cut());
-        save("S-08-second.handpiece");
-        const fs::path recording = simulator().recording();
-        simulator().close();
-        fs::copy_file(recording, works() / "S-09.h5");
-        core::writeFile(works() / "broken.handpiece", std::string_view("no zip"));
-    }
-    void save(const char* name) {
-        file_ = toQString(works() / name);
-        action("actionSaveAs")->trigger();
-        ASSERT_TRUE(waitFor([this] { return fs::exists(toPath(file_)) && !simulator().isBusy(); }));
-    }
-    void click(const char* name) {
-        auto* button = part<QAbstractButton>(name);
-        ASSERT_TRUE(button->isEnabled()) << name;
-        ASSERT_TRUE(button->isVisible()) << name;
-        QTest::mouseClick(button, Qt::LeftButton, Qt::NoModifier, QPoint(8, button->height() / 2));
-    }
-    void type(const char* name, const QString& text) {
-        auto* line = part<QLineEdit>(name);
-        line->setFocus();
-        line->selectAll();
-        QTest::keyClicks(line, text);
-    }
-    void begin(const QString& marker, bool isBlind) {
-        action("actionMarkingDesk")->trigger();
-        ASSERT_TRUE(part<QDialog>("markingDesk")->isVisible());
-        part<QTabWidget>("markingTabs")->setCurrentIndex(0);
-        type("markingFolder", own_.filePath("works"));
-        type("markingExercise", own_.filePath("exercise"));
-        type("markingMarker", marker);
-        if (part<QCheckBox>("markingBlind")->isChecked() != isBlind) click("markingBlind");
-        click("markingBegin");
-        ASSERT_TRUE(waitFor([this] { return !feature().isAtWork() || window().errorDialog() != nullptr; }));
-    }
-    [[nodiscard]] QTableView* table() { return part<QTableView>("markingTable"); }
-    [[nodiscard]] QString cell(int row, int column) { return table()->model()->index(row, column).data().toString(); }
-    [[nodiscard]] int rows() { return table()->model()->rowCount(); }
-    [[nodiscard]] int rowOf(const QString& file) {
-        for (int row = 0; row < rows(); ++row)
-            if (cell(row, WorkTable::kFile) == file) return row;
-        return -1;
-    }
-    void sortBy(int column) {
-        QHeaderView* head = table()->horizontalHeader();
-        QTest::mouseClick(
-            head->viewport(), Qt::LeftButton, Qt::NoModifier,
-            QPoint(head->sectionViewportPosition(column) + head->sectionSize(column) / 2, head->height() / 2));
-    }
-    void openRow(int row) {
-        const QRect place = table()->visualRect(table()->model()->index(row, 0));
-        QTest::mouseClick(table()->viewport(), Qt::LeftButton, Qt::NoModifier, place.center());
-        click("markingOpen");
-    }
-    void chooseCriterion(int row) {
-        auto* tree = part<QTreeWidget>("sheetCriteria");
-        QTest::mouseClick(tree->viewport(), Qt::LeftButton, Qt::NoModifier,
-                          tree->visualItemRect(tree->topLevelItem(row)).center());
-        ASSERT_EQ(tree->currentItem(), tree->topLevelItem(row));
-    }
-    void setPoints(double points) {
-        auto* spin = part<QDoubleSpinBox>("sheetPoints");
-        ASSERT_TRUE(spin->isVisible());
-        spin->setFocus();
-        spin->selectAll();
-        QTest::keyClicks(spin, QString::number(points));
-        QTest::keyClick(spin, Qt::Key_Tab);
-        ASSERT_DOUBLE_EQ(spin->value(), points);
-    }
-    /// By the arrow keys.
-    void chooseBand(int row) {
-        auto* box = part<QComboBox>("sheetBand");
-        ASSERT_TRUE(box->isVisible());
-        box->setFocus();
-        QTest::keyClick(box, Qt::Key_Home);
-        for (int i = 0; i < row; ++i)
-            QTest::keyClick(box, Qt::Key_Down);
-        ASSERT_EQ(box->currentIndex(), row);
-    }
-    void keep(QWidget* widget, const char* name) {
-        const char* folder = std::getenv("HANDPIECE_TEST_PICTURES");
-        if (folder == nullptr) return;
-        QTest::qWait(1500);  // for the picture to be drawn
-        widget->grab().save(QString::fromLocal8Bit(folder) + QLatin1Char('/') + QLatin1String(name));
-    }
-};
 
 TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     makeWork();
@@ -276,6 +121,8 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     click("sheetDecide");
     EXPECT_EQ(desk().passed(code), score::Passed::yes);
 
+    EXPECT_FALSE(part<QLabel>("sheetNotShown")->isVisible());
+
     // To the recording, by next or previous; evidence of time stands in it.
     const int from = rowOf("S-08-second.handpiece"), to = rowOf("S-09.h5");
     ASSERT_EQ(std::abs(from - to), 1) << "of equal score before the override, so side by side";
@@ -297,6 +144,14 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     EXPECT_TRUE(waitFor(
         [&] { return std::abs(simulator().replay()->now().timeS - *desk().sheet(other).comments[0].timeS) < 0.02; }));
 
+    // What cannot be opened leaves the tooth before in the picture, which is told, and nothing is pinned to it.
+    click("sheetTable");
+    openRow(rowOf("broken.handpiece"));
+    ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
+    window().errorDialog()->reject();
+    EXPECT_TRUE(part<QLabel>("sheetNotShown")->isVisible());
+    EXPECT_FALSE(part<QPushButton>("sheetCommentPick")->isEnabled());
+
     // Tables for others.
     const auto written = [this](const char* way, const char* name) {
         file_ = own_.filePath(QLatin1String(name));
@@ -308,6 +163,10 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     EXPECT_EQ(codes.find("S-0"), std::string::npos);
     EXPECT_NE(codes.find("ragged margins"), std::string::npos);
     EXPECT_NE(written("markingExport_files", "files.csv").find("S-08-second.handpiece"), std::string::npos);
+    const std::string page = written("markingExport_class", "class.html");
+    EXPECT_NE(page.find("S-08-second"), std::string::npos);
+    EXPECT_NE(page.find("<svg"), std::string::npos);
+    EXPECT_EQ(page.find("broken"), std::string::npos) << "it has no score";
 
     // Another start goes on where this one was.
     start();

@@ -9,8 +9,8 @@ import unittest
 from support import REAL_DATA, SystemTest
 
 RUBRICS = pathlib.Path(__file__).resolve().parents[2] / "data" / "rubrics"
-# Two that every machine has, and those that this one may have: one that it has not is taken for the best it has.
-WAYS = (("base", 1), ("avx2", 2), ("avx512", 1), ("avx512", 2))
+# The least, and the best: one that this machine has not is taken for the best it has.
+WAYS = (("base", 1), ("avx512", 2))
 
 
 class Trials(SystemTest):
@@ -35,29 +35,12 @@ class Trials(SystemTest):
 
     def test_an_unsteady_hand_is_the_same_bits_everywhere(self):
         pages = []
-        for simd, threads in (WAYS[0], WAYS[-1]):
+        for simd, threads in WAYS:
             os.environ["HANDPIECE_SIMD"] = simd
             out = self.folder / f"{simd}-{threads}"
             self.ok("exercise", "trials", "--out", out, "--only", 1, "--trials", 1, "--voxel", 200, "--threads", threads)
             pages.append((out / "trials.json").read_bytes())
         self.assertEqual(pages[0], pages[1])
-
-    def test_a_score_is_the_same_bits_everywhere(self):
-        tooth, exercise = self.folder / "molar", self.folder / "one"
-        self.ok("make", "tooth", "--fdi", 46, "--faces", 4000, "--out", tooth)
-        self.ok("exercise", "new", "--case", tooth, "--preparation", "class-one", "--rubric", RUBRICS / "46-class-i.toml",
-                "--id", "one", "--voxel", 150, "--out", exercise)
-        self.ok("run", "--case", exercise / "case", "--bur", "330", "--motion", "class-one", "--voxel", 150,
-                "--out", self.folder / "cut")
-        results = set()
-        for simd, threads in WAYS:
-            os.environ["HANDPIECE_SIMD"] = simd
-            out = self.folder / f"{simd}-{threads}"
-            # Session and caches made on one instruction set are judged on another.
-            self.ok("score", self.folder / "cut" / "session.h5", "--exercise", exercise, "--threads", threads, "--out", out)
-            results.add((out / "result.json").read_bytes())
-        self.assertEqual(len(results), 1)
-        self.assertTrue(json.loads(results.pop())["proven"])
 
     def test_what_cannot_be_is_refused(self):
         self.refused("exercise", "trials", "--out", self.folder / "x", "--only", 11, mentions=("no exercise 11",))

@@ -746,12 +746,12 @@
         <translation>組織の非表示、切削前の歯、前後の比較</translation>
     </message>
     <message>
-        <source>First steps, hints, depth stop (there is no other guide yet)</source>
-        <translation>最初の手順、ヒント、深さ制限（ほかのガイドはまだありません）</translation>
+        <source>First steps, hints, landmarks, depth stop</source>
+        <translation>最初の手順、ヒント、指標点、深さ制限</translation>
     </message>
     <message>
-        <source>Removed volumes, report (there is no score yet)</source>
-        <translation>切削量、レポート（採点はまだありません）</translation>
+        <source>Removed volumes, report</source>
+        <translation>切削量、レポート</translation>
     </message>
     <message>
         <source>Mouth mirror</source>
@@ -2482,11 +2482,11 @@
     </message>
     <message>
         <source>This desk marks blind by another rubric, %1.</source>
-        <translation>この採点机は別の評価表 %1 でブラインド採点をしています。</translation>
+        <translation>この採点机は別のルーブリック %1 でブラインド採点をしています。</translation>
     </message>
     <message>
         <source>Choose that rubric, or mark under another name.</source>
-        <translation>その評価表を選ぶか、別の名前で採点してください。</translation>
+        <translation>そのルーブリックを選ぶか、別の名前で採点してください。</translation>
     </message>
     <message>
         <source>This desk marks blind.</source>
@@ -2546,11 +2546,11 @@
     </message>
     <message>
         <source>This exercise has no rubric.</source>
-        <translation>この課題には評価表がありません。</translation>
+        <translation>この課題にはルーブリックがありません。</translation>
     </message>
     <message>
         <source>Choose a rubric.</source>
-        <translation>評価表を選んでください。</translation>
+        <translation>ルーブリックを選んでください。</translation>
     </message>
     <message>
         <source>Your results were kept by a newer Handpiece (version %1, this one knows %2).</source>
@@ -2735,6 +2735,50 @@
     <message>
         <source>Take a tooth with a lesion, or another preparation.</source>
         <translation>病変のある歯か、別の形成を選ぶ。</translation>
+    </message>
+    <message>
+        <source>Another work is the same, byte for byte.</source>
+        <translation>ほかの作品とまったく同じ内容です。</translation>
+    </message>
+    <message>
+        <source>Ask whose it is.</source>
+        <translation>だれの作品か確かめてください。</translation>
+    </message>
+    <message>
+        <source>This is work on another tooth than the exercise&apos;s.</source>
+        <translation>この課題とは別の歯の作品です。</translation>
+    </message>
+    <message>
+        <source>Choose the exercise that it was done on.</source>
+        <translation>作業した課題を選んでください。</translation>
+    </message>
+    <message>
+        <source>This is a result of another exercise.</source>
+        <translation>別の課題の結果です。</translation>
+    </message>
+    <message>
+        <source>This is a result by another rubric: %1, version %2.</source>
+        <translation>別のルーブリックによる結果です：%1、版 %2。</translation>
+    </message>
+    <message>
+        <source>This result has other criteria than its rubric.</source>
+        <translation>この結果の項目はルーブリックと一致しません。</translation>
+    </message>
+    <message>
+        <source>This was cut in voxels of %1 micrometres; the exercise has %2.</source>
+        <translation>%1 µm のボクセルで削られています。課題は %2 µm です。</translation>
+    </message>
+    <message>
+        <source>Work on it as the exercise has it.</source>
+        <translation>課題のとおりに作業してください。</translation>
+    </message>
+    <message>
+        <source>This work is no longer in the folder, or was changed.</source>
+        <translation>この作品はフォルダーにないか、変更されています。</translation>
+    </message>
+    <message>
+        <source>Put it back, or score again.</source>
+        <translation>元に戻すか、再採点してください。</translation>
     </message>
 </context>
 <context>
@@ -7901,7 +7945,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>Rubric</source>
-        <translation>評価表</translation>
+        <translation>ルーブリック</translation>
     </message>
     <message>
         <source>How the machine scores, and what is marked</source>
@@ -7917,7 +7961,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>A rubric of your own</source>
-        <translation>自分の評価表</translation>
+        <translation>自分のルーブリック</translation>
     </message>
     <message>
         <source>Marker</source>
@@ -8035,6 +8079,10 @@ lingual: %4</source>
         <source>Works: %1 of %2</source>
         <translation>作品：%1 / %2</translation>
     </message>
+    <message>
+        <source>Page of the class, with file names...</source>
+        <translation>クラスのページ（ファイル名付き）...</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::MarkingFeature</name>
@@ -8056,11 +8104,11 @@ lingual: %4</source>
     </message>
     <message>
         <source>Rubric</source>
-        <translation>評価表</translation>
+        <translation>ルーブリック</translation>
     </message>
     <message>
         <source>Rubrics (*.toml);;All files (*)</source>
-        <translation>評価表 (*.toml);;すべてのファイル (*)</translation>
+        <translation>ルーブリック (*.toml);;すべてのファイル (*)</translation>
     </message>
     <message>
         <source>Cancelled. What has been scored stays; &quot;Score again&quot; goes on.</source>
@@ -8117,6 +8165,14 @@ lingual: %4</source>
     <message>
         <source>Table (*.csv)</source>
         <translation>表 (*.csv)</translation>
+    </message>
+    <message>
+        <source>Write the page</source>
+        <translation>ページを書き出す</translation>
+    </message>
+    <message>
+        <source>Page (*.html)</source>
+        <translation>ページ (*.html)</translation>
     </message>
 </context>
 <context>
@@ -8425,6 +8481,10 @@ lingual: %4</source>
         <source>Place chosen: click anew</source>
         <translation>場所を選択済み：選び直す</translation>
     </message>
+    <message>
+        <source>The picture does not show this work.</source>
+        <translation>画面に出ているのはこの作品ではありません。</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::WorkTable</name>
@@ -8684,7 +8744,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>This exercise is not judged: it has no rubric.</source>
-        <translation>この課題には採点基準がなく、採点されません。</translation>
+        <translation>この課題にはルーブリックがなく、採点されません。</translation>
     </message>
     <message>
         <source>Without helps</source>
@@ -9210,11 +9270,11 @@ lingual: %4</source>
     </message>
     <message>
         <source>Title of the rubric</source>
-        <translation>採点基準の題</translation>
+        <translation>ルーブリックの題</translation>
     </message>
     <message>
         <source>About the rubric</source>
-        <translation>採点基準の説明</translation>
+        <translation>ルーブリックの説明</translation>
     </message>
     <message>
         <source>Band %1</source>
@@ -9243,6 +9303,10 @@ lingual: %4</source>
     <message>
         <source>Rule %1</source>
         <translation>規則 %1</translation>
+    </message>
+    <message>
+        <source>Kept of the labial surface</source>
+        <translation>唇側面に残す厚さ</translation>
     </message>
 </context>
 <context>
@@ -9618,11 +9682,11 @@ lingual: %4</source>
     </message>
     <message>
         <source>It is not judged: take a rubric that comes along.</source>
-        <translation>評価されません。付属の評価表を選んでください。</translation>
+        <translation>評価されません。付属のルーブリックを選んでください。</translation>
     </message>
     <message>
         <source>Parts of the rubric</source>
-        <translation>採点基準の部分</translation>
+        <translation>ルーブリックの部分</translation>
     </message>
     <message>
         <source>Bands, steps, rules</source>
@@ -9654,7 +9718,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>as the rubric&apos;s</source>
-        <translation>採点基準に同じ</translation>
+        <translation>ルーブリックに同じ</translation>
     </message>
     <message>
         <source>Source</source>
@@ -10008,6 +10072,30 @@ lingual: %4</source>
     <message>
         <source>Start view [mm]</source>
         <translation>開始時の視点 [mm]</translation>
+    </message>
+    <message>
+        <source>Work ends with them</source>
+        <translation>時間になったら作業を終える</translation>
+    </message>
+    <message>
+        <source>The pedal is dead then; else students are told once, and go on</source>
+        <translation>以後フットペダルが効きません。オフの場合は一度知らせるだけで、作業は続けられます</translation>
+    </message>
+    <message>
+        <source>Level</source>
+        <translation>レベル</translation>
+    </message>
+    <message>
+        <source>Not said</source>
+        <translation>指定なし</translation>
+    </message>
+    <message>
+        <source>Show during the work what is gone of the target</source>
+        <translation>作業中に目標の切削量を表示する</translation>
+    </message>
+    <message>
+        <source>A bar for target, leeway and what must stay</source>
+        <translation>目標・許容範囲・残すべき部分の切削量をバーで示します</translation>
     </message>
 </context>
 <context>

@@ -88,7 +88,7 @@ TEST_F(MarkingFolder, ScoresWhatCanBeScoredAndSaysWhyTheRestCannot) {
         names.push_back(work.name);
     EXPECT_THAT(names, ElementsAre("broken.h5", "broken.handpiece", "deep.handpiece", "good.handpiece",
                                    "sub/copied.handpiece"));
-    EXPECT_THAT(found[4].problem, HasSubstr("byte for byte"));
+    EXPECT_THAT(found[4].error.value().problem(), HasSubstr("byte for byte"));
     EXPECT_EQ(found[4].twin, "deep.handpiece");
 
     ScoreSettings settings;

@@ -5,6 +5,7 @@
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
+#include <QScreen>
 #include <QScrollArea>
 #include <QShortcut>
 #include <QTabWidget>
@@ -65,7 +66,8 @@ EditorDialog::EditorDialog(QWidget* parent) : QDialog(parent), settle_(new QTime
     settle_->setSingleShot(true);
     settle_->setInterval(kSettleMs);
     connect(settle_, &QTimer::timeout, this, &EditorDialog::settled);
-    resize(980, 680);
+    // As wide as its tables like, within the small screens of schools.
+    resize(std::min(1240, screen()->availableSize().width()), std::min(700, screen()->availableSize().height()));
     refresh();
 }
 

@@ -3,6 +3,7 @@
 
 #include <QCheckBox>
 #include <QComboBox>
+#include <QCoreApplication>
 #include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QLabel>
@@ -30,6 +31,9 @@ namespace handpiece::desktop {
 namespace {
 
 using draft::Content;
+
+/// Where students read the level's words, which are its name.
+constexpr const char* kChoice = "handpiece::desktop::ExercisesDialog";
 
 QString plain(std::string_view text) {
     return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
@@ -421,6 +425,15 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     minutes_->setDecimals(1);
     minutes_->setValue(30);
     minutes_->setSuffix(tr(" min"));
+    hard_ = named(new QCheckBox(tr("Work ends with them"), this), "editorHardLimit", tr("Work ends with them"),
+                  tr("The pedal is dead then; else students are told once, and go on"));
+    level_ = named(new QComboBox(this), "editorLevel", tr("Level"));
+    level_->addItem(tr("Not said"), QString());
+    for (const std::string_view level : tasks::kLevels)
+        level_->addItem(QCoreApplication::translate(kChoice, plain(level).toUtf8()), plain(level));
+    liveBar_ =
+        named(new QCheckBox(tr("Show during the work what is gone of the target"), this), "editorLiveBar",
+              tr("Show during the work what is gone of the target"), tr("A bar for target, leeway and what must stay"));
     voxel_ = named(new QDoubleSpinBox(this), "editorVoxel", tr("Voxel of the tooth"),
                    tr("The same for every student: a score never hangs on their settings"));
     voxel_->setRange(20, 400);
@@ -467,8 +480,11 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     limit->addWidget(timed_);
     limit->addWidget(minutes_, 1);
     form->addRow(tr("Time"), limit);
+    form->addRow(hard_);
+    form->addRow(tr("Level"), level_);
     form->addRow(tr("Voxel"), voxel_);
     form->addRow(ownJudgement_);
+    form->addRow(liveBar_);
     form->addRow(heading(tr("Start view [mm]"), this));
     form->addRow(view_);
     form->addRow(eye);
@@ -511,8 +527,16 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     connect(voxel_, &QDoubleSpinBox::valueChanged, this, [this](double um) {
         if (!showing_) change_("voxel", [&](Content& c) { c.voxelMm = 1e-3 * um; });
     });
-    connect(ownJudgement_, &QCheckBox::toggled, this, [this](bool own) {
-        if (!showing_) change_("", [&](Content& c) { c.ownJudgement = own; });
+    const auto tickOf = [this](QCheckBox* box, bool Content::*what) {
+        connect(box, &QCheckBox::toggled, this, [this, what](bool on) {
+            if (!showing_) change_("", [&](Content& c) { c.*what = on; });
+        });
+    };
+    tickOf(ownJudgement_, &Content::ownJudgement);
+    tickOf(hard_, &Content::isTimeHard);
+    tickOf(liveBar_, &Content::hasLiveBar);
+    connect(level_, &QComboBox::activated, this, [this] {
+        change_("level", [&](Content& c) { c.level = level_->currentData().toString().toStdString(); });
     });
     connect(take, &QPushButton::clicked, this, [this] { emit viewRequested(false); });
     connect(ofPicture, &QPushButton::clicked, this, [this] { emit viewRequested(true); });
@@ -538,6 +562,10 @@ void WorkPage::show(const Content& content) {
     timed_->setChecked(content.minutes.has_value());
     minutes_->setEnabled(content.minutes.has_value());
     if (content.minutes) setValue(minutes_, *content.minutes);
+    hard_->setEnabled(content.minutes.has_value());
+    hard_->setChecked(content.isTimeHard);
+    level_->setCurrentIndex(std::max(0, level_->findData(QString::fromStdString(content.level))));
+    liveBar_->setChecked(content.hasLiveBar);
     setValue(voxel_, 1e3 * content.voxelMm);
     ownJudgement_->setChecked(content.ownJudgement);
     view_->setText(e.view ? tr("Starts with a view of its own.") : tr("Starts with the usual view."));

@@ -117,9 +117,9 @@ class WorkPage : public EditorPage {
     void viewShown();
 
   private:
-    QComboBox* bur_;
+    QComboBox *bur_, *level_;
     QListWidget *burs_, *helps_;
-    QCheckBox *timed_, *ownJudgement_;
+    QCheckBox *timed_, *hard_, *ownJudgement_, *liveBar_;
     QDoubleSpinBox *minutes_, *voxel_;
     QLabel* view_;
     QPushButton* showView_;

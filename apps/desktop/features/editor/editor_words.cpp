@@ -40,6 +40,7 @@ constexpr std::pair<std::string_view, const char*> kParameters[] = {
     {"axial_mm", QT_TRANSLATE_NOOP("Preparation", "Axial depth")},
     {"box_width_mm", QT_TRANSLATE_NOOP("Preparation", "Width of the box")},
     {"under_contact_mm", QT_TRANSLATE_NOOP("Preparation", "Gingival floor under the contact")},
+    {"labial_mm", QT_TRANSLATE_NOOP("Preparation", "Kept of the labial surface")},
     {"corner_mm", QT_TRANSLATE_NOOP("Preparation", "Radius of the corners")},
     {"over_cervix_mm", QT_TRANSLATE_NOOP("Preparation", "Over the cemento-enamel junction")},
     {"occlusal_mm", QT_TRANSLATE_NOOP("Preparation", "Occlusal reduction")},

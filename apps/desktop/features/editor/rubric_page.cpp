@@ -549,6 +549,10 @@ void RubricPage::showRow(int row, const rubric::Criterion& c) {
 void RubricPage::show(const Content& content) {
     showing_ = true;
     const QSignalBlocker blocker(table_);
+    // The one that is here is the one that is named, until a person looks for another.
+    if (content.rubric && (!now_ || now_->id != content.rubric->id))
+        if (const int at = shipped_->findData(QString::fromStdString(content.rubric->id)); at >= 0)
+            shipped_->setCurrentIndex(at);
     const std::size_t count = content.rubric ? content.rubric->criteria.size() : 0;
     if (static_cast<int>(count) != table_->rowCount()) {
         unread_.clear();

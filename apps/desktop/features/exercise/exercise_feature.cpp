@@ -91,9 +91,9 @@ ExerciseFeature::ExerciseFeature(const FeatureContext& context)
     dock_ = window_.docks().add({"exerciseDock",
                                  tr("Exercise"),
                                  10,
-                                 {{Detail::practice, Qt::LeftDockWidgetArea, 10, 190},
-                                  {Detail::laboratory, Qt::LeftDockWidgetArea, 10, 190},
-                                  {Detail::paper, Qt::LeftDockWidgetArea, 10, 190}},
+                                 {{Detail::practice, Qt::LeftDockWidgetArea, 10, 290},
+                                  {Detail::laboratory, Qt::LeftDockWidgetArea, 10, 290},
+                                  {Detail::paper, Qt::LeftDockWidgetArea, 10, 290}},
                                  [this] { return isWanted_; }},
                                 panel_);
     connect(dock_->toggleViewAction(), &QAction::triggered, this, [this](bool shown) { isWanted_ = shown; });

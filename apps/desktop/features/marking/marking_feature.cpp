@@ -50,6 +50,7 @@ constexpr const char* kKept = ".marking";
 /// How near the eye comes to a place.
 constexpr double kNearMm = 30.0;
 /// Wide enough for the criteria.
+constexpr int kAboutPixels = 90;
 constexpr int kSheetPixels = 380;
 
 }  // namespace
@@ -312,7 +313,12 @@ void MarkingFeature::openWork(const QString& code) {
     isWanted_ = true;
     window_.docks().showWanted();
     dock_->raise();
-    if (isNew) window_.resizeDocks({dock_}, {kSheetPixels}, Qt::Horizontal);
+    if (isNew) {
+        window_.resizeDocks({dock_}, {kSheetPixels}, Qt::Horizontal);
+        // The sheet needs the height of the column more than what the work says of itself.
+        if (auto* about = window_.findChild<QDockWidget*>(QStringLiteral("exerciseDock")))
+            window_.resizeDocks({about, dock_}, {kAboutPixels, window_.height()}, Qt::Vertical);
+    }
     dialog_->select(code);
     dialog_->hide();  // it would lie over the picture; the sheet leads back to it
     window_.raise();
@@ -354,6 +360,7 @@ void MarkingFeature::openWork(const QString& code) {
 
 void MarkingFeature::look(const fs::path& path, bool isSession) {
     window_.whenMayLeave([this, path, isSession] {
+        opening_ = code_;
         goesToEnd_ = isSession;
         if (isSession)
             simulator_.open(path);
@@ -365,6 +372,12 @@ void MarkingFeature::look(const fs::path& path, bool isSession) {
 void MarkingFeature::showDocument() {
     const bool isReplay = simulator_.mode() == Simulator::Mode::replay;
     sheet_->setHasTime(isReplay);
+    const bool isWork = isReplay || simulator_.mode() == Simulator::Mode::review;
+    if (!isWork)
+        inPicture_.clear();
+    else if (!opening_.isEmpty())
+        inPicture_ = std::exchange(opening_, {});
+    sheet_->setIsShown(!code_.isEmpty() && inPicture_ == code_);
     if (!goesToEnd_ || !isReplay || !simulator_.replay()) return;
     // What is marked is how it ended.
     goesToEnd_ = false;
@@ -372,22 +385,29 @@ void MarkingFeature::showDocument() {
 }
 
 void MarkingFeature::showSheet() {
-    if (!desk_ || code_.isEmpty()) return sheet_->showWork(nullptr, {}, {}, false, false);
+    if (!desk_ || code_.isEmpty()) {
+        sheet_->showWork(nullptr, {}, {}, false, false);
+        return sheet_->setIsShown(false);
+    }
     const auto& codes = desk_->codes();
     const auto at = std::find(codes.begin(), codes.end(), code_.toStdString()) - codes.begin();
     sheet_->showWork(desk_.get(), code_, tr("%1 of %2").arg(at + 1).arg(codes.size()),
                      !dialog_->beside(code_, -1).isEmpty(), !dialog_->beside(code_, 1).isEmpty());
+    sheet_->setIsShown(inPicture_ == code_);
 }
 
-void MarkingFeature::tryTo(const std::function<void(marking::Desk& desk)>& change) {
-    if (!desk_ || code_.isEmpty()) return;
+bool MarkingFeature::tryTo(const std::function<void(marking::Desk& desk)>& change) {
+    if (!desk_ || code_.isEmpty()) return false;
+    bool isKept = false;
     try {
         change(*desk_);
+        isKept = true;
     } catch (const core::Error& error) {
         window_.showProblem(problemOf(error));
     }
     dialog_->refresh();
     showSheet();
+    return isKept;
 }
 
 void MarkingFeature::comment(const QString& text, bool atPlace, bool atTime) {
@@ -404,8 +424,9 @@ void MarkingFeature::comment(const QString& text, bool atPlace, bool atTime) {
         }
     }
     if (atTime && simulator_.replay()) said.timeS = simulator_.replay()->now().timeS;
+    if (!tryTo([&](marking::Desk& desk) { desk.comment(code_.toStdString(), said); })) return;
     forgetPlace();
-    tryTo([&](marking::Desk& desk) { desk.comment(code_.toStdString(), said); });
+    sheet_->clearComment();
 }
 
 void MarkingFeature::goTo(const std::optional<core::Vec3>& placeMm, const std::optional<double>& timeS) {
@@ -471,21 +492,22 @@ void MarkingFeature::computeAgreement() {
 
 void MarkingFeature::write(const QString& what) {
     if (!desk_) return;
-    const bool isFolder = what == QLatin1String("agreement");
+    const bool isFolder = what == QLatin1String("agreement"), isPage = what == QLatin1String("class"),
+               isMarks = what == QLatin1String("marks");
     const QString file =
         isFolder ? window_.questions.save(tr("Folder for the agreement"), QStringLiteral("agreement"), {}, {})
-                 : window_.questions.save(
-                       tr("Write the table"),
-                       what == QLatin1String("marks") ? QStringLiteral("marks.csv") : QStringLiteral("results.csv"),
-                       tr("Table (*.csv)"), QStringLiteral(".csv"));
+        : isPage ? window_.questions.save(tr("Write the page"), QStringLiteral("class.html"), tr("Page (*.html)"),
+                                          QStringLiteral(".html"))
+                 : window_.questions.save(tr("Write the table"),
+                                          isMarks ? QStringLiteral("marks.csv") : QStringLiteral("results.csv"),
+                                          tr("Table (*.csv)"), QStringLiteral(".csv"));
     if (file.isEmpty()) return;
     try {
         if (!isFolder) {
-            core::writeFile(toPath(file), what == QLatin1String("marks")
-                                              ? marking::marksCsv(*desk_, desk_->othersOfFolder().desks)
-                                              : marking::resultsCsv(*desk_, what == QLatin1String("files")
-                                                                                ? marking::Naming::withFiles
-                                                                                : marking::Naming::codesOnly));
+            const auto names = what == QLatin1String("codes") ? marking::Naming::codesOnly : marking::Naming::withFiles;
+            core::writeFile(toPath(file), isMarks  ? marking::marksCsv(*desk_, desk_->othersOfFolder().desks)
+                                          : isPage ? marking::classPage(*desk_, names)
+                                                   : marking::resultsCsv(*desk_, names));
         } else {
             const marking::DeskAgreement agreement = marking::agreementOfDesk(*desk_, desk_->othersOfFolder().desks);
             core::prepareOutputFolder(toPath(file));

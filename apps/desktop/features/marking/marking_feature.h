@@ -45,8 +45,8 @@ class MarkingFeature : public Feature {
     void openWork(const QString& code);
     void look(const std::filesystem::path& path, bool isSession);
     void showSheet();
-    /// Runs a change of the desk; what is refused is told.
-    void tryTo(const std::function<void(marking::Desk& desk)>& change);
+    /// Runs a change of the desk; what is refused is told. Whether it was kept.
+    bool tryTo(const std::function<void(marking::Desk& desk)>& change);
     /// The tooth under a point of the picture.
     [[nodiscard]] std::optional<core::Vec3> placeUnder(const QPointF& point) const;
     void forgetPlace();
@@ -63,6 +63,7 @@ class MarkingFeature : public Feature {
     DeskWish wish_;
     std::shared_ptr<const tasks::Task> task_;
     QString code_;                        ///< of the work that is open; empty: none
+    QString opening_, inPicture_;         ///< what the picture is about to show, and what it shows of this desk
     bool isPlaceWanted_ = false;          ///< the next click in the picture is one
     std::optional<core::Vec3> pickedMm_;  ///< for the next comment
     std::optional<double> pickedS_;

@@ -11,21 +11,25 @@
 #include <QListWidget>
 #include <QLocale>
 #include <QPushButton>
+#include <QScrollBar>
 #include <QSignalBlocker>
 #include <QToolButton>
 #include <QTreeWidget>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "desktop/features/marking/work_table.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
+#include "handpiece/app/report/assessment_words.h"
 
 namespace handpiece::desktop {
 namespace {
 
 enum Column { kName, kMark, kPoints, kBand, kMeasured };
+constexpr int kMostNamePixels = 190;
 constexpr int kIdRole = Qt::UserRole, kTimeRole = Qt::UserRole + 1, kPlaceRole = Qt::UserRole + 2;
 
 QString inWords(const cases::Texts& texts, const std::string& otherwise) {
@@ -73,10 +77,15 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     summary_ = named(new QLabel(this), "sheetSummary", tr("How the work stands"));
     summary_->setWordWrap(true);
     summary_->setTextFormat(Qt::PlainText);
+    notShown_ = named(new QLabel(tr("The picture does not show this work."), this), "sheetNotShown",
+                      tr("Whether the picture shows this work"));
+    notShown_->setFont(scaledFont(font(), 1.0, true));
     criteria_ = named(new QTreeWidget(this), "sheetCriteria", tr("Criteria"),
                       tr("Choose one to judge it; a place below it turns the picture there"));
     criteria_->setHeaderLabels({tr("Criterion"), tr("Your mark"), tr("Points"), tr("Band"), tr("Measured")});
     criteria_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
+    // Its places, which may be long, lie across all columns.
+    criteria_->header()->setSectionResizeMode(kName, QHeaderView::Interactive);
     criteria_->setMinimumHeight(140);
     editing_ = named(new QLabel(this), "sheetEditing", tr("Criterion that is judged"));
     editing_->setTextFormat(Qt::PlainText);
@@ -157,6 +166,7 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     column->setSpacing(5);
     column->addLayout(above);
     column->addWidget(summary_);
+    column->addWidget(notShown_);
     column->addWidget(criteria_, 1);
     column->addLayout(editor);
     column->addWidget(decisionRow_);
@@ -196,9 +206,7 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
         emit decisionRequested(decided);
     });
     connect(addComment_, &QPushButton::clicked, this, [this] {
-        const QString text = comment_->text();
-        comment_->clear();
-        emit commentRequested(text, atPlace_->isChecked(), atTime_->isChecked() && atTime_->isEnabled());
+        emit commentRequested(comment_->text(), atPlace_->isChecked(), atTime_->isChecked() && atTime_->isEnabled());
     });
     connect(pick_, &QPushButton::toggled, this, &SheetPanel::placeWanted);
     connect(removeComment_, &QPushButton::clicked, this, [this] {
@@ -227,16 +235,30 @@ void SheetPanel::setHasTime(bool hasTime) {
 void SheetPanel::setPlace(const std::optional<core::Vec3>& placeMm) {
     pick_->setChecked(false);
     pick_->setText(placeMm ? tr("Place chosen: click anew") : tr("Click the place"));
-    atPlace_->setEnabled(!placeMm);
+    atPlace_->setEnabled(!placeMm && isShown_);
+}
+
+void SheetPanel::setIsShown(bool isShown) {
+    isShown_ = isShown;
+    notShown_->setVisible(!isShown && desk_ != nullptr);
+    pick_->setEnabled(isShown);
+    atPlace_->setEnabled(isShown);
+}
+
+void SheetPanel::clearComment() {
+    comment_->clear();
 }
 
 void SheetPanel::showWork(const marking::Desk* desk, const QString& code, const QString& place, bool hasPrevious,
                           bool hasNext) {
     const std::string before = code == code_ ? criterion() : std::string();
-    if (code != code_) {
-        comment_->clear();
-        decisionReason_->clear();
-    }
+    std::set<QString> open;
+    for (int row = 0; code == code_ && row < criteria_->topLevelItemCount(); ++row)
+        if (criteria_->topLevelItem(row)->isExpanded())
+            open.insert(criteria_->topLevelItem(row)->data(kName, kIdRole).toString());
+    const int scrolled = code == code_ ? criteria_->verticalScrollBar()->value() : 0;
+    const bool isOther = code != code_;
+    if (isOther) comment_->clear();
     desk_ = code.isEmpty() ? nullptr : desk;
     code_ = desk_ != nullptr ? code : QString();
     setEnabled(desk_ != nullptr);
@@ -244,17 +266,28 @@ void SheetPanel::showWork(const marking::Desk* desk, const QString& code, const 
     previous_->setEnabled(hasPrevious);
     next_->setEnabled(hasNext);
     fillCriteria();
+    if (isOther) fitNames();
     fillComments();
     showSummary();
-    for (int row = 0; row < criteria_->topLevelItemCount(); ++row)
-        if (row == 0 || criteria_->topLevelItem(row)->data(kName, kIdRole).toString().toStdString() == before)
-            criteria_->setCurrentItem(criteria_->topLevelItem(row));
-    if (desk_ != nullptr) {
-        const auto& decision = desk_->sheet(code_.toStdString()).decision;
-        decision_->setCurrentIndex(!decision ? 0 : decision->passed ? 1 : 2);
-        if (decision) decisionReason_->setText(QString::fromStdString(decision->reason));
+    {
+        const QSignalBlocker quiet(criteria_);
+        for (int row = 0; row < criteria_->topLevelItemCount(); ++row) {
+            QTreeWidgetItem* item = criteria_->topLevelItem(row);
+            const QString id = item->data(kName, kIdRole).toString();
+            if (row == 0 || id.toStdString() == before) criteria_->setCurrentItem(item);
+            item->setExpanded(open.contains(id));
+        }
+        criteria_->verticalScrollBar()->setValue(scrolled);
     }
     showEditor();
+}
+
+/// As wide as the names, and not so wide that no points are seen.
+void SheetPanel::fitNames() {
+    int width = 0;
+    for (int row = 0; row < criteria_->topLevelItemCount(); ++row)
+        width = std::max(width, criteria_->fontMetrics().horizontalAdvance(criteria_->topLevelItem(row)->text(kName)));
+    criteria_->setColumnWidth(kName, std::min(width + criteria_->indentation() + 16, kMostNamePixels));
 }
 
 void SheetPanel::fillCriteria() {
@@ -278,6 +311,7 @@ void SheetPanel::fillCriteria() {
         auto* item =
             new QTreeWidgetItem(criteria_, {c != nullptr ? inWords(c->title, c->id) : tr("All points together")});
         item->setData(kName, kIdRole, QString::fromStdString(name));
+        item->setToolTip(kName, item->text(kName));
         if (const auto mark = sheet.marks.find(name); mark != sheet.marks.end())
             item->setText(kMark, mark->second.cannotTell ? tr("cannot be told")
                                  : mark->second.points   ? pointsText(*mark->second.points)
@@ -293,7 +327,7 @@ void SheetPanel::fillCriteria() {
         item->setText(kMeasured, was.value ? tr("%1 ± %2 %3")
                                                  .arg(measuredText(*was.value), measuredText(was.uncertainty),
                                                       QString::fromStdString(was.unit))
-                                           : QString::fromStdString(was.reason));
+                                           : QString::fromStdString(report::said(was.reason)));
         QStringList band{now.band.empty() ? QString() : bandText(desk_->rubric(), now.band)};
         if (now.critical != score::Verdict::no)
             band << (now.critical == score::Verdict::yes ? tr("critical error") : tr("perhaps a critical error"));
@@ -318,12 +352,13 @@ void SheetPanel::fillCriteria() {
 
 void SheetPanel::addEvidence(QTreeWidgetItem* under, const score::CriterionScore& of) {
     for (const measures::Evidence& e : of.evidence) {
-        QStringList words{QString::fromStdString(e.text)};
+        QStringList words{QString::fromStdString(report::said(e.text))};
         if (e.timeS) words << tr("at %1 s").arg(QLocale().toString(*e.timeS, 'f', 1));
         if (e.forceN) words << tr("%1 N").arg(QLocale().toString(*e.forceN, 'f', 2));
         words.removeAll(QString());
         auto* item = new QTreeWidgetItem(under, {words.join(QStringLiteral(", "))});
         item->setFirstColumnSpanned(true);
+        item->setToolTip(kName, item->text(kName));
         item->setData(kName, kTimeRole, timeOf(e.timeS));
         item->setData(kName, kPlaceRole, placeOf(e.placeMm));
     }
@@ -350,8 +385,8 @@ void SheetPanel::showSummary() {
     const assessment::Result* machine = desk_->machine(id);
     const std::optional<score::Assessment> final = desk_->finalScore(id);
     if (machine == nullptr || !final) {
-        const std::string problem = desk_->problem(id);
-        summary_->setText(!problem.empty()         ? QString::fromStdString(problem)
+        const QString problem = WorkTable::problemWords(*desk_, id);
+        summary_->setText(!problem.isEmpty()       ? problem
                           : isMarking()            ? tr("The machine's score is hidden until your marks are in.")
                           : !desk_->isRevealed(id) ? tr("The machine's score is shown when all works are marked.")
                                                    : tr("It waits for its score."));
@@ -362,10 +397,10 @@ void SheetPanel::showSummary() {
             .arg(pointsText(final->score), pointsText(final->maxScore), pointsText(machine->assessment.score),
                  WorkTable::passedWord(static_cast<int>(*desk_->passed(id))));
     if (!final->why.empty() && !desk_->sheet(id).decision)
-        text += QLatin1Char(' ') + tr("Why: %1.").arg(QString::fromStdString(final->why));
-    text +=
-        QLatin1Char(' ') +
-        (machine->identity.proven ? tr("Proven.") : tr("Unproven: %1.").arg(QString::fromStdString(machine->proof)));
+        text += QLatin1Char(' ') + tr("Why: %1.").arg(QString::fromStdString(report::whyOf(*final, desk_->rubric())));
+    text += QLatin1Char(' ') + (machine->identity.proven
+                                    ? tr("Proven.")
+                                    : tr("Unproven: %1.").arg(QString::fromStdString(report::said(machine->proof))));
     summary_->setText(text);
 }
 
@@ -374,10 +409,30 @@ void SheetPanel::showEditor() {
     const rubric::Criterion* c = desk_ != nullptr ? desk_->rubric().criterion(name) : nullptr;
     const bool isTotal = name == marking::kTotal, marks = isMarking();
     const bool canSay = desk_ != nullptr && (marks ? c != nullptr || isTotal : c != nullptr && desk_->machine(id));
+    Edited now{id, name, marks, canSay, {}, {}, {}};
+    if (desk_ != nullptr) {
+        const marking::Sheet& sheet = desk_->sheet(id);
+        if (const auto mark = sheet.marks.find(name); marks && mark != sheet.marks.end()) now.mark = mark->second;
+        if (const auto said = sheet.overrides.find(name); !marks && said != sheet.overrides.end())
+            now.said = said->second;
+        now.decision = sheet.decision;
+    }
+    const auto set = [](QComboBox* box, int index) {
+        const QSignalBlocker quiet(box);
+        box->setCurrentIndex(index);
+    };
+    if (!edited_ || edited_->code != id || edited_->decision != now.decision) {
+        set(decision_, !now.decision ? 0 : now.decision->passed ? 1 : 2);
+        decisionReason_->setText(now.decision ? QString::fromStdString(now.decision->reason) : QString());
+    }
+    decisionRow_->setVisible(desk_ != nullptr && desk_->finalScore(id).has_value());
+    // What is half typed outlives scores that come in, a comment, and a change that the desk refused.
+    const bool isSame = edited_ && edited_->code == id && edited_->criterion == name && edited_->marks == marks &&
+                        edited_->canSay == canSay && edited_->mark == now.mark && edited_->said == now.said;
+    edited_ = std::move(now);
+    if (isSame) return showWhetherReady();
     const QSignalBlocker quiet1(band_), quiet2(points_), quiet3(critical_), quiet4(cannotTell_);
-    editing_->setText(c != nullptr ? inWords(c->words.empty() ? c->title : c->title, c->id)
-                      : isTotal    ? tr("All points together")
-                                   : QString());
+    editing_->setText(c != nullptr ? inWords(c->title, c->id) : isTotal ? tr("All points together") : QString());
     band_->clear();
     band_->addItem(marks ? tr("choose") : tr("band as it is"), QString());
     std::vector<std::string> listed;
@@ -406,24 +461,18 @@ void SheetPanel::showEditor() {
     say_->setVisible(canSay);
     say_->setText(marks ? tr("Mark") : tr("Override"));
     giveIn_->setVisible(marks);
-    decisionRow_->setVisible(desk_ != nullptr && desk_->finalScore(id).has_value());
-    bool isSaid = false;
-    if (desk_ != nullptr) {
-        const marking::Sheet& sheet = desk_->sheet(id);
-        if (const auto mark = sheet.marks.find(name); marks && mark != sheet.marks.end()) {
-            band_->setCurrentIndex(std::max(0, band_->findData(QString::fromStdString(mark->second.band))));
-            if (mark->second.points) points_->setValue(*mark->second.points);
-            cannotTell_->setChecked(mark->second.cannotTell);
-        }
-        if (const auto said = sheet.overrides.find(name); !marks && said != sheet.overrides.end()) {
-            isSaid = true;
-            band_->setCurrentIndex(std::max(0, band_->findData(QString::fromStdString(said->second.band))));
-            if (said->second.points) points_->setValue(*said->second.points);
-            if (said->second.critical) critical_->setCurrentIndex(*said->second.critical ? 1 : 2);
-            reason_->setText(QString::fromStdString(said->second.reason));
-        }
+    if (edited_->mark) {
+        band_->setCurrentIndex(std::max(0, band_->findData(QString::fromStdString(edited_->mark->band))));
+        if (edited_->mark->points) points_->setValue(*edited_->mark->points);
+        cannotTell_->setChecked(edited_->mark->cannotTell);
     }
-    withdraw_->setVisible(isSaid);
+    if (edited_->said) {
+        band_->setCurrentIndex(std::max(0, band_->findData(QString::fromStdString(edited_->said->band))));
+        if (edited_->said->points) points_->setValue(*edited_->said->points);
+        if (edited_->said->critical) critical_->setCurrentIndex(*edited_->said->critical ? 1 : 2);
+        reason_->setText(QString::fromStdString(edited_->said->reason));
+    }
+    withdraw_->setVisible(edited_->said.has_value());
     showWhetherReady();
 }
 

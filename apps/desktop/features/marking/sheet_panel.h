@@ -37,6 +37,10 @@ class SheetPanel : public QWidget {
     void setHasTime(bool hasTime);
     /// The place that was clicked in the picture, for the next comment; none: none is waiting.
     void setPlace(const std::optional<core::Vec3>& placeMm);
+    /// Whether it is this work that the picture shows.
+    void setIsShown(bool isShown);
+    /// It was kept.
+    void clearComment();
 
   signals:
     void stepRequested(int step);
@@ -54,8 +58,17 @@ class SheetPanel : public QWidget {
     void placeRequested(const std::optional<handpiece::core::Vec3>& placeMm, const std::optional<double>& timeS);
 
   private:
+    /// What the fields were filled for: only another fills them anew.
+    struct Edited {
+        std::string code, criterion;
+        bool marks = false, canSay = false;
+        std::optional<marking::Mark> mark;
+        std::optional<marking::Override> said;
+        std::optional<marking::Decision> decision;
+    };
     [[nodiscard]] bool isMarking() const;  ///< blind, and one's own mark is not in
     void fillCriteria();
+    void fitNames();
     void addEvidence(QTreeWidgetItem* under, const score::CriterionScore& of);
     void fillComments();
     void showSummary();
@@ -65,7 +78,9 @@ class SheetPanel : public QWidget {
 
     const marking::Desk* desk_ = nullptr;
     QString code_;
-    QLabel *title_, *summary_;
+    std::optional<Edited> edited_;
+    bool isShown_ = false;
+    QLabel *title_, *summary_, *notShown_;
     QToolButton *previous_, *next_;
     QTreeWidget* criteria_;
     QLabel* editing_;

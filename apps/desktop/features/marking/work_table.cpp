@@ -4,6 +4,7 @@
 #include <QImage>
 #include <QLocale>
 
+#include "desktop/framework/problem.h"
 #include "handpiece/app/marking/desk.h"
 
 namespace handpiece::desktop {
@@ -49,6 +50,13 @@ QString WorkTable::flagWords(int flags) {
     return words.join(QStringLiteral(", "));
 }
 
+QString WorkTable::problemWords(const marking::Desk& desk, const std::string& code) {
+    const std::optional<core::Error> error = desk.error(code);
+    if (!error) return QString::fromStdString(desk.problem(code));
+    const std::string twin = desk.isRevealed(code) ? desk.work(code).twin : std::string();
+    return problemOf(*error).what + (twin.empty() ? QString() : QLatin1Char(' ') + QString::fromStdString(twin));
+}
+
 QString WorkTable::passedWord(int passed) {
     switch (static_cast<score::Passed>(passed)) {
         case score::Passed::yes:
@@ -87,8 +95,7 @@ QVariant WorkTable::shown(const std::string& id, int column, bool forSorting) co
             return forSorting ? QVariant(flagsOf(id)) : QVariant(flagWords(flagsOf(id)));
         case kState: {
             const marking::Sheet& sheet = desk_->sheet(id);
-            if (const std::string problem = desk_->problem(id); !problem.empty())
-                return QString::fromStdString(problem);
+            if (const QString problem = problemWords(*desk_, id); !problem.isEmpty()) return problem;
             QStringList words;
             if (desk_->isBlind())
                 words << (sheet.isIn ? tr("marked") : sheet.marks.empty() ? tr("to be marked") : tr("begun"));

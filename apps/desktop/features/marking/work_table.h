@@ -35,6 +35,8 @@ class WorkTable : public QAbstractTableModel {
     [[nodiscard]] QVariant headerData(int section, Qt::Orientation orientation, int role) const override;
     /// What a flag is called, all of those that are set.
     [[nodiscard]] static QString flagWords(int flags);
+    /// Why it has no score, in the window's language; empty where it has one.
+    [[nodiscard]] static QString problemWords(const marking::Desk& desk, const std::string& code);
     [[nodiscard]] static QString passedWord(int passed);
 
   private:

@@ -43,7 +43,7 @@ void look(const fs::path& folder, bool isBelow, std::vector<FoundWork>& found) {
             try {
                 if (cases::isAttempt(path)) found.push_back({path});  // else a case, or the exercise itself
             } catch (const core::Error& error) {
-                found.push_back({path, false, error.problem()});
+                found.push_back({path, false, error});
             }
         }
     }

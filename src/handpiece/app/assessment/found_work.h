@@ -4,15 +4,17 @@
 /// What work lies in a folder: the one way by which all who score, mark and re-score find it.
 
 #include <filesystem>
-#include <string>
+#include <optional>
 #include <vector>
+
+#include "handpiece/base/core/error.h"
 
 namespace handpiece::assessment {
 
 struct FoundWork {
     std::filesystem::path path;  ///< a session, a folder with the sessions of one work, an attempt (folder or file)
     bool isResultOnly = false;   ///< a result.json without the work that it is of
-    std::string problem{};       ///< it cannot be read: why
+    std::optional<core::Error> error{};  ///< it cannot be read: why
 };
 
 /// By path: sessions (.h5) and attempts in the folder, each a work; in each folder directly below it its attempts, each

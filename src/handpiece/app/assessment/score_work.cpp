@@ -26,11 +26,13 @@ namespace fs = std::filesystem;
 void requireSame(const fs::path& path, std::uint64_t caseKey, double voxelMm, const tasks::Task& task) {
     if (caseKey != cases::caseKey(task.toothCase))
         throw core::Error("this is work on another tooth than the exercise's", path.string(),
-                          fmt::format("exercise {} is of {}", task.id, task.toothCase.name));
+                          fmt::format("exercise {} is of {}", task.id, task.toothCase.name))
+            .as("other-tooth");
     if (std::abs(voxelMm - task.voxelMm) > 1e-9)
         throw core::Error(
             fmt::format("this was cut in a voxel of {:g} um", 1e3 * voxelMm), path.string(),
-            fmt::format("exercise {} asks for {:g}: work on it as the exercise has it", task.id, 1e3 * task.voxelMm));
+            fmt::format("exercise {} asks for {:g}: work on it as the exercise has it", task.id, 1e3 * task.voxelMm))
+            .as("other-voxel", {fmt::format("{:g}", 1e3 * voxelMm), fmt::format("{:g}", 1e3 * task.voxelMm)});
 }
 
 std::string hashOf(std::span<const std::byte> bytes) {

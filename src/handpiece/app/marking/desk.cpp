@@ -161,7 +161,11 @@ Desk::Desk(DeskSetup setup, std::vector<ReturnedWork> works) : setup_(std::move(
     for (const auto& [id, name] : state_.names)
         if (!places_.contains(id)) {
             places_.emplace(id, works_.size());
-            works_.push_back({name, id, setup_.folder / name, false, "it is no longer in the folder, or was changed"});
+            const fs::path path = setup_.folder / name;
+            works_.push_back({name, id, path, false,
+                              core::Error("it is no longer in the folder, or was changed", path.string(),
+                                          "put it back, or score again")
+                                  .as("work-gone")});
         }
     scored_.resize(works_.size());
     if (!come.empty() || written_ == 0 || state_.rubricHash != rubricHash)
@@ -236,11 +240,16 @@ std::string Desk::problem(const std::string& code) const {
     const std::size_t at = placeOf(code);
     // Whose the other is stays hidden from who marks blind.
     if (const std::string& twin = works_[at].twin; !twin.empty() && isRevealed(code))
-        return works_[at].problem + ": " + twin;
-    if (scored_[at] && !scored_[at]->problem().empty()) return scored_[at]->problem();
-    std::string why = works_[at].problem;
+        return works_[at].error->problem() + ": " + twin;
+    if (const std::optional<core::Error> known = error(code)) return known->problem();
+    std::string why;
     static_cast<void>(judge(code, why));
     return why;
+}
+
+std::optional<core::Error> Desk::error(const std::string& code) const {
+    const std::size_t at = placeOf(code);
+    return scored_[at] && scored_[at]->error() ? scored_[at]->error() : works_[at].error;
 }
 
 const view::Image& Desk::picture(const std::string& code) const {

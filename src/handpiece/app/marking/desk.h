@@ -48,6 +48,7 @@ struct Comment {
 struct Decision {
     bool passed = false;
     std::string reason;  ///< never blank
+    friend bool operator==(const Decision&, const Decision&) = default;
 };
 
 /// Of one work under one code.
@@ -133,6 +134,8 @@ class Desk {
     [[nodiscard]] bool isScored(const std::string& code) const;
     /// Why there is no score; empty where there is one, or none yet.
     [[nodiscard]] std::string problem(const std::string& code) const;
+    /// That as an error, for other languages; none where problem() is of an override, or empty.
+    [[nodiscard]] std::optional<core::Error> error(const std::string& code) const;
     [[nodiscard]] const view::Image& picture(const std::string& code) const;
     /// Whether the machine's score, and which works come twice, may be seen.
     [[nodiscard]] bool isRevealed(const std::string& code) const;

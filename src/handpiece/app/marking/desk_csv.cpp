@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <set>
 
 #include "handpiece/app/assessment/csv_cell.h"
+#include "handpiece/app/report/assessment_report.h"
 
 namespace handpiece::marking {
 namespace {
@@ -75,6 +78,31 @@ std::string resultsCsv(const Desk& desk, Naming naming) {
         out += csvLine(row);
     }
     return out;
+}
+
+std::string classPage(const Desk& desk, Naming naming) {
+    std::vector<report::ClassEntry> entries;
+    std::set<const ReturnedWork*> seen;
+    for (const std::string& code : desk.codes()) {
+        const assessment::Result* machine = desk.machine(code);
+        const std::optional<score::Assessment> final = desk.finalScore(code);
+        if (machine == nullptr || !final || !seen.insert(&desk.work(code)).second) continue;
+        const std::string& file = desk.work(code).name;
+        report::ClassEntry entry;
+        entry.student = naming == Naming::withFiles ? std::filesystem::path(file).stem().string() : code;
+        entry.file = naming == Naming::withFiles ? file : code;
+        entry.result = *machine;
+        entry.result.assessment = *final;
+        if (const std::optional<Decision>& decision = desk.sheet(code).decision) {
+            entry.result.assessment.passed = decision->passed ? score::Passed::yes : score::Passed::no;
+            entry.result.assessment.why = decision->reason;
+        }
+        entries.push_back(std::move(entry));
+    }
+    if (entries.empty())
+        throw core::Error("no work has a score that may be seen", desk.folder().string(),
+                          "score the works; where marks are blind, give them in first");
+    return report::classReport(entries);
 }
 
 }  // namespace handpiece::marking

@@ -21,7 +21,7 @@ std::vector<ReturnedWork> findWork(const fs::path& folder, const core::Progress&
                          {},
                          one.path,
                          one.isResultOnly,
-                         std::move(one.problem)});
+                         std::move(one.error)});
     if (works.size() > kMaxWorks)
         throw core::Error(fmt::format("there are more than {} works", kMaxWorks), folder.string(),
                           "mark them in parts");
@@ -32,13 +32,14 @@ std::vector<ReturnedWork> findWork(const fs::path& folder, const core::Progress&
         try {
             work.id = assessment::workHash(work.path);
         } catch (const core::Error& error) {
-            work.problem = error.problem();
+            work.error = error;
         }
         if (!work.id.empty()) {
             const auto [at, isNew] = first.emplace(work.id, work.name);
             if (isNew) continue;
-            work.problem = "another work is the same, byte for byte";
             work.twin = at->second;
+            work.error = core::Error("another work is the same, byte for byte", work.path.string(), "ask whose it is")
+                             .as("same-work");
         }
         // A name of its own, so that it has a row.
         core::Hasher hasher;

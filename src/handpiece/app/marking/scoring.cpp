@@ -118,12 +118,17 @@ Scored readLoneResult(const ReturnedWork& work, const tasks::Task& task, const r
     assessment::Result result =
         assessment::parseResult({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, work.path.string());
     if (result.identity.exerciseHash != rubric::hashText(tasks::contentHash(task)))
-        return Scored::failed("this is a result of another exercise");
+        return Scored::failed(
+            core::Error("this is a result of another exercise", work.path.string()).as("other-result"));
     if (result.assessment.rubricHash != rubric::hashOf(rubric))
-        return Scored::failed(fmt::format("this is a result by another rubric: {} version {}, hash {}",
-                                          result.assessment.rubric, result.assessment.rubricVersion,
-                                          rubric::hashText(result.assessment.rubricHash)));
-    if (!fits(result.assessment, rubric)) return Scored::failed("this result has other criteria than its rubric");
+        return Scored::failed(core::Error(fmt::format("this is a result by another rubric: {} version {}, hash {}",
+                                                      result.assessment.rubric, result.assessment.rubricVersion,
+                                                      rubric::hashText(result.assessment.rubricHash)),
+                                          work.path.string())
+                                  .as("other-rubric", {result.assessment.rubric, result.assessment.rubricVersion}));
+    if (!fits(result.assessment, rubric))
+        return Scored::failed(
+            core::Error("this result has other criteria than its rubric", work.path.string()).as("other-criteria"));
     // Who wrote it nobody can tell.
     result.identity.proven = false;
     result.proof = "the result came without the work that it is of";
@@ -132,9 +137,9 @@ Scored readLoneResult(const ReturnedWork& work, const tasks::Task& task, const r
 
 }  // namespace
 
-Scored Scored::failed(std::string problem) {
+Scored Scored::failed(core::Error error) {
     Scored scored;
-    scored.problem_ = std::move(problem);
+    scored.error_ = std::move(error);
     return scored;
 }
 
@@ -147,7 +152,7 @@ Scored Scored::of(assessment::Result result, view::Image picture) {
 
 Scored scoreReturned(const ReturnedWork& work, const tasks::Task& task, const rubric::Rubric& rubric,
                      const ScoreSettings& settings, const core::Progress& progress) {
-    if (!work.problem.empty()) return Scored::failed(work.problem);
+    if (work.error) return Scored::failed(*work.error);
     // Cancelling is told apart from what is wrong with the work by asking, not by the words of an error.
     std::atomic<bool> isCancelled{false};
     const core::Progress heard = [&progress, &isCancelled](double fraction) {
@@ -176,7 +181,7 @@ Scored scoreReturned(const ReturnedWork& work, const tasks::Task& task, const ru
         return scored;
     } catch (const std::exception& error) {
         if (isCancelled) throw core::Error("cancelled");
-        return Scored::failed(core::asError(error).problem());
+        return Scored::failed(core::asError(error));
     }
 }
 

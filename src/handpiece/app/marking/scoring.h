@@ -12,6 +12,7 @@
 
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/marking/returned_work.h"
+#include "handpiece/base/core/error.h"
 #include "handpiece/base/core/progress.h"
 #include "handpiece/senses/view/image.h"
 
@@ -21,19 +22,21 @@ namespace handpiece::marking {
 /// cannot show it by mistake.
 class Scored {
   public:
-    /// Why there is no result, in a sentence; empty where there is one.
-    [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
+    /// Why there is no result; none where there is one.
+    [[nodiscard]] const std::optional<core::Error>& error() const noexcept { return error_; }
+    /// That in a sentence; empty where there is a result.
+    [[nodiscard]] std::string problem() const { return error_ ? error_->problem() : std::string(); }
     /// The cut tooth from occlusal; nothing where it could not be drawn.
     [[nodiscard]] const view::Image& picture() const noexcept { return picture_; }
 
-    [[nodiscard]] static Scored failed(std::string problem);
+    [[nodiscard]] static Scored failed(core::Error error);
     [[nodiscard]] static Scored of(assessment::Result result, view::Image picture = {});
 
   private:
     friend class Desk;
     friend struct Kept;
     std::optional<assessment::Result> result_;
-    std::string problem_;
+    std::optional<core::Error> error_;
     view::Image picture_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// What pages say of a score, in the program's language. Private to this room.
+/// What pages and the window say of a score, in the program's language.
 
 #include <string>
 

@@ -32,6 +32,8 @@ Content contentOf(const tasks::Task& task) {
     content.voxelMm = task.voxelMm;
     content.minutes = task.minutes;
     content.level = task.level;
+    content.isTimeHard = task.isTimeHard;
+    content.hasLiveBar = task.hasLiveBar;
     content.preparation = task.preparation;
     content.ownJudgement = task.ownJudgement;
     content.rubricText = task.rubric;
@@ -52,6 +54,8 @@ tasks::Task taskOf(const Content& content) {
     task.voxelMm = content.voxelMm;
     task.minutes = content.minutes;
     task.level = content.level;
+    task.isTimeHard = content.isTimeHard && content.minutes;
+    task.hasLiveBar = content.hasLiveBar;
     task.preparation = content.preparation;
     task.ownJudgement = content.ownJudgement;
     if (content.rubric) {

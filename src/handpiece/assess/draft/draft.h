@@ -26,7 +26,9 @@ struct Content {
     cases::Exercise exercise;                  ///< texts, burs, locks, view
     double voxelMm = 0.05;
     std::optional<double> minutes;
-    std::string level;  ///< of tasks::kLevels; empty: not said
+    std::string level;        ///< of tasks::kLevels; empty: not said
+    bool isTimeHard = false;  ///< work ends with the minutes
+    bool hasLiveBar = false;  ///< what is removed of the target is shown during the work
     std::optional<preparation::Recipe> preparation;
     bool ownJudgement = false;  ///< a student says what they expect before they see the result
     std::optional<rubric::Rubric> rubric;

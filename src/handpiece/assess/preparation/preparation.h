@@ -49,11 +49,11 @@ struct Recipe {
     double pulpMm = 0.0;  ///< all within this of the pulp is protected; 0: the pulp alone
 
     // Of recorded work and of a painting.
-    std::string like{};                            ///< the template that it is meant as, "class-one"; empty: none
-    std::optional<core::Vec3> draw{};              ///< path of draw, unit; none: found
+    std::string like{};                              ///< the template that it is meant as, "class-one"; empty: none
+    std::optional<core::Vec3> draw{};                ///< path of draw, unit; none: found
     std::shared_ptr<const RecordedWork> recorded{};  ///< of recorded work: comes in a file of its own
-    std::uint64_t recordedHash = 0;                ///< of that file's content
-    std::vector<BrushStroke> strokes{};            ///< of a painting
+    std::uint64_t recordedHash = 0;                  ///< of that file's content
+    std::vector<BrushStroke> strokes{};              ///< of a painting
 
     /// The template by which it is measured and judged.
     [[nodiscard]] const std::string& kind() const { return like.empty() ? preparation : like; }

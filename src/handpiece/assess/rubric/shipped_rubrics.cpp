@@ -26,7 +26,8 @@ namespace handpiece::rubric {
     RUBRIC("dexterity-d-circle", kRubric_dexterity_d_circle)           \
     RUBRIC("dexterity-hollow-circle", kRubric_dexterity_hollow_circle) \
     RUBRIC("dexterity-line", kRubric_dexterity_line)                   \
-    RUBRIC("dexterity-steps", kRubric_dexterity_steps)
+    RUBRIC("dexterity-steps", kRubric_dexterity_steps)                 \
+    RUBRIC("own-target", kRubric_own_target)
 
 #define HANDPIECE_DECLARE(name, text) extern const char* const text;
 HANDPIECE_RUBRICS(HANDPIECE_DECLARE)
@@ -70,6 +71,8 @@ std::string_view shippedFor(std::string_view preparation) {
         {"class-two", "46-class-ii-mo"},
         {"crown", "46-crown"},
         {"lesion", "46-deep-lesion"},
+        {"painted", "own-target"},
+        {"recorded-work", "own-target"},
     };
     for (const auto& [of, name] : kFor)
         if (of == preparation) return name;

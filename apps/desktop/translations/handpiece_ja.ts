@@ -10066,7 +10066,7 @@ lingual: %4</source>
         <translation>開始時の視点 [mm]</translation>
     </message>
     <message>
-        <source>Work ends with them</source>
+        <source>Work ends when it is up</source>
         <translation>時間になったら作業を終える</translation>
     </message>
     <message>

@@ -422,7 +422,7 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     minutes_->setDecimals(1);
     minutes_->setValue(30);
     minutes_->setSuffix(tr(" min"));
-    hard_ = named(new QCheckBox(tr("Work ends with them"), this), "editorHardLimit", tr("Work ends with them"),
+    hard_ = named(new QCheckBox(tr("Work ends when it is up"), this), "editorHardLimit", tr("Work ends when it is up"),
                   tr("The pedal is dead then; else students are told once, and go on"));
     level_ = named(new QComboBox(this), "editorLevel", tr("Level"));
     level_->addItem(tr("Not said"), QString());

@@ -13,6 +13,7 @@
 #include "handpiece/app/course/finished_work.h"
 #include "handpiece/app/course/shipped_exercises.h"
 #include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/app/simulation/tissue_export.h"
 #include "handpiece/assess/rubric/rubric.h"
 #include "handpiece/assess/task/task.h"
 #include "handpiece/base/core/error.h"
@@ -33,7 +34,7 @@ using Json = nlohmann::ordered_json;
 struct ExerciseOptions {
     std::string exercise, student, words;
     double expected = -1.0;  // not said
-    std::string path, out, caseFile, preparation, side, rubric, id, title, instructions, bur;
+    std::string path, out, caseFile, preparation, side, rubric, id, title, instructions, bur, fromWork, painted;
     std::vector<std::string> set;  // NAME=NUMBER
     bool noRubric = false;
     double voxelUm = 50.0, sideMm = 0.2, floorMm = 0.2, minutes = 0.0;
@@ -51,7 +52,7 @@ std::string listed(const std::vector<std::string>& names) {
 std::vector<std::string> preparationNames(bool ofBlocks) {
     std::vector<std::string> names;
     for (const preparation::Template& t : preparation::templates())
-        if (t.isBlock == ofBlocks) names.emplace_back(ofBlocks ? t.id.substr(6) : t.id);
+        if (t.isBlock == ofBlocks && !t.isOwn) names.emplace_back(ofBlocks ? t.id.substr(6) : t.id);
     return names;
 }
 
@@ -63,7 +64,7 @@ std::string text(const std::string& file) {
 /// By name or as a file; without one that which is made for the preparation.
 std::string rubricOf(const ExerciseOptions& o, const preparation::Recipe& recipe) {
     if (o.noRubric) return {};
-    if (o.rubric.empty()) return rubric::shippedTextFor(recipe.preparation, recipe.side);
+    if (o.rubric.empty()) return rubric::shippedTextFor(recipe.kind(), recipe.side);
     const std::vector<std::string> shipped = rubric::shippedRubrics();
     const bool isName = std::find(shipped.begin(), shipped.end(), o.rubric) != shipped.end();
     std::string given = isName ? std::string(rubric::shippedRubricText(o.rubric)) : text(o.rubric);
@@ -71,10 +72,12 @@ std::string rubricOf(const ExerciseOptions& o, const preparation::Recipe& recipe
     return given;
 }
 
-/// As [preparation] of a file would have it, so that it is checked by the same rules.
-preparation::Recipe recipeOf(const ExerciseOptions& o, const std::string& id) {
+/// As [preparation] of a file would have it, so that it is checked by the same rules. `own`: lines of a target of
+/// one's own.
+preparation::Recipe recipeOf(const ExerciseOptions& o, std::string_view id, const std::string& own = {}) {
     std::string toml = fmt::format("[preparation]\ntemplate = \"{}\"\nleeway_side_mm = {}\nleeway_floor_mm = {}\n", id,
                                    o.sideMm, o.floorMm);
+    toml += own;
     if (!o.side.empty()) toml += fmt::format("side = \"{}\"\n", o.side);
     for (const std::string& pair : o.set) {
         const std::size_t equals = pair.find('=');
@@ -180,18 +183,65 @@ void write(const tasks::Task& task, const std::string& out) {
                tasks::contentHash(task));
 }
 
+/// What somebody cut as the target of others. The case and the voxel are the work's own.
+preparation::Recipe recordedRecipe(const ExerciseOptions& o, tasks::Task& task) {
+    const fs::path path(o.fromWork);
+    std::error_code ec;
+    if (path.extension() != ".h5" && !fs::exists(path, ec))
+        throw core::Error("there is no such work", path.string(), "name a session (.h5) or an attempt");
+    studies::ProgressBar bar("reading the work");
+    const std::optional<simulation::CutTeeth> work = simulation::readCutTeeth(path, {}, true, bar.listener());
+    bar.finish();
+    if (!work)
+        throw core::Error("this is neither a session nor an attempt", path.string(),
+                          "name session.h5, an attempt's folder or a .handpiece file");
+    if (!o.caseFile.empty() && cases::caseKey(cases::readCase(o.caseFile)) != cases::caseKey(work->toothCase))
+        throw core::Error("this is work on another tooth than the case's", path.string(),
+                          fmt::format("leave --case out: the work is of {}", work->toothCase.name));
+    if (o.caseFile.empty()) task.toothCase = work->toothCase;
+    task.voxelMm = work->teeth.front()->field.settings().voxelMm;
+    tooth::ToothMirror cut(work->teeth.front());
+    cut.apply(work->state);
+    auto recorded =
+        std::make_shared<const preparation::RecordedWork>(preparation::recordWork(cut, work->toothCase.buccalSign));
+    preparation::Recipe recipe =
+        recipeOf(o, preparation::kRecordedTemplate,
+                 fmt::format("zones_hash = \"{:016x}\"\n{}", recorded->hash(),
+                             o.preparation.empty() ? "" : fmt::format("like = \"{}\"\n", o.preparation)));
+    recipe.recorded = std::move(recorded);
+    return recipe;
+}
+
+preparation::Recipe paintedRecipe(const ExerciseOptions& o) {
+    std::string toml = o.preparation.empty() ? "" : fmt::format("like = \"{}\"\n", o.preparation);
+    const config::Table strokes = config::Table::read(o.painted);
+    strokes.allowOnly({"stroke", "depth_mm"});
+    if (const auto depth = strokes.number("depth_mm")) toml += fmt::format("depth_mm = {}\n", *depth);
+    return recipeOf(o, preparation::kPaintedTemplate,
+                    toml + preparation::strokesToml(preparation::readStrokes(strokes), "preparation"));
+}
+
 void makeNew(const ExerciseOptions& o) {
     tasks::Task task;
     task.id = o.id;
-    task.toothCase = cases::readCase(o.caseFile);
+    if (o.fromWork.empty() && o.caseFile.empty())
+        throw core::Error("no tooth is named", "--case", "name a case, or work with --from-work");
+    if (o.preparation.empty() && o.fromWork.empty() && o.painted.empty())
+        throw core::Error("nothing says what is to be cut", "--preparation",
+                          "name a preparation, work with --from-work, or strokes with --painted");
+    if (!o.fromWork.empty() && !o.painted.empty())
+        throw core::Error("a target is recorded or painted, not both", "--painted", "leave one of them out");
+    if (!o.caseFile.empty()) task.toothCase = cases::readCase(o.caseFile);
+    task.voxelMm = 1e-3 * o.voxelUm;
+    task.preparation = !o.fromWork.empty()  ? recordedRecipe(o, task)
+                       : !o.painted.empty() ? paintedRecipe(o)
+                                            : recipeOf(o, o.preparation);
     cases::Exercise exercise = task.toothCase.exercise.value_or(cases::Exercise{});
     if (!o.title.empty()) exercise.title["en"] = o.title;
     if (!o.instructions.empty()) exercise.instructions["en"] = o.instructions;
     if (!o.bur.empty()) exercise.bur = o.bur;
     task.toothCase.exercise = exercise;
-    task.voxelMm = 1e-3 * o.voxelUm;
     if (o.minutes > 0.0) task.minutes = o.minutes;
-    task.preparation = recipeOf(o, o.preparation);
     task.rubric = rubricOf(o, *task.preparation);
     write(task, o.out);
 }
@@ -310,10 +360,14 @@ void addExerciseCommand(Command& app) {
     listing.callback([options] { list(*options); });
 
     Command make = exercise.subcommand("new", "An exercise of a case and a preparation laid onto its tooth");
-    make.option("--case", o.caseFile, "the case, with its landmarks").required();
-    make.option("--preparation", o.preparation, "one of: " + listed(preparationNames(false)))
-        .required()
+    make.option("--case", o.caseFile, "the case, with its landmarks; of work it is the work's own");
+    make.option("--preparation", o.preparation,
+                "one of: " + listed(preparationNames(false)) +
+                    "; with --from-work or --painted: what it is like, which says how it is measured and judged")
         .check(oneOf(preparationNames(false)));
+    make.option("--from-work", o.fromWork,
+                "a session or an attempt: what was cut in it is the target, in the voxel it was cut in");
+    make.option("--painted", o.painted, "a file of strokes: what they paint is the target");
     make.option("--side", o.side, "mesial or distal, where the preparation has a side");
     make.option("--set", o.set, "NAME=NUMBER: a size of the preparation, such as depth_mm=1.8; several times")
         .takeAll();

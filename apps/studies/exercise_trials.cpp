@@ -166,15 +166,18 @@ std::vector<Spec> specs() {
          "round-2",
          true});
     all.push_back({"46-class-ii-mo", {nicked("mesial"), intoPulp()}});
+    // Thinner than the 330, which does not reach the corner between axial wall and adjacent tooth.
     all.push_back({"11-class-iii",
-                   {nicked("mesial"), intoPulp(), {"perforated labially", "labial-perforation", [](const Ready& r) {
-                                                       const Vec3 middle = r.laid.zones->box().centre();
-                                                       const geometry::RayMeeting out = r.laid.whole->firstMeeting(
-                                                           middle + 20.0 * r.buccal(), -r.buccal());
-                                                       return withPlunge(r.well,
-                                                                         middle + (20.0 - out.distanceMm) * r.buccal(),
-                                                                         r.laid.draw, 0.3);
-                                                   }}}});
+                   {nicked("mesial"),
+                    intoPulp(),
+                    {"perforated labially", "labial-perforation",
+                     [](const Ready& r) {
+                         const Vec3 middle = r.laid.zones->box().centre();
+                         const geometry::RayMeeting out =
+                             r.laid.whole->firstMeeting(middle + 20.0 * r.buccal(), -r.buccal());
+                         return withPlunge(r.well, middle + (20.0 - out.distanceMm) * r.buccal(), r.laid.draw, 0.3);
+                     }}},
+                   "cylinder-flat:0.6x4.0"});
     all.push_back({"33-class-v", {intoPulp()}});
     // A slim bur: 856-012 is wider than the chamfer's way between the teeth.
     all.push_back({"46-crown",

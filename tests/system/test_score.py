@@ -10,18 +10,31 @@ import re
 import shutil
 import signal
 import subprocess
+import tempfile
 import unittest
 
-from support import HANDPIECE, SystemTest, rows_of
+from support import HANDPIECE, SystemTest, rows_of, run
 
 RUBRICS = pathlib.Path(__file__).resolve().parents[2] / "data" / "rubrics"
 
 
+# A class I cavity in a third of its usual time.
+CUT = ("--bur", "330", "--motion", "class-one", "--speed", 6, "--voxel", 100)
+
+
 class Score(SystemTest):
-    def setUp(self):
-        super().setUp()
-        self.tooth = self.folder / "molar"
-        self.ok("make", "tooth", "--fdi", 46, "--seed", 1, "--faces", 6000, "--out", self.tooth)
+    @classmethod
+    def setUpClass(cls):
+        """One tooth and one cavity for all tests."""
+        folder = tempfile.mkdtemp(prefix="handpiece-system-")
+        cls.addClassCleanup(shutil.rmtree, folder, ignore_errors=True)
+        os.environ["XDG_CACHE_HOME"] = folder
+        cls.tooth, cls.cut = pathlib.Path(folder) / "molar", pathlib.Path(folder) / "cut"
+        for command in (("make", "tooth", "--fdi", 46, "--seed", 1, "--faces", 6000, "--out", cls.tooth),
+                        ("run", "--case", cls.tooth, *CUT, "--out", cls.cut)):
+            made = run(*command)
+            if made.returncode != 0:
+                raise AssertionError(made.stderr)
 
     def exercise(self, name, *arguments, voxel_um=100):
         path = self.folder / name
@@ -52,10 +65,8 @@ class Score(SystemTest):
 
     def test_session_and_attempt_agree_and_what_does_not_fit_is_refused(self):
         exercise = self.exercise("one", "--rubric", RUBRICS / "46-class-i.toml")
-        self.ok("run", "--case", exercise / "case", "--bur", "330", "--motion", "class-one", "--voxel", 100,
-                "--out", self.folder / "cut")
-        session = self.score(self.folder / "cut" / "session.h5", exercise, "--out", self.folder / "result")
-        attempt = self.score(self.folder / "cut" / "attempt", exercise)
+        session = self.score(self.cut / "session.h5", exercise, "--out", self.folder / "result")
+        attempt = self.score(self.cut / "attempt", exercise)
         self.assertTrue(session["proven"])
         self.assertEqual(len(session["session_hash"]), 1)
         self.assertEqual(session, json.loads((self.folder / "result" / "result.json").read_text()))
@@ -71,7 +82,7 @@ class Score(SystemTest):
             self.assertIsNone(none["value"])
             self.assertEqual(none["standing"], "not-measured")
             self.assertIn("no samples", none["reason"])
-        rows = self.samples(self.folder / "cut" / "session.h5")
+        rows = self.samples(self.cut / "session.h5")
         had = {c["id"]: c for c in session["criteria"]}
         self.assertAlmostEqual(had["time"]["value"], float(rows[-1]["t_s"]) + 1e-3, delta=had["time"]["uncertainty"] + 1e-6)
         # Where the floor is deepest the bur was, cutting, at the time that is told.
@@ -80,17 +91,17 @@ class Score(SystemTest):
         self.assertEqual(deepest["session"], 0)
         self.assertGreaterEqual(int(at["flags"]) & 32, 32)
         self.assertLess(math.dist([float(at[c]) for c in ("x_mm", "y_mm", "z_mm")], deepest["xyz_mm"]), 2.0)
-        self.assertFalse(self.score(self.folder / "cut" / "session.h5", exercise, "--no-replay")["proven"])
+        self.assertFalse(self.score(self.cut / "session.h5", exercise, "--no-replay")["proven"])
 
         finer = self.exercise("finer", "--rubric", RUBRICS / "46-class-i.toml", voxel_um=90)
-        self.refused("score", self.folder / "cut" / "session.h5", "--exercise", finer, mentions=("voxel", "100"))
+        self.refused("score", self.cut / "session.h5", "--exercise", finer, mentions=("voxel", "100"))
         other = self.folder / "block"
         self.ok("make", "block", "--kind", "line", "--rubric", RUBRICS / "dexterity-line.toml", "--out", other)
-        self.refused("score", self.folder / "cut" / "attempt", "--exercise", other, mentions=("another tooth",))
+        self.refused("score", self.cut / "attempt", "--exercise", other, mentions=("another tooth",))
         self.refused("score", self.tooth, "--exercise", exercise, mentions=("neither a session nor an attempt",))
         bare = self.exercise("bare", "--no-rubric")
-        self.refused("score", self.folder / "cut" / "attempt", "--exercise", bare, mentions=("no rubric", "--rubric"))
-        self.assertGreater(self.score(self.folder / "cut" / "attempt", bare, "--rubric", "46-class-i")["score"], 0)
+        self.refused("score", self.cut / "attempt", "--exercise", bare, mentions=("no rubric", "--rubric"))
+        self.assertGreater(self.score(self.cut / "attempt", bare, "--rubric", "46-class-i")["score"], 0)
 
     def test_random_works_score_alike_from_session_attempt_and_store_on_any_machine(self):
         seed = int(os.environ.get("HANDPIECE_TEST_SEED", 20261126))
@@ -141,10 +152,8 @@ class Score(SystemTest):
 
     def test_a_chain_of_sessions_and_a_class_under_another_rubric(self):
         exercise = self.exercise("one", "--rubric", RUBRICS / "46-class-i.toml")
-        run = ("--bur", "330", "--motion", "class-one", "--voxel", 100)
-        self.ok("run", "--case", exercise / "case", *run, "--out", self.folder / "first")
-        self.ok("run", "--case", self.folder / "first" / "attempt", *run, "--out", self.folder / "second")
-        first, second = (self.folder / name / "session.h5" for name in ("first", "second"))
+        self.ok("run", "--case", self.cut / "attempt", *CUT, "--out", self.folder / "second")
+        first, second = self.cut / "session.h5", self.folder / "second" / "session.h5"
         work = self.folder / "class"
         work.mkdir()
         (work / "both").mkdir()
@@ -173,7 +182,8 @@ class Score(SystemTest):
 
         # A class: a session, a chain, an attempt, a damaged session, things that are no work.
         shutil.copy(first, work / "anna.h5")
-        shutil.copytree(self.folder / "first" / "attempt", work / "cleo")
+        shutil.copytree(self.cut / "attempt", work / "cleo")  # which names its tooth by the way there
+        shutil.copytree(self.tooth, self.folder / "molar")
         (work / "dan.h5").write_bytes(first.read_bytes()[:30000])
         (work / "notes.txt").write_text("x")
         rescore = ("rescore", work, "--exercise", exercise, "--rubric", "46-class-i", "--out")
@@ -252,10 +262,8 @@ class Score(SystemTest):
 
     def test_a_scan_of_the_cut_tooth(self):
         exercise = self.exercise("one", "--rubric", RUBRICS / "46-class-i.toml")
-        self.ok("run", "--case", exercise / "case", "--bur", "330", "--motion", "class-one", "--voxel", 100,
-                "--out", self.folder / "cut")
-        virtual = self.score(self.folder / "cut" / "attempt", exercise)
-        scan = self.score(self.folder / "cut" / "cut.stl", exercise)
+        virtual = self.score(self.cut / "attempt", exercise)
+        scan = self.score(self.cut / "cut.stl", exercise)
         self.assertEqual((scan["device"], scan["proven"]), ("scan", False))
         self.assertLess(scan["scan"]["rms_mm"], 0.01)
         for one, other in zip(virtual["criteria"], scan["criteria"]):
@@ -264,7 +272,7 @@ class Score(SystemTest):
             else:
                 self.assertAlmostEqual(one["value"], other["value"], delta=one["uncertainty"] + other["uncertainty"], msg=one["id"])
         self.refused("score", self.tooth / "pulp.stl", "--exercise", exercise, mentions=("pulp.stl",))
-        self.refused("score", self.folder / "cut" / "cut.stl", "--exercise", exercise, "--unit", "m", mentions=("--unit",))
+        self.refused("score", self.cut / "cut.stl", "--exercise", exercise, "--unit", "m", mentions=("--unit",))
 
 
 if __name__ == "__main__":

@@ -9189,6 +9189,14 @@ lingual: %4</source>
         <translation>う蝕除去</translation>
     </message>
     <message>
+        <source>As painted</source>
+        <translation>塗った範囲のとおり</translation>
+    </message>
+    <message>
+        <source>As in recorded work</source>
+        <translation>記録した形成のとおり</translation>
+    </message>
+    <message>
         <source>Depth</source>
         <translation>深さ</translation>
     </message>

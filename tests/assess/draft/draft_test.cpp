@@ -72,8 +72,34 @@ TEST(Draft, ATemplateBringsItsRubricUntilThatIsChanged) {
     EXPECT_EQ(content.rubric->id, "dexterity-line");
     EXPECT_EQ(content.preparation->preparation, "block-cross");
     for (const preparation::Template& t : preparation::templates())
-        EXPECT_TRUE(withTemplate(Content{}, t.id).rubric) << t.id;
+        EXPECT_EQ(withTemplate(Content{}, t.id).rubric.has_value(), !t.isOwn) << t.id;
     EXPECT_FALSE(withTemplate(block(), "").preparation);
+}
+
+TEST(Draft, PaintIsStrokesThatAreStepsBack) {
+    Draft draft;
+    draft.begin(block());
+    const core::Vec3 on(0.0, 0.0, block().tooth->outer.bounds().max.z());
+    const auto paint = [&](const core::Vec3& from, bool erases) {
+        draft.endStep();
+        draft.change(beginStroke(draft.now(), from, 0.5, erases), "stroke");
+        for (int i = 1; i <= 20; ++i)
+            draft.change(extendStroke(draft.now(), from + core::Vec3(0.05 * i, 0.0, 0.0)), "stroke");
+    };
+    paint(on, false);
+    ASSERT_EQ(draft.now().preparation->strokes.size(), 1u);
+    EXPECT_EQ(draft.now().preparation->preparation, preparation::kPaintedTemplate);
+    EXPECT_EQ(draft.now().preparation->strokes[0].pointsMm.size(), 7u) << "a place every 0.15 mm of the way";
+    EXPECT_TRUE(problemsOnTooth(draft.now()).empty());
+    paint(on, true);
+    EXPECT_TRUE(draft.now().preparation->strokes[1].erases);
+    const std::vector<Problem> gone = problemsOnTooth(draft.now());
+    ASSERT_EQ(gone.size(), 1u);
+    EXPECT_NE(gone.front().what.find("nothing is painted"), std::string::npos) << gone.front().what;
+    draft.undo();
+    EXPECT_EQ(draft.now().preparation->strokes.size(), 1u);
+    draft.undo();
+    EXPECT_NE(draft.now().preparation->preparation, preparation::kPaintedTemplate);
 }
 
 TEST(Draft, TheOtherSideHasTheRubricOfTheOtherSide) {

@@ -314,6 +314,22 @@ TEST_F(Block, orificesInAStraightLineAndAGougedChamber) {
             {whole(q), box(Vec3(0, 0.5, -1.7), Vec3(0.4, 0.75, 0.3))(q), box(Vec3(0, 0, 0), Vec3(2.4, 1.9, 0.9))(q)});
     };
     EXPECT_NEAR(*ask(wall, "gouge-depth").value, 0.25, 0.05);
+    // What the task asks for is none, and where more was asked it counts from there: 0.05 mm less here.
+    for (const double asked : {0.25, 0.2}) {
+        const Shape target = [&](const Vec3& q) {
+            return std::min(whole(q), box(Vec3(0, 0.5, -1.7), Vec3(0.4, 0.5 + asked, 0.3))(q));
+        };
+        const zones::Zones wide(
+            [&](const Vec3& q) {
+                return zones::PastTarget{target(body.inGrid.applyInverse(q)), -zones::kFarMm};
+            },
+            body.model->tree.bounds(), {});
+        const auto cut = test::carved(body, wall);
+        Preparation p = preparation(body, *cut);
+        p.landmarks = marks;
+        p.zones = &wide;
+        EXPECT_NEAR(*take(p, "gouge-depth").value, 0.25 - asked, 0.03);
+    }
     // What cannot be said has no value.
     EXPECT_NE(ask(box(Vec3(0, 0, 0), Vec3(1, 1, 0.8)), "gouge-depth").reason.find("roof"), std::string::npos);
     marks.clear();

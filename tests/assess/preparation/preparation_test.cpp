@@ -242,6 +242,8 @@ TEST(Preparation, RecipesComeBackFromText) {
         }
         recipe.leeway = {0.15, 0.35};
         recipe.pulpMm = 0.5;
+        if (t.id == kPaintedTemplate) recipe.strokes = {{{Vec3(0.0, 0.5, 6.0)}, 0.7, false}};
+        if (t.isOwn) recipe.draw = Vec3::UnitY(), recipe.like = "class-five";
         const config::Table root = config::Table::parse(recipeToml(recipe), "recipe");
         EXPECT_EQ(readRecipe(*root.table("preparation")), recipe) << t.id;
     }

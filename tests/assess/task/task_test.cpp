@@ -83,6 +83,45 @@ TEST_F(TaskFile, EveryVoxelComesBackBitForBit) {
     }
 }
 
+TEST_F(TaskFile, RecordedWorkComesAlongAndIsHeldToItsHash) {
+    Task task = block();
+    // A dent in the block's top, as its three faces.
+    const double top = task.toothCase.outer.bounds().max.z();
+    preparation::RecordedWork work;
+    work.surface.vertices = {{-1.0, -1.0, top}, {1.0, -1.0, top}, {0.0, 1.0, top}, {0.0, 0.0, top - 1.0}};
+    work.surface.triangles = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    work.cutTriangles = 3;
+    work.voxelMm = task.voxelMm;
+    const auto record = [&] {
+        task.preparation = preparation::Recipe{};
+        task.preparation->preparation = preparation::kRecordedTemplate;
+        task.preparation->recorded = std::make_shared<const preparation::RecordedWork>(work);
+        task.preparation->recordedHash = work.hash();
+    };
+    record();
+    const std::uint64_t hash = contentHash(task);
+    EXPECT_TRUE(problems(task).empty());
+    for (const char* name : {"recorded", "recorded.handpiece"}) {
+        writeTask(task, folder_ / name);
+        const Task back = readTask(folder_ / name);
+        EXPECT_EQ(contentHash(back), hash);
+        EXPECT_EQ(back.preparation->recorded->surface.vertices, work.surface.vertices);
+        EXPECT_TRUE(problems(back).empty());
+    }
+    // Other work is another exercise.
+    work.surface.vertices[3].z() -= 0.5;
+    record();
+    EXPECT_NE(contentHash(task), hash);
+    writeTask(task, folder_ / "other");
+    fs::copy_file(folder_ / "other" / kZonesFile, folder_ / "recorded" / kZonesFile,
+                  fs::copy_options::overwrite_existing);
+    EXPECT_NE(test::errorOf([&] { (void)readTask(folder_ / "recorded"); }).find("not those"), std::string::npos);
+    std::ofstream(folder_ / "recorded" / kZonesFile) << "HPZONES";
+    EXPECT_NE(test::errorOf([&] { (void)readTask(folder_ / "recorded"); }).find(kZonesFile), std::string::npos);
+    fs::remove(folder_ / "recorded" / kZonesFile);
+    EXPECT_NE(test::errorOf([&] { (void)readTask(folder_ / "recorded"); }).find("has no zones.bin"), std::string::npos);
+}
+
 TEST_F(TaskFile, HashRestsOnWhatIsAskedAndNotOnWords) {
     const Task task = block();
     Task words = task, deeper = task, finer = task, other = task;

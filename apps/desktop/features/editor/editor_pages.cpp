@@ -139,7 +139,7 @@ PreparationPage::PreparationPage(Change change) : EditorPage(std::move(change)) 
     template_ = named(new QComboBox(this), "editorTemplate", tr("Preparation"));
     template_->addItem(tr("Nothing is asked"), QString());
     for (const preparation::Template& t : preparation::templates())
-        template_->addItem(templateWords(t.id), plain(t.id));
+        if (!t.isOwn) template_->addItem(templateWords(t.id), plain(t.id));
     form_->addRow(tr("Preparation"), template_);
     connect(template_, &QComboBox::activated, this, [this] {
         const std::string id = template_->currentData().toString().toStdString();
@@ -370,6 +370,9 @@ void PreparationPage::show(const Content& content) {
     const preparation::Recipe* recipe = content.preparation ? &*content.preparation : nullptr;
     const std::string id = recipe ? recipe->preparation : std::string();
     const preparation::Template* of = preparation::findTemplate(id);
+    // Work and paint are no numbers: only an exercise that has them can keep them.
+    if (of != nullptr && of->isOwn && template_->findData(QString::fromStdString(id)) < 0)
+        template_->addItem(templateWords(of->id), plain(of->id));
     template_->setCurrentIndex(std::max(0, template_->findData(QString::fromStdString(id))));
     const bool hasSide = of != nullptr && of->hasSide;
     side_->setVisible(hasSide);

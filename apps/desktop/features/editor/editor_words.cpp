@@ -25,6 +25,8 @@ constexpr std::pair<std::string_view, const char*> kTemplates[] = {
     {"class-two", QT_TRANSLATE_NOOP("Preparation", "Class II cavity")},
     {"crown", QT_TRANSLATE_NOOP("Preparation", "Full crown")},
     {"lesion", QT_TRANSLATE_NOOP("Preparation", "Removal of carious tissue")},
+    {"painted", QT_TRANSLATE_NOOP("Preparation", "As painted")},
+    {"recorded-work", QT_TRANSLATE_NOOP("Preparation", "As in recorded work")},
 };
 constexpr std::pair<std::string_view, const char*> kParameters[] = {
     {"depth_mm", QT_TRANSLATE_NOOP("Preparation", "Depth")},

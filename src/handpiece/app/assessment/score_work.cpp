@@ -362,7 +362,7 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
     if (task.preparation) {
         laid = preparation::layOn(toothCase, *task.preparation);
         preparation.axes.draw = laid->draw;
-        if (task.preparation->preparation == "crown") preparation.form = measures::Form::crown;
+        if (task.preparation->kind() == "crown") preparation.form = measures::Form::crown;
         preparation.zones = laid->zones.get();
     }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kRubricHere = "the rubric";
 
 std::string proposedText(const std::optional<preparation::Recipe>& recipe) {
-    return recipe ? rubric::shippedTextFor(recipe->preparation, recipe->side) : std::string();
+    return recipe ? rubric::shippedTextFor(recipe->kind(), recipe->side) : std::string();
 }
 
 void propose(Content& content) {
@@ -101,6 +101,20 @@ Content withSide(Content content, std::string_view side) {
     const bool follows = content.rubric && hasProposedRubric(content);
     content.preparation->side = side;
     if (follows) propose(content);
+    return content;
+}
+
+Content beginStroke(Content content, const core::Vec3& onSurfaceMm, double radiusMm, bool erases) {
+    if (!content.preparation || content.preparation->preparation != preparation::kPaintedTemplate)
+        content = withTemplate(std::move(content), preparation::kPaintedTemplate);
+    content.preparation->strokes.push_back({{onSurfaceMm}, radiusMm, erases});
+    return content;
+}
+
+Content extendStroke(Content content, const core::Vec3& onSurfaceMm) {
+    if (!content.preparation || content.preparation->strokes.empty()) return content;
+    preparation::BrushStroke& stroke = content.preparation->strokes.back();
+    if ((onSurfaceMm - stroke.pointsMm.back()).norm() >= 0.25 * stroke.radiusMm) stroke.pointsMm.push_back(onSurfaceMm);
     return content;
 }
 

@@ -44,6 +44,11 @@ struct Content {
 [[nodiscard]] Content withTemplate(Content content, std::string_view id);
 /// The other proximal side; the rubric that came along follows.
 [[nodiscard]] Content withSide(Content content, std::string_view side);
+/// A stroke of the brush over the tooth's surface begins at a place of it [tooth frame]; another preparation than a
+/// painting becomes one. A whole stroke is one step back: Draft::change() by the same name.
+[[nodiscard]] Content beginStroke(Content content, const core::Vec3& onSurfaceMm, double radiusMm, bool erases);
+/// The last stroke goes on to there; no place is kept that lies nearer than a quarter of the brush to the last.
+[[nodiscard]] Content extendStroke(Content content, const core::Vec3& onSurfaceMm);
 /// True while the rubric is that which comes along for the preparation, or there is none.
 [[nodiscard]] bool hasProposedRubric(const Content& content);
 

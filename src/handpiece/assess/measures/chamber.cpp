@@ -138,7 +138,9 @@ Taken takeGougeDepth(CutTooth& tooth, const Selection&) {
     Taken deepest;
     for (const SurfacePoint& point : tooth.cutPoints()) {
         if (!(up.dot(point.p) < roof)) continue;
-        const double deep = probe.leftOverPulpMm(point.p).value_or(0.0);
+        double deep = probe.leftOverPulpMm(point.p).value_or(0.0);
+        // Straight walls go wider than a chamber that bulges: what the task asks for is no gouge.
+        if (p.zones != nullptr) deep = std::min(deep, std::max(0.0, p.zones->targetMm(point.p)));
         if (deepest.value && deep <= *deepest.value) continue;
         deepest = at(deep, point.p, "cut into floor or walls of the chamber");
     }

@@ -51,6 +51,13 @@ class Site {
             target = lesion(box);
         } else if (id == "crown") {
             target = crown(box);
+        } else if (id == kRecordedTemplate) {
+            target = recorded(box, laid.draw);
+        } else if (id == kPaintedTemplate) {
+            Painting painting =
+                paintedTarget(recipe_.strokes, number("depth_mm"), recipe_.leeway, tooth_.surface(), tree_);
+            target = std::move(painting.target), box = painting.box;
+            laid.draw = recipe_.draw.value_or(painting.draw);
         } else {
             if (id.starts_with("block-"))
                 block();
@@ -94,6 +101,13 @@ class Site {
         return tooth.surface();
     }
     [[nodiscard]] double number(std::string_view name) const { return recipe_.number(name); }
+    /// Of a template that recorded work or a painting is like: as usual.
+    [[nodiscard]] double numberOfKind(std::string_view name) const {
+        if (recipe_.like.empty()) return number(name);
+        Recipe usual;
+        usual.preparation = recipe_.like;
+        return usual.number(name);
+    }
 
     [[nodiscard]] std::vector<const cases::Landmark*> marks(LandmarkKind kind) const {
         std::vector<const cases::Landmark*> found;
@@ -409,6 +423,15 @@ class Site {
         };
     }
 
+    zones::TargetFunction recorded(core::Box& box, Vec3& draw) {
+        if (!recipe_.recorded || recipe_.recorded->hash() != recipe_.recordedHash)
+            fail("the work that was recorded is not there, or is another", "name the exercise's own folder or file",
+                 "lay-no-recorded");
+        box = recipe_.recorded->surface.bounds();
+        draw = recipe_.draw.value_or(recipe_.recorded->draw);
+        return recordedTarget(*recipe_.recorded, draw, recipe_.leeway, tree_);
+    }
+
     zones::TargetFunction lesion(core::Box& box) {
         std::vector<std::shared_ptr<geometry::TriangleTree>> carious;
         for (const cases::Part& part : tooth_.parts)
@@ -446,11 +469,11 @@ class Site {
     /// What must stay: the pulp and what lies round it. Of an access, that takes the pulp: what keeps root and
     /// furcation whole. Of a class III from palatal the labial surface too.
     [[nodiscard]] geometry::ScalarFunction guarded() const {
-        if (recipe_.preparation == "access") return rootShell();
+        if (recipe_.kind() == "access") return rootShell();
         auto pulp = pulpMm();
         geometry::ScalarFunction kept;
         if (pulp) kept = [pulp, round = recipe_.pulpMm](const Vec3& p) { return pulp(p) - round; };
-        if (recipe_.preparation != "class-three") return kept;
+        if (recipe_.kind() != "class-three") return kept;
         return
             [kept, labial = labialShell()](const Vec3& p) { return kept ? std::min(kept(p), labial(p)) : labial(p); };
     }
@@ -460,14 +483,14 @@ class Site {
         const auto junction = need(LandmarkKind::cementoEnamelJunction).front();
         for (const Vec3& p : junction->pointsMm)
             cervixMm += p.z() / static_cast<double>(junction->pointsMm.size());
-        return [tree = tree_, cervixMm, thick = number("shell_mm")](const Vec3& p) {
+        return [tree = tree_, cervixMm, thick = numberOfKind("shell_mm")](const Vec3& p) {
             return std::max(-tree->signedDistance(p) - thick, p.z() - cervixMm);
         };
     }
     /// All that lies within `labial_mm` of a surface that faces labially, along that way.
     [[nodiscard]] geometry::ScalarFunction labialShell() const {
         const Vec3 way(0.0, buccal(), 0.0);
-        return [tree = tree_, way, thick = number("labial_mm")](const Vec3& p) {
+        return [tree = tree_, way, thick = numberOfKind("labial_mm")](const Vec3& p) {
             const double depthMm = -tree->signedDistance(p);
             if (depthMm > thick) return depthMm - thick;  // no less far along any way
             constexpr double kBackMm = 0.2;               // nodes just outside stand for tooth too

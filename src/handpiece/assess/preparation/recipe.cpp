@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 #include "handpiece/assess/preparation/preparation.h"
 #include "handpiece/base/core/error.h"
@@ -46,6 +47,7 @@ constexpr std::array kAccess{
     Parameter{"shell_mm", 0.5, 0.0, 2.0, "under the surface of root and furcation that must stay"}};
 constexpr std::array kLesion{
     Parameter{"over_pulp_mm", 0.5, 0.0, 3.0, "carious tissue nearer to the pulp than this is not asked for"}};
+constexpr std::array kPainted{Parameter{"depth_mm", 1.0, 0.1, 6.0, "under what is painted, the shortest way"}};
 constexpr std::array kStroke{Parameter{"depth_mm", 1.5, 0.2, 6.0, "under the block's top"},
                              Parameter{"width_mm", 1.2, 0.4, 6.0, "of the groove"},
                              Parameter{"length_mm", 8.0, 1.0, 14.0, "of the groove, or across the figure"}};
@@ -72,7 +74,9 @@ constexpr std::array kTemplates{
     Template{"class-three", "proximal of a front tooth, from the palatal or lingual side", kClassThree, true},
     Template{"class-two", "occlusal with a proximal box", kClassTwo, true},
     Template{"crown", "full crown with a margin all round", kCrown},
-    Template{"lesion", "all carious tissue, short of the pulp", kLesion}};
+    Template{"lesion", "all carious tissue, short of the pulp", kLesion},
+    Template{kPaintedTemplate, "what is painted on the tooth", kPainted, false, false, true},
+    Template{kRecordedTemplate, "what somebody took away", {}, false, false, true}};
 
 const Parameter* parameterOf(const Template& t, std::string_view name) {
     const auto at =
@@ -102,7 +106,8 @@ double Recipe::number(std::string_view name) const {
 
 bool operator==(const Recipe& a, const Recipe& b) {
     return a.preparation == b.preparation && a.side == b.side && a.numbers == b.numbers &&
-           a.leeway.sideMm == b.leeway.sideMm && a.leeway.floorMm == b.leeway.floorMm && a.pulpMm == b.pulpMm;
+           a.leeway.sideMm == b.leeway.sideMm && a.leeway.floorMm == b.leeway.floorMm && a.pulpMm == b.pulpMm &&
+           a.like == b.like && a.draw == b.draw && a.recordedHash == b.recordedHash && a.strokes == b.strokes;
 }
 
 Recipe readRecipe(const config::Table& table) {
@@ -116,6 +121,15 @@ Recipe readRecipe(const config::Table& table) {
         table.fail(id ? fmt::format("there is no preparation \"{}\"", *id) : "the preparation has no template",
                    fmt::format("one of {}", fmt::join(ids, ", ")), id ? "template" : "");
     recipe.preparation = *id;
+    if (t->isOwn && table.has("like")) {
+        recipe.like = *table.text("like");
+        const Template* like = findTemplate(recipe.like);
+        if (like == nullptr || like->isOwn || like->isBlock)
+            table.fail(fmt::format("there is no preparation \"{}\" to be like", recipe.like),
+                       "name one of a tooth, as in like = \"class-one\"", "like");
+    }
+    const Template* kind = findTemplate(recipe.kind());
+    const bool hasSide = kind->hasSide;
     const auto within = [&](std::string_view key, double least, double most) {
         const double value = *table.number(key);
         if (!(value >= least && value <= most))
@@ -126,15 +140,31 @@ Recipe readRecipe(const config::Table& table) {
         if (key == "template") continue;
         if (key == "side") {
             recipe.side = table.text("side").value_or("");
-            if (!t->hasSide || (recipe.side != "mesial" && recipe.side != "distal"))
+            if (!hasSide || (recipe.side != "mesial" && recipe.side != "distal"))
                 table.fail(fmt::format("\"{}\" is no side of this preparation", recipe.side),
-                           t->hasSide ? "mesial or distal" : "take it out: this template has none", "side");
+                           hasSide ? "mesial or distal" : "take it out: this template has none", "side");
         } else if (key == "leeway_side_mm") {
             recipe.leeway.sideMm = within(key, 0.0, 3.0);
         } else if (key == "leeway_floor_mm") {
             recipe.leeway.floorMm = within(key, 0.0, 3.0);
         } else if (key == "pulp_mm") {
             recipe.pulpMm = within(key, 0.0, 3.0);
+        } else if (t->isOwn && key == "like") {
+            continue;
+        } else if (t->isOwn && key == "draw") {
+            const std::vector<double> way = table.numbers(key);
+            const core::Vec3 draw =
+                way.size() == 3 ? core::Vec3(way[0], way[1], way[2]) : core::Vec3(core::Vec3::Zero());
+            if (!(draw.norm() >= 0.5 && draw.norm() <= 2.0))
+                table.fail("this is no path of draw", "three numbers, of length 1, as in draw = [0, 0, 1]", key);
+            recipe.draw = draw.normalized();
+        } else if (*id == kPaintedTemplate && key == "stroke") {
+            recipe.strokes = readStrokes(table);
+        } else if (*id == kRecordedTemplate && key == "zones_hash") {
+            const std::string hash = *table.text(key);
+            const auto end = std::from_chars(hash.data(), hash.data() + hash.size(), recipe.recordedHash, 16);
+            if (hash.size() != 16 || end.ptr != hash.data() + 16 || end.ec != std::errc{})
+                table.fail(fmt::format("\"{}\" is no hash", hash.substr(0, 32)), "sixteen hexadecimal digits", key);
         } else if (const Parameter* parameter = parameterOf(*t, key)) {
             recipe.numbers[key] = within(key, parameter->least, parameter->most);
         } else {
@@ -145,8 +175,12 @@ Recipe readRecipe(const config::Table& table) {
                        fmt::format("it has {}", fmt::join(names, ", ")), key);
         }
     }
-    if (t->hasSide && recipe.side.empty())
+    if (hasSide && recipe.side.empty())
         table.fail("the preparation does not say on which side", "add side = \"mesial\" or \"distal\"");
+    if (*id == kRecordedTemplate && !table.has("zones_hash"))
+        table.fail("the recorded work has no hash", "make it with handpiece exercise new --from-work");
+    if (*id == kPaintedTemplate && recipe.strokes.empty())
+        table.fail("nothing is painted", "add [[preparation.stroke]] with radius_mm and points_mm");
     return recipe;
 }
 
@@ -157,7 +191,10 @@ std::string recipeToml(const Recipe& recipe) {
         out += fmt::format("{} = {}\n", name, value);
     out += fmt::format("leeway_side_mm = {}\nleeway_floor_mm = {}\n", recipe.leeway.sideMm, recipe.leeway.floorMm);
     if (recipe.pulpMm > 0.0) out += fmt::format("pulp_mm = {}\n", recipe.pulpMm);
-    return out;
+    if (!recipe.like.empty()) out += fmt::format("like = \"{}\"\n", recipe.like);
+    if (recipe.draw) out += fmt::format("draw = [{}, {}, {}]\n", recipe.draw->x(), recipe.draw->y(), recipe.draw->z());
+    if (recipe.preparation == kRecordedTemplate) out += fmt::format("zones_hash = \"{:016x}\"\n", recipe.recordedHash);
+    return out + strokesToml(recipe.strokes, "preparation");
 }
 
 }  // namespace handpiece::preparation

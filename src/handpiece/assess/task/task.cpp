@@ -23,6 +23,7 @@ using config::Table;
 
 constexpr std::int64_t kFormatVersion = 1;
 constexpr const char* kCasePrefix = "case/";
+constexpr std::uint64_t kMostZonesBytes = 256ull << 20;
 constexpr double kLeastVoxelUm = 20.0, kMostVoxelUm = 400.0;
 
 bool isId(std::string_view id) {
@@ -165,9 +166,11 @@ Task readTask(const fs::path& path) {
         content[kTaskFile] = core::readFile(path / kTaskFile, Table::kMaxBytes);
         if (fs::exists(path / kRubricFile, ec))
             content[kRubricFile] = core::readFile(path / kRubricFile, Table::kMaxBytes);
+        if (fs::exists(path / kZonesFile, ec)) content[kZonesFile] = core::readFile(path / kZonesFile, kMostZonesBytes);
     } else {
-        content =
-            cases::readPackage(path, [](const std::string& name) { return name == kTaskFile || name == kRubricFile; });
+        content = cases::readPackage(path, [](const std::string& name) {
+            return name == kTaskFile || name == kRubricFile || name == kZonesFile;
+        });
     }
     const auto where = [&](const char* name) {
         return isFolder ? (path / name).string() : fmt::format("{} in {}", name, path.string());
@@ -175,6 +178,17 @@ Task readTask(const fs::path& path) {
     Task task = parse(textOf(content.at(kTaskFile), where(kTaskFile)), where(kTaskFile));
     if (const auto rubric = content.find(kRubricFile); rubric != content.end())
         task.rubric = textOf(rubric->second, where(kRubricFile));
+    if (task.preparation && task.preparation->preparation == preparation::kRecordedTemplate) {
+        const auto zones = content.find(kZonesFile);
+        if (zones == content.end())
+            throw core::Error(fmt::format("the exercise has no {}", kZonesFile), path.string(),
+                              "its target was recorded: copy all of the exercise");
+        task.preparation->recorded = std::make_shared<const preparation::RecordedWork>(
+            preparation::decodeZones(zones->second, where(kZonesFile)));
+        if (task.preparation->recorded->hash() != task.preparation->recordedHash)
+            throw core::Error("these zones are not those that the exercise names", where(kZonesFile),
+                              "copy all of the exercise, or make it anew");
+    }
     auto exercise = std::move(task.toothCase.exercise);
     task.toothCase = cases::readCase(isFolder ? path / "case" : path);
     if (exercise) task.toothCase.exercise = std::move(exercise);
@@ -192,6 +206,8 @@ void writeTask(const Task& task, const fs::path& path) {
         files[kCasePrefix + name] = std::move(data);
     files[kTaskFile] = bytesOf(tomlOf(task));
     if (!task.rubric.empty()) files[kRubricFile] = bytesOf(task.rubric);
+    if (task.preparation && task.preparation->recorded)
+        files[kZonesFile] = preparation::encodeZones(*task.preparation->recorded);
     if (cases::isPackageName(path)) {
         cases::setPackageType(files, cases::PackageType::exercise);
         cases::writePackage(path, files);

@@ -18,6 +18,7 @@ namespace handpiece::tasks {
 
 inline constexpr const char* kTaskFile = "exercise.toml";
 inline constexpr const char* kRubricFile = "rubric.toml";
+inline constexpr const char* kZonesFile = "zones.bin";  ///< of recorded work
 /// For whom an exercise is, the easiest first.
 inline constexpr std::array<std::string_view, 4> kLevels = {"beginner", "basic", "intermediate", "advanced"};
 
@@ -42,7 +43,8 @@ struct Task {
 /// preparation and rubric, and an attempt that carries its exercise. Throws core::Error (what, where with line,
 /// remedy).
 [[nodiscard]] Task readTask(const std::filesystem::path& path);
-/// exercise.toml, as an attempt carries it beside the rubric, and back with the case that the attempt is of.
+/// exercise.toml, as an attempt carries it beside the rubric, and back with the case that the attempt is of. Recorded
+/// work does not go into it: such an exercise must be at hand itself.
 [[nodiscard]] std::string taskToml(const Task& task);
 [[nodiscard]] Task parseTask(std::string_view toml, std::string rubric, cases::Case toothCase,
                              const std::string& where);

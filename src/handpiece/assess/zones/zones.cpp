@@ -68,7 +68,7 @@ Zone Zones::at(const Vec3& p) const {
 
 Zones::Distances Zones::distancesMm(const Vec3& p) const {
     const PastTarget past = target_(p);
-    return {past.distanceMm(), past.wallMm, allowedMm(past), protectedMm(p)};
+    return {past.distanceMm(), past.besideMm, allowedMm(past), protectedMm(p)};
 }
 
 std::optional<double> Zones::distanceMm(std::string_view zone, const Vec3& p) const {

@@ -36,6 +36,9 @@ inline constexpr double kFarMm = 1e3;
 /// distances near it, of the right sign farther off.
 struct PastTarget {
     double wallMm, floorMm;
+    /// What lies past the target lies under it where this is negative, else beside it: signed distance to where the two
+    /// meet.
+    double besideMm = wallMm;
     /// Signed distance to the target.
     [[nodiscard]] double distanceMm() const;
 };
@@ -65,7 +68,8 @@ class Zones {
     [[nodiscard]] const core::Box& box() const { return box_; }
     [[nodiscard]] const Leeway& leeway() const { return leeway_; }
 
-    /// To the target, its walls, what may go (target and leeway), what must stay; negative inside each [mm].
+    /// To the target, to all in and under it, what may go (target and leeway), what must stay; negative inside each
+    /// [mm].
     struct Distances {
         double target, wall, allowed, kept;
     };

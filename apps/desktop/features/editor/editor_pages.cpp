@@ -332,6 +332,13 @@ void PreparationPage::refreshPicture() {
     if (picture_->isDragging()) picture_->setHandles({});
     if (pictured_ != tooth_) lookedAt_.clear();
     if (shows_ == Shown::task && pictured_ == tooth_ && tooth_ && recipe_) {
+        if (!glassOf_ || glassOf_->preparation != recipe_->preparation) {
+            // What stood there was of another one.
+            handles_.clear();
+            picture_->setHandles({});
+            picture_->setGlass({});
+            picture_->setCaption(tr("Laying the preparation on the tooth..."), false);
+        }
         glassOf_ = recipe_;
         return glass_.show(tooth_, *recipe_);
     }

@@ -534,9 +534,9 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     connect(voxel_, &QDoubleSpinBox::valueChanged, this, [this](double um) {
         if (!showing_) change_("voxel", [&](Content& c) { c.voxelMm = 1e-3 * um; });
     });
-    const auto tickOf = [this](QCheckBox* box, bool Content::*what) {
-        connect(box, &QCheckBox::toggled, this, [this, what](bool on) {
-            if (!showing_) change_("", [&](Content& c) { c.*what = on; });
+    const auto tickOf = [this](QCheckBox* box, bool Content::*flag) {
+        connect(box, &QCheckBox::toggled, this, [this, flag](bool on) {
+            if (!showing_) change_("", [&](Content& c) { c.*flag = on; });
         });
     };
     tickOf(ownJudgement_, &Content::ownJudgement);

@@ -25,7 +25,7 @@ constexpr Row kMeasured[] = {
     {"isthmus-share", 0.27, 0.0, 0.0, 0.0},
     {"wall-height", 0.0045, 0.0, 0.0, 1.0},
     {"wall-angle", 0.001, 0.0, 0.0, 2.0},
-    {"undercut-depth", 0.0075, 0.045, 0.0, 0.0},
+    {"undercut-depth", 0.0095, 0.05, 0.0, 0.0},
     {"cavosurface-angle", 0.001, 0.0, 0.0, 2.3},
     {"roughness", 1.25, 0.0, 0.0, 0.0},
     {"marginal-ridge-left", 0.0003, 0.02, 0.0, 0.0},

@@ -443,10 +443,17 @@ class Site {
         if (carious.empty())
             fail("the tooth has no carious tissue", "make it with --lesion, or choose another task", "lay-no-caries");
         const auto pulp = pulpMm();
-        return [carious = std::move(carious), pulp, over = number("over_pulp_mm")](const Vec3& p) {
+        // The caries ends where the tooth does: a place on its surface, or just over it, belongs to what lies under it.
+        constexpr double kSkinMm = 0.1, kOverMm = 0.3;
+        return [carious = std::move(carious), pulp, over = number("over_pulp_mm"), tree = tree_](Vec3 p) {
+            if (const geometry::NearestPoint on = tree->nearest(p, kOverMm);
+                on.triangle != geometry::kNoTriangle && on.distanceMm * tree->side(p, on) > -kSkinMm) {
+                const float* n = &tree->pseudonormals()[std::size_t{on.triangle} * 21 + std::size_t{on.feature} * 3];
+                p = on.pointMm - kSkinMm * Vec3(n[0], n[1], n[2]);
+            }
             double least = kFarMm;
-            for (const auto& tree : carious)
-                least = std::min(least, tree->signedDistance(p));
+            for (const auto& caries : carious)
+                least = std::min(least, caries->signedDistance(p));
             if (pulp) least = std::max(least, over - pulp(p));
             return zones::PastTarget{least, -kFarMm};
         };

@@ -8485,6 +8485,10 @@ lingual: %4</source>
         <source>The picture does not show this work.</source>
         <translation>画面に出ているのはこの作品ではありません。</translation>
     </message>
+    <message>
+        <source>Whether the picture shows this work</source>
+        <translation>画面に出ているのがこの作品かどうか</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::WorkTable</name>

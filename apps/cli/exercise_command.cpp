@@ -34,6 +34,7 @@ using Json = nlohmann::ordered_json;
 struct ExerciseOptions {
     std::string exercise, student, words;
     double expected = -1.0;  // not said
+    std::string teacherWork;
     std::string path, out, caseFile, preparation, side, rubric, id, title, instructions, bur, fromWork, painted;
     std::vector<std::string> set;  // NAME=NUMBER
     bool noRubric = false;
@@ -290,6 +291,25 @@ void ideal(const ExerciseOptions& o) {
     fmt::print("{}: {:.2f} mm3 gone\n", o.out, tooth::sumOf(state.removedMm3.own));
 }
 
+/// As one file or folder, with the teacher's own work where it is named.
+void pack(const ExerciseOptions& o) {
+    tasks::Task task = exerciseOf(o.path).task;
+    if (!o.teacherWork.empty()) {
+        if (fs::path(o.teacherWork).extension() != ".h5")
+            throw core::Error("this is no session", o.teacherWork,
+                              "name a session.h5: one recording, from its beginning");
+        studies::ProgressBar bar("cutting it again");
+        const assessment::Work work = assessment::readWork(o.teacherWork, task, true, bar.listener());
+        bar.finish();
+        if (!work.isProven)
+            throw core::Error("this work is not proven: " + work.proof, o.teacherWork,
+                              "record one from the whole tooth to its end, with this program");
+        task.teacherWork =
+            std::make_shared<const std::vector<std::byte>>(core::readFile(o.teacherWork, tasks::kMaxTeacherWorkBytes));
+    }
+    write(task, o.out);
+}
+
 /// A finished piece of work as one file for a teacher.
 void handIn(const ExerciseOptions& o) {
     const auto task = std::make_shared<const tasks::Task>(exerciseOf(o.exercise).task);
@@ -413,8 +433,10 @@ void addExerciseCommand(Command& app) {
     Command pack = exercise.subcommand("pack", "An exercise as one file, or back into a folder");
     pack.option("EXERCISE", o.path, "folder, .handpiece file, or id of one that comes along").required();
     pack.option("OUT", o.out, "file that ends in .handpiece, or folder").required();
+    pack.option("--teacher-work", o.teacherWork,
+                "a session (.h5) of your own work on this exercise, for students to look at beside theirs");
+    pack.callback([options] { cli::pack(*options); });
     addHandInCommand(exercise, options);
-    pack.callback([options] { write(exerciseOf(options->path).task, options->out); });
 }
 
 void addMakeBlockCommand(Command& make) {

@@ -20,6 +20,7 @@
 #include "desktop/features/marking/agreement_page.h"
 #include "desktop/features/marking/sheet_panel.h"
 #include "handpiece/app/assessment/marks.h"
+#include "handpiece/app/marking/returned_marks.h"
 #include "handpiece/model/case/attempt.h"
 #include "marking_support.h"
 
@@ -167,6 +168,27 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     EXPECT_NE(page.find("S-08-second"), std::string::npos);
     EXPECT_NE(page.find("<svg"), std::string::npos);
     EXPECT_EQ(page.find("broken"), std::string::npos) << "it has no score";
+
+    // Back to the student: of the work that is open, and of each that has a score.
+    file_ = own_.filePath("S-09-marks.json");
+    click("sheetReturn");
+    const auto returned = [](const fs::path& file) {
+        const auto bytes = core::readFile(file);
+        return marking::parseReturned({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file.string());
+    };
+    const marking::ReturnedMarks alone = returned(toPath(file_));
+    EXPECT_EQ(alone.marker, "Tanaka");
+    ASSERT_EQ(alone.comments.size(), 1u);
+    EXPECT_EQ(alone.comments[0].timeS, desk().sheet(other).comments[0].timeS);
+    EXPECT_TRUE(areOf(alone, desk().machine(other)->identity));
+    file_ = own_.filePath("given");
+    part<QAction>("markingExport_returned")->trigger();
+    EXPECT_EQ(std::distance(fs::directory_iterator(at("given")), {}), 3) << "the broken one has no score";
+    const marking::ReturnedMarks all = returned(at("given") / "S-08-second-marks.json");
+    ASSERT_EQ(all.changes.size(), 1u);
+    EXPECT_EQ(all.changes[0].reason, "ragged margins");
+    EXPECT_EQ(all.passed, score::Passed::yes);
+    EXPECT_EQ(all.comments.size(), 2u);
 
     // Another start goes on where this one was.
     start();

@@ -12,6 +12,7 @@
 #include <QSpinBox>
 #include <QTableWidget>
 
+#include "desktop/features/exercise/exercise_feature.h"
 #include "desktop/features/exercise/exercises_dialog.h"
 #include "desktop/features/exercise/practice_feature.h"
 #include "desktop/features/exercise/progress_dialog.h"
@@ -21,6 +22,8 @@
 #include "desktop/work/live_zones.h"
 #include "handpiece/app/assessment/recording.h"
 #include "handpiece/app/course/shipped_exercises.h"
+#include "handpiece/app/marking/returned_marks.h"
+#include "handpiece/assess/draft/draft.h"
 #include "handpiece/base/core/file.h"
 #include "shell_support.h"
 
@@ -408,6 +411,33 @@ TEST_F(PracticeTest, AnAttemptResumedThreeTimesIsOneProvenChain) {
     }));
 }
 
+TEST_F(PracticeTest, WhatWasCutAfterSavingAndGivenUpBreaksNoChain) {
+    makeExercise("one", false);
+    startWithTooth();
+    openExercises();
+    begin("one");
+    ASSERT_TRUE(cut());
+    save("work.handpiece");
+    const double savedMm3 = removedMm3();
+    ASSERT_TRUE(cut());
+    ASSERT_GT(removedMm3(), savedMm3);
+    answer_ = Questions::Unsaved::discard;
+    const int asked = asked_;
+    resume("work.handpiece");
+    EXPECT_EQ(asked_, asked + 1);
+    EXPECT_NEAR(removedMm3(), savedMm3, 1e-9);
+    ASSERT_TRUE(cut());
+    finish();
+    ASSERT_EQ(store().attempts().size(), 1u);
+    EXPECT_TRUE(store().attempts().front().proven) << result().shown()->work.result.proof;
+    EXPECT_NE(result().shown()->work.result.proof.find("given up"), std::string::npos);
+    const auto& all = result().shown()->work.work.recordings;
+    ASSERT_EQ(all.size(), 2u);
+    const std::vector<measures::Measured> strokes =
+        assessment::readRecord(all, {}, 0.1, std::vector<measures::Request>{{"strokes"}}, {});
+    EXPECT_EQ(*strokes.front().value, 2.0) << "the one that was given up is none";
+}
+
 TEST_F(PracticeTest, AnAttemptWithASittingMissingIsScoredAndToldToBeUnproven) {
     makeExercise("one", false);
     startWithTooth();
@@ -705,6 +735,246 @@ TEST_F(PracticeTest, TwiceOutOfOrderAndHalfLosesNothing) {
     finish();
     EXPECT_EQ(store().attempts().size(), 2u);
     EXPECT_TRUE(store().attempts().back().proven);
+}
+
+TEST_F(PracticeTest, AFinishedWorkIsHandedInAsTheCommandLineDoesIt) {
+    const fs::path place = makeExercise("one", true);
+    startWithTooth();
+    openExercises();
+    begin("one");
+    ASSERT_TRUE(cut());
+    finish();
+    part<QSpinBox>("judgePercent")->setValue(65);
+    part<QPlainTextEdit>("judgeWords")->setPlainText("too short");
+    click("judgeShow");
+    std::optional<QString> code;
+    int asked = 0;
+    const auto answer = [&] {
+        window().findChild<ExerciseFeature*>()->questions.student = [&](const QString&) {
+            ++asked;
+            return code;
+        };
+    };
+    answer();
+    file_ = own_.filePath("desk/a7.handpiece");
+    const fs::path file = toPath(file_);
+    fs::create_directories(file.parent_path());
+    click("resultHandIn");
+    EXPECT_FALSE(fs::exists(file)) << "asked for a code, and that was given up";
+    code = "A7";
+    // A full disk first: told, and nothing of it stays.
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit none{512, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &none), 0);
+    click("resultHandIn");
+    const bool told = waitFor([this] { return window().errorDialog() != nullptr; });
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    ASSERT_TRUE(told);
+    EXPECT_FALSE(window().errorDialog()->problem().remedy.isEmpty());
+    EXPECT_TRUE(fs::is_empty(file.parent_path()));
+    window().errorDialog()->reject();
+    ASSERT_TRUE(waitFor([this] { return window().errorDialog() == nullptr; }));
+    click("resultHandIn");
+    ASSERT_TRUE(waitFor([this] { return part<QLabel>("resultNote")->text().startsWith("Handed in"); }));
+    EXPECT_EQ(asked, 2) << "a code is asked for once";
+    picture(&result(), "handed-in");
+    // The same to the byte as `handpiece exercise hand-in` of the same recording.
+    const auto task = std::make_shared<const tasks::Task>(tasks::readTask(place));
+    const fs::path session = result().shown()->work.session;
+    fs::create_directories(at("cli"));
+    course::handIn(course::judged(session, task), {"A7", 65.0, "too short"}, at("cli") / "a7.handpiece");
+    EXPECT_EQ(core::readFile(file), core::readFile(at("cli") / "a7.handpiece"));
+    // The teacher's desk has it, and comes to the same score.
+    const std::vector<marking::ReturnedWork> works = marking::findWork(file.parent_path());
+    ASSERT_EQ(works.size(), 1u);
+    EXPECT_FALSE(works.front().error);
+    const assessment::Work read = assessment::readWork(works.front().path, *task);
+    EXPECT_TRUE(read.isProven) << read.proof;
+    const score::Result judged = assessment::scoreWork(read, *task, course::rubricOf(*task));
+    EXPECT_EQ(judged.assessment.score, store().attempts().front().score);
+    EXPECT_EQ(judged.identity.sessionHashes, store().attempts().front().sessionHashes);
+    // Later, from the list of all attempts.
+    host_.reset();
+    startWithTooth();
+    answer();
+    fs::create_directories(at("later"));
+    file_ = own_.filePath("later/a7.handpiece");
+    const auto handInFirst = [this] {
+        action("actionProgress")->trigger();
+        EXPECT_FALSE(part<QPushButton>("progressHandIn")->isEnabled());
+        part<QTableWidget>("progressTable")->setCurrentCell(0, 0);
+        click("progressHandIn");
+    };
+    handInFirst();
+    ASSERT_TRUE(waitFor([this] { return part<QLabel>("resultNote")->text().startsWith("Handed in"); }));
+    EXPECT_EQ(core::readFile(file), core::readFile(toPath(file_)));
+    result().close();
+    // And when its recording is gone: told, and there is no button for it.
+    fs::remove(session);
+    file_ = own_.filePath("gone.handpiece");
+    handInFirst();
+    ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
+    EXPECT_EQ(window().errorDialog()->problem().id, "nothing-to-hand-in");
+    EXPECT_FALSE(part<QPushButton>("resultHandIn")->isEnabled());
+    EXPECT_FALSE(QFile::exists(file_));
+}
+
+TEST_F(PracticeTest, WhatATeacherGivesBackIsSeenAtItsPlacesAndTimes) {
+    const fs::path place = makeExercise("one", false);
+    startWithTooth();
+    openExercises();
+    begin("one");
+    ASSERT_TRUE(cut());
+    finish();
+    // The teacher's side, at a desk that has what was handed in.
+    const auto task = std::make_shared<const tasks::Task>(tasks::readTask(place));
+    fs::create_directories(at("desk"));
+    course::handIn(result().shown()->work, {"A7", {}, {}}, at("desk") / "a7.handpiece");
+    marking::DeskSetup setup;
+    setup.folder = at("desk");
+    setup.marker = "Sato";
+    setup.exercise = task->id;
+    setup.exerciseHash = rubric::hashText(tasks::contentHash(*task));
+    setup.rubric = course::rubricOf(*task);
+    marking::Desk desk(setup, marking::findWork(setup.folder));
+    const std::string code = desk.codes().front();
+    desk.take(0, marking::scoreReturned(desk.works().front(), *task, setup.rubric, {true, false, {}}));
+    ASSERT_NE(desk.machine(code), nullptr) << desk.problem(code);
+    const rubric::Criterion& c = *std::find_if(setup.rubric.criteria.begin(), setup.rubric.criteria.end(),
+                                               [](const rubric::Criterion& one) { return one.isGraded(); });
+    desk.override(code, c.id, {c.bands.empty() ? "" : c.bands.front().id, c.weight, {}, "<b>well</b> seen"});
+    desk.comment(code, {0, "", "look here", core::Vec3(0.5, 0.25, -0.5), 0.3, {}});
+    desk.decide(code, marking::Decision{true, "good enough"});
+    const std::string given = marking::returnedJson(marking::returnedMarks(desk, code));
+    // What is broken, or of another work, is told, and nothing is kept.
+    const std::string id = store().attempts().front().id;
+    const auto refused = [&](const std::string& text, const char* why) {
+        core::writeFile(at("bad.json"), text);
+        window().openFile(own_.filePath("bad.json"));
+        ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; })) << why;
+        EXPECT_EQ(window().errorDialog()->problem().id, why);
+        window().errorDialog()->reject();
+        ASSERT_TRUE(waitFor([this] { return window().errorDialog() == nullptr; }));
+        EXPECT_TRUE(store().returnedOf(id).empty());
+    };
+    refused(given.substr(0, given.size() / 2), "returned-damaged");
+    std::string other = given;
+    const auto state = other.find("\"state_hash\": \"") + 15;
+    other[state] = other[state] == '0' ? '1' : '0';
+    refused(other, "returned-of-another");
+    result().close();
+    // By the button in Progress.
+    file_ = own_.filePath("a7-marks.json");
+    core::writeFile(toPath(file_), given);
+    action("actionProgress")->trigger();
+    click("progressReturned");
+    ASSERT_TRUE(waitFor([this] { return result().isVisible(); }));
+    EXPECT_EQ(store().returnedOf(id).size(), 1u);
+    EXPECT_EQ(result().shown()->work.result.assessment.score, store().attempts().front().score)
+        << "the machine's stays";
+    const QString says = part<QLabel>("resultTeacher")->text();
+    EXPECT_TRUE(part<QLabel>("resultTeacher")->isVisible());
+    EXPECT_TRUE(says.contains("Sato") && says.contains("good enough")) << says.toStdString();
+    EXPECT_TRUE(says.contains(QLocale().toString(desk.finalScore(code)->score, 'f', 1))) << says.toStdString();
+    auto* comments = part<QListWidget>("resultComments");
+    ASSERT_EQ(comments->count(), 2);
+    EXPECT_TRUE(comments->item(0)->text().contains("<b>well</b> seen")) << "text, never markup";
+    EXPECT_TRUE(comments->item(1)->text().contains("Sato: look here"));
+    const auto row = static_cast<int>(&c - setup.rubric.criteria.data());
+    EXPECT_TRUE(part<QTableWidget>("resultTable")->item(row, 3)->text().contains("Sato"));
+    picture(&result(), "returned");
+    // The comment turns the eye to its place and plays its seconds.
+    QTest::mouseClick(comments->viewport(), Qt::LeftButton, Qt::NoModifier,
+                      comments->visualItemRect(comments->item(1)).center());
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay && !simulator().isBusy(); }));
+    ASSERT_TRUE(waitFor([this] { return view()->written().markMm.has_value(); }));
+    EXPECT_EQ(*view()->written().markMm, core::Vec3(0.5, 0.25, -0.5));
+    ASSERT_TRUE(waitFor([this] { return simulator().replay()->now().playing; }));
+    // Once more, dropped on the window: in the place of what was there. And it is there another day.
+    host_.reset();
+    startWithTooth();
+    drop(file_);
+    ASSERT_TRUE(waitFor([this] { return result().isVisible(); }));
+    EXPECT_EQ(store().returnedOf(id).size(), 1u);
+    result().close();
+    action("actionProgress")->trigger();
+    part<QTableWidget>("progressTable")->setCurrentCell(0, 0);
+    click("progressOpen");
+    ASSERT_TRUE(waitFor([this] { return result().isVisible(); }));
+    EXPECT_EQ(part<QListWidget>("resultComments")->count(), 2);
+}
+
+TEST_F(PracticeTest, TheTeachersOwnWorkPlaysBesideAlsoAfterTheWorkWasResumed) {
+    const fs::path place = makeExercise("one", false);
+    startWithTooth();
+    // The teacher's own: cut and taken along with the exercise.
+    openExercises();
+    begin("one");
+    ASSERT_TRUE(cut());
+    finish();
+    EXPECT_TRUE(part<QPushButton>("resultTeacherWork")->isHidden()) << "there is none";
+    const fs::path session = result().shown()->work.session;
+    tasks::Task task = tasks::readTask(place);
+    task.teacherWork = std::make_shared<const std::vector<std::byte>>(core::readFile(session));
+    tasks::writeTask(task, place);
+    result().close();
+    host_.reset();
+    startWithTooth();
+    openExercises();
+    begin("one");
+    ASSERT_TRUE(cut());
+    save("work.handpiece");
+    resume("work.handpiece");
+    finish();
+    ASSERT_TRUE(waitFor([this] { return part<QPushButton>("resultTeacherWork")->isVisible(); }));
+    const fs::path own = simulator().document().caseFile;
+    // From its beginning, where no place was looked at.
+    click("resultTeacherWork");
+    const auto isTeachers = [&] {
+        return simulator().mode() == Simulator::Mode::replay && !simulator().isBusy() &&
+               simulator().document().caseFile.filename() == tasks::kTeacherWorkFile;
+    };
+    ASSERT_TRUE(waitFor(isTeachers));
+    ASSERT_TRUE(waitFor([this] { return simulator().replay()->now().playing; }));
+    EXPECT_EQ(core::readFile(simulator().document().caseFile), core::readFile(session));
+    EXPECT_FALSE(view()->written().markMm);
+    // At the place that was looked at, the seconds in which the teacher's bur cut there: both cut in the middle.
+    const core::Vec3 cutMm(0.0, 0.0, -0.03);
+    store().add(school::Comment{school::newId(), store().attempts().back().id, "Sato", "here", cutMm, {}, 5});
+    result().close();
+    action("actionProgress")->trigger();
+    part<QTableWidget>("progressTable")->setCurrentCell(0, 0);
+    click("progressOpen");
+    ASSERT_TRUE(waitFor([this] { return part<QPushButton>("resultTeacherWork")->isVisible(); }));
+    auto* comments = part<QListWidget>("resultComments");
+    QTest::mouseClick(comments->viewport(), Qt::LeftButton, Qt::NoModifier,
+                      comments->visualItemRect(comments->item(0)).center());
+    ASSERT_TRUE(waitFor([&] { return simulator().document().caseFile == own && !simulator().isBusy(); }));
+    const double endS = [&] {
+        click("resultTeacherWork");
+        EXPECT_TRUE(waitFor(isTeachers));
+        EXPECT_TRUE(waitFor([this] { return view()->written().markMm.has_value(); }));
+        return simulator().replay()->durationS();
+    }();
+    EXPECT_EQ(*view()->written().markMm, cutMm);
+    std::vector<measures::Measured> truth(1);
+    truth.front().evidence.emplace_back().placeMm = cutMm;
+    const assessment::Recording recording{session, "teacher", {}, {}};
+    static_cast<void>(assessment::readRecord(std::span(&recording, 1), truth, 0.1, {}, {}));
+    ASSERT_TRUE(truth.front().evidence.front().timeS) << "the teacher never cut in the middle";
+    bool wasPlaying = false;
+    ASSERT_TRUE(waitFor([&] {
+        const ReplayNow now = simulator().replay()->now();
+        wasPlaying |= now.playing;
+        return wasPlaying && !now.playing && !now.seeking;
+    }));
+    EXPECT_NEAR(simulator().replay()->now().timeS, std::min(endS, *truth.front().evidence.front().timeS + 1.5), 0.3);
+    picture(&window(), "teacher");
+    // Nor is it lost where the exercise is edited.
+    EXPECT_EQ(draft::taskOf(draft::contentOf(task)).teacherWork, task.teacherWork);
 }
 
 TEST_F(PracticeTest, ThePageIsWrittenWithPictures) {

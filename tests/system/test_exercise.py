@@ -75,6 +75,21 @@ class Exercise(SystemTest):
         self.assertEqual((packed["level"], packed["minutes"]), ("beginner", 15))
         self.refused("exercise", "check", "block-none", mentions=("no such exercise",))
 
+    def test_the_teachers_own_work_comes_along(self):
+        block = self.block("--kind", "line", "--set", "depth_mm=0.5")
+        run = ("--bur", "330", "--motion", "plunge", "--depth", 0.4, "--duration", 1)
+        self.ok("run", "--case", block / "case", *run, "--out", self.folder / "run")
+        session, packed = self.folder / "run" / "session.h5", self.folder / "with.handpiece"
+        self.ok("exercise", "pack", block, packed, "--teacher-work", session)
+        self.assertEqual(self.ok("exercise", "check", packed, "--json").stdout, self.ok("exercise", "check", block, "--json").stdout)
+        self.ok("exercise", "pack", packed, self.folder / "again")
+        self.assertEqual((self.folder / "again" / "teacher.h5").read_bytes(), session.read_bytes())
+        # Work on another tooth, or what is no session, is none.
+        other = self.block("--kind", "line", "--layers", "layered", name="layered")
+        self.refused("exercise", "pack", other, self.folder / "no.handpiece", "--teacher-work", session, mentions=("another tooth",))
+        self.refused("exercise", "pack", block, self.folder / "no.handpiece", "--teacher-work", block, mentions=("no session",))
+        self.assertFalse((self.folder / "no.handpiece").exists())
+
     def test_a_hand_in_is_scored_as_the_work_itself(self):
         block = self.block("--kind", "line", "--set", "depth_mm=0.5")
         self.ok("run", "--case", block / "case", "--bur", "330", "--motion", "plunge", "--depth", 0.4,

@@ -35,8 +35,9 @@ void installFeatures(const FeatureContext& context) {
     add(new RecoveryFeature(context));
     add(new ViewFeature(context));
     add(new PositionFeature(context));
-    add(new ExerciseFeature(context));
-    add(new PracticeFeature(context));
+    auto* exercise = new ExerciseFeature(context);
+    add(exercise);
+    add(new PracticeFeature(context, *exercise));
     add(new LayoutFeature(context));
     add(new ReplayFeature(context));
     add(new MeasureFeature(context));

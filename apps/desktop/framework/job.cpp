@@ -19,6 +19,16 @@ void Job::start() {
     thread_ = std::thread([this] { run(); });
 }
 
+void Job::abandon(QObject* hearer) {
+    disconnect(hearer);
+    cancel();
+    setParent(hearer);
+    if (isOver_) return deleteLater();
+    for (const auto end : {&Job::done, &Job::cancelled})
+        connect(this, end, this, &QObject::deleteLater);
+    connect(this, &Job::failed, this, &QObject::deleteLater);
+}
+
 void Job::tell(std::function<void()> what) {
     QMetaObject::invokeMethod(this, std::move(what), Qt::QueuedConnection);
 }
@@ -32,12 +42,21 @@ void Job::run() {
     try {
         core::report(progress, 0.0);
         work_(progress);
-        tell([this] { emit done(); });
+        tell([this] {
+            isOver_ = true;
+            emit done();
+        });
     } catch (const std::exception& error) {
         if (cancelled_.load()) {
-            tell([this] { emit cancelled(); });
+            tell([this] {
+                isOver_ = true;
+                emit cancelled();
+            });
         } else {
-            tell([this, problem = problemOf(core::asError(error))] { emit failed(problem); });
+            tell([this, problem = problemOf(core::asError(error))] {
+                isOver_ = true;
+                emit failed(problem);
+            });
         }
     }
 }

@@ -26,6 +26,9 @@ class Job : public QObject {
 
     void start();
     void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
+    /// It is cancelled, `hearer` hears no more of it, and it goes when it has ended, with `hearer` at the latest:
+    /// nobody waits. Also for one that is over, out of its own signals as well.
+    void abandon(QObject* hearer);
     [[nodiscard]] const QString& title() const noexcept { return title_; }
 
   signals:
@@ -42,6 +45,7 @@ class Job : public QObject {
     Work work_;
     std::atomic<bool> cancelled_{false};
     std::atomic<int> told_{-1};
+    bool isOver_ = false;
     std::thread thread_;
 };
 

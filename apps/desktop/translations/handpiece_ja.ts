@@ -2737,6 +2737,42 @@
         <translation>病変のある歯か、別の形成を選ぶ。</translation>
     </message>
     <message>
+        <source>The recordings of this work are no longer kept.</source>
+        <translation>この作業の記録はもう残っていません。</translation>
+    </message>
+    <message>
+        <source>Without them there is no tooth to hand in: hand in soon after you finish.</source>
+        <translation>記録がないと提出する歯がありません。完了したら早めに提出してください。</translation>
+    </message>
+    <message>
+        <source>This work has no score, and so cannot be given back.</source>
+        <translation>この提出物には得点がないため、返却できません。</translation>
+    </message>
+    <message>
+        <source>Score it: by that its student&apos;s program finds the work that the marks are of.</source>
+        <translation>採点してください。受講者のプログラムは、それによってどの作業の評価かを見つけます。</translation>
+    </message>
+    <message>
+        <source>These are no marks of a teacher. Technical detail: %1</source>
+        <translation>これは先生の評価のファイルではありません。技術的な詳細: %1</translation>
+    </message>
+    <message>
+        <source>Ask your teacher for the file once more.</source>
+        <translation>先生にもう一度ファイルをもらってください。</translation>
+    </message>
+    <message>
+        <source>These marks were written by a newer program.</source>
+        <translation>この評価は新しいプログラムで書かれています。</translation>
+    </message>
+    <message>
+        <source>These marks are of no work that was finished here (exercise %1).</source>
+        <translation>この評価に当たる作業は、ここでは完了していません（課題 %1）。</translation>
+    </message>
+    <message>
+        <source>Open them where you finished that work, under your own account.</source>
+        <translation>その作業を完了したコンピューターで、自分のアカウントで開いてください。</translation>
+    </message>
+    <message>
         <source>Another work is the same, byte for byte.</source>
         <translation>ほかの作品とまったく同じ内容です。</translation>
     </message>
@@ -8080,6 +8116,10 @@ lingual: %4</source>
         <translation>作品：%1 / %2</translation>
     </message>
     <message>
+        <source>Marks for each student (folder)...</source>
+        <translation>受講者ごとの評価（フォルダー）...</translation>
+    </message>
+    <message>
         <source>Page of the class, with file names...</source>
         <translation>クラスのページ（ファイル名付き）...</translation>
     </message>
@@ -8165,6 +8205,18 @@ lingual: %4</source>
     <message>
         <source>Table (*.csv)</source>
         <translation>表 (*.csv)</translation>
+    </message>
+    <message>
+        <source>Return to student</source>
+        <translation>受講者へ返却</translation>
+    </message>
+    <message>
+        <source>Marks (*.json)</source>
+        <translation>評価 (*.json)</translation>
+    </message>
+    <message>
+        <source>Folder for the marks</source>
+        <translation>評価を書くフォルダー</translation>
     </message>
     <message>
         <source>Write the page</source>
@@ -8480,6 +8532,14 @@ lingual: %4</source>
     <message>
         <source>Place chosen: click anew</source>
         <translation>場所を選択済み：選び直す</translation>
+    </message>
+    <message>
+        <source>Return to student...</source>
+        <translation>受講者へ返却...</translation>
+    </message>
+    <message>
+        <source>One file with your comments, what you judged otherwise and why, and the score</source>
+        <translation>コメント、機械と違う判断とその理由、得点をひとつのファイルにします</translation>
     </message>
     <message>
         <source>The picture does not show this work.</source>
@@ -8805,6 +8865,42 @@ lingual: %4</source>
         <source>Opening the result</source>
         <translation>結果を開いています</translation>
     </message>
+    <message>
+        <source>Marks from your teacher</source>
+        <translation>先生からの評価</translation>
+    </message>
+    <message>
+        <source>Marks (*.json);;All files (*)</source>
+        <translation>評価 (*.json);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Looking into your teacher&apos;s work</source>
+        <translation>先生の作業を調べています</translation>
+    </message>
+    <message>
+        <source>Written: %1</source>
+        <translation>書き込みました: %1</translation>
+    </message>
+    <message>
+        <source>Hand in</source>
+        <translation>提出</translation>
+    </message>
+    <message>
+        <source>Attempt with its tooth (*.handpiece)</source>
+        <translation>作業と歯 (*.handpiece)</translation>
+    </message>
+    <message>
+        <source>Handed in: %1, with its tooth. Recordings in it: %2. Give this file to your teacher.</source>
+        <translation>提出用ファイル: %1（歯を含む）。含まれる記録: %2。このファイルを先生に渡してください。</translation>
+    </message>
+    <message>
+        <source>Handed in: %1, with its tooth. No recordings are in it, because one of them is missing. Give this file to your teacher.</source>
+        <translation>提出用ファイル: %1（歯を含む）。記録のひとつが欠けているため、記録は含まれていません。このファイルを先生に渡してください。</translation>
+    </message>
+    <message>
+        <source>Handing in</source>
+        <translation>提出しています</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::ProgressCurve</name>
@@ -8890,6 +8986,22 @@ lingual: %4</source>
     <message>
         <source>%1, over by %2</source>
         <translation>%1、超過 %2</translation>
+    </message>
+    <message>
+        <source>Hand in...</source>
+        <translation>提出...</translation>
+    </message>
+    <message>
+        <source>One file for your teacher, as long as its recordings are kept</source>
+        <translation>先生に渡すひとつのファイル。記録が残っている間に限ります</translation>
+    </message>
+    <message>
+        <source>Marks from your teacher...</source>
+        <translation>先生からの評価...</translation>
+    </message>
+    <message>
+        <source>Open the file that your teacher gave back: comments and points</source>
+        <translation>先生が返却したファイルを開きます。コメントと点数が入っています</translation>
     </message>
 </context>
 <context>
@@ -9113,6 +9225,50 @@ lingual: %4</source>
     <message>
         <source>Its recording is no longer kept: the tooth cannot be shown</source>
         <translation>記録が残っていないため、歯を表示できません</translation>
+    </message>
+    <message>
+        <source>What your teacher says</source>
+        <translation>先生の評価</translation>
+    </message>
+    <message>
+        <source>Hand in...</source>
+        <translation>提出...</translation>
+    </message>
+    <message>
+        <source>One file for your teacher: the tooth, all that was recorded, the result, and what you expected</source>
+        <translation>先生に渡すひとつのファイル: 歯、すべての記録、結果、自分の予想</translation>
+    </message>
+    <message>
+        <source>Teacher&apos;s work</source>
+        <translation>先生の作業</translation>
+    </message>
+    <message>
+        <source>Play your teacher&apos;s own work on the same tooth: the seconds at the place that you looked at last, or from its beginning</source>
+        <translation>同じ歯での先生自身の作業を再生します。最後に見た場所を削った数秒、または最初から</translation>
+    </message>
+    <message>
+        <source>%1 points</source>
+        <translation>%1 点</translation>
+    </message>
+    <message>
+        <source>critical error</source>
+        <translation>重大な誤り</translation>
+    </message>
+    <message>
+        <source>%1: %2. %3</source>
+        <translation>%1：%2。%3</translation>
+    </message>
+    <message>
+        <source>%1: %2</source>
+        <translation>%1：%2</translation>
+    </message>
+    <message>
+        <source>%1: %2 points: %3</source>
+        <translation>%1：%2 点、%3</translation>
+    </message>
+    <message>
+        <source>(by another rubric, %1)</source>
+        <translation>（別の評価基準 %1 による）</translation>
     </message>
 </context>
 <context>

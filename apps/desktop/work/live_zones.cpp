@@ -33,13 +33,7 @@ void LiveZones::watch(std::shared_ptr<const tasks::Task> task, std::shared_ptr<s
 void LiveZones::stop() {
     timer_.stop();
     watched_.reset();
-    if (!job_) return;
-    // It ends when it likes; nobody hears of it.
-    job_->disconnect(this);
-    for (const auto end : {&Job::done, &Job::cancelled})
-        connect(job_.get(), end, job_.get(), &QObject::deleteLater);
-    connect(job_.get(), &Job::failed, job_.get(), &QObject::deleteLater);
-    job_.release()->setParent(this);
+    if (job_) job_.release()->abandon(this);
 }
 
 void LiveZones::count() {

@@ -320,6 +320,54 @@ TEST_F(Chain, WithOneMissingIsScoredAndSaysSo) {
     EXPECT_NE(test::errorOf([&] { static_cast<void>(readChain({}, task_)); }), "");
 }
 
+TEST(SavedAndGivenUp, WhatFollowedTheSavedToothCountsForNothingAndTheRestIsProven) {
+    const test::TemporaryFolder folder;
+    tooth::StateDelta saved, end;
+    const auto sit = [&](const char* name, const auto& motion, double midS, double lastS, bool resumed) {
+        simulation::SimulationSetup station = simulation::blockStation();
+        simulation::LiveSessionSettings settings;
+        settings.sessionFile = folder.path() / name;
+        if (resumed) station.resume(saved);
+        station.settings.resumed = resumed;
+        const auto lead = std::make_shared<simulation::Lead>();
+        simulation::LiveSession sitting(station, simulation::blockCase(), simulation::handOf(motion, lead), settings,
+                                        nullptr);
+        if (midS > 0.0) {
+            ASSERT_TRUE(simulation::leadTo(sitting, *lead, midS));
+            saved = sitting.state();
+        }
+        ASSERT_TRUE(simulation::leadTo(sitting, *lead, lastS));
+        sitting.stop();
+        end = sitting.state();
+    };
+    sit("a.h5", simulation::twoHoles(), 1.5, 3.1, false);
+    const tooth::StateDelta wholeFirst = end;
+    ASSERT_NE(tooth::stateHash(saved), tooth::stateHash(wholeFirst));
+    sit("b.h5", simulation::hole(0.5), 0.0, 1.3, true);
+    const tasks::Task task = blockTask();
+    const std::vector<ChainLink> links{{"a.h5", folder.path() / "a.h5", false},
+                                       {"b.h5", folder.path() / "b.h5", false}};
+    const std::vector<Request> asked{{"removed"}, {"time"}, {"strokes"}};
+    for (const bool prove : {true, false}) {
+        const Work work = readChain(links, task, prove);
+        EXPECT_EQ(work.isProven, prove) << work.proof;
+        EXPECT_THAT(work.proof, HasSubstr("a.h5 after it was saved was given up"));
+        EXPECT_EQ(tooth::stateHash(work.state), tooth::stateHash(end));
+        const MeasuredWork measured = measureWork(work, task, asked);
+        ASSERT_TRUE(measured.measured[1].value && measured.measured[2].value) << measured.measured[1].reason;
+        EXPECT_EQ(*measured.measured[2].value, 2.0) << "one stroke of each: the second of the first was given up";
+        EXPECT_LT(*measured.measured[1].value, 1.5 + 1.3 + 0.2);
+    }
+    // As a folder of sessions too; and a session from any other tooth still breaks it.
+    EXPECT_TRUE(readWork(folder.path(), task).isProven);
+    sit("c.h5", simulation::hole(0.9), 0.6, 1.3, false);
+    sit("d.h5", simulation::hole(0.2), 0.0, 1.3, true);
+    const std::vector<ChainLink> broken{links[0], {"d.h5", folder.path() / "d.h5", false}};
+    const Work none = readChain(broken, task);
+    EXPECT_FALSE(none.isProven);
+    EXPECT_THAT(none.proof, HasSubstr("d.h5 goes on from another tooth"));
+}
+
 TEST_F(Chain, OfTwoWorksIsNone) {
     const fs::path two = folderOf("two", {0, 1});
     fs::copy_file(links_[0].in, two / "again.h5");

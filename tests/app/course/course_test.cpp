@@ -152,21 +152,29 @@ score::Assessment resultOf(const std::vector<std::pair<std::string, double>>& po
 TEST(Retest, OfWhatWasLostIsDueInAWeekAndThenLaterAndLater) {
     constexpr std::int64_t kDay = 24LL * 3600 * 1000;
     // The three dearest of what was lost; a tenth of a point is no loss.
-    std::vector<DueCriterion> open =
-        nextRetests({}, resultOf({{"a", 9.95}, {"b", 5}, {"c", 2}, {"d", 0}, {"e", 9}}), "one", false, 0);
+    const auto at = [](const char* id, std::int64_t when) {
+        school::Attempt attempt;
+        attempt.id = id;
+        attempt.exercise = "one-exercise";
+        attempt.finished = when;
+        return attempt;
+    };
+    std::vector<school::Retest> open =
+        nextRetests({}, at("one", 0), resultOf({{"a", 9.95}, {"b", 5}, {"c", 2}, {"d", 0}, {"e", 9}}), false);
     ASSERT_EQ(open.size(), 3u);
     EXPECT_EQ(open[0].criterion, "d");
     EXPECT_EQ(open[2].criterion, "b");
     EXPECT_EQ(open[0].due, 7 * kDay);
+    EXPECT_EQ(open[0].exercise, "one-exercise");
     // The next day all is well: it stays due, for that is no retest. Nor is one with helps, later.
     const score::Assessment good = resultOf({{"a", 10}, {"b", 10}, {"c", 10}, {"d", 10}, {"e", 10}});
-    open = nextRetests(open, good, "two", true, kDay);
+    open = nextRetests(open, at("two", kDay), good, true);
     EXPECT_EQ(open[0].due, 7 * kDay);
-    open = nextRetests(open, good, "three", false, 8 * kDay);
+    open = nextRetests(open, at("three", 8 * kDay), good, false);
     EXPECT_EQ(open[0].due, 7 * kDay);
     EXPECT_EQ(open[0].attempt, "one");
     // Shown when due, but for what could not be measured and what was lost again.
-    open = nextRetests(open, resultOf({{"b", 10}, {"c", -1}, {"d", 3}}), "four", true, 8 * kDay);
+    open = nextRetests(open, at("four", 8 * kDay), resultOf({{"b", 10}, {"c", -1}, {"d", 3}}), true);
     ASSERT_EQ(open.size(), 3u);
     EXPECT_EQ(open[0].due, 15 * kDay) << "lost again";
     EXPECT_EQ(open[0].step, 0);
@@ -174,11 +182,11 @@ TEST(Retest, OfWhatWasLostIsDueInAWeekAndThenLaterAndLater) {
     EXPECT_EQ(open[2].due, 29 * kDay);
     EXPECT_EQ(open[2].step, 1);
     EXPECT_EQ(open[2].attempt, "four");
-    open = nextRetests(open, good, "five", true, 29 * kDay);
+    open = nextRetests(open, at("five", 29 * kDay), good, true);
     EXPECT_EQ(open[2].due, 89 * kDay);
-    open = nextRetests(open, good, "six", true, 89 * kDay);
+    open = nextRetests(open, at("six", 89 * kDay), good, true);
     ASSERT_EQ(open.size(), 2u) << "the third time it is done with";
-    EXPECT_TRUE(nextRetests({}, good, "x", false, 0).empty());
+    EXPECT_TRUE(nextRetests({}, at("x", 0), good, false).empty());
 }
 
 TEST(Course, WhatCannotBeJudgedSaysSo) {

@@ -19,6 +19,8 @@
 #include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/marking/desk_agreement.h"
 #include "handpiece/app/marking/desk_csv.h"
+#include "handpiece/app/marking/returned_marks.h"
+#include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "support/error_of.h"
 #include "support/random.h"
@@ -490,6 +492,140 @@ TEST(Desk, KilledInTheMiddleOfAChangeLosesNothing) {
         desk.comment(desk.codes()[0], {0, "", "goes on", {}, {}});
     }
     std::printf("killed with a file half written: %d of 40\n", killedInTheMiddle);
+}
+
+TEST(Returned, HoldsWhatTheMarkerSaidAndOfWhichWork) {
+    const test::TemporaryFolder folder;
+    DeskSetup setup = setupIn(folder.path(), false);
+    Desk desk(setup, worksOf(2));
+    const std::string code = desk.codes()[0], unscored = desk.codes()[1];
+    EXPECT_THAT(errorOf([&] { static_cast<void>(returnedMarks(desk, unscored)); }), HasSubstr("no score"));
+    assessment::Result result = resultOf(2.6, 0.8);
+    result.identity = {
+        "e", "00000000000000e1", "00000000000000c1", "00000000000000a1", {"0000000000000001", "0000000000000002"}, true,
+        7};
+    desk.take(0, Scored::of(result));
+    desk.override(code, "depth", {"fair", 30.0, false, "calculus under the probe"});
+    desk.comment(code, {0, "depth", "look \"here\" <b>", core::Vec3(1.5, -2.0, 0.25), 12.5, 0});
+    desk.comment(code, {0, "", "\xe8\x89\xaf\xe3\x81\x84", {}, {}, {}});
+    desk.decide(code, Decision{true, "even walls"});
+    const ReturnedMarks given = returnedMarks(desk, code);
+    const std::string json = returnedJson(given);
+    const ReturnedMarks read = parseReturned(json, "r.json");
+    EXPECT_EQ(returnedJson(read), json);
+    EXPECT_EQ(read.marker, "Tanaka");
+    EXPECT_EQ(read.score, desk.finalScore(code)->score);
+    EXPECT_EQ(read.maxScore, 100.0);
+    EXPECT_EQ(read.passed, score::Passed::yes);
+    EXPECT_EQ(read.decision, "even walls");
+    ASSERT_EQ(read.changes.size(), 1u) << "what stands as the machine has it is not in it";
+    EXPECT_EQ(read.changes[0].criterion, "depth");
+    EXPECT_EQ(read.changes[0].band, "fair");
+    EXPECT_EQ(read.changes[0].points, 30.0);
+    EXPECT_EQ(read.changes[0].maxPoints, 50.0);
+    EXPECT_FALSE(read.changes[0].isCritical);
+    EXPECT_EQ(read.changes[0].reason, "calculus under the probe");
+    ASSERT_EQ(read.comments.size(), 2u);
+    EXPECT_EQ(*read.comments[0].placeMm, core::Vec3(1.5, -2.0, 0.25));
+    EXPECT_EQ(read.comments[0].timeS, 12.5);
+    EXPECT_EQ(read.comments[0].session, 0u);
+    EXPECT_FALSE(read.comments[1].placeMm || read.comments[1].timeS || read.comments[1].session);
+    // Of this work and of no other.
+    EXPECT_TRUE(areOf(read, result.identity));
+    for (const int other : {0, 1, 2}) {
+        score::Identity of = result.identity;
+        if (other == 0) of.exerciseHash[0] = 'f';
+        if (other == 1) of.stateHash[0] = 'f';
+        if (other == 2) of.sessionHashes.pop_back();
+        EXPECT_FALSE(areOf(read, of)) << other;
+    }
+    // The desk keeps which of a chain a comment's time is of.
+    const Desk again(setup, worksOf(2));
+    EXPECT_EQ(again.sheet(code).comments[0].session, 0u);
+    EXPECT_FALSE(again.sheet(code).comments[1].session);
+}
+
+TEST(Returned, OfWhatIsHiddenNothingIsWritten) {
+    const test::TemporaryFolder folder;
+    Desk desk(setupIn(folder.path(), true), worksOf(3));
+    for (std::size_t i = 0; i < 3; ++i)
+        desk.take(i, Scored::of(resultOf(1.75, 1.2)));
+    EXPECT_THAT(errorOf([&] { static_cast<void>(returnedMarks(desk, desk.codes()[0])); }), HasSubstr("hidden yet"));
+}
+
+TEST(Returned, WhatIsDamagedOrHostileIsOneError) {
+    const std::string sound =
+        R"({"handpiece":"returned","format":1,"marker":"a","exercise":"b","exercise_hash":"0123456789abcdef",)"
+        R"("state_hash":"0123456789abcdef","session_hash":[],"rubric":"r","rubric_hash":"0123456789abcdef","score":5,)"
+        R"("max_score":10,"passed":"no","changes":[{"criterion":"d","max_points":4,"points":1,"reason":"x"}],)"
+        R"("comments":[{"text":"t","xyz_mm":[0,0,0],"t_s":1}]})";
+    EXPECT_EQ(parseReturned(sound, "r").changes.size(), 1u);
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string text = sound;
+        text.replace(text.find(from), from.size(), to);
+        return text;
+    };
+    for (const std::string& bad : {std::string(),
+                                   std::string("{}"),
+                                   std::string("[1]"),
+                                   sound.substr(0, sound.size() / 2),
+                                   with("returned", "marking"),
+                                   with(":1,\"marker", ":0,\"marker"),
+                                   with("\"state_hash", "\"state"),
+                                   with("0123456789abcdef", "0123456789ABCDEF"),
+                                   with("0123456789abcdef", "0123"),
+                                   with("\"score\":5", "\"score\":11"),
+                                   with("\"score\":5", "\"score\":1e999"),
+                                   with("\"no\"", "\"perhaps\""),
+                                   with("\"points\":1", "\"points\":-1"),
+                                   with("\"points\":1", "\"points\":5"),
+                                   with("[0,0,0]", "[0,0]"),
+                                   with("[0,0,0]", "[0,0,0,0]"),
+                                   with("[0,0,0]", "[0,0,1e300]"),
+                                   with("[0,0,0]", "\"xyz\""),
+                                   with("\"t_s\":1", "\"t_s\":-1"),
+                                   with("\"t_s\":1", "\"session\":-1"),
+                                   with("\"t_s\":1", "\"session\":1000000000000"),
+                                   with("\"text\":\"t\"", "\"text\":\"" + std::string(4001, 't') + "\""),
+                                   with("\"session_hash\":[]", "\"session_hash\":{\"a\":1}"),
+                                   with(
+                                       "\"session_hash\":[]", "\"session_hash\":[" +
+                                                                  [] {
+                                                                      std::string all = "\"0123456789abcdef\"";
+                                                                      for (int i = 0; i < 1000; ++i)
+                                                                          all += ",\"0123456789abcdef\"";
+                                                                      return all;
+                                                                  }() +
+                                                                  "]"),
+                                   std::string(kMaxReturnedBytes + 1, ' '),
+                                   std::string(100000, '[')})
+        EXPECT_THAT(errorOf([&] { static_cast<void>(parseReturned(bad, "r.json")); }), HasSubstr("no marks"))
+            << bad.substr(0, 400);
+    EXPECT_THAT(errorOf([&] { static_cast<void>(parseReturned(with(":1,\"marker", ":2,\"marker"), "r.json")); }),
+                HasSubstr("format 2"));
+    // Bytes of it changed, taken away, doubled: one error, or marks that come back as they are written.
+    std::mt19937_64 random(test::seed());
+    int isRead = 0;
+    for (int i = 0; i < 20000; ++i) {
+        std::string text = sound;
+        for (std::uint64_t changes = 1 + random() % 3; changes > 0; --changes) {
+            const std::size_t at = random() % text.size();
+            if (random() % 3 == 0)
+                text.erase(at, 1 + random() % 4);
+            else if (random() % 2 == 0)
+                text.insert(at, text.substr(random() % text.size(), 1 + random() % 12));
+            else
+                text[at] = static_cast<char>(random() % 256);
+        }
+        try {
+            const std::string once = returnedJson(parseReturned(text, "r.json"));
+            ASSERT_EQ(returnedJson(parseReturned(once, "r.json")), once) << text;
+            ++isRead;
+        } catch (const core::Error&) {
+            continue;
+        }
+    }
+    EXPECT_GT(isRead, 200) << "else nothing but the library was tried";
 }
 
 TEST(Agreement, OfMarkersMachineAndSelf) {

@@ -71,6 +71,39 @@ TEST_F(TaskFile, ComesBackFromFolderAndPackage) {
     }
 }
 
+TEST_F(TaskFile, TheTeachersOwnWorkComesAlongAndCountsForNothing) {
+    Task task = block();
+    const std::uint64_t hash = contentHash(task);
+    std::vector<std::byte> session(100'000);
+    for (std::size_t i = 0; i < session.size(); ++i)
+        session[i] = static_cast<std::byte>(i * i % 251);
+    task.teacherWork = std::make_shared<const std::vector<std::byte>>(session);
+    EXPECT_EQ(contentHash(task), hash);
+    EXPECT_EQ(taskToml(task).find("teacher"), std::string::npos) << "an attempt is without it";
+    for (const char* name : {"task", "task.handpiece"}) {
+        writeTask(task, folder_ / name);
+        const Task back = readTask(folder_ / name);
+        ASSERT_NE(back.teacherWork, nullptr) << name;
+        EXPECT_EQ(*back.teacherWork, session);
+        // On as it came.
+        writeTask(back, folder_ / "again.handpiece");
+        EXPECT_EQ(*readTask(folder_ / "again.handpiece").teacherWork, session);
+    }
+    EXPECT_EQ(readTask(folder_ / "task").id, task.id);
+    change(folder_ / "task", "teacher.h5", "../teacher.h5");
+    EXPECT_NE(test::errorOf([&] { (void)readTask(folder_ / "task"); }).find("teacher.h5"), std::string::npos);
+    writeTask(task, folder_ / "task");
+    fs::remove(folder_ / "task" / kTeacherWorkFile);
+    EXPECT_NE(test::errorOf([&] { (void)readTask(folder_ / "task"); }).find("not there"), std::string::npos);
+    std::ofstream(folder_ / "task" / kTeacherWorkFile) << "";
+    fs::resize_file(folder_ / "task" / kTeacherWorkFile, kMaxTeacherWorkBytes + 1);
+    EXPECT_NE(test::errorOf([&] { (void)readTask(folder_ / "task"); }), "") << "of any size it is not read";
+    // Without the line a file of this name is nothing.
+    task.teacherWork.reset();
+    writeTask(task, folder_ / "task");
+    EXPECT_EQ(readTask(folder_ / "task").teacherWork, nullptr);
+}
+
 TEST_F(TaskFile, EveryVoxelComesBackBitForBit) {
     // Of 20 to 400 um, 42 whole numbers came back as another number (1000 times .051 is not 51), and with another hash.
     Task task = block();

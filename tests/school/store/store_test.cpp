@@ -97,11 +97,19 @@ TEST_F(StoreTest, GivesBackAllThatWasPutInAlsoToAnotherProgram) {
         store.add(pinned);
         store.add(loose);
     }
+    {
+        Store store(file_);
+        store.see({"place", 1, "cc", "Placed", 1, 1, "/school/placed"});
+        store.see({"place", 1, "cc", "Placed", 2, 2, ""});
+        EXPECT_EQ(store.exercises().back().place, "/school/placed") << "where it was known to be";
+        store.see({"place", 1, "cc", "Placed", 3, 3, "/elsewhere"});
+        EXPECT_EQ(store.exercises().back().place, "/elsewhere");
+    }
     EXPECT_EQ(std::distance(fs::directory_iterator(file_.parent_path()), {}), 1) << "one file";
     EXPECT_EQ(fs::status(file_).permissions(), fs::perms::owner_read | fs::perms::owner_write);
     const Store store(file_);
     const std::vector<Exercise> seen = store.exercises();
-    ASSERT_EQ(seen.size(), 2u);
+    ASSERT_EQ(seen.size(), 3u);
     EXPECT_EQ(seen[0].title, "Block, again");
     EXPECT_EQ(seen[0].version, 2);
     EXPECT_EQ(seen[0].firstSeen, 10);
@@ -169,6 +177,27 @@ TEST_F(StoreTest, RetestsComeWithTheAttemptThatAsksForThemOrNotAtAll) {
     store.add(second, {});
     EXPECT_TRUE(store.retests("class-one-46").empty());
     EXPECT_EQ(store.retests().size(), 1u);
+}
+
+TEST_F(StoreTest, MarksThatComeBackAreKeptOneAMarker) {
+    const Attempt first = attempt();
+    {
+        Store store(file_);
+        store.add(first);
+        store.add(Returned{first.id, "Sato", "{1}", 10});
+        store.add(Returned{first.id, "Mori", "{2}", 20});
+        store.add(Returned{first.id, "Sato", "{3}", 30});
+        EXPECT_NE(test::errorOf([&] { store.add(Returned{"nobody", "Sato", "{}", 40}); }), "");
+    }
+    const Store store(file_);
+    const std::vector<Returned> all = store.returnedOf(first.id);
+    ASSERT_EQ(all.size(), 2u);
+    EXPECT_EQ(all[0].marker, "Mori");
+    EXPECT_EQ(all[1].marks, "{3}") << "the newest in the place of the one before";
+    EXPECT_EQ(all[1].made, 30);
+    EXPECT_TRUE(store.returnedOf("nobody").empty());
+    EXPECT_EQ(store.outbox(0).back().kind, "returned");
+    EXPECT_EQ(store.outbox(0).size(), 4u);
 }
 
 TEST_F(StoreTest, IdsAreOnesOwnAndNothingOfAnAttemptIsHalfStored) {

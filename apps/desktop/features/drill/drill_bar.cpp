@@ -9,6 +9,7 @@
 #include <QPainter>
 #include <QPushButton>
 #include <QRadioButton>
+#include <QScrollBar>
 #include <QSignalBlocker>
 #include <QSlider>
 #include <QSpinBox>
@@ -168,6 +169,10 @@ DrillBar::DrillBar(QWidget* parent) : QWidget(parent) {
         if (const QModelIndex index = best(); index.isValid())
             list_->scrollTo(index,
                             text.isEmpty() ? QAbstractItemView::EnsureVisible : QAbstractItemView::PositionAtTop);
+    });
+    // In a list of another height, as panels come and go, the bur in hand stays in sight.
+    connect(list_->verticalScrollBar(), &QScrollBar::rangeChanged, this, [this] {
+        if (search_->text().isEmpty() && list_->currentIndex().isValid()) list_->scrollTo(list_->currentIndex());
     });
     connect(search_, &QLineEdit::returnPressed, this, [this, best] {
         if (const QModelIndex index = best(); index.isValid()) choose(index.data(BurModel::nameRole).toString());

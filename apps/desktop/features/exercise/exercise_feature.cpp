@@ -176,12 +176,15 @@ void ExerciseFeature::showTick() {
     if (isAtWork) live_.tell(std::accumulate(std::begin(removed), std::end(removed), 0.0));
 }
 
+bool ExerciseFeature::askCode() {
+    if (!simulator_.code().isEmpty()) return true;
+    const std::optional<QString> code = questions.student(simulator_.code());
+    if (code) takeCode(*code);
+    return code.has_value();
+}
+
 void ExerciseFeature::handIn() {
-    if (simulator_.code().isEmpty() && simulator_.exercise() != nullptr) {
-        const std::optional<QString> code = questions.student(simulator_.code());
-        if (!code) return;
-        takeCode(*code);
-    }
+    if (simulator_.exercise() != nullptr && !askCode()) return;
     QString name = QString::fromStdString(simulator_.document().name);
     if (!simulator_.code().isEmpty()) name += QLatin1Char('-') + simulator_.code();
     const QString file =

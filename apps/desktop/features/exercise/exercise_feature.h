@@ -35,6 +35,9 @@ class ExerciseFeature : public Feature {
 
     Questions questions;
 
+    /// Asks for the student's code where there is none yet; false: cancelled. Who gives none has none.
+    [[nodiscard]] bool askCode();
+
   protected:
     bool eventFilter(QObject* watched, QEvent* event) override;
 

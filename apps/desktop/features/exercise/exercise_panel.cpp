@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "desktop/features/exercise/exercise_panel.h"
 
+#include <QHBoxLayout>
 #include <QLabel>
 #include <QLocale>
 #include <QProgressBar>
@@ -29,13 +30,20 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
     };
     title_ = text("exerciseTitle", tr("Title of the exercise"));
     title_->setFont(scaledFont(font(), 1.15, true));
+    // Over the instructions, which may be longer than the panel is high.
+    auto* ending = new QHBoxLayout;
+    clock_ = note({}, this, "exerciseClock");
+    clock_->setAccessibleName(tr("Time worked"));
+    ending->addWidget(clock_, 1);
+    finish_ = named(new QPushButton(tr("Finish"), this), "exerciseFinish", tr("Finish"),
+                    tr("Your work on this exercise is done: it is judged, and you see why"));
+    ending->addWidget(finish_, 1);
+    column->addLayout(ending);
+    connect(finish_, &QPushButton::clicked, this, &ExercisePanel::finishRequested);
     instructions_ = text("exerciseInstructions", tr("What to do"));
     locked_ = note({}, this, "exerciseLocked");
     locked_->setTextFormat(Qt::PlainText);
     column->addWidget(locked_);
-    clock_ = note({}, this, "exerciseClock");
-    clock_->setAccessibleName(tr("Time worked"));
-    column->addWidget(clock_);
     live_ = new QWidget(this);
     auto* live = new QVBoxLayout(live_);
     live->setContentsMargins(0, 0, 0, 0);
@@ -48,10 +56,6 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
     beyond_ = note({}, live_, "exerciseBeyond");
     live->addWidget(beyond_);
     column->addWidget(live_);
-    finish_ = named(new QPushButton(tr("Finish"), this), "exerciseFinish", tr("Finish"),
-                    tr("Your work on this exercise is done: it is judged, and you see why"));
-    column->addWidget(finish_);
-    connect(finish_, &QPushButton::clicked, this, &ExercisePanel::finishRequested);
     review_ = new QWidget(this);
     recordings_ = new QVBoxLayout(review_);
     recordings_->setContentsMargins(0, 0, 0, 0);

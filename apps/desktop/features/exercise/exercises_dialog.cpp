@@ -11,6 +11,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "desktop/features/exercise/assessment_words.h"
 #include "desktop/framework/helps.h"
@@ -179,13 +180,7 @@ void ExercisesDialog::chooseAfter(const std::string& id) {
 
 void ExercisesDialog::giveUp() {
     if (!job_) return;
-    // It goes once it has heard of it: nobody waits.
-    job_->disconnect(this);
-    job_->cancel();
-    for (const auto end : {&Job::done, &Job::cancelled})
-        connect(job_, end, job_, &QObject::deleteLater);
-    connect(job_, &Job::failed, job_, &QObject::deleteLater);
-    job_ = nullptr;
+    std::exchange(job_, nullptr)->abandon(this);
     progress_->hide();
 }
 
@@ -267,6 +262,14 @@ void ExercisesDialog::makeIdeal() {
             view_->setParts(ideal_, box);
             view_->setCaption(tr("The ideal: drag to turn it"), false);
             view_->lookFrom(view::StandardView::oblique, task_->toothCase.buccalSign);
+            // As one begins: a cavity on the far side would not be seen.
+            if (const auto& exercise = task_->toothCase.exercise; exercise && exercise->view) {
+                view::Camera camera;
+                camera.eyeMm = exercise->view->eyeMm;
+                camera.targetMm = exercise->view->targetMm;
+                camera.up = exercise->view->up;
+                view_->setCamera(camera);
+            }
         });
 }
 

@@ -3,17 +3,22 @@
 
 #include <QDateTime>
 #include <QFileDialog>
+#include <QFileInfo>
+#include <QLocale>
 #include <utility>
 
 #include "desktop/features/exercise/assessment_words.h"
+#include "desktop/features/exercise/exercise_feature.h"
 #include "desktop/features/exercise/exercises_dialog.h"
 #include "desktop/features/exercise/progress_dialog.h"
 #include "desktop/work/simulator.h"
 #include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/app/assessment/recording.h"
 #include "handpiece/app/course/retest.h"
 #include "handpiece/app/report/assessment_pictures.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/model/case/attempt.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -42,8 +47,9 @@ constexpr double kBeforeS = 1.5, kAfterS = 1.5, kEyeMm = 26.0;
 
 }  // namespace
 
-PracticeFeature::PracticeFeature(const FeatureContext& context)
+PracticeFeature::PracticeFeature(const FeatureContext& context, ExerciseFeature& exercise)
     : Feature(context),
+      exercise_(exercise),
       commands_(window_.commands(), kCommands),
       exercises_(new ExercisesDialog(simulator_.folders().starters, &window_)),
       result_(new ResultDialog(&window_)),
@@ -74,6 +80,11 @@ PracticeFeature::PracticeFeature(const FeatureContext& context)
     connect(&glass_, &ZoneGlass::refused, &window_, &MainWindow::showProblem);
     commands.enableWhile(commands_[Command::result], [this] { return done_ != nullptr; });
     connect(&simulator_, &Simulator::finished, this, &PracticeFeature::take);
+    window_.openersBeside.push_back([this](const QFileInfo& info) {
+        if (!info.isFile() || info.suffix().compare(QLatin1String("json"), Qt::CaseInsensitive) != 0) return false;
+        takeReturned(toPath(info.absoluteFilePath()));
+        return true;
+    });
     window_.openers.push_back([this](const QString& file) {
         try {
             if (!tasks::isTask(toPath(file))) return false;
@@ -105,9 +116,17 @@ void PracticeFeature::openDialogs() {
     });
     connect(result_, &ResultDialog::judged, this, [this](const OwnJudgement& own) { keep(own); });
     connect(result_, &ResultDialog::evidenceChosen, this, &PracticeFeature::showEvidence);
+    connect(result_, &ResultDialog::teacherWorkRequested, this, &PracticeFeature::showTeacherWork);
     connect(result_, &ResultDialog::pageRequested, this, &PracticeFeature::savePage);
     connect(result_, &ResultDialog::againRequested, this, &PracticeFeature::again);
-    connect(progress_, &ProgressDialog::resultRequested, this, &PracticeFeature::openResult);
+    connect(result_, &ResultDialog::handInRequested, this, &PracticeFeature::handIn);
+    connect(progress_, &ProgressDialog::resultRequested, this, [this](const QString& id) { openResult(id); });
+    connect(progress_, &ProgressDialog::handInRequested, this,
+            [this](const QString& id) { openResult(id, [this] { handIn(); }); });
+    connect(progress_, &ProgressDialog::returnedRequested, this, [this] {
+        const QString file = window_.questions.open(tr("Marks from your teacher"), tr("Marks (*.json);;All files (*)"));
+        if (!file.isEmpty()) takeReturned(toPath(file));
+    });
     connect(result_, &ResultDialog::nextRequested, this, [this] {
         readDue();
         exercises_->show();
@@ -152,17 +171,6 @@ void PracticeFeature::readDue() {
     }
 }
 
-std::vector<school::Retest> PracticeFeature::retestsAfter(const school::Attempt& attempt) {
-    std::vector<course::DueCriterion> open;
-    for (school::Retest& one : store_->retests(attempt.exercise))
-        open.push_back({std::move(one.criterion), std::move(one.attempt), one.step, one.due});
-    std::vector<school::Retest> retests;
-    for (course::DueCriterion& one : course::nextRetests(std::move(open), done_->work.result.assessment, attempt.id,
-                                                         isUnaided(*done_->work.task), attempt.finished))
-        retests.push_back({attempt.exercise, std::move(one.criterion), std::move(one.attempt), one.step, one.due});
-    return retests;
-}
-
 void PracticeFeature::showDocument() {
     stopAtS_.reset();
     const auto& task = simulator_.task();
@@ -177,8 +185,10 @@ void PracticeFeature::showDocument() {
         const auto now = QDateTime::currentMSecsSinceEpoch();
         const QString title = task->toothCase.exercise ? inThisLanguage(task->toothCase.exercise->title) : QString();
         try {
+            // An attempt that is resumed is not where its exercise is.
+            const fs::path& path = simulator_.document().taskPath;
             kept->see({task->id, task->version, rubric::hashText(tasks::contentHash(*task)), title.toStdString(), now,
-                       now, simulator_.document().taskPath.string()});
+                       now, cases::isAttempt(path) ? std::string() : path.string()});
         } catch (const core::Error& error) {
             window_.showProblem(problemOf(error));
         }
@@ -238,7 +248,8 @@ void PracticeFeature::keep() {
     attempt.limitS = 60.0 * done_->work.task->minutes.value_or(0.0);
     attempt.result = assessment::resultJson(result.assessment, result.identity);
     try {
-        kept->add(attempt, retestsAfter(attempt));
+        kept->add(attempt, course::nextRetests(kept->retests(attempt.exercise), attempt, result.assessment,
+                                               isUnaided(*done_->work.task)));
         attempt_ = attempt.id;
         simulator_.forget(*done_);
     } catch (const core::Error& error) {
@@ -257,7 +268,7 @@ void PracticeFeature::keep(const OwnJudgement& own) {
     }
 }
 
-void PracticeFeature::openResult(const QString& id) {
+void PracticeFeature::openResult(const QString& id, std::function<void()> then) {
     school::Store* kept = store();
     if (!kept || older_) return;
     std::optional<school::Attempt> attempt;
@@ -300,9 +311,10 @@ void PracticeFeature::openResult(const QString& id) {
             done->workedS = attempt->workedS;
         },
         this);
-    connect(older_, &Job::done, this, [this, done, attempt] {
+    connect(older_, &Job::done, this, [this, done, attempt, then = std::move(then)] {
         std::exchange(older_, nullptr)->deleteLater();
         showOlder(*attempt, done);
+        if (then) then();
     });
     connect(older_, &Job::failed, this, [this](const Problem& problem) {
         std::exchange(older_, nullptr)->deleteLater();
@@ -317,30 +329,91 @@ void PracticeFeature::showOlder(const school::Attempt& attempt, std::shared_ptr<
     result_->setResult(done_, nullptr, false);
     std::optional<OwnJudgement> own;
     std::vector<school::Comment> comments;
+    std::vector<marking::ReturnedMarks> returned;
     try {
         if (const auto said = store_->judgementOf(attempt.id))
             own = OwnJudgement{said->percent, QString::fromStdString(said->words)};
         comments = store_->commentsOn(attempt.id);
+        for (const school::Returned& one : store_->returnedOf(attempt.id))
+            returned.push_back(marking::parseReturned(one.marks, "results.db"));
     } catch (const core::Error& error) {
         window_.showProblem(problemOf(error));
     }
-    result_->setSaid(std::move(own), std::move(comments));
-    if (done_->work.task->preparation) makeIdeal();
+    result_->setSaid(std::move(own), comments, std::move(returned));
+    makeIdeal();
     result_->show();
     result_->raise();
     result_->activateWindow();
 }
 
+/// Kept with the attempt that they are of, and shown.
+void PracticeFeature::takeReturned(const fs::path& file) {
+    school::Store* kept = store();
+    if (!kept) return;
+    try {
+        const std::vector<std::byte> bytes = core::readFile(file, marking::kMaxReturnedBytes);
+        const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        const marking::ReturnedMarks marks = marking::parseReturned(text, file.string());
+        std::string of;
+        for (const school::Attempt& attempt : kept->attempts(marks.exercise))
+            if (areOf(marks, assessment::parseResult(attempt.result, "results.db").identity)) of = attempt.id;
+        if (of.empty())
+            throw core::Error("these marks are of no work that was finished here", file.string(),
+                              "open them where that work was finished")
+                .as("returned-of-another", {marks.exercise});
+        kept->add(school::Returned{of, marks.marker, text, QDateTime::currentMSecsSinceEpoch()});
+        openResult(QString::fromStdString(of));
+    } catch (const core::Error& error) {
+        window_.showProblem(problemOf(error));
+    }
+}
+
+/// And what else there is to look at beside one's own work.
 void PracticeFeature::makeIdeal() {
-    const auto ideal = std::make_shared<course::Parts>();
-    ideal_ = std::make_unique<Job>(tr("Cutting the ideal"),
-                                   [ideal, task = done_->work.task](const core::Progress& progress) {
-                                       *ideal = course::idealOf(*task, progress);
-                                   });
-    connect(ideal_.get(), &Job::done, this, [this, ideal, of = done_] {
-        if (done_ == of) result_->setIdeal(*ideal);
+    struct Beside {
+        course::Parts ideal;
+        std::shared_ptr<const std::vector<std::byte>> teacherWork;
+    };
+    teacherWork_.reset();
+    teacherFolder_.reset();
+    const auto beside = std::make_shared<Beside>();
+    ideal_ = std::make_unique<Job>(
+        tr("Cutting the ideal"), [beside, task = done_->work.task, from = done_->taskPath,
+                                  place = placeOf(*done_->work.task)](const core::Progress& progress) {
+            beside->teacherWork = task->teacherWork;
+            // What was resumed from an attempt came without it.
+            if (!beside->teacherWork && !place.empty() && place != from && core::isThere(place)) {
+                try {
+                    if (const tasks::Task there = tasks::readTask(place);
+                        tasks::contentHash(there) == tasks::contentHash(*task))
+                        beside->teacherWork = there.teacherWork;
+                } catch (const core::Error&) {
+                    beside->teacherWork.reset();  // it is another file by now
+                }
+            }
+            beside->ideal = course::idealOf(*task, progress);
+        });
+    connect(ideal_.get(), &Job::done, this, [this, beside, of = done_] {
+        if (done_ != of) return;
+        teacherWork_ = beside->teacherWork;
+        result_->setHasTeacherWork(teacherWork_ != nullptr);
+        result_->setIdeal(beside->ideal);
     });
     ideal_->start();
+}
+
+/// Of the exercise's folder or file when it was seen last; empty: not known.
+fs::path PracticeFeature::placeOf(const tasks::Task& task) {
+    fs::path place;
+    try {
+        if (school::Store* kept = store())
+            for (const school::Exercise& exercise : kept->exercises())
+                if (exercise.id == task.id && exercise.hash == rubric::hashText(tasks::contentHash(task)))
+                    place = exercise.place;
+    } catch (const core::Error& error) {
+        window_.showProblem(problemOf(error));
+    }
+    return place;
 }
 
 void PracticeFeature::turnTo(const core::Vec3& placeMm) {
@@ -361,13 +434,17 @@ void PracticeFeature::showEvidence(const measures::Evidence& evidence) {
     const std::vector<assessment::Recording>& chain = done_->work.work.recordings;
     const fs::path session =
         evidence.timeS && evidence.session < chain.size() ? chain[evidence.session].path : done_->work.session;
-    if (session.empty()) return;  // its recording is no longer kept, which the result tells
+    if (!session.empty()) show(session, evidence, false);  // else it is no longer kept, which the result tells
+}
+
+/// Opened where another lies open.
+void PracticeFeature::show(const fs::path& session, const measures::Evidence& evidence, bool playsWhole) {
     if (simulator_.mode() != Simulator::Mode::replay || simulator_.document().caseFile != session) {
-        window_.whenMayLeave([this, session, evidence] {
+        window_.whenMayLeave([this, session, evidence, playsWhole] {
             simulator_.open(session);
-            simulator_.whenFree([this, session, evidence] {
+            simulator_.whenFree([this, session, evidence, playsWhole] {
                 if (simulator_.mode() == Simulator::Mode::replay && simulator_.document().caseFile == session)
-                    showEvidence(evidence);
+                    show(session, evidence, playsWhole);
             });
         });
         return;
@@ -381,9 +458,39 @@ void PracticeFeature::showEvidence(const measures::Evidence& evidence) {
         simulator_.play(true);
     } else {
         stopAtS_.reset();
-        simulator_.play(false);
-        simulator_.seek(endS);
+        simulator_.seek(playsWhole ? 0.0 : endS);
+        simulator_.play(playsWhole);
     }
+}
+
+/// When the teacher's bur cut at this place, where it did.
+void PracticeFeature::showTeacherWork(const std::optional<measures::Evidence>& at) {
+    if (!teacherWork_ || findingTeacher_) return;
+    const auto there = std::make_shared<measures::Evidence>();
+    if (at) there->placeMm = at->placeMm;
+    if (!teacherFolder_) teacherFolder_ = std::make_shared<const core::PrivateFolder>();
+    const fs::path session = teacherFolder_->path() / tasks::kTeacherWorkFile;
+    findingTeacher_ = new Job(
+        tr("Looking into your teacher's work"),
+        [there, session, work = teacherWork_, voxelMm = done_->work.task->voxelMm](const core::Progress& progress) {
+            if (!core::isThere(session)) core::writeFile(session, *work, {true, false});
+            if (!there->placeMm) return;
+            std::vector<measures::Measured> place(1);
+            place.front().evidence.push_back(*there);
+            const assessment::Recording recording{session, session.filename().string(), {}, {}};
+            static_cast<void>(assessment::readRecord(std::span(&recording, 1), place, voxelMm, {}, {}, progress));
+            *there = place.front().evidence.front();
+        },
+        this);
+    connect(findingTeacher_, &Job::done, this, [this, there, session, folder = teacherFolder_] {
+        std::exchange(findingTeacher_, nullptr)->deleteLater();
+        if (folder == teacherFolder_) show(session, *there, true);
+    });
+    connect(findingTeacher_, &Job::failed, this, [this](const Problem& problem) {
+        std::exchange(findingTeacher_, nullptr)->deleteLater();
+        window_.showProblem(problem);
+    });
+    findingTeacher_->start();
 }
 
 QString PracticeFeature::bestOf(const std::string& id) {
@@ -421,35 +528,72 @@ void PracticeFeature::showProgress() {
     progress_->raise();
 }
 
+/// Beside everything else, one thing at a time; `told` once it is there.
+void PracticeFeature::write(const QString& title, const QString& told, const QString& file, Job::Work work) {
+    if (file.isEmpty() || writing_) return;
+    result_->setNote(title, true);
+    writing_ = new Job(title, std::move(work), this);
+    const auto end = [this](const QString& words) {
+        std::exchange(writing_, nullptr)->deleteLater();
+        result_->setNote(words);
+    };
+    connect(writing_, &Job::done, this, [this, end, file, told] {
+        end(told);
+        window_.tellSaved(file);
+    });
+    connect(writing_, &Job::failed, this, [this, end](const Problem& problem) {
+        end(QStringList{problem.what, problem.remedy}.join(QLatin1Char(' ')).trimmed());
+        window_.showProblem(problem);
+    });
+    writing_->start();
+}
+
 void PracticeFeature::savePage() {
-    if (!done_ || page_) return;
+    if (!done_ || writing_) return;
     const QString file =
         window_.questions.save(tr("Save the result"), QString::fromStdString(done_->work.task->id) + ".html",
                                tr("Page (*.html)"), QStringLiteral(".html"));
-    if (file.isEmpty()) return;
-    page_ = new Job(
-        tr("Writing the page"),
+    write(
+        tr("Writing the page"), tr("Written: %1").arg(file), file,
         [done = done_, path = toPath(file)](const core::Progress& progress) {
             const course::FinishedWork& work = done->work;
             const report::AssessmentPictures pictures =
                 report::assessmentPictures(*work.task, work.work.teeth, work.work.state, work.result.assessment, {},
                                            core::part(progress, 0.0, 0.9));
             core::writeFile(path, report::studentReport(work.result, *work.task, work.rubric, pictures), {true, true});
-        },
-        this);
-    const auto end = [this] {
-        page_->deleteLater();
-        page_ = nullptr;
-    };
-    connect(page_, &Job::done, this, [this, end, file] {
-        end();
-        window_.tellSaved(file);
+        });
+}
+
+void PracticeFeature::handIn() {
+    if (!done_ || writing_) return;
+    if (done_->work.work.teeth.empty()) return window_.showProblem(problemById(QStringLiteral("nothing-to-hand-in")));
+    if (!exercise_.askCode()) return;
+    course::HandInWords words;
+    words.student = simulator_.code().toStdString();
+    try {
+        if (school::Store* kept = attempt_.empty() ? nullptr : store())
+            if (const auto own = kept->judgementOf(attempt_)) {
+                words.expectedPercent = own->percent;
+                words.expectedWords = own->words;
+            }
+    } catch (const core::Error& error) {
+        return window_.showProblem(problemOf(error));
+    }
+    QString name = QString::fromStdString(done_->work.task->id);
+    if (!simulator_.code().isEmpty()) name += QLatin1Char('-') + simulator_.code();
+    const QString file =
+        window_.questions.save(tr("Hand in"), name + QStringLiteral(".handpiece"),
+                               tr("Attempt with its tooth (*.handpiece)"), QStringLiteral(".handpiece"));
+    const std::size_t recordings = done_->work.work.recordings.size();
+    const QString told =
+        recordings > 0 ? tr("Handed in: %1, with its tooth. Recordings in it: %2. Give this file to your teacher.")
+                             .arg(file, QLocale().toString(recordings))
+                       : tr("Handed in: %1, with its tooth. No recordings are in it, because one of them is missing. "
+                            "Give this file to your teacher.")
+                             .arg(file);
+    write(tr("Handing in"), told, file, [done = done_, words, path = toPath(file)](const core::Progress&) {
+        course::handIn(done->work, words, path);
     });
-    connect(page_, &Job::failed, this, [this, end](const Problem& problem) {
-        end();
-        window_.showProblem(problem);
-    });
-    page_->start();
 }
 
 }  // namespace handpiece::desktop

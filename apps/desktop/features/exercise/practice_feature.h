@@ -3,6 +3,7 @@
 /// @file
 /// A student's way: choose an exercise, work on it, finish, see the result and why, again or the next; how it went on.
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -10,10 +11,12 @@
 #include "desktop/features/exercise/result_dialog.h"
 #include "desktop/framework/feature.h"
 #include "desktop/work/zone_glass.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/school/store/store.h"
 
 namespace handpiece::desktop {
 
+class ExerciseFeature;
 class ExercisesDialog;
 class ProgressDialog;
 
@@ -21,7 +24,8 @@ class PracticeFeature : public Feature {
     Q_OBJECT
   public:
     enum class Command { exercises, finish, zones, result, progress };
-    explicit PracticeFeature(const FeatureContext& context);
+    /// It asks `exercise` for the student's code.
+    PracticeFeature(const FeatureContext& context, ExerciseFeature& exercise);
     void showDocument() override;
     void showTick() override;
 
@@ -33,20 +37,26 @@ class PracticeFeature : public Feature {
     void begin(const std::filesystem::path& path, bool unaided = false);
     void again();
     void readDue();
-    [[nodiscard]] std::vector<school::Retest> retestsAfter(const school::Attempt& attempt);
-    void openResult(const QString& attempt);
+    void openResult(const QString& attempt, std::function<void()> then = {});
     void showOlder(const school::Attempt& attempt, std::shared_ptr<const Simulator::Finished> done);
     void take(const Simulator::Finished& done);
     void keep();
     void keep(const OwnJudgement& own);
     void showEvidence(const measures::Evidence& evidence);
+    void show(const std::filesystem::path& session, const measures::Evidence& evidence, bool playsWhole);
+    void showTeacherWork(const std::optional<measures::Evidence>& at);
     void turnTo(const core::Vec3& placeMm);
+    void write(const QString& title, const QString& told, const QString& file, Job::Work work);
     void savePage();
+    void handIn();
+    void takeReturned(const std::filesystem::path& file);
     void showProgress();
     [[nodiscard]] QString bestOf(const std::string& id);
     void makeIdeal();
+    [[nodiscard]] std::filesystem::path placeOf(const tasks::Task& task);
     void showZones();
 
+    ExerciseFeature& exercise_;
     CommandSet<Command> commands_;
     std::unique_ptr<school::Store> store_;
     ExercisesDialog* exercises_;
@@ -56,10 +66,14 @@ class PracticeFeature : public Feature {
     std::string attempt_;            ///< its id in the store; empty: it could not be kept
     std::optional<double> stopAtS_;  ///< the replay
     std::unique_ptr<Job> ideal_;
-    Job* page_ = nullptr;                                  ///< being written
+    Job* writing_ = nullptr;                               ///< a page, a hand-in
     Job* older_ = nullptr;                                 ///< a result of before, on its way
     std::map<std::string, std::vector<std::string>> due_;  ///< criteria by exercise
     ZoneGlass glass_;
+    /// Of the exercise whose result is shown.
+    std::shared_ptr<const std::vector<std::byte>> teacherWork_;
+    std::shared_ptr<const core::PrivateFolder> teacherFolder_;  ///< in which it lies, once it is played
+    Job* findingTeacher_ = nullptr;
 };
 
 }  // namespace handpiece::desktop

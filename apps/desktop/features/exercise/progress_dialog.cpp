@@ -3,6 +3,7 @@
 
 #include <QComboBox>
 #include <QDateTime>
+#include <QHBoxLayout>
 #include <QHeaderView>
 #include <QLabel>
 #include <QLocale>
@@ -116,11 +117,27 @@ ProgressDialog::ProgressDialog(QWidget* parent)
     column->addWidget(table_, 2);
     open_ = named(new QPushButton(tr("Open the result"), this), "progressOpen", tr("Open the result"),
                   tr("See it again: why, the page, and the seconds where its recording is kept"));
-    column->addWidget(open_, 0, Qt::AlignRight);
+    handIn_ = named(new QPushButton(tr("Hand in..."), this), "progressHandIn", tr("Hand in..."),
+                    tr("One file for your teacher, as long as its recordings are kept"));
+    auto* below = new QHBoxLayout;
+    auto* returned =
+        named(new QPushButton(tr("Marks from your teacher..."), this), "progressReturned",
+              tr("Marks from your teacher..."), tr("Open the file that your teacher gave back: comments and points"));
+    connect(returned, &QPushButton::clicked, this, &ProgressDialog::returnedRequested);
+    below->addWidget(returned);
+    below->addStretch();
+    below->addWidget(handIn_);
+    below->addWidget(open_);
+    column->addLayout(below);
+    connect(handIn_, &QPushButton::clicked, this, [this] {
+        if (const QString id = chosen(); !id.isEmpty()) emit handInRequested(id);
+    });
     connect(open_, &QPushButton::clicked, this, &ProgressDialog::openChosen);
     connect(table_, &QTableWidget::cellDoubleClicked, this, &ProgressDialog::openChosen);
-    connect(table_, &QTableWidget::itemSelectionChanged, this,
-            [this] { open_->setEnabled(table_->currentRow() >= 0); });
+    connect(table_, &QTableWidget::itemSelectionChanged, this, [this] {
+        for (QPushButton* button : {open_, handIn_})
+            button->setEnabled(table_->currentRow() >= 0);
+    });
     resize(700, 640);
     connect(exercise_, &QComboBox::currentIndexChanged, this, &ProgressDialog::showExercise);
 }
@@ -144,9 +161,13 @@ void ProgressDialog::setResults(std::vector<school::Exercise> exercises, std::ve
     showExercise(exercise_->currentIndex());
 }
 
+QString ProgressDialog::chosen() const {
+    const QTableWidgetItem* item = table_->item(table_->currentRow(), 0);
+    return item ? item->data(Qt::UserRole).toString() : QString();
+}
+
 void ProgressDialog::openChosen() {
-    if (const QTableWidgetItem* item = table_->item(table_->currentRow(), 0))
-        emit resultRequested(item->data(Qt::UserRole).toString());
+    if (const QString id = chosen(); !id.isEmpty()) emit resultRequested(id);
 }
 
 void ProgressDialog::showExercise(int row) {
@@ -167,7 +188,8 @@ void ProgressDialog::showExercise(int row) {
     note_->setVisible(!note_->text().isEmpty());
     table_->clearSelection();
     table_->setCurrentItem(nullptr);
-    open_->setEnabled(false);
+    for (QPushButton* button : {open_, handIn_})
+        button->setEnabled(false);
     table_->setRowCount(static_cast<int>(of.size()));
     const QLocale locale;
     for (std::size_t i = 0; i < of.size(); ++i) {

@@ -51,16 +51,21 @@ class ProgressDialog : public QDialog {
   signals:
     /// One's result of before, to be seen again.
     void resultRequested(const QString& attempt);
+    /// The same, to be handed in.
+    void handInRequested(const QString& attempt);
+    /// A teacher's marks, out of a file.
+    void returnedRequested();
 
   private:
     void showExercise(int row);
+    [[nodiscard]] QString chosen() const;
     void openChosen();
 
     std::vector<school::Attempt> attempts_;
     QComboBox* exercise_;
     ProgressCurve* curve_;
     QTableWidget* table_;
-    QPushButton* open_;
+    QPushButton *open_, *handIn_;
     QLabel* note_;
 };
 

@@ -14,6 +14,7 @@
 #include <QStackedWidget>
 #include <QTableWidget>
 #include <QVBoxLayout>
+#include <algorithm>
 
 #include "desktop/features/exercise/assessment_words.h"
 #include "desktop/picture/solid_view.h"
@@ -83,6 +84,7 @@ QWidget* ResultDialog::makeResult() {
     title_ = text("resultTitle", tr("Exercise"));
     score_ = text("resultScore", tr("Score"));
     score_->setFont(scaledFont(font(), 1.5, true));
+    teacher_ = text("resultTeacher", tr("What your teacher says"));
     why_ = text("resultWhy", tr("Why"));
     time_ = text("resultTime", tr("Time"));
     compared_ = text("resultOwnJudgement", tr("Your own judgement"));
@@ -95,13 +97,14 @@ QWidget* ResultDialog::makeResult() {
     table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
     table_->horizontalHeader()->setSectionResizeMode(criterion, QHeaderView::Stretch);
     table_->verticalHeader()->hide();
+    table_->verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
     table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     table_->setSelectionBehavior(QAbstractItemView::SelectRows);
     table_->setWordWrap(true);
     left->addWidget(table_, 1);
     connect(table_, &QTableWidget::cellClicked, this, [this](int row, int) {
         const auto& all = done_->work.result.assessment.criteria;
-        if (const auto* e = evidenceOf(all[static_cast<std::size_t>(row)])) emit evidenceChosen(*e);
+        if (const auto* e = evidenceOf(all[static_cast<std::size_t>(row)])) lookAt(*e);
     });
     comments_ = named(new QListWidget(page), "resultComments", tr("Your teacher's comments"),
                       tr("A click on a comment turns the eye to its place and plays its seconds"));
@@ -109,14 +112,7 @@ QWidget* ResultDialog::makeResult() {
     comments_->setWordWrap(true);
     left->addWidget(comments_);
     connect(comments_, &QListWidget::itemClicked, this, [this](const QListWidgetItem* item) {
-        const school::Comment& said = said_[static_cast<std::size_t>(comments_->row(item))];
-        if (!said.placeMm && !said.timeS) return;
-        measures::Evidence there;
-        there.placeMm = said.placeMm;
-        there.timeS = said.timeS;
-        // Of a chain a teacher sees the last session.
-        there.session = std::max<std::size_t>(1, done_->work.work.recordings.size()) - 1;
-        emit evidenceChosen(there);
+        if (const auto& there = saidOf_[static_cast<std::size_t>(comments_->row(item))]) lookAt(*there);
     });
     proof_ = note({}, page, "resultProof");
     left->addWidget(proof_);
@@ -148,6 +144,14 @@ QWidget* ResultDialog::makeResult() {
     };
     page_ = push("resultPage", tr("Save as a page..."), tr("One HTML page to keep or to print"),
                  &ResultDialog::pageRequested);
+    handIn_ = push("resultHandIn", tr("Hand in..."),
+                   tr("One file for your teacher: the tooth, all that was recorded, the result, and what you expected"),
+                   &ResultDialog::handInRequested);
+    teacherWork_ =
+        push("resultTeacherWork", tr("Teacher's work"),
+             tr("Play your teacher's own work on the same tooth: the seconds at the place that you looked at "
+                "last, or from its beginning"),
+             [this] { emit teacherWorkRequested(lookedAt_); });
     below->addStretch();
     push("resultAgain", tr("Again"), tr("Begin the same exercise anew"), &ResultDialog::againRequested);
     push("resultNext", tr("Next"), tr("Choose the next exercise"), &ResultDialog::nextRequested);
@@ -156,6 +160,8 @@ QWidget* ResultDialog::makeResult() {
     row->addLayout(right, 2);
     auto* column = new QVBoxLayout(page);
     column->addLayout(row, 1);
+    note_ = note({}, page, "resultNote");
+    column->addWidget(note_);
     column->addLayout(below);
     return page;
 }
@@ -164,35 +170,115 @@ void ResultDialog::setResult(std::shared_ptr<const Simulator::Finished> done, co
     done_ = std::move(done);
     ideal_ = std::move(ideal);
     own_.reset();
-    said_.clear();
+    comments_->clear();
+    saidOf_.clear();
+    returned_.clear();
     isAsking_ = asksFirst;
+    lookedAt_.reset();
+    setHasTeacherWork(false);
+    setNote({}, isWriting_);
     percent_->setValue(50);
     words_->clear();
     fill();
     pages_->setCurrentIndex(asksFirst ? 0 : 1);
 }
 
-void ResultDialog::setSaid(std::optional<OwnJudgement> own, std::vector<school::Comment> comments) {
+void ResultDialog::setSaid(std::optional<OwnJudgement> own, const std::vector<school::Comment>& comments,
+                           std::vector<marking::ReturnedMarks> returned) {
     own_ = std::move(own);
-    said_ = std::move(comments);
+    returned_ = std::move(returned);
+    comments_->clear();
+    saidOf_.clear();
+    const auto place = [this](const std::optional<core::Vec3>& placeMm, const std::optional<double>& timeS,
+                              const std::optional<std::size_t>& session) {
+        std::optional<measures::Evidence> there;
+        if (!placeMm && !timeS) return there;
+        there.emplace();
+        there->placeMm = placeMm;
+        there->timeS = timeS;
+        // Where nobody says so a teacher has seen the last of a chain.
+        const std::size_t last = std::max<std::size_t>(1, done_->work.work.recordings.size()) - 1;
+        there->session = std::min(last, session.value_or(last));
+        return there;
+    };
+    const rubric::Rubric& rubric = done_->work.rubric;
+    for (const school::Comment& c : comments)
+        say(QString::fromStdString(c.words), c.author, place(c.placeMm, c.timeS, {}));
+    for (const marking::ReturnedMarks& marks : returned_) {
+        for (const marking::ReturnedMarks::Change& c : marks.changes) {
+            QStringList now;
+            if (c.points) now << tr("%1 points").arg(pointsWords(*c.points, c.maxPoints));
+            if (!c.band.empty()) now << bandTitle(rubric, c.band);
+            if (c.isCritical) now << tr("critical error");
+            const auto& all = done_->work.result.assessment.criteria;
+            const auto of = std::find_if(all.begin(), all.end(),
+                                         [&](const score::CriterionScore& one) { return one.id == c.criterion; });
+            const measures::Evidence* there = of == all.end() ? nullptr : evidenceOf(*of);
+            say(tr("%1: %2. %3")
+                    .arg(titleOf(rubric, c.criterion), now.join(QStringLiteral(", ")),
+                         QString::fromStdString(c.reason)),
+                marks.marker, there ? std::optional(*there) : std::nullopt);
+        }
+        for (const marking::Comment& c : marks.comments) {
+            const QString words = QString::fromStdString(c.text);
+            say(c.criterion.empty() ? words : tr("%1: %2").arg(titleOf(rubric, c.criterion), words), marks.marker,
+                place(c.placeMm, c.timeS, c.session));
+        }
+    }
     fill();
 }
 
-void ResultDialog::fillComments() {
-    comments_->clear();
-    for (const school::Comment& said : said_) {
-        QString words = QString::fromStdString(said.words);
-        if (!said.author.empty()) words = QString::fromStdString(said.author) + QStringLiteral(": ") + words;
-        if (said.timeS) words += QLatin1Char(' ') + tr("(%1 s)").arg(QLocale().toString(*said.timeS, 'f', 1));
-        comments_->addItem(words);
+/// A row of the teachers' list.
+void ResultDialog::say(QString words, const std::string& author, std::optional<measures::Evidence> there) {
+    if (!author.empty()) words = QString::fromStdString(author) + QStringLiteral(": ") + words;
+    if (there && there->timeS) words += QLatin1Char(' ') + tr("(%1 s)").arg(QLocale().toString(*there->timeS, 'f', 1));
+    comments_->addItem(words);
+    saidOf_.push_back(std::move(there));
+}
+
+/// The teachers' words over the machine's, which stand beside.
+void ResultDialog::fillTeacher() {
+    comments_->setVisible(comments_->count() > 0);
+    QStringList lines;
+    for (const marking::ReturnedMarks& marks : returned_) {
+        QString line = tr("%1: %2 points: %3")
+                           .arg(QString::fromStdString(marks.marker), pointsWords(marks.score, marks.maxScore),
+                                passedWords(marks.passed));
+        if (!marks.decision.empty()) line += QStringLiteral(". ") + QString::fromStdString(marks.decision);
+        if (marks.rubricHash != rubric::hashText(done_->work.result.assessment.rubricHash))
+            line += QLatin1Char(' ') + tr("(by another rubric, %1)").arg(QString::fromStdString(marks.rubric));
+        lines << line;
     }
-    comments_->setVisible(!said_.empty());
+    teacher_->setText(lines.join(QLatin1Char('\n')));
+    teacher_->setVisible(!lines.isEmpty());
 }
 
 void ResultDialog::setIdeal(course::Parts ideal) {
     ideal_ = std::move(ideal);
     which_->button(1)->setEnabled(ideal_ != nullptr);
     showTooth();
+}
+
+void ResultDialog::setHasTeacherWork(bool has) {
+    teacherWork_->setVisible(has);
+}
+
+void ResultDialog::lookAt(const measures::Evidence& evidence) {
+    lookedAt_ = evidence;
+    emit evidenceChosen(evidence);
+}
+
+void ResultDialog::setNote(const QString& words, bool isBusy) {
+    isWriting_ = isBusy;
+    note_->setText(words);
+    note_->setVisible(!words.isEmpty());
+    if (done_) showWhatCanBeWritten();
+}
+
+void ResultDialog::showWhatCanBeWritten() {
+    page_->setEnabled(!isWriting_ && !done_->work.rubric.criteria.empty());
+    // Of one whose recordings are gone there is no tooth to give.
+    handIn_->setEnabled(!isWriting_ && !done_->work.work.teeth.empty());
 }
 
 void ResultDialog::judge() {
@@ -252,11 +338,11 @@ void ResultDialog::fill() {
                               .trimmed());
     proof_->setToolTip(QString::fromStdString(done_->work.result.proof));
     const bool hasTooth = done_->work.own != nullptr;
-    page_->setEnabled(!done_->work.rubric.criteria.empty());
+    showWhatCanBeWritten();
     which_->button(0)->setEnabled(hasTooth);
     fillErrors();
     fillTable();
-    fillComments();
+    fillTeacher();
     which_->button(0)->setChecked(true);
     setIdeal(ideal_);
 }
@@ -294,7 +380,7 @@ void ResultDialog::fillErrors() {
                                         : tr("Turn the eye there"));
             show->setObjectName(QStringLiteral("resultShow_%1").arg(i + 1));
             line->addWidget(show);
-            connect(show, &QPushButton::clicked, this, [this, at = *e] { emit evidenceChosen(at); });
+            connect(show, &QPushButton::clicked, this, [this, at = *e] { lookAt(at); });
         }
         errors_->addWidget(row);
         errorRows_.push_back(row);
@@ -321,9 +407,15 @@ void ResultDialog::fillTable() {
         QString bands = c.band.empty() ? QString() : bandTitle(done_->work.rubric, c.band);
         if (c.borderline) bands = bands.isEmpty() ? tr("borderline") : tr("%1 (borderline)").arg(bands);
         put(band, bands);
-        put(points, c.points            ? pointsWords(*c.points, c.maxPoints)
-                    : c.maxPoints > 0.0 ? tr("not counted")
-                                        : tr("shown only"));
+        QString given = c.points            ? pointsWords(*c.points, c.maxPoints)
+                        : c.maxPoints > 0.0 ? tr("not counted")
+                                            : tr("shown only");
+        for (const marking::ReturnedMarks& marks : returned_)
+            for (const marking::ReturnedMarks::Change& change : marks.changes)
+                if (change.criterion == c.id && change.points)
+                    given += QLatin1Char('\n') + tr("%1: %2").arg(QString::fromStdString(marks.marker),
+                                                                  pointsWords(*change.points, change.maxPoints));
+        put(points, given);
         const measures::Evidence* e = evidenceOf(c);
         put(place,
             !e         ? QString()
@@ -331,7 +423,6 @@ void ResultDialog::fillTable() {
                        : tr("place"),
             e ? QString::fromStdString(e->text) : QString());
     }
-    table_->resizeRowsToContents();
 }
 
 void ResultDialog::showTooth() {

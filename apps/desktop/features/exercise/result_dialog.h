@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "desktop/work/simulator.h"
+#include "handpiece/app/marking/returned_marks.h"
 #include "handpiece/school/store/store.h"
 
 class QButtonGroup;
@@ -38,9 +39,14 @@ class ResultDialog : public QDialog {
 
     /// Null `ideal`: none is shown. With `asksFirst` the result is seen once the person has said what they expect.
     void setResult(std::shared_ptr<const Simulator::Finished> done, course::Parts ideal, bool asksFirst);
-    /// Of a result of before: what was said of it then, by oneself and by a teacher.
-    void setSaid(std::optional<OwnJudgement> own, std::vector<school::Comment> comments);
+    /// Of a result of before: what was said of it then, by oneself and by teachers.
+    void setSaid(std::optional<OwnJudgement> own, const std::vector<school::Comment>& comments,
+                 std::vector<marking::ReturnedMarks> returned);
     void setIdeal(course::Parts ideal);
+    void setHasTeacherWork(bool has);
+    /// What is being written of it, or was: said in its own window, which lies over the other one. While `isBusy`
+    /// nothing else can be written.
+    void setNote(const QString& words, bool isBusy = false);
     [[nodiscard]] const std::shared_ptr<const Simulator::Finished>& shown() const noexcept { return done_; }
 
   signals:
@@ -51,6 +57,10 @@ class ResultDialog : public QDialog {
     void againRequested();
     void nextRequested();
     void pageRequested();
+    void handInRequested();
+    /// The teacher's own work on the same tooth: where the place that was looked at last was cut, or from its
+    /// beginning.
+    void teacherWorkRequested(const std::optional<handpiece::measures::Evidence>& at);
 
   protected:
     void closeEvent(QCloseEvent* event) override;
@@ -62,8 +72,11 @@ class ResultDialog : public QDialog {
     void fill();
     void fillErrors();
     void fillTable();
-    void fillComments();
+    void fillTeacher();
+    void say(QString words, const std::string& author, std::optional<measures::Evidence> there);
+    void lookAt(const measures::Evidence& evidence);
     void showTooth();
+    void showWhatCanBeWritten();
 
     std::shared_ptr<const Simulator::Finished> done_;
     course::Parts ideal_;
@@ -72,10 +85,14 @@ class ResultDialog : public QDialog {
     QStackedWidget* pages_;
     QSpinBox* percent_;
     QPlainTextEdit* words_;
-    QLabel *title_, *score_, *why_, *time_, *compared_, *proof_;
+    QLabel *title_, *score_, *teacher_, *why_, *time_, *compared_, *proof_;
     QListWidget* comments_;
-    std::vector<school::Comment> said_;
-    QPushButton* page_;
+    std::vector<std::optional<measures::Evidence>> saidOf_;  ///< where the list's rows lead
+    std::vector<marking::ReturnedMarks> returned_;
+    QPushButton *page_, *handIn_, *teacherWork_;
+    std::optional<measures::Evidence> lookedAt_;
+    QLabel* note_;
+    bool isWriting_ = false;
     QVBoxLayout* errors_;
     std::vector<QWidget*> errorRows_;
     QTableWidget* table_;

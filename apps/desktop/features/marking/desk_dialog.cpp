@@ -150,6 +150,7 @@ QWidget* DeskDialog::makeWorks() {
     menu->setObjectName(QStringLiteral("markingExportMenu"));
     const std::pair<const char*, QString> ways[] = {{"codes", tr("Results, codes only (CSV)...")},
                                                     {"files", tr("Results with file names (CSV)...")},
+                                                    {"returned", tr("Marks for each student (folder)...")},
                                                     {"class", tr("Page of the class, with file names...")},
                                                     {"marks", tr("Blind marks, for agreement (CSV)...")},
                                                     {"agreement", tr("Agreement with pictures (folder)...")}};

@@ -14,6 +14,7 @@
 #include "handpiece/app/assessment/marks_agreement.h"
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/marking/desk_csv.h"
+#include "handpiece/app/marking/returned_marks.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/case/attempt.h"
 
@@ -130,6 +131,7 @@ MarkingFeature::MarkingFeature(const FeatureContext& context)
     connect(sheet_, &SheetPanel::commentRemoved, this, [this](int number) {
         tryTo([&](marking::Desk& desk) { desk.removeComment(code_.toStdString(), number); });
     });
+    connect(sheet_, &SheetPanel::returnRequested, this, &MarkingFeature::returnWork);
     connect(sheet_, &SheetPanel::placeRequested, this, &MarkingFeature::goTo);
 }
 
@@ -424,6 +426,12 @@ void MarkingFeature::comment(const QString& text, bool atPlace, bool atTime) {
         }
     }
     if (atTime && simulator_.replay()) said.timeS = simulator_.replay()->now().timeS;
+    // Of what was handed in any of its recordings may be the one that is watched.
+    if (said.timeS && simulator_.isReviewing()) {
+        const std::vector<RecordingPlace>& all = simulator_.reviewed().recordings;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (all[i].name == simulator_.document().caseFile.filename()) said.session = i;
+    }
     if (!tryTo([&](marking::Desk& desk) { desk.comment(code_.toStdString(), said); })) return;
     forgetPlace();
     sheet_->clearComment();
@@ -490,17 +498,50 @@ void MarkingFeature::computeAgreement() {
     job->start();
 }
 
+/// As the work's file is called, so that it goes to the same student.
+QString MarkingFeature::returnedName(const std::string& code) const {
+    const fs::path name = desk_->work(code).name;
+    return toQString(name.parent_path() / name.stem()).replace(QLatin1Char('/'), QLatin1Char('-')) +
+           QStringLiteral("-marks.json");
+}
+
+void MarkingFeature::returnWork() {
+    if (!desk_ || code_.isEmpty()) return;
+    const std::string code = code_.toStdString();
+    try {
+        const std::string marks = marking::returnedJson(marking::returnedMarks(*desk_, code));
+        const QString file = window_.questions.save(tr("Return to student"), returnedName(code), tr("Marks (*.json)"),
+                                                    QStringLiteral(".json"));
+        if (file.isEmpty()) return;
+        core::writeFile(toPath(file), marks);
+        window_.tellSaved(file);
+    } catch (const core::Error& error) {
+        window_.showProblem(problemOf(error));
+    }
+}
+
+/// Of each work that has a score and is to be seen, once.
+void MarkingFeature::returnAll(const QString& folder) {
+    core::prepareOutputFolder(toPath(folder));
+    for (const std::string& code : desk_->codes())
+        if (desk_->machine(code) != nullptr && !desk_->isRepeat(code))
+            core::writeFile(toPath(folder) / toPath(returnedName(code)),
+                            marking::returnedJson(marking::returnedMarks(*desk_, code)));
+}
+
 void MarkingFeature::write(const QString& what) {
     if (!desk_) return;
-    const bool isFolder = what == QLatin1String("agreement"), isPage = what == QLatin1String("class"),
+    const bool isReturned = what == QLatin1String("returned");
+    const bool isFolder = isReturned || what == QLatin1String("agreement"), isPage = what == QLatin1String("class"),
                isMarks = what == QLatin1String("marks");
     const QString file =
-        isFolder ? window_.questions.save(tr("Folder for the agreement"), QStringLiteral("agreement"), {}, {})
-        : isPage ? window_.questions.save(tr("Write the page"), QStringLiteral("class.html"), tr("Page (*.html)"),
-                                          QStringLiteral(".html"))
-                 : window_.questions.save(tr("Write the table"),
+        isReturned ? window_.questions.save(tr("Folder for the marks"), QStringLiteral("marks"), {}, {})
+        : isFolder ? window_.questions.save(tr("Folder for the agreement"), QStringLiteral("agreement"), {}, {})
+        : isPage   ? window_.questions.save(tr("Write the page"), QStringLiteral("class.html"), tr("Page (*.html)"),
+                                            QStringLiteral(".html"))
+                   : window_.questions.save(tr("Write the table"),
                                           isMarks ? QStringLiteral("marks.csv") : QStringLiteral("results.csv"),
-                                          tr("Table (*.csv)"), QStringLiteral(".csv"));
+                                            tr("Table (*.csv)"), QStringLiteral(".csv"));
     if (file.isEmpty()) return;
     try {
         if (!isFolder) {
@@ -508,6 +549,8 @@ void MarkingFeature::write(const QString& what) {
             core::writeFile(toPath(file), isMarks  ? marking::marksCsv(*desk_, desk_->othersOfFolder().desks)
                                           : isPage ? marking::classPage(*desk_, names)
                                                    : marking::resultsCsv(*desk_, names));
+        } else if (isReturned) {
+            returnAll(file);
         } else {
             const marking::DeskAgreement agreement = marking::agreementOfDesk(*desk_, desk_->othersOfFolder().desks);
             core::prepareOutputFolder(toPath(file));

@@ -54,6 +54,9 @@ class MarkingFeature : public Feature {
     void goTo(const std::optional<core::Vec3>& placeMm, const std::optional<double>& timeS);
     void computeAgreement();
     void write(const QString& what);
+    [[nodiscard]] QString returnedName(const std::string& code) const;
+    void returnWork();
+    void returnAll(const QString& folder);
 
     CommandSet<Command> commands_;
     DeskDialog* dialog_;

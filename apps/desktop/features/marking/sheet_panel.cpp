@@ -173,6 +173,10 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     column->addWidget(comments_);
     column->addLayout(writing);
     column->addLayout(pins);
+    return_ = named(new QPushButton(tr("Return to student..."), this), "sheetReturn", tr("Return to student..."),
+                    tr("One file with your comments, what you judged otherwise and why, and the score"));
+    column->addWidget(return_);
+    connect(return_, &QPushButton::clicked, this, &SheetPanel::returnRequested);
 
     connect(previous_, &QToolButton::clicked, this, [this] { emit stepRequested(-1); });
     connect(next_, &QToolButton::clicked, this, [this] { emit stepRequested(1); });
@@ -252,6 +256,7 @@ void SheetPanel::clearComment() {
 void SheetPanel::showWork(const marking::Desk* desk, const QString& code, const QString& place, bool hasPrevious,
                           bool hasNext) {
     const std::string before = code == code_ ? criterion() : std::string();
+    return_->setEnabled(desk != nullptr && !code.isEmpty() && desk->machine(code.toStdString()) != nullptr);
     std::set<QString> open;
     for (int row = 0; code == code_ && row < criteria_->topLevelItemCount(); ++row)
         if (criteria_->topLevelItem(row)->isExpanded())

@@ -55,6 +55,8 @@ class SheetPanel : public QWidget {
     /// Whether at the middle of the picture, at this moment of the replay.
     void commentRequested(const QString& text, bool atPlace, bool atTime);
     void commentRemoved(int number);
+    /// All that was said of it, as a file for its student.
+    void returnRequested();
     void placeRequested(const std::optional<handpiece::core::Vec3>& placeMm, const std::optional<double>& timeS);
 
   private:
@@ -88,7 +90,7 @@ class SheetPanel : public QWidget {
     QDoubleSpinBox* points_;
     QCheckBox* cannotTell_;
     QLineEdit *reason_, *decisionReason_, *comment_;
-    QPushButton *say_, *withdraw_, *giveIn_, *decide_, *addComment_, *removeComment_, *pick_;
+    QPushButton *say_, *withdraw_, *giveIn_, *decide_, *addComment_, *removeComment_, *pick_, *return_;
     QWidget* decisionRow_;
     QCheckBox *atPlace_, *atTime_;
     QListWidget* comments_;

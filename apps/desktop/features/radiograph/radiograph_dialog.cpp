@@ -9,6 +9,7 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <utility>
 
 #include "desktop/widgets/parts.h"
 #include "handpiece/app/simulation/tissue_export.h"
@@ -101,9 +102,6 @@ void RadiographDialog::take() {
                                        settings, whole);
         },
         this);
-    for (const auto ends : {&Job::done, &Job::cancelled})
-        connect(job_, ends, job_, &QObject::deleteLater);
-    connect(job_, &Job::failed, job_, &QObject::deleteLater);
     connect(job_, &Job::progressed, this, [this](double share) { progress_->setValue(qRound(1000.0 * share)); });
     connect(job_, &Job::done, this, [this, made] {
         stop(tr("Computed from the teeth as they are cut now: for learning, not for diagnosis."));
@@ -121,12 +119,8 @@ void RadiographDialog::take() {
 
 /// No picture, and none under way.
 void RadiographDialog::stop(const QString& note) {
-    if (job_ != nullptr) {
-        // It may be what is telling us, and nobody waits for it: it goes when it has ended.
-        job_->disconnect(this);
-        job_->cancel();
-        job_ = nullptr;
-    }
+    // It may be what is telling us.
+    if (job_ != nullptr) std::exchange(job_, nullptr)->abandon(this);
     taken_.reset();
     picture_->clear();
     save_->setEnabled(false);

@@ -62,8 +62,10 @@ void play(std::span<const Recording> chain, Listener& to, const core::Progress& 
         to.takeBur(0.0, settings);
         const std::vector<Event> events = reader.events();
         auto next = events.begin();
+        const std::uint64_t untilTick = chain[i].untilTick.value_or(reader.endTick());
         for (std::uint64_t first = 0; first < reader.size(); first += kStretch) {
             for (const Record& record : reader.records(first, kStretch)) {
+                if (record.tick > untilTick) break;
                 // A way of working bears the number of the last tick that went before it.
                 for (; next != events.end() && (next->tick < record.tick ||
                                                 (next->tick == record.tick && !isNamed(*next, EventName::workingWay)));
@@ -76,7 +78,7 @@ void play(std::span<const Recording> chain, Listener& to, const core::Progress& 
                              static_cast<double>(chain.size()));
         }
         for (; next != events.end(); ++next)
-            if (next->tick < reader.endTick()) tell(*next, rateHz, where, i, settings, to);
+            if (next->tick < reader.endTick() && next->tick <= untilTick) tell(*next, rateHz, where, i, settings, to);
     }
 }
 

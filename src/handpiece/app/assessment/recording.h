@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct Recording {
     std::string name;                                    ///< as people know it
     std::string hash;                                    ///< of the file
     std::shared_ptr<const core::PrivateFolder> keeps{};  ///< the folder that `path` lies in, where it was unpacked
+    /// The last tick that belongs to the work: it was saved there, and what followed was given up. None: all of it
+    /// does.
+    std::optional<std::uint64_t> untilTick{};
 };
 
 /// Of a chain of sessions, in the order of the work, read once, by stretches: memory does not grow with them. Gives

@@ -17,6 +17,8 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
 #include "handpiece/model/case/attempt.h"
+#include "handpiece/model/tooth/state_file.h"
+#include "handpiece/record/session/session_reader.h"
 
 namespace handpiece::assessment {
 namespace {
@@ -163,18 +165,52 @@ Work workOfSession(const fs::path& path, const tasks::Task& task, bool prove, co
     return work;
 }
 
+/// The last tick of a session at which the tooth was as a later one found it: it was saved there, and what followed was
+/// given up. None: it never was so. Found among the key frames (there is one after each stroke), and cut again to
+/// there.
+std::optional<std::uint64_t> leftOnTheWay(const Done& session, std::uint64_t startHash, bool prove) {
+    simulation::SessionPlayer player(session.recording.path, {true, false, {}});
+    const session::SessionReader& reader = player.reader();
+    for (std::size_t i = reader.keyFrameTicks().size(); i-- > 0;) {
+        const session::KeyFrame frame = reader.keyFrame(i);
+        const tooth::StateDelta then =
+            tooth::decodeState(frame.state, player.station().teeth(), session.recording.name);
+        if (tooth::stateHash(then) != startHash) continue;
+        if (prove) {
+            player.advance((static_cast<double>(frame.tick) + 0.5) / reader.info().rateHz);
+            if (tooth::stateHash(player.state()) != startHash) return {};
+        }
+        return frame.tick;
+    }
+    return {};
+}
+
 constexpr const char* kNotFromThere = "its session {} goes on from another tooth than was left before it";
 
 /// In the order that is told, each held against the one before it. `broken`: what is wrong with it already.
-Work workInOrder(std::vector<Done> chain, std::string broken) {
+Work workInOrder(std::vector<Done> chain, std::string broken, bool prove) {
     std::uint64_t left = tooth::stateHash({});
-    for (const Done& one : chain) {
-        if (one.startHash != left && broken.empty())
-            broken = fmt::format(kNotFromThere, one.recording.path.filename().string());
-        left = one.endHash;
+    std::string givenUp;
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        if (chain[i].startHash != left && broken.empty()) {
+            std::optional<std::uint64_t> until;
+            if (i > 0) until = leftOnTheWay(chain[i - 1], chain[i].startHash, prove);
+            if (until) {
+                Recording& before = chain[i - 1].recording;
+                before.untilTick = until;
+                givenUp += fmt::format("; what followed in {} after it was saved was given up, and does not count",
+                                       before.path.filename().string());
+            } else {
+                broken = fmt::format(kNotFromThere, chain[i].recording.path.filename().string());
+            }
+        }
+        left = chain[i].endHash;
     }
     Work work = workOf(std::move(chain));
-    if (broken.empty()) return work;
+    if (broken.empty()) {
+        work.proof += givenUp;
+        return work;
+    }
     work.isProven = false;
     work.proof = work.noHand = std::move(broken);
     work.recordings.clear();
@@ -206,7 +242,7 @@ Work workOfFolder(const fs::path& folder, const tasks::Task& task, bool prove, c
                                     [&](const Done& o) { return &o != &d && o.endHash == d.startHash; });
             });
             if (next == waiting.end()) next = waiting.begin();
-            if (broken.empty())
+            if (broken.empty() && (chain.empty() || !leftOnTheWay(chain.back(), next->startHash, prove)))
                 broken =
                     fmt::format("{} goes on from a tooth that no other session here leaves: one is missing before it",
                                 nameOf(*next));
@@ -215,7 +251,7 @@ Work workOfFolder(const fs::path& folder, const tasks::Task& task, bool prove, c
         chain.push_back(std::move(*next));
         waiting.erase(next);
     }
-    return workInOrder(std::move(chain), std::move(broken));
+    return workInOrder(std::move(chain), std::move(broken), prove);
 }
 
 Work workOfAttempt(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress) {
@@ -239,7 +275,7 @@ Work workOfAttempt(const fs::path& path, const tasks::Task& task, bool prove, co
         std::vector<Done> chain = doAllAgain(recordings, task, prove, core::part(progress, 0.1, 1.0));
         const bool isThis = chain.back().endHash == tooth::stateHash(cut->state);
         // What breaks the chain itself says more than that its end is another tooth.
-        work = workInOrder(std::move(chain), {});
+        work = workInOrder(std::move(chain), {}, prove);
         if (!isThis && work.noHand.empty()) {
             work.isProven = false;
             work.proof = work.noHand = "it is another tooth than its sessions leave";
@@ -307,7 +343,7 @@ Work readChain(std::span<const ChainLink> chain, const tasks::Task& task, bool p
         else if (missing.empty())
             missing = fmt::format("its session {} is no longer there", link.name);
     }
-    return workInOrder(doAllAgain(recordings, task, prove, progress), std::move(missing));
+    return workInOrder(doAllAgain(recordings, task, prove, progress), std::move(missing), prove);
 }
 
 std::vector<measures::Request> requestsOf(const rubric::Rubric& rubric) {

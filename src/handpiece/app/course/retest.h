@@ -4,11 +4,10 @@
 /// When what was lost is to be shown once more, without helps: a pure function of what was due and what was shown.
 
 #include <array>
-#include <cstdint>
-#include <string>
 #include <vector>
 
 #include "handpiece/assess/score/score.h"
+#include "handpiece/school/store/store.h"
 
 namespace handpiece::course {
 
@@ -18,16 +17,10 @@ inline constexpr std::array<int, 3> kRetestDays{7, 21, 60};
 /// How many are taken up from one result, those first that cost most.
 inline constexpr std::size_t kMostNewRetests = 3;
 
-struct DueCriterion {
-    std::string criterion;  ///< its id in the rubric
-    std::string attempt;    ///< that lost it, or showed it last
-    int step = 0;           ///< how often it was shown since it was lost
-    std::int64_t due = 0;   ///< [ms since 1970]
-};
-/// Of the same exercise. What is lost (again) is due in a week; what is shown unaided when it is due waits longer, and
-/// is done with after the last of kRetestDays; what is not due, or is shown with helps, or could not be measured, stays
-/// as it is.
-[[nodiscard]] std::vector<DueCriterion> nextRetests(std::vector<DueCriterion> open, const score::Assessment& result,
-                                                    const std::string& attempt, bool isUnaided, std::int64_t now);
+/// Of the attempt's exercise, as it stands when that was finished. What is lost (again) is due in a week; what is shown
+/// unaided when it is due waits longer, and is done with after the last of kRetestDays; what is not due, or is shown
+/// with helps, or could not be measured, stays as it is.
+[[nodiscard]] std::vector<school::Retest> nextRetests(std::vector<school::Retest> open, const school::Attempt& attempt,
+                                                      const score::Assessment& result, bool isUnaided);
 
 }  // namespace handpiece::course

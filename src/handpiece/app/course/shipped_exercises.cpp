@@ -231,14 +231,16 @@ cases::Exercise exerciseOf(const Row& row) {
     return exercise;
 }
 
-/// From the side on which one works, where that is not from over the crown.
-std::optional<cases::View> viewOf(const Row& row, int buccalSign) {
+/// From where one works: a window or a cervical cavity from its side, all else from over the crown.
+cases::View viewOf(const Row& row, int buccalSign) {
     if (row.fdi == 0) return blockView();
     const bool isClassThree = row.recipe.preparation == "class-three";
-    if (!isClassThree && row.recipe.preparation != "class-five") return {};
+    const bool isFromAside = isClassThree || row.recipe.preparation == "class-five";
     cases::View view;
-    view.targetMm = core::Vec3(0.0, 0.0, 4.0);
-    view.eyeMm = view.targetMm + core::Vec3(0.0, (isClassThree ? -26.0 : 26.0) * buccalSign, 14.0);
+    view.targetMm = core::Vec3(0.0, 0.0, isClassThree ? 6.5 : 4.0);
+    const core::Vec3 aside(0.0, (isClassThree ? -26.0 : 26.0) * buccalSign, 14.0);
+    const core::Vec3 above(0.0, 11.0 * buccalSign, 27.0);
+    view.eyeMm = view.targetMm + (isFromAside ? aside : above);
     return view;
 }
 

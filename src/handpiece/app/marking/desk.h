@@ -42,6 +42,7 @@ struct Comment {
     std::string criterion, text;
     std::optional<core::Vec3> placeMm;  ///< tooth frame
     std::optional<double> timeS;
+    std::optional<std::size_t> session{};  ///< of a chain, that `timeS` is of; none: the last
 };
 
 /// Who passes, where the marker decides.

@@ -63,6 +63,7 @@ Json toJson(const Sheet& sheet) {
         if (!c.criterion.empty()) one["criterion"] = c.criterion;
         if (c.placeMm) one["xyz_mm"] = {c.placeMm->x(), c.placeMm->y(), c.placeMm->z()};
         if (c.timeS) one["t_s"] = *c.timeS;
+        if (c.session) one["session"] = *c.session;
         json["comments"].push_back(std::move(one));
     }
     if (sheet.decision) json["decision"] = {{"passed", sheet.decision->passed}, {"reason", sheet.decision->reason}};
@@ -99,6 +100,7 @@ Sheet sheetOf(const Json& json) {
                 c.placeMm = core::Vec3(numberIn(one.at("xyz_mm").at(0)), numberIn(one.at("xyz_mm").at(1)),
                                        numberIn(one.at("xyz_mm").at(2)));
             if (one.contains("t_s")) c.timeS = numberIn(one.at("t_s"));
+            if (one.contains("session")) c.session = static_cast<std::size_t>(countIn(one.at("session")));
             sheet.comments.push_back(std::move(c));
         }
     if (json.contains("decision"))

@@ -36,6 +36,7 @@ Content contentOf(const tasks::Task& task) {
     content.hasLiveBar = task.hasLiveBar;
     content.preparation = task.preparation;
     content.ownJudgement = task.ownJudgement;
+    content.teacherWork = task.teacherWork;
     content.rubricText = task.rubric;
     if (!task.rubric.empty()) content.rubric = rubric::parseRubric(task.rubric, kRubricHere);
     auto tooth = std::make_shared<cases::Case>(task.toothCase);
@@ -58,6 +59,7 @@ tasks::Task taskOf(const Content& content) {
     task.hasLiveBar = content.hasLiveBar;
     task.preparation = content.preparation;
     task.ownJudgement = content.ownJudgement;
+    task.teacherWork = content.teacherWork;
     if (content.rubric) {
         task.rubric = rubric::rubricToml(*content.rubric);
         if (!content.rubricText.empty() &&

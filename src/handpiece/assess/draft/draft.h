@@ -33,6 +33,7 @@ struct Content {
     bool ownJudgement = false;  ///< a student says what they expect before they see the result
     std::optional<rubric::Rubric> rubric;
     std::string rubricText;  ///< as read: written again, with its comments, while it means the same
+    std::shared_ptr<const std::vector<std::byte>> teacherWork;  ///< as a task has it
 };
 /// Throws core::Error for a rubric that is none.
 [[nodiscard]] Content contentOf(const tasks::Task& task);

@@ -444,7 +444,7 @@ class Site {
             fail("the tooth has no carious tissue", "make it with --lesion, or choose another task", "lay-no-caries");
         const auto pulp = pulpMm();
         // The caries ends where the tooth does: a place on its surface, or just over it, belongs to what lies under it.
-        constexpr double kSkinMm = 0.1, kOverMm = 0.3;
+        static constexpr double kSkinMm = 0.1, kOverMm = 0.3;
         return [carious = std::move(carious), pulp, over = number("over_pulp_mm"), tree = tree_](Vec3 p) {
             if (const geometry::NearestPoint on = tree->nearest(p, kOverMm);
                 on.triangle != geometry::kNoTriangle && on.distanceMm * tree->side(p, on) > -kSkinMm) {

@@ -47,7 +47,7 @@ std::vector<std::byte> bytesOf(std::string_view text) {
 Task parse(std::string_view text, const std::string& where) {
     const Table root = Table::parse(text, where);
     root.allowOnly({"format", "type", "id", "version", "voxel_um", "minutes", "minutes_hard", "live_bar",
-                    "own_judgement", "level", "rubric", "exercise", "preparation"});
+                    "own_judgement", "level", "rubric", "teacher_work", "exercise", "preparation"});
     const std::int64_t format = root.integer("format").value_or(0);
     if (format != kFormatVersion)
         root.fail(fmt::format("this exercise is of format {}", format),
@@ -79,6 +79,12 @@ Task parse(std::string_view text, const std::string& where) {
                   "level");
     if (const auto rubric = root.text("rubric"); rubric && *rubric != kRubricFile)
         root.fail(fmt::format("the rubric is \"{}\"", *rubric), fmt::format("call the file {}", kRubricFile), "rubric");
+    if (const auto work = root.text("teacher_work")) {
+        if (*work != kTeacherWorkFile)
+            root.fail(fmt::format("the teacher's work is \"{}\"", *work),
+                      fmt::format("call the file {}", kTeacherWorkFile), "teacher_work");
+        task.teacherWork = std::make_shared<const std::vector<std::byte>>();  // it is beside this text
+    }
     if (const auto exercise = root.table("exercise")) task.toothCase.exercise = cases::readExercise(*exercise);
     if (const auto recipe = root.table("preparation")) task.preparation = preparation::readRecipe(*recipe);
     return task;
@@ -99,7 +105,8 @@ std::string micrometres(double voxelMm) {
     return text;
 }
 
-std::string tomlOf(const Task& task) {
+/// Whole: with what lies beside exercise.toml.
+std::string tomlOf(const Task& task, bool isWhole) {
     std::string out = fmt::format("format = {}\ntype = \"exercise\"\nid = \"{}\"\nversion = {}\nvoxel_um = {}\n",
                                   kFormatVersion, task.id, task.version, micrometres(task.voxelMm));
     if (task.minutes) out += fmt::format("minutes = {}\n", *task.minutes);
@@ -108,6 +115,7 @@ std::string tomlOf(const Task& task) {
     if (!task.level.empty()) out += fmt::format("level = \"{}\"\n", task.level);
     if (task.ownJudgement) out += "own_judgement = true\n";
     if (!task.rubric.empty()) out += fmt::format("rubric = \"{}\"\n", kRubricFile);
+    if (isWhole && task.teacherWork) out += fmt::format("teacher_work = \"{}\"\n", kTeacherWorkFile);
     if (task.preparation) out += "\n" + preparation::recipeToml(*task.preparation);
     if (task.toothCase.exercise) out += "\n" + cases::exerciseText(*task.toothCase.exercise);
     return out;
@@ -135,11 +143,12 @@ Task ofAttempt(const fs::path& path) {
 }  // namespace
 
 std::string taskToml(const Task& task) {
-    return tomlOf(task);
+    return tomlOf(task, false);
 }
 
 Task parseTask(std::string_view toml, std::string rubric, cases::Case toothCase, const std::string& where) {
     Task task = parse(toml, where);
+    task.teacherWork.reset();
     auto exercise = std::move(task.toothCase.exercise);
     task.toothCase = std::move(toothCase);
     if (exercise) task.toothCase.exercise = std::move(exercise);
@@ -169,7 +178,7 @@ Task readTask(const fs::path& path) {
         if (fs::exists(path / kZonesFile, ec)) content[kZonesFile] = core::readFile(path / kZonesFile, kMostZonesBytes);
     } else {
         content = cases::readPackage(path, [](const std::string& name) {
-            return name == kTaskFile || name == kRubricFile || name == kZonesFile;
+            return name == kTaskFile || name == kRubricFile || name == kTeacherWorkFile || name == kZonesFile;
         });
     }
     const auto where = [&](const char* name) {
@@ -178,6 +187,18 @@ Task readTask(const fs::path& path) {
     Task task = parse(textOf(content.at(kTaskFile), where(kTaskFile)), where(kTaskFile));
     if (const auto rubric = content.find(kRubricFile); rubric != content.end())
         task.rubric = textOf(rubric->second, where(kRubricFile));
+    if (task.teacherWork) {
+        if (isFolder && fs::exists(path / kTeacherWorkFile, ec))
+            content[kTeacherWorkFile] = core::readFile(path / kTeacherWorkFile, kMaxTeacherWorkBytes);
+        const auto work = content.find(kTeacherWorkFile);
+        if (work == content.end())
+            throw core::Error("the teacher's work is not there", where(kTeacherWorkFile),
+                              "put it there, or leave teacher_work out");
+        if (work->second.size() > kMaxTeacherWorkBytes)
+            throw core::Error("the teacher's work is larger than 64 MiB", where(kTeacherWorkFile),
+                              "record a shorter one");
+        task.teacherWork = std::make_shared<const std::vector<std::byte>>(std::move(work->second));
+    }
     if (task.preparation && task.preparation->preparation == preparation::kRecordedTemplate) {
         const auto zones = content.find(kZonesFile);
         if (zones == content.end())
@@ -204,7 +225,8 @@ void writeTask(const Task& task, const fs::path& path) {
     plain.exercise.reset();
     for (auto& [name, data] : cases::caseFiles(plain))
         files[kCasePrefix + name] = std::move(data);
-    files[kTaskFile] = bytesOf(tomlOf(task));
+    files[kTaskFile] = bytesOf(tomlOf(task, true));
+    if (task.teacherWork) files[kTeacherWorkFile] = *task.teacherWork;
     if (!task.rubric.empty()) files[kRubricFile] = bytesOf(task.rubric);
     if (task.preparation && task.preparation->recorded)
         files[kZonesFile] = preparation::encodeZones(*task.preparation->recorded);

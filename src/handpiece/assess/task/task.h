@@ -4,11 +4,14 @@
 /// An exercise as a file: a case, what is to be done with it, how it is judged. docs/formats/exercise.md.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "handpiece/assess/preparation/preparation.h"
 #include "handpiece/model/case/case.h"
@@ -18,6 +21,9 @@ namespace handpiece::tasks {
 
 inline constexpr const char* kTaskFile = "exercise.toml";
 inline constexpr const char* kRubricFile = "rubric.toml";
+inline constexpr const char* kTeacherWorkFile = "teacher.h5";
+/// Half an hour at 1 kHz is some 30 MB [R].
+inline constexpr std::uint64_t kMaxTeacherWorkBytes = 64u << 20;
 inline constexpr const char* kZonesFile = "zones.bin";  ///< of recorded work
 /// For whom an exercise is, the easiest first.
 inline constexpr std::array<std::string_view, 4> kLevels = {"beginner", "basic", "intermediate", "advanced"};
@@ -34,6 +40,9 @@ struct Task {
     std::optional<preparation::Recipe> preparation;  ///< what is to be cut; none: nothing is asked
     bool ownJudgement = false;                       ///< a student says what they expect before they see the result
     std::string rubric;                              ///< how it is judged, as its TOML text; empty: it is not
+    /// The bytes of a session: the teacher's own work on this tooth, for the student to look at beside theirs. Null:
+    /// there is none. What an attempt carries of its exercise is without it.
+    std::shared_ptr<const std::vector<std::byte>> teacherWork{};
 };
 
 /// True for a folder with exercise.toml and for a .handpiece file that holds one. Throws core::Error for a .handpiece
@@ -51,8 +60,8 @@ struct Task {
 /// Into a folder, or as one .handpiece file; whole or not at all.
 void writeTask(const Task& task, const std::filesystem::path& path);
 
-/// What a score rests on: the case's surfaces and tissues, voxel, preparation. Not the texts, nor the rubric, which has
-/// a hash of its own.
+/// What a score rests on: the case's surfaces and tissues, voxel, preparation. Not the texts, nor the teacher's
+/// work, nor the rubric, which has a hash of its own.
 [[nodiscard]] std::uint64_t contentHash(const Task& task);
 
 /// What is wrong with it that can be told without working it: the preparation does not lie on the tooth, or leaves

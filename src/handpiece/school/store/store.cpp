@@ -53,6 +53,11 @@ ALTER TABLE attempts ADD COLUMN worked_s REAL NOT NULL DEFAULT 0;
 ALTER TABLE attempts ADD COLUMN limit_s REAL NOT NULL DEFAULT 0;
 ALTER TABLE exercises ADD COLUMN place TEXT NOT NULL DEFAULT '';
 )sql",
+    R"sql(
+CREATE TABLE returned (
+  attempt TEXT NOT NULL REFERENCES attempts (id), marker TEXT NOT NULL, marks TEXT NOT NULL, made INTEGER NOT NULL,
+  PRIMARY KEY (attempt, marker)) STRICT;
+)sql",
 };
 
 /// A list in one field: none of the values has a line's end in it.
@@ -170,7 +175,8 @@ void Store::see(const Exercise& exercise) {
     Transaction transaction(state_->database);
     Statement(state_->database,
               "INSERT INTO exercises (id, version, hash, title, first_seen, last_seen, place) VALUES (?1, ?2, ?3, ?4, "
-              "?5, ?6, ?7) ON CONFLICT (id, hash) DO UPDATE SET version = ?2, title = ?4, last_seen = ?6, place = ?7")
+              "?5, ?6, ?7) ON CONFLICT (id, hash) DO UPDATE SET version = ?2, title = ?4, last_seen = ?6, "
+              "place = CASE ?7 WHEN '' THEN place ELSE ?7 END")
         .with(exercise.id)
         .with(exercise.version)
         .with(exercise.hash)
@@ -324,6 +330,28 @@ std::vector<Comment> Store::commentsOn(const std::string& attempt) const {
         if (x && y && z) comment.placeMm = core::Vec3(*x, *y, *z);
         all.push_back(std::move(comment));
     }
+    return all;
+}
+
+void Store::add(const Returned& returned) {
+    Transaction transaction(state_->database);
+    Statement(state_->database, "INSERT OR REPLACE INTO returned (attempt, marker, marks, made) VALUES (?, ?, ?, ?)")
+        .with(returned.attempt)
+        .with(returned.marker)
+        .with(returned.marks)
+        .with(returned.made)
+        .run();
+    post(state_->database, "returned", returned.attempt, returned.made);
+    transaction.commit();
+}
+
+std::vector<Returned> Store::returnedOf(const std::string& attempt) const {
+    std::vector<Returned> all;
+    Statement rows(state_->database,
+                   "SELECT attempt, marker, marks, made FROM returned WHERE attempt = ? ORDER BY made, rowid");
+    rows.with(attempt);
+    while (rows.next())
+        all.push_back({rows.text(0), rows.text(1), rows.text(2), rows.integer(3)});
     return all;
 }
 

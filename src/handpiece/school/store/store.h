@@ -28,7 +28,7 @@ struct Exercise {
     std::string hash;          ///< 16 hexadecimal digits
     std::string title;         ///< as shown when it was seen last
     Milliseconds firstSeen = 0, lastSeen = 0;
-    std::string place{};  ///< its folder or file when it was seen last; it may be gone by now
+    std::string place{};  ///< its folder or file when it was seen last, which may be gone by now; empty: as before
 };
 
 /// One piece of work that was finished and scored; never changed afterwards.
@@ -79,11 +79,18 @@ struct Comment {
     Milliseconds made = 0;
 };
 
+/// What a teacher gave back of an attempt, as the file holds it.
+struct Returned {
+    std::string attempt, marker;
+    std::string marks;  ///< docs/formats/returned.md
+    Milliseconds made = 0;
+};
+
 /// One thing that a school has yet to hear of. Nothing in the outbox is changed or taken out.
 struct Outgoing {
     std::int64_t sequence = 0;  ///< grows
-    std::string kind;           ///< "attempt", "judgement", "comment"
-    std::string id;             ///< of it; of a judgement its attempt's
+    std::string kind;           ///< "attempt", "judgement", "comment", "returned"
+    std::string id;             ///< of it; of a judgement and of what was returned its attempt's
     Milliseconds made = 0;
 };
 
@@ -102,7 +109,7 @@ class Store {
     Store& operator=(const Store&) = delete;
 
     /// That the schema of now has.
-    static constexpr int kVersion = 3;
+    static constexpr int kVersion = 4;
 
     /// Notes that it was there; `firstSeen` of before stays.
     void see(const Exercise& exercise);
@@ -123,6 +130,11 @@ class Store {
 
     void add(const Comment& comment);
     [[nodiscard]] std::vector<Comment> commentsOn(const std::string& attempt) const;
+
+    /// Of an attempt that is there, in the place of what the same marker gave back of it before.
+    void add(const Returned& returned);
+    /// In the order in which they came.
+    [[nodiscard]] std::vector<Returned> returnedOf(const std::string& attempt) const;
 
     /// What follows `sequence`, in its order, `most` at once.
     [[nodiscard]] std::vector<Outgoing> outbox(std::int64_t sequence, std::size_t most = 100) const;

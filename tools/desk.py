@@ -163,7 +163,9 @@ class Desk:
     # Acting.
 
     def xdo(self, *words):
-        subprocess.run(["xdotool", *map(str, words)], env=self.environment, check=True, stdout=subprocess.DEVNULL)
+        # A locale that is there everywhere, for letters beyond ASCII.
+        subprocess.run(["xdotool", *map(str, words)], env=dict(self.environment, LC_ALL="C.UTF-8"), check=True,
+                       stdout=subprocess.DEVNULL)
 
     def move(self, name, across=0.5, down=0.5, steps=1, seconds=0.0):
         """The pointer to a place in a widget; in steps, as a hand moves."""
@@ -214,7 +216,8 @@ class Desk:
         time.sleep(0.2)
 
     def type(self, text):
-        self.xdo("type", "--delay", 30, text)
+        # What is on no key gets one for the moment, which the program must have heard of.
+        self.xdo("type", "--delay", 30 if text.isascii() else 300, text)
         time.sleep(0.2)
 
     def menu(self, *names):

@@ -13,6 +13,7 @@
 #include <QLineEdit>
 #include <QMenu>
 #include <QMenuBar>
+#include <QPlainTextEdit>
 #include <QSaveFile>
 #include <QStatusBar>
 #include <QTabBar>
@@ -63,6 +64,7 @@ struct Map {
         QString text = widget.accessibleDescription();
         if (const auto* label = qobject_cast<const QLabel*>(&widget)) text = label->text();
         if (const auto* line = qobject_cast<const QLineEdit*>(&widget)) text = line->text();
+        if (const auto* edit = qobject_cast<const QPlainTextEdit*>(&widget)) text = edit->toPlainText();
         if (const auto* spin = qobject_cast<const QAbstractSpinBox*>(&widget)) text = spin->text();
         if (const auto* box = qobject_cast<const QComboBox*>(&widget)) text = box->currentText();
         if (const auto* button = qobject_cast<const QAbstractButton*>(&widget)) {

@@ -8545,6 +8545,10 @@ lingual: %4</source>
         <source>The picture does not show this work.</source>
         <translation>画面に出ているのはこの作品ではありません。</translation>
     </message>
+    <message>
+        <source>Whether the picture shows this work</source>
+        <translation>画面に出ているのがこの作品かどうか</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::WorkTable</name>
@@ -10230,7 +10234,7 @@ lingual: %4</source>
         <translation>開始時の視点 [mm]</translation>
     </message>
     <message>
-        <source>Work ends with them</source>
+        <source>Work ends when it is up</source>
         <translation>時間になったら作業を終える</translation>
     </message>
     <message>

@@ -332,6 +332,13 @@ void PreparationPage::refreshPicture() {
     if (picture_->isDragging()) picture_->setHandles({});
     if (pictured_ != tooth_) lookedAt_.clear();
     if (shows_ == Shown::task && pictured_ == tooth_ && tooth_ && recipe_) {
+        if (!glassOf_ || glassOf_->preparation != recipe_->preparation) {
+            // What stood there was of another one.
+            handles_.clear();
+            picture_->setHandles({});
+            picture_->setGlass({});
+            picture_->setCaption(tr("Laying the preparation on the tooth..."), false);
+        }
         glassOf_ = recipe_;
         return glass_.show(tooth_, *recipe_);
     }
@@ -425,7 +432,7 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     minutes_->setDecimals(1);
     minutes_->setValue(30);
     minutes_->setSuffix(tr(" min"));
-    hard_ = named(new QCheckBox(tr("Work ends with them"), this), "editorHardLimit", tr("Work ends with them"),
+    hard_ = named(new QCheckBox(tr("Work ends when it is up"), this), "editorHardLimit", tr("Work ends when it is up"),
                   tr("The pedal is dead then; else students are told once, and go on"));
     level_ = named(new QComboBox(this), "editorLevel", tr("Level"));
     level_->addItem(tr("Not said"), QString());
@@ -527,9 +534,9 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     connect(voxel_, &QDoubleSpinBox::valueChanged, this, [this](double um) {
         if (!showing_) change_("voxel", [&](Content& c) { c.voxelMm = 1e-3 * um; });
     });
-    const auto tickOf = [this](QCheckBox* box, bool Content::*what) {
-        connect(box, &QCheckBox::toggled, this, [this, what](bool on) {
-            if (!showing_) change_("", [&](Content& c) { c.*what = on; });
+    const auto tickOf = [this](QCheckBox* box, bool Content::*flag) {
+        connect(box, &QCheckBox::toggled, this, [this, flag](bool on) {
+            if (!showing_) change_("", [&](Content& c) { c.*flag = on; });
         });
     };
     tickOf(ownJudgement_, &Content::ownJudgement);

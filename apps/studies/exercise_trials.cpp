@@ -228,7 +228,7 @@ Ready readyOf(const Spec& spec, const TrialOptions& o, const core::Progress& pro
     r.instrument = instrument::makeInstrument(*spec.bur ? spec.bur : r.task.toothCase.exercise->bur);
     r.hand.cellMm = spec.cellMm;
     // A turbine takes its time.
-    if (o.atTheArm) r.hand.feedMmS = std::getenv("FEED")?std::atof(std::getenv("FEED")):1.0, r.hand.layerMm = std::getenv("LAYER")?std::atof(std::getenv("LAYER")):0.15;
+    if (o.atTheArm) r.hand.feedMmS = 1.0, r.hand.layerMm = 0.15;
     simulation::SimulationSettings settings;
     settings.field = simulation::fieldSettingsAt(o.voxelMm);
     settings.bur = r.instrument.bur;

@@ -93,7 +93,7 @@ TEST_F(ExerciseTest, TitleAndInstructionsStandInTheWindowInItsLanguageAsPlainTex
     EXPECT_EQ(part<QLabel>("exerciseTitle")->textFormat(), Qt::PlainText);
     EXPECT_EQ(part<QLabel>("exerciseInstructions")->text(), "1.5 mm deep.\nKeep off the pulp.");
     EXPECT_TRUE(part<QLabel>("exerciseLocked")->text().contains("Undo, redo, reset"));
-    EXPECT_TRUE(part<QLabel>("exerciseLocked")->text().contains("no other guide yet"));
+    EXPECT_TRUE(part<QLabel>("exerciseLocked")->text().contains("First steps"));
     // Closed and asked for again: the picture keeps its size.
     QCoreApplication::processEvents();
     const QSize picture = view()->size();

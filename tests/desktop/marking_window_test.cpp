@@ -170,6 +170,9 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     EXPECT_EQ(page.find("broken"), std::string::npos) << "it has no score";
 
     // Back to the student: of the work that is open, and of each that has a score.
+    click("sheetTable");
+    openRow(rowOf("S-09.h5"));
+    ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay && !simulator().isBusy(); }));
     file_ = own_.filePath("S-09-marks.json");
     click("sheetReturn");
     const auto returned = [](const fs::path& file) {

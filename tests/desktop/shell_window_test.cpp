@@ -609,15 +609,20 @@ TEST_F(ShellTest, AStarterToothIsMadeAtTheFirstStartAndKept) {
         host_ = std::make_unique<Host>(*qApp, CommandLine{}, mine);
         // Something to look at comes long before there is something to feel, and words for what is being done.
         QStringList steps;
-        QObject::connect(&simulator(), &Simulator::jobStepped, [&](const QString& step) { steps << step; });
+        bool wasSketched = false;
+        const auto look = [&] { wasSketched = wasSketched || (view()->hasSketch() && !view()->hasTooth()); };
+        QObject::connect(&simulator(), &Simulator::jobStepped, [&](const QString& step) { steps << step, look(); });
         host_->start();
         ASSERT_TRUE(
             waitFor([this] { return view()->hasSketch() || simulator().mode() == Simulator::Mode::liveSession; }));
-        EXPECT_TRUE(view()->hasSketch());
-        EXPECT_FALSE(view()->hasTooth());
-        EXPECT_TRUE(simulator().isBusy());
-        EXPECT_TRUE(window().findChild<QLabel*>("jobTitle")->text().contains(steps.last()));
+        look();
+        // On a busy machine all of it may come between two looks.
+        if (simulator().mode() != Simulator::Mode::liveSession) {
+            EXPECT_TRUE(simulator().isBusy());
+            EXPECT_TRUE(window().findChild<QLabel*>("jobTitle")->text().contains(steps.last()));
+        }
         ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::liveSession; }));
+        EXPECT_TRUE(wasSketched);
         EXPECT_FALSE(view()->hasSketch());
         EXPECT_EQ(steps.size(), first ? 5 : 4) << steps.join(", ").toStdString();
         EXPECT_EQ(simulator().toothCase()->kind, "upper-central-incisor");

@@ -78,6 +78,16 @@ inline void cutAway(ToothState& field, const std::function<double(const Vec3&)>&
     }
 }
 
+/// What is left of a tooth of which a shape was taken.
+inline ToothMirror cut(const std::shared_ptr<const ToothModel>& model,
+                       const std::function<double(const Vec3&)>& shape) {
+    ToothState state(model);
+    cutAway(state, shape);
+    ToothMirror mirror(model);
+    mirror.apply(state.state());
+    return mirror;
+}
+
 /// Every node that two stored bricks hold has the same bits in both.
 inline std::size_t tornNodes(const ToothState& field) {
     const field::FieldView view = field.field().view();

@@ -21,6 +21,7 @@ namespace handpiece::preparation {
 namespace {
 
 using core::Vec3;
+using tooth::test::cut;
 using zones::Zone;
 
 std::shared_ptr<const tooth::ToothModel> modelOf(const cases::Case& toothCase, double voxelMm) {
@@ -28,15 +29,6 @@ std::shared_ptr<const tooth::ToothModel> modelOf(const cases::Case& toothCase, d
     settings.field.voxelMm = voxelMm;
     settings.useCache = false;
     return tooth::loadModel(toothCase, settings);
-}
-
-tooth::ToothMirror cut(const std::shared_ptr<const tooth::ToothModel>& model,
-                       const std::function<double(const Vec3&)>& shape) {
-    tooth::ToothState state(model);
-    tooth::test::cutAway(state, shape);
-    tooth::ToothMirror mirror(model);
-    mirror.apply(state.state());
-    return mirror;
 }
 
 Recipe recorded(const tooth::ToothMirror& work, const zones::Leeway& leeway) {

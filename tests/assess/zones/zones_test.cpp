@@ -20,6 +20,7 @@ namespace {
 
 using core::Vec2;
 using core::Vec3;
+using tooth::test::cut;
 
 /// A block of dentine under a layer of enamel 1 mm thick; its top is at z = 0.
 std::shared_ptr<const tooth::ToothModel> block(double voxelMm) {
@@ -36,15 +37,6 @@ std::shared_ptr<const tooth::ToothModel> block(double voxelMm) {
     const field::TissueMap::PartFunction dentine{[](const Vec3& p) { return p.z() + 1.0; }, cases::Tissue::dentine, 1};
     return tooth::withTissues(
         *tooth, field::TissueMap::fromFunctions(tooth->field, std::span(&dentine, 1), cases::Tissue::enamel));
-}
-
-tooth::ToothMirror cut(const std::shared_ptr<const tooth::ToothModel>& model,
-                       const std::function<double(const Vec3&)>& shape) {
-    tooth::ToothState state(model);
-    tooth::test::cutAway(state, shape);
-    tooth::ToothMirror mirror(model);
-    mirror.apply(state.state());
-    return mirror;
 }
 
 /// A groove with round ends, `half` wide to each side, from -2.5 to 2.5 along x, turned by an angle that no voxel

@@ -10,6 +10,7 @@
 
 #include "desktop/features/editor/editor_dialog.h"
 #include "desktop/features/editor/editor_pages.h"
+#include "desktop/picture/start_view.h"
 #include "desktop/work/simulator.h"
 #include "handpiece/app/course/finished_work.h"
 #include "handpiece/model/starter/block.h"
@@ -114,9 +115,7 @@ void EditorFeature::connectDialog() {
     connect(dialog_, &EditorDialog::viewShown, this, [this] {
         const auto& start = dialog_->draft().now().exercise.view;
         if (!start || !view_.hasTooth()) return;
-        view::Camera camera = view_.camera();
-        camera.eyeMm = start->eyeMm, camera.targetMm = start->targetMm, camera.up = start->up;
-        view_.setCamera(camera);
+        view_.setCamera(lookingAs(view_.camera(), *start));
         window_.raise();
     });
     connect(dialog_->preparationPage(), &PreparationPage::idealRequested, this, &EditorFeature::cutIdeal);

@@ -16,6 +16,7 @@
 #include "desktop/features/exercise/assessment_words.h"
 #include "desktop/framework/helps.h"
 #include "desktop/picture/solid_view.h"
+#include "desktop/picture/start_view.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
 #include "handpiece/app/course/shipped_exercises.h"
@@ -263,13 +264,8 @@ void ExercisesDialog::makeIdeal() {
             view_->setCaption(tr("The ideal: drag to turn it"), false);
             view_->lookFrom(view::StandardView::oblique, task_->toothCase.buccalSign);
             // As one begins: a cavity on the far side would not be seen.
-            if (const auto& exercise = task_->toothCase.exercise; exercise && exercise->view) {
-                view::Camera camera;
-                camera.eyeMm = exercise->view->eyeMm;
-                camera.targetMm = exercise->view->targetMm;
-                camera.up = exercise->view->up;
-                view_->setCamera(camera);
-            }
+            if (const auto& exercise = task_->toothCase.exercise; exercise && exercise->view)
+                view_->setCamera(lookingAs({}, *exercise->view));
         });
 }
 

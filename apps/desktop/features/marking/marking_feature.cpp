@@ -50,9 +50,8 @@ bool mayBeReturnedWork(const QFileInfo& info) {
 constexpr const char* kKept = ".marking";
 /// How near the eye comes to a place.
 constexpr double kNearMm = 30.0;
-/// Wide enough for the criteria.
-constexpr int kAboutPixels = 90;
-constexpr int kSheetPixels = 380;
+/// Wide enough for the criteria; high enough for what the work says of itself.
+constexpr int kSheetPixels = 380, kAboutPixels = 90;
 
 }  // namespace
 

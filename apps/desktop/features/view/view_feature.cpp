@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "desktop/features/view/view_bar.h"
+#include "desktop/picture/start_view.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/work/simulator.h"
 #include "handpiece/model/case/held_aside.h"
@@ -223,10 +224,7 @@ void ViewFeature::recallEye() {
         camera.up = up->normalized();
         view_.setCamera(camera);
     } else if (const auto& exercise = simulator_.toothCase()->exercise; exercise && exercise->view) {
-        camera.eyeMm = exercise->view->eyeMm;
-        camera.targetMm = exercise->view->targetMm;
-        camera.up = exercise->view->up;
-        view_.setCamera(camera);
+        view_.setCamera(lookingAs(camera, *exercise->view));
     } else {
         view_.showStandardView(view::StandardView::oblique);
     }

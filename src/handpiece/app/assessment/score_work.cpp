@@ -188,7 +188,7 @@ std::optional<std::uint64_t> leftOnTheWay(const Done& session, std::uint64_t sta
 constexpr const char* kNotFromThere = "its session {} goes on from another tooth than was left before it";
 
 /// In the order that is told, each held against the one before it. `broken`: what is wrong with it already.
-Work workInOrder(std::vector<Done> chain, std::string broken, bool prove) {
+Work workInOrder(std::vector<Done> chain, std::string broken, bool prove, const char* notFromThere = kNotFromThere) {
     std::uint64_t left = tooth::stateHash({});
     std::string givenUp;
     for (std::size_t i = 0; i < chain.size(); ++i) {
@@ -201,7 +201,7 @@ Work workInOrder(std::vector<Done> chain, std::string broken, bool prove) {
                 givenUp += fmt::format("; what followed in {} after it was saved was given up, and does not count",
                                        before.path.filename().string());
             } else {
-                broken = fmt::format(kNotFromThere, chain[i].recording.path.filename().string());
+                broken = fmt::format(fmt::runtime(notFromThere), chain[i].recording.path.filename().string());
             }
         }
         left = chain[i].endHash;
@@ -225,7 +225,6 @@ Work workOfFolder(const fs::path& folder, const tasks::Task& task, bool prove, c
     std::vector<Done> waiting = doAllAgain(recordings, task, prove, progress), chain;
     const std::uint64_t whole = tooth::stateHash({});
     std::uint64_t left = whole;
-    std::string broken;
     const auto nameOf = [](const Done& done) { return done.recording.path.filename().string(); };
     while (!waiting.empty()) {
         auto next = std::find_if(waiting.begin(), waiting.end(), [&](const Done& d) { return d.startHash == left; });
@@ -236,22 +235,19 @@ Work workOfFolder(const fs::path& folder, const tasks::Task& task, bool prove, c
                 throw core::Error(fmt::format("{} and {} both begin with the whole tooth: these are several works",
                                               nameOf(chain.front()), nameOf(*other)),
                                   folder.string(), "put the sessions of one work into a folder, and no others");
-            // One is missing. On with the first of those that none of the others leads to.
+            // One is missing, or was given up in part. On with the first of those that none of the others leads to.
             next = std::find_if(waiting.begin(), waiting.end(), [&](const Done& d) {
                 return std::none_of(waiting.begin(), waiting.end(),
                                     [&](const Done& o) { return &o != &d && o.endHash == d.startHash; });
             });
             if (next == waiting.end()) next = waiting.begin();
-            if (broken.empty() && (chain.empty() || !leftOnTheWay(chain.back(), next->startHash, prove)))
-                broken =
-                    fmt::format("{} goes on from a tooth that no other session here leaves: one is missing before it",
-                                nameOf(*next));
         }
         left = next->endHash;
         chain.push_back(std::move(*next));
         waiting.erase(next);
     }
-    return workInOrder(std::move(chain), std::move(broken), prove);
+    return workInOrder(std::move(chain), {}, prove,
+                       "{} goes on from a tooth that no other session here leaves: one is missing before it");
 }
 
 Work workOfAttempt(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress) {

@@ -93,10 +93,9 @@ std::string classPage(const Desk& desk, Naming naming) {
         entry.file = naming == Naming::withFiles ? file : code;
         entry.result = *machine;
         entry.result.assessment = *final;
-        if (const std::optional<Decision>& decision = desk.sheet(code).decision) {
-            entry.result.assessment.passed = decision->passed ? score::Passed::yes : score::Passed::no;
+        entry.result.assessment.passed = *desk.passed(code);
+        if (const std::optional<Decision>& decision = desk.sheet(code).decision)
             entry.result.assessment.why = decision->reason;
-        }
         entries.push_back(std::move(entry));
     }
     if (entries.empty())

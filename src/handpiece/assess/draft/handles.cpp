@@ -68,8 +68,7 @@ class Finder {
     }
     [[nodiscard]] Vec3 normalAt(const Vec3& onSurface) const {
         const geometry::NearestPoint near = laid_.whole->nearest(onSurface);
-        const float* n = &laid_.whole->pseudonormals()[std::size_t{near.triangle} * 21];
-        return Vec3(n[0], n[1], n[2]).normalized();
+        return laid_.whole->pseudonormal(near.triangle).normalized();
     }
     [[nodiscard]] const cases::Landmark* mark(cases::LandmarkKind kind) const {
         for (const cases::Landmark& one : tooth_.landmarks)

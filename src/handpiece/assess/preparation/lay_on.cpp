@@ -140,7 +140,7 @@ class Site {
     [[nodiscard]] bool isUnder(const Vec3& p, double leastMm) const {
         const geometry::RayMeeting over = tree_->firstMeeting(p, Vec3::UnitZ());
         return over.triangle != geometry::kNoTriangle && over.distanceMm >= leastMm &&
-               tree_->pseudonormals()[std::size_t{over.triangle} * 21 + 2] > 0.0f;
+               tree_->pseudonormal(over.triangle).z() > 0.0;
     }
     /// How far off the tooth ends for good, in a direction; negative where it does not lie that way.
     [[nodiscard]] double outermost(const Vec3& from, const Vec3& way) const {
@@ -255,9 +255,7 @@ class Site {
     /// Fissures run over onto the sides; those are not followed.
     [[nodiscard]] bool isOnTop(const Vec3& p) const {
         const geometry::NearestPoint near = tree_->nearest(p);
-        if (near.triangle == geometry::kNoTriangle) return false;
-        const float* normal = &tree_->pseudonormals()[std::size_t{near.triangle} * 21];
-        return normal[2] > 0.35f;
+        return near.triangle != geometry::kNoTriangle && tree_->pseudonormal(near.triangle).z() > 0.35f;
     }
 
     /// The proximal box of a class II, and the way to it.
@@ -447,10 +445,8 @@ class Site {
         return [carious = std::move(carious), pulp, over = number("over_pulp_mm"), tree = tree_](Vec3 p) {
             constexpr double kSkinMm = 0.1, kOverMm = 0.3;
             if (const geometry::NearestPoint on = tree->nearest(p, kOverMm);
-                on.triangle != geometry::kNoTriangle && on.distanceMm * tree->side(p, on) > -kSkinMm) {
-                const float* n = &tree->pseudonormals()[std::size_t{on.triangle} * 21 + std::size_t{on.feature} * 3];
-                p = on.pointMm - kSkinMm * Vec3(n[0], n[1], n[2]);
-            }
+                on.triangle != geometry::kNoTriangle && on.distanceMm * tree->side(p, on) > -kSkinMm)
+                p = on.pointMm - kSkinMm * tree->pseudonormal(on.triangle, on.feature);
             double least = kFarMm;
             for (const auto& caries : carious)
                 least = std::min(least, caries->signedDistance(p));
@@ -503,9 +499,8 @@ class Site {
             constexpr double kBackMm = 0.2;               // nodes just outside stand for tooth too
             const geometry::RayMeeting out = tree->firstMeeting(p - kBackMm * way, way);
             if (out.triangle == geometry::kNoTriangle) return kFarMm;
-            const float* normal = &tree->pseudonormals()[std::size_t{out.triangle} * 21];
             constexpr double kFaces = 0.7;
-            if (way.y() * normal[1] < kFaces) return kFarMm;
+            if (way.y() * tree->pseudonormal(out.triangle).y() < kFaces) return kFarMm;
             return out.distanceMm - kBackMm - thick;
         };
     }

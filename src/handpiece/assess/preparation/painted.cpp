@@ -209,10 +209,6 @@ Painting paintedTarget(std::span<const BrushStroke> strokes, double depthMm, con
 
     // Triangles may be larger than the brush: its own places count too.
     Vec3 facing = Vec3::Zero(), under = Vec3::Zero();
-    const auto normalAt = [&](const NearestPoint& on) {
-        const float* n = &whole->pseudonormals()[std::size_t{on.triangle} * 21];
-        return Vec3(n[0], n[1], n[2]);
-    };
     for (std::uint32_t i = 0; i < whole->triangles().size(); ++i) {
         const geometry::TreeTriangle& t = whole->triangles()[i];
         const Vec3 a(t.a[0], t.a[1], t.a[2]), ab(t.ab[0], t.ab[1], t.ab[2]), ac(t.ac[0], t.ac[1], t.ac[2]);
@@ -221,7 +217,7 @@ Painting paintedTarget(std::span<const BrushStroke> strokes, double depthMm, con
     for (const BrushStroke& stroke : placed)
         for (const Vec3& p : stroke.pointsMm) {
             const NearestPoint on = whole->nearest(p);
-            if (paint->distanceMm(on.triangle, on.pointMm) < 0.0) under += normalAt(on);
+            if (paint->distanceMm(on.triangle, on.pointMm) < 0.0) under += whole->pseudonormal(on.triangle);
         }
     if (facing.isZero(0.0)) facing = under;
     if (facing.isZero(0.0))

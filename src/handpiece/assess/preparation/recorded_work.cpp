@@ -12,6 +12,7 @@
 #include <optional>
 #include <tuple>
 
+#include "handpiece/base/core/difference_bytes.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/hash.h"
 #include "handpiece/base/geometry/inspect.h"
@@ -202,47 +203,19 @@ std::uint64_t hashOf(std::span<const std::byte> bytes) {
     return hasher.value();
 }
 
-/// Small differences of either sign in few bytes.
-void put(std::vector<std::byte>& out, std::int64_t difference) {
-    auto number = (static_cast<std::uint64_t>(difference) << 1) ^ static_cast<std::uint64_t>(difference >> 63);
-    for (; number >= 0x80; number >>= 7)
-        out.push_back(static_cast<std::byte>(number | 0x80));
-    out.push_back(static_cast<std::byte>(number));
-}
-class Reader {
-  public:
-    explicit Reader(std::span<const std::byte> data) : data_(data) {}
-    /// None at the end, and where a number has no end.
-    std::optional<std::int64_t> take() {
-        std::uint64_t number = 0;
-        for (int shift = 0; shift < 63; shift += 7) {
-            if (at_ == data_.size()) return {};
-            const auto byte = std::to_integer<std::uint64_t>(data_[at_++]);
-            number |= (byte & 0x7f) << shift;
-            if (byte < 0x80) return static_cast<std::int64_t>(number >> 1) ^ -static_cast<std::int64_t>(number & 1);
-        }
-        return {};
-    }
-    [[nodiscard]] bool isAtEnd() const { return at_ == data_.size(); }
-
-  private:
-    std::span<const std::byte> data_;
-    std::size_t at_ = 0;
-};
-
 std::vector<std::byte> payloadOf(const TriangleMesh& mesh) {
     std::vector<std::byte> out;
     std::array<std::int64_t, 3> last{};
     for (const Vec3& v : mesh.vertices)
         for (int k = 0; k < 3; ++k) {
             const std::int64_t steps = stepsOf(v[k]);
-            put(out, steps - last[static_cast<std::size_t>(k)]);
+            core::appendDifference(out, steps - last[static_cast<std::size_t>(k)]);
             last[static_cast<std::size_t>(k)] = steps;
         }
     std::int64_t before = 0;
     for (const geometry::Triangle& t : mesh.triangles)
         for (const std::uint32_t corner : t) {
-            put(out, std::int64_t{corner} - before);
+            core::appendDifference(out, std::int64_t{corner} - before);
             before = corner;
         }
     return out;
@@ -250,12 +223,11 @@ std::vector<std::byte> payloadOf(const TriangleMesh& mesh) {
 
 /// False where the bytes are no such mesh.
 bool readPayload(std::span<const std::byte> data, const Header& header, TriangleMesh& mesh) {
-    Reader reader(data);
     std::array<std::int64_t, 3> last{};
     mesh.vertices.resize(header.vertices);
     for (Vec3& v : mesh.vertices)
         for (int k = 0; k < 3; ++k) {
-            const std::optional<std::int64_t> difference = reader.take();
+            const std::optional<std::int64_t> difference = core::takeDifference(data);
             constexpr auto kMostSteps = static_cast<std::int64_t>(kMostMm / kStepMm);
             if (!difference || std::abs(*difference) > 2 * kMostSteps) return false;
             std::int64_t& steps = last[static_cast<std::size_t>(k)];
@@ -267,13 +239,13 @@ bool readPayload(std::span<const std::byte> data, const Header& header, Triangle
     mesh.triangles.resize(header.triangles);
     for (geometry::Triangle& t : mesh.triangles)
         for (std::uint32_t& corner : t) {
-            const std::optional<std::int64_t> difference = reader.take();
+            const std::optional<std::int64_t> difference = core::takeDifference(data);
             if (!difference || *difference < -before || *difference >= std::int64_t{header.vertices} - before)
                 return false;
             before += *difference;
             corner = static_cast<std::uint32_t>(before);
         }
-    return reader.isAtEnd();
+    return data.empty();
 }
 
 // ------------------------------------------------------------------ distances
@@ -313,8 +285,7 @@ class Target {
             const double outMm = on.distanceMm * whole_->side(p, on);
             if (outMm > 0.0) from = on.pointMm;
             if (outMm > -insideMm_) {
-                const float* n = &whole_->pseudonormals()[std::size_t{on.triangle} * 21 + std::size_t{on.feature} * 3];
-                within = on.pointMm - insideMm_ * Vec3(n[0], n[1], n[2]);
+                within = on.pointMm - insideMm_ * whole_->pseudonormal(on.triangle, on.feature);
             }
         }
         // What was taken lies in front of what was cut; of the uncut surface too little is kept to tell.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "handpiece/base/core/difference_bytes.h"
 #include "handpiece/base/core/error.h"
 
 namespace handpiece::geometry {
@@ -17,14 +18,6 @@ constexpr std::uint32_t kMaxCount = 1u << 26;
 void appendNumber(std::vector<std::byte>& bytes, std::uint64_t value, std::size_t size) {
     for (std::size_t i = 0; i < size; ++i)
         bytes.push_back(static_cast<std::byte>(value >> (8 * i)));
-}
-
-/// Seven bits a byte, the low ones first; small differences of either sign stay small.
-void appendDifference(std::vector<std::byte>& bytes, std::int64_t difference) {
-    auto rest = (static_cast<std::uint64_t>(difference) << 1) ^ static_cast<std::uint64_t>(difference >> 63);
-    for (; rest >= 0x80; rest >>= 7)
-        bytes.push_back(static_cast<std::byte>(rest | 0x80));
-    bytes.push_back(static_cast<std::byte>(rest));
 }
 
 class Taker {
@@ -47,13 +40,8 @@ class Taker {
         return value;
     }
     std::int64_t difference() {
-        std::uint64_t value = 0;
-        for (int shift = 0; shift < 63; shift += 7) {
-            const auto byte = static_cast<std::uint64_t>(take(1)[0]);
-            value |= (byte & 0x7f) << shift;
-            if (byte < 0x80) return static_cast<std::int64_t>(value >> 1) ^ -static_cast<std::int64_t>(value & 1);
-        }
-        refuse("has a number without end");
+        if (const auto taken = core::takeDifference(bytes_)) return *taken;
+        refuse(bytes_.size() < core::kMaxDifferenceBytes ? "ends early" : "has a number without end");
     }
 
   private:
@@ -88,7 +76,7 @@ void appendMesh(std::vector<std::byte>& bytes, const TriangleMesh& mesh) {
     std::int64_t newest = 0;
     for (const Triangle& t : mesh.triangles)
         for (const std::uint32_t v : t) {
-            appendDifference(bytes, newest - std::int64_t{v});
+            core::appendDifference(bytes, newest - std::int64_t{v});
             newest = std::max(newest, std::int64_t{v} + 1);
         }
 }

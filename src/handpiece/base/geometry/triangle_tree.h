@@ -61,6 +61,11 @@ class TriangleTree {
 
     /// 7 unit normals of 3 floats a triangle, in tree order: face, edges ab bc ca, vertices a b c.
     [[nodiscard]] const std::vector<float>& pseudonormals() const noexcept { return pseudonormals_; }
+    /// Of a triangle in tree order, or of one of its features as NearestPoint has them; unit.
+    [[nodiscard]] core::Vec3 pseudonormal(std::uint32_t triangle, std::uint8_t feature = 0) const noexcept {
+        const float* n = &pseudonormals_[std::size_t{triangle} * 21 + std::size_t{feature} * 3];
+        return {n[0], n[1], n[2]};
+    }
 
   private:
     void fillTriangles(const TriangleMesh& mesh, std::span<const std::uint32_t> order);

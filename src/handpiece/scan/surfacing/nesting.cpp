@@ -45,8 +45,7 @@ Breach breachAt(const TriangleTree& tree, const Vec3& p, const Bounds& bounds, d
     if (n.distanceMm > 1e-9) {
         breach.gradient = sign / n.distanceMm * (p - n.pointMm);
     } else {
-        const float* normal = &tree.pseudonormals()[(std::size_t{n.triangle} * 7 + n.feature) * 3];
-        breach.gradient = Vec3(normal[0], normal[1], normal[2]);
+        breach.gradient = tree.pseudonormal(n.triangle, n.feature);
     }
     return breach;
 }

@@ -72,8 +72,7 @@ BallDepth ExactSurface::ball(const Vec3& centreMm, double radiusMm, std::uint32_
 }
 
 Vec3 ExactSurface::outward(const BallDepth& ball) const noexcept {
-    const float* n = &tree_.pseudonormals()[21 * std::size_t{ball.triangle} + 3 * std::size_t{ball.feature}];
-    const Vec3 normal(n[0], n[1], n[2]);
+    const Vec3 normal = tree_.pseudonormal(ball.triangle, ball.feature);
     const double length = normal.norm();
     return length > 0.0 ? Vec3(normal / length) : Vec3::Zero();
 }

@@ -295,17 +295,9 @@ void ideal(const ExerciseOptions& o) {
 void pack(const ExerciseOptions& o) {
     tasks::Task task = exerciseOf(o.path).task;
     if (!o.teacherWork.empty()) {
-        if (fs::path(o.teacherWork).extension() != ".h5")
-            throw core::Error("this is no session", o.teacherWork,
-                              "name a session.h5: one recording, from its beginning");
         studies::ProgressBar bar("cutting it again");
-        const assessment::Work work = assessment::readWork(o.teacherWork, task, true, bar.listener());
+        task.teacherWork = assessment::provenWork(o.teacherWork, task, bar.listener());
         bar.finish();
-        if (!work.isProven)
-            throw core::Error("this work is not proven: " + work.proof, o.teacherWork,
-                              "record one from the whole tooth to its end, with this program");
-        task.teacherWork =
-            std::make_shared<const std::vector<std::byte>>(core::readFile(o.teacherWork, tasks::kMaxTeacherWorkBytes));
     }
     write(task, o.out);
 }

@@ -275,6 +275,175 @@ TEST_F(MarkingTest, BlindOnesOwnMarksComeFirst) {
     EXPECT_TRUE(fs::exists(toPath(file_) / "01.svg"));
 }
 
+/// Twelve works, one that is broken and one that came twice, on a school's screen: every press lies on what is seen.
+class ManyWorks : public MarkingTest {
+  protected:
+    static constexpr int kWorks = 12;
+    void makeMany() {
+        makeExercise();
+        CommandLine line;
+        line.file = toQString(exercise() / "case");
+        startWithTooth(line);
+        for (int i = 1; i <= kWorks; ++i) {
+            ASSERT_TRUE(cut());
+            save(("S-" + std::to_string(100 + i) + ".handpiece").c_str());
+        }
+        simulator().close();
+        fs::copy_file(works() / "S-103.handpiece", works() / "S-999-again.handpiece");
+        core::writeFile(works() / "broken.handpiece", std::string_view("no zip"));
+        window().resize(1366, 768);
+    }
+    /// At this place of a widget, where nothing lies over it.
+    void pressOn(QWidget* widget, const QPoint& at) {
+        ASSERT_TRUE(waitFor([&] { return widget->isVisible() && widget->isEnabled(); }))
+            << widget->objectName().toStdString();
+        const QWidget* seen = widget->window()->childAt(widget->mapTo(widget->window(), at));
+        ASSERT_TRUE(seen == widget || widget->isAncestorOf(seen))
+            << widget->objectName().toStdString() << " is not seen, but "
+            << (seen != nullptr ? seen->objectName().toStdString() : "nothing");
+        QTest::mouseClick(widget, Qt::LeftButton, Qt::NoModifier, at);
+    }
+    void pressOn(const char* name) {
+        auto* widget = part<QWidget>(name);
+        ASSERT_NO_FATAL_FAILURE(pressOn(widget, QPoint(8, widget->height() / 2)));
+    }
+    /// A criterion, by its row in the tree.
+    void pressRow(int row) {
+        auto* tree = part<QTreeWidget>("sheetCriteria");
+        const QRect place = tree->visualItemRect(tree->topLevelItem(row));
+        ASSERT_TRUE(tree->viewport()->rect().contains(place.center())) << "of few criteria none is out of sight";
+        ASSERT_NO_FATAL_FAILURE(pressOn(tree->viewport(), QPoint(place.left() + 8, place.center().y())));
+        ASSERT_EQ(tree->currentItem(), tree->topLevelItem(row));
+    }
+    [[nodiscard]] QString summary() { return part<QLabel>("sheetSummary")->text(); }
+};
+
+TEST_F(ManyWorks, TwelveAreMarkedBlindToTheEnd) {
+    makeMany();
+    begin(QStringLiteral("Sato"), true);
+    constexpr int kRows = kWorks + 2 + 1;  // one of them twice
+    ASSERT_EQ(rows(), kRows);
+    // Nothing tells whose a work is or which come twice: no picture, no name of a file, also of what is broken.
+    int problems = 0;
+    for (int row = 0; row < kRows; ++row) {
+        EXPECT_EQ(cell(row, WorkTable::kFile), "hidden");
+        EXPECT_TRUE(table()->model()->index(row, 0).data(Qt::DecorationRole).isNull());
+        const QString state = cell(row, WorkTable::kState);
+        EXPECT_FALSE(state.contains("S-") || state.contains("broken") || state.contains("same") ||
+                     state.contains(QLatin1Char('/')))
+            << state.toStdString();
+        problems += cell(row, WorkTable::kFlags).isEmpty() ? 0 : 1;
+    }
+    EXPECT_GE(problems, 2);
+    EXPECT_GE(table()->viewport()->height(), 12 * table()->rowHeight(0)) << "a dozen is seen at once";
+    EXPECT_TRUE(part<QLabel>("markingCount")->text().contains("0 of 15"));
+    const QRect first = table()->visualRect(table()->model()->index(0, 0));
+    ASSERT_NO_FATAL_FAILURE(pressOn(table()->viewport(), first.center()));
+    ASSERT_NO_FATAL_FAILURE(pressOn("markingOpen"));
+    std::set<std::string> done;
+    for (int i = 0; i < kRows; ++i) {
+        const QString code = part<SheetPanel>("markingSheet")->code();
+        ASSERT_TRUE(done.insert(code.toStdString()).second) << "one comes again before all were seen";
+        const bool isBad = desk().error(code.toStdString()).has_value();
+        const auto isThere = [&] {
+            return window().errorDialog() != nullptr ||
+                   (!simulator().isBusy() && !part<QLabel>("sheetNotShown")->isVisible());
+        };
+        if (i == 1 && !isBad) {
+            // Marks may begin before the tooth has come, which takes no key from them.
+            ASSERT_NO_FATAL_FAILURE(pressRow(0));
+            ASSERT_TRUE(waitFor(isThere));
+            EXPECT_TRUE(part<QTreeWidget>("sheetCriteria")->hasFocus());
+        }
+        ASSERT_TRUE(waitFor(isThere));
+        if (auto* error = window().errorDialog()) {
+            EXPECT_TRUE(isBad);
+            EXPECT_TRUE(error->problem().what.contains(code)) << error->problem().what.toStdString();
+            EXPECT_FALSE(error->problem().what.contains("broken") || error->problem().where.contains("broken"));
+            error->reject();
+            ASSERT_TRUE(waitFor([this] { return window().errorDialog() == nullptr; }));
+        }
+        if (i == 5) {
+            // In the middle the program ends and begins again.
+            start();
+            window().resize(1366, 768);
+            begin(QStringLiteral("Sato"), true);
+            EXPECT_TRUE(part<QLabel>("markingCount")->text().contains("5 of 15"));
+            for (int row = 0; row < kRows; ++row)
+                if (cell(row, WorkTable::kCode) == code) {
+                    table()->scrollTo(table()->model()->index(row, 0));
+                    openRow(row);
+                }
+            ASSERT_EQ(part<SheetPanel>("markingSheet")->code(), code);
+            ASSERT_TRUE(waitFor([this] {
+                return window().errorDialog() != nullptr ||
+                       (!simulator().isBusy() && !part<QLabel>("sheetNotShown")->isVisible());
+            }));
+            if (auto* error = window().errorDialog()) {
+                error->reject();
+                ASSERT_TRUE(waitFor([this] { return window().errorDialog() == nullptr; }));
+            }
+        }
+        EXPECT_TRUE(summary().contains(isBad ? "cannot be scored" : "hidden")) << summary().toStdString();
+        if (!isBad) {
+            EXPECT_FALSE(part<QPushButton>("sheetGiveIn")->isEnabled());
+            ASSERT_NO_FATAL_FAILURE(pressRow(0));
+            chooseBand(1 + (i % 5 == 0 ? 1 : 0));
+            ASSERT_NO_FATAL_FAILURE(pressOn("sheetSay"));
+            ASSERT_NO_FATAL_FAILURE(pressRow(1));
+            setPoints(15);
+            ASSERT_NO_FATAL_FAILURE(pressOn("sheetSay"));
+            ASSERT_NO_FATAL_FAILURE(pressRow(2));
+            setPoints(40 + 3 * i);
+            ASSERT_NO_FATAL_FAILURE(pressOn("sheetSay"));
+        }
+        ASSERT_NO_FATAL_FAILURE(pressOn("sheetGiveIn"));
+        ASSERT_TRUE(desk().sheet(code.toStdString()).isIn);
+        if (i + 1 < kRows) {
+            EXPECT_FALSE(desk().areAllIn());
+            if (!desk().isRevealed(code.toStdString()) && !isBad) {
+                EXPECT_TRUE(summary().contains(QString::number(kRows - i - 1))) << summary().toStdString();
+            }
+            ASSERT_NO_FATAL_FAILURE(pressOn("sheetNext"));
+        }
+    }
+    ASSERT_TRUE(desk().areAllIn());
+    EXPECT_FALSE(part<QToolButton>("sheetNext")->isEnabled());
+    ASSERT_NO_FATAL_FAILURE(pressOn("sheetTable"));
+    int again = 0;
+    for (int row = 0; row < kRows; ++row) {
+        EXPECT_NE(cell(row, WorkTable::kFile), "hidden");
+        again += cell(row, WorkTable::kState).contains("second time") ? 1 : 0;
+    }
+    EXPECT_EQ(again, 1) << "a tenth of fourteen";
+    const int twin = rowOf("S-999-again.handpiece");
+    ASSERT_GE(twin, 0);
+    EXPECT_TRUE(cell(twin, WorkTable::kState).contains("S-103.handpiece")) << "now it is told whose it is the same as";
+    // How far marker and machine agree: each criterion, every coefficient, every plot.
+    auto* tabs = part<QTabWidget>("markingTabs");
+    ASSERT_NO_FATAL_FAILURE(pressOn(tabs->tabBar(), tabs->tabBar()->tabRect(2).center()));
+    auto* tree = part<QTreeWidget>("agreementTable");
+    ASSERT_TRUE(waitFor([&] { return tree->topLevelItemCount() == 3; }));
+    EXPECT_EQ(tree->topLevelItem(0)->text(0), "enamel taken") << "in words, not by its id";
+    EXPECT_EQ(tree->topLevelItem(2)->text(0), "all points together");
+    std::set<QString> coefficients;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < tree->topLevelItem(i)->childCount(); ++k)
+            coefficients.insert(tree->topLevelItem(i)->child(k)->text(2));
+    EXPECT_EQ(coefficients,
+              (std::set<QString>{"weighted kappa", "bias, limits of agreement", "ICC(2,1)", "Krippendorff's alpha"}));
+    auto* pictures = part<QComboBox>("agreementPicture");
+    ASSERT_GE(pictures->count(), 2);
+    pictures->setFocus();
+    QTest::keyClick(pictures, Qt::Key_Home);
+    for (int i = 0; i < pictures->count(); ++i) {
+        EXPECT_EQ(pictures->currentIndex(), i);
+        EXPECT_TRUE(part<SvgView>("agreementPlot")->hasPicture()) << pictures->currentText().toStdString();
+        QTest::keyClick(pictures, Qt::Key_Down);
+    }
+    keep(part<QDialog>("markingDesk"), "agreement-twelve.png");
+}
+
 TEST_F(MarkingTest, AFolderIsDroppedAndScoringIsCancelled) {
     makeWork();
     fs::copy(at("exercise"), works() / "exercise", fs::copy_options::recursive);

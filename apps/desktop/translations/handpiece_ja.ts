@@ -2816,6 +2816,54 @@
         <source>Put it back, or score again.</source>
         <translation>元に戻すか、再採点してください。</translation>
     </message>
+    <message>
+        <source>This is no recording.</source>
+        <translation>これは記録ではありません。</translation>
+    </message>
+    <message>
+        <source>Choose a session.h5: one recording, from its beginning.</source>
+        <translation>session.h5 を選んでください：初めからの一つの記録です。</translation>
+    </message>
+    <message>
+        <source>Cut again, this recording does not come to the same tooth.</source>
+        <translation>切削し直しても、この記録は同じ歯になりません。</translation>
+    </message>
+    <message>
+        <source>Record one from the whole tooth to its end, with this program.</source>
+        <translation>このプログラムで、未切削の歯から終わりまで記録してください。</translation>
+    </message>
+    <message>
+        <source>The exercise has no tooth yet.</source>
+        <translation>課題にまだ歯がありません。</translation>
+    </message>
+    <message>
+        <source>Choose its tooth first, on the page Tooth.</source>
+        <translation>先に「歯」のページで歯を選んでください。</translation>
+    </message>
+    <message>
+        <source>The tooth or its voxel was changed while your work was cut again.</source>
+        <translation>作業を切削し直している間に、歯かボクセルが変わりました。</translation>
+    </message>
+    <message>
+        <source>Choose your work again.</source>
+        <translation>作業をもう一度選んでください。</translation>
+    </message>
+    <message>
+        <source>This was handed in for another exercise: %1.</source>
+        <translation>これは別の課題の提出物です：%1。</translation>
+    </message>
+    <message>
+        <source>Choose that exercise, or take the work out of the folder.</source>
+        <translation>その課題を選ぶか、作品をフォルダーから出してください。</translation>
+    </message>
+    <message>
+        <source>It cannot be scored; why is told once your marks are in.</source>
+        <translation>採点できません。理由は評価の確定後に示します。</translation>
+    </message>
+    <message>
+        <source>It may go in without marks.</source>
+        <translation>評価なしで確定できます。</translation>
+    </message>
 </context>
 <context>
     <name>Pulp</name>
@@ -7889,10 +7937,6 @@ lingual: %4</source>
         <translation>%1（%2 ～ %3）</translation>
     </message>
     <message>
-        <source>all points together</source>
-        <translation>総得点</translation>
-    </message>
-    <message>
         <source>%1 and %2</source>
         <translation>%1 と %2</translation>
     </message>
@@ -8123,6 +8167,10 @@ lingual: %4</source>
         <source>Page of the class, with file names...</source>
         <translation>クラスのページ（ファイル名付き）...</translation>
     </message>
+    <message>
+        <source>Marks in: %1 of %2</source>
+        <translation>評価済み：%1 / %2</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::MarkingFeature</name>
@@ -8225,6 +8273,14 @@ lingual: %4</source>
     <message>
         <source>Page (*.html)</source>
         <translation>ページ (*.html)</translation>
+    </message>
+    <message>
+        <source>%1 cannot be opened; why is told once your marks are in.</source>
+        <translation>%1 を開けません。理由は評価の確定後に示します。</translation>
+    </message>
+    <message>
+        <source>It may go in without marks.</source>
+        <translation>評価なしで確定できます。</translation>
     </message>
 </context>
 <context>
@@ -8466,10 +8522,6 @@ lingual: %4</source>
         <translation>機械の得点は、自分の評価を出すまで隠されています。</translation>
     </message>
     <message>
-        <source>The machine&apos;s score is shown when all works are marked.</source>
-        <translation>機械の得点は、すべての作品を評価すると表示されます。</translation>
-    </message>
-    <message>
         <source>It waits for its score.</source>
         <translation>採点を待っています。</translation>
     </message>
@@ -8548,6 +8600,14 @@ lingual: %4</source>
     <message>
         <source>Whether the picture shows this work</source>
         <translation>画面に出ているのがこの作品かどうか</translation>
+    </message>
+    <message>
+        <source>The machine&apos;s score is shown when all works are marked. Still to be marked: %1.</source>
+        <translation>機械の得点は、すべての作品を評価すると表示されます。残り：%1。</translation>
+    </message>
+    <message>
+        <source>It may go in without marks.</source>
+        <translation>評価なしで確定できます。</translation>
     </message>
 </context>
 <context>
@@ -8900,6 +8960,10 @@ lingual: %4</source>
     <message>
         <source>Handing in</source>
         <translation>提出しています</translation>
+    </message>
+    <message>
+        <source>Back to the result</source>
+        <translation>結果に戻る</translation>
     </message>
 </context>
 <context>
@@ -9630,6 +9694,18 @@ lingual: %4</source>
         <source>Exercise (*.handpiece)</source>
         <translation>課題 (*.handpiece)</translation>
     </message>
+    <message>
+        <source>Your own work</source>
+        <translation>自分の作業</translation>
+    </message>
+    <message>
+        <source>Recordings (*.h5);;All files (*)</source>
+        <translation>記録 (*.h5);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>It is cut again...</source>
+        <translation>切削し直しています...</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::PreparationPage</name>
@@ -10256,6 +10332,34 @@ lingual: %4</source>
     <message>
         <source>A bar for target, leeway and what must stay</source>
         <translation>目標・許容範囲・残すべき部分の切削量をバーで示します</translation>
+    </message>
+    <message>
+        <source>Your own work</source>
+        <translation>自分の作業</translation>
+    </message>
+    <message>
+        <source>Choose...</source>
+        <translation>選択...</translation>
+    </message>
+    <message>
+        <source>Your recording of this exercise (session.h5), one sitting from the whole tooth to its end, in its voxel: students play it beside their result. It is cut again to prove it; another tooth takes it away.</source>
+        <translation>この課題を行った自分の記録（session.h5）。未切削の歯から終わりまで一回で、課題のボクセルで作業したもの。学生は結果の横で再生できます。切削し直して証明します。歯を替えると外れます。</translation>
+    </message>
+    <message>
+        <source>Remove</source>
+        <translation>削除</translation>
+    </message>
+    <message>
+        <source>Remove your own work</source>
+        <translation>自分の作業を外す</translation>
+    </message>
+    <message>
+        <source>comes along</source>
+        <translation>付属する</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>なし</translation>
     </message>
 </context>
 <context>

@@ -20,6 +20,9 @@
 #include "handpiece/app/marking/desk_agreement.h"
 #include "handpiece/app/marking/desk_csv.h"
 #include "handpiece/app/marking/returned_marks.h"
+#include "handpiece/app/report/assessment_words.h"
+#include "handpiece/assess/agreement/agreement.h"
+#include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "support/error_of.h"
@@ -688,6 +691,33 @@ TEST(Agreement, OfMarkersMachineAndSelf) {
     ASSERT_FALSE(agreement.pictures.empty());
     for (const DeskAgreement::Picture& picture : agreement.pictures)
         EXPECT_TRUE(picture.svg.starts_with("<svg")) << picture.name;
+    // In the other language: the rubric's titles, and what is not the rubric's in its words.
+    config::useLanguage("ja");
+    const DeskAgreement japanese = agreementOfDesk(first, others.desks, 50);
+    EXPECT_EQ(japanese.criteria.back().title, "総得点");
+    EXPECT_EQ(raterName("machine"), "機械");
+    EXPECT_EQ(raterName("Tanaka again"), "Tanaka(2回目)");
+    EXPECT_EQ(raterName("Tanaka"), "Tanaka");
+    for (const DeskAgreement::Picture& picture : japanese.pictures)
+        for (const char* english : {"machine", "Tanaka again", "mean of both", "difference", "by chance", "weights"})
+            EXPECT_THAT(picture.name + picture.svg, Not(HasSubstr(english)));
+    // And why a coefficient is undefined, whatever the reason.
+    for (const assessment::CriterionAgreement& c : japanese.criteria) {
+        std::vector<std::string> reasons;
+        for (const assessment::RaterPair& p : c.pairs) {
+            if (p.linear) reasons.push_back(p.linear->reason);
+            if (p.blandAltman) reasons.push_back(p.blandAltman->reason);
+        }
+        if (c.icc) reasons.push_back(c.icc->two1.reason);
+        for (const assessment::Alpha& a : c.alphas)
+            reasons.push_back(a.estimate.reason);
+        for (const std::string& reason : reasons)
+            EXPECT_TRUE(reason.empty() || report::said(reason) != reason) << reason;
+    }
+    EXPECT_NE(report::said(agreement::icc(std::vector<double>{1.0, 2.0}, 2).two1.reason),
+              agreement::icc(std::vector<double>{1.0, 2.0}, 2).two1.reason);
+    config::useLanguage("en");
+    EXPECT_EQ(japanese.criteria.back().criterion, kTotal) << "files keep the id";
     // What handpiece agree reads.
     EXPECT_EQ(assessment::parseMarks(marksCsv(first, others.desks), "marks.csv").size(), 4u);
     // A desk that is damaged is told of and hides no other.

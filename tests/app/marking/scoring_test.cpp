@@ -45,7 +45,7 @@ tasks::Task blockTask(double depthMm) {
 class MarkingFolder : public ::testing::Test {
   protected:
     /// The channel as deep as that, cut into the exercise's block.
-    void writeAttempt(const char* name, double depthMm) {
+    void writeAttempt(const char* name, double depthMm, const char* handedInFor = nullptr) {
         tooth::LoadSettings settings;
         settings.field.voxelMm = task_.voxelMm;
         if (!model_) model_ = tooth::loadModel(task_.toothCase, settings);
@@ -61,6 +61,12 @@ class MarkingFolder : public ::testing::Test {
         attempt.bur = "330";
         attempt.cuttingParameters = "carbide";
         attempt.drive = "turbine";
+        if (handedInFor != nullptr) {
+            attempt.handedIn = true;
+            attempt.handIn.emplace();
+            attempt.handIn->exercise = handedInFor;
+            attempt.handIn->exerciseHash = rubric::hashText(tasks::contentHash(task_));
+        }
         cases::writeAttempt(attempt, works() / name, &task_.toothCase);
     }
     [[nodiscard]] fs::path works() const { return folder_.path() / "works"; }
@@ -71,6 +77,18 @@ class MarkingFolder : public ::testing::Test {
     rubric::Rubric rubric_ = rubric::shippedRubric("block-channel");
     std::shared_ptr<const tooth::ToothModel> model_;
 };
+
+TEST_F(MarkingFolder, WhatWasHandedInForAnotherExerciseOfThisToothIsRefused) {
+    writeAttempt("own.handpiece", 1.5, "channel");
+    writeAttempt("other.handpiece", 1.5, "ring");
+    const std::vector<ReturnedWork> found = findWork(works());
+    ASSERT_EQ(found.size(), 2u);
+    const Scored other = scoreReturned(found[0], task_, rubric_, {}), own = scoreReturned(found[1], task_, rubric_, {});
+    ASSERT_TRUE(other.error());
+    EXPECT_EQ(other.error()->id(), "other-exercise");
+    EXPECT_THAT(other.problem(), HasSubstr("ring"));
+    EXPECT_EQ(own.problem(), "");
+}
 
 TEST_F(MarkingFolder, ScoresWhatCanBeScoredAndSaysWhyTheRestCannot) {
     writeAttempt("good.handpiece", 1.5);

@@ -233,7 +233,8 @@ void DrillFeature::takeBackNotices(const messages::HapticSample& sample) {
 void DrillFeature::showDocument() {
     if (simulator_.tooth() && simulator_.toothCase()) {
         const exercise::Permissions now = simulator_.permissions();
-        welcome_->setAllowed(now.allows(Operation::guidance));
+        // Nobody cuts in a replay or a work that is looked at.
+        welcome_->setAllowed(now.allows(Operation::guidance) && simulator_.mode() == Simulator::Mode::liveSession);
         QStringList burs;
         for (const std::string& bur : now.burs())
             burs << QString::fromStdString(bur);

@@ -38,6 +38,7 @@ class EditorDialog : public QDialog {
     /// As a step.
     void change(const char* step, const std::function<void(draft::Content&)>& how);
     [[nodiscard]] ToothPage* toothPage() const noexcept { return tooth_; }
+    [[nodiscard]] WorkPage* workPage() const noexcept { return work_; }
     [[nodiscard]] PreparationPage* preparationPage() const noexcept { return preparation_; }
     /// Of the preparation on the tooth, as it came out for what is there now.
     void setToothProblems(std::vector<draft::Problem> problems);

@@ -12,6 +12,7 @@
 #include "desktop/features/editor/editor_pages.h"
 #include "desktop/picture/start_view.h"
 #include "desktop/work/simulator.h"
+#include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/course/finished_work.h"
 #include "handpiece/model/starter/block.h"
 
@@ -85,7 +86,8 @@ bool EditorFeature::eventFilter(QObject* watched, QEvent* event) {
 }
 
 bool EditorFeature::isBusy() const {
-    return making_ || checking_ || cutting_ || again_ || dialog_->isSettling() || dialog_->preparationPage()->isBusy();
+    return making_ || proving_ || checking_ || cutting_ || again_ || dialog_->isSettling() ||
+           dialog_->preparationPage()->isBusy();
 }
 
 bool EditorFeature::mayLeave() {
@@ -119,6 +121,7 @@ void EditorFeature::connectDialog() {
         window_.raise();
     });
     connect(dialog_->preparationPage(), &PreparationPage::idealRequested, this, &EditorFeature::cutIdeal);
+    connect(dialog_->workPage(), &WorkPage::teacherWorkRequested, this, &EditorFeature::takeTeacherWork);
     connect(dialog_->toothPage(), &ToothPage::starterRequested, this, &EditorFeature::takeStarter);
     connect(dialog_->toothPage(), &ToothPage::caseRequested, this, &EditorFeature::takeCase);
     connect(dialog_->toothPage(), &ToothPage::blockRequested, this, [this](int layers) {
@@ -159,7 +162,10 @@ void EditorFeature::make(const QString& title, std::function<cases::Case(const c
     };
     connect(making_.get(), &Job::done, this, [this, end, made] {
         end();
-        dialog_->change("", [&](draft::Content& c) { c.tooth = *made; });
+        dialog_->change("", [&](draft::Content& c) {
+            c.tooth = *made;
+            c.teacherWork.reset();  // of the tooth before
+        });
     });
     connect(making_.get(), &Job::failed, this, [this, end](const Problem& problem) {
         end();
@@ -184,6 +190,37 @@ void EditorFeature::takeCase() {
     if (file.isEmpty()) return;
     if (file.endsWith(QLatin1String("case.toml"))) file = QFileInfo(file).absolutePath();
     make(tr("Reading the case..."), [path = toPath(file)](const core::Progress&) { return cases::readCase(path); });
+}
+
+void EditorFeature::takeTeacherWork() {
+    if (proving_) return;
+    const draft::Content now = dialog_->draft().now();
+    if (!now.tooth) return window_.showProblem(problemById(QStringLiteral("teacher-work-without-tooth")));
+    const QString file = window_.questions.open(tr("Your own work"), tr("Recordings (*.h5);;All files (*)"));
+    if (file.isEmpty()) return;
+    const auto work = std::make_shared<std::shared_ptr<const std::vector<std::byte>>>();
+    proving_ = std::make_unique<Job>(QString(), [now, work, path = toPath(file)](const core::Progress& progress) {
+        *work = assessment::provenWork(path, draft::taskOf(now), progress);
+    });
+    dialog_->workPage()->setTeacherWorkNote(tr("It is cut again..."));
+    const auto end = [this] {
+        proving_.release()->deleteLater();
+        dialog_->workPage()->setTeacherWorkNote({});
+    };
+    connect(proving_.get(), &Job::done, this, [this, end, work, tooth = now.tooth, voxelMm = now.voxelMm] {
+        end();
+        // What it was proven against may be another by now.
+        const draft::Content& is = dialog_->draft().now();
+        if (is.tooth != tooth || is.voxelMm != voxelMm)
+            return window_.showProblem(problemById(QStringLiteral("teacher-work-too-late")));
+        dialog_->change("", [&](draft::Content& c) { c.teacherWork = *work; });
+    });
+    connect(proving_.get(), &Job::failed, this, [this, end](const Problem& problem) {
+        end();
+        window_.showProblem(problem);
+    });
+    connect(proving_.get(), &Job::cancelled, this, end);
+    proving_->start();
 }
 
 /// One look at a time; what changed meanwhile is looked at after it.

@@ -42,6 +42,7 @@ class EditorFeature : public Feature {
     void make(const QString& title, std::function<cases::Case(const core::Progress&)> how);
     void takeStarter(int fdi, int seed);
     void takeCase();
+    void takeTeacherWork();
     void check();
     void cutIdeal();
     /// To where it is; elsewhere is asked. False: it was not saved.
@@ -50,7 +51,7 @@ class EditorFeature : public Feature {
 
     CommandSet<Command> commands_;
     EditorDialog* dialog_;
-    std::unique_ptr<Job> making_, checking_, cutting_;
+    std::unique_ptr<Job> making_, checking_, cutting_, proving_;
     bool again_ = false, comesBack_ = false;
     QTemporaryDir tried_;
     int tries_ = 0;

@@ -492,6 +492,20 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     form->addRow(tr("Voxel"), voxel_);
     form->addRow(ownJudgement_);
     form->addRow(liveBar_);
+    teacherWork_ = named(new QLabel(this), "editorTeacherWork", tr("Your own work"));
+    takeTeacherWork_ = named(new QPushButton(tr("Choose..."), this), "editorTeacherWorkTake", tr("Your own work"),
+                             tr("Your recording of this exercise (session.h5), one sitting from the whole tooth to its "
+                                "end, in its voxel: students play it beside their result. It is cut again to prove it; "
+                                "another tooth takes it away."));
+    dropTeacherWork_ = named(new QPushButton(tr("Remove"), this), "editorTeacherWorkDrop", tr("Remove your own work"));
+    auto* own = new QHBoxLayout;
+    own->addWidget(teacherWork_, 1);
+    own->addWidget(takeTeacherWork_);
+    own->addWidget(dropTeacherWork_);
+    form->addRow(tr("Your own work"), own);
+    connect(takeTeacherWork_, &QPushButton::clicked, this, &WorkPage::teacherWorkRequested);
+    connect(dropTeacherWork_, &QPushButton::clicked, this,
+            [this] { change_("", [](Content& c) { c.teacherWork.reset(); }); });
     form->addRow(heading(tr("Start view [mm]"), this));
     form->addRow(view_);
     form->addRow(eye);
@@ -551,8 +565,22 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     connect(drop, &QPushButton::clicked, this, [this] { change_("", [&](Content& c) { c.exercise.view.reset(); }); });
 }
 
+void WorkPage::setTeacherWorkNote(const QString& words) {
+    isTakingWork_ = !words.isEmpty();
+    teacherWork_->setText(words);
+    showTeacherWork();
+}
+
+void WorkPage::showTeacherWork() {
+    takeTeacherWork_->setEnabled(!isTakingWork_);
+    dropTeacherWork_->setEnabled(!isTakingWork_ && hasTeacherWork_);
+    if (!isTakingWork_) teacherWork_->setText(hasTeacherWork_ ? tr("comes along") : tr("none"));
+}
+
 void WorkPage::show(const Content& content) {
     showing_ = true;
+    hasTeacherWork_ = content.teacherWork != nullptr;
+    showTeacherWork();
     const cases::Exercise& e = content.exercise;
     const QString bur = QString::fromStdString(e.bur);
     if (bur_->findData(bur) < 0) bur_->addItem(burTitle(bur), bur);  // of a file: told as a problem

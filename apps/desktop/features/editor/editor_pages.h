@@ -115,8 +115,17 @@ class WorkPage : public EditorPage {
     /// The window's, or that of the preparation's picture.
     void viewRequested(bool ofPreparation);
     void viewShown();
+    void teacherWorkRequested();
+
+  public:
+    /// What is being done with the teacher's own work; empty: nothing.
+    void setTeacherWorkNote(const QString& words);
 
   private:
+    QLabel* teacherWork_;
+    QPushButton *takeTeacherWork_, *dropTeacherWork_;
+    bool isTakingWork_ = false, hasTeacherWork_ = false;
+    void showTeacherWork();
     QComboBox *bur_, *level_;
     QListWidget *burs_, *helps_;
     QCheckBox *timed_, *hard_, *ownJudgement_, *liveBar_;

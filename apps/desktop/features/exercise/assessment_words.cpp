@@ -4,6 +4,7 @@
 #include <QCoreApplication>
 #include <QLocale>
 #include <QStringList>
+#include "handpiece/app/report/assessment_words.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -74,6 +75,10 @@ QString valueWords(const score::CriterionScore& c) {
     QString words = number(*c.value, decimals);
     if (c.uncertainty > 0.0) words += QStringLiteral(" ± ") + number(c.uncertainty, decimals);
     return c.unit.empty() ? words : words + QLatin1Char(' ') + QString::fromStdString(c.unit);
+}
+
+QString saidWords(const std::string& english) {
+    return QString::fromStdString(report::said(english));
 }
 
 QString passedWords(score::Passed passed) {

@@ -17,6 +17,8 @@ namespace handpiece::desktop {
 [[nodiscard]] QString titleOf(const rubric::Rubric& rubric, const std::string& criterion);
 [[nodiscard]] QString bandTitle(const rubric::Rubric& rubric, const std::string& band);
 [[nodiscard]] QString passedWords(score::Passed passed);
+/// A reason, a proof or what an evidence says, which are English.
+[[nodiscard]] QString saidWords(const std::string& english);
 /// "7.5 of 10"; empty where there are none.
 [[nodiscard]] QString pointsWords(double points, double most);
 

@@ -5,12 +5,14 @@
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QLocale>
+#include <QPushButton>
 #include <utility>
 
 #include "desktop/features/exercise/assessment_words.h"
 #include "desktop/features/exercise/exercise_feature.h"
 #include "desktop/features/exercise/exercises_dialog.h"
 #include "desktop/features/exercise/progress_dialog.h"
+#include "desktop/widgets/parts.h"
 #include "desktop/work/simulator.h"
 #include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/assessment/recording.h"
@@ -53,8 +55,12 @@ PracticeFeature::PracticeFeature(const FeatureContext& context, ExerciseFeature&
       commands_(window_.commands(), kCommands),
       exercises_(new ExercisesDialog(simulator_.folders().starters, &window_)),
       result_(new ResultDialog(&window_)),
+      back_(named(new QPushButton(tr("Back to the result")), "resultBack", tr("Back to the result"))),
       progress_(new ProgressDialog(&window_)) {
     openDialogs();
+    back_->hide();
+    view_.addStrip(back_);
+    connect(back_, &QPushButton::clicked, commands_[Command::result], &QAction::trigger);
     Commands& commands = window_.commands();
     on(commands_[Command::exercises], [this] {
         readDue();
@@ -114,6 +120,7 @@ void PracticeFeature::openDialogs() {
         settings_.set(QStringLiteral("exercises/folder"), folder);
         exercises_->setFolder(toPath(folder));
     });
+    connect(result_, &ResultDialog::opened, back_, &QWidget::hide);
     connect(result_, &ResultDialog::judged, this, [this](const OwnJudgement& own) { keep(own); });
     connect(result_, &ResultDialog::evidenceChosen, this, &PracticeFeature::showEvidence);
     connect(result_, &ResultDialog::teacherWorkRequested, this, &PracticeFeature::showTeacherWork);
@@ -175,6 +182,7 @@ void PracticeFeature::showDocument() {
     stopAtS_.reset();
     const auto& task = simulator_.task();
     const bool isAtWork = task && simulator_.mode() == Simulator::Mode::liveSession;
+    if (simulator_.mode() != Simulator::Mode::replay) back_->hide();
     const bool isGiven =
         isAtWork && task->preparation && !simulator_.permissions().locks(exercise::Operation::transparency);
     // A block has its figure printed on it; on a tooth one finds one's own way first.
@@ -428,6 +436,16 @@ void PracticeFeature::turnTo(const core::Vec3& placeMm) {
     view_.setCamera(eye);
 }
 
+/// On a small screen the result lies over what it shows.
+void PracticeFeature::makeRoom() {
+    const QRect picture(view_.mapToGlobal(QPoint(0, 0)), view_.size());
+    QRect middle(0, 0, picture.width() / 2, picture.height() / 2);
+    middle.moveCenter(picture.center());
+    if (!result_->isVisible() || !result_->frameGeometry().intersects(middle)) return;
+    result_->hide();
+    back_->show();
+}
+
 void PracticeFeature::showEvidence(const measures::Evidence& evidence) {
     if (!done_) return;
     // Of a chain the one in which it happened.
@@ -449,6 +467,7 @@ void PracticeFeature::show(const fs::path& session, const measures::Evidence& ev
         });
         return;
     }
+    makeRoom();
     if (evidence.placeMm) turnTo(*evidence.placeMm);
     view_.setMark(evidence.placeMm);
     const double endS = simulator_.replay()->durationS();

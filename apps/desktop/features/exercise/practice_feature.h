@@ -14,6 +14,8 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/school/store/store.h"
 
+class QPushButton;
+
 namespace handpiece::desktop {
 
 class ExerciseFeature;
@@ -46,6 +48,7 @@ class PracticeFeature : public Feature {
     void show(const std::filesystem::path& session, const measures::Evidence& evidence, bool playsWhole);
     void showTeacherWork(const std::optional<measures::Evidence>& at);
     void turnTo(const core::Vec3& placeMm);
+    void makeRoom();
     void write(const QString& title, const QString& told, const QString& file, Job::Work work);
     void savePage();
     void handIn();
@@ -61,6 +64,7 @@ class PracticeFeature : public Feature {
     std::unique_ptr<school::Store> store_;
     ExercisesDialog* exercises_;
     ResultDialog* result_;
+    QPushButton* back_;  ///< to the result, where it had to make room
     ProgressDialog* progress_;
     std::shared_ptr<const Simulator::Finished> done_;
     std::string attempt_;            ///< its id in the store; empty: it could not be kept

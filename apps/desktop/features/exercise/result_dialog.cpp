@@ -18,9 +18,11 @@
 
 #include "desktop/features/exercise/assessment_words.h"
 #include "desktop/picture/solid_view.h"
+#include "desktop/picture/start_view.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
 #include "handpiece/app/report/assessment_report.h"
+#include "handpiece/app/report/assessment_words.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -170,6 +172,7 @@ void ResultDialog::setResult(std::shared_ptr<const Simulator::Finished> done, co
     done_ = std::move(done);
     ideal_ = std::move(ideal);
     own_.reset();
+    hasTooth_ = false;
     comments_->clear();
     saidOf_.clear();
     returned_.clear();
@@ -296,6 +299,11 @@ void ResultDialog::closeEvent(QCloseEvent* event) {
     QDialog::closeEvent(event);
 }
 
+void ResultDialog::showEvent(QShowEvent* event) {
+    QDialog::showEvent(event);
+    emit opened();
+}
+
 void ResultDialog::fill() {
     const score::Assessment& a = done_->work.result.assessment;
     const auto& exercise = done_->work.task->toothCase.exercise;
@@ -313,7 +321,7 @@ void ResultDialog::fill() {
         why << tr("Criteria worth %1 of %2 points could not be measured.")
                    .arg(locale.toString(a.wholeScore - a.maxScore, 'f', 1), locale.toString(a.wholeScore, 'f', 1));
     why_->setText(why.join(QLatin1Char('\n')));
-    why_->setToolTip(QString::fromStdString(a.why));
+    why_->setToolTip(a.why.empty() ? QString() : QString::fromStdString(report::whyOf(a, done_->work.rubric)));
     why_->setVisible(!why.isEmpty());
     const auto& limit = done_->work.task->minutes;
     const auto minutes = [](double seconds) {
@@ -334,9 +342,9 @@ void ResultDialog::fill() {
     proof_->setText(done_->work.result.identity.proven
                         ? tr("Proven: cut again from its recording it is the same tooth, bit for bit.")
                         : tr("Not proven: the recording does not lead to this very tooth. %1")
-                              .arg(QString::fromStdString(done_->work.result.proof))
+                              .arg(saidWords(done_->work.result.proof))
                               .trimmed());
-    proof_->setToolTip(QString::fromStdString(done_->work.result.proof));
+    proof_->setToolTip(saidWords(done_->work.result.proof));
     const bool hasTooth = done_->work.own != nullptr;
     showWhatCanBeWritten();
     which_->button(0)->setEnabled(hasTooth);
@@ -403,7 +411,7 @@ void ResultDialog::fillTable() {
         if (c.standing == score::Standing::notMeasured) measured = tr("not measured");
         if (c.standing == score::Standing::leftOut) measured = tr("not with this device");
         if (c.standing == score::Standing::voided) measured = tr("void");
-        put(value, measured, QString::fromStdString(c.reason));
+        put(value, measured, saidWords(c.reason));
         QString bands = c.band.empty() ? QString() : bandTitle(done_->work.rubric, c.band);
         if (c.borderline) bands = bands.isEmpty() ? tr("borderline") : tr("%1 (borderline)").arg(bands);
         put(band, bands);
@@ -421,7 +429,7 @@ void ResultDialog::fillTable() {
             !e         ? QString()
             : e->timeS ? tr("%1 s").arg(QLocale().toString(*e->timeS, 'f', 1))
                        : tr("place"),
-            e ? QString::fromStdString(e->text) : QString());
+            e ? saidWords(e->text) : QString());
     }
 }
 
@@ -433,7 +441,12 @@ void ResultDialog::showTooth() {
         for (const cases::Part& part : *parts)
             for (const core::Vec3& v : part.mesh.vertices)
                 box.extend(v);
+    const bool isFirst = !hasTooth_ && parts;
+    hasTooth_ = hasTooth_ || parts;
     tooth_->setParts(parts, box);
+    // As it was worked on: a cavity from palatal is not seen from labial.
+    if (const auto& exercise = done_->work.task->toothCase.exercise; isFirst && exercise && exercise->view)
+        tooth_->setCamera(lookingAs({}, *exercise->view));
     if (!parts) return tooth_->setCaption(tr("Its recording is no longer kept: the tooth cannot be shown"), false);
     tooth_->setCaption(isIdeal ? tr("The ideal: drag to turn it") : tr("Your tooth: drag to turn it"), false);
 }

@@ -50,6 +50,7 @@ class ResultDialog : public QDialog {
     [[nodiscard]] const std::shared_ptr<const Simulator::Finished>& shown() const noexcept { return done_; }
 
   signals:
+    void opened();
     /// Before the result is seen; not at all where nobody was asked.
     void judged(const handpiece::desktop::OwnJudgement& own);
     /// To be looked at: a place, and the seconds in which it happened where they are known.
@@ -64,6 +65,7 @@ class ResultDialog : public QDialog {
 
   protected:
     void closeEvent(QCloseEvent* event) override;
+    void showEvent(QShowEvent* event) override;
 
   private:
     QWidget* makeJudging();
@@ -82,6 +84,7 @@ class ResultDialog : public QDialog {
     course::Parts ideal_;
     std::optional<OwnJudgement> own_;
     bool isAsking_ = false;
+    bool hasTooth_ = false;  ///< of this result one was shown, so that the eye has its place
     QStackedWidget* pages_;
     QSpinBox* percent_;
     QPlainTextEdit* words_;

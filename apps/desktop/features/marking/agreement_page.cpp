@@ -11,6 +11,7 @@
 #include <QVBoxLayout>
 
 #include "desktop/widgets/parts.h"
+#include "handpiece/app/report/assessment_words.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -87,26 +88,27 @@ void AgreementPage::setNote(const QString& text) {
 void AgreementPage::show(const marking::DeskAgreement& agreement, const QString& text) {
     agreement_ = agreement;
     const auto told = [](const agreement::Estimate& e, const std::optional<agreement::Interval>& interval) {
-        if (!e.value) return tr("undefined: %1").arg(QString::fromStdString(e.reason));
+        if (!e.value) return tr("undefined: %1").arg(QString::fromStdString(report::said(e.reason)));
         if (!interval) return numberText(*e.value);
         return tr("%1 (%2 to %3)").arg(numberText(*e.value), numberText(interval->low), numberText(interval->high));
     };
     table_->clear();
     for (const assessment::CriterionAgreement& c : agreement.criteria) {
         auto* whole = new QTreeWidgetItem(
-            table_, {c.criterion == marking::kTotal ? tr("all points together") : QString::fromStdString(c.criterion),
-                     QString::number(c.items)});
+            table_, {QString::fromStdString(c.title.empty() ? c.criterion : c.title), QString::number(c.items)});
         const auto row = [&](const QString& of, std::size_t works, const QString& what, const QString& value) {
             new QTreeWidgetItem(whole, {of, QString::number(works), what, value});
         };
         for (const assessment::RaterPair& p : c.pairs) {
-            const QString of = tr("%1 and %2").arg(QString::fromStdString(p.first), QString::fromStdString(p.second));
+            const QString of = tr("%1 and %2")
+                                   .arg(QString::fromStdString(marking::raterName(p.first)),
+                                        QString::fromStdString(marking::raterName(p.second)));
             if (p.linear) row(of, p.items, tr("weighted kappa"), told(*p.linear, p.linear->interval));
             if (!p.blandAltman) continue;
             const agreement::BlandAltman& b = *p.blandAltman;
             row(of, p.items, tr("bias, limits of agreement"),
                 b.bias ? tr("%1 (%2 to %3)").arg(numberText(*b.bias), numberText(*b.low), numberText(*b.high))
-                       : tr("undefined: %1").arg(QString::fromStdString(b.reason)));
+                       : tr("undefined: %1").arg(QString::fromStdString(report::said(b.reason))));
         }
         if (c.icc)
             row(tr("all raters"), c.wholeItems, QStringLiteral("ICC(2,1)"), told(c.icc->two1, c.icc->two1.interval));

@@ -121,7 +121,6 @@ QWidget* DeskDialog::makeWorks() {
     table_->setSelectionMode(QAbstractItemView::SingleSelection);
     table_->setSortingEnabled(true);
     table_->setIconSize({96, 72});
-    table_->verticalHeader()->setDefaultSectionSize(76);
     table_->verticalHeader()->hide();
     table_->horizontalHeader()->setStretchLastSection(false);
     table_->horizontalHeader()->setSectionResizeMode(WorkTable::kState, QHeaderView::Stretch);
@@ -198,6 +197,10 @@ void DeskDialog::setMarker(const QString& marker) {
     marker_->setText(marker);
 }
 
+void DeskDialog::setBlind(bool isBlind) {
+    blind_->setChecked(isBlind);
+}
+
 void DeskDialog::setRubricFile(const QString& file) {
     int at = rubric_->findData(file);
     if (at < 0) {
@@ -219,9 +222,16 @@ void DeskDialog::setDesk(const marking::Desk* desk) {
 }
 
 void DeskDialog::refresh() {
+    // Without pictures many more rows are seen at once.
+    constexpr int kLowRow = 36, kPictureRow = 76;
+    table_->verticalHeader()->setDefaultSectionSize(
+        desk_ != nullptr && desk_->isBlind() && !desk_->areAllIn() ? kLowRow : kPictureRow);
     works_->refresh();
     filter_->invalidate();
-    count_->setText(tr("Works: %1 of %2").arg(filter_->rowCount()).arg(works_->rowCount()));
+    QString count = tr("Works: %1 of %2").arg(filter_->rowCount()).arg(works_->rowCount());
+    if (desk_ != nullptr && desk_->isBlind())
+        count += QStringLiteral(". ") + tr("Marks in: %1 of %2").arg(desk_->countIn()).arg(works_->rowCount());
+    count_->setText(count);
     open_->setEnabled(filter_->rowCount() > 0);
 }
 

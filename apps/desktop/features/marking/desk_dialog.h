@@ -36,6 +36,7 @@ class DeskDialog : public QDialog {
     void setFolder(const QString& folder);
     void setExercise(const QString& path);
     void setMarker(const QString& marker);
+    void setBlind(bool isBlind);
     void setRubricFile(const QString& file);
     /// Null: back to the first page.
     void setDesk(const marking::Desk* desk);

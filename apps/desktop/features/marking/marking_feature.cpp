@@ -79,6 +79,13 @@ MarkingFeature::MarkingFeature(const FeatureContext& context)
         return true;
     });
     dialog_->setMarker(settings_.value(QStringLiteral("marking/marker")).toString());
+    // Where one was, also after the language was changed, which makes the window anew.
+    if (const QString folder = settings_.value(QStringLiteral("marking/folder")).toString();
+        !folder.isEmpty() && QFileInfo(folder).isDir()) {
+        dialog_->setFolder(folder);
+        dialog_->setExercise(settings_.value(QStringLiteral("marking/exercise")).toString());
+        dialog_->setBlind(settings_.value(QStringLiteral("marking/blind")).toBool());
+    }
     connect(dialog_, &DeskDialog::folderRequested, this, [this] {
         if (const QString folder = askFolder(tr("Folder of the returned work")); !folder.isEmpty()) open(folder);
     });
@@ -184,13 +191,17 @@ void MarkingFeature::forgetPlace() {
 
 void MarkingFeature::open(const QString& folder) {
     if (!folder.isEmpty()) {
+        // The exercise of another folder is not this one's.
+        bool isTaken = toPath(folder) == toPath(dialog_->wish().folder) && !dialog_->wish().exercise.isEmpty();
         dialog_->setFolder(folder);
         // Where the exercise came along with the work, it is that.
         for (const QFileInfo& info : QDir(folder).entryInfoList(QDir::Files | QDir::Dirs | QDir::NoDotAndDotDot)) {
             try {
-                if (dialog_->wish().exercise.isEmpty() && tasks::isTask(toPath(info.absoluteFilePath())) &&
-                    !cases::isAttempt(toPath(info.absoluteFilePath())))
-                    dialog_->setExercise(info.absoluteFilePath());
+                if (isTaken || !tasks::isTask(toPath(info.absoluteFilePath())) ||
+                    cases::isAttempt(toPath(info.absoluteFilePath())))
+                    continue;
+                dialog_->setExercise(info.absoluteFilePath());
+                isTaken = true;
             } catch (const core::Error&) {
                 continue;  // it has a row of its own in the table, with what is wrong
             }
@@ -233,6 +244,9 @@ void MarkingFeature::endJob() {
 void MarkingFeature::begin() {
     if (job_ || wish_.folder.isEmpty()) return;
     settings_.set(QStringLiteral("marking/marker"), wish_.marker);
+    settings_.set(QStringLiteral("marking/folder"), wish_.folder);
+    settings_.set(QStringLiteral("marking/exercise"), wish_.exercise);
+    settings_.set(QStringLiteral("marking/blind"), wish_.isBlind);
     dialog_->setNote({});
     struct Found {
         tasks::Task task;
@@ -352,8 +366,12 @@ void MarkingFeature::openWork(const QString& code) {
         job->deleteLater();
         if (code == code_) look(place, isSession);
     });
-    connect(job, &Job::failed, this, [this, job](const Problem& problem) {
+    connect(job, &Job::failed, this, [this, job, code](Problem problem) {
         job->deleteLater();
+        // Its own words name files.
+        problem.what = tr("%1 cannot be opened; why is told once your marks are in.").arg(code);
+        problem.where.clear();
+        problem.remedy = tr("It may go in without marks.");
         window_.showProblem(problem);
     });
     job->start();

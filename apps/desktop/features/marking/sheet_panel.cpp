@@ -86,7 +86,7 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     criteria_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
     // Its places, which may be long, lie across all columns.
     criteria_->header()->setSectionResizeMode(kName, QHeaderView::Interactive);
-    criteria_->setMinimumHeight(140);
+    criteria_->setMinimumHeight(120);
     editing_ = named(new QLabel(this), "sheetEditing", tr("Criterion that is judged"));
     editing_->setTextFormat(Qt::PlainText);
     editing_->setWordWrap(true);
@@ -111,7 +111,7 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     decide_ = named(new QPushButton(tr("Decide"), this), "sheetDecide", tr("Decide"), tr("Decide who passes"));
     comments_ = named(new QListWidget(this), "sheetComments", tr("Comments"),
                       tr("One that has a place turns the picture there"));
-    comments_->setMaximumHeight(90);
+    comments_->setMaximumHeight(60);
     comment_ =
         named(new QLineEdit(this), "sheetComment", tr("New comment"), tr("Pinned to the criterion that is chosen"));
     comment_->setPlaceholderText(tr("Comment"));
@@ -142,22 +142,22 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     editor->addWidget(reason_, 2, 0, 1, 3);
     editor->addWidget(say_, 3, 0);
     editor->addWidget(withdraw_, 3, 1);
-    editor->addWidget(giveIn_, 4, 0, 1, 3);
+    editor->addWidget(giveIn_, 3, 1, 1, 2);
     decisionRow_ = new QWidget(this);
     // No wider than the other panels of its column: a hidden one too makes the window wider.
     auto* decision = new QGridLayout(decisionRow_);
     decision->setContentsMargins(0, 0, 0, 0);
     decision->addWidget(decision_, 0, 0);
-    decision->addWidget(decide_, 0, 1);
-    decision->addWidget(decisionReason_, 1, 0, 1, 2);
+    decision->addWidget(decisionReason_, 0, 1);
+    decision->addWidget(decide_, 0, 2);
     for (QComboBox* box : {band_, critical_, decision_}) {
         box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
         box->setMinimumContentsLength(6);
     }
-    auto* pins = new QVBoxLayout;
-    pins->addWidget(pick_);
+    auto* pins = new QHBoxLayout;
     pins->addWidget(atPlace_);
     pins->addWidget(atTime_);
+    pins->addStretch(1);
     auto* writing = new QHBoxLayout;
     writing->addWidget(comment_, 1);
     writing->addWidget(addComment_);
@@ -173,6 +173,7 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     column->addWidget(comments_);
     column->addLayout(writing);
     column->addLayout(pins);
+    column->addWidget(pick_);
     return_ = named(new QPushButton(tr("Return to student..."), this), "sheetReturn", tr("Return to student..."),
                     tr("One file with your comments, what you judged otherwise and why, and the score"));
     column->addWidget(return_);
@@ -371,6 +372,7 @@ void SheetPanel::addEvidence(QTreeWidgetItem* under, const score::CriterionScore
 
 void SheetPanel::fillComments() {
     comments_->clear();
+    comments_->hide();
     if (desk_ == nullptr) return;
     for (const marking::Comment& c : desk_->sheet(code_.toStdString()).comments) {
         QString text = QString::fromStdString(c.text);
@@ -382,6 +384,7 @@ void SheetPanel::fillComments() {
         item->setData(kTimeRole, timeOf(c.timeS));
         item->setData(kPlaceRole, placeOf(c.placeMm));
     }
+    comments_->setVisible(comments_->count() > 0);  // the sheet has no room to spare on a small screen
 }
 
 void SheetPanel::showSummary() {
@@ -391,10 +394,14 @@ void SheetPanel::showSummary() {
     const std::optional<score::Assessment> final = desk_->finalScore(id);
     if (machine == nullptr || !final) {
         const QString problem = WorkTable::problemWords(*desk_, id);
-        summary_->setText(!problem.isEmpty()       ? problem
-                          : isMarking()            ? tr("The machine's score is hidden until your marks are in.")
-                          : !desk_->isRevealed(id) ? tr("The machine's score is shown when all works are marked.")
-                                                   : tr("It waits for its score."));
+        const std::size_t left = desk_->codes().size() - desk_->countIn();
+        summary_->setText(
+            !problem.isEmpty()
+                ? problem + (isMarking() ? QLatin1Char(' ') + tr("It may go in without marks.") : QString())
+            : isMarking() ? tr("The machine's score is hidden until your marks are in.")
+            : !desk_->isRevealed(id)
+                ? tr("The machine's score is shown when all works are marked. Still to be marked: %1.").arg(left)
+                : tr("It waits for its score."));
         return;
     }
     QString text =

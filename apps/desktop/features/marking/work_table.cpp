@@ -132,7 +132,7 @@ QVariant WorkTable::data(const QModelIndex& index, int role) const {
             return QString::fromStdString(id);
         case Qt::DecorationRole: {
             // Two equal pictures would tell which works come twice.
-            if (index.column() != kCode || !desk_->isRevealed(id)) return {};
+            if (index.column() != kCode || (desk_->isBlind() && !desk_->areAllIn())) return {};
             const view::Image& image = desk_->picture(id);
             if (image.rgba.empty()) return {};
             QPixmap& picture = pictures_[id];

@@ -2,6 +2,7 @@
 #include "desktop/features/view/view_feature.h"
 
 #include <QCryptographicHash>
+#include <QDockWidget>
 #include <QMenu>
 #include <QToolBar>
 #include <QToolButton>
@@ -162,7 +163,11 @@ void ViewFeature::showDocument() {
     bar_->setCheeksThere(std::any_of(toothCase.scenery.begin(), toothCase.scenery.end(), cases::isHeldAside));
     recallEye();
     if (simulator_.mode() == Simulator::Mode::review) view_.setSample(simulator_.sample());
-    view_.setFocus();
+    // Who marks or types beside it goes on there when a work that is looked at comes.
+    const QWidget* has = window_.focusWidget();
+    while (has != nullptr && qobject_cast<const QDockWidget*>(has) == nullptr)
+        has = has->parentWidget();
+    if (has == nullptr || simulator_.mode() == Simulator::Mode::liveSession) view_.setFocus();
 }
 
 void ViewFeature::recallLook() {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "handpiece/app/report/assessment_words.h"
 #include "handpiece/app/report/plot.h"
 #include "handpiece/base/core/error.h"
 
@@ -282,9 +283,10 @@ std::string agreementText(std::span<const CriterionAgreement> all) {
 
 std::string blandAltmanSvg(const CriterionAgreement& of, const RaterPair& pair) {
     report::Plot plot;
-    plot.title = fmt::format("{}{} − {}", of.criterion.empty() ? "" : of.criterion + ": ", pair.first, pair.second);
-    plot.xLabel = "mean of both";
-    plot.yLabel = "difference";
+    const std::string& name = of.title.empty() ? of.criterion : of.title;
+    plot.title = fmt::format("{}{} − {}", name.empty() ? "" : name + ": ", pair.first, pair.second);
+    plot.xLabel = report::said("mean of both");
+    plot.yLabel = report::said("difference");
     report::Series marks;
     marks.x = pair.means;
     marks.y = pair.differences;
@@ -292,9 +294,9 @@ std::string blandAltmanSvg(const CriterionAgreement& of, const RaterPair& pair) 
     marks.markers = true;
     plot.series.push_back(std::move(marks));
     if (pair.blandAltman && pair.blandAltman->bias && *pair.blandAltman->low == *pair.blandAltman->high)
-        plot.limits = {{*pair.blandAltman->bias, "bias, ±1.96 sd"}};
+        plot.limits = {{*pair.blandAltman->bias, report::said("bias, ±1.96 sd")}};
     else if (pair.blandAltman && pair.blandAltman->bias)
-        plot.limits = {{*pair.blandAltman->bias, "bias"},
+        plot.limits = {{*pair.blandAltman->bias, report::said("bias")},
                        {*pair.blandAltman->low, "−1.96 sd"},
                        {*pair.blandAltman->high, "+1.96 sd"}};
     return report::toSvg(plot, true);

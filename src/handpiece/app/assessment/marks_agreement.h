@@ -34,6 +34,7 @@ struct Alpha {
 
 struct CriterionAgreement {
     std::string criterion;
+    std::string title;  ///< as pictures call it; empty: its id
     bool areNumbers = false, isOrdered = false;
     std::vector<std::string> raters, categories;
     std::size_t items = 0, marks = 0, wholeItems = 0;  ///< whole: marked by all
@@ -53,7 +54,7 @@ inline constexpr std::size_t kDraws = 2000;
 [[nodiscard]] std::string agreementJson(std::span<const CriterionAgreement> all);
 /// In lines to read.
 [[nodiscard]] std::string agreementText(std::span<const CriterionAgreement> all);
-/// Bland and Altman's plot as a file of its own (SVG).
+/// Bland and Altman's plot as a file of its own (SVG), in the program's language.
 [[nodiscard]] std::string blandAltmanSvg(const CriterionAgreement& of, const RaterPair& pair);
 
 }  // namespace handpiece::assessment

@@ -327,6 +327,21 @@ Work readWork(const fs::path& path, const tasks::Task& task, bool prove, const c
                       "name session.h5, a folder of sessions, an attempt's folder or a .handpiece file");
 }
 
+std::shared_ptr<const std::vector<std::byte>> provenWork(const fs::path& session, const tasks::Task& task,
+                                                         const core::Progress& progress) {
+    std::error_code ec;
+    if (session.extension() != ".h5" || fs::is_directory(session, ec))
+        throw core::Error("this is no session", session.string(),
+                          "name a session.h5: one recording, from its beginning")
+            .as("work-no-session");
+    const Work work = readWork(session, task, true, progress);
+    if (!work.isProven)
+        throw core::Error("this work is not proven: " + work.proof, session.string(),
+                          "record one from the whole tooth to its end, with this program")
+            .as("work-not-proven");
+    return std::make_shared<const std::vector<std::byte>>(core::readFile(session, tasks::kMaxTeacherWorkBytes));
+}
+
 Work readChain(std::span<const ChainLink> chain, const tasks::Task& task, bool prove, const core::Progress& progress) {
     if (chain.empty()) throw core::Error("there is no session of this work", task.id, "record what you do");
     Unpacked unpacked;

@@ -249,7 +249,12 @@ std::string Desk::problem(const std::string& code) const {
 
 std::optional<core::Error> Desk::error(const std::string& code) const {
     const std::size_t at = placeOf(code);
-    return scored_[at] && scored_[at]->error() ? scored_[at]->error() : works_[at].error;
+    const std::optional<core::Error> known =
+        scored_[at] && scored_[at]->error() ? scored_[at]->error() : works_[at].error;
+    if (known && !isRevealed(code))
+        return core::Error("it cannot be scored; why is told once its marks are in", code, "it may go in without marks")
+            .as("hidden-problem");
+    return known;
 }
 
 const view::Image& Desk::picture(const std::string& code) const {
@@ -258,8 +263,13 @@ const view::Image& Desk::picture(const std::string& code) const {
     return scored ? scored->picture() : kNone;
 }
 
+std::size_t Desk::countIn() const {
+    return static_cast<std::size_t>(
+        std::count_if(codes_.begin(), codes_.end(), [this](const std::string& code) { return sheet(code).isIn; }));
+}
+
 bool Desk::areAllIn() const {
-    return std::all_of(codes_.begin(), codes_.end(), [this](const std::string& code) { return sheet(code).isIn; });
+    return countIn() == codes_.size();
 }
 
 bool Desk::isRevealed(const std::string& code) const {
@@ -354,6 +364,7 @@ void Desk::setMark(const std::string& code, const std::string& id, const Mark& m
 }
 
 std::vector<std::string> Desk::missing(const std::string& code) const {
+    if (error(code)) return {};  // nobody can be held to mark what may not even open
     std::vector<std::string> ids = asked();
     std::erase_if(ids, [&](const std::string& id) { return sheet(code).marks.contains(id); });
     return ids;

@@ -133,7 +133,8 @@ class Desk {
     /// Of one of works().
     void take(std::size_t which, Scored scored);
     [[nodiscard]] bool isScored(const std::string& code) const;
-    /// Why there is no score; empty where there is one, or none yet.
+    /// Why there is no score; empty where there is one, or none yet. Only that there is none where isRevealed() is
+    /// false: names of files and folders would tell whose it is, and which works come twice.
     [[nodiscard]] std::string problem(const std::string& code) const;
     /// That as an error, for other languages; none where problem() is of an override, or empty.
     [[nodiscard]] std::optional<core::Error> error(const std::string& code) const;
@@ -155,9 +156,12 @@ class Desk {
     /// Throws core::Error: the desk is not blind, the mark is in, a criterion or band that is not there, points beyond
     /// the weight, both or neither of band and points where the criterion asks for one.
     void setMark(const std::string& code, const std::string& criterion, const Mark& mark);
+    /// Criteria without a mark yet; none of a work that cannot be scored, which may go in without marks.
     [[nodiscard]] std::vector<std::string> missing(const std::string& code) const;
     /// Throws core::Error while something is missing().
     void giveIn(const std::string& code);
+    /// Sheets that are in.
+    [[nodiscard]] std::size_t countIn() const;
     [[nodiscard]] bool areAllIn() const;
 
     // What the marker says beside the machine.

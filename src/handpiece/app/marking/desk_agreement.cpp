@@ -8,7 +8,9 @@
 #include <set>
 
 #include "handpiece/app/marking/desk_csv.h"
+#include "handpiece/app/report/assessment_words.h"
 #include "handpiece/app/report/plot.h"
+#include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
 
 namespace handpiece::marking {
@@ -86,6 +88,8 @@ DeskAgreement agreementOfDesk(const Desk& desk, const std::vector<DeskState>& de
                                 [&](const rubric::Band& b) { return b.id == band.id; }))
                     scale.categories.push_back(band.id);
         agreement.criteria.push_back(assessment::agreementOf(table->second, scale, draws));
+        agreement.criteria.back().title =
+            c != nullptr ? report::criterionTitle(desk.rubric(), id) : config::words()("agreement.all-points");
         raters.insert(table->second.raters.begin(), table->second.raters.end());
     }
     agreement.raters.assign(raters.begin(), raters.end());
@@ -94,22 +98,34 @@ DeskAgreement agreementOfDesk(const Desk& desk, const std::vector<DeskState>& de
         for (const RaterPair& p : c.pairs) {
             if (p.items < 2) continue;
             if (p.kappa) pairs.emplace(p.first, p.second);
-            if (p.blandAltman)
+            if (p.blandAltman) {
+                RaterPair called = p;
+                called.first = raterName(p.first);
+                called.second = raterName(p.second);
                 agreement.pictures.push_back(
-                    {fmt::format("bland-altman, {}, {} and {}", c.criterion, p.first, p.second),
-                     assessment::blandAltmanSvg(c, p)});
+                    {config::words()("agreement.bland-altman-of", c.title, called.first, called.second),
+                     assessment::blandAltmanSvg(c, called)});
+            }
         }
     for (const auto& [first, second] : pairs)
-        agreement.pictures.push_back(
-            {fmt::format("kappa, {} and {}", first, second), kappaSvg(agreement.criteria, first, second)});
+        agreement.pictures.push_back({config::words()("agreement.kappa-of", raterName(first), raterName(second)),
+                                      kappaSvg(agreement.criteria, first, second)});
     return agreement;
+}
+
+std::string raterName(const std::string& rater) {
+    if (rater == kMachine) return config::words().text("agreement.machine");
+    const std::string_view again = kAgain;
+    if (rater.size() > again.size() && rater.ends_with(again))
+        return config::words()("agreement.again", rater.substr(0, rater.size() - again.size()));
+    return rater;
 }
 
 std::string kappaSvg(const std::vector<CriterionAgreement>& criteria, const std::string& first,
                      const std::string& second) {
     report::Plot plot;
-    plot.title = fmt::format("weighted kappa, {} and {}", first, second);
-    plot.yLabel = "kappa, linear weights";
+    plot.title = config::words()("agreement.kappa-of", raterName(first), raterName(second));
+    plot.yLabel = report::said("kappa, linear weights");
     report::Series values;
     values.line = false;
     values.markers = true;
@@ -121,7 +137,8 @@ std::string kappaSvg(const std::vector<CriterionAgreement>& criteria, const std:
         for (const RaterPair& p : c.pairs) {
             if (p.first != first || p.second != second || !p.linear) continue;
             place += 1.0;
-            names += fmt::format("{}{:g} {}", names.empty() ? "" : ", ", place, c.criterion);
+            names +=
+                fmt::format("{}{:g} {}", names.empty() ? "" : ", ", place, c.title.empty() ? c.criterion : c.title);
             if (!p.linear->value) continue;
             values.x.push_back(place);
             values.y.push_back(*p.linear->value);
@@ -137,7 +154,7 @@ std::string kappaSvg(const std::vector<CriterionAgreement>& criteria, const std:
     plot.series.push_back(std::move(values));
     for (report::Series& interval : intervals)
         plot.series.push_back(std::move(interval));
-    plot.limits = {{1.0, "as one"}, {0.0, "by chance"}};
+    plot.limits = {{1.0, report::said("as one")}, {0.0, report::said("by chance")}};
     return report::toSvg(plot, true);
 }
 

@@ -23,7 +23,8 @@ inline constexpr const char* kAgain = " again";
 struct DeskAgreement {
     std::vector<assessment::CriterionAgreement> criteria;  ///< in the rubric's order, kTotal last
     std::vector<std::string> raters;                       ///< all that occur
-    /// A picture (SVG) each, with its file's name.
+    /// A picture (SVG) each, and what it is called. Names and labels are in the program's language, titles the
+    /// rubric's.
     struct Picture {
         std::string name, svg;
     };
@@ -32,6 +33,8 @@ struct DeskAgreement {
 /// Of marksCsv(). Empty without marks. `draws` of each bootstrap interval.
 [[nodiscard]] DeskAgreement agreementOfDesk(const Desk& desk, const std::vector<DeskState>& desks,
                                             std::size_t draws = assessment::kDraws);
+/// What pages call a rater: a marker as they are, the machine and works that came again in the program's language.
+[[nodiscard]] std::string raterName(const std::string& rater);
 /// Linear weighted kappa of each criterion with bands, of two raters, with its interval.
 [[nodiscard]] std::string kappaSvg(const std::vector<assessment::CriterionAgreement>& criteria,
                                    const std::string& first, const std::string& second);

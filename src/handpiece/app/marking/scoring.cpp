@@ -15,6 +15,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
+#include "handpiece/model/case/attempt.h"
 #include "handpiece/senses/view/renderer.h"
 
 namespace handpiece::marking {
@@ -135,6 +136,16 @@ Scored readLoneResult(const ReturnedWork& work, const tasks::Task& task, const r
     return Scored::of(std::move(result));
 }
 
+/// What was handed in for another exercise may be of the same tooth: its score would be another's.
+void requireSameExercise(const fs::path& path, const tasks::Task& task) {
+    if (!cases::isAttempt(path)) return;
+    const std::optional<cases::Attempt::HandIn> handIn = cases::readAttempt(path).handIn;
+    if (handIn && handIn->exercise != task.id)
+        throw core::Error(fmt::format("this was handed in for another exercise, {}", handIn->exercise), path.string(),
+                          "choose that exercise, or take the work out of the folder")
+            .as("other-exercise", {handIn->exercise});
+}
+
 }  // namespace
 
 Scored Scored::failed(core::Error error) {
@@ -161,6 +172,7 @@ Scored scoreReturned(const ReturnedWork& work, const tasks::Task& task, const ru
     };
     try {
         if (work.isResultOnly) return readLoneResult(work, task, rubric);
+        requireSameExercise(work.path, task);
         const Kept kept(work, task, rubric, settings);
         if (std::optional<Scored> before = kept.read(rubric, settings.pictures)) return std::move(*before);
         const assessment::Work done =

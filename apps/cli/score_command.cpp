@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/app/assessment/measure_store.h"
 #include "handpiece/app/assessment/scan_work.h"
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/report/assessment_pictures.h"
@@ -26,7 +27,7 @@ namespace {
 struct ScoreOptions {
     std::string work, exercise, rubric, out, classFolder, before;
     MeshUnit unit;
-    bool json = false, noReplay = false, noPictures = false;
+    bool json = false, noReplay = false, noPictures = false, anew = false;
     std::size_t threads = 0;
 };
 
@@ -143,10 +144,16 @@ void run(const ScoreOptions& o) {
     scan_work::Files files{o.work, {}, o.unit.mmPerUnit()};
     if (!o.before.empty()) files.before = o.before;
     studies::ProgressBar bar(isScan ? "registering the scan" : "cutting it again");
-    const assessment::Work work = isScan ? assessment::readScan(files, task, bar.listener())
-                                         : assessment::readWork(o.work, task, !o.noReplay, bar.listener());
+    const auto store = isScan || o.anew ? assessment::MeasureStore({}) : assessment::MeasureStore::usual();
+    const assessment::StoreKey key{isScan ? "" : assessment::workHash(o.work),
+                                   rubric::hashText(tasks::contentHash(task))};
+    const assessment::Work work = isScan       ? assessment::readScan(files, task, bar.listener())
+                                  : o.noReplay ? assessment::readWork(o.work, task, false, bar.listener())
+                                               : assessment::readProvenOnce(o.work, task, key, store, bar.listener());
     bar.finish();
-    const assessment::Result result = assessment::scoreWork(work, task, judged);
+    const assessment::MeasuredWork measured = assessment::measureWork(work, task, assessment::requestsOf(judged));
+    if (!o.noReplay) store.add(key, measured);
+    const assessment::Result result = assessment::judge(measured, judged);
     const std::string json = assessment::resultJson(result.assessment, result.identity);
     if (!o.out.empty()) writeAll(o.out, filesOf(o, work, result, json, task, judged));
     if (o.json) {
@@ -173,6 +180,7 @@ void addScoreCommand(Command& app) {
                    "an earlier scan, before anything was cut, of the same tooth and those beside it (.stl, .ply): to "
                    "register a scan on");
     command.flag("--no-replay", o.noReplay, "do not cut a session again: quicker, and not proven");
+    command.flag("--anew", o.anew, "cut it again although it was proven before, and keep nothing");
     command.flag("--json", o.json, "as JSON (docs/formats/rubric.md)");
     command.flag("--no-pictures", o.noPictures, "without pictures of the tooth");
     command.option("--class", o.classFolder,

@@ -42,6 +42,12 @@ void tell(const assessment::Result& result) {
         else
             fmt::print("  {:<44} {}: {}\n", of, score::nameOf(c.standing), c.reason);
     }
+    if (const auto& c = a.completeness; c && !c->value)
+        fmt::print("  completeness was not measured, and nothing is taken off for it: {}\n", c->reason);
+    else if (c && c->factor < 1.0)
+        fmt::print(
+            "  not finished: {:.1f} +- {:.1f} {} of it is done, so points count {:.0f} % ({:.1f} lost by that)\n",
+            *c->value, c->uncertainty, c->unit, 100.0 * c->factor, a.lostUndone());
     fmt::print("{:.1f} of {:.1f} points ({:.1f} to {:.1f}); passed: {}{}\n", a.score, a.maxScore, a.leastScore,
                a.mostScore, score::nameOf(a.passed), a.why.empty() ? "" : ", " + a.why);
     fmt::print("{}: {}\n", result.identity.proven ? "proven" : "not proven", result.proof);
@@ -90,6 +96,7 @@ Files filesOf(const ScoreOptions& o, const assessment::Work& work, const assessm
         keep(view.name + "-ideal.png", view.ideal);
         keep(view.name + "-deviation.png", view.deviation);
     }
+    keep("undone.png", pictures.undone);
     for (const auto& [criterion, png] : pictures.places)
         keep("error-" + criterion + ".png", png);
     const std::string page = report::studentReport(result, task, judged, pictures);

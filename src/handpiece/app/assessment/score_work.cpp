@@ -349,13 +349,13 @@ Work readChain(std::span<const ChainLink> chain, const tasks::Task& task, bool p
 
 std::vector<measures::Request> requestsOf(const rubric::Rubric& rubric) {
     std::vector<measures::Request> requests;
-    for (const rubric::Criterion& criterion : rubric.criteria) {
-        const auto isThis = [&](const measures::Request& r) {
-            return r.kind == criterion.measure && r.of == criterion.of;
-        };
-        if (std::none_of(requests.begin(), requests.end(), isThis))
-            requests.push_back({criterion.measure, criterion.of});
-    }
+    const auto ask = [&](const auto& asks) {
+        const auto isThis = [&](const measures::Request& r) { return r.kind == asks.measure && r.of == asks.of; };
+        if (std::none_of(requests.begin(), requests.end(), isThis)) requests.push_back({asks.measure, asks.of});
+    };
+    for (const rubric::Criterion& criterion : rubric.criteria)
+        ask(criterion);
+    if (rubric.completeness) ask(*rubric.completeness);
     return requests;
 }
 

@@ -401,9 +401,8 @@ TEST_F(ManyWorks, TwelveAreMarkedBlindToTheEnd) {
         ASSERT_TRUE(desk().sheet(code.toStdString()).isIn);
         if (i + 1 < kRows) {
             EXPECT_FALSE(desk().areAllIn());
-            if (!desk().isRevealed(code.toStdString()) && !isBad) {
-                EXPECT_TRUE(summary().contains(QString::number(kRows - i - 1))) << summary().toStdString();
-            }
+            EXPECT_TRUE(summary().contains(QStringLiteral("marked: %1.").arg(kRows - i - 1)))
+                << summary().toStdString();
             ASSERT_NO_FATAL_FAILURE(pressOn("sheetNext"));
         }
     }
@@ -442,6 +441,29 @@ TEST_F(ManyWorks, TwelveAreMarkedBlindToTheEnd) {
         QTest::keyClick(pictures, Qt::Key_Down);
     }
     keep(part<QDialog>("markingDesk"), "agreement-twelve.png");
+}
+
+TEST_F(MarkingTest, AnotherStartFindsTheFolderAgainAndAnotherFolderItsOwnExercise) {
+    makeWork();
+    begin(QStringLiteral("Sato"), true);
+    const std::vector<std::string> codes = desk().codes();
+    start();  // as after a change of the language
+    action("actionMarkingDesk")->trigger();
+    EXPECT_EQ(part<QLineEdit>("markingFolder")->text(), toQString(works()));
+    EXPECT_EQ(part<QLineEdit>("markingExercise")->text(), toQString(exercise()));
+    EXPECT_EQ(part<QLineEdit>("markingMarker")->text(), "Sato");
+    EXPECT_TRUE(part<QCheckBox>("markingBlind")->isChecked());
+    click("markingBegin");
+    ASSERT_TRUE(waitFor([this] { return feature().desk() != nullptr && !feature().isAtWork(); }));
+    EXPECT_EQ(window().errorDialog(), nullptr);
+    EXPECT_EQ(desk().codes(), codes);
+    // Work of another exercise, which came along with it.
+    fs::create_directories(at("other"));
+    fs::copy(exercise(), at("other") / "exercise", fs::copy_options::recursive);
+    fs::copy_file(works() / "S-07-first.handpiece", at("other") / "S-01.handpiece");
+    drop(own_.filePath("other"));
+    EXPECT_EQ(part<QLineEdit>("markingFolder")->text(), own_.filePath("other"));
+    EXPECT_TRUE(part<QLineEdit>("markingExercise")->text().endsWith("other/exercise"));
 }
 
 TEST_F(MarkingTest, AFolderIsDroppedAndScoringIsCancelled) {

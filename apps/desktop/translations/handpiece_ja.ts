@@ -8602,12 +8602,16 @@ lingual: %4</source>
         <translation>画面に出ているのがこの作品かどうか</translation>
     </message>
     <message>
-        <source>The machine&apos;s score is shown when all works are marked. Still to be marked: %1.</source>
-        <translation>機械の得点は、すべての作品を評価すると表示されます。残り：%1。</translation>
-    </message>
-    <message>
         <source>It may go in without marks.</source>
         <translation>評価なしで確定できます。</translation>
+    </message>
+    <message>
+        <source>The machine&apos;s score is shown when all works are marked.</source>
+        <translation>機械の得点は、すべての作品を評価すると表示されます。</translation>
+    </message>
+    <message>
+        <source>Still to be marked: %1.</source>
+        <translation>残り：%1。</translation>
     </message>
 </context>
 <context>

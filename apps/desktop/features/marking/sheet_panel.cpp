@@ -395,14 +395,12 @@ void SheetPanel::showSummary() {
     const std::optional<score::Assessment> final = desk_->finalScore(id);
     if (machine == nullptr || !final) {
         const QString problem = WorkTable::problemWords(*desk_, id);
-        const std::size_t left = desk_->codes().size() - desk_->countIn();
-        summary_->setText(
-            !problem.isEmpty()
-                ? problem + (isMarking() ? QLatin1Char(' ') + tr("It may go in without marks.") : QString())
-            : isMarking() ? tr("The machine's score is hidden until your marks are in.")
-            : !desk_->isRevealed(id)
-                ? tr("The machine's score is shown when all works are marked. Still to be marked: %1.").arg(left)
-                : tr("It waits for its score."));
+        QString text = !problem.isEmpty()       ? problem
+                       : isMarking()            ? tr("The machine's score is hidden until your marks are in.")
+                       : !desk_->isRevealed(id) ? tr("The machine's score is shown when all works are marked.")
+                                                : tr("It waits for its score.");
+        if (!problem.isEmpty() && isMarking()) text += QLatin1Char(' ') + tr("It may go in without marks.");
+        summary_->setText(text + stillToMark());
         return;
     }
     QString text =
@@ -416,7 +414,14 @@ void SheetPanel::showSummary() {
     text += QLatin1Char(' ') + (machine->identity.proven
                                     ? tr("Proven.")
                                     : tr("Unproven: %1.").arg(QString::fromStdString(report::said(machine->proof))));
-    summary_->setText(text);
+    summary_->setText(text + stillToMark());
+}
+
+/// Once this one's are in.
+QString SheetPanel::stillToMark() const {
+    const std::size_t left = desk_->codes().size() - desk_->countIn();
+    return desk_->isBlind() && !isMarking() && left > 0 ? QLatin1Char(' ') + tr("Still to be marked: %1.").arg(left)
+                                                        : QString();
 }
 
 void SheetPanel::showEditor() {

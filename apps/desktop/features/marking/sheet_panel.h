@@ -74,6 +74,7 @@ class SheetPanel : public QWidget {
     void addEvidence(QTreeWidgetItem* under, const score::CriterionScore& of);
     void fillComments();
     void showSummary();
+    [[nodiscard]] QString stillToMark() const;
     void showEditor();
     void showWhetherReady();
     void say();

@@ -10375,7 +10375,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>Your recording of this exercise (session.h5), one sitting from the whole tooth to its end, in its voxel: students play it beside their result. It is cut again to prove it; another tooth takes it away.</source>
-        <translation>この課題を行った自分の記録（session.h5）。未切削の歯から終わりまで一回で、課題のボクセルで作業したもの。学生は結果の横で再生できます。切削し直して証明します。歯を替えると外れます。</translation>
+        <translation>この課題を行った自分の記録。未切削の歯から終わりまで一回で、課題のボクセルで作業したもの。学生は結果の横で再生できます。切削し直して証明します。歯を替えると外れます。</translation>
     </message>
     <message>
         <source>Remove</source>

@@ -42,6 +42,7 @@ class EditorFeature : public Feature {
     void make(const QString& title, std::function<cases::Case(const core::Progress&)> how);
     void takeStarter(int fdi, int seed);
     void takeCase();
+    void takeWork();
     void check();
     void cutIdeal();
     /// To where it is; elsewhere is asked. False: it was not saved.

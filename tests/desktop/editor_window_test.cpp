@@ -491,15 +491,6 @@ TEST_F(EditorTest, AnOnlayIsSetByItsHandlesAndTried) {
     press("editorUndo");
     ASSERT_TRUE(settled());
     EXPECT_EQ(now().rubric->criterion("cusp-mesiolingual"), nullptr);
-    // More than there is of the crown.
-    type(part<QDoubleSpinBox>("editorNumber_shoulder_mm"), "3.00");
-    type(part<QDoubleSpinBox>("editorNumber_cap_distobuccal_mm"), "3.00");
-    ASSERT_TRUE(settled());
-    EXPECT_EQ(errors(), 1) << "its margin would lie under the cervix";
-    press("editorUndo"), press("editorUndo");
-    ASSERT_TRUE(settled());
-    EXPECT_EQ(errors(), 0);
-
     auto* picture = part<SolidView>("editorPicture");
     const PreparationPage& shown = *editor().preparationPage();
     ASSERT_TRUE(waitFor([&] { return picture->isDrawn() && !shown.handles().empty(); }));

@@ -77,8 +77,6 @@ class Exercise(SystemTest):
         deep, _ = lost(onlay("deep", 2.15))
         self.assertEqual(set(deep), {"cusp-mesiobuccal", "cusp-distobuccal", "shoulder-buccal"})
         self.refused("exercise", "new", "--case", self.folder / "molar", "--id", "low", "--preparation", "onlay", "--side", "mesial", "--set",
-                     "cap_mesiobuccal_mm=3", "--set", "shoulder_mm=3", "--out", self.folder / "low", mentions=("cemento-enamel junction",))
-        self.refused("exercise", "new", "--case", self.folder / "molar", "--id", "low", "--preparation", "onlay", "--side", "mesial", "--set",
                      "cap_mesiobuccal_mm=9", "--out", self.folder / "low", mentions=("0 to 3",))
         self.ok("make", "tooth", "--fdi", 11, "--faces", 4000, "--out", self.folder / "incisor")
         self.refused("exercise", "new", "--case", self.folder / "incisor", "--id", "no", "--preparation", "onlay", "--side", "mesial", "--out",

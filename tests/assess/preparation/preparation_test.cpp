@@ -204,6 +204,20 @@ TEST(Preparation, ClassThreeAndFiveAndAccessAndCrownLieWhereTheyShould) {
     }
 }
 
+TEST(Preparation, AnOnlayKeepsItsMarginOverTheCervix) {
+    cases::Tooth tooth = toothOf(46);
+    Recipe recipe = recipeOf("onlay", "mesial");
+    recipe.numbers = {{"cap_mesiobuccal_mm", 3.0}, {"shoulder_mm", 3.0}};
+    EXPECT_NO_THROW((void)layOn(tooth, recipe));
+    for (cases::Landmark& mark : tooth.landmarks)
+        if (mark.kind == cases::LandmarkKind::cementoEnamelJunction)
+            for (Vec3& p : mark.pointsMm)
+                p.z() += 2.0;
+    EXPECT_NE(test::errorOf([&] { (void)layOn(tooth, recipe); }).find("cemento-enamel junction"), std::string::npos);
+    recipe.numbers["shoulder_mm"] = 0.5;
+    EXPECT_NO_THROW((void)layOn(tooth, recipe));
+}
+
 struct OnlayOn {
     int fdi;
     const char *side, *capped, *left;

@@ -93,7 +93,7 @@ preparation::Recipe recipeOf(const ExerciseOptions& o, std::string_view id, cons
 }
 
 /// What it is like to work on, for people who choose.
-void describe(Json& json, const std::string& level, const std::optional<double>& minutes,
+void describe(Json& json, const std::string& level, const std::optional<double>& minutes, const std::string& drive,
               const std::optional<cases::Exercise>& exercise) {
     json["level"] = level.empty() ? Json(nullptr) : Json(level);
     json["minutes"] = minutes ? Json(*minutes) : Json(nullptr);
@@ -102,6 +102,7 @@ void describe(Json& json, const std::string& level, const std::optional<double>&
     json["instructions"] = exercise ? Json(e.instructions) : Json(nullptr);
     json["bur"] = e.bur.empty() ? Json(nullptr) : Json(e.bur);
     json["allowed_burs"] = e.allowedBurs;
+    json["drive"] = drive.empty() ? Json(nullptr) : Json(drive);
     json["locked_helps"] = e.lockedHelps;
 }
 
@@ -115,7 +116,8 @@ Json toJson(const tasks::Task& task) {
               {"preparation", nullptr},
               {"rubric", !task.rubric.empty()}};
     if (task.preparation) json["preparation"] = task.preparation->preparation;
-    describe(json, task.level, task.minutes, task.toothCase.exercise);
+    json["speed_rpm"] = task.speedRpm ? Json(*task.speedRpm) : Json(nullptr);
+    describe(json, task.level, task.minutes, task.drive, task.toothCase.exercise);
     return json;
 }
 
@@ -125,7 +127,7 @@ Json toJson(const course::Shipped& shipped) {
               {"fdi", shipped.fdi == 0 ? Json(nullptr) : Json(shipped.fdi)},
               {"neighbours", shipped.hasNeighbours},
               {"preparation", shipped.preparation}};
-    describe(json, shipped.level, shipped.minutes, shipped.exercise);
+    describe(json, shipped.level, shipped.minutes, shipped.drive, shipped.exercise);
     return json;
 }
 
@@ -143,6 +145,7 @@ void printRow(const std::string& name, const Json& one) {
     if (one["level"].is_string()) about.push_back(one["level"].get<std::string>());
     if (one["minutes"].is_number()) about.push_back(fmt::format("{:g} min", one["minutes"].get<double>()));
     if (one["bur"].is_string()) about.push_back(fmt::format("bur {}", one["bur"].get<std::string>()));
+    if (one["drive"].is_string()) about.push_back(one["drive"].get<std::string>());
     for (const Json& help : one["locked_helps"])
         about.push_back(fmt::format("locked: {}", help.get<std::string>()));
     fmt::print("{}: {}\n", name, fmt::join(about, ", "));

@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/app/assessment/measure_store.h"
 #include "handpiece/app/assessment/scan_work.h"
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/report/assessment_pictures.h"
@@ -26,7 +27,7 @@ namespace {
 struct ScoreOptions {
     std::string work, exercise, rubric, out, classFolder, before;
     MeshUnit unit;
-    bool json = false, noReplay = false, noPictures = false;
+    bool json = false, noReplay = false, noPictures = false, anew = false;
     std::size_t threads = 0;
 };
 
@@ -41,6 +42,12 @@ void tell(const assessment::Result& result) {
         else
             fmt::print("  {:<44} {}: {}\n", of, score::nameOf(c.standing), c.reason);
     }
+    if (const auto& c = a.completeness; c && !c->value)
+        fmt::print("  completeness was not measured, and nothing is taken off for it: {}\n", c->reason);
+    else if (c && c->factor < 1.0)
+        fmt::print(
+            "  not finished: {:.1f} +- {:.1f} {} of it is done, so points count {:.0f} % ({:.1f} lost by that)\n",
+            *c->value, c->uncertainty, c->unit, 100.0 * c->factor, a.lostUndone());
     fmt::print("{:.1f} of {:.1f} points ({:.1f} to {:.1f}); passed: {}{}\n", a.score, a.maxScore, a.leastScore,
                a.mostScore, score::nameOf(a.passed), a.why.empty() ? "" : ", " + a.why);
     fmt::print("{}: {}\n", result.identity.proven ? "proven" : "not proven", result.proof);
@@ -89,6 +96,7 @@ Files filesOf(const ScoreOptions& o, const assessment::Work& work, const assessm
         keep(view.name + "-ideal.png", view.ideal);
         keep(view.name + "-deviation.png", view.deviation);
     }
+    keep("undone.png", pictures.undone);
     for (const auto& [criterion, png] : pictures.places)
         keep("error-" + criterion + ".png", png);
     const std::string page = report::studentReport(result, task, judged, pictures);
@@ -136,10 +144,16 @@ void run(const ScoreOptions& o) {
     scan_work::Files files{o.work, {}, o.unit.mmPerUnit()};
     if (!o.before.empty()) files.before = o.before;
     studies::ProgressBar bar(isScan ? "registering the scan" : "cutting it again");
-    const assessment::Work work = isScan ? assessment::readScan(files, task, bar.listener())
-                                         : assessment::readWork(o.work, task, !o.noReplay, bar.listener());
+    const auto store = isScan || o.anew ? assessment::MeasureStore({}) : assessment::MeasureStore::usual();
+    const assessment::StoreKey key{isScan ? "" : assessment::workHash(o.work),
+                                   rubric::hashText(tasks::contentHash(task))};
+    const assessment::Work work = isScan       ? assessment::readScan(files, task, bar.listener())
+                                  : o.noReplay ? assessment::readWork(o.work, task, false, bar.listener())
+                                               : assessment::readProvenOnce(o.work, task, key, store, bar.listener());
     bar.finish();
-    const assessment::Result result = assessment::scoreWork(work, task, judged);
+    const assessment::MeasuredWork measured = assessment::measureWork(work, task, assessment::requestsOf(judged));
+    if (!o.noReplay) store.add(key, measured);
+    const assessment::Result result = assessment::judge(measured, judged);
     const std::string json = assessment::resultJson(result.assessment, result.identity);
     if (!o.out.empty()) writeAll(o.out, filesOf(o, work, result, json, task, judged));
     if (o.json) {
@@ -166,6 +180,7 @@ void addScoreCommand(Command& app) {
                    "an earlier scan, before anything was cut, of the same tooth and those beside it (.stl, .ply): to "
                    "register a scan on");
     command.flag("--no-replay", o.noReplay, "do not cut a session again: quicker, and not proven");
+    command.flag("--anew", o.anew, "cut it again although it was proven before, and keep nothing");
     command.flag("--json", o.json, "as JSON (docs/formats/rubric.md)");
     command.flag("--no-pictures", o.noPictures, "without pictures of the tooth");
     command.option("--class", o.classFolder,

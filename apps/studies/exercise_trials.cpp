@@ -25,6 +25,7 @@
 #include "studies/cut_run.h"
 #include "studies/excavation.h"
 #include "studies/scripted_hand.h"
+#include "studies/watching_hand.h"
 
 namespace handpiece::studies {
 namespace {
@@ -77,6 +78,7 @@ using Plan = std::function<device::Motion(const Ready&)>;
 struct Mistake {
     const char *name, *criterion;
     Plan plan;
+    bool needsLoop = false;  ///< what a hand feels tells it
 };
 /// How a scripted hand does one of course::shippedExercises().
 struct Spec {
@@ -107,6 +109,21 @@ Mistake intoPulp() {
                 const Vec3 floor = r.laid.zones->box().centre();
                 return withPlunge(r.well, r.pulpNear(floor), r.laid.draw, 0.3);
             }};
+}
+/// Pressed into the nearest of the gingiva, pedal down.
+Mistake intoGingiva() {
+    return {"bur pressed into the gingiva", "gingiva",
+            [](const Ready& r) {
+                const Vec3 middle = r.laid.zones->box().centre();
+                Vec3 nearest = Vec3::Zero();
+                double least = std::numeric_limits<double>::infinity();
+                for (const cases::Part& part : r.task.toothCase.scenery)
+                    if (part.tissue == cases::Tissue::gum)
+                        for (const Vec3& v : part.mesh.vertices)
+                            if (const double off = (v - middle).squaredNorm(); off < least) least = off, nearest = v;
+                return withPlunge(r.well, nearest, r.laid.draw, 0.3);
+            },
+            true};
 }
 /// Along the shank, sideways through the contact's neighbour by 0.3 mm.
 Mistake nicked(const char* side) {
@@ -178,7 +195,7 @@ std::vector<Spec> specs() {
                          return withPlunge(r.well, middle + (20.0 - out.distanceMm) * r.buccal(), r.laid.draw, 0.3);
                      }}},
                    "cylinder-flat:0.6x4.0"});
-    all.push_back({"33-class-v", {intoPulp()}});
+    all.push_back({"33-class-v", {intoPulp(), intoGingiva()}});
     // A slim bur: 856-012 is wider than the chamfer's way between the teeth.
     all.push_back({"46-crown",
                    {nicked("mesial"),
@@ -227,8 +244,6 @@ Ready readyOf(const Spec& spec, const TrialOptions& o, const core::Progress& pro
     r.rubric = course::rubricOf(r.task);
     r.instrument = instrument::makeInstrument(*spec.bur ? spec.bur : r.task.toothCase.exercise->bur);
     r.hand.cellMm = spec.cellMm;
-    // A turbine takes its time.
-    if (o.atTheArm) r.hand.feedMmS = 1.0, r.hand.layerMm = 0.15;
     simulation::SimulationSettings settings;
     settings.field = simulation::fieldSettingsAt(o.voxelMm);
     settings.bur = r.instrument.bur;
@@ -313,19 +328,26 @@ TrialScore sweptAndJudged(Ready& r, const TrialOptions& o, const device::Motion&
     return judged(r, work);
 }
 
+/// A hand that waits for its turbine takes so many times as long at most.
+constexpr double kMostWaiting = 30.0;
+
 /// At 1 kHz with contact, force and load, recorded, and cut again from the record.
-TrialScore atTheArm(Ready& r, const TrialOptions& o, std::string& proof) {
+TrialScore atTheArm(Ready& r, const TrialOptions& o, const device::Motion& motion, const char* name,
+                    std::string& proof) {
     r.station.renewFields();
     RunSettings settings;
     settings.device.capability = r.station.settings.capability;
-    settings.device.rigidHand = true;
+    auto hand = std::make_unique<WatchingHand>(r.station.settings.capability, motion);
+    settings.isDone = [&hand = *hand] { return hand.isDone(); };
+    settings.takeDevice = [&hand] { return std::move(hand); };
+    settings.durationS = kMostWaiting * motion.durationS();
     settings.drive = r.station.settings.drive;
     settings.parameters = r.station.settings.parameters;
-    const fs::path folder = o.out / "sessions" / r.task.id;
+    const fs::path folder = o.out / "sessions" / r.task.id / name;
     Outputs outputs(folder);
     CutRunOptions options;
     options.casePath = o.out;
-    (void)runCut(r.station, r.task.toothCase, settings, r.well, options, outputs);
+    (void)runCut(r.station, r.task.toothCase, settings, motion, options, outputs);
     outputs.keep();
     const assessment::Work work = assessment::readWork(folder / "session.h5", r.task);
     proof = work.proof;
@@ -400,11 +422,15 @@ std::vector<ExerciseTrials> tryExercises(const TrialOptions& o, const core::Prog
         for (std::size_t i = 1; i < r.well.poses().size(); ++i)
             trials.wayMm +=
                 (r.well.poses()[i].burInTooth.positionMm - r.well.poses()[i - 1].burInTooth.positionMm).norm();
-        trials.doneWell = o.atTheArm ? atTheArm(r, o, trials.proof) : sweptAndJudged(r, o, r.well, "done well");
+        trials.doneWell =
+            o.atTheArm ? atTheArm(r, o, r.well, "done-well", trials.proof) : sweptAndJudged(r, o, r.well, "done well");
         core::report(own, 0.4);
         if (o.withErrors)
             for (const Mistake& mistake : spec.mistakes) {
-                const TrialScore t = sweptAndJudged(r, o, mistake.plan(r), mistake.name);
+                if (mistake.needsLoop && !o.atTheArm) continue;
+                std::string proof;
+                const TrialScore t = mistake.needsLoop ? atTheArm(r, o, mistake.plan(r), mistake.criterion, proof)
+                                                       : sweptAndJudged(r, o, mistake.plan(r), mistake.name);
                 ErrorOnPurpose error{mistake.name, mistake.criterion, false, true, {}};
                 for (const std::string& id : t.critical)
                     if (id == mistake.criterion)

@@ -110,7 +110,7 @@ RunSummary runLoop(const RunSettings& settings, const device::Motion& motion, lo
     const loop::Listener each = [&](const messages::HapticSample& sample) {
         summary.take(sample, period);
         listener(haptic, sample);
-        if (cancelled()) haptic.requestStop();
+        if (cancelled() || (settings.isDone && settings.isDone())) haptic.requestStop();
     };
     const double duration = settings.durationS > 0.0 ? settings.durationS : std::max(motion.durationS(), period);
     summary.report =

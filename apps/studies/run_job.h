@@ -25,6 +25,8 @@ struct RunSettings {
     instrument::Drive drive;
     /// Gives the device instead of a simulated arm of `device`, once; empty: none.
     std::function<std::unique_ptr<device::Device>()> takeDevice;
+    /// Ends the run before its duration; asked after each tick. Empty: nothing does.
+    std::function<bool()> isDone;
     bool controller = false;  ///< of a simulated arm: stability::Shaper on its force
 };
 

@@ -94,6 +94,8 @@ TEST_P(TenExercises, IsBegunCutAndFinished) {
     ASSERT_TRUE(part<QDockWidget>("exerciseDock")->isVisible());
     EXPECT_TRUE(part<QPushButton>("exerciseFinish")->isVisible());
     EXPECT_EQ(simulator().burName().toStdString(), shipped.exercise.bur);
+    EXPECT_EQ(simulator().driveName().toStdString(), shipped.drive);
+    EXPECT_EQ(simulator().setSpeedRpm(), instrument::driveByName(shipped.drive).freeSpeedRpm);
     picture(&window(), "begin");
     // The task as glass, where it is not there already.
     QAction* glass = action("actionZones");
@@ -121,6 +123,12 @@ TEST_P(TenExercises, IsBegunCutAndFinished) {
         << part<QLabel>("resultProof")->text().toStdString();
     const score::Assessment& judged = result->shown()->work.result.assessment;
     EXPECT_NE(judged.passed, score::Passed::yes) << "so little was done";
+    ASSERT_TRUE(judged.completeness && judged.completeness->value);
+    EXPECT_LE(judged.score, 0.25 * judged.maxScore) << "nor does it look good";
+    if (judged.lostUndone() >= 0.1) {
+        EXPECT_TRUE(part<QLabel>("resultUndone")->text().startsWith("Not finished"));
+        EXPECT_TRUE(part<QPushButton>("resultShowUndone")->isVisible());
+    }
     EXPECT_EQ(part<QTableWidget>("resultTable")->rowCount(), static_cast<int>(judged.criteria.size()));
     ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::replay && !simulator().isBusy(); }));
     EXPECT_TRUE(waitFor([&] { return std::abs(removedMm3() - cutMm3) < 1e-3; })) << removedMm3() << " " << cutMm3;

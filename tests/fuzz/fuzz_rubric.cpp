@@ -24,14 +24,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (!isSound) return;
         if (!rubric::differences(read, back).empty()) __builtin_trap();
         std::vector<handpiece::measures::Measured> measured;
-        for (const rubric::Criterion& c : read.criteria) {
+        const auto take = [&measured](const auto& c) {
             handpiece::measures::Measured m;
             m.kind = c.measure;
             m.of = c.of;
             m.value = c.knots.empty() ? 1.0 : c.knots.back().value;
             m.uncertainty = 0.1;
             measured.push_back(std::move(m));
-        }
+        };
+        if (read.completeness) take(*read.completeness);
+        for (const rubric::Criterion& c : read.criteria)
+            take(c);
         const auto result = handpiece::score::evaluate(read, measured, {"pointer", 1.0});
         if (!std::isfinite(result.score) || result.score > result.maxScore) __builtin_trap();
     });

@@ -127,7 +127,8 @@ class Score(SystemTest):
             first = scored(session, "--threads", 1)
             self.assertTrue(json.loads(first)["proven"])
             for simd, threads in (("base", 2), ("avx2", 1), ("avx512", 2)):
-                self.assertEqual(scored(session, "--threads", threads, HANDPIECE_SIMD=simd), first, (simd, threads))
+                self.assertEqual(scored(session, "--threads", threads, "--anew", HANDPIECE_SIMD=simd), first, (simd, threads))
+            self.assertEqual(scored(session), first, "proven before")
 
             def of_tooth(text):
                 read = json.loads(text) if isinstance(text, str) else text
@@ -206,7 +207,7 @@ class Score(SystemTest):
         self.assertEqual(list(self.folder.rglob("*.field")), [])
         # Kept measures that somebody changed are not believed.
         kept = sorted((self.folder / "cache" / "handpiece" / "measures").iterdir())
-        self.assertEqual(len(kept), 3)
+        self.assertGreaterEqual(len(kept), 3)
         for file in kept:
             file.write_text(file.read_text().replace('"proven":false', '"proven":true'))
         forged = rows_of(self.table(*rescore, self.folder / "forged.csv"))

@@ -8843,6 +8843,10 @@ lingual: %4</source>
         <translation>最初のバー：%1</translation>
     </message>
     <message>
+        <source>Drive to begin with: %1</source>
+        <translation>最初の駆動方式：%1</translation>
+    </message>
+    <message>
         <source>Not in this exercise: %1</source>
         <translation>この課題では使えないもの: %1</translation>
     </message>
@@ -10061,6 +10065,14 @@ lingual: %4</source>
         <translation>誤りを防ぐための確認。空：なし</translation>
     </message>
     <message>
+        <source>How far it is done</source>
+        <translation>完成度</translation>
+    </message>
+    <message>
+        <source>Target removed in % and the factor of all points, as in 0: 0, 50: 0.5, 70: 1; empty: all points count however little is done</source>
+        <translation>目標の切削率（%）と全得点に掛ける係数。例：0: 0, 50: 0.5, 70: 1。空：どれほど少なくても得点をそのまま数える</translation>
+    </message>
+    <message>
         <source>Bands, from best to worst</source>
         <translation>区分（よい順）</translation>
     </message>
@@ -10268,6 +10280,22 @@ lingual: %4</source>
     <message>
         <source>First bur</source>
         <translation>最初のバー</translation>
+    </message>
+    <message>
+        <source>First drive</source>
+        <translation>最初の駆動方式</translation>
+    </message>
+    <message>
+        <source>Its speed</source>
+        <translation>回転数</translation>
+    </message>
+    <message>
+        <source>That it is set to at the beginning</source>
+        <translation>開始時に設定する回転数</translation>
+    </message>
+    <message>
+        <source> rpm</source>
+        <translation> rpm</translation>
     </message>
     <message>
         <source>The student&apos;s choice</source>

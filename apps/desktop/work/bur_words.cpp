@@ -26,4 +26,15 @@ QString burTitle(const QString& name) {
     return title;
 }
 
+QString driveTitle(const QString& name) {
+    for (const auto& [drive, text] :
+         {std::pair("turbine", QT_TRANSLATE_NOOP("handpiece::desktop::DrillBar", "High speed (air turbine)")),
+          std::pair("weak-turbine", QT_TRANSLATE_NOOP("handpiece::desktop::DrillBar", "High speed, weak air")),
+          std::pair("low-speed", QT_TRANSLATE_NOOP("handpiece::desktop::DrillBar", "Low speed")),
+          std::pair("speed-increasing",
+                    QT_TRANSLATE_NOOP("handpiece::desktop::DrillBar", "Red band 1:5 (speed-increasing)"))})
+        if (name == QLatin1String(drive)) return QCoreApplication::translate("handpiece::desktop::DrillBar", text);
+    return name;
+}
+
 }  // namespace handpiece::desktop

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Burs by the names that people use.
+/// Burs and drives by the names that people use.
 
 #include <QString>
 
@@ -9,5 +9,7 @@ namespace handpiece::desktop {
 
 /// "Round 1/4" for "round-1/4", in the window's language; names that begin with a digit stay.
 [[nodiscard]] QString burTitle(const QString& name);
+/// "Low speed" for "low-speed".
+[[nodiscard]] QString driveTitle(const QString& name);
 
 }  // namespace handpiece::desktop

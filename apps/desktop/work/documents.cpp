@@ -36,14 +36,19 @@ void takeInstruments(LoadedTooth& loaded, simulation::SimulationSettings& settin
                      const cases::Attempt* attempt) {
     loaded.drive = request.drive;
     loaded.speedRpm = request.speedRpm;
+    const tasks::Task* task = loaded.document.task.get();
+    if (task && !task->drive.empty()) {
+        loaded.drive = task->drive;
+        loaded.speedRpm = task->speedRpm.value_or(0.0);
+    }
     const cases::Exercise* exercise = loaded.toothCase->exercise ? &*loaded.toothCase->exercise : nullptr;
     const std::string otherwise = exercise::firstBur(exercise, request.bur);
     std::string bur = otherwise, cuttingParameters;
     if (attempt) {
         const auto& drives = instrument::drives();
         if (std::any_of(drives.begin(), drives.end(), [&](const auto& d) { return d.name == attempt->drive; })) {
+            if (loaded.drive != attempt->drive || !task || task->drive.empty()) loaded.speedRpm = 0.0;
             loaded.drive = attempt->drive;
-            loaded.speedRpm = 0.0;
         }
         bur = exercise::firstBur(exercise, attempt->bur);
         if (bur == attempt->bur)
@@ -192,7 +197,8 @@ cases::Case starterCase(const Starter& starter, const fs::path& folder, const co
 
 instrument::Drive driveAt(const std::string& name, double speedRpm) {
     instrument::Drive drive = instrument::driveByName(name);
-    if (speedRpm > 0.0) drive.freeSpeedRpm = std::clamp(speedRpm, 0.02 * drive.freeSpeedRpm, drive.freeSpeedRpm);
+    if (speedRpm > 0.0)
+        drive.freeSpeedRpm = std::clamp(speedRpm, tasks::kLeastSpeedShare * drive.freeSpeedRpm, drive.freeSpeedRpm);
     return drive;
 }
 

@@ -102,6 +102,30 @@ TEST(MeasureStore, BelievesNoFileThatOthersMayWrite) {
     MeasureStore(folder.path() / "file" / "in").keep(kKey, someWork());
 }
 
+TEST(MeasureStore, AddsToTheSameToothOnly) {
+    const test::TemporaryFolder folder;
+    const MeasureStore store(folder.path() / "kept");
+    store.keep(kKey, someWork());
+    MeasuredWork more = someWork();
+    more.measured = {{"removed", {}, 2.5, 0.1, {}, {}}, someWork().measured[1]};
+    store.add(kKey, more);
+    MeasuredWork both = more;
+    both.measured.push_back(someWork().measured[0]);
+    both.measured.push_back(someWork().measured[2]);
+    ASSERT_TRUE(store.find(kKey));
+    EXPECT_TRUE(isSame(*store.find(kKey), both));
+    for (const bool isOtherTooth : {true, false}) {
+        MeasuredWork other = more;
+        if (isOtherTooth)
+            other.identity.stateHash = "s2";
+        else
+            other.identity.proven = false;
+        store.keep(kKey, someWork());
+        store.add(kKey, other);
+        EXPECT_TRUE(isSame(*store.find(kKey), other));
+    }
+}
+
 TEST(Rescore, OfWhatIsNoWorkIsRowsWithReasonsAndStopsWhenAsked) {
     const test::TemporaryFolder folder;
     EXPECT_THAT(test::errorOf([&] { (void)worksIn(folder.path() / "nowhere"); }), testing::HasSubstr("no such folder"));

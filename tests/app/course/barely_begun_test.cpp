@@ -40,6 +40,7 @@ void expectNotPassed(const tasks::Task& task) {
     };
     const score::Assessment nothing = judged({});
     EXPECT_NE(nothing.passed, score::Passed::yes) << nothing.percent() << " %: " << nothing.why;
+    EXPECT_EQ(nothing.score, 0.0) << nothing.why;
     // Slabs across the tooth that hold a tenth: about the middle, and from either end.
     const core::Box whole = laid.zones->box();
     const double all = tooth::sumOf(without(whole).removedMm3.own);
@@ -61,10 +62,15 @@ void expectNotPassed(const tasks::Task& task) {
         std::printf("%s: %.3f of it from %.1f: %.1f of %.1f, passed: %s\n", task.id.c_str(), share, from, got.score,
                     got.maxScore, std::string(score::nameOf(got.passed)).c_str());
         EXPECT_NE(got.passed, score::Passed::yes) << got.percent() << " %: " << got.why;
+        // Nor does it look good: of what was measured, and of all.
+        EXPECT_LE(got.score, 0.25 * got.maxScore) << got.why;
+        ASSERT_TRUE(got.completeness && got.completeness->value);
+        EXPECT_NEAR(*got.completeness->value, 100.0 * share, 1.0);
     }
     // As it should be, it is not failed: the slabs are what fails it.
     const score::Assessment ideal = judged(without(whole));
     EXPECT_NE(ideal.passed, score::Passed::no) << ideal.percent() << " %: " << ideal.why;
+    EXPECT_EQ(ideal.completeness->factor, 1.0);
 }
 
 class ShippedExercise : public testing::TestWithParam<Shipped> {};

@@ -141,7 +141,7 @@ score::Assessment resultOf(const std::vector<std::pair<std::string, double>>& po
         c.measure = "removed";
         c.maxPoints = 10.0;
         if (points >= 0.0)
-            c.points = points;
+            c.points = c.ownPoints = points;
         else
             c.standing = score::Standing::notMeasured;
         result.criteria.push_back(c);

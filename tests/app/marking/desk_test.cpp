@@ -131,6 +131,31 @@ void markAll(Desk& desk, const std::string& code, const std::string& depth, cons
     desk.giveIn(code);
 }
 
+TEST(Override, PointsThatAreGivenCountWhatIsLeftOfTheWorkDoesNot) {
+    const Rubric rubric = rubricOf(R"([completeness]
+measure = "removed-share"
+zone = "target"
+unit = "%"
+knots = [[0, 0], [70, 1]]
+)");
+    std::vector<Measured> all = measured(1.75, 0.8);
+    all.push_back({"removed-share", {"target", {}, {}, {}, {}}, 7.0, 0.5, {}, {}});
+    const score::Assessment machine = score::evaluate(rubric, all, {"pointer", 1.0});
+    EXPECT_NEAR(machine.score, 0.1 * (50 + 15 + 15), 1e-9);
+    Sheet sheet;
+    EXPECT_EQ(withOverrides(rubric, machine, sheet).score, machine.score);
+    // Points are given as they are; a band gives its own, times the factor; so does what stays.
+    sheet.overrides["depth"] = {"", 30.0, {}, "seen"};
+    sheet.overrides["width"] = {"good", {}, {}, "seen"};
+    sheet.overrides["depth-again"] = {"", {}, true, "seen"};
+    const score::Assessment now = withOverrides(rubric, machine, sheet);
+    EXPECT_NEAR(*now.criteria[0].points, 30.0, 1e-9);
+    EXPECT_NEAR(*now.criteria[1].points, 3.0, 1e-9);
+    EXPECT_NEAR(*now.criteria[2].points, 1.5, 1e-9);
+    EXPECT_NEAR(now.score, 34.5, 1e-9);
+    EXPECT_EQ(now.completeness->value, 7.0);
+}
+
 TEST(Override, PutsTheMarkersWordInPlaceOfTheMachinesAndKeepsThat) {
     const score::Assessment machine = resultOf(1.75, 0.8).assessment;
     ASSERT_DOUBLE_EQ(machine.score, 50 + 15 + 15);

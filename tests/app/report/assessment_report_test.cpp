@@ -100,6 +100,27 @@ TEST(StudentReport, GoodWorkHasNoErrorsAndNoPicturesAreNoHarm) {
     EXPECT_THAT(page, Not(HasSubstr("<img")));
 }
 
+TEST(StudentReport, WhatIsNotFinishedComesBeforeAllErrors) {
+    const rubric::Rubric rubric = rubric::shippedRubric("46-class-i");
+    // All good but for a tenth of it that is done: the outline loses its ten points, the rest counts a tenth.
+    const score::Result result = resultOf({{"outline", 10.0}});
+    EXPECT_NEAR(result.assessment.score, 9.0, 1e-9);
+    EXPECT_NEAR(result.assessment.lostUndone(), 81.0, 1e-9);
+    AssessmentPictures pictures;
+    pictures.undone = Png(3, std::byte{65});
+    const std::string page = studentReport(result, task(), rubric, pictures);
+    for (const char* part :
+         {"Not finished: 10 % of the preparation is cut; points count 10 %.", "1. not finished (81.0 points lost)",
+          "2. outline opened (10.0 points lost)", "data:image/png;base64,QUFB", "times 0.10"})
+        EXPECT_THAT(page, HasSubstr(part));
+    EXPECT_THAT(classReport({{"A7", "A7/1.json", {}, result}}), HasSubstr("not finished"));
+    EXPECT_THAT(studentReport(resultOf({}), task(), rubric), Not(HasSubstr("inished")));
+    const Language language("ja");
+    const std::string japanese = studentReport(result, task(), rubric, pictures);
+    EXPECT_THAT(japanese, HasSubstr("未完成：形成の 10 % を削った"));
+    EXPECT_THAT(japanese, Not(HasSubstr("inished")));
+}
+
 TEST(StudentReport, ThereIsADrillForEveryMeasure) {
     for (const measures::MeasureKind& kind : measures::measureKinds())
         EXPECT_GT(drillFor(std::string(kind.id)).size(), 20u) << kind.id;

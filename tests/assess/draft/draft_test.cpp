@@ -155,11 +155,17 @@ TEST(Draft, ComesBackFromItsFile) {
     EXPECT_FALSE(hasErrors(problemsOnTooth(content)));
     content.rubric->criteria[0].weight = 40.0;
     content.rubric->totalWeight = 90.0;
+    content.drive = "low-speed";
+    content.speedRpm = 20000.0;
     tasks::writeTask(taskOf(content), file);
     const Content again = contentOf(tasks::readTask(file));
     EXPECT_EQ(again.rubric->criteria[0].weight, 40.0);
     EXPECT_EQ(rubric::rubricToml(*again.rubric), rubric::rubricToml(*content.rubric));
     EXPECT_EQ(again.exercise.title.at("ja"), "十字");
+    EXPECT_EQ(again.drive, "low-speed");
+    EXPECT_EQ(again.speedRpm, 20000.0);
+    content.drive.clear();
+    EXPECT_FALSE(taskOf(content).speedRpm) << "a speed of no drive";
     fs::remove(file);
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
@@ -222,6 +223,72 @@ TEST(Linter, FindsWhatThePublishedTablesLeaveOpen) {
     EXPECT_THAT(wrongWith(text), ElementsAre(HasSubstr("no band has the values from 1 to 1.5")));
 }
 
+const std::string kCompleteness = R"([completeness]
+measure = "removed-share"
+zone = "target"
+unit = "%"
+knots = [[0, 0], [50, 0.5], [70, 1]]
+title = { en = "done" }
+words = { en = "how far" }
+source = "s"
+)";
+
+TEST(Completeness, IsReadCheckedAndWritten) {
+    const std::string whole = kHead + kCompleteness + kDepth;
+    const Rubric r = parsed(whole);
+    EXPECT_THAT(check(r), IsEmpty());
+    const Completeness& c = *r.completeness;
+    EXPECT_EQ(c.of.zone, "target");
+    const std::pair<double, double> factors[] = {{-5, 0}, {0, 0}, {10, 0.1}, {50, 0.5}, {60, 0.75}, {70, 1}, {100, 1}};
+    for (const auto& [value, factor] : factors)
+        EXPECT_NEAR(factorOf(c, value), factor, 1e-12);
+    const Rubric again = parsed(rubricToml(r));
+    EXPECT_THAT(differences(r, again), IsEmpty());
+    EXPECT_EQ(canonicalText(r), canonicalText(again));
+    EXPECT_EQ(again.completeness->source, "s");
+    EXPECT_EQ(again.completeness->words, c.words);
+    EXPECT_THAT(describe(r, "en"), testing::AllOf(HasSubstr("removed-share (target) [%]"), HasSubstr("50 = × 0.5")));
+    const auto wrong = [&](const std::string& from, const std::string& to, const char* problem,
+                           Severity severity = Severity::error) {
+        const std::vector<Finding> found = check(parsed(replaced(whole, from, to)));
+        ASSERT_EQ(found.size(), 1u) << to;
+        EXPECT_EQ(found[0].severity, severity) << to;
+        EXPECT_THAT(found[0].problem, HasSubstr(problem));
+        EXPECT_THAT(found[0].where, HasSubstr("completeness"));
+        EXPECT_EQ(found[0].criterion, "");
+    };
+    wrong("removed-share", "removed-shaer", "no measure \"removed-shaer\"");
+    wrong("zone = \"target\"", "zone = \"targte\"", "no zone \"targte\"");
+    wrong("measure = \"removed-share\"\nzone = \"target\"\nunit = \"%\"", "measure = \"time\"\nunit = \"s\"",
+          "of the hand");
+    wrong("unit = \"%\"", "unit = \"mm\"", "the unit is \"mm\"");
+    wrong("[[0, 0], [50, 0.5], [70, 1]]", "[[70, 1]]", "one knot", Severity::error);
+    wrong("[70, 1]", "[101, 1]", "which no measure can have");
+    wrong("[70, 1]", "[50, 1]", "do not ascend at 50");
+    wrong("[70, 1]", "[60, 0.4], [70, 1]", "the factor falls at 60");
+    wrong("[0, 0], [50", "[0, -0.5], [50", "the factor -0.5");
+    wrong("[70, 1]", "[70, 0.9]", "the last factor is 0.9");
+    wrong("[0, 0], [50", "[0, 0.3], [50", "keeps 0.3", Severity::warning);
+    EXPECT_THAT(errorOf([&] { (void)parsed(replaced(whole, "[50, 0.5]", "[50]")); }),
+                testing::AllOf(HasSubstr("[value, factor]"), HasSubstr(":")));
+    EXPECT_THAT(errorOf([&] { (void)parsed(replaced(whole, "knots = [[0", "knotz = [[0")); }), HasSubstr("knotz"));
+    EXPECT_THAT(errorOf([&] { (void)parsed(kHead + "completeness = 1\n" + kDepth); }), HasSubstr("completeness"));
+    // It decides, so it is hashed; a rubric without it has the hash that it had before there was such.
+    std::set<std::uint64_t> hashes = {hashOf(r), hashOf(parsed(kHead + kDepth))};
+    for (const auto& [from, to] :
+         {std::pair{"[50, 0.5]", "[50, 0.6]"}, {"zone = \"target\"", "zone = \"leeway-side\""}})
+        EXPECT_TRUE(hashes.insert(hashOf(parsed(replaced(whole, from, to)))).second);
+    EXPECT_EQ(hashes.size(), 4u);
+    EXPECT_EQ(hashOf(parsed(replaced(whole, "how far", "how near"))), hashOf(r));
+    const Rubric without = parsed(kHead + kDepth);
+    EXPECT_THAT(differences(without, r), ElementsAre("completeness: is new, factors 0 0,50 0.5,70 1"));
+    EXPECT_THAT(differences(r, without), ElementsAre(HasSubstr("completeness: is gone")));
+    EXPECT_THAT(differences(r, parsed(replaced(whole, "[50, 0.5]", "[50, 0.6]"))),
+                ElementsAre("completeness: factors was 0 0,50 0.5,70 1, is 0 0,50 0.6,70 1"));
+    EXPECT_THAT(differences(r, parsed(replaced(whole, "how far", "how near"))),
+                ElementsAre(HasSubstr("no score changes")));
+}
+
 TEST(Hash, MeansWhatDecides) {
     const std::string whole = kHead + kDepth + kWidth;
     const std::uint64_t hash = hashOf(parsed(whole));
@@ -299,8 +366,14 @@ TEST(Shipped, AllAreSoundInBothLanguages) {
             ADD_FAILURE() << f.where << ": " << f.problem;
         EXPECT_TRUE(hashes.emplace(hashOf(r), name).second) << name;
         EXPECT_FALSE(r.source.empty()) << name;
+        ASSERT_TRUE(r.completeness) << name;
+        EXPECT_EQ(factorOf(*r.completeness, 0.0), 0.0) << name;
+        EXPECT_LE(factorOf(*r.completeness, 10.0), 0.25) << name;
+        EXPECT_EQ(factorOf(*r.completeness, 90.0), 1.0) << name;
         for (const char* language : {"en", "ja"}) {
             EXPECT_TRUE(r.title.contains(language)) << name;
+            EXPECT_TRUE(r.completeness->title.contains(language)) << name;
+            EXPECT_TRUE(r.completeness->words.contains(language)) << name;
             for (const Criterion& c : r.criteria)
                 EXPECT_TRUE(c.title.contains(language)) << name << " " << c.id;
         }

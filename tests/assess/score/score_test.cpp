@@ -266,6 +266,108 @@ TEST(Score, ARubricThatSaysNothingOfPassingLeavesItToTheTeacher) {
                 HasSubstr("no measure \"nix\""));
 }
 
+const char* kUndone = R"([completeness]
+measure = "removed-share"
+zone = "target"
+unit = "%"
+knots = [[0, 0], [50, 0.5], [70, 1]]
+)";
+Measured done(double share, double uncertainty = 0.0) {
+    Measured m = of("removed-share", share, uncertainty);
+    m.of.zone = "target";
+    return m;
+}
+std::vector<Measured> with(std::vector<Measured> measured, Measured one) {
+    measured.push_back(std::move(one));
+    return measured;
+}
+
+TEST(Completeness, MultipliesAllPointsWithoutACliff) {
+    const Rubric rubric = rubricOf(kUndone);
+    const std::vector<Measured> good = all(1.75, 1.2, 2), half = all(1.25, 1.2, 2);
+    for (const auto& [share, factor] :
+         {std::pair{0.0, 0.0}, {10.0, 0.1}, {50.0, 0.5}, {60.0, 0.75}, {70.0, 1.0}, {98.4, 1.0}}) {
+        const Assessment a = evaluate(rubric, with(good, done(share)), {});
+        EXPECT_NEAR(a.score, 100 * factor, 1e-9) << share;
+        EXPECT_EQ(a.maxScore, 100);
+        EXPECT_NEAR(a.lostUndone(), 100 - 100 * factor, 1e-9);
+        EXPECT_NEAR(a.completeness->factor, factor, 1e-12);
+        EXPECT_EQ(a.passed, 100 * factor < 60 ? Passed::no : Passed::yes) << share;
+        // What each criterion lost of its own is told apart.
+        EXPECT_NEAR(*at(a, "depth").points, 60 * factor, 1e-9);
+        EXPECT_EQ(at(a, "depth").ownPoints, 60);
+        EXPECT_EQ(at(a, "depth").band, "good");
+        const Assessment b = evaluate(rubric, with(half, done(share)), {});
+        EXPECT_NEAR(b.score, 70 * factor, 1e-9);
+        EXPECT_NEAR(b.steps[0].points, 30 * factor, 1e-9);
+    }
+    EXPECT_EQ(evaluate(rubric, with(good, done(70)), {}).score, 100) << "full points to the bit";
+    const Assessment begun = evaluate(rubric, with(all(2.6, 1.2, 2), done(5)), {});
+    EXPECT_EQ(begun.critical.size(), 1u) << "a critical error stands, however little is done";
+}
+
+TEST(Completeness, ItsErrorMovesAllPointsTogether) {
+    const Rubric rubric = rubricOf(kUndone);
+    // 10 +- 2 %: the factor is 0.1 +- 0.02, of 100 points.
+    Assessment a = evaluate(rubric, with(all(1.75, 1.2, 2), done(10, 2)), {});
+    EXPECT_NEAR(a.leastScore, 8, 1e-9);
+    EXPECT_NEAR(a.mostScore, 12, 1e-9);
+    EXPECT_NEAR(at(a, "depth").leastPoints, 0.08 * 60, 1e-9);
+    // Depth alone errs by 12 of its 60 points, which count a half; independent of how much is done.
+    a = evaluate(rubric, with(all(1.25, 1.2, 2, 0.1), done(50, 4)), {});
+    EXPECT_NEAR(a.score, 35, 1e-9);
+    EXPECT_NEAR(a.leastScore, 35 - std::hypot(0.5 * 12, 0.04 * 70), 1e-9);
+    EXPECT_NEAR(a.mostScore, 35 + std::hypot(0.5 * 12, 0.1 * 70), 1e-9);
+    // The mark of 60 lies within that of the completeness.
+    a = evaluate(rubric, with(all(1.75, 1.2, 2), done(54, 2)), {});
+    EXPECT_EQ(a.passed, Passed::teacher);
+    EXPECT_TRUE(a.borderline);
+    // A criterion of the same measure errs with it, not beside it: 1 % of share is 1 % of its points and of the factor.
+    const Rubric same = rubricOf(std::string(kUndone) + R"([[criterion]]
+id = "target"
+measure = "removed-share"
+zone = "target"
+unit = "%"
+weight = 100
+knots = [[0, 0], [100, 100]]
+)");
+    a = evaluate(same, with(all(1.75, 1.2, 2), done(40, 1)), {});
+    EXPECT_NEAR(a.score, 0.4 * 140, 1e-9);
+    EXPECT_NEAR(a.leastScore, 0.39 * 139, 1e-9);
+    EXPECT_NEAR(a.mostScore, 0.41 * 141, 1e-9);
+}
+
+TEST(Completeness, NotMeasuredTakesNothingOffAndLetsNobodyPass) {
+    const Rubric rubric = rubricOf(kUndone);
+    for (const bool isTold : {false, true}) {
+        Measured none = done(0);
+        none.value.reset();
+        none.reason = "the task has no zone \"target\"";
+        const std::vector<Measured> good = all(1.75, 1.2, 2);
+        const Assessment a = evaluate(rubric, isTold ? with(good, none) : good, {});
+        EXPECT_EQ(a.score, 100);
+        EXPECT_EQ(a.passed, Passed::teacher);
+        EXPECT_FALSE(a.borderline);
+        EXPECT_THAT(a.why, HasSubstr("completeness"));
+        EXPECT_THAT(a.completeness->reason, HasSubstr(isTold ? "no zone" : "not measured"));
+    }
+    EXPECT_FALSE(evaluate(rubricOf(), all(1.75, 1.2, 2), {}).completeness);
+}
+
+TEST(Completeness, VoidsNothingAndLeavesPointsThatWereGiven) {
+    std::string text = std::string(kText) + kUndone;
+    text.replace(text.find("weight = 60"), 11, "weight = 60\nexcludes = [\"width\"]");
+    const Rubric rubric = rubric::parseRubric(text, "r.toml");
+    const Assessment nothing = evaluate(rubric, with(all(1.75, 1.2, 2), done(0)), {});
+    EXPECT_EQ(at(nothing, "width").standing, Standing::judged) << "depth itself did not fail";
+    EXPECT_EQ(nothing.score, 0);
+    const std::string given[] = {"width"};
+    const Assessment a = evaluate(rubric, with(all(1.75, 1.2, 2), done(10)), {}, given);
+    EXPECT_EQ(*at(a, "width").points, 40);
+    EXPECT_NEAR(a.score, 46, 1e-9);
+    EXPECT_NEAR(a.lostUndone(), 54, 1e-9);
+}
+
 // ---- 10,000 random rubrics and works
 
 struct Random {
@@ -355,6 +457,22 @@ Rubric randomRubric(Random& random) {
         if (!rule.required || random.chance(0.3)) rule.elseAtMost = std::floor(random.in(0, 99));
         r.rules.push_back(std::move(rule));
     }
+    if (random.chance(0.5)) {
+        rubric::Completeness& c = r.completeness.emplace();
+        c.measure = kKinds[random.upTo(std::size(kKinds) - 1)];
+        c.unit = "mm";
+        std::vector<double> values, factors;
+        for (std::size_t n = 2 + random.upTo(3); n > 0; --n) {
+            values.push_back(random.in(0, 20));
+            factors.push_back(random.in(0, 1));
+        }
+        std::sort(values.begin(), values.end());
+        std::sort(factors.begin(), factors.end());
+        if (random.chance(0.7)) factors.front() = 0;
+        factors.back() = 1;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            c.knots.push_back({values[i], factors[i]});
+    }
     return r;
 }
 
@@ -369,6 +487,10 @@ std::vector<Measured> randomWork(Random& random, const Rubric& rubric) {
         if (random.chance(0.02)) continue;
         measured.push_back(std::move(m));
     }
+    if (rubric.completeness && random.chance(0.97) &&
+        std::none_of(rubric.criteria.begin(), rubric.criteria.end(),
+                     [&](const rubric::Criterion& c) { return c.measure == rubric.completeness->measure; }))
+        measured.push_back(of(rubric.completeness->measure.c_str(), random.in(0, 20), random.in(0, 0.5)));
     return measured;
 }
 
@@ -401,8 +523,16 @@ std::string wrongWith(const Rubric& rubric, const std::vector<Measured>& measure
         if (!c.points) continue;
         if (*c.points < 0 || *c.points > c.maxPoints || c.leastPoints > *c.points || c.mostPoints < *c.points)
             return c.id + " has points out of range";
+        if (*c.points != (a.completeness ? a.completeness->factor : 1.0) * c.ownPoints)
+            return c.id + " is not its own points times the factor";
         sum += *c.points;
         most += c.maxPoints;
+    }
+    if (a.completeness) {
+        const Completeness& c = *a.completeness;
+        if (!(c.leastFactor >= 0 && c.leastFactor <= c.factor && c.factor <= c.mostFactor && c.mostFactor <= 1))
+            return "the factor lies outside of its range";
+        if (!c.value && (c.factor != 1 || a.passed == Passed::yes)) return "what is not known counts as done";
     }
     for (const double v : {a.score, a.maxScore, a.wholeScore, a.leastScore, a.mostScore, a.percent()})
         if (!std::isfinite(v)) return "the score is no number";
@@ -422,6 +552,14 @@ std::string wrongWith(const Rubric& rubric, const std::vector<Measured>& measure
         double v[] = {x, y, z};
         std::sort(v, v + 3);
         if (*pointsOf(c, v[1]) < std::min(*pointsOf(c, v[0]), *pointsOf(c, v[2]))) return c.id + " is not monotone";
+    }
+    // Who has done more has no less, where no criterion is of the same measure.
+    if (a.completeness && a.completeness->value &&
+        std::none_of(a.criteria.begin(), a.criteria.end(),
+                     [&](const CriterionScore& c) { return c.measure == a.completeness->measure; })) {
+        std::vector<Measured> moved = measured;
+        moved.back().value = random.in(*moved.back().value, 20);
+        if (evaluate(rubric, moved, a.context).score < a.score) return "more done has less";
     }
     // Wherever one value lies within its uncertainty, a verdict that is not the teacher's stands.
     if (a.passed != Passed::teacher)

@@ -30,6 +30,8 @@ class TaskFile : public testing::Test {
         task.toothCase = starter::makeBlock(starter::BlockLayers::layered);
         task.voxelMm = 0.04;
         task.minutes = 7.5;
+        task.drive = "low-speed";
+        task.speedRpm = 12000.5;
         task.preparation = preparation::Recipe{"block-line", "", {{"depth_mm", 1.25}}, {0.3, 0.2}, 0.0};
         task.rubric = "format = 1\n# kept as it stands\n";
         cases::Exercise exercise;
@@ -62,6 +64,8 @@ TEST_F(TaskFile, ComesBackFromFolderAndPackage) {
         EXPECT_EQ(back.version, 3);
         EXPECT_DOUBLE_EQ(back.voxelMm, 0.04);
         EXPECT_EQ(back.minutes, 7.5);
+        EXPECT_EQ(back.drive, "low-speed");
+        EXPECT_EQ(back.speedRpm, 12000.5);
         EXPECT_EQ(*back.preparation, *task.preparation);
         EXPECT_EQ(back.rubric, task.rubric);
         EXPECT_EQ(back.toothCase.exercise->title, task.toothCase.exercise->title);
@@ -233,6 +237,10 @@ TEST_F(TaskFile, BadOnesAreToldInOneLineEach) {
     EXPECT_NE(errorAfter("voxel_um = 40", "voxel_um = 1").find("20 to 400"), std::string::npos);
     EXPECT_NE(errorAfter("minutes = 7.5", "minutes = -1").find("minutes"), std::string::npos);
     EXPECT_NE(errorAfter("minutes", "minuets").find("minuets"), std::string::npos);
+    EXPECT_NE(errorAfter("low-speed", "slow").find("turbine, weak-turbine, low-speed"), std::string::npos);
+    EXPECT_NE(errorAfter("12000.5", "40001").find("800 to 40000 rpm"), std::string::npos);
+    EXPECT_NE(errorAfter("12000.5", "799").find("800 to 40000 rpm"), std::string::npos);
+    EXPECT_NE(errorAfter("drive = \"low-speed\"\n", "").find("without a drive"), std::string::npos);
     EXPECT_NE(errorAfter("depth_mm = 1.25", "depth_mm = 99").find("depth_mm"), std::string::npos);
     EXPECT_NE(errorAfter("rubric.toml", "../rubric.toml").find("rubric"), std::string::npos);
     EXPECT_NE(errorAfter("\"undo\"", "\"undone\"").find("undone"), std::string::npos);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/base/core/hash.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <random>
 #include <set>
 #include <string>
 
+#include "handpiece/base/core/hash_text.h"
 #include "support/random.h"
 
 namespace handpiece::core {
@@ -29,6 +31,19 @@ TEST(Hash, differsForEveryOneBitChange) {
         changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ (1 << (bit % 8)));
         EXPECT_TRUE(seen.insert(hashOf(changed)).second) << "bit " << bit;
     }
+}
+
+TEST(Hash, isReadAsItIsWrittenAndNothingElseIs) {
+    std::mt19937_64 generator(test::seed());
+    for (int i = 0; i < 1000; ++i) {
+        const std::uint64_t hash = generator() >> (i % 64);
+        EXPECT_EQ(readHash(fmt::format("{:016x}", hash)), hash);
+        EXPECT_EQ(readHash(fmt::format("{:016X}", hash)), hash);
+    }
+    for (const char* text : {"", "0", "0123456789abcde", "0123456789abcdef0", "0x23456789abcdef", "-123456789abcdef",
+                             "+123456789abcdef", " 123456789abcdef", "0123456789abcdeg", "0123456789abcde "})
+        EXPECT_FALSE(readHash(text)) << text;
+    EXPECT_FALSE(readHash(std::string_view("0123456789abcde\0", 16)));
 }
 
 TEST(Hash, tellsLengthAndOrderApart) {

@@ -22,6 +22,7 @@
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
+#include "desktop/work/bur_words.h"
 
 namespace handpiece::desktop {
 
@@ -46,14 +47,6 @@ class BurCard : public QWidget {
   private:
     BurFace face_;
 };
-
-QString driveName(const QString& name) {
-    if (name == "turbine") return DrillBar::tr("High speed (air turbine)");
-    if (name == "weak-turbine") return DrillBar::tr("High speed, weak air");
-    if (name == "low-speed") return DrillBar::tr("Low speed");
-    if (name == "speed-increasing") return DrillBar::tr("Red band 1:5 (speed-increasing)");
-    return name;
-}
 
 double speedStep(double freeRpm) {
     return freeRpm >= 100000 ? 1000 : 100;
@@ -297,9 +290,9 @@ void DrillBar::setDrives(const std::vector<instrument::Drive>& drives) {
     for (std::size_t i = 0; i < drives_.size(); ++i) {
         const auto& drive = drives_[i];
         const QString name = QString::fromStdString(drive.name);
-        auto* button = new QRadioButton(driveName(name), this);
+        auto* button = new QRadioButton(driveTitle(name), this);
         button->setObjectName("drive_" + name);
-        button->setAccessibleName(driveName(name));
+        button->setAccessibleName(driveTitle(name));
         button->setToolTip(tr("Up to %1 rpm").arg(rpmText(drive.freeSpeedRpm)));
         driveButtons_->addButton(button, static_cast<int>(i));
         driveRows_->addWidget(button);

@@ -26,6 +26,7 @@
 #include "desktop/widgets/parts.h"
 #include "desktop/work/bur_words.h"
 #include "handpiece/model/instrument/catalogue.h"
+#include "handpiece/model/instrument/rotor.h"
 #include "handpiece/model/starter/block.h"
 
 namespace handpiece::desktop {
@@ -550,6 +551,13 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
         item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsSelectable | Qt::ItemIsUserCheckable);
         item->setCheckState(Qt::Unchecked);
     }
+    drive_ = named(new QComboBox(this), "editorDrive", tr("First drive"));
+    drive_->addItem(tr("The student's choice"), QString());
+    for (const instrument::Drive& drive : instrument::drives())
+        drive_->addItem(driveTitle(QString::fromStdString(drive.name)), QString::fromStdString(drive.name));
+    speed_ = named(new QDoubleSpinBox(this), "editorSpeed", tr("Its speed"), tr("That it is set to at the beginning"));
+    speed_->setDecimals(0);
+    speed_->setSuffix(tr(" rpm"));
     helps_ = named(new QListWidget(this), "editorHelps", tr("Helps that are locked"));
     for (const std::string_view help : cases::kHelps) {
         auto* item = new QListWidgetItem(helpWords(*helpOf(help)), helps_);
@@ -614,6 +622,8 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
         }
     }
     form->addRow(tr("First bur"), bur_);
+    form->addRow(tr("First drive"), drive_);
+    form->addRow(tr("Its speed"), speed_);
     auto* limit = new QHBoxLayout;
     limit->addWidget(timed_);
     limit->addWidget(minutes_, 1);
@@ -641,6 +651,19 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
 
     connect(bur_, &QComboBox::activated, this, [this] {
         change_("bur", [&](Content& c) { c.exercise.bur = bur_->currentData().toString().toStdString(); });
+    });
+    connect(drive_, &QComboBox::activated, this, [this] {
+        change_("drive", [&](Content& c) {
+            c.drive = drive_->currentData().toString().toStdString();
+            c.speedRpm.reset();
+        });
+    });
+    connect(speed_, &QDoubleSpinBox::valueChanged, this, [this](double rpm) {
+        if (showing_) return;
+        change_("speed", [&](Content& c) {
+            c.speedRpm = rpm;
+            if (rpm == speed_->maximum()) c.speedRpm.reset();  // its own
+        });
     });
     const auto ticks = [this](QListWidget* list, const char* step, std::vector<std::string> cases::Exercise::*where) {
         connect(list, &QListWidget::itemChanged, this, [this, list, step, where] {
@@ -688,6 +711,14 @@ void WorkPage::show(const Content& content) {
     const QString bur = QString::fromStdString(e.bur);
     if (bur_->findData(bur) < 0) bur_->addItem(burTitle(bur), bur);  // of a file: told as a problem
     bur_->setCurrentIndex(bur_->findData(bur));
+    drive_->setCurrentIndex(std::max(0, drive_->findData(QString::fromStdString(content.drive))));
+    speed_->setEnabled(!content.drive.empty());
+    if (!content.drive.empty()) {
+        const double own = instrument::driveByName(content.drive).freeSpeedRpm;
+        speed_->setRange(tasks::kLeastSpeedShare * own, own);
+        speed_->setSingleStep(0.01 * own);
+        setValue(speed_, content.speedRpm.value_or(own));
+    }
     const auto tick = [](QListWidget* list, const std::vector<std::string>& names) {
         for (int i = 0; i < list->count(); ++i) {
             const std::string name = list->item(i)->data(Qt::UserRole).toString().toStdString();

@@ -134,10 +134,10 @@ class WorkPage : public EditorPage {
     void viewShown();
 
   private:
-    QComboBox *bur_, *level_;
+    QComboBox *bur_, *drive_, *level_;
     QListWidget *burs_, *helps_;
     QCheckBox *timed_, *hard_, *ownJudgement_, *liveBar_;
-    QDoubleSpinBox *minutes_, *voxel_;
+    QDoubleSpinBox *minutes_, *voxel_, *speed_;
     QLabel* view_;
     QPushButton* showView_;
     std::vector<QDoubleSpinBox*> eye_;  ///< of the start view: eye, target, up

@@ -254,6 +254,17 @@ QWidget* RubricPage::wholeTab() {
                         [](rubric::Rubric& r, const std::string& text) { r.source = text; });
     total_ = line("editorRubricTotal", tr("Weights sum to"), tr("A check against slips; empty: none"),
                   [](rubric::Rubric& r, const std::string& text) { r.totalWeight = draft::readNumber(text); });
+    done_ = line("editorRubricDone", tr("How far it is done"),
+                 tr("Target removed in % and the factor of all points, as in 0: 0, 50: 0.5, 70: 1; empty: all points "
+                    "count however little is done"),
+                 [](rubric::Rubric& r, const std::string& text) {
+                     rubric::Criterion knots;
+                     draft::readKnots(knots, text);
+                     if (knots.knots.empty()) return r.completeness.reset();
+                     if (!r.completeness)
+                         r.completeness = {"removed-share", "%", {"target", {}, {}, {}, {}}, {}, {}, {}, {}, 0};
+                     r.completeness->knots = knots.knots;
+                 });
     column->addLayout(form);
     const ListTable::Change how = [this](const auto& what) { changeRubric(what); };
     const auto named_ = [](auto list, const char* stem) {
@@ -460,6 +471,9 @@ void RubricPage::showWhole() {
     set(id_, of.id);
     set(version_, of.version);
     set(wholeSource_, of.source);
+    rubric::Criterion knots;
+    if (of.completeness) knots.knots = of.completeness->knots;
+    set(done_, draft::knotsCell(knots));
     set(total_, of.totalWeight ? fmt::format("{}", *of.totalWeight) : std::string());
     wholeStatus_->setEnabled(r != nullptr);
     wholeStatus_->setCurrentIndex(static_cast<int>(of.status));

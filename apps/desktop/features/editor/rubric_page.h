@@ -77,7 +77,7 @@ class RubricPage : public EditorPage {
     QLabel* of_;
     QLineEdit *devices_, *excludes_, *source_;
     QComboBox *status_, *wholeStatus_;
-    QLineEdit *id_, *version_, *wholeSource_, *total_;
+    QLineEdit *id_, *version_, *wholeSource_, *total_, *done_;
     ListTable *bands_, *steps_, *rules_, *texts_;
     QLineEdit* language_;
     QStringList added_;  ///< languages of this person's, beside those that the texts have

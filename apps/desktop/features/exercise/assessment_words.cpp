@@ -41,6 +41,7 @@ QString bandTitle(const rubric::Rubric& rubric, const std::string& band) {
 
 QString whatIsJudged(const rubric::Rubric& rubric) {
     QStringList lines;
+    if (rubric.completeness && !rubric.completeness->words.empty()) lines << inThisLanguage(rubric.completeness->words);
     for (const rubric::Criterion& c : rubric.criteria) {
         if (!c.isGraded() && !c.critical) continue;
         QString line = titleOf(rubric, c.id);

@@ -19,6 +19,7 @@
 #include "desktop/picture/start_view.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
+#include "desktop/work/bur_words.h"
 #include "handpiece/app/course/shipped_exercises.h"
 
 namespace handpiece::desktop {
@@ -301,6 +302,8 @@ void ExercisesDialog::showTask() {
         about << tr("Burs: %1").arg(burs.join(QStringLiteral(", ")));
     else if (!exercise.bur.empty())
         about << tr("Bur to begin with: %1").arg(QString::fromStdString(exercise.bur));
+    if (!task_->drive.empty())
+        about << tr("Drive to begin with: %1").arg(driveTitle(QString::fromStdString(task_->drive)));
     QStringList locked;
     for (const std::string& name : exercise.lockedHelps)
         if (const auto help = helpOf(name)) locked << helpWords(*help);

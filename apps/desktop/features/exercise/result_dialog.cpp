@@ -28,7 +28,8 @@ namespace {
 enum Column { criterion, value, band, points, place, columnCount };
 
 /// The first that leads somewhere; null: none does.
-const measures::Evidence* evidenceOf(const score::CriterionScore& c) {
+template <class Judged>
+const measures::Evidence* evidenceOf(const Judged& c) {
     for (const measures::Evidence& e : c.evidence)
         if (e.placeMm || e.timeS) return &e;
     return nullptr;
@@ -312,6 +313,7 @@ void ResultDialog::fill() {
     if (a.wholeScore > a.maxScore + 1e-9)
         why << tr("Criteria worth %1 of %2 points could not be measured.")
                    .arg(locale.toString(a.wholeScore - a.maxScore, 'f', 1), locale.toString(a.wholeScore, 'f', 1));
+    if (a.completeness && !a.completeness->value) why << QString::fromStdString(report::undoneWords(a));
     why_->setText(why.join(QLatin1Char('\n')));
     why_->setToolTip(QString::fromStdString(a.why));
     why_->setVisible(!why.isEmpty());
@@ -353,37 +355,47 @@ void ResultDialog::fillErrors() {
     errorRows_.clear();
     const score::Assessment& a = done_->work.result.assessment;
     const std::vector<std::size_t> order = report::costliest(a);
-    if (!order.empty()) {
+    const bool isUndone = report::costsUndone(a);
+    if (!order.empty() || isUndone) {
         errorRows_.push_back(heading(tr("What cost most"), this));
         errors_->addWidget(errorRows_.back());
     }
-    for (std::size_t i = 0; i < std::min(order.size(), report::kFirstErrors); ++i) {
-        const score::CriterionScore& c = a.criteria[order[i]];
-        QString words = titleOf(done_->work.rubric, c.id) + QStringLiteral(": ") + valueWords(c);
-        if (!c.band.empty()) words += QStringLiteral(", ") + bandTitle(done_->work.rubric, c.band);
-        if (c.points)
-            words +=
-                QStringLiteral(", ") + tr("%1 points lost").arg(QLocale().toString(c.maxPoints - *c.points, 'f', 1));
-        const QString drill = QString::fromStdString(report::drillFor(c.measure));
-        if (!drill.isEmpty()) words += QLatin1Char('\n') + drill;
+    const auto add = [this](const QString& words, const QString& name, const measures::Evidence* e,
+                            const QString& show) {
         auto* row = new QWidget(this);
         auto* line = new QHBoxLayout(row);
         line->setContentsMargins(0, 0, 0, 0);
         auto* label = new QLabel(words, row);
         label->setTextFormat(Qt::PlainText);
         label->setWordWrap(true);
-        label->setObjectName(QStringLiteral("resultError_%1").arg(i + 1));
+        label->setObjectName(name);
         line->addWidget(label, 1);
-        if (const measures::Evidence* e = evidenceOf(c)) {
-            auto* show = named(new QPushButton(tr("Show"), row), "", tr("Show"),
-                               e->timeS ? tr("Turn the eye there and play the seconds in which it happened")
-                                        : tr("Turn the eye there"));
-            show->setObjectName(QStringLiteral("resultShow_%1").arg(i + 1));
-            line->addWidget(show);
-            connect(show, &QPushButton::clicked, this, [this, at = *e] { lookAt(at); });
+        if (e != nullptr) {
+            auto* button = named(new QPushButton(tr("Show"), row), "", tr("Show"),
+                                 e->timeS ? tr("Turn the eye there and play the seconds in which it happened")
+                                          : tr("Turn the eye there"));
+            button->setObjectName(show);
+            line->addWidget(button);
+            connect(button, &QPushButton::clicked, this, [this, at = *e] { lookAt(at); });
         }
         errors_->addWidget(row);
         errorRows_.push_back(row);
+    };
+    if (isUndone)
+        add(QString::fromStdString(report::undoneWords(a)) + QLatin1Char(' ') +
+                tr("%1 points lost").arg(QLocale().toString(a.lostUndone(), 'f', 1)),
+            QStringLiteral("resultUndone"), evidenceOf(*a.completeness), QStringLiteral("resultShowUndone"));
+    for (std::size_t i = 0; i < std::min(order.size(), report::kFirstErrors); ++i) {
+        const score::CriterionScore& c = a.criteria[order[i]];
+        QString words = titleOf(done_->work.rubric, c.id) + QStringLiteral(": ") + valueWords(c);
+        if (!c.band.empty()) words += QStringLiteral(", ") + bandTitle(done_->work.rubric, c.band);
+        if (c.points)
+            words +=
+                QStringLiteral(", ") + tr("%1 points lost").arg(QLocale().toString(c.maxPoints - c.ownPoints, 'f', 1));
+        const QString drill = QString::fromStdString(report::drillFor(c.measure));
+        if (!drill.isEmpty()) words += QLatin1Char('\n') + drill;
+        add(words, QStringLiteral("resultError_%1").arg(i + 1), evidenceOf(c),
+            QStringLiteral("resultShow_%1").arg(i + 1));
     }
 }
 

@@ -23,6 +23,7 @@
 #include "desktop/features/marking/work_table.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
+#include "handpiece/app/report/assessment_report.h"
 #include "handpiece/app/report/assessment_words.h"
 
 namespace handpiece::desktop {
@@ -403,6 +404,8 @@ void SheetPanel::showSummary() {
                  WorkTable::passedWord(static_cast<int>(*desk_->passed(id))));
     if (!final->why.empty() && !desk_->sheet(id).decision)
         text += QLatin1Char(' ') + tr("Why: %1.").arg(QString::fromStdString(report::whyOf(*final, desk_->rubric())));
+    if (const std::string undone = report::undoneWords(*final); !undone.empty())
+        text += QLatin1Char(' ') + QString::fromStdString(undone);
     text += QLatin1Char(' ') + (machine->identity.proven
                                     ? tr("Proven.")
                                     : tr("Unproven: %1.").arg(QString::fromStdString(report::said(machine->proof))));

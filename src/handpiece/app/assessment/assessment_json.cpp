@@ -10,6 +10,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/hash_text.h"
 
 namespace handpiece::assessment {
 namespace {
@@ -55,12 +56,28 @@ Json toJson(const score::CriterionScore& c) {
     json["band"] = c.band.empty() ? Json(nullptr) : Json(c.band);
     json["possible_bands"] = c.possibleBands;
     json["points"] = orNull(c.points);
+    json["own_points"] = c.points ? Json(c.ownPoints) : Json(nullptr);
     json["max_points"] = c.maxPoints;
     json["points_range"] = c.points ? Json{c.leastPoints, c.mostPoints} : Json(nullptr);
     json["standing"] = score::nameOf(c.standing);
     json["reason"] = c.reason;
     json["critical"] = nameOf(c.critical);
     json["borderline"] = c.borderline;
+    json["evidence"] = Json::array();
+    for (const measures::Evidence& e : c.evidence)
+        json["evidence"].push_back(toJson(e));
+    return json;
+}
+
+Json toJson(const score::Completeness& c) {
+    Json json = {{"measure", c.measure}};
+    addSelection(json, c.of);
+    json["value"] = orNull(c.value);
+    json["unit"] = c.unit;
+    json["uncertainty"] = c.value ? Json(c.uncertainty) : Json(nullptr);
+    json["factor"] = c.factor;
+    json["factor_range"] = {c.leastFactor, c.mostFactor};
+    json["reason"] = c.reason;
     json["evidence"] = Json::array();
     for (const measures::Evidence& e : c.evidence)
         json["evidence"].push_back(toJson(e));
@@ -144,21 +161,44 @@ measures::Evidence evidenceOf(const Reader& json) {
     return e;
 }
 
-score::CriterionScore criterionOf(const Reader& json, const std::string& where) {
-    score::CriterionScore c;
-    c.id = json.text("id");
+/// What both have, a criterion and completeness.
+template <class Judged>
+void readMeasured(const Reader& json, const std::string& where, Judged& c) {
     c.measure = json.text("measure");
     c.of = {json.textOrEmpty("zone"), json.textOrEmpty("tissue"), json.textOrEmpty("side"),
             json.textOrEmpty("statistic"), json.numberOrNone("limit")};
     c.value = json.numberOrNone("value");
     c.unit = json.text("unit");
     c.uncertainty = json.numberOrNone("uncertainty").value_or(0.0);
+    c.reason = json.text("reason");
+    for (const Json& one : json.list("evidence"))
+        c.evidence.push_back(evidenceOf({one, where}));
+}
+
+score::Completeness completenessOf(const Reader& json, const std::string& where) {
+    score::Completeness c;
+    readMeasured(json, where, c);
+    c.factor = json.number("factor");
+    const std::vector<double> range = json.numbers("factor_range", 2);
+    c.leastFactor = range[0];
+    c.mostFactor = range[1];
+    for (const double factor : {c.factor, c.leastFactor, c.mostFactor})
+        if (factor < 0.0 || factor > 1.0) json.fail("a factor is not from 0 to 1");
+    return c;
+}
+
+score::CriterionScore criterionOf(const Reader& json, const std::string& where) {
+    score::CriterionScore c;
+    c.id = json.text("id");
+    readMeasured(json, where, c);
     c.band = json.textOrEmpty("band");
     for (const Json& band : json.list("possible_bands"))
         c.possibleBands.push_back(band.is_string() ? band.get<std::string>() : std::string());
     c.points = json.numberOrNone("points");
     c.maxPoints = json.number("max_points");
     if (c.points) {
+        // Results of before knew no such factor.
+        c.ownPoints = json.numberOrNone("own_points").value_or(*c.points);
         const std::vector<double> range = json.numbers("points_range", 2);
         c.leastPoints = range[0];
         c.mostPoints = range[1];
@@ -166,13 +206,10 @@ score::CriterionScore criterionOf(const Reader& json, const std::string& where) 
     using score::Standing;
     c.standing = json.oneOf("standing", {Standing::judged, Standing::notMeasured, Standing::leftOut, Standing::voided},
                             [](Standing one) { return score::nameOf(one); });
-    c.reason = json.text("reason");
     using score::Verdict;
     c.critical = json.oneOf("critical", {Verdict::no, Verdict::borderline, Verdict::yes},
                             [](Verdict one) { return std::string_view(nameOf(one)); });
     c.borderline = json.flag("borderline");
-    for (const Json& one : json.list("evidence"))
-        c.evidence.push_back(evidenceOf({one, where}));
     return c;
 }
 
@@ -260,15 +297,11 @@ score::Result parseResult(std::string_view text, const std::string& where) {
     }
     a.rubric = json.text("rubric");
     a.rubricVersion = json.text("rubric_version");
-    const std::string hash = json.text("rubric_hash");
-    std::size_t used = 0;
-    for (const char c : hash) {
-        const std::size_t digit = std::string_view("0123456789abcdef").find(c);
-        if (digit == std::string_view::npos) break;
-        a.rubricHash = a.rubricHash << 4 | digit;
-        ++used;
-    }
-    if (used != hash.size() || used != 16) json.fail("\"rubric_hash\" is no hash");
+    const std::optional<std::uint64_t> hash = core::readHash(json.text("rubric_hash"));
+    if (!hash) json.fail("\"rubric_hash\" is no hash");
+    a.rubricHash = *hash;
+    if (parsed.contains("completeness") && !json.member("completeness").is_null())
+        a.completeness = completenessOf({json.member("completeness"), where}, where);
     a.context.device = json.text("device");
     a.context.motionScale = json.number("motion_scale");
     for (const Json& one : json.list("criteria"))
@@ -349,6 +382,7 @@ std::string resultJson(const score::Assessment& a, const score::Identity& of) {
                                    {"turns_deg", of.scan->turnsDeg}};
     for (const score::CriticalError& e : a.critical)
         json["critical"].push_back({{"criterion", e.criterion}, {"borderline", e.borderline}});
+    json["completeness"] = a.completeness ? toJson(*a.completeness) : Json(nullptr);
     json["criteria"] = Json::array();
     for (const score::CriterionScore& c : a.criteria)
         json["criteria"].push_back(toJson(c));
@@ -371,6 +405,24 @@ std::string rubricJson(const rubric::Rubric& r) {
                  {"title", r.title},
                  {"words", r.words},
                  {"pass_mark", orNull(r.passMark)}};
+    const auto knotsOf = [](const std::vector<rubric::Knot>& all) {
+        Json knots = Json::array();
+        for (const rubric::Knot& k : all)
+            knots.push_back({k.value, k.points});
+        return knots;
+    };
+    json["completeness"] = nullptr;
+    if (r.completeness) {
+        const rubric::Completeness& c = *r.completeness;
+        Json one = {{"measure", c.measure}};
+        addSelection(one, c.of);
+        one.update({{"unit", c.unit},
+                    {"knots", knotsOf(c.knots)},
+                    {"title", c.title},
+                    {"words", c.words},
+                    {"source", c.source}});
+        json["completeness"] = std::move(one);
+    }
     json["bands"] = Json::array();
     for (const rubric::BandName& b : r.bands)
         json["bands"].push_back({{"id", b.id}, {"title", b.title}});
@@ -380,9 +432,7 @@ std::string rubricJson(const rubric::Rubric& r) {
         addSelection(one, c.of);
         one["unit"] = c.unit;
         one["weight"] = c.weight;
-        one["knots"] = Json::array();
-        for (const rubric::Knot& k : c.knots)
-            one["knots"].push_back({k.value, k.points});
+        one["knots"] = knotsOf(c.knots);
         one["bands"] = Json::array();
         for (const rubric::Band& b : c.bands)
             one["bands"].push_back(

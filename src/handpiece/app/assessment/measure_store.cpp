@@ -182,4 +182,27 @@ void MeasureStore::keep(const StoreKey& key, const MeasuredWork& work) const {
     }
 }
 
+void MeasureStore::add(const StoreKey& key, MeasuredWork work) const {
+    const std::optional<MeasuredWork> kept = find(key);
+    if (kept && kept->identity.stateHash == work.identity.stateHash && kept->identity.proven == work.identity.proven)
+        for (const Measured& m : kept->measured)
+            if (std::none_of(work.measured.begin(), work.measured.end(),
+                             [&](const Measured& has) { return has.kind == m.kind && has.of == m.of; }))
+                work.measured.push_back(m);
+    keep(key, work);
+}
+
+Work readProvenOnce(const fs::path& path, const tasks::Task& task, const StoreKey& key, const MeasureStore& store,
+                    const core::Progress& progress) {
+    const std::optional<MeasuredWork> kept = store.find(key);
+    if (!kept || !kept->identity.proven) return readWork(path, task, true, progress);
+    Work work = readWork(path, task, false, core::part(progress, 0.0, 0.3));
+    if (rubric::hashText(tooth::stateHash(work.state)) != kept->identity.stateHash ||
+        work.sessionHashes != kept->identity.sessionHashes)
+        return readWork(path, task, true, core::part(progress, 0.3, 1.0));
+    work.isProven = true;
+    work.proof = kept->proof;
+    return work;
+}
+
 }  // namespace handpiece::assessment

@@ -31,12 +31,18 @@ class MeasureStore {
     [[nodiscard]] static MeasureStore usual();
 
     [[nodiscard]] std::optional<MeasuredWork> find(const StoreKey& key) const;
-    /// A store that cannot be written is no error: it will be measured again.
+    /// In the place of what it has. A store that cannot be written is no error: it will be measured again.
     void keep(const StoreKey& key, const MeasuredWork& work) const;
+    /// Beside what it has of the same tooth, proven or not as this.
+    void add(const StoreKey& key, MeasuredWork work) const;
 
   private:
     [[nodiscard]] std::filesystem::path placeOf(const StoreKey& key) const;
     std::filesystem::path folder_;
 };
+
+/// readWork() with proof; what the store has as proven is not cut again, if it comes to the same tooth still.
+[[nodiscard]] Work readProvenOnce(const std::filesystem::path& path, const tasks::Task& task, const StoreKey& key,
+                                  const MeasureStore& store, const core::Progress& progress = {});
 
 }  // namespace handpiece::assessment

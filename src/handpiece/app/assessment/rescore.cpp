@@ -143,14 +143,14 @@ std::string rescoredCsv(std::span<const Rescored> all, const rubric::Rubric& rub
     std::string csv =
         "work,error,proven,proof,sessions,exercise,exercise_hash,case_key,state_hash,device,rubric,"
         "rubric_version,rubric_hash,score,max_score,percent,least_score,most_score,passed,why,borderline,"
-        "critical";
+        "critical,completeness,completeness +-,completeness factor,completeness not measured";
     for (const rubric::Criterion& c : rubric.criteria)
         csv += fmt::format(",{0},{0} +-,{0} band,{0} points,{0} not measured", c.id);
     csv += '\n';
     for (const Rescored& one : all) {
         csv += csvCell(nameOf(one.work, all)) + "," + csvCell(one.problem);
         if (!one.result) {
-            csv += std::string(20 + 5 * rubric.criteria.size(), ',') + "\n";
+            csv += std::string(24 + 5 * rubric.criteria.size(), ',') + "\n";
             continue;
         }
         const score::Identity& of = one.result->identity;
@@ -164,6 +164,9 @@ std::string rescoredCsv(std::span<const Rescored> all, const rubric::Rubric& rub
                            csvCell(a.rubricVersion), rubric::hashText(a.rubricHash), a.score, a.maxScore, a.percent(),
                            a.leastScore, a.mostScore, score::nameOf(a.passed), csvCell(a.why),
                            a.borderline ? "yes" : "no", csvCell(critical));
+        const score::Completeness none, &done = a.completeness ? *a.completeness : none;
+        csv += done.value ? fmt::format(",{},{},{},", *done.value, done.uncertainty, done.factor)
+                          : ",,,," + csvCell(done.reason);
         for (const score::CriterionScore& c : a.criteria)
             csv += fmt::format(",{},{},{},{},{}", c.value ? fmt::format("{}", *c.value) : "",
                                c.value ? fmt::format("{}", c.uncertainty) : "", csvCell(c.band),

@@ -283,6 +283,11 @@ Work workOfAttempt(const fs::path& path, const tasks::Task& task, bool prove, co
     return work;
 }
 
+void requireThere(const fs::path& work) {
+    if (!core::isThere(work))
+        throw core::Error("there is no such work", work.string(), "name a session (.h5) or an attempt");
+}
+
 }  // namespace
 
 std::vector<fs::path> sessionsIn(const fs::path& folder) {
@@ -295,6 +300,7 @@ std::vector<fs::path> sessionsIn(const fs::path& folder) {
 }
 
 std::string workHash(const fs::path& work) {
+    requireThere(work);
     std::vector<fs::path> files;
     std::error_code ec;
     if (!fs::is_directory(work, ec)) {
@@ -316,9 +322,8 @@ std::string workHash(const fs::path& work) {
 }
 
 Work readWork(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress) {
+    requireThere(path);
     std::error_code ec;
-    if (!fs::exists(path, ec))
-        throw core::Error("there is no such work", path.string(), "name a session (.h5) or an attempt");
     const bool isFolder = fs::is_directory(path, ec);
     if (path.extension() == ".h5" && !isFolder) return workOfSession(path, task, prove, progress);
     if (cases::isAttempt(path)) return workOfAttempt(path, task, prove, progress);
@@ -344,13 +349,13 @@ Work readChain(std::span<const ChainLink> chain, const tasks::Task& task, bool p
 
 std::vector<measures::Request> requestsOf(const rubric::Rubric& rubric) {
     std::vector<measures::Request> requests;
-    for (const rubric::Criterion& criterion : rubric.criteria) {
-        const auto isThis = [&](const measures::Request& r) {
-            return r.kind == criterion.measure && r.of == criterion.of;
-        };
-        if (std::none_of(requests.begin(), requests.end(), isThis))
-            requests.push_back({criterion.measure, criterion.of});
-    }
+    const auto ask = [&](const auto& asks) {
+        const auto isThis = [&](const measures::Request& r) { return r.kind == asks.measure && r.of == asks.of; };
+        if (std::none_of(requests.begin(), requests.end(), isThis)) requests.push_back({asks.measure, asks.of});
+    };
+    for (const rubric::Criterion& criterion : rubric.criteria)
+        ask(criterion);
+    if (rubric.completeness) ask(*rubric.completeness);
     return requests;
 }
 

@@ -79,7 +79,7 @@ const std::vector<Row>& rows() {
              "ミラー視だけで十字を削る（直視はできない）。幅と深さは過不足なく、周囲と底を削りすぎないこと。"},
             {3,
              "block-caries",
-             1,
+             2,
              "beginner",
              15,
              Stand::cariousBlock,
@@ -215,6 +215,11 @@ const Row& rowOf(const std::string& id) {
     return *row;
 }
 
+/// All but the caries bowl begin with enamel.
+const char* driveOf(const Row& row) {
+    return row.stand == Stand::cariousBlock ? "low-speed" : "turbine";
+}
+
 cases::View blockView() {
     cases::View view;
     view.eyeMm = core::Vec3(0.0, -18.0, 30.0);
@@ -276,6 +281,7 @@ tasks::Task taskOf(const Row& row, cases::Case toothCase) {
     task.version = row.version;
     task.minutes = row.minutes;
     task.level = row.level;
+    task.drive = driveOf(row);
     task.preparation = row.recipe;
     task.ownJudgement = row.fdi != 0;
     task.rubric = rubric::shippedRubricText(row.id);
@@ -297,6 +303,7 @@ tasks::Task blockTask(const std::string& kind, int level, const std::string& lay
     task.id = fmt::format("block-{}-{}", kind, level);
     if (layers != "hard") task.id += "-" + layers;
     task.toothCase = starter::makeBlock(static_cast<starter::BlockLayers>(layered - starter::kBlockLayers.begin()));
+    task.drive = "turbine";
     task.preparation = recipe("block-" + kind);
     const double leewayMm = kLeewayMm[static_cast<std::size_t>(level - 1)];
     task.preparation->leeway = {leewayMm, leewayMm};
@@ -313,7 +320,7 @@ const std::vector<Shipped>& shippedExercises() {
         std::vector<Shipped> list;
         for (const Row& row : rows())
             list.push_back({row.id, row.number, row.fdi, row.stand == Stand::arch, row.level, row.recipe.preparation,
-                            row.minutes, exerciseOf(row)});
+                            row.minutes, driveOf(row), exerciseOf(row)});
         return list;
     }();
     return all;

@@ -27,6 +27,7 @@ struct Shipped {
     bool hasNeighbours = false;      ///< stands in its arch, with gingiva
     std::string level, preparation;  ///< of tasks::kLevels; of preparation::templates()
     double minutes = 0.0;
+    std::string drive;         ///< in hand at the beginning
     cases::Exercise exercise;  ///< title, instructions, burs, locks
 };
 /// The ten first exercises in their order, then further blocks.

@@ -29,8 +29,9 @@ std::string csvLine(const std::vector<std::string>& cells) {
 std::string resultsCsv(const Desk& desk, Naming naming) {
     std::vector<std::string> head = {"code"};
     if (naming == Naming::withFiles) head.emplace_back("file");
-    for (const char* name : {"score", "max_score", "passed", "machine_score", "machine_max_score", "machine_passed",
-                             "proven", "borderline", "critical", "decision_reason", "comments", "problem"})
+    for (const char* name :
+         {"score", "max_score", "passed", "machine_score", "machine_max_score", "machine_passed", "proven",
+          "borderline", "critical", "decision_reason", "comments", "problem", "completeness", "completeness_factor"})
         head.emplace_back(name);
     for (const rubric::Criterion& c : desk.rubric().criteria)
         for (const char* what : {"points", "band", "machine_points", "machine_band", "value", "reason"})
@@ -63,6 +64,12 @@ std::string resultsCsv(const Desk& desk, Naming naming) {
             comments.push_back(c.criterion.empty() ? c.text : c.criterion + ": " + c.text);
         row.push_back(fmt::format("{}", fmt::join(comments, " | ")));
         row.push_back(desk.problem(code));
+        if (const auto& done = machine != nullptr && final ? final->completeness : std::nullopt; done && done->value) {
+            row.push_back(number(done->value));
+            row.push_back(number(done->factor));
+        } else {
+            row.resize(row.size() + 2);
+        }
         for (std::size_t i = 0; i < desk.rubric().criteria.size(); ++i) {
             if (machine == nullptr || !final) {
                 row.resize(row.size() + 6);

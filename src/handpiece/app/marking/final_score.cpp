@@ -45,6 +45,11 @@ std::optional<double> pointsOfBand(const Criterion& c, const std::string& band, 
 score::Assessment withOverrides(const rubric::Rubric& rubric, const score::Assessment& machine, const Sheet& sheet) {
     rubric::Rubric judged = rubric;
     std::vector<measures::Measured> measured;
+    std::vector<std::string> given;
+    const auto add = [&](const auto& asks, const auto& was) {
+        measured.push_back(
+            {asks.measure, asks.of, was.value, was.uncertainty, was.value ? std::string() : was.reason, was.evidence});
+    };
     for (std::size_t i = 0; i < judged.criteria.size(); ++i) {
         Criterion& c = judged.criteria[i];
         const auto at = std::find_if(machine.criteria.begin(), machine.criteria.end(),
@@ -53,8 +58,7 @@ score::Assessment withOverrides(const rubric::Rubric& rubric, const score::Asses
         const CriterionScore& was = *at;
         const auto said = sheet.overrides.find(c.id);
         if (said == sheet.overrides.end()) {
-            measured.push_back(
-                {c.measure, c.of, was.value, was.uncertainty, was.value ? std::string() : was.reason, was.evidence});
+            add(c, was);
             continue;
         }
         const Override& o = said->second;
@@ -69,12 +73,13 @@ score::Assessment withOverrides(const rubric::Rubric& rubric, const score::Asses
             refuse(c, "nothing was measured, so no band stands", "choose a band as well");
         std::optional<double> share;  // 0 to 100
         if (c.isGraded()) {
+            if (o.points) given.push_back(c.id);
             if (o.points)
                 share = *o.points == c.weight ? 100.0 : 100.0 * *o.points / c.weight;
             else if (!o.band.empty())
                 share = pointsOfBand(c, o.band, was.value);
             else if (was.points)
-                share = *was.points == c.weight ? 100.0 : 100.0 * *was.points / c.weight;
+                share = was.ownPoints == c.weight ? 100.0 : 100.0 * was.ownPoints / c.weight;
             if (!share) refuse(c, "nothing was measured, so the band alone gives no points", "give points as well");
         }
         // Whatever it was measured at, it comes to this.
@@ -100,7 +105,9 @@ score::Assessment withOverrides(const rubric::Rubric& rubric, const score::Asses
         }
         measured.push_back(std::move(one));
     }
-    score::Assessment result = score::evaluate(judged, measured, machine.context);
+    // How far the work is done is told after the criteria: one that measures the same finds what is its own.
+    if (judged.completeness && machine.completeness) add(*judged.completeness, *machine.completeness);
+    score::Assessment result = score::evaluate(judged, measured, machine.context, given);
     result.rubricHash = machine.rubricHash;
     for (std::size_t i = 0; i < result.criteria.size(); ++i) {
         CriterionScore& c = result.criteria[i];

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/hash_text.h"
 
 namespace handpiece::marking {
 namespace {
@@ -32,11 +32,10 @@ double numberIn(const Json& json, double least, double most) {
     return value;
 }
 std::string hashIn(const Json& json) {
-    std::string hash = json.get<std::string>();
-    const auto isDigit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
-    if (hash.size() != 16 || !std::all_of(hash.begin(), hash.end(), isDigit))
-        throw std::invalid_argument("a hash is none");
-    return hash;
+    const std::string hash = json.get<std::string>();
+    const std::optional<std::uint64_t> value = core::readHash(hash);
+    if (!value) throw std::invalid_argument("a hash is none");
+    return rubric::hashText(*value);
 }
 const Json& listIn(const Json& json) {
     if (!json.is_array() || json.size() > kMaxList) throw std::length_error("a list is none, or too long");

@@ -233,8 +233,12 @@ AssessmentPictures assessmentPictures(const tasks::Task& task, const tooth::Teet
                 pictures.views[i].own = artist.picture(artist.standard(views[i]));
             for (std::size_t i = 0; i < sections.size(); ++i)
                 pictures.views[views.size() + i].own = artist.section(sections[i].first, sections[i].second);
+            if (costsUndone(assessment) && !assessment.completeness->evidence.empty() &&
+                assessment.completeness->evidence.front().placeMm)
+                pictures.undone = artist.place(*assessment.completeness->evidence.front().placeMm, draw);
+            std::size_t shown = 0;
             for (const std::size_t i : costliest(assessment)) {
-                if (pictures.places.size() == kFirstErrors) break;
+                if (shown++ == kFirstErrors) break;
                 const score::CriterionScore& criterion = assessment.criteria[i];
                 // Those of teeth beside lie in these, which are not drawn.
                 if (criterion.measure.rfind("adjacent-", 0) == 0) continue;

@@ -22,8 +22,9 @@ using Group = HtmlReport::Group;
 using config::words;
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
+/// Of its own: what is lost because the work is not done is told apart.
 double lossOf(const score::CriterionScore& c) {
-    return c.points ? c.maxPoints - *c.points : 0.0;
+    return c.points ? c.maxPoints - c.ownPoints : 0.0;
 }
 
 /// What is wanted: the values that have most points, else the best band.
@@ -101,6 +102,7 @@ class Page {
                         a_.passed == score::Passed::yes  ? Tone::good
                         : a_.passed == score::Passed::no ? Tone::bad
                                                          : Tone::note);
+        if (const std::string undone = undoneWords(a_); !undone.empty()) page_.paragraph(undone, Tone::bad);
         if (a_.wholeScore != a_.maxScore)
             page_.paragraph(words()("assessment.not-all-measured", fmt::format("{:.1f}", a_.maxScore),
                                     fmt::format("{:.1f}", a_.wholeScore)),
@@ -144,12 +146,14 @@ class Page {
     void addFirstErrors() {
         const std::vector<std::size_t> dear = costliest(a_);
         page_.heading(words()("assessment.first-errors"));
-        if (dear.empty()) return page_.paragraph(words()("assessment.nothing-lost"), Tone::good);
+        const bool isUndone = costsUndone(a_);
+        if (dear.empty() && !isUndone) return page_.paragraph(words()("assessment.nothing-lost"), Tone::good);
+        if (isUndone) addUndone();
         for (std::size_t n = 0; n < std::min(dear.size(), kFirstErrors); ++n) {
             const score::CriterionScore& s = a_.criteria[dear[n]];
             const rubric::Criterion* c = criterion(s.id);
             page_.begin(Group::frame);
-            page_.subheading(words()("assessment.error-line", n + 1, titleOf(s.id),
+            page_.subheading(words()("assessment.error-line", n + (isUndone ? 2 : 1), titleOf(s.id),
                                      s.critical == score::Verdict::yes
                                          ? words()("rubric.critical")
                                          : words()("assessment.points-lost", fmt::format("{:.1f}", lossOf(s)))));
@@ -192,8 +196,38 @@ class Page {
         }
     }
 
+    /// What is lost because the work is not done, and where most of it still stands.
+    void addUndone() {
+        const score::Completeness& c = *a_.completeness;
+        page_.begin(Group::frame);
+        page_.subheading(words()("assessment.error-line", 1, words()("assessment.not-finished"),
+                                 words()("assessment.points-lost", fmt::format("{:.1f}", a_.lostUndone()))));
+        const bool isShown = !pictures_.undone.empty();
+        if (isShown) page_.begin(Group::columns);
+        Facts facts{
+            {words()("assessment.measured"), fmt::format("{:.1f} ± {:.1f} {}", *c.value, c.uncertainty, c.unit)},
+            {words()("assessment.points-count"), fmt::format("{:.0f} %", 100.0 * c.factor)}};
+        for (const measures::Evidence& e : c.evidence)
+            if (e.placeMm) {
+                facts.emplace_back(words()("assessment.place"), placeText(e));
+                break;
+            }
+        page_.facts({}, facts);
+        if (isShown) {
+            page_.picture(pictures_.undone, words()("assessment.place-shown"));
+            page_.end();
+        }
+        if (rubric_.completeness)
+            if (const auto text = cases::inLanguage(rubric_.completeness->words, words().language()); !text.empty())
+                page_.paragraph(text);
+        page_.end();
+    }
+
     void addCriteria() {
         page_.heading(words()("assessment.criteria"));
+        if (costsUndone(a_))
+            page_.paragraph(words()("assessment.points-are-times", fmt::format("{:.2f}", a_.completeness->factor)),
+                            Tone::note);
         std::vector<std::vector<std::string>> rows;
         for (const score::CriterionScore& s : a_.criteria) {
             std::string note;
@@ -305,6 +339,19 @@ std::vector<std::size_t> costliest(const score::Assessment& a) {
         return lossOf(a.criteria[x]) > lossOf(a.criteria[y]);
     });
     return dear;
+}
+
+bool costsUndone(const score::Assessment& a) {
+    return a.completeness && a.lostUndone() >= 0.1;
+}
+
+std::string undoneWords(const score::Assessment& a) {
+    if (!a.completeness) return {};
+    const score::Completeness& c = *a.completeness;
+    if (!c.value) return words()("assessment.completeness-unknown", said(c.reason));
+    if (c.factor >= 1.0) return {};
+    return words()("assessment.undone", fmt::format("{:.0f}", *c.value), c.unit,
+                   fmt::format("{:.0f}", 100.0 * c.factor));
 }
 
 std::string studentReport(const score::Result& result, const tasks::Task& task, const rubric::Rubric& rubric,

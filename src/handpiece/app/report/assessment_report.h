@@ -26,6 +26,7 @@ struct AssessmentPictures {
     };
     std::vector<View> views;
     std::map<std::string, Png> places;  ///< by criterion: where its value was measured, the eye turned there
+    Png undone;                         ///< where most is still to be cut; empty: the work is done
     std::string missing;                ///< why there are none, in the program's language; empty where there are
 };
 
@@ -34,8 +35,12 @@ inline constexpr double kDeviationMostMm = 0.5;
 
 /// How many of the costliest errors a page puts first.
 inline constexpr std::size_t kFirstErrors = 3;
-/// The graded criteria that cost points or are critical errors, the dearest first (critical before all): indices into
-/// `assessment.criteria`.
+/// True where points are lost because the work is not done: the first of all losses, none of a criterion's.
+[[nodiscard]] bool costsUndone(const score::Assessment& assessment);
+/// That, in a sentence of the program's language, also where it could not be measured; empty: the work is done.
+[[nodiscard]] std::string undoneWords(const score::Assessment& assessment);
+/// The graded criteria that cost points of their own or are critical errors, the dearest first (critical before all):
+/// indices into `assessment.criteria`.
 [[nodiscard]] std::vector<std::size_t> costliest(const score::Assessment& assessment);
 /// What to practise where this measure cost points, in the program's language; what the rubric itself says is in its
 /// words.

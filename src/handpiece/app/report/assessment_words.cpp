@@ -87,6 +87,7 @@ constexpr const char* kSaid[] = {
     "said.shortest-way",
     "said.thinnest-over-pulp",
     "said.thinnest-ridge",
+    "said.still-to-cut",
     "said.this-surface",
     "said.wall",
     "said.nothing-cut",
@@ -150,6 +151,7 @@ std::string whyOf(const score::Assessment& a, const rubric::Rubric& rubric) {
     }
     if (a.borderline) return words()("assessment.why-borderline");
     std::string missing;
+    if (a.completeness && !a.completeness->value) missing = words()("rubric.completeness");
     for (const score::CriterionScore& c : a.criteria)
         if (c.standing == score::Standing::notMeasured && (c.maxPoints > 0.0 || !c.possibleBands.empty()))
             missing += (missing.empty() ? "" : ", ") + criterionTitle(rubric, c.id);

@@ -71,14 +71,28 @@ std::vector<Column> columnsOf(const Results& group) {
             if (c.value) at->values.push_back(*c.value);
             if (!c.points || !(c.maxPoints > 0.0)) continue;
             ++at->judged;
-            at->lost += c.maxPoints - *c.points;
-            at->shares.push_back(100.0 * *c.points / c.maxPoints);
+            // What was lost because the work is not done is no criterion's.
+            at->lost += c.maxPoints - c.ownPoints;
+            at->shares.push_back(100.0 * c.ownPoints / c.maxPoints);
         }
     for (Column& c : columns) {
         std::sort(c.values.begin(), c.values.end());
         std::sort(c.shares.begin(), c.shares.end());
     }
     return columns;
+}
+
+/// What was lost because works are not done, as a criterion without a name.
+Column undoneOf(const Results& group) {
+    Column undone;
+    for (const Member& m : group) {
+        const score::Assessment& a = m.entry->result.assessment;
+        if (!a.completeness || !a.completeness->value || !(a.maxScore > 0.0)) continue;
+        ++undone.judged;
+        undone.lost += a.lostUndone();
+        undone.maxPoints = a.maxScore;
+    }
+    return undone;
 }
 
 /// A row of dots a criterion: points reached, equal ones stacked.
@@ -131,12 +145,17 @@ void addTable(HtmlReport& page, const Results& group, const rubric::Rubric& rubr
         for (const score::CriterionScore& c : a.criteria)
             if (c.standing == score::Standing::notMeasured && c.maxPoints > 0.0)
                 missing += (missing.empty() ? "" : ", ") + criterionTitle(rubric, c.id);
+        // Where points hang on it, how far each is done stands first.
+        std::string undone;
+        if (a.completeness)
+            undone = a.completeness->value ? fmt::format("{:.0f}", *a.completeness->value) : std::string("?");
         passed += a.passed == score::Passed::yes;
         failed += a.passed == score::Passed::no;
         if (a.maxScore > 0.0) percents.push_back(a.percent());
-        rows.push_back(
-            {m.entry->student, fmt::format("{}", m.attempt), fmt::format("{:.1f} / {:.1f}", a.score, a.maxScore),
-             a.maxScore > 0.0 ? fmt::format("{:.1f}", a.percent()) : "", verdictOf(a.passed), critical, missing});
+        rows.push_back({m.entry->student, fmt::format("{}", m.attempt),
+                        fmt::format("{:.1f} / {:.1f}", a.score, a.maxScore),
+                        a.maxScore > 0.0 ? fmt::format("{:.1f}", a.percent()) : "", undone, verdictOf(a.passed),
+                        critical, missing});
     }
     if (!percents.empty()) {
         const double n = static_cast<double>(percents.size());
@@ -150,19 +169,23 @@ void addTable(HtmlReport& page, const Results& group, const rubric::Rubric& rubr
                                fmt::format("{:.1f}", *least), fmt::format("{:.1f}", *most), passed, failed,
                                group.size() - passed - failed));
     }
-    page.table({words()("class.student"), words()("class.attempt"), words()("class.score"), words()("class.percent"),
-                words()("class.verdict"), words()("class.critical"), words()("class.not-judged")},
-               rows);
+    page.table(
+        {words()("class.student"), words()("class.attempt"), words()("class.score"), words()("class.percent"),
+         words()("class.done"), words()("class.verdict"), words()("class.critical"), words()("class.not-judged")},
+        rows);
 }
 
 void addCostly(HtmlReport& page, std::vector<Column> columns, const rubric::Rubric& rubric) {
     std::erase_if(columns, [](const Column& c) { return c.judged == 0 && c.critical == 0; });
+    const auto titleOf = [&](const Column& c) {
+        return c.id.empty() ? words()("assessment.not-finished") : criterionTitle(rubric, c.id);
+    };
     const auto mean = [](const Column& c) { return c.judged > 0 ? c.lost / static_cast<double>(c.judged) : 0.0; };
     std::stable_sort(columns.begin(), columns.end(),
                      [&](const Column& a, const Column& b) { return mean(a) > mean(b); });
     Rows rows;
     for (const Column& c : columns)
-        rows.push_back({criterionTitle(rubric, c.id), c.judged > 0 ? fmt::format("{:.2f}", mean(c)) : "",
+        rows.push_back({titleOf(c), c.judged > 0 ? fmt::format("{:.2f}", mean(c)) : "",
                         c.judged > 0 && c.maxPoints > 0.0 ? fmt::format("{:.0f}", 100.0 * mean(c) / c.maxPoints) : "",
                         fmt::format("{}", c.critical), fmt::format("{}", c.borderline)});
     page.subheading(words()("class.costly"));
@@ -246,7 +269,9 @@ std::string classReport(const std::vector<ClassEntry>& entries) {
                                fmt::format("{:g}", first.context.motionScale)),
                        Tone::note);
         addTable(page, group, rubric);
-        addCostly(page, columns, rubric);
+        std::vector<Column> costly = columns;
+        if (first.completeness) costly.push_back(undoneOf(group));
+        addCostly(page, std::move(costly), rubric);
         addDistribution(page, columns, rubric);
         addCurves(page, group);
     }

@@ -37,6 +37,8 @@ Content contentOf(const tasks::Task& task) {
     content.level = task.level;
     content.isTimeHard = task.isTimeHard;
     content.hasLiveBar = task.hasLiveBar;
+    content.drive = task.drive;
+    content.speedRpm = task.speedRpm;
     content.preparation = task.preparation;
     content.ownJudgement = task.ownJudgement;
     content.teacherWork = task.teacherWork;
@@ -60,6 +62,8 @@ tasks::Task taskOf(const Content& content) {
     task.level = content.level;
     task.isTimeHard = content.isTimeHard && content.minutes;
     task.hasLiveBar = content.hasLiveBar;
+    task.drive = content.drive;
+    if (!content.drive.empty()) task.speedRpm = content.speedRpm;
     task.preparation = content.preparation;
     task.ownJudgement = content.ownJudgement;
     task.teacherWork = content.teacherWork;

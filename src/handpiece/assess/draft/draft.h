@@ -26,9 +26,11 @@ struct Content {
     cases::Exercise exercise;                  ///< texts, burs, locks, view
     double voxelMm = 0.05;
     std::optional<double> minutes;
-    std::string level;        ///< of tasks::kLevels; empty: not said
-    bool isTimeHard = false;  ///< work ends with the minutes
-    bool hasLiveBar = false;  ///< what is removed of the target is shown during the work
+    std::string level;               ///< of tasks::kLevels; empty: not said
+    bool isTimeHard = false;         ///< work ends with the minutes
+    bool hasLiveBar = false;         ///< what is removed of the target is shown during the work
+    std::string drive;               ///< of instrument::drives(); empty: the student's choice
+    std::optional<double> speedRpm;  ///< that it is set to; none: its own
     std::optional<preparation::Recipe> preparation;
     bool ownJudgement = false;  ///< a student says what they expect before they see the result
     std::optional<rubric::Rubric> rubric;

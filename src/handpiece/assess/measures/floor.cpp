@@ -49,16 +49,30 @@ double unevenIn(const Floor& floor) {
 const std::vector<int>& placesOf(const Floor& floor, const Selection& of) {
     return of.statistic == "greatest" ? floor.nodes : floor.inner.empty() ? floor.flat : floor.inner;
 }
-/// By how much a statistic changes with that ring: where a corner begins is known to a place or so.
-double edgeOf(const CutTooth& tooth, const Floor& floor, const Selection& of, const std::function<double(int)>& valueOf,
-              double value) {
-    if (of.statistic == "greatest") return 0.0;
-    std::vector<double> values;
+/// What of that ring's change belongs to the value, and what is open (from measures_study).
+struct Edge {
+    double inside, insidePerVoxelMm, open;
+};
+constexpr Edge kOfDepth{0.42, -2.2, 1.0}, kOfShortest{0.0, 0.0, 1.05};
+
+/// The corner begins somewhere in the outermost ring.
+void addEdge(const CutTooth& tooth, const Floor& floor, const Selection& of, const std::function<double(int)>& valueOf,
+             const Edge& edge, Taken& taken) {
+    if (of.statistic == "greatest" || floor.inner.empty()) return;
+    std::vector<double> inner, all;
+    for (const int node : floor.inner)
+        inner.push_back(valueOf(node));
     for (const int node : floor.flat)
-        values.push_back(valueOf(node));
-    constexpr double kShare = 0.9, kScanShare = 2.0;  // of that change is open; a scanned corner by two rings
-    return (tooth.preparation().noiseMm > 0.0 ? kScanShare : kShare) *
-           std::abs(statisticOf(values, of.statistic.empty() ? "median" : of.statistic, nullptr) - value);
+        all.push_back(valueOf(node));
+    const auto changeOf = [&](std::string_view statistic) {
+        return statisticOf(all, statistic, nullptr) - statisticOf(inner, statistic, nullptr);
+    };
+    const double change = changeOf(of.statistic.empty() ? "median" : of.statistic);
+    constexpr double kScanOpen = 2.0;  // a scanned corner is known to two rings
+    // A median may stay where it is by chance; the mean tells that as well.
+    taken.offMm = (tooth.preparation().noiseMm > 0.0 ? kScanOpen : edge.open) *
+                  std::max(std::abs(change), std::abs(changeOf("mean")));
+    *taken.value += std::clamp(edge.inside + edge.insidePerVoxelMm * tooth.voxelMm(), 0.0, 1.0) * change;
 }
 
 Vec3 normalOf(const Plane& plane) {
@@ -80,13 +94,11 @@ Taken takeFloorDepth(CutTooth& tooth, const Selection& of) {
     }
     Taken taken = places.taken(of, "median", "depth of the floor");
     taken.residual = unevenIn(*floor);
-    taken.offMm = edgeOf(
-        tooth, *floor, of,
-        [&](int node) {
-            const HeightMap::Node& n = map.nodes[static_cast<std::size_t>(node)];
-            return n.before - n.now;
-        },
-        *taken.value);
+    const auto depthAt = [&](int node) {
+        const HeightMap::Node& n = map.nodes[static_cast<std::size_t>(node)];
+        return n.before - n.now;
+    };
+    addEdge(tooth, *floor, of, depthAt, kOfDepth, taken);
     return taken;
 }
 
@@ -106,10 +118,10 @@ Taken takeFloorDepthShortest(CutTooth& tooth, const Selection& of) {
     });
     Taken taken = places.taken(of, "median", "shortest way to the uncut surface");
     taken.residual = unevenIn(*floor);
-    taken.offMm = edgeOf(
-        tooth, *floor, of,
-        [&](int node) { return -tooth.whole().tree.signedDistance(tooth.frame().from(tooth.heights().drawOf(node))); },
-        *taken.value);
+    const auto shortestFrom = [&](int node) {
+        return -tooth.whole().tree.signedDistance(tooth.frame().from(tooth.heights().drawOf(node)));
+    };
+    addEdge(tooth, *floor, of, shortestFrom, kOfShortest, taken);
     return taken;
 }
 

@@ -51,6 +51,51 @@ Amount amountOf(CutTooth& tooth, const Selection& of, bool withWhole) {
     return amount;
 }
 
+/// Where of the tooth's surface as it is the target reaches deepest under it; none: nothing of it is left. To a voxel,
+/// for the eye to be turned there.
+std::optional<Vec3> mostOfTargetLeft(const zones::Zones& zones, const tooth::ToothMirror& cut) {
+    const tooth::ToothModel& whole = cut.model();
+    const field::FieldView view = whole.field.view();
+    const auto dense = static_cast<std::uint32_t>(whole.field.storage().coarse.size());
+    const double h = view.voxelMm, edge = field::kBrickCells * h;
+    struct Deepest {
+        double targetMm = 0.0;
+        Vec3 at = Vec3::Zero();
+    };
+    std::vector<Deepest> of(dense);
+    core::parallelFor(dense, 16, [&](std::size_t begin, std::size_t end) {
+        std::array<float, field::kBrickValues> scratch;
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto id = static_cast<std::uint32_t>(i);
+            // Bricks far from any surface.
+            if (!cut.isChanged(id) && view.brickIndex[i] < 0) continue;
+            const auto brick = field::brickAt(view.bricks, id);
+            Vec3 low;
+            for (int k = 0; k < 3; ++k)
+                low[k] = view.originMm[k] + edge * brick[static_cast<std::size_t>(k)];
+            if ((low.array() > zones.box().max.array()).any() || ((low.array() + edge) < zones.box().min.array()).any())
+                continue;
+            const float* now = cut.values(id, scratch.data());
+            for (int z = 0; z < field::kBrickCells; ++z)
+                for (int y = 0; y < field::kBrickCells; ++y)
+                    for (int x = 0; x < field::kBrickCells; ++x) {
+                        const auto value = static_cast<double>(
+                            now[static_cast<std::size_t>(x + field::kBrickNodes * (y + field::kBrickNodes * z))]);
+                        if (value > 0.0 || value < -h) continue;
+                        const Vec3 p = low + h * Vec3(x, y, z);
+                        const double target = zones.targetMm(p);
+                        if (target >= of[i].targetMm) continue;
+                        if (const double both = std::max(target, -zones.protectedMm(p)); both < of[i].targetMm)
+                            of[i] = {both, p};
+                    }
+        }
+    });
+    const auto deepest = std::min_element(of.begin(), of.end(),
+                                          [](const Deepest& a, const Deepest& b) { return a.targetMm < b.targetMm; });
+    if (deepest == of.end() || deepest->targetMm >= 0.0) return {};
+    return deepest->at;
+}
+
 }  // namespace
 
 bool isAsked(const Selection& of, Tissue tissue) {
@@ -108,7 +153,11 @@ Taken takeRemovedShare(CutTooth& tooth, const Selection& of) {
     const Amount amount = amountOf(tooth, of, true);
     if (!amount.reason.empty()) return none(amount.reason);
     if (!(amount.whole > 0.0)) return none("the whole tooth has none of it");
-    return {100.0 * amount.removed / amount.whole, {}};
+    Taken share{100.0 * amount.removed / amount.whole, {}};
+    if (of.zone == zones::kZoneNames[static_cast<std::size_t>(zones::Zone::target)] && *share.value < 100.0)
+        if (const std::optional<Vec3> place = mostOfTargetLeft(*tooth.preparation().zones, *tooth.preparation().cut))
+            share.evidence.push_back({{}, *place, {}, "most is still to be cut here"});
+    return share;
 }
 
 Taken takeAdjacentRemoved(CutTooth& tooth, const Selection&) {

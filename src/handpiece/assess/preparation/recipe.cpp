@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include "handpiece/assess/preparation/preparation.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/hash_text.h"
 
 namespace handpiece::preparation {
 namespace {
@@ -197,9 +197,10 @@ Recipe readRecipe(const config::Table& table) {
             recipe.strokes = readStrokes(table);
         } else if (*id == kRecordedTemplate && key == "zones_hash") {
             const std::string hash = *table.text(key);
-            const auto end = std::from_chars(hash.data(), hash.data() + hash.size(), recipe.recordedHash, 16);
-            if (hash.size() != 16 || end.ptr != hash.data() + 16 || end.ec != std::errc{})
+            const std::optional<std::uint64_t> value = core::readHash(hash);
+            if (!value)
                 table.fail(fmt::format("\"{}\" is no hash", hash.substr(0, 32)), "sixteen hexadecimal digits", key);
+            recipe.recordedHash = *value;
         } else if (const Parameter* parameter = parameterOf(*t, key)) {
             recipe.numbers[key] = within(key, parameter->least, parameter->most);
         } else {

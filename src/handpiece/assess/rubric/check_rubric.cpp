@@ -91,6 +91,7 @@ class Linter {
 
     std::vector<SaidFinding> findings() {
         whole();
+        if (rubric_.completeness) completeness();
         for (const Criterion& c : rubric_.criteria)
             criterion(c);
         references();
@@ -110,11 +111,15 @@ class Linter {
                              std::move(advice)});
     }
     void tell(Severity severity, const Criterion& c, Phrase said, Phrase advice = {}, int line = 0) {
-        tell(severity, line > 0 ? line : c.line, say("lint.of-criterion", c.id), std::move(said), std::move(advice),
-             c.id);
+        const bool isCriterion = &c != &completeness_;
+        tell(severity, line > 0 ? line : c.line,
+             isCriterion ? say("lint.of-criterion", c.id) : say("lint.of-completeness"), std::move(said),
+             std::move(advice), isCriterion ? c.id : std::string());
     }
 
     void whole();
+    void completeness();
+    const MeasureKind* kindOf(const Criterion& c);
     void criterion(const Criterion& c);
     void selection(const Criterion& c, const MeasureKind& kind);
     void knots(const Criterion& c, const MeasureKind* kind);
@@ -128,6 +133,7 @@ class Linter {
     void once(const List& list, const char* what);
 
     const Rubric& rubric_;
+    Criterion completeness_;  ///< what both have, so that both are checked alike
     std::vector<SaidFinding> findings_;
 };
 
@@ -196,19 +202,51 @@ void Linter::selection(const Criterion& c, const MeasureKind& kind) {
         tell(Severity::error, c, say("lint.needs-limit", kind.id), say("lint.give-limit"));
 }
 
-void Linter::criterion(const Criterion& c) {
+const MeasureKind* Linter::kindOf(const Criterion& c) {
     const MeasureKind* kind = measures::findMeasureKind(c.measure);
     if (!kind) {
         tell(Severity::error, c, say("lint.unknown-measure", c.measure),
              say("lint.did-you-mean", nearest(c.measure, measures::measureKinds())));
-    } else {
-        if (c.unit != kind->unit)
-            tell(Severity::error, c, c.unit.empty() ? say("lint.no-unit") : say("lint.unit", c.unit.substr(0, 64)),
-                 kind->unit.empty() ? say("lint.unit-none", kind->id) : say("lint.unit-is", kind->id, kind->unit));
-        selection(c, *kind);
-        if (c.isGraded() && kind->subject == measures::Subject::hand && c.devices.empty())
-            tell(Severity::warning, c, say("lint.any-device"), say("lint.name-devices"));
+        return nullptr;
     }
+    if (c.unit != kind->unit)
+        tell(Severity::error, c, c.unit.empty() ? say("lint.no-unit") : say("lint.unit", c.unit.substr(0, 64)),
+             kind->unit.empty() ? say("lint.unit-none", kind->id) : say("lint.unit-is", kind->id, kind->unit));
+    selection(c, *kind);
+    return kind;
+}
+
+void Linter::completeness() {
+    const Completeness& asked = *rubric_.completeness;
+    Criterion& c = completeness_;
+    c.measure = asked.measure, c.unit = asked.unit, c.of = asked.of, c.line = asked.line;
+    const MeasureKind* kind = kindOf(c);
+    // Of an attempt alone, and of a scan, nothing is known of the hand: its points would hang on how it was handed in.
+    if (kind && kind->subject == measures::Subject::hand)
+        tell(Severity::error, c, say("lint.completeness-hand", kind->id), say("lint.completeness-of-tooth"));
+    if (asked.knots.size() < 2) tell(Severity::error, c, say("lint.one-knot"), say("lint.two-factors"));
+    for (std::size_t i = 0; i < asked.knots.size(); ++i) {
+        const Knot& knot = asked.knots[i];
+        value(c, kind, knot.value, "lint.a-knot");
+        if (!(knot.points >= 0.0 && knot.points <= 1.0))
+            tell(Severity::error, c, say("lint.factor", knot.points), say("lint.factor-range"));
+        if (i == 0) continue;
+        if (!(knot.value > asked.knots[i - 1].value))
+            tell(Severity::error, c, say("lint.knots-order", knot.value), say("lint.sort-knots"));
+        if (knot.points < asked.knots[i - 1].points)
+            tell(Severity::error, c, say("lint.factor-falls", knot.value), say("lint.factor-rises"));
+    }
+    if (asked.knots.size() < 2) return;
+    if (asked.knots.back().points != 1.0)
+        tell(Severity::error, c, say("lint.factor-end", asked.knots.back().points), say("lint.factor-to-1"));
+    if (asked.knots.front().points > 0.0)
+        tell(Severity::warning, c, say("lint.factor-begin", asked.knots.front().points), say("lint.factor-from-0"));
+}
+
+void Linter::criterion(const Criterion& c) {
+    const MeasureKind* kind = kindOf(c);
+    if (kind && c.isGraded() && kind->subject == measures::Subject::hand && c.devices.empty())
+        tell(Severity::warning, c, say("lint.any-device"), say("lint.name-devices"));
     if (c.isGraded() && c.knots.empty() && c.bands.empty())
         tell(Severity::error, c, say("lint.no-points"), say("lint.say-points"));
     if (!c.isGraded() && !c.knots.empty())
@@ -412,6 +450,10 @@ void Linter::references() {
 void Linter::languages() {
     std::vector<std::pair<std::string, const Texts*>> all = {{"the title", &rubric_.title},
                                                              {"the words", &rubric_.words}};
+    if (rubric_.completeness) {
+        all.emplace_back("completeness", &rubric_.completeness->title);
+        all.emplace_back("completeness' words", &rubric_.completeness->words);
+    }
     for (const BandName& band : rubric_.bands)
         all.emplace_back("band " + band.id, &band.title);
     for (const Step& step : rubric_.steps)

@@ -99,32 +99,54 @@ Band readBand(const Table& table) {
     return band;
 }
 
+void readMeasure(const Table& table, std::string& measure, std::string& unit, measures::Selection& of) {
+    measure = idIn(table, "measure");
+    unit = textIn(table, "unit");
+    of.zone = textIn(table, "zone");
+    of.tissue = textIn(table, "tissue");
+    of.side = textIn(table, "side");
+    of.statistic = textIn(table, "statistic");
+    of.limit = numberIn(table, "limit");
+}
+
+std::vector<Knot> knotsIn(const Table& table, const char* problem, const char* example) {
+    std::vector<Knot> knots;
+    const std::vector<std::vector<double>> rows = table.numberRows("knots");
+    requireFew(table, rows, "knots", kMaxPieces);
+    for (const std::vector<double>& row : rows) {
+        if (row.size() != 2 || std::abs(row[0]) > kMostNumber) table.fail(problem, example, "knots");
+        knots.push_back({row[0], row[1]});
+    }
+    return knots;
+}
+
+Completeness readCompleteness(const Table& table) {
+    table.allowOnly(
+        {"measure", "unit", "zone", "tissue", "side", "statistic", "limit", "knots", "title", "words", "source"});
+    Completeness c;
+    c.line = table.line();
+    readMeasure(table, c.measure, c.unit, c.of);
+    c.knots = knotsIn(table, "a knot is not [value, factor]", "write knots = [[0, 0], [70, 1]]");
+    c.title = textsIn(table, "title");
+    c.words = textsIn(table, "words");
+    c.source = textIn(table, "source");
+    return c;
+}
+
 Criterion readCriterion(const Table& table) {
     table.allowOnly({"id", "measure", "unit", "zone", "tissue", "side", "statistic", "limit", "weight", "knots",
                      "bands", "critical", "devices", "excludes", "title", "words", "leaves_out", "status", "source"});
     Criterion c;
     c.line = table.line();
     c.id = idIn(table, "id");
-    c.measure = idIn(table, "measure");
-    c.unit = textIn(table, "unit");
-    c.of.zone = textIn(table, "zone");
-    c.of.tissue = textIn(table, "tissue");
-    c.of.side = textIn(table, "side");
-    c.of.statistic = textIn(table, "statistic");
-    c.of.limit = numberIn(table, "limit");
+    readMeasure(table, c.measure, c.unit, c.of);
     if (const std::optional<double> weight = numberIn(table, "weight")) {
         if (*weight <= 0.0)
             table.fail(fmt::format("the weight is {}", *weight),
                        "give points above 0, or no weight at all to show the criterion without grading it", "weight");
         c.weight = *weight;
     }
-    const std::vector<std::vector<double>> rows = table.numberRows("knots");
-    requireFew(table, rows, "knots", kMaxPieces);
-    for (const std::vector<double>& row : rows) {
-        if (row.size() != 2 || std::abs(row[0]) > kMostNumber)
-            table.fail("a knot is not [value, points]", "write knots = [[1.0, 0], [1.5, 100]]", "knots");
-        c.knots.push_back({row[0], row[1]});
-    }
+    c.knots = knotsIn(table, "a knot is not [value, points]", "write knots = [[1.0, 0], [1.5, 100]]");
     for (const Table& row : fewTables(table, "bands", kMaxPieces))
         c.bands.push_back(readBand(row));
     if (const std::optional<Table> critical = table.table("critical")) {
@@ -190,7 +212,7 @@ const Criterion* Rubric::criterion(std::string_view name) const {
 Rubric parseRubric(std::string_view text, const std::string& where) {
     const Table table = Table::parse(text, where, kMaxBytes);
     table.allowOnly({"format", "id", "version", "title", "words", "status", "source", "total_weight", "pass_mark",
-                     "band", "step", "criterion", "rule"});
+                     "completeness", "band", "step", "criterion", "rule"});
     const std::optional<std::int64_t> format = table.integer("format");
     if (!format) table.fail("\"format\" is missing", "write format = 1");
     if (*format != 1)
@@ -207,6 +229,8 @@ Rubric parseRubric(std::string_view text, const std::string& where) {
     rubric.source = textIn(table, "source");
     rubric.totalWeight = numberIn(table, "total_weight");
     rubric.passMark = numberIn(table, "pass_mark");
+    if (const std::optional<Table> completeness = table.table("completeness"))
+        rubric.completeness = readCompleteness(*completeness);
     for (const Table& row : fewTables(table, "band", kMaxPieces)) {
         row.allowOnly({"id", "title"});
         rubric.bands.push_back({idIn(row, "id"), textsIn(row, "title")});
@@ -241,12 +265,9 @@ const Band* bandOf(const Criterion& criterion, double value) {
     return nullptr;
 }
 
-std::optional<double> pointsOf(const Criterion& criterion, double value) {
-    const std::vector<Knot>& knots = criterion.knots;
-    if (knots.empty()) {
-        const Band* band = bandOf(criterion, value);
-        return band ? band->points : std::nullopt;
-    }
+namespace {
+
+double onCurve(const std::vector<Knot>& knots, double value) {
     if (value <= knots.front().value) return knots.front().points;
     for (std::size_t i = 1; i < knots.size(); ++i) {
         const Knot &a = knots[i - 1], &b = knots[i];
@@ -256,6 +277,18 @@ std::optional<double> pointsOf(const Criterion& criterion, double value) {
         return std::clamp(points, std::min(a.points, b.points), std::max(a.points, b.points));
     }
     return knots.back().points;
+}
+
+}  // namespace
+
+std::optional<double> pointsOf(const Criterion& criterion, double value) {
+    if (!criterion.knots.empty()) return onCurve(criterion.knots, value);
+    const Band* band = bandOf(criterion, value);
+    return band ? band->points : std::nullopt;
+}
+
+double factorOf(const Completeness& completeness, double value) {
+    return onCurve(completeness.knots, value);
 }
 
 }  // namespace handpiece::rubric

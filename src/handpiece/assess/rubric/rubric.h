@@ -43,7 +43,7 @@ struct Band {
 
 /// Of a curve of straight pieces, held at its ends.
 struct Knot {
-    double value = 0.0, points = 0.0;  ///< 0 to 100
+    double value = 0.0, points = 0.0;  ///< points: 0 to 100, of a Completeness the factor, 0 to 1
     friend bool operator==(const Knot&, const Knot&) = default;
 };
 
@@ -98,6 +98,16 @@ struct Step {
     int line = 0;
 };
 
+/// How much must be done for what was done to count in full: all points are multiplied by its factor.
+struct Completeness {
+    std::string measure, unit;  ///< of the tooth
+    measures::Selection of;
+    std::vector<Knot> knots;  ///< [value, factor], never falling, the last 1
+    Texts title, words;
+    std::string source;
+    int line = 0;
+};
+
 struct Rubric {
     std::string id, version;
     Texts title, words;
@@ -105,6 +115,7 @@ struct Rubric {
     std::string source;
     std::optional<double> totalWeight;  ///< what the weights must sum to, where the file states it
     std::optional<double> passMark;     ///< [% of the greatest score]
+    std::optional<Completeness> completeness;
     std::vector<BandName> bands;
     std::vector<Step> steps;
     std::vector<Criterion> criteria;
@@ -172,5 +183,7 @@ void requireSound(const Rubric& rubric);
 [[nodiscard]] const Band* bandOf(const Criterion& criterion, double value);
 /// Points of a value, 0 to 100; none where the criterion has none for it.
 [[nodiscard]] std::optional<double> pointsOf(const Criterion& criterion, double value);
+/// By which points are multiplied, 0 to 1.
+[[nodiscard]] double factorOf(const Completeness& completeness, double value);
 
 }  // namespace handpiece::rubric

@@ -2,6 +2,7 @@
 // The hash of a rubric, what two of them differ in, and one in plain words.
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "handpiece/assess/rubric/rubric.h"
 #include "handpiece/base/config/words.h"
@@ -35,9 +36,9 @@ std::string bandsText(const Criterion& c) {
                                     b.points ? " " + number(*b.points) : std::string()));
     return listed(parts);
 }
-std::string knotsText(const Criterion& c) {
+std::string knotsText(const std::vector<Knot>& knots) {
     std::vector<std::string> parts;
-    for (const Knot& k : c.knots)
+    for (const Knot& k : knots)
         parts.push_back(number(k.value) + " " + number(k.points));
     return listed(parts);
 }
@@ -59,20 +60,25 @@ std::string needsText(const Rule& r) {
 
 using Fields = std::vector<std::pair<const char*, std::string>>;
 
+/// Both of criteria and of completeness.
+template <class Asks>
+Fields measureOf(const Asks& c) {
+    return {{"measure", c.measure},       {"unit", c.unit},    {"zone", c.of.zone},
+            {"tissue", c.of.tissue},      {"side", c.of.side}, {"statistic", c.of.statistic},
+            {"limit", number(c.of.limit)}};
+}
 Fields fieldsOf(const Criterion& c) {
-    return {{"measure", c.measure},
-            {"unit", c.unit},
-            {"zone", c.of.zone},
-            {"tissue", c.of.tissue},
-            {"side", c.of.side},
-            {"statistic", c.of.statistic},
-            {"limit", number(c.of.limit)},
-            {"weight", number(c.weight)},
-            {"knots", knotsText(c)},
-            {"bands", bandsText(c)},
-            {"critical", criticalText(c)},
-            {"devices", sorted(c.devices)},
-            {"excludes", sorted(c.excludes)}};
+    Fields fields = measureOf(c);
+    const Fields own = {{"weight", number(c.weight)},   {"knots", knotsText(c.knots)},
+                        {"bands", bandsText(c)},        {"critical", criticalText(c)},
+                        {"devices", sorted(c.devices)}, {"excludes", sorted(c.excludes)}};
+    fields.insert(fields.end(), own.begin(), own.end());
+    return fields;
+}
+Fields fieldsOf(const Completeness& c) {
+    Fields fields = measureOf(c);
+    fields.emplace_back("factors", knotsText(c.knots));
+    return fields;
 }
 Fields fieldsOf(const Rule& r) {
     return {{"needs", needsText(r)}, {"required", r.required ? "yes" : "no"}, {"else_at_most", number(r.elseAtMost)}};
@@ -149,6 +155,8 @@ std::string canonicalText(const Rubric& r) {
             out += fmt::format("{}={}\n", key, value);
     };
     add("", fieldsOf(r));
+    // Of one without it there is no word: its hash is that of before there was such.
+    if (r.completeness) add("[completeness]\n", fieldsOf(*r.completeness));
     for (const Step& s : r.steps)
         add(fmt::format("[step {}]\n", s.id), fieldsOf(s));
     for (const Criterion& c : r.criteria)
@@ -175,6 +183,12 @@ std::vector<std::string> differences(const Rubric& before, const Rubric& after) 
         {{"id", after.id}, {"version", after.version}, {"status", std::string(nameOf(after.status))}}};
     compare(own[0], own[1], "rubric", out);
     compare(fieldsOf(before), fieldsOf(after), "rubric", out);
+    if (before.completeness && after.completeness)
+        compare(fieldsOf(*before.completeness), fieldsOf(*after.completeness), "completeness", out);
+    else if (before.completeness || after.completeness)
+        out.push_back(before.completeness
+                          ? "completeness: is gone, points count whatever is done"
+                          : fmt::format("completeness: is new, factors {}", knotsText(after.completeness->knots)));
     compareLists(before.steps, after.steps, "step", out);
     compareLists(before.criteria, after.criteria, "criterion", out);
     compareLists(before.rules, after.rules, "rule", out);
@@ -195,7 +209,12 @@ std::vector<std::string> differences(const Rubric& before, const Rubric& after) 
             titles["rule " + rule.id] = rule.title;
         return titles;
     };
+    const auto readOnly = [](const Rubric& r) {
+        const Completeness c = r.completeness.value_or(Completeness{});
+        return std::tuple(c.title, c.words, c.source);
+    };
     if (before.title != after.title || before.words != after.words || before.source != after.source ||
+        (before.completeness && after.completeness && readOnly(before) != readOnly(after)) ||
         bandTitles(before) != bandTitles(after))
         out.push_back("rubric: title, words or source are others; no score changes");
     return out;
@@ -222,16 +241,30 @@ std::string describe(const Rubric& r, std::string_view language) {
     if (!r.source.empty()) out += fmt::format("{}: {}\n", words("rubric.source"), r.source);
     if (!r.words.empty()) out += in(r.words, {}) + "\n";
     if (r.passMark) out += fmt::format("{}: {} %\n", words("rubric.pass-mark"), number(*r.passMark));
-    const auto criterion = [&](const Criterion& c) {
+    const auto measured = [&](const auto& c) {
         std::vector<std::string> narrowed;
         for (const std::string& part : {c.of.zone, c.of.tissue, c.of.side, c.of.statistic})
             if (!part.empty()) narrowed.push_back(part);
         if (c.of.limit) narrowed.push_back("> " + number(*c.of.limit));
-        out += fmt::format("\n{}  [{}]\n  {}{}{}\n", in(c.title, c.id),
+        return fmt::format("  {}{}{}\n", c.measure,
+                           narrowed.empty() ? "" : fmt::format(" ({})", fmt::join(narrowed, ", ")),
+                           c.unit.empty() ? "" : " [" + c.unit + "]");
+    };
+    if (r.completeness) {
+        const Completeness& c = *r.completeness;
+        std::vector<std::string> knots;
+        for (const Knot& k : c.knots)
+            knots.push_back(fmt::format("{} = × {}", number(k.value), number(k.points)));
+        out += fmt::format("\n{}\n{}  {}\n", in(c.title, words("rubric.completeness")), measured(c),
+                           words("rubric.factor", fmt::format("{}", fmt::join(knots, ", "))));
+        if (!c.words.empty()) out += fmt::format("  {}\n", in(c.words, {}));
+        if (!c.source.empty()) out += fmt::format("  {}: {}\n", words("rubric.source"), c.source);
+    }
+    const auto criterion = [&](const Criterion& c) {
+        out += fmt::format("\n{}  [{}]\n{}", in(c.title, c.id),
                            c.isGraded() ? words("rubric.points", number(c.weight))
                                         : words(c.critical ? "rubric.critical-only" : "rubric.shown"),
-                           c.measure, narrowed.empty() ? "" : fmt::format(" ({})", fmt::join(narrowed, ", ")),
-                           c.unit.empty() ? "" : " [" + c.unit + "]");
+                           measured(c));
         for (const Band& b : c.bands)
             out += fmt::format("  {}: {}{}\n", bandTitle(b.id), interval(b.from, b.to),
                                b.points ? fmt::format(" = {} %", number(*b.points)) : "");

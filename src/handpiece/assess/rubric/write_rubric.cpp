@@ -30,6 +30,7 @@ class Writer {
     void texts(std::string_view key, const Texts& value) {
         if (!value.empty()) raw(key, inlineTexts(value));
     }
+    void section(std::string_view name) { out_ += fmt::format("\n[{}]\n", name); }
     void table(std::string_view name) { out_ += fmt::format("\n[[{}]]\n", name); }
     [[nodiscard]] static std::string inlineTexts(const Texts& value) {
         std::vector<std::string> parts;
@@ -50,23 +51,30 @@ void add(std::vector<std::string>& parts, const char* key, const std::optional<d
     if (value) parts.push_back(fmt::format("{} = {}", key, tomlOf(*value)));
 }
 
+void writeMeasure(Writer& w, const std::string& measure, const measures::Selection& of, const std::string& unit) {
+    w.text("measure", measure);
+    w.text("zone", of.zone);
+    w.text("tissue", of.tissue);
+    w.text("side", of.side);
+    w.text("statistic", of.statistic);
+    w.num("limit", of.limit);
+    w.text("unit", unit);
+}
+
+void writeKnots(Writer& w, const std::vector<Knot>& all) {
+    if (all.empty()) return;
+    std::vector<std::string> knots;
+    for (const Knot& k : all)
+        knots.push_back(fmt::format("[{}, {}]", tomlOf(k.value), tomlOf(k.points)));
+    w.raw("knots", fmt::format("[{}]", fmt::join(knots, ", ")));
+}
+
 void write(Writer& w, const Criterion& c) {
     w.table("criterion");
     w.text("id", c.id);
-    w.text("measure", c.measure);
-    w.text("zone", c.of.zone);
-    w.text("tissue", c.of.tissue);
-    w.text("side", c.of.side);
-    w.text("statistic", c.of.statistic);
-    w.num("limit", c.of.limit);
-    w.text("unit", c.unit);
+    writeMeasure(w, c.measure, c.of, c.unit);
     if (c.isGraded()) w.num("weight", c.weight);
-    if (!c.knots.empty()) {
-        std::vector<std::string> knots;
-        for (const Knot& k : c.knots)
-            knots.push_back(fmt::format("[{}, {}]", tomlOf(k.value), tomlOf(k.points)));
-        w.raw("knots", fmt::format("[{}]", fmt::join(knots, ", ")));
-    }
+    writeKnots(w, c.knots);
     if (!c.bands.empty()) {
         std::string bands = "[\n";
         for (const Band& b : c.bands) {
@@ -117,6 +125,15 @@ std::string rubricToml(const Rubric& rubric) {
     w.text("source", rubric.source);
     w.num("total_weight", rubric.totalWeight);
     w.num("pass_mark", rubric.passMark);
+    if (rubric.completeness) {
+        const Completeness& c = *rubric.completeness;
+        w.section("completeness");
+        writeMeasure(w, c.measure, c.of, c.unit);
+        writeKnots(w, c.knots);
+        w.texts("title", c.title);
+        w.texts("words", c.words);
+        w.text("source", c.source);
+    }
     for (const BandName& b : rubric.bands) {
         w.table("band");
         w.text("id", b.id);

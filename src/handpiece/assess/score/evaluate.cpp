@@ -79,6 +79,37 @@ Verdict criticalIn(const Criterion& c, double value, const Interval& in) {
     return surely ? Verdict::yes : Verdict::borderline;
 }
 
+/// What was measured of what is asked; null: nothing. `why`: it cannot be used.
+template <class Asks>
+const Measured* find(const Asks& asks, std::span<const Measured> measured, std::optional<std::string>& why) {
+    const auto at = std::find_if(measured.begin(), measured.end(),
+                                 [&](const Measured& m) { return m.kind == asks.measure && m.of == asks.of; });
+    if (at == measured.end()) {
+        why = "it was not measured";
+        return nullptr;
+    }
+    why = unusable(*at, *measures::findMeasureKind(asks.measure));
+    return &*at;
+}
+
+Completeness completenessOf(const rubric::Completeness& asks, std::span<const Measured> measured) {
+    Completeness c{asks.measure, asks.unit, asks.of, {}, {}, 0.0, 1.0, 1.0, 1.0, {}};
+    std::optional<std::string> why;
+    const Measured* m = find(asks, measured, why);
+    if (m != nullptr) c.evidence = m->evidence;
+    if (why) {
+        c.reason = *why;
+        return c;
+    }
+    c.value = *m->value;
+    c.uncertainty = m->uncertainty;
+    // Factors never fall, so what it is at the ends is what it is at most.
+    c.factor = factorOf(asks, *c.value);
+    c.leastFactor = std::min(c.factor, factorOf(asks, *c.value - c.uncertainty));
+    c.mostFactor = std::max(c.factor, factorOf(asks, *c.value + c.uncertainty));
+    return c;
+}
+
 CriterionScore judge(const Rubric& rubric, const Criterion& c, std::span<const Measured> measured,
                      const Context& context) {
     CriterionScore s;
@@ -87,12 +118,10 @@ CriterionScore judge(const Rubric& rubric, const Criterion& c, std::span<const M
     s.unit = c.unit;
     s.of = c.of;
     s.maxPoints = c.weight;
-    const auto at = std::find_if(measured.begin(), measured.end(),
-                                 [&](const Measured& m) { return m.kind == c.measure && m.of == c.of; });
-    if (at != measured.end()) s.evidence = at->evidence;
+    std::optional<std::string> why;
+    const Measured* at = find(c, measured, why);
+    if (at != nullptr) s.evidence = at->evidence;
     const MeasureKind& kind = *measures::findMeasureKind(c.measure);
-    const std::optional<std::string> why =
-        at == measured.end() ? std::optional<std::string>("it was not measured") : unusable(*at, kind);
     if (!why) {
         s.value = *at->value;
         s.uncertainty = at->uncertainty;
@@ -119,6 +148,7 @@ CriterionScore judge(const Rubric& rubric, const Criterion& c, std::span<const M
     if (c.isGraded()) {
         const auto [least, most] = pointsIn(c, in);
         s.points = weighted(c, *pointsOf(c, value));
+        s.ownPoints = *s.points;
         s.leastPoints = std::min(*s.points, weighted(c, least));
         s.mostPoints = std::max(*s.points, weighted(c, most));
     }
@@ -150,6 +180,7 @@ const CriterionScore* voidExcluded(const Rubric& rubric, std::vector<CriterionSc
             s.standing = Standing::voided;
             s.reason = fmt::format("void: \"{}\" failed", other.id);
             s.points.reset();
+            s.ownPoints = 0.0;
             s.band.clear();
             s.possibleBands.clear();
             s.leastPoints = s.mostPoints = 0.0;
@@ -246,7 +277,15 @@ std::optional<RegisteredOn> registeredOnByName(std::string_view name) {
     return std::nullopt;
 }
 
-Assessment evaluate(const Rubric& rubric, std::span<const Measured> measured, const Context& context) {
+double Assessment::lostUndone() const {
+    double sum = 0.0;
+    for (const CriterionScore& c : criteria)
+        if (c.points) sum += c.ownPoints - *c.points;
+    return sum;
+}
+
+Assessment evaluate(const Rubric& rubric, std::span<const Measured> measured, const Context& context,
+                    std::span<const std::string> given) {
     requireSound(rubric);
     Assessment a;
     a.rubric = rubric.id;
@@ -255,12 +294,37 @@ Assessment evaluate(const Rubric& rubric, std::span<const Measured> measured, co
     a.context = context;
     for (const Criterion& c : rubric.criteria)
         a.criteria.push_back(judge(rubric, c, measured, context));
+    // By what they are worth themselves: who has hardly begun has failed no criterion by that.
     const CriterionScore* unsure = voidExcluded(rubric, a.criteria);
 
-    double sum = 0.0, below = 0.0, above = 0.0;
+    // Squares of what each measure's error does to the sum; what the error of completeness does to all of it.
+    double sum = 0.0, below = 0.0, above = 0.0, undoneBelow = 0.0, undoneAbove = 0.0;
     std::vector<std::string> missing;
+    if (rubric.completeness) {
+        a.completeness = completenessOf(*rubric.completeness, measured);
+        if (!a.completeness->value) missing.emplace_back("completeness");
+    }
+    const auto scale = [&](CriterionScore& s) {
+        const double least = s.leastPoints, most = s.mostPoints;
+        const bool isGiven = std::find(given.begin(), given.end(), s.id) != given.end();
+        double ownBelow = s.ownPoints - least, ownAbove = most - s.ownPoints;
+        if (a.completeness && !isGiven) {
+            const Completeness& c = *a.completeness;
+            s.points = c.factor * s.ownPoints;
+            s.leastPoints = std::min(*s.points, c.leastFactor * least);
+            s.mostPoints = std::max(*s.points, c.mostFactor * most);
+            // A criterion of the same measure errs with it.
+            const bool isSame = s.measure == c.measure && s.of == c.of;
+            undoneBelow += *s.points - c.leastFactor * (isSame ? least : s.ownPoints);
+            undoneAbove += c.mostFactor * (isSame ? most : s.ownPoints) - *s.points;
+            ownBelow *= isSame ? 0.0 : c.factor;
+            ownAbove *= isSame ? 0.0 : c.factor;
+        }
+        below += ownBelow * ownBelow;
+        above += ownAbove * ownAbove;
+    };
     for (std::size_t i = 0; i < a.criteria.size(); ++i) {
-        const CriterionScore& s = a.criteria[i];
+        CriterionScore& s = a.criteria[i];
         const Criterion& c = rubric.criteria[i];
         if (s.standing == Standing::leftOut) continue;
         // What is void may still be a critical error.
@@ -271,11 +335,12 @@ Assessment evaluate(const Rubric& rubric, std::span<const Measured> measured, co
             (c.isGraded() || c.critical || (!c.bands.empty() && !rubric.rules.empty())))
             missing.push_back(s.id);
         if (!s.points) continue;
+        scale(s);
         sum += *s.points;
         a.maxScore += s.maxPoints;
-        below += (*s.points - s.leastPoints) * (*s.points - s.leastPoints);
-        above += (s.mostPoints - *s.points) * (s.mostPoints - *s.points);
     }
+    below += undoneBelow * undoneBelow;
+    above += undoneAbove * undoneAbove;
     for (const rubric::Step& step : rubric.steps) {
         StepScore total{step.id};
         for (const CriterionScore& s : a.criteria)

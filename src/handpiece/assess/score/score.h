@@ -44,6 +44,7 @@ struct CriterionScore {
     std::string band;                            ///< empty: the criterion has none
     std::vector<std::string> possibleBands;      ///< that value +- uncertainty reaches
     std::optional<double> points;                ///< none: shown only, or not judged
+    double ownPoints = 0.0;                      ///< those before the factor of completeness
     double leastPoints = 0.0, mostPoints = 0.0;  ///< within the uncertainty
     double maxPoints = 0.0;
     Verdict critical = Verdict::no;
@@ -67,6 +68,17 @@ struct CriticalError {
     bool borderline = false;  ///< it may be none
 };
 
+/// How far the work is done at all, and by what the points are multiplied for it.
+struct Completeness {
+    std::string measure, unit;
+    measures::Selection of;
+    std::optional<double> value;
+    std::string reason;        ///< why there is no value: then nothing is taken off, and the teacher decides
+    double uncertainty = 0.0;  ///< half-width, 95 %
+    double factor = 1.0, leastFactor = 1.0, mostFactor = 1.0;
+    std::vector<measures::Evidence> evidence;
+};
+
 enum class Passed { yes, no, teacher };
 [[nodiscard]] std::string_view nameOf(Passed passed);
 
@@ -79,20 +91,24 @@ struct Assessment {
     double wholeScore = 0.0;                   ///< of all that the rubric grades on this device
     double leastScore = 0.0, mostScore = 0.0;  ///< 95 %, errors of the measures taken as independent
     Passed passed = Passed::teacher;
-    bool borderline = false;  ///< `passed` would change within the uncertainty
-    std::string why;          ///< of `passed`, in one sentence
+    bool borderline = false;                   ///< `passed` would change within the uncertainty
+    std::string why;                           ///< of `passed`, in one sentence
+    std::optional<Completeness> completeness;  ///< none: the rubric does not ask
     std::vector<CriticalError> critical;
     std::vector<CriterionScore> criteria;  ///< in the rubric's order
     std::vector<StepScore> steps;
     std::vector<RuleResult> rules;
 
     [[nodiscard]] double percent() const { return maxScore > 0.0 ? 100.0 * score / maxScore : 0.0; }
+    /// Points that are not given because the work is not done.
+    [[nodiscard]] double lostUndone() const;
 };
 
 /// Pure: same inputs, same bits, at any number of threads. What no measure can have and what is no number counts as not
-/// measured. Throws core::Error for a rubric that is not sound.
+/// measured. `given`: criteria whose points somebody gave who saw how far the work is done: no factor touches them.
+/// Throws core::Error for a rubric that is not sound.
 [[nodiscard]] Assessment evaluate(const rubric::Rubric& rubric, std::span<const measures::Measured> measured,
-                                  const Context& context);
+                                  const Context& context, std::span<const std::string> given = {});
 
 // Several attempts at the same: how good, how even, how it went on. Nothing is predicted from them.
 

@@ -14,6 +14,7 @@
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/exercise_table.h"
 #include "handpiece/model/case/package_type.h"
+#include "handpiece/model/instrument/rotor.h"
 
 namespace handpiece::tasks {
 namespace {
@@ -43,11 +44,33 @@ std::vector<std::byte> bytesOf(std::string_view text) {
     return {bytes.begin(), bytes.end()};
 }
 
+void readDrive(const Table& root, Task& task) {
+    task.drive = root.text("drive").value_or("");
+    task.speedRpm = root.number("speed_rpm");
+    const std::vector<instrument::Drive>& drives = instrument::drives();
+    const auto drive =
+        std::find_if(drives.begin(), drives.end(), [&](const instrument::Drive& d) { return d.name == task.drive; });
+    if (!task.drive.empty() && drive == drives.end()) {
+        std::vector<std::string> names;
+        for (const instrument::Drive& d : drives)
+            names.push_back(d.name);
+        root.fail(fmt::format("there is no drive \"{}\"", task.drive.substr(0, 64)),
+                  fmt::format("one of {}", fmt::join(names, ", ")), "drive");
+    }
+    if (!task.speedRpm) return;
+    if (task.drive.empty()) root.fail("a speed without a drive", "give drive, or leave speed_rpm out", "speed_rpm");
+    const double least = kLeastSpeedShare * drive->freeSpeedRpm;
+    if (!(*task.speedRpm >= least && *task.speedRpm <= drive->freeSpeedRpm))
+        root.fail(fmt::format("{} rpm", *task.speedRpm),
+                  fmt::format("{} turns at {:g} to {:g} rpm", task.drive, least, drive->freeSpeedRpm), "speed_rpm");
+}
+
 /// What exercise.toml says, but for case and rubric.
 Task parse(std::string_view text, const std::string& where) {
     const Table root = Table::parse(text, where);
     root.allowOnly({"format", "type", "id", "version", "voxel_um", "minutes", "minutes_hard", "live_bar",
-                    "own_judgement", "level", "rubric", "teacher_work", "exercise", "preparation"});
+                    "own_judgement", "level", "drive", "speed_rpm", "rubric", "teacher_work", "exercise",
+                    "preparation"});
     const std::int64_t format = root.integer("format").value_or(0);
     if (format != kFormatVersion)
         root.fail(fmt::format("this exercise is of format {}", format),
@@ -77,6 +100,7 @@ Task parse(std::string_view text, const std::string& where) {
     if (!task.level.empty() && std::find(kLevels.begin(), kLevels.end(), task.level) == kLevels.end())
         root.fail(fmt::format("\"{}\" is no level", task.level), fmt::format("one of {}", fmt::join(kLevels, ", ")),
                   "level");
+    readDrive(root, task);
     if (const auto rubric = root.text("rubric"); rubric && *rubric != kRubricFile)
         root.fail(fmt::format("the rubric is \"{}\"", *rubric), fmt::format("call the file {}", kRubricFile), "rubric");
     if (const auto work = root.text("teacher_work")) {
@@ -114,6 +138,8 @@ std::string tomlOf(const Task& task, bool isWhole) {
     if (task.hasLiveBar) out += "live_bar = true\n";
     if (!task.level.empty()) out += fmt::format("level = \"{}\"\n", task.level);
     if (task.ownJudgement) out += "own_judgement = true\n";
+    if (!task.drive.empty()) out += fmt::format("drive = \"{}\"\n", task.drive);
+    if (task.speedRpm) out += fmt::format("speed_rpm = {}\n", *task.speedRpm);
     if (!task.rubric.empty()) out += fmt::format("rubric = \"{}\"\n", kRubricFile);
     if (isWhole && task.teacherWork) out += fmt::format("teacher_work = \"{}\"\n", kTeacherWorkFile);
     if (task.preparation) out += "\n" + preparation::recipeToml(*task.preparation);

@@ -27,6 +27,8 @@ inline constexpr std::uint64_t kMaxTeacherWorkBytes = 64u << 20;
 inline constexpr const char* kZonesFile = "zones.bin";  ///< of recorded work
 /// For whom an exercise is, the easiest first.
 inline constexpr std::array<std::string_view, 4> kLevels = {"beginner", "basic", "intermediate", "advanced"};
+/// A drive can be set to no slower speed than this share of its free one.
+inline constexpr double kLeastSpeedShare = 0.02;
 
 struct Task {
     std::string id;                                  ///< small letters, digits, '-'; 1 to 64 of them
@@ -37,6 +39,8 @@ struct Task {
     std::string level;                               ///< of kLevels; empty: not said
     bool isTimeHard = false;                         ///< work ends with them; else one is told
     bool hasLiveBar = false;                         ///< what is removed of the target is shown during the work
+    std::string drive;                               ///< in hand at the beginning; empty: the student's choice
+    std::optional<double> speedRpm;                  ///< that it is set to then; none: its own. Only with a drive
     std::optional<preparation::Recipe> preparation;  ///< what is to be cut; none: nothing is asked
     bool ownJudgement = false;                       ///< a student says what they expect before they see the result
     std::string rubric;                              ///< how it is judged, as its TOML text; empty: it is not
@@ -60,8 +64,8 @@ struct Task {
 /// Into a folder, or as one .handpiece file; whole or not at all.
 void writeTask(const Task& task, const std::filesystem::path& path);
 
-/// What a score rests on: the case's surfaces and tissues, voxel, preparation. Not the texts, nor the teacher's
-/// work, nor the rubric, which has a hash of its own.
+/// What a score rests on: the case's surfaces and tissues, voxel, preparation. Not the texts, burs and drive, nor the
+/// teacher's work, nor the rubric, which has a hash of its own.
 [[nodiscard]] std::uint64_t contentHash(const Task& task);
 
 /// What is wrong with it that can be told without working it: the preparation does not lie on the tooth, or leaves

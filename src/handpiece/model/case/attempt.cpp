@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -14,6 +13,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
+#include "handpiece/base/core/hash_text.h"
 #include "handpiece/model/case/case_files.h"
 #include "handpiece/model/case/package_type.h"
 #include "handpiece/model/case/toml_text.h"
@@ -39,13 +39,9 @@ std::uint64_t hashOf(std::span<const std::byte> bytes) {
 }
 
 std::uint64_t hexOf(const Table& table, std::string_view key) {
-    const std::string text = table.text(key).value_or("");
-    std::uint64_t value = 0;
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value, 16);
-    if (text.size() != 16 || error != std::errc{} || stop != end)
-        table.fail(fmt::format("\"{}\" is not 16 hexadecimal digits", key), kRemedy, key);
-    return value;
+    const std::optional<std::uint64_t> value = core::readHash(table.text(key).value_or(""));
+    if (!value) table.fail(fmt::format("\"{}\" is not 16 hexadecimal digits", key), kRemedy, key);
+    return *value;
 }
 
 double amountOf(const Table& table, std::string_view key, double otherwise) {

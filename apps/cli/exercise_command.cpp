@@ -65,7 +65,7 @@ std::string text(const std::string& file) {
 /// By name or as a file; without one that which is made for the preparation.
 std::string rubricOf(const ExerciseOptions& o, const preparation::Recipe& recipe) {
     if (o.noRubric) return {};
-    if (o.rubric.empty()) return rubric::shippedTextFor(recipe.kind(), recipe.side);
+    if (o.rubric.empty()) return rubric::shippedTextFor(recipe.kind(), recipe.side, preparation::notAsked(recipe));
     const std::vector<std::string> shipped = rubric::shippedRubrics();
     const bool isName = std::find(shipped.begin(), shipped.end(), o.rubric) != shipped.end();
     std::string given = isName ? std::string(rubric::shippedRubricText(o.rubric)) : text(o.rubric);

@@ -19,6 +19,13 @@
 #include "desktop/features/editor/editor_feature.h"
 #include "desktop/features/editor/editor_pages.h"
 #include "desktop/picture/solid_view.h"
+#include "handpiece/app/assessment/score_work.h"
+#include "handpiece/app/course/finished_work.h"
+#include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/assess/task/target.h"
+#include "handpiece/model/case/attempt.h"
+#include "handpiece/model/dentition/tooth_form.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "shell_support.h"
 
 namespace handpiece::desktop {
@@ -92,6 +99,34 @@ class EditorTest : public ShellTest {
         if (folder.isEmpty()) return;
         QCoreApplication::processEvents();
         EXPECT_TRUE(editor().grab().save(QDir(folder).filePath(QLatin1String(name) + QStringLiteral(".png"))));
+    }
+    /// An attempt in which all that a preparation asks for is gone.
+    [[nodiscard]] QString idealWork(const cases::Case& on, const preparation::Recipe& recipe, double voxelMm,
+                                    const char* name) {
+        simulation::SimulationSettings settings;
+        settings.field = simulation::fieldSettingsAt(voxelMm);
+        const simulation::SimulationSetup station = simulation::makeSimulation(on, settings, false, {});
+        const tooth::StateDelta state = zones::idealState(*preparation::layOn(on, recipe).zones, station.tooth);
+        cases::Attempt attempt;
+        attempt.caseFile = toPath(own_.filePath(QLatin1String(name) + QStringLiteral("-case.handpiece")));
+        cases::writeCase(on, attempt.caseFile);
+        attempt.caseKey = cases::contentKey(on);
+        attempt.caseName = on.name;
+        attempt.state = tooth::encodeState(state, station.identity());
+        attempt.voxelMm = voxelMm;
+        attempt.removedMm3 = state.removedMm3.own;
+        attempt.bur = "330";
+        attempt.cuttingParameters = "carbide";
+        attempt.drive = "turbine";
+        const QString file = own_.filePath(QLatin1String(name) + QStringLiteral(".handpiece"));
+        cases::writeAttempt(attempt, toPath(file));
+        return file;
+    }
+    /// Of 100, as `handpiece score` gives them.
+    [[nodiscard]] static double points(const QString& work, const tasks::Task& task) {
+        const score::Result judged =
+            assessment::scoreWork(assessment::readWork(toPath(work), task), task, course::rubricOf(task));
+        return 100.0 * judged.assessment.score / judged.assessment.maxScore;
     }
     void beginBlock() {
         action("actionNewExercise")->trigger();
@@ -268,6 +303,233 @@ TEST_F(EditorTest, NumbersAreDraggedByHandlesInThePicture) {
     EXPECT_EQ(now().exercise.view->eyeMm, picture->camera().eyeMm);
     type(part<QDoubleSpinBox>("editorEyeZ"), "55");
     EXPECT_EQ(now().exercise.view->eyeMm.z(), 55.0);
+}
+
+TEST_F(EditorTest, ATargetIsPaintedInThePicture) {
+    startWithTooth();
+    beginBlock();
+    page(1);
+    choose("editorTemplate", part<QComboBox>("editorTemplate")->findData("painted"));
+    ASSERT_TRUE(settled());
+    EXPECT_TRUE(hasErrors()) << "nothing is painted";
+    EXPECT_EQ(now().rubric->id, "own-target");
+    EXPECT_FALSE(part<QComboBox>("editorBrush")->isHidden());
+    EXPECT_TRUE(part<QPushButton>("editorTakeWork")->isHidden());
+    auto* picture = part<SolidView>("editorPicture");
+    ASSERT_TRUE(waitFor([&] { return picture->isDrawn(); }));
+    const double top = now().tooth->outer.bounds().max.z();
+    const auto pixel = [&](const core::Vec3& place) {
+        const auto at = view::pixelOf(picture->camera(), {picture->width(), picture->height()}, place);
+        return QPointF(at->x(), at->y());
+    };
+    const auto stroke = [&](const core::Vec3& from, const core::Vec3& to) {
+        QTest::mousePress(picture, Qt::LeftButton, Qt::NoModifier, pixel(from).toPoint());
+        for (int i = 1; i <= 10; ++i) {
+            const QPointF at = pixel(from + 0.1 * i * (to - from));
+            QMouseEvent move(QEvent::MouseMove, at, picture->mapToGlobal(at), Qt::NoButton, Qt::LeftButton,
+                             Qt::NoModifier);
+            QApplication::sendEvent(picture, &move);
+        }
+        ASSERT_TRUE(waitFor([&] { return picture->isDrawn(); }));
+        look("painting");
+        QTest::mouseRelease(picture, Qt::LeftButton, Qt::NoModifier, pixel(to).toPoint());
+    };
+    const core::Vec3 eye = picture->camera().eyeMm;
+    type(part<QDoubleSpinBox>("editorBrushRadius"), "0.80");
+    stroke({-2.0, 0.0, top}, {2.0, 0.0, top});
+    ASSERT_EQ(now().preparation->strokes.size(), 1u);
+    EXPECT_EQ(now().preparation->strokes[0].radiusMm, 0.8);
+    EXPECT_GT(now().preparation->strokes[0].pointsMm.size(), 5u);
+    EXPECT_EQ(picture->camera().eyeMm, eye) << "the tooth does not turn under the brush";
+    for (const core::Vec3& p : now().preparation->strokes[0].pointsMm)
+        EXPECT_NEAR(p.z(), top, 1e-6);
+    ASSERT_TRUE(settled());
+    EXPECT_FALSE(hasErrors());
+    EXPECT_GT(editor().preparationPage()->glass().surfaces().size(), 0u);
+    const auto& zones = *editor().preparationPage()->glass().laid()->zones;
+    EXPECT_EQ(zones.at({1.0, 0.5, top - 0.5}), zones::Zone::target);
+    EXPECT_NE(zones.at({1.0, 1.5, top - 0.5}), zones::Zone::target);
+    ASSERT_TRUE(waitFor([&] { return picture->isDrawn(); }));
+    look("painted");
+    // A part of it is erased; a stroke is a step back.
+    choose("editorBrush", 1);
+    stroke({1.5, 0.0, top}, {2.0, 0.0, top});
+    ASSERT_EQ(now().preparation->strokes.size(), 2u);
+    EXPECT_TRUE(now().preparation->strokes[1].erases);
+    ASSERT_TRUE(settled());
+    EXPECT_NE(editor().preparationPage()->glass().laid()->zones->at({1.9, 0.0, top - 0.5}), zones::Zone::target);
+    press("editorUndo");
+    EXPECT_EQ(now().preparation->strokes.size(), 1u);
+    ASSERT_TRUE(settled());
+    // Beside the tooth, and when asked to, it turns.
+    choose("editorBrush", 2);
+    stroke({0.0, 0.0, top}, {1.0, 0.0, top});
+    EXPECT_EQ(now().preparation->strokes.size(), 1u);
+    EXPECT_GT((picture->camera().eyeMm - eye).norm(), 0.1);
+    // It is saved as data and comes back.
+    file_ = own_.filePath("painted.handpiece");
+    press("editorSaveAs");
+    const tasks::Task saved = tasks::readTask(toPath(file_));
+    EXPECT_EQ(saved.preparation, now().preparation);
+    EXPECT_NO_THROW(tasks::requireTarget(saved));
+    EXPECT_NEAR(points(idealWork(saved.toothCase, *saved.preparation, saved.voxelMm, "painted-ideal"), saved), 100.0,
+                1.0);
+    // A click beside the tooth paints nothing; another template forgets the paint, and a step back brings it back.
+    choose("editorBrush", 0);
+    const draft::Content before = now();
+    QTest::mousePress(picture, Qt::LeftButton, Qt::NoModifier, QPoint(3, 3));
+    QTest::mouseRelease(picture, Qt::LeftButton, Qt::NoModifier, QPoint(3, 3));
+    EXPECT_EQ(now().preparation, before.preparation);
+    for (int twice = 0; twice < 2; ++twice) {
+        choose("editorTemplate", part<QComboBox>("editorTemplate")->findData("block-cross"));
+        ASSERT_TRUE(settled());
+        EXPECT_TRUE(part<QComboBox>("editorBrush")->isHidden());
+        EXPECT_EQ(now().preparation->preparation, "block-cross");
+        press("editorUndo");
+        ASSERT_TRUE(settled());
+        EXPECT_EQ(now().preparation, before.preparation);
+    }
+    press("editorUndo");
+    ASSERT_TRUE(settled());
+    EXPECT_TRUE(hasErrors()) << "all strokes taken back";
+}
+
+TEST_F(EditorTest, ATeachersOwnWorkBecomesTheTarget) {
+    startWithTooth();
+    beginBlock();
+    // Work on this very block, at 100 um, and on another tooth.
+    preparation::Recipe cross;
+    cross.preparation = "block-cross";
+    const auto work = [&](const cases::Case& on, const char* name) { return idealWork(on, cross, 0.1, name); };
+    const QString own = work(*now().tooth, "own");
+    cases::Case other = *now().tooth;
+    for (core::Vec3& v : other.outer.vertices)
+        v.z() *= 1.01;
+    const QString foreign = work(other, "foreign");
+    page(1);
+    choose("editorTemplate", part<QComboBox>("editorTemplate")->findData("recorded-work"));
+    ASSERT_TRUE(settled());
+    EXPECT_TRUE(hasErrors()) << "no work yet";
+    for (const QString& bad : {foreign, own_.filePath("nothing.handpiece")}) {
+        file_ = bad;
+        press("editorTakeWork");
+        ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
+        window().errorDialog()->reject();
+        EXPECT_FALSE(now().preparation->recorded);
+        ASSERT_TRUE(settled());
+    }
+    file_ = own;
+    press("editorTakeWork");
+    ASSERT_TRUE(waitFor([this] { return now().preparation->recorded != nullptr; }));
+    ASSERT_TRUE(settled());
+    EXPECT_FALSE(hasErrors());
+    EXPECT_EQ(now().voxelMm, 0.1);
+    EXPECT_EQ(now().rubric->id, "own-target");
+    const auto& laid = *editor().preparationPage()->glass().laid();
+    const double top = now().tooth->outer.bounds().max.z();
+    EXPECT_EQ(laid.zones->at({2.0, 0.0, top - 1.0}), zones::Zone::target);
+    EXPECT_EQ(laid.zones->at({2.0, 0.0, top - 1.6}), zones::Zone::leewayFloor);
+    EXPECT_EQ(laid.zones->at({2.0, 2.0, top - 1.0}), zones::Zone::container);
+    auto* picture = part<SolidView>("editorPicture");
+    ASSERT_TRUE(waitFor([&] { return picture->isDrawn(); }));
+    look("recorded");
+    choose("editorLike", part<QComboBox>("editorLike")->findData("class-five"));
+    EXPECT_EQ(now().preparation->kind(), "class-five");
+    EXPECT_EQ(now().rubric->id, "33-class-v");
+    press("editorUndo");
+    file_ = own_.filePath("made-of-work.handpiece");
+    press("editorSaveAs");
+    const tasks::Task saved = tasks::readTask(toPath(file_));
+    EXPECT_EQ(saved.preparation->recorded->hash(), now().preparation->recordedHash);
+    EXPECT_NO_THROW(tasks::requireTarget(saved));
+    EXPECT_NEAR(points(own, saved), 100.0, 1.0) << "one's own work";
+    preparation::Recipe deeper = cross;
+    deeper.numbers = {{"depth_mm", 2.0}};
+    EXPECT_LT(points(idealWork(saved.toothCase, deeper, 0.1, "deeper"), saved), 80.0);
+    press("editorUndo");
+    EXPECT_FALSE(now().preparation->recorded);
+    ASSERT_TRUE(settled());
+}
+
+TEST_F(EditorTest, AnOnlayIsSetByItsHandlesAndTried) {
+    startWithTooth();
+    cases::Case molar;
+    static_cast<cases::Tooth&>(molar) = dentition::makeTooth(46, {1, 25.0}, {6000, 3000});
+    cases::Case incisor;
+    static_cast<cases::Tooth&>(incisor) = dentition::makeTooth(11, {1, 25.0}, {4000, 2000});
+    const QString molarFile = own_.filePath("molar.handpiece"), incisorFile = own_.filePath("incisor.handpiece");
+    cases::writeCase(molar, toPath(molarFile));
+    cases::writeCase(incisor, toPath(incisorFile));
+    action("actionNewExercise")->trigger();
+    // It does not lie on an incisor: one error.
+    file_ = incisorFile;
+    press("editorTakeCase");
+    ASSERT_TRUE(waitFor([this] { return now().tooth != nullptr; }));
+    page(1);
+    choose("editorTemplate", part<QComboBox>("editorTemplate")->findData("onlay"));
+    ASSERT_TRUE(settled());
+    const auto errors = [this] {
+        const auto& all = editor().problems();
+        return std::count_if(all.begin(), all.end(),
+                             [](const draft::Problem& p) { return p.severity == rubric::Severity::error; });
+    };
+    EXPECT_EQ(errors(), 1);
+    page(0);
+    file_ = molarFile;
+    press("editorTakeCase");
+    ASSERT_TRUE(waitFor([this] { return now().tooth->fdiNumber == 46; }));
+    page(1);
+    ASSERT_TRUE(settled());
+    EXPECT_EQ(errors(), 0);
+    EXPECT_EQ(now().rubric->id, "46-onlay");
+    EXPECT_NE(now().rubric->criterion("cusp-mesiobuccal"), nullptr);
+    EXPECT_EQ(now().rubric->criterion("cusp-mesiolingual"), nullptr);
+    // A cusp more: so does the rubric.
+    type(part<QDoubleSpinBox>("editorNumber_cap_mesiolingual_mm"), "1.50");
+    EXPECT_NE(now().rubric->criterion("cusp-mesiolingual"), nullptr);
+    ASSERT_TRUE(settled());
+    press("editorUndo");
+    ASSERT_TRUE(settled());
+    EXPECT_EQ(now().rubric->criterion("cusp-mesiolingual"), nullptr);
+    auto* picture = part<SolidView>("editorPicture");
+    const PreparationPage& shown = *editor().preparationPage();
+    ASSERT_TRUE(waitFor([&] { return picture->isDrawn() && !shown.handles().empty(); }));
+    look("onlay");
+    const auto at = std::find_if(shown.handles().begin(), shown.handles().end(),
+                                 [](const draft::Handle& h) { return h.number == "cap_mesiobuccal_mm"; });
+    ASSERT_NE(at, shown.handles().end());
+    const draft::Handle handle = *at;
+    const view::Viewport port{picture->width(), picture->height()};
+    const auto pixel = [&](const core::Vec3& place) {
+        const auto p = view::pixelOf(picture->camera(), port, place);
+        return QPointF(p->x(), p->y());
+    };
+    const QPointF from = pixel(handle.placeMm), to = pixel(handle.placeMm + 0.25 * handle.way);
+    QTest::mousePress(picture, Qt::LeftButton, Qt::NoModifier, from.toPoint());
+    for (const double share : {0.5, 1.0}) {
+        const QPointF there = from + share * (to - from);
+        QMouseEvent move(QEvent::MouseMove, there, picture->mapToGlobal(there), Qt::NoButton, Qt::LeftButton,
+                         Qt::NoModifier);
+        QApplication::sendEvent(picture, &move);
+    }
+    EXPECT_TRUE(picture->isDragging());
+    QTest::mouseRelease(picture, Qt::LeftButton, Qt::NoModifier, to.toPoint());
+    EXPECT_NEAR(now().preparation->number("cap_mesiobuccal_mm"), 2.0, 0.1);
+    ASSERT_TRUE(settled());
+    page(2);
+    type(part<QDoubleSpinBox>("editorVoxel"), "200");
+    page(4);
+    type(part<QLineEdit>("editorId"), "onlay-46");
+    ASSERT_TRUE(settled());
+    file_ = own_.filePath("onlay.handpiece");
+    press("editorSaveAs");
+    const tasks::Task saved = tasks::readTask(toPath(file_));
+    EXPECT_EQ(saved.preparation, now().preparation);
+    EXPECT_NO_THROW(tasks::requireTarget(saved));
+    ASSERT_TRUE(settled());
+    press("editorTry");
+    ASSERT_TRUE(waitFor([this] { return simulator().task() && !simulator().isBusy(); }));
+    EXPECT_EQ(simulator().task()->id, "onlay-46");
 }
 
 TEST_F(EditorTest, AllOfARubricHasItsField) {

@@ -46,6 +46,43 @@ class Exercise(SystemTest):
         self.ok("case", "info", self.folder / "two" / "case")
         self.ok("picture", self.folder / "ideal", "--size", "64x48", "--out", self.folder / "ideal.png")
 
+    def test_an_onlay_is_judged_by_its_cusps(self):
+        self.ok("make", "tooth", "--fdi", 46, "--faces", 8000, "--out", self.folder / "molar")
+
+        def onlay(name, capMm, *more):
+            self.ok("exercise", "new", "--case", self.folder / "molar", "--id", name, "--voxel", 100, "--preparation", "onlay", "--side", "mesial",
+                    "--set", f"cap_mesiobuccal_mm={capMm}", "--set", f"cap_distobuccal_mm={capMm}", *more, "--out", self.folder / name)
+            self.ok("exercise", "ideal", self.folder / name, "--out", self.folder / f"{name}-work")
+            return self.folder / f"{name}-work"
+
+        ideal = onlay("asked", 1.75)
+        self.assertEqual(json.loads(self.ok("exercise", "check", self.folder / "asked", "--json").stdout)["problems"], [])
+
+        def lost(work):
+            """Points that were not given, by criterion."""
+            told = json.loads(self.ok("score", work, "--exercise", self.folder / "asked", "--json").stdout)
+            return {c["id"]: round(c["max_points"] - c["points"], 2) for c in told["criteria"] if c["max_points"] and c["points"] != c["max_points"]}, told
+
+        none, told = lost(ideal)
+        self.assertEqual(none, {})
+        self.assertEqual(told["max_score"], 100)
+        value = {c["id"]: c["value"] for c in told["criteria"]}
+        self.assertAlmostEqual(value["cusp-mesiobuccal"], 1.75, delta=0.01)
+        self.assertAlmostEqual(value["cusp-distobuccal"], 1.75, delta=0.01)
+        self.assertAlmostEqual(value["wall-lingual"], 6.0, delta=0.5)
+        self.assertNotIn("cusp-mesiolingual", value)
+        self.assertEqual(told["passed"], "teacher", "no tooth stands beside it")
+        short, _ = lost(onlay("short", 1.35))
+        self.assertEqual(set(short), {"outline", "cusp-mesiobuccal", "cusp-distobuccal"})
+        deep, _ = lost(onlay("deep", 2.15))
+        # So deep the cap cuts into the floor beside it, too.
+        self.assertEqual(set(deep), {"cusp-mesiobuccal", "cusp-distobuccal", "shoulder-buccal", "floor"})
+        self.refused("exercise", "new", "--case", self.folder / "molar", "--id", "low", "--preparation", "onlay", "--side", "mesial", "--set",
+                     "cap_mesiobuccal_mm=9", "--out", self.folder / "low", mentions=("0 to 3",))
+        self.ok("make", "tooth", "--fdi", 11, "--faces", 4000, "--out", self.folder / "incisor")
+        self.refused("exercise", "new", "--case", self.folder / "incisor", "--id", "no", "--preparation", "onlay", "--side", "mesial", "--out",
+                     self.folder / "no", mentions=("fissure",))
+
     def test_what_is_wrong_is_told_in_one_line_and_nothing_is_written(self):
         block = self.block("--kind", "line")
         new = ("exercise", "new", "--case", block / "case", "--id", "x", "--out", self.folder / "x")

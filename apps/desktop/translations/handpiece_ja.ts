@@ -2864,6 +2864,50 @@
         <source>It may go in without marks.</source>
         <translation>評価なしで確定できます。</translation>
     </message>
+    <message>
+        <source>The margin of a capped cusp would lie under the cemento-enamel junction.</source>
+        <translation>被覆咬頭のマージンがセメント・エナメル境より下になります。</translation>
+    </message>
+    <message>
+        <source>Take less off the cusp, or make the shoulder lower.</source>
+        <translation>咬頭の削除量またはショルダーの高さを減らしてください。</translation>
+    </message>
+    <message>
+        <source>The recorded work of the exercise is not there.</source>
+        <translation>課題の記録された形成がありません。</translation>
+    </message>
+    <message>
+        <source>Take the work in the editor, or open the exercise's own folder or file.</source>
+        <translation>編集画面で形成を取り込むか、課題自身のフォルダーまたはファイルを開いてください。</translation>
+    </message>
+    <message>
+        <source>Nothing is painted.</source>
+        <translation>何も塗られていません。</translation>
+    </message>
+    <message>
+        <source>Paint on the tooth with the left button.</source>
+        <translation>左ボタンで歯の上を塗ってください。</translation>
+    </message>
+    <message>
+        <source>Choose work on this tooth, or begin a new exercise.</source>
+        <translation>この歯の形成を選ぶか、新しい課題を作ってください。</translation>
+    </message>
+    <message>
+        <source>Nothing was cut in this work.</source>
+        <translation>この作業では何も切削されていません。</translation>
+    </message>
+    <message>
+        <source>Choose work in which the target was cut.</source>
+        <translation>目標を切削した作業を選んでください。</translation>
+    </message>
+    <message>
+        <source>This file is neither a session nor an attempt.</source>
+        <translation>このファイルは記録でも保存した作業でもありません。</translation>
+    </message>
+    <message>
+        <source>Choose a saved attempt, or a session (.h5).</source>
+        <translation>保存した作業か記録 (.h5) を選んでください。</translation>
+    </message>
 </context>
 <context>
     <name>Pulp</name>
@@ -9540,6 +9584,34 @@ lingual: %4</source>
         <source>Kept of the labial surface</source>
         <translation>唇側面に残す厚さ</translation>
     </message>
+    <message>
+        <source>Onlay</source>
+        <translation>アンレー</translation>
+    </message>
+    <message>
+        <source>Axial depth of the other box</source>
+        <translation>反対側のボックスの軸側の深さ</translation>
+    </message>
+    <message>
+        <source>Off the mesiobuccal cusp</source>
+        <translation>近心頬側咬頭の削除量</translation>
+    </message>
+    <message>
+        <source>Off the distobuccal cusp</source>
+        <translation>遠心頬側咬頭の削除量</translation>
+    </message>
+    <message>
+        <source>Off the mesiolingual cusp</source>
+        <translation>近心舌側咬頭の削除量</translation>
+    </message>
+    <message>
+        <source>Off the distolingual cusp</source>
+        <translation>遠心舌側咬頭の削除量</translation>
+    </message>
+    <message>
+        <source>Shoulder under the capped cusps</source>
+        <translation>被覆咬頭の下のショルダーまで</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::EditorDialog</name>
@@ -9714,6 +9786,18 @@ lingual: %4</source>
         <source>It is cut again...</source>
         <translation>切削し直しています...</translation>
     </message>
+    <message>
+        <source>Work that becomes the target</source>
+        <translation>目標にする形成</translation>
+    </message>
+    <message>
+        <source>Attempts and sessions (*.handpiece *.h5);;All files (*)</source>
+        <translation>作業と記録 (*.handpiece *.h5);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Reading the work...</source>
+        <translation>形成を読み込み中...</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::PreparationPage</name>
@@ -9816,6 +9900,70 @@ lingual: %4</source>
     <message>
         <source>Back to its numbers</source>
         <translation>数値に戻る</translation>
+    </message>
+    <message>
+        <source>Take work...</source>
+        <translation>形成を取り込む...</translation>
+    </message>
+    <message>
+        <source>Take work</source>
+        <translation>形成を取り込む</translation>
+    </message>
+    <message>
+        <source>A session or an attempt: what was cut in it is the target, in the voxel it was cut in</source>
+        <translation>記録または保存した作業：そこで切削された部分が、切削時のボクセルのまま目標になる</translation>
+    </message>
+    <message>
+        <source>Judged as</source>
+        <translation>評価の種類</translation>
+    </message>
+    <message>
+        <source>Says how it is measured, and which rubric comes along</source>
+        <translation>測定の方法と、付属するルーブリックを決める</translation>
+    </message>
+    <message>
+        <source>nothing of these</source>
+        <translation>いずれでもない</translation>
+    </message>
+    <message>
+        <source>Left button</source>
+        <translation>左ボタン</translation>
+    </message>
+    <message>
+        <source>On the tooth; beside it: turn</source>
+        <translation>歯の上での働き。歯の外では回転</translation>
+    </message>
+    <message>
+        <source>paints</source>
+        <translation>塗る</translation>
+    </message>
+    <message>
+        <source>erases</source>
+        <translation>消す</translation>
+    </message>
+    <message>
+        <source>turns the tooth</source>
+        <translation>歯を回転する</translation>
+    </message>
+    <message>
+        <source>Radius of the brush</source>
+        <translation>ブラシの半径</translation>
+    </message>
+    <message>
+        <source>Green is to go, orange must stay: paint on with the left button</source>
+        <translation>緑は削る部分、橙は残す部分：左ボタンで続けて塗る</translation>
+    </message>
+    <message>
+        <source>Green is to go, orange must stay</source>
+        <translation>緑は削る部分、橙は残す部分</translation>
+    </message>
+    <message>
+        <source>Paint on the tooth with the left button</source>
+        <translation>左ボタンで歯の上を塗る</translation>
+    </message>
+    <message>
+        <source>Take the work whose cut is the target</source>
+        <translation>切削が目標となる形成を取り込む</translation>
     </message>
 </context>
 <context>

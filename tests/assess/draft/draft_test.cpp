@@ -76,6 +76,32 @@ TEST(Draft, ATemplateBringsItsRubricUntilThatIsChanged) {
     EXPECT_FALSE(withTemplate(block(), "").preparation);
 }
 
+TEST(Draft, TheRubricOfAnOnlayFollowsWhatIsAskedFor) {
+    Content content = withTemplate(Content{}, "onlay");
+    const auto has = [&](const char* id) { return content.rubric->criterion(id) != nullptr; };
+    EXPECT_TRUE(has("cusp-mesiobuccal") && has("cusp-distobuccal") && has("shoulder-buccal") && has("wall-lingual") &&
+                has("axial-depth"));
+    EXPECT_FALSE(has("cusp-mesiolingual") || has("shoulder-lingual") || has("wall-buccal") || has("other-axial-depth"));
+    double weights = 0.0;
+    for (const rubric::Criterion& c : content.rubric->criteria)
+        weights += c.weight;
+    EXPECT_EQ(weights, 100.0);
+    content = withNumber(std::move(content), "cap_mesiolingual_mm", 1.5);
+    content = withNumber(std::move(content), "axial_mm", 0.0);
+    EXPECT_TRUE(has("cusp-mesiolingual") && has("shoulder-lingual") && has("wall-lingual"));
+    EXPECT_FALSE(has("axial-depth"));
+    content.rubric->criteria.front().weight = 1.0;
+    const auto changed = *content.rubric;
+    content = withNumber(std::move(content), "axial_mm", 1.5);
+    EXPECT_FALSE(has("axial-depth")) << "one that was changed stays";
+    EXPECT_EQ(content.rubric->criteria.size(), changed.criteria.size());
+    // The other side: boxes change over, cusps do not.
+    content = withSide(withTemplate(Content{}, "onlay"), "distal");
+    EXPECT_EQ(content.rubric->criterion("axial-depth")->of.side, "distal");
+    EXPECT_EQ(content.rubric->criterion("cusp-mesiobuccal")->of.side, "mesiobuccal-cusp");
+    EXPECT_EQ(content.rubric->criterion("cusp-mesiobuccal")->title.at("ja"), "近心頬側咬頭の削除量");
+}
+
 TEST(Draft, PaintIsStrokesThatAreStepsBack) {
     Draft draft;
     draft.begin(block());

@@ -101,6 +101,47 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
+TEST(HandlesOfAnOnlay, LieWhereACuspIsTakenDownTo) {
+    for (const int fdi : {46, 45, 26}) {
+        SCOPED_TRACE(fdi);
+        const cases::Tooth& tooth = toothOf(fdi);
+        Recipe recipe = recipeOf("onlay", "mesial");
+        recipe.numbers = {{"ridge_mm", 1.2}, {"width_mm", 1.2}, {"box_width_mm", 3.0}, {"other_axial_mm", 1.2}};
+        for (const char* cap :
+             {"cap_mesiobuccal_mm", "cap_distobuccal_mm", "cap_mesiolingual_mm", "cap_distolingual_mm"})
+            recipe.numbers[cap] = 1.5;
+        const Laid laid = preparation::layOn(tooth, recipe);
+        const std::vector<Handle> handles = handlesOf(tooth, recipe, laid);
+        for (const preparation::Parameter& p : preparation::findTemplate("onlay")->parameters)
+            EXPECT_TRUE(find(handles, p.name)) << p.name;
+        for (const Handle& handle : handles) {
+            const std::string name(handle.number);
+            if (!name.starts_with("cap_") && name != "shoulder_mm") continue;
+            SCOPED_TRACE(name);
+            EXPECT_NEAR(laid.zones->targetMm(handle.placeMm), 0.0, 0.03);
+            for (const double movedMm : {0.2, -0.2}) {
+                Recipe next = recipe;
+                next.numbers[name] = valueOf(handle, recipe, movedMm);
+                const Laid again = preparation::layOn(tooth, next, laid.whole);
+                const double meantMm = (next.number(name) - recipe.number(name)) / handle.perMm;
+                EXPECT_NEAR(again.zones->targetMm(handle.placeMm + meantMm * handle.way), 0.0, 0.06);
+            }
+        }
+        // Nothing is capped, no box: numbers can be drawn out of the tooth.
+        for (auto& [name, value] : recipe.numbers)
+            if (name.starts_with("cap_") || name == "other_axial_mm") value = 0.0;
+        recipe.numbers["axial_mm"] = 0.0;
+        const Laid plain = preparation::layOn(tooth, recipe);
+        const std::vector<Handle> all = handlesOf(tooth, recipe, plain);
+        for (const char* name : {"cap_mesiobuccal_mm", "cap_distolingual_mm", "axial_mm", "other_axial_mm"}) {
+            const Handle* handle = find(all, name);
+            ASSERT_TRUE(handle) << name;
+            EXPECT_NEAR(plain.whole->signedDistance(handle->placeMm), 0.0, 0.1) << name;
+            EXPECT_GT(valueOf(*handle, recipe, 1.0), 0.2) << name;
+        }
+    }
+}
+
 TEST(HandlesOfALesion, StandOverThePulp) {
     cases::Tooth carious = toothOf(46);
     lesion::addLesions(carious, lesion::lesionsByName("occlusal:D3"));

@@ -204,6 +204,131 @@ TEST(Preparation, ClassThreeAndFiveAndAccessAndCrownLieWhereTheyShould) {
     }
 }
 
+TEST(Preparation, AnOnlayKeepsItsMarginOverTheCervix) {
+    cases::Tooth tooth = toothOf(46);
+    Recipe recipe = recipeOf("onlay", "mesial");
+    recipe.numbers = {{"cap_mesiobuccal_mm", 3.0}, {"shoulder_mm", 3.0}};
+    EXPECT_NO_THROW((void)layOn(tooth, recipe));
+    for (cases::Landmark& mark : tooth.landmarks)
+        if (mark.kind == cases::LandmarkKind::cementoEnamelJunction)
+            for (Vec3& p : mark.pointsMm)
+                p.z() += 2.0;
+    EXPECT_NE(test::errorOf([&] { (void)layOn(tooth, recipe); }).find("cemento-enamel junction"), std::string::npos);
+    recipe.numbers["shoulder_mm"] = 0.5;
+    EXPECT_NO_THROW((void)layOn(tooth, recipe));
+}
+
+struct OnlayOn {
+    int fdi;
+    const char *side, *capped, *left;
+    std::map<std::string, double, std::less<>> numbers{};
+};
+void PrintTo(const OnlayOn& one, std::ostream* out) {
+    *out << one.fdi << ' ' << one.side;
+}
+class Onlay : public ::testing::TestWithParam<OnlayOn> {};
+
+TEST_P(Onlay, CapsTheCuspsThatAreAskedForAndCanBeDrawnOff) {
+    const OnlayOn& one = GetParam();
+    const cases::Tooth& tooth = toothOf(one.fdi);
+    Recipe recipe = recipeOf("onlay", one.side);
+    recipe.numbers = one.numbers;
+    const Laid laid = layOn(tooth, recipe);
+    // Everywhere about a capped tip as deep as asked, the shortest way, and no deeper; another stays.
+    const bool isBuccal = std::string_view(one.capped).ends_with("buccal");
+    const double cap = recipe.number(isBuccal ? "cap_mesiobuccal_mm" : "cap_mesiolingual_mm");
+    int seen = 0;
+    for (const cases::Landmark& mark : tooth.landmarks) {
+        if (mark.kind == cases::LandmarkKind::cuspTip && mark.name == one.capped) {
+            ++seen;
+            for (const double way : {0.0, 0.4, -0.4}) {
+                const Vec3 over = mark.pointsMm.front() + Vec3(way, 0.0, 20.0);
+                const Vec3 top = over - laid.whole->firstMeeting(over, -Vec3::UnitZ()).distanceMm * Vec3::UnitZ();
+                Vec3 p = top;
+                while (-laid.whole->signedDistance(p) < cap - 0.05)
+                    p.z() -= 0.01;
+                EXPECT_EQ(laid.zones->at(p), zones::Zone::target);
+                while (-laid.whole->signedDistance(p) < cap + 0.05)
+                    p.z() -= 0.01;
+                EXPECT_NE(laid.zones->at(p), zones::Zone::target);
+            }
+        }
+        if (mark.kind == cases::LandmarkKind::cuspTip && mark.name == one.left) {
+            ++seen;
+            EXPECT_NE(laid.zones->at(mark.pointsMm.front() - Vec3(0.0, 0.0, 0.2)), zones::Zone::target);
+        }
+        if (mark.kind == cases::LandmarkKind::contact) {
+            const Vec3 in = mark.pointsMm.front() + Vec3(mark.name == "mesial" ? -0.3 : 0.3, 0, 0);
+            // Under what goes with a cusp: a box reaches farther down than that.
+            const Vec3 under = in - Vec3(0.0, 0.0, recipe.number("under_contact_mm") - 0.2);
+            const bool isAsked = recipe.number(mark.name == one.side ? "axial_mm" : "other_axial_mm") > 0.0;
+            EXPECT_EQ(laid.zones->at(under) == zones::Zone::target, isAsked) << mark.name;
+        }
+    }
+    EXPECT_EQ(seen, *one.left == '\0' ? 1 : 2);
+    // It can be drawn off: nothing that is left hangs over what is gone.
+    const Sampled s = sampled(laid, 0.3);
+    EXPECT_GT(s.targetMm3, one.fdi % 10 < 6 ? 15.0 : 40.0);
+    int over = 0, columns = 0;
+    const core::Box& box = laid.whole->bounds();
+    for (double x = box.min.x(); x < box.max.x(); x += 0.3)
+        for (double y = box.min.y(); y < box.max.y(); y += 0.3) {
+            bool wasGone = false;
+            ++columns;
+            for (double z = s.box.min.z() - 0.2; z < box.max.z(); z += 0.1) {
+                const Vec3 p(x, y, z);
+                const double outMm = laid.whole->signedDistance(p);
+                if (outMm >= 0.0) continue;
+                const bool isGone = laid.zones->targetMm(p) < 0.0;
+                if (!isGone && wasGone) {
+                    ++over;
+                    fmt::print("overhangs at {:.2f} {:.2f} {:.2f}, {:.3f} under the surface, {:.3f} off the target\n",
+                               x, y, z, -outMm, laid.zones->targetMm(p));
+                }
+                wasGone = wasGone || isGone;
+            }
+        }
+    EXPECT_LE(over, columns / 500);
+    fmt::print("onlay of {}: {:.1f} mm3, {} of {} columns overhang\n", one.fdi, s.targetMm3, over, columns);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Teeth, Onlay,
+    ::testing::Values(
+        OnlayOn{46, "mesial", "mesiobuccal", "mesiolingual"}, OnlayOn{36, "distal", "distobuccal", "distolingual"},
+        OnlayOn{45, "mesial", "buccal", "mesiolingual", {{"ridge_mm", 1.2}, {"width_mm", 1.2}, {"box_width_mm", 3.0}}},
+        // Functional cusps of upper teeth: palatal; both boxes; all cusps; no box.
+        OnlayOn{26,
+                "mesial",
+                "mesiopalatal",
+                "mesiobuccal",
+                {{"cap_mesiobuccal_mm", 0.0},
+                 {"cap_distobuccal_mm", 0.0},
+                 {"cap_mesiolingual_mm", 2.0},
+                 {"cap_distolingual_mm", 2.0}}},
+        OnlayOn{15,
+                "distal",
+                "palatal",
+                "buccal",
+                {{"ridge_mm", 1.2},
+                 {"width_mm", 1.2},
+                 {"box_width_mm", 3.0},
+                 {"other_axial_mm", 1.2},
+                 {"axial_mm", 1.2},
+                 {"cap_mesiobuccal_mm", 0.0},
+                 {"cap_distobuccal_mm", 0.0},
+                 {"cap_mesiolingual_mm", 1.5},
+                 {"cap_distolingual_mm", 1.5}}},
+        OnlayOn{46,
+                "mesial",
+                "distobuccal",
+                "",
+                {{"axial_mm", 0.0},
+                 {"cap_mesiobuccal_mm", 2.0},
+                 {"cap_distobuccal_mm", 2.0},
+                 {"cap_mesiolingual_mm", 1.5},
+                 {"cap_distolingual_mm", 1.5}}}));
+
 TEST(Preparation, LesionIsTheCariousTissueShortOfThePulp) {
     cases::Case toothCase = starter::makeBlock(starter::BlockLayers::carious);
     const Laid laid = layOn(toothCase, recipeOf("lesion"));

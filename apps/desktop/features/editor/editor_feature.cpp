@@ -14,6 +14,7 @@
 #include "desktop/work/simulator.h"
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/course/finished_work.h"
+#include "handpiece/app/simulation/tissue_export.h"
 #include "handpiece/model/starter/block.h"
 
 namespace handpiece::desktop {
@@ -122,6 +123,7 @@ void EditorFeature::connectDialog() {
     });
     connect(dialog_->preparationPage(), &PreparationPage::idealRequested, this, &EditorFeature::cutIdeal);
     connect(dialog_->workPage(), &WorkPage::teacherWorkRequested, this, &EditorFeature::takeTeacherWork);
+    connect(dialog_->preparationPage(), &PreparationPage::workRequested, this, &EditorFeature::takeWork);
     connect(dialog_->toothPage(), &ToothPage::starterRequested, this, &EditorFeature::takeStarter);
     connect(dialog_->toothPage(), &ToothPage::caseRequested, this, &EditorFeature::takeCase);
     connect(dialog_->toothPage(), &ToothPage::blockRequested, this, [this](int layers) {
@@ -221,6 +223,46 @@ void EditorFeature::takeTeacherWork() {
     });
     connect(proving_.get(), &Job::cancelled, this, end);
     proving_->start();
+}
+
+void EditorFeature::takeWork() {
+    if (making_) return;
+    const QString file = window_.questions.open(tr("Work that becomes the target"),
+                                                tr("Attempts and sessions (*.handpiece *.h5);;All files (*)"));
+    if (file.isEmpty()) return;
+    const auto next = std::make_shared<draft::Content>(dialog_->draft().now());
+    making_ =
+        std::make_unique<Job>(tr("Reading the work..."), [path = toPath(file), next](const core::Progress& progress) {
+            const std::optional<simulation::CutTeeth> cut = simulation::readCutTeeth(path, {}, true, progress);
+            if (!cut)
+                throw core::Error("this is neither a session nor an attempt", path.string(),
+                                  "name session.h5, or an attempt's folder or .handpiece file")
+                    .as("no-work");
+            tooth::ToothMirror mirror(cut->teeth.front());
+            mirror.apply(cut->state);
+            auto toothCase = std::make_shared<cases::Case>(cut->toothCase);
+            toothCase->exercise.reset();
+            auto work = std::make_shared<const preparation::RecordedWork>(
+                preparation::recordWork(mirror, cut->toothCase.buccalSign));
+            *next = draft::withWork(std::move(*next), std::move(toothCase), std::move(work));
+        });
+    dialog_->toothPage()->setWork(tr("Reading the work..."));
+    dialog_->preparationPage()->setEnabled(false);
+    const auto end = [this] {
+        making_.release()->deleteLater();
+        dialog_->toothPage()->setWork({});
+        dialog_->preparationPage()->setEnabled(true);
+    };
+    connect(making_.get(), &Job::done, this, [this, end, next] {
+        end();
+        dialog_->change("", [&](draft::Content& c) { c = std::move(*next); });
+    });
+    connect(making_.get(), &Job::failed, this, [this, end](const Problem& problem) {
+        end();
+        window_.showProblem(problem);
+    });
+    connect(making_.get(), &Job::cancelled, this, end);
+    making_->start();
 }
 
 /// One look at a time; what changed meanwhile is looked at after it.

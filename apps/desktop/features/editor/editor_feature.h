@@ -43,6 +43,7 @@ class EditorFeature : public Feature {
     void takeStarter(int fdi, int seed);
     void takeCase();
     void takeTeacherWork();
+    void takeWork();
     void check();
     void cutIdeal();
     /// To where it is; elsewhere is asked. False: it was not saved.

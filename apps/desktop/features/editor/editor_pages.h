@@ -9,6 +9,7 @@
 #include "desktop/features/editor/editor_page.h"
 #include "desktop/work/zone_glass.h"
 #include "handpiece/assess/draft/handles.h"
+#include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/senses/view/camera.h"
 
 class QCheckBox;
@@ -69,13 +70,24 @@ class PreparationPage : public EditorPage {
 
   signals:
     void idealRequested();
+    /// Work shall become what is asked for.
+    void workRequested();
 
   protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
     void showEvent(QShowEvent* event) override;
 
   private:
     enum class Shown { nothing, task, ideal };
     void connectPicture();
+    void makeOwn();
+    [[nodiscard]] bool isPainted() const;
+    /// A target of one's own that has no shape yet.
+    [[nodiscard]] bool isBlank() const;
+    /// Where the pointer meets the tooth.
+    [[nodiscard]] std::optional<core::Vec3> under(const QPointF& pointer);
+    /// The brush as far as it has come, over the glass that is there.
+    void showStroke();
     void showNumbers(const preparation::Template* of);
     void showField(std::string_view name, double value);
     /// Tooth and glass, where the page is seen and they are others than before.
@@ -95,8 +107,13 @@ class PreparationPage : public EditorPage {
     ZoneGlass glass_;
     std::vector<draft::Handle> handles_;
     std::optional<draft::Handle> dragged_;  ///< as it was when it was taken
-    QComboBox *template_, *side_;
-    QLabel* sideLabel_;
+    QComboBox *template_, *side_, *like_, *brush_;
+    QLabel *sideLabel_, *likeLabel_, *brushLabel_, *radiusLabel_;
+    QPushButton* work_;
+    QDoubleSpinBox* radius_;
+    std::shared_ptr<const cases::Case> brushed_;            ///< of the tree
+    std::shared_ptr<const geometry::TriangleTree> canvas_;  ///< of its surface
+    std::optional<preparation::BrushStroke> stroke_;        ///< while it is being painted
     QWidget* numbers_ = nullptr;
     QFormLayout* form_;
     std::string shown_ = "?";  ///< the template whose numbers are there

@@ -25,6 +25,7 @@ constexpr std::pair<std::string_view, const char*> kTemplates[] = {
     {"class-two", QT_TRANSLATE_NOOP("Preparation", "Class II cavity")},
     {"crown", QT_TRANSLATE_NOOP("Preparation", "Full crown")},
     {"lesion", QT_TRANSLATE_NOOP("Preparation", "Removal of carious tissue")},
+    {"onlay", QT_TRANSLATE_NOOP("Preparation", "Onlay")},
     {"painted", QT_TRANSLATE_NOOP("Preparation", "As painted")},
     {"recorded-work", QT_TRANSLATE_NOOP("Preparation", "As in recorded work")},
 };
@@ -38,6 +39,7 @@ constexpr std::pair<std::string_view, const char*> kParameters[] = {
     {"ridge_mm", QT_TRANSLATE_NOOP("Preparation", "Left of marginal ridges and walls")},
     {"wall_deg", QT_TRANSLATE_NOOP("Preparation", "Wall angle")},
     {"axial_mm", QT_TRANSLATE_NOOP("Preparation", "Axial depth")},
+    {"other_axial_mm", QT_TRANSLATE_NOOP("Preparation", "Axial depth of the other box")},
     {"box_width_mm", QT_TRANSLATE_NOOP("Preparation", "Width of the box")},
     {"under_contact_mm", QT_TRANSLATE_NOOP("Preparation", "Gingival floor under the contact")},
     {"labial_mm", QT_TRANSLATE_NOOP("Preparation", "Kept of the labial surface")},
@@ -47,6 +49,11 @@ constexpr std::pair<std::string_view, const char*> kParameters[] = {
     {"margin_mm", QT_TRANSLATE_NOOP("Preparation", "Width of the margin")},
     {"convergence_deg", QT_TRANSLATE_NOOP("Preparation", "Total occlusal convergence")},
     {"round_mm", QT_TRANSLATE_NOOP("Preparation", "Round horns and orifices")},
+    {"cap_mesiobuccal_mm", QT_TRANSLATE_NOOP("Preparation", "Off the mesiobuccal cusp")},
+    {"cap_distobuccal_mm", QT_TRANSLATE_NOOP("Preparation", "Off the distobuccal cusp")},
+    {"cap_mesiolingual_mm", QT_TRANSLATE_NOOP("Preparation", "Off the mesiolingual cusp")},
+    {"cap_distolingual_mm", QT_TRANSLATE_NOOP("Preparation", "Off the distolingual cusp")},
+    {"shoulder_mm", QT_TRANSLATE_NOOP("Preparation", "Shoulder under the capped cusps")},
     {"over_pulp_mm", QT_TRANSLATE_NOOP("Preparation", "Carious tissue left over the pulp")},
 };
 

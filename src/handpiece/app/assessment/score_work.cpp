@@ -415,6 +415,8 @@ MeasuredWork measureWork(const Work& work, const tasks::Task& task, std::span<co
         laid = preparation::layOn(toothCase, *task.preparation);
         preparation.axes.draw = laid->draw;
         if (task.preparation->kind() == "crown") preparation.form = measures::Form::crown;
+        // What is capped faces away from what is hollowed.
+        if (task.preparation->kind() == "onlay") preparation.form = measures::Form::cavity, preparation.isCapped = true;
         preparation.zones = laid->zones.get();
     }
 

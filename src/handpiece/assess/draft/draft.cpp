@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/assess/draft/draft.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -13,7 +15,8 @@ namespace {
 constexpr const char* kRubricHere = "the rubric";
 
 std::string proposedText(const std::optional<preparation::Recipe>& recipe) {
-    return recipe ? rubric::shippedTextFor(recipe->kind(), recipe->side) : std::string();
+    if (!recipe) return {};
+    return rubric::shippedTextFor(recipe->kind(), recipe->side, preparation::notAsked(*recipe));
 }
 
 void propose(Content& content) {
@@ -108,6 +111,47 @@ Content withSide(Content content, std::string_view side) {
     content.preparation->side = side;
     if (follows) propose(content);
     return content;
+}
+
+Content withNumber(Content content, std::string_view name, double value) {
+    if (!content.preparation) return content;
+    // Most numbers change nothing of the rubric.
+    const auto before = preparation::notAsked(*content.preparation);
+    Content next = content;
+    next.preparation->numbers[std::string(name)] = value;
+    if (preparation::notAsked(*next.preparation) != before && content.rubric && hasProposedRubric(content))
+        propose(next);
+    return next;
+}
+
+Content withLike(Content content, std::string_view id) {
+    if (!content.preparation) return content;
+    const bool follows = hasProposedRubric(content);
+    preparation::Recipe& recipe = *content.preparation;
+    const preparation::Template* like = preparation::findTemplate(id);
+    recipe.like = like != nullptr ? id : std::string_view();
+    if (like == nullptr || !like->hasSide)
+        recipe.side.clear();
+    else if (recipe.side.empty())
+        recipe.side = "mesial";
+    if (follows) propose(content);
+    return content;
+}
+
+Content withWork(Content content, std::shared_ptr<const cases::Case> tooth,
+                 std::shared_ptr<const preparation::RecordedWork> work) {
+    if (content.tooth && cases::caseKey(*content.tooth) != cases::caseKey(*tooth))
+        throw core::Error(fmt::format("this is work on another tooth than the exercise's: {}", tooth->name),
+                          "recorded work", fmt::format("name work on {}, or begin a new exercise", content.tooth->name))
+            .as("work-of-another-tooth");
+    const std::string before = content.preparation ? content.preparation->kind() : std::string();
+    content = withTemplate(std::move(content), preparation::kRecordedTemplate);
+    if (!content.tooth) content.tooth = std::move(tooth);
+    content.voxelMm = work->voxelMm;
+    content.preparation->recordedHash = work->hash();
+    content.preparation->recorded = std::move(work);
+    const preparation::Template* like = preparation::findTemplate(before);
+    return like != nullptr && !like->isOwn && !like->isBlock ? withLike(std::move(content), before) : content;
 }
 
 Content beginStroke(Content content, const core::Vec3& onSurfaceMm, double radiusMm, bool erases) {

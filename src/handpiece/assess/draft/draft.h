@@ -47,6 +47,14 @@ struct Content {
 [[nodiscard]] Content withTemplate(Content content, std::string_view id);
 /// The other proximal side; the rubric that came along follows.
 [[nodiscard]] Content withSide(Content content, std::string_view side);
+/// A number of the template; the rubric that came along follows where another part is asked for by it.
+[[nodiscard]] Content withNumber(Content content, std::string_view name, double value);
+/// As which template a target of one's own is measured and judged; empty: as none. The rubric that came along follows.
+[[nodiscard]] Content withLike(Content content, std::string_view id);
+/// What somebody cut becomes what is asked for: with the tooth that was cut and the voxel it was cut in. Throws
+/// core::Error where the content has another tooth already.
+[[nodiscard]] Content withWork(Content content, std::shared_ptr<const cases::Case> tooth,
+                               std::shared_ptr<const preparation::RecordedWork> work);
 /// A stroke of the brush over the tooth's surface begins at a place of it [tooth frame]; another preparation than a
 /// painting becomes one. A whole stroke is one step back: Draft::change() by the same name.
 [[nodiscard]] Content beginStroke(Content content, const core::Vec3& onSurfaceMm, double radiusMm, bool erases);

@@ -2,6 +2,7 @@
 #include "handpiece/assess/draft/handles.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -33,6 +34,8 @@ class Finder {
             occlusal(0.0);
         else if (id == "class-two")
             occlusal(sideSign()), proximalBox();
+        else if (id == "onlay")
+            onlay();
         else if (id == "class-three")
             classThree();
         else if (id == "class-five")
@@ -133,6 +136,69 @@ class Finder {
         add(box, "axial_mm", {axial, middle, floor}, -sign * Vec3::UnitX());
         add(box, "box_width_mm", {between, high.y(), floor}, Vec3::UnitY(), 2.0);
         add(box, "under_contact_mm", {between, middle, floor}, -Vec3::UnitZ());
+    }
+
+    void onlay() {
+        occlusal(number("axial_mm") > 0.0 ? sideSign() : 0.0);
+        if (number("axial_mm") > 0.0)
+            proximalBox();
+        else
+            drawnOutOfContact("axial_mm", sideSign());
+        drawnOutOfContact("other_axial_mm", -sideSign());
+        caps();
+    }
+    /// A box, or from where one would be drawn in.
+    void drawnOutOfContact(std::string_view name, double sign) {
+        for (const cases::Landmark& one : tooth_.landmarks)
+            if (one.kind == cases::LandmarkKind::contact && one.name == (sign > 0.0 ? "mesial" : "distal"))
+                add(name,
+                    one.pointsMm.front() -
+                        Vec3(sign * number(name), 0.0, number(name) > 0.0 ? number("under_contact_mm") : 0.0),
+                    -sign * Vec3::UnitX());
+    }
+    /// On the cusps, and at the margin of one that is capped.
+    void caps() {
+        const double buccal = tooth_.buccalSign < 0 ? -1.0 : 1.0;
+        std::vector<Vec3> tips;
+        Vec3 middle = Vec3::Zero();
+        for (const cases::Landmark& one : tooth_.landmarks)
+            if (one.kind == cases::LandmarkKind::cuspTip)
+                tips.push_back(one.pointsMm.front()), middle += one.pointsMm.front();
+        if (tips.empty()) return;
+        middle /= static_cast<double>(tips.size());
+        constexpr std::array<std::string_view, 4> kCaps{"cap_mesiobuccal_mm", "cap_distobuccal_mm",
+                                                        "cap_mesiolingual_mm", "cap_distolingual_mm"};
+        bool hasShoulder = false;
+        for (std::size_t i = 0; i < kCaps.size(); ++i) {
+            // A premolar's cusp takes both handles, beside each other.
+            const Vec3 out(i % 2 == 0 ? 1.0 : -1.0, i < 2 ? buccal : -buccal, 0.0);
+            const auto score = [&](const Vec3& tip) {
+                return out.y() * (tip - middle).y() + 0.5 * out.x() * (tip - middle).x();
+            };
+            const Vec3 tip = *std::max_element(tips.begin(), tips.end(),
+                                               [&](const Vec3& a, const Vec3& b) { return score(a) < score(b); });
+            const Vec3 over = tip + Vec3(0.3 * out.x(), 0.0, 10.0);
+            const double cap = number(kCaps[i]);
+            // Straight down to where it is as deep as that, square to the surface.
+            Vec3 place = over - laid_.whole->firstMeeting(over, -Vec3::UnitZ()).distanceMm * Vec3::UnitZ();
+            geometry::NearestPoint near = laid_.whole->nearest(place);
+            double perMm = laid_.whole->pseudonormal(near.triangle).normalized().z();
+            for (int step = 0; step < 20 && cap > 0.0; ++step) {
+                const double deep = -laid_.whole->signedDistance(place, &near);
+                if (deep > 1e-3) perMm = (near.pointMm.z() - place.z()) / deep;
+                if (deep > cap - 1e-3) break;
+                place.z() -= cap - std::max(0.0, deep);
+            }
+            add(kCaps[i], place, -Vec3::UnitZ(), std::max(0.2, perMm));
+            if (hasShoulder || (cap <= 0.0 && i + 1 < kCaps.size())) continue;
+            hasShoulder = true;
+            double low = 1e9;
+            for (const Vec3& t : tips)
+                if (out.y() * (t - middle).y() > 0.0) low = std::min(low, t.z());
+            const Vec3 way(0.0, out.y(), 0.0);
+            if (const auto side = outermost(Vec3(tip.x(), middle.y(), low - cap - number("shoulder_mm")), way))
+                add("shoulder_mm", *side, -Vec3::UnitZ());
+        }
     }
 
     /// An outline's corner of a radius, at its inner or upper side.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "handpiece/assess/measures/cusps.h"
 #include "handpiece/assess/measures/take.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/portable_math.h"
@@ -33,6 +34,27 @@ std::size_t strideFor(std::size_t count) {
     return std::max<std::size_t>(1, (count + 5999) / 6000);
 }
 
+struct Cusp {
+    const cases::Landmark* tip = nullptr;
+    double half = 0.0;  ///< +1: what of it is mesial, -1: distal; 0: all
+};
+Cusp cuspOf(std::span<const cases::Landmark> landmarks, std::string_view side) {
+    const auto named = [&](std::string_view name) -> const cases::Landmark* {
+        for (const cases::Landmark& mark : landmarks) {
+            if (mark.kind != cases::LandmarkKind::cuspTip) continue;
+            std::string its = mark.name;
+            if (const std::size_t at = its.find("palatal"); at != std::string::npos) its.replace(at, 7, "lingual");
+            if (mark.name == name || its == name) return &mark;
+        }
+        return nullptr;
+    };
+    if (std::find(std::begin(kCusps), std::end(kCusps), side) == std::end(kCusps)) return {named(side)};
+    const std::string_view name = side.substr(0, side.find('-'));
+    if (const cases::Landmark* whole = named(name)) return {whole};
+    constexpr std::string_view kMesio = "mesio";  // as long as "disto"
+    return {named(name.substr(kMesio.size())), name.starts_with(kMesio) ? 1.0 : -1.0};
+}
+
 }  // namespace
 
 Taken takeReduction(CutTooth& tooth, const Selection& of) {
@@ -40,6 +62,7 @@ Taken takeReduction(CutTooth& tooth, const Selection& of) {
     const Axes& axes = tooth.preparation().axes;
     // Cut and uncut surface both face a side; or lie about a cusp, by its name.
     std::function<bool(const Vec3& p, const Vec3& n)> isPart = [](const Vec3&, const Vec3&) { return true; };
+    bool isCusp = false;
     if (of.side == "occlusal") {
         isPart = [&](const Vec3&, const Vec3& n) { return n.dot(axes.longAxis) > kSin45; };
     } else if (std::find(std::begin(kSides), std::end(kSides), of.side) != std::end(kSides)) {
@@ -49,14 +72,13 @@ Taken takeReduction(CutTooth& tooth, const Selection& of) {
             return n.dot(side) > kSin45 && std::abs(n.dot(axes.longAxis)) < kSin45;
         };
     } else if (!of.side.empty()) {
-        const cases::Landmark* cusp = nullptr;
-        for (const cases::Landmark& mark : tooth.preparation().landmarks)
-            if (mark.kind == cases::LandmarkKind::cuspTip && mark.name == of.side) cusp = &mark;
+        const auto [cusp, half] = cuspOf(tooth.preparation().landmarks, of.side);
         if (cusp == nullptr) return none("no side and no cusp of the case is called \"" + of.side + "\"");
-        isPart = [&axes, tip = cusp->pointsMm.front()](const Vec3& p, const Vec3& n) {
+        isCusp = true;
+        isPart = [&axes, tip = cusp->pointsMm.front(), half](const Vec3& p, const Vec3& n) {
             Vec3 off = p - tip;
             off -= off.dot(axes.longAxis) * axes.longAxis;
-            return off.norm() < kCuspMm && n.dot(axes.longAxis) > 0.0;
+            return off.norm() < kCuspMm && half * off.dot(axes.mesial) >= 0.0 && n.dot(axes.longAxis) > 0.0;
         };
     }
     std::vector<const SurfacePoint*> part;
@@ -72,7 +94,9 @@ Taken takeReduction(CutTooth& tooth, const Selection& of) {
             // The shortest way ends square to the uncut surface.
             geometry::NearestPoint nearest;
             const double under = -tooth.whole().tree.signedDistance(p, &nearest);
-            if (isPart(nearest.pointMm, look.normalBefore(nearest.pointMm))) depth[i] = under;
+            const Vec3 before = look.normalBefore(nearest.pointMm);
+            // From deep under a tip the shortest way ends on its slopes, farther off.
+            if (isCusp ? before.dot(axes.longAxis) > 0.0 : isPart(nearest.pointMm, before)) depth[i] = under;
         }
     });
     Places places;

@@ -14,6 +14,8 @@ constexpr double kLeastAreaMm2 = 0.1;   // of a floor
 constexpr double kFlatCos = 0.9659258;  // 15 degrees
 constexpr double kCornerMm = 0.004;     // a ring of the floor lies in the corner when its mean stands higher than this
 constexpr double kLeastFlatShare = 0.2;
+constexpr double kCappedCos = 0.9396926;  // 20 degrees: inclines of capped cusps are steeper
+constexpr double kFissureStepMm = 0.1;
 constexpr double kPulpalShare = 0.3;  // of the largest floor's area: a higher floor is no mere step then
 
 /// Normals of planes through five by five places, where enough of them are of the floor.
@@ -135,15 +137,44 @@ void findFlat(const HeightMap& map, const std::vector<int>& label, int mine, dou
     floor.unevenMm = rmsAboutCurve(places);
 }
 
+/// Which of them lies under most of the fissures.
+std::size_t underFissures(const HeightMap& map, const DrawFrame& frame, std::span<const cases::Landmark> landmarks,
+                          const std::vector<Floor>& floors) {
+    std::vector<int> under;
+    for (const cases::Landmark& mark : landmarks) {
+        if (mark.kind != cases::LandmarkKind::fissure) continue;
+        for (std::size_t k = 0; k + 1 < mark.pointsMm.size(); ++k) {
+            const Vec3 &a = mark.pointsMm[k], &b = mark.pointsMm[k + 1];
+            const int pieces = std::max(1, static_cast<int>(std::ceil((b - a).norm() / kFissureStepMm)));
+            for (int i = 0; i < pieces; ++i) {
+                const Vec3 q = frame.to(a + (b - a) * (static_cast<double>(i) / pieces));
+                const auto u = std::lround((q.x() - map.u0) / kProbeMm), v = std::lround((q.y() - map.v0) / kProbeMm);
+                if (u >= 0 && v >= 0 && u < map.width && v < map.height)
+                    under.push_back(map.at(static_cast<int>(u), static_cast<int>(v)));
+            }
+        }
+    }
+    std::size_t best = 0;
+    std::ptrdiff_t most = -1;
+    for (std::size_t i = 0; i < floors.size(); ++i) {
+        const std::vector<int>& its = floors[i].nodes;
+        const auto count = std::count_if(under.begin(), under.end(),
+                                         [&](int node) { return std::binary_search(its.begin(), its.end(), node); });
+        if (count > most) most = count, best = i;
+    }
+    return best;
+}
+
 }  // namespace
 
 void CutTooth::findFloors() {
     const HeightMap& map = heights();
     std::vector<int> label(map.nodes.size(), 0);
     std::vector<Floor> floors;
+    const double facesCos = p_.isCapped ? kCappedCos : kSin45;
     const auto isOf = [&](int node) {
         const HeightMap::Node& n = map.nodes[static_cast<std::size_t>(node)];
-        return n.isCut && n.n.dot(frame_.w) > kSin45;
+        return n.isCut && n.n.dot(frame_.w) > facesCos;
     };
     std::vector<int> stack;
     int labels = 0;
@@ -179,9 +210,10 @@ void CutTooth::findFloors() {
     std::stable_sort(floors.begin(), floors.end(),
                      [](const Floor& a, const Floor& b) { return a.nodes.size() > b.nodes.size(); });
     // The pulpal one comes first: a wide box makes a gingival floor that is larger and lies lower.
+    // Beside capped cusps shoulders are floors too: there it is the one under most of the fissures.
     if (!floors.empty()) {
-        std::size_t pulpal = 0;
-        for (std::size_t i = 1; i < floors.size(); ++i)
+        std::size_t pulpal = p_.isCapped ? underFissures(map, frame_, p_.landmarks, floors) : 0;
+        for (std::size_t i = 1; !p_.isCapped && i < floors.size(); ++i)
             if (floors[i].plane.isFound && floors[pulpal].plane.isFound &&
                 floors[i].areaMm2 > kPulpalShare * floors.front().areaMm2 &&
                 floors[i].plane.at > floors[pulpal].plane.at + kLowerMm)

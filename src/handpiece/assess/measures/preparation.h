@@ -47,6 +47,8 @@ struct Preparation {
     Axes axes;
     std::span<const cases::Landmark> landmarks{};
     Form form = Form::found;
+    /// A cavity beside cusps that are taken down: what faces the path of draw is not all floor.
+    bool isCapped = false;
     /// As the session counted; none: integrated from the two fields, which gives the same but for rounding.
     std::optional<tooth::TissueVolumes> removedMm3{};
     struct Other {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -51,6 +52,9 @@ class Site {
             target = lesion(box);
         } else if (id == "crown") {
             target = crown(box);
+        } else if (id == "onlay") {
+            target = onlay(box);
+            laid.cavities = cavities_;
         } else if (id == kRecordedTemplate) {
             target = recorded(box, laid.draw);
         } else if (id == kPaintedTemplate) {
@@ -62,9 +66,9 @@ class Site {
             if (id.starts_with("block-"))
                 block();
             else if (id == "class-one")
-                classOne(false);
+                classOne(0.0, 0.0);
             else if (id == "class-two")
-                classOne(true), box_();
+                classOne(sideSign(), 0.0), box_(recipe_.side, number("axial_mm"));
             else if (id == "class-three")
                 classThree();
             else if (id == "class-five")
@@ -193,9 +197,11 @@ class Site {
         add(std::move(outline), depth);
     }
 
-    /// Along the fissures, as far as ridges and walls keep their thickness at the floor; of a class II not on the side
-    /// of its box.
-    void classOne(bool hasBox) {
+    /// +1 where the box is mesial.
+    [[nodiscard]] double sideSign() const { return recipe_.side == "mesial" ? 1.0 : -1.0; }
+    /// Along the fissures, as far as ridges and walls keep their thickness at the floor; not on the sides of boxes, by
+    /// the signs of their x; 0: none.
+    void classOne(double open, double alsoOpen) {
         const double half = 0.5 * number("width_mm"), ridge = number("ridge_mm");
         double height = 0.0;
         std::size_t count = 0;
@@ -206,7 +212,6 @@ class Site {
         if (count == 0)
             fail("no fissure lies on the occlusal surface", "set it in the window (Ctrl+Shift+J)", "lay-fissure-off");
         const double floor = height / static_cast<double>(count) - number("depth_mm");
-        const double open = !hasBox ? 0.0 : recipe_.side == "mesial" ? 1.0 : -1.0;
         // At the floor all round; towards the marginal ridges, which get thinner towards their crests, as high as the
         // wall stands.
         const double flare = core::tan(number("wall_deg") * kRadPerDeg);
@@ -217,7 +222,7 @@ class Site {
                 const double rad = 2.0 * std::numbers::pi * i / kWays;
                 const Vec3 way(core::cos(rad), core::sin(rad), 0.0);
                 // Towards the box the ridge goes.
-                if (open * way.x() > 0.7) continue;
+                if (open * way.x() > 0.7 || alsoOpen * way.x() > 0.7) continue;
                 for (double up = 0.0;; up += kStepMm) {
                     const Vec3 at(p.x(), p.y(), floor + up);
                     const double wall = half + up * flare;
@@ -259,11 +264,11 @@ class Site {
     }
 
     /// The proximal box of a class II, and the way to it.
-    void box_() {
-        const double sign = recipe_.side == "mesial" ? 1.0 : -1.0;
-        const Vec3 at = contact(recipe_.side);
+    void box_(const std::string& side, double axialMm) {
+        const double sign = side == "mesial" ? 1.0 : -1.0;
+        const Vec3 at = contact(side);
         const double half = 0.5 * number("box_width_mm"), wall = number("wall_deg") * kRadPerDeg;
-        const double axial = at.x() - sign * number("axial_mm"), beyond = at.x() + sign * 3.0;
+        const double axial = at.x() - sign * axialMm, beyond = at.x() + sign * 3.0;
         const auto rectangle = [](double x0, double x1, double y0, double y1) {
             return std::vector<Vec2>{
                 {std::min(x0, x1), y0}, {std::max(x0, x1), y0}, {std::max(x0, x1), y1}, {std::min(x0, x1), y1}};
@@ -419,6 +424,98 @@ class Site {
             const double top = insideOf(*tree, p, Vec3::UnitZ()) - occlusal;
             return zones::PastTarget{std::min(side, top), height - p.z()};
         };
+    }
+
+    /// The cavity of a class II, and off the capped cusps as much as each asks for, square to the uncut surface, down
+    /// to a shoulder on their outer side. A quarter of the crown goes with each: premolars have one cusp for two.
+    /// Boxes on one side, on both or on none.
+    zones::TargetFunction onlay(core::Box& box) {
+        // The box at its side is the last of the cavities.
+        const double here = number("axial_mm"), there = number("other_axial_mm"), sign = sideSign();
+        classOne(here > 0.0 ? sign : 0.0, there > 0.0 ? -sign : 0.0);
+        if (there > 0.0) box_(sign > 0.0 ? "distal" : "mesial", there);
+        if (here > 0.0) box_(recipe_.side, here);
+        box = zones::boundsOf(cavities_, kAboveMm);
+        const double side = buccal();
+        Vec2 middle = Vec2::Zero();
+        std::size_t count = 0;
+        for (const cases::Landmark* fissure : need(LandmarkKind::fissure))
+            for (const Vec3& p : fissure->pointsMm)
+                if (isOnTop(p)) middle += p.head<2>(), ++count;
+        middle /= static_cast<double>(count);
+        // Of mesiobuccal, distobuccal, mesiolingual, distolingual.
+        constexpr std::array<std::string_view, 4> kCaps{"cap_mesiobuccal_mm", "cap_distobuccal_mm",
+                                                        "cap_mesiolingual_mm", "cap_distolingual_mm"};
+        struct Quarter {
+            Vec2 out;  ///< signs of x and y
+            double capMm, lowMm;
+        };
+        std::array<Quarter, 4> quarters{};
+        const auto cusps = need(LandmarkKind::cuspTip);
+        for (std::size_t i = 0; i < quarters.size(); ++i) {
+            Quarter& q = quarters[i];
+            q.out = Vec2(i % 2 == 0 ? 1.0 : -1.0, i < 2 ? side : -side);
+            q.capMm = number(kCaps[i]);
+            if (!(q.capMm > 0.0)) continue;
+            // The lowest cusp of that side: the shoulder runs on from one to the next.
+            double tip = kFarMm;
+            for (const cases::Landmark* cusp : cusps)
+                if (q.out.y() * (cusp->pointsMm.front().y() - middle.y()) > 0.0)
+                    tip = std::min(tip, cusp->pointsMm.front().z());
+            if (tip == kFarMm)
+                fail("there is no cusp on the side that is to be capped", "set its tip in the window (Ctrl+Shift+J)",
+                     "lay-no-cusp-tip");
+            q.lowMm = tip - q.capMm - number("shoulder_mm");
+            for (const cases::Landmark* junction : marks(LandmarkKind::cementoEnamelJunction))
+                for (const Vec3& p : junction->pointsMm)
+                    if (Vec2(q.out.cwiseProduct(p.head<2>() - middle)).minCoeff() > 0.0 && p.z() >= q.lowMm)
+                        fail("the margin of a capped cusp would lie under the cemento-enamel junction",
+                             "take less off the cusp, or make the shoulder lower", "lay-margin-low");
+            const core::Box& whole = tree_->bounds();
+            box.extend(Vec3(whole.min.x(), whole.min.y(), q.lowMm));
+            box.extend(whole.max);
+        }
+        return [cavity = zones::targetOf(cavities_, tree_.get()), quarters, middle, tree = tree_](const Vec3& p) {
+            zones::PastTarget past = cavity(p);
+            const Vec2 off = p.head<2>() - middle;
+            const auto isIn = [&](const Quarter& q) {
+                return q.out.x() * off.x() >= 0.0 && q.out.y() * off.y() >= 0.0;
+            };
+            const auto awayFrom = [&](const Quarter& q) {
+                return Vec2(-q.out.cwiseProduct(off)).cwiseMax(Vec2::Zero()).norm();
+            };
+            // Into the quarters that are capped, as far as one that is not.
+            const Quarter* nearest = nullptr;
+            double aside = kFarMm;
+            for (const Quarter& q : quarters) {
+                if (!(q.capMm > 0.0)) continue;
+                if (const double away = isIn(q) ? 0.0 : awayFrom(q); away < aside) aside = away, nearest = &q;
+            }
+            if (nearest == nullptr) return past;
+            if (!(aside > 0.0)) {
+                aside = -kFarMm;
+                for (const Quarter& q : quarters)
+                    if (!(q.capMm > 0.0)) aside = std::max(aside, -awayFrom(q));
+            }
+            const zones::PastTarget cap{std::max(aside, nearest->lowMm - p.z()),
+                                        depthUnderEquator(*tree, p) - nearest->capMm};
+            return cap.distanceMm() < past.distanceMm() ? cap : past;
+        };
+    }
+
+    /// How deep a place lies under the surface; under the tooth's height of contour as deep as the deepest above it:
+    /// what is left there, equally thick all round, would hang over what is gone.
+    static double depthUnderEquator(const geometry::TriangleTree& tree, Vec3 p) {
+        constexpr double kStepMm = 0.1;
+        geometry::NearestPoint near;
+        double deepest = -tree.signedDistance(p, &near);
+        while (deepest > 0.0 && near.pointMm.z() < p.z()) {
+            p.z() += kStepMm;
+            const double here = -tree.signedDistance(p, &near);
+            if (here <= deepest) break;
+            deepest = here;
+        }
+        return deepest;
     }
 
     zones::TargetFunction recorded(core::Box& box, Vec3& draw) {

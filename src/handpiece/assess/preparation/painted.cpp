@@ -221,7 +221,8 @@ Painting paintedTarget(std::span<const BrushStroke> strokes, double depthMm, con
         }
     if (facing.isZero(0.0)) facing = under;
     if (facing.isZero(0.0))
-        throw core::Error("nothing is painted", "painting", "what was painted is erased again: paint anew");
+        throw core::Error("nothing is painted", "painting", "what was painted is erased again: paint anew")
+            .as("lay-not-painted");
     zones::TargetFunction target = [paint, whole, depthMm](const Vec3& p) {
         NearestPoint on;
         const double outMm = whole->signedDistance(p, &on);

@@ -62,6 +62,9 @@ struct Recipe {
     friend bool operator==(const Recipe&, const Recipe&);
 };
 
+/// Criteria of the rubric that comes along which these numbers do not ask for: cusps that stay, boxes that are none.
+[[nodiscard]] std::vector<std::string_view> notAsked(const Recipe& recipe);
+
 /// `[preparation]` of an exercise, and back, without the recorded work itself. Throws core::Error with file and line
 /// for what no template has, numbers out of their range, a missing side.
 [[nodiscard]] Recipe readRecipe(const config::Table& table);

@@ -45,6 +45,20 @@ constexpr std::array kAccess{
     Parameter{"round_mm", 0.6, 0.2, 2.0, "outline round horns and orifices"},
     Parameter{"wall_deg", 2.0, -5.0, 20.0, "of each wall against the path of draw"},
     Parameter{"shell_mm", 0.5, 0.0, 2.0, "under the surface of root and furcation that must stay"}};
+constexpr std::array kOnlay{
+    Parameter{"depth_mm", 1.5, 1.0, 4.0, "from the fissure's floor to the pulpal floor"},
+    Parameter{"width_mm", 2.0, 1.0, 5.0, "isthmus, at the floor"},
+    Parameter{"ridge_mm", 1.6, 0.5, 4.0, "left of the other marginal ridge and of the walls that stay"},
+    Parameter{"wall_deg", 6.0, 0.0, 15.0, "of each wall against the path of draw; all open occlusally"},
+    Parameter{"axial_mm", 1.5, 0.0, 4.0, "from the contact to the axial wall; 0: no box"},
+    Parameter{"other_axial_mm", 0.0, 0.0, 4.0, "of a box on the other side; 0: none"},
+    Parameter{"box_width_mm", 3.9, 1.0, 8.0, "of the box, buccolingually, at its floor"},
+    Parameter{"under_contact_mm", 2.0, 0.2, 4.0, "from the contact down to the gingival floor"},
+    Parameter{"cap_mesiobuccal_mm", 1.75, 0.0, 3.0, "off that cusp, square to its surface; 0: it stays"},
+    Parameter{"cap_distobuccal_mm", 1.75, 0.0, 3.0, "off that cusp, square to its surface; 0: it stays"},
+    Parameter{"cap_mesiolingual_mm", 0.0, 0.0, 3.0, "off that cusp, square to its surface; 0: it stays"},
+    Parameter{"cap_distolingual_mm", 0.0, 0.0, 3.0, "off that cusp, square to its surface; 0: it stays"},
+    Parameter{"shoulder_mm", 1.0, 0.0, 3.0, "from the capped cusp's top down to its outer margin"}};
 constexpr std::array kLesion{
     Parameter{"over_pulp_mm", 0.5, 0.0, 3.0, "carious tissue nearer to the pulp than this is not asked for"}};
 constexpr std::array kPainted{Parameter{"depth_mm", 1.0, 0.1, 6.0, "under what is painted, the shortest way"}};
@@ -75,6 +89,7 @@ constexpr std::array kTemplates{
     Template{"class-two", "occlusal with a proximal box", kClassTwo, true},
     Template{"crown", "full crown with a margin all round", kCrown},
     Template{"lesion", "all carious tissue, short of the pulp", kLesion},
+    Template{"onlay", "occlusal with proximal boxes or none, and cusps capped", kOnlay, true},
     Template{kPaintedTemplate, "what is painted on the tooth", kPainted, false, false, true},
     Template{kRecordedTemplate, "what somebody took away", {}, false, false, true}};
 
@@ -102,6 +117,26 @@ double Recipe::number(std::string_view name) const {
     if (parameter == nullptr)
         throw core::Error(fmt::format("preparation \"{}\" has no number \"{}\"", preparation, name), "preparation", "");
     return parameter->usual;
+}
+
+std::vector<std::string_view> notAsked(const Recipe& recipe) {
+    if (recipe.kind() != "onlay") return {};
+    Recipe usual;
+    usual.preparation = "onlay";
+    const Recipe& of = recipe.preparation == "onlay" ? recipe : usual;
+    const auto has = [&](std::string_view name) { return of.number(name) > 0.0; };
+    std::vector<std::string_view> out;
+    const auto leaveOut = [&](std::string_view id, bool isAsked) {
+        if (!isAsked) out.push_back(id);
+    };
+    const bool mb = has("cap_mesiobuccal_mm"), db = has("cap_distobuccal_mm"), ml = has("cap_mesiolingual_mm"),
+               dl = has("cap_distolingual_mm");
+    leaveOut("cusp-mesiobuccal", mb), leaveOut("cusp-distobuccal", db);
+    leaveOut("cusp-mesiolingual", ml), leaveOut("cusp-distolingual", dl);
+    leaveOut("shoulder-buccal", mb || db), leaveOut("shoulder-lingual", ml || dl);
+    leaveOut("wall-buccal", !(mb && db)), leaveOut("wall-lingual", !(ml && dl));
+    leaveOut("axial-depth", has("axial_mm")), leaveOut("other-axial-depth", has("other_axial_mm"));
+    return out;
 }
 
 bool operator==(const Recipe& a, const Recipe& b) {

@@ -359,7 +359,8 @@ RecordedWork recordWork(const tooth::ToothMirror& cut, int buccalSign) {
     work.voxelMm = cut.model().field.settings().voxelMm;
     takeCut(surface::closedSurface(surface::MirrorSource(cut)), cut, work);
     if (work.cutTriangles == 0)
-        throw core::Error("nothing was cut in this work", cut.model().name, "name work in which the target was cut");
+        throw core::Error("nothing was cut in this work", cut.model().name, "name work in which the target was cut")
+            .as("no-work-cut");
     if (work.surface.vertices.size() > kMostVertices)
         throw core::Error("the surface of this work is too large", cut.model().name, "cut it in a larger voxel");
     work.draw = drawOf(work, buccalSign);

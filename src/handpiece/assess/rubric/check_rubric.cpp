@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "handpiece/assess/measures/cusps.h"
 #include "handpiece/assess/rubric/lint.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/case/tissue.h"
@@ -50,6 +51,11 @@ std::vector<std::string_view> tissues() {
     return names;
 }
 
+std::vector<std::string_view> sidesAndCusps() {
+    std::vector<std::string_view> all(std::begin(measures::kSides), std::end(measures::kSides));
+    all.insert(all.end(), std::begin(measures::kCusps), std::end(measures::kCusps));
+    return all;
+}
 template <class List>
 bool has(const List& list, std::string_view name) {
     return std::find(std::begin(list), std::end(list), name) != std::end(list);
@@ -183,8 +189,12 @@ void Linter::selection(const Criterion& c, const MeasureKind& kind) {
         unknown("zone", of.zone, measures::kZones);
     if (takes(Selector::tissue, !of.tissue.empty(), "tissue") && !has(tissues(), of.tissue))
         unknown("tissue", of.tissue, tissues());
-    if (takes(Selector::side, !of.side.empty(), "side") && !has(measures::kSides, of.side))
-        unknown("side", of.side, measures::kSides);
+    if (takes(Selector::side, !of.side.empty(), "side") && !has(measures::kSides, of.side)) {
+        if (kind.id != "reduction")
+            unknown("side", of.side, measures::kSides);
+        else if (!has(measures::kCusps, of.side))
+            unknown("side", of.side, sidesAndCusps());
+    }
     if (takes(Selector::statistic, !of.statistic.empty(), "statistic") && !has(measures::kStatistics, of.statistic))
         unknown("statistic", of.statistic, measures::kStatistics);
     takes(Selector::limit, of.limit.has_value(), "limit");

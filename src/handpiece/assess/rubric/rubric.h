@@ -172,7 +172,8 @@ void requireSound(const Rubric& rubric);
 /// The name of the one made for a preparation ("class-one"); empty: there is none.
 [[nodiscard]] std::string_view shippedFor(std::string_view preparation);
 /// Its text, with mesial and distal changed over where `side` is the other than it was made for; empty: there is none.
-[[nodiscard]] std::string shippedTextFor(std::string_view preparation, std::string_view side);
+[[nodiscard]] std::string shippedTextFor(std::string_view preparation, std::string_view side,
+                                         std::span<const std::string_view> notAsked = {});
 /// Throws core::Error naming them.
 [[nodiscard]] Rubric shippedRubric(std::string_view name);
 /// The file as it is; throws alike.

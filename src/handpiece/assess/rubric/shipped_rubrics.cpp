@@ -17,6 +17,7 @@ namespace handpiece::rubric {
     RUBRIC("46-class-ii-mo", kRubric_46_class_ii_mo)                   \
     RUBRIC("46-crown", kRubric_46_crown)                               \
     RUBRIC("46-deep-lesion", kRubric_46_deep_lesion)                   \
+    RUBRIC("46-onlay", kRubric_46_onlay)                               \
     RUBRIC("block-caries", kRubric_block_caries)                       \
     RUBRIC("block-channel", kRubric_block_channel)                     \
     RUBRIC("block-cross-mirror", kRubric_block_cross_mirror)           \
@@ -71,6 +72,7 @@ std::string_view shippedFor(std::string_view preparation) {
         {"class-two", "46-class-ii-mo"},
         {"crown", "46-crown"},
         {"lesion", "46-deep-lesion"},
+        {"onlay", "46-onlay"},
         {"painted", "own-target"},
         {"recorded-work", "own-target"},
     };
@@ -86,15 +88,45 @@ std::string_view shippedRubricText(std::string_view name) {
                       fmt::format("give a file, or one of {}", fmt::join(shippedRubrics(), ", ")));
 }
 
-std::string shippedTextFor(std::string_view preparation, std::string_view side) {
+namespace {
+
+/// Without these criteria.
+std::string without(std::string_view text, std::span<const std::string_view> criteria) {
+    std::string out;
+    while (!text.empty()) {
+        const std::string_view part = text.substr(0, text.find("\n[[", 1));
+        text.remove_prefix(part.size());
+        const bool isLeftOut = part.starts_with("\n[[criterion]]") &&
+                               std::any_of(criteria.begin(), criteria.end(), [&](std::string_view id) {
+                                   return part.find(fmt::format("\nid = \"{}\"\n", id)) != std::string_view::npos;
+                               });
+        if (!isLeftOut) out += part;
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string shippedTextFor(std::string_view preparation, std::string_view side,
+                           std::span<const std::string_view> notAsked) {
     const std::string_view name = shippedFor(preparation);
     if (name.empty()) return {};
-    const std::string text(shippedRubricText(name));
+    const std::string text = without(shippedRubricText(name), notAsked);
     // All that have a side were made for the mesial one.
     if (side != "distal") return text;
-    constexpr std::pair<std::string_view, std::string_view> kSwaps[] = {
-        {"mesial", "distal"}, {"Mesial", "Distal"}, {"distal", "mesial"}, {"Distal", "Mesial"},
-        {"近心", "遠心"},     {"遠心", "近心"},     {"-mo\"", "-do\""},   {" MO", " DO"}};
+    constexpr std::pair<std::string_view, std::string_view> kSwaps[] = {{"mesial", "distal"},
+                                                                        {"Mesial", "Distal"},
+                                                                        {"distal", "mesial"},
+                                                                        {"Distal", "Mesial"},
+                                                                        // Cusps stay where they are.
+                                                                        {"近心頬側", "近心頬側"},
+                                                                        {"遠心頬側", "遠心頬側"},
+                                                                        {"近心舌側", "近心舌側"},
+                                                                        {"遠心舌側", "遠心舌側"},
+                                                                        {"近心", "遠心"},
+                                                                        {"遠心", "近心"},
+                                                                        {"-mo\"", "-do\""},
+                                                                        {" MO", " DO"}};
     std::string out;
     for (std::size_t i = 0; i < text.size();) {
         const auto* swap = std::find_if(std::begin(kSwaps), std::end(kSwaps), [&](const auto& s) {

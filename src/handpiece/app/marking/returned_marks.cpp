@@ -34,8 +34,8 @@ double numberIn(const Json& json, double least, double most) {
 std::string hashIn(const Json& json) {
     const std::string hash = json.get<std::string>();
     const std::optional<std::uint64_t> value = core::readHash(hash);
-    if (!value) throw std::invalid_argument("a hash is none");
-    return rubric::hashText(*value);
+    if (!value || rubric::hashText(*value) != hash) throw std::invalid_argument("a hash is none");
+    return hash;
 }
 const Json& listIn(const Json& json) {
     if (!json.is_array() || json.size() > kMaxList) throw std::length_error("a list is none, or too long");

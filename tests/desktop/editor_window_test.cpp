@@ -514,7 +514,8 @@ TEST_F(EditorTest, AnOnlayIsSetByItsHandlesAndTried) {
     }
     EXPECT_TRUE(picture->isDragging());
     QTest::mouseRelease(picture, Qt::LeftButton, Qt::NoModifier, to.toPoint());
-    EXPECT_NEAR(now().preparation->number("cap_mesiobuccal_mm"), 2.0, 0.1);
+    // Along its line it is drawn by 0.25 mm; a number goes by 0.05 mm a step, and counts square to the surface.
+    EXPECT_NEAR(now().preparation->number("cap_mesiobuccal_mm"), 1.75 + 0.25 * handle.perMm, 0.05 + 1e-9);
     ASSERT_TRUE(settled());
     page(2);
     type(part<QDoubleSpinBox>("editorVoxel"), "200");

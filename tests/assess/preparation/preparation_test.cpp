@@ -207,7 +207,7 @@ TEST(Preparation, ClassThreeAndFiveAndAccessAndCrownLieWhereTheyShould) {
 TEST(Preparation, AnOnlayKeepsItsMarginOverTheCervix) {
     cases::Tooth tooth = toothOf(46);
     Recipe recipe = recipeOf("onlay", "mesial");
-    recipe.numbers = {{"cap_mesiobuccal_mm", 3.0}, {"shoulder_mm", 3.0}};
+    recipe.numbers = {{"cap_mesiobuccal_mm", 2.5}, {"shoulder_mm", 2.5}};
     EXPECT_NO_THROW((void)layOn(tooth, recipe));
     for (cases::Landmark& mark : tooth.landmarks)
         if (mark.kind == cases::LandmarkKind::cementoEnamelJunction)

@@ -156,8 +156,8 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
         box->setMinimumContentsLength(6);
     }
     auto* pins = new QHBoxLayout;
-    pins->addWidget(atPlace_);
     pins->addWidget(atTime_);
+    pins->addWidget(pick_);
     pins->addStretch(1);
     auto* writing = new QHBoxLayout;
     writing->addWidget(comment_, 1);
@@ -173,8 +173,8 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     column->addWidget(decisionRow_);
     column->addWidget(comments_);
     column->addLayout(writing);
+    column->addWidget(atPlace_);
     column->addLayout(pins);
-    column->addWidget(pick_);
     return_ = named(new QPushButton(tr("Return to student..."), this), "sheetReturn", tr("Return to student..."),
                     tr("One file with your comments, what you judged otherwise and why, and the score"));
     column->addWidget(return_);

@@ -156,6 +156,35 @@ class Finder {
                         Vec3(sign * number(name), 0.0, number(name) > 0.0 ? number("under_contact_mm") : 0.0),
                     -sign * Vec3::UnitX());
     }
+    /// Straight down from the uncut surface to where the target ends; nothing of it there: the surface.
+    [[nodiscard]] Vec3 endUnder(const Vec3& over) const {
+        constexpr double kStepMm = 0.05, kMostMm = 6.0;
+        const double wayMm = laid_.whole->firstMeeting(over, -Vec3::UnitZ()).distanceMm;
+        if (!std::isfinite(wayMm)) return over;  // beside the tooth
+        const Vec3 top = over - wayMm * Vec3::UnitZ();
+        const auto targetAt = [&](double downMm) { return laid_.zones->targetMm(top - downMm * Vec3::UnitZ()); };
+        double in = kStepMm;
+        if (targetAt(in) > 0.0) return top;
+        while (in < kMostMm && targetAt(in + kStepMm) <= 0.0)
+            in += kStepMm;
+        double out = in + kStepMm;
+        for (int i = 0; i < 20; ++i) {
+            const double middle = 0.5 * (in + out);
+            (targetAt(middle) > 0.0 ? out : in) = middle;
+        }
+        return top - in * Vec3::UnitZ();
+    }
+    /// What a millimetre down adds to the depth, square to the surface.
+    [[nodiscard]] double depthPerMm(const Vec3& place) const {
+        geometry::NearestPoint near;
+        const double deep = -laid_.whole->signedDistance(place, &near);
+        return deep > 0.1 ? (near.pointMm.z() - place.z()) / deep
+                          : laid_.whole->pseudonormal(near.triangle).normalized().z();
+    }
+    [[nodiscard]] bool isAsDeep(const Vec3& place, double deepMm) const {
+        constexpr double kAlikeMm = 0.01;
+        return std::abs(laid_.whole->signedDistance(place) + deepMm) < kAlikeMm;
+    }
     /// On the cusps, and at the margin of one that is capped.
     void caps() {
         const double buccal = tooth_.buccalSign < 0 ? -1.0 : 1.0;
@@ -166,6 +195,13 @@ class Finder {
                 tips.push_back(one.pointsMm.front()), middle += one.pointsMm.front();
         if (tips.empty()) return;
         middle /= static_cast<double>(tips.size());
+        Vec3 fissureMiddle = Vec3::Zero();
+        double fissurePoints = 0.0;
+        for (const cases::Landmark& one : tooth_.landmarks)
+            if (one.kind == cases::LandmarkKind::fissure)
+                for (const Vec3& p : one.pointsMm)
+                    fissureMiddle += p, fissurePoints += 1.0;
+        fissureMiddle /= std::max(1.0, fissurePoints);
         constexpr std::array<std::string_view, 4> kCaps{"cap_mesiobuccal_mm", "cap_distobuccal_mm",
                                                         "cap_mesiolingual_mm", "cap_distolingual_mm"};
         bool hasShoulder = false;
@@ -177,19 +213,23 @@ class Finder {
             };
             const Vec3 tip = *std::max_element(tips.begin(), tips.end(),
                                                [&](const Vec3& a, const Vec3& b) { return score(a) < score(b); });
-            const Vec3 over = tip + Vec3(0.3 * out.x(), 0.0, 10.0);
             const double cap = number(kCaps[i]);
-            // Straight down to where it is as deep as that, square to the surface.
-            Vec3 place = over - laid_.whole->firstMeeting(over, -Vec3::UnitZ()).distanceMm * Vec3::UnitZ();
-            geometry::NearestPoint near = laid_.whole->nearest(place);
-            double perMm = laid_.whole->pseudonormal(near.triangle).normalized().z();
-            for (int step = 0; step < 20 && cap > 0.0; ++step) {
-                const double deep = -laid_.whole->signedDistance(place, &near);
-                if (deep > 1e-3) perMm = (near.pointMm.z() - place.z()) / deep;
-                if (deep > cap - 1e-3) break;
-                place.z() -= cap - std::max(0.0, deep);
-            }
-            add(kCaps[i], place, -Vec3::UnitZ(), std::max(0.2, perMm));
+            // A number counts square to the surface, a handle goes straight down.
+            constexpr double kInMm = 0.4;  // into the quarter of the crown that goes with the number
+            const double x =
+                fissureMiddle.x() + out.x() * std::max(kInMm, out.x() * (tip.x() - fissureMiddle.x()) + 0.3);
+            Vec3 place = endUnder(Vec3(x, tip.y(), tip.z() + 10.0));
+            // Where a box or the isthmus runs under the tip: beside it, where the target ends as deep as the number.
+            constexpr double kStepMm = 0.2, kMostMm = 2.0;
+            for (double off = kStepMm; cap > 0.0 && !isAsDeep(place, cap) && off < kMostMm; off += kStepMm)
+                for (const Vec2& to :
+                     {Vec2(out.x(), 0.0), Vec2(0.0, out.y()), Vec2(out.x(), out.y()), Vec2(0.0, -out.y())}) {
+                    const Vec3 other = endUnder(Vec3(x + off * to.x(), tip.y() + off * to.y(), tip.z() + 10.0));
+                    if (!isAsDeep(other, cap)) continue;
+                    place = other;
+                    break;
+                }
+            add(kCaps[i], place, -Vec3::UnitZ(), std::max(0.2, depthPerMm(place)));
             if (hasShoulder || (cap <= 0.0 && i + 1 < kCaps.size())) continue;
             hasShoulder = true;
             double low = 1e9;

@@ -144,15 +144,16 @@ void run(const ScoreOptions& o) {
     scan_work::Files files{o.work, {}, o.unit.mmPerUnit()};
     if (!o.before.empty()) files.before = o.before;
     studies::ProgressBar bar(isScan ? "registering the scan" : "cutting it again");
-    const auto store = isScan || o.anew ? assessment::MeasureStore({}) : assessment::MeasureStore::usual();
-    const assessment::StoreKey key{isScan ? "" : assessment::workHash(o.work),
-                                   rubric::hashText(tasks::contentHash(task))};
-    const assessment::Work work = isScan       ? assessment::readScan(files, task, bar.listener())
-                                  : o.noReplay ? assessment::readWork(o.work, task, false, bar.listener())
-                                               : assessment::readProvenOnce(o.work, task, key, store, bar.listener());
+    const bool isKept = !isScan && !o.noReplay && !o.anew;
+    const auto store = isKept ? assessment::MeasureStore::usual() : assessment::MeasureStore({});
+    assessment::StoreKey key;
+    if (isKept) key = {assessment::workHash(o.work), rubric::hashText(tasks::contentHash(task))};
+    const assessment::Work work = isScan   ? assessment::readScan(files, task, bar.listener())
+                                  : isKept ? assessment::readProvenOnce(o.work, task, key, store, bar.listener())
+                                           : assessment::readWork(o.work, task, !o.noReplay, bar.listener());
     bar.finish();
     const assessment::MeasuredWork measured = assessment::measureWork(work, task, assessment::requestsOf(judged));
-    if (!o.noReplay) store.add(key, measured);
+    if (isKept) store.add(key, measured);
     const assessment::Result result = assessment::judge(measured, judged);
     const std::string json = assessment::resultJson(result.assessment, result.identity);
     if (!o.out.empty()) writeAll(o.out, filesOf(o, work, result, json, task, judged));

@@ -154,27 +154,39 @@ void EditorFeature::open() {
 void EditorFeature::make(const QString& title, std::function<cases::Case(const core::Progress&)> how) {
     if (making_) return;
     const auto made = std::make_shared<std::shared_ptr<const cases::Case>>();
-    making_ = std::make_unique<Job>(title, [how = std::move(how), made](const core::Progress& progress) {
-        *made = std::make_shared<const cases::Case>(how(progress));
-    });
     dialog_->toothPage()->setWork(title);
-    const auto end = [this] {
-        making_.release()->deleteLater();
-        dialog_->toothPage()->setWork({});
-    };
-    connect(making_.get(), &Job::done, this, [this, end, made] {
-        end();
-        dialog_->change("", [&](draft::Content& c) {
-            c.tooth = *made;
-            c.teacherWork.reset();  // of the tooth before
+    start(
+        making_, title,
+        [how = std::move(how), made](const core::Progress& progress) {
+            *made = std::make_shared<const cases::Case>(how(progress));
+        },
+        [this] { dialog_->toothPage()->setWork({}); },
+        [this, made] {
+            dialog_->change("", [&](draft::Content& c) {
+                c.tooth = *made;
+                c.teacherWork.reset();  // of the tooth before
+            });
         });
-    });
-    connect(making_.get(), &Job::failed, this, [this, end](const Problem& problem) {
+}
+
+void EditorFeature::start(std::unique_ptr<Job>& job, const QString& title,
+                          std::function<void(const core::Progress&)> how, std::function<void()> end,
+                          std::function<void()> done) {
+    job = std::make_unique<Job>(title, std::move(how));
+    const auto ended = [&job, end = std::move(end)] {
+        job.release()->deleteLater();
         end();
+    };
+    connect(job.get(), &Job::done, this, [ended, done = std::move(done)] {
+        ended();
+        done();
+    });
+    connect(job.get(), &Job::failed, this, [this, ended](const Problem& problem) {
+        ended();
         window_.showProblem(problem);
     });
-    connect(making_.get(), &Job::cancelled, this, end);
-    making_->start();
+    connect(job.get(), &Job::cancelled, this, ended);
+    job->start();
 }
 
 void EditorFeature::takeStarter(int fdi, int seed) {
@@ -201,28 +213,20 @@ void EditorFeature::takeTeacherWork() {
     const QString file = window_.questions.open(tr("Your own work"), tr("Recordings (*.h5);;All files (*)"));
     if (file.isEmpty()) return;
     const auto work = std::make_shared<std::shared_ptr<const std::vector<std::byte>>>();
-    proving_ = std::make_unique<Job>(QString(), [now, work, path = toPath(file)](const core::Progress& progress) {
-        *work = assessment::provenWork(path, draft::taskOf(now), progress);
-    });
     dialog_->workPage()->setTeacherWorkNote(tr("It is cut again..."));
-    const auto end = [this] {
-        proving_.release()->deleteLater();
-        dialog_->workPage()->setTeacherWorkNote({});
-    };
-    connect(proving_.get(), &Job::done, this, [this, end, work, tooth = now.tooth, voxelMm = now.voxelMm] {
-        end();
-        // What it was proven against may be another by now.
-        const draft::Content& is = dialog_->draft().now();
-        if (is.tooth != tooth || is.voxelMm != voxelMm)
-            return window_.showProblem(problemById(QStringLiteral("teacher-work-too-late")));
-        dialog_->change("", [&](draft::Content& c) { c.teacherWork = *work; });
-    });
-    connect(proving_.get(), &Job::failed, this, [this, end](const Problem& problem) {
-        end();
-        window_.showProblem(problem);
-    });
-    connect(proving_.get(), &Job::cancelled, this, end);
-    proving_->start();
+    start(
+        proving_, QString(),
+        [now, work, path = toPath(file)](const core::Progress& progress) {
+            *work = assessment::provenWork(path, draft::taskOf(now), progress);
+        },
+        [this] { dialog_->workPage()->setTeacherWorkNote({}); },
+        [this, work, tooth = now.tooth, voxelMm = now.voxelMm] {
+            // What it was proven against may be another by now.
+            const draft::Content& is = dialog_->draft().now();
+            if (is.tooth != tooth || is.voxelMm != voxelMm)
+                return window_.showProblem(problemById(QStringLiteral("teacher-work-too-late")));
+            dialog_->change("", [&](draft::Content& c) { c.teacherWork = *work; });
+        });
 }
 
 void EditorFeature::takeWork() {
@@ -231,8 +235,11 @@ void EditorFeature::takeWork() {
                                                 tr("Attempts and sessions (*.handpiece *.h5);;All files (*)"));
     if (file.isEmpty()) return;
     const auto next = std::make_shared<draft::Content>(dialog_->draft().now());
-    making_ =
-        std::make_unique<Job>(tr("Reading the work..."), [path = toPath(file), next](const core::Progress& progress) {
+    dialog_->toothPage()->setWork(tr("Reading the work..."));
+    dialog_->preparationPage()->setEnabled(false);
+    start(
+        making_, tr("Reading the work..."),
+        [path = toPath(file), next](const core::Progress& progress) {
             const std::optional<simulation::CutTeeth> cut = simulation::readCutTeeth(path, {}, true, progress);
             if (!cut)
                 throw core::Error("this is neither a session nor an attempt", path.string(),
@@ -245,24 +252,12 @@ void EditorFeature::takeWork() {
             auto work = std::make_shared<const preparation::RecordedWork>(
                 preparation::recordWork(mirror, cut->toothCase.buccalSign));
             *next = draft::withWork(std::move(*next), std::move(toothCase), std::move(work));
-        });
-    dialog_->toothPage()->setWork(tr("Reading the work..."));
-    dialog_->preparationPage()->setEnabled(false);
-    const auto end = [this] {
-        making_.release()->deleteLater();
-        dialog_->toothPage()->setWork({});
-        dialog_->preparationPage()->setEnabled(true);
-    };
-    connect(making_.get(), &Job::done, this, [this, end, next] {
-        end();
-        dialog_->change("", [&](draft::Content& c) { c = std::move(*next); });
-    });
-    connect(making_.get(), &Job::failed, this, [this, end](const Problem& problem) {
-        end();
-        window_.showProblem(problem);
-    });
-    connect(making_.get(), &Job::cancelled, this, end);
-    making_->start();
+        },
+        [this] {
+            dialog_->toothPage()->setWork({});
+            dialog_->preparationPage()->setEnabled(true);
+        },
+        [this, next] { dialog_->change("", [&](draft::Content& c) { c = std::move(*next); }); });
 }
 
 /// One look at a time; what changed meanwhile is looked at after it.

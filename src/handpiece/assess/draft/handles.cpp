@@ -2,7 +2,6 @@
 #include "handpiece/assess/draft/handles.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -202,10 +201,8 @@ class Finder {
                 for (const Vec3& p : one.pointsMm)
                     fissureMiddle += p, fissurePoints += 1.0;
         fissureMiddle /= std::max(1.0, fissurePoints);
-        constexpr std::array<std::string_view, 4> kCaps{"cap_mesiobuccal_mm", "cap_distobuccal_mm",
-                                                        "cap_mesiolingual_mm", "cap_distolingual_mm"};
         bool hasShoulder = false;
-        for (std::size_t i = 0; i < kCaps.size(); ++i) {
+        for (std::size_t i = 0; i < preparation::kCapNumbers.size(); ++i) {
             // A premolar's cusp takes both handles, beside each other.
             const Vec3 out(i % 2 == 0 ? 1.0 : -1.0, i < 2 ? buccal : -buccal, 0.0);
             const auto score = [&](const Vec3& tip) {
@@ -213,7 +210,7 @@ class Finder {
             };
             const Vec3 tip = *std::max_element(tips.begin(), tips.end(),
                                                [&](const Vec3& a, const Vec3& b) { return score(a) < score(b); });
-            const double cap = number(kCaps[i]);
+            const double cap = number(preparation::kCapNumbers[i]);
             // A number counts square to the surface, a handle goes straight down.
             constexpr double kInMm = 0.4;  // into the quarter of the crown that goes with the number
             const double x =
@@ -229,8 +226,8 @@ class Finder {
                     place = other;
                     break;
                 }
-            add(kCaps[i], place, -Vec3::UnitZ(), std::max(0.2, depthPerMm(place)));
-            if (hasShoulder || (cap <= 0.0 && i + 1 < kCaps.size())) continue;
+            add(preparation::kCapNumbers[i], place, -Vec3::UnitZ(), std::max(0.2, depthPerMm(place)));
+            if (hasShoulder || (cap <= 0.0 && i + 1 < preparation::kCapNumbers.size())) continue;
             hasShoulder = true;
             double low = 1e9;
             for (const Vec3& t : tips)

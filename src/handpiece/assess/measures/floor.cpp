@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 
 #include "handpiece/assess/measures/take.h"
 #include "handpiece/base/core/parallel.h"
@@ -55,13 +56,11 @@ struct Edge {
 };
 constexpr Edge kOfDepth{0.42, -2.2, 1.0}, kOfShortest{0.0, 0.0, 1.05};
 
-/// The corner begins somewhere in the outermost ring.
-void addEdge(const CutTooth& tooth, const Floor& floor, const Selection& of, const std::function<double(int)>& valueOf,
-             const Edge& edge, Taken& taken) {
+/// The corner begins somewhere in the outermost ring. `inner`: the values without it.
+void addEdge(const CutTooth& tooth, const Floor& floor, const Selection& of, std::span<const double> inner,
+             const std::function<double(int)>& valueOf, const Edge& edge, Taken& taken) {
     if (of.statistic == "greatest" || floor.inner.empty()) return;
-    std::vector<double> inner, all;
-    for (const int node : floor.inner)
-        inner.push_back(valueOf(node));
+    std::vector<double> all;
     for (const int node : floor.flat)
         all.push_back(valueOf(node));
     const auto changeOf = [&](std::string_view statistic) {
@@ -98,7 +97,7 @@ Taken takeFloorDepth(CutTooth& tooth, const Selection& of) {
         const HeightMap::Node& n = map.nodes[static_cast<std::size_t>(node)];
         return n.before - n.now;
     };
-    addEdge(tooth, *floor, of, depthAt, kOfDepth, taken);
+    addEdge(tooth, *floor, of, places.values, depthAt, kOfDepth, taken);
     return taken;
 }
 
@@ -121,7 +120,7 @@ Taken takeFloorDepthShortest(CutTooth& tooth, const Selection& of) {
     const auto shortestFrom = [&](int node) {
         return -tooth.whole().tree.signedDistance(tooth.frame().from(tooth.heights().drawOf(node)));
     };
-    addEdge(tooth, *floor, of, shortestFrom, kOfShortest, taken);
+    addEdge(tooth, *floor, of, places.values, shortestFrom, kOfShortest, taken);
     return taken;
 }
 

@@ -443,9 +443,6 @@ class Site {
             for (const Vec3& p : fissure->pointsMm)
                 if (isOnTop(p)) middle += p.head<2>(), ++count;
         middle /= static_cast<double>(count);
-        // Of mesiobuccal, distobuccal, mesiolingual, distolingual.
-        constexpr std::array<std::string_view, 4> kCaps{"cap_mesiobuccal_mm", "cap_distobuccal_mm",
-                                                        "cap_mesiolingual_mm", "cap_distolingual_mm"};
         struct Quarter {
             Vec2 out;  ///< signs of x and y
             double capMm, lowMm;
@@ -455,7 +452,7 @@ class Site {
         for (std::size_t i = 0; i < quarters.size(); ++i) {
             Quarter& q = quarters[i];
             q.out = Vec2(i % 2 == 0 ? 1.0 : -1.0, i < 2 ? side : -side);
-            q.capMm = number(kCaps[i]);
+            q.capMm = number(kCapNumbers[i]);
             if (!(q.capMm > 0.0)) continue;
             // The lowest cusp of that side: the shoulder runs on from one to the next.
             double tip = kFarMm;

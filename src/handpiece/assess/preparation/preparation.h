@@ -3,6 +3,7 @@
 /// @file
 /// What a task asks for, as a few numbers: a template laid onto the tooth of a case by its landmarks.
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -62,6 +63,10 @@ struct Recipe {
     friend bool operator==(const Recipe&, const Recipe&);
 };
 
+/// An onlay's numbers of what comes off each cusp, by quarters of the crown: mesial before distal, buccal before
+/// lingual.
+inline constexpr std::array<std::string_view, 4> kCapNumbers{"cap_mesiobuccal_mm", "cap_distobuccal_mm",
+                                                             "cap_mesiolingual_mm", "cap_distolingual_mm"};
 /// Criteria of the rubric that comes along which these numbers do not ask for: cusps that stay, boxes that are none.
 [[nodiscard]] std::vector<std::string_view> notAsked(const Recipe& recipe);
 

@@ -19,6 +19,8 @@ THIRD_PARTY = {
     r"hdf5\.h|H5": r"src/handpiece/record/session/\w+\.cpp",
     r"zlib\.h": r"src/handpiece/record/history/\w+\.cpp|src/handpiece/model/tooth/state_file\.cpp|src/handpiece/scan/volume/(nifti|samples|write_scan)\.cpp|tests/.*",
     r"sqlite3\.h": r"src/handpiece/school/store/\w+\.cpp|tests/school/.*",
+    r"libpq-fe\.h": r"src/handpiece/school/store/database_postgres\.cpp|tests/school/.*",
+    r"sodium\.h": r"src/handpiece/school/store/content_files\.cpp",
     r"CLI/|CLI11": r"apps/cli/(cli|command)\.cpp",
     r"nlohmann/": r"apps/(cli|studies)/.*|src/handpiece/app/\w+/\w+\.cpp|bench/.*",
     r"gtest/|gmock/|rapidcheck|mpfr\.h": r"tests/.*",

@@ -247,8 +247,7 @@ void Books::erase(const std::string& code, const Act& act) {
     }
     transaction.commit();
     // Nor in the log of changes: as far as nobody reads from it just now.
-    if (state_->database->engine() == Database::Engine::sqlite)
-        state_->ask("PRAGMA wal_checkpoint(TRUNCATE)").run();
+    if (state_->database->engine() == Database::Engine::sqlite) state_->ask("PRAGMA wal_checkpoint(TRUNCATE)").run();
 }
 
 // Classes.

@@ -27,20 +27,29 @@ int systemError(sqlite3* handle) {
 }  // namespace
 
 SqliteDatabase::SqliteDatabase(const std::filesystem::path& file, std::chrono::milliseconds patience, DatabaseKind kind)
-    : kind_(std::move(kind)) {
+    : kind_(std::move(kind)), patience_(patience) {
     where_ = file.string();
     // Another's eyes have no business in it: the journal beside it takes the file's mode.
     const int code = sqlite3_open_v2(where_.c_str(), &handle_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
     try {
         if (code != SQLITE_OK) fail();
         sqlite3_extended_result_codes(handle_, 1);
-        sqlite3_busy_timeout(handle_, static_cast<int>(patience.count()));
+        sqlite3_busy_handler(handle_, &waitForOthers, this);
         sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
         sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     } catch (...) {
         sqlite3_close(handle_);
         throw;
     }
+}
+
+int SqliteDatabase::waitForOthers(void* self, int times) {
+    auto& database = *static_cast<SqliteDatabase*>(self);
+    const auto now = std::chrono::steady_clock::now();
+    if (times == 0) database.waitsUntil_ = now + database.patience_;
+    if (now >= database.waitsUntil_) return 0;
+    sqlite3_sleep(1);
+    return 1;
 }
 
 SqliteDatabase::~SqliteDatabase() {

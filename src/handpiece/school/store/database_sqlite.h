@@ -36,8 +36,14 @@ class SqliteDatabase final : public Database {
     [[noreturn]] void fail() const;
 
   private:
+    /// Looks every millisecond: SQLite's own wait grows to a tenth of a second, in which two that write without a pause
+    /// starve a third.
+    static int waitForOthers(void* self, int times);
+
     sqlite3* handle_ = nullptr;
     DatabaseKind kind_;
+    std::chrono::milliseconds patience_;
+    std::chrono::steady_clock::time_point waitsUntil_;
 };
 
 }  // namespace handpiece::school

@@ -26,7 +26,7 @@ using school::Books;
 
 struct BooksOptions {
     std::string data = "school", database, name, code, file, role = "student", person, schoolClass, exercise;
-    std::size_t hours = 24;
+    std::size_t hours = 24, days = 120;
 };
 
 void addBooksOptions(cli::Command& command, BooksOptions& o) {
@@ -91,6 +91,7 @@ void assign(const BooksOptions& o) {
     school::Assignment made;
     made.id = school::newId(), made.schoolClass = o.schoolClass, made.pack = pack->hash, made.rubric = pack->rubric;
     made.title = o.name.empty() ? pack->title : o.name, made.kind = "practice", made.opens = act.at;
+    made.closes = act.at + static_cast<school::Milliseconds>(o.days) * 86'400'000;
     books.add(made, act);
     fmt::print("{}\n", made.id);
 }
@@ -238,6 +239,9 @@ void addBooksCommands(cli::Command& app) {
     assigned.option("CLASS", o.schoolClass, "its id").required();
     assigned.option("EXERCISE", o.exercise, "hash of the exercise, as handpiece school exercise told it").required();
     assigned.option("--title", o.name, "as the class reads it");
+    assigned.option("--days", o.days, "that it is open")
+        .check(cli::range(std::size_t{1}, std::size_t{3650}))
+        .showDefault();
     assigned.callback([options] { assign(*options); });
 
     cli::Command exercise = app.subcommand("exercise", "Adds an exercise, with its rubric" + where);

@@ -328,6 +328,22 @@ std::vector<Server::State::Entry> Server::State::table(State* of) {
                if (status.missing.size() > 200) status.missing.resize(200);
                answer(response, toJson(status));
            }),
+        on("GET", "/api/v1/tasks/([0-9A-Za-z._-]{1,64})", Caller::station,
+           [of](const Request& request, Response& response, const school::Station*) {
+               const std::string person = request.matches[1];
+               auto open = of->books.take();
+               std::vector<school_wire::Task> tasks;
+               for (const school::SchoolClass& one : open->classes()) {
+                   const std::vector<school::Enrolment> in = open->enrolments(one.id);
+                   if (std::none_of(in.begin(), in.end(), [&](const school::Enrolment& e) {
+                           return e.person == person && e.role == "student";
+                       }))
+                       continue;
+                   for (const school::Assignment& a : open->assignments(one.id))
+                       tasks.push_back({a.id, a.pack, a.title, a.opens, a.closes});
+               }
+               answer(response, toJson(tasks));
+           }),
         on("POST", "/api/v1/attempts", Caller::station,
            [of](const Request& request, Response& response, const school::Station* station) {
                school::PushedAttempt pushed = school_wire::attemptFrom(request.body);

@@ -25,6 +25,8 @@ using school::Act;
 using school::Books;
 using school_station::Enrolment;
 
+inline constexpr const char* kCode = "ABC-DEF-GHJ-KMN";
+
 inline constexpr const char* kRubric = R"(format = 1
 id = "block"
 version = "1"
@@ -109,8 +111,7 @@ class School {
         const std::string rubricHash = rubric::hashText(rubric::hashOf(rubric));
         books.add(school::RubricVersion{rubricHash, "block", kRubric, 1, 1}, act);
         books.add(school::Pack{rubric::hashText(tasks::contentHash(task)), file, "block", "Block", rubricHash, 1}, act);
-        books.offerCode("CODE-AAAA-BBBB", "chair 1", 4'000'000'000'000, act);
-        books.offerCode("CODE-CCCC-DDDD", "chair 2", 4'000'000'000'000, act);
+        books.offerCode(kCode, "chair 1", 4'000'000'000'000, act);
     }
 
   private:

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <set>
 
+#include "handpiece/school/people/secret.h"
 #include "school/server/school_fixture.h"
 #include "school/worker.h"
 #include "support/error_of.h"
@@ -16,7 +17,7 @@ using testing::SizeIs;
 TEST_F(SchoolTest, WorkIsPushedProvenAndScored) {
     School school(data());
     Chair chair;
-    Enrolment enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    Enrolment enrolment = school_station::enrol(school.address(), kCode, "s017");
     const std::string attempt = chair.finish(session(), "one.h5");
     chair.store().add(school::Judgement{attempt, 80.0, "fine", 6000});
     const school_station::Pushed pushed = chair.push(enrolment);
@@ -53,7 +54,7 @@ TEST_F(SchoolTest, WorkIsPushedProvenAndScored) {
 TEST_F(SchoolTest, ABoastAndAForeignSessionAreFound) {
     School school(data());
     Chair chair;
-    Enrolment enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    Enrolment enrolment = school_station::enrol(school.address(), kCode, "s017");
     const std::string boast = chair.finish(session(), "one.h5", 99.0);
     // The recording was changed after the score: the bytes are others than the attempt names.
     const std::string changed = chair.finish(session(), "two.h5");
@@ -71,6 +72,27 @@ TEST_F(SchoolTest, ABoastAndAForeignSessionAreFound) {
     EXPECT_THAT(scoresOf(changed).front().reason, HasSubstr("another than the attempt names"));
 }
 
+TEST_F(SchoolTest, WorkOnWhatTheSchoolGaveIsToldAsThat) {
+    School school(data());
+    {
+        Books open(data());
+        const Act act{"server", 1};
+        open.add(school::SchoolClass{"c1", "Class", "", 0, 1, 0}, act);
+        const school::Enrolment one{"c1", "s017", "student"};
+        open.enrol(std::span(&one, 1), act);
+        const std::string exercise = rubric::hashText(tasks::contentHash(blockTask()));
+        const std::string rubric = open.pack(exercise)->rubric;
+        open.add(school::Assignment{"early", "c1", exercise, rubric, "Early", "practice", "", 1, 500}, act);
+        open.add(school::Assignment{"now", "c1", exercise, rubric, "Now", "practice", "", 2000, 9000}, act);
+    }
+    Chair chair;
+    Enrolment enrolment = school_station::enrol(school.address(), kCode, "s017");
+    const std::string attempt = chair.finish(session(), "one.h5");
+    (void)chair.push(enrolment);
+    EXPECT_EQ(books().attempt(attempt)->assignment, "now");
+    EXPECT_EQ(books().classPage("c1").cells.size(), 1u);
+}
+
 TEST_F(SchoolTest, WithoutTheServerNothingIsLost) {
     Chair chair;
     Enrolment enrolment;
@@ -78,7 +100,7 @@ TEST_F(SchoolTest, WithoutTheServerNothingIsLost) {
     {
         School school(data());
         port = school.port();
-        enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+        enrolment = school_station::enrol(school.address(), kCode, "s017");
     }
     const std::string attempt = chair.finish(session(), "one.h5");
     EXPECT_THAT(test::errorOf([&] { (void)chair.push(enrolment); }), HasSubstr("nobody answers there"));
@@ -92,7 +114,7 @@ TEST_F(SchoolTest, WithoutTheServerNothingIsLost) {
 TEST_F(SchoolTest, WhatWasCutOffGoesOnFromThere) {
     School school(data());
     Chair chair;
-    Enrolment enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    Enrolment enrolment = school_station::enrol(school.address(), kCode, "s017");
     (void)chair.finish(session(), "one.h5");
     // Half of the file came before the network went.
     const std::string hash = school::sha256Of(session());
@@ -109,10 +131,12 @@ TEST_F(SchoolTest, WhatWasCutOffGoesOnFromThere) {
 
 TEST_F(SchoolTest, ThirtyPushAtOnceAndNoneIsLostOrDoubled) {
     School school(data());
+    std::vector<std::string> codes;
     {
         Books open(data());
         for (int i = 0; i < 30; ++i)
-            open.offerCode(fmt::format("CODE-{:08}", i), fmt::format("chair {}", i), 4'000'000'000'000, {"server", 1});
+            open.offerCode(codes.emplace_back(school::newStationCode()), fmt::format("chair {}", i), 4'000'000'000'000,
+                           {"server", 1});
     }
     (void)session();
     std::vector<std::thread> chairs;
@@ -123,7 +147,8 @@ TEST_F(SchoolTest, ThirtyPushAtOnceAndNoneIsLostOrDoubled) {
         chairs.emplace_back([&, i] {
             try {
                 Chair chair;
-                Enrolment enrolment = school_station::enrol(school.address(), fmt::format("CODE-{:08}", i), "s017");
+                Enrolment enrolment =
+                    school_station::enrol(school.address(), codes[static_cast<std::size_t>(i)], "s017");
                 for (int k = 0; k < 3; ++k) {
                     const std::string id = chair.finish(session(), fmt::format("{}.h5", k));
                     const std::lock_guard lock(mutex);
@@ -171,7 +196,7 @@ TEST_F(SchoolTest, StrangersGetNothing) {
             EXPECT_EQ(other->status, 426);
         }
     }
-    for (const char* path : {"/", "/api/v1/files/../../books.db", "/api/v1/files/%2e%2e%2fbooks.db", "/books.db",
+    for (const char* path : {"/api/v1/files/../../books.db", "/api/v1/files/%2e%2e%2fbooks.db", "/books.db",
                              "/api/v1/files/AAAA", "/api/v2/status"}) {
         const auto result = http.Get(path);
         ASSERT_TRUE(result) << path;
@@ -179,8 +204,8 @@ TEST_F(SchoolTest, StrangersGetNothing) {
     }
     const auto wrong = http.Post("/api/v1/enrol", R"({"code": "nobody's"})", "application/json");
     EXPECT_EQ(wrong->status, 403);
-    const Enrolment once = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
-    EXPECT_THAT(test::errorOf([&] { (void)school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017"); }),
+    const Enrolment once = school_station::enrol(school.address(), kCode, "s017");
+    EXPECT_THAT(test::errorOf([&] { (void)school_station::enrol(school.address(), kCode, "s017"); }),
                 HasSubstr("was used"));
     // A key that was taken back.
     {
@@ -192,7 +217,7 @@ TEST_F(SchoolTest, StrangersGetNothing) {
 
 TEST_F(SchoolTest, DamagedMessagesAreOneClearErrorEach) {
     School school(data());
-    const Enrolment enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    const Enrolment enrolment = school_station::enrol(school.address(), kCode, "s017");
     httplib::Client http(school.address());
     const httplib::Headers headers{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + enrolment.key}};
     for (const std::string& body :
@@ -236,7 +261,7 @@ TEST(Station, ANonsenseServerIsToldAndChangesNothing) {
                                                                                {"{\"what\": 3}", 404},
                                                                                {std::string(1 << 16, '{'), 200}}) {
         body = answer, status = code;
-        EXPECT_NE(test::errorOf([&] { (void)school_station::enrol(address, "CODE-AAAA-BBBB", "s017"); }), "") << answer;
+        EXPECT_NE(test::errorOf([&] { (void)school_station::enrol(address, kCode, "s017"); }), "") << answer;
     }
     Chair chair;
     (void)chair.finish(session(), "one.h5");

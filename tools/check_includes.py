@@ -17,7 +17,7 @@ THIRD_PARTY = {
     r"toml\+\+|toml\.hpp": r"src/handpiece/base/config/\w+\.cpp",
     r"zip\.h": r"src/handpiece/model/case/package\.cpp|src/handpiece/scan/volume/files\.cpp|tests/.*",
     r"hdf5\.h|H5": r"src/handpiece/record/session/\w+\.cpp",
-    r"zlib\.h": r"src/handpiece/record/history/\w+\.cpp|src/handpiece/model/tooth/state_file\.cpp|src/handpiece/scan/volume/(nifti|samples|write_scan)\.cpp|tests/.*",
+    r"zlib\.h": r"src/handpiece/record/history/\w+\.cpp|src/handpiece/model/tooth/state_file\.cpp|src/handpiece/scan/volume/(nifti|samples|write_scan)\.cpp|src/handpiece/app/report/review_data\.cpp|tests/.*",
     r"sqlite3\.h": r"src/handpiece/school/store/\w+\.cpp|tests/school/.*",
     r"CLI/|CLI11": r"apps/cli/(cli|command)\.cpp",
     r"nlohmann/": r"apps/(cli|studies)/.*|src/handpiece/app/\w+/\w+\.cpp|bench/.*",

@@ -20,7 +20,7 @@ THIRD_PARTY = {
     r"zlib\.h": r"src/handpiece/record/history/\w+\.cpp|src/handpiece/model/tooth/state_file\.cpp|src/handpiece/scan/volume/(nifti|samples|write_scan)\.cpp|src/handpiece/app/report/review_data\.cpp|tests/.*",
     r"sqlite3\.h": r"src/handpiece/school/store/\w+\.cpp|tests/school/.*",
     r"CLI/|CLI11": r"apps/cli/(cli|command)\.cpp",
-    r"nlohmann/": r"apps/(cli|studies)/.*|src/handpiece/app/\w+/\w+\.cpp|bench/.*",
+    r"nlohmann/": r"apps/(cli|studies)/.*|src/handpiece/app/\w+/\w+\.cpp|bench/.*|tests/app/.*",
     r"gtest/|gmock/|rapidcheck|mpfr\.h": r"tests/.*",
     r"benchmark/": r"bench/.*",
     r"ccd/|fcl/": r"tests/.*|bench/.*",

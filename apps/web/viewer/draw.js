@@ -85,13 +85,15 @@ void main() {
     if (what == 1) {
         base = vec3(0.62, 0.65, 0.70);
     } else if (what == 2) {
-        if (at(distances, gridPlace) > 0.0) discard;
+        float inside = at(distances, gridPlace);
+        if (inside > 0.0) discard;
         base = tissueAt(gridPlace);
         // A line every millimetre, along the axes that the plane does not stand across.
         vec3 width = fwidth(worldPlace), mm = abs(fract(worldPlace + 0.5) - 0.5) / max(width, vec3(1e-6));
         float line = 9.0;
         for (int k = 0; k < 3; ++k) line = width[k] > 1e-4 ? min(line, mm[k]) : line;
         base *= mix(0.86, 1.0, clamp(line - 0.3, 0.0, 1.0));
+        base = mix(vec3(0.25, 0.27, 0.31), base, smoothstep(0.8, 1.8, abs(inside) / fwidth(inside)));
         if (inDeviation) {
             float off = at(ideal, gridPlace);
             base = mix(vec3(0.05, 0.2, 0.55), base, smoothstep(0.8, 1.8, abs(off) / fwidth(off)));

@@ -326,10 +326,10 @@ export class ReviewPage {
         const place = placeMm ?? this.review.poseAt(this.timeS).placeMm;
         this.markMm = place;
         const far = this.standard("oblique");
-        // Into a preparation from above, onto a wall from its own side.
+        // Into a preparation, not through its wall.
         /** @type {Vec3} */
         const targetMm = [place[0], place[1], place[2]];
-        this.camera = { ...this.camera, targetMm, distanceMm: far.distanceMm * 0.6, pitchDeg: Math.max(this.camera.pitchDeg, 45) };
+        this.camera = { ...this.camera, targetMm, distanceMm: far.distanceMm * 0.6, pitchDeg: Math.max(this.camera.pitchDeg, 68) };
         this.ask();
     }
 
@@ -348,7 +348,7 @@ export class ReviewPage {
      */
     facing(axis) {
         const b = this.review.text.buccalSign;
-        return axis === "x" ? { yawDeg: 20, pitchDeg: 25 } : axis === "y" ? { yawDeg: 90 * b + 20, pitchDeg: 25 } : { yawDeg: -90 * b, pitchDeg: 60 };
+        return axis === "x" ? { yawDeg: 10, pitchDeg: 20 } : axis === "y" ? { yawDeg: 90 * b + 10, pitchDeg: 20 } : { yawDeg: -90 * b, pitchDeg: 65 };
     }
 
     /** @returns {import("./draw.js").Plane | null} */
@@ -464,6 +464,7 @@ export class ReviewPage {
             const shown = this.pictures[indexAt(this.pictures.map((p) => p.timeS), this.timeS)];
             this.fallback.src = shown.picture.src;
             this.fallback.alt = shown.picture.alt;
+            this.message.textContent = `${this.words["no-webgl"]} (${shown.picture.alt})`;
         }
         this.ask();
     }

@@ -24,7 +24,7 @@
  * @property {[number, number][]} strokes
  * @property {Moment[]} moments
  * @property {LostPoints[]} [errors]
- * @property {{mostMm: number, scale: string[]}} [deviation]
+ * @property {{mostMm: number, scale: string[], whole: number[]}} [deviation] whole: by distance to the uncut tooth, that to the ideal where nothing is to be cut
  * @property {{timesS: number[], bricks: number[]}} keys
  * @property {number} poses
  * @property {number} curvePoints
@@ -127,7 +127,9 @@ export class Review {
         this.tissue = sections.tissue;
         for (let i = 1; i < this.tissue.length; ++i) this.tissue[i] = (this.tissue[i] + this.tissue[i - 1]) & 255;
         /** To the ideal tooth; null without an exercise. */
-        this.ideal = sections.ideal.length ? sumUp(sections.ideal, nodes) : null;
+        this.ideal = text.deviation ? sumUp(sections.ideal, nodes) : null;
+        if (this.ideal && text.deviation)
+            for (let i = 0; i < this.ideal.length; ++i) this.ideal[i] = (this.ideal[i] + text.deviation.whole[this.uncut[i]]) & 255;
         this.changes = sections.changes;
         this.bricks = new Uint32Array(sections.bricks.length / 3);
         /** By key: its first brick. */

@@ -36,6 +36,7 @@ export function meshOf(distance, nodes, at) {
     const low = at.map((c) => c * kChunk), high = at.map((c, k) => Math.min((c + 1) * kChunk, nodes[k] - 1));
     /** @type {number[][]} */
     const [positions, normals, triangles] = [[], [], []];
+    if (isEven(distance, nx, layer, low, high)) return null;
     vertexOf.fill(-1);
     const step = [1, nx, layer];
     for (let z = Math.max(low[2] - 1, 0); z < high[2]; ++z)
@@ -132,6 +133,18 @@ export function meshOf(distance, nodes, at) {
                 }
             }
     return { positions: Float32Array.from(positions), normals: Float32Array.from(normals), triangles: Uint16Array.from(triangles) };
+}
+
+/**
+ * All nodes of the chunk's cells lie on one side: most of a tooth is so.
+ * @param {Uint8Array} distance @param {number} nx @param {number} layer @param {number[]} low @param {number[]} high
+ */
+function isEven(distance, nx, layer, low, high) {
+    const [x0, y0, z0] = low.map((n) => Math.max(n - 1, 0)), isIn = distance[x0 + nx * y0 + layer * z0] < kMiddle;
+    for (let z = z0; z <= high[2]; ++z)
+        for (let y = y0; y <= high[1]; ++y)
+            for (let n = x0 + nx * y + layer * z, end = n + high[0] - x0; n <= end; ++n) if (distance[n] < kMiddle !== isIn) return false;
+    return true;
 }
 
 /**

@@ -58,18 +58,20 @@ std::string wantedOf(const rubric::Criterion& c, const rubric::Rubric& rubric) {
 class Page {
   public:
     Page(const score::Result& result, const tasks::Task& task, const rubric::Rubric& rubric,
-         const AssessmentPictures& pictures)
+         const AssessmentPictures& pictures, const Review* review)
         : result_(result),
           a_(result.assessment),
           task_(task),
           rubric_(rubric),
           pictures_(pictures),
+          review_(review),
           page_(words()("assessment.title", titleOf(task))) {}
 
     std::string text() {
         addVerdict();
         addScan();
         addCritical();
+        if (review_ != nullptr) page_.review(*review_);
         addFirstErrors();
         addCriteria();
         addViews();
@@ -287,6 +289,7 @@ class Page {
     const tasks::Task& task_;
     const rubric::Rubric& rubric_;
     const AssessmentPictures& pictures_;
+    const Review* review_;
     HtmlReport page_;
 };
 
@@ -308,8 +311,8 @@ std::vector<std::size_t> costliest(const score::Assessment& a) {
 }
 
 std::string studentReport(const score::Result& result, const tasks::Task& task, const rubric::Rubric& rubric,
-                          const AssessmentPictures& pictures) {
-    return Page(result, task, rubric, pictures).text();
+                          const AssessmentPictures& pictures, const Review* review) {
+    return Page(result, task, rubric, pictures, review).text();
 }
 
 }  // namespace handpiece::report

@@ -34,8 +34,6 @@ constexpr int kMiddle = 128, kMost = 127;
 /// Poses and, every fifth of them, what has changed of the tooth.
 constexpr double kPoseStepS = 0.05;
 constexpr std::size_t kPosesAKey = 5;
-/// As base64, with the viewer and the rest of the page, it stays under 3 MB.
-constexpr std::size_t kMostDataBytes = 1'500'000;
 constexpr std::size_t kMostPoints = 3000;
 constexpr double kPlaceStepMm = 0.002, kTurnStep = 1.0 / 32767.0, kForceStepN = 0.001, kDepthStepMm = 0.001;
 
@@ -211,35 +209,40 @@ struct ReviewGatherer::State {
         if (looks++ % kPosesAKey == 0 || sample.timeS >= player.durationS()) lookAtTooth(sample.timeS);
     }
 
-    /// How far places lie from the ideal tooth: positive where tissue should be gone.
+    /// What stands for the whole tooth's distances in those to the ideal.
+    [[nodiscard]] std::array<std::uint8_t, 256> wholeAsIdeal() const {
+        std::array<std::uint8_t, 256> whole{};
+        for (int i = 0; i < 256; ++i)
+            whole[static_cast<std::size_t>(i)] =
+                eightBits((i - kMiddle) / kStepsAVoxel * grid.voxelMm(), kMost / kDeviationMostMm);
+        return whole;
+    }
+
+    /// How far places lie from the ideal tooth, positive where tissue should be gone: less (modulo 256) what
+    /// wholeAsIdeal() says, which is nothing away from all that was cut or is to be.
     [[nodiscard]] Volume idealOf(const tasks::Task& task) const {
         const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
         const zones::Zones& zones = *laid.zones;
-        core::Box box = zones.box();
         const Vec3 around = Vec3::Constant(kDeviationMostMm + 2.0 * grid.voxelMm());
-        box.min -= around;
-        box.max += around;
+        const Vec3 low = zones.box().min - around, high = zones.box().max + around;
+        const auto whole = wholeAsIdeal();
         Volume ideal;
         ideal.nodes = grid.nodes;
         ideal.values.resize(uncut.values.size());
-        const double steps = kMost / kDeviationMostMm;
         core::parallelFor(grid.bricks(), 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t b = begin; b < end; ++b) {
-                const auto dense = static_cast<std::uint32_t>(b);
                 const bool isCut = b < everChanged.size() && everChanged[b];
-                grid.eachNode(dense, [&](int x, int y, int z, std::size_t) {
+                grid.eachNode(static_cast<std::uint32_t>(b), [&](int x, int y, int z, std::size_t) {
                     const std::size_t at = uncut.index(x, y, z);
                     const Vec3 p = grid.placeMm(x, y, z);
-                    const std::uint8_t whole = uncut.values[at];
                     const bool isNear =
-                        isCut || (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
-                    // Away from all that was cut or is to be, the ideal is the whole tooth.
-                    const double wholeMm = isNear && whole < kMiddle + kMost
-                                               ? model->tree.signedDistance(p)
-                                               : (static_cast<double>(whole) - kMiddle) / kStepsAVoxel * grid.voxelMm();
-                    ideal.values[at] = eightBits(
-                        isNear ? std::max(wholeMm, std::min(-zones.targetMm(p), zones.protectedMm(p))) : wholeMm,
-                        steps);
+                        isCut || ((p.array() >= low.array()).all() && (p.array() <= high.array()).all());
+                    // Far outside nothing is ever asked.
+                    if (!isNear || uncut.values[at] == kMiddle + kMost) return;
+                    const double toIdealMm =
+                        std::max(model->tree.signedDistance(p), std::min(-zones.targetMm(p), zones.protectedMm(p)));
+                    ideal.values[at] = static_cast<std::uint8_t>(eightBits(toIdealMm, kMost / kDeviationMostMm) -
+                                                                 whole[uncut.values[at]]);
                 });
             }
         });
@@ -346,7 +349,7 @@ double ReviewGatherer::stepS() {
     return kPoseStepS;
 }
 
-Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& against) const {
+Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& against, std::size_t mostBytes) const {
     const State& s = *state_;
     const simulation::SessionPlayer& player = s.player;
     const field::FieldView& view = s.grid.view;
@@ -414,7 +417,7 @@ Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& a
         for (int i = 0; i < kColours; ++i)
             scale.push_back(
                 hexOf(view::deviationColour((2.0 * i / (kColours - 1) - 1.0) * kDeviationMostMm, kDeviationMostMm)));
-        json["deviation"] = {{"mostMm", kDeviationMostMm}, {"scale", std::move(scale)}};
+        json["deviation"] = {{"mostMm", kDeviationMostMm}, {"scale", std::move(scale)}, {"whole", s.wholeAsIdeal()}};
     }
 
     std::vector<ChangedAt> keys = s.keys;
@@ -450,7 +453,7 @@ Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& a
         }
         Review review;
         review.data = compressed(all);
-        if (review.data.size() > kMostDataBytes && keys.size() > 2) {
+        if (review.data.size() > mostBytes && keys.size() > 2) {
             std::vector<ChangedAt> fewer;
             for (std::size_t i = 0; i < keys.size(); i += 2)
                 fewer.push_back(i + 1 < keys.size() ? joined(keys[i], keys[i + 1], s.perBrick()) : std::move(keys[i]));
@@ -467,10 +470,10 @@ Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& a
 }
 
 Review reviewOf(simulation::SessionPlayer& player, const std::string& title, const ReviewedAgainst& against,
-                const core::Progress& progress) {
+                const core::Progress& progress, std::size_t mostBytes) {
     ReviewGatherer gatherer(player);
     (void)player.compareAll(progress, {ReviewGatherer::stepS(), [&gatherer] { gatherer.look(); }});
-    return gatherer.review(title, against);
+    return gatherer.review(title, against, mostBytes);
 }
 
 }  // namespace handpiece::report

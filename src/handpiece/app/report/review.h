@@ -28,6 +28,10 @@ struct ReviewedAgainst {
     std::size_t session = 0;                 ///< number of this session in the chain that the result is of
 };
 
+/// As base64, with the viewer and the rest of its page, it stays under 3 MB.
+inline constexpr std::size_t kMostPageBytes = 2'950'000;
+inline constexpr std::size_t kMostReviewBytes = 1'300'000;
+
 /// Gathers a session while a player plays it from its beginning to its end. The same bytes at any thread count.
 class ReviewGatherer {
   public:
@@ -40,8 +44,9 @@ class ReviewGatherer {
     void look();
     [[nodiscard]] static double stepS();
     /// Of what was seen. `title`: of the page. Throws core::Error: the exercise is of another tooth, or cannot be laid
-    /// on it.
-    [[nodiscard]] Review review(const std::string& title, const ReviewedAgainst& against = {}) const;
+    /// on it. Where `data` would be more than `mostBytes`, the tooth changes in fewer steps.
+    [[nodiscard]] Review review(const std::string& title, const ReviewedAgainst& against = {},
+                                std::size_t mostBytes = kMostReviewBytes) const;
 
   private:
     struct State;
@@ -50,6 +55,7 @@ class ReviewGatherer {
 
 /// Plays a session from its beginning and gathers it. Throws core::Error as SessionPlayer::compareAll.
 [[nodiscard]] Review reviewOf(simulation::SessionPlayer& player, const std::string& title,
-                              const ReviewedAgainst& against = {}, const core::Progress& progress = {});
+                              const ReviewedAgainst& against = {}, const core::Progress& progress = {},
+                              std::size_t mostBytes = kMostReviewBytes);
 
 }  // namespace handpiece::report

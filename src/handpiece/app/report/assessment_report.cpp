@@ -59,18 +59,20 @@ std::string wantedOf(const rubric::Criterion& c, const rubric::Rubric& rubric) {
 class Page {
   public:
     Page(const score::Result& result, const tasks::Task& task, const rubric::Rubric& rubric,
-         const AssessmentPictures& pictures)
+         const AssessmentPictures& pictures, const Review* review)
         : result_(result),
           a_(result.assessment),
           task_(task),
           rubric_(rubric),
           pictures_(pictures),
+          review_(review),
           page_(words()("assessment.title", titleOf(task))) {}
 
     std::string text() {
         addVerdict();
         addScan();
         addCritical();
+        if (review_ != nullptr) page_.review(*review_);
         addFirstErrors();
         addCriteria();
         addViews();
@@ -321,6 +323,7 @@ class Page {
     const tasks::Task& task_;
     const rubric::Rubric& rubric_;
     const AssessmentPictures& pictures_;
+    const Review* review_;
     HtmlReport page_;
 };
 
@@ -355,8 +358,8 @@ std::string undoneWords(const score::Assessment& a) {
 }
 
 std::string studentReport(const score::Result& result, const tasks::Task& task, const rubric::Rubric& rubric,
-                          const AssessmentPictures& pictures) {
-    return Page(result, task, rubric, pictures).text();
+                          const AssessmentPictures& pictures, const Review* review) {
+    return Page(result, task, rubric, pictures, review).text();
 }
 
 }  // namespace handpiece::report

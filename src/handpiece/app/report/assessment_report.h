@@ -14,6 +14,8 @@
 
 namespace handpiece::report {
 
+struct Review;
+
 using Png = std::vector<std::byte>;
 
 /// What assessmentPictures() draws (assessment_pictures.h); the page does without whatever is not there.
@@ -47,9 +49,11 @@ inline constexpr std::size_t kFirstErrors = 3;
 [[nodiscard]] std::string drillFor(const std::string& measure);
 
 /// One HTML page in the program's language, nothing loaded from elsewhere: score with its uncertainty, verdict and
-/// why, critical errors, the costliest errors with place, time, force, picture and drill, all criteria, own and ideal.
+/// why, critical errors, the costliest errors with place, time, force, picture and drill, all criteria, own and ideal;
+/// with a `review` the work to look through.
 [[nodiscard]] std::string studentReport(const score::Result& result, const tasks::Task& task,
-                                        const rubric::Rubric& rubric, const AssessmentPictures& pictures = {});
+                                        const rubric::Rubric& rubric, const AssessmentPictures& pictures = {},
+                                        const Review* review = nullptr);
 
 /// One result of a class: what a result.json holds of it.
 struct ClassEntry {

@@ -2,7 +2,8 @@
 #pragma once
 /// @file
 /// One self-contained HTML page, to read and to print: headings, text, tables, pictures. Nothing is loaded from
-/// elsewhere. Every page of the program is made with it, in the program's language.
+/// elsewhere, and no browser lets it: its content security policy names what may run. Every page of the program is made
+/// with it, in the program's language.
 
 #include <array>
 #include <cstddef>
@@ -14,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "handpiece/app/report/review.h"
 #include "handpiece/senses/view/image.h"
 
 namespace handpiece::report {
@@ -22,7 +24,7 @@ class HtmlReport {
   public:
     enum class Tone { plain, note, good, bad, missing };
     /// What stands side by side, or in a frame.
-    enum class Group { columns, pictures, slices, frame, thirds };
+    enum class Group { columns, pictures, slices, frame, thirds, moments };
     struct Chip {
         std::array<std::uint8_t, 3> colour;
         std::string name;
@@ -50,6 +52,10 @@ class HtmlReport {
     void picture(const view::Image& image, std::string_view caption);
     /// The bytes of a PNG file.
     void picture(std::span<const std::byte> png, std::string_view caption);
+    /// In the group that begin(Group::moments) opened: what was to be seen at a time.
+    void moment(const view::Image& image, double timeS, std::string_view caption);
+    /// The viewer (apps/web/viewer) and what it shows. Once a page.
+    void review(const Review& review);
     void begin(Group group);
     void end();
     /// The page.
@@ -57,6 +63,7 @@ class HtmlReport {
 
   private:
     std::string title_, body_;
+    bool hasViewer_ = false;
 };
 
 }  // namespace handpiece::report

@@ -20,6 +20,9 @@ namespace handpiece::report {
 namespace {
 
 constexpr double kSectionPixelMm = 0.03;
+/// Pictures along the way, for print and for browsers that cannot draw the tooth.
+constexpr std::size_t kMoments = 6;
+constexpr int kMomentWidth = 400, kMomentHeight = 300;
 
 using Tone = HtmlReport::Tone;
 using Group = HtmlReport::Group;
@@ -109,6 +112,44 @@ class Artist {
     view::Viewport viewport_;
     view::Look look_;
     view::Moment moment_;
+};
+
+/// The tooth at some moments, drawn while a player comes by them.
+class Moments {
+  public:
+    Moments(const simulation::SessionPlayer& player, const ReportSettings& settings) : player_(player) {
+        if (!settings.pictures) return;
+        ReportSettings small = settings;
+        small.pictureWidth = kMomentWidth;
+        small.pictureHeight = kMomentHeight;
+        try {
+            artist_.emplace(player, small);
+        } catch (const core::Error&) {
+            // Without OpenGL: addPictures() says so.
+        }
+    }
+    void look() {
+        if (!artist_ || player_.sample().timeS < nextS_) return;
+        nextS_ = player_.durationS() * static_cast<double>(pictures_.size() + 1) / static_cast<double>(kMoments - 1);
+        player_.tooth()->settle();
+        artist_->cut(player_.tooth()->takeNews());
+        pictures_.emplace_back(player_.sample().timeS,
+                               artist_->picture(view::StandardView::occlusal, view::ToothShown::now));
+    }
+    void addTo(HtmlReport& page) const {
+        if (pictures_.empty()) return;
+        page.subheading(words()("review.pictures"));
+        page.begin(Group::moments);
+        for (const auto& [timeS, image] : pictures_)
+            page.moment(image, timeS, words()("review.picture-at", timeS));
+        page.end();
+    }
+
+  private:
+    const simulation::SessionPlayer& player_;
+    std::optional<Artist> artist_;
+    std::vector<std::pair<double, view::Image>> pictures_;
+    double nextS_ = 0.0;
 };
 
 void addPictures(HtmlReport& page, const simulation::SessionPlayer& player, const ReportSettings& settings,
@@ -251,7 +292,13 @@ std::string sessionReport(simulation::SessionPlayer& player, const ReportSetting
                           const core::Progress& progress) {
     const session::SessionInfo& info = player.reader().info();
     const simulation::SimulationSettings first = simulation::settingsFromJson(info.settings, "session");
-    const simulation::Verdict verdict = player.compareAll(core::part(progress, 0.0, 0.7));
+    ReviewGatherer gatherer(player);
+    Moments moments(player, settings);
+    const simulation::Verdict verdict =
+        player.compareAll(core::part(progress, 0.0, 0.7), {ReviewGatherer::stepS(), [&] {
+                                                               gatherer.look();
+                                                               moments.look();
+                                                           }});
     const SessionFigures f = figuresOf(player.reader());
     core::report(progress, 0.75);
     const std::vector<simulation::PlotPoint> points =
@@ -265,11 +312,14 @@ std::string sessionReport(simulation::SessionPlayer& player, const ReportSetting
     core::report(progress, 0.85);
 
     const double removed = std::accumulate(f.removedMm3.begin(), f.removedMm3.end(), 0.0);
-    HtmlReport page(words()("session.title", player.toothCase().name));
+    const std::string title = words()("session.title", player.toothCase().name);
+    HtmlReport page(title);
     page.paragraph(
         words()("session.recorded", info.code.empty() ? words()("session.no-code") : words()("session.code", info.code),
                 info.version, info.rateHz),
         Tone::note);
+    page.review(gatherer.review(title, settings.against));
+    moments.addTo(page);
     page.heading(words()("report.the-tooth"));
     addPictures(page, player, settings, news, deepest);
     addVolumes(page, player, f);

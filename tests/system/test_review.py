@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The review in a page: its viewer's types, and the page worked in a real browser. Skips where there is none."""
+
+import pathlib
+import shutil
+import subprocess
+import unittest
+
+from support import SystemTest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CHROMIUM = [name for name in ("chromium", "chromium-browser", "google-chrome") if shutil.which(name)]
+
+
+class Review(SystemTest):
+    @unittest.skipUnless(shutil.which("tsc"), "no tsc (Debian: node-typescript)")
+    def test_the_viewer_is_of_one_piece(self):
+        done = subprocess.run(["tsc", "-p", ROOT / "apps" / "web" / "viewer"], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+    def work(self, page, *options):
+        done = subprocess.run(["node", ROOT / "tests" / "web" / "review_test.mjs", page, *options],
+                              capture_output=True, text=True, timeout=600, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    @unittest.skipUnless(shutil.which("node"), "no node (Debian: nodejs)")
+    @unittest.skipUnless(CHROMIUM, "no Chromium (Debian: chromium)")
+    def test_a_page_worked_by_mouse_and_keys(self):
+        block, out = self.folder / "block", self.folder / "out"
+        self.ok("make", "block", "--kind", "line", "--rubric", ROOT / "data" / "rubrics" / "dexterity-line.toml",
+                "--out", block)
+        self.ok("run", "--case", block / "case", "--bur", "330", "--motion", "plunge", "--depth", "0.9",
+                "--out", out)
+        self.ok("report", out / "session.h5", "--out", self.folder / "plain.html")
+        self.work(self.folder / "plain.html")
+        self.ok("score", out / "session.h5", "--exercise", block, "--out", self.folder / "result")
+        self.work(self.folder / "result" / "report.html", "--exercise")
+        for page in (self.folder / "plain.html", self.folder / "result" / "report.html"):
+            self.assertLess(page.stat().st_size, 3_000_000)
+
+
+if __name__ == "__main__":
+    unittest.main()

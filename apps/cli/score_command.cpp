@@ -15,8 +15,8 @@
 #include "handpiece/app/assessment/measure_store.h"
 #include "handpiece/app/assessment/scan_work.h"
 #include "handpiece/app/assessment/score_work.h"
+#include "handpiece/app/assessment/student_page.h"
 #include "handpiece/app/report/assessment_pictures.h"
-#include "handpiece/app/report/review.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
@@ -101,19 +101,10 @@ Files filesOf(const ScoreOptions& o, const assessment::Work& work, const assessm
     keep("undone.png", pictures.undone);
     for (const auto& [criterion, png] : pictures.places)
         keep("error-" + criterion + ".png", png);
-    // Of a chain the session that ended it. What was recorded after the work had been saved does not belong to it.
-    std::string page = report::studentReport(result, task, judged, pictures);
-    if (!work.recordings.empty() && !work.recordings.back().untilTick) {
-        studies::ProgressBar bar("looking through it");
-        simulation::SessionPlayer player(work.recordings.back().path, {true, false, {}});
-        // What the page's pictures leave to it; a quarter goes on letters, the viewer itself has 50 kB.
-        const std::size_t room = report::kMostPageBytes - std::min(report::kMostPageBytes, page.size() + 60'000);
-        const report::Review review =
-            report::reviewOf(player, work.recordings.back().name, {&task, &result, &judged, work.recordings.size() - 1},
-                             bar.listener(), std::min(report::kMostReviewBytes, room / 4 * 3));
-        bar.finish();
-        page = report::studentReport(result, task, judged, pictures, &review);
-    }
+    studies::ProgressBar bar("looking through it");
+    const std::string page =
+        assessment::studentPage(work, result, task, judged, pictures, !o.noPictures, bar.listener());
+    bar.finish();
     keep("report.html", std::as_bytes(std::span(page)));
     return files;
 }

@@ -33,9 +33,17 @@ class Review(SystemTest):
                 "--out", out)
         self.ok("report", out / "session.h5", "--out", self.folder / "plain.html")
         self.work(self.folder / "plain.html")
-        self.ok("score", out / "session.h5", "--exercise", block, "--out", self.folder / "result")
-        self.work(self.folder / "result" / "report.html", "--exercise")
-        for page in (self.folder / "plain.html", self.folder / "result" / "report.html"):
+        # A second session goes on where the first has left the tooth; held against the exercise, both are played.
+        second, work, result = self.folder / "second", self.folder / "work", self.folder / "result"
+        self.ok("run", "--case", out / "attempt", "--bur", "330", "--motion", "plunge", "--depth", "1.4", "--out", second)
+        work.mkdir()
+        for name, session in (("a.h5", out), ("b.h5", second)):
+            shutil.copy(session / "session.h5", work / name)
+        self.ok("score", work, "--exercise", block, "--out", result)
+        self.work(result / "report.html", "--exercise")
+        text = (result / "report.html").read_text()
+        self.assertIn("The next session: b.h5", text)
+        for page in (self.folder / "plain.html", result / "report.html"):
             self.assertLess(page.stat().st_size, 3_000_000)
 
 

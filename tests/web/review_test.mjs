@@ -28,12 +28,33 @@ window.differing = (a, b) => {
     for (let i = 0; i < a.length; i += 4) if (Math.abs(a[i] - b[i]) + Math.abs(a[i + 1] - b[i + 1]) + Math.abs(a[i + 2] - b[i + 2]) > 24) ++count;
     return count;
 };
-window.covered = (a) => { let count = 0; for (let i = 0; i < a.length; i += 4) if (Math.abs(a[i] - 236) + Math.abs(a[i + 1] - 239) + Math.abs(a[i + 2] - 243) > 12) ++count; return count; };
+/** Where pixels differ: their middle, and how far they reach. */
+window.where = (a, b) => {
+    let count = 0, sx = 0, sy = 0, low = [1e9, 1e9], high = [-1, -1];
+    for (let i = 0; i < a.length; i += 4) {
+        if (Math.abs(a[i] - b[i]) + Math.abs(a[i + 1] - b[i + 1]) + Math.abs(a[i + 2] - b[i + 2]) <= 24) continue;
+        const x = (i / 4) % 360, y = Math.floor(i / 1440);
+        ++count; sx += x; sy += y;
+        low = [Math.min(low[0], x), Math.min(low[1], y)]; high = [Math.max(high[0], x), Math.max(high[1], y)];
+    }
+    return { count, x: Math.round(sx / count), y: Math.round(sy / count), wide: high[0] - low[0] + 1, high: high[1] - low[1] + 1 };
+};
+window.colourAt = (a, x, y) => [...a.slice(4 * (x + 360 * y), 4 * (x + 360 * y) + 3)];
+window.like = (a, colour, most) => { let count = 0; for (let i = 0; i < a.length; i += 4) if (colour.every((v, k) => Math.abs(a[i + k] - v) <= most)) ++count; return count; };
+/** Of a colour's own kind, whatever light falls on it. */
+window.hueLike = (a, colour) => {
+    const sum = colour[0] + colour[1] + colour[2];
+    let count = 0;
+    for (let i = 0; i < a.length; i += 4) { const s = a[i] + a[i + 1] + a[i + 2]; if (s > 60 && colour.every((v, k) => Math.abs(a[i + k] / s - v / sum) < 0.035)) ++count; }
+    return count;
+};
+window.covered = (a) => { let count = 0; for (let i = 0; i < a.length; i += 4) if (Math.abs(a[i] - 180) + Math.abs(a[i + 1] - 190) + Math.abs(a[i + 2] - 201) > 12) ++count; return count; };
 window.goTo = (share) => { const s = document.querySelector(".review-transport input"); s.value = share * s.max; s.dispatchEvent(new Event("input")); };
 window.violations = [];
 document.addEventListener("securitypolicyviolation", (e) => violations.push(e.effectiveDirective));
 true`;
 const kButton = (text) => `[...document.querySelectorAll(".review-panel button")].find((b) => b.textContent === ${JSON.stringify(text)})`;
+const kBur = `document.querySelector(".review-panel input[type=checkbox]")`;
 const kTime = `(() => { const [m, s] = document.querySelector(".review-clock").textContent.split(" / ")[0].split(":"); return 60 * m + Number(s); })()`;
 
 async function opened(how) {
@@ -57,20 +78,46 @@ async function withWebGl() {
             await doing();
             assert.ok((await browser.evaluate(`shown().then((data) => differing(before, data))`)) > 20, `${what} does not show`);
         };
-        // The tooth is there, and the hole comes as time goes and goes as time goes back.
+        // The tooth is there, and the hole comes as time goes and goes as time goes back; only there anything changes.
         await browser.click(kButton("Occlusal"));
-        await browser.click(`document.querySelector(".review-panel input[type=checkbox]")`);
+        await browser.click(kBur);
         const told = await browser.evaluate(`(async () => {
             goTo(1); const end = await shown();
             goTo(0); const begin = await shown();
             goTo(0.6); const middle = await shown();
             goTo(1); const again = await shown();
-            return { covered: covered(begin), hole: differing(begin, end), half: differing(begin, middle), again: differing(end, again) };
+            const hole = where(begin, end);
+            return { covered: covered(begin), hole, half: differing(begin, middle), again: differing(end, again),
+                     before: colourAt(begin, hole.x, hole.y), after: colourAt(end, hole.x, hole.y), beside: colourAt(end, hole.x + 3 * hole.wide, hole.y) };
         })()`);
         assert.ok(told.covered > 13500, `the tooth fills ${told.covered} of 86400`);
-        assert.ok(told.hole > 50, `the hole is ${told.hole} of 86400`);
-        assert.ok(told.half <= 1.2 * told.hole && told.again === 0, JSON.stringify(told));
-        await browser.click(`document.querySelector(".review-panel input[type=checkbox]")`);
+        assert.ok(told.hole.count > 50, `the hole is ${told.hole.count} of 86400`);
+        assert.ok(told.hole.count > 0.25 * told.hole.wide * told.hole.high, `what changes lies about: ${JSON.stringify(told.hole)}`);
+        assert.ok(told.half <= 1.2 * told.hole.count && told.again === 0, JSON.stringify(told));
+        const off = (a, b) => Math.hypot(...a.map((v, k) => v - b[k]));
+        assert.ok(off(told.before, told.beside) < 12, `before the cut it is as the surface beside it: ${JSON.stringify(told)}`);
+        assert.ok(off(told.before, told.after) > 2 * off(told.before, told.beside), `the cut is not to be seen: ${JSON.stringify(told)}`);
+
+        // In a section through it, seen along its normal: the face has the tissue's own colour, and loses about what the
+        // bur took. Without the section nothing of it is seen from there.
+        const section = await browser.evaluate(`(async () => {
+            ${kButton("Mesial")}.click();
+            goTo(0); const outside = await shown();
+            goTo(1); const hidden = differing(outside, await shown());
+            document.querySelector("input[name=review-section][value=x]").click();
+            ${kButton("Mesial")}.click();
+            const tissue = document.querySelector(".review-legend .chip").style.background.match(/[0-9]+/g).map(Number);
+            goTo(0); const face = like(await shown(), tissue, 4);
+            goTo(1); const left = like(await shown(), tissue, 4);
+            document.querySelector("input[name=review-section][value=none]").click();
+            return { face, left, hidden };
+        })()`);
+        // The block is 12 x 8 mm there.
+        const goneMm2 = ((section.face - section.left) / section.face) * 12 * 8;
+        assert.ok(section.face > 4000, `the section's face: ${JSON.stringify(section)}`);
+        assert.ok(goneMm2 > 0.3 && goneMm2 < 1.6, `${goneMm2} mm2 are gone in the section: ${JSON.stringify(section)}`);
+        assert.ok(section.hidden < 10, `${section.hidden} points change where no cut is to be seen`);
+        await browser.click(kBur);
 
         for (const view of ["Buccal", "Mesial", "Lingual", "Distal", "Oblique"]) await changes(view, () => browser.click(kButton(view)));
         await changes("turning by the mouse", async () => {
@@ -95,8 +142,20 @@ async function withWebGl() {
         if (isHeld) {
             await changes("the deviation", () => browser.click(`document.querySelector("input[name=review-colours][value=deviation]")`));
             assert.match(await browser.evaluate(`document.querySelector(".review-legend").textContent`), /0\.50 mm/);
+            // The target stands in the colour of "too little is gone", and less of it once it is cut.
+            const hue = await browser.evaluate(`(async () => {
+                ${kButton("Occlusal")}.click();
+                ${kBur}.click();
+                const chips = [...document.querySelectorAll(".review-legend .chip")].map((c) => c.style.background.match(/[0-9]+/g).map(Number));
+                const least = chips[chips.length - 1];
+                goTo(0); const before = hueLike(await shown(), least);
+                goTo(1); const after = hueLike(await shown(), least);
+                ${kBur}.click();
+                return { before, after };
+            })()`);
+            assert.ok(hue.before > 300 && hue.after < hue.before - 30, `the deviation's colours: ${JSON.stringify(hue)}`);
             await browser.click(`document.querySelector("input[name=review-colours][value=tissues]")`);
-        } else assert.equal(await browser.evaluate(`document.querySelectorAll("input[name=review-colours]").length`), 1);
+        } else assert.equal(await browser.evaluate(`document.querySelectorAll("input[name=review-colours]").length`), 0);
 
         // Playing, the time line, the curves.
         await browser.evaluate(`goTo(0)`);
@@ -117,7 +176,6 @@ async function withWebGl() {
 
         // Lost points and moments lead to their moment and place.
         const rows = await browser.evaluate(`document.querySelectorAll(".review-row").length`);
-        assert.ok(rows > 0, "nothing to go to");
         if (isHeld) assert.ok((await browser.evaluate(`document.querySelectorAll(".review-row strong").length`)) > 0, "no lost points");
         for (let i = 0; i < rows; ++i) {
             await browser.click(`document.querySelectorAll(".review-row")[${i}]`);
@@ -158,7 +216,7 @@ async function withoutWebGl() {
         } else console.log("no pictures in the page: made without OpenGL");
         await browser.click(`document.querySelector(".review-curve.force")`);
         assert.ok((await browser.evaluate(kTime)) > 0);
-        await browser.click(`document.querySelectorAll(".review-row")[0]`);
+        if (isHeld) await browser.click(`document.querySelectorAll(".review-row")[0]`);
         isClean(browser);
     } finally {
         await browser.close();

@@ -15,6 +15,11 @@ import { chunkCounts, chunksOf, meshOf } from "./surface.js";
  */
 
 const kTissues = 32;
+/**
+ * Darker than any enamel, so that its outline and its section stand out.
+ * @type {[number, number, number]}
+ */
+const kBackground = [180 / 255, 190 / 255, 201 / 255];
 const kFieldOfViewDeg = 25;
 /** So many bricks of the distances go to the section one by one, more all at once. */
 const kMostSingleBricks = 400;
@@ -93,10 +98,10 @@ void main() {
         float line = 9.0;
         for (int k = 0; k < 3; ++k) line = width[k] > 1e-4 ? min(line, mm[k]) : line;
         base *= mix(0.86, 1.0, clamp(line - 0.3, 0.0, 1.0));
-        base = mix(vec3(0.25, 0.27, 0.31), base, smoothstep(0.8, 1.8, abs(inside) / fwidth(inside)));
+        base = mix(vec3(0.25, 0.27, 0.31), base, smoothstep(0.8, 1.8, abs(inside) / max(fwidth(inside), 1e-5)));
         if (inDeviation) {
             float off = at(ideal, gridPlace);
-            base = mix(vec3(0.05, 0.2, 0.55), base, smoothstep(0.8, 1.8, abs(off) / fwidth(off)));
+            base = mix(vec3(0.05, 0.2, 0.55), base, smoothstep(0.8, 1.8, abs(off) / max(fwidth(off), 1e-5)));
         }
         colour = vec4(base, 1.0);
         return;
@@ -355,7 +360,7 @@ export class ToothPicture {
         if (look.plane && this.unsent.size) this.send_();
         const { originMm, voxelMm, nodes } = review.text.grid;
         gl.viewport(0, 0, canvas.width, canvas.height);
-        gl.clearColor(0.925, 0.937, 0.953, 1);
+        gl.clearColor(...kBackground, 1);
         gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
         gl.enable(gl.DEPTH_TEST);
         gl.useProgram(this.program);

@@ -17,6 +17,8 @@ const kSpeeds = [0.25, 1, 4, 16, 64];
 /** Of the curves, in units of their own. */
 const kWide = 1000, kHigh = 70;
 const kTurnDeg = 10, kPanShare = 0.08, kZoom = 1.15;
+/** A bur that lies lower works from a side. A place is looked at from so much beside the bur, which would hide it. */
+const kFromASideDeg = 35, kBesideDeg = 28;
 
 /**
  * @param {string} tag @param {Record<string, string>} [attributes] @param {(Node | string)[]} children
@@ -66,7 +68,7 @@ export class ReviewPage {
         this.middleMm = this.middleOfCut_();
         /** @type {SVGElement[]} */
         this.heads = [];
-        this.camera = this.standard("oblique");
+        this.camera = this.first_();
 
         this.heading_(host);
         this.stage_();
@@ -75,7 +77,7 @@ export class ReviewPage {
         this.lists_();
         host.append(
             element("div", { class: "review-body" },
-                element("div", { class: "review-left" }, this.stage, this.transport, this.curves),
+                element("div", { class: "review-left" }, this.stage, ...review.text.notes.map((note) => element("p", { class: "review-note" }, note)), this.transport, this.curves),
                 element("div", { class: "review-side" }, this.panel, this.lists)));
         this.hands_();
         new ResizeObserver(() => this.ask()).observe(this.stage);
@@ -142,6 +144,28 @@ export class ReviewPage {
         return { targetMm, yawDeg, pitchDeg, distanceMm: wide * 2.9 };
     }
 
+    /**
+     * Where the bur's shank points at a pose: whence the hand comes.
+     * @param {number} pose
+     */
+    whence_(pose) {
+        const [w, x, y, z] = this.review.turnOf(pose);
+        const towards = [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)];
+        return { yawDeg: (Math.atan2(towards[1], towards[0]) * 180) / Math.PI, pitchDeg: (Math.asin(within(towards[2], -1, 1)) * 180) / Math.PI };
+    }
+
+    /**
+     * To begin with: oblique, or from where most was cut, if that is from a side.
+     * @returns {Camera}
+     */
+    first_() {
+        const { tipDepthMm } = this.review, camera = this.standard("oblique");
+        let deepest = 0;
+        for (let i = 1; i < tipDepthMm.length; ++i) if (tipDepthMm[i] > tipDepthMm[deepest]) deepest = i;
+        const { yawDeg, pitchDeg } = this.whence_(deepest);
+        return this.review.bricks.length && pitchDeg < kFromASideDeg ? { ...camera, yawDeg, pitchDeg: pitchDeg + 15 } : camera;
+    }
+
     stage_() {
         this.canvas = element("canvas", { tabindex: "0", role: "img", "aria-label": this.words["tooth-label"], "aria-describedby": "review-help" });
         this.mark = element("div", { class: "review-mark", hidden: "" });
@@ -160,6 +184,8 @@ export class ReviewPage {
             this.fallback.hidden = !this.pictures.length;
             this.legend.hidden = true;
         }
+        // For print, and for who cannot see the tooth itself.
+        document.getElementById("review-pictures")?.classList.toggle("review-spare", this.picture !== null);
         this.canvas.addEventListener("webglcontextlost", (/** @type {Event} */ e) => e.preventDefault());
         this.canvas.addEventListener("webglcontextrestored", () => {
             this.picture = new ToothPicture(this.canvas, this.review, this.tooth.distance);
@@ -177,11 +203,24 @@ export class ReviewPage {
             this.go(Number(this.slider.value));
         });
         this.clock = element("output", { class: "review-clock" });
+        /** @param {string} sign @param {string} name @param {() => number | undefined} where */
+        const leap = (sign, name, where) => {
+            const button = element("button", { type: "button", class: "review-leap", "aria-label": name, title: name }, sign);
+            button.addEventListener("click", () => {
+                this.play(false);
+                this.go(where() ?? this.timeS);
+            });
+            return button;
+        };
+        const begins = review.text.strokes.map(([from]) => from);
+        // Half a second: whoever leaps back twice means the stroke before.
+        const back = leap("|◀", words["stroke-before"], () => begins.filter((t) => t < this.timeS - 0.5).pop() ?? 0);
+        const on = leap("▶|", words["stroke-next"], () => begins.find((t) => t > this.timeS + 0.01) ?? end);
         const speeds = element("select", { "aria-label": words.speed });
         for (const speed of kSpeeds) speeds.append(element("option", { value: String(speed) }, `${speed}×`));
         speeds.value = "1";
         speeds.addEventListener("change", () => (this.speed = Number(speeds.value)));
-        this.transport = element("div", { class: "review-transport" }, this.playButton, this.slider, this.clock, speeds);
+        this.transport = element("div", { class: "review-transport" }, this.playButton, back, on, this.slider, this.clock, speeds);
 
         /** @param {number} timeS */
         const x = (timeS) => (end > 0 ? (kWide * timeS) / end : 0);
@@ -243,7 +282,7 @@ export class ReviewPage {
         };
         const colours = [
             radio("review-colours", "tissues", words.tissues, true, () => this.colour(false)),
-            ...(review.ideal ? [radio("review-colours", "deviation", words.deviation, false, () => this.colour(true))] : []),
+            radio("review-colours", "deviation", words.deviation, false, () => this.colour(true)),
         ];
         const offset = element("input", { type: "range", min: "0", max: "1", step: "0.005", "aria-label": words["section-place"] });
         offset.disabled = true;
@@ -268,7 +307,7 @@ export class ReviewPage {
             this.ask();
         });
         this.panel = element("div", { class: "review-panel" },
-            group(words.views, ...views), group(words.colours, ...colours), group(words.section, ...sections, offset),
+            group(words.views, ...views), ...(review.ideal ? [group(words.colours, ...colours)] : []), group(words.section, ...sections, offset),
             element("label", {}, bur, words.bur), element("p", { id: "review-help", class: "review-note" }, words.help));
         if (!this.picture) this.panel.hidden = true;
         this.legendOf_();
@@ -325,11 +364,15 @@ export class ReviewPage {
         this.go(timeS ?? this.timeS);
         const place = placeMm ?? this.review.poseAt(this.timeS).placeMm;
         this.markMm = place;
-        const far = this.standard("oblique");
-        // Into a preparation, not through its wall.
-        /** @type {Vec3} */
-        const targetMm = [place[0], place[1], place[2]];
-        this.camera = { ...this.camera, targetMm, distanceMm: far.distanceMm * 0.6, pitchDeg: Math.max(this.camera.pitchDeg, 68) };
+        // From where the bur came nearest: into a preparation, not through its wall.
+        const { yawDeg, pitchDeg } = this.whence_(this.review.nearestPose(place));
+        const isSteep = pitchDeg > 90 - 2 * kBesideDeg;
+        this.camera = {
+            targetMm: /** @type {Vec3} */ ([...place]),
+            distanceMm: this.standard("oblique").distanceMm * 0.6,
+            yawDeg: isSteep ? this.camera.yawDeg : yawDeg + kBesideDeg,
+            pitchDeg: isSteep ? 90 - kBesideDeg : pitchDeg + 10,
+        };
         this.ask();
     }
 

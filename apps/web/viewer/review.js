@@ -18,6 +18,7 @@
  * @property {Record<string, string>} words
  * @property {number} durationS
  * @property {number} buccalSign
+ * @property {string[]} notes what is not as it was
  * @property {{originMm: Vec3, voxelMm: number, nodes: Vec3, bricks: Vec3, brickEdge: number, stepsAVoxel: number}} grid
  * @property {Tissue[]} tissues
  * @property {Bur[]} burs
@@ -154,14 +155,32 @@ export class Review {
         this.tipDepthMm = Float64Array.from(rows[8], (d) => d * kDepthStepMm);
     }
 
+    /** @param {number} i pose @returns {Vec3} */
+    placeOf(i) {
+        const p = this.poses;
+        return [p[1][i] * kPlaceStepMm, p[2][i] * kPlaceStepMm, p[3][i] * kPlaceStepMm];
+    }
+    /** @param {number} i pose @returns {[number, number, number, number]} */
+    turnOf(i) {
+        const p = this.poses;
+        return [p[4][i] * kTurnStep, p[5][i] * kTurnStep, p[6][i] * kTurnStep, p[7][i] * kTurnStep];
+    }
     /** @param {number} timeS @returns {Pose} */
     poseAt(timeS) {
-        const i = indexAt(this.poseTimesS, timeS), p = this.poses;
-        return {
-            placeMm: [p[1][i] * kPlaceStepMm, p[2][i] * kPlaceStepMm, p[3][i] * kPlaceStepMm],
-            turn: [p[4][i] * kTurnStep, p[5][i] * kTurnStep, p[6][i] * kTurnStep, p[7][i] * kTurnStep],
-            tipDepthMm: this.tipDepthMm[i],
-        };
+        const i = indexAt(this.poseTimesS, timeS);
+        return { placeMm: this.placeOf(i), turn: this.turnOf(i), tipDepthMm: this.tipDepthMm[i] };
+    }
+    /**
+     * The one at which the bur's tip lay nearest to a place.
+     * @param {Vec3} placeMm
+     */
+    nearestPose(placeMm) {
+        let nearest = 0, least = Infinity;
+        for (let i = 0; i < this.text.poses; ++i) {
+            const [x, y, z] = this.placeOf(i), square = (x - placeMm[0]) ** 2 + (y - placeMm[1]) ** 2 + (z - placeMm[2]) ** 2;
+            if (square < least) [nearest, least] = [i, square];
+        }
+        return nearest;
     }
     /** @param {number} timeS */
     forceAt(timeS) {

@@ -59,7 +59,7 @@ std::string wantedOf(const rubric::Criterion& c, const rubric::Rubric& rubric) {
 class Page {
   public:
     Page(const score::Result& result, const tasks::Task& task, const rubric::Rubric& rubric,
-         const AssessmentPictures& pictures, const Review* review)
+         const AssessmentPictures& pictures, const ReviewMaker& review)
         : result_(result),
           a_(result.assessment),
           task_(task),
@@ -72,12 +72,13 @@ class Page {
         addVerdict();
         addScan();
         addCritical();
-        if (review_ != nullptr) page_.review(*review_);
+        page_.reviewHere();
         addFirstErrors();
         addCriteria();
         addViews();
         addRules();
         addOrigin();
+        if (review_) page_.review(review_(page_.roomForReview()));
         return page_.text();
     }
 
@@ -323,7 +324,7 @@ class Page {
     const tasks::Task& task_;
     const rubric::Rubric& rubric_;
     const AssessmentPictures& pictures_;
-    const Review* review_;
+    const ReviewMaker& review_;
     HtmlReport page_;
 };
 
@@ -358,7 +359,7 @@ std::string undoneWords(const score::Assessment& a) {
 }
 
 std::string studentReport(const score::Result& result, const tasks::Task& task, const rubric::Rubric& rubric,
-                          const AssessmentPictures& pictures, const Review* review) {
+                          const AssessmentPictures& pictures, const ReviewMaker& review) {
     return Page(result, task, rubric, pictures, review).text();
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstring>
 
 #include "handpiece/app/report/plot.h"
 #include "handpiece/base/config/words.h"
@@ -82,6 +83,12 @@ std::string scriptHash() {
         bytes.push_back(static_cast<std::byte>(value));
     }
     return base64(bytes);
+}
+
+/// As the viewer's clock.
+std::string clockText(double timeS) {
+    const auto tenths = static_cast<long>(timeS * 10.0 + 0.5);
+    return fmt::format("{}:{:04.1f}", tenths / 600, static_cast<double>(tenths % 600) / 10.0);
 }
 
 bool isNumber(std::string_view cell) {
@@ -189,29 +196,42 @@ void HtmlReport::picture(const view::Image& image, std::string_view caption) {
     picture(file, caption);
 }
 
-void HtmlReport::moment(const view::Image& image, double timeS, std::string_view caption) {
-    const core::PrivateFolder folder;
-    const std::filesystem::path file = folder.path() / "picture.png";
-    view::writePng(image, file);
-    body_ += fmt::format(
-        "<figure data-time=\"{0:.3f}\"><img alt=\"{1}\" src=\"{2}\"><figcaption>{1}</figcaption></figure>\n", timeS,
-        escaped(caption), dataAddress(core::readFile(file)));
+std::size_t HtmlReport::roomForReview() const {
+    // A third goes on letters; words, moments and curves' names have a part of their own.
+    constexpr std::size_t kText = 120'000;
+    const std::size_t taken = body_.size() + std::strlen(kViewerScript) + std::strlen(kViewerStyle) + kText;
+    return (kMostPageBytes - std::min(kMostPageBytes, taken)) / 4 * 3;
 }
 
 void HtmlReport::review(const Review& review) {
-    hasViewer_ = true;
-    body_ += fmt::format(
-        "<section class=\"review\" id=\"review\" data-failed=\"{}\"><p>{}</p></section>\n"
-        "<script type=\"application/json\" id=\"review-text\">{}</script>\n"
-        "<script type=\"application/octet-stream\" id=\"review-data\">{}</script>\n",
-        escaped(config::words()("review.failed")), escaped(config::words()("review.needs-script")), review.json,
-        base64(review.data));
+    const auto words = [](const char* id) { return escaped(config::words()(id)); };
+    std::string all;
+    if (review.data.empty()) {
+        all = fmt::format("<p class=\"missing\">{}</p>\n", words("review.too-large"));
+    } else {
+        hasViewer_ = true;
+        all = fmt::format(
+            "<section class=\"review\" id=\"review\" data-failed=\"{}\"><p>{}</p></section>\n"
+            "<script type=\"application/json\" id=\"review-text\">{}</script>\n"
+            "<script type=\"application/octet-stream\" id=\"review-data\">{}</script>\n",
+            words("review.failed"), words("review.needs-script"), review.json, base64(review.data));
+    }
+    if (!review.pictures.empty()) {
+        all += fmt::format("<section id=\"review-pictures\"><h3>{}</h3><div class=\"slices\">\n",
+                           words("review.pictures"));
+        for (const Review::Picture& picture : review.pictures)
+            all += fmt::format(
+                "<figure data-time=\"{0:.3f}\"><img alt=\"{1}\" src=\"{2}\"><figcaption>{1}</figcaption></figure>\n",
+                picture.timeS, escaped(config::words()("review.picture-at", clockText(picture.timeS))),
+                dataAddress(picture.png));
+        all += "</div></section>\n";
+    }
+    body_.insert(reviewAt_.value_or(body_.size()), all);
 }
 
 void HtmlReport::begin(Group group) {
-    constexpr std::array kClasses{"class=\"columns\"", "class=\"pictures\"", "class=\"slices\"",
-                                  "class=\"frame\"",   "class=\"thirds\"",   "class=\"slices\" id=\"review-pictures\""};
-    body_ += fmt::format("<div {}>\n", kClasses[static_cast<std::size_t>(group)]);
+    constexpr std::array kClasses{"columns", "pictures", "slices", "frame", "thirds"};
+    body_ += fmt::format("<div class=\"{}\">\n", kClasses[static_cast<std::size_t>(group)]);
 }
 
 void HtmlReport::end() {

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,7 +25,7 @@ class HtmlReport {
   public:
     enum class Tone { plain, note, good, bad, missing };
     /// What stands side by side, or in a frame.
-    enum class Group { columns, pictures, slices, frame, thirds, moments };
+    enum class Group { columns, pictures, slices, frame, thirds };
     struct Chip {
         std::array<std::uint8_t, 3> colour;
         std::string name;
@@ -52,8 +53,10 @@ class HtmlReport {
     void picture(const view::Image& image, std::string_view caption);
     /// The bytes of a PNG file.
     void picture(std::span<const std::byte> png, std::string_view caption);
-    /// In the group that begin(Group::moments) opened: what was to be seen at a time.
-    void moment(const view::Image& image, double timeS, std::string_view caption);
+    /// Where review() puts it; what is in the page by then is counted by roomForReview(). Without a call, at the end.
+    void reviewHere() { reviewAt_ = body_.size(); }
+    /// Bytes that a review may have, so that the page stays under kMostPageBytes.
+    [[nodiscard]] std::size_t roomForReview() const;
     /// The viewer (apps/web/viewer) and what it shows. Once a page.
     void review(const Review& review);
     void begin(Group group);
@@ -63,6 +66,7 @@ class HtmlReport {
 
   private:
     std::string title_, body_;
+    std::optional<std::size_t> reviewAt_;
     bool hasViewer_ = false;
 };
 

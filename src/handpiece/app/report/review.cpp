@@ -8,12 +8,14 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "handpiece/app/report/artist.h"
 #include "handpiece/app/report/assessment_report.h"
 #include "handpiece/app/report/assessment_words.h"
 #include "handpiece/app/report/review_data.h"
 #include "handpiece/app/report/session_report.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/field/brick_index.h"
 #include "handpiece/model/field/brick_tissues.h"
@@ -35,6 +37,14 @@ constexpr int kMiddle = 128, kMost = 127;
 constexpr double kPoseStepS = 0.05;
 constexpr std::size_t kPosesAKey = 5;
 constexpr std::size_t kMostPoints = 3000;
+/// Events of the same kind that follow one another within this are one moment.
+constexpr double kRunS = 5.0;
+/// Of the page's grid: more is no tooth, and no browser's. Along an axis, and in all.
+constexpr std::int32_t kMostNodesAlong = 2048;
+constexpr std::size_t kMostNodes = 24'000'000;
+/// Of the bytes there are, the share that pictures may have, and that poses may have.
+constexpr double kPictureShare = 0.5, kPoseShare = 0.4;
+constexpr int kPictureWidth = 400, kPictureHeight = 300;
 constexpr double kPlaceStepMm = 0.002, kTurnStep = 1.0 / 32767.0, kForceStepN = 0.001, kDepthStepMm = 0.001;
 
 std::uint8_t eightBits(double value, double steps) {
@@ -55,11 +65,26 @@ double rounded(double value, double step) {
 /// Bricks of the tooth's field on the page's grid: each brings `edge`^3 nodes of its own.
 struct PageGrid {
     explicit PageGrid(const field::FieldView& of) : view(of) {
-        while (stride < field::kBrickCells && view.voxelMm * stride < kGridMm * 0.99)
+        while (stride < field::kBrickCells && (view.voxelMm * stride < kGridMm * 0.99 || isTooLarge()))
             stride *= 2;
         edge = field::kBrickCells / stride;
+        for (std::size_t k = 0; k < 3; ++k)
+            nodes[k] = nodesAlong(k);
+    }
+    [[nodiscard]] std::int32_t nodesAlong(std::size_t k) const {
+        return view.bricks[k] * (field::kBrickCells / stride) + 1;
+    }
+    [[nodiscard]] bool isTooLarge() const {
+        std::size_t all = 1;
+        for (std::size_t k = 0; k < 3; ++k)
+            all *= static_cast<std::size_t>(nodesAlong(k));
+        return all > kMostNodes || std::max({nodesAlong(0), nodesAlong(1), nodesAlong(2)}) > kMostNodesAlong;
+    }
+    /// Nodes of both lie at the same places.
+    [[nodiscard]] bool isAs(const field::FieldView& other) const {
         for (int k = 0; k < 3; ++k)
-            nodes[static_cast<std::size_t>(k)] = view.bricks[k] * edge + 1;
+            if (view.bricks[k] != other.bricks[k] || view.originMm[k] != other.originMm[k]) return false;
+        return view.voxelMm == other.voxelMm;
     }
     [[nodiscard]] double voxelMm() const { return view.voxelMm * stride; }
     [[nodiscard]] std::size_t bricks() const {
@@ -121,6 +146,18 @@ ChangedAt joined(const ChangedAt& first, const ChangedAt& second, std::size_t pe
     return both;
 }
 
+struct Pose {
+    double timeS;
+    Vec3 placeMm;
+    std::array<double, 4> turn;
+};
+/// A session of a chain.
+struct Sitting {
+    std::string name;
+    double fromS = 0.0, lengthS = 0.0;
+    std::uint64_t lastTick = 0;
+};
+
 Json threeOf(const Vec3& p) {
     return Json::array({rounded(p.x(), 0.001), rounded(p.y(), 0.001), rounded(p.z(), 0.001)});
 }
@@ -132,39 +169,88 @@ std::string hexOf(const std::array<std::uint8_t, 3>& colour) {
 }  // namespace
 
 struct ReviewGatherer::State {
-    explicit State(const simulation::SessionPlayer& of)
-        : player(of), model(of.station().tooth), grid(model->field.view()) {
-        uncut.nodes = tissue.nodes = grid.nodes;
-        const std::size_t count = static_cast<std::size_t>(grid.nodes[0]) * static_cast<std::size_t>(grid.nodes[1]) *
-                                  static_cast<std::size_t>(grid.nodes[2]);
+    State(std::size_t ofEach, const tasks::Task* task) : picturesOfEach(ofEach) {
+        if (task != nullptr && task->toothCase.exercise) view = task->toothCase.exercise->view;
+    }
+
+    void follow(const simulation::SessionPlayer& next, const std::string& name,
+                std::optional<std::uint64_t> untilTick) {
+        if (!model)
+            takeTooth(next);
+        else if (!grid->isAs(next.station().tooth->field.view()) || model->identity != next.station().tooth->identity)
+            throw core::Error("this session is of another tooth or voxel than those before it", name,
+                              "give the sessions of one work");
+        player = &next;
+        const double rateHz = next.reader().info().rateHz;
+        Sitting sitting{name, durationS(), next.durationS(), next.reader().endTick()};
+        if (untilTick && *untilTick < sitting.lastTick) {
+            sitting.lastTick = *untilTick;
+            sitting.lengthS = std::min(sitting.lengthS, static_cast<double>(*untilTick) / rateHz);
+        }
+        if (!sittings.empty())
+            moments.push_back(
+                {{"timeS", rounded(sitting.fromS, 0.001)}, {"text", words()("review.next-session", name)}});
+        sittings.push_back(sitting);
+        addEvents();
+        const double stepS = std::max(simulation::kPlotStepS, next.durationS() / static_cast<double>(kMostPoints));
+        for (simulation::PlotPoint point : next.plot(stepS)) {
+            if (point.timeS > sitting.lengthS) break;
+            point.timeS += sitting.fromS;
+            points.push_back(point);
+        }
+        looks = picturesNow = 0;
+        artist.reset();
+        if (picturesOfEach > 0 && next.tooth()) {
+            try {
+                artist.emplace(next, view::Viewport{kPictureWidth, kPictureHeight});
+            } catch (const core::Error&) {
+                // Without OpenGL there are no pictures; the page does without.
+            }
+        }
+    }
+
+    void takeTooth(const simulation::SessionPlayer& of) {
+        model = of.station().tooth;
+        grid.emplace(model->field.view());
+        buccalSign = of.toothCase().buccalSign < 0 ? -1 : 1;
+        caseKey = cases::caseKey(of.toothCase());
+        uncut.nodes = tissue.nodes = grid->nodes;
+        const std::size_t count = static_cast<std::size_t>(grid->nodes[0]) * static_cast<std::size_t>(grid->nodes[1]) *
+                                  static_cast<std::size_t>(grid->nodes[2]);
         uncut.values.resize(count);
         tissue.values.resize(count);
-        core::parallelFor(grid.bricks(), 64, [&](std::size_t begin, std::size_t end) {
+        core::parallelFor(grid->bricks(), 64, [&](std::size_t begin, std::size_t end) {
             std::array<float, field::kBrickValues> values;
             for (std::size_t b = begin; b < end; ++b) {
                 const auto dense = static_cast<std::uint32_t>(b);
                 model->uncutBrick(dense, values.data());
                 const std::uint8_t* tissues = model->field.storage().tissues->of(dense);
-                grid.eachNode(dense, [&](int x, int y, int z, std::size_t node) {
+                grid->eachNode(dense, [&](int x, int y, int z, std::size_t node) {
                     uncut.values[uncut.index(x, y, z)] = coded(values[node]);
                     tissue.values[tissue.index(x, y, z)] = tissues[node];
                 });
             }
         });
         now = uncut;
-        isChanged.resize(grid.bricks());
+        isChanged.resize(grid->bricks());
+        if (!of.station().others.empty() || !of.toothCase().scenery.empty())
+            notes.push_back(words().text("review.no-neighbours"));
+    }
+
+    [[nodiscard]] double durationS() const {
+        return sittings.empty() ? 0.0 : sittings.back().fromS + sittings.back().lengthS;
     }
 
     [[nodiscard]] std::uint8_t coded(float distanceMm) const {
-        return eightBits(static_cast<double>(distanceMm) / grid.voxelMm(), kStepsAVoxel);
+        return eightBits(static_cast<double>(distanceMm) / grid->voxelMm(), kStepsAVoxel);
     }
     [[nodiscard]] std::size_t perBrick() const {
-        return static_cast<std::size_t>(grid.edge) * static_cast<std::size_t>(grid.edge) *
-               static_cast<std::size_t>(grid.edge);
+        return static_cast<std::size_t>(grid->edge) * static_cast<std::size_t>(grid->edge) *
+               static_cast<std::size_t>(grid->edge);
     }
 
     void lookAtTooth(double timeS) {
-        const tooth::StateDelta state = player.state();
+        const tooth::StateDelta state = player->state();
         ChangedAt key;
         key.timeS = timeS;
         std::vector<std::uint8_t> changes;
@@ -178,11 +264,11 @@ struct ReviewGatherer::State {
             isChanged[dense] = isNow;
             changes.clear();
             bool isOther = false;
-            const auto brick = field::brickAt(grid.view.bricks, dense);
-            grid.eachNode(dense, [&](int x, int y, int z, std::size_t node) {
+            const auto brick = field::brickAt(grid->view.bricks, dense);
+            grid->eachNode(dense, [&](int x, int y, int z, std::size_t node) {
                 // The grid's last nodes lie outside of the tooth: they never change.
-                if (x == (brick[0] + 1) * grid.edge || y == (brick[1] + 1) * grid.edge ||
-                    z == (brick[2] + 1) * grid.edge)
+                if (x == (brick[0] + 1) * grid->edge || y == (brick[1] + 1) * grid->edge ||
+                    z == (brick[2] + 1) * grid->edge)
                     return;
                 const std::size_t at = now.index(x, y, z);
                 const std::uint8_t value = isNow ? coded(state.bricks[i].values[node]) : uncut.values[at];
@@ -200,21 +286,43 @@ struct ReviewGatherer::State {
     }
 
     void look() {
-        const messages::HapticSample& sample = player.sample();
+        const messages::HapticSample& sample = player->sample();
+        const Sitting& sitting = sittings.back();
+        if (sample.tick > sitting.lastTick) return;
+        const double timeS = sitting.fromS + sample.timeS;
         const std::array<double, 3>& p = sample.proxyPositionMm;
         const std::array<double, 4>& q = sample.proxyOrientation;
-        poses.push_back({sample.timeS, Vec3(p[0], p[1], p[2]), q, (sample.flags & messages::kCutting) != 0});
-        if (burs.empty() || burs.back().second != player.station().settings.bur)
-            burs.emplace_back(sample.timeS, player.station().settings.bur);
-        if (looks++ % kPosesAKey == 0 || sample.timeS >= player.durationS()) lookAtTooth(sample.timeS);
+        poses.push_back({timeS, Vec3(p[0], p[1], p[2]), q});
+        if (burs.empty() || burs.back().second != player->station().settings.bur)
+            burs.emplace_back(timeS, player->station().settings.bur);
+        const bool isLast = sample.timeS >= sitting.lengthS;
+        if (looks++ % kPosesAKey == 0 || isLast) lookAtTooth(timeS);
+        if (artist && (isLast || sample.timeS >= sitting.lengthS * static_cast<double>(picturesNow) /
+                                                     static_cast<double>(std::max<std::size_t>(picturesOfEach, 2) - 1)))
+            draw(timeS);
     }
+
+    /// Again only what has changed since the picture before it.
+    void draw(double timeS) {
+        ++picturesNow;
+        if (!pictures.empty() && picturesAtKey == keys.size()) return;
+        picturesAtKey = keys.size();
+        player->tooth()->settle();
+        artist->cut(player->tooth()->takeNews());
+        const core::PrivateFolder folder;
+        const std::filesystem::path file = folder.path() / "picture.png";
+        view::writePng(artist->pictureFrom(view), file);
+        pictures.push_back({timeS, core::readFile(file)});
+    }
+
+    void addEvents();
 
     /// What stands for the whole tooth's distances in those to the ideal.
     [[nodiscard]] std::array<std::uint8_t, 256> wholeAsIdeal() const {
         std::array<std::uint8_t, 256> whole{};
         for (int i = 0; i < 256; ++i)
             whole[static_cast<std::size_t>(i)] =
-                eightBits((i - kMiddle) / kStepsAVoxel * grid.voxelMm(), kMost / kDeviationMostMm);
+                eightBits((i - kMiddle) / kStepsAVoxel * grid->voxelMm(), kMost / kDeviationMostMm);
         return whole;
     }
 
@@ -223,18 +331,18 @@ struct ReviewGatherer::State {
     [[nodiscard]] Volume idealOf(const tasks::Task& task) const {
         const preparation::Laid laid = preparation::layOn(task.toothCase, *task.preparation);
         const zones::Zones& zones = *laid.zones;
-        const Vec3 around = Vec3::Constant(kDeviationMostMm + 2.0 * grid.voxelMm());
+        const Vec3 around = Vec3::Constant(kDeviationMostMm + 2.0 * grid->voxelMm());
         const Vec3 low = zones.box().min - around, high = zones.box().max + around;
         const auto whole = wholeAsIdeal();
         Volume ideal;
-        ideal.nodes = grid.nodes;
+        ideal.nodes = grid->nodes;
         ideal.values.resize(uncut.values.size());
-        core::parallelFor(grid.bricks(), 16, [&](std::size_t begin, std::size_t end) {
+        core::parallelFor(grid->bricks(), 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t b = begin; b < end; ++b) {
                 const bool isCut = b < everChanged.size() && everChanged[b];
-                grid.eachNode(static_cast<std::uint32_t>(b), [&](int x, int y, int z, std::size_t) {
+                grid->eachNode(static_cast<std::uint32_t>(b), [&](int x, int y, int z, std::size_t) {
                     const std::size_t at = uncut.index(x, y, z);
-                    const Vec3 p = grid.placeMm(x, y, z);
+                    const Vec3 p = grid->placeMm(x, y, z);
                     const bool isNear =
                         isCut || ((p.array() >= low.array()).all() && (p.array() <= high.array()).all());
                     // Far outside nothing is ever asked.
@@ -249,22 +357,25 @@ struct ReviewGatherer::State {
         return ideal;
     }
 
-    struct Pose {
-        double timeS;
-        Vec3 placeMm;
-        std::array<double, 4> turn;
-        bool isCutting;
-    };
-
-    const simulation::SessionPlayer& player;
+    const std::size_t picturesOfEach;
+    std::optional<cases::View> view;
+    const simulation::SessionPlayer* player = nullptr;  ///< of the session that is played
     std::shared_ptr<const tooth::ToothModel> model;
-    PageGrid grid;
+    std::optional<PageGrid> grid;
+    int buccalSign = 1;
+    std::uint64_t caseKey = 0;
+    std::vector<std::string> notes;
+    std::vector<Sitting> sittings;
+    Json moments = Json::array(), strokes = Json::array();
+    std::vector<simulation::PlotPoint> points;
     Volume uncut, tissue, now;
     std::vector<bool> isChanged, everChanged;  ///< by dense brick
     std::vector<ChangedAt> keys;
     std::vector<Pose> poses;
     std::vector<std::pair<double, std::shared_ptr<const instrument::Bur>>> burs;
-    std::size_t looks = 0;
+    std::optional<Artist> artist;
+    std::vector<Review::Picture> pictures;
+    std::size_t looks = 0, picturesNow = 0, picturesAtKey = 0;
 };
 
 namespace {
@@ -276,61 +387,36 @@ Json burOf(double fromS, const instrument::Bur& bur) {
     return {{"fromS", rounded(fromS, 0.001)}, {"name", bur.name()}, {"outlineMm", std::move(outline)}};
 }
 
-/// Events worth a place in the list, each run of the same within a second once.
-Json momentsOf(const simulation::SessionPlayer& player) {
-    using session::EventName;
-    constexpr std::array kShown{
-        EventName::burChange,    EventName::firstDentine, EventName::pulpExposure, EventName::neighbourTouched,
-        EventName::neighbourCut, EventName::stall,        EventName::forceLimit,   EventName::undo,
-        EventName::redo,         EventName::reset,        EventName::gingivaCut,   EventName::headTouched,
-        EventName::fault,        EventName::resume};
-    Json moments = Json::array();
-    std::map<std::string, double> lastS;
-    for (const session::Event& event : player.events()) {
-        if (std::none_of(kShown.begin(), kShown.end(),
-                         [&](EventName name) { return session::nameOf(name) == event.name; }))
-            continue;
-        const double timeS = static_cast<double>(event.tick) / player.reader().info().rateHz;
-        const auto last = lastS.find(event.name);
-        const bool isRun = last != lastS.end() && timeS - last->second < 1.0;
-        lastS[event.name] = timeS;
-        if (isRun) continue;
-        std::string id = "review.event-" + event.name;
-        std::replace(id.begin(), id.end(), ' ', '-');
-        moments.push_back({{"timeS", rounded(timeS, 0.001)}, {"text", words().text(id)}});
-    }
-    return moments;
-}
-
-Json strokesOf(const simulation::SessionPlayer& player) {
-    Json strokes = Json::array();
-    for (const session::Event& event : player.events()) {
-        const double timeS = rounded(static_cast<double>(event.tick) / player.reader().info().rateHz, 0.001);
-        if (event.name == session::nameOf(session::EventName::strokeBegin))
-            strokes.push_back(Json::array({timeS, rounded(player.durationS(), 0.001)}));
-        else if (event.name == session::nameOf(session::EventName::strokeEnd) && !strokes.empty())
-            strokes.back()[1] = timeS;
-    }
-    return strokes;
-}
-
-Json errorsOf(const ReviewedAgainst& against) {
+/// What was lost because the work is not done, then the criteria, the dearest first.
+Json errorsOf(const ReviewedAgainst& against, std::span<const Sitting> sittings) {
     Json errors = Json::array();
     const score::Assessment& a = against.result->assessment;
+    const auto lead = [&](Json& error, const std::vector<measures::Evidence>& evidence) {
+        for (const measures::Evidence& e : evidence) {
+            if (e.placeMm && !error.contains("placeMm")) error["placeMm"] = threeOf(*e.placeMm);
+            if (e.timeS && !error.contains("timeS") && e.session < sittings.size() &&
+                *e.timeS <= sittings[e.session].lengthS + 0.001)
+                error["timeS"] = rounded(sittings[e.session].fromS + *e.timeS, 0.001);
+        }
+    };
+    const auto lost = [](double points) { return words()("assessment.points-lost", fmt::format("{:.1f}", points)); };
+    if (costsUndone(a)) {
+        const score::Completeness& c = *a.completeness;
+        Json error{{"title", words().text("assessment.not-finished")},
+                   {"lost", lost(a.lostUndone())},
+                   {"measured", fmt::format("{:.1f} ± {:.1f} {}", *c.value, c.uncertainty, c.unit)},
+                   {"practise", std::string()}};
+        lead(error, c.evidence);
+        errors.push_back(std::move(error));
+    }
     for (const std::size_t i : costliest(a)) {
         const score::CriterionScore& c = a.criteria[i];
         Json error{{"title", criterionTitle(*against.rubric, c.id)},
-                   {"lost", c.critical == score::Verdict::yes
-                                ? words()("rubric.critical")
-                                : words()("assessment.points-lost",
-                                          fmt::format("{:.1f}", c.maxPoints - c.points.value_or(0.0)))},
+                   {"lost", c.critical == score::Verdict::yes ? words().text("rubric.critical")
+                                                              : lost(c.maxPoints - c.ownPoints)},
                    {"measured", c.value ? valueOf(c) : said(c.reason)},
                    {"practise", drillFor(c.measure)}};
-        for (const measures::Evidence& e : c.evidence) {
-            if (e.placeMm && !error.contains("placeMm")) error["placeMm"] = threeOf(*e.placeMm);
-            if (e.timeS && e.session == against.session && !error.contains("timeS"))
-                error["timeS"] = rounded(*e.timeS, 0.001);
-        }
+        lead(error, c.evidence);
         errors.push_back(std::move(error));
     }
     return errors;
@@ -338,11 +424,92 @@ Json errorsOf(const ReviewedAgainst& against) {
 
 }  // namespace
 
-ReviewGatherer::ReviewGatherer(const simulation::SessionPlayer& player) : state_(std::make_unique<State>(player)) {}
+/// Events worth a place in the list, each run of the same once; and the strokes.
+void ReviewGatherer::State::addEvents() {
+    using session::EventName;
+    constexpr std::array kShown{
+        EventName::burChange,    EventName::firstDentine, EventName::pulpExposure, EventName::neighbourTouched,
+        EventName::neighbourCut, EventName::stall,        EventName::forceLimit,   EventName::undo,
+        EventName::redo,         EventName::reset,        EventName::gingivaCut,   EventName::headTouched,
+        EventName::fault,        EventName::resume};
+    const Sitting& sitting = sittings.back();
+    std::map<std::string, double> lastS;
+    bool isDown = false;
+    for (const session::Event& event : player->events()) {
+        if (event.tick > sitting.lastTick) break;
+        const double timeS =
+            sitting.fromS + std::min(static_cast<double>(event.tick) / player->reader().info().rateHz, sitting.lengthS);
+        if (event.name == session::nameOf(EventName::strokeBegin)) {
+            strokes.push_back(Json::array({rounded(timeS, 0.001), rounded(durationS(), 0.001)}));
+            isDown = true;
+        } else if (event.name == session::nameOf(EventName::strokeEnd) && isDown) {
+            strokes.back()[1] = rounded(timeS, 0.001);
+            isDown = false;
+        }
+        if (std::none_of(kShown.begin(), kShown.end(),
+                         [&](EventName name) { return session::nameOf(name) == event.name; }))
+            continue;
+        const auto last = lastS.find(event.name);
+        const bool isRun = last != lastS.end() && timeS - last->second < kRunS;
+        lastS[event.name] = timeS;
+        if (isRun) continue;
+        std::string id = "review.event-" + event.name;
+        std::replace(id.begin(), id.end(), ' ', '-');
+        moments.push_back({{"timeS", rounded(timeS, 0.001)}, {"text", words().text(id)}});
+    }
+}
+
+namespace {
+
+/// The last stays.
+template <class T>
+std::vector<T> everyOther(std::vector<T> all) {
+    std::vector<T> fewer;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if ((all.size() - 1 - i) % 2 == 0) fewer.push_back(std::move(all[i]));
+    return fewer;
+}
+
+std::vector<std::uint8_t> posedOf(const std::vector<Pose>& all, const tooth::ToothModel& model) {
+    std::vector<double> tipMm(all.size());
+    core::parallelFor(all.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            tipMm[i] = -model.tree.signedDistance(all[i].placeMm);
+    });
+    std::vector<std::vector<std::uint16_t>> rows(9);
+    double beforeMs = 0.0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Pose& p = all[i];
+        // Of the rounded times, so that they do not run off.
+        const double ms = std::min(std::floor(p.timeS * 1000.0 + 0.5), beforeMs + 65535.0);
+        rows[0].push_back(static_cast<std::uint16_t>(ms - beforeMs));
+        beforeMs = ms;
+        for (std::size_t k = 0; k < 3; ++k)
+            rows[1 + k].push_back(sixteenBits(p.placeMm[static_cast<Eigen::Index>(k)], kPlaceStepMm));
+        for (std::size_t k = 0; k < 4; ++k)
+            rows[4 + k].push_back(sixteenBits(p.turn[k], kTurnStep));
+        rows[8].push_back(sixteenBits(std::max(tipMm[i], -1.0), kDepthStepMm));
+    }
+    return planesOf(rows);
+}
+
+}  // namespace
+
+ReviewGatherer::ReviewGatherer(std::size_t pictures, const tasks::Task* task)
+    : state_(std::make_unique<State>(pictures, task)) {}
 ReviewGatherer::~ReviewGatherer() = default;
+
+void ReviewGatherer::follow(const simulation::SessionPlayer& player, const std::string& name,
+                            std::optional<std::uint64_t> untilTick) {
+    state_->follow(player, name, untilTick);
+}
 
 void ReviewGatherer::look() {
     state_->look();
+}
+
+void ReviewGatherer::note(const std::string& text) {
+    state_->notes.push_back(text);
 }
 
 double ReviewGatherer::stepS() {
@@ -351,21 +518,21 @@ double ReviewGatherer::stepS() {
 
 Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& against, std::size_t mostBytes) const {
     const State& s = *state_;
-    const simulation::SessionPlayer& player = s.player;
-    const field::FieldView& view = s.grid.view;
+    const field::FieldView& view = s.grid->view;
 
     Json json{{"format", "handpiece-review"}, {"version", 1}, {"language", words().language()}, {"title", title}};
     Json said = Json::object();
     for (const auto& [id, text] : words().texts())
         if (id.rfind("review.", 0) == 0 && id.rfind("review.event-", 0) != 0) said[id.substr(7)] = text;
     json["words"] = std::move(said);
-    json["durationS"] = rounded(player.durationS(), 0.001);
-    json["buccalSign"] = player.toothCase().buccalSign < 0 ? -1 : 1;
+    json["durationS"] = rounded(s.durationS(), 0.001);
+    json["buccalSign"] = s.buccalSign;
+    json["notes"] = s.notes;
     json["grid"] = {{"originMm", Json::array({view.originMm[0], view.originMm[1], view.originMm[2]})},
-                    {"voxelMm", s.grid.voxelMm()},
-                    {"nodes", s.grid.nodes},
+                    {"voxelMm", s.grid->voxelMm()},
+                    {"nodes", s.grid->nodes},
                     {"bricks", Json::array({view.bricks[0], view.bricks[1], view.bricks[2]})},
-                    {"brickEdge", s.grid.edge},
+                    {"brickEdge", s.grid->edge},
                     {"stepsAVoxel", kStepsAVoxel}};
     Json tissues = Json::array();
     for (const view::LegendEntry& entry : view::legendOf(s.model->tissues.tissues(), view::Palette::textbook))
@@ -375,40 +542,42 @@ Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& a
     json["burs"] = Json::array();
     for (const auto& [fromS, bur] : s.burs)
         json["burs"].push_back(burOf(fromS, *bur));
-    json["strokes"] = strokesOf(player);
-    json["moments"] = momentsOf(player);
-    if (against.result != nullptr && against.rubric != nullptr) json["errors"] = errorsOf(against);
+    json["strokes"] = s.strokes;
+    json["moments"] = s.moments;
+    if (against.result != nullptr && against.rubric != nullptr) json["errors"] = errorsOf(against, s.sittings);
 
-    std::vector<double> tipMm(s.poses.size());
-    core::parallelFor(s.poses.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            tipMm[i] = -s.model->tree.signedDistance(s.poses[i].placeMm);
-    });
-    std::vector<std::vector<std::uint16_t>> poses(9);
-    for (std::size_t i = 0; i < s.poses.size(); ++i) {
-        const State::Pose& p = s.poses[i];
-        poses[0].push_back(static_cast<std::uint16_t>(std::min<std::size_t>(
-            static_cast<std::size_t>((p.timeS - (i > 0 ? s.poses[i - 1].timeS : 0.0)) * 1000.0 + 0.5), 65535)));
-        for (std::size_t k = 0; k < 3; ++k)
-            poses[1 + k].push_back(sixteenBits(p.placeMm[static_cast<Eigen::Index>(k)], kPlaceStepMm));
-        for (std::size_t k = 0; k < 4; ++k)
-            poses[4 + k].push_back(sixteenBits(p.turn[k], kTurnStep));
-        poses[8].push_back(sixteenBits(std::max(tipMm[i], -1.0), kDepthStepMm));
+    Review review;
+    review.pictures = s.pictures;
+    const auto pictureBytes = [&] {
+        std::size_t all = 0;
+        for (const Review::Picture& picture : review.pictures)
+            all += picture.png.size();
+        return all;
+    };
+    while (!review.pictures.empty() &&
+           static_cast<double>(pictureBytes()) > kPictureShare * static_cast<double>(mostBytes))
+        review.pictures = everyOther(std::move(review.pictures));
+    mostBytes -= std::min(mostBytes, pictureBytes());
+
+    std::vector<Pose> kept = s.poses;
+    std::vector<std::uint8_t> posed = posedOf(kept, *s.model);
+    while (kept.size() > 2 &&
+           static_cast<double>(compressed({{&posed}}).size()) > kPoseShare * static_cast<double>(mostBytes)) {
+        kept = everyOther(std::move(kept));
+        posed = posedOf(kept, *s.model);
     }
-    const std::vector<simulation::PlotPoint> points =
-        player.plot(std::max(simulation::kPlotStepS, player.durationS() / static_cast<double>(kMostPoints)));
     std::vector<std::vector<std::uint16_t>> curves(2);
-    for (const simulation::PlotPoint& p : points) {
-        curves[0].push_back(static_cast<std::uint16_t>(
-            std::clamp(p.timeS / std::max(player.durationS(), 1e-9), 0.0, 1.0) * 65535.0 + 0.5));
+    for (const simulation::PlotPoint& p : s.points) {
+        curves[0].push_back(
+            static_cast<std::uint16_t>(std::clamp(p.timeS / std::max(s.durationS(), 1e-9), 0.0, 1.0) * 65535.0 + 0.5));
         curves[1].push_back(sixteenBits(static_cast<double>(p.forceN), kForceStepN));
     }
 
     const std::vector<std::uint8_t> uncut = differencesOf(s.uncut), tissue = stepsOf(s.tissue.values),
-                                    posed = planesOf(poses), curved = planesOf(curves);
+                                    curved = planesOf(curves);
     std::vector<std::uint8_t> ideal;
     if (against.task != nullptr && against.task->preparation) {
-        if (cases::caseKey(against.task->toothCase) != cases::caseKey(player.toothCase()))
+        if (cases::caseKey(against.task->toothCase) != s.caseKey)
             throw core::Error("this is work on another tooth than the exercise's", against.task->id,
                               "name the exercise that it was made in");
         ideal = differencesOf(s.idealOf(*against.task));
@@ -436,8 +605,8 @@ Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& a
             changes.insert(changes.end(), key.changes.begin(), key.changes.end());
         }
         json["keys"] = {{"timesS", std::move(times)}, {"bricks", std::move(counts)}};
-        json["poses"] = s.poses.size();
-        json["curvePoints"] = points.size();
+        json["poses"] = kept.size();
+        json["curvePoints"] = s.points.size();
         json["sections"] = Json::array();
         const std::array<std::pair<const char*, const std::vector<std::uint8_t>*>, 7> sections{{{"uncut", &uncut},
                                                                                                 {"tissue", &tissue},
@@ -451,7 +620,6 @@ Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& a
             all[i] = sections[i].second;
             json["sections"].push_back({{"name", sections[i].first}, {"bytes", all[i]->size()}});
         }
-        Review review;
         review.data = compressed(all);
         if (review.data.size() > mostBytes && keys.size() > 2) {
             std::vector<ChangedAt> fewer;
@@ -460,6 +628,7 @@ Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& a
             keys = std::move(fewer);
             continue;
         }
+        if (review.data.size() > mostBytes) review.data.clear();
         for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace))
             if (c == '<')
                 review.json += "\\u003c";
@@ -469,10 +638,34 @@ Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& a
     }
 }
 
-Review reviewOf(simulation::SessionPlayer& player, const std::string& title, const ReviewedAgainst& against,
-                const core::Progress& progress, std::size_t mostBytes) {
-    ReviewGatherer gatherer(player);
-    (void)player.compareAll(progress, {ReviewGatherer::stepS(), [&gatherer] { gatherer.look(); }});
+Review reviewOf(std::span<const Reviewed> chain, const std::string& title, const ReviewedAgainst& against,
+                bool pictures, std::size_t mostBytes, const core::Progress& progress) {
+    ReviewGatherer gatherer(
+        pictures ? std::max<std::size_t>(2, kReviewPictures / std::max<std::size_t>(chain.size(), 1)) : 0,
+        against.task);
+    const auto share = [&](std::size_t i) { return static_cast<double>(i) / static_cast<double>(chain.size()); };
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+        const Reviewed& one = chain[i];
+        const core::Progress part = core::part(progress, share(i), share(i + 1));
+        simulation::SessionPlayer player(one.path, {true, pictures, {}}, core::part(part, 0.0, 0.2));
+        gatherer.follow(player, one.name, one.untilTick);
+        const core::Progress playing = core::part(part, 0.2, 1.0);
+        if (!one.untilTick) {
+            (void)player.compareAll(playing, {ReviewGatherer::stepS(), [&] { gatherer.look(); }});
+        } else {
+            // Not a tick farther: the tooth is to be the one that was saved.
+            const double endS = static_cast<double>(*one.untilTick) / player.reader().info().rateHz;
+            gatherer.look();
+            for (double timeS = ReviewGatherer::stepS(); timeS < endS + ReviewGatherer::stepS();
+                 timeS += ReviewGatherer::stepS()) {
+                player.advance(std::min(timeS, endS));
+                gatherer.look();
+                core::report(playing, std::min(1.0, timeS / endS));
+            }
+        }
+    }
+    if (against.result != nullptr && !against.result->identity.proven)
+        gatherer.note(fmt::format("{}: {}", words().text("assessment.not-proven"), said(against.result->proof)));
     return gatherer.review(title, against, mostBytes);
 }
 

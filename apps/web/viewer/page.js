@@ -65,6 +65,7 @@ export class ReviewPage {
         this.markMm = null;
         this.isAsked = false;
         this.box = this.boxOf_();
+        this.lowestCutMm = this.box.high[2];
         this.middleMm = this.middleOfCut_();
         /** @type {SVGElement[]} */
         this.heads = [];
@@ -77,7 +78,7 @@ export class ReviewPage {
         this.lists_();
         host.append(
             element("div", { class: "review-body" },
-                element("div", { class: "review-left" }, this.stage, ...review.text.notes.map((note) => element("p", { class: "review-note" }, note)), this.transport, this.curves),
+                element("div", { class: "review-left" }, element("div", { class: "review-picture" }, this.stage, this.legend), ...review.text.notes.map((note) => element("p", { class: "review-note" }, note)), this.transport, this.curves),
                 element("div", { class: "review-side" }, this.panel, this.lists)));
         this.hands_();
         new ResizeObserver(() => this.ask()).observe(this.stage);
@@ -127,6 +128,7 @@ export class ReviewPage {
                 cutLow[k] = Math.min(cutLow[k], b);
                 cutHigh[k] = Math.max(cutHigh[k], b + 1);
             });
+        if (this.review.bricks.length) this.lowestCutMm = this.mm_(cutLow[2] * brickEdge, 2);
         /** @param {number} k */
         const middle = (k) => (this.review.bricks.length ? this.mm_(((cutLow[k] + cutHigh[k]) / 2) * brickEdge, k) : (low[k] + high[k]) / 2);
         return [middle(0), middle(1), middle(2)];
@@ -135,13 +137,15 @@ export class ReviewPage {
     /** @param {string} name @returns {Camera} */
     standard(name) {
         const { low, high } = this.box, b = this.review.text.buccalSign;
-        const wide = Math.max(high[0] - low[0], high[1] - low[1]), crown = Math.min(high[2] - low[2], 0.75 * wide);
+        const wide = Math.max(high[0] - low[0], high[1] - low[1]);
+        // The crown, and down to where it was cut.
+        const crown = Math.min(high[2] - low[2], Math.max(0.75 * wide, high[2] - this.lowestCutMm + 1));
         /** @type {Vec3} */
         const targetMm = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, high[2] - crown / 2];
         /** @type {Record<string, [number, number]>} */
         const views = { oblique: [-90 * b + 25, 50], occlusal: [-90 * b, 89.9], buccal: [90 * b, 0], lingual: [-90 * b, 0], mesial: [0, 0], distal: [180, 0] };
         const [yawDeg, pitchDeg] = views[name];
-        return { targetMm, yawDeg, pitchDeg, distanceMm: wide * 2.9 };
+        return { targetMm, yawDeg, pitchDeg, distanceMm: Math.max(wide, crown) * 2.9 };
     }
 
     /**
@@ -174,7 +178,7 @@ export class ReviewPage {
         this.legend = element("ul", { class: "review-legend", "aria-label": this.words.legend });
         /** @type {ToothPicture | null} */
         this.picture = null;
-        this.stage = element("div", { class: "review-stage" }, this.canvas, this.fallback, this.mark, this.legend, this.message);
+        this.stage = element("div", { class: "review-stage" }, this.canvas, this.fallback, this.mark, this.message);
         try {
             this.picture = new ToothPicture(this.canvas, this.review, this.tooth.distance);
         } catch (error) {
@@ -350,7 +354,7 @@ export class ReviewPage {
         };
         this.lists = element("div", { class: "review-lists" },
             ...(errors
-                ? list(words.errors, words["no-errors"], errors.map((e) => row(e.timeS, e.placeMm, element("strong", {}, e.title), ` ${e.lost}`, element("span", { class: "detail" }, `${e.measured} ${e.practise}`))))
+                ? list(words.errors, words["no-errors"], errors.map((e) => row(e.timeS, e.placeMm, element("strong", {}, e.title), ` ${e.lost}`, element("span", { class: "detail" }, e.measured), element("span", { class: "detail" }, e.practise))))
                 : []),
             ...list(words.moments, words["no-moments"], moments.map((m) => row(m.timeS, undefined, m.text))));
     }

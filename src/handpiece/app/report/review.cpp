@@ -11,11 +11,11 @@
 #include "handpiece/app/report/artist.h"
 #include "handpiece/app/report/assessment_report.h"
 #include "handpiece/app/report/assessment_words.h"
+#include "handpiece/app/report/page_png.h"
 #include "handpiece/app/report/review_data.h"
 #include "handpiece/app/report/session_report.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
-#include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/field/brick_index.h"
 #include "handpiece/model/field/brick_tissues.h"
@@ -309,10 +309,7 @@ struct ReviewGatherer::State {
         picturesAtKey = keys.size();
         player->tooth()->settle();
         artist->cut(player->tooth()->takeNews());
-        const core::PrivateFolder folder;
-        const std::filesystem::path file = folder.path() / "picture.png";
-        view::writePng(artist->pictureFrom(view), file);
-        pictures.push_back({timeS, core::readFile(file)});
+        pictures.push_back({timeS, pagePng(artist->pictureFrom(view))});
     }
 
     void addEvents();

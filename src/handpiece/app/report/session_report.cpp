@@ -8,9 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "handpiece/app/report/artist.h"
+#include "handpiece/app/report/page_png.h"
 #include "handpiece/app/report/plot.h"
 #include "handpiece/app/report/report_figures.h"
 #include "handpiece/base/config/words.h"
@@ -55,23 +57,25 @@ void addPictures(HtmlReport& page, const simulation::SessionPlayer& player, cons
                  const std::vector<surface::BrickUpdate>& news, const Deepest& deepest) {
     if (!settings.pictures) return page.paragraph(words()("report.no-pictures-asked"), Tone::missing);
     using view::StandardView, view::ToothShown;
-    std::vector<std::pair<view::Image, std::string>> pictures;
+    std::vector<std::pair<std::vector<std::byte>, std::string>> pictures;
     try {
         Artist artist(player, {settings.pictureWidth, settings.pictureHeight});
-        pictures.emplace_back(artist.picture(StandardView::occlusal, ToothShown::before),
+        pictures.emplace_back(pagePng(artist.picture(StandardView::occlusal, ToothShown::before)),
                               words()("session.occlusal-before"));
         artist.cut(news);
-        pictures.emplace_back(artist.picture(StandardView::occlusal, ToothShown::now),
+        pictures.emplace_back(pagePng(artist.picture(StandardView::occlusal, ToothShown::now)),
                               words()("session.occlusal-after"));
-        pictures.emplace_back(artist.picture(StandardView::buccal, ToothShown::now), words()("session.buccal-after"));
+        pictures.emplace_back(pagePng(artist.picture(StandardView::buccal, ToothShown::now)),
+                              words()("session.buccal-after"));
         if (deepest.depthMm > 0.0)
-            pictures.emplace_back(artist.section(*player.tooth(), deepest.pointMm), words()("session.section"));
+            pictures.emplace_back(pagePng(artist.section(*player.tooth(), deepest.pointMm)),
+                                  words()("session.section"));
     } catch (const core::Error& e) {
         return page.paragraph(words()("report.no-pictures", e.problem()), Tone::missing);
     }
     page.begin(Group::pictures);
-    for (const auto& [image, caption] : pictures)
-        page.picture(image, caption);
+    for (const auto& [png, caption] : pictures)
+        page.picture(std::span(png), caption);
     page.end();
     page.legend(chipsOf(player.station().tooth->tissues.tissues()));
 }

@@ -38,8 +38,8 @@ function svg(tag, attributes) {
 }
 /** @param {number} seconds */
 function clock(seconds) {
-    const minutes = Math.floor(seconds / 60);
-    return `${minutes}:${(seconds - 60 * minutes).toFixed(1).padStart(4, "0")}`;
+    const tenths = Math.round(seconds * 10), minutes = Math.floor(tenths / 600);
+    return `${minutes}:${((tenths - 600 * minutes) / 10).toFixed(1).padStart(4, "0")}`;
 }
 /** @param {number} value @param {number} least @param {number} most */
 const within = (value, least, most) => Math.min(Math.max(value, least), most);

@@ -440,6 +440,46 @@ TEST_P(BooksTest, ACodeEnrolsOneStationAlsoWhenTwoComeAtOnceAndBeforeItIsTooOld)
     EXPECT_THAT(everything, Not(HasSubstr(std::string(40, 'k'))));
 }
 
+TEST_P(BooksTest, ALogInLastsUntilItIsEndedOrTooOldOrItsPersonChanges) {
+    auto books = filled();
+    const std::string token(64, 'a'), other(64, 'b');
+    const Act self{"t1", kNow};
+    const auto logIn = [&] {
+        books->addLogin(token, "t1", kNow + 1000, self);
+        books->addLogin(other, "t1", kNow + 2000, self);
+        EXPECT_EQ(books->personByToken(token, kNow)->code, "t1");
+        EXPECT_THAT(books->personByToken(other, kNow)->roles, ElementsAre("examiner", "teacher"));
+    };
+    logIn();
+    EXPECT_FALSE(books->personByToken(std::string(64, 'c'), kNow));
+    EXPECT_FALSE(books->personByToken("", kNow));
+    EXPECT_TRUE(books->personByToken(token, kNow + 999));
+    EXPECT_FALSE(books->personByToken(token, kNow + 1000));
+    books->endLogin(token);
+    books->endLogin(token);
+    EXPECT_FALSE(books->personByToken(token, kNow));
+    EXPECT_TRUE(books->personByToken(other, kNow));
+    EXPECT_EQ(test::errorIdOf([&] { books->addLogin(other, "s1", kNow + 1000, self); }), "books-duplicate");
+    EXPECT_EQ(test::errorIdOf([&] { books->addLogin(token, "s9", kNow + 1000, self); }), "books-unknown");
+    EXPECT_EQ(test::errorIdOf([&] { books->addLogin("short", "s1", kNow + 1000, self); }), "books-invalid");
+    const std::vector<std::function<void()>> changes = {
+        [&] { books->setPassword("t1", "$argon2id$9", kAdmin); },
+        [&] {
+            books->setRoles("t1", {"examiner", "teacher"}, kAdmin);
+        },
+        [&] { books->erase("t1", kAdmin); },
+    };
+    for (const auto& change : changes) {
+        books->endLogin(other);
+        logIn();
+        change();
+        EXPECT_FALSE(books->personByToken(token, kNow));
+        EXPECT_FALSE(books->personByToken(other, kNow));
+    }
+    EXPECT_EQ(test::errorIdOf([&] { books->addLogin(token, "t1", kNow + 1000, self); }), "books-unknown") << "erased";
+    EXPECT_THAT(dump() + sql("SELECT max(token_hash) FROM logins"), Not(HasSubstr(token)));
+}
+
 TEST_P(BooksTest, APersonsDataIsExportedAndTheNameErasedAndTheCodesStay) {
     auto books = filled();
     books->push(attempt(1, {"one"}));

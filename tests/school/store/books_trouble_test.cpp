@@ -194,6 +194,37 @@ TEST_P(BooksInTroubleTest, RefuseANewerVersionAndAnothersDatabase) {
     EXPECT_THAT(none.problem(), HasSubstr("school's books"));
 }
 
+// What version 1 was: all but the log-ins.
+TEST_P(BooksInTroubleTest, ComeUpFromVersionOneAlsoWhenThatIsKilled) {
+    { filled()->push(attempt(1)); }
+    const std::string before = dump();
+    const auto schema = [&] {
+        return isPostgres()
+                   ? sql(fmt::format("SELECT string_agg(table_name || '.' || column_name || ' ' || data_type, ';' "
+                                     "ORDER BY table_name, column_name) FROM information_schema.columns "
+                                     "WHERE table_schema = '{}'",
+                                     schema_))
+                   : sql("SELECT group_concat(sql, ';') FROM (SELECT sql FROM sqlite_schema ORDER BY name)");
+    };
+    const std::string whole = schema();
+    std::mt19937_64 random(test::seed());
+    for (int round = 0; round < 20; ++round) {
+        sql("DROP TABLE logins; UPDATE handpiece_books SET version = 1");
+        ASSERT_NE(schema(), whole);
+        const pid_t child = fork();
+        if (child == 0) {
+            static_cast<void>(open());
+            _exit(0);
+        }
+        std::this_thread::sleep_for(std::chrono::microseconds(below(random, isPostgres() ? 40000 : 8000)));
+        kill(child, SIGKILL);
+        waitpid(child, nullptr, 0);
+        EXPECT_EQ(dump(), before);
+        EXPECT_EQ(schema(), whole);
+        EXPECT_EQ(sql("SELECT version FROM handpiece_books"), "2");
+    }
+}
+
 TEST_P(BooksInTroubleTest, SayWhenAnotherHoldsThemAndGoOnReading) {
     auto books = filled();
     auto patient = open(100ms);

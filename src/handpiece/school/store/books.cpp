@@ -180,6 +180,7 @@ void Books::setPassword(const std::string& code, const std::string& hash, const 
     Transaction transaction(*state_->database);
     if (!state_->any("UPDATE identities SET password = $1 WHERE person = $2 RETURNING person", hash, code))
         throw unknown(*state_->database, "person", code);
+    state_->run("DELETE FROM logins WHERE person = $1", code);
     state_->note(act, "set password", code);
     transaction.commit();
 }
@@ -192,6 +193,7 @@ void Books::setRoles(const std::string& code, const std::vector<std::string>& ro
         requireOneOf("role", role, kRoles);
         state_->run("INSERT INTO roles (person, role) VALUES ($1, $2) ON CONFLICT DO NOTHING", code, role);
     }
+    state_->run("DELETE FROM logins WHERE person = $1", code);
     state_->note(act, "set roles", code, fmt::format("{}", fmt::join(roles, " ")));
     transaction.commit();
 }
@@ -243,11 +245,43 @@ void Books::erase(const std::string& code, const Act& act) {
     state_->requirePerson(code);
     if (state_->any("UPDATE people SET erased = $1 WHERE code = $2 AND erased = 0 RETURNING code", act.at, code)) {
         state_->run("DELETE FROM identities WHERE person = $1", code);
+        state_->run("DELETE FROM logins WHERE person = $1", code);
         state_->note(act, "erase", code);
     }
     transaction.commit();
     // Nor in the log of changes: as far as nobody reads from it just now.
     if (state_->database->engine() == Database::Engine::sqlite) state_->ask("PRAGMA wal_checkpoint(TRUNCATE)").run();
+}
+
+void Books::addLogin(const std::string& token, const std::string& person, Milliseconds expires, const Act& act) {
+    if (token.size() < 32) throw invalid("token of a log-in", "", "use 32 characters or more, by chance");
+    Transaction transaction(*state_->database);
+    if (!state_->any("SELECT 1 FROM identities WHERE person = $1", person))
+        throw unknown(*state_->database, "person", person);
+    state_->run("DELETE FROM logins WHERE person = $1 AND expires <= $2", person, act.at);
+    if (!state_->any("INSERT INTO logins (token_hash, person, made, expires) VALUES ($1, $2, $3, $4) "
+                     "ON CONFLICT DO NOTHING RETURNING person",
+                     sha256(token), person, act.at, expires))
+        throw duplicate(*state_->database, "log-in of", person);
+    state_->note(act, "log in", person);
+    transaction.commit();
+}
+
+std::optional<Person> Books::personByToken(const std::string& token, Milliseconds now) const {
+    std::string code;
+    {
+        Statement row =
+            state_->ask("SELECT person FROM logins WHERE token_hash = $1 AND expires > $2", sha256(token), now);
+        if (!row.next()) return {};
+        code = row.text(0);
+    }
+    return person(code);
+}
+
+void Books::endLogin(const std::string& token) {
+    Transaction transaction(*state_->database);
+    state_->run("DELETE FROM logins WHERE token_hash = $1", sha256(token));
+    transaction.commit();
 }
 
 // Classes.

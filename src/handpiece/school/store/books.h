@@ -161,7 +161,7 @@ struct BookTable {
 /// which), "books-changed" (which: the id is there with another content), "books-invalid" (field).
 class Books {
   public:
-    static constexpr int kVersion = 1;
+    static constexpr int kVersion = 2;
     /// A job that so many workers took and none gave back is given up.
     static constexpr int kMostTurns = 5;
 
@@ -185,6 +185,12 @@ class Books {
     [[nodiscard]] std::vector<BookTable> about(const std::string& code, const Act& act);
     /// The name goes, and what leads to it; the code and what it did stay. Cannot be taken back.
     void erase(const std::string& code, const Act& act);
+
+    // Log-ins, by their tokens, which are kept as hashes. A new password, other roles and erasing end all of a person.
+    void addLogin(const std::string& token, const std::string& person, Milliseconds expires, const Act& act);
+    /// Whose it is; none for one that is unknown, ended or too old.
+    [[nodiscard]] std::optional<Person> personByToken(const std::string& token, Milliseconds now) const;
+    void endLogin(const std::string& token);
 
     // Classes.
     void add(const SchoolClass& schoolClass, const Act& act);

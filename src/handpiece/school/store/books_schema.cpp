@@ -94,6 +94,12 @@ CREATE TABLE audit (
   detail TEXT NOT NULL) STRICT;
 CREATE INDEX audit_by_about ON audit (about, number);
 )sql",
+    R"sql(
+CREATE TABLE logins (
+  token_hash TEXT PRIMARY KEY, person TEXT NOT NULL REFERENCES people (code), made INT8 NOT NULL,
+  expires INT8 NOT NULL) STRICT;
+CREATE INDEX logins_by_person ON logins (person);
+)sql",
 };
 
 /// What is written once and never changed, also by whoever comes to the database by another way.

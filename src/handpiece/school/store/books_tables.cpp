@@ -23,6 +23,7 @@ constexpr std::array kListed = {
     Listed{"people", "t code, i made, i erased", "code", "code = $1"},
     Listed{"identities", "t person, t name, t login, t external", "person", "person = $1"},
     Listed{"roles", "t person, t role", "person, role", "person = $1"},
+    Listed{"logins", "t person, i made, i expires", "person, made, expires", "person = $1"},
     Listed{"classes", "t id, t name, t external, i retention_days, i made, i closed", "id", nullptr},
     Listed{"enrolments", "t class, t person, t role", "class, person", "person = $1"},
     Listed{"files", "t hash, i bytes, i made", "hash", nullptr},

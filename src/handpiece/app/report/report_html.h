@@ -2,18 +2,21 @@
 #pragma once
 /// @file
 /// One self-contained HTML page, to read and to print: headings, text, tables, pictures. Nothing is loaded from
-/// elsewhere. Every page of the program is made with it, in the program's language.
+/// elsewhere, and no browser lets it: its content security policy names what may run. Every page of the program is made
+/// with it, in the program's language.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "handpiece/app/report/review.h"
 #include "handpiece/senses/view/image.h"
 
 namespace handpiece::report {
@@ -64,6 +67,12 @@ class HtmlReport {
     void picture(const view::Image& image, std::string_view caption);
     /// The bytes of a PNG file.
     void picture(std::span<const std::byte> png, std::string_view caption);
+    /// Where review() puts it; what is in the page by then is counted by roomForReview(). Without a call, at the end.
+    void reviewHere() { reviewAt_ = body_.size(); }
+    /// Bytes that a review may have, so that the page stays under kMostPageBytes.
+    [[nodiscard]] std::size_t roomForReview() const;
+    /// The viewer (apps/web/viewer) and what it shows. Once a page.
+    void review(const Review& review);
     void begin(Group group);
     void end();
     /// The page.
@@ -71,6 +80,8 @@ class HtmlReport {
 
   private:
     std::string title_, body_;
+    std::optional<std::size_t> reviewAt_;
+    bool hasViewer_ = false, hasForm_ = false;
 };
 
 }  // namespace handpiece::report
